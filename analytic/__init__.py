@@ -1,0 +1,87 @@
+"""Contact mechanics of functionally graded rough surfaces: the theory, exactly evaluated.
+
+The surface of Greenwood and Williamson (Gaussian summit heights, one radius) whose composite modulus
+E*(s) depends on the reduced summit height s = z/sigma. All separations are h = d/sigma, from the mean
+of the summit heights. The equations are those of "Contact mechanics of functionally graded rough
+surfaces", corrected; each docstring says what is misprinted.
+
+========  ===================================  ================================================
+Equation  Function                             What it is
+========  ===================================  ================================================
+Eq. (1)   `analytic.area`, `analytic.load`     area and load of the homogeneous surface
+Eq. (2)   `analytic.fn`                        F_n(h)
+Eq. (3)   `analytic.load`                      load for any grading E*(s)
+Eq. (4)   `analytic.Exponential`               exponential grading
+Eq. (5)   `analytic.load`                      load for the exponential grading
+Eq. (6)   `analytic.load`                      the same by F*_{3/2}
+Eq. (7)   `analytic.fn`                        F*_n(h)
+Eq. (8)   `analytic.fn_paper`                  F*_n in the variable t = exp(-s) (misprinted)
+Eq. (9)   `analytic.fn_paper`                  its Gauss-Legendre sum (misprinted)
+Eq. (10)  `analytic.area_per_load`             A/P of the graded surface
+Eq. (11)  `analytic.area_per_load`             A/P of the homogeneous surface
+Eq. (12)  `analytic.area_per_load_ratio`       their ratio
+Eq. (13)  `analytic.plasticity_index`          plasticity index
+Eq. (14)  `analytic.barber_conductance`        "conductance" from the stiffness (misprinted)
+Eq. (15)  `analytic.stiffness_ratio`           its ratio: that of the stiffnesses
+========  ===================================  ================================================
+"""
+
+from analytic.contact import (
+    area,
+    area_per_load,
+    area_per_load_ratio,
+    barber_conductance,
+    conductance,
+    contacts,
+    load,
+    mean,
+    stiffness,
+    stiffness_ratio,
+)
+from analytic.fluctuations import Cumulants, HeightRule, covariance, cumulants
+from analytic.gradings import Clipped, Custom, Exponential, Grading, Homogeneous
+from analytic.integrals import fn, fn_between, fn_paper, fn_scaled
+from analytic.inversion import ratio_at_equal_load, separation_at
+from analytic.plasticity import mean_modulus, plasticity_index
+from analytic.quantities import QUANTITIES, Quantity
+from analytic.resolution import first_negative, resolved_breaks
+from analytic.surface import Body, Surface, composite_modulus
+from analytic.tables import Table
+
+__all__ = [
+    "QUANTITIES",
+    "Body",
+    "Clipped",
+    "Cumulants",
+    "Custom",
+    "Exponential",
+    "Grading",
+    "HeightRule",
+    "Homogeneous",
+    "Quantity",
+    "Surface",
+    "Table",
+    "area",
+    "area_per_load",
+    "area_per_load_ratio",
+    "barber_conductance",
+    "composite_modulus",
+    "conductance",
+    "contacts",
+    "covariance",
+    "cumulants",
+    "first_negative",
+    "fn",
+    "fn_between",
+    "fn_paper",
+    "fn_scaled",
+    "load",
+    "mean",
+    "mean_modulus",
+    "plasticity_index",
+    "ratio_at_equal_load",
+    "resolved_breaks",
+    "separation_at",
+    "stiffness",
+    "stiffness_ratio",
+]

@@ -1,0 +1,158 @@
+"""How the composite modulus depends on height: E*(s)/E*, s in units of sigma.
+
+A grading is a callable of an array of heights with two attributes: `breaks`, the heights where it
+or a derivative jumps, and `smooth`, whether it is resolved by a fixed quadrature rule between them.
+"""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+__all__ = ["Clipped", "Custom", "Exponential", "Grading", "Homogeneous"]
+
+Array = NDArray[np.float64]
+
+
+class Grading(Protocol):
+    """E*(s)/E* as a function of the reduced height s."""
+
+    @property
+    def breaks(self) -> tuple[float, ...]:
+        """Heights where the grading or one of its derivatives jumps."""
+        ...
+
+    @property
+    def smooth(self) -> bool:
+        """True if it varies slowly (on the scale of one sigma) between its breaks."""
+        ...
+
+    def __call__(self, s: Array) -> Array:
+        """E*(s)/E* at the heights `s`, in the shape of `s`."""
+        ...
+
+
+@dataclass(frozen=True)
+class Homogeneous:
+    """The same modulus at every height (Greenwood and Williamson)."""
+
+    breaks: tuple[float, ...] = ()
+    smooth: bool = True
+
+    def __call__(self, s: Array) -> Array:
+        """E*(s)/E* = 1."""
+        return np.ones_like(s)
+
+
+@dataclass(frozen=True)
+class Exponential:
+    """The paper's grading, Eq. (4).
+
+    Parameters
+    ----------
+    gamma : float
+        Modulus of the highest asperities relative to that at the mean height. A factor: the paper's
+        "exponent" is a slip.
+
+    Raises
+    ------
+    ValueError
+        If `gamma` is not finite.
+    """
+
+    gamma: float
+    smooth: bool = True
+
+    def __post_init__(self) -> None:
+        if not math.isfinite(self.gamma):
+            raise ValueError(f"gamma = {self.gamma!r}: give a finite number (1 is homogeneous)")
+
+    @property
+    def breaks(self) -> tuple[float, ...]:
+        """No height is special."""
+        return ()
+
+    def __call__(self, s: Array) -> Array:
+        """``gamma - (gamma - 1) exp(-s)``, Eq. (4)."""
+        return self.gamma - (self.gamma - 1) * np.exp(-s)
+
+    @property
+    def zero(self) -> float:
+        """Height where the modulus vanishes (nan for gamma in [0, 1]); it is negative on one side."""
+        if 0 <= self.gamma <= 1:
+            return math.nan
+        return -math.log(self.gamma / (self.gamma - 1))
+
+
+@dataclass(frozen=True)
+class Custom:
+    """Any Python function of height.
+
+    Parameters
+    ----------
+    function : callable
+        Takes an array of reduced heights, returns E*(s)/E* in the same shape.
+    breaks : tuple of float, optional
+        Heights where it jumps or has a kink: told, they cost nothing; untold, they are searched for.
+    """
+
+    function: Callable[[Array], ArrayLike]
+    breaks: tuple[float, ...] = ()
+    smooth: bool = False
+
+    def __call__(self, s: Array) -> Array:
+        """Values of the function.
+
+        Raises
+        ------
+        ValueError
+            If a value is not finite, or the shape is another one.
+        """
+        value = np.asarray(self.function(s), dtype=np.float64)
+        if value.shape not in (s.shape, ()):
+            raise ValueError(f"grading: gave shape {value.shape} for heights of shape {s.shape}")
+        value = np.broadcast_to(value, s.shape)
+        if not np.all(np.isfinite(value)):
+            where = float(s[~np.isfinite(value)].flat[0])
+            raise ValueError(f"grading: E*(s)/E* is not finite at s = {where:.6g}")
+        return value
+
+
+@dataclass(frozen=True)
+class Clipped:
+    """A grading whose negative moduli are replaced by zero.
+
+    Parameters
+    ----------
+    grading : Grading
+        What to clip.
+    zeros : tuple of float, optional
+        Heights where it changes sign.
+    """
+
+    grading: Grading
+    zeros: tuple[float, ...] = ()
+
+    @property
+    def breaks(self) -> tuple[float, ...]:
+        """Those of the grading, and its zeros."""
+        return tuple(sorted({*self.grading.breaks, *self.zeros}))
+
+    @property
+    def smooth(self) -> bool:
+        """As the grading, where its zeros are known."""
+        return self.grading.smooth and bool(self.zeros)
+
+    def __call__(self, s: Array) -> Array:
+        """The positive part of the grading."""
+        return np.maximum(self.grading(s), 0.0)
+
+    @classmethod
+    def of(cls, grading: Grading) -> "Clipped":
+        """Clip a grading; the zero of the exponential one is known."""
+        if isinstance(grading, Exponential) and math.isfinite(grading.zero):
+            return cls(grading, (grading.zero,))
+        return cls(grading)

@@ -1,0 +1,208 @@
+"""The integrals F_n and F*_n of the theory, to 1e-13 at any separation (Eqs. 2, 3, 7-9).
+
+With s = h + v^2 the integrand ``2 v^(2n+1) g(h + v^2) phi(h + v^2)`` is analytic in v for every
+half-integer n, so Gauss-Legendre in v converges exponentially, whatever the smooth grading g. For
+h >= 0 everything is relative to phi(h), so nothing underflows before the answer does.
+"""
+
+from functools import cache
+from itertools import pairwise
+
+import numpy as np
+from numpy.polynomial.legendre import leggauss
+from numpy.typing import ArrayLike, NDArray
+
+from analytic.gradings import Grading, Homogeneous
+from analytic.resolution import resolved_breaks
+
+__all__ = ["exp_minus_half_square", "fn", "fn_between", "fn_paper", "fn_scaled"]
+
+Array = NDArray[np.float64]
+
+_REACH = 13.0  # phi(13)/phi(0) = 2e-37: what lies beyond can carry any modulus up to exp(4|s|)
+_NODES = 64
+_BLOCK = 512  # separations at a time: nodes x block stay in the cache
+
+
+@cache
+def _legendre(nodes: int) -> tuple[Array, Array]:
+    """Gauss-Legendre on [0, 1]."""
+    x, w = leggauss(nodes)
+    return (1 + x) / 2, w / 2
+
+
+def exp_minus_half_square(h: Array) -> Array:
+    """exp(-h^2/2) to full relative accuracy: the square is split so that its rounding drops out."""
+    a = np.round(16 * h) / 16
+    return np.exp(-a * a / 2) * np.exp(-(h - a) * (h + a) / 2)
+
+
+def _panel(n: float, h: Array, grading: Grading, low: Array, high: Array) -> Array:
+    """``int (s-h)^n g phi / phi(max(h, 0))`` over s from `low` to `high`, columns like `h`."""
+    x, w = _legendre(_NODES)
+    start = np.sqrt(low - h)
+    width = np.sqrt(high - h) - start
+    v = start + width * x
+    u = v * v
+    decay = np.where(h >= 0, u * (u / 2 + h), (h + u) ** 2 / 2 + np.log(2 * np.pi) / 2)
+    sums: Array = (v ** (2 * n + 1) * np.exp(-decay) * grading(h + u)) @ (2 * w)
+    return sums[:, None] * width
+
+
+def _block(n: float, h: Array, grading: Grading, between: tuple[float, float]) -> Array:
+    """Scaled integral for a column of separations, cut at the breaks and at the mean height."""
+    above = np.maximum(h, 0.0)
+    top = np.where(h >= 0, h + _REACH**2 / (above + np.sqrt(above * above + _REACH**2)), _REACH)
+    top = np.minimum(top, between[1])
+    bottom = np.minimum(np.maximum(np.maximum(h, -_REACH), between[0]), top)
+    cuts = resolved_breaks(grading, float(bottom.min()), float(top.max()))
+    result = np.zeros_like(h)
+    for left, right in pairwise([-np.inf, *sorted({0.0, *cuts}), np.inf]):
+        low, high = np.clip(left, bottom, top), np.clip(right, bottom, top)
+        inside = (high > low)[:, 0]
+        if inside.any():
+            result[inside] += _panel(n, h[inside], grading, low[inside], high[inside])
+    return result
+
+
+def fn_scaled(
+    n: float,
+    h: ArrayLike,
+    grading: Grading | None = None,
+    *,
+    between: tuple[float, float] = (-np.inf, np.inf),
+) -> Array:
+    """F_n or F*_n relative to the density at the separation.
+
+    Parameters
+    ----------
+    n : float
+        Power of the approach: an integer or half-integer >= 0.
+    h : array_like
+        Reduced separations d/sigma, any shape.
+    grading : Grading, optional
+        E*(s)/E*; left out: homogeneous.
+    between : (float, float), optional
+        Count only heights between these two.
+
+    Returns
+    -------
+    ndarray
+        ``F(h)/phi(h)`` for h >= 0, ``F(h)`` for h < 0, in the shape of `h`.
+
+    Raises
+    ------
+    ValueError
+        If `n` is negative or no multiple of 1/2, or a separation is not finite.
+    """
+    h = np.asarray(h, dtype=np.float64)
+    if n < 0 or (2 * n) % 1:
+        raise ValueError(f"n = {n!r}: give a multiple of 1/2 that is not negative")
+    if not np.all(np.isfinite(h)):
+        raise ValueError("h: every separation must be finite")
+    grading = Homogeneous() if grading is None else grading
+    flat = h.reshape(-1, 1) + 0.0  # makes -0.0 the same as 0.0
+    blocks = [_block(n, flat[i : i + _BLOCK], grading, between) for i in range(0, len(flat), _BLOCK)]
+    return np.concatenate([*blocks, np.empty((0, 1))]).reshape(h.shape)
+
+
+def fn(n: float, h: ArrayLike, grading: Grading | None = None, *, log: bool = False) -> Array:
+    r"""Integral F_n (Eq. 2), with a grading F*_n (Eqs. 3, 5, 7).
+
+    .. math:: F^*_n(h) = \int_h^\infty (s - h)^n \phi(s) E^*(s)/E^* ds
+
+    Relative error at most 1e-13 for every h from -40 to 1000. The paper says that no closed form
+    exists; there is one: ``Gamma(n+1)/sqrt(2 pi) exp(-h^2/4) D_{-n-1}(h)`` with the parabolic cylinder
+    function D, and ``F*_n(h) = gamma F_n(h) - (gamma-1) sqrt(e) F_n(h+1)`` for Eq. 4. The quadrature
+    used here is the more accurate way to evaluate it and takes any grading; the tests hold it to both.
+
+    Parameters
+    ----------
+    n : float
+        Power of the approach: 0, 1/2, 1, 3/2, ...
+    h : array_like
+        Reduced separations d/sigma, any shape.
+    grading : Grading, optional
+        E*(s)/E*; left out: homogeneous.
+    log : bool, optional
+        Return the natural logarithm, which does not underflow; nan where the integral is negative.
+
+    Returns
+    -------
+    ndarray
+        In the shape of `h`.
+
+    Raises
+    ------
+    ValueError
+        If `n` is negative or no multiple of 1/2, or a separation is not finite.
+
+    Examples
+    --------
+    >>> import analytic
+    >>> float(analytic.fn(1, 0.0))
+    0.39894228040143326
+    >>> float(analytic.fn(1.5, 100.0, analytic.Exponential(2.0), log=True))
+    -5011.841042345474
+    """
+    h = np.asarray(h, dtype=np.float64)
+    scaled = fn_scaled(n, h, grading)
+    above = np.maximum(h, 0.0)
+    if log:
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return np.log(scaled) - np.where(h >= 0, above * above / 2 + np.log(2 * np.pi) / 2, 0.0)
+    return scaled * np.where(h >= 0, exp_minus_half_square(above) / np.sqrt(2 * np.pi), 1.0)
+
+
+def fn_between(n: float, h: ArrayLike, low: float, high: float, grading: Grading | None = None) -> Array:
+    """Share of F*_n(h) that comes from heights between `low` and `high`.
+
+    Parameters
+    ----------
+    n : float
+        Power of the approach.
+    h : array_like
+        Reduced separations, any shape.
+    low, high : float
+        Range of reduced heights; infinite for no bound.
+    grading : Grading, optional
+        E*(s)/E*; left out: homogeneous.
+
+    Returns
+    -------
+    ndarray
+        A share, 0 to 1 where the modulus is positive, in the shape of `h`.
+    """
+    return fn_scaled(n, h, grading, between=(low, high)) / fn_scaled(n, h, grading)
+
+
+def fn_paper(n: float, h: ArrayLike, gamma: float, ngp: int) -> Array:
+    """F*_n by the paper's own scheme, Eq. (9) corrected: Gauss-Legendre in t = exp(-s).
+
+    As printed, Eqs. (8) and (9) do not compute F*_n: the exponential has the wrong sign
+    (``exp[(-ln t)^2/2]`` diverges), and the abscissae and weights need ``exp(-h)`` in place of
+    ``exp(-h/2)``. The corrected scheme converges slowly, as ngp^(-2n-2), and loses all digits below
+    h = -2; it is here so that its error can be shown.
+
+    Parameters
+    ----------
+    n : float
+        Power of the approach.
+    h : array_like
+        Reduced separations, any shape.
+    gamma : float
+        Grading of Eq. (4); 1 is homogeneous.
+    ngp : int
+        Number of Gauss points.
+
+    Returns
+    -------
+    ndarray
+        In the shape of `h`.
+    """
+    h = np.asarray(h, dtype=np.float64)[..., None]
+    x, w = _legendre(ngp)
+    log_t = np.log(x)  # of t exp(h), so that s - h = -log_t even where exp(-h) underflows
+    s = h - log_t
+    terms = (-log_t) ** n * np.exp(-s * s / 2) * (gamma - (gamma - 1) * np.exp(-s)) / x
+    return np.asarray(terms @ w / np.sqrt(2 * np.pi))

@@ -1,0 +1,79 @@
+"""What one asperity in contact contributes: a power law of its approach, once and for all.
+
+An asperity of reduced height s under a plane at the reduced separation h carries ::
+
+    scale * (s - h)**exponent * (E*(s)/E*)**modulus        for s > h
+
+(Hertz; Eqs. 1a, 1b of the paper), so the mean over a surface is ``N * scale * F*_exponent(h)``.
+"""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from analytic.surface import Surface
+
+__all__ = ["QUANTITIES", "Quantity"]
+
+
+@dataclass(frozen=True, slots=True)
+class Quantity:
+    """A sum over asperities.
+
+    Parameters
+    ----------
+    name, long_name, unit : str
+        Name in code, name for people, SI unit.
+    exponent : float
+        Power n of the approach (s - h).
+    modulus : int
+        Power of the grading E*(s)/E*: 1 where the modulus counts, else 0.
+    scale : callable
+        Dimensional factor of one asperity, of the `Surface`.
+    """
+
+    name: str
+    long_name: str
+    unit: str
+    exponent: float
+    modulus: int
+    scale: Callable[[Surface], float]
+
+
+def _load(x: Surface) -> float:
+    return 4 / 3 * x.E_star * math.sqrt(x.radius * x.sigma) * x.sigma
+
+
+def _area(x: Surface) -> float:
+    return math.pi * x.radius * x.sigma
+
+
+def _stiffness(x: Surface) -> float:
+    return 2 * x.E_star * math.sqrt(x.radius * x.sigma)
+
+
+def _contacts(_: Surface) -> float:
+    return 1.0
+
+
+def _conductance(x: Surface) -> float:
+    return 4 * math.sqrt(x.radius * x.sigma)
+
+
+QUANTITIES = {
+    q.name: q
+    for q in (
+        Quantity("load", "normal load", "N", 1.5, 1, _load),
+        Quantity("area", "real contact area", "m^2", 1.0, 0, _area),
+        Quantity("stiffness", "normal stiffness -dP/dd", "N/m", 0.5, 1, _stiffness),
+        Quantity("contacts", "number of contacts", "1", 0.0, 0, _contacts),
+        Quantity(
+            "conductance",
+            "contact conductance of the spots, times the resistivity rho",
+            "m",
+            0.5,
+            0,
+            _conductance,
+        ),
+    )
+}
