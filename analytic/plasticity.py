@@ -92,4 +92,4 @@ def plasticity_index(modulus: ArrayLike, *, E_star: float, slope: float, hardnes
     ndarray
         ``modulus * E* m/(sqrt(2) H_v)``; plastic deformation prevails above 1.
     """
-    return np.asarray(modulus, dtype=np.float64) * (E_star * slope / (np.sqrt(2) * hardness))
+    return np.asarray(np.multiply(modulus, E_star * slope / (np.sqrt(2) * hardness)), dtype=np.float64)
