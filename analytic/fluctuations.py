@@ -3,7 +3,8 @@
 One surface has N independent asperities (or a Poisson number of them with mean N), so a quantity is
 a sum of N independent terms ``f(s_i)``. Its cumulants follow from integrals over one asperity. These
 are taken with a fixed set of heights and probabilities (`HeightRule`): Gauss-Legendre in
-``sqrt(s - h_k)`` between neighbouring separations h_k, so every kink of every term is an edge.
+``sqrt(s - h_k)`` on pieces that no separation and no break divides, graded towards separations with a
+close neighbour. Means and variances underflow with the density, beyond h = 37.
 """
 
 from collections.abc import Sequence
@@ -16,7 +17,8 @@ from numpy.polynomial.legendre import leggauss
 from numpy.typing import ArrayLike, NDArray
 
 from analytic.gradings import Grading, Homogeneous
-from analytic.integrals import exp_minus_half_square, fn
+from analytic.heights import exp_minus_half_square
+from analytic.integrals import fn
 from analytic.quantities import QUANTITIES
 from analytic.resolution import resolved_breaks
 from analytic.surface import Surface
@@ -28,6 +30,19 @@ Count = Literal["fixed", "poisson"]
 
 _REACH = 13.0
 _NODES = 64
+_STEP = 4.0  # widest piece, on which the density is resolved as far down as s = -40
+_RATIO = 8.0  # of a piece to its distance from the next separation below
+
+
+def _graded(h: Array) -> list[float]:
+    """Edges above close neighbours, whose ``sqrt(s - h)`` almost has its kink inside the next piece."""
+    edges = []
+    for lower, upper in pairwise(h):
+        distance = upper - lower
+        while distance < 1:
+            edges.append(upper + distance)
+            distance *= _RATIO
+    return edges
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,10 +67,11 @@ class HeightRule:
     def over(cls, separations: ArrayLike, grading: Grading) -> "HeightRule":
         """The rule for these reduced separations and this grading."""
         h = np.unique(np.asarray(separations, dtype=np.float64))
-        low = float(max(h[0], -_REACH))
-        top = float(max(_REACH, h[-1] + _REACH**2 / (max(h[-1], 0) + np.hypot(max(h[-1], 0), _REACH))))
-        cuts = [low, top, 0.0, *h, *resolved_breaks(grading, low, top)]
-        edges = np.unique([c for c in cuts if low <= c <= top])
+        low, last = float(h[0]), max(float(h[-1]), 0.0)
+        top = last + _REACH**2 / (last + np.hypot(last, _REACH))
+        regular = _STEP * np.arange(np.floor(low / _STEP) + 1, np.ceil(top / _STEP))
+        cuts = [*h, *_graded(h), *regular, *resolved_breaks(grading, max(low, -_REACH), top), top]
+        edges = np.unique([c for c in cuts if c <= top])
         x, w = leggauss(_NODES)
         x, w = (1 + x) / 2, w / 2
         pieces = []
@@ -69,10 +85,19 @@ class HeightRule:
         heights, probabilities = (np.concatenate(part) for part in zip(*pieces, strict=True))
         return cls(heights, probabilities, float(fn(0, -h[0])))
 
-    def terms(
-        self, surface: Surface, quantities: Sequence[str], separations: ArrayLike, grading: Grading
-    ) -> Array:
-        """What one asperity adds to each quantity, in SI units: shape (m, quantities * separations)."""
+    def deviations(self, f: Array) -> tuple[Array, Array, Array]:
+        """Mean of each column of `f`; its deviations at the heights; and that of 0, below all heights.
+
+        Free of cancellation even where almost every asperity contributes the same: one minus its
+        mean is then a number like 1e-89, and the variance too.
+        """
+        origin = f[np.argmax(self.probabilities)]
+        shifted = f - origin
+        offset = self.probabilities @ shifted - self.below * origin
+        return self.probabilities @ f, shifted - offset, -origin - offset
+
+    def terms(self, quantities: Sequence[str], separations: ArrayLike, grading: Grading) -> Array:
+        """What one asperity adds to each quantity, over its scale: shape (m, quantities * separations)."""
         h = np.asarray(separations, dtype=np.float64)
         approach = self.heights[:, None] - h
         modulus = grading(self.heights)[:, None]
@@ -80,7 +105,7 @@ class HeightRule:
         for name in quantities:
             q = QUANTITIES[name]
             power = np.where(approach > 0, np.abs(approach) ** q.exponent, 0.0)
-            columns.append(q.scale(surface) * power * modulus**q.modulus)
+            columns.append(power * modulus**q.modulus)
         return np.concatenate(columns, axis=1)
 
 
@@ -141,25 +166,26 @@ def cumulants(
     """
     grading = Homogeneous() if grading is None else grading
     n = surface.n_asperities if n_asperities is None else n_asperities
+    scale = QUANTITIES[quantity].scale(surface)
     h = np.asarray(h, dtype=np.float64)
-    rows = [_one_asperity(surface, quantity, x, grading, count) for x in h.ravel()]
+    rows = [_one_asperity(quantity, x, grading, count) for x in h.ravel()]
     k1, k2, k3, k4 = np.array(rows).reshape(*h.shape, 4).transpose(-1, *range(h.ndim))
     with np.errstate(divide="ignore", invalid="ignore"):
-        return Cumulants(n * k1, n * k2, k3 / k2**1.5 / np.sqrt(n), k4 / k2**2 / n)
+        return Cumulants(
+            n * scale * k1, n * scale**2 * k2, k3 / k2 / np.sqrt(n * k2), k4 / k2 / (n * k2)
+        )  # k2 to a power would underflow long before these ratios overflow
 
 
-def _one_asperity(
-    surface: Surface, quantity: str, h: float, grading: Grading, count: Count
-) -> tuple[float, float, float, float]:
-    """First four cumulants that one asperity contributes, from moments about the mean."""
+def _one_asperity(quantity: str, h: float, grading: Grading, count: Count) -> tuple[float, ...]:
+    """First four cumulants that one asperity contributes, over the scale, from moments about the mean."""
     rule = HeightRule.over([h], grading)
-    f = rule.terms(surface, [quantity], [h], grading)[:, 0]
-    m1 = float(rule.probabilities @ f)
-    centre = m1 if count == "fixed" else 0.0
-    m2, m3, m4 = (
-        float(rule.probabilities @ (f - centre) ** k + rule.below * (-centre) ** k) for k in (2, 3, 4)
-    )
-    return (m1, m2, m3, m4 - 3 * m2 * m2) if count == "fixed" else (m1, m2, m3, m4)
+    f = rule.terms([quantity], [h], grading)
+    if count == "poisson":
+        m1, m2, m3, m4 = (float((rule.probabilities @ f**k)[0]) for k in (1, 2, 3, 4))
+        return m1, m2, m3, m4
+    mean, deviation, at_zero = rule.deviations(f)
+    m2, m3, m4 = (float((rule.probabilities @ deviation**k + rule.below * at_zero**k)[0]) for k in (2, 3, 4))
+    return float(mean[0]), m2, m3, m4 - 3 * m2 * m2
 
 
 def covariance(
@@ -197,8 +223,11 @@ def covariance(
     n = surface.n_asperities if n_asperities is None else n_asperities
     h = np.asarray(separations, dtype=np.float64)
     rule = HeightRule.over(h, grading)
-    f = rule.terms(surface, quantities, h, grading)
-    centre = rule.probabilities @ f if count == "fixed" else np.zeros(f.shape[1])
-    deviation = f - centre
-    matrix = (deviation * rule.probabilities[:, None]).T @ deviation + rule.below * np.outer(centre, centre)
-    return np.asarray(n * matrix).reshape(len(quantities), len(h), len(quantities), len(h))
+    f = rule.terms(quantities, h, grading)
+    if count == "fixed":
+        _, f, at_zero = rule.deviations(f)
+    else:
+        at_zero = np.zeros(f.shape[1])
+    matrix = (f * rule.probabilities[:, None]).T @ f + rule.below * np.outer(at_zero, at_zero)
+    scale = np.repeat([QUANTITIES[name].scale(surface) for name in quantities], h.size)
+    return np.asarray(n * matrix * np.outer(scale, scale)).reshape(2 * (len(quantities), h.size))

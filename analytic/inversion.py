@@ -1,15 +1,12 @@
 """Given the load (or area, ...), the separation; and comparisons at equal load."""
 
-from typing import Any
-
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import brentq
 
-from analytic.contact import mean
-from analytic.gradings import Grading, Homogeneous
+from analytic.gradings import Grading
 from analytic.integrals import fn
-from analytic.quantities import QUANTITIES
+from analytic.quantities import QUANTITIES, Quantity
 from analytic.surface import Surface
 
 __all__ = ["ratio_at_equal_load", "separation_at"]
@@ -49,22 +46,29 @@ def separation_at(surface: Surface, quantity: str, value: ArrayLike, grading: Gr
     per_surface = surface.n_asperities * q.scale(surface)
     if not np.all(np.isfinite(target) & (target > 0)):
         raise ValueError(f"{quantity} = {value!r}: give finite values > 0 {q.unit}")
-    roots = [_root(q.exponent, float(np.log(t / per_surface)), chosen, quantity) for t in target.ravel()]
-    return np.array(roots).reshape(target.shape)
+    return _separations(q, np.log(target / per_surface), chosen)
 
 
-def _root(n: float, log_target: float, grading: Grading | None, quantity: str) -> float:
+def _separations(quantity: Quantity, log_target: Array, grading: Grading | None) -> Array:
     """Largest h with ``log F*_n(h) = log_target``."""
+    n = quantity.exponent
     grid = np.concatenate([np.linspace(_RANGE[0], 10, 251), np.geomspace(10.5, _RANGE[1], 60)])
-    high_enough = np.flatnonzero(fn(n, grid, grading, log=True) >= log_target)
-    if not high_enough.size or high_enough[-1] == len(grid) - 1:
-        raise ValueError(
-            f"{quantity}: not reached between h = {_RANGE[0]:g} and {_RANGE[1]:g}; give another value"
-        )
-    last = high_enough[-1]
-    bracket: tuple[Any, Any] = (grid[last], grid[last + 1])
-    root = brentq(lambda h: float(fn(n, h, grading, log=True)) - log_target, *bracket, xtol=1e-14, rtol=1e-14)
-    return float(root)
+    on_grid = fn(n, grid, grading, log=True)
+    roots = []
+    for target in log_target.ravel():
+        high_enough = np.flatnonzero(on_grid >= target)
+        if not high_enough.size or high_enough[-1] == len(grid) - 1:
+            raise ValueError(
+                f"{quantity.name}: not reached between h = {_RANGE[0]:g} and {_RANGE[1]:g}; "
+                "give another value"
+            )
+        left, right = grid[high_enough[-1] : high_enough[-1] + 2].tolist()
+        roots.append(brentq(_excess, left, right, (n, grading, target), xtol=1e-14, rtol=1e-14))
+    return np.array(roots, dtype=np.float64).reshape(log_target.shape)
+
+
+def _excess(h: float, n: float, grading: Grading | None, log_target: float) -> float:
+    return float(fn(n, h, grading, log=True)) - log_target
 
 
 def ratio_at_equal_load(quantity: str, h: ArrayLike, grading: Grading) -> Array:
@@ -92,7 +96,8 @@ def ratio_at_equal_load(quantity: str, h: ArrayLike, grading: Grading) -> Array:
     >>> float(analytic.ratio_at_equal_load("conductance", 2.0, analytic.Exponential(2.0)).round(3))
     0.548
     """
-    unit = Surface(1.0, 1.0, 1.0, 1.0, 1.0)
+    q = QUANTITIES[quantity]
     h = np.asarray(h, dtype=np.float64)
-    other = separation_at(unit, "load", mean(unit, "load", h, Homogeneous()), grading)
-    return mean(unit, quantity, other, grading) / mean(unit, quantity, h)
+    other = _separations(QUANTITIES["load"], fn(1.5, h, log=True), grading)
+    chosen = grading if q.modulus else None
+    return np.asarray(np.exp(fn(q.exponent, other, chosen, log=True) - fn(q.exponent, h, log=True)))
