@@ -40,6 +40,7 @@ from analytic.contact import (
 )
 from analytic.fluctuations import Cumulants, HeightRule, covariance, cumulants
 from analytic.gradings import Clipped, Custom, Exponential, Grading, Homogeneous
+from analytic.heights import Gaussian, HeightLaw
 from analytic.integrals import fn, fn_between, fn_paper, fn_scaled
 from analytic.inversion import ratio_at_equal_load, separation_at
 from analytic.plasticity import mean_modulus, plasticity_index
@@ -55,7 +56,9 @@ __all__ = [
     "Cumulants",
     "Custom",
     "Exponential",
+    "Gaussian",
     "Grading",
+    "HeightLaw",
     "HeightRule",
     "Homogeneous",
     "Quantity",

@@ -1,0 +1,77 @@
+"""Laws of the summit heights, reduced to mean 0 and standard deviation 1."""
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.special import log_ndtr, ndtr, ndtri, ndtri_exp
+
+__all__ = ["Gaussian", "HeightLaw", "exp_minus_half_square"]
+
+Array = NDArray[np.float64]
+
+
+def exp_minus_half_square(h: Array) -> Array:
+    """exp(-h^2/2) to full relative accuracy: the square is split so that its rounding drops out."""
+    a = np.round(16 * h) / 16
+    return np.exp(-a * a / 2) * np.exp(-(h - a) * (h + a) / 2)
+
+
+class HeightLaw(Protocol):
+    """Distribution of the reduced height s = z/sigma."""
+
+    def density(self, s: Array) -> Array:
+        """Probability density at `s`."""
+        ...
+
+    def log_ratio(self, s: Array, t: Array) -> Array:
+        """``log(density(s + t)/density(s))``, accurate for small `t`."""
+        ...
+
+    def below(self, s: Array) -> Array:
+        """Probability of a height below `s`, to full relative accuracy."""
+        ...
+
+    def above(self, s: Array) -> Array:
+        """Probability of a height above `s`, to full relative accuracy."""
+        ...
+
+    def from_below(self, p: Array, s: float) -> Array:
+        """Height at the share `p` of the heights below `s`."""
+        ...
+
+    def from_above(self, p: Array, s: float) -> Array:
+        """Height at the share `p` of the heights above `s`, counted from the top."""
+        ...
+
+
+@dataclass(frozen=True)
+class Gaussian:
+    """The normal law of Greenwood and Williamson."""
+
+    def density(self, s: Array) -> Array:
+        """``exp(-s^2/2)/sqrt(2 pi)``."""
+        return np.asarray(exp_minus_half_square(s) / np.sqrt(2 * np.pi))
+
+    def log_ratio(self, s: Array, t: Array) -> Array:
+        """``-t (s + t/2)``."""
+        return -t * (s + t / 2)
+
+    def below(self, s: Array) -> Array:
+        """``Phi(s)``."""
+        return np.asarray(ndtr(s))
+
+    def above(self, s: Array) -> Array:
+        """``Phi(-s)``."""
+        return np.asarray(ndtr(-s))
+
+    def from_below(self, p: Array, s: float) -> Array:
+        """``Phi^-1(p Phi(s))``, by logarithms where that underflows."""
+        if s > -5:
+            return np.asarray(ndtri(p * ndtr(s)))
+        return np.asarray(ndtri_exp(np.log(p) + log_ndtr(s)))
+
+    def from_above(self, p: Array, s: float) -> Array:
+        """``-Phi^-1(p Phi(-s))``."""
+        return -self.from_below(p, -s)
