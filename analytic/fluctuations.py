@@ -88,10 +88,10 @@ class HeightRule:
     def deviations(self, f: Array) -> tuple[Array, Array, Array]:
         """Mean of each column of `f`; its deviations at the heights; and that of 0, below all heights.
 
-        Free of cancellation even where almost every asperity contributes the same: one minus its
-        mean is then a number like 1e-89, and the variance too.
+        Counted from what almost every asperity contributes (nothing, or the same), so that a variance
+        like 1e-89 keeps its digits.
         """
-        origin = f[np.argmax(self.probabilities)]
+        origin = np.where(self.below > 0.5, 0.0, f[np.argmax(self.probabilities)])
         shifted = f - origin
         offset = self.probabilities @ shifted - self.below * origin
         return self.probabilities @ f, shifted - offset, -origin - offset
