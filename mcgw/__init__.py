@@ -1,0 +1,62 @@
+"""Monte-Carlo simulator of rough contacts: Greenwood-Williamson surfaces with graded elasticity.
+
+>>> import mcgw
+>>> scene = mcgw.scene_from('''
+... [surface]
+... sigma = 1.37e-6
+... radius = 13e-6
+... eta = 3.0e8
+... nominal_area = 1e-4
+... E_star = 78.6e9
+... [contact]
+... separations = [0.0, 2.0]
+... [ensemble]
+... n_surfaces = 50
+... seed = 1
+... ''')
+>>> ensemble = mcgw.simulate(scene)
+>>> ensemble.load.shape
+(50, 2)
+"""
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from mcgw.ensemble import Ensemble
+    from mcgw.heights import heights
+    from mcgw.scene import Scene, SceneError
+    from mcgw.scene_file import load_scene, scene_from, scene_text
+    from mcgw.simulate import simulate
+    from mcgw.store import open_ensemble
+
+__all__ = [
+    "Ensemble",
+    "Scene",
+    "SceneError",
+    "heights",
+    "load_scene",
+    "open_ensemble",
+    "scene_from",
+    "scene_text",
+    "simulate",
+]
+
+# Imported when asked for: compiling and file formats cost a second that `mcgw --help` need not wait.
+_HOME = {
+    "Ensemble": "ensemble",
+    "Scene": "scene",
+    "SceneError": "scene",
+    "heights": "heights",
+    "load_scene": "scene_file",
+    "open_ensemble": "store",
+    "scene_from": "scene_file",
+    "scene_text": "scene_file",
+    "simulate": "simulate",
+}
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _HOME:
+        raise AttributeError(f"module 'mcgw' has no attribute {name!r}")
+    return getattr(import_module(f"mcgw.{_HOME[name]}"), name)

@@ -1,0 +1,97 @@
+"""Moments of crowded cells from their Gaussian limit: the price no longer depends on N.
+
+The moments of a cell with n asperities are sums of n independent vectors ``b(u)``, so for large n
+they are Gaussian with mean ``n E b`` and covariance ``n Cov b``, both known exactly. Cells are narrow:
+what is approximated is only the small part of the fluctuations that arises inside a cell.
+"""
+
+from functools import cache
+from typing import Any
+
+import numpy as np
+from numba import njit, prange
+from numpy.polynomial import chebyshev
+from numpy.polynomial.legendre import leggauss
+from numpy.typing import NDArray
+from scipy.special import ndtri
+
+from mcgw.moments import Layout
+from mcgw.philox import MOMENTS, centred
+
+__all__ = ["CROWDED", "add_gaussian_moments"]
+
+Array = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+CROWDED = 256  # asperities in a cell, from which its moments count as Gaussian
+
+
+@cache
+def _law_of_moments(plain: int, rooted: int) -> tuple[Array, Array]:
+    """Mean of b = (T_0 .., sqrt(u) T_0 ..) for a uniform u, and a root of its covariance."""
+    v, w = leggauss(48)
+    v, w = (1 + v) / 2, w / 2 * (1 + v)  # u = v^2: the integrands are polynomials in v
+    x = 2 * v * v - 1
+    b = np.concatenate(
+        [
+            chebyshev.chebvander(x, max(plain, 1) - 1)[:, :plain],
+            v[:, None] * chebyshev.chebvander(x, max(rooted, 1) - 1)[:, :rooted],
+        ],
+        axis=1,
+    )
+    mean = w @ b
+    size, axes = np.linalg.eigh((b - mean).T @ ((b - mean) * w[:, None]))
+    root = axes * np.sqrt(np.maximum(size, 0.0))
+    if plain:
+        mean[0], root[0] = 1.0, 0.0  # T_0 counts the asperities
+    return mean, root
+
+
+@njit(parallel=True, cache=True)
+def _words(seed: Any, first_surface: Any, rows: Any, surfaces: Any) -> Any:
+    """One centred uniform for each moment of each surface: shape (rows, surfaces)."""
+    result = np.empty((rows, surfaces))
+    for i in prange(surfaces):
+        x = np.empty((rows + 63) // 64 * 64)
+        centred(x, seed, MOMENTS, first_surface + i, 0, 0, rows)
+        result[:, i] = x[:rows]
+    return result
+
+
+@njit(parallel=True, cache=True)
+def _mix(moments: Any, counts: Any, start: Any, mean: Any, root: Any, z: Any) -> None:
+    """Write ``n mean + sqrt(n) root z`` where n > 0, in one order of summation."""
+    for i in prange(counts.size):
+        n = counts[i]
+        if n > 0:
+            for j in range(mean.size):
+                total = 0.0
+                for k in range(mean.size):
+                    total += root[j, k] * z[start + k, i]
+                moments[start + j, i] = n * mean[j] + np.sqrt(n) * total
+
+
+def add_gaussian_moments(seed: int, first: int, counts: Ints, layout: Layout, moments: Array) -> None:
+    """Fill in the moments of crowded cells.
+
+    Parameters
+    ----------
+    seed : int
+        The scene's.
+    first : int
+        Number of the first surface.
+    counts : ndarray of int
+        Asperities of each crowded cell, else 0; shape (cells, surfaces).
+    layout : Layout
+        Which moments each cell has.
+    moments : ndarray
+        Shape (moments, surfaces); written where `counts` is positive.
+    """
+    crowded = np.flatnonzero(counts.any(axis=1))
+    if not crowded.size:
+        return
+    starts = layout.starts
+    z = ndtri((1 + _words(np.uint64(seed), first, len(moments), counts.shape[1])) / 2)
+    for cell in crowded:
+        mean, root = _law_of_moments(int(layout.plain[cell]), int(layout.rooted[cell]))
+        _mix(moments, counts[cell], starts[cell], mean, root, z)

@@ -1,0 +1,152 @@
+"""The height axis above the lowest separation, cut into cells.
+
+Every separation and every break of the grading is an edge. Inside a cell the heights are independent
+and equally distributed: s = a + t(u), with u uniform on (0, 1) and t the cell's own inverse
+distribution, smooth in u and known to full relative accuracy. A cell that starts right above a
+separation may be as wide as the law allows; any other is no wider than its distance to the nearest
+separation below, where the laws of contact have a root (the mesh of a fast multipole method).
+
+Where less than one asperity in ten surfaces is expected there are no cells: those few are the extras.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.polynomial import chebyshev
+from numpy.polynomial.legendre import leggauss
+from numpy.typing import NDArray
+
+from analytic import HeightLaw, resolved_breaks
+from mcgw.scene import Scene
+
+__all__ = ["Mesh", "mesh_of", "no_cells"]
+
+Array = NDArray[np.float64]
+
+EXTRAS_PER_SURFACE = 0.1
+_BEND = 0.5  # log of the density ratio that a cell may span
+_CROWDED, _MOST_PARTS = 4000, 8  # so many asperities pay for one more cell with fewer moments
+
+_ORDER = 20
+NODES = chebyshev.chebpts1(_ORDER)
+TO_COEFFICIENTS = np.linalg.inv(chebyshev.chebvander(NODES, _ORDER - 1))
+_X, _W = leggauss(20)
+_X, _W = (1 + _X) / 2, _W / 2
+
+
+@dataclass(frozen=True)
+class Mesh:
+    """Cells of a scene.
+
+    Parameters
+    ----------
+    edges : ndarray
+        Reduced heights, increasing, shape (cells + 1,); empty if there is no cell.
+    probability : ndarray
+        Of a height in each cell, shape (cells,).
+    stretch : ndarray
+        Chebyshev coefficients of t(u)/u for each cell, shape (order, cells).
+    low_extras, high_extras : float
+        Probability of a contacting height below the first and above the last cell.
+    """
+
+    edges: Array
+    probability: Array
+    stretch: Array
+    low_extras: float
+    high_extras: float
+
+    @property
+    def size(self) -> int:
+        """Number of cells."""
+        return len(self.probability)
+
+    def offsets(self, cell: int | NDArray[np.int64], u: Array) -> Array:
+        """Height above the cell's lower edge at the uniform(s) `u`; `cell` alike or one for all."""
+        return np.asarray(u * chebyshev.chebval(2 * u - 1, self.stretch[:, cell], tensor=False))
+
+
+def mesh_of(scene: Scene, *, split: bool = True) -> Mesh:
+    """Cut the contacting heights of a scene into cells.
+
+    Parameters
+    ----------
+    scene : Scene
+        Its separations, grading, height law and number of asperities are used.
+    split : bool, optional
+        Cut crowded cells further, so that each needs fewer moments.
+
+    Returns
+    -------
+    Mesh
+        With every separation and every break of the grading on an edge.
+    """
+    law = scene.heights
+    low, high = _range(law, scene.n_asperities, scene.lowest)
+    if not low < high:
+        return no_cells(scene)
+    edges = _graded_edges(low, high, np.unique(scene.separations), resolved_breaks(scene.modulus, low, high))
+    if split:
+        edges = _split_crowded(law, scene.n_asperities, edges)
+    mass = _mass(law, edges[:-1], np.diff(edges)[:, None])[:, 0]
+    probability = law.density(edges[:-1]) * mass
+    stretch = _stretch(law, edges[:-1], np.diff(edges), mass)
+    below = float(law.below(np.array(low)) - law.below(np.array(scene.lowest))) if low > scene.lowest else 0.0
+    return Mesh(edges, probability, stretch, below, _above(law, high))
+
+
+def no_cells(scene: Scene) -> Mesh:
+    """Leave every contacting asperity to be drawn by itself."""
+    return Mesh(np.empty(0), np.empty(0), np.empty((_ORDER, 0)), 0.0, _above(scene.heights, scene.lowest))
+
+
+def _above(law: HeightLaw, s: float) -> float:
+    return float(law.above(np.array(s)))
+
+
+def _range(law: HeightLaw, n: int, lowest: float) -> tuple[float, float]:
+    """Where the cells lie; outside fewer than `EXTRAS_PER_SURFACE` asperities are expected.
+
+    Rounded to a sixteenth, so that it does not hang on the last digit of an inverse distribution.
+    """
+    share = np.array(min(EXTRAS_PER_SURFACE / n, 0.5))
+    low = np.floor(16 * float(law.from_below(share, np.inf))) / 16
+    high = np.ceil(16 * float(law.from_above(share, -np.inf))) / 16
+    return max(lowest, low), high
+
+
+def _graded_edges(low: float, high: float, separations: Array, breaks: tuple[float, ...]) -> Array:
+    """Edges from mark to mark, each cell as wide as the marks below it let it be."""
+    marks = np.unique([*separations, *breaks, high])
+    marks = marks[(marks > low) & (marks <= high)]
+    edges = [low]
+    for mark in marks:
+        while (a := edges[-1]) < mark:
+            below = separations[np.searchsorted(separations, a) - 1] if separations[0] < a else -np.inf
+            widest = min(a - below, _BEND / (1 + abs(a)))
+            room = mark - a
+            edges.append(mark if room <= widest else a + (widest if room >= 2 * widest else room / 2))
+    return np.array(edges)
+
+
+def _split_crowded(law: HeightLaw, n: int, edges: Array) -> Array:
+    """Cut cells of many asperities in equal parts: more cells need fewer moments each."""
+    expected = n * law.density(edges[:-1]) * np.diff(edges)
+    parts = np.clip(expected / _CROWDED, 1, _MOST_PARTS).astype(int)
+    inner = [a + w * np.arange(k) / k for a, w, k in zip(edges, np.diff(edges), parts, strict=False)]
+    return np.unique(np.concatenate([*inner, edges[-1:]]))
+
+
+def _mass(law: HeightLaw, a: Array, t: Array) -> Array:
+    """Probability between a and a + t, relative to the density at a: `t` has shape (cells, ...)."""
+    tau = t[..., None] * _X
+    return np.asarray(t * (np.exp(law.log_ratio(a[:, None, None], tau)) @ _W))
+
+
+def _stretch(law: HeightLaw, a: Array, width: Array, mass: Array) -> Array:
+    """Coefficients of t(u)/u, where ``mass(t(u)) = u mass``: by Newton at the Chebyshev points."""
+    u = (1 + NODES) / 2
+    t = width[:, None] * u
+    for _ in range(8):  # the mass is nearly linear in t: quadratic convergence from the first step
+        t = t - (_mass(law, a, t) - u * mass[:, None]) / np.exp(law.log_ratio(a[:, None], t))
+    return np.asarray(TO_COEFFICIENTS @ (t / u).T)

@@ -1,0 +1,61 @@
+"""The heights themselves: the very asperities whose sums the samplers ``tail`` and ``cells`` give."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mcgw.counts import counts_of
+from mcgw.extras import extra_heights
+from mcgw.philox import CELLS, REST, uniforms
+from mcgw.samplers import Cells, sampler_of
+from mcgw.scene import Scene
+
+__all__ = ["heights"]
+
+
+def heights(scene: Scene, surface: int, *, untouched: bool = False) -> NDArray[np.float64]:
+    """Reduced heights of one surface of an ensemble.
+
+    Parameters
+    ----------
+    scene : Scene
+        With sampler ``cells``, ``tail`` or ``auto``.
+    surface : int
+        Its number, from 0.
+    untouched : bool, optional
+        Add the asperities that no separation of the scene reaches (for a Poisson number of
+        asperities, their number is drawn too).
+
+    Returns
+    -------
+    ndarray
+        Heights in units of sigma, those that touch first.
+
+    Raises
+    ------
+    ValueError
+        If the sampler does not draw asperities one by one.
+    """
+    sampler = sampler_of(scene)
+    if not isinstance(sampler, Cells) or sampler.name not in ("cells", "tail"):
+        raise ValueError(f'sampler = "{sampler.name}" keeps no heights; "cells" and "tail" do')
+    mesh = sampler.mesh
+    counts = counts_of(scene, mesh, surface, 1)
+    parts = [extra_heights(scene, mesh, surface, int(counts.low_extras[0]), int(counts.high_extras[0]))]
+    for cell in np.flatnonzero(counts.cells[:, 0]):
+        u = uniforms(scene.seed, CELLS, surface, int(cell), int(counts.cells[cell, 0]))
+        parts.append(mesh.edges[cell] + mesh.offsets(int(cell), u))
+    touching = np.concatenate(parts[1:] + parts[:1])
+    if not untouched:
+        return touching
+    u = uniforms(scene.seed, REST, surface, 0, _untouched(scene, surface, len(touching)))
+    return np.concatenate([touching, scene.heights.from_below(u, scene.lowest)])
+
+
+def _untouched(scene: Scene, surface: int, touching: int) -> int:
+    """Number of asperities below every separation."""
+    if scene.count == "fixed":
+        return scene.n_asperities - touching
+    from mcgw.counts import generator
+
+    expected = scene.n_asperities * float(scene.heights.below(np.array(scene.lowest)))
+    return int(generator(scene.seed, REST, surface).poisson(expected))

@@ -1,0 +1,205 @@
+"""The samplers: one family, from all heights and plain loops to a few numbers a cell.
+
+``direct``      all heights, by NumPy's generator, and plain loops: the witness against the rest
+``tail``        only heights that touch, summed one by one: cells without any cell
+``cells``       moments of the uniforms in each cell, times the response: exact in law
+``aggregate``   the moments of crowded cells drawn from their Gaussian limit: any N at one price
+``stratified``  one jittered uniform in each of N equal strata: for means only
+"""
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from analytic import QUANTITIES
+from mcgw.aggregate import CROWDED, add_gaussian_moments
+from mcgw.cells import Mesh, mesh_of, no_cells
+from mcgw.counts import Counts, counts_of, generator, strata_of
+from mcgw.extras import extra_heights
+from mcgw.hertz import hertz_sums
+from mcgw.moments import cell_moments
+from mcgw.response import Response, response_of
+from mcgw.scene import Scene
+
+__all__ = ["Block", "Cells", "Direct", "Sampler", "sampler_of"]
+
+Array = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+_DIRECT = 1  # purpose of NumPy's generator; the counts have 0
+_PIECE = 2**20  # heights at a time
+
+
+@dataclass(frozen=True)
+class Block:
+    """Results of some consecutive surfaces.
+
+    Parameters
+    ----------
+    sums : dict of str to ndarray
+        Each quantity in SI units, shape (surfaces, separations).
+    moments : ndarray or None
+        Of all cells, shape (surfaces, moments), where the sampler has cells.
+    counts : ndarray or None
+        Asperities in each cell, shape (surfaces, cells).
+    extras : ndarray or None
+        Rows (surface, height, weight) of the asperities outside the cells.
+    """
+
+    sums: dict[str, Array]
+    moments: Array | None = None
+    counts: Array | None = None
+    extras: Array | None = None
+
+
+class Sampler(Protocol):
+    """Draws surfaces by their numbers."""
+
+    @property
+    def name(self) -> str:
+        """One of `mcgw.scene.SAMPLERS`, never "auto"."""
+        ...
+
+    def block(self, first: int, n: int) -> Block:
+        """Results of surfaces `first` ... `first + n - 1`: the same in any block."""
+        ...
+
+
+def sampler_of(scene: Scene) -> "Sampler":
+    """Prepare the sampler a scene asks for.
+
+    Parameters
+    ----------
+    scene : Scene
+        ``sampler = "auto"`` takes the cheapest exact one.
+
+    Returns
+    -------
+    Sampler
+        Ready to draw.
+    """
+    name = _cheapest(scene) if scene.sampler == "auto" else scene.sampler
+    if name == "direct":
+        return Direct(scene)
+    mesh = no_cells(scene) if name == "tail" else mesh_of(scene, split=name == "cells")
+    return Cells(scene, mesh, response_to(scene, mesh), name)
+
+
+def response_to(scene: Scene, mesh: Mesh) -> Response:
+    """Response for all that moments can tell; contacts are counted."""
+    summed = tuple(name for name in scene.quantities if QUANTITIES[name].exponent > 0)
+    return response_of(mesh, scene.surface, scene.modulus, summed, scene.separations)
+
+
+def _cheapest(scene: Scene) -> str:
+    """Cells, unless so few asperities touch that summing them singly is cheaper than 60 cells are."""
+    touching = scene.n_asperities * float(scene.heights.above(np.array(scene.lowest)))
+    return "tail" if touching * len(scene.separations) < 400 else "cells"
+
+
+@dataclass(frozen=True)
+class Direct:
+    """All heights, by NumPy's generator, and plain loops."""
+
+    scene: Scene
+    name: str = "direct"
+
+    def block(self, first: int, n: int) -> Block:
+        """Results of surfaces `first` ... `first + n - 1`."""
+        rows = [self._surface(number) for number in range(first, first + n)]
+        return Block({name: np.concatenate([row[name] for row in rows]) for name in rows[0]})
+
+    def _surface(self, number: int) -> dict[str, Array]:
+        scene = self.scene
+        rng = generator(scene.seed, _DIRECT, number)
+        left = scene.n_asperities if scene.count == "fixed" else int(rng.poisson(scene.n_asperities))
+        total = hertz_sums(scene, np.array([0]), np.empty(0), np.empty(0))
+        while left:
+            now = min(left, _PIECE)
+            heights = scene.heights.sample(rng, now)
+            left -= now
+            for name, value in hertz_sums(scene, np.array([now]), heights, np.ones(now)).items():
+                total[name] += value
+        return total
+
+
+@dataclass(frozen=True)
+class Cells:
+    """All samplers that count before they draw.
+
+    Parameters
+    ----------
+    scene : Scene
+        What is asked.
+    mesh : Mesh
+        Its cells; none for ``tail``.
+    response : Response
+        Physics on this mesh.
+    name : str
+        Which of the family.
+    """
+
+    scene: Scene
+    mesh: Mesh
+    response: Response
+    name: str
+
+    def block(self, first: int, n: int) -> Block:
+        """Results of surfaces `first` ... `first + n - 1`."""
+        stratified = self.name == "stratified"
+        counts = (
+            strata_of(self.scene, self.mesh, n) if stratified else counts_of(self.scene, self.mesh, first, n)
+        )
+        least = CROWDED if self.name == "aggregate" else np.iinfo(np.int64).max
+        single = np.where(counts.cells < least, counts.cells, 0)
+        layout = self.response.layout
+        moments = cell_moments(self.scene.seed, first, single, layout, stratified=stratified)
+        add_gaussian_moments(self.scene.seed, first, counts.cells - single, layout, moments)
+        moments *= np.repeat(counts.weights[1:-1], layout.sizes)[:, None]
+        extras = self._extras(first, counts)
+        numbers = counts.cells * counts.weights[1:-1, None]
+        return Block(self.sums(first, moments, numbers, extras), moments.T, numbers.T, extras)
+
+    def _extras(self, first: int, counts: Counts) -> Array:
+        """Rows (surface, height, weight) of the asperities outside the cells."""
+        rows = [np.empty((0, 3))]
+        for i in np.flatnonzero(counts.low_extras + counts.high_extras):
+            low, high = int(counts.low_extras[i]), int(counts.high_extras[i])
+            heights = extra_heights(self.scene, self.mesh, first + int(i), low, high)
+            weights = np.repeat(counts.weights[[0, -1]], [low, high])
+            rows.append(np.column_stack([np.full(low + high, first + i), heights, weights]))
+        return np.concatenate(rows)
+
+    def sums(self, first: int, moments: Array, counts: Array, extras: Array) -> dict[str, Array]:
+        """Quantities of surfaces `first` ... from what was drawn.
+
+        Parameters
+        ----------
+        first : int
+            Number of the first surface.
+        moments, counts : ndarray
+            Shape (moments, surfaces) and (cells, surfaces).
+        extras : ndarray
+            Rows (surface, height, weight).
+
+        Returns
+        -------
+        dict of str to ndarray
+            Each quantity in SI units, shape (surfaces, separations).
+        """
+        scene, n = self.scene, moments.shape[1]
+        numbers = np.bincount(extras[:, 0].astype(np.int64) - first, minlength=n)
+        sums = hertz_sums(
+            scene, numbers, np.ascontiguousarray(extras[:, 1]), np.ascontiguousarray(extras[:, 2])
+        )
+        answers = iter(self.response @ moments)
+        for name in scene.quantities:
+            sums[name] += self._contacts(counts) if name == "contacts" else next(answers).T
+        return sums
+
+    def _contacts(self, counts: Array) -> Array:
+        """Number of asperities in the cells above each separation."""
+        above = np.concatenate([np.cumsum(counts[::-1], axis=0)[::-1], np.zeros((1, counts.shape[1]))])
+        return above[np.searchsorted(self.mesh.edges[:-1], self.scene.separations)].T

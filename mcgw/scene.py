@@ -1,0 +1,178 @@
+"""What is asked: surface, grading, contact and ensemble, checked before anything is computed."""
+
+import math
+from dataclasses import dataclass, field
+from typing import Literal
+
+import numpy as np
+
+from analytic import (
+    QUANTITIES,
+    Clipped,
+    Exponential,
+    Gaussian,
+    Grading,
+    HeightLaw,
+    Homogeneous,
+    Surface,
+    Table,
+    first_negative,
+)
+
+__all__ = ["SAMPLERS", "Scene", "SceneError"]
+
+SAMPLERS = ("auto", "direct", "tail", "cells", "aggregate", "stratified")
+MOST_ASPERITIES = 2**53  # counts are exact in double precision up to here
+_BEYOND = 8.3  # one height in 1e16 lies above: what an ensemble may reach beyond its separations
+
+
+class SceneError(ValueError):
+    """A scene that cannot be run; `problems` has one line for each mistake."""
+
+    def __init__(self, problems: list[str]) -> None:
+        self.problems = problems
+        super().__init__("\n".join(problems))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Scene:
+    """Everything that determines an ensemble.
+
+    Parameters
+    ----------
+    surface : Surface
+        Parameters in SI units.
+    separations : tuple of float
+        Reduced separations d/sigma, in any order, repeated or not.
+    title : str, optional
+        For people.
+    grading : Grading, optional
+        E*(s)/E*; left out: homogeneous.
+    negative : {"error", "clip", "allow"}, optional
+        What to do where the grading makes the modulus of a contacting asperity negative.
+    heights : HeightLaw, optional
+        Law of the reduced heights; left out: Gaussian.
+    quantities : tuple of str, optional
+        Which sums to compute: names of `analytic.QUANTITIES`.
+    n_surfaces : int, optional
+        Number of surfaces M.
+    n_asperities : int, optional
+        Asperities on each (their mean number if `count` is "poisson"); left out: eta A_n, rounded.
+    count : {"fixed", "poisson"}, optional
+        Law of their number.
+    seed : int, optional
+        0 to 2^64 - 1. Left out: drawn by `mcgw.load_scene`; here 0.
+    sampler : str, optional
+        One of `SAMPLERS`.
+    keep : {"sums", "moments"}, optional
+        Whether the file also keeps the moments, from which `mcgw regrade` starts.
+
+    Raises
+    ------
+    SceneError
+        With one line for each mistake.
+    """
+
+    surface: Surface
+    separations: tuple[float, ...]
+    title: str = ""
+    grading: Grading = field(default_factory=Homogeneous)
+    negative: Literal["error", "clip", "allow"] = "error"
+    heights: HeightLaw = field(default_factory=Gaussian)
+    quantities: tuple[str, ...] = ("load", "area", "stiffness", "contacts")
+    n_surfaces: int = 1000
+    n_asperities: int = 0
+    count: Literal["fixed", "poisson"] = "fixed"
+    seed: int = 0
+    sampler: str = "auto"
+    keep: Literal["sums", "moments"] = "sums"
+
+    def __post_init__(self) -> None:
+        if not self.n_asperities:
+            object.__setattr__(self, "n_asperities", round(min(self.surface.n_asperities, 2.0**62)))
+        object.__setattr__(self, "separations", tuple(float(h) + 0.0 for h in self.separations))
+        problems = [*self._wrong_values(), *self._wrong_scales()] or self._wrong_modulus()
+        if problems:
+            raise SceneError(problems)
+
+    @property
+    def modulus(self) -> Grading:
+        """The grading as used: clipped if the scene says so."""
+        return Clipped.of(self.grading) if self.negative == "clip" else self.grading
+
+    @property
+    def lowest(self) -> float:
+        """The lowest separation: what lies below it never touches."""
+        return min(self.separations)
+
+    def _wrong_values(self) -> list[str]:
+        problems = []
+        if not self.separations:
+            problems.append("contact.separations = []: give at least one separation d/sigma")
+        if not all(math.isfinite(h) for h in self.separations):
+            problems.append("contact.separations: every separation must be finite")
+        if not self.quantities:
+            problems.append(f"contact.quantities = []: give one or more of {', '.join(QUANTITIES)}")
+        if len(set(self.quantities)) < len(self.quantities):
+            problems.append(f"contact.quantities = {list(self.quantities)}: name each quantity once")
+        if self.n_surfaces < 1:
+            problems.append(f"ensemble.n_surfaces = {self.n_surfaces}: give a whole number >= 1")
+        if not 1 <= self.n_asperities <= MOST_ASPERITIES:
+            problems.append(
+                f"ensemble.n_asperities = {self.n_asperities}: must lie between 1 and 2^53; "
+                "change it, or surface.eta and surface.nominal_area"
+            )
+        if not 0 <= self.seed < 2**64:
+            problems.append(f"ensemble.seed = {self.seed}: give a whole number from 0 to 2^64 - 1")
+        for name, value, known in (
+            *(("contact.quantities", q, tuple(QUANTITIES)) for q in self.quantities),
+            ("ensemble.sampler", self.sampler, SAMPLERS),
+            ("ensemble.count", self.count, ("fixed", "poisson")),
+            ("ensemble.keep", self.keep, ("sums", "moments")),
+            ("grading.negative", self.negative, ("error", "clip", "allow")),
+        ):
+            if value not in known:
+                problems.append(f"{name}: {value!r} is not one of {', '.join(known)}")
+        return problems
+
+    def _wrong_scales(self) -> list[str]:
+        """Products of parameters that leave the range of double precision."""
+        problems = []
+        for name in self.quantities:
+            if name not in QUANTITIES:
+                continue
+            with np.errstate(all="ignore"):
+                try:
+                    one = QUANTITIES[name].scale(self.surface)
+                except OverflowError:
+                    one = math.inf
+                ends = (one * 1e-12, one * float(self.n_asperities) * 1e4)
+            if not (np.finfo(float).tiny < ends[0] and ends[1] < np.finfo(float).max):
+                problems.append(
+                    f"surface: the {name} of an asperity would be {one:.3g} {QUANTITIES[name].unit}, "
+                    "beyond double precision; check sigma, radius and E_star"
+                )
+        return problems
+
+    def _wrong_modulus(self) -> list[str]:
+        """Negative moduli among the heights that touch."""
+        if self.negative != "error":
+            return []
+        low, high = self.lowest, max(_BEYOND, max(self.separations) + 1)
+        try:
+            where = first_negative(self.grading, max(low, -_BEYOND - 1), high)
+        except ValueError as error:
+            return [str(error)]
+        if where is None:
+            return []
+        if isinstance(self.grading, Exponential):
+            key = f"grading.gamma = {self.grading.gamma:g}"
+            where = self.grading.zero if self.grading.gamma < 0 else where
+        elif isinstance(self.grading, Table):
+            key = "grading.table"
+        else:
+            key = "grading"
+        return [
+            f"{key}: E*(s) is negative from s = {where:.4g}, which touches at h = {low:g}; raise the "
+            'separations, or say negative = "clip" or "allow" under [grading]'
+        ]

@@ -1,0 +1,229 @@
+"""Scenes as TOML: read with all mistakes named at once, written so that they read the same."""
+
+import math
+import secrets
+import tomllib
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import tomli_w
+
+from analytic import QUANTITIES, Body, Exponential, Grading, Homogeneous, Surface, Table, composite_modulus
+from mcgw.scene import SAMPLERS, Scene, SceneError
+from mcgw.section import Section
+
+__all__ = ["load_scene", "scene_from", "scene_text"]
+
+_MOST_BYTES = 2**20
+_MOST_SEPARATIONS = 100_000
+
+
+def load_scene(path: str | Path) -> Scene:
+    """Read a scene.
+
+    Parameters
+    ----------
+    path : str or Path
+        A TOML file; `runs/demo.toml` shows its keys.
+
+    Returns
+    -------
+    Scene
+        Checked, with a seed drawn where none is given.
+
+    Raises
+    ------
+    SceneError
+        With one line for each mistake: the key, the value, and what would do.
+    """
+    path = Path(path)
+    if not path.is_file():
+        raise SceneError([f"{path}: is no regular file" if path.exists() else f"{path}: no such file"])
+    if path.stat().st_size > _MOST_BYTES:
+        raise SceneError([f"{path}: longer than {_MOST_BYTES} bytes, which no scene is"])
+    return scene_from(path.read_bytes(), folder=path.parent)
+
+
+def scene_from(text: str | bytes, *, folder: Path | None = None) -> Scene:
+    """Make a scene of its TOML text.
+
+    Parameters
+    ----------
+    text : str or bytes
+        The text, UTF-8.
+    folder : Path, optional
+        Where the files lie that it names; left out: the current one.
+
+    Returns
+    -------
+    Scene
+        As from `load_scene`.
+
+    Raises
+    ------
+    SceneError
+        With one line for each mistake.
+    """
+    try:
+        document = tomllib.loads(text if isinstance(text, str) else text.decode("utf-8"))
+    except (ValueError, RecursionError) as error:
+        reason = str(error).splitlines()[0] if str(error) else "nested too deeply"
+        raise SceneError([f"not a TOML scene: {reason}"]) from None
+    top = Section("", document, [])
+    parts = {name: top.section(name) for name in ("surface", "grading", "heights", "contact", "ensemble")}
+    surface = _surface(parts["surface"])
+    values = {
+        "title": top.text("title", ""),
+        "surface": surface,
+        **_grading(parts["grading"], surface, folder or Path()),
+        **_contact(parts["contact"]),
+        **_ensemble(parts["ensemble"]),
+    }
+    parts["heights"].choice("law", "gaussian", ("gaussian",))
+    for section in (top, *parts.values()):
+        section.finish()
+    if top.problems:
+        raise SceneError(top.problems)
+    return Scene(**values)
+
+
+def _surface(section: Section) -> Surface | None:
+    units = {"sigma": "m", "radius": "m", "eta": "1/m^2", "nominal_area": "m^2"}
+    values = {key: section.number(key, unit=unit) for key, unit in units.items()}
+    values["E_star"] = _bodies(section) if "bodies" in section else section.number("E_star", unit="Pa")
+    if any(math.isnan(value) for value in values.values()):
+        return None
+    return Surface(**values)
+
+
+def _bodies(section: Section) -> float:
+    given = section.take("bodies")
+    if "E_star" in section:
+        section.fail("E_star", section.take("E_star"), "give either E_star or bodies, not both")
+    try:
+        return composite_modulus([Body(**{k: float(v) for k, v in body.items()}) for body in given])
+    except (TypeError, ValueError, AttributeError) as error:
+        reason = str(error) if type(error) is ValueError else "each needs E in Pa and may have nu"
+        section.fail("bodies", given, f"give two, as [{{E = 70e9, nu = 0.33}}, {{E = inf}}]; {reason}")
+        return math.nan
+
+
+def _grading(section: Section, surface: Surface | None, folder: Path) -> dict[str, Any]:
+    laws = ("homogeneous", "exponential", "table")
+    law = section.choice("law", "exponential" if "gamma" in section else "homogeneous", laws)
+    negative = section.choice("negative", "error", ("error", "clip", "allow"))
+    grading: Grading = Homogeneous()
+    if law == "exponential":
+        gamma = section.number("gamma", positive=False)
+        if math.isfinite(gamma):
+            grading = Exponential(gamma)
+    elif law == "table":
+        grading = _table(section, surface, folder) or grading
+    return {"grading": grading, "negative": negative}
+
+
+def _table(section: Section, surface: Surface | None, folder: Path) -> Table | None:
+    """Points in the scene itself, or in a CSV file beside it."""
+    file, s, ratio = section.take("file"), section.take("s"), section.take("ratio")
+    try:
+        if file is None:
+            return Table(s or (), ratio or ())
+        if surface is None:
+            return None
+        return Table.from_csv(folder / file, sigma=surface.sigma, E_star=surface.E_star)
+    except (OSError, TypeError, ValueError) as error:
+        reason = f"{error.strerror}: {error.filename}" if isinstance(error, OSError) else str(error)
+        section.fail("file" if file else "s", file or s, f"give a CSV file, or lists s and ratio; {reason}")
+        return None
+
+
+def _contact(section: Section) -> dict[str, Any]:
+    quantities = section.take("quantities")
+    if quantities is None:
+        quantities = ["load", "area", "stiffness", "contacts"]
+    if not (isinstance(quantities, list) and all(isinstance(q, str) for q in quantities)):
+        section.fail("quantities", quantities, f"give a list of {', '.join(QUANTITIES)}")
+        quantities = ["load"]
+    return {"separations": _separations(section), "quantities": tuple(quantities)}
+
+
+def _separations(section: Section) -> tuple[float, ...]:
+    """A list, one number, or {start, stop, num}."""
+    given = section.take("separations")
+    advice = "give a list of finite numbers d/sigma, or {start = 0.0, stop = 4.0, num = 41}"
+    if given is None:
+        section.problems.append(f"contact.separations: missing; {advice}")
+        return (0.0,)
+    if isinstance(given, dict):
+        inner = Section("contact.separations", given, section.problems)
+        start = inner.number("start", positive=False)
+        stop = inner.number("stop", positive=False)
+        num = inner.whole("num", least=1)
+        inner.finish()
+        if num is None or math.isnan(start + stop):
+            return (0.0,)
+        if num > _MOST_SEPARATIONS:
+            inner.fail("num", num, f"give at most {_MOST_SEPARATIONS} separations")
+            return (0.0,)
+        return tuple(np.linspace(start, stop, num).tolist())
+    values = given if isinstance(given, list) else [given]
+    if not all(isinstance(h, int | float) and not isinstance(h, bool) and abs(h) <= 1e6 for h in values):
+        section.fail("separations", given, advice)
+        return (0.0,)
+    if len(values) > _MOST_SEPARATIONS:
+        section.fail("separations", given, f"give at most {_MOST_SEPARATIONS} of them, not {len(values)}")
+        return (0.0,)
+    return tuple(float(h) for h in values)
+
+
+def _ensemble(section: Section) -> dict[str, Any]:
+    values = {
+        "n_surfaces": section.whole("n_surfaces", 1000, least=1),
+        "n_asperities": section.whole("n_asperities", 0, least=1),
+        "count": section.choice("count", "fixed", ("fixed", "poisson")),
+        "seed": section.whole("seed", secrets.randbits(63)),
+        "sampler": section.choice("sampler", "auto", SAMPLERS),
+        "keep": section.choice("keep", "sums", ("sums", "moments")),
+    }
+    return {key: value for key, value in values.items() if value is not None}
+
+
+def scene_text(scene: Scene) -> str:
+    """TOML text of a scene with nothing left out: read again, it gives the same scene.
+
+    Parameters
+    ----------
+    scene : Scene
+        With a grading that a file can hold.
+
+    Returns
+    -------
+    str
+        The text; a grading that is a Python function is named, but cannot be read again.
+    """
+    surface = scene.surface
+    keys = ("sigma", "radius", "eta", "nominal_area", "E_star")
+    document = {
+        "title": scene.title,
+        "surface": {key: float(getattr(surface, key)) for key in keys},
+        "grading": {**_grading_table(scene.grading), "negative": scene.negative},
+        "heights": {"law": "gaussian"},
+        "contact": {"separations": list(scene.separations), "quantities": list(scene.quantities)},
+        "ensemble": {
+            key: getattr(scene, key)
+            for key in ("n_surfaces", "n_asperities", "count", "seed", "sampler", "keep")
+        },
+    }
+    return tomli_w.dumps(document)
+
+
+def _grading_table(grading: Grading) -> dict[str, Any]:
+    match grading:
+        case Homogeneous():
+            return {"law": "homogeneous"}
+        case Exponential():
+            return {"law": "exponential", "gamma": float(grading.gamma)}
+        case Table():
+            return {"law": "table", "s": list(grading.s), "ratio": list(grading.ratio)}
+    return {"law": f"python: {grading!r}"}
