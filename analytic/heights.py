@@ -21,6 +21,10 @@ def exp_minus_half_square(h: Array) -> Array:
 class HeightLaw(Protocol):
     """Distribution of the reduced height s = z/sigma."""
 
+    def sample(self, rng: np.random.Generator, n: int) -> Array:
+        """`n` heights from NumPy's generator."""
+        ...
+
     def density(self, s: Array) -> Array:
         """Probability density at `s`."""
         ...
@@ -49,6 +53,10 @@ class HeightLaw(Protocol):
 @dataclass(frozen=True)
 class Gaussian:
     """The normal law of Greenwood and Williamson."""
+
+    def sample(self, rng: np.random.Generator, n: int) -> Array:
+        """Standard normal numbers."""
+        return rng.standard_normal(n)
 
     def density(self, s: Array) -> Array:
         """``exp(-s^2/2)/sqrt(2 pi)``."""

@@ -22,7 +22,7 @@ Array = NDArray[np.float64]
 
 _REACH = 13.0  # phi(13)/phi(0) = 2e-37: what lies beyond can carry any modulus up to exp(4|s|)
 _NODES = 64
-_BLOCK = 256  # separations at a time: nodes x block stay in the cache
+_BLOCK = 64  # separations at a time: nodes x block stay in the cache
 
 
 @cache
@@ -38,13 +38,25 @@ def _panel(n: float, h: Array, grading: Grading, low: Array, high: Array) -> Arr
     above = np.maximum(h, 0.0)
     start = np.sqrt(low - h)
     width = np.sqrt(high - h) - start
-    v = start + width * x
-    beyond = v * v + (h - above)  # s - above, without cancellation
-    terms = np.exp(-beyond * (beyond / 2 + above))
-    terms *= grading(beyond + above)
-    for _ in range(int(2 * n) + 1):  # v^(2n+1): products are ten times faster than a power
-        terms *= v
-    return np.asarray((terms @ (2 * w))[:, None] * width)
+    odd = int(2 * n) + 1
+    if start.any():
+        v = start + width * x
+        approach = v * v
+    else:  # the panel begins at the separation: v^(2n+1) goes into the weights
+        approach = (width * width) * (x * x)
+        w = w * x**odd
+    beyond = approach + (h - above) if h[0, 0] < 0 else approach  # s - above, without cancellation
+    terms = beyond * -0.5
+    terms -= above
+    terms *= beyond
+    np.exp(terms, out=terms)
+    if not isinstance(grading, Homogeneous):
+        terms *= grading(beyond + above)
+    if start.any():
+        for _ in range(odd):  # products are ten times faster than a power
+            terms *= v
+        return np.asarray((terms @ (2 * w))[:, None] * width)
+    return np.asarray((terms @ (2 * w))[:, None] * width ** (odd + 1))
 
 
 def _sorted(n: float, h: Array, grading: Grading, between: tuple[float, float]) -> Array:

@@ -119,7 +119,7 @@ class Ensemble:
 
     def stderr(self, quantity: str) -> Array:
         """Standard error of the mean, nan for one surface."""
-        return self.std(quantity) / np.sqrt(self.n_surfaces)
+        return np.asarray(self.std(quantity) / np.sqrt(self.n_surfaces))
 
     def interval(self, quantity: str, level: float = 0.95) -> tuple[Array, Array]:
         """Confidence interval of the mean, by Student's t.
