@@ -87,7 +87,7 @@ def test_cumulants_of_a_step_that_was_not_declared():
 
 
 @pytest.mark.parametrize("gap", [1.0, 1e-3, 1e-9, 0.0])
-@pytest.mark.parametrize("h", [-3.0, 0.5, 4.0])
+@pytest.mark.parametrize("h", [-3.0, 4.0])
 def test_covariance_of_everything_at_two_separations(h, gap):
     names = [q.name for q in QUANTITIES]
     upper = h + gap
