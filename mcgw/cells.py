@@ -16,14 +16,13 @@ from numpy.polynomial import chebyshev
 from numpy.polynomial.legendre import leggauss
 from numpy.typing import NDArray
 
-from analytic import HeightLaw, resolved_breaks
+from analytic import Grading, HeightLaw, resolved_breaks
 from mcgw.scene import Scene
 
 __all__ = ["Mesh", "mesh_of", "no_cells"]
 
 Array = NDArray[np.float64]
 
-EXTRAS_PER_SURFACE = 0.1
 _BEND = 0.5  # log of the density ratio that a cell may span
 _CROWDED, _MOST_PARTS = 4000, 8  # so many asperities pay for one more cell with fewer moments
 
@@ -66,7 +65,7 @@ class Mesh:
         return np.asarray(u * chebyshev.chebval(2 * u - 1, self.stretch[:, cell], tensor=False))
 
 
-def mesh_of(scene: Scene, *, split: bool = True) -> Mesh:
+def mesh_of(scene: Scene, *, split: bool = True, rare: float = 0.1) -> Mesh:
     """Cut the contacting heights of a scene into cells.
 
     Parameters
@@ -75,6 +74,8 @@ def mesh_of(scene: Scene, *, split: bool = True) -> Mesh:
         Its separations, grading, height law and number of asperities are used.
     split : bool, optional
         Cut crowded cells further, so that each needs fewer moments.
+    rare : float, optional
+        Asperities a surface that may be expected beyond the cells, on either side.
 
     Returns
     -------
@@ -82,10 +83,10 @@ def mesh_of(scene: Scene, *, split: bool = True) -> Mesh:
         With every separation and every break of the grading on an edge.
     """
     law = scene.heights
-    low, high = _range(law, scene.n_asperities, scene.lowest)
+    low, high = _range(law, rare / scene.n_asperities, scene.lowest)
     if not low < high:
         return no_cells(scene)
-    edges = _graded_edges(low, high, np.unique(scene.separations), resolved_breaks(scene.modulus, low, high))
+    edges = _graded_edges(low, high, np.unique(scene.separations), _breaks(scene.modulus, low, high))
     if split:
         edges = _split_crowded(law, scene.n_asperities, edges)
     mass = _mass(law, edges[:-1], np.diff(edges)[:, None])[:, 0]
@@ -104,15 +105,24 @@ def _above(law: HeightLaw, s: float) -> float:
     return float(law.above(np.array(s)))
 
 
-def _range(law: HeightLaw, n: int, lowest: float) -> tuple[float, float]:
-    """Where the cells lie; outside fewer than `EXTRAS_PER_SURFACE` asperities are expected.
+def _range(law: HeightLaw, share: float, lowest: float) -> tuple[float, float]:
+    """Where the cells lie: at most this share of all heights on either side of them.
 
     Rounded to a sixteenth, so that it does not hang on the last digit of an inverse distribution.
     """
-    share = np.array(min(EXTRAS_PER_SURFACE / n, 0.5))
-    low = np.floor(16 * float(law.from_below(share, np.inf))) / 16
-    high = np.ceil(16 * float(law.from_above(share, -np.inf))) / 16
+    share = min(share, 0.5)
+    low = np.floor(16 * float(law.from_below(np.array(share), np.inf))) / 16
+    high = np.ceil(16 * float(law.from_above(np.array(share), -np.inf))) / 16
     return max(lowest, low), high
+
+
+def _breaks(grading: Grading, low: float, high: float) -> tuple[float, ...]:
+    """Breaks of the grading; one found by search is halved, since the law has a root besides."""
+    breaks = resolved_breaks(grading, low, high)
+    if grading.smooth:
+        return breaks
+    marks = np.array([low, *breaks, high])
+    return tuple(np.unique([*breaks, *(marks[:-1] + marks[1:]) / 2]).tolist())
 
 
 def _graded_edges(low: float, high: float, separations: Array, breaks: tuple[float, ...]) -> Array:

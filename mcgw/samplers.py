@@ -4,10 +4,12 @@
 ``tail``        only heights that touch, summed one by one: cells without any cell
 ``cells``       moments of the uniforms in each cell, times the response: exact in law
 ``aggregate``   the moments of crowded cells drawn from their Gaussian limit: any N at one price
-``stratified``  one jittered uniform in each of N equal strata: for means only
+``stratified``  one jittered uniform in each of about N strata: for means only
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from typing import Protocol
 
 import numpy as np
@@ -83,7 +85,13 @@ def sampler_of(scene: Scene) -> "Sampler":
     name = _cheapest(scene) if scene.sampler == "auto" else scene.sampler
     if name == "direct":
         return Direct(scene)
-    mesh = no_cells(scene) if name == "tail" else mesh_of(scene, split=name == "cells")
+    meshes: dict[str, Callable[[Scene], Mesh]] = {
+        "tail": no_cells,
+        "cells": mesh_of,
+        "aggregate": partial(mesh_of, split=False),
+        "stratified": partial(mesh_of, split=False, rare=1e-9),
+    }
+    mesh = meshes[name](scene)
     return Cells(scene, mesh, response_to(scene, mesh), name)
 
 

@@ -40,7 +40,7 @@ from mcgw.ensemble import Ensemble
 from mcgw.samplers import sampler_of
 from mcgw.scene import Scene
 from mcgw.scene_file import scene_from, scene_text
-from mcgw.simulate import blocks, kept, use_threads
+from mcgw.simulation import blocks, kept, use_threads
 
 __all__ = ["StoreError", "open_ensemble", "run"]
 
