@@ -145,7 +145,7 @@ def read_attributes(path: Path) -> dict[str, Any]:
         with h5py.File(path, "r") as file:
             attributes = dict(file.attrs)
     except OSError as error:
-        reason = error.strerror or "not an HDF5 file, or a damaged one"
+        reason = os.strerror(error.errno) if error.errno else "not an HDF5 file, or a damaged one"
         raise StoreError(f"{path}: {reason}") from None
     if attributes.get("filetype") != FILETYPE:
         raise StoreError(f"{path}: not an ensemble file (filetype is not {FILETYPE!r})")
