@@ -6,7 +6,9 @@ from collections.abc import Sequence
 from importlib import import_module
 from importlib.metadata import PackageNotFoundError, version
 
-COMMANDS = ("run", "show", "compare")
+from mcgw.errors import RunError
+
+COMMANDS = ("run", "show", "compare", "merge")
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -20,7 +22,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     Returns
     -------
     int
-        0: done; 1: a comparison or a run failed; 2: bad input; 130: interrupted.
+        0: done; 1: a comparison or a run failed; 2: bad input; 130, 143: interrupted by a
+        signal.
     """
     args = _parser().parse_args(argv)
     try:
@@ -28,6 +31,9 @@ def main(argv: Sequence[str] | None = None) -> int:
     except KeyboardInterrupt:
         print("mcgw: interrupted", file=sys.stderr)
         return 130
+    except RunError as error:
+        print(f"mcgw: {error}", file=sys.stderr)
+        return error.code
     except BrokenPipeError:  # the reader of our output has seen enough
         sys.stderr.close()
         return 0

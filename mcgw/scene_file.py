@@ -3,6 +3,7 @@
 import math
 import secrets
 import tomllib
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -19,13 +20,15 @@ _MOST_BYTES = 2**20
 _MOST_SEPARATIONS = 100_000
 
 
-def load_scene(path: str | Path) -> Scene:
+def load_scene(path: str | Path, *, seed: Callable[[], int | None] | None = None) -> Scene:
     """Read a scene.
 
     Parameters
     ----------
     path : str or Path
         A TOML file; `runs/demo.toml` shows its keys.
+    seed : callable, optional
+        Asked for a seed if the scene gives none; where it has none either, one is drawn.
 
     Returns
     -------
@@ -42,10 +45,12 @@ def load_scene(path: str | Path) -> Scene:
         raise SceneError([f"{path}: is no regular file" if path.exists() else f"{path}: no such file"])
     if path.stat().st_size > _MOST_BYTES:
         raise SceneError([f"{path}: longer than {_MOST_BYTES} bytes, which no scene is"])
-    return scene_from(path.read_bytes(), folder=path.parent)
+    return scene_from(path.read_bytes(), folder=path.parent, seed=seed)
 
 
-def scene_from(text: str | bytes, *, folder: Path | None = None) -> Scene:
+def scene_from(
+    text: str | bytes, *, folder: Path | None = None, seed: Callable[[], int | None] | None = None
+) -> Scene:
     """Make a scene of its TOML text.
 
     Parameters
@@ -54,6 +59,8 @@ def scene_from(text: str | bytes, *, folder: Path | None = None) -> Scene:
         The text, UTF-8.
     folder : Path, optional
         Where the files lie that it names; left out: the current one.
+    seed : callable, optional
+        As for `load_scene`.
 
     Returns
     -------
@@ -78,7 +85,7 @@ def scene_from(text: str | bytes, *, folder: Path | None = None) -> Scene:
         "surface": surface,
         **_grading(parts["grading"], surface, folder or Path()),
         **_contact(parts["contact"]),
-        **_ensemble(parts["ensemble"]),
+        **_ensemble(parts["ensemble"], seed),
     }
     parts["heights"].choice("law", "gaussian", ("gaussian",))
     for section in (top, *parts.values()):
@@ -177,12 +184,13 @@ def _separations(section: Section) -> tuple[float, ...]:
     return tuple(float(h) for h in values)
 
 
-def _ensemble(section: Section) -> dict[str, Any]:
+def _ensemble(section: Section, seed: Callable[[], int | None] | None) -> dict[str, Any]:
+    other = None if "seed" in section or seed is None else seed()
     values = {
         "n_surfaces": section.whole("n_surfaces", 1000, least=1),
         "n_asperities": section.whole("n_asperities", 0, least=1),
         "count": section.choice("count", "fixed", ("fixed", "poisson")),
-        "seed": section.whole("seed", secrets.randbits(63)),
+        "seed": section.whole("seed", secrets.randbits(63) if other is None else other),
         "sampler": section.choice("sampler", "auto", SAMPLERS),
         "keep": section.choice("keep", "sums", ("sums", "moments")),
     }

@@ -1,10 +1,10 @@
-"""Ensembles as HDF5 files.
+"""Ensembles as HDF5 files, and the runs that make them.
 
-A file appears whole or not at all: it is written under a temporary name and renamed. Its schema
-(``filetype = "mcgw-ensemble"``, ``format = [1, 0]``)::
+A file appears whole or not at all. Its schema (``filetype = "mcgw-ensemble"``, ``format = [1, 0]``)::
 
     /                     attributes: filetype, format, title, scene (TOML text of the resolved scene),
-                          seed, sampler, complete, digest, versions, commit, date, cpu, wall_seconds
+                          seed, sampler, complete, digest, versions, draws, run, commit, date, cpu,
+                          wall_seconds
     /surface              int64 (surfaces,)               dimension scale: numbers of the surfaces
     /separation           float64 (separations,)          dimension scale: d/sigma
     /load                 float64 (surfaces, separations) N
@@ -12,44 +12,48 @@ A file appears whole or not at all: it is written under a temporary name and ren
     /stiffness            float64 (surfaces, separations) N/m
     /contacts             int64   (surfaces, separations) 1   (float64 expectation if stratified)
     /conductance          float64 (surfaces, separations) m   (times 1/rho)
+    /moments              float64 (surfaces, moment)      only if ``keep = "moments"``, as the next two
+    /cells                float64 (surfaces, cell)        asperities in each cell
+    /extras               float64 (extra, column)         asperities outside: surface, height, weight
 
 Every dataset has the attributes `units` and `long_name`; only quantities that the scene asks for are
-there. Chunked, shuffled, compressed with gzip.
+there. Chunked, shuffled, compressed with gzip. `digest` is over scene and data, `run` over what the
+numbers of a surface depend on (scene but for the number of surfaces, sampler, and the versions in
+`draws`). After the HDF5 data stand 512 bytes, the seal (`mcgw.seal`), with the digest of the file's bytes.
+
+A run that fits one block is written in one atomic step. Any other grows as shards in ``FILE.parts/``
+(`mcgw.rundir`), which are merged at the end (`mcgw.merge`) and then removed.
 """
 
-import hashlib
-import os
-import platform
-import subprocess
-import sys
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from dataclasses import dataclass
-from datetime import UTC, datetime
-from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
-from time import monotonic
 from typing import Any
 
 import h5py
 import numpy as np
 from numpy.typing import NDArray
 
-from analytic import QUANTITIES
+from mcgw.disk import check_output, remove_stale, write_whole
 from mcgw.ensemble import Ensemble
-from mcgw.samplers import sampler_of
+from mcgw.errors import RunError, StoreError
+from mcgw.guard import examine
+from mcgw.layout import FILETYPE, FORMAT, build, values_digest
+from mcgw.provenance import versions
+from mcgw.rundir import Run, difference, identity_of, parts_of
 from mcgw.scene import Scene
 from mcgw.scene_file import scene_from, scene_text
-from mcgw.simulation import blocks, kept, use_threads
+from mcgw.seal import check_seal, seal_of
+from mcgw.shards import RAGGED, Shard, Span
 
-__all__ = ["StoreError", "open_ensemble", "run"]
-
-FILETYPE, FORMAT = "mcgw-ensemble", (1, 0)
-_CHUNK_ROWS = 256
-
-
-class StoreError(ValueError):
-    """A file that cannot be read or written as an ensemble."""
+__all__ = [
+    "StoreError",
+    "finished",
+    "open_ensemble",
+    "read_attributes",
+    "recorded_seed",
+    "save",
+    "verify",
+]
 
 
 @dataclass(frozen=True)
@@ -58,71 +62,55 @@ class FileSums:
 
     path: Path
 
-    def read(self, name: str, start: int, stop: int) -> NDArray[Any]:
-        """Rows `start` to `stop` of a dataset."""
-        with h5py.File(self.path, "r") as file:
-            return np.asarray(file[name][start:stop])
+    def read(self, name: str, start: int, stop: int | None) -> NDArray[Any]:
+        """Rows `start` to `stop` (None: to the end) of a dataset."""
+        try:
+            with h5py.File(self.path, "r") as file:
+                return np.asarray(file[name][start:stop])
+        except OSError:
+            raise StoreError(f"{self.path}: cannot be read; is it damaged? See mcgw show --verify") from None
 
     def rows(self) -> int:
         """Number of surfaces."""
-        with h5py.File(self.path, "r") as file:
-            return int(file["surface"].shape[0])
+        return len(self.read("surface", 0, None))
 
 
-def run(
-    scene: Scene,
-    path: str | Path,
-    *,
-    threads: int | None = None,
-    progress: Callable[[int], Any] | None = None,
-) -> Ensemble:
-    """Draw the ensemble of a scene into a file.
+@dataclass(frozen=True)
+class ShardSums:
+    """The blocks that a run had committed when it was looked at."""
 
-    Parameters
-    ----------
-    scene : Scene
-        What is asked.
-    path : str or Path
-        The file; it appears when it is complete.
-    threads : int, optional
-        Left out: all there are. The data are the same for any number.
-    progress : callable, optional
-        Called with the number of surfaces after each block.
+    shards: tuple[Shard, ...]
 
-    Returns
-    -------
-    Ensemble
-        That reads from the file.
+    def read(self, name: str, start: int, stop: int | None) -> NDArray[Any]:
+        """Rows `start` to `stop` of what is there; of the ragged table all."""
+        rows, parts, first = self.rows() if stop is None else stop, [], 0
+        for shard in self.shards:
+            low, high = max(start - first, 0), min(rows - first, shard.span.n)
+            if name == RAGGED:
+                parts.append(self._arrays(shard)[name])
+            elif low < high:
+                parts.append(self._arrays(shard)[name][low:high])
+            first += shard.span.n
+        return np.concatenate(parts)[slice(start, stop) if name == RAGGED else slice(None)]
 
-    Raises
-    ------
-    StoreError
-        If the file cannot be written there.
-    """
-    path = Path(path)
-    sampler = sampler_of(scene)
-    started = monotonic()
-    with _whole_file(path) as file, use_threads(threads):
-        _lay_out(file, scene, sampler.name)
-        for first, block in blocks(scene, sampler):
-            arrays = kept(scene, block)
-            stop = first + len(next(iter(arrays.values())))
-            for name, values in arrays.items():
-                file[name][first:stop] = values
-            if progress:
-                progress(stop - first)
-        file.attrs["digest"] = _digest(file, scene)
-        file.attrs["wall_seconds"] = monotonic() - started
-    return open_ensemble(path)
+    def rows(self) -> int:
+        """Number of surfaces."""
+        return sum(shard.span.n for shard in self.shards)
+
+    @staticmethod
+    def _arrays(shard: Shard) -> dict[str, NDArray[Any]]:
+        if not shard.path.exists():
+            raise StoreError(f"{shard.path}: is gone; its run has ended, open the file again")
+        return shard.arrays()
 
 
 def open_ensemble(path: str | Path) -> Ensemble:
-    """Open an ensemble file.
+    """Open an ensemble file, or what there is of it while its run goes on.
 
     Parameters
     ----------
     path : str or Path
-        Written by `run`.
+        Written by `mcgw.running.run`. It may come from a stranger: a child process looks at it first.
 
     Returns
     -------
@@ -132,135 +120,172 @@ def open_ensemble(path: str | Path) -> Ensemble:
     Raises
     ------
     StoreError
-        If it is no ensemble file, or of another format.
+        If it is no ensemble file, damaged, or of another format; or if no block is finished yet.
     """
     path = Path(path)
-    attributes = read_attributes(path)
-    return Ensemble(scene_from(str(attributes["scene"])), str(attributes["sampler"]), FileSums(path))
+    if not path.exists() and parts_of(path).is_dir():
+        run = Run.open(parts_of(path))
+        shards = tuple(run.shards())
+        if not shards:
+            raise StoreError(f"{path}: no block of its run is finished yet")
+        return Ensemble(run.scene, run.sampler, ShardSums(shards))
+    attributes, scene = _described(path)
+    return Ensemble(scene, str(attributes["sampler"]), FileSums(path))
 
 
 def read_attributes(path: Path) -> dict[str, Any]:
-    """Root attributes of an ensemble file, checked for what it is."""
-    try:
-        with h5py.File(path, "r") as file:
-            attributes = dict(file.attrs)
-    except OSError as error:
-        reason = os.strerror(error.errno) if error.errno else "not an HDF5 file, or a damaged one"
-        raise StoreError(f"{path}: {reason}") from None
+    """Root attributes of an ensemble file; of a run in progress, those that are known.
+
+    Raises
+    ------
+    StoreError
+        If it is no ensemble file, damaged, or of another format.
+    """
+    if path.exists() or not parts_of(path).is_dir():
+        return _described(path)[0]
+    run = Run.open(parts_of(path))
+    seconds = sum(shard.seconds for shard in run.shards())
+    known = {"versions": run.drawn_with, "commit": "unknown", "cpu": "its workers", "wall_seconds": seconds}
+    return {
+        **known,
+        "scene": scene_text(run.scene),
+        "sampler": run.sampler,
+        "complete": False,
+        "digest": "none before it is complete",
+        "date": run.date,
+    }
+
+
+def _described(path: Path) -> tuple[dict[str, Any], Scene]:
+    """Attributes and scene of a file whose datasets are those that its scene declares."""
+    answer = examine(path)
+    attributes, datasets = answer["attributes"], answer["datasets"]
     if attributes.get("filetype") != FILETYPE:
         raise StoreError(f"{path}: not an ensemble file (filetype is not {FILETYPE!r})")
-    major, minor = (int(part) for part in attributes["format"])
-    if major != FORMAT[0]:
-        raise StoreError(f"{path}: format {major}.{minor}; this version reads {FORMAT[0]}.x")
-    return attributes
-
-
-def file_digest(path: Path) -> str:
-    """Digest of what a file holds now, from its data."""
-    ensemble = open_ensemble(path)
-    with h5py.File(path, "r") as file:
-        return _digest(file, ensemble.scene)
-
-
-@contextmanager
-def _whole_file(path: Path) -> Iterator[h5py.File]:
-    """Write an HDF5 file under a temporary name and give it its own when all went well."""
-    if path.is_symlink() or (path.exists() and not path.is_file()):
-        raise StoreError(f"{path}: is no regular file; choose another -o")
-    temporary = path.with_name(f"{path.name}.{os.getpid()}.tmp")
     try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        with h5py.File(temporary, "x") as file:
-            yield file
-        with open(temporary, "rb") as written:
-            os.fsync(written.fileno())
-        temporary.replace(path)
-    except OSError as error:
-        raise StoreError(f"{path}: cannot be written ({error.strerror or error})") from None
-    finally:
-        temporary.unlink(missing_ok=True)
+        major, minor = (int(part) for part in attributes["format"])
+        if major != FORMAT[0]:
+            raise StoreError(f"{path}: format {major}.{minor}; this version reads {FORMAT[0]}.x")
+        scene = scene_from(str(attributes["scene"]))
+        for key in ("sampler", "digest", "complete", "date", "cpu", "versions", "commit"):
+            attributes[key]
+        float(attributes["wall_seconds"])
+    except (KeyError, TypeError) as error:
+        raise StoreError(f"{path}: an attribute is missing or of another type ({error})") from None
+    except ValueError as error:
+        if isinstance(error, StoreError):
+            raise
+        raise StoreError(f"{path}: its scene is none: {str(error).splitlines()[0]}") from None
+    shapes = {"surface": [scene.n_surfaces], "separation": [len(scene.separations)]}
+    shapes |= {name: [scene.n_surfaces, len(scene.separations)] for name in scene.quantities}
+    for name, shape in shapes.items():
+        if name not in datasets or datasets[name][1] != shape:
+            found = datasets.get(name, ["", "none"])[1]
+            raise StoreError(f"{path}: {name} has shape {found}, its scene declares {shape}")
+    return attributes, scene
 
 
-def _lay_out(file: h5py.File, scene: Scene, sampler: str) -> None:
-    """Empty datasets with their scales, units and names, and what is known beforehand."""
-    file.attrs.update(
-        filetype=FILETYPE,
-        format=FORMAT,
-        title=scene.title,
-        scene=scene_text(scene),
-        seed=np.uint64(scene.seed),
-        sampler=sampler,
-        complete=True,
-        date=datetime.now(UTC).isoformat(timespec="seconds"),
-        **_provenance(),
-    )
-    shape = (scene.n_surfaces, len(scene.separations))
-    scales = {
-        "surface": (np.arange(shape[0]), "number of the surface"),
-        "separation": (np.array(scene.separations), "mean-plane separation d/sigma"),
-    }
-    for name, (values, long_name) in scales.items():
-        scale = file.create_dataset(name, data=values)
-        scale.attrs.update(units="1", long_name=long_name)
-        scale.make_scale(name)
-    for name in scene.quantities:
-        q = QUANTITIES[name]
-        integral = name == "contacts" and scene.sampler != "stratified"
-        data = file.create_dataset(
-            name,
-            shape,
-            "<i8" if integral else "<f8",
-            chunks=(min(_CHUNK_ROWS, shape[0]), shape[1]),
-            compression="gzip",
-            compression_opts=1,
-            shuffle=True,
+def verify(path: Path) -> tuple[str, str]:
+    """What is wrong with an ensemble file, and the digest of what it holds now.
+
+    Parameters
+    ----------
+    path : Path
+        A finished file.
+
+    Returns
+    -------
+    (str, str)
+        The first is empty for a file that is bit by bit as it was written.
+    """
+    problem = ""
+    try:
+        check_seal(path)
+    except StoreError as error:
+        problem = str(error).removeprefix(f"{path}: ")
+    try:
+        attributes, scene = _described(path)
+        with h5py.File(path, "r") as file:
+            found = values_digest(file, scene)
+        if found != attributes["digest"]:
+            problem = problem or "its data have another digest than it says"
+    except (OSError, RuntimeError, KeyError, ValueError) as error:
+        if not problem:
+            raise
+        return f"{problem}; {error}", "unreadable"
+    return problem, found
+
+
+def recorded_seed(path: Path) -> int | None:
+    """Seed of the ensemble or run that is at a place, for scenes that give none."""
+    if path.is_file():
+        return _described(path)[1].seed
+    return Run.open(parts_of(path)).scene.seed if (parts_of(path) / "run.toml").is_file() else None
+
+
+def finished(path: Path, scene: Scene, sampler: str) -> int:
+    """Number of surfaces that a file holds of a scene; 0 if there is no file.
+
+    Raises
+    ------
+    StoreError
+        If the file is damaged, holds another ensemble, or more surfaces than asked for.
+    """
+    if not path.exists():
+        return 0
+    attributes, there = _described(path)
+    if attributes.get("run") != identity_of(scene, sampler):
+        what = difference(there, str(attributes.get("draws", "another version")), scene)
+        raise StoreError(f"{path}: holds a different ensemble: {what}; choose another -o, or remove it")
+    if there.n_surfaces > scene.n_surfaces:
+        raise StoreError(
+            f"{path}: holds {there.n_surfaces} surfaces already, more than ensemble.n_surfaces = "
+            f"{scene.n_surfaces}; ask for as many or more, or choose another -o"
         )
-        data.attrs.update(units=q.unit, long_name=q.long_name)
-        for axis, scale_name in enumerate(scales):
-            data.dims[axis].attach_scale(file[scale_name])
+    if there.n_surfaces < scene.n_surfaces:
+        check_seal(path)  # it is about to be copied
+    return there.n_surfaces
 
 
-def _digest(file: h5py.File, scene: Scene) -> str:
-    """SHA-256 over the scene and the names, shapes and values: not over the bytes of the container."""
-    sha = hashlib.sha256(scene_text(scene).encode())
-    for name in ("separation", *scene.quantities):
-        data = file[name]
-        sha.update(f"{name} {data.shape} {data.dtype.str}\n".encode())
-        for start in range(0, data.shape[0], 65536):
-            sha.update(np.ascontiguousarray(data[start : start + 65536]).tobytes())
-    return sha.hexdigest()
+def save(ensemble: Ensemble, path: str | Path, *, wall_seconds: float = 0.0) -> None:
+    """Write an ensemble that lies in memory, in one atomic step.
 
+    Parameters
+    ----------
+    ensemble : Ensemble
+        With all surfaces of its scene.
+    path : str or Path
+        The file.
+    wall_seconds : float, optional
+        What making it took.
 
-def _provenance() -> dict[str, str]:
-    """Versions, commit and processor, as far as they are known."""
-    packages = ("mcgw", "numpy", "scipy", "numba", "h5py")
-    versions = [f"python {platform.python_version()}"]
-    for name in packages:
-        try:
-            versions.append(f"{name} {version(name)}")
-        except PackageNotFoundError:
-            versions.append(f"{name} unknown")
-    return {"versions": ", ".join(versions), "commit": _commit(), "cpu": _processor()}
-
-
-def _commit() -> str:
-    """Commit of a source checkout, "unknown" for an installed package."""
-    here = Path(__file__).resolve().parent.parent
-    if not (here / ".git").exists():
-        return "unknown"
-    call = ["git", "-C", str(here), "rev-parse", "HEAD"]
+    Raises
+    ------
+    StoreError
+        If the place cannot be written.
+    RunError
+        If the disk does not take it.
+    """
+    path, scene = Path(path), ensemble.scene
+    check_output(path)
+    remove_stale(path)
+    names = [*scene.quantities, *(("moments", "cells", RAGGED) if scene.keep == "moments" else ())]
+    arrays = {name: ensemble.sums.read(name, 0, None) for name in names}
+    with h5py.File("ensemble", "w-", driver="core", backing_store=False, libver=("v108", "v110")) as file:
+        build(
+            file,
+            scene,
+            ensemble.sampler,
+            [(Span(0, ensemble.n_surfaces), arrays)],
+            run=identity_of(scene, ensemble.sampler),
+            draws=versions(of_draws=True),
+            wall_seconds=wall_seconds,
+        )
+        file.flush()
+        image = bytes(file.id.get_file_image())
     try:
-        return subprocess.run(call, capture_output=True, text=True, timeout=5, check=True).stdout.strip()
-    except (OSError, subprocess.SubprocessError):
-        return "unknown"
-
-
-def _processor() -> str:
-    info = Path("/proc/cpuinfo")
-    if sys.platform == "linux" and info.exists():
-        names = [
-            line.split(":", 1)[1].strip() for line in info.read_text().splitlines() if "model name" in line
-        ]
-        if names:
-            return f"{names[0]} ({len(names)} cores)"
-    return platform.processor() or platform.machine()
+        write_whole(path, (image, seal_of(image)))
+    except OSError as error:
+        raise RunError(
+            f"{path}: cannot be written ({error.strerror or error}); make room and repeat"
+        ) from None

@@ -121,7 +121,7 @@ def test_all_mistakes_of_a_scene_are_listed(tmp_path):
     assert len(done.stderr.splitlines()) == 3
 
 
-@pytest.mark.parametrize("command", ["run", "show", "compare"])
+@pytest.mark.parametrize("command", ["run", "show", "compare", "merge"])
 def test_help_has_an_example(command):
     done = call(command, "--help")
     assert done.returncode == 0

@@ -2,8 +2,13 @@
 
 import argparse
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
-HELP = "simulate a scene: draw its surfaces and store load, area, ... in HDF5"
+if TYPE_CHECKING:
+    from mcgw.engines import Engine
+    from mcgw.running import Part
+
+HELP = "simulate a scene: draw its surfaces and store load, area, ... in HDF5; goes on where it stopped"
 EXAMPLE = "mcgw run runs/demo.toml -o demo.h5"
 
 
@@ -14,18 +19,87 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         "-o", "--output", type=Path, metavar="FILE.h5", help="default: out/NAME.h5 beside the scene"
     )
     parser.add_argument("--threads", type=int, metavar="N", help="default: all cores; never changes a bit")
+    engine = parser.add_mutually_exclusive_group()
+    engine.add_argument("--processes", type=int, metavar="N", help="draw in N processes instead")
+    engine.add_argument("--workers", type=int, metavar="N", help="draw in N dask workers on this machine")
+    engine.add_argument(
+        "--scheduler", metavar="ADDRESS", help="draw with the workers of a dask scheduler, tcp:// or tls://"
+    )
+    engine.add_argument(
+        "--shard", metavar="I/N", help="draw the I-th of N shares, as one job of an array; then mcgw merge"
+    )
+    parser.add_argument(
+        "--insecure", action="store_true", help="allow a scheduler elsewhere without encryption"
+    )
 
 
 def execute(args: argparse.Namespace) -> int:
     """Run and say where the file is."""
-    from tqdm import tqdm
-
+    from mcgw.running import run, run_part
     from mcgw.scene_file import load_scene
-    from mcgw.store import run
+    from mcgw.store import recorded_seed
 
-    scene = load_scene(args.scene)
     path = args.output or args.scene.parent / "out" / f"{args.scene.stem}.h5"
-    with tqdm(total=scene.n_surfaces, unit=" surfaces", disable=None, leave=False) as bar:
-        ensemble = run(scene, path, threads=args.threads, progress=bar.update)
+    part = _part(args.shard)
+    scene = load_scene(args.scene, seed=lambda: recorded_seed(path))
+    bar = _Bar(scene.n_surfaces)
+    if part:
+        left = run_part(scene, path, part, threads=args.threads, progress=bar.show)
+        bar.close()
+        then = f"{left} surfaces are still missing" if left else f"all are there: mcgw merge {path}"
+        print(f"{path}.parts: share {args.shard} is done; {then}")
+        return 0
+    engine = _engine(args)
+    try:
+        ensemble = run(scene, path, threads=args.threads, engine=engine, progress=bar.show)
+    finally:
+        bar.close()
+        if engine:
+            engine.close()
     print(f"{path}: {ensemble.n_surfaces} surfaces of {scene.n_asperities:g} asperities, seed {scene.seed}")
     return 0
+
+
+def _engine(args: argparse.Namespace) -> "Engine | None":
+    if args.processes is not None:
+        from mcgw.engines import Processes
+
+        return Processes(args.processes)
+    if args.workers is not None or args.scheduler is not None:
+        from mcgw.dask_engine import Dask
+
+        return Dask(args.scheduler, workers=args.workers or 1, insecure=args.insecure)
+    return None
+
+
+def _part(given: str | None) -> "Part | None":
+    from mcgw.running import Part
+
+    if given is None:
+        return None
+    number, _, of = given.partition("/")
+    if not (number.isdecimal() and of.isdecimal()):
+        raise ValueError(f"--shard {given}: give i/n with 1 <= i <= n")
+    return Part(int(number), int(of))
+
+
+class _Bar:
+    """A progress bar whose rate is that of this session: what lay there before counts as given."""
+
+    def __init__(self, total: int) -> None:
+        self._total = total
+        self._bars: list[Any] = []
+
+    def show(self, done: int) -> None:
+        """Move to so many surfaces."""
+        from tqdm import tqdm
+
+        if not self._bars:
+            options = {"unit": " surfaces", "disable": None, "leave": False, "smoothing": 0}
+            self._bars.append(tqdm(total=self._total, initial=done, **options))
+        self._bars[0].update(done - self._bars[0].n)
+
+    def close(self) -> None:
+        """Take it away."""
+        for bar in self._bars:
+            bar.close()

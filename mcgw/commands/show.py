@@ -3,7 +3,7 @@
 import argparse
 from pathlib import Path
 
-HELP = "show what an ensemble file holds"
+HELP = "show what an ensemble file holds, or how far its run has come"
 EXAMPLE = "mcgw show demo.h5"
 
 
@@ -13,23 +13,22 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     what = parser.add_mutually_exclusive_group()
     what.add_argument("--scene", action="store_true", help="print the scene as TOML: it runs again")
     what.add_argument("--digest", action="store_true", help="print the digest of scene and data")
-    what.add_argument("--verify", action="store_true", help="compare the data with the digest in the file")
+    what.add_argument("--verify", action="store_true", help="check every bit by seal and digest")
 
 
 def execute(args: argparse.Namespace) -> int:
     """Print to standard output; writes no file."""
-    from mcgw.store import file_digest, open_ensemble, read_attributes
+    from mcgw.store import open_ensemble, read_attributes, verify
 
+    if args.verify:
+        problem, found = verify(args.file)
+        print(f"{args.file}: {f'DAMAGED, {problem}' if problem else 'intact'} ({found})")
+        return 1 if problem else 0
     attributes = read_attributes(args.file)
     if args.scene:
         print(attributes["scene"], end="")
     elif args.digest:
         print(attributes["digest"])
-    elif args.verify:
-        found = file_digest(args.file)
-        good = found == attributes["digest"]
-        print(f"{args.file}: {'intact' if good else 'DAMAGED'} ({found})")
-        return 0 if good else 1
     else:
         from mcgw.report_text import summary
 

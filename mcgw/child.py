@@ -1,0 +1,68 @@
+"""Work in a process of its own, where a crash, a hang or a greed for memory harms nobody else."""
+
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+__all__ = ["ChildError", "limit_memory", "run_child"]
+
+
+class ChildError(Exception):
+    """The child ended badly; the message says how, `said` is its last line."""
+
+    def __init__(self, how: str, said: str) -> None:
+        super().__init__(f"{how}: {said}" if said else how)
+        self.how, self.said = how, said
+
+
+def run_child(module: str, *arguments: str, seconds: float | None = None) -> str:
+    """Run a module of this package and return what it prints.
+
+    Parameters
+    ----------
+    module : str
+        Such as ``"mcgw.probe"``; it is run as a script.
+    arguments : str
+        Its command line.
+    seconds : float, optional
+        After which it is killed.
+
+    Returns
+    -------
+    str
+        Its standard output.
+
+    Raises
+    ------
+    ChildError
+        If it does not end with exit code 0 in time.
+    """
+    home = str(Path(__file__).resolve().parent.parent)
+    paths = [home, *filter(None, [os.environ.get("PYTHONPATH")])]
+    # One thread: a child that reads a file needs no pool of them, and their stacks count as memory.
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(paths), "OPENBLAS_NUM_THREADS": "1"}
+    call = [sys.executable, "-P", "-m", module, *arguments]
+    try:
+        done = subprocess.run(
+            call, env=environment, capture_output=True, timeout=seconds, check=False, stdin=subprocess.DEVNULL
+        )
+    except subprocess.TimeoutExpired:
+        raise ChildError(f"took more than {seconds:g} s", "") from None
+    if done.returncode == 0:
+        return done.stdout.decode(errors="replace")
+    how = f"exit code {done.returncode}"
+    if done.returncode < 0:
+        how = f"crashed with {signal.Signals(-done.returncode).name}"
+    lines = done.stderr.decode(errors="replace").strip().splitlines()
+    raise ChildError(how, lines[-1] if lines else "")
+
+
+def limit_memory(size: int) -> None:
+    """Let this process use at most so many bytes, where the system knows such limits."""
+    try:
+        import resource
+    except ImportError:  # Windows
+        return
+    resource.setrlimit(resource.RLIMIT_AS, (size, size))

@@ -1,0 +1,136 @@
+"""Files that appear whole or not at all.
+
+Data go under a temporary name, are flushed to the disk, and get their own name in one step; the folder
+is flushed last. A temporary name is never one that exists: nothing planted there is followed.
+"""
+
+import glob
+import os
+import secrets
+import socket
+import stat
+import zlib
+from collections.abc import Iterable
+from contextlib import suppress
+from pathlib import Path
+
+from mcgw.errors import StoreError
+
+__all__ = ["check_output", "open_regular", "remove_stale", "sync_folder", "temporary_beside", "write_whole"]
+
+
+def temporary_beside(path: Path) -> Path:
+    """A new name in the same folder, of this process alone, on whatever host."""
+    return path.with_name(f"{_stem(path)}{os.getpid()}-{secrets.token_hex(4)}.tmp")
+
+
+def remove_stale(path: Path) -> None:
+    """Remove the temporary files that processes of this host, now dead, left beside a file."""
+    for left in path.parent.glob(f"{glob.escape(_stem(path))}*.tmp"):
+        pid = left.name.removeprefix(_stem(path)).split("-")[0]
+        if pid.isdecimal() and not _alive(int(pid)):
+            left.unlink(missing_ok=True)
+
+
+def _stem(path: Path) -> str:
+    host = zlib.crc32(socket.gethostname().encode())
+    return f".{path.name[:100]}.{host:08x}-"
+
+
+def _alive(pid: int) -> bool:
+    try:
+        os.kill(pid, 0)
+    except ProcessLookupError:
+        return False
+    except (OSError, OverflowError):
+        pass
+    return True
+
+
+def write_whole(path: Path, pieces: Iterable[bytes], *, replace: bool = True) -> None:
+    """Write a file in one atomic step.
+
+    Parameters
+    ----------
+    path : Path
+        Its name; a link of that name is replaced, not followed.
+    pieces : iterable of bytes
+        Its contents.
+    replace : bool, optional
+        If not, a file that is already there stays, and `FileExistsError` is raised.
+
+    Raises
+    ------
+    OSError
+        If it cannot be written; then nothing is left behind and an older file is as it was.
+    """
+    temporary = temporary_beside(path)
+    try:
+        fd = os.open(temporary, os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_NOFOLLOW, 0o644)
+        try:
+            for piece in pieces:
+                left = memoryview(piece)
+                while left:
+                    left = left[os.write(fd, left) :]
+            os.fsync(fd)
+        finally:
+            os.close(fd)
+        if replace:
+            os.replace(temporary, path)
+        else:
+            os.link(temporary, path)
+            os.unlink(temporary)
+        sync_folder(path.parent)
+    except BaseException:
+        with suppress(OSError):  # it has its own name by now, or was never made
+            os.unlink(temporary)
+        raise
+
+
+def sync_folder(folder: Path) -> None:
+    """Flush the names in a folder to the disk."""
+    fd = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
+    try:
+        os.fsync(fd)
+    finally:
+        os.close(fd)
+
+
+def open_regular(path: Path) -> int:
+    """Descriptor of a regular file, for reading; a pipe or device is refused without waiting for it.
+
+    Raises
+    ------
+    StoreError
+        If there is none, or it is no regular file.
+    """
+    try:
+        fd = os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC)
+    except (OSError, ValueError) as error:
+        raise StoreError(f"{path}: {getattr(error, 'strerror', None) or error}") from None
+    if not stat.S_ISREG(os.fstat(fd).st_mode):
+        os.close(fd)
+        raise StoreError(f"{path}: is no regular file")
+    return fd
+
+
+def check_output(path: Path) -> None:
+    """Refuse a place where no file can be put, before anything is computed; make its folder.
+
+    Raises
+    ------
+    StoreError
+        If the name is taken by something else than a file, is a link or too long, or if the folder
+        cannot be made or written.
+    """
+    name = path.name
+    try:
+        if name in ("", ".", "..") or len(os.fsencode(name)) > 200 or not name.isprintable():
+            raise StoreError(f"{str(path)!r}: is no name for a file; choose another -o")
+        if path.is_symlink() or (path.exists() and not path.is_file()):
+            raise StoreError(f"{path}: is no regular file; choose another -o")
+        path.parent.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise StoreError(f"{path}: cannot be written ({error.strerror or error})") from None
+    if not os.access(path.parent, os.W_OK | os.X_OK):
+        raise StoreError(f"{path}: cannot be written (the folder {path.parent} is read-only)")

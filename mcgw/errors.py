@@ -1,0 +1,27 @@
+"""What can go wrong while a run or its files are handled, and the exit code of each."""
+
+__all__ = ["RunError", "StoppedError", "StoreError"]
+
+
+class StoreError(ValueError):
+    """A file that cannot be read or written as an ensemble, or asks for another place."""
+
+
+class RunError(RuntimeError):
+    """A run that could not be finished; what is done is kept.
+
+    Parameters
+    ----------
+    message : str
+        One line: what happened and what to do.
+    code : int, optional
+        Exit code of the command line.
+    """
+
+    def __init__(self, message: str, code: int = 1) -> None:
+        super().__init__(message)
+        self.code = code
+
+
+class StoppedError(RunError):
+    """A run that was asked to stop: by Ctrl-C (130) or SIGTERM (143)."""

@@ -1,0 +1,58 @@
+"""Reading an HDF5 file that may come from a stranger: a child process looks at it first."""
+
+import json
+import os
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+from mcgw.child import ChildError, run_child
+from mcgw.disk import open_regular
+from mcgw.errors import StoreError
+
+__all__ = ["examine"]
+
+_MEMORY = 2**31  # address space of the child; HDF5 and NumPy take a quarter of it
+_SECONDS, _BYTES_A_SECOND = 5.0, 50e6
+
+
+def examine(path: Path) -> dict[str, Any]:
+    """Attributes and datasets of an HDF5 file that is safe to open.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+
+    Returns
+    -------
+    dict
+        ``{"attributes": {...}, "datasets": {name: [type, shape]}}``.
+
+    Raises
+    ------
+    StoreError
+        If it is not there, no plain file of numbers, damaged, or takes too long or too much memory.
+    """
+    fd = open_regular(path)
+    try:
+        status = os.fstat(fd)
+    finally:
+        os.close(fd)
+    return _examined(path.resolve(), path, (status.st_ino, status.st_size, status.st_mtime_ns))
+
+
+@lru_cache(maxsize=32)
+def _examined(path: Path, shown: Path, state: tuple[int, int, int]) -> dict[str, Any]:
+    """The same file is examined once: `state` changes when it does."""
+    seconds = _SECONDS + state[1] / _BYTES_A_SECOND
+    try:
+        said = run_child("mcgw.probe", str(path), "--memory", str(_MEMORY), seconds=seconds)
+        answer: dict[str, Any] = json.loads(said)
+    except ChildError as error:
+        raise StoreError(f"{shown}: damaged or hostile; reading it {error.how}") from None
+    except ValueError:
+        raise StoreError(f"{shown}: not an HDF5 file, or a damaged one") from None
+    if "refused" in answer:
+        raise StoreError(f"{shown}: refused: {answer['refused']}")
+    return answer

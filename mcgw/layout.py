@@ -1,0 +1,177 @@
+"""How an ensemble lies in its HDF5 file; the schema is written out in `mcgw.store`."""
+
+import hashlib
+from collections.abc import Iterable, Iterator
+from typing import Any
+
+import h5py
+import numpy as np
+
+from analytic import QUANTITIES
+from mcgw.errors import StoreError
+from mcgw.provenance import now, provenance
+from mcgw.scene import Scene
+from mcgw.scene_file import scene_text
+from mcgw.shards import RAGGED, Arrays, Span
+
+__all__ = ["FILETYPE", "FORMAT", "build", "data_names", "file_pieces", "values_digest"]
+
+FILETYPE, FORMAT = "mcgw-ensemble", (1, 0)
+
+# What `keep = "moments"` adds: name of the second axis, long name.
+_KEPT = {
+    "moments": ("moment", "sums of Chebyshev polynomials of the uniforms in each cell"),
+    "cells": ("cell", "asperities in each cell"),
+    RAGGED: ("column", "asperities outside the cells: surface, height, weight"),
+}
+_PIECE = 2**23  # bytes read at a time
+_CHUNK, _CHUNK_ROWS = 2**20, 256
+
+
+def build(
+    file: h5py.File, scene: Scene, sampler: str, pieces: Iterable[tuple[Span, Arrays]], **attributes: Any
+) -> str:
+    """Fill an empty HDF5 file with an ensemble.
+
+    Parameters
+    ----------
+    file : h5py.File
+        New.
+    scene : Scene
+        What was asked.
+    sampler : str
+        What drew it.
+    pieces : iterable of (Span, arrays)
+        All surfaces in order.
+    attributes : optional
+        More root attributes.
+
+    Returns
+    -------
+    str
+        The digest of scene and data, which is also an attribute.
+
+    Raises
+    ------
+    StoreError
+        If the pieces are not all surfaces of the scene in order.
+    """
+    stop = 0
+    for span, arrays in pieces:
+        if span.first != stop:
+            raise StoreError(f"surfaces {stop} ... {span.first - 1} are missing")
+        if not stop:
+            _lay_out(file, scene, arrays)
+        _put(file, span, arrays)
+        stop = span.stop
+    if stop != scene.n_surfaces:
+        raise StoreError(f"{stop} surfaces, not {scene.n_surfaces}")
+    digest = values_digest(file, scene)
+    file.attrs.update(
+        filetype=FILETYPE,
+        format=FORMAT,
+        title=scene.title,
+        scene=scene_text(scene),
+        seed=np.uint64(scene.seed),
+        sampler=sampler,
+        complete=True,
+        digest=digest,
+        date=now(),
+        **{**provenance(), **attributes},
+    )
+    return digest
+
+
+def data_names(names: Iterable[str]) -> list[str]:
+    """Which of the datasets hold results, in order of name."""
+    return sorted(name for name in names if name in QUANTITIES or name in _KEPT)
+
+
+def values_digest(file: h5py.File, scene: Scene) -> str:
+    """SHA-256 over the scene and the names, types, shapes and values: not over the container."""
+    sha = hashlib.sha256(scene_text(scene).encode())
+    for name in ("separation", *data_names(file)):
+        data = file[name]
+        sha.update(f"{name} {data.shape} {data.dtype.newbyteorder('<').str}\n".encode())
+        for start, stop in _steps(data):
+            sha.update(data[start:stop].astype(data.dtype.newbyteorder("<"), order="C", copy=False).tobytes())
+    return sha.hexdigest()
+
+
+def file_pieces(file: h5py.File) -> Iterator[tuple[Span, Arrays]]:
+    """The surfaces of an ensemble file, some at a time."""
+    names = [name for name in data_names(file) if name != RAGGED]
+    rows = len(file["surface"])
+    width = sum(file[name].dtype.itemsize * int(np.prod(file[name].shape[1:])) for name in names)
+    step = max(_PIECE // max(width, 1), 1)
+    extras = file[RAGGED][()] if RAGGED in file else None
+    for first in range(0, rows, step):
+        span = Span(first, min(step, rows - first))
+        arrays = {name: file[name][span.first : span.stop] for name in names}
+        if extras is not None:
+            arrays[RAGGED] = extras[(extras[:, 0] >= span.first) & (extras[:, 0] < span.stop)]
+        yield span, arrays
+
+
+def _steps(data: h5py.Dataset) -> Iterator[tuple[int, int]]:
+    width = data.dtype.itemsize * int(np.prod(data.shape[1:]))
+    step = max(_PIECE // max(width, 1), 1)
+    for start in range(0, data.shape[0], step):
+        yield start, min(start + step, data.shape[0])
+
+
+def _lay_out(file: h5py.File, scene: Scene, arrays: Arrays) -> None:
+    """Empty datasets with their scales, units and names."""
+    _scale(file, "surface", np.arange(scene.n_surfaces), "number of the surface")
+    _scale(file, "separation", np.array(scene.separations), "mean-plane separation d/sigma")
+    for name in data_names(arrays):
+        values = arrays[name]
+        if name in QUANTITIES:
+            q = QUANTITIES[name]
+            axes, unit, long_name = ("surface", "separation"), q.unit, q.long_name
+        else:
+            second, long_name = _KEPT[name]
+            axes, unit = ("extra" if name == RAGGED else "surface", second), "1"
+            _scale(file, second, np.arange(values.shape[1]), f"number of the {second}")
+        rows = 0 if name == RAGGED else scene.n_surfaces
+        if name == RAGGED:
+            _scale(file, "extra", np.arange(0), "number of the asperity", grows=True)
+        data = file.create_dataset(
+            name,
+            (rows, values.shape[1]),
+            values.dtype.newbyteorder("<"),
+            maxshape=(None, values.shape[1]) if name == RAGGED else None,
+            chunks=(_chunk_rows(rows, values.shape[1]), max(values.shape[1], 1)),
+            compression="gzip",
+            compression_opts=1,
+            shuffle=True,
+        )
+        data.attrs.update(units=unit, long_name=long_name)
+        for axis, scale in enumerate(axes):
+            data.dims[axis].attach_scale(file[scale])
+
+
+def _chunk_rows(rows: int, columns: int) -> int:
+    fitting = max(_CHUNK // (8 * max(columns, 1)), 1)
+    return min(_CHUNK_ROWS, fitting, rows or _CHUNK_ROWS)
+
+
+def _scale(file: h5py.File, name: str, values: Any, long_name: str, *, grows: bool = False) -> None:
+    scale = file.create_dataset(
+        name, data=values, maxshape=(None,) if grows else None, chunks=(1024,) if grows else None
+    )
+    scale.attrs.update(units="1", long_name=long_name)
+    scale.make_scale(name)
+
+
+def _put(file: h5py.File, span: Span, arrays: Arrays) -> None:
+    for name in data_names(arrays):
+        if name != RAGGED:
+            file[name][span.first : span.stop] = arrays[name]
+            continue
+        before = len(file[name])
+        after = before + len(arrays[name])
+        file[name].resize(after, axis=0)
+        file[name][before:after] = arrays[name]
+        file["extra"].resize(after, axis=0)
+        file["extra"][before:after] = np.arange(before, after)

@@ -1,0 +1,77 @@
+"""Is there room? Asked before anything is computed, in whole numbers that do not wrap."""
+
+import shutil
+from pathlib import Path
+
+from mcgw.errors import StoreError
+from mcgw.scene import Scene
+
+__all__ = ["check_room", "memory_available"]
+
+_MOST = 2**63 - 1
+
+
+def check_room(scene: Scene, path: Path, *, rows: int, columns: int) -> None:
+    """Refuse a run that cannot fit.
+
+    Parameters
+    ----------
+    scene : Scene
+        What is asked.
+    path : Path
+        Where its file will lie; the folder exists.
+    rows : int
+        Surfaces that are drawn at a time.
+    columns : int
+        Numbers kept of a surface.
+
+    Raises
+    ------
+    StoreError
+        With the numbers, if a count leaves 64 bits, a block the memory, or the file the disk.
+    """
+    m, n, k = scene.n_surfaces, scene.n_asperities, len(scene.separations)
+    for what, value in (
+        ("n_surfaces * n_asperities", m * n),
+        ("n_surfaces * n_asperities * separations", m * n * k),
+        ("bytes of the file", 8 * m * columns),
+    ):
+        if value > _MOST:
+            raise StoreError(f"ensemble: {what} = {value:.4g} is more than 2^63 - 1 can count; ask for less")
+    block, memory = 3 * 8 * min(rows, m) * columns, memory_available()
+    if block > memory:
+        raise StoreError(
+            f"contact.separations: a block of {min(rows, m)} surfaces needs {_gib(block)} of memory and "
+            f"{_gib(memory)} are available; give fewer separations or quantities"
+        )
+    size, free = 8 * m * columns, shutil.disk_usage(path.parent).free
+    if 2 * size > free:  # the shards, and the file they are merged into
+        raise StoreError(
+            f"{path}: needs up to {_gib(2 * size)} on the disk while it is made and {_gib(free)} are free; "
+            "make room, choose another -o, or ask for fewer surfaces or separations"
+        )
+
+
+def memory_available() -> int:
+    """Bytes that this process may still take: of the machine and of its control group."""
+    limits = [_number(line.split()[1]) * 1024 for line in _lines("/proc/meminfo") if "MemAvailable" in line]
+    used = [_number(line) for line in _lines("/sys/fs/cgroup/memory.current")]
+    most = [_number(line) for line in _lines("/sys/fs/cgroup/memory.max") if line.strip() != "max"]
+    if used and most:
+        limits.append(max(most[0] - used[0], 0))
+    return min(limits, default=_MOST)
+
+
+def _lines(path: str) -> list[str]:
+    try:
+        return Path(path).read_text().splitlines()
+    except OSError:
+        return []
+
+
+def _number(text: str) -> int:
+    return int(text) if text.strip().isdecimal() else _MOST
+
+
+def _gib(size: int) -> str:
+    return f"{size / 2**30:.4g} GiB"

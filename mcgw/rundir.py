@@ -1,0 +1,273 @@
+"""The folder of a run, beside its file: ``demo.h5.parts/``.
+
+::
+
+    run.toml    the frozen scene, its identity, the versions that draw, the size of a block
+    lock        held by the driver, freed by the kernel when it dies
+    shards/     block-0000000000042.h5: the surfaces from number 42 on
+
+The set of valid shards is the only record of progress.
+"""
+
+import fcntl
+import hashlib
+import os
+import shutil
+import socket
+import tomllib
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import tomli_w
+
+from mcgw.disk import remove_stale, sync_folder, write_whole
+from mcgw.errors import RunError, StoreError
+from mcgw.provenance import now, versions
+from mcgw.scene import Scene, SceneError
+from mcgw.scene_file import scene_from, scene_text
+from mcgw.shards import Shard, Span, open_shard
+
+__all__ = ["Run", "difference", "identity_of", "missing", "parts_of"]
+
+_FILETYPE, _FORMAT = "mcgw-run", [1, 0]
+_MOST_BYTES = 2**23
+
+
+def parts_of(path: Path) -> Path:
+    """Folder of the run that makes a file."""
+    return path.with_name(f"{path.name}.parts")
+
+
+def frozen_text(scene: Scene) -> str:
+    """What of a scene must stay the same while its ensemble grows."""
+    return scene_text(replace(scene, n_surfaces=1))
+
+
+def identity_of(scene: Scene, sampler: str) -> str:
+    """SHA-256 of all that the numbers of a surface depend on: frozen scene, sampler, versions."""
+    parts = (frozen_text(scene), sampler, versions(of_draws=True))
+    return hashlib.sha256("\0".join(parts).encode()).hexdigest()
+
+
+def difference(scene: Scene, drawn_with: str, wanted: Scene) -> str:
+    """What keeps two runs from being one, in words."""
+    there, here = (dict(_flat(tomllib.loads(frozen_text(s)))) for s in (scene, wanted))
+    for key, value in here.items():
+        if there.get(key) != value:
+            return f"{key} is {_short(there.get(key))} there and {_short(value)} here"
+    for key, value in there.items():
+        if key not in here:
+            return f"{key} is {_short(value)} there and not given here"
+    return f"it was drawn with {drawn_with}, this is {versions(of_draws=True)}"
+
+
+def _flat(table: dict[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
+    for key, value in table.items():
+        if isinstance(value, dict):
+            yield from _flat(value, f"{prefix}{key}.")
+        else:
+            yield prefix + key, value
+
+
+def _short(value: Any) -> str:
+    shown = repr(value)
+    return shown if len(shown) <= 60 else shown[:57] + "..."
+
+
+@dataclass(frozen=True)
+class Run:
+    """An open run.
+
+    Parameters
+    ----------
+    folder : Path
+        Where it lies.
+    scene : Scene
+        Frozen, but for the number of surfaces.
+    sampler : str
+        Never "auto".
+    size : int
+        Surfaces a block.
+    identity : str
+        See `identity_of`.
+    drawn_with : str
+        Versions that draw.
+    date : str
+        When it began.
+    """
+
+    folder: Path
+    scene: Scene
+    sampler: str
+    size: int
+    identity: str
+    drawn_with: str
+    date: str
+
+    @property
+    def shards_folder(self) -> Path:
+        """Where the shards lie."""
+        return self.folder / "shards"
+
+    @classmethod
+    def begin(cls, folder: Path, scene: Scene, sampler: str, size: int) -> "Run":
+        """Make the folder, or open the one that is there.
+
+        Raises
+        ------
+        StoreError
+            If it belongs to another scene, seed or version, or is no folder of a run.
+        """
+        _refuse_link(folder)
+        (folder / "shards").mkdir(parents=True, exist_ok=True)
+        sync_folder(folder.parent)
+        with suppress(FileExistsError):
+            new = cls(
+                folder, scene, sampler, size, identity_of(scene, sampler), versions(of_draws=True), now()
+            )
+            new._write(replace=False)
+            return new
+        old = cls.open(folder)
+        if old.identity != identity_of(scene, sampler):
+            raise StoreError(
+                f"{folder}: holds a different run: {difference(old.scene, old.drawn_with, scene)}; "
+                "choose another -o, or remove it"
+            )
+        return replace(old, scene=scene)
+
+    def _write(self, *, replace: bool) -> None:
+        document = {
+            "filetype": _FILETYPE,
+            "format": _FORMAT,
+            "identity": self.identity,
+            "sampler": self.sampler,
+            "block": self.size,
+            "versions": self.drawn_with,
+            "date": self.date,
+            "scene": scene_text(self.scene),
+        }
+        text = tomli_w.dumps(document, multiline_strings=True)
+        write_whole(self.folder / "run.toml", (text.encode(),), replace=replace)
+
+    def freeze(self) -> None:
+        """Record how many surfaces are wanted now."""
+        if Run.open(self.folder).scene != self.scene:
+            self._write(replace=True)
+
+    @classmethod
+    def open(cls, folder: Path) -> "Run":
+        """Read what a run is.
+
+        Raises
+        ------
+        StoreError
+            If there is none, or it cannot be read.
+        """
+        _refuse_link(folder)
+        file = folder / "run.toml"
+        try:
+            fd = os.open(file, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK)
+            with os.fdopen(fd, "rb") as opened:
+                said = tomllib.loads(opened.read(_MOST_BYTES).decode())
+            if said["filetype"] != _FILETYPE or said["format"][0] != _FORMAT[0]:
+                raise StoreError(f"{file}: is no run of format {_FORMAT[0]}.x, but {said['format']}")
+            scene = scene_from(said["scene"])
+            known = [str(said[key]) for key in ("identity", "versions", "date")]
+            return cls(folder, scene, str(said["sampler"]), int(said["block"]), *known)
+        except OSError as error:
+            raise StoreError(f"{file}: {error.strerror}") from None
+        except (SceneError, KeyError, TypeError, ValueError) as error:
+            if isinstance(error, StoreError):
+                raise
+            raise StoreError(f"{file}: damaged; remove {folder} to start again") from None
+
+    def shards(self) -> list[Shard]:
+        """Valid shards in order, each checked bit by bit."""
+        return [shard for shard, _ in self._looked_at() if shard]
+
+    def sweep(self) -> list[Shard]:
+        """As `shards`; whatever else lies there is put aside. Only with the lock."""
+        for left in (*self.folder.glob(".*.tmp"), *self.shards_folder.glob(".*.tmp")):
+            left.unlink(missing_ok=True)
+        valid = []
+        for shard, path in self._looked_at():
+            if shard:
+                valid.append(shard)
+            else:
+                path.rename(path.with_name(f"{path.name}.bad"))
+        return valid
+
+    def _looked_at(self) -> Iterator[tuple[Shard | None, Path]]:
+        if not self.shards_folder.is_dir():
+            raise RunError(f"{self.folder}: is gone, or not complete; run the command again")
+        for path in sorted(self.shards_folder.glob("block-*.h5")):
+            try:
+                yield (None if path.is_symlink() else open_shard(path, self.identity)), path
+            except StoreError:
+                yield None, path
+
+    def held(self, span: Span) -> Shard | None:
+        """The valid shard of a block, if there is one."""
+        path = self.shards_folder / span.file_name
+        if path.is_symlink() or not path.is_file():
+            return None
+        try:
+            shard = open_shard(path, self.identity)
+        except StoreError:
+            return None
+        return shard if shard.span == span else None
+
+    @contextmanager
+    def locked(self, *, shared: bool = False) -> Iterator[None]:
+        """Hold the run: one driver, or several that each make a share of the blocks.
+
+        Raises
+        ------
+        StoreError
+            If another process holds it.
+        """
+        path = self.folder / "lock"
+        fd = os.open(path, os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW | os.O_CLOEXEC, 0o644)
+        try:
+            try:
+                fcntl.flock(fd, (fcntl.LOCK_SH if shared else fcntl.LOCK_EX) | fcntl.LOCK_NB)
+            except BlockingIOError:
+                holder = os.pread(fd, 200, 0).decode(errors="replace").strip() or "another process"
+                raise StoreError(f"{self.folder}: locked by {holder}, which works on this run") from None
+            if not path.exists() or os.fstat(fd).st_ino != path.stat().st_ino:
+                raise StoreError(f"{self.folder}: its run has just ended; repeat the command")
+            if not shared:
+                os.ftruncate(fd, 0)
+                os.pwrite(fd, f"pid {os.getpid()} on {socket.gethostname()}\n".encode(), 0)
+            yield
+        finally:
+            os.close(fd)
+
+    def remove(self) -> None:
+        """Remove the folder, what identifies it last. Only with the lock."""
+        shutil.rmtree(self.shards_folder)
+        for name in ("lock", "run.toml"):
+            (self.folder / name).unlink(missing_ok=True)
+        remove_stale(self.folder / "run.toml")
+        with suppress(OSError):  # something of somebody else's lies there
+            self.folder.rmdir()
+
+
+def missing(n_surfaces: int, size: int, held: Iterable[Span]) -> list[Span]:
+    """Blocks that fill what is not held, cut where a multiple of `size` lies."""
+    gaps, stop = [], 0
+    for span in (*sorted(held), Span(n_surfaces, 1)):
+        while stop < min(span.first, n_surfaces):
+            end = min(span.first, n_surfaces, (stop // size + 1) * size)
+            gaps.append(Span(stop, end - stop))
+            stop = end
+        stop = max(stop, span.stop)
+    return gaps
+
+
+def _refuse_link(folder: Path) -> None:
+    if folder.is_symlink() or (folder.exists() and not folder.is_dir()):
+        raise StoreError(f"{folder}: is no folder; remove it or choose another -o")

@@ -1,0 +1,195 @@
+"""A shard: the results of some consecutive surfaces as one sealed HDF5 file.
+
+The file is made in memory and written by plain system calls: the HDF5 library never touches the disk
+while a block is committed, so that a full disk is an error like any other. The seal carries the
+identity of the run, the numbers of the surfaces and a digest of the contents (names, types, shapes,
+values), which does not depend on how HDF5 laid out the file.
+"""
+
+import hashlib
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import h5py
+import numpy as np
+from numpy.typing import NDArray
+
+from mcgw.disk import write_whole
+from mcgw.errors import StoreError
+from mcgw.seal import Seal, read_sealed, seal_of
+
+__all__ = ["RAGGED", "Arrays", "Shard", "Span", "commit_shard", "content_digest", "open_shard", "pack"]
+
+Arrays = dict[str, NDArray[Any]]
+
+RAGGED = "extras"  # the one table whose rows are not surfaces
+_MOST_DATASETS = 64
+_OLD = ("v108", "v110")  # every HDF5 of the last decade reads it
+
+
+@dataclass(frozen=True, order=True)
+class Span:
+    """Surfaces `first` ... `first + n - 1`."""
+
+    first: int
+    n: int
+
+    @property
+    def stop(self) -> int:
+        """The surface after the last one."""
+        return self.first + self.n
+
+    @property
+    def file_name(self) -> str:
+        """Name of its shard."""
+        return f"block-{self.first:013d}.h5"
+
+    def __str__(self) -> str:
+        return f"surfaces {self.first} ... {self.stop - 1}"
+
+
+@dataclass(frozen=True)
+class Shard:
+    """A shard whose seal was checked.
+
+    Parameters
+    ----------
+    path : Path
+        Where it lies.
+    span : Span
+        Its surfaces.
+    digest : str
+        Of its contents.
+    seconds : float
+        What drawing it took.
+    """
+
+    path: Path
+    span: Span
+    digest: str
+    seconds: float
+
+    def arrays(self) -> Arrays:
+        """Its contents, read and checked again.
+
+        Raises
+        ------
+        StoreError
+            If it was damaged or replaced since.
+        """
+        _, body = read_sealed(self.path)
+        arrays = _unpack(body, self.path)
+        if content_digest(arrays) != self.digest:
+            raise StoreError(f"{self.path}: damaged (its contents are others)")
+        _check_rows(self, arrays)
+        return arrays
+
+
+def pack(arrays: Arrays) -> bytes:
+    """HDF5 file with these arrays, in memory."""
+    with h5py.File("shard", "w-", driver="core", backing_store=False, libver=_OLD, track_order=False) as file:
+        for name in sorted(arrays):
+            file.create_dataset(name, data=arrays[name])
+        file.flush()
+        return bytes(file.id.get_file_image())
+
+
+def commit_shard(path: Path, run: str, span: Span, arrays: Arrays, seconds: float) -> Shard:
+    """Write a shard in one atomic step.
+
+    Parameters
+    ----------
+    path : Path
+        Its name.
+    run : str
+        Identity of the run.
+    span : Span
+        Its surfaces.
+    arrays : dict of str to ndarray
+        With a leading axis of surfaces, but for the ragged table.
+    seconds : float
+        What drawing took.
+
+    Returns
+    -------
+    Shard
+        As it lies on the disk.
+
+    Raises
+    ------
+    StoreError
+        If a number is not finite: nothing is written.
+    OSError
+        If the disk does not take it.
+    """
+    shard = Shard(path, span, content_digest(arrays), seconds)
+    _check_rows(shard, arrays)
+    body = pack(arrays)
+    notes = {"run": run, "first": span.first, "n": span.n, "content": shard.digest, "seconds": seconds}
+    write_whole(path, (body, seal_of(body, **notes)))
+    return shard
+
+
+def open_shard(path: Path, run: str) -> Shard:
+    """A shard of this run, checked bit by bit; HDF5 is not asked.
+
+    Raises
+    ------
+    StoreError
+        If it is not there, damaged, or belongs elsewhere.
+    """
+    shard, identity = _described(path, read_sealed(path)[0])
+    if identity != run:
+        raise StoreError(f"{path}: belongs to another run")
+    if path.name != shard.span.file_name:
+        raise StoreError(f"{path}: holds {shard.span}, which its name does not say")
+    return shard
+
+
+def content_digest(arrays: Arrays) -> str:
+    """SHA-256 over names, types, shapes and values."""
+    sha = hashlib.sha256()
+    for name in sorted(arrays):
+        values = np.ascontiguousarray(arrays[name])
+        sha.update(f"{name} {values.dtype.str} {values.shape}\n".encode())
+        sha.update(values.data.cast("B") if values.size else b"")
+    return sha.hexdigest()
+
+
+def _described(path: Path, seal: Seal) -> tuple[Shard, str]:
+    try:
+        notes = seal.notes
+        span = Span(int(notes["first"]), int(notes["n"]))
+        shard = Shard(path, span, str(notes["content"]), float(notes["seconds"]))
+        identity = str(notes["run"])
+    except (KeyError, TypeError, ValueError):
+        raise StoreError(f"{path}: is no shard") from None
+    if span.first < 0 or span.n < 1:
+        raise StoreError(f"{path}: is no shard")
+    return shard, identity
+
+
+def _unpack(body: bytes, path: Path) -> Arrays:
+    """Arrays of an HDF5 file in memory that must be as `pack` makes it."""
+    from mcgw.probe import RefusedError, check_plain
+
+    try:
+        with h5py.File(h5py.h5f.open_file_image(body), "r") as file:
+            names = check_plain(file, most=_MOST_DATASETS)
+            return {name: file[name][()] for name in names}
+    except (OSError, RuntimeError, ValueError, RefusedError) as error:
+        raise StoreError(f"{path}: is no shard ({error})") from None
+
+
+def _check_rows(shard: Shard, arrays: Arrays) -> None:
+    for name, values in arrays.items():
+        if name == RAGGED:
+            surfaces = values[:, 0] if len(values) else np.empty(0)
+            good = bool(np.all((surfaces >= shard.span.first) & (surfaces < shard.span.stop)))
+        else:
+            good = len(values) == shard.span.n
+        if not good:
+            raise StoreError(f"{shard.path}: {name} does not have the rows of {shard.span}")
+        if not np.all(np.isfinite(values)):
+            raise StoreError(f"{shard.path}: {name} holds numbers that are not finite")
