@@ -13,10 +13,19 @@ import zlib
 from collections.abc import Iterable
 from contextlib import suppress
 from pathlib import Path
+from typing import Any
 
 from mcgw.errors import StoreError
 
-__all__ = ["check_output", "open_regular", "remove_stale", "sync_folder", "temporary_beside", "write_whole"]
+__all__ = [
+    "SteadyFile",
+    "check_output",
+    "open_regular",
+    "remove_stale",
+    "sync_folder",
+    "temporary_beside",
+    "write_whole",
+]
 
 
 def temporary_beside(path: Path) -> Path:
@@ -85,6 +94,86 @@ def write_whole(path: Path, pieces: Iterable[bytes], *, replace: bool = True) ->
         with suppress(OSError):  # it has its own name by now, or was never made
             os.unlink(temporary)
         raise
+
+
+class SteadyFile:
+    """A new file for the HDF5 library that never shows it an error, for it may crash on one.
+
+    After the first error nothing more is written; `check` raises it.
+
+    Parameters
+    ----------
+    path : Path
+        Must not exist.
+    """
+
+    def __init__(self, path: Path) -> None:
+        flags = os.O_RDWR | os.O_CREAT | os.O_EXCL | os.O_NOFOLLOW
+        self._file = os.fdopen(os.open(path, flags, 0o644), "w+b", buffering=0)
+        self._error: OSError | None = None
+
+    def check(self) -> None:
+        """Raise the first error, if there was one."""
+        if self._error:
+            raise self._error
+
+    def write(self, data: Any) -> int:
+        """Write all of it."""
+        left = memoryview(data).cast("B")
+        try:
+            while left and not self._error:
+                left = left[self._file.write(left) or 0 :]
+        except OSError as error:
+            self._error = error
+        return memoryview(data).nbytes
+
+    def truncate(self, size: int | None = None) -> int:
+        """Set the length."""
+        try:
+            return self._file.truncate(size)
+        except OSError as error:
+            self._error = self._error or error
+            return size or 0
+
+    def readinto(self, buffer: Any) -> int:
+        """Read; beyond the end there are zeros."""
+        view = memoryview(buffer).cast("B")
+        got = self._file.readinto(view) or 0
+        view[got:] = bytes(len(view) - got)
+        return len(view)
+
+    def read(self, size: int) -> bytes:
+        """Read as many bytes."""
+        data = bytearray(size)
+        self.readinto(data)
+        return bytes(data)
+
+    def seek(self, offset: int, whence: int = 0) -> int:
+        """Go to a place."""
+        return self._file.seek(offset, whence)
+
+    def tell(self) -> int:
+        """Tell the place."""
+        return self._file.tell()
+
+    def flush(self) -> None:
+        """Nothing is held back."""
+
+    def seal(self, data: bytes) -> None:
+        """Append the last bytes, flush to the disk and close.
+
+        Raises
+        ------
+        OSError
+            If this, or anything before, failed.
+        """
+        try:
+            self._file.seek(0, os.SEEK_END)
+            self.write(data)
+            self.check()
+            os.fsync(self._file.fileno())
+        finally:
+            self._file.close()
 
 
 def sync_folder(folder: Path) -> None:

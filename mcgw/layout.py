@@ -6,6 +6,7 @@ from typing import Any
 
 import h5py
 import numpy as np
+from numpy.typing import NDArray
 
 from analytic import QUANTITIES
 from mcgw.errors import StoreError
@@ -49,24 +50,27 @@ def build(
     Returns
     -------
     str
-        The digest of scene and data, which is also an attribute.
+        The digest of scene and data, computed from the pieces; it is also an attribute.
 
     Raises
     ------
     StoreError
         If the pieces are not all surfaces of the scene in order.
     """
-    stop = 0
+    stop, digest = 0, _Digest(scene)
     for span, arrays in pieces:
         if span.first != stop:
             raise StoreError(f"surfaces {stop} ... {span.first - 1} are missing")
         if not stop:
             _lay_out(file, scene, arrays)
+            digest.add("surface", np.arange(scene.n_surfaces))
+            digest.add("separation", np.array(scene.separations))
+        for name in data_names(arrays):
+            digest.add(name, arrays[name])
         _put(file, span, arrays)
         stop = span.stop
     if stop != scene.n_surfaces:
         raise StoreError(f"{stop} surfaces, not {scene.n_surfaces}")
-    digest = values_digest(file, scene)
     file.attrs.update(
         filetype=FILETYPE,
         format=FORMAT,
@@ -75,11 +79,11 @@ def build(
         seed=np.uint64(scene.seed),
         sampler=sampler,
         complete=True,
-        digest=digest,
+        digest=digest.hexdigest(),
         date=now(),
         **{**provenance(), **attributes},
     )
-    return digest
+    return digest.hexdigest()
 
 
 def data_names(names: Iterable[str]) -> list[str]:
@@ -87,15 +91,35 @@ def data_names(names: Iterable[str]) -> list[str]:
     return sorted(name for name in names if name in QUANTITIES or name in _KEPT)
 
 
+class _Digest:
+    """SHA-256 over a scene and named tables that come in pieces: not over the bytes of a container."""
+
+    def __init__(self, scene: Scene) -> None:
+        self._scene = scene_text(scene)
+        self._tables: dict[str, Any] = {}
+
+    def add(self, name: str, values: NDArray[Any]) -> None:
+        """More rows of a table."""
+        plain = np.ascontiguousarray(values, dtype=values.dtype.newbyteorder("<"))
+        if name not in self._tables:
+            self._tables[name] = [hashlib.sha256(f"{plain.dtype.str} {plain.shape[1:]}".encode()), 0]
+        table = self._tables[name]
+        table[0].update(plain.tobytes())
+        table[1] += len(plain)
+
+    def hexdigest(self) -> str:
+        """Of the scene, and of the names, numbers of rows, types and values of the tables."""
+        lines = [f"{name} {rows} {sha.hexdigest()}" for name, (sha, rows) in sorted(self._tables.items())]
+        return hashlib.sha256("\n".join([self._scene, *lines]).encode()).hexdigest()
+
+
 def values_digest(file: h5py.File, scene: Scene) -> str:
-    """SHA-256 over the scene and the names, types, shapes and values: not over the container."""
-    sha = hashlib.sha256(scene_text(scene).encode())
-    for name in ("separation", *data_names(file)):
-        data = file[name]
-        sha.update(f"{name} {data.shape} {data.dtype.newbyteorder('<').str}\n".encode())
-        for start, stop in _steps(data):
-            sha.update(data[start:stop].astype(data.dtype.newbyteorder("<"), order="C", copy=False).tobytes())
-    return sha.hexdigest()
+    """Digest of what a file holds, read piece by piece."""
+    digest = _Digest(scene)
+    for name in ("surface", "separation", *data_names(file)):
+        for start, stop in _steps(file[name]):
+            digest.add(name, file[name][start:stop])
+    return digest.hexdigest()
 
 
 def file_pieces(file: h5py.File) -> Iterator[tuple[Span, Arrays]]:
@@ -116,7 +140,7 @@ def file_pieces(file: h5py.File) -> Iterator[tuple[Span, Arrays]]:
 def _steps(data: h5py.Dataset) -> Iterator[tuple[int, int]]:
     width = data.dtype.itemsize * int(np.prod(data.shape[1:]))
     step = max(_PIECE // max(width, 1), 1)
-    for start in range(0, data.shape[0], step):
+    for start in range(0, max(data.shape[0], 1), step):
         yield start, min(start + step, data.shape[0])
 
 

@@ -1,23 +1,22 @@
 """From shards to the file, in a process of its own: the HDF5 library may crash on a full disk.
 
 Run as a script: ``python -m mcgw.merge FOLDER TARGET TEMPORARY``. The file is written under the
-temporary name, read back and compared with the shards, sealed and flushed; the caller gives it its
-name. Exit code 3: a shard is damaged.
+temporary name, read back, compared with the digest of the shards, sealed and flushed; the caller gives
+it its name. Exit code 3: a shard is damaged.
 """
 
-import os
 import sys
 from collections.abc import Iterator
 from pathlib import Path
 
 import h5py
-import numpy as np
 
+from mcgw.disk import SteadyFile
 from mcgw.errors import StoreError
-from mcgw.layout import build, file_pieces
+from mcgw.layout import build, file_pieces, values_digest
 from mcgw.rundir import Run
 from mcgw.seal import Seal, sha256_of
-from mcgw.shards import Arrays, Span, content_digest
+from mcgw.shards import Arrays, Shard, Span
 
 __all__ = ["DAMAGED", "merge_into"]
 
@@ -45,28 +44,35 @@ def merge_into(folder: Path, target: Path, temporary: Path) -> None:
         If the disk does not take it.
     """
     run = Run.open(folder)
-    seconds = sum(shard.seconds for shard in run.shards()) + _seconds_of(target)
-    with h5py.File(temporary, "x", libver=("v108", "v110"), rdcc_nbytes=_CACHE) as file:
-        build(
+    shards = run.shards()
+    seconds = sum(shard.seconds for shard in shards) + _seconds_of(target)
+    raw = SteadyFile(temporary)
+    with h5py.File(raw, "w", libver=("v108", "v110"), rdcc_nbytes=_CACHE) as file:
+        digest = build(
             file,
             run.scene,
             run.sampler,
-            _pieces(run, target),
+            _checked(raw, _pieces(shards, target)),
             run=run.identity,
             draws=run.drawn_with,
             wall_seconds=seconds,
         )
-    _read_back(run, target, temporary)
+    raw.check()
+    with h5py.File(temporary, "r") as file:
+        if file.attrs["digest"] != digest or values_digest(file, run.scene) != digest:
+            raise OSError(f"{temporary}: reads otherwise than written")
     length = temporary.stat().st_size
-    with open(temporary, "r+b") as written:
-        os.fsync(written.fileno())
-        written.seek(length)
-        written.write(Seal(length, sha256_of(temporary, length), {}).to_bytes())
-        written.flush()
-        os.fsync(written.fileno())
+    raw.seal(Seal(length, sha256_of(temporary, length), {}).to_bytes())
 
 
-def _pieces(run: Run, target: Path) -> Iterator[tuple[Span, Arrays]]:
+def _checked(raw: SteadyFile, pieces: Iterator[tuple[Span, Arrays]]) -> Iterator[tuple[Span, Arrays]]:
+    """End with the first error of the disk, not after all shards."""
+    for piece in pieces:
+        raw.check()
+        yield piece
+
+
+def _pieces(shards: list[Shard], target: Path) -> Iterator[tuple[Span, Arrays]]:
     """All surfaces in order: first those of the finished file, then those of the shards."""
     stop = 0
     if target.exists():
@@ -74,28 +80,9 @@ def _pieces(run: Run, target: Path) -> Iterator[tuple[Span, Arrays]]:
             for span, arrays in file_pieces(old):
                 yield span, arrays
                 stop = span.stop
-    for shard in run.shards():
+    for shard in shards:
         if shard.span.first >= stop:
             yield shard.span, shard.arrays()
-
-
-def _read_back(run: Run, target: Path, temporary: Path) -> None:
-    """Compare every number with where it came from; what HDF5 failed to write shows here."""
-    with h5py.File(temporary, "r") as file:
-        for span, arrays in _pieces(run, target):
-            for name, values in arrays.items():
-                found = file[name][span.first : span.stop] if name != "extras" else None
-                if found is not None and content_digest({name: found}) != content_digest({name: values}):
-                    raise OSError(f"{temporary}: {name} of {span} reads otherwise than written")
-        _check_extras(file, run, target)
-
-
-def _check_extras(file: h5py.File, run: Run, target: Path) -> None:
-    if "extras" not in file:
-        return
-    written = [arrays["extras"] for _, arrays in _pieces(run, target)]
-    if not np.array_equal(np.concatenate(written), file["extras"][()]):
-        raise OSError("extras: read otherwise than written")
 
 
 def _seconds_of(target: Path) -> float:

@@ -3,7 +3,7 @@
 import os
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from time import perf_counter
 from typing import Any
@@ -20,9 +20,8 @@ from mcgw.samplers import Sampler, sampler_of
 from mcgw.scene import Scene
 from mcgw.scene_file import scene_from, scene_text
 from mcgw.shards import Span
-from mcgw.simulation import kept
 from mcgw.store import finished, open_ensemble, save
-from mcgw.work import commit_block, draw, shard_size
+from mcgw.work import columns, commit_block, draw, shard_size
 
 __all__ = ["Part", "merge", "run", "run_part"]
 
@@ -211,8 +210,7 @@ def _prepare(scene: Scene, path: Path, threads: int | None) -> tuple[Sampler, in
     check_output(path)
     done = finished(path, scene, sampler.name)
     size = shard_size(scene, sampler)
-    columns = sum(values.shape[1] for values in kept(scene, sampler.block(0, 1)).values())
-    check_room(scene, path, rows=size, columns=columns)
+    check_room(scene, path, rows=size, columns=columns(scene, sampler))
     return sampler, size, done
 
 
@@ -337,8 +335,11 @@ def _merge_in_child(folder: Path, path: Path, temporary: Path) -> None:
 def _clear(path: Path, scene: Scene, sampler: Sampler) -> None:
     """Remove the folder of a run whose file was finished just before it died."""
     remove_stale(path)
-    if not (parts_of(path) / "run.toml").is_file():
-        return
-    left = Run.begin(parts_of(path), replace(scene), sampler.name, 1)
-    with left.locked():
-        left.remove()
+    folder = parts_of(path)
+    if (folder / "run.toml").is_file():
+        left = Run.begin(folder, scene, sampler.name, 1)
+        with left.locked():
+            left.remove()
+    for empty in (folder / "shards", folder):
+        with suppress(OSError):  # it is not there, or not empty
+            empty.rmdir()

@@ -12,7 +12,7 @@ from mcgw.scene import Scene
 from mcgw.shards import Arrays, Span, commit_shard
 from mcgw.simulation import block_size, kept, use_threads
 
-__all__ = ["commit_block", "draw", "shard_size"]
+__all__ = ["columns", "commit_block", "draw", "shard_size"]
 
 _BYTES = 2**23  # of a shard: large enough that its flushing costs little
 _DRAWS = 4e8  # asperities a shard: a second or so
@@ -20,11 +20,15 @@ _DRAWS = 4e8  # asperities a shard: a second or so
 
 def shard_size(scene: Scene, sampler: Sampler) -> int:
     """Surfaces a shard: a function of the scene alone, however many there are of them."""
-    size = block_size(scene, sampler)
-    row = sum(8 * values.shape[1] for values in kept(scene, sampler.block(0, 1)).values())
+    size, row = block_size(scene, sampler), 8 * columns(scene, sampler)
     touching = scene.n_asperities * float(scene.heights.above(np.array(scene.lowest)))
     draws = scene.n_asperities if sampler.name == "direct" else touching
     return size * int(max(min(_BYTES / (size * row), _DRAWS / (size * (draws + 1))), 1))
+
+
+def columns(scene: Scene, sampler: Sampler) -> int:
+    """Numbers kept of a surface."""
+    return sum(values.shape[1] for values in kept(scene, sampler.block(0, 1)).values())
 
 
 def draw(scene: Scene, sampler: Sampler, span: Span, threads: int | None) -> Arrays:
