@@ -17,7 +17,7 @@ from pathlib import Path
 import numpy as np
 
 import analytic
-from mcgw import merge, probe, running, store, work
+from mcgw import merge, probe, running, shards, store, work
 from mcgw.child import ChildError
 from mcgw.errors import RunError, StoreError
 from mcgw.rundir import Run, parts_of
@@ -60,6 +60,15 @@ def prepare():
     running.columns = lambda scene, sampler: 6
     running._merge_in_child = merged_here
     store.examine = lambda path: probe.describe(str(path))
+    if "MCGW_IN_PLACE" in os.environ:  # the wrong way, which the harness must notice
+        shards.write_whole = written_in_place
+
+
+def written_in_place(path, pieces):
+    fd = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o644)
+    for piece in pieces:
+        os.write(fd, piece)
+    os.close(fd)
 
 
 def attempt(scene, file, progress=lambda done: None):
@@ -117,12 +126,12 @@ def found(scene, file, acked, digest):
     if not (parts_of(file) / "run.toml").exists():
         return ["lost everything"] if acked else []
     run, wrong = Run.open(parts_of(file)), []
-    shards = run.shards()
-    if sum(shard.span.n for shard in shards) < acked:
-        wrong.append(f"{acked} surfaces were committed, {sum(s.span.n for s in shards)} are there")
-    if len(shards) != len(list(run.shards_folder.glob("block-*.h5"))):
+    valid = run.shards()
+    if sum(shard.span.n for shard in valid) < acked:
+        wrong.append(f"{acked} surfaces were committed, {sum(s.span.n for s in valid)} are there")
+    if len(valid) != len(list(run.shards_folder.glob("block-*.h5"))):
         wrong.append("a shard is there and not whole")
-    for shard in shards:
+    for shard in valid:
         for name, values in made_up(scene, None, shard.span, 1).items():
             if not np.array_equal(shard.arrays()[name], values):
                 wrong.append(f"{shard.span}: {name} is wrong")

@@ -1,0 +1,142 @@
+"""Shards and seals: every changed bit and every lost byte is noticed."""
+
+import os
+
+import h5py
+import numpy as np
+import pytest
+
+from mcgw.disk import write_whole
+from mcgw.errors import StoreError
+from mcgw.seal import SEAL_BYTES, Seal, check_seal, read_sealed, seal_of
+from mcgw.shards import Span, commit_shard, content_digest, open_shard, pack
+
+RUN, SPAN = "a" * 64, Span(40, 5)
+FLIPS, TRUNCATIONS = 600, 300
+
+
+def arrays():
+    load = np.linspace(0, 1, 15).reshape(5, 3)
+    return {"load": load, "contacts": np.arange(15).reshape(5, 3), "extras": np.array([[42.0, 3.5, 1.0]])}
+
+
+@pytest.fixture
+def shard(tmp_path):
+    return commit_shard(tmp_path / SPAN.file_name, RUN, SPAN, arrays(), 1.5)
+
+
+def test_a_shard_gives_back_what_was_put_in(shard):
+    again = open_shard(shard.path, RUN)
+    assert again == shard
+    for name, values in arrays().items():
+        np.testing.assert_array_equal(again.arrays()[name], values)
+
+
+def test_any_hdf5_reader_opens_it(shard):
+    with h5py.File(shard.path) as file:
+        np.testing.assert_array_equal(file["load"], arrays()["load"])
+
+
+def test_every_flipped_bit_is_noticed(shard):
+    data = shard.path.read_bytes()
+    rng = np.random.default_rng(1)
+    for bit in rng.choice(8 * len(data), FLIPS, replace=False):
+        changed = bytearray(data)
+        changed[bit // 8] ^= 1 << bit % 8
+        shard.path.write_bytes(changed)
+        with pytest.raises(StoreError):
+            open_shard(shard.path, RUN)
+
+
+def test_every_truncation_is_noticed(shard):
+    data = shard.path.read_bytes()
+    rng = np.random.default_rng(2)
+    for length in [0, 1, SEAL_BYTES, len(data) - 1, *rng.choice(len(data), TRUNCATIONS, replace=False)]:
+        shard.path.write_bytes(data[:length])
+        with pytest.raises(StoreError):
+            open_shard(shard.path, RUN)
+
+
+def test_a_longer_file_is_noticed(shard):
+    shard.path.write_bytes(shard.path.read_bytes() + b"\0")
+    with pytest.raises(StoreError, match="not a whole file"):
+        open_shard(shard.path, RUN)
+
+
+def test_a_shard_of_another_run_or_block_is_refused(shard):
+    with pytest.raises(StoreError, match="another run"):
+        open_shard(shard.path, "b" * 64)
+    other = shard.path.with_name(Span(45, 5).file_name)
+    other.write_bytes(shard.path.read_bytes())
+    with pytest.raises(StoreError, match="surfaces 40"):
+        open_shard(other, RUN)
+
+
+@pytest.mark.parametrize("bad", [np.nan, np.inf, -np.inf])
+def test_numbers_that_are_not_finite_are_never_committed(tmp_path, bad):
+    wrong = arrays()
+    wrong["load"][2, 1] = bad
+    with pytest.raises(StoreError, match="load holds numbers that are not finite"):
+        commit_shard(tmp_path / SPAN.file_name, RUN, SPAN, wrong, 0.0)
+    assert not list(tmp_path.iterdir())
+
+
+def test_rows_must_be_those_of_the_block(tmp_path):
+    for wrong in ({"load": np.ones((4, 3))}, {"extras": np.array([[45.0, 3.5, 1.0]])}):
+        with pytest.raises(StoreError, match="does not have the rows"):
+            commit_shard(tmp_path / SPAN.file_name, RUN, SPAN, wrong, 0.0)
+
+
+def test_a_sealed_file_that_is_no_shard_is_refused(tmp_path):
+    """Sealed rightly and holding something else: a link to another file instead of numbers."""
+    path = tmp_path / SPAN.file_name
+    with h5py.File(path, "w") as file:
+        file["load"] = h5py.ExternalLink("/etc/hostname", "/x")
+    body = path.read_bytes()
+    notes = {"run": RUN, "first": 40, "n": 5, "content": "0", "seconds": 0.0}
+    path.write_bytes(body + seal_of(body, **notes))
+    with pytest.raises(StoreError, match="a link to another place"):
+        open_shard(path, RUN).arrays()
+
+
+def test_the_digest_is_of_contents_alone():
+    assert content_digest(arrays()) == content_digest(dict(reversed(arrays().items())))
+    changed = arrays()
+    changed["load"][0, 0] = -0.0  # equal to 0.0, and not the same bits
+    assert content_digest(changed) != content_digest(arrays())
+    assert pack(arrays()) == pack(arrays())
+
+
+def test_a_seal_reads_as_written():
+    seal = Seal(12, "f" * 64, {"run": RUN, "first": 2**60})
+    assert Seal.from_bytes(seal.to_bytes()) == seal
+
+
+def test_a_file_appears_whole_or_not_at_all(tmp_path, monkeypatch):
+    path = tmp_path / "a"
+    write_whole(path, [b"old"])
+
+    def fail(fd):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(os, "fsync", fail)
+    with pytest.raises(OSError, match="No space"):
+        write_whole(path, [b"new"])
+    assert path.read_bytes() == b"old"
+    assert [p.name for p in tmp_path.iterdir()] == ["a"]
+
+
+def test_a_planted_link_is_replaced_not_followed(tmp_path):
+    victim, path = tmp_path / "victim", tmp_path / "a"
+    victim.write_bytes(b"precious")
+    path.symlink_to(victim)
+    write_whole(path, [b"new"])
+    assert victim.read_bytes() == b"precious"
+    assert not path.is_symlink()
+    assert path.read_bytes() == b"new"
+
+
+def test_large_files_are_checked_in_pieces(tmp_path):
+    path, body = tmp_path / "a", bytes(range(256)) * 40_000
+    path.write_bytes(body + seal_of(body))
+    assert check_seal(path).length == read_sealed(path)[0].length == len(body)
