@@ -13,8 +13,14 @@ A file appears whole or not at all: it is written under a temporary name and ren
     /contacts             int64   (surfaces, separations) 1   (float64 expectation if stratified)
     /conductance          float64 (surfaces, separations) m   (times 1/rho)
 
-Every dataset has the attributes `units` and `long_name`; only quantities that the scene asks for are
-there. Chunked, shuffled, compressed with gzip.
+and, if the scene says ``keep = "moments"``, what `mcgw.regrade` starts from::
+
+    /drawn/moments        float64 (surfaces, moments)     sums of Chebyshev polynomials, cell by cell
+    /drawn/cells          float64 (surfaces, cells)       asperities in each cell
+    /drawn/extras         float64 (extras, 3)             surface, height, weight of those outside
+
+Every dataset at the root has the attributes `units` and `long_name`; only quantities that the scene
+asks for are there. Chunked, shuffled, compressed with gzip.
 """
 
 import hashlib
@@ -42,10 +48,11 @@ from mcgw.scene import Scene
 from mcgw.scene_file import scene_from, scene_text
 from mcgw.simulation import blocks, kept, use_threads
 
-__all__ = ["StoreError", "open_ensemble", "run"]
+__all__ = ["StoreError", "open_ensemble", "run", "save"]
 
 FILETYPE, FORMAT = "mcgw-ensemble", (1, 0)
 _CHUNK_ROWS = 256
+_DRAWN = ("moments", "cells", "extras")
 
 
 class StoreError(ValueError):
@@ -58,15 +65,19 @@ class FileSums:
 
     path: Path
 
-    def read(self, name: str, start: int, stop: int) -> NDArray[Any]:
+    def read(self, name: str, start: int, stop: int | None) -> NDArray[Any]:
         """Rows `start` to `stop` of a dataset."""
         with h5py.File(self.path, "r") as file:
-            return np.asarray(file[name][start:stop])
+            return np.asarray(file[_path(name)][start:stop])
 
     def rows(self) -> int:
         """Number of surfaces."""
         with h5py.File(self.path, "r") as file:
             return int(file["surface"].shape[0])
+
+
+def _path(name: str) -> str:
+    return f"drawn/{name}" if name in _DRAWN else name
 
 
 def run(
@@ -106,14 +117,57 @@ def run(
         _lay_out(file, scene, sampler.name)
         for first, block in blocks(scene, sampler):
             arrays = kept(scene, block)
-            stop = first + len(next(iter(arrays.values())))
-            for name, values in arrays.items():
-                file[name][first:stop] = values
+            _append(file, first, arrays)
             if progress:
-                progress(stop - first)
+                progress(len(arrays[scene.quantities[0]]))
         file.attrs["digest"] = _digest(file, scene)
         file.attrs["wall_seconds"] = monotonic() - started
     return open_ensemble(path)
+
+
+def save(ensemble: Ensemble, path: str | Path) -> Ensemble:
+    """Write an ensemble that is in memory, such as a regraded one.
+
+    Parameters
+    ----------
+    ensemble : Ensemble
+        With all that its scene asks for.
+    path : str or Path
+        The file.
+
+    Returns
+    -------
+    Ensemble
+        That reads from the file.
+
+    Raises
+    ------
+    StoreError
+        If the file cannot be written there.
+    """
+    scene = ensemble.scene
+    names = [*scene.quantities, *(_DRAWN if scene.keep == "moments" else ())]
+    with _whole_file(Path(path)) as file:
+        _lay_out(file, scene, ensemble.sampler)
+        _append(file, 0, {name: ensemble.sums.read(name, 0, None) for name in names})
+        file.attrs["digest"] = _digest(file, scene)
+        file.attrs["wall_seconds"] = 0.0
+    return open_ensemble(path)
+
+
+def _append(file: h5py.File, first: int, arrays: dict[str, NDArray[Any]]) -> None:
+    """Write a block: rows of surfaces, and the ragged table of extras behind those there are."""
+    for name, values in arrays.items():
+        if name in _DRAWN:
+            if _path(name) not in file:
+                shape = (0, values.shape[1])
+                file.create_dataset(_path(name), shape, "<f8", maxshape=(None, shape[1]), chunks=True)
+            data = file[_path(name)]
+            start = len(data)
+            data.resize(start + len(values), axis=0)
+            data[start:] = values
+        else:
+            file[name][first : first + len(values)] = values
 
 
 def open_ensemble(path: str | Path) -> Ensemble:

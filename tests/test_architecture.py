@@ -28,6 +28,7 @@ ORDER = (
     "asperities",
     "ensemble",
     "simulation",
+    "regrade",
     "store",
     "compare",
     "plots",
