@@ -3,7 +3,6 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.polynomial import chebyshev
 from numpy.typing import NDArray
 
 from analytic import QUANTITIES, Grading, Surface
@@ -16,7 +15,13 @@ Ints = NDArray[np.int64]
 
 _ACCURACY = 1e-13  # relative to the largest value of a law on the cell
 _U = (1 + NODES) / 2
-_TIMES_U = TO_COEFFICIENTS @ (_U[:, None] * chebyshev.chebvander(NODES, len(NODES) - 1))
+
+
+def _times_u(order: int) -> Array:
+    """Matrix that multiplies a Chebyshev series by u = (1 + x)/2, leaving zeros where they are."""
+    matrix = np.eye(order) / 2 + np.eye(order, k=1) / 4 + np.eye(order, k=-1) / 4
+    matrix[1, 0] = 0.5
+    return matrix
 
 
 def orders(coefficients: Array, accuracy: float) -> Ints:
@@ -70,20 +75,32 @@ class Laws:
         last = np.diff(self.exponent[order], append=np.nan) != 0
         return np.asarray(order[last])
 
-    def plain(self, which: Ints, a: float, t: Array) -> Array:
-        """Coefficients of laws that are smooth at the heights ``a + t``: shape (order, laws)."""
-        return self._coefficients(which, a, t, (a - self.h[which]) + t[:, None])
+    def plain(self, which: Ints, a: float, t: Array) -> tuple[Array, Ints]:
+        """Coefficients of laws that are smooth at the heights ``a + t``, and how many count.
 
-    def rooted(self, which: Ints, a: float, t: Array) -> Array:
-        """Coefficients of ``law/sqrt(u)`` on the cell that starts at the separation.
+        Shape (order, laws) and (laws,).
+        """
+        c = self._coefficients(which, a, t, (a - self.h[which]) + t[:, None])
+        needed = orders(c, self.accuracy(a, t))
+        edge = self.h[which] == a
+        if edge.any():
+            c[:, edge], needed[edge] = self.from_edge(which[edge], a, t)
+        return c, needed
 
-        With t = u q(u) the law is ``sqrt(u) u^(n-1/2) q^n e``: the power of u is put in exactly, so
-        that the law is relatively accurate down to u = 0.
+    def from_edge(self, which: Ints, a: float, t: Array) -> tuple[Array, Ints]:
+        """Coefficients of laws whose separation is `a` itself, divided by sqrt(u) if half-integer.
+
+        With t = u q(u) such a law is ``u^n q^n e``. The series is cut before the whole power of u is
+        put in, so that the law stays relatively accurate down to u = 0.
         """
         c = self._coefficients(which, a, t, (t / _U)[:, None])
-        steep = self.exponent[which] > 1
-        c[:, steep] = _TIMES_U @ c[:, steep]
-        return c
+        needed = orders(c, self.accuracy(a, t))
+        c[np.arange(len(c))[:, None] >= needed] = 0.0
+        for power in range(int(self.exponent[which].max(initial=0))):
+            more = self.exponent[which] >= power + 1
+            c[:, more] = _times_u(len(c)) @ c[:, more]
+            needed = needed + more
+        return c, needed
 
     def accuracy(self, a: float, t: Array) -> float:
         """What can be had: a height is known to its last digit, and a steep grading turns that into noise."""

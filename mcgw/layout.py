@@ -13,17 +13,16 @@ from mcgw.errors import StoreError
 from mcgw.provenance import now, provenance
 from mcgw.scene import Scene
 from mcgw.scene_file import scene_text
-from mcgw.shards import RAGGED, Arrays, Span
+from mcgw.shards import DRAWN, RAGGED, Arrays, Span
 
-__all__ = ["FILETYPE", "FORMAT", "build", "data_names", "file_pieces", "values_digest"]
+__all__ = ["FILETYPE", "FORMAT", "build", "file_pieces", "values_digest", "where"]
 
 FILETYPE, FORMAT = "mcgw-ensemble", (1, 0)
 
-# What `keep = "moments"` adds: name of the second axis, long name.
-_KEPT = {
-    "moments": ("moment", "sums of Chebyshev polynomials of the uniforms in each cell"),
-    "cells": ("cell", "asperities in each cell"),
-    RAGGED: ("column", "asperities outside the cells: surface, height, weight"),
+_LONG_NAMES = {
+    "moments": "sums of Chebyshev polynomials of the uniforms in each cell",
+    "cells": "asperities in each cell",
+    RAGGED: "asperities outside the cells: surface, height, weight",
 }
 _PIECE = 2**23  # bytes read at a time
 _CHUNK, _CHUNK_ROWS = 2**20, 256
@@ -65,8 +64,8 @@ def build(
             _lay_out(file, scene, arrays)
             digest.add("surface", np.arange(scene.n_surfaces))
             digest.add("separation", np.array(scene.separations))
-        for name in data_names(arrays):
-            digest.add(name, arrays[name])
+        for name, values in arrays.items():
+            digest.add(name, values)
         _put(file, span, arrays)
         stop = span.stop
     if stop != scene.n_surfaces:
@@ -86,9 +85,14 @@ def build(
     return digest.hexdigest()
 
 
-def data_names(names: Iterable[str]) -> list[str]:
-    """Which of the datasets hold results, in order of name."""
-    return sorted(name for name in names if name in QUANTITIES or name in _KEPT)
+def where(name: str) -> str:
+    """Path of a table in the file."""
+    return f"drawn/{name}" if name in DRAWN else name
+
+
+def tables(file: h5py.File) -> list[str]:
+    """Names of the tables of results, in order."""
+    return sorted(name for name in (*QUANTITIES, *DRAWN) if where(name) in file)
 
 
 class _Digest:
@@ -116,22 +120,22 @@ class _Digest:
 def values_digest(file: h5py.File, scene: Scene) -> str:
     """Digest of what a file holds, read piece by piece."""
     digest = _Digest(scene)
-    for name in ("surface", "separation", *data_names(file)):
-        for start, stop in _steps(file[name]):
-            digest.add(name, file[name][start:stop])
+    for name in ("surface", "separation", *tables(file)):
+        for start, stop in _steps(file[where(name)]):
+            digest.add(name, file[where(name)][start:stop])
     return digest.hexdigest()
 
 
 def file_pieces(file: h5py.File) -> Iterator[tuple[Span, Arrays]]:
     """The surfaces of an ensemble file, some at a time."""
-    names = [name for name in data_names(file) if name != RAGGED]
+    data = {name: file[where(name)] for name in tables(file)}
+    extras = data.pop(RAGGED)[()] if RAGGED in data else None
     rows = len(file["surface"])
-    width = sum(file[name].dtype.itemsize * int(np.prod(file[name].shape[1:])) for name in names)
+    width = sum(8 * table.shape[1] for table in data.values())
     step = max(_PIECE // max(width, 1), 1)
-    extras = file[RAGGED][()] if RAGGED in file else None
     for first in range(0, rows, step):
         span = Span(first, min(step, rows - first))
-        arrays = {name: file[name][span.first : span.stop] for name in names}
+        arrays = {name: table[span.first : span.stop] for name, table in data.items()}
         if extras is not None:
             arrays[RAGGED] = extras[(extras[:, 0] >= span.first) & (extras[:, 0] < span.stop)]
         yield span, arrays
@@ -148,30 +152,23 @@ def _lay_out(file: h5py.File, scene: Scene, arrays: Arrays) -> None:
     """Empty datasets with their scales, units and names."""
     _scale(file, "surface", np.arange(scene.n_surfaces), "number of the surface")
     _scale(file, "separation", np.array(scene.separations), "mean-plane separation d/sigma")
-    for name in data_names(arrays):
+    for name in sorted(arrays):
         values = arrays[name]
-        if name in QUANTITIES:
-            q = QUANTITIES[name]
-            axes, unit, long_name = ("surface", "separation"), q.unit, q.long_name
-        else:
-            second, long_name = _KEPT[name]
-            axes, unit = ("extra" if name == RAGGED else "surface", second), "1"
-            _scale(file, second, np.arange(values.shape[1]), f"number of the {second}")
-        rows = 0 if name == RAGGED else scene.n_surfaces
-        if name == RAGGED:
-            _scale(file, "extra", np.arange(0), "number of the asperity", grows=True)
+        q = QUANTITIES.get(name)
+        ragged = name == RAGGED
+        rows, columns = 0 if ragged else scene.n_surfaces, values.shape[1]
         data = file.create_dataset(
-            name,
-            (rows, values.shape[1]),
+            where(name),
+            (rows, columns),
             values.dtype.newbyteorder("<"),
-            maxshape=(None, values.shape[1]) if name == RAGGED else None,
-            chunks=(_chunk_rows(rows, values.shape[1]), max(values.shape[1], 1)),
+            maxshape=(None, columns) if ragged else None,
+            chunks=(_chunk_rows(rows, columns), max(columns, 1)),
             compression="gzip",
             compression_opts=1,
             shuffle=True,
         )
-        data.attrs.update(units=unit, long_name=long_name)
-        for axis, scale in enumerate(axes):
+        data.attrs.update(units=q.unit if q else "1", long_name=q.long_name if q else _LONG_NAMES[name])
+        for axis, scale in enumerate(("surface", "separation") if q else ()):
             data.dims[axis].attach_scale(file[scale])
 
 
@@ -180,22 +177,17 @@ def _chunk_rows(rows: int, columns: int) -> int:
     return min(_CHUNK_ROWS, fitting, rows or _CHUNK_ROWS)
 
 
-def _scale(file: h5py.File, name: str, values: Any, long_name: str, *, grows: bool = False) -> None:
-    scale = file.create_dataset(
-        name, data=values, maxshape=(None,) if grows else None, chunks=(1024,) if grows else None
-    )
+def _scale(file: h5py.File, name: str, values: NDArray[Any], long_name: str) -> None:
+    scale = file.create_dataset(name, data=values)
     scale.attrs.update(units="1", long_name=long_name)
     scale.make_scale(name)
 
 
 def _put(file: h5py.File, span: Span, arrays: Arrays) -> None:
-    for name in data_names(arrays):
-        if name != RAGGED:
-            file[name][span.first : span.stop] = arrays[name]
-            continue
-        before = len(file[name])
-        after = before + len(arrays[name])
-        file[name].resize(after, axis=0)
-        file[name][before:after] = arrays[name]
-        file["extra"].resize(after, axis=0)
-        file["extra"][before:after] = np.arange(before, after)
+    for name, values in arrays.items():
+        data, first = file[where(name)], span.first
+        if name == RAGGED:
+            first = len(data)
+            data.resize(first + len(values), axis=0)
+        if len(values):
+            data[first : first + len(values)] = values

@@ -1,4 +1,4 @@
-"""What an HDF5 file from elsewhere must be before it is read: plain datasets at the root, nothing else.
+"""What an HDF5 file from elsewhere must be before it is read: plain datasets at the root or in one group.
 
 HDF5 follows external links, external storage and virtual datasets to any file of the machine, and a
 crafted file can crash the library, so this runs as a script in a process of its own (`mcgw.guard`)::
@@ -19,6 +19,7 @@ import numpy as np
 
 __all__ = ["RefusedError", "check_plain", "describe"]
 
+GROUP = "drawn"
 _FILTERS = {
     h5py.h5z.FILTER_DEFLATE,
     h5py.h5z.FILTER_SHUFFLE,
@@ -36,7 +37,7 @@ class RefusedError(Exception):
 
 
 def check_plain(file: h5py.File, *, most: int = 64) -> list[str]:
-    """Names of the root's datasets, each plain.
+    """Paths of the datasets, each plain.
 
     Parameters
     ----------
@@ -53,21 +54,30 @@ def check_plain(file: h5py.File, *, most: int = 64) -> list[str]:
     Raises
     ------
     RefusedError
-        If there is a link that is not hard, a group, a type other than float64 or int64, data stored
-        elsewhere, an unknown filter, or more data declared than stored.
+        If there is a link that is not hard, a group but `GROUP`, a type other than float64 or int64,
+        data stored elsewhere, an unknown filter, or more data declared than stored.
     """
-    if len(file) > most:
-        raise RefusedError(f"{len(file)} datasets; at most {most} are allowed")
-    names = sorted(file)
-    for name in names:
-        if not isinstance(file.get(name, getlink=True), h5py.HardLink):
-            raise RefusedError(f"{name}: a link to another place")
-        _check_dataset(name, file.id, name.encode())
-    return names
+    paths = [name for name in _hard(file, "", most) if name != GROUP]
+    if GROUP in file:
+        if not isinstance(file[GROUP], h5py.Group):
+            raise RefusedError(f"{GROUP}: not a group")
+        paths += _hard(file[GROUP], f"{GROUP}/", most)
+    for path in paths:
+        _check_dataset(path, h5py.h5o.open(file.id, path.encode()))
+    return paths
 
 
-def _check_dataset(name: str, root: Any, key: bytes) -> None:
-    item = h5py.h5o.open(root, key)
+def _hard(group: h5py.Group, prefix: str, most: int) -> list[str]:
+    """Members of a group, all of them in this file."""
+    if len(group) > most:
+        raise RefusedError(f"{len(group)} datasets; at most {most} are allowed")
+    for name in group:
+        if not isinstance(group.get(name, getlink=True), h5py.HardLink):
+            raise RefusedError(f"{prefix}{name}: a link to another place")
+    return [prefix + name for name in sorted(group)]
+
+
+def _check_dataset(name: str, item: Any) -> None:
     if not isinstance(item, h5py.h5d.DatasetID):
         raise RefusedError(f"{name}: not a dataset")
     dtype, plist, shape = item.dtype, item.get_create_plist(), item.shape

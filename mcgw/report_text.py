@@ -5,10 +5,11 @@ from typing import Any
 import numpy as np
 
 from analytic import QUANTITIES
-from mcgw.compare import FALSE_ALARM, Comparison, Verdict
+from mcgw.compare import FALSE_ALARM, Comparison, Verdict, theory
 from mcgw.ensemble import Ensemble
+from mcgw.regrade import paired_ratio
 
-__all__ = ["comparison_table", "summary", "verdict_line"]
+__all__ = ["comparison_table", "ratio_table", "summary", "verdict_line"]
 
 _MOST_ROWS = 9
 
@@ -61,6 +62,27 @@ def comparison_table(comparison: Comparison) -> str:
             lines.append(
                 f"  {h[k]:8.3f} {curve.mean[k]:13.6g} {interval:>27} {curve.theory[k]:13.6g} "
                 f"{curve.residual[k]:+9.2f}"
+            )
+    return "\n".join(lines)
+
+
+def ratio_table(new: Ensemble, old: Ensemble) -> str:
+    """Ratios of means over the same surfaces, beside theory: Eqs. (12) and (15)."""
+    lines = []
+    for name in new.scene.quantities:
+        if not QUANTITIES[name].modulus:
+            continue
+        with np.errstate(invalid="ignore", divide="ignore"):
+            pair = paired_ratio(new, old, name)
+            exact = theory(new, name) / theory(old, name)
+        lines += [
+            f"{QUANTITIES[name].long_name}, new over old",
+            f"  {'d/sigma':>8} {'ratio':>10} {'stderr':>9} {'theory':>10}   variance, independent/paired",
+        ]
+        for k in _rows(new.separations):
+            lines.append(
+                f"  {new.scene.separations[k]:8.3f} {pair.ratio[k]:10.6f} {pair.stderr[k]:9.1e} "
+                f"{exact[k]:10.6f}   {pair.gain[k]:.3g}"
             )
     return "\n".join(lines)
 

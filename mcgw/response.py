@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from analytic import Grading, Surface
 from mcgw.cells import Mesh
-from mcgw.laws import Laws, orders
+from mcgw.laws import Laws
 from mcgw.moments import Layout
 from mcgw.tree import Tree, transfer, tree_over
 
@@ -84,6 +84,7 @@ def response_of(
     grading: Grading,
     quantities: tuple[str, ...],
     separations: tuple[float, ...],
+    kept: Layout | None = None,
 ) -> Response:
     """Build the response of a mesh.
 
@@ -99,6 +100,8 @@ def response_of(
         Rows of the answer.
     separations : tuple of float
         Columns of the answer, in any order.
+    kept : Layout, optional
+        The moments there are; left out: as many as it takes.
 
     Returns
     -------
@@ -108,11 +111,11 @@ def response_of(
     Raises
     ------
     ValueError
-        If the grading is not resolved on a cell.
+        If the grading is not resolved on a cell, or not by the moments there are.
     """
     tree = tree_over(mesh)
     laws = Laws.of(surface, grading, quantities, separations)
-    entries, plain, rooted = _walk(mesh, tree, laws)
+    entries, plain, rooted = _walk(mesh, tree, laws, kept)
     layout = Layout(plain[: mesh.size], rooted)
     starts = layout.starts
     inner = starts[-1] + np.concatenate([[0], np.cumsum(plain[mesh.size :])]).astype(np.int64)
@@ -142,7 +145,7 @@ class _Entry:
     coefficients: Array
 
 
-def _walk(mesh: Mesh, tree: Tree, laws: Laws) -> tuple[list[_Entry], Ints, Ints]:
+def _walk(mesh: Mesh, tree: Tree, laws: Laws, kept: Layout | None) -> tuple[list[_Entry], Ints, Ints]:
     """From the root down: give each law to the coarsest nodes that resolve it."""
     entries: list[_Entry] = []
     plain, rooted = np.zeros(tree.size, dtype=np.int64), np.zeros(mesh.size, dtype=np.int64)
@@ -153,9 +156,7 @@ def _walk(mesh: Mesh, tree: Tree, laws: Laws) -> tuple[list[_Entry], Ints, Ints]
         which = which[laws.h[which] < b]
         t = tree.offsets(mesh, node)
         smooth = laws.smooth_from(which, a)
-        c = laws.plain(which[smooth], a, t)
-        accuracy = laws.accuracy(a, t)
-        needed = orders(c, accuracy)
+        c, needed = laws.plain(which[smooth], a, t)
         done = needed <= _MOST_MOMENTS
         if done.any():
             entries.append(_Entry(node, False, which[smooth][done], c[:, done]))
@@ -168,14 +169,26 @@ def _walk(mesh: Mesh, tree: Tree, laws: Laws) -> tuple[list[_Entry], Ints, Ints]
             raise ValueError(f"grading: not resolved near s = {a:.6g}; give its breaks, or a smoother one")
         # A law is smoother the farther it is, so what the parents need of this cell is no more than
         # the nearest laws need, down to one row that counts.
-        nearest = orders(laws.plain(laws.nearest(a), a, t), accuracy).max(initial=1)
-        plain[node] = max(needed.max(initial=0), min(inherited, nearest))
+        _, nearest = laws.plain(laws.nearest(a), a, t)
+        plain[node] = max(needed.max(initial=0), min(inherited, nearest.max(initial=1)))
         at_edge = which[~smooth]
         if at_edge.size:
-            c = laws.rooted(at_edge, a, t)
-            rooted[node] = orders(c, accuracy).max()
+            c, needed = laws.from_edge(at_edge, a, t)
+            rooted[node] = needed.max()
             entries.append(_Entry(node, True, at_edge, c))
+    if kept:
+        _check_kept(mesh, kept, Layout(plain[: mesh.size], rooted))
+        plain[: mesh.size], rooted = kept.plain, kept.rooted
     return entries, plain, rooted
+
+
+def _check_kept(mesh: Mesh, kept: Layout, needed: Layout) -> None:
+    short = (needed.plain > kept.plain) | (needed.rooted > kept.rooted)
+    if short.any():
+        s = mesh.edges[np.flatnonzero(short)[0]]
+        raise ValueError(
+            f"the moments kept do not resolve this near s = {s:.4g}; simulate the scene anew with it"
+        )
 
 
 def _transfers(mesh: Mesh, tree: Tree, plain: Ints, node_row: Ints) -> list[tuple[Ints, Ints, Array]]:

@@ -19,11 +19,22 @@ from mcgw.disk import write_whole
 from mcgw.errors import StoreError
 from mcgw.seal import Seal, read_sealed, seal_of
 
-__all__ = ["RAGGED", "Arrays", "Shard", "Span", "commit_shard", "content_digest", "open_shard", "pack"]
+__all__ = [
+    "DRAWN",
+    "RAGGED",
+    "Arrays",
+    "Shard",
+    "Span",
+    "commit_shard",
+    "content_digest",
+    "open_shard",
+    "pack",
+]
 
 Arrays = dict[str, NDArray[Any]]
 
 RAGGED = "extras"  # the one table whose rows are not surfaces
+DRAWN = ("moments", "cells", RAGGED)  # what `keep = "moments"` adds to the quantities
 _MOST_DATASETS = 64
 _OLD = ("v108", "v110")  # every HDF5 of the last decade reads it
 

@@ -57,6 +57,8 @@ def kept(scene: Scene, block: Block) -> dict[str, Any]:
     arrays: dict[str, Any] = dict(block.sums)
     if "contacts" in arrays and scene.sampler != "stratified":
         arrays["contacts"] = np.rint(arrays["contacts"]).astype(np.int64)
+    if scene.keep == "moments":
+        arrays |= {"moments": block.moments, "cells": block.counts, "extras": block.extras}
     return arrays
 
 

@@ -12,9 +12,12 @@ A file appears whole or not at all. Its schema (``filetype = "mcgw-ensemble"``, 
     /stiffness            float64 (surfaces, separations) N/m
     /contacts             int64   (surfaces, separations) 1   (float64 expectation if stratified)
     /conductance          float64 (surfaces, separations) m   (times 1/rho)
-    /moments              float64 (surfaces, moment)      only if ``keep = "moments"``, as the next two
-    /cells                float64 (surfaces, cell)        asperities in each cell
-    /extras               float64 (extra, column)         asperities outside: surface, height, weight
+
+and, if the scene says ``keep = "moments"``, what `mcgw.regrade` starts from::
+
+    /drawn/moments        float64 (surfaces, moments)     sums of Chebyshev polynomials, cell by cell
+    /drawn/cells          float64 (surfaces, cells)       asperities in each cell
+    /drawn/extras         float64 (extras, 3)             surface, height, weight of those outside
 
 Every dataset has the attributes `units` and `long_name`; only quantities that the scene asks for are
 there. Chunked, shuffled, compressed with gzip. `digest` is over scene and data, `run` over what the
@@ -37,13 +40,13 @@ from mcgw.disk import check_output, remove_stale, write_whole
 from mcgw.ensemble import Ensemble
 from mcgw.errors import RunError, StoreError
 from mcgw.guard import examine
-from mcgw.layout import FILETYPE, FORMAT, build, values_digest
+from mcgw.layout import FILETYPE, FORMAT, build, values_digest, where
 from mcgw.provenance import versions
 from mcgw.rundir import Run, difference, identity_of, parts_of
 from mcgw.scene import Scene
 from mcgw.scene_file import scene_from, scene_text
 from mcgw.seal import check_seal, seal_of
-from mcgw.shards import RAGGED, Shard, Span
+from mcgw.shards import DRAWN, RAGGED, Shard, Span
 
 __all__ = [
     "StoreError",
@@ -66,7 +69,7 @@ class FileSums:
         """Rows `start` to `stop` (None: to the end) of a dataset."""
         try:
             with h5py.File(self.path, "r") as file:
-                return np.asarray(file[name][start:stop])
+                return np.asarray(file[where(name)][start:stop])
         except OSError:
             raise StoreError(f"{self.path}: cannot be read; is it damaged? See mcgw show --verify") from None
 
@@ -248,7 +251,7 @@ def finished(path: Path, scene: Scene, sampler: str) -> int:
     return there.n_surfaces
 
 
-def save(ensemble: Ensemble, path: str | Path, *, wall_seconds: float = 0.0) -> None:
+def save(ensemble: Ensemble, path: str | Path, *, wall_seconds: float = 0.0) -> Ensemble:
     """Write an ensemble that lies in memory, in one atomic step.
 
     Parameters
@@ -260,6 +263,11 @@ def save(ensemble: Ensemble, path: str | Path, *, wall_seconds: float = 0.0) -> 
     wall_seconds : float, optional
         What making it took.
 
+    Returns
+    -------
+    Ensemble
+        That reads from the file.
+
     Raises
     ------
     StoreError
@@ -270,7 +278,7 @@ def save(ensemble: Ensemble, path: str | Path, *, wall_seconds: float = 0.0) -> 
     path, scene = Path(path), ensemble.scene
     check_output(path)
     remove_stale(path)
-    names = [*scene.quantities, *(("moments", "cells", RAGGED) if scene.keep == "moments" else ())]
+    names = [*scene.quantities, *(DRAWN if scene.keep == "moments" else ())]
     arrays = {name: ensemble.sums.read(name, 0, None) for name in names}
     with h5py.File("ensemble", "w-", driver="core", backing_store=False, libver=("v108", "v110")) as file:
         build(
@@ -290,3 +298,4 @@ def save(ensemble: Ensemble, path: str | Path, *, wall_seconds: float = 0.0) -> 
         raise RunError(
             f"{path}: cannot be written ({error.strerror or error}); make room and repeat"
         ) from None
+    return open_ensemble(path)

@@ -35,6 +35,7 @@ ORDER = (
     "asperities",
     "ensemble",
     "simulation",
+    "regrade",
     "shards",
     "layout",
     "rundir",
