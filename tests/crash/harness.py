@@ -1,7 +1,7 @@
 """A run that is killed or fails at each of its file-modifying system calls, one after the other.
 
 Run under ``LD_PRELOAD=shim.so``: ``python harness.py FOLDER MODE BLOCKS [STRIDE]``. Imports once and
-forks for each point. Prints one JSON line: points, and lists of those where something was lost or wrong. The surfaces
+forks for each point. Prints one JSON line: points, and those where something was lost or wrong. The surfaces
 are made up: what is tried here is the store, and it knows nothing of physics.
 """
 

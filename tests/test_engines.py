@@ -1,0 +1,239 @@
+"""Engines: threads, processes and dask give the same digest, whatever happens to their workers."""
+
+import os
+import signal
+import socket
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from mcgw import running, store
+from mcgw.dask_engine import Dask, check_address
+from mcgw.driver import Signals, drive
+from mcgw.engines import Processes, Threads
+from mcgw.errors import RunError
+from mcgw.rundir import parts_of
+from mcgw.running import run
+from mcgw.shards import Span
+
+SIZE, SURFACES = 8, 96
+HERE = Path(__file__).parent
+SPANS = [Span(8 * i, 8) for i in range(6)]
+
+
+@pytest.fixture(autouse=True)
+def _small_blocks(monkeypatch):
+    monkeypatch.setattr(running, "shard_size", lambda scene, sampler: SIZE)
+    # Spawned workers import this package from here.
+    monkeypatch.setenv("PYTHONPATH", str(HERE.parent))
+
+
+@pytest.fixture
+def scene(make_scene):
+    """Blocks of some tenths of a second: long enough to be killed in."""
+    return make_scene(sampler="direct", n_asperities=400_000, n_surfaces=SURFACES, separations=(1.0, 2.0))
+
+
+def digest(path):
+    problem, found = store.verify(path)
+    assert problem == ""
+    return found
+
+
+@pytest.fixture(scope="module")
+def expected(tmp_path_factory):
+    """Digest from threads."""
+    found = []
+
+    def of(scene):
+        if not found:
+            path = tmp_path_factory.mktemp("threads") / "e.h5"
+            run(scene, path)
+            found.append(digest(path))
+        return found[0]
+
+    return of
+
+
+def kill_one_now_and_then(pids, times):
+    """Progress that kills a worker each time a few more blocks are done."""
+    killed = []
+
+    def progress(done):
+        if done and done % (3 * SIZE) == 0 and len(killed) < times:
+            alive = [pid for pid in pids() if pid not in killed]
+            killed.append(alive[0])
+            os.kill(alive[0], signal.SIGKILL)
+
+    return progress, killed
+
+
+def test_a_killed_process_is_replaced(scene, tmp_path, expected):
+    engine = Processes(2)
+    progress, killed = kill_one_now_and_then(lambda: list(engine._pool._processes), 2)
+    try:
+        run(scene, tmp_path / "e.h5", engine=engine, progress=progress)
+    finally:
+        engine.close()
+    assert len(killed) == 2
+    assert digest(tmp_path / "e.h5") == expected(scene)
+
+
+def test_killed_dask_workers_are_replaced(scene, tmp_path, expected):
+    pytest.importorskip("distributed")
+    engine = Dask(workers=2)
+
+    def pids():
+        return [worker.process.pid for nanny in engine._cluster.workers.values() for worker in [nanny.process]]
+
+    progress, killed = kill_one_now_and_then(pids, 3)
+    try:
+        run(scene, tmp_path / "e.h5", engine=engine, progress=progress)
+    finally:
+        engine.close()
+    assert len(killed) == 3
+    assert digest(tmp_path / "e.h5") == expected(scene)
+
+
+def free_port():
+    with socket.socket() as found:
+        found.bind(("127.0.0.1", 0))
+        return found.getsockname()[1]
+
+
+class Cluster:
+    """A scheduler and two workers as processes of their own."""
+
+    def __init__(self, folder):
+        self.address = f"tcp://127.0.0.1:{free_port()}"
+        self.folder = folder
+        port = self.address.rsplit(":", 1)[1]
+        self.scheduler = self._start("scheduler", "--port", port, "--host", "127.0.0.1", "--no-dashboard")
+        words = ("worker", self.address, "--nworkers", "2", "--nthreads", "1", "--no-dashboard")
+        self.workers = self._start(*words, "--host", "127.0.0.1", "--death-timeout", "20")
+
+    def _start(self, *words):
+        call = [sys.executable, "-m", "distributed.cli.dask_" + words[0], *words[1:]]
+        env = os.environ | {"PYTHONPATH": str(HERE.parent), "PYTHONWARNINGS": "ignore"}
+        quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL, "cwd": self.folder}
+        return subprocess.Popen(call, env=env, start_new_session=True, **quiet)
+
+    def kill(self):
+        for process in (self.scheduler, self.workers):
+            if process.poll() is None:
+                os.killpg(process.pid, signal.SIGKILL)
+            process.wait()
+
+
+def connected(cluster):
+    """Wait for the scheduler: it needs a moment to start."""
+    until = time.monotonic() + 30
+    while True:
+        try:
+            return Dask(cluster.address)
+        except RunError:
+            assert time.monotonic() < until
+
+
+@pytest.mark.slow
+def test_a_lost_scheduler_is_one_line_and_the_run_goes_on_with_another(scene, tmp_path, expected):
+    pytest.importorskip("distributed")
+    path, first = tmp_path / "e.h5", Cluster(tmp_path)
+
+    def kill_midway(done):
+        if done >= SURFACES // 3 and first.scheduler.poll() is None:
+            os.killpg(first.scheduler.pid, signal.SIGKILL)
+
+    engine = connected(first)
+    try:
+        with pytest.raises(RunError, match="scheduler lost .*; start it again and repeat the command"):
+            run(scene, path, engine=engine, progress=kill_midway)
+    finally:
+        engine.close()
+        first.kill()
+    kept = len(list(parts_of(path).glob("shards/*.h5")))
+    assert SURFACES // 3 // SIZE <= kept < SURFACES // SIZE
+    second = Cluster(tmp_path)
+    engine = connected(second)
+    try:
+        run(scene, path, engine=engine)
+    finally:
+        engine.close()
+        second.kill()
+    assert digest(path) == expected(scene)
+
+
+def test_a_task_that_kills_its_worker_is_given_up_and_the_others_are_done():
+    engine, done = Processes(2), []
+    try:
+        with pytest.raises(RunError, match=r"surfaces 16 \.\.\. 23 killed the worker 3 times; 1 block is not"):
+            drive(engine, SPANS, deadly, lambda s: (s.first,), lambda s, _: done.append(s), Signals())
+    finally:
+        engine.close()
+    assert sorted(done) == [span for span in SPANS if span.first != 16]
+
+
+def deadly(first):
+    if first == 16:
+        os.kill(os.getpid(), signal.SIGKILL)
+    return first
+
+
+def test_an_error_of_a_task_ends_the_run():
+    engine = Threads()
+    with pytest.raises(ZeroDivisionError):
+        drive(engine, SPANS, failing, lambda s: (s.first,), lambda s, _: None, Signals())
+    engine.close()
+
+
+def failing(first):
+    return 1 / first
+
+
+def test_threads_stop_within_the_grace_of_a_long_block():
+    engine, signals = Threads(), Signals()
+    signals.number = signal.SIGINT
+    begin = time.monotonic()
+    drive(engine, SPANS, time.sleep, lambda s: (30,), lambda s, _: None, signals)
+    engine.close()
+    assert time.monotonic() - begin < 10
+
+
+@pytest.mark.parametrize(
+    "address", ["tcp://127.0.0.1:8786", "tcp://localhost:8786", "tcp://[::1]:8786", "tls://node7:8786"]
+)
+def test_addresses_that_are_fit(address):
+    check_address(address)
+
+
+@pytest.mark.parametrize(
+    ("address", "message"),
+    [
+        ("tcp://10.1.2.3:8786", "not on this machine and not encrypted; use tls://"),
+        ("tcp://node7:8786", "--insecure"),
+        ("tcp://0.0.0.0:8786", "not on this machine"),
+        ("tcp://127.0.0.1.example.org:8786", "not on this machine"),
+        ("http://127.0.0.1:8786", "give tcp://HOST:PORT or tls://HOST:PORT"),
+        ("127.0.0.1:8786", "give tcp://"),
+        ("tcp://127.0.0.1", "give tcp://"),
+        ("tcp://[::1", "give tcp://"),
+        ("tcp://127.0.0.1:99999", "give tcp://"),
+    ],
+)
+def test_addresses_that_are_not(address, message):
+    with pytest.raises(ValueError, match="--scheduler") as caught:
+        check_address(address)
+    assert message in str(caught.value)
+
+
+def test_a_network_one_trusts():
+    check_address("tcp://10.1.2.3:8786", insecure=True)
+
+
+@pytest.mark.parametrize("engine", [Processes, lambda n: Dask(workers=n)])
+def test_no_workers_are_an_error(engine):
+    with pytest.raises(ValueError, match="= 0: give a whole number >= 1"):
+        engine(0)
