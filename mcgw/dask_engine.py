@@ -4,7 +4,9 @@ import ipaddress
 import logging
 from collections.abc import Callable
 from concurrent.futures import CancelledError, Future
+from contextlib import suppress
 from importlib import import_module
+from time import monotonic
 from typing import Any
 from urllib.parse import urlsplit
 
@@ -19,6 +21,7 @@ _QUIET = {
     "distributed.scheduler.work-stealing": False,
     "distributed.comm.timeouts.connect": "10s",
 }
+_ASK_AGAIN = 5.0  # seconds after which the workers are counted anew
 
 
 class Dask:
@@ -52,6 +55,9 @@ class Dask:
         except ImportError:
             raise RunError('dask is not installed: pip install "mcgw[dask]"') from None
         dask.config.set(_QUIET)
+        for name in logging.root.manager.loggerDict:
+            if name.startswith("distributed"):  # a lost worker or scheduler is one line, and that is ours
+                logging.getLogger(name).setLevel(logging.CRITICAL)
         self._cluster: Any = None
         if address is None:
             self._cluster = distributed.LocalCluster(
@@ -68,6 +74,7 @@ class Dask:
             raise RunError(
                 f"{address}: no scheduler answers there; start it (dask scheduler), then repeat the command"
             ) from None
+        self._asked, self._threads = -_ASK_AGAIN, 1
         self._died = distributed.KilledWorker
         closed = distributed.comm.CommClosedError
         self._lost = (
@@ -78,9 +85,12 @@ class Dask:
 
     @property
     def width(self) -> int:
-        """Twice as many blocks as there are threads, so that none waits."""
-        threads: int = sum(self._client.nthreads().values())
-        return 2 * max(threads, 1)
+        """Twice as many blocks as there are threads, so that none waits; workers may come and go."""
+        if monotonic() > self._asked + _ASK_AGAIN:
+            self._asked = monotonic()
+            with suppress(*self._lost, OSError):  # what is submitted next will tell
+                self._threads = sum(self._client.nthreads().values())
+        return 2 * max(self._threads, 1)
 
     def submit(self, task: Callable[..., Any], *arguments: Any) -> "Future[Any]":
         """Give a task to the scheduler; what a worker knows of it is forgotten once it is done."""
@@ -88,7 +98,7 @@ class Dask:
         try:
             inner = self._client.submit(task, *arguments, pure=False)
         except (*self._lost, OSError, RuntimeError) as error:
-            outer.set_exception(EngineLostError(str(error)))
+            outer.set_exception(EngineLostError(type(error).__name__))
             return outer
 
         def finished(done: Any) -> None:
@@ -100,7 +110,6 @@ class Dask:
 
     def close(self) -> None:
         """Leave the scheduler; end a cluster of our own."""
-        logging.getLogger("distributed").setLevel(logging.CRITICAL)
         self._client.close(timeout=2)
         if self._cluster is not None:
             self._cluster.close(timeout=5)

@@ -142,6 +142,6 @@ def pass_on(done: Any, outer: "Future[Any]", died: Any, lost: Any) -> None:
     except died as error:
         outer.set_exception(WorkerDiedError(str(error)))
     except lost as error:
-        outer.set_exception(EngineLostError(str(error) or type(error).__name__))
+        outer.set_exception(EngineLostError(type(error).__name__))
     except BaseException as error:
         outer.set_exception(error)

@@ -149,7 +149,7 @@ def test_a_lost_scheduler_is_one_line_and_the_run_goes_on_with_another(scene, tm
 
     engine = connected(first)
     try:
-        with pytest.raises(RunError, match="scheduler lost .*; start it again and repeat the command"):
+        with pytest.raises(RunError, match=r"^scheduler lost \(\w+\); start it again and repeat the command$"):
             run(scene, path, engine=engine, progress=kill_midway)
     finally:
         engine.close()
