@@ -6,6 +6,7 @@ from numpy.typing import NDArray
 from mcgw.counts import counts_of
 from mcgw.extras import extra_heights
 from mcgw.philox import CELLS, REST, uniforms
+from mcgw.room import check_memory
 from mcgw.samplers import Cells, sampler_of
 from mcgw.scene import Scene
 
@@ -40,6 +41,8 @@ def heights(scene: Scene, surface: int, *, untouched: bool = False) -> NDArray[n
         raise ValueError(f'sampler = "{sampler.name}" keeps no heights; "cells" and "tail" do')
     mesh = sampler.mesh
     counts = counts_of(scene, mesh, surface, 1)
+    drawn = scene.n_asperities if untouched else int(counts.cells.sum())
+    check_memory("the heights of one surface", 24 * drawn)
     parts = [extra_heights(scene, mesh, surface, int(counts.low_extras[0]), int(counts.high_extras[0]))]
     for cell in np.flatnonzero(counts.cells[:, 0]):
         u = uniforms(scene.seed, CELLS, surface, int(cell), int(counts.cells[cell, 0]))

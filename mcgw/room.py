@@ -6,7 +6,7 @@ from pathlib import Path
 from mcgw.errors import StoreError
 from mcgw.scene import Scene
 
-__all__ = ["check_room", "memory_available"]
+__all__ = ["check_memory", "check_room", "memory_available"]
 
 _MOST = 2**63 - 1
 
@@ -38,17 +38,27 @@ def check_room(scene: Scene, path: Path, *, rows: int, columns: int) -> None:
     ):
         if value > _MOST:
             raise StoreError(f"ensemble: {what} = {value:.4g} is more than 2^63 - 1 can count; ask for less")
-    block, memory = 3 * 8 * min(rows, m) * columns, memory_available()
-    if block > memory:
-        raise StoreError(
-            f"contact.separations: a block of {min(rows, m)} surfaces needs {_gib(block)} of memory and "
-            f"{_gib(memory)} are available; give fewer separations or quantities"
-        )
+    check_memory(f"contact.separations: a block of {min(rows, m)} surfaces", 3 * 8 * min(rows, m) * columns)
     size, free = 8 * m * columns, shutil.disk_usage(path.parent).free
     if 2 * size > free:  # the shards, and the file they are merged into
         raise StoreError(
             f"{path}: needs up to {_gib(2 * size)} on the disk while it is made and {_gib(free)} are free; "
             "make room, choose another -o, or ask for fewer surfaces or separations"
+        )
+
+
+def check_memory(what: str, size: int) -> None:
+    """Refuse what needs more memory than there is.
+
+    Raises
+    ------
+    StoreError
+        With both numbers.
+    """
+    memory = memory_available()
+    if size > memory:
+        raise StoreError(
+            f"{what} needs {_gib(size)} of memory and {_gib(memory)} are available; ask for less at a time"
         )
 
 

@@ -188,7 +188,7 @@ def _ensemble(section: Section, seed: Callable[[], int | None] | None) -> dict[s
     other = None if "seed" in section or seed is None else seed()
     values = {
         "n_surfaces": section.whole("n_surfaces", 1000, least=1),
-        "n_asperities": section.whole("n_asperities", 0, least=1),
+        "n_asperities": section.whole("n_asperities", None, least=1),
         "count": section.choice("count", "fixed", ("fixed", "poisson")),
         "seed": section.whole("seed", secrets.randbits(63) if other is None else other),
         "sampler": section.choice("sampler", "auto", SAMPLERS),

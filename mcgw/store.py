@@ -39,7 +39,7 @@ from numpy.typing import NDArray
 from mcgw.disk import check_output, remove_stale, write_whole
 from mcgw.ensemble import Ensemble
 from mcgw.errors import RunError, StoreError
-from mcgw.guard import examine
+from mcgw.guard import examine, examine_all
 from mcgw.layout import FILETYPE, FORMAT, build, values_digest, where
 from mcgw.provenance import versions
 from mcgw.rundir import Run, difference, identity_of, parts_of
@@ -132,6 +132,7 @@ def open_ensemble(path: str | Path) -> Ensemble:
         shards = tuple(run.shards())
         if not shards:
             raise StoreError(f"{path}: no block of its run is finished yet")
+        examine_all([shard.path for shard in shards])
         return Ensemble(run.scene, run.sampler, ShardSums(shards))
     attributes, scene = _described(path)
     return Ensemble(scene, str(attributes["sampler"]), FileSums(path))

@@ -87,7 +87,9 @@ def test_killed_dask_workers_are_replaced(scene, tmp_path, expected):
     engine = Dask(workers=2)
 
     def pids():
-        return [worker.process.pid for nanny in engine._cluster.workers.values() for worker in [nanny.process]]
+        return [
+            worker.process.pid for nanny in engine._cluster.workers.values() for worker in [nanny.process]
+        ]
 
     progress, killed = kill_one_now_and_then(pids, 3)
     try:
@@ -149,7 +151,9 @@ def test_a_lost_scheduler_is_one_line_and_the_run_goes_on_with_another(scene, tm
 
     engine = connected(first)
     try:
-        with pytest.raises(RunError, match=r"^scheduler lost \(\w+\); start it again and repeat the command$"):
+        with pytest.raises(
+            RunError, match=r"^scheduler lost \(\w+\); start it again and repeat the command$"
+        ):
             run(scene, path, engine=engine, progress=kill_midway)
     finally:
         engine.close()
@@ -169,7 +173,9 @@ def test_a_lost_scheduler_is_one_line_and_the_run_goes_on_with_another(scene, tm
 def test_a_task_that_kills_its_worker_is_given_up_and_the_others_are_done():
     engine, done = Processes(2), []
     try:
-        with pytest.raises(RunError, match=r"surfaces 16 \.\.\. 23 killed the worker 3 times; 1 block is not"):
+        with pytest.raises(
+            RunError, match=r"surfaces 16 \.\.\. 23 killed the worker 3 times; 1 block is not"
+        ):
             drive(engine, SPANS, deadly, lambda s: (s.first,), lambda s, _: done.append(s), Signals())
     finally:
         engine.close()

@@ -1,12 +1,14 @@
 """``mcgw run``: draw an ensemble into a file."""
 
 import argparse
+import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from mcgw.engines import Engine
     from mcgw.running import Part
+    from mcgw.scene import Scene
 
 HELP = "simulate a scene: draw its surfaces and store load, area, ... in HDF5; goes on where it stopped"
 EXAMPLE = "mcgw run runs/demo.toml -o demo.h5"
@@ -42,6 +44,8 @@ def execute(args: argparse.Namespace) -> int:
     path = args.output or args.scene.parent / "out" / f"{args.scene.stem}.h5"
     part = _part(args.shard)
     scene = load_scene(args.scene, seed=lambda: recorded_seed(path))
+    for note in _notes(scene, args.threads):
+        print(f"mcgw: note: {note}", file=sys.stderr)
     bar = _Bar(scene.n_surfaces)
     if part:
         left = run_part(scene, path, part, threads=args.threads, progress=bar.show)
@@ -58,6 +62,17 @@ def execute(args: argparse.Namespace) -> int:
             engine.close()
     print(f"{path}: {ensemble.n_surfaces} surfaces of {scene.n_asperities:g} asperities, seed {scene.seed}")
     return 0
+
+
+def _notes(scene: "Scene", threads: int | None) -> list[str]:
+    from numba import config
+
+    from mcgw.validity import notes
+
+    found = notes(scene)
+    if threads is not None and threads > config.NUMBA_NUM_THREADS:
+        found.append(f"--threads {threads}: this machine has {config.NUMBA_NUM_THREADS}, all are used")
+    return found
 
 
 def _engine(args: argparse.Namespace) -> "Engine | None":
