@@ -160,20 +160,21 @@ class SteadyFile:
         """Nothing is held back."""
 
     def seal(self, data: bytes) -> None:
-        """Append the last bytes, flush to the disk and close.
+        """Append the last bytes and flush to the disk.
 
         Raises
         ------
         OSError
             If this, or anything before, failed.
         """
-        try:
-            self._file.seek(0, os.SEEK_END)
-            self.write(data)
-            self.check()
-            os.fsync(self._file.fileno())
-        finally:
-            self._file.close()
+        self._file.seek(0, os.SEEK_END)
+        self.write(data)
+        self.check()
+        os.fsync(self._file.fileno())
+
+    def close(self) -> None:
+        """Close it, whatever became of it."""
+        self._file.close()
 
 
 def sync_folder(folder: Path) -> None:

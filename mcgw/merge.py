@@ -7,6 +7,7 @@ it its name. Exit code 3: a shard is damaged.
 
 import sys
 from collections.abc import Iterator
+from contextlib import closing
 from pathlib import Path
 
 import h5py
@@ -46,23 +47,23 @@ def merge_into(folder: Path, target: Path, temporary: Path) -> None:
     run = Run.open(folder)
     shards = run.shards()
     seconds = sum(shard.seconds for shard in shards) + _seconds_of(target)
-    raw = SteadyFile(temporary)
-    with h5py.File(raw, "w", libver=("v108", "v110"), rdcc_nbytes=_CACHE) as file:
-        digest = build(
-            file,
-            run.scene,
-            run.sampler,
-            _checked(raw, _pieces(shards, target)),
-            run=run.identity,
-            draws=run.drawn_with,
-            wall_seconds=seconds,
-        )
-    raw.check()
-    with h5py.File(temporary, "r") as file:
-        if file.attrs["digest"] != digest or values_digest(file, run.scene) != digest:
-            raise OSError(f"{temporary}: reads otherwise than written")
-    length = temporary.stat().st_size
-    raw.seal(Seal(length, sha256_of(temporary, length), {}).to_bytes())
+    with closing(SteadyFile(temporary)) as raw:
+        with h5py.File(raw, "w", libver=("v108", "v110"), rdcc_nbytes=_CACHE) as file:
+            digest = build(
+                file,
+                run.scene,
+                run.sampler,
+                _checked(raw, _pieces(shards, target)),
+                run=run.identity,
+                draws=run.drawn_with,
+                wall_seconds=seconds,
+            )
+        raw.check()
+        with h5py.File(temporary, "r") as file:
+            if file.attrs["digest"] != digest or values_digest(file, run.scene) != digest:
+                raise OSError(f"{temporary}: reads otherwise than written")
+        length = temporary.stat().st_size
+        raw.seal(Seal(length, sha256_of(temporary, length), {}).to_bytes())
 
 
 def _checked(raw: SteadyFile, pieces: Iterator[tuple[Span, Arrays]]) -> Iterator[tuple[Span, Arrays]]:

@@ -100,7 +100,8 @@ def response_to(scene: Scene, mesh: Mesh, kept: Layout | None = None) -> Respons
     if scene.keep == "moments" and kept is None:
         kept = _lasting_layout(scene, mesh)
     summed = tuple(name for name in scene.quantities if QUANTITIES[name].exponent > 0)
-    return response_of(mesh, scene.surface, scene.modulus, summed, scene.separations, kept)
+    # Each separation once and in order: repeated or permuted ones give the same bits.
+    return response_of(mesh, scene.surface, scene.modulus, summed, sorted(set(scene.separations)), kept)
 
 
 def _lasting_layout(scene: Scene, mesh: Mesh) -> Layout:
@@ -217,8 +218,9 @@ class Cells:
             scene, numbers, np.ascontiguousarray(extras[:, 1]), np.ascontiguousarray(extras[:, 2])
         )
         answers = iter(self.response @ moments)
+        column = np.searchsorted(sorted(set(scene.separations)), scene.separations)
         for name in scene.quantities:
-            sums[name] += self._contacts(counts) if name == "contacts" else next(answers).T
+            sums[name] += self._contacts(counts) if name == "contacts" else next(answers).T[:, column]
         return sums
 
     def _contacts(self, counts: Array) -> Array:

@@ -19,7 +19,7 @@ from mcgw.rundir import parts_of
 from mcgw.running import run
 from mcgw.shards import Span
 
-SIZE, SURFACES = 8, 96
+SIZE, SURFACES = 8, 72
 HERE = Path(__file__).parent
 SPANS = [Span(8 * i, 8) for i in range(6)]
 
@@ -34,7 +34,7 @@ def _small_blocks(monkeypatch):
 @pytest.fixture
 def scene(make_scene):
     """Blocks of some tenths of a second: long enough to be killed in."""
-    return make_scene(sampler="direct", n_asperities=400_000, n_surfaces=SURFACES, separations=(1.0, 2.0))
+    return make_scene(sampler="direct", n_asperities=250_000, n_surfaces=SURFACES, separations=(1.0, 2.0))
 
 
 def digest(path):
@@ -82,6 +82,7 @@ def test_a_killed_process_is_replaced(scene, tmp_path, expected):
     assert digest(tmp_path / "e.h5") == expected(scene)
 
 
+@pytest.mark.slow
 def test_killed_dask_workers_are_replaced(scene, tmp_path, expected):
     pytest.importorskip("distributed")
     engine = Dask(workers=2)

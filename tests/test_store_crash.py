@@ -1,7 +1,8 @@
 """A run struck at its file-modifying system calls: killed, torn, out of space, failing once.
 
 A committed block must never be lost, no file may be silently wrong, and the same command must go on to
-the digest of the undisturbed run. Every call is struck in the slow part, every seventh in the other.
+the digest of the undisturbed run. Every call is struck in the slow part, every ninth in the other, and
+every call of a run of eight blocks by `runs/reliability/measure.py`.
 """
 
 import json
@@ -14,7 +15,7 @@ from pathlib import Path
 import pytest
 
 HERE = Path(__file__).parent / "crash"
-BLOCKS = 8
+BLOCKS = 3
 
 
 @pytest.fixture(scope="module")
@@ -45,8 +46,8 @@ def harness(shim, mode, *, stride, folder):
 
 @pytest.mark.parametrize("mode", ["kill", "torn", "ENOSPC", "EIO"])
 def test_nothing_is_lost_at_some_calls(shim, mode, tmp_path):
-    found = harness(shim, mode, stride=7, folder=tmp_path)
-    assert found["points"] >= BLOCKS * 5 // 7  # open, write, flush, rename, flush for each block
+    found = harness(shim, mode, stride=9, folder=tmp_path)
+    assert found["points"] >= BLOCKS * 5 // 9  # open, write, flush, rename, flush for each block
     assert found["problems"] == {}
 
 
@@ -61,4 +62,4 @@ def test_nothing_is_lost_at_any_call(shim, mode, tmp_path):
 def test_the_harness_sees_a_shard_written_in_place(shim, tmp_path, monkeypatch):
     """A companion: without the temporary name, torn writes leave half a shard, and that is noticed."""
     monkeypatch.setenv("MCGW_IN_PLACE", "1")
-    assert harness(shim, "torn", stride=2, folder=tmp_path)["problems"]
+    assert harness(shim, "torn", stride=5, folder=tmp_path)["problems"]

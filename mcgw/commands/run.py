@@ -65,13 +65,13 @@ def execute(args: argparse.Namespace) -> int:
 
 
 def _notes(scene: "Scene", threads: int | None) -> list[str]:
-    from numba import config
+    from numba import get_num_threads
 
     from mcgw.validity import notes
 
     found = notes(scene)
-    if threads is not None and threads > config.NUMBA_NUM_THREADS:
-        found.append(f"--threads {threads}: this machine has {config.NUMBA_NUM_THREADS}, all are used")
+    if threads is not None and threads > get_num_threads():
+        found.append(f"--threads {threads}: this machine has {get_num_threads()}, all are used")
     return found
 
 

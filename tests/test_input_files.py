@@ -1,0 +1,284 @@
+"""HDF5 files from elsewhere: hostile and damaged ones are errors, not crashes, hangs or secrets told."""
+
+import json
+import os
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+
+import analytic
+import mcgw
+from mcgw import guard, store
+from mcgw.child import ChildError, run_child
+from mcgw.errors import StoreError
+from mcgw.running import run
+from mcgw.scene import Scene
+
+TESTS = Path(__file__).parent
+SECRET = "key = correct horse battery staple"
+
+
+@pytest.fixture(scope="module")
+def good(tmp_path_factory):
+    path = tmp_path_factory.mktemp("good") / "e.h5"
+    surface = analytic.Surface(sigma=1e-6, radius=1e-5, eta=1e9, nominal_area=1e-6, E_star=1e11)
+    run(Scene(surface=surface, separations=(1.0, 2.0), n_surfaces=20, sampler="tail"), path)
+    return path.read_bytes()
+
+
+@pytest.fixture
+def path(good, tmp_path):
+    (tmp_path / "e.h5").write_bytes(good)
+    return tmp_path / "e.h5"
+
+
+def swapped(data, name="load"):
+    """Delete a dataset, to put something else in its place."""
+    del data[name]
+
+
+def external_link(data, folder):
+    swapped(data)
+    data["load"] = h5py.ExternalLink(str(folder / "other.h5"), "/load")
+
+
+def soft_loop(data, folder):
+    swapped(data)
+    data["load"] = h5py.SoftLink("/load")
+
+
+def raw_external(data, folder):
+    swapped(data)
+    data.create_dataset("load", (20, 2), "<f8", external=[(str(folder / "secret"), 0, 320)])
+
+
+def virtual(data, folder):
+    swapped(data)
+    layout = h5py.VirtualLayout((20, 2), "<f8")
+    layout[:] = h5py.VirtualSource(str(folder / "other.h5"), "load", (20, 2))
+    data.create_virtual_dataset("load", layout)
+
+
+def huge(data, folder):
+    swapped(data)
+    data.create_dataset("load", (10**9, 10**9), "<f8", chunks=(1024, 1024))
+
+
+def bomb(data, folder):
+    """Zeros that shrink a thousandfold, with a shape that the scene does not declare."""
+    swapped(data)
+    data.create_dataset("load", data=np.zeros((2 * 10**6, 8)), chunks=(10**5, 8), compression="gzip")
+
+
+def hollow(data, folder):
+    """Declared as the scene says, and never stored."""
+    swapped(data)
+    data.create_dataset("load", (20, 2), "<f8", chunks=(20, 2))
+
+
+def odd_filter(data, folder):
+    swapped(data)
+    data.create_dataset("load", data=np.ones((20, 2)), chunks=(20, 2), scaleoffset=2)
+
+
+def group(data, folder):
+    swapped(data)
+    data.create_group("load")
+
+
+def text(data, folder):
+    swapped(data)
+    data.create_dataset("load", data=["a"] * 20)
+
+
+def of_type(kind):
+    def make(data, folder):
+        swapped(data)
+        data.create_dataset("load", data=np.ones((20, 2)).astype(kind))
+
+    make.__name__ = kind
+    return make
+
+
+def references(data, folder):
+    swapped(data)
+    data.create_dataset("load", (20, 2), h5py.ref_dtype)
+
+
+def empty(data, folder):
+    swapped(data)
+    data["load"] = h5py.Empty("f8")
+
+
+def cube(data, folder):
+    swapped(data)
+    data["load"] = np.ones((20, 2, 1))
+
+
+def narrow(data, folder):
+    swapped(data)
+    data["load"] = np.ones((20, 1))
+
+
+def missing(data, folder):
+    swapped(data)
+
+
+def many(data, folder):
+    for i in range(100):
+        data[f"x{i}"] = np.zeros(1)
+
+
+def large_attribute(data, folder):
+    data.attrs["numbers"] = np.zeros(1000)
+
+
+def scene_bomb(data, folder):
+    data.attrs["scene"] = "[" * 5000
+
+
+def no_scene(data, folder):
+    del data.attrs["scene"]
+
+
+def odd_attribute(data, folder):
+    data.attrs["wall_seconds"] = h5py.Empty("f8")
+
+
+HOSTILE = {
+    external_link: "load: a link to another place",
+    soft_loop: "load: a link to another place",
+    raw_external: "load: its data lie elsewhere",
+    virtual: "load: its data lie elsewhere",
+    huge: "load: .* chunks declared, 0 stored",
+    bomb: r"load has shape \[2000000, 8\], its scene declares \[20, 2\]",
+    hollow: "load: 1 chunks declared, 0 stored",
+    odd_filter: r"load: unknown filter \[6\]",
+    group: "load: not a dataset",
+    text: "load: type object, not 64-bit numbers",
+    of_type("int32"): "load: type int32, not 64-bit numbers",
+    of_type("complex128"): "load: type complex128",
+    references: "load: type object",
+    empty: "load: not a table",
+    cube: "load: not a table",
+    narrow: r"load has shape \[20, 1\], its scene declares \[20, 2\]",
+    missing: "load has shape none, its scene declares",
+    many: "datasets; at most 64 are allowed",
+    large_attribute: "attribute numbers: too large",
+    scene_bomb: "its scene is none: not a TOML scene",
+    no_scene: "an attribute is missing",
+    odd_attribute: "refused: (attribute wall_seconds|not an HDF5 file, or a damaged one)",
+}
+
+
+@pytest.mark.parametrize("change", HOSTILE, ids=lambda change: change.__name__)
+def test_hostile_files_are_refused(change, path):
+    (path.parent / "secret").write_text(SECRET)
+    with h5py.File(path.parent / "other.h5", "w") as other:
+        other["load"] = np.ones((20, 2))
+    with h5py.File(path, "r+") as data:
+        change(data, path.parent)
+    with pytest.raises(StoreError, match=HOSTILE[change]) as caught:
+        mcgw.open_ensemble(path)
+    assert str(caught.value).startswith(str(path))
+    assert "\n" not in str(caught.value)
+    assert SECRET not in str(caught.value)
+
+
+def test_big_endian_numbers_are_read(path):
+    before = mcgw.open_ensemble(path).load
+    with h5py.File(path, "r+") as data:
+        del data["load"]
+        data["load"] = before.astype(">f8")
+    np.testing.assert_array_equal(mcgw.open_ensemble(path).load, before)
+
+
+@pytest.mark.parametrize("numbers", [(2, 0), (0, 9)])
+def test_other_formats_are_named(path, numbers):
+    with h5py.File(path, "r+") as data:
+        data.attrs["format"] = numbers
+    with pytest.raises(StoreError, match=rf"format {numbers[0]}\.{numbers[1]}; this version reads 1\.x"):
+        mcgw.open_ensemble(path)
+
+
+def test_other_files_are_none(tmp_path):
+    for name, content in (("empty", b""), ("text", b"load,area\n1,2\n"), ("noise", os.urandom(5000))):
+        (tmp_path / name).write_bytes(content)
+        with pytest.raises(StoreError, match="not an HDF5 file, or a damaged one"):
+            mcgw.open_ensemble(tmp_path / name)
+    with h5py.File(tmp_path / "other.h5", "w") as file:
+        file["x"] = np.zeros(3)
+    with pytest.raises(StoreError, match="not an ensemble file"):
+        mcgw.open_ensemble(tmp_path / "other.h5")
+
+
+def test_a_child_that_crashes_hangs_or_is_greedy_is_an_error(path, monkeypatch, tmp_path):
+    (tmp_path / "crash.py").write_text("import os\nos.abort()\n")
+    (tmp_path / "hang.py").write_text("import time\ntime.sleep(60)\n")
+    (tmp_path / "greedy.py").write_text(
+        "from mcgw.child import limit_memory\nlimit_memory(2**28)\nx = bytearray(2**30)\n"
+    )
+    monkeypatch.setenv("PYTHONPATH", str(tmp_path))
+    with pytest.raises(ChildError, match="crashed with SIGABRT"):
+        run_child("crash")
+    begin = time.monotonic()
+    with pytest.raises(ChildError, match=r"took more than 0\.5 s"):
+        run_child("hang", seconds=0.5)
+    assert time.monotonic() - begin < 5
+    with pytest.raises(ChildError, match="exit code 1: MemoryError"):
+        run_child("greedy")
+
+
+def test_what_the_child_suffers_is_told_in_one_line(path, monkeypatch):
+    def crash(*arguments, seconds=None):
+        raise ChildError("crashed with SIGSEGV", "")
+
+    monkeypatch.setattr(guard, "run_child", crash)
+    guard._examined.cache_clear()
+    with pytest.raises(StoreError, match="damaged or hostile; reading it crashed with SIGSEGV"):
+        guard.examine(path)
+
+
+def test_a_file_is_looked_at_once_until_it_changes(path, monkeypatch):
+    mcgw.open_ensemble(path)
+    calls = []
+    monkeypatch.setattr(guard, "run_child", lambda *a, **k: calls.append(a) or run_child(*a, **k))
+    mcgw.open_ensemble(path)
+    assert not calls
+    os.utime(path)
+    mcgw.open_ensemble(path)
+    assert len(calls) == 1
+
+
+def fuzzed(kind, count):
+    env = os.environ | {"PYTHONPATH": str(TESTS.parent)}
+    call = [sys.executable, str(TESTS / "fuzz" / "fuzz.py"), kind, str(count), "1"]
+    done = subprocess.run(call, env=env, capture_output=True, text=True, check=True, timeout=300)
+    return json.loads(done.stdout)
+
+
+@pytest.mark.parametrize(("kind", "count"), [("scenes", 1000), ("files", 30)])
+def test_fuzzed_input(kind, count):
+    found = fuzzed(kind, count)
+    assert found["inputs"] == count
+    assert 0 < found["accepted"] < count  # it reaches the good and the bad
+    assert found["failures"] == []
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("kind", "count"), [("scenes", 5000), ("files", 100)])
+def test_more_fuzzed_input(kind, count):
+    assert fuzzed(kind, count)["failures"] == []
+
+
+def test_verify_names_what_is_wrong_with_a_hostile_file(path):
+    with h5py.File(path, "r+") as data:
+        soft_loop(data, path.parent)
+    problem, found = store.verify(path)
+    assert "a link to another place" in problem
+    assert found == "unreadable"

@@ -1,0 +1,135 @@
+"""All that is needed to repeat a run is in its file; and its memory does not grow with the ensemble."""
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+
+import analytic
+import mcgw
+from mcgw import store
+from mcgw.errors import StoreError
+from mcgw.running import run
+from mcgw.samplers import sampler_of
+from mcgw.scene import SAMPLERS
+
+GOLDEN = Path(__file__).parent / "golden_samplers.json"
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {},
+        {"grading": analytic.Homogeneous(), "count": "poisson", "separations": (0.1, 1 / 3)},
+        {"grading": analytic.Table([-5.0, 0.0, 9.0], [0.5, 1.0, 1.7])},
+        {"sampler": "direct", "n_asperities": 500},
+        {"keep": "moments"},
+    ],
+    ids=["graded", "poisson", "table", "direct", "moments"],
+)
+def test_the_scene_in_a_file_reproduces_its_digest(make_scene, tmp_path, change):
+    run(make_scene(n_surfaces=10, title='Ra = 1 \u00b5m, "quoted"', **change), tmp_path / "a.h5")
+    attributes = store.read_attributes(tmp_path / "a.h5")
+    again = mcgw.scene_from(attributes["scene"])
+    run(again, tmp_path / "b.h5")
+    assert store.read_attributes(tmp_path / "b.h5")["digest"] == attributes["digest"]
+    assert store.verify(tmp_path / "b.h5") == ("", attributes["digest"])
+
+
+def test_what_is_recorded(make_scene, tmp_path):
+    run(make_scene(n_surfaces=2), tmp_path / "a.h5")
+    with h5py.File(tmp_path / "a.h5") as file:
+        known = dict(file.attrs)
+    for package in ("python", "mcgw", "numpy", "scipy", "numba", "h5py"):
+        assert package in known["versions"]
+    for key in ("commit", "date", "cpu", "wall_seconds", "sampler", "seed", "run", "draws"):
+        assert key in known
+    assert known["sampler"] != "auto"
+
+
+def test_a_scene_without_a_seed_goes_on_with_the_recorded_one(tmp_path):
+    text = (Path(__file__).parent.parent / "runs" / "quick.toml").read_text()
+    scene, path = tmp_path / "s.toml", tmp_path / "e.h5"
+    scene.write_text("\n".join(line for line in text.splitlines() if not line.startswith("seed")))
+    first = mcgw.load_scene(scene, seed=lambda: store.recorded_seed(path))
+    run(first, path)
+    assert mcgw.load_scene(scene, seed=lambda: store.recorded_seed(path)) == first
+    assert mcgw.load_scene(scene).seed != first.seed
+
+
+def test_a_grading_that_no_file_can_hold_is_refused(make_scene, tmp_path):
+    with pytest.raises(StoreError, match="give its grading as a table"):
+        run(make_scene(grading=analytic.Custom(np.cosh)), tmp_path / "a.h5")
+
+
+def drawn(make_scene, sampler):
+    scene = make_scene(sampler=sampler, n_asperities=2000, separations=(0.0, 1.5, 3.0), seed=20240601)
+    return {name: values.ravel() for name, values in sampler_of(scene).block(3, 2).sums.items()}
+
+
+@pytest.mark.parametrize("sampler", SAMPLERS[1:])
+def test_golden_numbers(make_scene, sampler):
+    """Stored once: any change of the draws is seen. On another kind of CPU they agree to 1e-12."""
+    golden = json.loads(GOLDEN.read_text())[sampler]
+    found = drawn(make_scene, sampler)
+    assert set(found) == set(golden)
+    for name, values in found.items():
+        np.testing.assert_allclose(values, golden[name], rtol=1e-12, atol=0)
+
+
+@pytest.mark.parametrize("sampler", SAMPLERS[1:])
+def test_golden_numbers_can_fail(make_scene, sampler):
+    golden = json.loads(GOLDEN.read_text())[sampler]
+    scene = make_scene(sampler=sampler, n_asperities=2000, separations=(0.0, 1.5, 3.0), seed=20240602)
+    load = sampler_of(scene).block(3, 2).sums["load"].ravel()
+    assert not np.allclose(load, golden["load"], rtol=1e-12, atol=0)
+
+
+def test_digests_of_two_processes_are_equal(make_scene, tmp_path):
+    """On one machine to the last bit, for one thread and for all."""
+    scene = tmp_path / "s.toml"
+    scene.write_text(mcgw.scene_text(make_scene(n_surfaces=40)))
+    found = set()
+    for threads in (1, 2):
+        path = tmp_path / f"{threads}.h5"
+        env = os.environ | {"PYTHONPATH": str(GOLDEN.parent.parent)}
+        words = ["run", scene, "-o", path, "--threads", threads]
+        call = [sys.executable, "-m", "mcgw", *map(str, words)]
+        subprocess.run(call, env=env, check=True, capture_output=True)
+        found.add(store.read_attributes(path)["digest"])
+    assert len(found) == 1
+
+
+MEMORY = """
+import resource, sys
+from mcgw import running
+running.shard_size = lambda scene, sampler: 256
+import mcgw
+scene = mcgw.scene_from(open(sys.argv[1]).read())
+running.run(scene, sys.argv[2])
+for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN):
+    print(resource.getrusage(who).ru_maxrss)
+"""
+
+
+@pytest.mark.slow
+def test_memory_does_not_grow_with_the_ensemble(make_scene, tmp_path):
+    """Peak memory of the run and of the process that merges: 32 times the surfaces, 1e4 the asperities.
+
+    The larger file has 80 MB of numbers; 25 MB is what allocators differ by from run to run.
+    """
+    separations = tuple(np.linspace(2, 4, 40))
+    peaks = []
+    for m, n in ((256, 10**4), (8192, 10**4), (256, 10**8)):
+        scene = make_scene(n_surfaces=m, n_asperities=n, separations=separations, sampler="aggregate")
+        (tmp_path / "s.toml").write_text(mcgw.scene_text(scene))
+        call = [sys.executable, "-c", MEMORY, str(tmp_path / "s.toml"), str(tmp_path / f"{m}-{n}.h5")]
+        env = os.environ | {"PYTHONPATH": str(GOLDEN.parent.parent)}
+        done = subprocess.run(call, env=env, check=True, capture_output=True, text=True)
+        peaks.append([int(kib) / 1024 for kib in done.stdout.split()])
+    assert np.max(np.array(peaks) - peaks[0]) < 25
