@@ -101,7 +101,9 @@ def response_to(scene: Scene, mesh: Mesh, kept: Layout | None = None) -> Respons
         kept = _lasting_layout(scene, mesh)
     summed = tuple(name for name in scene.quantities if QUANTITIES[name].exponent > 0)
     # Each separation once and in order: repeated or permuted ones give the same bits.
-    return response_of(mesh, scene.surface, scene.modulus, summed, sorted(set(scene.separations)), kept)
+    return response_of(
+        mesh, scene.surface, scene.modulus, summed, tuple(sorted(set(scene.separations))), kept
+    )
 
 
 def _lasting_layout(scene: Scene, mesh: Mesh) -> Layout:

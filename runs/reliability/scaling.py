@@ -1,0 +1,145 @@
+"""What engines cost, and how far they scale: ``python runs/reliability/scaling.py [-o FOLDER]``.
+
+Blocks here take a second and give 1 MiB each, but wait instead of computing: so what is measured is the
+engine and the commit, not the processor, and more workers than cores can be tried. Writes `scaling.json`
+and `scaling.png` into FOLDER (left out: `runs/out`).
+"""
+
+import argparse
+import hashlib
+import json
+import tempfile
+import time
+from pathlib import Path
+
+import h5py
+import numpy as np
+
+from mcgw.dask_engine import Dask
+from mcgw.driver import Signals, drive
+from mcgw.engines import Processes, Threads
+from mcgw.shards import Span, commit_shard
+
+SECONDS, ROWS, COLUMNS = 1.0, 1024, 128
+RUN = hashlib.sha256(b"scaling").hexdigest()
+
+
+def wait_and_commit(folder, first, seconds):
+    """A block that waits, and commits 1 MiB of numbers."""
+    time.sleep(seconds)
+    return commit(folder, first, ROWS)
+
+
+def nothing(*_):
+    """A block that costs nothing: what is left is the engine."""
+    return RUN
+
+
+def commit(folder, first, rows):
+    """Commit a shard of random numbers."""
+    load = np.random.default_rng(first).random((rows, COLUMNS))
+    span = Span(first, rows)
+    return commit_shard(Path(folder) / span.file_name, RUN, span, {"load": load}, SECONDS).digest
+
+
+def wall(engine, blocks, seconds, task=wait_and_commit):
+    """Seconds for so many blocks."""
+    spans, signals = [Span(ROWS * i, ROWS) for i in range(blocks)], Signals()
+    with tempfile.TemporaryDirectory() as folder:
+        begin = time.perf_counter()
+        drive(engine, spans, task, lambda s: (folder, s.first, seconds), lambda *_: None, signals)
+        return time.perf_counter() - begin
+
+
+def commit_seconds():
+    """Median cost of a commit, by size in MiB; and of reading back, checking and compressing it."""
+    found = {}
+    with tempfile.TemporaryDirectory() as folder:
+        for mib in (1, 4, 8, 16):
+            times = []
+            for i in range(9):
+                begin = time.perf_counter()
+                commit(folder, i * ROWS * mib, ROWS * mib)
+                times.append(time.perf_counter() - begin)
+            found[mib] = float(np.median(times))
+        load = np.random.default_rng(1).random((8 * ROWS, COLUMNS))
+        begin = time.perf_counter()
+        with h5py.File(Path(folder) / "merged.h5", "w") as file:
+            options = {
+                "chunks": (256, COLUMNS),
+                "compression": "gzip",
+                "compression_opts": 1,
+                "shuffle": True,
+            }
+            file.create_dataset("load", data=load, **options)
+        merge = (time.perf_counter() - begin) / 8
+    return found, merge
+
+
+def measure():
+    """All figures."""
+    result = {}
+    result["commit"], result["merge_per_mib"] = commit_seconds()
+    for name, engine, workers, blocks in (
+        ("threads", Threads(), 1, 8),
+        ("processes", Processes(2), 2, 16),
+        ("dask", Dask(workers=2), 2, 16),
+    ):
+        wall(engine, 2 * workers, 0.0)  # workers import and connect
+        result[name] = wall(engine, blocks, SECONDS) / (blocks / workers * SECONDS) - 1
+        if name == "dask":
+            result["tasks_per_second"] = 500 / wall(engine, 500, 0.0, nothing)
+        engine.close()
+    curve = {}
+    for workers in (1, 2, 4, 8, 16):
+        engine = Dask(workers=workers)
+        wall(engine, 2 * workers, 0.0)
+        curve[workers] = 6 * SECONDS / wall(engine, 6 * workers, SECONDS)
+        engine.close()
+    result["efficiency"] = curve
+    return result
+
+
+def predicted(cores, result, seconds=SECONDS):
+    """Share of the time that cores compute: blocks end, and the scheduler has them one after the other."""
+    commit = result["commit"]["1"]
+    demand = cores / (seconds + commit)  # blocks a second
+    return seconds / (seconds + commit) * min(1.0, result["tasks_per_second"] / demand)
+
+
+def draw(result, path):
+    """Efficiency against workers, predicted and measured."""
+    import matplotlib
+
+    matplotlib.use("agg")
+    import matplotlib.pyplot as plt
+
+    figure, axes = plt.subplots(figsize=(6, 4), layout="constrained")
+    cores = np.logspace(0, 4, 100)
+    for seconds in (1, 10, 60):
+        axes.semilogx(cores, [predicted(c, result, seconds) for c in cores], label=f"blocks of {seconds} s")
+    measured = {int(k): v for k, v in result["efficiency"].items()}
+    axes.plot(list(measured), list(measured.values()), "ko", label="measured, 1 s, workers that wait")
+    axes.set(xlabel="workers", ylabel="share of the time that is computed", ylim=(0, 1.05))
+    axes.legend(loc="lower left")
+    axes.grid(alpha=0.3)
+    figure.savefig(path, dpi=150)
+
+
+def main():
+    """Measure, draw, print."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("-o", "--output", type=Path, default=Path(__file__).parents[1] / "out")
+    folder = parser.parse_args().output
+    folder.mkdir(parents=True, exist_ok=True)
+    result = json.loads(json.dumps(measure()))
+    (folder / "scaling.json").write_text(json.dumps(result, indent=1) + "\n")
+    draw(result, folder / "scaling.png")
+    print(json.dumps(result, indent=1))
+    for cores in (100, 1000):
+        shares = ", ".join(f"{predicted(cores, result, s):.2f} (blocks of {s} s)" for s in (1, 10, 60))
+        print(f"{cores} cores: computing {shares} of the time")
+
+
+if __name__ == "__main__":
+    main()
