@@ -24,7 +24,7 @@ __all__ = ["Mesh", "mesh_of", "no_cells"]
 Array = NDArray[np.float64]
 
 _BEND = 0.5  # log of the density ratio that a cell may span
-_CROWDED, _MOST_PARTS = 4000, 8  # so many asperities pay for one more cell with fewer moments
+_CROWDED, _MOST_PARTS = 1300, 8
 
 _ORDER = 20
 NODES = chebyshev.chebpts1(_ORDER)
