@@ -5,6 +5,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import brentq
 
 from analytic.gradings import Grading
+from analytic.heights import HeightLaw
 from analytic.integrals import fn
 from analytic.quantities import QUANTITIES, Quantity
 from analytic.surface import Surface
@@ -16,7 +17,14 @@ Array = NDArray[np.float64]
 _RANGE = (-40.0, 1000.0)
 
 
-def separation_at(surface: Surface, quantity: str, value: ArrayLike, grading: Grading | None = None) -> Array:
+def separation_at(
+    surface: Surface,
+    quantity: str,
+    value: ArrayLike,
+    grading: Grading | None = None,
+    *,
+    law: HeightLaw | None = None,
+) -> Array:
     """Separation at which a mean has a given value.
 
     Parameters
@@ -29,6 +37,8 @@ def separation_at(surface: Surface, quantity: str, value: ArrayLike, grading: Gr
         Its values, in its SI unit, any shape.
     grading : Grading, optional
         E*(s)/E*; left out: homogeneous.
+    law : HeightLaw, optional
+        Law of the heights; left out: Gaussian.
 
     Returns
     -------
@@ -46,14 +56,16 @@ def separation_at(surface: Surface, quantity: str, value: ArrayLike, grading: Gr
     per_surface = surface.n_asperities * q.scale(surface)
     if not np.all(np.isfinite(target) & (target > 0)):
         raise ValueError(f"{quantity} = {value!r}: give finite values > 0 {q.unit}")
-    return _separations(q, np.log(target / per_surface), chosen)
+    return _separations(q, np.log(target / per_surface), chosen, law)
 
 
-def _separations(quantity: Quantity, log_target: Array, grading: Grading | None) -> Array:
+def _separations(
+    quantity: Quantity, log_target: Array, grading: Grading | None, law: HeightLaw | None = None
+) -> Array:
     """Largest h with ``log F*_n(h) = log_target``."""
     n = quantity.exponent
     grid = np.concatenate([np.linspace(_RANGE[0], 10, 251), np.geomspace(10.5, _RANGE[1], 60)])
-    on_grid = fn(n, grid, grading, log=True)
+    on_grid = fn(n, grid, grading, log=True, law=law)
     roots = []
     for target in log_target.ravel():
         high_enough = np.flatnonzero(on_grid >= target)
@@ -63,12 +75,12 @@ def _separations(quantity: Quantity, log_target: Array, grading: Grading | None)
                 "give another value"
             )
         left, right = grid[high_enough[-1] : high_enough[-1] + 2].tolist()
-        roots.append(brentq(_excess, left, right, (n, grading, target), xtol=1e-14, rtol=1e-14))
+        roots.append(brentq(_excess, left, right, (n, grading, law, target), xtol=1e-14, rtol=1e-14))
     return np.array(roots, dtype=np.float64).reshape(log_target.shape)
 
 
-def _excess(h: float, n: float, grading: Grading | None, log_target: float) -> float:
-    return float(fn(n, h, grading, log=True)) - log_target
+def _excess(h: float, n: float, grading: Grading | None, law: HeightLaw | None, log_target: float) -> float:
+    return float(fn(n, h, grading, log=True, law=law)) - log_target
 
 
 def ratio_at_equal_load(quantity: str, h: ArrayLike, grading: Grading) -> Array:

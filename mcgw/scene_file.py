@@ -10,6 +10,7 @@ import numpy as np
 import tomli_w
 
 from analytic import QUANTITIES, Body, Exponential, Grading, Homogeneous, Surface, Table, composite_modulus
+from mcgw.heights_section import heights_law, heights_table
 from mcgw.scene import SAMPLERS, Scene, SceneError
 from mcgw.section import Section
 
@@ -77,10 +78,10 @@ def scene_from(text: str | bytes, *, folder: Path | None = None) -> Scene:
         "title": top.text("title", ""),
         "surface": surface,
         **_grading(parts["grading"], surface, folder or Path()),
+        "heights": heights_law(parts["heights"], folder or Path()),
         **_contact(parts["contact"]),
         **_ensemble(parts["ensemble"]),
     }
-    parts["heights"].choice("law", "gaussian", ("gaussian",))
     for section in (top, *parts.values()):
         section.finish()
     if top.problems:
@@ -208,7 +209,7 @@ def scene_text(scene: Scene) -> str:
         "title": scene.title,
         "surface": {key: float(getattr(surface, key)) for key in keys},
         "grading": {**_grading_table(scene.grading), "negative": scene.negative},
-        "heights": {"law": "gaussian"},
+        "heights": heights_table(scene.heights),
         "contact": {"separations": list(scene.separations), "quantities": list(scene.quantities)},
         "ensemble": {
             key: getattr(scene, key)
