@@ -34,14 +34,14 @@ def doubts(fit: Fit, topography: Topography, cutoff: float | None) -> list[str]:
 def _of_the_pixel(fit: Fit, pixel: float, cutoff: float | None) -> list[str]:
     if cutoff is not None and cutoff < _PIXELS * pixel:
         return [
-            f"cutoff: {cutoff / pixel:.3g} pixels a wavelength; below {_PIXELS:g} the pixel sets eta and R, not "
-            "the specimen; give a longer cutoff or finer pixels"
+            f"cutoff: {cutoff / pixel:.3g} pixels a wavelength; below {_PIXELS:g} the pixel sets eta and R, "
+            "not the specimen; give a longer cutoff or finer pixels"
         ]
     kept = fit.mean_squares["bend_2"] / fit.mean_squares["bend_1"]
     if kept < _RESOLVED:
         return [
-            f"pixel: the mean square curvature falls to {kept:.2g} of itself from one pixel to two; the pixel "
-            f"sets m4, not the specimen; give a cutoff of {_PIXELS:g} pixels or more"
+            f"pixel: the mean square curvature falls to {kept:.2g} of itself from one pixel to two; the "
+            f"pixel sets m4, not the specimen; give a cutoff of {_PIXELS:g} pixels or more"
         ]
     return []
 

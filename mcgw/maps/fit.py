@@ -174,7 +174,7 @@ def _moments(tally: Tally) -> SpectralMoments:
 
 def _skewness(tally: Tally) -> float:
     z, z2, z3 = (mean_squares(tally)[key] for key in ("z", "z2", "z3"))
-    return (z3 - 3 * z * z2 + 2 * z**3) / (z2 - z * z) ** 1.5
+    return float((z3 - 3 * z * z2 + 2 * z**3) / (z2 - z * z) ** 1.5)
 
 
 def _by_moments(tally: Tally) -> NDArray[np.float64]:

@@ -94,7 +94,7 @@ def _apex(z: Any, j: Any, i: Any) -> Any:
 
 @njit(nogil=True, cache=True)
 def _pass(z: Any, dx: Any, dy: Any, across: Any, sums: Any, summits: Any, part_of: Any) -> Any:
-    """Fill `sums`; write height, curvature and place of the summits and their sub-areas; give their number."""
+    """Fill `sums`; write height, curvature, place and sub-area of each summit; give their number."""
     rows, columns = z.shape[0] - 8, z.shape[1] - 8
     found = 0
     for j in range(rows):
