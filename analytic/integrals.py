@@ -23,7 +23,7 @@ Array = NDArray[np.float64]
 
 _REACH = 13.0  # phi(13)/phi(0) = 2e-37: what lies beyond can carry any modulus up to exp(4|s|)
 _NODES = 64
-_BLOCK = 256  # separations at a time: nodes x block stay in the cache
+_BLOCK = 192  # separations at a time: nodes x block x 8 bytes stay in the cache
 
 
 @cache
@@ -39,13 +39,26 @@ def _panel(n: float, h: Array, grading: Grading, low: Array, high: Array) -> Arr
     above = np.maximum(h, 0.0)
     start = np.sqrt(low - h)
     width = np.sqrt(high - h) - start
-    v = start + width * x
-    beyond = v * v + (h - above)  # s - above, without cancellation
-    terms = np.exp(-beyond * (beyond / 2 + above))
-    terms *= grading(beyond + above)
-    for _ in range(int(2 * n) + 1):  # v^(2n+1): products are ten times faster than a power
-        terms *= v
-    return np.asarray((terms @ (2 * w))[:, None] * width)
+    odd = int(2 * n) + 1
+    later = bool(start.any())
+    if later:
+        v = start + width * x
+        approach = v * v
+    else:  # the panel begins at the separation: v^(2n+1) goes into the weights
+        approach = (width * width) * (x * x)
+        w = w * x**odd
+    beyond = approach + (h - above) if h[0, 0] < 0 else approach  # s - above, without cancellation
+    terms = beyond * -0.5
+    terms -= above
+    terms *= beyond
+    np.exp(terms, out=terms)
+    if not isinstance(grading, Homogeneous):
+        terms *= grading(beyond + above)
+    if later:
+        for _ in range(odd):  # products are ten times faster than a power
+            terms *= v
+        return np.asarray((terms @ (2 * w))[:, None] * width)
+    return np.asarray((terms @ (2 * w))[:, None] * width ** (odd + 1))
 
 
 def _sorted(n: float, h: Array, grading: Grading, between: tuple[float, float]) -> Array:
@@ -59,7 +72,8 @@ def _sorted(n: float, h: Array, grading: Grading, between: tuple[float, float]) 
     for left, right in pairwise([-np.inf, *sorted(cuts), np.inf]):
         low, high = np.clip(left, bottom, top), np.clip(right, bottom, top)
         inside = np.flatnonzero(high > low)
-        for i in np.split(inside, range(_BLOCK, inside.size, _BLOCK)):
+        for k in range(0, inside.size, _BLOCK):
+            i = inside[k : k + _BLOCK]
             result[i] += _panel(n, h[i], grading, low[i], high[i])
     return np.where(h >= 0, result, result / np.sqrt(2 * np.pi))
 

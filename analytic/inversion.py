@@ -6,7 +6,7 @@ from scipy.optimize import brentq
 
 from analytic.gradings import Grading
 from analytic.heights import HeightLaw
-from analytic.integrals import fn
+from analytic.integrals import fn, fn_scaled
 from analytic.quantities import QUANTITIES, Quantity
 from analytic.surface import Surface
 
@@ -15,6 +15,7 @@ __all__ = ["ratio_at_equal_load", "separation_at"]
 Array = NDArray[np.float64]
 
 _RANGE = (-40.0, 1000.0)
+_LAST_DIGITS = 4 * np.finfo(float).eps
 
 
 def separation_at(
@@ -75,12 +76,22 @@ def _separations(
                 "give another value"
             )
         left, right = grid[high_enough[-1] : high_enough[-1] + 2].tolist()
-        roots.append(brentq(_excess, left, right, (n, grading, law, target), xtol=1e-14, rtol=1e-14))
+        roots.append(_root(left, right, (n, grading, law, target)))
     return np.array(roots, dtype=np.float64).reshape(log_target.shape)
 
 
+def _root(left: float, right: float, problem: tuple[float, Grading | None, HeightLaw | None, float]) -> float:
+    # A target right at the end of the bracket may lie beyond it by a last digit.
+    if _excess(left, *problem) <= 0:
+        return left
+    if _excess(right, *problem) >= 0:
+        return right
+    return float(brentq(_excess, left, right, problem, xtol=1e-15, rtol=_LAST_DIGITS))
+
+
 def _excess(h: float, n: float, grading: Grading | None, law: HeightLaw | None, log_target: float) -> float:
-    return float(fn(n, h, grading, log=True, law=law)) - log_target
+    """Logarithm relative to the target; -100 also where the integral is not positive."""
+    return float(np.fmax(fn(n, h, grading, log=True, law=law) - log_target, -100.0))
 
 
 def ratio_at_equal_load(quantity: str, h: ArrayLike, grading: Grading) -> Array:
@@ -112,4 +123,6 @@ def ratio_at_equal_load(quantity: str, h: ArrayLike, grading: Grading) -> Array:
     h = np.asarray(h, dtype=np.float64)
     other = _separations(QUANTITIES["load"], fn(1.5, h, log=True), grading)
     chosen = grading if q.modulus else None
-    return np.asarray(np.exp(fn(q.exponent, other, chosen, log=True) - fn(q.exponent, h, log=True)))
+    # Relative to the loads, which are equal: hardly sensitive to the last digits of h2, and no underflow.
+    graded = fn_scaled(q.exponent, other, chosen) / fn_scaled(1.5, other, grading)
+    return graded / (fn_scaled(q.exponent, h) / fn_scaled(1.5, h))

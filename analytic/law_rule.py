@@ -44,7 +44,9 @@ def _edges(law: HeightLaw, start: float, top: float) -> list[float]:
     for mark in marks:
         while edges[-1] < mark:
             a = edges[-1]
-            step = min(_SPANS * law.span(a), max(_WIDEST, abs(a))) if not (below and a == below[0]) else _WIDEST
+            step = (
+                min(_SPANS * law.span(a), max(_WIDEST, abs(a))) if not (below and a == below[0]) else _WIDEST
+            )
             if below:
                 step = min(step, max((_GROWTH - 1) * (a - below[0]), _TINY))
             if above:

@@ -23,11 +23,11 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from mcgw.asperities import heights
     from mcgw.ensemble import Ensemble
-    from mcgw.heights import heights
     from mcgw.scene import Scene, SceneError
     from mcgw.scene_file import load_scene, scene_from, scene_text
-    from mcgw.simulate import simulate
+    from mcgw.simulation import simulate
     from mcgw.store import open_ensemble
 
 __all__ = [
@@ -47,12 +47,12 @@ _HOME = {
     "Ensemble": "ensemble",
     "Scene": "scene",
     "SceneError": "scene",
-    "heights": "heights",
+    "heights": "asperities",
     "load_scene": "scene_file",
     "open_ensemble": "store",
     "scene_from": "scene_file",
     "scene_text": "scene_file",
-    "simulate": "simulate",
+    "simulate": "simulation",
 }
 
 

@@ -19,14 +19,13 @@ from numpy.polynomial import chebyshev
 from numpy.polynomial.legendre import leggauss
 from numpy.typing import NDArray
 
-from analytic import HeightLaw, resolved_breaks
+from analytic import Grading, HeightLaw, resolved_breaks
 from mcgw.scene import Scene
 
 __all__ = ["Mesh", "mesh_of", "no_cells"]
 
 Array = NDArray[np.float64]
 
-EXTRAS_PER_SURFACE = 0.1
 _CLOSEST = 2.0**-40  # of a cell to an end of the support that is a broken power
 _CROWDED, _MOST_PARTS = 4000, 8  # so many asperities pay for one more cell with fewer moments
 
@@ -69,7 +68,7 @@ class Mesh:
         return np.asarray(u * chebyshev.chebval(2 * u - 1, self.stretch[:, cell], tensor=False))
 
 
-def mesh_of(scene: Scene, *, split: bool = True) -> Mesh:
+def mesh_of(scene: Scene, *, split: bool = True, rare: float = 0.1) -> Mesh:
     """Cut the contacting heights of a scene into cells.
 
     Parameters
@@ -78,6 +77,8 @@ def mesh_of(scene: Scene, *, split: bool = True) -> Mesh:
         Its separations, grading, height law and number of asperities are used.
     split : bool, optional
         Cut crowded cells further, so that each needs fewer moments.
+    rare : float, optional
+        Asperities a surface that may be expected beyond the cells, on either side.
 
     Returns
     -------
@@ -85,10 +86,10 @@ def mesh_of(scene: Scene, *, split: bool = True) -> Mesh:
         With every separation and every break of the grading on an edge.
     """
     law = scene.heights
-    low, high = _range(law, scene.n_asperities, scene.lowest)
+    low, high = _range(law, rare / scene.n_asperities, scene.lowest)
     if not low < high:
         return no_cells(scene)
-    breaks = (*resolved_breaks(scene.modulus, low, high), *law.breaks)
+    breaks = (*_breaks(scene.modulus, low, high), *law.breaks)
     edges = _graded_edges(law, low, high, np.unique(scene.separations), breaks)
     if split:
         edges = _split_crowded(law, scene.n_asperities, edges)
@@ -108,13 +109,13 @@ def _above(law: HeightLaw, s: float) -> float:
     return float(law.above(np.array(s)))
 
 
-def _range(law: HeightLaw, n: int, lowest: float) -> tuple[float, float]:
-    """Where the cells lie; outside fewer than `EXTRAS_PER_SURFACE` asperities are expected.
+def _range(law: HeightLaw, share: float, lowest: float) -> tuple[float, float]:
+    """Where the cells lie: at most this share of all heights on either side of them.
 
     Rounded to a sixteenth, so that it does not hang on the last digit of an inverse distribution.
     """
-    share = np.array(min(EXTRAS_PER_SURFACE / n, 0.5))
-    bottom, top = float(law.from_below(share, np.inf)), float(law.from_above(share, -np.inf))
+    rare = np.array(min(share, 0.5))
+    bottom, top = float(law.from_below(rare, np.inf)), float(law.from_above(rare, -np.inf))
     low, high = np.floor(16 * bottom) / 16, np.ceil(16 * top) / 16
     if low <= law.support[0]:
         low = law.support[0]
@@ -138,6 +139,15 @@ def _widest(law: HeightLaw, a: float) -> float:
     for end in law.singular:
         width = min(width, a - end if end < a else (end - a) / 2)
     return width
+
+
+def _breaks(grading: Grading, low: float, high: float) -> tuple[float, ...]:
+    """Breaks of the grading; one found by search is halved, since the law has a root besides."""
+    breaks = resolved_breaks(grading, low, high)
+    if grading.smooth:
+        return breaks
+    marks = np.array([low, *breaks, high])
+    return tuple(np.unique([*breaks, *(marks[:-1] + marks[1:]) / 2]).tolist())
 
 
 def _graded_edges(

@@ -67,7 +67,10 @@ def counts_of(scene: Scene, mesh: Mesh, first: int, n: int) -> Counts:
 
 
 def strata_of(scene: Scene, mesh: Mesh, n: int) -> Counts:
-    """Number of strata: the expected number of asperities, rounded up and weighted to match.
+    """Number of strata in each cell: the expected number of asperities, and enough in the tail.
+
+    The last of N equal strata has no upper end, and its asperity alone makes an error of order 1/N.
+    So every cell gets at least half of an equal share, with weights that keep the means exact.
 
     Parameters
     ----------
@@ -85,7 +88,7 @@ def strata_of(scene: Scene, mesh: Mesh, n: int) -> Counts:
     """
     probability = np.concatenate([[mesh.low_extras], mesh.probability, [mesh.high_extras]])
     expected = scene.n_asperities * probability
-    numbers = np.ceil(expected).astype(np.int64)
+    numbers = np.ceil(np.maximum(expected, expected.sum() / (2 * len(expected)))).astype(np.int64)
     weights = expected / np.maximum(numbers, 1)
     alike = np.repeat(numbers[:, None], n, axis=1)
     return Counts(np.ascontiguousarray(alike[1:-1]), alike[0], alike[-1], weights)

@@ -21,8 +21,8 @@ _ROWS = 8192  # surfaces at a time, for ensembles larger than the memory
 class Sums(Protocol):
     """Where an ensemble's numbers lie: in memory or in a file."""
 
-    def read(self, name: str, start: int, stop: int) -> Array:
-        """Rows `start` to `stop` of a dataset."""
+    def read(self, name: str, start: int, stop: int | None) -> Array:
+        """Rows `start` to `stop` (None: to the end) of a dataset."""
         ...
 
     def rows(self) -> int:
@@ -36,8 +36,8 @@ class Arrays:
 
     arrays: dict[str, Array]
 
-    def read(self, name: str, start: int, stop: int) -> Array:
-        """Rows `start` to `stop` of an array."""
+    def read(self, name: str, start: int, stop: int | None) -> Array:
+        """Rows `start` to `stop` (None: to the end) of an array."""
         return self.arrays[name][start:stop]
 
     def rows(self) -> int:
@@ -119,7 +119,7 @@ class Ensemble:
 
     def stderr(self, quantity: str) -> Array:
         """Standard error of the mean, nan for one surface."""
-        return self.std(quantity) / np.sqrt(self.n_surfaces)
+        return np.asarray(self.std(quantity) / np.sqrt(self.n_surfaces))
 
     def interval(self, quantity: str, level: float = 0.95) -> tuple[Array, Array]:
         """Confidence interval of the mean, by Student's t.

@@ -127,8 +127,8 @@ def _scipy(section: Section) -> HeightLaw:
         return Gaussian()
 
 
-def heights_table(law: HeightLaw) -> dict[str, Any]:
-    """The table [heights] of a law: read again, it gives the same law."""
+def heights_table(law: HeightLaw, file: str | None = None) -> dict[str, Any]:
+    """The table [heights] of a law, read again the same; measured heights by the name of their file."""
     match law:
         case Gaussian():
             return {"law": "gaussian"}
@@ -139,7 +139,8 @@ def heights_table(law: HeightLaw) -> dict[str, Any]:
         case HeightTable():
             return {"law": "table", "s": list(law.s), "share": list(law.share)}
         case MeasuredHeights():
-            return {"law": "table", "heights": list(law.heights), "resample": False}
+            held = {"heights": list(law.heights)} if file is None else {"file": file}
+            return {"law": "table", **held, "resample": False}
         case ScipyHeights():
             return {"law": "scipy", "name": law.distribution.dist.name, "shapes": _shapes(law.distribution)}
     return {"law": f"python: {law!r}"}

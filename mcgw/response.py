@@ -12,11 +12,11 @@ from typing import Any
 
 import numpy as np
 from numba import njit, prange
-from numpy.polynomial import chebyshev
 from numpy.typing import NDArray
 
-from analytic import QUANTITIES, Grading, Surface
-from mcgw.cells import NODES, TO_COEFFICIENTS, Mesh
+from analytic import Grading, Surface
+from mcgw.cells import Mesh
+from mcgw.laws import Laws
 from mcgw.moments import Layout
 from mcgw.tree import Tree, transfer, tree_over
 
@@ -25,8 +25,6 @@ __all__ = ["Response", "response_of"]
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
-_ACCURACY = 1e-13  # relative to the largest value of a law on the cell
-_TIMES_U = TO_COEFFICIENTS @ ((1 + NODES[:, None]) / 2 * chebyshev.chebvander(NODES, len(NODES) - 1))
 _MOST_MOMENTS = 18  # what is not resolved by so many is left to the children
 
 
@@ -86,6 +84,7 @@ def response_of(
     grading: Grading,
     quantities: tuple[str, ...],
     separations: tuple[float, ...],
+    kept: Layout | None = None,
 ) -> Response:
     """Build the response of a mesh.
 
@@ -101,6 +100,8 @@ def response_of(
         Rows of the answer.
     separations : tuple of float
         Columns of the answer, in any order.
+    kept : Layout, optional
+        The moments there are; left out: as many as it takes.
 
     Returns
     -------
@@ -110,11 +111,11 @@ def response_of(
     Raises
     ------
     ValueError
-        If the grading is not resolved on a cell.
+        If the grading is not resolved on a cell, or not by the moments there are.
     """
     tree = tree_over(mesh)
-    laws = _Laws.of(surface, grading, quantities, separations)
-    entries, plain, rooted = _walk(mesh, tree, laws)
+    laws = Laws.of(surface, grading, quantities, separations)
+    entries, plain, rooted = _walk(mesh, tree, laws, kept)
     layout = Layout(plain[: mesh.size], rooted)
     starts = layout.starts
     inner = starts[-1] + np.concatenate([[0], np.cumsum(plain[mesh.size :])]).astype(np.int64)
@@ -135,41 +136,6 @@ _NOTHING = (np.empty(0, np.int64), np.empty(0, np.int64), np.empty(0))
 
 
 @dataclass(frozen=True)
-class _Laws:
-    """All laws that are asked for, one an array element: ``scale (s - h)^exponent e(s)^modulus``."""
-
-    h: Array
-    exponent: Array
-    modulus: NDArray[np.bool_]
-    scale: Array
-    grading: Grading
-
-    @classmethod
-    def of(
-        cls, surface: Surface, grading: Grading, quantities: tuple[str, ...], separations: tuple[float, ...]
-    ) -> "_Laws":
-        chosen = [QUANTITIES[name] for name in quantities]
-        repeat = len(separations)
-        return cls(
-            h=np.tile(separations, len(chosen)),
-            exponent=np.repeat([q.exponent for q in chosen], repeat),
-            modulus=np.repeat([bool(q.modulus) for q in chosen], repeat),
-            scale=np.repeat([q.scale(surface) for q in chosen], repeat),
-            grading=grading,
-        )
-
-    def coefficients(self, which: Ints, a: float, t: Array, power: Array, base: Array) -> Array:
-        """Chebyshev coefficients of ``scale base^power e(a + t)^modulus``: shape (order, laws)."""
-        graded = np.where(self.modulus[which], self.grading(a + t)[:, None], 1.0)
-        return np.asarray(TO_COEFFICIENTS @ (self.scale[which] * graded * base**power))
-
-    def smooth_from(self, which: Ints, a: float) -> NDArray[np.bool_]:
-        """Which laws are smooth functions of the uniform on a node that starts at `a`."""
-        h = self.h[which]
-        return np.asarray((h < a) | ((h == a) & (self.exponent[which] % 1 == 0)))
-
-
-@dataclass(frozen=True)
 class _Entry:
     """Coefficients of some laws on one node; `rooted` ones multiply the R_j."""
 
@@ -179,13 +145,7 @@ class _Entry:
     coefficients: Array
 
 
-def _needed(coefficients: Array) -> Ints:
-    """Number of leading coefficients that describe each law (column) to the accuracy."""
-    tail = np.cumsum(np.abs(coefficients)[::-1], axis=0)[::-1]
-    return np.asarray((tail > _ACCURACY * tail[0]).sum(axis=0), dtype=np.int64)
-
-
-def _walk(mesh: Mesh, tree: Tree, laws: _Laws) -> tuple[list[_Entry], Ints, Ints]:
+def _walk(mesh: Mesh, tree: Tree, laws: Laws, kept: Layout | None) -> tuple[list[_Entry], Ints, Ints]:
     """From the root down: give each law to the coarsest nodes that resolve it."""
     entries: list[_Entry] = []
     plain, rooted = np.zeros(tree.size, dtype=np.int64), np.zeros(mesh.size, dtype=np.int64)
@@ -196,10 +156,7 @@ def _walk(mesh: Mesh, tree: Tree, laws: _Laws) -> tuple[list[_Entry], Ints, Ints
         which = which[laws.h[which] < b]
         t = tree.offsets(mesh, node)
         smooth = laws.smooth_from(which, a)
-        c = laws.coefficients(
-            which[smooth], a, t, laws.exponent[which[smooth]], (a - laws.h[which[smooth]]) + t[:, None]
-        )
-        needed = _needed(c)
+        c, needed = laws.plain(which[smooth], a, t)
         done = needed <= _MOST_MOMENTS
         if done.any():
             entries.append(_Entry(node, False, which[smooth][done], c[:, done]))
@@ -210,39 +167,28 @@ def _walk(mesh: Mesh, tree: Tree, laws: _Laws) -> tuple[list[_Entry], Ints, Ints
             continue
         if not done.all():
             raise ValueError(f"grading: not resolved near s = {a:.6g}; give its breaks, or a smoother one")
-        plain[node] = max(needed.max(initial=0), min(inherited, _witness(laws, a, t)))
+        # A law is smoother the farther it is, so what the parents need of this cell is no more than
+        # the nearest laws need, down to one row that counts.
+        _, nearest = laws.plain(laws.nearest(a), a, t)
+        plain[node] = max(needed.max(initial=0), min(inherited, nearest.max(initial=1)))
         at_edge = which[~smooth]
         if at_edge.size:
-            c = _rooted_coefficients(laws, at_edge, a, t)
-            rooted[node] = _needed(c).max()
+            c, needed = laws.from_edge(at_edge, a, t)
+            rooted[node] = needed.max()
             entries.append(_Entry(node, True, at_edge, c))
+    if kept:
+        _check_kept(mesh, kept, Layout(plain[: mesh.size], rooted))
+        plain[: mesh.size], rooted = kept.plain, kept.rooted
     return entries, plain, rooted
 
 
-def _witness(laws: _Laws, a: float, t: Array) -> int:
-    """Moments that a cell must hand to its parents: those of the nearest separations below it."""
-    every = np.arange(len(laws.h))
-    smooth = every[laws.smooth_from(every, a)]
-    nearest = [
-        same[laws.h[same] == laws.h[same].max()][0]
-        for n in np.unique(laws.exponent[smooth])
-        if (same := smooth[laws.exponent[smooth] == n]).size
-    ]
-    which = np.array(nearest, dtype=np.int64)
-    c = laws.coefficients(which, a, t, laws.exponent[which], (a - laws.h[which]) + t[:, None])
-    return int(_needed(c).max(initial=1))
-
-
-def _rooted_coefficients(laws: _Laws, which: Ints, a: float, t: Array) -> Array:
-    """Of ``law/sqrt(u)`` on the cell that starts at the separation, relatively accurate down to u = 0.
-
-    With t = u q(u) the law is ``sqrt(u) u^(n-1/2) q^n e``: the power of u is put in exactly.
-    """
-    u = (1 + NODES) / 2
-    c = laws.coefficients(which, a, t, laws.exponent[which], (t / u)[:, None])
-    steep = laws.exponent[which] > 1
-    c[:, steep] = _TIMES_U @ c[:, steep]
-    return c
+def _check_kept(mesh: Mesh, kept: Layout, needed: Layout) -> None:
+    short = (needed.plain > kept.plain) | (needed.rooted > kept.rooted)
+    if short.any():
+        s = mesh.edges[np.flatnonzero(short)[0]]
+        raise ValueError(
+            f"the moments kept do not resolve this near s = {s:.4g}; simulate the scene anew with it"
+        )
 
 
 def _transfers(mesh: Mesh, tree: Tree, plain: Ints, node_row: Ints) -> list[tuple[Ints, Ints, Array]]:

@@ -4,26 +4,28 @@
 ``tail``        only heights that touch, summed one by one: cells without any cell
 ``cells``       moments of the uniforms in each cell, times the response: exact in law
 ``aggregate``   the moments of crowded cells drawn from their Gaussian limit: any N at one price
-``stratified``  one jittered uniform in each of N equal strata: for means only
+``stratified``  one jittered uniform in each of about N strata: for means only
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from analytic import QUANTITIES
+from analytic import QUANTITIES, Exponential
 from mcgw.aggregate import CROWDED, add_gaussian_moments
 from mcgw.cells import Mesh, mesh_of, no_cells
 from mcgw.counts import Counts, counts_of, generator, strata_of
 from mcgw.extras import extra_heights
 from mcgw.hertz import hertz_sums
-from mcgw.moments import cell_moments
+from mcgw.moments import Layout, cell_moments
 from mcgw.response import Response, response_of
 from mcgw.scene import Scene
 
-__all__ = ["Block", "Cells", "Direct", "Sampler", "sampler_of"]
+__all__ = ["Block", "Cells", "Direct", "Sampler", "response_to", "sampler_of"]
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -83,20 +85,40 @@ def sampler_of(scene: Scene) -> "Sampler":
     name = _cheapest(scene) if scene.sampler == "auto" else scene.sampler
     if name == "direct":
         return Direct(scene)
-    mesh = no_cells(scene) if name == "tail" else mesh_of(scene, split=name == "cells")
+    meshes: dict[str, Callable[[Scene], Mesh]] = {
+        "tail": no_cells,
+        "cells": mesh_of,
+        "aggregate": partial(mesh_of, split=False),
+        "stratified": partial(mesh_of, split=False, rare=1e-9),
+    }
+    mesh = meshes[name](scene)
     return Cells(scene, mesh, response_to(scene, mesh), name)
 
 
-def response_to(scene: Scene, mesh: Mesh) -> Response:
+def response_to(scene: Scene, mesh: Mesh, kept: Layout | None = None) -> Response:
     """Response for all that moments can tell; contacts are counted."""
+    if scene.keep == "moments" and kept is None:
+        kept = _lasting_layout(scene, mesh)
     summed = tuple(name for name in scene.quantities if QUANTITIES[name].exponent > 0)
-    return response_of(mesh, scene.surface, scene.modulus, summed, scene.separations)
+    return response_of(mesh, scene.surface, scene.modulus, summed, scene.separations, kept)
+
+
+def _lasting_layout(scene: Scene, mesh: Mesh) -> Layout:
+    """Moments that serve every quantity, this grading, and another exponential one."""
+    names = tuple(name for name, q in QUANTITIES.items() if q.exponent > 0)
+    layouts = [
+        response_of(mesh, scene.surface, grading, names, scene.separations).layout
+        for grading in (scene.modulus, Exponential(2.0), Exponential(0.5), Exponential(0.0))
+    ]
+    plain = np.max([layout.plain for layout in layouts], axis=0)
+    return Layout(plain + 1, np.max([layout.rooted for layout in layouts], axis=0) + 1)  # one in reserve
 
 
 def _cheapest(scene: Scene) -> str:
     """Cells, unless so few asperities touch that summing them singly is cheaper than 60 cells are."""
     touching = scene.n_asperities * float(scene.heights.above(np.array(scene.lowest)))
-    return "tail" if touching * len(scene.separations) < 400 else "cells"
+    few = touching * len(scene.separations) < 400
+    return "tail" if few and scene.keep == "sums" else "cells"
 
 
 @dataclass(frozen=True)

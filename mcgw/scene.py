@@ -135,6 +135,8 @@ class Scene:
         ):
             if value not in known:
                 problems.append(f"{name}: {value!r} is not one of {', '.join(known)}")
+        if self.keep == "moments" and self.sampler not in ("auto", "cells", "aggregate"):
+            problems.append(f'ensemble.keep = "moments": sampler = "{self.sampler}" has none; take "cells"')
         return problems
 
     def _wrong_scales(self) -> list[str]:

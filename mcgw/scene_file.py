@@ -190,13 +190,15 @@ def _ensemble(section: Section) -> dict[str, Any]:
     return {key: value for key, value in values.items() if value is not None}
 
 
-def scene_text(scene: Scene) -> str:
+def scene_text(scene: Scene, *, heights_file: str | None = None) -> str:
     """TOML text of a scene with nothing left out: read again, it gives the same scene.
 
     Parameters
     ----------
     scene : Scene
         With a grading that a file can hold.
+    heights_file : str, optional
+        Name beside the scene of a file that holds its measured heights, in the place of a list.
 
     Returns
     -------
@@ -209,7 +211,7 @@ def scene_text(scene: Scene) -> str:
         "title": scene.title,
         "surface": {key: float(getattr(surface, key)) for key in keys},
         "grading": {**_grading_table(scene.grading), "negative": scene.negative},
-        "heights": heights_table(scene.heights),
+        "heights": heights_table(scene.heights, heights_file),
         "contact": {"separations": list(scene.separations), "quantities": list(scene.quantities)},
         "ensemble": {
             key: getattr(scene, key)

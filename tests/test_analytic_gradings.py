@@ -2,12 +2,13 @@
 
 import math
 
-import analytic
 import mpmath as mp
 import numpy as np
 import pytest
-from analytic import Clipped, Custom, Exponential, Table
 from reference import F, error, graded, integral, pchip, phi
+
+import analytic
+from analytic import Clipped, Custom, Exponential, Table
 
 TOLERANCE = 1e-13  # promised for every grading that is resolved; below: where the data do not allow it
 H = (-40.0, -9.0, -2.5, -0.5, 0.0, 0.3, 1.7, 4.0, 11.0, 35.0)
@@ -74,7 +75,8 @@ def test_jump_and_kink_with_half_integer_order(n, declared):
     )
     jump, kink = mp.mpf(1.1), mp.mpf(0.4)
     truth = {
-        h: graded(n, h, lambda s: (2 if s > jump else 1) + abs(s - kink), breaks=[kink, jump]) for h in H[1:-1]
+        h: graded(n, h, lambda s: (2 if s > jump else 1) + abs(s - kink), breaks=[kink, jump])
+        for h in H[1:-1]
     }
     assert worst(grading, truth.get, n, H[1:-1]) < TOLERANCE
 
@@ -140,7 +142,7 @@ def test_clipped_exponential(n, gamma):
     for h in (-8.0, -1.2, -0.3, 0.9):
         if gamma < 0 and h >= zero:
             continue
-        f = lambda s, h=mp.mpf(h): (s - h) ** n * (g - (g - 1) * mp.exp(-s))  # noqa: E731
+        f = lambda s, h=h: (s - mp.mpf(h)) ** n * (g - (g - 1) * mp.exp(-s))  # noqa: E731
         truth = integral(f, h, low=low if low is not None and low > h else None, high=high)
         # The zero is where float arithmetic puts it; the modulus vanishes there, so it does not count.
         assert error(analytic.fn(n, h, law), truth) < TOLERANCE
@@ -172,7 +174,9 @@ def test_always_positive_up_to_gamma_star():
     star = math.exp(0.5) / (math.exp(0.5) - 1)
     assert star == pytest.approx(2.541494082536798, rel=1e-15)
     h = -1000.0
-    deep = [float(analytic.fn(1.5, h, Exponential(g))) / abs(h) ** 1.5 for g in (star - 0.1, star, star + 0.1)]
+    deep = [
+        float(analytic.fn(1.5, h, Exponential(g))) / abs(h) ** 1.5 for g in (star - 0.1, star, star + 0.1)
+    ]
     # The shift by 1 leaves (3/2)(gamma-1) sqrt(e)/|h| = 0.004; 0.1 in gamma is worth 0.065.
     assert deep[0] > 0.05
     assert deep[1] == pytest.approx(1.5 * (star - 1) * math.exp(0.5) / 1000, rel=0.01)
@@ -196,7 +200,7 @@ def test_zeros_listed_in_the_theory(gamma, n, zero):
     ("function", "message"),
     [
         (lambda s: np.where(s > 1, np.nan, 1.0), "not finite at s = 1"),
-        (lambda s: np.ones(3), r"gave shape \(3,\)"),
+        (lambda _: np.ones(3), r"gave shape \(3,\)"),
     ],
 )
 def test_bad_functions_are_named(function, message):
@@ -205,12 +209,12 @@ def test_bad_functions_are_named(function, message):
 
 
 def test_a_number_will_do_as_a_function():
-    assert float(analytic.fn(1.5, 0.3, Custom(lambda s: 2.0))) == pytest.approx(
+    assert float(analytic.fn(1.5, 0.3, Custom(lambda _: 2.0))) == pytest.approx(
         2 * float(analytic.fn(1.5, 0.3)), rel=1e-15
     )
 
 
 @pytest.mark.parametrize("gamma", [math.inf, math.nan])
 def test_gamma_must_be_finite(gamma):
-    with pytest.raises(ValueError, match="gamma = .*finite"):
+    with pytest.raises(ValueError, match=r"gamma = .*finite"):
         Exponential(gamma)

@@ -2,9 +2,10 @@
 
 import math
 
-import analytic
 import numpy as np
 import pytest
+
+import analytic
 from analytic import Custom, Exponential, resolved_breaks
 
 
@@ -78,4 +79,6 @@ def test_first_negative_looks_on_both_sides_of_a_break():
         return np.where(s == 1 / 3, -1.0, 1.0)
 
     assert analytic.first_negative(Custom(spike, breaks=(1 / 3,)), 0, 1) == 1 / 3
-    assert analytic.first_negative(Custom(lambda s: np.where(s < 1 / 3, -1.0, 1.0), (1 / 3,)), 1 / 3, 1) is None
+    assert (
+        analytic.first_negative(Custom(lambda s: np.where(s < 1 / 3, -1.0, 1.0), (1 / 3,)), 1 / 3, 1) is None
+    )

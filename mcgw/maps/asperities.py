@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from mcgw.heights import heights
+from mcgw.asperities import heights
 from mcgw.philox import POSITIONS, uniforms
 from mcgw.scene import Scene
 

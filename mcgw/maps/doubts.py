@@ -1,13 +1,14 @@
 """Why a fit may not be trusted: the pixel, the shape of the heights, the crowd of summits."""
 
 from mcgw.maps.fit import Fit
-from mcgw.maps.hiding import CROWDED
+from mcgw.maps.hiding import CROWDED, visible
 from mcgw.maps.topography import Topography
 
 __all__ = ["doubts"]
 
 _PIXELS = 10.0  # a cutoff wavelength should have
 _RESOLVED = 0.8  # of m4 over two pixels to that over one, at about ten pixels a wavelength
+_LOST = 0.1  # of the summits
 _SKEW, _ALPHA, _FEW, _STREAKY = 0.3, 1.5, 100, 1.5
 
 
@@ -70,9 +71,18 @@ def _of_the_summits(fit: Fit) -> list[str]:
         warnings.append(f"summits: only {fit.summits.size} were found; give a larger map or a shorter cutoff")
     if fit.visible is None:
         warnings.append("overlap: the summits are too many to be independent caps of that radius and spread")
-    elif fit.estimates["caps"].overlap > CROWDED:
+        return warnings
+    overlap = fit.estimates["caps"].overlap
+    sharp = visible(overlap).share
+    lost = sharp - fit.visible.share
+    if lost > _LOST:
         warnings.append(
-            f"overlap: eta R sigma = {fit.estimates['caps'].overlap:.2g}; of caps like these "
-            f"{100 * (1 - fit.visible.share):.0f} % hide under others, so asperities do not act one by one"
+            f"blur: {100 * lost:.0f} % of caps like these are lost where a valley is nearer than a pixel or a "
+            "third of a cutoff; give finer pixels, and a shorter cutoff"
+        )
+    if overlap > CROWDED:
+        warnings.append(
+            f"overlap: eta R sigma = {overlap:.2g}; of caps like these {100 * (1 - sharp):.0f} % hide under "
+            "others, so asperities do not act one by one"
         )
     return warnings

@@ -104,14 +104,24 @@ def _highest(
 
 @njit(parallel=True, cache=True)
 def _map(
-    shape: Any, pixel: Any, x: Any, y: Any, z: Any, starts: Any, bins: Any, size: Any, per: Any, periodic: Any
+    shape: Any,
+    pixel: Any,
+    origin: Any,
+    x: Any,
+    y: Any,
+    z: Any,
+    starts: Any,
+    bins: Any,
+    size: Any,
+    per: Any,
+    periodic: Any,
 ) -> Any:
     """Envelope above the centre of every pixel."""
     result = np.empty(shape)
     top = z.max()
     for j in prange(shape[0]):
         for i in range(shape[1]):
-            px, py = (i + 0.5) * pixel[0], (j + 0.5) * pixel[1]
+            px, py = origin[0] + (i + 0.5) * pixel[0], origin[1] + (j + 0.5) * pixel[1]
             result[j, i] = _highest(px, py, -np.inf, (x, y, z, top), starts, bins, size, per, periodic)
     return result
 
@@ -126,7 +136,13 @@ def _hidden(x: Any, y: Any, z: Any, starts: Any, bins: Any, size: Any, per: Any,
     return result
 
 
-def envelope(field: Asperities, shape: tuple[int, int], *, periodic: bool = False) -> Topography:
+def envelope(
+    field: Asperities,
+    shape: tuple[int, int],
+    *,
+    periodic: bool = False,
+    window: tuple[float, float, float, float] | None = None,
+) -> Topography:
     """Upper envelope of the caps ``z_i - r^2/(2R)`` on a grid.
 
     Parameters
@@ -137,6 +153,8 @@ def envelope(field: Asperities, shape: tuple[int, int], *, periodic: bool = Fals
         Rows and columns of the map.
     periodic : bool, optional
         Whether caps reach across the edges.
+    window : (float, float, float, float), optional
+        Left, right, bottom and top of what is mapped, inside the area, m; left out: all of it.
 
     Returns
     -------
@@ -151,10 +169,11 @@ def envelope(field: Asperities, shape: tuple[int, int], *, periodic: bool = Fals
     rows, columns = checked_shape(*shape)
     if not field.number:
         raise ValueError("the surface has no asperity: nothing to map")
-    pixel = (field.size[0] / columns, field.size[1] / rows)
+    left, right, bottom, top = window or (0.0, field.size[0], 0.0, field.size[1])
+    pixel = ((right - left) / columns, (top - bottom) / rows)
     b = bins_of(field)
     heights = _map((rows, columns), pixel, b.x, b.y, b.z, b.starts, b.shape, b.size, 0.5 / b.radius, periodic)
-    return Topography(heights, pixel, periodic)
+    return Topography(heights, pixel, periodic and window is None)
 
 
 def hidden_summits(field: Asperities, *, periodic: bool = False) -> NDArray[np.bool_]:

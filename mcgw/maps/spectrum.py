@@ -8,10 +8,11 @@ from numpy.typing import NDArray
 from scipy import fft
 from scipy.optimize import brentq
 
+from mcgw.maps.lengths import metres
 from mcgw.maps.nayak import SpectralMoments
 from mcgw.maps.topography import Topography, checked_shape
 
-__all__ = ["Spectrum", "gaussian_map", "moments_on_grid"]
+__all__ = ["Spectrum", "gaussian_map", "moments_on_grid", "spectrum_from"]
 
 _HURST = 0.8
 _NARROWEST, _WIDEST = 1 + 1e-6, 1e6  # ratio of the long to the short wavelength
@@ -166,3 +167,33 @@ def gaussian_map(
     noise = fft.rfft2(rng.standard_normal(shape), overwrite_x=True)
     noise *= amplitude
     return Topography(np.asarray(fft.irfft2(noise, s=shape, overwrite_x=True)), pixel, periodic=True)
+
+
+def spectrum_from(text: str) -> Spectrum:
+    """Spectrum of a list ``rms=1um,long=100um,short=5um,hurst=0.8`` or ``m0=1e-12,m2=1e-2,m4=5e8``.
+
+    Raises
+    ------
+    ValueError
+        If a key is unknown, missing or no number.
+    """
+    given: dict[str, float] = {}
+    for part in text.split(","):
+        key, _, value = part.partition("=")
+        key = key.strip()
+        if key not in ("rms", "long", "short", "hurst", "m0", "m2", "m4") or key in given:
+            raise ValueError(f"{part!r}: give rms, long, short and hurst, or m0, m2, m4 and hurst, each once")
+        given[key] = metres(value) if key in ("rms", "long", "short") else _number(key, value)
+    hurst = given.pop("hurst", _HURST)
+    if set(given) == {"m0", "m2", "m4"}:
+        return Spectrum.with_moments(SpectralMoments(**given), hurst)
+    if set(given) == {"rms", "long", "short"}:
+        return Spectrum(**given, hurst=hurst)
+    raise ValueError(f"{text!r}: give rms, long and short, or m0, m2 and m4")
+
+
+def _number(key: str, text: str) -> float:
+    try:
+        return float(text)
+    except ValueError:
+        raise ValueError(f"{key} = {text!r}: give a number") from None

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from typing import Any
 
 import numba
 import numpy as np
@@ -11,7 +12,7 @@ from mcgw.ensemble import Arrays, Ensemble
 from mcgw.samplers import Block, Cells, Sampler, sampler_of
 from mcgw.scene import Scene
 
-__all__ = ["block_size", "blocks", "result_arrays", "simulate", "use_threads"]
+__all__ = ["block_size", "blocks", "kept", "simulate", "use_threads"]
 
 _WORDS = 4_000_000  # numbers a block may hold
 _DRAWS = 1e8  # asperities a block may draw, so that a bar moves every second
@@ -39,7 +40,7 @@ def simulate(scene: Scene, *, threads: int | None = None) -> Ensemble:
     """
     sampler = sampler_of(scene)
     with use_threads(threads):
-        parts = [result_arrays(scene, block) for _, block in blocks(scene, sampler)]
+        parts = [kept(scene, block) for _, block in blocks(scene, sampler)]
     arrays = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
     return Ensemble(scene, sampler.name, Arrays(arrays))
 
@@ -51,11 +52,13 @@ def blocks(scene: Scene, sampler: Sampler) -> Iterator[tuple[int, Block]]:
         yield first, sampler.block(first, min(size, scene.n_surfaces - first))
 
 
-def result_arrays(scene: Scene, block: Block) -> dict[str, np.ndarray]:
+def kept(scene: Scene, block: Block) -> dict[str, Any]:
     """What of a block is kept: its sums, and its moments if the scene says so."""
-    arrays: dict[str, np.ndarray] = dict(block.sums)
+    arrays: dict[str, Any] = dict(block.sums)
     if "contacts" in arrays and scene.sampler != "stratified":
         arrays["contacts"] = np.rint(arrays["contacts"]).astype(np.int64)
+    if scene.keep == "moments":
+        arrays |= {"moments": block.moments, "cells": block.counts, "extras": block.extras}
     return arrays
 
 
@@ -78,7 +81,7 @@ def use_threads(threads: int | None) -> Iterator[None]:
     if threads is not None and threads < 1:
         raise ValueError(f"threads = {threads}: give a whole number >= 1")
     before = numba.get_num_threads()
-    numba.set_num_threads(min(threads or before, numba.config.NUMBA_NUM_THREADS))
+    numba.set_num_threads(min(threads or before, before))
     try:
         yield
     finally:

@@ -1,0 +1,7 @@
+"""``python -m mcgw``."""
+
+import sys
+
+from mcgw.cli import main
+
+sys.exit(main())

@@ -1,0 +1,30 @@
+"""``mcgw compare``: Monte Carlo against theory."""
+
+import argparse
+from pathlib import Path
+
+HELP = "compare an ensemble with theory: table, figure, verdict (exit code 1 if they disagree)"
+EXAMPLE = "mcgw compare demo.h5 -o demo.png"
+
+
+def arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of this command."""
+    parser.add_argument("file", type=Path, metavar="FILE", help="ensemble file (HDF5)")
+    parser.add_argument(
+        "-o", "--output", type=Path, metavar="PNG", help="figure (.png, .pdf, .svg); default: FILE.png"
+    )
+
+
+def execute(args: argparse.Namespace) -> int:
+    """Print table and verdict, save the figure."""
+    from mcgw.compare import compare
+    from mcgw.plots import save_comparison
+    from mcgw.report_text import comparison_table, verdict_line
+    from mcgw.store import open_ensemble
+
+    comparison = compare(open_ensemble(args.file))
+    path = args.output or args.file.with_suffix(".png")
+    save_comparison(comparison, path)
+    print(comparison_table(comparison))
+    print(f"\n{verdict_line(comparison.verdict)}\n{path}: figure")
+    return 0 if comparison.verdict.agrees else 1

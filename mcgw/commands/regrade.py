@@ -1,0 +1,39 @@
+"""``mcgw regrade``: another grading on the same surfaces."""
+
+import argparse
+from pathlib import Path
+
+HELP = "give the surfaces of a file another grading, without drawing them again"
+EXAMPLE = 'mcgw regrade demo.h5 --gamma 0.5 -o softer.h5   (simulated with keep = "moments")'
+
+
+def arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of this command."""
+    parser.add_argument("file", type=Path, metavar="FILE", help="ensemble file that keeps its moments")
+    law = parser.add_mutually_exclusive_group(required=True)
+    law.add_argument(
+        "--gamma", type=float, metavar="G", help="exponential grading, Eq. (4); 1 is homogeneous"
+    )
+    law.add_argument("--grading", type=Path, metavar="TABLE.csv", help="columns s or z, ratio or E_star")
+    parser.add_argument("-o", "--output", type=Path, metavar="FILE.h5", help="default: FILE.regraded.h5")
+
+
+def execute(args: argparse.Namespace) -> int:
+    """Write the new ensemble and print its ratios to the old one."""
+    from analytic import Exponential, Grading, Table
+    from mcgw.regrade import regrade
+    from mcgw.report_text import ratio_table
+    from mcgw.store import open_ensemble, save
+
+    old = open_ensemble(args.file)
+    grading: Grading
+    if args.grading:
+        surface = old.scene.surface
+        grading = Table.from_csv(args.grading, sigma=surface.sigma, E_star=surface.E_star)
+    else:
+        grading = Exponential(args.gamma)
+    path = args.output or args.file.with_suffix(".regraded.h5")
+    new = save(regrade(old, grading), path)
+    print(ratio_table(new, old))
+    print(f"{path}: {new.n_surfaces} surfaces, the same as in {args.file}")
+    return 0

@@ -1,0 +1,104 @@
+"""From a load, an area, ... back to the separation; and comparisons at equal load."""
+
+import math
+
+import mpmath as mp
+import numpy as np
+import pytest
+from reference import F, F_star
+
+import analytic
+from analytic import Custom, Exponential
+
+SURFACE = analytic.Surface(sigma=1.37e-6, radius=13e-6, eta=3e8, nominal_area=1e-4, E_star=78.6e9)
+H = np.array([-30.0, -8.0, -1.0, 0.0, 0.1, 2.0, 9.9, 10.2, 25.0, 36.0])
+
+
+@pytest.mark.parametrize(
+    "grading", [None, Exponential(0.2), Exponential(2.0), Custom(lambda s: 2 + np.tanh(s))]
+)
+@pytest.mark.parametrize("quantity", ["load", "area", "stiffness", "contacts", "conductance"])
+def test_separation_at_inverts_the_mean(quantity, grading):
+    h = H
+    if quantity == "contacts":  # below, every asperity touches and their number does not tell h
+        h = H[H > -5]
+    elif quantity == "stiffness" and grading is not None:
+        h = H[H > -1.6]  # below h = -1.7 it does not fall with h for every grading: several separations
+    elif quantity == "load" and grading is not None:
+        h = H[H > -3]
+    found = analytic.separation_at(SURFACE, quantity, analytic.mean(SURFACE, quantity, h, grading), grading)
+    # The mean has 1e-14 of error; h^2/2 turns it into less where h is large, d ln F/dh ~ 1e-2 into more.
+    np.testing.assert_allclose(found, h, rtol=1e-12, atol=2e-13)
+
+
+def test_shape_is_kept():
+    loads = analytic.load(SURFACE, [[0.0, 1.0], [2.0, 3.0]])
+    assert analytic.separation_at(SURFACE, "load", loads).shape == (2, 2)
+    assert analytic.separation_at(SURFACE, "load", loads[0, 0]).shape == ()
+
+
+def test_largest_of_several_separations():
+    """gamma = 5: the load rises, falls and turns negative as the surfaces approach."""
+    grading = Exponential(5.0)
+    peak = -2.637  # theory.md: where the stiffness changes sign
+    value = float(analytic.load(SURFACE, -4.0, grading))
+    found = float(analytic.separation_at(SURFACE, "load", value, grading))
+    assert found > peak
+    assert float(analytic.load(SURFACE, found, grading)) == pytest.approx(value, rel=1e-12)
+
+
+@pytest.mark.parametrize("value", [0.0, -1.0, math.nan, math.inf, [1.0, -1.0]])
+def test_values_that_no_separation_has(value):
+    with pytest.raises(ValueError, match=r"load = .*finite values > 0 N"):
+        analytic.separation_at(SURFACE, "load", value)
+
+
+def test_out_of_reach():
+    with pytest.raises(ValueError, match="contacts: not reached between h = -40 and 1000"):
+        analytic.separation_at(SURFACE, "contacts", 2 * SURFACE.n_asperities)
+    with pytest.raises(ValueError, match="load: not reached"):
+        analytic.separation_at(SURFACE, "load", 1.0, Custom(lambda s: -np.ones_like(s)))
+
+
+def test_target_right_before_the_load_turns_negative():
+    """gamma = -0.2: positive up to h = 0.81086, so the larger of two separations is next to it."""
+    grading = Exponential(-0.2)
+    tiny = 1e-6 * float(analytic.load(SURFACE, 0.0, grading))
+    found = float(analytic.separation_at(SURFACE, "load", tiny, grading))
+    assert 0.8108 < found < 0.81087
+    assert float(analytic.load(SURFACE, found, grading)) == pytest.approx(tiny, rel=1e-8)  # 1e-14/1e-6
+
+
+@pytest.mark.parametrize(
+    ("quantity", "gamma", "ratio"),
+    [
+        ("conductance", 0.2, 3.114),
+        ("conductance", 2.0, 0.548),
+        ("area", 0.2, 3.357),
+        ("area", 2.0, 0.530),
+        ("stiffness", 0.2, 0.945),
+        ("stiffness", 2.0, 1.057),
+    ],
+)
+def test_equal_load_as_in_the_theory(quantity, gamma, ratio):
+    found = analytic.ratio_at_equal_load(quantity, 2.0, Exponential(gamma))
+    assert float(found) == pytest.approx(ratio, abs=5.1e-4)
+
+
+@pytest.mark.parametrize("gamma", [0.2, 2.0])
+@pytest.mark.parametrize("h", [-2.0, 2.0, 60.0])
+def test_equal_load_by_a_root_at_forty_digits(h, gamma):
+    """Also at h = 60, where the loads themselves underflow."""
+    target = mp.log(F(1.5, h))
+    other = mp.findroot(lambda x: mp.log(F_star(1.5, x, gamma)) - target, h)
+    for quantity, n in (("area", 1), ("contacts", 0), ("conductance", 0.5)):
+        truth = F(n, other) / F(n, h)
+        found = float(analytic.ratio_at_equal_load(quantity, h, Exponential(gamma)))
+        # ln F = -1800 at h = 60 is known to its last digit, 2e-13, four times over.
+        assert found == pytest.approx(float(truth), rel=1e-12)
+
+
+def test_equal_load_is_equal_load():
+    np.testing.assert_allclose(
+        analytic.ratio_at_equal_load("load", [0.0, 3.0], Exponential(2.0)), 1, rtol=1e-13
+    )
