@@ -77,8 +77,8 @@ def _of_the_summits(fit: Fit) -> list[str]:
     lost = sharp - fit.visible.share
     if lost > _LOST:
         warnings.append(
-            f"blur: {100 * lost:.0f} % of caps like these are lost where a valley is nearer than a pixel or a "
-            "third of a cutoff; give finer pixels, and a shorter cutoff"
+            f"blur: {100 * lost:.0f} % of caps like these are lost where a valley is nearer than a pixel "
+            "or a third of a cutoff; give finer pixels, and a shorter cutoff"
         )
     if overlap > CROWDED:
         warnings.append(

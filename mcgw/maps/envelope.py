@@ -172,7 +172,19 @@ def envelope(
     left, right, bottom, top = window or (0.0, field.size[0], 0.0, field.size[1])
     pixel = ((right - left) / columns, (top - bottom) / rows)
     b = bins_of(field)
-    heights = _map((rows, columns), pixel, b.x, b.y, b.z, b.starts, b.shape, b.size, 0.5 / b.radius, periodic)
+    heights = _map(
+        (rows, columns),
+        pixel,
+        (left, bottom),
+        b.x,
+        b.y,
+        b.z,
+        b.starts,
+        b.shape,
+        b.size,
+        0.5 / b.radius,
+        periodic,
+    )
     return Topography(heights, pixel, periodic and window is None)
 
 
