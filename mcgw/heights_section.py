@@ -22,7 +22,7 @@ from mcgw.section import Section
 __all__ = ["LAWS", "heights_law", "heights_table", "read_heights"]
 
 LAWS = ("gaussian", "exponential", "weibull", "table", "scipy")
-_MOST_HEIGHTS = 100_000_000
+_MOST_BYTES = 2**30
 
 
 def heights_law(section: Section, folder: Path) -> HeightLaw:
@@ -99,15 +99,19 @@ def read_heights(path: Path) -> NDArray[np.float64]:
     OSError
         If it cannot be read.
     ValueError
-        If it does not hold numbers.
+        If it is not there, longer than a gigabyte, or does not hold numbers.
     """
+    if not path.is_file():
+        raise ValueError(f"{path}: no such file")
+    if path.stat().st_size > _MOST_BYTES:
+        raise ValueError(f"{path}: longer than {_MOST_BYTES} bytes; give a part of these heights")
     if path.suffix == ".npy":
         array = np.load(path, mmap_mode="r", allow_pickle=False)
-        if array.dtype.kind not in "fiu" or array.size > _MOST_HEIGHTS:
+        if array.dtype.kind not in "fiu":
             raise ValueError(f"{path.name}: holds {array.size} items of type {array.dtype}, not heights")
         return np.asarray(array, dtype=np.float64).ravel()
     try:
-        return np.loadtxt(path, dtype=np.float64, delimiter=",", max_rows=_MOST_HEIGHTS, ndmin=1).ravel()
+        return np.loadtxt(path, dtype=np.float64, delimiter=",", ndmin=1).ravel()
     except ValueError as error:
         raise ValueError(f"{path.name}: give one height a line; {error}") from None
 
