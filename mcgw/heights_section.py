@@ -17,6 +17,7 @@ from analytic import (
     ScipyHeights,
     Weibull,
 )
+from mcgw.npy_file import open_npy
 from mcgw.section import Section
 
 __all__ = ["LAWS", "heights_law", "heights_table", "read_heights"]
@@ -106,10 +107,7 @@ def read_heights(path: Path) -> NDArray[np.float64]:
     if path.stat().st_size > _MOST_BYTES:
         raise ValueError(f"{path}: longer than {_MOST_BYTES} bytes; give a part of these heights")
     if path.suffix == ".npy":
-        array = np.load(path, mmap_mode="r", allow_pickle=False)
-        if array.dtype.kind not in "fiu":
-            raise ValueError(f"{path.name}: holds {array.size} items of type {array.dtype}, not heights")
-        return np.asarray(array, dtype=np.float64).ravel()
+        return np.asarray(open_npy(path), dtype=np.float64).ravel()
     try:
         return np.loadtxt(path, dtype=np.float64, delimiter=",", ndmin=1).ravel()
     except ValueError as error:

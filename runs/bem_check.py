@@ -19,6 +19,7 @@ import matplotlib as mpl
 import numpy as np
 import tamaas
 from matplotlib.figure import Figure
+from matplotlib.ticker import FixedLocator, NullFormatter, ScalarFormatter
 from scipy import fft
 from scipy.optimize import root
 
@@ -144,6 +145,10 @@ def draw(rows: list[dict[str, float]], path: Path) -> None:
         plane.set(ylabel="height of the plane (µm)", title="Separation at equal load")
         less_area.set(xlabel="load (mN)", ylabel="solver less model (%)")
         less_plane.set(xlabel="load (mN)", ylabel="solver less model (µm)")
+        for axis in (less_area.xaxis, less_plane.xaxis):
+            axis.set_major_locator(FixedLocator([20, 50, 100, 200, 400]))
+            axis.set_major_formatter(ScalarFormatter())
+            axis.set_minor_formatter(NullFormatter())
         area.legend()
         figure.savefig(path)
 

@@ -14,6 +14,7 @@ ORDER = (
     "philox",
     "scene",
     "section",
+    "npy_file",
     "heights_section",
     "scene_file",
     "hertz",

@@ -13,6 +13,7 @@ from mcgw.maps.asperities import Asperities
 from mcgw.maps.lengths import METRES
 from mcgw.maps.topography import Topography, checked_shape
 from mcgw.maps.whole_file import whole_file
+from mcgw.npy_file import open_npy
 
 __all__ = ["read_h5", "read_npy", "read_text", "sidecar_of", "write_h5", "write_npy"]
 
@@ -60,12 +61,9 @@ def read_npy(path: Path, pixel: tuple[float, float] | None = None) -> Topography
     OSError
         If a file cannot be read.
     """
-    try:
-        array = np.load(path, mmap_mode="r", allow_pickle=False)
-    except (EOFError, ValueError) as error:
-        raise ValueError(f"{path}: is no sound .npy file: {error}") from None
-    if not isinstance(array, np.ndarray) or array.ndim != 2 or array.dtype.kind not in "fiu":
-        raise ValueError(f"{path}: holds no matrix of real numbers")
+    array = open_npy(path)
+    if array.ndim != 2:
+        raise ValueError(f"{path}: holds {array.ndim} dimension(s); a map has rows and columns")
     checked_shape(*array.shape)
     periodic = False
     if pixel is None:

@@ -8,6 +8,7 @@ import hashlib
 import math
 import xml.etree.ElementTree as ElementTree
 import zipfile
+import zlib
 from datetime import UTC, datetime
 from pathlib import Path
 
@@ -124,7 +125,7 @@ def read_x3p(path: Path) -> Topography:
     try:
         with zipfile.ZipFile(path) as archive:
             return _Reader(archive).topography()
-    except (zipfile.BadZipFile, NotImplementedError, RuntimeError, EOFError) as error:
+    except (zipfile.BadZipFile, zlib.error, NotImplementedError, RuntimeError, EOFError) as error:
         raise ValueError(f"{path}: is no sound zip archive, as X3P files are: {error}") from None
     except (ElementTree.ParseError, KeyError, ValueError) as error:
         reason = error.args[0] if isinstance(error, KeyError) else error
@@ -147,6 +148,8 @@ class _Reader:
             info = self.archive.getinfo(name)
         except KeyError:
             raise ValueError(f"{name}: is missing in the archive") from None
+        if info.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
+            raise ValueError(f"{name}: is packed by method {info.compress_type}; only deflate is read")
         if wanted is None and info.file_size > _MOST_XML:
             raise ValueError(f"{name}: unpacks to {info.file_size} bytes, more than {_MOST_XML}")
         if wanted is not None and info.file_size != wanted:
