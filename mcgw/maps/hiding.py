@@ -35,7 +35,7 @@ class Visible:
     share : float
         Of all summits.
     mean, std : float
-        Of their reduced heights.
+        Of their reduced heights; 0 if none is visible.
     """
 
     share: float
@@ -78,6 +78,8 @@ def visible(overlap: float, blur: float = 0.0) -> Visible:
     s, w = _nodes()
     p = w * np.exp(-4 * math.pi * overlap * _hiding(blur))
     share = float(p.sum())
+    if share == 0:
+        return Visible(0.0, 0.0, 0.0)
     mean = float(p @ s) / share
     return Visible(share, mean, math.sqrt(float(p @ (s - mean) ** 2) / share))
 
