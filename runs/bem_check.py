@@ -6,9 +6,9 @@ The map is that of ``runs/bem.toml``: periodic, eta R sigma = 0.0064. At the loa
 asperities carry at each separation the solver gives the true contact area and the separation. Two
 differences are expected. Asperities pull each other down: of that, a model takes account in which each
 contact is Hertz's and sinks by what all others' point loads press the half-space down (Ciavarella,
-Greenwood and Paggi 2008, discrete form, on the periodic cell). And the solver's area counts whole
-pixels: a ring of half a pixel's diagonal share around each spot, corrected by the perimeter (Yastrebov,
-Anciaux and Molinari 2017). What is left is the figure's lower panel.
+Greenwood and Paggi 2008, discrete form, on the periodic cell). And the solver's area is made
+of whole pixels, too many of them at the rim of each spot: corrected by the perimeter (Yastrebov, Anciaux
+and Molinari 2017). What is left is the figure's lower panel.
 """
 
 import argparse
