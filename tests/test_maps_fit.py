@@ -152,6 +152,9 @@ def test_a_sparse_scene_is_found_again_within_its_uncertainty(overlap):
     for (value, error), expected in zip((estimate.eta, estimate.radius, estimate.sigma), truth, strict=True):
         assert abs(value - expected) < 3.5 * error
         assert error < 0.06 * expected
+        # Over 14 seeds the estimates spread by 0.45 % about the field's own values, with a bias below
+        # 0.25 %; at 0.01 the number counted, uncorrected, is 5 % low.
+        assert value == pytest.approx(expected, rel=0.018)
 
 
 def test_where_summits_hide_the_bias_is_stated():
