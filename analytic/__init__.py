@@ -40,9 +40,11 @@ from analytic.contact import (
 )
 from analytic.fluctuations import Cumulants, HeightRule, covariance, cumulants
 from analytic.gradings import Clipped, Custom, Exponential, Grading, Homogeneous
+from analytic.height_laws import ExponentialHeights, ScipyHeights, Weibull
 from analytic.heights import Gaussian, HeightLaw
 from analytic.integrals import fn, fn_between, fn_paper, fn_scaled
 from analytic.inversion import ratio_at_equal_load, separation_at
+from analytic.measured_heights import HeightTable, MeasuredHeights
 from analytic.plasticity import mean_modulus, plasticity_index
 from analytic.quantities import QUANTITIES, Quantity
 from analytic.resolution import first_negative, resolved_breaks
@@ -56,14 +58,19 @@ __all__ = [
     "Cumulants",
     "Custom",
     "Exponential",
+    "ExponentialHeights",
     "Gaussian",
     "Grading",
     "HeightLaw",
     "HeightRule",
+    "HeightTable",
     "Homogeneous",
+    "MeasuredHeights",
     "Quantity",
+    "ScipyHeights",
     "Surface",
     "Table",
+    "Weibull",
     "area",
     "area_per_load",
     "area_per_load_ratio",

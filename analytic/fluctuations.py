@@ -17,8 +17,9 @@ from numpy.polynomial.legendre import leggauss
 from numpy.typing import ArrayLike, NDArray
 
 from analytic.gradings import Grading, Homogeneous
-from analytic.heights import exp_minus_half_square
+from analytic.heights import Gaussian, HeightLaw, exp_minus_half_square
 from analytic.integrals import fn
+from analytic.law_rule import law_rule
 from analytic.quantities import QUANTITIES
 from analytic.resolution import resolved_breaks
 from analytic.surface import Surface
@@ -64,9 +65,11 @@ class HeightRule:
     below: float
 
     @classmethod
-    def over(cls, separations: ArrayLike, grading: Grading) -> "HeightRule":
-        """The rule for these reduced separations and this grading."""
+    def over(cls, separations: ArrayLike, grading: Grading, law: HeightLaw | None = None) -> "HeightRule":
+        """The rule for these reduced separations, this grading and law (left out: Gaussian)."""
         h = np.unique(np.asarray(separations, dtype=np.float64))
+        if not (law is None or isinstance(law, Gaussian)):
+            return cls(*law_rule(law, h, grading), float(law.below(h[0])))
         low, last = float(h[0]), max(float(h[-1]), 0.0)
         top = last + _REACH**2 / (last + np.hypot(last, _REACH))
         regular = _STEP * np.arange(np.floor(low / _STEP) + 1, np.ceil(top / _STEP))
@@ -135,6 +138,7 @@ def cumulants(
     *,
     n_asperities: float | None = None,
     count: Count = "fixed",
+    law: HeightLaw | None = None,
 ) -> Cumulants:
     """Mean, variance, skewness and excess kurtosis of a quantity of one finite surface.
 
@@ -153,6 +157,8 @@ def cumulants(
     count : {"fixed", "poisson"}, optional
         Whether this number is the same on every surface, or the mean of a Poisson law (a window on
         an unbounded surface).
+    law : HeightLaw, optional
+        Law of the heights; left out: Gaussian.
 
     Returns
     -------
@@ -168,7 +174,7 @@ def cumulants(
     n = surface.n_asperities if n_asperities is None else n_asperities
     scale = QUANTITIES[quantity].scale(surface)
     h = np.asarray(h, dtype=np.float64)
-    rows = [_one_asperity(quantity, x, grading, count) for x in h.ravel()]
+    rows = [_one_asperity(quantity, x, grading, count, law) for x in h.ravel()]
     k1, k2, k3, k4 = np.array(rows).reshape(*h.shape, 4).transpose(-1, *range(h.ndim))
     with np.errstate(divide="ignore", invalid="ignore"):
         return Cumulants(
@@ -176,9 +182,11 @@ def cumulants(
         )  # k2 to a power would underflow long before these ratios overflow
 
 
-def _one_asperity(quantity: str, h: float, grading: Grading, count: Count) -> tuple[float, ...]:
+def _one_asperity(
+    quantity: str, h: float, grading: Grading, count: Count, law: HeightLaw | None
+) -> tuple[float, ...]:
     """First four cumulants that one asperity contributes, over the scale, from moments about the mean."""
-    rule = HeightRule.over([h], grading)
+    rule = HeightRule.over([h], grading, law)
     f = rule.terms([quantity], [h], grading)
     if count == "poisson":
         m1, m2, m3, m4 = (float((rule.probabilities @ f**k)[0]) for k in (1, 2, 3, 4))
@@ -196,6 +204,7 @@ def covariance(
     *,
     n_asperities: float | None = None,
     count: Count = "fixed",
+    law: HeightLaw | None = None,
 ) -> Array:
     """Covariance over surfaces between all quantities at all separations.
 
@@ -213,6 +222,8 @@ def covariance(
         Number of asperities; left out: eta A_n.
     count : {"fixed", "poisson"}, optional
         As in `cumulants`.
+    law : HeightLaw, optional
+        Law of the heights; left out: Gaussian.
 
     Returns
     -------
@@ -222,7 +233,7 @@ def covariance(
     grading = Homogeneous() if grading is None else grading
     n = surface.n_asperities if n_asperities is None else n_asperities
     h = np.asarray(separations, dtype=np.float64)
-    rule = HeightRule.over(h, grading)
+    rule = HeightRule.over(h, grading, law)
     f = rule.terms(quantities, h, grading)
     if count == "fixed":
         _, f, at_zero = rule.deviations(f)

@@ -1,7 +1,7 @@
 """Laws of the summit heights, reduced to mean 0 and standard deviation 1."""
 
 from dataclasses import dataclass
-from typing import Protocol
+from typing import ClassVar, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,14 +19,33 @@ def exp_minus_half_square(h: Array) -> Array:
 
 
 class HeightLaw(Protocol):
-    """Distribution of the reduced height s = z/sigma."""
+    """Distribution of the reduced height s = z/sigma, of mean 0 and standard deviation 1."""
+
+    @property
+    def support(self) -> tuple[float, float]:
+        """Lowest and highest height there are; infinite for no bound."""
+        ...
+
+    @property
+    def breaks(self) -> tuple[float, ...]:
+        """Heights where the density or a derivative of it jumps, smooth on either side."""
+        ...
+
+    @property
+    def singular(self) -> tuple[float, ...]:
+        """Ends of the support where the density is a broken power of the distance from the end."""
+        ...
+
+    def span(self, s: float) -> float:
+        """Width of a cell above `s` on which the density hardly bends; breaks and ends left aside."""
+        ...
 
     def sample(self, rng: np.random.Generator, n: int) -> Array:
         """`n` heights from NumPy's generator."""
         ...
 
     def density(self, s: Array) -> Array:
-        """Probability density at `s`."""
+        """Probability density at `s`, at a jump that above it."""
         ...
 
     def log_ratio(self, s: Array, t: Array) -> Array:
@@ -53,6 +72,14 @@ class HeightLaw(Protocol):
 @dataclass(frozen=True)
 class Gaussian:
     """The normal law of Greenwood and Williamson."""
+
+    support: ClassVar[tuple[float, float]] = (-np.inf, np.inf)
+    breaks: ClassVar[tuple[float, ...]] = ()
+    singular: ClassVar[tuple[float, ...]] = ()
+
+    def span(self, s: float) -> float:
+        """Where the logarithm of the density changes by about one half."""
+        return 0.5 / (1 + abs(s))
 
     def sample(self, rng: np.random.Generator, n: int) -> Array:
         """Standard normal numbers."""

@@ -13,7 +13,8 @@ from numpy.polynomial.legendre import leggauss
 from numpy.typing import ArrayLike, NDArray
 
 from analytic.gradings import Grading, Homogeneous
-from analytic.heights import exp_minus_half_square
+from analytic.heights import Gaussian, HeightLaw, exp_minus_half_square
+from analytic.law_rule import law_integral
 from analytic.resolution import resolved_breaks
 
 __all__ = ["fn", "fn_between", "fn_paper", "fn_scaled"]
@@ -83,6 +84,7 @@ def fn_scaled(
     grading: Grading | None = None,
     *,
     between: tuple[float, float] = (-np.inf, np.inf),
+    law: HeightLaw | None = None,
 ) -> Array:
     """F_n or F*_n relative to the density at the separation.
 
@@ -96,11 +98,13 @@ def fn_scaled(
         E*(s)/E*; left out: homogeneous.
     between : (float, float), optional
         Count only heights between these two.
+    law : HeightLaw, optional
+        Law of the heights; left out: Gaussian.
 
     Returns
     -------
     ndarray
-        ``F(h)/phi(h)`` for h >= 0, ``F(h)`` for h < 0, in the shape of `h`.
+        ``F(h)/phi(h)`` for h >= 0, ``F(h)`` for h < 0, in the shape of `h`; for another law ``F(h)``.
 
     Raises
     ------
@@ -113,6 +117,8 @@ def fn_scaled(
     if not np.all(np.isfinite(h)):
         raise ValueError("h: every separation must be finite")
     grading = Homogeneous() if grading is None else grading
+    if not (law is None or isinstance(law, Gaussian)):
+        return law_integral(n, h, law, grading, between)
     order = np.argsort(h, axis=None)
     ordered = h.reshape(-1, 1)[order] + 0.0  # makes -0.0 the same as 0.0
     result = np.empty(h.size)
@@ -122,7 +128,14 @@ def fn_scaled(
     return result.reshape(h.shape)
 
 
-def fn(n: float, h: ArrayLike, grading: Grading | None = None, *, log: bool = False) -> Array:
+def fn(
+    n: float,
+    h: ArrayLike,
+    grading: Grading | None = None,
+    *,
+    log: bool = False,
+    law: HeightLaw | None = None,
+) -> Array:
     r"""Integral F_n (Eq. 2), with a grading F*_n (Eqs. 3, 5, 7).
 
     .. math:: F^*_n(h) = \int_h^\infty (s - h)^n \phi(s) E^*(s)/E^* ds
@@ -142,6 +155,9 @@ def fn(n: float, h: ArrayLike, grading: Grading | None = None, *, log: bool = Fa
         E*(s)/E*; left out: homogeneous.
     log : bool, optional
         Return the natural logarithm, which does not underflow; nan where the integral is negative.
+    law : HeightLaw, optional
+        Law of the heights, in the place of phi; left out: Gaussian. Another law is integrated to 1e-12
+        as far as its density reaches in double precision.
 
     Returns
     -------
@@ -162,7 +178,10 @@ def fn(n: float, h: ArrayLike, grading: Grading | None = None, *, log: bool = Fa
     -5011.454471272
     """
     h = np.asarray(h, dtype=np.float64)
-    scaled = fn_scaled(n, h, grading)
+    scaled = fn_scaled(n, h, grading, law=law)
+    if not (law is None or isinstance(law, Gaussian)):
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return np.log(scaled) if log else scaled
     above = np.maximum(h, 0.0)
     if log:
         with np.errstate(divide="ignore", invalid="ignore"):
@@ -170,7 +189,15 @@ def fn(n: float, h: ArrayLike, grading: Grading | None = None, *, log: bool = Fa
     return scaled * np.where(h >= 0, exp_minus_half_square(above) / np.sqrt(2 * np.pi), 1.0)
 
 
-def fn_between(n: float, h: ArrayLike, low: float, high: float, grading: Grading | None = None) -> Array:
+def fn_between(
+    n: float,
+    h: ArrayLike,
+    low: float,
+    high: float,
+    grading: Grading | None = None,
+    *,
+    law: HeightLaw | None = None,
+) -> Array:
     """Share of F*_n(h) that comes from heights between `low` and `high`.
 
     To 1e-13 of itself where the range reaches above s = -13; what lies below counts as nothing.
@@ -185,13 +212,15 @@ def fn_between(n: float, h: ArrayLike, low: float, high: float, grading: Grading
         Range of reduced heights; infinite for no bound.
     grading : Grading, optional
         E*(s)/E*; left out: homogeneous.
+    law : HeightLaw, optional
+        Law of the heights; left out: Gaussian.
 
     Returns
     -------
     ndarray
         A share, 0 to 1 where the modulus is positive, in the shape of `h`.
     """
-    return fn_scaled(n, h, grading, between=(low, high)) / fn_scaled(n, h, grading)
+    return fn_scaled(n, h, grading, between=(low, high), law=law) / fn_scaled(n, h, grading, law=law)
 
 
 def fn_paper(n: float, h: ArrayLike, gamma: float, ngp: int) -> Array:

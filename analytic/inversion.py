@@ -5,6 +5,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import brentq
 
 from analytic.gradings import Grading
+from analytic.heights import HeightLaw
 from analytic.integrals import fn, fn_scaled
 from analytic.quantities import QUANTITIES, Quantity
 from analytic.surface import Surface
@@ -17,7 +18,14 @@ _RANGE = (-40.0, 1000.0)
 _LAST_DIGITS = 4 * np.finfo(float).eps
 
 
-def separation_at(surface: Surface, quantity: str, value: ArrayLike, grading: Grading | None = None) -> Array:
+def separation_at(
+    surface: Surface,
+    quantity: str,
+    value: ArrayLike,
+    grading: Grading | None = None,
+    *,
+    law: HeightLaw | None = None,
+) -> Array:
     """Separation at which a mean has a given value.
 
     Parameters
@@ -30,6 +38,8 @@ def separation_at(surface: Surface, quantity: str, value: ArrayLike, grading: Gr
         Its values, in its SI unit, any shape.
     grading : Grading, optional
         E*(s)/E*; left out: homogeneous.
+    law : HeightLaw, optional
+        Law of the heights; left out: Gaussian.
 
     Returns
     -------
@@ -47,14 +57,16 @@ def separation_at(surface: Surface, quantity: str, value: ArrayLike, grading: Gr
     per_surface = surface.n_asperities * q.scale(surface)
     if not np.all(np.isfinite(target) & (target > 0)):
         raise ValueError(f"{quantity} = {value!r}: give finite values > 0 {q.unit}")
-    return _separations(q, np.log(target / per_surface), chosen)
+    return _separations(q, np.log(target / per_surface), chosen, law)
 
 
-def _separations(quantity: Quantity, log_target: Array, grading: Grading | None) -> Array:
+def _separations(
+    quantity: Quantity, log_target: Array, grading: Grading | None, law: HeightLaw | None = None
+) -> Array:
     """Largest h with ``log F*_n(h) = log_target``."""
     n = quantity.exponent
     grid = np.concatenate([np.linspace(_RANGE[0], 10, 251), np.geomspace(10.5, _RANGE[1], 60)])
-    on_grid = fn(n, grid, grading, log=True)
+    on_grid = fn(n, grid, grading, log=True, law=law)
     roots = []
     for target in log_target.ravel():
         high_enough = np.flatnonzero(on_grid >= target)
@@ -64,11 +76,11 @@ def _separations(quantity: Quantity, log_target: Array, grading: Grading | None)
                 "give another value"
             )
         left, right = grid[high_enough[-1] : high_enough[-1] + 2].tolist()
-        roots.append(_root(left, right, (n, grading, target)))
+        roots.append(_root(left, right, (n, grading, law, target)))
     return np.array(roots, dtype=np.float64).reshape(log_target.shape)
 
 
-def _root(left: float, right: float, problem: tuple[float, Grading | None, float]) -> float:
+def _root(left: float, right: float, problem: tuple[float, Grading | None, HeightLaw | None, float]) -> float:
     # A target right at the end of the bracket may lie beyond it by a last digit.
     if _excess(left, *problem) <= 0:
         return left
@@ -77,9 +89,9 @@ def _root(left: float, right: float, problem: tuple[float, Grading | None, float
     return float(brentq(_excess, left, right, problem, xtol=1e-15, rtol=_LAST_DIGITS))
 
 
-def _excess(h: float, n: float, grading: Grading | None, log_target: float) -> float:
+def _excess(h: float, n: float, grading: Grading | None, law: HeightLaw | None, log_target: float) -> float:
     """Logarithm relative to the target; -100 also where the integral is not positive."""
-    return float(np.fmax(fn(n, h, grading, log=True) - log_target, -100.0))
+    return float(np.fmax(fn(n, h, grading, log=True, law=law) - log_target, -100.0))
 
 
 def ratio_at_equal_load(quantity: str, h: ArrayLike, grading: Grading) -> Array:

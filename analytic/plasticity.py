@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from analytic.gradings import Grading
+from analytic.heights import HeightLaw
 from analytic.integrals import fn_scaled
 
 __all__ = ["mean_modulus", "plasticity_index"]
@@ -33,7 +34,11 @@ class _Squared:
 
 
 def mean_modulus(
-    h: ArrayLike, grading: Grading, *, weight: Literal["number", "area", "load"] = "load"
+    h: ArrayLike,
+    grading: Grading,
+    *,
+    weight: Literal["number", "area", "load"] = "load",
+    law: HeightLaw | None = None,
 ) -> Array:
     """Mean of E*(s)/E* over the asperities in contact.
 
@@ -45,6 +50,8 @@ def mean_modulus(
         E*(s)/E*.
     weight : {"number", "area", "load"}, optional
         What each contact counts for.
+    law : HeightLaw, optional
+        Law of the heights; left out: Gaussian.
 
     Returns
     -------
@@ -63,9 +70,9 @@ def mean_modulus(
     1.727
     """
     if weight == "load":
-        return fn_scaled(1.5, h, _Squared(grading)) / fn_scaled(1.5, h, grading)
+        return fn_scaled(1.5, h, _Squared(grading), law=law) / fn_scaled(1.5, h, grading, law=law)
     n = {"number": 0.0, "area": 1.0}[weight]
-    return fn_scaled(n, h, grading) / fn_scaled(n, h)
+    return fn_scaled(n, h, grading, law=law) / fn_scaled(n, h, law=law)
 
 
 def plasticity_index(modulus: ArrayLike, *, E_star: float, slope: float, hardness: float) -> Array:

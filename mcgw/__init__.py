@@ -19,6 +19,7 @@
 (50, 2)
 """
 
+import os
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
@@ -41,6 +42,10 @@ __all__ = [
     "scene_text",
     "simulate",
 ]
+
+# Threads that wait for others sleep. By default they spin, and a loop of microseconds takes a hundred
+# times as long on a machine that has anything else to do. Read once, when the loops are loaded.
+os.environ.setdefault("OMP_WAIT_POLICY", "passive")
 
 # Imported when asked for: compiling and file formats cost a second that `mcgw --help` need not wait.
 _HOME = {

@@ -6,9 +6,12 @@ distribution, smooth in u and known to full relative accuracy. A cell that start
 separation may be as wide as the law allows; any other is no wider than its distance to the nearest
 separation below, where the laws of contact have a root (the mesh of a fast multipole method).
 
-Where less than one asperity in ten surfaces is expected there are no cells: those few are the extras.
+Every break of the law of heights is an edge too, and cells shrink towards an end of its support where
+its density is a broken power. Where less than one asperity in ten surfaces is expected there are no
+cells: those few are the extras.
 """
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -23,8 +26,8 @@ __all__ = ["Mesh", "mesh_of", "no_cells"]
 
 Array = NDArray[np.float64]
 
-_BEND = 0.5  # log of the density ratio that a cell may span
-_CROWDED, _MOST_PARTS = 4000, 8  # so many asperities pay for one more cell with fewer moments
+_CLOSEST = 2.0**-40  # of a cell to an end of the support that is a broken power
+_CROWDED, _MOST_PARTS = 1300, 8  # so many asperities pay for one more cell with fewer moments
 
 _ORDER = 20
 NODES = chebyshev.chebpts1(_ORDER)
@@ -86,7 +89,8 @@ def mesh_of(scene: Scene, *, split: bool = True, rare: float = 0.1) -> Mesh:
     low, high = _range(law, rare / scene.n_asperities, scene.lowest)
     if not low < high:
         return no_cells(scene)
-    edges = _graded_edges(low, high, np.unique(scene.separations), _breaks(scene.modulus, low, high))
+    breaks = (*_breaks(scene.modulus, low, high), *law.breaks)
+    edges = _graded_edges(law, low, high, np.unique(scene.separations), breaks)
     if split:
         edges = _split_crowded(law, scene.n_asperities, edges)
     mass = _mass(law, edges[:-1], np.diff(edges)[:, None])[:, 0]
@@ -110,10 +114,31 @@ def _range(law: HeightLaw, share: float, lowest: float) -> tuple[float, float]:
 
     Rounded to a sixteenth, so that it does not hang on the last digit of an inverse distribution.
     """
-    share = min(share, 0.5)
-    low = np.floor(16 * float(law.from_below(np.array(share), np.inf))) / 16
-    high = np.ceil(16 * float(law.from_above(np.array(share), -np.inf))) / 16
+    rare = np.array(min(share, 0.5))
+    bottom, top = float(law.from_below(rare, np.inf)), float(law.from_above(rare, -np.inf))
+    low, high = np.floor(16 * bottom) / 16, np.ceil(16 * top) / 16
+    if low <= law.support[0]:
+        low = law.support[0]
+        if low in law.singular:
+            low += _power_of_two_below(bottom - low)
+    if high >= law.support[1]:
+        high = law.support[1]
+        if high in law.singular:
+            high -= _power_of_two_below(high - top)
     return max(lowest, low), high
+
+
+def _power_of_two_below(distance: float) -> float:
+    """Rounded down; far enough from the end that heights next to it are still told apart."""
+    return 2.0 ** math.floor(math.log2(max(distance, _CLOSEST)))
+
+
+def _widest(law: HeightLaw, a: float) -> float:
+    """How wide the law lets a cell above `a` be."""
+    width = law.span(a)
+    for end in law.singular:
+        width = min(width, a - end if end < a else (end - a) / 2)
+    return width
 
 
 def _breaks(grading: Grading, low: float, high: float) -> tuple[float, ...]:
@@ -125,15 +150,17 @@ def _breaks(grading: Grading, low: float, high: float) -> tuple[float, ...]:
     return tuple(np.unique([*breaks, *(marks[:-1] + marks[1:]) / 2]).tolist())
 
 
-def _graded_edges(low: float, high: float, separations: Array, breaks: tuple[float, ...]) -> Array:
-    """Edges from mark to mark, each cell as wide as the marks below it let it be."""
+def _graded_edges(
+    law: HeightLaw, low: float, high: float, separations: Array, breaks: tuple[float, ...]
+) -> Array:
+    """Edges from mark to mark, each cell as wide as the law and the marks below it let it be."""
     marks = np.unique([*separations, *breaks, high])
     marks = marks[(marks > low) & (marks <= high)]
     edges = [low]
     for mark in marks:
         while (a := edges[-1]) < mark:
             below = separations[np.searchsorted(separations, a) - 1] if separations[0] < a else -np.inf
-            widest = min(a - below, _BEND / (1 + abs(a)))
+            widest = min(a - below, _widest(law, a))
             room = mark - a
             edges.append(mark if room <= widest else a + (widest if room >= 2 * widest else room / 2))
     return np.array(edges)

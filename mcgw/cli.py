@@ -8,7 +8,7 @@ from importlib.metadata import PackageNotFoundError, version
 
 from mcgw.errors import RunError
 
-COMMANDS = ("run", "show", "compare", "regrade", "merge")
+COMMANDS = ("run", "show", "compare", "regrade", "merge", "surface", "fit")
 
 
 def main(argv: Sequence[str] | None = None) -> int:

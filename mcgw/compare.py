@@ -91,7 +91,7 @@ class Comparison:
 def theory(ensemble: Ensemble, quantity: str) -> Array:
     """Exact mean of a quantity for the ensemble's number of asperities, shape (separations,)."""
     scene = ensemble.scene
-    per_asperity = analytic.mean(scene.surface, quantity, scene.separations, scene.modulus)
+    per_asperity = analytic.mean(scene.surface, quantity, scene.separations, scene.modulus, law=scene.heights)
     return per_asperity / scene.surface.n_asperities * scene.n_asperities
 
 
@@ -125,6 +125,7 @@ def compare(ensemble: Ensemble) -> Comparison:
             scene.modulus,
             n_asperities=scene.n_asperities,
             count=scene.count,
+            law=scene.heights,
         )
         low, high = ensemble.interval(name)
         stderr = np.sqrt(exact.variance / ensemble.n_surfaces)
@@ -141,7 +142,7 @@ def verdict(ensemble: Ensemble) -> Verdict:
     """
     scene = ensemble.scene
     h = _chosen(np.unique(scene.separations))
-    rule = analytic.HeightRule.over(h, scene.modulus)
+    rule = analytic.HeightRule.over(h, scene.modulus, scene.heights)
     terms = rule.terms(scene.quantities, h, scene.modulus)
     if scene.count == "fixed":
         _, deviation, below = rule.deviations(terms)

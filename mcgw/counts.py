@@ -5,9 +5,12 @@ child is binomial with the child's share. So the cells are multinomial, or indep
 every probability a ratio of sums of positive terms: accurate however far into the tail.
 """
 
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
+from numba import get_num_threads
 from numpy.typing import NDArray
 
 from mcgw.cells import Mesh
@@ -60,7 +63,8 @@ def counts_of(scene: Scene, mesh: Mesh, first: int, n: int) -> Counts:
     """
     probability = np.concatenate([[mesh.low_extras], mesh.probability, [mesh.high_extras]])
     groups = range(first // GROUP, -(-(first + n) // GROUP))
-    drawn = np.concatenate([_group(scene, probability, g) for g in groups], axis=1)
+    with ThreadPoolExecutor(get_num_threads()) as pool:  # NumPy draws without Python's lock
+        drawn = np.concatenate(list(pool.map(partial(_group, scene, probability), groups)), axis=1)
     skip = first - groups[0] * GROUP
     chosen = drawn[:, skip : skip + n]
     return Counts(np.ascontiguousarray(chosen[1:-1]), chosen[0], chosen[-1], np.ones(len(probability)))

@@ -20,7 +20,8 @@ from mcgw.philox import CELLS, centred
 
 __all__ = ["Layout", "cell_moments"]
 
-_BUFFER = 512  # uniforms at a time: four buffers stay in the innermost cache
+_BUFFER = 1024  # uniforms at a time: four buffers stay in the innermost cache
+_ROOM = 32  # for the moments of a cell, of either kind
 _PIECE = 512 * 512  # a plain sum of so many terms is good to 1e-14; beyond, it is compensated
 
 # A vectorised sum needs to reorder its terms, and nothing else: no NaN and no infinity is assumed away.
@@ -28,7 +29,7 @@ _VECTOR = {"reassoc", "nsz", "contract"}
 
 
 @njit(nogil=True, cache=True, fastmath=_VECTOR)
-def _first_sums(x: Any, rooted: Any, before: Any, last: Any, n: Any, sums: Any) -> None:
+def _first_ten(x: Any, rooted: Any, before: Any, last: Any, n: Any, sums: Any) -> None:
     """Add the sums of the first ten terms to `sums`; leave the last two terms in `before` and `last`.
 
     The terms are ``T_j(x)``, or ``sqrt(u) T_j(x)`` if `rooted`: t_0, then ``t_{j+1} = 2 x t_j - t_{j-1}``.
@@ -64,7 +65,28 @@ def _first_sums(x: Any, rooted: Any, before: Any, last: Any, n: Any, sums: Any) 
 
 
 @njit(nogil=True, cache=True, fastmath=_VECTOR)
-def _next_sums(x: Any, before: Any, last: Any, n: Any, sums: Any) -> None:
+def _first_five_rooted(x: Any, n: Any, sums: Any) -> None:
+    """Add the sums of the first five ``sqrt(u) T_j(x)``: a narrow cell needs no more."""
+    a = b = c = d = e = 0.0
+    for i in range(n):
+        v = x[i]
+        w = 2 * v
+        ta = np.sqrt(0.5 * v + 0.5)
+        tb = v * ta
+        tc = w * tb - ta
+        td = w * tc - tb
+        te = w * td - tc
+        a += ta
+        b += tb
+        c += tc
+        d += td
+        e += te
+    for j, total in enumerate((a, b, c, d, e)):
+        sums[j] += total
+
+
+@njit(nogil=True, cache=True, fastmath=_VECTOR)
+def _next_eight(x: Any, before: Any, last: Any, n: Any, sums: Any) -> None:
     """Add the sums of the next eight terms to `sums`.
 
     Fewer terms a pass would be bound by what it stores, more by the number of registers.
@@ -114,12 +136,12 @@ def _add_compensated(total: Any, carry: Any, sums: Any, n: Any) -> None:
 
 
 @njit(nogil=True, cache=True)
-def _sum_cell(seed: Any, surface: Any, cell: Any, n: Any, plain: Any, rooted: Any, stratified: Any) -> Any:
-    """Moments of one cell of one surface: `plain` sums T_j, then `rooted` sums R_j."""
-    x, before, last = np.empty(_BUFFER), np.empty(_BUFFER), np.empty(_BUFFER)
-    orders = (plain, rooted)
-    sums = np.zeros((2, max(plain, rooted) + 10))
-    total, carry = np.zeros(sums.shape), np.zeros(sums.shape)
+def _sum_cell(key: Any, n: Any, orders: Any, stratified: Any, work: Any, sums: Any, total: Any) -> None:
+    """Leave the moments of one cell of one surface in `total`: a row of T_j, a row of R_j."""
+    seed, surface, cell = key
+    x, before, last = work[0], work[1], work[2]
+    total[:] = 0.0
+    carry = total[2:]
     for piece in range(0, n, _PIECE):
         sums[:] = 0.0
         for first in range(piece, min(piece + _PIECE, n), _BUFFER):
@@ -128,28 +150,35 @@ def _sum_cell(seed: Any, surface: Any, cell: Any, n: Any, plain: Any, rooted: An
             if stratified:
                 _stratified(x, m, first, n)
             for k in range(2):
-                if orders[k]:
-                    _first_sums(x, k == 1, before, last, m, sums[k])
+                if orders[k] > 5 or (orders[k] and not k):
+                    _first_ten(x, k == 1, before, last, m, sums[k])
                     for j in range(10, orders[k], 8):
-                        _next_sums(x, before, last, m, sums[k, j:])
+                        _next_eight(x, before, last, m, sums[k, j:])
+                elif orders[k]:
+                    _first_five_rooted(x, m, sums[k])
         for k in range(2):
             _add_compensated(total[k], carry[k], sums[k], orders[k])
-    return np.concatenate((total[0, :plain] + carry[0, :plain], total[1, :rooted] + carry[1, :rooted]))
+    total[:2] += carry
 
 
 @njit(parallel=True, cache=True)
 def _all_cells(
-    seed: Any, first: Any, counts: Any, starts: Any, plain: Any, rooted: Any, order: Any, stratified: Any
+    seed: Any, first: Any, counts: Any, starts: Any, orders: Any, pairs: Any, bounds: Any, stratified: Any
 ) -> Any:
-    """Each pair (cell, surface) of `order` is summed by one thread and written to its own place."""
+    """Each pair (cell, surface) is summed by one thread and written to its own place."""
     surfaces = counts.shape[1]
     moments = np.zeros((starts[-1], surfaces))
-    for k in prange(order.size):
-        cell, surface = order[k] // surfaces, order[k] % surfaces
-        n = counts[cell, surface]
-        found = _sum_cell(seed, first + surface, cell, n, plain[cell], rooted[cell], stratified)
-        for j in range(found.size):
-            moments[starts[cell] + j, surface] = found[j]
+    for thread in prange(bounds.size - 1):
+        work = np.empty((3, _BUFFER))
+        sums, total = np.empty((2, _ROOM)), np.empty((4, _ROOM))
+        for k in range(bounds[thread], bounds[thread + 1]):
+            cell, surface = pairs[k] // surfaces, pairs[k] % surfaces
+            key = (seed, first + surface, cell)
+            _sum_cell(key, counts[cell, surface], orders[cell], stratified, work, sums, total)
+            for j in range(orders[cell, 0]):
+                moments[starts[cell] + j, surface] = total[0, j]
+            for j in range(orders[cell, 1]):
+                moments[starts[cell] + orders[cell, 0] + j, surface] = total[1, j]
     return moments
 
 
@@ -200,12 +229,11 @@ def cell_moments(
     ndarray
         Shape (moments, surfaces): the same bits for any number of threads and in any block.
     """
-    worth = np.where(layout.sizes[:, None] > 0, counts, 0).ravel()
-    largest = np.argsort(-worth, kind="stable")[: np.count_nonzero(worth)]
+    filled = np.flatnonzero((counts > 0) & (layout.sizes[:, None] > 0))
     threads = get_num_threads()
-    dealt = np.concatenate([largest[k::threads] for k in range(threads)])  # an equal share for each
+    shares = [filled[k::threads] for k in range(threads)]  # neighbours have about the same number
+    pairs, bounds = np.concatenate(shares), np.cumsum([0, *map(len, shares)])
+    orders = np.column_stack([layout.plain, layout.rooted])
     return np.asarray(
-        _all_cells(
-            np.uint64(seed), first, counts, layout.starts, layout.plain, layout.rooted, dealt, stratified
-        )
+        _all_cells(np.uint64(seed), first, counts, layout.starts, orders, pairs, bounds, stratified)
     )

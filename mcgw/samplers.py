@@ -7,8 +7,8 @@
 ``stratified``  one jittered uniform in each of about N strata: for means only
 """
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Protocol
 
@@ -99,20 +99,19 @@ def response_to(scene: Scene, mesh: Mesh, kept: Layout | None = None) -> Respons
     """Response for all that moments can tell; contacts are counted."""
     if scene.keep == "moments" and kept is None:
         kept = _lasting_layout(scene, mesh)
-    summed = tuple(name for name in scene.quantities if QUANTITIES[name].exponent > 0)
     # Each separation once and in order: repeated or permuted ones give the same bits.
-    return response_of(
-        mesh, scene.surface, scene.modulus, summed, tuple(sorted(set(scene.separations))), kept
-    )
+    once = replace(scene, separations=tuple(sorted(set(scene.separations))))
+    return response_of(once, mesh, _summed(scene.quantities), kept=kept)
+
+
+def _summed(quantities: Iterable[str]) -> tuple[str, ...]:
+    return tuple(name for name in quantities if QUANTITIES[name].exponent > 0)
 
 
 def _lasting_layout(scene: Scene, mesh: Mesh) -> Layout:
     """Moments that serve every quantity, this grading, and another exponential one."""
-    names = tuple(name for name, q in QUANTITIES.items() if q.exponent > 0)
-    layouts = [
-        response_of(mesh, scene.surface, grading, names, scene.separations).layout
-        for grading in (scene.modulus, Exponential(2.0), Exponential(0.5), Exponential(0.0))
-    ]
+    others = [replace(scene, grading=Exponential(gamma), negative="allow") for gamma in (2.0, 0.5, 0.0)]
+    layouts = [response_of(x, mesh, _summed(QUANTITIES), lasting=True).layout for x in (scene, *others)]
     plain = np.max([layout.plain for layout in layouts], axis=0)
     return Layout(plain + 1, np.max([layout.rooted for layout in layouts], axis=0) + 1)  # one in reserve
 

@@ -14,6 +14,7 @@ from analytic import (
     Grading,
     HeightLaw,
     Homogeneous,
+    MeasuredHeights,
     Surface,
     Table,
     first_negative,
@@ -23,7 +24,7 @@ __all__ = ["SAMPLERS", "Scene", "SceneError"]
 
 SAMPLERS = ("auto", "direct", "tail", "cells", "aggregate", "stratified")
 MOST_ASPERITIES = 2**53  # counts are exact in double precision up to here
-_BEYOND = 8.3  # one height in 1e16 lies above: what an ensemble may reach beyond its separations
+_BEYOND = 1e-16  # share of the heights that lie above what is checked for negative moduli
 
 
 class SceneError(ValueError):
@@ -91,7 +92,8 @@ class Scene:
         if not self.n_asperities:
             object.__setattr__(self, "n_asperities", round(min(self.surface.n_asperities, 2.0**62)))
         object.__setattr__(self, "separations", tuple(float(h) + 0.0 for h in self.separations))
-        problems = [*self._wrong_values(), *self._wrong_scales()] or self._wrong_modulus()
+        problems = [*self._wrong_values(), *self._wrong_scales(), *self._wrong_measured()]
+        problems = problems or self._wrong_modulus()
         if problems:
             raise SceneError(problems)
 
@@ -156,13 +158,41 @@ class Scene:
                 )
         return problems
 
+    def _wrong_measured(self) -> list[str]:
+        """Measured heights are one surface, added up and not drawn."""
+        if not isinstance(self.heights, MeasuredHeights):
+            return []
+        problems = []
+        number = len(self.heights.heights)
+        if self.n_asperities != number:
+            problems.append(
+                f"ensemble.n_asperities = {self.n_asperities}: {number} heights are measured; give that "
+                "number, or heights.resample = true"
+            )
+        for key, value, wanted in (
+            ("n_surfaces", self.n_surfaces, (1,)),
+            ("count", self.count, ("fixed",)),
+            ("sampler", self.sampler, ("direct",)),
+        ):
+            if value not in wanted:
+                problems.append(
+                    f"ensemble.{key} = {value!r}: measured heights as they are need {wanted[0]!r}; "
+                    "or say resample = true under [heights]"
+                )
+        return problems
+
     def _wrong_modulus(self) -> list[str]:
         """Negative moduli among the heights that touch."""
         if self.negative != "error":
             return []
-        low, high = self.lowest, max(_BEYOND, max(self.separations) + 1)
+        share = np.array(_BEYOND)
+        highest = float(self.heights.from_above(share, -math.inf))
+        low, high = self.lowest, min(max(highest, max(self.separations) + 1), self.heights.support[1])
+        start = max(low, float(self.heights.from_below(share, math.inf)) - 1, self.heights.support[0])
+        if not start < high:
+            return []
         try:
-            where = first_negative(self.grading, max(low, -_BEYOND - 1), high)
+            where = first_negative(self.grading, start, high)
         except ValueError as error:
             return [str(error)]
         if where is None:

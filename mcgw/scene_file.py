@@ -11,6 +11,7 @@ import numpy as np
 import tomli_w
 
 from analytic import QUANTITIES, Body, Exponential, Grading, Homogeneous, Surface, Table, composite_modulus
+from mcgw.heights_section import heights_law, heights_table
 from mcgw.scene import SAMPLERS, Scene, SceneError
 from mcgw.section import Section
 
@@ -84,10 +85,10 @@ def scene_from(
         "title": top.text("title", ""),
         "surface": surface,
         **_grading(parts["grading"], surface, folder or Path()),
+        "heights": heights_law(parts["heights"], folder or Path()),
         **_contact(parts["contact"]),
         **_ensemble(parts["ensemble"], seed),
     }
-    parts["heights"].choice("law", "gaussian", ("gaussian",))
     for section in (top, *parts.values()):
         section.finish()
     if top.problems:
@@ -197,13 +198,15 @@ def _ensemble(section: Section, seed: Callable[[], int | None] | None) -> dict[s
     return {key: value for key, value in values.items() if value is not None}
 
 
-def scene_text(scene: Scene) -> str:
+def scene_text(scene: Scene, *, heights_file: str | None = None) -> str:
     """TOML text of a scene with nothing left out: read again, it gives the same scene.
 
     Parameters
     ----------
     scene : Scene
         With a grading that a file can hold.
+    heights_file : str, optional
+        Name beside the scene of a file that holds its measured heights, in the place of a list.
 
     Returns
     -------
@@ -216,7 +219,7 @@ def scene_text(scene: Scene) -> str:
         "title": scene.title,
         "surface": {key: float(getattr(surface, key)) for key in keys},
         "grading": {**_grading_table(scene.grading), "negative": scene.negative},
-        "heights": {"law": "gaussian"},
+        "heights": heights_table(scene.heights, heights_file),
         "contact": {"separations": list(scene.separations), "quantities": list(scene.quantities)},
         "ensemble": {
             key: getattr(scene, key)

@@ -68,7 +68,7 @@ def block_size(scene: Scene, sampler: Sampler) -> int:
     words = len(scene.separations) * len(scene.quantities)
     if isinstance(sampler, Cells):
         words += 3 * int(sampler.response.layout.starts[-1]) + 4 * sampler.mesh.size
-    draws = scene.n_asperities if sampler.name == "direct" else min(touching, 1e12)
+    draws = {"direct": float(scene.n_asperities), "aggregate": 1e4}.get(sampler.name, touching)
     if sampler.name == "tail":
         words += 4 * int(min(touching, 1e12))
     size = int(min(_WORDS / words, _DRAWS / (draws + 1), 16 * GROUP))

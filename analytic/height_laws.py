@@ -1,0 +1,289 @@
+"""Laws of summit heights beside the Gaussian: exponential, Weibull, and any of scipy.stats.
+
+All are reduced: s = (z - mean)/(standard deviation). Separations stay d/sigma from the mean height.
+"""
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.special import gammaln
+
+from analytic.heights import HeightLaw
+from analytic.resolution import resolved_breaks
+
+__all__ = ["ExponentialHeights", "ScipyHeights", "Weibull", "narrowest"]
+
+Array = NDArray[np.float64]
+
+_BEND = 0.5  # change of the logarithm of the density over a span
+
+
+def narrowest(law: HeightLaw, s: float) -> float:
+    """Width, halved until no quarter changes the logarithm of the density by more than 1/8."""
+    width = max(_BEND, abs(s) / 8)  # far out in a heavy tail, a share of the height
+    parts = np.array([0.0, 0.25, 0.5, 0.75, 1.0])
+    for _ in range(40):
+        with np.errstate(all="ignore"):
+            change = np.abs(np.diff(law.log_ratio(np.array(s), width * parts)))
+        if np.all(change <= _BEND / 4):
+            return width
+        width /= 2
+    return width
+
+
+@dataclass(frozen=True)
+class ExponentialHeights:
+    """Exponential law: ``exp(-1 - s)`` for s > -1.
+
+    Greenwood and Williamson (1966) used it for its closed form, ``F_n(h) = Gamma(n+1) exp(-1 - h)``
+    for h >= -1: load, area and number of contacts are proportional to each other.
+    """
+
+    support: tuple[float, float] = (-1.0, math.inf)
+    breaks: tuple[float, ...] = (-1.0,)
+    singular: tuple[float, ...] = ()
+
+    def span(self, s: float) -> float:  # noqa: ARG002 - the same everywhere
+        """One half: the logarithm of the density is linear."""
+        return _BEND
+
+    def sample(self, rng: np.random.Generator, n: int) -> Array:
+        """Standard exponential numbers, less their mean."""
+        return rng.standard_exponential(n) - 1
+
+    def density(self, s: Array) -> Array:
+        """``exp(-1 - s)`` for s >= -1."""
+        return np.asarray(np.where(s >= -1, np.exp(-1 - np.maximum(s, -1.0)), 0.0))
+
+    def log_ratio(self, s: Array, t: Array) -> Array:
+        """``-t``."""
+        return -t + 0 * s
+
+    def below(self, s: Array) -> Array:
+        """``1 - exp(-1 - s)``."""
+        return np.asarray(-np.expm1(-1 - np.maximum(s, -1.0)))
+
+    def above(self, s: Array) -> Array:
+        """``exp(-1 - s)``."""
+        return np.asarray(np.exp(-1 - np.maximum(s, -1.0)))
+
+    def from_below(self, p: Array, s: float) -> Array:
+        """``-1 - log(1 - p below(s))``."""
+        return np.asarray(-1 - np.log1p(-p * self.below(np.array(s))))
+
+    def from_above(self, p: Array, s: float) -> Array:
+        """``max(s, -1) - log(p)``."""
+        return np.asarray(max(s, -1.0) - np.log(p))
+
+
+@dataclass(frozen=True)
+class Weibull:
+    """Weibull law of a given shape (McCool 1992, Int. J. Mach. Tools Manuf. 32, 115).
+
+    Parameters
+    ----------
+    shape : float
+        1 is exponential, 3.6 has no skewness (0 at 3.60235, +1 at 1.56391, -1 at 40.743).
+
+    Raises
+    ------
+    ValueError
+        If the shape is not between 1 and 100.
+    """
+
+    shape: float
+
+    def __post_init__(self) -> None:
+        if not 1 <= self.shape <= 100:
+            raise ValueError(f"shape = {self.shape!r}: give a number from 1 to 100")
+
+    @cached_property
+    def _mean_std(self) -> tuple[float, float]:
+        """Mean and standard deviation of the unreduced variable x of scale 1."""
+        k = self.shape
+        mean = math.exp(gammaln(1 + 1 / k))
+        # as a difference of exponentials relative to the mean: no cancellation for large shapes
+        return mean, mean * math.sqrt(math.expm1(gammaln(1 + 2 / k) - 2 * gammaln(1 + 1 / k)))
+
+    @property
+    def support(self) -> tuple[float, float]:
+        """From x = 0 on."""
+        mean, std = self._mean_std
+        return (-mean / std, math.inf)
+
+    @property
+    def breaks(self) -> tuple[float, ...]:
+        """The lower end, where the density is smooth from above for shape 1 only."""
+        return self.support[:1] if self.shape == 1 else ()
+
+    @property
+    def singular(self) -> tuple[float, ...]:
+        """The lower end, a broken power unless the shape is 1."""
+        return () if self.shape == 1 else self.support[:1]
+
+    def span(self, s: float) -> float:
+        """Where the logarithm of the density changes evenly, by at most one half."""
+        return narrowest(self, s)
+
+    def _x(self, s: Array) -> Array:
+        return np.maximum(self._mean_std[1] * (s - self.support[0]), 0.0)
+
+    def _s(self, x: Array) -> Array:
+        mean, std = self._mean_std
+        return (x - mean) / std
+
+    def sample(self, rng: np.random.Generator, n: int) -> Array:
+        """NumPy's Weibull numbers, reduced."""
+        return self._s(rng.weibull(self.shape, n))
+
+    def density(self, s: Array) -> Array:
+        """``k x^(k-1) exp(-x^k)`` times the standard deviation of x."""
+        x, k = self._x(s), self.shape
+        inside = np.asarray(s) >= self.support[0]
+        return np.asarray(np.where(inside, self._mean_std[1] * k * x ** (k - 1) * np.exp(-(x**k)), 0.0))
+
+    def log_ratio(self, s: Array, t: Array) -> Array:
+        """Of the density, by the relative change of x."""
+        x, k = self._x(s), self.shape
+        step = np.log1p(self._mean_std[1] * t / x) if k > 1 else 0.0
+        rise = x**k * np.expm1(k * step) if k > 1 else self._mean_std[1] * t
+        return np.asarray((k - 1) * step - rise)
+
+    def below(self, s: Array) -> Array:
+        """``1 - exp(-x^k)``."""
+        return np.asarray(-np.expm1(-(self._x(s) ** self.shape)))
+
+    def above(self, s: Array) -> Array:
+        """``exp(-x^k)``."""
+        return np.asarray(np.exp(-(self._x(s) ** self.shape)))
+
+    def from_below(self, p: Array, s: float) -> Array:
+        """``(-log(1 - p below(s)))^(1/k)``, reduced."""
+        return self._s((-np.log1p(-p * self.below(np.array(s)))) ** (1 / self.shape))
+
+    def from_above(self, p: Array, s: float) -> Array:
+        """``(x(s)^k - log(p))^(1/k)``, reduced."""
+        return self._s((self._x(np.array(s)) ** self.shape - np.log(p)) ** (1 / self.shape))
+
+
+@dataclass(frozen=True, eq=False)
+class ScipyHeights:
+    """Any frozen continuous distribution of scipy.stats, reduced by its own mean and variance.
+
+    Parameters
+    ----------
+    distribution : scipy.stats frozen distribution
+        As ``scipy.stats.gamma(4)``; its location and scale drop out. Accurate as its ``cdf``, ``sf``,
+        ``ppf`` and ``isf`` are.
+
+    Raises
+    ------
+    ValueError
+        If it is not continuous, or its variance is not positive and finite.
+    """
+
+    distribution: Any
+
+    def __post_init__(self) -> None:
+        if not hasattr(self.distribution, "pdf"):
+            raise ValueError(f"{self.distribution!r}: give a frozen continuous distribution of scipy.stats")
+        mean, std = self._mean_std
+        if not (math.isfinite(mean) and math.isfinite(std) and std > 0):
+            raise ValueError(
+                f"{self._name}: its mean is {mean:g} and its deviation {std:g}; both must be finite"
+            )
+
+    @property
+    def _name(self) -> str:
+        return str(getattr(getattr(self.distribution, "dist", None), "name", self.distribution))
+
+    @property
+    def _key(self) -> tuple[str, str, str]:
+        return self._name, repr(self.distribution.args), repr(self.distribution.kwds)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, ScipyHeights) and self._key == other._key
+
+    def __hash__(self) -> int:
+        return hash(self._key)
+
+    @cached_property
+    def _mean_std(self) -> tuple[float, float]:
+        return float(self.distribution.mean()), float(self.distribution.std())
+
+    @cached_property
+    def support(self) -> tuple[float, float]:
+        """Its support, reduced."""
+        mean, std = self._mean_std
+        low, high = self.distribution.support()
+        return (float(low) - mean) / std, (float(high) - mean) / std
+
+    @cached_property
+    def breaks(self) -> tuple[float, ...]:
+        """Heights that cut the density, between its 1e-9 quantiles, into smooth curves."""
+        low, high = self.from_below(np.array(1e-9), math.inf), self.from_above(np.array(1e-9), -math.inf)
+        return resolved_breaks(_Density(self), float(low), float(high))
+
+    @property
+    def singular(self) -> tuple[float, ...]:
+        """Every finite end of the support."""
+        return tuple(end for end in self.support if math.isfinite(end))
+
+    def span(self, s: float) -> float:
+        """Where the logarithm of the density changes evenly, by at most one half."""
+        return narrowest(self, s)
+
+    def _x(self, s: Array) -> Array:
+        mean, std = self._mean_std
+        return np.asarray(mean + std * np.asarray(s))
+
+    def _s(self, x: Array) -> Array:
+        mean, std = self._mean_std
+        return np.asarray((np.asarray(x) - mean) / std)
+
+    def sample(self, rng: np.random.Generator, n: int) -> Array:
+        """Its own random variates, reduced."""
+        return self._s(self.distribution.rvs(size=n, random_state=rng))
+
+    def density(self, s: Array) -> Array:
+        """Its ``pdf``, reduced."""
+        return np.asarray(self._mean_std[1] * self.distribution.pdf(self._x(s)))
+
+    def log_ratio(self, s: Array, t: Array) -> Array:
+        """Difference of its ``logpdf``."""
+        low, high = self.support
+        start = np.asarray(s)
+        moved = np.clip(start + t, low, high)
+        return np.asarray(self.distribution.logpdf(self._x(moved)) - self.distribution.logpdf(self._x(start)))
+
+    def below(self, s: Array) -> Array:
+        """Its ``cdf``."""
+        return np.asarray(self.distribution.cdf(self._x(s)))
+
+    def above(self, s: Array) -> Array:
+        """Its ``sf``."""
+        return np.asarray(self.distribution.sf(self._x(s)))
+
+    def from_below(self, p: Array, s: float) -> Array:
+        """Its ``ppf``."""
+        return self._s(self.distribution.ppf(p * self.below(np.array(s))))
+
+    def from_above(self, p: Array, s: float) -> Array:
+        """Its ``isf``."""
+        return self._s(self.distribution.isf(p * self.above(np.array(s))))
+
+
+@dataclass(frozen=True)
+class _Density:
+    """A density in the clothes of a grading, so that its jumps and kinks are found alike."""
+
+    law: ScipyHeights
+    breaks: tuple[float, ...] = ()
+    smooth: bool = False
+
+    def __call__(self, s: Array) -> Array:
+        return self.law.density(s)

@@ -1,0 +1,145 @@
+"""``mcgw surface``: one surface of an ensemble as a map, its contacts as a figure; or a Gaussian map."""
+
+import argparse
+import re
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from mcgw.maps.asperities import Asperities
+    from mcgw.maps.topography import Topography
+    from mcgw.scene import Scene
+
+HELP = "write one surface of an ensemble, or a Gaussian map, as a height map"
+EXAMPLE = "mcgw surface runs/demo.toml --surface 3 -o map.sdf"
+
+_FIGURES = (".png", ".svg", ".pdf")
+
+
+def arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of this command."""
+    parser.add_argument("scene", type=Path, nargs="?", metavar="SCENE", help="TOML file, SI units")
+    parser.add_argument("--surface", type=int, default=0, metavar="I", help="number of the surface (0)")
+    parser.add_argument(
+        "--shape", default="1024", metavar="N", help="columns of the map, or COLUMNSxROWS (1024)"
+    )
+    parser.add_argument("--width", metavar="LENGTH", help="extent along x, as 5mm (a square)")
+    parser.add_argument("--periodic", action="store_true", help="let caps reach across the edges")
+    parser.add_argument(
+        "--at", type=float, metavar="H", help="draw the contacts at this d/sigma: -o FILE.png"
+    )
+    parser.add_argument(
+        "--colour", choices=("load", "modulus"), default="load", help="what their colour tells (load)"
+    )
+    parser.add_argument(
+        "--from-spectrum",
+        metavar="LIST",
+        help="a Gaussian map instead: rms=1um,long=100um,short=5um[,hurst=0.8], or m0=..,m2=..,m4=.. (SI)",
+    )
+    parser.add_argument("--pixel", metavar="LENGTH", help="of a Gaussian map, as 0.5um")
+    parser.add_argument("--seed", type=int, default=0, help="of a Gaussian map (0)")
+    parser.add_argument(
+        "-o", "--output", type=Path, required=True, metavar="FILE",
+        help="ends in .sdf, .ascii.sdf, .x3p, .npy or .h5; with --at in .png, .svg or .pdf",
+    )  # fmt: skip
+
+
+def execute(args: argparse.Namespace) -> int:
+    """Write the map or the figure, and say where it is and what hides in it."""
+    from mcgw.maps.files import check_ending
+
+    drawn = args.at is not None
+    if drawn and args.output.suffix.lower() not in _FIGURES:
+        raise ValueError(f"{args.output}: --at draws a figure; give a name in {', '.join(_FIGURES)}")
+    if not drawn:
+        check_ending(args.output)
+    if args.from_spectrum is not None:
+        return _spectrum(args)
+    if args.scene is None:
+        raise ValueError("SCENE: give a scene (TOML), or --from-spectrum")
+    return _asperities(args)
+
+
+def _shape(text: str) -> tuple[int, int | None]:
+    """Columns, and rows if they are given."""
+    found = re.fullmatch(r"(\d{1,9})(?:x(\d{1,9}))?", text)
+    if found is None:
+        raise ValueError(f"--shape {text!r}: give columns, as 1024, or columns and rows, as 1024x512")
+    return int(found[1]), int(found[2]) if found[2] else None
+
+
+def _asperities(args: argparse.Namespace) -> int:
+    from mcgw.maps.asperities import asperities_of
+    from mcgw.maps.envelope import envelope
+    from mcgw.maps.files import write_map
+    from mcgw.maps.lengths import metres
+    from mcgw.maps.spots import save_contact_map, spots_at
+    from mcgw.scene_file import load_scene, scene_text
+
+    scene = load_scene(args.scene)
+    field = asperities_of(scene, args.surface, width=None if args.width is None else metres(args.width))
+    if args.at is not None:
+        spots = spots_at(scene, field, args.at)
+        save_contact_map(field, spots, args.output, colour=args.colour, periodic=args.periodic)
+        print(f"{args.output}: {spots.radius.size} contacts, {spots.load.sum():.6g} N")
+        return 0
+    columns, rows = _shape(args.shape)
+    if rows is None:
+        rows = max(round(columns * field.size[1] / field.size[0]), 1)
+    topography = envelope(field, (rows, columns), periodic=args.periodic)
+    for path in write_map(topography, args.output, field, scene=scene_text(scene)):
+        print(path)
+    print(_account(scene, field, topography))
+    return 0
+
+
+def _account(scene: "Scene", field: "Asperities", topography: "Topography") -> str:
+    """How well the map shows independent asperities."""
+    from mcgw.maps.envelope import hidden_summits
+    from mcgw.maps.hiding import CROWDED
+
+    hidden = hidden_summits(field, periodic=topography.periodic)
+    touching = field.z > scene.lowest * scene.surface.sigma
+    density = field.number / (field.size[0] * field.size[1])
+    overlap = density * field.radius * scene.surface.sigma
+    rows, columns = topography.heights.shape
+    dx, dy = topography.pixel
+    lines = [
+        f"{columns} x {rows} points of {dx:.4g} x {dy:.4g} m, {field.number} asperities, seed {scene.seed}",
+        f"eta R sigma = {overlap:.4g}; hidden under taller neighbours: {hidden.sum()} summits "
+        f"({100 * hidden.mean():.3g} %), {(hidden & touching).sum()} of the {touching.sum()} that touch at "
+        f"h = {scene.lowest:g}",
+    ]
+    if overlap > CROWDED:
+        lines.append("warning: the caps overlap; this map is no field of independent asperities")
+    if max(topography.pixel) > 0.5 * (2 * field.radius * scene.surface.sigma) ** 0.5:
+        lines.append(
+            "warning: a pixel is wider than half the size of a cap, sqrt(2 R sigma); give a larger --shape"
+        )
+    return "\n".join(lines)
+
+
+def _spectrum(args: argparse.Namespace) -> int:
+    import numpy as np
+
+    from mcgw.maps.files import write_map
+    from mcgw.maps.lengths import metres
+    from mcgw.maps.spectrum import gaussian_map, moments_on_grid, spectrum_from
+
+    if args.at is not None or args.scene is not None:
+        raise ValueError("--from-spectrum: draws a map without asperities; leave out SCENE and --at")
+    if args.pixel is None:
+        raise ValueError("--pixel: give the size of a pixel, as --pixel 0.5um")
+    if args.seed < 0:
+        raise ValueError(f"--seed {args.seed}: give a whole number >= 0")
+    pixel = metres(args.pixel)
+    columns, rows = _shape(args.shape)
+    shape = (columns if rows is None else rows, columns)
+    spectrum = spectrum_from(args.from_spectrum)
+    topography = gaussian_map(spectrum, shape, (pixel, pixel), np.random.default_rng(args.seed))
+    for path in write_map(topography, args.output):
+        print(path)
+    m = moments_on_grid(spectrum, shape, (pixel, pixel))
+    print(f"m0 = {m.m0:.6g} m^2, m2 = {m.m2:.6g}, m4 = {m.m4:.6g} 1/m^2, alpha = {m.alpha:.4g}")
+    print(f"summits (Nayak): eta = {m.eta:.4g} 1/m^2, R = {m.radius:.4g} m, sigma = {m.sigma:.4g} m")
+    return 0

@@ -1,0 +1,1 @@
+"""Surfaces as maps: synthetic ones out, measured ones in."""

@@ -1,0 +1,209 @@
+"""The height map of a field of asperities: the upper envelope of paraboloid caps of one radius.
+
+A bin of a regular grid holds about one asperity. The highest cap above a point is sought bin by bin,
+ring by ring, until no asperity further out could rise above what was found: the cost is proportional
+to the number of pixels plus that of asperities.
+"""
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numba import njit, prange
+from numpy.typing import NDArray
+
+from mcgw.maps.asperities import Asperities
+from mcgw.maps.topography import Topography, checked_shape
+
+__all__ = ["Bins", "bins_of", "envelope", "hidden_summits"]
+
+Array = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class Bins:
+    """Asperities sorted into the bins of a regular grid.
+
+    Parameters
+    ----------
+    x, y, z : ndarray
+        Of the asperities, bin by bin.
+    order : ndarray of int
+        Which asperity each of them is.
+    starts : ndarray of int
+        First asperity of each bin, and the number of all.
+    shape : (int, int)
+        Bins along y and x.
+    size : (float, float)
+        Extent of the area along x and y, m.
+    radius : float
+        Of the caps, m.
+    """
+
+    x: Array
+    y: Array
+    z: Array
+    order: Ints
+    starts: Ints
+    shape: tuple[int, int]
+    size: tuple[float, float]
+    radius: float
+
+
+def bins_of(field: Asperities) -> Bins:
+    """Sort asperities into about as many bins, as square as they come."""
+    per_length = math.sqrt(max(field.number, 1) / (field.size[0] * field.size[1]))
+    columns, rows = (min(max(int(length * per_length), 1), 2**15) for length in field.size)
+    i = np.minimum((field.x / field.size[0] * columns).astype(np.int64), columns - 1)
+    j = np.minimum((field.y / field.size[1] * rows).astype(np.int64), rows - 1)
+    order = np.argsort(j * columns + i, kind="stable")
+    starts = np.concatenate([[0], np.cumsum(np.bincount(j * columns + i, minlength=rows * columns))])
+    x, y, z = field.x[order], field.y[order], field.z[order]
+    return Bins(x, y, z, order, starts, (rows, columns), field.size, field.radius)
+
+
+@njit(nogil=True, cache=True)
+def _highest(
+    px: Any, py: Any, best: Any, asperities: Any, starts: Any, shape: Any, size: Any, per: Any, periodic: Any
+) -> Any:
+    """Height of the envelope above (px, py), `best` or more; `per` is 1/(2R)."""
+    x, y, z, top = asperities
+    rows, columns = shape
+    bx, by = size[0] / columns, size[1] / rows
+    ci, cj = min(int(px / bx), columns - 1), min(int(py / by), rows - 1)
+    ex, ey = px - ci * bx, py - cj * by  # inside the own bin
+    margin = min(min(ex, bx - ex), min(ey, by - ey))
+    least = min(bx, by)
+    furthest = max(rows, columns)
+    for ring in range(furthest + 1):
+        away = max((ring - 1) * least + margin, 0.0) if ring else 0.0
+        if best >= top - away * away * per:
+            break
+        for dj in range(-ring, ring + 1):
+            j, shift_y = cj + dj, 0.0
+            if j < 0 or j >= rows:
+                if not periodic:
+                    continue
+                shift_y = size[1] * np.floor(j / rows)
+                j = j % rows
+            step = 1 if abs(dj) == ring else 2 * ring
+            for di in range(-ring, ring + 1, max(step, 1)):
+                i, shift_x = ci + di, 0.0
+                if i < 0 or i >= columns:
+                    if not periodic:
+                        continue
+                    shift_x = size[0] * np.floor(i / columns)
+                    i = i % columns
+                for k in range(starts[j * columns + i], starts[j * columns + i + 1]):
+                    dx, dy = x[k] + shift_x - px, y[k] + shift_y - py
+                    best = max(best, z[k] - (dx * dx + dy * dy) * per)
+    return best
+
+
+@njit(parallel=True, cache=True)
+def _map(
+    shape: Any,
+    pixel: Any,
+    origin: Any,
+    x: Any,
+    y: Any,
+    z: Any,
+    starts: Any,
+    bins: Any,
+    size: Any,
+    per: Any,
+    periodic: Any,
+) -> Any:
+    """Envelope above the centre of every pixel."""
+    result = np.empty(shape)
+    top = z.max()
+    for j in prange(shape[0]):
+        for i in range(shape[1]):
+            px, py = origin[0] + (i + 0.5) * pixel[0], origin[1] + (j + 0.5) * pixel[1]
+            result[j, i] = _highest(px, py, -np.inf, (x, y, z, top), starts, bins, size, per, periodic)
+    return result
+
+
+@njit(parallel=True, cache=True)
+def _hidden(x: Any, y: Any, z: Any, starts: Any, bins: Any, size: Any, per: Any, periodic: Any) -> Any:
+    """Whether a taller neighbour's cap rises above each summit."""
+    result = np.zeros(z.size, dtype=np.bool_)
+    top = z.max()
+    for k in prange(z.size):
+        result[k] = _highest(x[k], y[k], z[k], (x, y, z, top), starts, bins, size, per, periodic) > z[k]
+    return result
+
+
+def envelope(
+    field: Asperities,
+    shape: tuple[int, int],
+    *,
+    periodic: bool = False,
+    window: tuple[float, float, float, float] | None = None,
+) -> Topography:
+    """Upper envelope of the caps ``z_i - r^2/(2R)`` on a grid.
+
+    Parameters
+    ----------
+    field : Asperities
+        One or more asperities.
+    shape : (int, int)
+        Rows and columns of the map.
+    periodic : bool, optional
+        Whether caps reach across the edges.
+    window : (float, float, float, float), optional
+        Left, right, bottom and top of what is mapped, inside the area, m; left out: all of it.
+
+    Returns
+    -------
+    Topography
+        Heights in m, above the mean of all summit heights.
+
+    Raises
+    ------
+    ValueError
+        If there is no asperity, or no pixel, or more than 2^28.
+    """
+    rows, columns = checked_shape(*shape)
+    if not field.number:
+        raise ValueError("the surface has no asperity: nothing to map")
+    left, right, bottom, top = window or (0.0, field.size[0], 0.0, field.size[1])
+    pixel = ((right - left) / columns, (top - bottom) / rows)
+    b = bins_of(field)
+    heights = _map(
+        (rows, columns),
+        pixel,
+        (left, bottom),
+        b.x,
+        b.y,
+        b.z,
+        b.starts,
+        b.shape,
+        b.size,
+        0.5 / b.radius,
+        periodic,
+    )
+    return Topography(heights, pixel, periodic and window is None)
+
+
+def hidden_summits(field: Asperities, *, periodic: bool = False) -> NDArray[np.bool_]:
+    """Which summits lie below the cap of a taller neighbour.
+
+    Parameters
+    ----------
+    field : Asperities
+        One or more asperities.
+    periodic : bool, optional
+        Whether caps reach across the edges.
+
+    Returns
+    -------
+    ndarray of bool
+        In the order of `field`.
+    """
+    b = bins_of(field)
+    hidden = np.empty(field.number, dtype=np.bool_)
+    hidden[b.order] = _hidden(b.x, b.y, b.z, b.starts, b.shape, b.size, 0.5 / b.radius, periodic)
+    return hidden

@@ -1,0 +1,103 @@
+"""The scene of a fit: it runs as it is."""
+
+import math
+from pathlib import Path
+from typing import Literal
+
+import numpy as np
+
+from analytic import Gaussian, HeightLaw, HeightTable, MeasuredHeights, Surface
+from mcgw.maps.fit import Fit
+from mcgw.maps.whole_file import whole_file
+from mcgw.scene import Scene
+from mcgw.scene_file import scene_text
+
+__all__ = ["fitted_scene", "write_scene"]
+
+Law = Literal["gaussian", "table", "measured"]
+
+
+def fitted_scene(fit: Fit, *, use: str, heights: Law, E_star: float, title: str) -> Scene:
+    """Make a scene of a fit.
+
+    Parameters
+    ----------
+    fit : Fit
+        With the estimate that is asked for.
+    use : {"moments", "summits", "caps"}
+        Which estimate. With measured heights sigma is that of the heights.
+    heights : {"gaussian", "table", "measured"}
+        Law of the heights; ``measured`` makes an ensemble of the one surface there is.
+    E_star : float
+        Composite modulus, which no map tells, Pa.
+    title : str
+        For people.
+
+    Returns
+    -------
+    Scene
+        On the area that was looked at.
+
+    Raises
+    ------
+    ValueError
+        If the fit has no such estimate, or a parameter makes no surface.
+    """
+    if use not in fit.estimates:
+        raise ValueError(
+            f"use = {use!r}: there is no such estimate of this map; {', '.join(fit.estimates)} are"
+        )
+    estimate = fit.estimates[use]
+    law: HeightLaw = Gaussian()
+    sigma = estimate.sigma[0]
+    if heights != "gaussian":
+        sigma = float(fit.summits.std())
+        law = HeightTable.of(fit.summits) if heights == "table" else MeasuredHeights(fit.summits)
+    surface = Surface(sigma, estimate.radius[0], estimate.eta[0], fit.area, E_star)
+    separations = tuple(np.linspace(0, 3, 31).tolist())
+    if heights == "measured":
+        if not math.isclose(surface.n_asperities, fit.summits.size, rel_tol=1e-9):
+            raise ValueError(f'use = "{use}": measured heights as they are need "summits", their own number')
+        return Scene(
+            surface=surface, separations=separations, title=title, heights=law,
+            n_surfaces=1, n_asperities=fit.summits.size, sampler="direct", seed=1,
+        )  # fmt: skip
+    return Scene(surface=surface, separations=separations, title=title, heights=law, seed=1)
+
+
+def write_scene(scene: Scene, path: Path, measured: Fit | None, comments: list[str]) -> list[Path]:
+    """Write a scene with what was found as comments above it.
+
+    Parameters
+    ----------
+    scene : Scene
+        From `fitted_scene`.
+    path : Path
+        The TOML file.
+    measured : Fit or None
+        If given, its summit heights go to a file beside the scene, named after it, which the scene
+        names in the place of a list.
+    comments : list of str
+        Lines above the scene.
+
+    Returns
+    -------
+    list of Path
+        What was written.
+
+    Raises
+    ------
+    OSError
+        If a file cannot be written.
+    """
+    text = "".join(f"# {line}\n" for line in comments) + "\n"
+    if measured is None:
+        with whole_file(path) as unfinished:
+            unfinished.write_text(text + scene_text(scene), encoding="utf-8")
+        return [path]
+    beside = path.with_name(f"{path.stem}.heights.npy")
+    with whole_file(path) as unfinished, whole_file(beside) as numbers:
+        with open(numbers, "wb") as file:
+            np.save(file, measured.summits)
+        unfinished.write_text(text + scene_text(scene, heights_file=beside.name), encoding="utf-8")
+    return [path, beside]

@@ -1,0 +1,113 @@
+"""How many independent caps hide under taller ones, and how that bends what is counted.
+
+A cap of height z is hidden where an asperity at a distance r has ``z_j - r^2/(2R) > z``. It cannot be
+told from the slope of its neighbour where the valley between them is nearer to its summit than the
+blur p of the map: where ``z_j - (r^2 - 2 r p)/(2R) > z``. Of a Poisson field the number of such
+neighbours has a Poisson law, so the share of visible summits of that height is the exponential of
+minus its mean.
+"""
+
+import math
+from dataclasses import dataclass
+from functools import cache, lru_cache
+
+import numpy as np
+from numpy.polynomial.legendre import leggauss
+from numpy.typing import NDArray
+from scipy.optimize import brentq
+from scipy.special import ndtr
+
+__all__ = ["CROWDED", "Visible", "unhidden", "visible"]
+
+CROWDED = 0.05  # eta R sigma, from which one summit in six is hidden: the asperities are no longer apart
+Array = NDArray[np.float64]
+
+_REACH, _NODES = 9.0, 200
+_MOST = 10.0
+
+
+@dataclass(frozen=True, slots=True)
+class Visible:
+    """Of the summits that no taller neighbour hides.
+
+    Parameters
+    ----------
+    share : float
+        Of all summits.
+    mean, std : float
+        Of their reduced heights; 0 if none is visible.
+    """
+
+    share: float
+    mean: float
+    std: float
+
+
+@cache
+def _nodes() -> tuple[Array, Array]:
+    """Heights and their probabilities."""
+    x, w = leggauss(_NODES)
+    s = _REACH * x
+    return s, _REACH * w * np.exp(-s * s / 2) / math.sqrt(2 * math.pi)
+
+
+@lru_cache(maxsize=64)
+def _hiding(blur: float) -> Array:
+    """Mean number of neighbours that hide each height, over ``4 pi eta R sigma``."""
+    x, w = leggauss(_NODES)
+    reach = blur + math.sqrt(blur**2 + 2 * _REACH)  # beyond, nobody is tall enough
+    r, w = reach * (1 + x) / 2, reach * w / 2
+    return np.asarray(ndtr(-(_nodes()[0][:, None] + r * r - 2 * r * blur)) @ (w * r))
+
+
+def visible(overlap: float, blur: float = 0.0) -> Visible:
+    """Statistics of the visible summits of Gaussian heights.
+
+    Parameters
+    ----------
+    overlap : float
+        ``eta R sigma``.
+    blur : float, optional
+        Distance p from a valley that a summit needs, over ``sqrt(2 R sigma)``.
+
+    Returns
+    -------
+    Visible
+        By quadrature over heights and distances.
+    """
+    s, w = _nodes()
+    p = w * np.exp(-4 * math.pi * overlap * _hiding(blur))
+    share = float(p.sum())
+    if share == 0:
+        return Visible(0.0, 0.0, 0.0)
+    mean = float(p @ s) / share
+    return Visible(share, mean, math.sqrt(float(p @ (s - mean) ** 2) / share))
+
+
+def unhidden(eta: float, radius: float, sigma: float, blur: float = 0.0) -> tuple[float, float] | None:
+    """Density and deviation of all summits from those of the visible ones.
+
+    Parameters
+    ----------
+    eta, radius, sigma : float
+        Of the visible summits, SI units.
+    blur : float, optional
+        Distance p from a valley that a summit needs, m.
+
+    Returns
+    -------
+    (float, float) or None
+        eta and sigma; None if no field of independent caps shows so many.
+    """
+    reduced = blur / math.sqrt(2 * radius * sigma)
+
+    def misfit(overlap: float) -> float:
+        seen = visible(overlap, reduced)
+        return overlap * seen.share * seen.std - eta * radius * sigma
+
+    grid = np.geomspace(1e-9, _MOST, 60)
+    above = [x for x in grid if misfit(float(x)) > 0]
+    if not above:
+        return None
+    seen = visible(brentq(misfit, 0.0, float(above[0]), xtol=1e-15), reduced)
+    return eta / seen.share, sigma / seen.std

@@ -1,0 +1,199 @@
+"""Synthetic Gaussian maps: an isotropic power-law spectrum between two wavelengths, by FFT."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import fft
+from scipy.optimize import brentq
+
+from mcgw.maps.lengths import metres
+from mcgw.maps.nayak import SpectralMoments
+from mcgw.maps.topography import Topography, checked_shape
+
+__all__ = ["Spectrum", "gaussian_map", "moments_on_grid", "spectrum_from"]
+
+_HURST = 0.8
+_NARROWEST, _WIDEST = 1 + 1e-6, 1e6  # ratio of the long to the short wavelength
+
+
+@dataclass(frozen=True)
+class Spectrum:
+    """Power spectrum ``C(q) ~ q^(-2-2H)`` between two wavelengths, zero elsewhere.
+
+    Parameters
+    ----------
+    rms : float
+        Root mean square height of the map, m.
+    long, short : float
+        Longest and shortest wavelength, m.
+    hurst : float, optional
+        H; -1 makes the spectrum flat.
+
+    Raises
+    ------
+    ValueError
+        If `short` is not smaller than `long`, or a length is not positive.
+    """
+
+    rms: float
+    long: float
+    short: float
+    hurst: float = _HURST
+
+    def __post_init__(self) -> None:
+        for name in ("rms", "long", "short"):
+            if not (math.isfinite(getattr(self, name)) and getattr(self, name) > 0):
+                raise ValueError(f"{name} = {getattr(self, name)!r}: give a length > 0 m")
+        if not self.short < self.long:
+            raise ValueError(f"short = {self.short:g} m: give a wavelength below long = {self.long:g} m")
+        if not -1 <= self.hurst <= 1:
+            raise ValueError(f"hurst = {self.hurst!r}: give a number from -1 (a flat spectrum) to 1")
+
+    @classmethod
+    def with_moments(cls, moments: SpectralMoments, hurst: float = _HURST) -> "Spectrum":
+        """The spectrum that has these moments: its two wavelengths follow from alpha and m2/m0.
+
+        Raises
+        ------
+        ValueError
+            If no such spectrum has this alpha, which is above 1.5.
+        """
+
+        def misfit(log_ratio: float) -> float:
+            q4, q2 = (_mean_power(k, math.exp(log_ratio), hurst) for k in (4, 2))
+            return 1.5 * q4 / q2**2 - moments.alpha
+
+        low, high = math.log(_NARROWEST), math.log(_WIDEST)
+        if not misfit(low) < 0 < misfit(high):
+            highest = misfit(high) + moments.alpha
+            raise ValueError(
+                f"m0 m4/m2^2 = {moments.alpha:.6g}: give a ratio above 1.5 and below {highest:.4g}"
+            )
+        ratio = math.exp(brentq(misfit, low, high, xtol=1e-14))
+        q_long = math.sqrt(2 * moments.m2 / moments.m0 / _mean_power(2, ratio, hurst))
+        return cls(math.sqrt(moments.m0), 2 * math.pi / q_long, 2 * math.pi / q_long / ratio, hurst)
+
+    def density(self, q: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Of the variance over the plane of wave vectors, up to a factor; `q` in 1/m."""
+        inside = (q >= 2 * math.pi / self.long) & (q <= 2 * math.pi / self.short)
+        relative = np.where(inside, q * self.short, 1.0)
+        return np.asarray(np.where(inside, relative ** (-2 - 2 * self.hurst), 0.0))
+
+
+def _mean_power(k: int, ratio: float, hurst: float) -> float:
+    """Mean of q^k over a spectrum from q = 1 to `ratio`."""
+
+    def integral(power: float) -> float:
+        return math.log(ratio) if power == 0 else math.expm1(power * math.log(ratio)) / power
+
+    return integral(k - 2 * hurst) / integral(-2 * hurst)
+
+
+def _power(spectrum: Spectrum, shape: tuple[int, int], pixel: tuple[float, float]) -> NDArray[np.float64]:
+    """Density at the wave vectors of ``rfft2``."""
+    rows, columns = checked_shape(*shape)
+    if spectrum.short < 2 * max(pixel):
+        raise ValueError(f"short = {spectrum.short:g} m: a pixel of {max(pixel):g} m shows 2 pixels or more")
+    if spectrum.long > min(columns * pixel[0], rows * pixel[1]):
+        raise ValueError(f"long = {spectrum.long:g} m: longer than the map; give more pixels")
+    qy = 2 * math.pi * fft.fftfreq(rows, pixel[1])[:, None]
+    qx = 2 * math.pi * fft.rfftfreq(columns, pixel[0])
+    power = spectrum.density(np.hypot(qx, qy))
+    if not power.any():
+        raise ValueError("the spectrum lies between two wave vectors of the map; give more pixels")
+    return power
+
+
+def moments_on_grid(
+    spectrum: Spectrum, shape: tuple[int, int], pixel: tuple[float, float]
+) -> SpectralMoments:
+    """Expected moments of `gaussian_map`, with sums in the place of integrals over the spectrum.
+
+    Parameters
+    ----------
+    spectrum : Spectrum
+        Its two wavelengths must fit the grid.
+    shape : (int, int)
+        Rows and columns.
+    pixel : (float, float)
+        dx and dy, m.
+
+    Returns
+    -------
+    SpectralMoments
+        Averages over profiles along x and y.
+    """
+    power = _power(spectrum, shape, pixel)
+    power[:, 1 : (shape[1] + 1) // 2] *= 2  # rfft2 leaves out their conjugates
+    power *= spectrum.rms**2 / power.sum()
+    qy = 2 * math.pi * fft.fftfreq(shape[0], pixel[1])[:, None]
+    qx = 2 * math.pi * fft.rfftfreq(shape[1], pixel[0])
+    m2, m4 = (float((power * (qx**k + qy**k)).sum() / 2) for k in (2, 4))
+    return SpectralMoments(spectrum.rms**2, m2, m4)
+
+
+def gaussian_map(
+    spectrum: Spectrum, shape: tuple[int, int], pixel: tuple[float, float], rng: np.random.Generator
+) -> Topography:
+    """Draw a periodic isotropic Gaussian map.
+
+    Parameters
+    ----------
+    spectrum : Spectrum
+        Its two wavelengths must fit the grid.
+    shape : (int, int)
+        Rows and columns.
+    pixel : (float, float)
+        dx and dy, m.
+    rng : numpy.random.Generator
+        Where the noise comes from.
+
+    Returns
+    -------
+    Topography
+        Heights of mean 0 whose expected variance is ``rms**2``.
+
+    Raises
+    ------
+    ValueError
+        If the shortest wavelength is below two pixels or the longest does not fit on the map.
+    """
+    power = _power(spectrum, shape, pixel)
+    doubled = power.copy()
+    doubled[:, 1 : (shape[1] + 1) // 2] *= 2
+    amplitude = spectrum.rms * np.sqrt(power * (shape[0] * shape[1] / doubled.sum()))
+    noise = fft.rfft2(rng.standard_normal(shape), overwrite_x=True)
+    noise *= amplitude
+    return Topography(np.asarray(fft.irfft2(noise, s=shape, overwrite_x=True)), pixel, periodic=True)
+
+
+def spectrum_from(text: str) -> Spectrum:
+    """Spectrum of a list ``rms=1um,long=100um,short=5um,hurst=0.8`` or ``m0=1e-12,m2=1e-2,m4=5e8``.
+
+    Raises
+    ------
+    ValueError
+        If a key is unknown, missing or no number.
+    """
+    given: dict[str, float] = {}
+    for part in text.split(","):
+        key, _, value = part.partition("=")
+        key = key.strip()
+        if key not in ("rms", "long", "short", "hurst", "m0", "m2", "m4") or key in given:
+            raise ValueError(f"{part!r}: give rms, long, short and hurst, or m0, m2, m4 and hurst, each once")
+        given[key] = metres(value) if key in ("rms", "long", "short") else _number(key, value)
+    hurst = given.pop("hurst", _HURST)
+    if set(given) == {"m0", "m2", "m4"}:
+        return Spectrum.with_moments(SpectralMoments(**given), hurst)
+    if set(given) == {"rms", "long", "short"}:
+        return Spectrum(**given, hurst=hurst)
+    raise ValueError(f"{text!r}: give rms, long and short, or m0, m2 and m4")
+
+
+def _number(key: str, text: str) -> float:
+    try:
+        return float(text)
+    except ValueError:
+        raise ValueError(f"{key} = {text!r}: give a number") from None

@@ -1,0 +1,97 @@
+"""`aggregate` against the exact cumulants, and where it stops being right."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+from scipy.stats import kurtosis, skew
+
+import analytic
+import mcgw
+from mcgw import samplers
+from mcgw.ensemble import Arrays, Ensemble
+
+GATE = 5.0
+
+
+def scores(ensemble, quantity="load"):
+    """z of mean, variance, skewness and excess kurtosis, the largest over the separations.
+
+    Their errors are estimated from 50 batches of surfaces.
+    """
+    scene = ensemble.scene
+    exact = analytic.cumulants(
+        scene.surface, quantity, scene.separations, scene.grading, n_asperities=scene.n_asperities
+    )
+    values = (ensemble.values(quantity) - exact.mean) / np.sqrt(exact.variance)
+    batches = values.reshape(50, -1, values.shape[1])
+    found = np.array(
+        [
+            batches.mean(axis=1),
+            (batches**2).mean(axis=1) - 1,
+            skew(batches, axis=1) - exact.skewness,
+            kurtosis(batches, axis=1) - exact.excess_kurtosis,
+        ]
+    )
+    z = found.mean(axis=1) / (found.std(axis=1, ddof=1) / np.sqrt(50))
+    return np.abs(z).max(axis=1)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("n", [10**4, 10**6, 10**9])
+def test_four_cumulants_of_1e5_surfaces(make_scene, n):
+    """Batches of 2000 surfaces bias skewness and kurtosis by less than 1e-3 of their errors' scale."""
+    scene = make_scene(
+        separations=(0.0, 1.0, 2.0), n_asperities=n, n_surfaces=100_000, sampler="aggregate", seed=11
+    )
+    ensemble = mcgw.simulate(scene)
+    for quantity in ("load", "area", "stiffness"):
+        assert scores(ensemble, quantity).max() < GATE
+
+
+@pytest.mark.slow
+def test_the_scores_can_fail(make_scene):
+    """The companions: 2 % fewer asperities show in the variance, a Gaussian in the skewness."""
+    scene = make_scene(
+        separations=(2.0,), n_asperities=10**4, n_surfaces=100_000, sampler="aggregate", seed=11
+    )
+    ensemble = mcgw.simulate(scene)
+    fewer = dataclasses.replace(scene, n_asperities=9800)
+    assert scores(dataclasses.replace(ensemble, scene=fewer))[1] > GATE
+    rng = np.random.default_rng(1)
+    gaussian = ensemble.mean("load") + ensemble.std("load") * rng.standard_normal((100_000, 1))
+    assert scores(Ensemble(scene, "aggregate", Arrays({"load": gaussian})))[2] > GATE
+
+
+def test_where_the_approximation_begins_to_show(make_scene, monkeypatch):
+    """Cells are so narrow that even single asperities taken for Gaussian ones keep the four cumulants.
+
+    What shows first are loads below zero at light contact: 1 % of the surfaces with a threshold of 1,
+    none with the threshold in use.
+    """
+    scene = make_scene(separations=(1.0, 2.0), n_asperities=100, n_surfaces=20_000, sampler="aggregate")
+    assert (mcgw.simulate(scene).load >= 0).all()
+    monkeypatch.setattr(samplers, "CROWDED", 1)
+    share = (mcgw.simulate(scene).load < 0).mean(axis=0)
+    assert 0.005 < share[1] < 0.02
+
+
+def test_price_does_not_depend_on_n(make_scene):
+    """From 1e8 to 1e15 asperities the cells that are drawn one by one stay a few thousand asperities."""
+    singly = []
+    for n in (10**8, 10**12, 2**53):
+        sampler = samplers.sampler_of(make_scene(n_asperities=n, sampler="aggregate"))
+        counts = samplers.counts_of(sampler.scene, sampler.mesh, 0, 4).cells
+        singly.append(counts[counts < samplers.CROWDED].sum() / 4)
+    assert max(singly) < 3000
+
+
+def test_counts_are_exact(make_scene):
+    ensemble = mcgw.simulate(make_scene(n_asperities=10**15, n_surfaces=50, sampler="aggregate"))
+    same = mcgw.simulate(
+        make_scene(n_asperities=10**15, n_surfaces=50, sampler="aggregate", quantities=("contacts",))
+    )
+    np.testing.assert_array_equal(ensemble.contacts, same.contacts)
+    p = analytic.fn(0, ensemble.separations)
+    z = (ensemble.contacts - 1e15 * p) / np.sqrt(1e15 * p * (1 - p))
+    assert np.abs(z).max() < GATE

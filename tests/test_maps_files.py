@@ -1,0 +1,299 @@
+"""Files of maps: every digit back, other people's readers, and damaged ones refused in one line."""
+
+import json
+import shutil
+import struct
+import subprocess
+import zipfile
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from mcgw.maps.files import read_map, write_map
+from mcgw.maps.lengths import metres
+from mcgw.maps.sdf import read_sdf
+from mcgw.maps.topography import Topography
+
+NAMES = ["map.sdf", "map.ascii.sdf", "map.x3p", "map.npy", "map.h5"]
+every_format = pytest.mark.parametrize("name", NAMES)
+
+
+@pytest.fixture
+def topography():
+    """Neither square nor symmetric, so that a turned or mirrored map is another one."""
+    return Topography(1e-6 * np.random.default_rng(1).normal(size=(5, 7)), (1e-6, 2.5e-6))
+
+
+@every_format
+def test_what_is_written_is_read_again(name, topography, tmp_path):
+    written = write_map(topography, tmp_path / name)
+    again = read_map(tmp_path / name)
+    assert np.array_equal(again.heights, topography.heights)
+    assert again.pixel == topography.pixel
+    assert sorted(tmp_path.iterdir()) == sorted(written)
+
+
+@every_format
+def test_missing_points_stay_missing(name, topography, tmp_path):
+    topography.heights[2, 3] = np.nan
+    write_map(topography, tmp_path / name)
+    again = read_map(tmp_path / name)
+    assert again.missing == 1
+    assert np.array_equal(again.heights, topography.heights, equal_nan=True)
+
+
+def metres_of(library_topography):
+    """Heights in m as rows of y, and the size in m, of another library's map."""
+    unit = metres(f"1 {library_topography.unit}")
+    heights = np.ma.filled(library_topography.heights(), np.nan).T * unit
+    return heights, tuple(float(x) * unit for x in library_topography.physical_sizes)
+
+
+@pytest.mark.parametrize("name", NAMES[:3])
+@pytest.mark.filterwarnings("ignore")
+def test_surface_topography_reads_the_same(name, topography, tmp_path):
+    library = pytest.importorskip("SurfaceTopography")
+    write_map(topography, tmp_path / name)
+    heights, size = metres_of(library.read_topography(str(tmp_path / name)))
+    # it holds micrometres: one multiplication and back
+    assert heights == pytest.approx(topography.heights, rel=1e-14)
+    assert size == pytest.approx(topography.size, rel=1e-14)
+
+
+@pytest.mark.parametrize("name", NAMES[:3])
+@pytest.mark.filterwarnings("ignore")
+def test_gwyddion_reads_the_same(name, topography, tmp_path):
+    """Gwyddion converts the file to its own format, which SurfaceTopography reads."""
+    library = pytest.importorskip("SurfaceTopography")
+    if shutil.which("gwyddion") is None:
+        pytest.skip("gwyddion is not installed")
+    write_map(topography, tmp_path / name)
+    command = ["gwyddion", "--no-splash", f"--convert-to-gwy={tmp_path / 'out.gwy'}", str(tmp_path / name)]
+    subprocess.run(command, check=True, capture_output=True, timeout=60)
+    heights, size = metres_of(library.read_topography(str(tmp_path / "out.gwy")))
+    assert heights == pytest.approx(topography.heights, rel=1e-14)
+    assert size == pytest.approx(topography.size, rel=1e-14)
+
+
+@pytest.mark.filterwarnings("ignore")
+def test_files_of_surface_topography_are_read(topography, tmp_path):
+    """The other way round, with the integer matrix and the bit map of valid points it writes."""
+    library = pytest.importorskip("SurfaceTopography")
+    holes = np.ma.masked_array(topography.heights.T, mask=np.zeros((7, 5), dtype=bool))
+    holes.mask[3, 2] = True
+    theirs = library.Topography(holes, topography.size, unit="m")
+    theirs.to_x3p(str(tmp_path / "theirs.x3p"), dtype="L")
+    again = read_map(tmp_path / "theirs.x3p")
+    expected = topography.heights.copy()
+    expected[2, 3] = np.nan
+    # 32 bits over the range of heights
+    assert again.heights == pytest.approx(expected, abs=np.ptp(topography.heights) * 2**-32, nan_ok=True)
+    assert again.pixel == pytest.approx(topography.pixel, rel=1e-14)
+    theirs.to_netcdf(str(tmp_path / "theirs.nc"))
+    other = read_map(tmp_path / "theirs.nc")
+    assert other.size == pytest.approx(topography.size, rel=1e-14)
+
+
+def test_integer_types_of_sdf(tmp_path):
+    """Scaled, and the mark of a missing point."""
+    for code, dtype, missing in ((5, "<i2", -(2**15)), (1, "<u2", 2**16 - 1), (6, "<i4", -(2**31))):
+        raw = np.array([[1, 2, 3], [4, missing, 6]], dtype=dtype)
+        head = struct.pack(
+            "<8s10s12s12sHHddddBBB", b"bISO-1.0", b"", b"", b"", 3, 2, 1e-6, 1e-6, 1e-9, 0, 0, code, 0
+        )
+        (tmp_path / "i.sdf").write_bytes(head + raw.tobytes())
+        expected = 1e-9 * np.array([[1, 2, 3], [4, np.nan, 6]])
+        assert read_sdf(tmp_path / "i.sdf").heights == pytest.approx(expected, nan_ok=True, rel=1e-15)
+
+
+def test_text_with_the_comments_of_gwyddion(tmp_path):
+    (tmp_path / "map.txt").write_text(
+        "# Channel: Z\n# Width: 10.0 µm\n# Height: 4.0 µm\n# Value units: nm\n1;2\t3 4\n5 6 --- 8\n",
+        encoding="utf-8",
+    )
+    found = read_map(tmp_path / "map.txt")
+    assert found.heights == pytest.approx(1e-9 * np.array([[1, 2, 3, 4], [5, 6, np.nan, 8]]), nan_ok=True)
+    assert found.pixel == pytest.approx((2.5e-6, 2e-6))
+
+
+def test_text_without_a_size_needs_one(tmp_path):
+    (tmp_path / "map.csv").write_text("1,2\n3,4\n")
+    with pytest.raises(ValueError, match="--pixel"):
+        read_map(tmp_path / "map.csv")
+    assert read_map(tmp_path / "map.csv", pixel=(1e-6, 1e-6)).heights.tolist() == [[1, 2], [3, 4]]
+
+
+@every_format
+def test_a_file_cut_short_is_refused(name, topography, tmp_path):
+    path = tmp_path / name
+    write_map(topography, path)
+    whole = path.read_bytes()
+    for length in (0, 5, 60, len(whole) // 2, len(whole) - 40):
+        path.write_bytes(whole[:length])
+        with pytest.raises((ValueError, OSError)) as told:
+            read_map(path)
+        assert "\n" not in str(told.value)
+
+
+@pytest.mark.parametrize("name", NAMES[:-1])  # the HDF5 library itself may crash on damaged files
+@settings(max_examples=40, deadline=None)
+@given(data=st.data())
+def test_a_damaged_file_gives_an_error_or_a_map(name, data, tmp_path_factory):
+    """One byte changed anywhere: never another kind of error, never more memory than the file is worth."""
+    path = tmp_path_factory.mktemp("damaged") / name
+    write_map(Topography(np.arange(12.0).reshape(3, 4) * 1e-6, (1e-6, 1e-6)), path)
+    content = bytearray(path.read_bytes())
+    at = data.draw(st.integers(0, 2**16)) % len(content)  # dates make lengths differ
+    content[at] = data.draw(st.integers(0, 255))
+    path.write_bytes(content)
+    try:
+        size = read_map(path).heights.size
+    except (ValueError, OSError):
+        return
+    assert size <= 2000
+
+
+def test_gigantic_declarations_allocate_nothing(tmp_path):
+    head = struct.pack(
+        "<8s10s12s12sHHddddBBB", b"bISO-1.0", b"", b"", b"", 65535, 65535, 1e-6, 1e-6, 1.0, 0, 0, 7, 0
+    )
+    (tmp_path / "huge.sdf").write_bytes(head + bytes(100))
+    with pytest.raises(ValueError, match="65535 x 65535 points: more than"):
+        read_map(tmp_path / "huge.sdf")
+    head = "aISO-1.0\nNumPoints = 9999\nNumProfiles = 9999\nXscale=1e-6\nYscale=1e-6\nZscale=1\nDataType=7\n"
+    text = head + "*\n1 2 3\n*\n"
+    (tmp_path / "huge.ascii.sdf").write_text(text)
+    with pytest.raises(ValueError, match="cannot hold them"):
+        read_map(tmp_path / "huge.ascii.sdf")
+    with open(tmp_path / "huge.npy", "wb") as file:
+        np.lib.format.write_array_header_1_0(
+            file, {"descr": "<f8", "fortran_order": False, "shape": (10**6, 10**6)}
+        )
+    with pytest.raises(ValueError, match=r"huge\.npy"):
+        read_map(tmp_path / "huge.npy", pixel=(1e-6, 1e-6))
+
+
+def x3p_with(path, topography, change):
+    """An X3P file whose members were changed by a function of their dictionary."""
+    write_map(topography, path)
+    with zipfile.ZipFile(path) as archive:
+        members = {name: archive.read(name) for name in archive.namelist()}
+    change(members)
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
+        for name, content in members.items():
+            archive.writestr(name, content)
+    return path
+
+
+def replaced(old, new):
+    def change(members):
+        assert old in members["main.xml"]
+        members["main.xml"] = members["main.xml"].replace(old, new)
+
+    return change
+
+
+def blown_up(members):
+    members["main.xml"] = members["main.xml"] + b" " * 2**22
+
+
+def all_zero(members):
+    members["bindata/data.bin"] = bytes(5 * 7 * 8)
+
+
+@pytest.mark.parametrize(
+    ("change", "told"),
+    [
+        (lambda m: m.pop("main.xml"), r"main\.xml: is missing"),
+        (lambda m: m.pop("bindata/data.bin"), r"data\.bin: is missing"),
+        (replaced(b"<SizeX>7<", b"<SizeX>8<"), r"280 bytes, but the map needs 320"),
+        (replaced(b"<SizeX>7<", b"<SizeX>99999999<"), "more than the"),
+        (replaced(b"<SizeX>7<", b"<SizeX>seven<"), "is no number"),
+        (replaced(b"<SizeZ>1<", b"<SizeZ>2<"), "SizeZ is not 1"),
+        (replaced(b"<DataType>D<", b"<DataType>X<"), "DataType 'X' of CZ"),
+        (replaced(b"Record3>", b"Record5>"), "lacks Record3"),
+        (replaced(b"SUR", b"PCL"), "only SUR is read"),
+        (replaced(b"<Record1>", b"<!DOCTYPE a><Record1>"), "declares entities"),
+        (replaced(b"</Record1>", b""), "mismatched tag"),
+        (blown_up, "more than 1048576"),
+        (all_zero, "checksum"),
+    ],
+)
+def test_damaged_x3p_files_are_refused_in_one_line(change, told, topography, tmp_path):
+    path = x3p_with(tmp_path / "bad.x3p", topography, change)
+    with pytest.raises(ValueError, match=told) as error:
+        read_map(path)
+    assert str(error.value).startswith(str(path))
+    assert "\n" not in str(error.value)
+
+
+def test_a_zip_bomb_is_refused_before_it_unpacks(tmp_path):
+    """128 MiB of zeros in 130 kB, and a map that declares just that."""
+    path, n = tmp_path / "bomb.x3p", 4096
+    write_map(Topography(np.ones((2, 2)), (1e-6, 1e-6)), path)
+    with zipfile.ZipFile(path) as archive:
+        main = archive.read("main.xml")
+    for axis in (b"X", b"Y"):
+        main = main.replace(b"<Size%s>2<" % axis, b"<Size%s>%d<" % (axis, n))
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
+        archive.writestr("main.xml", main)
+        with archive.open("bindata/data.bin", "w") as member:
+            for _ in range(n):
+                member.write(bytes(8 * n))
+    with pytest.raises(ValueError, match="that is refused"):
+        read_map(path)
+
+
+@pytest.mark.parametrize(
+    ("content", "told"),
+    [
+        ("1 2\n3\n", "line 2 has 1 numbers, the first row 2"),
+        ("1 2\n3 x\n", "line 2: could not convert"),
+        ("1 inf\n", "infinite"),
+        ("# nothing\n", "holds no numbers"),
+        ("# Width: 1 furlong\n", "no unit of length"),
+    ],
+)
+def test_damaged_text_is_refused(content, told, tmp_path):
+    (tmp_path / "map.txt").write_text(content)
+    with pytest.raises(ValueError, match=told):
+        read_map(tmp_path / "map.txt", pixel=(1.0, 1.0))
+
+
+@pytest.mark.parametrize(
+    "sidecar", [None, "{", '{"pixel": [1]}', '{"pixel": [1, 1], "unit": "um"}', "[]", "3"]
+)
+def test_an_array_needs_a_sound_sidecar(sidecar, topography, tmp_path):
+    write_map(topography, tmp_path / "map.npy")
+    beside = tmp_path / "map.json"
+    assert json.loads(beside.read_text())["unit"] == "m"
+    beside.unlink() if sidecar is None else beside.write_text(sidecar)
+    with pytest.raises(ValueError, match=r"map\.json"):
+        read_map(tmp_path / "map.npy")
+
+
+def test_arrays_of_objects_are_never_unpickled(tmp_path):
+    np.save(tmp_path / "map.npy", np.array([[object()]]), allow_pickle=True)
+    with pytest.raises(ValueError, match="no sound"):
+        read_map(tmp_path / "map.npy", pixel=(1.0, 1.0))
+
+
+def test_other_endings_name_what_would_do(tmp_path, topography):
+    with pytest.raises(ValueError, match=r"give one of \.sdf"):
+        write_map(topography, tmp_path / "map.tiff")
+    (tmp_path / "map.zzz").write_text("?")
+    with pytest.raises(ValueError, match="SurfaceTopography"):
+        read_map(tmp_path / "map.zzz")
+    with pytest.raises(ValueError, match="no such file"):
+        read_map(tmp_path / "none.sdf")
+
+
+def test_nothing_half_written_is_left(tmp_path):
+    (tmp_path / "map.sdf").write_text("mine")
+    with pytest.raises(ValueError, match="65535"):
+        write_map(Topography(np.zeros((1, 65536)), (1.0, 1.0)), tmp_path / "map.sdf")
+    assert [(path.name, path.read_text()) for path in tmp_path.iterdir()] == [("map.sdf", "mine")]
+    with pytest.raises(OSError, match="nowhere"):
+        write_map(Topography(np.zeros((1, 2)), (1.0, 1.0)), tmp_path / "nowhere" / "map.npy")

@@ -1,0 +1,209 @@
+"""Surfaces out: the asperities whose loads are in the file, their envelope, and what hides."""
+
+import math
+import resource
+import time
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import analytic
+import mcgw
+from mcgw.cli import main
+from mcgw.maps.asperities import Asperities, asperities_of
+from mcgw.maps.envelope import envelope, hidden_summits
+from mcgw.maps.files import read_map
+from mcgw.maps.hiding import unhidden, visible
+from mcgw.maps.spots import spots_at
+from mcgw.scene_file import scene_text
+
+RUNS = Path(__file__).parents[1] / "runs"
+
+
+def random_field(number, size, radius, sigma, seed=1):
+    rng = np.random.default_rng(seed)
+    x, y = rng.random((2, number)) * np.array(size)[:, None]
+    return Asperities(x, y, sigma * rng.normal(size=number), radius, size)
+
+
+def offsets(a, b, length, periodic):
+    """Differences of all pairs, the shortest ones on a periodic cell."""
+    d = np.subtract.outer(a, b)
+    return d - length * np.round(d / length) if periodic else d
+
+
+@settings(max_examples=60, deadline=None)
+@given(
+    number=st.integers(1, 120), width=st.floats(0.2, 5.0), radius=st.floats(0.02, 3.0),
+    sigma=st.floats(0.0, 0.5), periodic=st.booleans(), seed=st.integers(0, 2**32),
+)  # fmt: skip
+def test_envelope_and_hidden_summits_against_all_pairs(number, width, radius, sigma, periodic, seed):
+    field = random_field(number, (width, 1.0), radius, sigma, seed)
+    found = envelope(field, (9, 13), periodic=periodic)
+    x, y = (np.arange(13) + 0.5) * width / 13, (np.arange(9) + 0.5) / 9
+    dx, dy = offsets(x, field.x, width, periodic), offsets(y, field.y, 1.0, periodic)
+    caps = field.z - (dx[None, :, :] ** 2 + dy[:, None, :] ** 2) / (2 * radius)
+    # heights are differences of numbers up to r^2/(2R)
+    assert found.heights == pytest.approx(caps.max(axis=2), abs=1e-15 * (1 + (width**2 + 1) / radius))
+    d2 = offsets(field.x, field.x, width, periodic) ** 2 + offsets(field.y, field.y, 1.0, periodic) ** 2
+    above = (field.z[None, :] - d2 / (2 * radius)).max(axis=1) - field.z
+    told = np.abs(above) > 1e-14 * (1 + width**2 / radius)
+    assert np.array_equal(hidden_summits(field, periodic=periodic)[told], (above > 0)[told])
+
+
+def test_a_window_is_cut_from_the_same_envelope():
+    field = random_field(50, (2.0, 1.0), 0.5, 0.05)
+    whole = envelope(field, (20, 40))
+    part = envelope(field, (10, 20), window=(0.5, 1.5, 0.25, 0.75))
+    assert part.heights == pytest.approx(whole.heights[5:15, 10:30], abs=1e-14)
+
+
+@pytest.mark.parametrize("count", ["fixed", "poisson"])
+def test_loads_of_the_listed_asperities_are_those_in_the_file(count, make_scene, tmp_path):
+    """Hertz's sums by NumPy over the asperities in the exported file, against the ensemble's row."""
+    scene = make_scene(sampler="cells", count=count, separations=(0.0, 0.5, 1.7), n_surfaces=4)
+    ensemble = mcgw.simulate(scene)
+    (tmp_path / "scene.toml").write_text(scene_text(scene))
+    out = tmp_path / "map.h5"
+    assert (
+        main(["surface", str(tmp_path / "scene.toml"), "--surface", "3", "--shape", "64", "-o", str(out)])
+        == 0
+    )
+    with h5py.File(out) as file:
+        z, radius = file["asperities/z"][:], file["asperities"].attrs["radius"]
+        assert mcgw.scene_from(file["scene"][()].decode()) == scene
+    surface = scene.surface
+    for k, h in enumerate(scene.separations):
+        delta = z[z > h * surface.sigma] - h * surface.sigma
+        modulus = surface.E_star * (2 - np.exp(-z[z > h * surface.sigma] / surface.sigma))
+        load = np.sum(4 / 3 * modulus * math.sqrt(radius) * delta**1.5)
+        # h sigma is subtracted again from s sigma: a last digit of both, summed over 1000 spots
+        assert ensemble.load[3, k] == pytest.approx(load, rel=1e-12)
+        assert ensemble.area[3, k] == pytest.approx(np.sum(np.pi * radius * delta), rel=1e-12)
+        assert ensemble.contacts[3, k] == delta.size
+    if count == "fixed":
+        assert z.size == scene.n_asperities
+
+
+def test_spots_carry_the_load_of_the_row(make_scene):
+    scene = make_scene(separations=(0.5,), sampler="tail", n_surfaces=2)
+    spots = spots_at(scene, asperities_of(scene, 1), 0.5)
+    ensemble = mcgw.simulate(scene)
+    assert spots.load.sum() == pytest.approx(ensemble.load[1, 0], rel=1e-12)
+    assert np.pi * np.sum(spots.radius**2) == pytest.approx(ensemble.area[1, 0], rel=1e-12)
+
+
+def test_positions_are_uniform_and_belong_to_their_surface(make_scene):
+    """Mean and variance of 40000 uniforms, |z| < 5: a false alarm in 2e6 each; and no two fields alike."""
+    scene = make_scene(n_asperities=40000, sampler="cells")
+    field = asperities_of(scene, 5, width=0.02)
+    assert field.size == (0.02, pytest.approx(0.005))
+    for values, length in ((field.x, 0.02), (field.y, 0.005)):
+        u = values / length
+        assert 0 < u.min() < u.max() < 1
+        assert abs(u.mean() - 0.5) * math.sqrt(12 * u.size) < 5
+        assert abs(np.var(u) - 1 / 12) * math.sqrt(180 * u.size) < 5
+    assert abs(np.corrcoef(field.x, field.y)[0, 1]) * 200 < 5
+    assert abs(np.corrcoef(field.x, field.z)[0, 1]) * 200 < 5
+    again, other = asperities_of(scene, 5, width=0.02), asperities_of(scene, 6, width=0.02)
+    assert np.array_equal(again.x, field.x)
+    assert not np.any(np.isin(other.x, field.x[:1000]))
+
+
+@pytest.mark.parametrize("overlap", [0.005, 0.05, 0.3])
+def test_so_many_hide_as_the_theory_of_caps_says(overlap):
+    """A Poisson field is nearly this binomial one; 40000 summits, |z| < 5 (false alarm 1 in 2e6).
+
+    Hiding is correlated between neighbours; the binomial deviation is an upper bound to that of a
+    share this small within a factor of 2, for which the gate has room: leaving out the factor 2 pi R of
+    the exponent would be off by 40 deviations.
+    """
+    number, radius = 40000, 1e-3
+    field = random_field(number, (1.0, 1.0), radius, overlap / number / radius, seed=3)
+    seen = ~hidden_summits(field, periodic=True)
+    theory = visible(overlap)
+    assert abs(seen.mean() - theory.share) < 5 * math.sqrt(theory.share * (1 - theory.share) / number)
+    std = field.z[seen].std() / (overlap / number / radius)
+    assert abs(std / theory.std - 1) < 5 / math.sqrt(2 * number)
+    eta, sigma = unhidden(number * theory.share, radius, theory.std * overlap / number / radius)
+    assert (eta, sigma * number * radius) == (
+        pytest.approx(number, rel=1e-9),
+        pytest.approx(overlap, rel=1e-9),
+    )
+
+
+def test_mean_number_that_hides_a_summit_by_the_integral():
+    """Without blur: 2 pi eta R sigma F_1(s), with F_1 from the theory."""
+    share = visible(1e-7).share
+    s = np.linspace(-9, 9, 4001)
+    density = np.exp(-s * s / 2) / math.sqrt(2 * math.pi)
+    mean = np.trapezoid(density * analytic.fn(1, s), s)
+    assert 1 - share == pytest.approx(2 * math.pi * 1e-7 * mean, rel=1e-6)
+
+
+def test_a_large_map_in_seconds(make_scene, tmp_path):
+    """1e6 asperities on 2048 x 2048 points, and memory in proportion (the full size is marked slow)."""
+    surface = analytic.Surface(1e-6, 1e-5, 1e10, 1e-4, 1e9)
+    scene = make_scene(surface=surface, n_asperities=10**6, sampler="cells")
+    field = asperities_of(scene, 0)
+    envelope(field, (8, 8))  # compiled
+    start = time.perf_counter()
+    assert envelope(field, (2048, 2048), periodic=True).heights.shape == (2048, 2048)
+    assert time.perf_counter() - start < 10
+
+
+@pytest.mark.slow
+def test_the_largest_map_in_ten_seconds_and_two_gigabytes(tmp_path):
+    scene = scene_text(mcgw.load_scene(RUNS / "homogeneous.toml"))
+    scene = scene.replace("n_asperities = 30000", "n_asperities = 1000000")
+    assert "n_asperities = 1000000" in scene
+    (tmp_path / "scene.toml").write_text(scene)
+    start = time.perf_counter()
+    command = ["surface", str(tmp_path / "scene.toml"), "--shape", "4096", "-o", str(tmp_path / "map.sdf")]
+    assert main(command) == 0
+    assert time.perf_counter() - start < 10
+    assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss < 2e6
+    assert read_map(tmp_path / "map.sdf").heights.shape == (4096, 4096)
+
+
+@pytest.mark.parametrize("name", ["at.png", "at.svg"])
+def test_the_contact_map_is_drawn(name, tmp_path, capsys):
+    out = tmp_path / name
+    assert (
+        main(["surface", str(RUNS / "quick.toml"), "--at", "1", "--colour", "modulus", "-o", str(out)]) == 0
+    )
+    assert out.read_bytes()[:5] in (b"\x89PNG\r", b"<?xml")
+    assert capsys.readouterr().out.startswith(f"{out}: ")
+    assert list(tmp_path.iterdir()) == [out]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "told"),
+    [
+        (["SCENE", "-o", "map.tiff"], "ending chooses"),
+        (["SCENE", "-o", "map.sdf", "--at", "1"], "--at draws a figure"),
+        (["SCENE", "-o", "map.png", "--at", "99"], "nothing touches"),
+        (["SCENE", "-o", "map.sdf", "--surface", "1000000"], "surfaces 0 to"),
+        (["SCENE", "-o", "map.sdf", "--shape", "1x"], "--shape"),
+        (["SCENE", "-o", "map.sdf", "--shape", "99999"], "more than the"),
+        (["SCENE", "-o", "map.sdf", "--width", "far"], "is no length"),
+        (["-o", "map.sdf"], "SCENE"),
+        (["-o", "map.sdf", "--from-spectrum", "rms=1um,long=1um,short=9um", "--pixel", "1um"], "below long"),
+        (["-o", "map.sdf", "--from-spectrum", "m0=1,m2=1,m4=1", "--pixel", "1um"], "above 1.5"),
+        (["-o", "map.sdf", "--from-spectrum", "rms=1um", "--pixel", "1um"], "give rms, long and short"),
+        (["-o", "map.sdf", "--from-spectrum", "height=1um", "--pixel", "1um"], "give rms, long"),
+        (["-o", "map.sdf", "--from-spectrum", "rms=1um,long=90um,short=9um"], "--pixel"),
+    ],
+)
+def test_mistakes_are_told_in_one_line_and_nothing_is_written(arguments, told, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    arguments = [str(RUNS / "quick.toml") if a == "SCENE" else a for a in arguments]
+    assert main(["surface", *arguments]) == 2
+    error = capsys.readouterr().err
+    assert told in error
+    assert error.count("\n") == 1
+    assert list(tmp_path.iterdir()) == []
