@@ -124,7 +124,8 @@ class Laws:
         Relative to the largest value on the cell; or, where it is sure, to the whole sum of a surface.
         """
         tail = np.cumsum(np.abs(c)[::-1], axis=0)[::-1]
-        enough = np.maximum(tail[0], self.total[which] / max(probability, np.finfo(float).tiny))
+        with np.errstate(over="ignore"):  # infinite: such a cell adds nothing that could be seen
+            enough = np.maximum(tail[0], self.total[which] / max(probability, np.finfo(float).tiny))
         return np.asarray((tail > self._accuracy(a, t) * enough).sum(axis=0), dtype=np.int64)
 
     def _accuracy(self, a: float, t: Array) -> float:
