@@ -11,7 +11,7 @@ __all__ = ["check_memory", "check_room", "memory_available"]
 _MOST = 2**63 - 1
 
 
-def check_room(scene: Scene, path: Path, *, rows: int, columns: int) -> None:
+def check_room(scene: Scene, path: Path, *, rows: int, columns: int, held: int = 0) -> None:
     """Refuse a run that cannot fit.
 
     Parameters
@@ -24,6 +24,8 @@ def check_room(scene: Scene, path: Path, *, rows: int, columns: int) -> None:
         Surfaces that are drawn at a time.
     columns : int
         Numbers kept of a surface.
+    held : int, optional
+        Bytes that already lie there.
 
     Raises
     ------
@@ -40,9 +42,10 @@ def check_room(scene: Scene, path: Path, *, rows: int, columns: int) -> None:
             raise StoreError(f"ensemble: {what} = {value:.4g} is more than 2^63 - 1 can count; ask for less")
     check_memory(f"contact.separations: a block of {min(rows, m)} surfaces", 3 * 8 * min(rows, m) * columns)
     size, free = 8 * m * columns, shutil.disk_usage(path.parent).free
-    if 2 * size > free:  # the shards, and the file they are merged into
+    needed = 2 * size - held  # the shards, and the file they are merged into
+    if needed > free:
         raise StoreError(
-            f"{path}: needs up to {_gib(2 * size)} on the disk while it is made and {_gib(free)} are free; "
+            f"{path}: needs up to {_gib(needed)} more on the disk while it is made and {_gib(free)} are free; "
             "make room, choose another -o, or ask for fewer surfaces or separations"
         )
 

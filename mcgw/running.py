@@ -210,8 +210,14 @@ def _prepare(scene: Scene, path: Path, threads: int | None) -> tuple[Sampler, in
     check_output(path)
     done = finished(path, scene, sampler.name)
     size = shard_size(scene, sampler)
-    check_room(scene, path, rows=size, columns=columns(scene, sampler))
+    check_room(scene, path, rows=size, columns=columns(scene, sampler), held=_bytes_of(path))
     return sampler, size, done
+
+
+def _bytes_of(path: Path) -> int:
+    """What lies there already: the file, and shards of a run."""
+    files = [path, *parts_of(path).glob("shards/block-*.h5")]
+    return sum(file.stat().st_size for file in files if file.is_file())
 
 
 def _silent(done: int) -> None:

@@ -288,6 +288,17 @@ def test_changed_data_with_a_good_seal_are_noticed(scene, tmp_path):
     assert store.verify(path)[0] == "its data have another digest than it says"
 
 
+def test_room_is_asked_for_what_is_not_there_yet(small_blocks, scene, tmp_path, monkeypatch):
+    path = tmp_path / "e.h5"
+    halted(scene, path, 64)
+    half = 8 * SURFACES * len(scene.separations) * len(scene.quantities)
+    free = shutil.disk_usage(tmp_path)._replace(free=2 * half - 1)
+    monkeypatch.setattr("mcgw.room.shutil.disk_usage", lambda folder: free)
+    with pytest.raises(StoreError, match="make room"):
+        run(scene, tmp_path / "other.h5")
+    run(scene, path)
+
+
 def test_gaps_are_cut_at_multiples_of_a_block():
     assert missing(50, 16, []) == [Span(0, 16), Span(16, 16), Span(32, 16), Span(48, 2)]
     assert missing(50, 16, [Span(0, 20), Span(32, 16)]) == [Span(20, 12), Span(48, 2)]
