@@ -45,7 +45,7 @@ def check_room(scene: Scene, path: Path, *, rows: int, columns: int, held: int =
     needed = 2 * size - held  # the shards, and the file they are merged into
     if needed > free:
         raise StoreError(
-            f"{path}: needs up to {_gib(needed)} more on the disk while it is made and {_gib(free)} are free; "
+            f"{path}: needs up to {_gib(needed)} more on the disk while made and {_gib(free)} are free; "
             "make room, choose another -o, or ask for fewer surfaces or separations"
         )
 
