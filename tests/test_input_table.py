@@ -186,9 +186,7 @@ def row_21_more_asperities_than_memory(make, tmp_path):
 
 def row_22_more_than_the_disk(make, tmp_path):
     scene = make(n_surfaces=10**12, n_asperities=1000, separations=(3.0,))
-    with pytest.raises(
-        StoreError, match=r"needs up to .* GiB more on the disk while made and .* are free"
-    ):
+    with pytest.raises(StoreError, match=r"needs up to .* GiB more on the disk while made and .* are free"):
         run(scene, tmp_path / "e.h5")
     assert not list(tmp_path.iterdir())
 
