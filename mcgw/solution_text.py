@@ -45,7 +45,7 @@ def solution_table(scene: Scene, solutions: Sequence[Solution]) -> str:
             "Few contacts: finite surfaces differ from theory, whose surface is infinite, by more than noise."
         )
     lines.append(
-        f"std: over {scene.n_surfaces} surfaces of {scene.n_asperities:g} asperities, each at its own separation;"
+        f"std: over {scene.n_surfaces} surfaces of {scene.n_asperities:g} asperities, each at its own d;"
         f" heights drawn one by one, seed {scene.seed}"
     )
     return "\n".join(lines)
