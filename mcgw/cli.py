@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from importlib import import_module
 from importlib.metadata import PackageNotFoundError, version
 
-COMMANDS = ("init", "run", "show", "compare", "regrade", "solve", "figures")
+COMMANDS = ("init", "run", "show", "compare", "regrade", "solve", "figures", "report")
 
 
 def main(argv: Sequence[str] | None = None) -> int:

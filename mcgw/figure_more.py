@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,7 +12,6 @@ import analytic
 from analytic import QUANTITIES, Exponential
 from mcgw.figure_data import FigureData, Panel, Points, Series, ratio_of_sums
 from mcgw.figure_paper import Samples
-from mcgw.scene import Scene
 from mcgw.simulation import simulate
 from mcgw.solution import separation_on
 
@@ -57,9 +57,13 @@ def _equal_load(samples: Samples) -> FigureData:
         Panel(
             "a  equal separation: stiffness (Eq. 15)",
             _GAMMA,
-            "K / Kₕₒₘ",
+            r"$K/K_\mathrm{hom}$",
             tuple(
-                Series(f"d/σ = {h:g}", line, np.array([float(analytic.stiffness_ratio(h, Exponential(g))) for g in line]))
+                Series(
+                    f"d/σ = {h:g}",
+                    line,
+                    np.array([float(analytic.stiffness_ratio(h, Exponential(g))) for g in line]),
+                )
                 for h in _EQUAL_H
             ),
             level=1.0,
@@ -75,7 +79,7 @@ def _equal_load(samples: Samples) -> FigureData:
             points = Points(_EQUAL_GAMMAS, mean[:, k], stderr[:, k], _exact_equal(name, h, _EQUAL_GAMMAS))
             series.append(Series(f"d/σ = {h:g}", line, _exact_equal(name, h, line), points))
         title = f"{key}  equal load: {name}"
-        panels.append(Panel(title, _GAMMA, f"{symbol} / {symbol}ₕₒₘ", tuple(series), level=1.0))
+        panels.append(Panel(title, _GAMMA, rf"${symbol}/{symbol}_\mathrm{{hom}}$", tuple(series), level=1.0))
     return FigureData(
         "equal-load",
         "At equal load the trend turns round: stiffer tips conduct less",
@@ -120,7 +124,9 @@ def _ratios_at_load(s: Array, h: float, starts: Array) -> tuple[Array, Array]:
 
 def _fluctuations(samples: Samples) -> FigureData:
     h, line = np.linspace(0, 4, 9), np.linspace(0, 4, 41)
-    scene = replace(samples.base.scene, keep="sums", separations=tuple(h), quantities=("load", "area", "stiffness"))
+    scene = replace(
+        samples.base.scene, keep="sums", separations=tuple(h), quantities=("load", "area", "stiffness")
+    )
     sizes = {n: min(2000, 400_000_000 // n) for n in (100, 10_000, 1_000_000)}
     drawn = {n: simulate(replace(scene, n_asperities=n, n_surfaces=m)) for n, m in sizes.items()}
     panels = []
@@ -135,8 +141,8 @@ def _fluctuations(samples: Samples) -> FigureData:
     return FigureData(
         "fluctuations",
         "How far finite surfaces differ from each other",
-        f"N asperities a surface; 2000 surfaces (400 of N = 10⁶), seed {samples.seed}. Circles, with 95 % intervals, "
-        "where the ensemble has 400 contacts or more.",
+        f"N asperities a surface; 2000 surfaces (400 of N = 10⁶), seed {samples.seed}. Markers, with "
+        "95 % intervals, where the ensemble has 400 contacts or more.",
         tuple(panels),
         columns=3,
     )
@@ -220,12 +226,12 @@ def _load_panel(samples: Samples, key: str, contacts: float) -> Panel:
     often = p * m >= 25  # a bin with fewer has no symmetric interval
     share, p, centre = share[often], p[often], ((edges[1:] + edges[:-1]) / 2)[often]
     points = Points(centre, share / width, np.sqrt(p * (1 - p) / m) / width, p / width)
-    fine = np.linspace(0, top, 201)
+    fine = np.linspace(max(0.0, 2 - top), top, 201)
     bell = np.exp(-(((fine - 1) * mean / std) ** 2) / 2) / np.sqrt(2 * np.pi) * mean / std
     none = f"; no contact: {float(np.exp(n * np.log1p(-analytic.fn(0, h)))):.1%}" if contacts < 10 else ""
     return Panel(
         f"{key}  {contacts:g} contacts{none}",
-        "load P / ⟨P⟩",
+        r"load over its mean, $P/\langle P\rangle$",
         "probability density",
         (Series("exact", centre, p / width, points), Series("Gaussian", fine, bell)),
     )
@@ -257,8 +263,14 @@ def _area_and_load(samples: Samples) -> FigureData:
         "Real area against load, and how far it is from proportional",
         samples.caption,
         (
-            Panel("a  real area", "pressure P/Aₙ (MPa)", "A / Aₙ", tuple(areas), ("log", "log")),
-            Panel("b  local exponent", _SEPARATION, "d ln A / d ln P", tuple(exponents), level=1.0),
+            Panel(
+                "a  real area",
+                r"pressure $P/A_n$ (MPa)",
+                r"real area fraction $A/A_n$",
+                tuple(areas),
+                ("log", "log"),
+            ),
+            Panel("b  local exponent", _SEPARATION, r"$d\,\ln A/d\,\ln P$", tuple(exponents), level=1.0),
         ),
     )
 
@@ -291,7 +303,7 @@ def _who_carries(samples: Samples) -> FigureData:
         e, label = Exponential(gamma), f"γ = {gamma:g}"
         moduli.append(Series(label, s, e(s)))
         mean, stderr = _shares(samples.heights, h, e, edges)
-        exact = [float(analytic.fn_between(1.5, h, a, b, e)) for a, b in zip(edges[:-1], edges[1:], strict=True)]
+        exact = [float(analytic.fn_between(1.5, h, a, b, e)) for a, b in pairwise(edges)]
         points = Points(centre, mean / 0.25, stderr / 0.25, np.array(exact) / 0.25)
         above = np.maximum(s - h, 0.0)
         density = above**1.5 * e(s) * np.exp(-s * s / 2) / np.sqrt(2 * np.pi) / analytic.fn(1.5, h, e)
@@ -308,7 +320,9 @@ def _who_carries(samples: Samples) -> FigureData:
     )
 
 
-def _shares(listed: tuple[Array, ...], h: float, e: Callable[[Array], Array], edges: Array) -> tuple[Array, Array]:
+def _shares(
+    listed: tuple[Array, ...], h: float, e: Callable[[Array], Array], edges: Array
+) -> tuple[Array, Array]:
     """Share of the load in each bin of height, and its standard error."""
     rows, totals = [], []
     for s in listed:
@@ -328,9 +342,9 @@ def _negative_modulus() -> FigureData:
     )
     return FigureData(
         "negative-modulus",
-        "Where the exponential grading makes the modulus negative (shaded)",
-        "A scene whose contacts reach the shaded heights is refused, unless it says negative = \"clip\" or "
-        "\"allow\". γ from 0 to 1 is safe at every height; γ > 1 from d/σ = 0 up. Theory alone.",
+        "Where the modulus turns negative (shaded)",
+        "Exponential grading. A scene whose contacts reach the shaded heights is refused, unless it says "
+        'negative = "clip" or "allow". γ from 0 to 1 is safe at every height; γ > 1 from d/σ = 0 up. Theory.',
         (Panel("", _GAMMA, "summit height s = z/σ", series, ylim=(-4, 4)),),
         columns=1,
     )

@@ -91,7 +91,7 @@ class Samples:
     def caption(self) -> str:
         """In words."""
         return (
-            f"Circles: Monte-Carlo means with 95 % intervals, {self.n_surfaces} surfaces of "
+            f"Markers: Monte-Carlo means with 95 % intervals, {self.n_surfaces} surfaces of "
             f"{self.n_asperities:g} asperities, seed {self.seed}. Lines: theory."
         )
 
@@ -116,7 +116,9 @@ def paper_figures(samples: Samples) -> list[FigureData]:
     """
     return [
         _figure_1(),
-        _curves(samples, "figure-2", "Load at a given separation (Eq. 7)", "load", "load integral F*₃⸝₂"),
+        _curves(
+            samples, "figure-2", "Load at a given separation (Eq. 7)", "load", r"load integral $F^*_{3/2}$"
+        ),
         _ratios(samples, "figure-3", "Area per load at a given separation (Eq. 12)", "load"),
         _figure_4(samples),
         _curves(
@@ -124,11 +126,9 @@ def paper_figures(samples: Samples) -> list[FigureData]:
             "figure-5",
             "Stiffness at a given separation; the paper's “conductance”",
             "stiffness",
-            "stiffness integral F*₁⸝₂",
+            r"stiffness integral $F^*_{1/2}$",
         ),
-        _ratios(
-            samples, "figure-6", "Stiffness at a given separation (Eq. 15: “conductance”)", "stiffness"
-        ),
+        _ratios(samples, "figure-6", "Stiffness at a given separation (Eq. 15: “conductance”)", "stiffness"),
     ]
 
 
@@ -171,7 +171,7 @@ def _curves(samples: Samples, name: str, title: str, quantity: str, ylabel: str)
 def _ratios(samples: Samples, name: str, title: str, quantity: str) -> FigureData:
     """Figs. 3 and 6: ratios to the homogeneous surface against gamma."""
     inverse = quantity == "load"
-    ylabel = "(A/P) / (A/P)ₕₒₘ" if inverse else "K / Kₕₒₘ"
+    ylabel = r"$(A/P)\,/\,(A/P)_\mathrm{hom}$" if inverse else r"$K/K_\mathrm{hom}$"
     panels = tuple(
         Panel(
             f"{key}  {word}",
@@ -206,7 +206,9 @@ def _exact_ratio(quantity: str, h: float, gammas: Array) -> Array:
 def _figure_4(samples: Samples) -> FigureData:
     line, gammas = np.linspace(0.2, 2, 73), np.concatenate([_GAMMAS["b"], _GAMMAS["a"]])
     just = tuple(Series(f"d/σ = {h:g}", line, line - (line - 1) * np.exp(-h)) for h in _H)
-    panels = [Panel("a  the paper's: just touching, s = d/σ", _GAMMA, "ψ / ψₕₒₘ", just, level=1.0)]
+    panels = [
+        Panel("a  the paper's: just touching, s = d/σ", _GAMMA, r"$\psi/\psi_\mathrm{hom}$", just, level=1.0)
+    ]
     weights: Sequence[tuple[str, Weight]] = (
         ("b  mean over the contacts", "number"),
         ("c  weighted by area", "area"),
@@ -218,9 +220,12 @@ def _figure_4(samples: Samples) -> FigureData:
             mean, stderr = _mean_moduli(samples.heights, float(h), gammas, weight)
             points = Points(gammas, mean, stderr, _exact_moduli(h, gammas, weight))
             series.append(Series(f"d/σ = {h:g}", line, _exact_moduli(h, line, weight), points))
-        panels.append(Panel(title, _GAMMA, "ψ / ψₕₒₘ", tuple(series), level=1.0))
+        panels.append(Panel(title, _GAMMA, r"$\psi/\psi_\mathrm{hom}$", tuple(series), level=1.0))
     return FigureData(
-        "figure-4", "Plasticity index over that of the homogeneous surface", samples.listed_caption, tuple(panels)
+        "figure-4",
+        "Plasticity index over that of the homogeneous surface",
+        samples.listed_caption,
+        tuple(panels),
     )
 
 

@@ -23,6 +23,7 @@ _LOOKS = (
     + cycler(linestyle=["-", (0, (6, 2)), (0, (3, 1, 1, 1)), (0, (1.2, 1.2)), (0, (8, 2, 1, 2))])
     + cycler(marker=["o", "s", "^", "D", "v"])
 )
+_HOMOGENEOUS = {"color": "#000000", "linestyle": "-", "marker": "v"}  # in every figure alike
 
 
 def draw(data: FigureData) -> Figure:
@@ -41,13 +42,13 @@ def draw(data: FigureData) -> Figure:
     with mpl.rc_context(STYLE):
         columns = min(data.columns, len(data.panels))
         rows = -(-len(data.panels) // columns)
-        width = max(_WIDTH * columns, 5.6)
+        width = max(_WIDTH * columns, 4.4)
         figure = Figure(figsize=(width, _HEIGHT * rows + 1.0), layout="constrained")
         axes = figure.subplots(rows, columns, squeeze=False).ravel()
         for axis, panel in zip(axes, data.panels, strict=True):
             _draw_panel(axis, panel)
         figure.suptitle(data.title, fontsize=11, fontweight="bold", x=0.01, ha="left")
-        caption = textwrap.fill(data.caption, int(width * 15))
+        caption = textwrap.fill(data.caption, int(width * 16))
         figure.supxlabel(caption, fontsize=8, color="0.25", x=0.01, ha="left")
     return figure
 
@@ -58,7 +59,7 @@ def _draw_panel(axis: Any, panel: Panel) -> None:
     if panel.level is not None:
         axis.axhline(panel.level, color="0.55", lw=0.8, zorder=1)
     for series, look in zip(panel.series, _LOOKS, strict=False):
-        _draw_series(axis, series, look, panel)
+        _draw_series(axis, series, _HOMOGENEOUS if series.label == "γ = 1" else look, panel)
     if panel.ylim:
         axis.set_ylim(panel.ylim)
     elif panel.scales[1] == "log":
