@@ -8,7 +8,19 @@ from importlib.metadata import PackageNotFoundError, version
 
 from mcgw.errors import RunError
 
-COMMANDS = ("run", "show", "compare", "regrade", "merge", "surface", "fit")
+COMMANDS = (
+    "init",
+    "run",
+    "show",
+    "compare",
+    "regrade",
+    "merge",
+    "solve",
+    "figures",
+    "report",
+    "surface",
+    "fit",
+)
 
 
 def main(argv: Sequence[str] | None = None) -> int:

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from analytic import Exponential, Grading, Homogeneous
 from mcgw.compare import Comparison, Curve
 
-__all__ = ["STYLE", "save_comparison"]
+__all__ = ["STYLE", "grading_label", "quantity_figure", "save_comparison"]
 
 # One style for all figures: colours of Okabe and Ito, told apart by colour-blind readers and in grey.
 STYLE: Any = {
@@ -80,6 +80,33 @@ def save_comparison(comparison: Comparison, path: str | Path) -> None:
         )
         figure.supxlabel(f"separation $d/\\sigma$\n{caption}", fontsize=9)
         figure.savefig(path)
+
+
+def quantity_figure(comparison: Comparison, name: str) -> Figure:
+    """One quantity with its theory and residual, as wide as a phone.
+
+    Parameters
+    ----------
+    comparison : Comparison
+        From `mcgw.compare.compare`.
+    name : str
+        One of its curves.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        Two panels, one below the other.
+    """
+    h, curve = comparison.ensemble.separations, comparison.curves[name]
+    with mpl.rc_context(STYLE):
+        figure = Figure(figsize=(4.0, 3.9), layout="constrained")
+        above, below = figure.subplots(2, 1, sharex=True, height_ratios=[3, 1])
+        _draw_curve(above, h, curve)
+        _draw_residual(below, h, curve)
+        above.set_title(_TITLES[name], loc="left")
+        above.legend(loc="lower left")
+        below.set(xlabel="separation d/σ", ylabel="residual\n(std. errors)")
+    return figure
 
 
 def _draw_curve(axis: Any, h: np.ndarray, curve: Curve) -> None:

@@ -1,0 +1,37 @@
+"""``mcgw figures``: the paper's figures with Monte Carlo on top, and those it lacks."""
+
+import argparse
+from pathlib import Path
+
+HELP = "draw the paper's Figures 1-6 with Monte-Carlo points, and those it lacks (half a minute)"
+EXAMPLE = "mcgw figures -o figures --csv"
+
+
+def arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of this command."""
+    parser.add_argument(
+        "-o", "--output", type=Path, metavar="DIR", default=Path("figures"), help="default: figures here"
+    )
+    parser.add_argument(
+        "--scene", type=Path, metavar="SCENE", help="take surface, n_asperities and seed from there"
+    )
+    parser.add_argument("--csv", action="store_true", help="also write the numbers of each figure")
+
+
+def execute(args: argparse.Namespace) -> int:
+    """Write PNG and SVG of each figure and say where they are."""
+    from mcgw.figure_more import more_figures
+    from mcgw.figure_paper import Samples, paper_figures
+    from mcgw.figures import save_figures
+    from mcgw.scene_file import load_scene, scene_from
+
+    if args.scene:
+        scene = load_scene(args.scene)
+    else:
+        from importlib.resources import files
+
+        scene = scene_from((files("mcgw") / "presets" / "demo.toml").read_text(encoding="utf-8"))
+    samples = Samples(scene.surface, 2000, scene.n_asperities, scene.seed, 100)
+    for path in save_figures(paper_figures(samples) + more_figures(samples), args.output, csv=args.csv):
+        print(path)
+    return 0

@@ -1,0 +1,25 @@
+"""``mcgw report``: an ensemble as one HTML page."""
+
+import argparse
+from pathlib import Path
+
+HELP = "write a report: one HTML page with figures, tables, verdict and provenance"
+EXAMPLE = "mcgw report demo.h5 -o demo.html"
+
+
+def arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of this command."""
+    parser.add_argument("file", type=Path, metavar="FILE", help="ensemble file (HDF5)")
+    parser.add_argument("-o", "--output", type=Path, metavar="HTML", help="default: FILE.html")
+
+
+def execute(args: argparse.Namespace) -> int:
+    """Write the page and say where it is."""
+    from mcgw.report_html import report_html
+    from mcgw.store import open_ensemble, read_attributes
+
+    page = report_html(open_ensemble(args.file), read_attributes(args.file))
+    path = args.output or args.file.with_suffix(".html")
+    path.write_text(page, encoding="utf-8")
+    print(f"{path}: report, {len(page.encode()) / 1e6:.2f} MB; open it in a browser")
+    return 0

@@ -1,0 +1,47 @@
+"""``mcgw solve``: what holds at a given load."""
+
+import argparse
+from pathlib import Path
+
+HELP = "find separation, area, stiffness, contacts and conductance at given loads"
+EXAMPLE = "mcgw solve runs/demo.toml --pressure 100kPa 1MPa --csv solved.csv"
+
+
+def arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of this command."""
+    parser.add_argument("scene", type=Path, metavar="SCENE", help="TOML file, SI units")
+    given = parser.add_mutually_exclusive_group(required=True)
+    given.add_argument("--pressure", nargs="+", metavar="P", help="load per nominal area: Pa, kPa, MPa, GPa")
+    given.add_argument("--load", nargs="+", metavar="F", help="mN, N, kN, MN")
+    given.add_argument("--area-fraction", nargs="+", metavar="A", help="real over nominal area: 0.01 or 1%%")
+    parser.add_argument(
+        "--surfaces", type=int, metavar="M", help="how many to solve; default: those of the scene"
+    )
+    parser.add_argument("--csv", type=Path, metavar="FILE", help="also write the table there; else no file")
+
+
+def execute(args: argparse.Namespace) -> int:
+    """Print a table for each load; write it as CSV if asked to."""
+    from dataclasses import replace
+
+    from mcgw.csv_table import write_csv
+    from mcgw.scene_file import load_scene
+    from mcgw.solution import solve
+    from mcgw.solution_text import SOLUTION_HEADER, solution_rows, solution_table
+    from mcgw.units import parse
+
+    scene = load_scene(args.scene)
+    if args.surfaces is not None:
+        scene = replace(scene, n_surfaces=args.surfaces)
+    if args.load:
+        given, values = "load", [parse(text, "N") for text in args.load]
+    elif args.pressure:
+        given, values = "load", [parse(text, "Pa") * scene.surface.nominal_area for text in args.pressure]
+    else:
+        given, values = "area", [parse(text, "1") * scene.surface.nominal_area for text in args.area_fraction]
+    solutions = solve(scene, given, values)
+    print(solution_table(scene, solutions))
+    if args.csv:
+        write_csv(args.csv, SOLUTION_HEADER, solution_rows(scene, solutions))
+        print(f"{args.csv}: the table")
+    return 0

@@ -1,0 +1,27 @@
+"""Tables as CSV: one row of names, then numbers that read back to the last bit."""
+
+import csv
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+
+__all__ = ["Row", "write_csv"]
+
+Row = Sequence[float | str]
+
+
+def write_csv(path: str | Path, header: Sequence[str], rows: Iterable[Row]) -> None:
+    """Write a table.
+
+    Parameters
+    ----------
+    path : str or Path
+        The file.
+    header : sequence of str
+        Names of the columns, with units.
+    rows : iterable of sequences
+        Text as it is; numbers with as many digits as they have.
+    """
+    with open(path, "w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow(header)
+        writer.writerows([x if isinstance(x, str) else repr(float(x)) for x in row] for row in rows)

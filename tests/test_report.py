@@ -1,0 +1,153 @@
+"""The report: one page, whole in itself, that says what the ensemble says."""
+
+import os
+import re
+import shutil
+import subprocess
+from dataclasses import replace
+from html.parser import HTMLParser
+from pathlib import Path
+
+import pytest
+
+import analytic
+import mcgw
+from mcgw.cli import main
+from mcgw.report_html import _number, _with_error, report_html
+from mcgw.store import read_attributes, run
+from mcgw.doubts import doubts
+
+QUICK = Path(__file__).parent.parent / "runs" / "quick.toml"
+BROWSER = shutil.which("chromium") or shutil.which("google-chrome")
+
+
+@pytest.fixture(scope="module")
+def file(tmp_path_factory):
+    path = tmp_path_factory.mktemp("report") / "quick.h5"
+    run(mcgw.load_scene(QUICK), path)
+    return path
+
+
+@pytest.fixture(scope="module")
+def page(file):
+    assert main(["report", str(file)]) == 0
+    return file.with_suffix(".html").read_text(encoding="utf-8")
+
+
+class Balanced(HTMLParser):
+    """Fails where a tag is closed that is not open."""
+
+    def __init__(self):
+        super().__init__()
+        self.open, self.ids = [], []
+
+    def handle_starttag(self, tag, attrs):
+        if tag not in ("meta", "link", "br"):
+            self.open.append(tag)
+        self.ids += [value for key, value in attrs if key == "id"]
+
+    def handle_startendtag(self, tag, attrs):
+        self.ids += [value for key, value in attrs if key == "id"]
+
+    def handle_endtag(self, tag):
+        assert self.open.pop() == tag
+
+
+def test_page_is_whole_in_itself(page):
+    parser = Balanced()
+    parser.feed(page)
+    assert not parser.open
+    assert len(set(parser.ids)) == len(parser.ids)
+    assert len(page.encode()) < 3e6
+    assert "<script" not in page
+    assert not re.findall(r'(?:src|href)="(?!#|data:,)', page)
+    assert not re.search(r"url\((?!#)", page)
+    assert page.count("<svg") == 6  # five quantities and their spread
+
+
+def test_numbers_of_the_page_are_those_of_the_ensemble(file, page):
+    ensemble = mcgw.open_ensemble(file)
+    low, high = ensemble.interval("load")
+    for k in (0, 4, 8):
+        assert _with_error(ensemble.mean("load")[k], (high - low)[k] / 2) in page
+        load = analytic.load(ensemble.scene.surface, ensemble.separations[k], ensemble.scene.grading)
+        assert _number(float(load) / 30) in page  # 1000 asperities, not eta A_n = 30 000
+    attributes = read_attributes(file)
+    assert attributes["digest"] in page
+    assert "Monte Carlo and theory agree" in page
+
+
+def test_scene_of_the_page_runs_again(file, page):
+    text = re.findall(r"<pre>(.*?)</pre>", page, flags=re.DOTALL)[-1]
+    text = text.replace("&quot;", '"').replace("&#x27;", "'").replace("&gt;", ">").replace("&amp;", "&")
+    assert mcgw.scene_from(text) == mcgw.open_ensemble(file).scene
+
+
+def test_disagreement_is_shown(file):
+    ensemble = mcgw.open_ensemble(file)
+    stiffer = replace(ensemble.scene.surface, E_star=1.1 * ensemble.scene.surface.E_star)
+    wrong = replace(ensemble, scene=replace(ensemble.scene, surface=stiffer))
+    assert 'class="verdict bad"' in report_html(wrong, read_attributes(file))
+
+
+def test_names_are_no_markup(file):
+    ensemble = mcgw.open_ensemble(file)
+    named = replace(ensemble, scene=replace(ensemble.scene, title="<b>&1"))
+    assert "<h1>&lt;b&gt;&amp;1</h1>" in report_html(named, read_attributes(file))
+
+
+def test_one_surface_and_one_separation_have_a_report(file, make_scene):
+    lone = mcgw.simulate(make_scene(n_surfaces=1, separations=(1.0,)))
+    assert "1 separation from" in report_html(lone, read_attributes(file))
+
+
+def test_numbers_as_people_write_them():
+    assert _number(6.698e-7) == "6.698×10<sup>−7</sup>"
+    assert _number(1234.4) == "1234"
+    assert _with_error(6.6982e-7, 3.6e-10) == "(6.6982 ± 0.0036)×10<sup>−7</sup>"
+    assert _with_error(6361.2, 6.3) == "6361.2 ± 6.3"
+    assert _with_error(0.0, 0.0) == "0"
+
+
+def test_doubts(make_scene):
+    surface = make_scene().surface
+
+    def of(**changes):
+        return " ".join(doubts(mcgw.simulate(make_scene(n_surfaces=2, **changes))))
+
+    calm = of(separations=(2.0,), n_asperities=30_000, surface=replace(surface, radius=1e-3, sigma=1e-6))
+    assert calm.startswith("Every contact is elastic")
+    assert "fewer than 30 contacts" in of(separations=(4.0,))
+    assert "0.1 of the nominal area" in of()
+    assert "times their radius" in of()
+    assert "not merge" in of(separations=(-0.5,))
+    assert "of the nominal area touches" in of(surface=replace(surface, eta=2e10), n_asperities=2_000_000)
+    assert "set to zero" in of(separations=(-1.0,), negative="clip")
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(BROWSER is None, reason="no Chromium here")
+def test_in_a_browser(file, page, tmp_path):
+    """No error, nothing wider than a phone of 380 px, and it prints."""
+    probe = page.replace(
+        "</body>",
+        "<script>document.title = [document.documentElement.scrollWidth, innerWidth].join(' ')</script></body>",
+    )
+    (tmp_path / "inner.html").write_text(probe, encoding="utf-8")
+    frame = (
+        "<body><iframe id=f src=inner.html width=380 height=800></iframe><script>onload = () => {"
+        "document.body.dataset.width = document.getElementById('f').contentDocument.title}</script></body>"
+    )
+    (tmp_path / "frame.html").write_text(frame)
+    flags = ["--headless", "--no-sandbox", "--disable-gpu", "--allow-file-access-from-files"]
+
+    def browse(*words):
+        command = [BROWSER, *flags, f"--user-data-dir={tmp_path / 'profile'}", *words]
+        return subprocess.run(command, capture_output=True, text=True, timeout=90, check=True, env=os.environ)
+
+    done = browse("--enable-logging=stderr", "--dump-dom", (tmp_path / "frame.html").as_uri())
+    wide, inner = map(int, re.search(r'data-width="(\d+) (\d+)"', done.stdout).groups())
+    assert wide <= inner <= 380
+    assert "CONSOLE" not in done.stderr
+    browse(f"--print-to-pdf={tmp_path / 'page.pdf'}", file.with_suffix(".html").as_uri())
+    assert (tmp_path / "page.pdf").read_bytes().startswith(b"%PDF")

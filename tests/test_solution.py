@@ -1,0 +1,148 @@
+"""Given a load, the separation: back through the simulator, against an exact law, and as typed."""
+
+import csv
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import analytic
+import mcgw
+from mcgw.cli import main
+from mcgw.scene import SceneError
+from mcgw.solution import separation_on, solve
+from mcgw.units import parse
+
+LOADS = (3.0, 100.0, 900.0)
+
+
+@pytest.fixture(scope="module")
+def scene():
+    from conftest import SURFACE
+
+    from mcgw.scene import Scene
+
+    return Scene(
+        surface=SURFACE,
+        separations=(0.0,),
+        grading=analytic.Exponential(2.0),
+        n_asperities=3000,
+        n_surfaces=300,
+        seed=5,
+    )
+
+
+@pytest.fixture(scope="module")
+def solved(scene):
+    return solve(scene, "load", LOADS)
+
+
+def test_theory_inverts_the_load(scene, solved):
+    """To 1e-10 as promised; the inversion itself holds 1e-13."""
+    for load, solution in zip(LOADS, solved, strict=True):
+        share = scene.n_asperities / scene.surface.n_asperities
+        back = analytic.load(scene.surface, solution.theory["separation"], scene.grading) * share
+        assert back == pytest.approx(load, rel=1e-10)
+        assert solution.theory["load"] == pytest.approx(load, rel=1e-10)
+
+
+def test_every_surface_inverts_the_simulator(scene, solved):
+    """The simulator, given the separation of a surface, finds the asked load on it: 1e-10.
+
+    The sampler ``tail`` draws the same heights whenever the lowest separation is the same, so that is
+    asked too. With one contact at an approach of 1e-3 the last digit of h is 1e-12 of the load.
+    """
+    lowest = min(x.surfaces["separation"].min() for x in solved) - 0.2
+    h = _separations_at(scene, lowest)
+    again = replace(scene, sampler="tail", separations=(lowest, *h.ravel()), n_surfaces=12)
+    loads = mcgw.simulate(again).load[:, 1:].reshape(12, 12, len(LOADS))
+    own = loads[np.arange(12), np.arange(12)]
+    np.testing.assert_allclose(own, np.broadcast_to(LOADS, own.shape), rtol=1e-10)
+    assert np.abs(loads[0, 1] / LOADS - 1).max() > 1e-3  # another surface has another separation
+
+
+def _separations_at(scene, lowest):
+    """Solved as `solve` does, on heights drawn above a separation of our own."""
+    scene = replace(scene, sampler="tail", separations=(lowest,))
+    scale = analytic.QUANTITIES["load"].scale(scene.surface)
+    rows = []
+    for number in range(12):
+        s = np.sort(mcgw.heights(scene, number))[::-1]
+        rows.append([separation_on(s, scene.grading(s), 1.5, load / scale, lowest) for load in LOADS])
+    return np.array(rows)
+
+
+def test_solved_surfaces_carry_the_load(solved):
+    for load, solution in zip(LOADS, solved, strict=True):
+        np.testing.assert_allclose(solution.surfaces["load"], load, rtol=1e-10)
+
+
+def test_area_is_inverted_and_loads_of_one_asperity_are_hertz():
+    h = separation_on(np.array([2.0]), np.array([3.0]), 1.5, 0.375, 0.0)
+    assert h == pytest.approx(2 - 0.125 ** (2 / 3), rel=1e-15)
+    assert separation_on(np.array([1.0, 0.5]), np.ones(2), 1.0, 0.9, -1.0) == pytest.approx(0.3, rel=1e-14)
+
+
+def test_law_of_the_separation_is_that_of_the_load(scene, solved):
+    """P(h_i > x) = P(load at x > asked): independent draws on both sides, |z| < 5 (1 in 2e6 a value)."""
+    for load, solution in zip(LOADS, solved, strict=True):
+        h = solution.surfaces["separation"]
+        x = np.quantile(h, [0.2, 0.5, 0.8])
+        fresh = mcgw.simulate(replace(scene, separations=tuple(x), n_surfaces=4000, seed=99)).load
+        p, q = (h[:, None] > x).mean(axis=0), (fresh > load).mean(axis=0)
+        stderr = np.sqrt(q * (1 - q) * (1 / len(h) + 1 / len(fresh)))
+        assert np.abs((p - q) / stderr).max() < 5
+        wrong = (fresh > 1.15 * load).mean(axis=0)  # the companion: loads 15 % off would show
+        assert np.abs((p - wrong) / stderr).max() > (5 if load > 50 else 0)
+
+
+def test_other_quantities_belong_to_the_separation(scene, solved):
+    """Mean contacts at the solved separations: theory to 1 % at 900 N, where the 1/N bias is 0.1 %."""
+    last = solved[-1]
+    for name in ("area", "stiffness", "contacts", "conductance"):
+        assert last.surfaces[name].mean() == pytest.approx(last.theory[name], rel=0.01)
+    assert last.surfaces["area"].std() > 0
+
+
+def test_surfaces_below_the_margin_are_solved_too(scene):
+    """Two asperities: their separation spreads far beyond what linear theory expects."""
+    few = replace(scene, n_asperities=2, grading=analytic.Exponential(0.5), n_surfaces=200)
+    (solution,) = solve(few, "load", [0.5])
+    np.testing.assert_allclose(solution.surfaces["load"], 0.5, rtol=1e-10)
+
+
+def test_units():
+    assert parse("0.5 GPa", "Pa") == 0.5e9
+    assert parse("3", "N") == 3
+    assert parse("2e1kN", "N") == 20e3
+    assert parse(".5%", "1") == 0.005
+    for text, unit in (("1psi", "Pa"), ("-1Pa", "Pa"), ("0", "N"), ("kN", "N"), ("1Pa", "N"), ("nan", "1")):
+        with pytest.raises(ValueError, match="give a number > 0 with its unit"):
+            parse(text, unit)
+
+
+def test_command(tmp_path, capsys):
+    table = tmp_path / "solved.csv"
+    scene = tmp_path / "scene.toml"
+    scene.write_text(
+        "surface = {sigma = 1e-6, radius = 1e-5, eta = 1e9, nominal_area = 1e-6, E_star = 1e11}\n"
+        "contact = {separations = 0.0}\nensemble = {n_surfaces = 20, seed = 1}\n"
+    )
+    assert main(["solve", str(scene), "--pressure", "1MPa", "20MPa", "--csv", str(table)]) == 0
+    assert "Load 1 N = pressure 1 MPa" in capsys.readouterr().out
+    rows = list(csv.DictReader(table.read_text().splitlines()))
+    assert len(rows) == 12
+    assert float(rows[1]["theory"]) == pytest.approx(1, rel=1e-10)
+    assert main(["solve", str(scene), "--load", "3lbf"]) == 2
+    assert "'3lbf': give a number" in capsys.readouterr().err
+
+
+def test_what_cannot_be_solved(scene):
+    with pytest.raises(ValueError, match="at least 2 surfaces"):
+        solve(replace(scene, n_surfaces=1), "load", [1.0])
+    with pytest.raises(ValueError, match="too many to solve"):
+        solve(replace(scene, n_asperities=2**50), "load", [1e9])
+    with pytest.raises(ValueError, match="not reached"):
+        solve(scene, "load", [1e12])
+    with pytest.raises(SceneError, match="negative"):
+        solve(scene, "load", [5e3])
