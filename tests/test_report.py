@@ -14,7 +14,8 @@ import analytic
 import mcgw
 from mcgw.cli import main
 from mcgw.report_html import _number, _with_error, report_html
-from mcgw.store import read_attributes, run
+from mcgw.running import run
+from mcgw.store import read_attributes
 from mcgw.doubts import doubts
 
 QUICK = Path(__file__).parent.parent / "runs" / "quick.toml"
