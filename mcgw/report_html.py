@@ -37,11 +37,12 @@ p, li { max-width: 44rem; }
 figure { margin: 0; }
 svg { width: 100%; height: auto; max-width: 34rem; }
 table { border-collapse: collapse; font-size: .85rem; font-variant-numeric: tabular-nums; }
-th, td { padding: .15rem .5rem .15rem 0; text-align: right; vertical-align: top; }
+th, td { padding: .15rem .5rem .15rem 0; text-align: right; white-space: nowrap; }
 tr { border-bottom: 1px solid #e4e4e4; }
 th:first-child, td:first-child { text-align: left; white-space: nowrap; }
-.facts td:first-child { white-space: normal; padding-right: 1rem; }
-.facts td { text-align: left; overflow-wrap: anywhere; }
+.facts td:first-child { padding-right: 1rem; overflow-wrap: normal; }
+.facts td, .facts td:first-child { text-align: left; white-space: normal; vertical-align: top; }
+.facts td { overflow-wrap: anywhere; }
 pre { background: #f5f5f5; padding: .6rem; overflow-wrap: anywhere; white-space: pre-wrap; font-size: .8rem; }
 @media print {
   body { max-width: none; padding: 0; }
@@ -68,7 +69,7 @@ _PAGE = Template("""<!DOCTYPE html>
 standard errors of the mean; the grey band is ±2.</p>
 <div class="grid">$figures</div>
 <h2>Tables</h2>
-<p>Mean over the surfaces ± half of its 95 % interval; residual in standard errors.</p>
+<p>In brackets: half of the 95 % interval of the mean, in its last digits; residual in standard errors.</p>
 <div class="grid">$tables</div>
 <h2>The surface</h2>
 <table class="facts">$facts</table>
@@ -191,14 +192,16 @@ def _number(x: float, digits: int = 4) -> str:
 
 
 def _with_error(x: float, error: float) -> str:
-    """Value and error with one power of ten, to two digits of the error: (6.698 ± 0.036)×10⁻⁷."""
+    """Value and, in brackets, the error of its last two digits: 6.698(36)×10⁻⁷."""
     if not (x and np.isfinite(error) and error > 0):
         return _number(x)
     power = int(np.floor(np.log10(max(abs(x), error))))
     power = 0 if -3 <= power < 4 else power
     digits = max(1 - int(np.floor(np.log10(error))) + power, 0)
-    text = f"{x / 10.0**power:.{digits}f} ± {error / 10.0**power:.{digits}f}"
-    return text if not power else f"({text})×10<sup>{str(power).replace('-', '−')}</sup>"
+    shown = f"{error / 10.0**power:.{digits}f}"
+    bracket = shown.lstrip("0.") if float(shown) < 1 else shown
+    text = f"{x / 10.0**power:.{digits}f}({bracket})"
+    return text if not power else f"{text}×10<sup>{str(power).replace('-', '−')}</sup>"
 
 
 def _rows(pairs: Any) -> str:
@@ -234,7 +237,7 @@ def _table(comparison: Comparison, name: str) -> str:
         half = (curve.high[k] - curve.low[k]) / 2
         rows.append(
             f"<tr><td>{h[k]:g}</td><td>{_with_error(curve.mean[k], half)}</td>"
-            f"<td>{_number(curve.theory[k])}</td><td>{curve.residual[k]:+.1f}</td></tr>"
+            f"<td>{_number(curve.theory[k], 5)}</td><td>{curve.residual[k]:+.1f}</td></tr>"
         )
     title = f"{q.name.capitalize()} ({q.unit})" if q.unit != "1" else q.name.capitalize()
     return (

@@ -1,16 +1,36 @@
 """Ensembles and comparisons as plain text."""
 
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
 
 from analytic import QUANTITIES
 from mcgw.compare import FALSE_ALARM, Comparison, Verdict, theory
+from mcgw.csv_table import Row
 from mcgw.ensemble import Ensemble
 from mcgw.regrade import paired_ratio
 
-__all__ = ["comparison_table", "ratio_table", "summary", "verdict_line"]
+__all__ = [
+    "COMPARISON_HEADER",
+    "comparison_rows",
+    "comparison_table",
+    "ratio_table",
+    "summary",
+    "verdict_line",
+]
 
+COMPARISON_HEADER = (
+    "quantity",
+    "unit",
+    "separation",
+    "mean",
+    "low_95",
+    "high_95",
+    "std",
+    "theory",
+    "residual",
+)
 _MOST_ROWS = 9
 
 
@@ -64,6 +84,15 @@ def comparison_table(comparison: Comparison) -> str:
                 f"{curve.residual[k]:+9.2f}"
             )
     return "\n".join(lines)
+
+
+def comparison_rows(comparison: Comparison) -> Iterator[Row]:
+    """Every separation, as rows under `COMPARISON_HEADER`."""
+    ensemble = comparison.ensemble
+    for name, c in comparison.curves.items():
+        columns = (ensemble.separations, c.mean, c.low, c.high, ensemble.std(name), c.theory, c.residual)
+        for row in zip(*columns, strict=True):
+            yield name, QUANTITIES[name].unit, *row
 
 
 def ratio_table(new: Ensemble, old: Ensemble) -> str:

@@ -13,18 +13,23 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "-o", "--output", type=Path, metavar="PNG", help="figure (.png, .pdf, .svg); default: FILE.png"
     )
+    parser.add_argument("--csv", type=Path, metavar="FILE", help="also write the table of all separations")
 
 
 def execute(args: argparse.Namespace) -> int:
     """Print table and verdict, save the figure."""
     from mcgw.compare import compare
+    from mcgw.csv_table import write_csv
     from mcgw.plots import save_comparison
-    from mcgw.report_text import comparison_table, verdict_line
+    from mcgw.report_text import COMPARISON_HEADER, comparison_rows, comparison_table, verdict_line
     from mcgw.store import open_ensemble
 
     comparison = compare(open_ensemble(args.file))
     path = args.output or args.file.with_suffix(".png")
     save_comparison(comparison, path)
     print(comparison_table(comparison))
+    if args.csv:
+        write_csv(args.csv, COMPARISON_HEADER, comparison_rows(comparison))
+        print(f"{args.csv}: the table")
     print(f"\n{verdict_line(comparison.verdict)}\n{path}: figure")
     return 0 if comparison.verdict.agrees else 1

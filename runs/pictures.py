@@ -1,0 +1,111 @@
+"""The pictures of the README: ``python runs/pictures.py`` writes them to runs/pictures."""
+
+from dataclasses import replace
+from itertools import pairwise
+from pathlib import Path
+
+import matplotlib as mpl
+import numpy as np
+from matplotlib.figure import Figure
+from matplotlib.patches import Rectangle
+
+import mcgw
+from mcgw.cells import mesh_of
+from mcgw.figure_more import more_figures
+from mcgw.figure_paper import Samples
+from mcgw.figures import draw
+from mcgw.plots import STYLE
+
+HERE = Path(__file__).parent
+FOLDER = HERE / "pictures"
+BLUE, ORANGE, GREEN = "#0072B2", "#D55E00", "#009E73"
+
+
+def trend():
+    """Equal separation against equal load, from `mcgw figures`."""
+    scene = mcgw.load_scene(HERE / "demo.toml")
+    samples = Samples(scene.surface, 200, scene.n_asperities, scene.seed, 100)
+    data = next(x for x in more_figures(samples) if x.name == "equal-load")
+    draw(replace(data, panels=data.panels[:2])).savefig(FOLDER / "equal-load.png", dpi=110)
+
+
+def how_it_works():
+    """Heights into cells, cells into moments, moments times response."""
+    scene = replace(mcgw.load_scene(HERE / "demo.toml"), separations=(1.0, 2.0), n_asperities=300)
+    edges = mesh_of(scene, split=False).edges
+    with mpl.rc_context(STYLE | {"axes.grid": False}):
+        figure = Figure(figsize=(9.2, 3.0), layout="constrained")
+        left, middle, right = figure.subplots(1, 3, width_ratios=[1.25, 1.9, 1.1])
+        _draw_cells(left, scene, edges)
+        _draw_product(middle)
+        _draw_answer(right, scene)
+        figure.savefig(FOLDER / "how-it-works.png", dpi=110)
+
+
+def _draw_cells(axis, scene, edges):
+    s = np.linspace(-2.5, 3.6, 200)
+    axis.plot(s, np.exp(-s * s / 2) / np.sqrt(2 * np.pi), color="0.3")
+    for k, (a, b) in enumerate(pairwise(edges)):
+        x = np.linspace(a, b, 20)
+        axis.fill_between(
+            x, np.exp(-x * x / 2) / np.sqrt(2 * np.pi), color=BLUE, alpha=0.55 if k % 2 else 0.25, lw=0
+        )
+    heights = mcgw.heights(scene, 0, untouched=True)[::2]
+    axis.plot(heights, np.full(heights.size, -0.03), "|", color=ORANGE, ms=7)
+    axis.axvline(1.0, color="0.2", lw=1)
+    axis.text(1.1, 0.36, "plane at d/σ", fontsize=9)
+    axis.set(xlabel="summit height s = z/σ", yticks=[], ylim=(-0.06, 0.45), xlim=(-2.5, 3.6))
+    axis.spines["left"].set_visible(False)
+    axis.set_title("1  sum what touches, cell by cell", loc="left", fontsize=9)
+
+
+def _draw_product(axis):
+    rng = np.random.default_rng(4)
+    blocks = (
+        (0.0, 3.2, 4, rng.random((9, 6)), BLUE, "moments", "surfaces × sums"),
+        (4.6, 2.2, 3.2, np.tril(rng.random((6, 5)) + 0.3), GREEN, "response", "sums × separations"),
+        (8.4, 2.2, 4, rng.random((9, 5)), ORANGE, "loads, areas, …", "surfaces × separations"),
+    )
+    for x, width, height, values, color, name, shape in blocks:
+        rows, columns = values.shape
+        for i, j in np.ndindex(rows, columns):
+            cell = (x + j * width / columns, 4 - (i + 1) * height / rows)
+            axis.add_patch(
+                Rectangle(
+                    cell,
+                    width / columns,
+                    height / rows,
+                    fc=color,
+                    ec="w",
+                    alpha=0.15 + 0.8 * min(values[i, j], 1),
+                )
+                if values[i, j]
+                else Rectangle(cell, width / columns, height / rows, fc="0.96", ec="w")
+            )
+        axis.text(x + width / 2, 4.3, name, ha="center", fontweight="bold", color=color, fontsize=9)
+        axis.text(x + width / 2, -0.5, shape, ha="center", fontsize=7.5)
+    axis.text(3.9, 2, "×", ha="center", va="center", fontsize=18)
+    axis.text(7.6, 2, "=", ha="center", va="center", fontsize=18)
+    axis.set(xlim=(-0.3, 10.9), ylim=(-0.9, 4.8))
+    axis.axis("off")
+    axis.set_title("2  randomness × physics", loc="left", fontsize=9)
+
+
+def _draw_answer(axis, scene):
+    full = replace(scene, separations=tuple(np.linspace(0, 3, 31)), n_surfaces=12, n_asperities=300)
+    ensemble = mcgw.simulate(full)
+    axis.plot(
+        ensemble.separations, ensemble.load.T / ensemble.mean("load")[0], color=ORANGE, lw=0.7, alpha=0.7
+    )
+    axis.plot(ensemble.separations, ensemble.mean("load") / ensemble.mean("load")[0], color="k", lw=1.6)
+    axis.set(xlabel="separation d/σ", ylabel="load", yticks=[], yscale="log", ylim=(1e-4, 2))
+    axis.minorticks_off()
+    axis.set_yticks([])
+    axis.set_title("3  every surface, its own curve", loc="left", fontsize=9)
+
+
+if __name__ == "__main__":
+    FOLDER.mkdir(exist_ok=True)
+    trend()
+    how_it_works()
+    print(FOLDER)

@@ -1,0 +1,151 @@
+"""Every command, snippet and proof of the documents runs; links lead somewhere."""
+
+import csv
+import re
+import runpy
+import shlex
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import mcgw
+from mcgw.cli import COMMANDS, main
+
+ROOT = Path(__file__).parent.parent
+PAGES = ("README.md", "runs/README.md", "runs/ERRATA.md", "runs/TUTORIAL.md")
+SLOW = ("figures",)
+
+
+def blocks(page, kind):
+    return re.findall(rf"^```{kind}\n(.*?)^```", (ROOT / page).read_text(), flags=re.DOTALL | re.MULTILINE)
+
+
+def commands(page):
+    """What follows `mcgw` on each line of the shell blocks, without those that install."""
+    lines = [line for block in blocks(page, "sh") for line in block.splitlines() if line.startswith("mcgw ")]
+    return [shlex.split(line, comments=True)[1:] for line in lines]
+
+
+def smaller(words):
+    """The same command with fewer surfaces: what is tested is that it runs."""
+    return [*words, "--surfaces", "20"] if words[0] == "solve" else words
+
+
+@pytest.mark.parametrize("page", ["README.md", "runs/TUTORIAL.md"])
+def test_commands_run_in_their_order(page, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    found = commands(page)
+    assert len(found) >= 6
+    for words in found:
+        if words[0] in SLOW:
+            continue
+        assert main(smaller(words)) == 0, words
+        if words[0] == "init":
+            scene = Path("mine.toml")
+            scene.write_text(scene.read_text().replace("n_surfaces = 1000", "n_surfaces = 100"))
+    said = capsys.readouterr().out
+    made = {path.name for path in tmp_path.iterdir()}
+    assert {"mine.toml", "mine.h5", "mine.png", "mine.html"} <= made
+    assert all(name in said for name in made)  # each command says where its file is
+
+
+@pytest.mark.slow
+def test_figures_command(tmp_path, monkeypatch, capsys):
+    """Half a minute: the whole set."""
+    monkeypatch.chdir(tmp_path)
+    (words,) = [words for words in commands("README.md") if words[0] == "figures"]
+    assert main(words) == 0
+    said = capsys.readouterr().out.split()
+    assert len(said) == 24
+    assert {Path(path).resolve() for path in said} == {p.resolve() for p in (tmp_path / "figures").iterdir()}
+
+
+def test_python_of_the_readme_runs(monkeypatch):
+    monkeypatch.chdir(ROOT)
+    (code,) = blocks("README.md", "python")
+    names = {}
+    exec(compile(code, "README.md", "exec"), names)
+    assert names["ensemble"].load.shape == (200, 9)
+
+
+def test_table_of_the_tutorial_is_a_grading(tmp_path):
+    (table,) = blocks("runs/TUTORIAL.md", "csv")
+    (tmp_path / "indents.csv").write_text(table)
+    scene = (ROOT / "mcgw" / "presets" / "nanoindentation.toml").read_text()
+    scene = re.sub(r"^(s|ratio) +=.*\n", "", scene, flags=re.MULTILINE).replace(
+        '# file = "ind', 'file = "ind'
+    )
+    scene = mcgw.scene_from(scene, folder=tmp_path)
+    assert scene.grading(np.array([0.0]))[0] == pytest.approx(1.0, rel=1e-12)
+    assert scene.grading(np.array([2.5]))[0] == pytest.approx(104 / 72, rel=1e-12)  # 2 um at sigma = 0.8 um
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_links_lead_somewhere(page):
+    text = (ROOT / page).read_text()
+    for target in re.findall(r"\]\(([^)]+)\)", text):
+        assert ((ROOT / page).parent / target).is_file(), target
+    for name in (
+        re.findall(r"`((?:bench/)?[\w.-]+\.(?:toml|py|md))`", text) if page == "runs/README.md" else []
+    ):
+        assert (ROOT / "runs" / name).is_file(), name
+
+
+def test_errata_have_their_proofs(capsys):
+    """Each row of the table is proved, and the numbers of the page are among those printed."""
+    proofs = list(runpy.run_path(str(ROOT / "runs" / "errata.py"))["proofs"]())
+    page = (ROOT / "runs" / "ERRATA.md").read_text()
+    rows = re.findall(r"^\| (?:text after )?(\d+)", page, flags=re.MULTILINE)
+    assert set(rows) == {equation for equation, *_ in proofs}
+    printed = " ".join(" ".join(row) for row in proofs)
+    for number in ("1.727", "0.548", "3.114", "1.550"):
+        assert number in printed
+        assert number in page
+
+
+def test_errata_are_wrong_as_printed_and_right_as_corrected():
+    """Eqs. (8), (9), (14) in numbers: what is called true equals the quadrature of Eq. (7)."""
+    names = runpy.run_path(str(ROOT / "runs" / "errata.py"))
+    true = names["integral"](1.5, 1.0, 1.5)
+    assert true == pytest.approx(0.108021770156762, rel=1e-12)  # 50 digits, theory.md
+    assert names["eq_8"](1.0, 1.5, 1e-8, -1) == pytest.approx(true, rel=1e-6)
+    assert names["eq_8"](1.0, 1.5, 1e-8, +1) > 1e70
+    assert names["eq_9"](1.0, 1.5, 64, np.exp(-1))[0] == pytest.approx(true, rel=1e-6)
+    assert names["eq_9"](1.0, 1.5, 64, np.exp(-0.5))[1] > 0.3
+
+
+def test_csv_of_compare_is_the_ensemble(tmp_path):
+    mcgw.store.run(mcgw.load_scene(ROOT / "runs" / "quick.toml"), tmp_path / "quick.h5")
+    words = [
+        "compare",
+        str(tmp_path / "quick.h5"),
+        "-o",
+        str(tmp_path / "a.svg"),
+        "--csv",
+        str(tmp_path / "a.csv"),
+    ]
+    assert main(words) == 0
+    rows = list(csv.DictReader((tmp_path / "a.csv").read_text().splitlines()))
+    found = [float(row["mean"]) for row in rows if row["quantity"] == "load"]
+    np.testing.assert_array_equal(found, mcgw.open_ensemble(tmp_path / "quick.h5").mean("load"))
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_help_says_what_and_where(command, capsys):
+    with pytest.raises(SystemExit):
+        main([command, "--help"])
+    said = " ".join(capsys.readouterr().out.split())
+    assert f"example: mcgw {command}" in said
+    assert any(word in said for word in ("default: ", "print ")), "where the output goes"
+    assert any(word in said for word in ("SI units", "HDF5", "TOML", "moments", "default"))
+    assert (ROOT / "README.md").read_text().count(f"mcgw {command}") or command == "show"
+
+
+def test_readme_is_short():
+    """Two screens: no more than 100 lines with two pictures."""
+    text = (ROOT / "README.md").read_text()
+    assert len(text.splitlines()) <= 110
+    pictures = re.findall(r"!\[[^\]]{20,}\]\(([^)]+)\)", text)
+    assert len(pictures) == 2
+    assert all((ROOT / path).stat().st_size < 200_000 for path in pictures)
