@@ -13,10 +13,10 @@ import pytest
 import analytic
 import mcgw
 from mcgw.cli import main
+from mcgw.doubts import doubts
 from mcgw.report_html import _number, _with_error, report_html
 from mcgw.running import run
 from mcgw.store import read_attributes
-from mcgw.doubts import doubts
 
 QUICK = Path(__file__).parent.parent / "runs" / "quick.toml"
 BROWSER = shutil.which("chromium") or shutil.which("google-chrome")
