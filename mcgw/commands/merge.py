@@ -12,7 +12,9 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "file", nargs="?", type=Path, metavar="FILE", help="the file to be made, as given to run -o"
     )
-    parser.add_argument("-o", "--output", type=Path, metavar="FILE", help="the same")
+    parser.add_argument(
+        "-o", "--output", type=Path, metavar="FILE", help="the file to be made; default: FILE"
+    )
 
 
 def execute(args: argparse.Namespace) -> int:
