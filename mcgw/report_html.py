@@ -13,12 +13,12 @@ from matplotlib.figure import Figure
 import analytic
 from analytic import QUANTITIES
 from mcgw.compare import Comparison, compare
+from mcgw.doubts import doubts
 from mcgw.ensemble import Ensemble
 from mcgw.figure_data import FigureData, Panel, Points, Series
 from mcgw.figures import draw
 from mcgw.plots import STYLE, grading_label, quantity_figure
 from mcgw.report_text import verdict_line
-from mcgw.validity import doubts
 
 __all__ = ["report_html"]
 

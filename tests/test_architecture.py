@@ -38,7 +38,7 @@ ORDER = (
     "figure_data",
     "figure_paper",
     "figure_more",
-    "validity",
+    "doubts",
     "plots",
     "figures",
     "report_text",
@@ -75,7 +75,7 @@ def test_only_those_that_compare_take_integrals_from_theory():
         "solution",
         "figure_paper",
         "figure_more",
-        "validity",
+        "doubts",
         "report_html",
     }  # where Monte Carlo and theory are put side by side
     for path in ROOT.glob("*.py"):

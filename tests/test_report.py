@@ -13,9 +13,9 @@ import pytest
 import analytic
 import mcgw
 from mcgw.cli import main
+from mcgw.doubts import doubts
 from mcgw.report_html import _number, _with_error, report_html
 from mcgw.store import read_attributes, run
-from mcgw.validity import doubts
 
 QUICK = Path(__file__).parent.parent / "runs" / "quick.toml"
 BROWSER = shutil.which("chromium") or shutil.which("google-chrome")
