@@ -12,6 +12,7 @@ import analytic
 from analytic import QUANTITIES, Exponential
 from mcgw.figure_data import FigureData, Panel, Points, Series, ratio_of_sums
 from mcgw.figure_paper import Samples
+from mcgw.regrade import paired_ratio
 from mcgw.simulation import simulate
 from mcgw.solution import separation_on
 
@@ -53,22 +54,12 @@ def more_figures(samples: Samples) -> list[FigureData]:
 
 def _equal_load(samples: Samples) -> FigureData:
     line = np.linspace(0.2, 2, 46)
-    panels = [
-        Panel(
-            "a  equal separation: stiffness (Eq. 15)",
-            _GAMMA,
-            r"$K/K_\mathrm{hom}$",
-            tuple(
-                Series(
-                    f"d/σ = {h:g}",
-                    line,
-                    np.array([float(analytic.stiffness_ratio(h, Exponential(g))) for g in line]),
-                )
-                for h in _EQUAL_H
-            ),
-            level=1.0,
-        )
-    ]
+    at_separation = tuple(
+        Series(f"d/σ = {h:g}", line, _exact_stiffness(h, line), _stiffness_points(samples, h))
+        for h in _EQUAL_H
+    )
+    title = "a  equal separation: stiffness (Eq. 15)"
+    panels = [Panel(title, _GAMMA, r"$K/K_\mathrm{hom}$", at_separation, level=1.0)]
     found = {h: _jackknifed(samples.heights, h) for h in _EQUAL_H}
     for k, (key, name, symbol) in enumerate(
         (("b", "conductance", "C"), ("c", "area", "A"), ("d", "stiffness", "K"))
@@ -83,9 +74,22 @@ def _equal_load(samples: Samples) -> FigureData:
     return FigureData(
         "equal-load",
         "At equal load the trend turns round: stiffer tips conduct less",
-        f"d/σ is that of the homogeneous surface and sets the load. {samples.listed_caption}",
+        f"d/σ is that of the homogeneous surface and sets the load. {samples.listed_caption} "
+        f"(a: {samples.n_surfaces} surfaces.)",
         tuple(panels),
     )
+
+
+def _exact_stiffness(h: float, gammas: Array) -> Array:
+    return np.array([float(analytic.stiffness_ratio(h, Exponential(float(g)))) for g in gammas])
+
+
+def _stiffness_points(samples: Samples, h: float) -> Points:
+    """Paired ratios of the regraded ensemble."""
+    k = samples.base.scene.separations.index(h)
+    pairs = [paired_ratio(samples.graded(float(g)), samples.base, "stiffness") for g in _EQUAL_GAMMAS]
+    mean, stderr = np.array([(pair.ratio[k], pair.stderr[k]) for pair in pairs]).T
+    return Points(_EQUAL_GAMMAS, mean, stderr, _exact_stiffness(h, _EQUAL_GAMMAS))
 
 
 def _exact_equal(name: str, h: float, gammas: Array) -> Array:

@@ -84,17 +84,13 @@ def test_scene_of_the_page_runs_again(file, page):
     assert mcgw.scene_from(text) == mcgw.open_ensemble(file).scene
 
 
-def test_disagreement_is_shown(file):
+def test_disagreement_is_shown_and_names_are_no_markup(file):
     ensemble = mcgw.open_ensemble(file)
     stiffer = replace(ensemble.scene.surface, E_star=1.1 * ensemble.scene.surface.E_star)
-    wrong = replace(ensemble, scene=replace(ensemble.scene, surface=stiffer))
-    assert 'class="verdict bad"' in report_html(wrong, read_attributes(file))
-
-
-def test_names_are_no_markup(file):
-    ensemble = mcgw.open_ensemble(file)
-    named = replace(ensemble, scene=replace(ensemble.scene, title="<b>&1"))
-    assert "<h1>&lt;b&gt;&amp;1</h1>" in report_html(named, read_attributes(file))
+    wrong = replace(ensemble, scene=replace(ensemble.scene, surface=stiffer, title="<b>&1"))
+    page = report_html(wrong, read_attributes(file))
+    assert 'class="verdict bad"' in page
+    assert "<h1>&lt;b&gt;&amp;1</h1>" in page
 
 
 def test_one_surface_and_one_separation_have_a_report(file, make_scene):

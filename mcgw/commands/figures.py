@@ -31,6 +31,10 @@ def execute(args: argparse.Namespace) -> int:
         from importlib.resources import files
 
         scene = scene_from((files("mcgw") / "presets" / "demo.toml").read_text(encoding="utf-8"))
+    if scene.n_asperities > 1_000_000:
+        raise ValueError(
+            f"ensemble.n_asperities = {scene.n_asperities}: figures list heights one by one; give at most 1e6"
+        )
     samples = Samples(scene.surface, 2000, scene.n_asperities, scene.seed, 100)
     for path in save_figures(paper_figures(samples) + more_figures(samples), args.output, csv=args.csv):
         print(path)
