@@ -34,13 +34,17 @@ ORDER = (
     "regrade",
     "store",
     "stop_report",
+    "principal",
+    "checks",
     "compare",
+    "converge",
     "plots",
+    "plots_converge",
     "report_text",
     "cli",
 )
 # Where the simulation meets the integrals: it is compared, forecast or measured there, never drawn.
-MEET_THEORY = ("compare", "forecast")
+MEET_THEORY = ("compare", "forecast", "principal")
 ROOT = Path(mcgw.__file__).parent
 
 
