@@ -13,6 +13,7 @@ COMMANDS = (
     "run",
     "show",
     "compare",
+    "converge",
     "regrade",
     "merge",
     "solve",

@@ -56,7 +56,7 @@ class Scene:
     quantities : tuple of str, optional
         Which sums to compute: names of `analytic.QUANTITIES`.
     n_surfaces : int, optional
-        Number of surfaces M.
+        Number of surfaces M; with `rel_err`, the most that may be drawn.
     n_asperities : int, optional
         Asperities on each (their mean number if `count` is "poisson"); left out: eta A_n, rounded.
     count : {"fixed", "poisson"}, optional
@@ -67,6 +67,10 @@ class Scene:
         One of `SAMPLERS`.
     keep : {"sums", "moments"}, optional
         Whether the file also keeps the moments, from which `mcgw regrade` starts.
+    rel_err : float, optional
+        Stop when the 95 % interval of every mean reaches no farther than this share of it, 0 to 0.1.
+    max_seconds : float, optional
+        Stop after the block that is being drawn then.
 
     Raises
     ------
@@ -87,6 +91,8 @@ class Scene:
     seed: int = 0
     sampler: str = "auto"
     keep: Literal["sums", "moments"] = "sums"
+    rel_err: float | None = None
+    max_seconds: float | None = None
 
     def __post_init__(self) -> None:
         if not self.n_asperities:
@@ -123,6 +129,17 @@ class Scene:
             problems.append(
                 f"ensemble.n_asperities = {self.n_asperities}: must lie between 1 and 2^53; "
                 "change it, or surface.eta and surface.nominal_area"
+            )
+        if self.rel_err is not None and not 0 < self.rel_err <= 0.1:
+            problems.append(
+                f"ensemble.rel_err = {self.rel_err}: give a number > 0 and at most 0.1, beyond which so few "
+                "contacts would do that an interval means nothing"
+            )
+        if self.max_seconds is not None and not 0 < self.max_seconds < math.inf:
+            problems.append(f"ensemble.max_seconds = {self.max_seconds}: give a number of seconds > 0")
+        if self.sampler == "stratified" and self.rel_err is not None:
+            problems.append(
+                'ensemble.rel_err: sampler = "stratified" has no variance to stop by; take another'
             )
         if not 0 <= self.seed < 2**64:
             problems.append(f"ensemble.seed = {self.seed}: give a whole number from 0 to 2^64 - 1")

@@ -19,6 +19,7 @@ __all__ = ["load_scene", "scene_from", "scene_text"]
 
 _MOST_BYTES = 2**20
 _MOST_SEPARATIONS = 100_000
+_MOST_SURFACES = 10**9  # where rel_err is to decide
 
 
 def load_scene(path: str | Path, *, seed: Callable[[], int | None] | None = None) -> Scene:
@@ -188,14 +189,29 @@ def _separations(section: Section) -> tuple[float, ...]:
 def _ensemble(section: Section, seed: Callable[[], int | None] | None) -> dict[str, Any]:
     other = None if "seed" in section or seed is None else seed()
     values = {
-        "n_surfaces": section.whole("n_surfaces", 1000, least=1),
+        "n_surfaces": _most_surfaces(section),
         "n_asperities": section.whole("n_asperities", None, least=1),
         "count": section.choice("count", "fixed", ("fixed", "poisson")),
         "seed": section.whole("seed", secrets.randbits(63) if other is None else other),
         "sampler": section.choice("sampler", "auto", SAMPLERS),
         "keep": section.choice("keep", "sums", ("sums", "moments")),
+        "rel_err": section.number("rel_err") if "rel_err" in section else None,
+        "max_seconds": section.number("max_seconds") if "max_seconds" in section else None,
     }
+    section.known("rel_err", "max_seconds", "max_surfaces", "n_surfaces")
     return {key: value for key, value in values.items() if value is not None}
+
+
+def _most_surfaces(section: Section) -> int | None:
+    """Number of surfaces, or the most that a stop rule may draw."""
+    if "rel_err" not in section:
+        if "max_surfaces" in section:
+            section.fail("max_surfaces", section.take("max_surfaces"), "goes with rel_err; give n_surfaces")
+        return section.whole("n_surfaces", 1000, least=1)  # type: ignore[no-any-return]
+    if "n_surfaces" in section:
+        advice = "rel_err decides how many; give max_surfaces for the most, or leave rel_err out"
+        section.fail("n_surfaces", section.take("n_surfaces"), advice)
+    return section.whole("max_surfaces", _MOST_SURFACES, least=1)  # type: ignore[no-any-return]
 
 
 def scene_text(scene: Scene, *, heights_file: str | None = None) -> str:
@@ -222,8 +238,13 @@ def scene_text(scene: Scene, *, heights_file: str | None = None) -> str:
         "heights": heights_table(scene.heights, heights_file),
         "contact": {"separations": list(scene.separations), "quantities": list(scene.quantities)},
         "ensemble": {
-            key: getattr(scene, key)
-            for key in ("n_surfaces", "n_asperities", "count", "seed", "sampler", "keep")
+            "n_surfaces" if scene.rel_err is None else "max_surfaces": scene.n_surfaces,
+            **{key: getattr(scene, key) for key in ("n_asperities", "count", "seed", "sampler", "keep")},
+            **{
+                key: float(value)
+                for key in ("rel_err", "max_seconds")
+                if (value := getattr(scene, key)) is not None
+            },
         },
     }
     return tomli_w.dumps(document)

@@ -91,6 +91,10 @@ class Section:
         """Read any value, None if it is not there."""
         return self._take(key, None)
 
+    def known(self, *keys: str) -> None:
+        """Keys that are known here, read or not."""
+        self._known += keys
+
     def finish(self) -> None:
         """Note every key that was not read."""
         for key in self.table:

@@ -1,7 +1,9 @@
 """From a scene to an ensemble, block by block of surfaces."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from dataclasses import replace
+from time import monotonic
 from typing import Any
 
 import numba
@@ -9,8 +11,10 @@ import numpy as np
 
 from mcgw.counts import GROUP
 from mcgw.ensemble import Arrays, Ensemble
+from mcgw.room import check_memory
 from mcgw.samplers import Block, Cells, Sampler, sampler_of
 from mcgw.scene import Scene
+from mcgw.stopping import Running, checkpoints, decide
 
 __all__ = ["block_size", "blocks", "kept", "simulate", "use_threads"]
 
@@ -18,7 +22,9 @@ _WORDS = 4_000_000  # numbers a block may hold
 _DRAWS = 1e8  # asperities a block may draw, so that a bar moves every second
 
 
-def simulate(scene: Scene, *, threads: int | None = None) -> Ensemble:
+def simulate(
+    scene: Scene, *, threads: int | None = None, progress: Callable[[int], Any] | None = None
+) -> Ensemble:
     """Draw the ensemble of a scene in memory.
 
     Parameters
@@ -27,29 +33,61 @@ def simulate(scene: Scene, *, threads: int | None = None) -> Ensemble:
         What is asked.
     threads : int, optional
         Left out: all there are. The result is the same, bit by bit, for any number.
+    progress : callable, optional
+        Called with the number of surfaces after each block.
 
     Returns
     -------
     Ensemble
-        With arrays of shape (surfaces, separations).
+        With arrays of shape (surfaces, separations). If a stop rule ended it, its scene says how many
+        were drawn in place of the rule: run again, it gives the same.
 
     Raises
     ------
     ValueError
-        If `threads` is not positive.
+        If `threads` is not positive, or the memory is too small (with the size).
     """
     sampler = sampler_of(scene)
+    if scene.rel_err is None:
+        _check_memory(scene, scene.n_surfaces)
+    parts, drawn = [], 0
     with use_threads(threads):
-        parts = [kept(scene, block) for _, block in blocks(scene, sampler)]
+        for drawn, block in blocks(scene, sampler):
+            parts.append(kept(scene, block))
+            n = len(parts[-1][scene.quantities[0]])
+            _check_memory(scene, n)  # a stop rule does not know beforehand
+            drawn += n
+            if progress:
+                progress(n)
     arrays = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
+    if scene.rel_err is not None or scene.max_seconds is not None:
+        scene = replace(scene, n_surfaces=drawn, rel_err=None, max_seconds=None)
     return Ensemble(scene, sampler.name, Arrays(arrays))
 
 
 def blocks(scene: Scene, sampler: Sampler) -> Iterator[tuple[int, Block]]:
-    """First surface and results of each block, in order."""
-    size = block_size(scene, sampler)
-    for first in range(0, scene.n_surfaces, size):
-        yield first, sampler.block(first, min(size, scene.n_surfaces - first))
+    """First surface and results of each block, in order, until the scene's stop rule ends it."""
+    size, started = block_size(scene, sampler), monotonic()
+    running = Running.empty(len(scene.quantities) * len(scene.separations))
+    stops = [scene.n_surfaces] if scene.rel_err is None else checkpoints(scene.n_surfaces)
+    first = 0
+    for stop in stops:
+        while first < stop:
+            block = sampler.block(first, min(size, stop - first))
+            yield first, block
+            first += len(block.sums[scene.quantities[0]])
+            if scene.rel_err is not None:
+                running = running.add(scene, block.sums)
+            if scene.max_seconds is not None and monotonic() - started > scene.max_seconds:
+                return
+        if scene.rel_err is not None and not decide(scene, running).go_on:
+            return
+
+
+def _check_memory(scene: Scene, n_surfaces: int) -> None:
+    quantities, separations = len(scene.quantities), len(scene.separations)
+    what = f"ensemble.n_surfaces = {n_surfaces}: {quantities} quantities at {separations} separations"
+    check_memory(what, 2 * 8 * n_surfaces * separations * quantities)  # the blocks, and all of them joined
 
 
 def kept(scene: Scene, block: Block) -> dict[str, Any]:

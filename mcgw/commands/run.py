@@ -46,6 +46,8 @@ def execute(args: argparse.Namespace) -> int:
     scene = load_scene(args.scene, seed=lambda: recorded_seed(path))
     for note in _notes(scene, args.threads):
         print(f"mcgw: note: {note}", file=sys.stderr)
+    if scene.rel_err is not None or scene.max_seconds is not None:
+        return _until_known(scene, path, args)
     bar = _Bar(scene.n_surfaces)
     if part:
         left = run_part(scene, path, part, threads=args.threads, progress=bar.show)
@@ -61,6 +63,28 @@ def execute(args: argparse.Namespace) -> int:
         if engine:
             engine.close()
     print(f"{path}: {ensemble.n_surfaces} surfaces of {scene.n_asperities:g} asperities, seed {scene.seed}")
+    return 0
+
+
+def _until_known(scene: "Scene", path: Path, args: argparse.Namespace) -> int:
+    """Draw until the stop rule is content, and say how well every mean is known."""
+    from tqdm import tqdm
+
+    from mcgw.forecast import forecast, seconds_per_surface
+    from mcgw.samplers import sampler_of
+    from mcgw.simulation import simulate
+    from mcgw.stop_report import after, before
+    from mcgw.store import save
+
+    if args.shard or args.scheduler or args.processes is not None or args.workers is not None:
+        raise ValueError("ensemble.rel_err: the stop rule draws with threads; leave the other engine out")
+    expected = forecast(scene)
+    print(f"forecast: {before(expected, seconds_per_surface(scene, sampler_of(scene)))}")
+    with tqdm(total=expected.surfaces, unit=" surfaces", disable=None, leave=False) as bar:
+        ensemble = save(simulate(scene, threads=args.threads, progress=bar.update), path)
+    print(f"{path}: {ensemble.n_surfaces} surfaces of {scene.n_asperities:g} asperities, seed {scene.seed}")
+    for line in after(ensemble, scene.rel_err or 1.0):
+        print(line)
     return 0
 
 

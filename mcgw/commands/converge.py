@@ -1,0 +1,44 @@
+"""``mcgw converge``: the statistical convergence test of a scene."""
+
+import argparse
+from pathlib import Path
+
+HELP = (
+    "test statistical convergence: slopes, coverage, variance, covariance, skewness (exit code 1 if it fails)"
+)
+EXAMPLE = "mcgw converge runs/demo.toml -o out"
+
+
+def arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of this command."""
+    parser.add_argument("scene", type=Path, metavar="SCENE", help="TOML file, SI units")
+    parser.add_argument(
+        "-o", "--output", type=Path, metavar="DIR", help="folder of the figure; default: out beside the scene"
+    )
+
+
+def execute(args: argparse.Namespace) -> int:
+    """Print every check and the verdict, save the figure."""
+    from tqdm import tqdm
+
+    from mcgw.compare import FALSE_ALARM
+    from mcgw.converge import SEEDS, converge
+    from mcgw.plots_converge import save_convergence
+    from mcgw.scene_file import load_scene
+
+    scene = load_scene(args.scene)
+    folder = args.output or args.scene.parent / "out"
+    folder.mkdir(parents=True, exist_ok=True)
+    with tqdm(total=SEEDS, unit=" ensembles", disable=None, leave=False) as bar:
+        found = converge(scene, progress=bar.update)
+    path = folder / f"{args.scene.stem}-converge.png"
+    save_convergence(found, path)
+    print(
+        f"{SEEDS} ensembles of {found.scene.n_surfaces} surfaces of {found.scene.n_asperities:g} asperities"
+    )
+    for check in found.checks:
+        print(f"  {check.name:28} p = {check.p:<9.3g} {check.seen}")
+    word = "passed" if found.passed else "FAILED"
+    print(f"convergence {word}: p = {found.p:.3g} over all (false alarms: 1 in {1 / FALSE_ALARM:.0f})")
+    print(f"{path}: figure")
+    return 0 if found.passed else 1

@@ -1,0 +1,89 @@
+"""Independent combinations of everything that is asked: the principal axes of its exact correlation.
+
+Sums of one surface at several separations share their asperities. Turned to these axes they are
+uncorrelated, of mean 0 and variance 1, with known third and fourth cumulants: a test needs no more.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+import analytic
+from mcgw.scene import Scene
+
+__all__ = ["Principal"]
+
+Array = NDArray[np.float64]
+
+_TOUCHING = 100  # asperities expected in contact, so that a single surface is nearly Gaussian
+_INDEPENDENT = 1e-6  # smallest eigenvalue: what is below is a difference of nearly equal columns
+_MOST_KURTOSIS = 0.5  # of a combination over surfaces
+
+
+@dataclass(frozen=True)
+class Principal:
+    """Axes and the exact law along them.
+
+    Parameters
+    ----------
+    columns : tuple of (str, int)
+        Quantity and number of the separation of what is combined.
+    mean, std : ndarray
+        Exact, of each column.
+    axes : ndarray
+        Shape (columns, axes).
+    skewness, kurtosis : ndarray
+        Exact third and fourth cumulant along each axis.
+    """
+
+    columns: tuple[tuple[str, int], ...]
+    mean: Array
+    std: Array
+    axes: Array
+    skewness: Array
+    kurtosis: Array
+
+    @classmethod
+    def of(cls, scene: Scene) -> "Principal":
+        """The axes of a scene: of those separations where single surfaces are nearly Gaussian."""
+        n, h = scene.n_asperities, np.array(scene.separations)
+        rule = analytic.HeightRule.over(h, scene.modulus)
+        terms = rule.terms(scene.quantities, h, scene.modulus)
+        mean = rule.probabilities @ terms
+        if scene.count == "fixed":
+            mean, deviation, below = rule.deviations(terms)
+        else:
+            deviation, below = terms, np.zeros(terms.shape[1])
+        variance = rule.probabilities @ deviation**2 + rule.below * below**2
+        touching = n * np.minimum(analytic.fn(0, h), 1 - analytic.fn(0, h) + (scene.count == "poisson"))
+        chosen = np.flatnonzero(np.tile(touching > _TOUCHING, len(scene.quantities)) & (variance > 0))
+        unit = np.sqrt(variance[chosen])
+        deviation, below = deviation[:, chosen] / unit, below[chosen] / unit
+        p = rule.probabilities[:, None]
+        size, axes = np.linalg.eigh((deviation * p).T @ deviation + rule.below * np.outer(below, below))
+        axes = axes[:, size > _INDEPENDENT] / np.sqrt(size[size > _INDEPENDENT])
+        along, low = deviation @ axes, below @ axes
+        third = rule.probabilities @ along**3 + rule.below * low**3
+        fourth = rule.probabilities @ along**4 + rule.below * low**4 - 3 * (scene.count == "fixed")
+        good = np.abs(fourth) / n < _MOST_KURTOSIS
+        scale = np.array(
+            [analytic.QUANTITIES[scene.quantities[c // len(h)]].scale(scene.surface) for c in chosen.tolist()]
+        )
+        return cls(
+            tuple((scene.quantities[c // len(h)], c % len(h)) for c in chosen.tolist()),
+            n * scale * mean[chosen],
+            np.sqrt(n) * scale * unit,
+            axes[:, good],
+            third[good] / np.sqrt(n),
+            fourth[good] / n,
+        )
+
+    def turn(self, sums: Mapping[str, NDArray[Any]]) -> Array:
+        """Every surface along the axes, shape (surfaces, axes)."""
+        if not self.columns:
+            return np.empty((len(next(iter(sums.values()))), 0))
+        values = np.stack([sums[name][:, k] for name, k in self.columns], axis=1).astype(np.float64)
+        return np.asarray((values - self.mean) / self.std @ self.axes)
