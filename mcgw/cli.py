@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from importlib import import_module
 from importlib.metadata import PackageNotFoundError, version
 
-COMMANDS = ("run", "show", "compare", "regrade", "converge")
+COMMANDS = ("run", "show", "compare", "regrade", "converge", "tradeoff")
 
 
 def main(argv: Sequence[str] | None = None) -> int:

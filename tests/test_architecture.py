@@ -38,13 +38,16 @@ ORDER = (
     "checks",
     "compare",
     "converge",
+    "methods",
+    "tradeoff",
     "plots",
     "plots_converge",
+    "plots_tradeoff",
     "report_text",
     "cli",
 )
 # Where the simulation meets the integrals: it is compared, forecast or measured there, never drawn.
-MEET_THEORY = ("compare", "forecast", "principal")
+MEET_THEORY = ("compare", "forecast", "methods", "principal")
 ROOT = Path(mcgw.__file__).parent
 
 
