@@ -46,7 +46,10 @@ def test_reference_is_the_theory(scene):
 def test_errors_fall_as_they_should(found):
     study, _ = found
     stratified = study.of("stratified")
-    assert stratified[-1].rms[0] < stratified[0].rms[0] / 100
+    # How many sizes there was time for depends on the machine. N^(-3/2) lies a factor of 4 below 1/N at a
+    # ratio of 16, N^(-1/2) a factor of 4 above; an rms of two or more seeds is known better than that.
+    first, last = stratified[0], stratified[-1]
+    assert last.rms[0] / first.rms[0] < first.size / last.size
     paper = study.of("paper's Gauss rule, Eq. (9)")
     assert paper[-1].rms[2] < 1e-8 < paper[0].rms[2]
 
