@@ -14,6 +14,7 @@ COMMANDS = (
     "show",
     "compare",
     "converge",
+    "tradeoff",
     "regrade",
     "merge",
     "solve",

@@ -9,12 +9,12 @@ from analytic import QUANTITIES, Grading
 from mcgw.cells import NODES, TO_COEFFICIENTS
 from mcgw.scene import Scene
 
-__all__ = ["Laws"]
+__all__ = ["ACCURACY", "Laws"]
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
-_ACCURACY = 1e-13  # relative to the largest value of a law on the cell
+ACCURACY = 1e-13  # relative to the largest value of a law on the cell
 _SURE = 400  # so many expected contacts are never fewer than half
 _U = (1 + NODES) / 2
 
@@ -39,6 +39,8 @@ class Laws:
         to be of the size of its mean; else 0.
     grading : Grading
         The e(s) of all.
+    accuracy : float, optional
+        Relative to the largest value of a law on a cell, or to the sum of a surface.
     """
 
     h: Array
@@ -47,9 +49,12 @@ class Laws:
     scale: Array
     total: Array
     grading: Grading
+    accuracy: float = ACCURACY
 
     @classmethod
-    def of(cls, scene: Scene, quantities: tuple[str, ...], *, lasting: bool) -> "Laws":
+    def of(
+        cls, scene: Scene, quantities: tuple[str, ...], *, lasting: bool, accuracy: float = ACCURACY
+    ) -> "Laws":
         """The laws of some quantities at all separations, quantity by quantity.
 
         If they are to be lasting, they are resolved as if every surface could have a single contact.
@@ -63,6 +68,7 @@ class Laws:
             scale=np.repeat([q.scale(scene.surface) for q in chosen], repeat),
             total=np.zeros(len(chosen) * repeat),
             grading=scene.modulus,
+            accuracy=accuracy,
         )
         return laws if lasting else replace(laws, total=laws._totals(scene))
 
@@ -131,10 +137,10 @@ class Laws:
     def _accuracy(self, a: float, t: Array) -> float:
         """What can be had: a height is known to its last digit, and a steep grading turns that into noise."""
         if not self.modulus.any():
-            return _ACCURACY
+            return self.accuracy
         e = self.grading(a + t)
         slope = np.ptp(e) / (t.max() * max(np.abs(e).max(), np.finfo(float).tiny))
-        return max(_ACCURACY, 64 * float(np.spacing(abs(a) + t.max())) * float(slope))
+        return max(self.accuracy, 64 * float(np.spacing(abs(a) + t.max())) * float(slope))
 
     def _coefficients(self, which: Ints, a: float, t: Array, base: Array) -> Array:
         graded = np.where(self.modulus[which], self.grading(a + t)[:, None], 1.0)

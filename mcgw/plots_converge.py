@@ -30,7 +30,8 @@ def save_convergence(found: Convergence, path: str | Path) -> None:
     """
     with mpl.rc_context(STYLE):
         figure = Figure(figsize=(10, 7), layout="constrained")
-        top, bottom = figure.subfigures(2, 1, height_ratios=[1.1, 1])
+        parts: Any = figure.subfigures(2, 1, height_ratios=[1.1, 1])
+        top, bottom = parts
         axes = dict(zip("MNz", top.subplots(1, 3), strict=True))
         drawn = {curve.against for curve in found.slopes}
         for curve in found.slopes:

@@ -15,7 +15,7 @@ from numba import njit, prange
 from numpy.typing import NDArray
 
 from mcgw.cells import Mesh
-from mcgw.laws import Laws
+from mcgw.laws import ACCURACY, Laws
 from mcgw.moments import Layout
 from mcgw.scene import Scene
 from mcgw.tree import Tree, transfer, tree_over
@@ -92,6 +92,7 @@ def response_of(
     *,
     kept: Layout | None = None,
     lasting: bool = False,
+    accuracy: float = ACCURACY,
 ) -> Response:
     """Build the response of a mesh.
 
@@ -107,11 +108,14 @@ def response_of(
         The moments there are; left out: as many as it takes.
     lasting : bool, optional
         Resolve the laws for surfaces of any number of contacts.
+    accuracy : float, optional
+        Take as many moments as this needs.
 
     Returns
     -------
     Response
-        Accurate to 1e-13 of the largest value of each law on each cell, or of the sum of a surface.
+        By default accurate to 1e-13 of the largest value of each law on each cell, or of the sum of a
+        surface.
 
     Raises
     ------
@@ -119,7 +123,7 @@ def response_of(
         If the grading is not resolved on a cell, or not by the moments there are.
     """
     tree = tree_over(mesh)
-    laws = Laws.of(scene, quantities, lasting=lasting or kept is not None)
+    laws = Laws.of(scene, quantities, lasting=lasting or kept is not None, accuracy=accuracy)
     entries, plain, rooted = _walk(mesh, tree, laws, kept)
     layout = Layout(plain[: mesh.size], rooted)
     starts = layout.starts

@@ -163,12 +163,15 @@ class Cells:
         Physics on this mesh.
     name : str
         Which of the family.
+    crowded : int, optional
+        For ``aggregate``: asperities in a cell, from which its moments count as Gaussian.
     """
 
     scene: Scene
     mesh: Mesh
     response: Response
     name: str
+    crowded: int = CROWDED
 
     def block(self, first: int, n: int) -> Block:
         """Results of surfaces `first` ... `first + n - 1`."""
@@ -176,7 +179,7 @@ class Cells:
         counts = (
             strata_of(self.scene, self.mesh, n) if stratified else counts_of(self.scene, self.mesh, first, n)
         )
-        least = CROWDED if self.name == "aggregate" else np.iinfo(np.int64).max
+        least = self.crowded if self.name == "aggregate" else np.iinfo(np.int64).max
         single = np.where(counts.cells < least, counts.cells, 0)
         layout = self.response.layout
         moments = cell_moments(self.scene.seed, first, single, layout, stratified=stratified)

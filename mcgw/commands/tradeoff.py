@@ -1,0 +1,48 @@
+"""``mcgw tradeoff``: error against time, for one scene on this machine."""
+
+import argparse
+from pathlib import Path
+
+HELP = "measure error against time of every sampler and quadrature, and say what to run"
+EXAMPLE = "mcgw tradeoff runs/demo.toml -o out"
+
+
+def arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of this command."""
+    parser.add_argument("scene", type=Path, metavar="SCENE", help="TOML file, SI units")
+    parser.add_argument(
+        "-o", "--output", type=Path, metavar="DIR", help="folder of table and figure; default: out beside it"
+    )
+    parser.add_argument("--seconds", type=float, default=60.0, metavar="S", help="bound; default: 60")
+
+
+def execute(args: argparse.Namespace) -> int:
+    """Print the table and the advice, save the record and the figure."""
+    from tqdm import tqdm
+
+    from mcgw.plots_tradeoff import save_tradeoff
+    from mcgw.scene_file import load_scene
+    from mcgw.tradeoff import tradeoff, write_csv
+
+    scene = load_scene(args.scene)
+    folder = args.output or args.scene.parent / "out"
+    folder.mkdir(parents=True, exist_ok=True)
+    with tqdm(total=100, unit="%", disable=None, leave=False) as bar:
+        found = tradeoff(scene, seconds=args.seconds, progress=lambda share: bar.update(100 * share - bar.n))
+    table, figure = (folder / f"{args.scene.stem}-tradeoff.{end}" for end in ("csv", "png"))
+    write_csv(found, table)
+    save_tradeoff(found, figure)
+    quantity = scene.quantities[0]
+    shown = ", ".join(f"{h:g}" for h in found.separations)
+    print(f"relative error of the mean {quantity} at d/sigma = {shown}")
+    for p in found.points:
+        errors = " ".join(f"{e:9.2e}" for e in p.rms)
+        print(f"  {p.method:36} {p.size:9.3g} {p.unit:11} {errors}  +-{p.rms_stderr:4.0%}  {p.cpu:9.2e} s")
+    last = f"{found.separations[-1]:g}"
+    print(f"\nfor an ensemble (one standard error of the mean {quantity} at d/sigma = {last}):")
+    for a in found.advice:
+        run = f'sampler = "{a.scene.sampler}", n_surfaces = {a.scene.n_surfaces}'
+        print(f"  {a.target:g}: {run}, {a.cpu:.2g} s of CPU")
+    print("for the mean alone: the theory, `analytic`, is exact; by samples, stratified")
+    print(f"{table}: record\n{figure}: figure\nstudy: {found.seconds:.0f} s")
+    return 0
