@@ -30,7 +30,7 @@ def doubts(ensemble: Ensemble) -> list[str]:
     scene, h = ensemble.scene, ensemble.separations
     surface, found = scene.surface, []
     share = scene.n_asperities / surface.n_asperities
-    crowded = h[analytic.area(surface, h) / surface.nominal_area * share > _CROWDED]
+    crowded = h[analytic.area(surface, h, law=scene.heights) / surface.nominal_area * share > _CROWDED]
     if crowded.size:
         found.append(
             f"Up to d/σ = {crowded.max():.3g} more than {_CROWDED:.0%} of the nominal area touches: "

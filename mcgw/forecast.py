@@ -40,7 +40,13 @@ def relative_spread(scene: Scene, quantity: str) -> Array:
     """Exact standard deviation over surfaces relative to the mean, shape (separations,)."""
     h, back = np.unique(scene.separations, return_inverse=True)
     exact = analytic.cumulants(
-        scene.surface, quantity, h, scene.modulus, n_asperities=scene.n_asperities, count=scene.count
+        scene.surface,
+        quantity,
+        h,
+        scene.modulus,
+        n_asperities=scene.n_asperities,
+        count=scene.count,
+        law=scene.heights,
     )
     with np.errstate(divide="ignore", invalid="ignore"):
         spread = np.where(exact.mean != 0, np.sqrt(exact.variance) / np.abs(exact.mean), np.inf)

@@ -167,7 +167,7 @@ def _quadratures(scene: Scene, chosen: tuple[int, ...], exact: Array) -> list[Me
     grading = scene.modulus if q.modulus else None
 
     def ours(_size: float, _seed: int) -> Array:
-        return factor * analytic.fn(q.exponent, h, grading) / exact - 1
+        return factor * analytic.fn(q.exponent, h, grading, law=scene.heights) / exact - 1
 
     def scipys(size: float, _seed: int) -> Array:
         rows = []
@@ -185,7 +185,8 @@ def _quadratures(scene: Scene, chosen: tuple[int, ...], exact: Array) -> list[Me
         Method("theory: analytic.fn", "64 points", (64.0,), None, ours),
         Method("scipy.integrate.quad", "1/epsrel", (1e2, 1e6, 1e10), None, scipys),
     ]
-    if grading is None or isinstance(grading, analytic.Exponential | analytic.Homogeneous):
+    gaussian = isinstance(scene.heights, analytic.Gaussian)
+    if gaussian and (grading is None or isinstance(grading, analytic.Exponential | analytic.Homogeneous)):
         sizes = tuple(2.0**k for k in range(2, 9))
         found.append(Method("paper's Gauss rule, Eq. (9)", "points", sizes, None, papers))
     return found

@@ -50,7 +50,7 @@ class Principal:
     def of(cls, scene: Scene) -> "Principal":
         """The axes of a scene: of those separations where single surfaces are nearly Gaussian."""
         n, h = scene.n_asperities, np.array(scene.separations)
-        rule = analytic.HeightRule.over(h, scene.modulus)
+        rule = analytic.HeightRule.over(h, scene.modulus, scene.heights)
         terms = rule.terms(scene.quantities, h, scene.modulus)
         mean = rule.probabilities @ terms
         if scene.count == "fixed":
@@ -58,7 +58,8 @@ class Principal:
         else:
             deviation, below = terms, np.zeros(terms.shape[1])
         variance = rule.probabilities @ deviation**2 + rule.below * below**2
-        touching = n * np.minimum(analytic.fn(0, h), 1 - analytic.fn(0, h) + (scene.count == "poisson"))
+        share = scene.heights.above(h)
+        touching = n * np.minimum(share, 1 - share + (scene.count == "poisson"))
         chosen = np.flatnonzero(np.tile(touching > _TOUCHING, len(scene.quantities)) & (variance > 0))
         unit = np.sqrt(variance[chosen])
         deviation, below = deviation[:, chosen] / unit, below[chosen] / unit

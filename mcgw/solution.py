@@ -103,8 +103,11 @@ def solve(scene: Scene, given: str, values: Sequence[float]) -> list[Solution]:
 def _theory(scene: Scene, q: Quantity, value: float) -> dict[str, float]:
     """Separation and all quantities of the mean surface, scaled to the scene's number of asperities."""
     share = scene.n_asperities / scene.surface.n_asperities
-    h = float(analytic.separation_at(scene.surface, q.name, value / share, scene.modulus))
-    means = {name: float(analytic.mean(scene.surface, name, h, scene.modulus)) * share for name in QUANTITIES}
+    h = float(analytic.separation_at(scene.surface, q.name, value / share, scene.modulus, law=scene.heights))
+    means = {
+        name: float(analytic.mean(scene.surface, name, h, scene.modulus, law=scene.heights)) * share
+        for name in QUANTITIES
+    }
     return {"separation": h, **means}
 
 
@@ -112,9 +115,20 @@ def _spread(scene: Scene, q: Quantity, h: float) -> float:
     """Standard deviation of the separation of a surface, to first order: that of the sum over its slope."""
     grading = scene.modulus if q.modulus else None
     sums = analytic.cumulants(
-        scene.surface, q.name, h, grading, n_asperities=scene.n_asperities, count=scene.count
+        scene.surface,
+        q.name,
+        h,
+        grading,
+        n_asperities=scene.n_asperities,
+        count=scene.count,
+        law=scene.heights,
     )
-    slope = scene.n_asperities * q.scale(scene.surface) * q.exponent * analytic.fn(q.exponent - 1, h, grading)
+    slope = (
+        scene.n_asperities
+        * q.scale(scene.surface)
+        * q.exponent
+        * analytic.fn(q.exponent - 1, h, grading, law=scene.heights)
+    )
     return float(np.sqrt(sums.variance) / slope)
 
 

@@ -40,6 +40,7 @@ ORDER = (
     "stopping",
     "simulation",
     "forecast",
+    "plan",
     "regrade",
     "shards",
     "layout",

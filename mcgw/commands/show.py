@@ -13,6 +13,9 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     what = parser.add_mutually_exclusive_group()
     what.add_argument("--scene", action="store_true", help="print the scene as TOML: it runs again")
     what.add_argument("--digest", action="store_true", help="print the digest of scene and data")
+    what.add_argument(
+        "--plan", action="store_true", help="FILE is a scene (TOML): print what would be drawn, and what not"
+    )
     what.add_argument("--verify", action="store_true", help="check every bit by seal and digest")
 
 
@@ -20,6 +23,13 @@ def execute(args: argparse.Namespace) -> int:
     """Print to standard output; writes no file."""
     from mcgw.store import open_ensemble, read_attributes, verify
 
+    if args.plan:
+        from mcgw.plan import plan_of, plan_text
+        from mcgw.scene_file import load_scene
+
+        scene = load_scene(args.file)
+        print(plan_text(scene, plan_of(scene)))
+        return 0
     if args.verify:
         problem, found = verify(args.file)
         print(f"{args.file}: {f'DAMAGED, {problem}' if problem else 'intact'} ({found})")

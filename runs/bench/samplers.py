@@ -17,6 +17,7 @@ import analytic
 from mcgw.philox import centred
 from mcgw.samplers import sampler_of
 from mcgw.scene import Scene
+from mcgw.simulation import block_size
 
 SURFACE = analytic.Surface(sigma=1.37e-6, radius=13e-6, eta=3.0e8, nominal_area=1e-4, E_star=78.6e9)
 S1 = Scene(
@@ -96,9 +97,10 @@ def compare(title: str, jobs: dict[str, tuple[Callable[[], object], int]], base:
         print(f"  {name:42} {np.median(values) * 1e6:12.1f} us   {middle:8.3g} x  ({low:.3g} ... {high:.3g})")
 
 
-def block(scene: Scene, surfaces: int) -> tuple[Callable[[], object], int]:
-    """A block of a scene, its mesh and response made beforehand as in a run."""
+def block(scene: Scene) -> tuple[Callable[[], object], int]:
+    """A block as a run would draw it, its mesh and response made beforehand."""
     sampler = sampler_of(scene)
+    surfaces = block_size(scene, sampler)
     return (lambda: sampler.block(0, surfaces)), surfaces
 
 
@@ -114,11 +116,11 @@ def main() -> None:
     compare(
         "N = 1e6, 41 separations",
         {
-            "cells": block(S1, 64),
+            "cells": block(S1),
             "NumPy script": (lambda: numpy_script(10**6, S1.separations, 1), 1),
             "plain numba loop, all cores": (lambda: numba_loop(1, 10**6, h, 4), 4),
             "Philox alone, the same uniforms": (lambda: philox_alone(500_000, 64), 64),
-            "tail": block(replace(S1, sampler="tail"), 4),
+            "tail": block(replace(S1, sampler="tail")),
         },
         "cells",
         rounds,
@@ -127,7 +129,7 @@ def main() -> None:
     compare(
         "N = 1e4, 2000 surfaces",
         {
-            "cells": block(small, 2000),
+            "cells": block(small),
             "NumPy script": (lambda: numpy_script(10**4, S1.separations, 20), 20),
         },
         "cells",
@@ -136,9 +138,9 @@ def main() -> None:
     compare(
         "more separations, or higher ones (N = 1e6)",
         {
-            "h = 0 ... 4, 41 separations": block(S1, 64),
-            "h = 0 ... 4, 401 separations": block(replace(S1, separations=tuple(np.linspace(0, 4, 401))), 64),
-            "h = 2 ... 4, 41 separations": block(replace(S1, separations=tuple(np.linspace(2, 4, 41))), 256),
+            "h = 0 ... 4, 41 separations": block(S1),
+            "h = 0 ... 4, 401 separations": block(replace(S1, separations=tuple(np.linspace(0, 4, 401)))),
+            "h = 2 ... 4, 41 separations": block(replace(S1, separations=tuple(np.linspace(2, 4, 41)))),
         },
         "h = 0 ... 4, 41 separations",
         rounds,
@@ -146,7 +148,7 @@ def main() -> None:
     compare(
         "aggregate",
         {
-            f"N = 1e{k}": block(replace(S1, sampler="aggregate", n_asperities=10**k), 256)
+            f"N = 1e{k}": block(replace(S1, sampler="aggregate", n_asperities=10**k))
             for k in (8, 4, 6, 10, 12, 15)
         },
         "N = 1e8",

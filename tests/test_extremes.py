@@ -1,0 +1,209 @@
+"""Numerical stability at the extremes: each test is a row of runs/EXTREMES.md.
+
+Every case works to the accuracy stated, without a warning (pytest turns them into errors), or gets one
+clear error.
+"""
+
+import math
+
+import numpy as np
+import pytest
+from oracles import sums_of_heights
+from scipy.special import log_ndtr
+
+import analytic
+import mcgw
+from mcgw.counts import counts_of
+from mcgw.moments import Layout, cell_moments
+from mcgw.samplers import sampler_of
+from mcgw.scene import Scene, SceneError
+
+GAMMA_STAR = math.exp(0.5) / (math.exp(0.5) - 1)
+
+
+def worst(scene, surface=0):
+    """Largest relative difference to exactly rounded sums over the same heights."""
+    drawn = sampler_of(scene).block(surface, 1).sums
+    heights = mcgw.heights(scene, surface)
+    errors = [0.0]
+    for quantity in scene.quantities:
+        exact, found = sums_of_heights(scene, heights, quantity), drawn[quantity][0]
+        reached = exact != 0
+        np.testing.assert_array_equal(found[~reached], 0.0)
+        errors.append(np.abs(found[reached] / exact[reached] - 1).max(initial=0.0))
+    return max(errors)
+
+
+def agree(ensemble):
+    """Means within 5 exact standard errors of theory, wherever anything fluctuates."""
+    scene = ensemble.scene
+    for name in scene.quantities:
+        exact = analytic.cumulants(
+            scene.surface, name, scene.separations, scene.modulus, n_asperities=scene.n_asperities
+        )
+        difference = np.abs(ensemble.mean(name) - exact.mean)
+        assert (difference <= 5 * np.sqrt(exact.variance / ensemble.n_surfaces) + 1e-12 * exact.mean).all()
+
+
+def test_separations_from_minus_40_to_40(make_scene):
+    scene = make_scene(separations=tuple(np.linspace(-40, 40, 17)), grading=analytic.Homogeneous())
+    assert worst(scene) < 1e-12
+    agree(mcgw.simulate(scene))
+
+
+def test_where_nothing_ever_touches(make_scene):
+    ensemble = mcgw.simulate(make_scene(separations=(9.0, 38.6, 40.0, 1000.0)))
+    for name in ensemble.scene.quantities:
+        assert (ensemble.values(name) == 0).all()
+        assert (ensemble.std(name) == 0).all()
+
+
+@pytest.mark.parametrize("n", [1, 2])
+@pytest.mark.parametrize("sampler", ["direct", "tail", "cells"])
+def test_one_or_two_asperities(make_scene, n, sampler):
+    ensemble = mcgw.simulate(make_scene(n_asperities=n, sampler=sampler, n_surfaces=2000))
+    agree(ensemble)
+    assert ensemble.contacts.max() <= n
+
+
+def test_1e15_asperities(make_scene):
+    agree(mcgw.simulate(make_scene(n_asperities=10**15, sampler="aggregate", n_surfaces=64)))
+
+
+def test_no_asperities_and_too_many(make_scene):
+    assert make_scene(n_asperities=0).n_asperities == 30_000  # left out: eta A_n
+    for n in (-1, 2**53 + 1, 10**30):
+        with pytest.raises(SceneError, match="must lie between 1 and 2\\^53"):
+            make_scene(n_asperities=n)
+
+
+def test_one_surface(make_scene):
+    ensemble = mcgw.simulate(make_scene(n_surfaces=1))
+    assert np.isnan(ensemble.std("load")).all()
+    assert np.isnan(ensemble.interval("load")[0]).all()
+    assert (ensemble.mean("load") == ensemble.load[0]).all()
+
+
+def test_one_separation(make_scene):
+    scene = make_scene(separations=(1.0,))
+    assert worst(scene) < 1e-12
+    agree(mcgw.simulate(scene))
+
+
+@pytest.mark.slow
+def test_10_000_separations(make_scene):
+    h = tuple(np.linspace(0, 4, 10_000))
+    scene = make_scene(separations=h, quantities=("load", "contacts"), sampler="cells")
+    sums = sampler_of(scene).block(0, 2).sums
+    heights = mcgw.heights(scene, 0)
+    some = make_scene(separations=h[::500], quantities=("load", "contacts"), sampler="cells")
+    for name in some.quantities:
+        np.testing.assert_allclose(sums[name][0][::500], sums_of_heights(some, heights, name), rtol=1e-12)
+
+
+def test_separations_1e_12_apart_and_equal(make_scene):
+    h = (1.0, 1.0 + 1e-12, 1.0, 1.0 + 2e-12, 2.0)
+    scene = make_scene(separations=h, n_asperities=10**5)
+    assert worst(scene) < 1e-12
+    load = sampler_of(scene).block(0, 3).sums["load"]
+    np.testing.assert_array_equal(load[:, 0], load[:, 2])
+    assert (load[:, 0] >= load[:, 1]).all()
+
+
+@pytest.mark.parametrize("gamma", [0.0, GAMMA_STAR, 1e6, 1e60])
+def test_gradings_at_their_limits(make_scene, gamma):
+    scene = make_scene(grading=analytic.Exponential(gamma))
+    assert worst(scene) < 1e-12
+    agree(mcgw.simulate(scene))
+
+
+def test_negative_gamma(make_scene):
+    with pytest.raises(SceneError, match=r"negative from s = 1\.099"):
+        make_scene(grading=analytic.Exponential(-0.5))
+    clipped = make_scene(grading=analytic.Exponential(-0.5), negative="clip")
+    assert worst(clipped) < 1e-12
+    agree(mcgw.simulate(clipped))
+    agree(mcgw.simulate(make_scene(grading=analytic.Exponential(-0.5), negative="allow")))
+
+
+@pytest.mark.parametrize("size", [1e-12, 1.0])
+@pytest.mark.parametrize("stress", [1.0, 1e15])
+def test_sizes_and_moduli(make_scene, size, stress):
+    """Lengths and stresses enter as factors: the reduced sums are the same to the last digits."""
+    surface = analytic.Surface(
+        sigma=size, radius=size, eta=1 / size**2, nominal_area=3000 * size**2, E_star=stress
+    )
+    scaled = sampler_of(make_scene(surface=surface)).block(0, 2).sums
+    unit = sampler_of(make_scene(surface=analytic.Surface(1.0, 1.0, 1.0, 3000.0, 1.0))).block(0, 2).sums
+    np.testing.assert_allclose(scaled["load"] / (stress * size**2), unit["load"], rtol=1e-13)
+    np.testing.assert_allclose(scaled["area"] / size**2, unit["area"], rtol=1e-13)
+    np.testing.assert_allclose(scaled["stiffness"] / (stress * size), unit["stiffness"], rtol=1e-13)
+
+
+@pytest.mark.parametrize(("sigma", "E_star"), [(1e-320, 1e9), (1e-150, 1e-100), (1e100, 1e250)])
+def test_products_beyond_double_precision(make_scene, sigma, E_star):
+    surface = analytic.Surface(sigma=sigma, radius=1e-5, eta=1e9, nominal_area=1e-6, E_star=E_star)
+    with pytest.raises(SceneError, match="beyond double precision"):
+        make_scene(surface=surface)
+
+
+@pytest.mark.parametrize("value", [np.nan, np.inf])
+def test_gradings_that_are_not_finite(make_scene, value):
+    grading = analytic.Custom(lambda s: np.where(s > 1, value, 1.0))
+    with pytest.raises(SceneError, match="not finite at s = 1"):
+        make_scene(grading=grading)
+
+
+def test_discontinuous_and_steep_gradings(make_scene):
+    step = analytic.Custom(lambda s: np.where(s > 0.7071, 2.0, 1.0))
+    assert worst(make_scene(grading=step, n_asperities=10**5)) < 1e-12
+    steep = analytic.Custom(lambda s: 1.5 + np.tanh(1e6 * (s - 0.5)))
+    scene = make_scene(grading=steep, n_asperities=10**5)
+    # A height near 0.5 is known to 1e-16: times the slope 1e6, that is all that can be asked.
+    assert worst(scene) < 1e-9
+    agree(mcgw.simulate(scene))
+
+
+@pytest.mark.parametrize("quantity", list(analytic.QUANTITIES))
+def test_quantities_alone(make_scene, quantity):
+    alone = sampler_of(make_scene(quantities=(quantity,))).block(0, 3).sums
+    together = sampler_of(make_scene(quantities=tuple(analytic.QUANTITIES))).block(0, 3).sums
+    assert set(alone) == {quantity}
+    np.testing.assert_allclose(alone[quantity], together[quantity], rtol=1e-12)
+
+
+def test_sums_of_many_terms(make_scene):
+    """Stratified uniforms have known sums: 2e7 terms, compensated between pieces, to 1e-15 of the number."""
+    n = 20_000_000
+    moments = cell_moments(3, 0, np.array([[n]]), Layout(np.array([3]), np.array([0])), stratified=True)[:, 0]
+    assert moments[0] == n
+    assert abs(moments[1]) < 5 * np.sqrt(1 / (3 * n))  # the jitter of n strata, each 2/n wide
+    assert abs(moments[2] + n / 3) < 5 * np.sqrt(16 / (9 * n))
+
+
+def test_count_law_far_in_the_tail(make_scene):
+    """p = 1e-300: the probability is right to 1e-12, the count is 0, for N up to 2^53."""
+    h = 37.0
+    scene = make_scene(separations=(h,), n_asperities=2**53)
+    sampler = sampler_of(scene)
+    assert abs(sampler.mesh.high_extras / math.exp(log_ndtr(-h)) - 1) < 1e-12
+    assert counts_of(scene, sampler.mesh, 0, 64).high_extras.sum() == 0
+
+
+def test_rare_contacts_among_2_to_the_53(make_scene):
+    """h = 8: 5.6 contacts expected of 9e15 asperities, where 1 - p rounds to 1."""
+    scene = make_scene(separations=(8.0,), n_asperities=2**53, quantities=("contacts",), n_surfaces=2000)
+    expected = 2**53 * float(analytic.fn(0, 8.0))
+    contacts = mcgw.simulate(scene).contacts[:, 0]
+    assert abs(contacts.mean() - expected) < 5 * np.sqrt(expected / 2000)
+    assert abs(contacts.var() / expected - 1) < 5 * np.sqrt(2 / 2000 + 1 / expected / 2000)
+
+
+def test_requests_that_do_not_fit(make_scene):
+    with pytest.raises(ValueError, match=r"n_surfaces = 1000000000000: .* needs .* GiB of memory"):
+        mcgw.simulate(make_scene(n_surfaces=10**12))
+
+
+def test_a_scene_may_be_made_of_anything_finite():
+    with pytest.raises(SceneError, match="every separation must be finite"):
+        Scene(surface=analytic.Surface(1, 1, 1, 10, 1), separations=(math.nan,))

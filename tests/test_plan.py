@@ -1,0 +1,48 @@
+"""``mcgw show --plan``: what would be drawn, and what not."""
+
+import numpy as np
+import pytest
+
+import analytic
+from mcgw.cli import main
+from mcgw.plan import plan_of, plan_text
+from mcgw.samplers import sampler_of
+
+
+def test_plan_says_what_is_drawn(make_scene):
+    scene = make_scene(separations=(1.0, 2.0), n_asperities=10**5, sampler="cells")
+    plan = plan_of(scene)
+    expected = 10**5 * float(analytic.fn(0, 1.0))
+    assert plan.touching == pytest.approx(expected, rel=1e-12)
+    drawn = sampler_of(scene).block(0, 64)
+    assert drawn.counts.sum() / 64 == pytest.approx(expected, abs=5 * np.sqrt(expected / 64))
+    assert (plan.cells, plan.moments) == (drawn.counts.shape[1], drawn.moments.shape[1])
+    assert plan.bytes == 8 * 200 * 2 * 4
+    assert plan.seconds > 0
+    text = plan_text(scene, plan)
+    assert "lie below every separation and are not drawn" in text
+    assert "conductance: not asked for" in text
+
+
+def test_contacts_alone_draw_no_height(make_scene):
+    scene = make_scene(quantities=("contacts",), sampler="cells")
+    plan = plan_of(scene)
+    assert (plan.moments, plan.drawn) == (0, 0)
+    assert "no height is drawn" in plan_text(scene, plan)
+
+
+def test_other_samplers(make_scene):
+    assert plan_of(make_scene(sampler="direct")).drawn == 3000
+    huge = plan_of(make_scene(sampler="aggregate", n_asperities=10**15))
+    assert huge.drawn == huge.moments < 5000
+    assert plan_of(make_scene(rel_err=0.01, n_surfaces=10**6, separations=(0.0,))).surfaces < 10**6
+
+
+def test_from_the_command_line(tmp_path, capsys):
+    from pathlib import Path
+
+    scene = Path(__file__).parent.parent / "runs" / "quick.toml"
+    assert main(["show", "--plan", str(scene)]) == 0
+    said = capsys.readouterr().out
+    assert "sampler       cells (chosen by auto)" in said
+    assert "time          about" in said
