@@ -9,14 +9,18 @@ from analytic import QUANTITIES
 from mcgw.compare import FALSE_ALARM, Comparison, Verdict, theory
 from mcgw.csv_table import Row
 from mcgw.ensemble import Ensemble
-from mcgw.regrade import paired_ratio
+from mcgw.regrade import Paired, paired_ratio
 
 __all__ = [
     "COMPARISON_HEADER",
+    "RATIO_HEADER",
+    "SUMMARY_HEADER",
     "comparison_rows",
     "comparison_table",
+    "ratio_rows",
     "ratio_table",
     "summary",
+    "summary_rows",
     "verdict_line",
 ]
 
@@ -31,6 +35,8 @@ COMPARISON_HEADER = (
     "theory",
     "residual",
 )
+SUMMARY_HEADER = ("quantity", "unit", "separation", "mean", "std", "stderr")
+RATIO_HEADER = ("quantity", "separation", "ratio", "stderr", "theory", "variance_gain")
 _MOST_ROWS = 9
 
 
@@ -95,15 +101,33 @@ def comparison_rows(comparison: Comparison) -> Iterator[Row]:
             yield name, QUANTITIES[name].unit, *row
 
 
+def summary_rows(ensemble: Ensemble) -> Iterator[Row]:
+    """Every separation, as rows under `SUMMARY_HEADER`."""
+    for name in ensemble.scene.quantities:
+        columns = (ensemble.separations, ensemble.mean(name), ensemble.std(name), ensemble.stderr(name))
+        for row in zip(*columns, strict=True):
+            yield name, QUANTITIES[name].unit, *row
+
+
+def _ratios(new: Ensemble, old: Ensemble) -> Iterator[tuple[str, Paired, np.ndarray]]:
+    """Name, ratio by Monte Carlo and by theory of each quantity that the modulus enters."""
+    for name in new.scene.quantities:
+        if QUANTITIES[name].modulus:
+            with np.errstate(invalid="ignore", divide="ignore"):
+                yield name, paired_ratio(new, old, name), theory(new, name) / theory(old, name)
+
+
+def ratio_rows(new: Ensemble, old: Ensemble) -> Iterator[Row]:
+    """Every separation, as rows under `RATIO_HEADER`."""
+    for name, pair, exact in _ratios(new, old):
+        for row in zip(new.separations, pair.ratio, pair.stderr, exact, pair.gain, strict=True):
+            yield name, *row
+
+
 def ratio_table(new: Ensemble, old: Ensemble) -> str:
     """Ratios of means over the same surfaces, beside theory: Eqs. (12) and (15)."""
     lines = []
-    for name in new.scene.quantities:
-        if not QUANTITIES[name].modulus:
-            continue
-        with np.errstate(invalid="ignore", divide="ignore"):
-            pair = paired_ratio(new, old, name)
-            exact = theory(new, name) / theory(old, name)
+    for name, pair, exact in _ratios(new, old):
         lines += [
             f"{QUANTITIES[name].long_name}, new over old",
             f"  {'d/sigma':>8} {'ratio':>10} {'stderr':>9} {'theory':>10}   variance, independent/paired",

@@ -53,6 +53,7 @@ ORDER = (
     "driver",
     "store",
     "running",
+    "until_known",
     "stop_report",
     "principal",
     "checks",

@@ -132,6 +132,20 @@ def test_csv_of_compare_is_the_ensemble(tmp_path):
     np.testing.assert_array_equal(found, mcgw.open_ensemble(tmp_path / "quick.h5").mean("load"))
 
 
+def test_csv_of_show_and_regrade(tmp_path, make_scene):
+    base = run(make_scene(keep="moments"), tmp_path / "base.h5")
+    assert main(["show", str(tmp_path / "base.h5"), "--csv", str(tmp_path / "means.csv")]) == 0
+    rows = list(csv.DictReader((tmp_path / "means.csv").read_text().splitlines()))
+    found = [float(row["std"]) for row in rows if row["quantity"] == "area"]
+    np.testing.assert_array_equal(found, base.std("area"))
+    words = ["regrade", str(tmp_path / "base.h5"), "--gamma", "1", "--csv", str(tmp_path / "ratios.csv")]
+    assert main(words) == 0
+    rows = list(csv.DictReader((tmp_path / "ratios.csv").read_text().splitlines()))
+    new = mcgw.open_ensemble(tmp_path / "base.regraded.h5")
+    found = [float(row["ratio"]) for row in rows if row["quantity"] == "load"]
+    np.testing.assert_allclose(found, new.mean("load") / base.mean("load"), rtol=1e-14)
+
+
 @pytest.mark.parametrize("command", COMMANDS)
 def test_help_says_what_and_where(command, capsys):
     with pytest.raises(SystemExit):

@@ -16,13 +16,17 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     )
     law.add_argument("--grading", type=Path, metavar="TABLE.csv", help="columns s or z, ratio or E_star")
     parser.add_argument("-o", "--output", type=Path, metavar="FILE.h5", help="default: FILE.regraded.h5")
+    parser.add_argument(
+        "--csv", type=Path, metavar="CSV", help="also write the ratios at all separations there"
+    )
 
 
 def execute(args: argparse.Namespace) -> int:
     """Write the new ensemble and print its ratios to the old one."""
     from analytic import Exponential, Grading, Table
+    from mcgw.csv_table import write_csv
     from mcgw.regrade import regrade
-    from mcgw.report_text import ratio_table
+    from mcgw.report_text import RATIO_HEADER, ratio_rows, ratio_table
     from mcgw.store import open_ensemble, save
 
     old = open_ensemble(args.file)
@@ -36,4 +40,7 @@ def execute(args: argparse.Namespace) -> int:
     new = save(regrade(old, grading), path)
     print(ratio_table(new, old))
     print(f"{path}: {new.n_surfaces} surfaces, the same as in {args.file}")
+    if args.csv:
+        write_csv(args.csv, RATIO_HEADER, ratio_rows(new, old))
+        print(f"{args.csv}: the table")
     return 0

@@ -68,20 +68,22 @@ def execute(args: argparse.Namespace) -> int:
 
 def _until_known(scene: "Scene", path: Path, args: argparse.Namespace) -> int:
     """Draw until the stop rule is content, and say how well every mean is known."""
-    from tqdm import tqdm
-
     from mcgw.forecast import forecast, seconds_per_surface
     from mcgw.samplers import sampler_of
-    from mcgw.simulation import simulate
     from mcgw.stop_report import after, before
-    from mcgw.store import save
+    from mcgw.until_known import run_until_known
 
-    if args.shard or args.scheduler or args.processes is not None or args.workers is not None:
-        raise ValueError("ensemble.rel_err: the stop rule draws with threads; leave the other engine out")
+    if args.shard:
+        raise ValueError("--shard: the jobs of an array cannot share a stop rule; give n_surfaces")
     expected = forecast(scene)
     print(f"forecast: {before(expected, seconds_per_surface(scene, sampler_of(scene)))}")
-    with tqdm(total=expected.surfaces, unit=" surfaces", disable=None, leave=False) as bar:
-        ensemble = save(simulate(scene, threads=args.threads, progress=bar.update), path)
+    bar, engine = _Bar(expected.surfaces), _engine(args)
+    try:
+        ensemble = run_until_known(scene, path, threads=args.threads, engine=engine, progress=bar.show)
+    finally:
+        bar.close()
+        if engine:
+            engine.close()
     print(f"{path}: {ensemble.n_surfaces} surfaces of {scene.n_asperities:g} asperities, seed {scene.seed}")
     for line in after(ensemble, scene.rel_err or 1.0):
         print(line)

@@ -16,6 +16,9 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     what.add_argument(
         "--plan", action="store_true", help="FILE is a scene (TOML): print what would be drawn, and what not"
     )
+    parser.add_argument(
+        "--csv", type=Path, metavar="CSV", help="also write the table of all separations there"
+    )
     what.add_argument("--verify", action="store_true", help="check every bit by seal and digest")
 
 
@@ -40,7 +43,12 @@ def execute(args: argparse.Namespace) -> int:
     elif args.digest:
         print(attributes["digest"])
     else:
-        from mcgw.report_text import summary
+        from mcgw.csv_table import write_csv
+        from mcgw.report_text import SUMMARY_HEADER, summary, summary_rows
 
-        print(summary(open_ensemble(args.file), attributes))
+        ensemble = open_ensemble(args.file)
+        print(summary(ensemble, attributes))
+        if args.csv:
+            write_csv(args.csv, SUMMARY_HEADER, summary_rows(ensemble))
+            print(f"{args.csv}: the table")
     return 0
