@@ -8,13 +8,14 @@ import math
 
 import numpy as np
 import pytest
+from numba import njit
 from oracles import sums_of_heights
 from scipy.special import log_ndtr
 
 import analytic
 import mcgw
 from mcgw.counts import counts_of
-from mcgw.moments import Layout, cell_moments
+from mcgw.moments import Layout, _add_compensated, cell_moments
 from mcgw.samplers import sampler_of
 from mcgw.scene import Scene, SceneError
 
@@ -179,6 +180,26 @@ def test_sums_of_many_terms(make_scene):
     assert moments[0] == n
     assert abs(moments[1]) < 5 * np.sqrt(1 / (3 * n))  # the jitter of n strata, each 2/n wide
     assert abs(moments[2] + n / 3) < 5 * np.sqrt(16 / (9 * n))
+
+
+def test_pieces_of_1e12_terms():
+    """A sum of 1e12 terms is one of 4e6 pieces: compensated, it is the exactly rounded one of the pieces."""
+    pieces = np.random.default_rng(1).uniform(0.0, 2.6e5, (4_000_000, 1))
+    total, carry = np.zeros(1), np.zeros(1)
+    for piece in pieces[:1000]:
+        _add_compensated(total, carry, piece, 1)
+    assert (total + carry)[0] == math.fsum(pieces[:1000, 0])
+    assert _all_pieces(pieces) == math.fsum(pieces[:, 0])
+    naive = np.add.accumulate(pieces[:, 0])[-1]  # the companion: plain addition loses digits
+    assert naive != math.fsum(pieces[:, 0])
+
+
+@njit
+def _all_pieces(pieces):
+    total, carry = np.zeros(1), np.zeros(1)
+    for k in range(len(pieces)):
+        _add_compensated(total, carry, pieces[k], 1)
+    return total[0] + carry[0]
 
 
 def test_count_law_far_in_the_tail(make_scene):
