@@ -88,6 +88,20 @@ class HeightRule:
         heights, probabilities = (np.concatenate(part) for part in zip(*pieces, strict=True))
         return cls(heights, probabilities, float(fn(0, -h[0])))
 
+    def fluctuations(self, f: Array, count: Count) -> tuple[Array, Array]:
+        """What makes the columns of `f` fluctuate, at the heights and below them all.
+
+        Deviations from the mean for a fixed number of asperities, the terms themselves for a Poisson one.
+        """
+        if count == "fixed":
+            _, deviation, at_zero = self.deviations(f)
+            return deviation, at_zero
+        return f, np.zeros(f.shape[1])
+
+    def products(self, f: Array, at_zero: Array) -> Array:
+        """Mean products of all columns of `f`, which is `at_zero` below all heights."""
+        return np.asarray((f * self.probabilities[:, None]).T @ f + self.below * np.outer(at_zero, at_zero))
+
     def deviations(self, f: Array) -> tuple[Array, Array, Array]:
         """Mean of each column of `f`; its deviations at the heights; and that of 0, below all heights.
 
@@ -235,10 +249,6 @@ def covariance(
     h = np.asarray(separations, dtype=np.float64)
     rule = HeightRule.over(h, grading, law)
     f = rule.terms(quantities, h, grading)
-    if count == "fixed":
-        _, f, at_zero = rule.deviations(f)
-    else:
-        at_zero = np.zeros(f.shape[1])
-    matrix = (f * rule.probabilities[:, None]).T @ f + rule.below * np.outer(at_zero, at_zero)
+    matrix = rule.products(*rule.fluctuations(f, count))
     scale = np.repeat([QUANTITIES[name].scale(surface) for name in quantities], h.size)
     return np.asarray(n * matrix * np.outer(scale, scale)).reshape(2 * (len(quantities), h.size))

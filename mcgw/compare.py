@@ -144,10 +144,7 @@ def verdict(ensemble: Ensemble) -> Verdict:
     h = _chosen(np.unique(scene.separations))
     rule = analytic.HeightRule.over(h, scene.modulus, scene.heights)
     terms = rule.terms(scene.quantities, h, scene.modulus)
-    if scene.count == "fixed":
-        _, deviation, below = rule.deviations(terms)
-    else:
-        deviation, below = terms, np.zeros(terms.shape[1])
+    deviation, below = rule.fluctuations(terms, scene.count)
     variance = rule.probabilities @ deviation**2 + rule.below * below**2
     index = [scene.separations.index(x) for x in h]
     difference = np.concatenate([_difference(ensemble, name)[index] for name in scene.quantities])
@@ -160,10 +157,7 @@ def verdict(ensemble: Ensemble) -> Verdict:
 
     usable = _gaussian(rule, deviation, below, asperities)
     deviation, below, z = deviation[:, usable], below[usable], z[usable]
-    correlation = (deviation * rule.probabilities[:, None]).T @ deviation + rule.below * np.outer(
-        below, below
-    )
-    size, axes = np.linalg.eigh(correlation)
+    size, axes = np.linalg.eigh(rule.products(deviation, below))
     axes = axes[:, size > _INDEPENDENT] / np.sqrt(size[size > _INDEPENDENT])
     axes = axes[:, _gaussian(rule, deviation @ axes, below @ axes, asperities)]
     chi_square = float(np.sum((z @ axes) ** 2))

@@ -53,18 +53,14 @@ class Principal:
         rule = analytic.HeightRule.over(h, scene.modulus, scene.heights)
         terms = rule.terms(scene.quantities, h, scene.modulus)
         mean = rule.probabilities @ terms
-        if scene.count == "fixed":
-            mean, deviation, below = rule.deviations(terms)
-        else:
-            deviation, below = terms, np.zeros(terms.shape[1])
+        deviation, below = rule.fluctuations(terms, scene.count)
         variance = rule.probabilities @ deviation**2 + rule.below * below**2
         share = scene.heights.above(h)
         touching = n * np.minimum(share, 1 - share + (scene.count == "poisson"))
         chosen = np.flatnonzero(np.tile(touching > _TOUCHING, len(scene.quantities)) & (variance > 0))
         unit = np.sqrt(variance[chosen])
         deviation, below = deviation[:, chosen] / unit, below[chosen] / unit
-        p = rule.probabilities[:, None]
-        size, axes = np.linalg.eigh((deviation * p).T @ deviation + rule.below * np.outer(below, below))
+        size, axes = np.linalg.eigh(rule.products(deviation, below))
         axes = axes[:, size > _INDEPENDENT] / np.sqrt(size[size > _INDEPENDENT])
         along, low = deviation @ axes, below @ axes
         third = rule.probabilities @ along**3 + rule.below * low**3
