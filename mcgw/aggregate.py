@@ -32,7 +32,12 @@ CROWDED = 256  # asperities in a cell, from which its moments count as Gaussian
 
 @cache
 def _law_of_moments(plain: int, rooted: int) -> tuple[Array, Array]:
-    """Mean of b = (T_0 .., sqrt(u) T_0 ..) for a uniform u, and a root of its covariance."""
+    """Mean of b = (T_0 .., sqrt(u) T_0 ..) for a uniform u, and a root of its covariance.
+
+    The root is the triangle of a QR decomposition, never of the covariance itself, whose least
+    eigenvalues are lost to rounding. The rooted ones are nearly dependent: with the highest first
+    no later one has a larger part along a direction than the one that gave it.
+    """
     v, w = leggauss(48)
     v, w = (1 + v) / 2, w / 2 * (1 + v)  # u = v^2: the integrands are polynomials in v
     x = 2 * v * v - 1
@@ -44,10 +49,13 @@ def _law_of_moments(plain: int, rooted: int) -> tuple[Array, Array]:
         axis=1,
     )
     mean = w @ b
-    size, axes = np.linalg.eigh((b - mean).T @ ((b - mean) * w[:, None]))
-    root = axes * np.sqrt(np.maximum(size, 0.0))
     if plain:
-        mean[0], root[0] = 1.0, 0.0  # T_0 counts the asperities
+        mean[0] = 1.0  # T_0 counts the asperities
+    varying = [*range(min(plain, 1), plain), *range(plain + rooted - 1, plain - 1, -1)]
+    order = np.array(varying, dtype=np.int64)
+    triangle = np.linalg.qr((b - mean)[:, order] * np.sqrt(w)[:, None], mode="r")
+    root = np.zeros((plain + rooted, plain + rooted))
+    root[np.ix_(order, order)] = (triangle * np.sign(np.diag(triangle))[:, None]).T
     return mean, root
 
 

@@ -21,6 +21,7 @@ __all__ = ["Counts", "counts_of", "generator", "strata_of"]
 Ints = NDArray[np.int64]
 
 GROUP = 64  # surfaces that share a NumPy generator, which takes longer to make than to use
+_BITS = 2.0**46  # of a probability: the last ones differ between kinds of CPU
 _RARE = 1e-8  # below, binomial and Poisson differ less than 1 - p is rounded
 
 
@@ -110,7 +111,7 @@ def _group(scene: Scene, probability: NDArray[np.float64], group: int) -> Ints:
     while len(sums[-1]) > 1:
         p = np.concatenate([sums[-1], np.zeros(len(sums[-1]) % 2)])
         sums.append(p[::2] + p[1::2])
-    touching = min(float(sums[-1][0]), 1.0)
+    touching = float(_rounded(np.minimum(sums[-1][0], 1.0)))
     numbers = np.full((1, GROUP), scene.n_asperities)
     if scene.count == "poisson":
         numbers = rng.poisson(scene.n_asperities * touching, (1, GROUP))
@@ -126,15 +127,20 @@ def _halve(
     rng: np.random.Generator, numbers: Ints, left: NDArray[np.float64], right: NDArray[np.float64]
 ) -> Ints:
     """Share numbers among left and right children; the rarer side is drawn."""
-    total = left + right
-    share = np.minimum(left, right) / np.where(total > 0, total, 1.0)
-    rarer = _binomial(rng, numbers, share[:, None])
+    total = np.where(left + right > 0, left + right, 1.0)
+    rarer = _binomial(rng, numbers, _rounded(np.minimum(left, right) / total)[:, None])
     other = numbers - rarer
-    left_is_rarer = (left <= right)[:, None]
+    left_is_rarer = (_rounded(left / total) <= 0.5)[:, None]
     both = np.empty((2 * len(numbers), numbers.shape[1]), dtype=np.int64)
     both[::2] = np.where(left_is_rarer, rarer, other)
     both[1::2] = np.where(left_is_rarer, other, rarer)
     return both
+
+
+def _rounded(p: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Round to 46 bits: a half must be a half, where rarer and other, or NumPy's methods, change places."""
+    mantissa, exponent = np.frexp(p)
+    return np.asarray(np.ldexp(np.rint(mantissa * _BITS) / _BITS, exponent))
 
 
 def _binomial(rng: np.random.Generator, n: Ints, p: NDArray[np.float64]) -> Ints:

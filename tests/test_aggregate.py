@@ -4,11 +4,13 @@ import dataclasses
 
 import numpy as np
 import pytest
+from mpmath import mp
 from scipy.stats import kurtosis, skew
 
 import analytic
 import mcgw
 from mcgw import samplers
+from mcgw.aggregate import _law_of_moments
 from mcgw.ensemble import Arrays, Ensemble
 
 GATE = 5.0
@@ -95,3 +97,32 @@ def test_counts_are_exact(make_scene):
     p = analytic.fn(0, ensemble.separations)
     z = (ensemble.contacts - 1e15 * p) / np.sqrt(1e15 * p * (1 - p))
     assert np.abs(z).max() < GATE
+
+
+def covariance(plain, rooted):
+    """Of T_j(2u - 1) and sqrt(u) T_j(2u - 1), exactly: with u = v^2 they are polynomials in v."""
+    even = [mp.taylor(lambda v, j=j: mp.chebyt(2 * j, v), 0, 2 * j) for j in range(max(plain, rooted))]
+    terms = [*even[:plain], *([0, *c] for c in even[:rooted])]
+
+    def mean(f, g=(1,)):
+        return mp.fsum(2 * a * b / mp.mpf(i + k + 2) for i, a in enumerate(f) for k, b in enumerate(g))
+
+    return mp.matrix([[mean(f, g) - mean(f) * mean(g) for f in terms] for g in terms])
+
+
+@pytest.mark.parametrize(("plain", "rooted"), [(5, 0), (10, 5), (18, 8), (0, 4)])
+def test_root_of_the_covariance_keeps_all_digits(plain, rooted):
+    """Cholesky's triangle in 80 digits: where it is lost to rounding, one kind of CPU draws other moments."""
+    order = [*range(min(plain, 1), plain), *reversed(range(plain, plain + rooted))]
+    with mp.workdps(80):
+        all_of_it = covariance(plain, rooted)
+        exact = mp.cholesky(mp.matrix([[all_of_it[i, j] for j in order] for i in order]))
+    _, root = _law_of_moments(plain, rooted)
+    np.testing.assert_allclose(root[np.ix_(order, order)], np.array(exact.tolist(), float), atol=1e-13)
+
+
+def test_a_root_by_eigenvalues_would_lose_half_the_digits():
+    """The companion: what rounds the covariance, moves its root by 1e-9."""
+    _, root = _law_of_moments(10, 5)
+    size = np.linalg.eigvalsh(root @ root.T)
+    assert 1e-11 < np.abs(np.sqrt(np.maximum(size, 0)) - np.linalg.svd(root)[1][::-1]).max() < 1e-7
