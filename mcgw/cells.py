@@ -2,9 +2,9 @@
 
 Every separation and every break of the grading is an edge. Inside a cell the heights are independent
 and equally distributed: s = a + t(u), with u uniform on (0, 1) and t the cell's own inverse
-distribution, smooth in u and known to full relative accuracy. A cell that starts right above a
-separation may be as wide as the law allows; any other is no wider than its distance to the nearest
-separation below, where the laws of contact have a root (the mesh of a fast multipole method).
+distribution, smooth in u and known to full relative accuracy. No cell is wider than its distance to the
+next separation below, where the laws of contact have a root (the mesh of a fast multipole method); how
+much narrower it is, is a matter of price (`mcgw.spacing`).
 
 Every break of the law of heights is an edge too, and cells shrink towards an end of its support where
 its density is a broken power. Where less than one asperity in ten surfaces is expected there are no
@@ -13,6 +13,7 @@ cells: those few are the extras.
 
 import math
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.polynomial import chebyshev
@@ -21,13 +22,14 @@ from numpy.typing import NDArray
 
 from analytic import Grading, HeightLaw, resolved_breaks
 from mcgw.scene import Scene
+from mcgw.spacing import cuts
 
 __all__ = ["Mesh", "mesh_of", "no_cells"]
 
 Array = NDArray[np.float64]
 
+_ROUNDING = 1e-9  # of the width of a cell
 _CLOSEST = 2.0**-40  # of a cell to an end of the support that is a broken power
-_CROWDED, _MOST_PARTS = 1300, 8  # so many asperities pay for one more cell with fewer moments
 
 _ORDER = 20
 NODES = chebyshev.chebpts1(_ORDER)
@@ -89,10 +91,11 @@ def mesh_of(scene: Scene, *, split: bool = True, rare: float = 0.1) -> Mesh:
     low, high = _range(law, rare / scene.n_asperities, scene.lowest)
     if not low < high:
         return no_cells(scene)
-    breaks = (*_breaks(scene.modulus, low, high), *law.breaks)
-    edges = _graded_edges(law, low, high, np.unique(scene.separations), breaks)
-    if split:
-        edges = _split_crowded(law, scene.n_asperities, edges)
+    separations = np.unique(scene.separations)
+    marks = np.unique([low, *separations, *_breaks(scene.modulus, low, high), *law.breaks, high])
+    marks = marks[(low <= marks) & (marks <= high)]
+    spaced = _spaced(law, scene.n_asperities if split else 0, separations, marks)
+    edges = _refined(law, separations, spaced)
     mass = _mass(law, edges[:-1], np.diff(edges)[:, None])[:, 0]
     probability = law.density(edges[:-1]) * mass
     stretch = _stretch(law, edges[:-1], np.diff(edges), mass)
@@ -150,28 +153,29 @@ def _breaks(grading: Grading, low: float, high: float) -> tuple[float, ...]:
     return tuple(np.unique([*breaks, *(marks[:-1] + marks[1:]) / 2]).tolist())
 
 
-def _graded_edges(
-    law: HeightLaw, low: float, high: float, separations: Array, breaks: tuple[float, ...]
-) -> Array:
-    """Edges from mark to mark, each cell as wide as the law and the marks below it let it be."""
-    marks = np.unique([*separations, *breaks, high])
-    marks = marks[(marks > low) & (marks <= high)]
-    edges = [low]
-    for mark in marks:
+def _spaced(law: HeightLaw, n: int, separations: Array, marks: Array) -> Array:
+    """Marks, and cells above each separation such that drawing costs the least."""
+    before = np.diff(separations, prepend=-np.inf)
+    edges = [marks]
+    for low, high in pairwise(marks):
+        k = np.searchsorted(separations, low)
+        if k < len(separations) and separations[k] == low:
+            edges.append(cuts(law, n, low, high, before[k]))
+    return np.unique(np.concatenate(edges))
+
+
+def _refined(law: HeightLaw, separations: Array, marks: Array) -> Array:
+    """Edges from mark to mark, each cell as wide as the law and the separation below it let it be."""
+    edges = [marks[0]]
+    for mark in marks[1:]:
         while (a := edges[-1]) < mark:
             below = separations[np.searchsorted(separations, a) - 1] if separations[0] < a else -np.inf
-            widest = min(a - below, _widest(law, a))
-            room = mark - a
-            edges.append(mark if room <= widest else a + (widest if room >= 2 * widest else room / 2))
+            widest, room = min(a - below, _widest(law, a)), mark - a
+            if room <= widest * (1 + _ROUNDING):
+                edges.append(mark)
+            else:
+                edges.append(a + (widest if room >= 2 * widest else room / 2))
     return np.array(edges)
-
-
-def _split_crowded(law: HeightLaw, n: int, edges: Array) -> Array:
-    """Cut cells of many asperities in equal parts: more cells need fewer moments each."""
-    expected = n * law.density(edges[:-1]) * np.diff(edges)
-    parts = np.clip(expected / _CROWDED, 1, _MOST_PARTS).astype(int)
-    inner = [a + w * np.arange(k) / k for a, w, k in zip(edges, np.diff(edges), parts, strict=False)]
-    return np.unique(np.concatenate([*inner, edges[-1:]]))
 
 
 def _mass(law: HeightLaw, a: Array, t: Array) -> Array:

@@ -62,13 +62,14 @@ def counts_of(scene: Scene, mesh: Mesh, first: int, n: int) -> Counts:
     Counts
         A pure function of the seed and the number of the surface.
     """
-    probability = np.concatenate([[mesh.low_extras], mesh.probability, [mesh.high_extras]])
+    halvings = _halvings(np.concatenate([[mesh.low_extras], mesh.probability, [mesh.high_extras]]))
     groups = range(first // GROUP, -(-(first + n) // GROUP))
     with ThreadPoolExecutor(get_num_threads()) as pool:  # NumPy draws without Python's lock
-        drawn = np.concatenate(list(pool.map(partial(_group, scene, probability), groups)), axis=1)
+        drawn = np.concatenate(list(pool.map(partial(_group, scene, halvings), groups)), axis=1)
     skip = first - groups[0] * GROUP
     chosen = drawn[:, skip : skip + n]
-    return Counts(np.ascontiguousarray(chosen[1:-1]), chosen[0], chosen[-1], np.ones(len(probability)))
+    weights = np.ones(mesh.size + 2)
+    return Counts(np.ascontiguousarray(chosen[1:-1]), chosen[0], chosen[-1], weights)
 
 
 def strata_of(scene: Scene, mesh: Mesh, n: int) -> Counts:
@@ -104,37 +105,57 @@ def generator(seed: int, purpose: int, number: int) -> np.random.Generator:
     return np.random.Generator(np.random.Philox(key=seed, counter=[0, 0, number, purpose]))
 
 
-def _group(scene: Scene, probability: NDArray[np.float64], group: int) -> Ints:
+@dataclass(frozen=True)
+class _Halvings:
+    """How numbers are shared out, level by level from the root.
+
+    Parameters
+    ----------
+    touching : float
+        Probability of all.
+    shares : tuple of ndarray
+        Of the rarer child in its parent, for each level, shape (parents, 1).
+    turned : tuple of ndarray of bool
+        Where the right child is the rarer one, alike.
+    sizes : tuple of int
+        Number of children on each level: one less than twice the parents' where the last has one only.
+    """
+
+    touching: float
+    shares: tuple[NDArray[np.float64], ...]
+    turned: tuple[NDArray[np.bool_], ...]
+    sizes: tuple[int, ...]
+
+
+def _halvings(probability: NDArray[np.float64]) -> _Halvings:
+    shares, turned, sizes = [], [], []
+    while len(probability) > 1:
+        sizes.append(len(probability))
+        pairs = np.concatenate([probability, np.zeros(len(probability) % 2)])
+        left, right = pairs[::2, None], pairs[1::2, None]
+        probability = (left + right)[:, 0]
+        total = np.where(left + right > 0, left + right, 1.0)
+        shares.append(_rounded(np.minimum(left, right) / total))
+        turned.append(_rounded(left / total) > 0.5)
+    touching = float(_rounded(np.minimum(probability[0], 1.0)))
+    return _Halvings(touching, tuple(shares[::-1]), tuple(turned[::-1]), tuple(sizes[::-1]))
+
+
+def _group(scene: Scene, halvings: _Halvings, group: int) -> Ints:
     """Numbers of a group of surfaces: shape (categories, GROUP)."""
     rng = generator(scene.seed, 0, group)
-    sums = [probability]
-    while len(sums[-1]) > 1:
-        p = np.concatenate([sums[-1], np.zeros(len(sums[-1]) % 2)])
-        sums.append(p[::2] + p[1::2])
-    touching = float(_rounded(np.minimum(sums[-1][0], 1.0)))
-    numbers = np.full((1, GROUP), scene.n_asperities)
     if scene.count == "poisson":
-        numbers = rng.poisson(scene.n_asperities * touching, (1, GROUP))
+        numbers = rng.poisson(scene.n_asperities * halvings.touching, (1, GROUP))
     else:
-        numbers = _binomial(rng, numbers, np.array([[touching]]))
-    for p in reversed(sums[:-1]):
-        pairs = np.concatenate([p, np.zeros(len(p) % 2)])
-        numbers = _halve(rng, numbers, pairs[::2], pairs[1::2])[: len(p)]
+        numbers = _binomial(rng, np.full((1, GROUP), scene.n_asperities), np.array([[halvings.touching]]))
+    for share, turned, size in zip(halvings.shares, halvings.turned, halvings.sizes, strict=True):
+        rarer = _binomial(rng, numbers, share)
+        other = numbers - rarer
+        children = np.empty((2 * len(numbers), GROUP), dtype=np.int64)
+        children[::2] = np.where(turned, other, rarer)
+        children[1::2] = np.where(turned, rarer, other)
+        numbers = children[:size]
     return numbers
-
-
-def _halve(
-    rng: np.random.Generator, numbers: Ints, left: NDArray[np.float64], right: NDArray[np.float64]
-) -> Ints:
-    """Share numbers among left and right children; the rarer side is drawn."""
-    total = np.where(left + right > 0, left + right, 1.0)
-    rarer = _binomial(rng, numbers, _rounded(np.minimum(left, right) / total)[:, None])
-    other = numbers - rarer
-    left_is_rarer = (_rounded(left / total) <= 0.5)[:, None]
-    both = np.empty((2 * len(numbers), numbers.shape[1]), dtype=np.int64)
-    both[::2] = np.where(left_is_rarer, rarer, other)
-    both[1::2] = np.where(left_is_rarer, other, rarer)
-    return both
 
 
 def _rounded(p: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -145,8 +166,8 @@ def _rounded(p: NDArray[np.float64]) -> NDArray[np.float64]:
 
 def _binomial(rng: np.random.Generator, n: Ints, p: NDArray[np.float64]) -> Ints:
     """Binomial numbers; Poisson ones where p is so small that NumPy's 1 - p would lose it."""
-    p = np.broadcast_to(p, n.shape)
-    usual = rng.binomial(n, np.where(p < _RARE, 0.0, p))
-    if not np.any((p < _RARE) & (p > 0)):
+    rare = p < _RARE
+    usual = rng.binomial(n, np.where(rare, 0.0, p))
+    if not np.any(rare & (p > 0)):
         return usual
-    return np.where(p < _RARE, np.minimum(rng.poisson(n * np.where(p < _RARE, p, 0.0)), n), usual)
+    return np.where(rare, np.minimum(rng.poisson(n * np.where(rare, p, 0.0)), n), usual)

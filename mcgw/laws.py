@@ -5,9 +5,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from analytic import QUANTITIES, Grading
+from analytic import QUANTITIES, Grading, resolved_breaks
 from mcgw.cells import NODES, TO_COEFFICIENTS
 from mcgw.scene import Scene
+from mcgw.spacing import SURE
 
 __all__ = ["ACCURACY", "Laws"]
 
@@ -15,7 +16,8 @@ Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 ACCURACY = 1e-13  # relative to the largest value of a law on the cell
-_SURE = 400  # so many expected contacts are never fewer than half
+_SCATTER = 8  # asperities more than expected
+_NODES = 32  # that add to one sum, with errors of their own
 _U = (1 + NODES) / 2
 
 
@@ -35,10 +37,13 @@ class Laws:
     h, exponent, modulus, scale : ndarray
         Of each law.
     total : ndarray
-        What an asperity contributes in the mean, where so many touch that the sum of a surface is sure
-        to be of the size of its mean; else 0.
+        Mean sum over a surface, where so many touch that it is sure to be of that size; else 0.
+    n_asperities : int
+        Of a surface.
     grading : Grading
         The e(s) of all.
+    breaks : ndarray
+        Where its pieces meet, each of which is known to be a smooth curve.
     accuracy : float, optional
         Relative to the largest value of a law on a cell, or to the sum of a surface.
     """
@@ -48,14 +53,22 @@ class Laws:
     modulus: NDArray[np.bool_]
     scale: Array
     total: Array
+    n_asperities: int
     grading: Grading
+    breaks: Array
     accuracy: float = ACCURACY
 
     @classmethod
     def of(
-        cls, scene: Scene, quantities: tuple[str, ...], *, lasting: bool, accuracy: float = ACCURACY
+        cls,
+        scene: Scene,
+        quantities: tuple[str, ...],
+        between: tuple[float, float],
+        *,
+        lasting: bool,
+        accuracy: float = ACCURACY,
     ) -> "Laws":
-        """The laws of some quantities at all separations, quantity by quantity.
+        """The laws of some quantities at all separations, quantity by quantity, for heights in between.
 
         If they are to be lasting, they are resolved as if every surface could have a single contact.
         """
@@ -64,16 +77,18 @@ class Laws:
         laws = cls(
             h=np.tile(scene.separations, len(chosen)),
             exponent=np.repeat([q.exponent for q in chosen], repeat),
-            modulus=np.repeat([bool(q.modulus) for q in chosen], repeat),
+            modulus=np.repeat(np.array([q.modulus for q in chosen], dtype=bool), repeat),
             scale=np.repeat([q.scale(scene.surface) for q in chosen], repeat),
             total=np.zeros(len(chosen) * repeat),
+            n_asperities=scene.n_asperities,
             grading=scene.modulus,
+            breaks=np.array(resolved_breaks(scene.modulus, *between)),
             accuracy=accuracy,
         )
         return laws if lasting else replace(laws, total=laws._totals(scene))
 
     def _totals(self, scene: Scene) -> Array:
-        """Mean contribution of an asperity from 16 quantiles: the order of magnitude is all it takes."""
+        """Mean sums from 16 quantiles: the order of magnitude is all it takes."""
         if not self.h.size:
             return np.empty(0)
         share = (np.arange(16) + 0.5) / 16
@@ -82,28 +97,36 @@ class Laws:
         approach = np.array([scene.heights.from_above(share, x) - x for x in h])[law]
         graded = np.where(self.modulus[:, None], self.grading(approach + self.h[:, None]), 1.0)
         mean = np.mean(graded * approach ** self.exponent[:, None], axis=1)
-        sure = scene.n_asperities * touching[law] > _SURE
-        return np.asarray(np.where(sure, np.abs(self.scale * mean) * touching[law], 0.0))
+        contacts = scene.n_asperities * touching[law]
+        with np.errstate(over="ignore"):
+            total = np.minimum(np.abs(self.scale * mean) * contacts, np.finfo(float).max)
+        return np.asarray(np.where(contacts > SURE, total, 0.0))
 
     def smooth_from(self, which: Ints, a: float) -> NDArray[np.bool_]:
         """Which laws are smooth functions of the uniform on a cell that starts at `a`."""
         h = self.h[which]
         return np.asarray((h < a) | ((h == a) & (self.exponent[which] % 1 == 0)))
 
+    def broken_between(self, which: Ints, a: float, b: float) -> NDArray[np.bool_]:
+        """Which laws may have a feature between `a` and `b` that 20 heights do not show."""
+        return self.modulus[which] & np.any((a < self.breaks) & (self.breaks < b))
+
     def nearest(self, a: float) -> Ints:
-        """For each exponent the smooth law with the highest separation: the hardest to resolve."""
+        """Of each kind the smooth law with the highest separation: the hardest to resolve."""
         smooth = np.flatnonzero(self.smooth_from(np.arange(len(self.h)), a))
-        order = smooth[np.lexsort((self.h[smooth], self.exponent[smooth]))]
-        last = np.diff(self.exponent[order], append=np.nan) != 0
+        kind = 4 * self.exponent + self.modulus  # exponents are multiples of a half
+        order = smooth[np.lexsort((self.h[smooth], kind[smooth]))]
+        last = np.diff(kind[order], append=np.nan) != 0
         return np.asarray(order[last])
 
     def plain(self, which: Ints, a: float, t: Array, probability: float) -> tuple[Array, Ints]:
         """Coefficients of laws that are smooth at the heights ``a + t``, and how many count.
 
-        Shape (order, laws) and (laws,).
+        Shape (order, laws) and (laws,). What no sum over many nodes can show is zero.
         """
         c = self._coefficients(which, a, t, (a - self.h[which]) + t[:, None])
         needed = self._needed(c, which, a, t, probability)
+        c[np.arange(len(c))[:, None] >= self._needed(c, which, a, t, probability, _NODES)] = 0.0
         edge = self.h[which] == a
         if edge.any():
             c[:, edge], needed[edge] = self.from_edge(which[edge], a, t, probability)
@@ -124,23 +147,23 @@ class Laws:
             needed = needed + more
         return c, needed
 
-    def _needed(self, c: Array, which: Ints, a: float, t: Array, probability: float) -> Ints:
+    def _needed(self, c: Array, which: Ints, a: float, t: Array, probability: float, finer: int = 1) -> Ints:
         """Number of leading coefficients that describe each law (a column) accurately.
 
         Relative to the largest value on the cell; or, where it is sure, to the whole sum of a surface.
         """
         tail = np.cumsum(np.abs(c)[::-1], axis=0)[::-1]
-        with np.errstate(over="ignore"):  # infinite: such a cell adds nothing that could be seen
-            enough = np.maximum(tail[0], self.total[which] / max(probability, np.finfo(float).tiny))
-        return np.asarray((tail > self._accuracy(a, t) * enough).sum(axis=0), dtype=np.int64)
+        crowd = self.n_asperities * probability + _SCATTER
+        enough = np.maximum(tail[0], self.total[which] / crowd)
+        noise = np.where(self.modulus[which], self._noise(a, t), 0.0)
+        limit = np.maximum(self.accuracy / finer * enough, noise * tail[0])
+        return np.asarray((tail > limit).sum(axis=0), dtype=np.int64)
 
-    def _accuracy(self, a: float, t: Array) -> float:
-        """What can be had: a height is known to its last digit, and a steep grading turns that into noise."""
-        if not self.modulus.any():
-            return self.accuracy
+    def _noise(self, a: float, t: Array) -> float:
+        """What a steep grading makes of the last digit of a height, relative to the largest value."""
         e = self.grading(a + t)
         slope = np.ptp(e) / (t.max() * max(np.abs(e).max(), np.finfo(float).tiny))
-        return max(self.accuracy, 64 * float(np.spacing(abs(a) + t.max())) * float(slope))
+        return 64 * float(np.spacing(abs(a) + t.max())) * float(slope)
 
     def _coefficients(self, which: Ints, a: float, t: Array, base: Array) -> Array:
         graded = np.where(self.modulus[which], self.grading(a + t)[:, None], 1.0)

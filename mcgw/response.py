@@ -123,7 +123,8 @@ def response_of(
         If the grading is not resolved on a cell, or not by the moments there are.
     """
     tree = tree_over(mesh)
-    laws = Laws.of(scene, quantities, lasting=lasting or kept is not None, accuracy=accuracy)
+    between = (mesh.edges[0], mesh.edges[-1]) if mesh.size else (0.0, 0.0)
+    laws = Laws.of(scene, quantities, between, lasting=lasting or kept is not None, accuracy=accuracy)
     entries, plain, rooted = _walk(mesh, tree, laws, kept)
     layout = Layout(plain[: mesh.size], rooted)
     starts = layout.starts
@@ -165,6 +166,8 @@ def _walk(mesh: Mesh, tree: Tree, laws: Laws, kept: Layout | None) -> tuple[list
         which = which[laws.h[which] < b]
         t = tree.offsets(mesh, node)
         smooth = laws.smooth_from(which, a)
+        if tree.left[node] >= 0:
+            smooth &= ~laws.broken_between(which, a, b)
         p = tree.probability[node]
         c, needed = laws.plain(which[smooth], a, t, p)
         done = needed <= _MOST_MOMENTS
@@ -207,8 +210,8 @@ def _transfers(mesh: Mesh, tree: Tree, plain: Ints, node_row: Ints) -> list[tupl
     for node in range(mesh.size, tree.size):
         for child, right in ((tree.left[node], False), (tree.right[node], True)):
             matrix = transfer(tree.share(node), right, plain[node], plain[child])
-            row, column = np.indices(matrix.shape)
-            pairs.append((node_row[node] + row.ravel(), node_row[child] + column.ravel(), matrix.ravel()))
+            row, column = np.tril_indices(len(matrix), m=matrix.shape[1])  # no degree is raised
+            pairs.append((node_row[node] + row, node_row[child] + column, matrix[row, column]))
     return pairs
 
 
@@ -221,6 +224,6 @@ def _answers(
         size = rooted[entry.node] if entry.rooted else plain[entry.node]
         start = node_row[entry.node] + (plain[entry.node] if entry.rooted else 0)
         c = entry.coefficients[:size]
-        moment, law = np.indices(c.shape)
-        pairs.append((first + entry.laws[law].ravel(), start + moment.ravel(), c.ravel()))
+        moment, law = np.nonzero(c)
+        pairs.append((first + entry.laws[law], start + moment, c[moment, law]))
     return pairs

@@ -184,7 +184,8 @@ class Cells:
         layout = self.response.layout
         moments = cell_moments(self.scene.seed, first, single, layout, stratified=stratified)
         add_gaussian_moments(self.scene.seed, first, counts.cells - single, layout, moments)
-        moments *= np.repeat(counts.weights[1:-1], layout.sizes)[:, None]
+        if stratified:
+            moments *= np.repeat(counts.weights[1:-1], layout.sizes)[:, None]
         extras = self._extras(first, counts)
         numbers = counts.cells * counts.weights[1:-1, None]
         return Block(self.sums(first, moments, numbers, extras), moments.T, numbers.T, extras)
@@ -229,5 +230,6 @@ class Cells:
 
     def _contacts(self, counts: Array) -> Array:
         """Number of asperities in the cells above each separation."""
-        above = np.concatenate([np.cumsum(counts[::-1], axis=0)[::-1], np.zeros((1, counts.shape[1]))])
-        return above[np.searchsorted(self.mesh.edges[:-1], self.scene.separations)].T
+        above = np.zeros((counts.shape[1], self.mesh.size + 1))
+        np.cumsum(counts.T[:, ::-1], axis=1, out=above[:, 1:])
+        return above[:, self.mesh.size - np.searchsorted(self.mesh.edges[:-1], self.scene.separations)]

@@ -25,6 +25,7 @@ ORDER = (
     "heights_section",
     "scene_file",
     "hertz",
+    "spacing",
     "cells",
     "tree",
     "moments",

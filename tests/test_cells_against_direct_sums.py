@@ -19,7 +19,9 @@ GRADINGS = {
     "step": analytic.Custom(lambda s: np.where(s > 1.234, 2.0, 0.5), (1.234,)),
     "untold step": analytic.Custom(lambda s: np.where(s > 0.777, 2.0, 0.5)),
     "steep": analytic.Custom(lambda s: 1.5 + np.tanh(1e3 * (s - 0.5))),
+    "steeper": analytic.Custom(lambda s: 1.5 + np.tanh(1e6 * (s - 0.5))),
 }
+MANY = 20  # surfaces: what goes wrong in rare cells does not show in each
 RANDOM = np.random.default_rng(3)
 SEPARATIONS = {
     "equal": tuple(np.linspace(0, 4, 41)),
@@ -30,9 +32,24 @@ SEPARATIONS = {
 }
 
 
-def worst(scene, surface):
-    """Largest relative difference, over all quantities and separations that are reached."""
-    drawn = sampler_of(scene).block(surface, 1).sums
+def last_digit(scene, heights, quantity):
+    """Relative change of each sum if all heights are one digit off."""
+    n = analytic.QUANTITIES[quantity].exponent
+    changes = []
+    for h in scene.separations:
+        d = heights[heights > h] - h
+        changes.append(
+            n * np.spacing(heights.max()) * (d ** (n - 1)).sum() / (d**n).sum() if d.size and n else 0.0
+        )
+    return np.array(changes)
+
+
+def worst(scene, surface, sampler=None):
+    """Largest relative difference, over all quantities and separations that are reached.
+
+    Less what the last digit of a listed height is good for where a contact just touches.
+    """
+    drawn = (sampler or sampler_of(scene)).block(surface, 1).sums
     heights = mcgw.heights(scene, surface)
     errors = []
     for quantity in scene.quantities:
@@ -40,7 +57,8 @@ def worst(scene, surface):
         found = drawn[quantity][0]
         reached = exact > 0
         np.testing.assert_array_equal(found[~reached], 0.0)
-        errors.append(np.abs(found[reached] / exact[reached] - 1).max())
+        error = np.abs(found[reached] / exact[reached] - 1)
+        errors.append((error - last_digit(scene, heights, quantity)[reached]).max())
     return max(errors)
 
 
@@ -53,7 +71,9 @@ def test_gradings(make_scene, grading):
         sampler="cells",
         n_asperities=20_000,
     )
-    assert worst(scene, 4) < 1e-12  # the accuracy promised; the response is built for 1e-13
+    sampler = sampler_of(scene)
+    # the accuracy promised; the response is built for 1e-13
+    assert max(worst(scene, surface, sampler) for surface in range(MANY)) < 1e-12
 
 
 @pytest.mark.parametrize("separations", SEPARATIONS)
@@ -66,7 +86,10 @@ def test_separations(make_scene, separations, n_asperities):
         quantities=tuple(analytic.QUANTITIES),
         sampler="cells",
     )
-    assert worst(scene, 2) < 1e-12
+    sampler = sampler_of(scene)
+    assert (
+        max(worst(scene, surface, sampler) for surface in range(MANY if n_asperities < 1000 else 2)) < 1e-12
+    )
 
 
 def test_from_minus_40(make_scene):

@@ -77,12 +77,17 @@ def achieved(make_scene, rel_err, seeds, n_asperities):
 
 
 def test_promise_is_kept_and_forecast(make_scene):
-    """100 seeds at 1 %: at least 95 less 5 standard errors (2.2 each) keep it; the forecast holds to 20 %."""
+    """100 seeds at 1 %: at least 95 less 5 standard errors (2.2 each) keep it.
+
+    The forecast is of 574 surfaces. A spread estimated from these moves it by 6 % (again 5 of them), and
+    one looks after every 64, 11 %.
+    """
     errors, ratios = achieved(make_scene, 0.01, 100, 1000)
     assert (errors < 0.01).sum() >= 84
     assert (errors < 0.003).sum() < 84  # the companion: a promise three times as narrow is not kept
-    assert ratios.min() > 0.8
-    assert ratios.max() < 1.2
+    assert ratios.min() > 1 - 5 * 0.06
+    assert ratios.max() < 1 + 5 * 0.06 + 0.11
+    assert abs(ratios.mean() - 1) < 0.1
 
 
 @pytest.mark.slow

@@ -1,0 +1,99 @@
+"""Where to cut between two separations, so that drawing a surface costs the least.
+
+A cell takes time to begin, and each of its asperities the more, the more moments are needed. How many
+depends on how far the cell is from the root of the nearest law of contact: cells as wide as their
+distance to the next separation below need about fifteen, cells half as wide eleven. So cells grow
+geometrically from a separation upwards, and how fast, and to how many, is chosen for each gap.
+"""
+
+import math
+from functools import cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from analytic import HeightLaw
+
+__all__ = ["cuts"]
+
+Array = NDArray[np.float64]
+
+SURE = 400  # so many expected contacts are never fewer than half
+_DIGITS = 11.8  # that the moments must give, of a law or of the sum of a surface
+_GROWTHS = (2.0, 1.8, 1.6, 1.5, 1.45, 1.4, 1.3, 1.2)  # with 2 each cell is as wide as it may be
+_MORE = 8  # cells than the fewest possible
+
+# Prices, in asperities that give eleven moments.
+_CELL, _ROOT, _FIVE_MORE = 400.0, 0.3, 0.35
+
+
+def cuts(law: HeightLaw, n: int, low: float, high: float, before: float) -> Array:
+    """Cut the heights from a separation to the next one.
+
+    Parameters
+    ----------
+    law : HeightLaw
+        Of the heights.
+    n : int
+        Asperities of a surface; none asks for the fewest cells.
+    low, high : float
+        The two separations.
+    before : float
+        Distance from `low` to the separation below, infinite if there is none.
+
+    Returns
+    -------
+    ndarray
+        Edges from `low` to `high`. No cell is wider than its distance to the nearest separation below.
+    """
+    gap = high - low
+    upper = _ladders(1 + math.ceil(math.log2(max(gap / before, 1.0)) - 1e-9))
+    width = np.diff(upper, axis=1, prepend=0.0)
+    distance = np.where(upper > width, upper - width, before / gap)
+    allowed = (width <= distance * (1 + 1e-9)).all(axis=1)
+    price = np.where(allowed, _prices(law, n, low, gap, upper, distance), np.inf)
+    cheapest = np.argmax(price <= price.min() * (1 + 1e-9))  # the first one: rounding breaks no tie
+    return np.concatenate([[low], low + gap * upper[cheapest][width[cheapest] > 0][:-1], [high]])
+
+
+@cache
+def _ladders(fewest: int) -> Array:
+    """Upper edges of the cells of a gap of length 1: each row a choice, unused cells first and empty."""
+    most = fewest + _MORE
+    rungs = np.arange(1 - most, 1)
+    rows = []
+    for growth in _GROWTHS:
+        for parts in range(fewest, most + 1):
+            rows.append(np.where(rungs > -parts, growth**rungs, 0.0))
+    return np.array(rows)
+
+
+def _prices(law: HeightLaw, n: int, low: float, gap: float, upper: Array, distance: Array) -> Array:
+    """What the asperities of a surface cost for each choice of cells."""
+    width = np.diff(upper, axis=1, prepend=0.0)
+    start, used = low + gap * (upper - width), width > 0
+    above = law.above(start)
+    expected = n * np.where(used, above - law.above(low + gap * upper), 0.0)
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        bend = np.nan_to_num(np.abs(law.log_ratio(start, gap * width)), nan=np.inf)
+        # Of a surface's sum, rather than of the law, where so many touch that it is sure to be large.
+        reach = gap * (np.where(np.isfinite(distance), distance, 0.0) + width)
+        part = np.where(n * above > SURE, expected / (n * above) * np.sqrt(reach), 1.0)
+        digits = _DIGITS + np.log10(part)
+        plain = 1 + digits / _rate(np.minimum(1 + 2 * distance / width, 2 / bend))
+        rooted = 1 + digits / _rate(2 / bend)
+    each = 1 + _FIVE_MORE * _steps(plain - 11)
+    first = used & (upper == width)
+    each += np.where(first, _ROOT + _FIVE_MORE * _steps(rooted - 6), 0.0)
+    return np.asarray((np.where(used, _CELL + expected * each, 0.0)).sum(axis=1))
+
+
+def _rate(z: Array) -> Array:
+    """Digits that a Chebyshev series gains a term, with the nearest singularity at -z."""
+    z = np.clip(z, 1.05, 1e6)
+    return np.asarray(np.log10(z + np.sqrt(z * z - 1)))
+
+
+def _steps(moments: Array) -> Array:
+    """How many times five."""
+    return np.ceil(np.clip(moments, 0, 100) / 5)
