@@ -79,7 +79,7 @@ class Gaussian:
 
     def span(self, s: float) -> float:
         """Where the logarithm of the density changes by about one half."""
-        return 0.5 / (1 + abs(s))
+        return 0.6 / (1 + abs(s))
 
     def sample(self, rng: np.random.Generator, n: int) -> Array:
         """Standard normal numbers."""

@@ -9,11 +9,12 @@ away is the shape: with a threshold of 1, 1 % of the surfaces at light contact h
 one in 1e5, with 16 or more none.
 """
 
+from concurrent.futures import ThreadPoolExecutor
 from functools import cache
 from typing import Any
 
 import numpy as np
-from numba import njit, prange
+from numba import get_num_threads, njit, prange
 from numpy.polynomial import chebyshev
 from numpy.polynomial.legendre import leggauss
 from numpy.typing import NDArray
@@ -61,26 +62,39 @@ def _law_of_moments(plain: int, rooted: int) -> tuple[Array, Array]:
 
 @njit(parallel=True, cache=True)
 def _words(seed: Any, first_surface: Any, rows: Any, surfaces: Any) -> Any:
-    """One centred uniform for each moment of each surface: shape (rows, surfaces)."""
-    result = np.empty((rows, surfaces))
-    for i in prange(surfaces):
-        x = np.empty((rows + 63) // 64 * 64)
-        centred(x, seed, MOMENTS, first_surface + i, 0, 0, rows)
-        result[:, i] = x[:rows]
+    """One centred uniform for each of some moments of each surface: shape (rows, surfaces)."""
+    result = np.empty((rows.size, surfaces))
+    last = rows[-1] + 1
+    for chunk in prange((surfaces + 7) // 8):  # as many as share a line of the cache
+        first = 8 * chunk
+        n = min(8, surfaces - first)
+        x = np.empty((n, (last + 63) // 64 * 64))
+        for i in range(n):
+            centred(x[i], seed, MOMENTS, first_surface + first + i, 0, 0, last)
+        for j in range(rows.size):
+            for i in range(n):
+                result[j, first + i] = x[i, rows[j]]
     return result
 
 
 @njit(parallel=True, cache=True)
-def _mix(moments: Any, counts: Any, start: Any, mean: Any, root: Any, z: Any) -> None:
+def _mix(moments: Any, counts: Any, rows: Any, laws: Any, z: Any) -> None:
     """Write ``n mean + sqrt(n) root z`` where n > 0, in one order of summation."""
-    for i in prange(counts.size):
-        n = counts[i]
-        if n > 0:
-            for j in range(mean.size):
-                total = 0.0
-                for k in range(mean.size):
-                    total += root[j, k] * z[start + k, i]
-                moments[start + j, i] = n * mean[j] + np.sqrt(n) * total
+    starts, sizes, means, roots = laws
+    cells, surfaces = counts.shape
+    for c in prange(cells):
+        n, size, start = np.sqrt(counts[c].astype(np.float64)), sizes[c], starts[c]
+        total = np.empty(surfaces)
+        for j in range(size):
+            total[:] = 0.0
+            for k in range(size):
+                factor = roots[start + j, k]
+                if factor != 0.0:  # a triangle
+                    for i in range(surfaces):
+                        total[i] += factor * z[start + k, i]
+            for i in range(surfaces):
+                if n[i] > 0:
+                    moments[rows[start + j], i] = counts[c, i] * means[start + j] + n[i] * total[i]
 
 
 def add_gaussian_moments(seed: int, first: int, counts: Ints, layout: Layout, moments: Array) -> None:
@@ -99,11 +113,22 @@ def add_gaussian_moments(seed: int, first: int, counts: Ints, layout: Layout, mo
     moments : ndarray
         Shape (moments, surfaces); written where `counts` is positive.
     """
-    crowded = np.flatnonzero(counts.any(axis=1))
+    crowded = np.flatnonzero(counts.any(axis=1) & (layout.sizes > 0))
     if not crowded.size:
         return
-    starts = layout.starts
-    z = ndtri((1 + _words(np.uint64(seed), first, len(moments), counts.shape[1])) / 2)
-    for cell in crowded:
-        mean, root = _law_of_moments(int(layout.plain[cell]), int(layout.rooted[cell]))
-        _mix(moments, counts[cell], starts[cell], mean, root, z)
+    sizes = layout.sizes[crowded]
+    starts = np.cumsum(sizes) - sizes
+    rows = np.repeat(layout.starts[crowded] - starts, sizes) + np.arange(sizes.sum())
+    means, roots = np.empty(len(rows)), np.zeros((len(rows), sizes.max()))
+    for cell, start, size in zip(crowded, starts, sizes, strict=True):
+        law = _law_of_moments(int(layout.plain[cell]), int(layout.rooted[cell]))
+        means[start : start + size], roots[start : start + size, :size] = law
+    words = _words(np.uint64(seed), first, rows, counts.shape[1])
+    with ThreadPoolExecutor(get_num_threads()) as pool:  # SciPy computes without Python's lock
+        z = np.concatenate(list(pool.map(_normal, np.array_split(words, get_num_threads()))))
+    _mix(moments, counts[crowded], rows, (starts, sizes, means, roots), z)
+
+
+def _normal(x: Array) -> Array:
+    """Normal numbers of centred uniforms."""
+    return np.asarray(ndtri((1 + x) / 2))

@@ -8,9 +8,10 @@ every probability a ratio of sums of positive terms: accurate however far into t
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import partial
+from typing import Any
 
 import numpy as np
-from numba import get_num_threads
+from numba import get_num_threads, njit
 from numpy.typing import NDArray
 
 from mcgw.cells import Mesh
@@ -64,7 +65,7 @@ def counts_of(scene: Scene, mesh: Mesh, first: int, n: int) -> Counts:
     """
     halvings = _halvings(np.concatenate([[mesh.low_extras], mesh.probability, [mesh.high_extras]]))
     groups = range(first // GROUP, -(-(first + n) // GROUP))
-    with ThreadPoolExecutor(get_num_threads()) as pool:  # NumPy draws without Python's lock
+    with ThreadPoolExecutor(get_num_threads()) as pool:  # drawn without Python's lock
         drawn = np.concatenate(list(pool.map(partial(_group, scene, halvings), groups)), axis=1)
     skip = first - groups[0] * GROUP
     chosen = drawn[:, skip : skip + n]
@@ -113,49 +114,33 @@ class _Halvings:
     ----------
     touching : float
         Probability of all.
-    shares : tuple of ndarray
-        Of the rarer child in its parent, for each level, shape (parents, 1).
-    turned : tuple of ndarray of bool
+    shares : ndarray
+        Of the rarer child in its parent, for all parents of all levels.
+    turned : ndarray of bool
         Where the right child is the rarer one, alike.
-    sizes : tuple of int
-        Number of children on each level: one less than twice the parents' where the last has one only.
+    sizes : ndarray of int
+        Number of nodes on each level below the root.
     """
 
     touching: float
-    shares: tuple[NDArray[np.float64], ...]
-    turned: tuple[NDArray[np.bool_], ...]
-    sizes: tuple[int, ...]
+    shares: NDArray[np.float64]
+    turned: NDArray[np.bool_]
+    sizes: Ints
 
 
 def _halvings(probability: NDArray[np.float64]) -> _Halvings:
-    shares, turned, sizes = [], [], []
+    shares, turned, sizes = [np.empty(0)], [np.empty(0, dtype=bool)], []
     while len(probability) > 1:
         sizes.append(len(probability))
         pairs = np.concatenate([probability, np.zeros(len(probability) % 2)])
-        left, right = pairs[::2, None], pairs[1::2, None]
-        probability = (left + right)[:, 0]
-        total = np.where(left + right > 0, left + right, 1.0)
+        left, right = pairs[::2], pairs[1::2]
+        probability = left + right
+        total = np.where(probability > 0, probability, 1.0)
         shares.append(_rounded(np.minimum(left, right) / total))
         turned.append(_rounded(left / total) > 0.5)
     touching = float(_rounded(np.minimum(probability[0], 1.0)))
-    return _Halvings(touching, tuple(shares[::-1]), tuple(turned[::-1]), tuple(sizes[::-1]))
-
-
-def _group(scene: Scene, halvings: _Halvings, group: int) -> Ints:
-    """Numbers of a group of surfaces: shape (categories, GROUP)."""
-    rng = generator(scene.seed, 0, group)
-    if scene.count == "poisson":
-        numbers = rng.poisson(scene.n_asperities * halvings.touching, (1, GROUP))
-    else:
-        numbers = _binomial(rng, np.full((1, GROUP), scene.n_asperities), np.array([[halvings.touching]]))
-    for share, turned, size in zip(halvings.shares, halvings.turned, halvings.sizes, strict=True):
-        rarer = _binomial(rng, numbers, share)
-        other = numbers - rarer
-        children = np.empty((2 * len(numbers), GROUP), dtype=np.int64)
-        children[::2] = np.where(turned, other, rarer)
-        children[1::2] = np.where(turned, rarer, other)
-        numbers = children[:size]
-    return numbers
+    levels = np.array(sizes[::-1], dtype=np.int64)
+    return _Halvings(touching, np.concatenate(shares[::-1]), np.concatenate(turned[::-1]), levels)
 
 
 def _rounded(p: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -164,10 +149,45 @@ def _rounded(p: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.asarray(np.ldexp(np.rint(mantissa * _BITS) / _BITS, exponent))
 
 
-def _binomial(rng: np.random.Generator, n: Ints, p: NDArray[np.float64]) -> Ints:
-    """Binomial numbers; Poisson ones where p is so small that NumPy's 1 - p would lose it."""
-    rare = p < _RARE
-    usual = rng.binomial(n, np.where(rare, 0.0, p))
-    if not np.any(rare & (p > 0)):
-        return usual
-    return np.where(rare, np.minimum(rng.poisson(n * np.where(rare, p, 0.0)), n), usual)
+def _group(scene: Scene, halvings: _Halvings, group: int) -> Ints:
+    """Numbers of a group of surfaces: shape (categories, GROUP)."""
+    rng = generator(scene.seed, 0, group)
+    n, p = scene.n_asperities, halvings.touching
+    numbers = rng.poisson(n * p, GROUP) if scene.count == "poisson" else _all_touching(rng, n, p)
+    return np.asarray(_share_out(rng, numbers, halvings.shares, halvings.turned, halvings.sizes))
+
+
+@njit(nogil=True, cache=True)
+def _all_touching(rng: Any, n: Any, p: Any) -> Any:
+    numbers = np.empty(GROUP, dtype=np.int64)
+    for i in range(GROUP):
+        numbers[i] = _binomial(rng, n, p)
+    return numbers
+
+
+@njit(nogil=True, cache=True)
+def _share_out(rng: Any, numbers: Any, shares: Any, turned: Any, sizes: Any) -> Any:
+    """Halve the numbers, level by level."""
+    parents = numbers.copy().reshape(1, numbers.size)
+    parent = 0
+    for size in sizes:
+        children = np.empty((size, numbers.size), dtype=np.int64)
+        for left in range(0, size, 2):
+            for i in range(numbers.size):
+                n = parents[left // 2, i]
+                rarer = _binomial(rng, n, shares[parent])
+                first = n - rarer if turned[parent] else rarer
+                children[left, i] = first
+                if left + 1 < size:
+                    children[left + 1, i] = n - first
+            parent += 1
+        parents = children
+    return parents
+
+
+@njit(nogil=True, cache=True)
+def _binomial(rng: Any, n: Any, p: Any) -> Any:
+    """Binomial number; a Poisson one where p is so small that NumPy's 1 - p would lose it."""
+    if n == 0 or p == 0.0:
+        return 0
+    return rng.binomial(n, p) if p >= _RARE else min(rng.poisson(n * p), n)
