@@ -10,8 +10,8 @@ import secrets
 import socket
 import stat
 import zlib
-from collections.abc import Iterable
-from contextlib import suppress
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
@@ -22,8 +22,9 @@ __all__ = [
     "check_output",
     "open_regular",
     "remove_stale",
-    "sync_folder",
+    "sync",
     "temporary_beside",
+    "whole_file",
     "write_whole",
 ]
 
@@ -56,15 +57,14 @@ def _alive(pid: int) -> bool:
     return True
 
 
-def write_whole(path: Path, pieces: Iterable[bytes], *, replace: bool = True) -> None:
-    """Write a file in one atomic step.
+@contextmanager
+def whole_file(path: Path, *, replace: bool = True) -> Iterator[Path]:
+    """Name to write a file under; at the end it takes the place of `path`, on an error it goes.
 
     Parameters
     ----------
     path : Path
         Its name; a link of that name is replaced, not followed.
-    pieces : iterable of bytes
-        Its contents.
     replace : bool, optional
         If not, a file that is already there stays, and `FileExistsError` is raised.
 
@@ -75,25 +75,29 @@ def write_whole(path: Path, pieces: Iterable[bytes], *, replace: bool = True) ->
     """
     temporary = temporary_beside(path)
     try:
-        fd = os.open(temporary, os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_NOFOLLOW, 0o644)
-        try:
-            for piece in pieces:
-                left = memoryview(piece)
-                while left:
-                    left = left[os.write(fd, left) :]
-            os.fsync(fd)
-        finally:
-            os.close(fd)
+        yield temporary
+        sync(temporary)
         if replace:
             os.replace(temporary, path)
         else:
             os.link(temporary, path)
             os.unlink(temporary)
-        sync_folder(path.parent)
+        sync(path.parent)
     except BaseException:
         with suppress(OSError):  # it has its own name by now, or was never made
             os.unlink(temporary)
         raise
+
+
+def write_whole(path: Path, pieces: Iterable[bytes], *, replace: bool = True) -> None:
+    """Write a file of these contents by `whole_file`."""
+    flags = os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_NOFOLLOW
+    with (
+        whole_file(path, replace=replace) as temporary,
+        os.fdopen(os.open(temporary, flags, 0o644), "wb") as file,
+    ):
+        for piece in pieces:
+            file.write(piece)
 
 
 class SteadyFile:
@@ -177,9 +181,9 @@ class SteadyFile:
         self._file.close()
 
 
-def sync_folder(folder: Path) -> None:
-    """Flush the names in a folder to the disk."""
-    fd = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
+def sync(path: Path) -> None:
+    """Flush a file, or the names in a folder, to the disk."""
+    fd = os.open(path, os.O_RDONLY)
     try:
         os.fsync(fd)
     finally:

@@ -23,7 +23,7 @@ from typing import Any
 
 import tomli_w
 
-from mcgw.disk import remove_stale, sync_folder, write_whole
+from mcgw.disk import remove_stale, sync, write_whole
 from mcgw.errors import RunError, StoreError
 from mcgw.provenance import now, versions
 from mcgw.scene import Scene, SceneError
@@ -123,7 +123,7 @@ class Run:
         """
         _refuse_link(folder)
         (folder / "shards").mkdir(parents=True, exist_ok=True)
-        sync_folder(folder.parent)
+        sync(folder.parent)
         with suppress(FileExistsError):
             new = cls(
                 folder, scene, sampler, size, identity_of(scene, sampler), versions(of_draws=True), now()

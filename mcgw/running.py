@@ -9,7 +9,7 @@ from time import perf_counter
 from typing import Any
 
 from mcgw.child import ChildError, run_child
-from mcgw.disk import check_output, remove_stale, sync_folder, temporary_beside
+from mcgw.disk import check_output, remove_stale, sync, temporary_beside
 from mcgw.driver import Signals, drive, heed_signals
 from mcgw.engines import Engine, Threads
 from mcgw.ensemble import Arrays, Ensemble
@@ -318,7 +318,7 @@ def _merge_once(started: Run, path: Path, signals: Signals) -> bool:
     try:
         _merge_in_child(started.folder, path, temporary)
         os.replace(temporary, path)
-        sync_folder(path.parent)
+        sync(path.parent)
     except ChildError as error:
         signals.check(f"all blocks are kept in {started.folder}; the same command merges them")
         if error.how == "exit code 3":

@@ -11,7 +11,7 @@ import mcgw
 
 ROOT = Path(mcgw.__file__).parent
 ORDER = (
-    "lengths", "topography", "whole_file", "nayak", "asperities", "envelope", "sdf", "x3p", "array_files",
+    "lengths", "topography", "nayak", "asperities", "envelope", "sdf", "x3p", "array_files",
     "files", "spectrum", "form", "tally", "hiding", "fit", "doubts", "fitted_scene", "spots",
 )  # fmt: skip
 NEVER = ("compare", "plots", "cli", "commands", "store", "report_text", "regrade")

@@ -7,8 +7,8 @@ from typing import Literal
 import numpy as np
 
 from analytic import Gaussian, HeightLaw, HeightTable, MeasuredHeights, Surface
+from mcgw.disk import whole_file
 from mcgw.maps.fit import Fit
-from mcgw.maps.whole_file import whole_file
 from mcgw.scene import Scene
 from mcgw.scene_file import scene_text
 

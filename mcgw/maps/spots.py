@@ -11,10 +11,10 @@ from matplotlib.colors import LogNorm, Normalize
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
+from mcgw.disk import whole_file
 from mcgw.maps.asperities import Asperities
 from mcgw.maps.envelope import envelope
 from mcgw.maps.topography import Topography
-from mcgw.maps.whole_file import whole_file
 from mcgw.scene import Scene
 
 __all__ = ["Spots", "save_contact_map", "spots_at"]
