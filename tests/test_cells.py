@@ -7,6 +7,7 @@ import pytest
 import analytic
 from mcgw.cells import mesh_of, no_cells
 from mcgw.counts import GROUP, _halvings, counts_of, generator
+from mcgw.samplers import sampler_of
 from mcgw.spacing import cuts
 
 
@@ -116,3 +117,20 @@ def test_compiled_counts_are_those_of_numpy(make_scene, count):
     np.testing.assert_array_equal(found.cells, nodes[1:-1])
     np.testing.assert_array_equal(found.high_extras, nodes[-1])
     assert halvings.shares[halvings.shares > 0].min() > 1e-8  # none is drawn as a Poisson number
+
+
+def test_what_auto_takes(make_scene):
+    """Cells for everything but a handful of contacts at hundreds of separations, which keep no moments."""
+    many = tuple(np.linspace(0, 4, 600))
+    cases = {
+        "cells": ({}, {"n_asperities": 1}, {"n_asperities": 10**12}, {"separations": many}),
+        "tail": (
+            {"separations": many, "n_asperities": 20},
+            {"separations": many[300:], "n_asperities": 99},
+        ),
+    }
+    for name, scenes in cases.items():
+        for changes in scenes:
+            assert sampler_of(make_scene(sampler="auto", **changes)).name == name
+    kept = make_scene(sampler="auto", separations=many, n_asperities=20, keep="moments")
+    assert sampler_of(kept).name == "cells"
