@@ -22,6 +22,7 @@ from analytic import (
 
 __all__ = ["SAMPLERS", "Scene", "SceneError"]
 
+_LEAST = 1e-100  # next to it, powers of a distance are beyond double precision
 SAMPLERS = ("auto", "direct", "tail", "cells", "aggregate", "stratified")
 MOST_ASPERITIES = 2**53  # counts are exact in double precision up to here
 _BEYOND = 1e-16  # share of the heights that lie above what is checked for negative moduli
@@ -119,6 +120,11 @@ class Scene:
             problems.append("contact.separations = []: give at least one separation d/sigma")
         if not all(math.isfinite(h) for h in self.separations):
             problems.append("contact.separations: every separation must be finite")
+        tiny = [h for h in self.separations if 0 < abs(h) < _LEAST]
+        if tiny:
+            problems.append(
+                f"contact.separations: {tiny[0]:g} is too close to 0; give 0, or at least {_LEAST:g}"
+            )
         if not self.quantities:
             problems.append(f"contact.quantities = []: give one or more of {', '.join(QUANTITIES)}")
         if len(set(self.quantities)) < len(self.quantities):

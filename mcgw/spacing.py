@@ -47,7 +47,7 @@ def cuts(law: HeightLaw, n: int, low: float, high: float, before: float) -> Arra
         Edges from `low` to `high`. No cell is wider than its distance to the nearest separation below.
     """
     gap = high - low
-    upper = _ladders(1 + math.ceil(math.log2(max(gap / before, 1.0)) - 1e-9))
+    upper = _ladders(1 + math.ceil(max(math.log2(gap) - math.log2(before), 0.0) - 1e-9))
     width = np.diff(upper, axis=1, prepend=0.0)
     distance = np.where(upper > width, upper - width, before / gap)
     allowed = (width <= distance * (1 + 1e-9)).all(axis=1)

@@ -39,7 +39,7 @@ def last_digit(scene, heights, quantity):
     for h in scene.separations:
         d = heights[heights > h] - h
         changes.append(
-            n * np.spacing(heights.max()) * (d ** (n - 1)).sum() / (d**n).sum() if d.size and n else 0.0
+            n * np.spacing(d.max() + abs(h)) * (d ** (n - 1)).sum() / (d**n).sum() if d.size and n else 0.0
         )
     return np.array(changes)
 
@@ -58,7 +58,7 @@ def worst(scene, surface, sampler=None):
         reached = exact > 0
         np.testing.assert_array_equal(found[~reached], 0.0)
         error = np.abs(found[reached] / exact[reached] - 1)
-        errors.append((error - last_digit(scene, heights, quantity)[reached]).max())
+        errors.append((error - last_digit(scene, heights, quantity)[reached]).max(initial=0.0))
     return max(errors)
 
 

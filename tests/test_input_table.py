@@ -58,6 +58,7 @@ WRONG = [
     (9, separations('[1.0, "a", true]'), "contact.separations"),
     (9, separations('"0 1 2"'), "contact.separations"),
     (10, separations("{start = 0, stop = 4, num = 1000000}"), "at most 100000"),
+    (25, separations("[1.0, -5e-324]"), "contact.separations: -4.94066e-324 is too close to 0"),
     (11, put("ensemble", "n_asperities = 0"), "ensemble.n_asperities = 0"),
     (11, put("ensemble", "n_asperities = -3"), "ensemble.n_asperities = -3"),
     (14, put("ensemble", "n_asperities = 9007199254740993"), "between 1 and 2^53"),
