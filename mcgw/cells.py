@@ -24,11 +24,12 @@ from analytic import Grading, HeightLaw, resolved_breaks
 from mcgw.scene import Scene
 from mcgw.spacing import cuts
 
-__all__ = ["Mesh", "mesh_of", "no_cells"]
+__all__ = ["NODES", "TO_COEFFICIENTS", "Mesh", "height_noise", "mesh_of", "no_cells"]
 
 Array = NDArray[np.float64]
 
 _ROUNDING = 1e-9  # of the width of a cell
+_SHORT, _MOST_HALVINGS = 13, 60
 _CLOSEST = 2.0**-40  # of a cell to an end of the support that is a broken power
 
 _ORDER = 20
@@ -92,10 +93,10 @@ def mesh_of(scene: Scene, *, split: bool = True, rare: float = 0.1) -> Mesh:
     if not low < high:
         return no_cells(scene)
     separations = np.unique(scene.separations)
-    marks = np.unique([low, *separations, *_breaks(scene.modulus, low, high), *law.breaks, high])
+    marks = np.unique([low, *separations, *resolved_breaks(scene.modulus, low, high), *law.breaks, high])
     marks = marks[(low <= marks) & (marks <= high)]
     spaced = _spaced(law, scene.n_asperities if split else 0, separations, marks)
-    edges = _refined(law, separations, spaced)
+    edges = _resolving(scene.modulus, law, _refined(law, separations, spaced))
     mass = _mass(law, edges[:-1], np.diff(edges)[:, None])[:, 0]
     probability = law.density(edges[:-1]) * mass
     stretch = _stretch(law, edges[:-1], np.diff(edges), mass)
@@ -144,15 +145,6 @@ def _widest(law: HeightLaw, a: float) -> float:
     return width
 
 
-def _breaks(grading: Grading, low: float, high: float) -> tuple[float, ...]:
-    """Breaks of the grading; one found by search is halved, since the law has a root besides."""
-    breaks = resolved_breaks(grading, low, high)
-    if grading.smooth:
-        return breaks
-    marks = np.array([low, *breaks, high])
-    return tuple(np.unique([*breaks, *(marks[:-1] + marks[1:]) / 2]).tolist())
-
-
 def _spaced(law: HeightLaw, n: int, separations: Array, marks: Array) -> Array:
     """Marks, and cells above each separation such that drawing costs the least."""
     before = np.diff(separations, prepend=-np.inf)
@@ -176,6 +168,29 @@ def _refined(law: HeightLaw, separations: Array, marks: Array) -> Array:
             else:
                 edges.append(a + (widest if room >= 2 * widest else room / 2))
     return np.array(edges)
+
+
+def _resolving(grading: Grading, law: HeightLaw, edges: Array) -> Array:
+    """Halve cells until a short series describes the grading: the law of contact has a root besides."""
+    if grading.smooth:
+        return edges
+    for _ in range(_MOST_HALVINGS):
+        a, width = edges[:-1], np.diff(edges)
+        stretch = _stretch(law, a, width, _mass(law, a, width[:, None])[:, 0])
+        t = (1 + NODES) / 2 * chebyshev.chebval(NODES, stretch)
+        e = grading(a[:, None] + t)
+        tail = np.abs(TO_COEFFICIENTS @ e.T)[_SHORT:].sum(axis=0)
+        rough = tail > 1e-13 * np.abs(e).max(axis=1) + height_noise(a, t, e)
+        if not rough.any():
+            break
+        edges = np.unique(np.concatenate([edges, (a + width / 2)[rough]]))
+    return edges
+
+
+def height_noise(a: Array | float, t: Array, e: Array) -> Array:
+    """What a steep grading `e` makes of the last digit of a height ``a + t``, over the last axis."""
+    widest = t.max(axis=-1)
+    return np.asarray(64 * np.spacing(np.abs(a) + widest) * np.ptp(e, axis=-1) / widest)
 
 
 def _mass(law: HeightLaw, a: Array, t: Array) -> Array:

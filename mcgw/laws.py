@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analytic import QUANTITIES, Grading, resolved_breaks
-from mcgw.cells import NODES, TO_COEFFICIENTS
+from mcgw.cells import NODES, TO_COEFFICIENTS, height_noise
 from mcgw.scene import Scene
 from mcgw.spacing import SURE
 
@@ -155,15 +155,11 @@ class Laws:
         tail = np.cumsum(np.abs(c)[::-1], axis=0)[::-1]
         crowd = self.n_asperities * probability + _SCATTER
         enough = np.maximum(tail[0], self.total[which] / crowd)
-        noise = np.where(self.modulus[which], self._noise(a, t), 0.0)
+        e = self.grading(a + t)
+        relative = height_noise(a, t, e) / max(np.abs(e).max(), np.finfo(float).tiny)
+        noise = np.where(self.modulus[which], relative, 0.0)
         limit = np.maximum(self.accuracy / finer * enough, noise * tail[0])
         return np.asarray((tail > limit).sum(axis=0), dtype=np.int64)
-
-    def _noise(self, a: float, t: Array) -> float:
-        """What a steep grading makes of the last digit of a height, relative to the largest value."""
-        e = self.grading(a + t)
-        slope = np.ptp(e) / (t.max() * max(np.abs(e).max(), np.finfo(float).tiny))
-        return 64 * float(np.spacing(abs(a) + t.max())) * float(slope)
 
     def _coefficients(self, which: Ints, a: float, t: Array, base: Array) -> Array:
         graded = np.where(self.modulus[which], self.grading(a + t)[:, None], 1.0)

@@ -161,3 +161,25 @@ def test_what_is_not_asked_is_not_computed(make_scene):
     np.testing.assert_array_equal(
         sampler_of(alone).block(0, 5).sums["contacts"], sampler_of(full).block(0, 5).sums["contacts"]
     )
+
+
+@pytest.mark.parametrize(
+    ("law", "middle", "slope", "separations"),
+    [
+        (analytic.Weibull(2.55), 1.14, 24.0, (0.0, 1e-28, 0.6)),
+        (analytic.Weibull(1.82), 2.12, 47.0, (-27.6, -21.7, -10.8)),
+        (analytic.ExponentialHeights(), 2.65, 3.35, (0.01803722, 0.01803731)),
+        (analytic.ExponentialHeights(), 0.03, 5.0, (-27.7, -27.3)),
+    ],
+)
+def test_a_smooth_step_under_any_law(make_scene, law, middle, slope, separations):
+    """The law of heights, the grading and the root bend together: cells are cut until all is resolved."""
+    scene = make_scene(
+        heights=law,
+        grading=analytic.Custom(lambda s: 1.5 + np.tanh(slope * (s - middle))),
+        separations=separations,
+        sampler="cells",
+        quantities=tuple(analytic.QUANTITIES),
+    )
+    sampler = sampler_of(scene)
+    assert max(worst(scene, surface, sampler) for surface in range(MANY)) < 1e-12
