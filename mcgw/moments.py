@@ -32,17 +32,21 @@ _PIECE = 512 * 512  # a plain sum of so many terms is good to 1e-14; beyond, it 
 _VECTOR = {"reassoc", "nsz", "contract"}
 
 
+@njit(inline="always")
+def _five(x: Any) -> Any:
+    """T_1 ... T_5 at x."""
+    t2 = 2 * x * x - 1.0
+    t3 = 2 * x * t2 - x
+    t4 = 2 * x * t3 - t2
+    return x, t2, t3, t4, 2 * x * t4 - t3
+
+
 @njit(nogil=True, cache=True, fastmath=_VECTOR)
 def _to_ten(x: Any, n: Any, plain: Any) -> None:
     """Add sums of T_1 ... T_5 to `plain`, and of T_5 T_1 ... T_5 T_5."""
     a = b = c = d = e = f = g = h = p = q = 0.0
     for i in range(n):
-        t1 = x[i]
-        w = 2 * t1
-        t2 = w * t1 - 1.0
-        t3 = w * t2 - t1
-        t4 = w * t3 - t2
-        t5 = w * t4 - t3
+        t1, t2, t3, t4, t5 = _five(x[i])
         a += t1
         b += t2
         c += t3
@@ -63,14 +67,9 @@ def _to_ten_and_root(x: Any, n: Any, root: Any, plain: Any, rooted: Any) -> None
     a = b = c = d = e = f = g = h = p = q = 0.0
     r0 = r1 = r2 = r3 = r4 = r5 = 0.0
     for i in range(n):
-        t1 = x[i]
-        w = 2 * t1
+        t1, t2, t3, t4, t5 = _five(x[i])
         r = np.sqrt(0.5 * t1 + 0.5)
         root[i] = r
-        t2 = w * t1 - 1.0
-        t3 = w * t2 - t1
-        t4 = w * t3 - t2
-        t5 = w * t4 - t3
         a += t1
         b += t2
         c += t3
@@ -101,12 +100,7 @@ def _five_more(x: Any, n: Any, m: Any, factor: Any, sums: Any) -> None:
     )
     a = b = c = d = e = 0.0
     for i in range(n):
-        t1 = x[i]
-        w = 2 * t1
-        t2 = w * t1 - 1.0
-        t3 = w * t2 - t1
-        t4 = w * t3 - t2
-        t5 = w * t4 - t3
+        t1, t2, t3, t4, t5 = _five(x[i])
         f = (((c3 * t5 + c2) * t5 + c1) * t5 + c0) * factor[i]
         a += f * t1
         b += f * t2
