@@ -47,7 +47,8 @@ def regrade(
     Raises
     ------
     ValueError
-        If the moments were not kept, or a separation or break is no edge of the cells.
+        If the moments were not kept, or are those of other cells, or if a separation or break is no edge
+        of the cells.
     """
     old = ensemble.scene
     if old.keep != "moments":
@@ -63,6 +64,7 @@ def regrade(
     if not isinstance(drawn, Cells):
         raise ValueError(f'sampler = "{drawn.name}" has no cells')
     mesh = drawn.mesh
+    _check_cells(drawn, ensemble)
     _check_edges("separation", scene.separations, mesh.edges)
     _check_edges("break of the grading", scene.modulus.breaks, mesh.edges)
     cells = Cells(scene, mesh, response_to(scene, mesh, drawn.response.layout), drawn.name)
@@ -77,6 +79,16 @@ def regrade(
         parts.append(kept(scene, Block(sums, moments, counts, own)))
     arrays = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
     return Ensemble(scene, ensemble.sampler, Arrays(arrays))
+
+
+def _check_cells(drawn: Cells, ensemble: Ensemble) -> None:
+    """The moments must be of the cells that this version makes."""
+    found = tuple(ensemble.sums.read(name, 0, 1).shape[1] for name in ("cells", "moments"))
+    if found != (drawn.mesh.size, drawn.response.layout.starts[-1]):
+        raise ValueError(
+            "the moments kept are of other cells, as another version of mcgw makes them; "
+            "regrade with that version, or simulate the scene anew"
+        )
 
 
 def _check_edges(what: str, wanted: Sequence[float], edges: Array) -> None:

@@ -108,6 +108,13 @@ def test_what_cannot_be_regraded(base, make_scene):
         paired_ratio(base, mcgw.simulate(make_scene()), "load")
 
 
+def test_moments_of_another_version(base, monkeypatch):
+    """Cells priced otherwise are other cells: their moments must not be taken for these."""
+    monkeypatch.setattr("mcgw.spacing._CELL", 4000.0)
+    with pytest.raises(ValueError, match="another version of mcgw"):
+        regrade(base, analytic.Exponential(0.5))
+
+
 def test_from_file_to_file(make_scene, tmp_path):
     scene = make_scene(keep="moments", n_surfaces=150)
     stored = run(scene, tmp_path / "base.h5")
