@@ -78,7 +78,7 @@ class Gaussian:
     singular: ClassVar[tuple[float, ...]] = ()
 
     def span(self, s: float) -> float:
-        """Where the logarithm of the density changes by about one half."""
+        """Where the logarithm of the density changes by about 0.6."""
         return 0.6 / (1 + abs(s))
 
     def sample(self, rng: np.random.Generator, n: int) -> Array:

@@ -29,7 +29,7 @@ __all__ = ["NODES", "TO_COEFFICIENTS", "Mesh", "height_noise", "mesh_of", "no_ce
 Array = NDArray[np.float64]
 
 _ROUNDING = 1e-9  # of the width of a cell
-_SHORT, _MOST_HALVINGS = 13, 60
+_SHORT, _MOST_HALVINGS = 13, 60  # terms for a grading on a cell, and how often it is cut to get there
 _CLOSEST = 2.0**-40  # of a cell to an end of the support that is a broken power
 
 _ORDER = 20

@@ -125,8 +125,8 @@ class Laws:
         Shape (order, laws) and (laws,). What no sum over many nodes can show is zero.
         """
         c = self._coefficients(which, a, t, (a - self.h[which]) + t[:, None])
-        needed = self._needed(c, which, a, t, probability)
-        c[np.arange(len(c))[:, None] >= self._needed(c, which, a, t, probability, _NODES)] = 0.0
+        needed, seen = self._needed(c, which, a, t, probability)
+        c[np.arange(len(c))[:, None] >= seen] = 0.0
         edge = self.h[which] == a
         if edge.any():
             c[:, edge], needed[edge] = self.from_edge(which[edge], a, t, probability)
@@ -139,7 +139,7 @@ class Laws:
         put in, so that the law stays relatively accurate down to u = 0.
         """
         c = self._coefficients(which, a, t, (t / _U)[:, None])
-        needed = self._needed(c, which, a, t, probability)
+        needed, _ = self._needed(c, which, a, t, probability)
         c[np.arange(len(c))[:, None] >= needed] = 0.0
         for power in range(int(self.exponent[which].max(initial=0))):
             more = self.exponent[which] >= power + 1
@@ -147,19 +147,23 @@ class Laws:
             needed = needed + more
         return c, needed
 
-    def _needed(self, c: Array, which: Ints, a: float, t: Array, probability: float, finer: int = 1) -> Ints:
+    def _needed(self, c: Array, which: Ints, a: float, t: Array, probability: float) -> tuple[Ints, Ints]:
         """Number of leading coefficients that describe each law (a column) accurately.
 
         Relative to the largest value on the cell; or, where it is sure, to the whole sum of a surface.
+        Second, the number that a sum over many nodes may show.
         """
         tail = np.cumsum(np.abs(c)[::-1], axis=0)[::-1]
         crowd = self.n_asperities * probability + _SCATTER
         enough = np.maximum(tail[0], self.total[which] / crowd)
         e = self.grading(a + t)
         relative = height_noise(a, t, e) / max(np.abs(e).max(), np.finfo(float).tiny)
-        noise = np.where(self.modulus[which], relative, 0.0)
-        limit = np.maximum(self.accuracy / finer * enough, noise * tail[0])
-        return np.asarray((tail > limit).sum(axis=0), dtype=np.int64)
+        noise = np.where(self.modulus[which], relative, 0.0) * tail[0]
+        limits = (
+            np.maximum(accuracy * enough, noise) for accuracy in (self.accuracy, self.accuracy / _NODES)
+        )
+        needed, seen = (np.asarray((tail > limit).sum(axis=0), dtype=np.int64) for limit in limits)
+        return needed, seen
 
     def _coefficients(self, which: Ints, a: float, t: Array, base: Array) -> Array:
         graded = np.where(self.modulus[which], self.grading(a + t)[:, None], 1.0)

@@ -253,6 +253,7 @@ def cell_moments(
     ndarray
         Shape (moments, surfaces): the same bits for any number of threads and in any block.
     """
+    counts = np.where(layout.sizes[:, None] > 0, counts, 0)  # what nobody asks for is not drawn
     work = np.cumsum(np.where(counts > 0, counts + _START, 0))
     threads = get_num_threads()
     shares = np.searchsorted(work, np.arange(1, threads) * (work[-1:].sum() / threads))
