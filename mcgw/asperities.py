@@ -43,7 +43,7 @@ def heights(scene: Scene, surface: int, *, untouched: bool = False) -> NDArray[n
     counts = counts_of(scene, mesh, surface, 1)
     drawn = scene.n_asperities if untouched else int(counts.cells.sum())
     check_memory("the heights of one surface", 24 * drawn)
-    parts = [extra_heights(scene, mesh, surface, int(counts.low_extras[0]), int(counts.high_extras[0]))]
+    parts = [extra_heights(scene, mesh, surface, counts)[:, 1]]
     for cell in np.flatnonzero(counts.cells[:, 0]):
         u = uniforms(scene.seed, CELLS, surface, int(cell), int(counts.cells[cell, 0]))
         parts.append(mesh.edges[cell] + mesh.offsets(int(cell), u))

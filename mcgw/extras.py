@@ -1,10 +1,14 @@
 """Asperities drawn one by one: those outside all cells, and all of them for the sampler ``tail``."""
 
+from typing import Any
+
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 
 from mcgw.cells import Mesh
-from mcgw.philox import EXTRAS, uniforms
+from mcgw.counts import Counts
+from mcgw.philox import EXTRAS, centred
 from mcgw.scene import Scene
 
 __all__ = ["extra_heights"]
@@ -14,8 +18,8 @@ Array = NDArray[np.float64]
 _HIGH, _LOW = 0, 1  # streams
 
 
-def extra_heights(scene: Scene, mesh: Mesh, surface: int, low: int, high: int) -> Array:
-    """Contacting heights of one surface outside the cells.
+def extra_heights(scene: Scene, mesh: Mesh, first: int, counts: Counts) -> Array:
+    """Contacting heights outside the cells, for a block of surfaces.
 
     Parameters
     ----------
@@ -23,28 +27,51 @@ def extra_heights(scene: Scene, mesh: Mesh, surface: int, low: int, high: int) -
         Its height law, seed and lowest separation are used.
     mesh : Mesh
         The scene's.
-    surface : int
-        Its number.
-    low, high : int
+    first : int
+        Number of the block's first surface.
+    counts : Counts
         How many lie below and above the cells.
 
     Returns
     -------
     ndarray
-        Reduced heights, shape (low + high,).
+        Rows (number of the surface, reduced height, weight), surface by surface, low ones first.
     """
     law = scene.heights
     edge = float(mesh.edges[-1]) if mesh.size else scene.lowest
-    above = law.from_above(_wide_uniforms(scene.seed, surface, _HIGH, high), edge)
-    if not low:
-        return above
+    heights = law.from_above(_wide_uniforms(scene.seed, first, _HIGH, counts.high_extras), edge)
+    rows = _rows(first, counts.high_extras, heights, counts.weights[-1])
+    if not counts.low_extras.any():
+        return rows
     bottom = float(mesh.edges[0])
     least = float(law.below(np.array(scene.lowest)) / law.below(np.array(bottom)))
-    share = least + (1 - least) * _wide_uniforms(scene.seed, surface, _LOW, low)
-    return np.concatenate([law.from_below(share, bottom), above])
+    share = least + (1 - least) * _wide_uniforms(scene.seed, first, _LOW, counts.low_extras)
+    low = _rows(first, counts.low_extras, law.from_below(share, bottom), counts.weights[0])
+    rows = np.concatenate([low, rows])
+    return np.asarray(rows[np.argsort(rows[:, 0], kind="stable")])
 
 
-def _wide_uniforms(seed: int, surface: int, stream: int, n: int) -> Array:
+def _rows(first: int, numbers: NDArray[np.int64], heights: Array, weight: float) -> Array:
+    surfaces = np.repeat(first + np.arange(len(numbers)), numbers)
+    return np.column_stack([surfaces, heights, np.full(len(heights), weight)])
+
+
+def _wide_uniforms(seed: int, first: int, stream: int, numbers: NDArray[np.int64]) -> Array:
     """Uniforms of 64 bits: those of 32 would cut the tail of 1e10 asperities."""
-    u = uniforms(seed, EXTRAS, surface, stream, 2 * n)
-    return (u[::2] - 0.5 / 2**32) + u[1::2] / 2**32
+    u = (1 + _centred_pairs(np.uint64(seed), first, stream, numbers)) / 2
+    return np.asarray((u[::2] - 0.5 / 2**32) + u[1::2] / 2**32)
+
+
+@njit(nogil=True, cache=True)
+def _centred_pairs(seed: Any, first: Any, stream: Any, numbers: Any) -> Any:
+    """Two for each number wanted, surface by surface."""
+    pairs = np.empty(2 * numbers.sum())
+    room = np.empty(2 * numbers.max() + 64)
+    at = 0
+    for i in range(numbers.size):
+        n = 2 * numbers[i]
+        if n:
+            centred(room, seed, EXTRAS, first + i, stream, 0, n)
+            pairs[at : at + n] = room[:n]
+            at += n
+    return pairs

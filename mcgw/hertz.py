@@ -24,18 +24,22 @@ def _power(d: float, twice: int) -> float:
 
 
 @njit(parallel=True, cache=True)
-def _sums(starts: Any, heights: Any, modulus: Any, separations: Any, twice: Any) -> Any:
-    """For each surface and separation the sum of ``modulus (s - h)^(twice/2)`` over s > h."""
+def _sums(starts: Any, heights: Any, factors: Any, separations: Any, twice: Any) -> Any:
+    """For each quantity, surface and separation the sum of ``factor (s - h)^(twice/2)`` over s > h."""
     surfaces = starts.size - 1
-    result = np.zeros((surfaces, separations.size))
+    result = np.zeros((twice.size, surfaces, separations.size))
     for i in prange(surfaces):
-        for k in range(separations.size):
-            total = 0.0
-            for j in range(starts[i], starts[i + 1]):
-                d = heights[j] - separations[k]
-                if d > 0.0:
-                    total += modulus[j] * _power(d, twice)
-            result[i, k] = total
+        if starts[i] == starts[i + 1]:
+            continue
+        for q in range(twice.size):
+            exponent = twice[q]
+            for k in range(separations.size):
+                total = 0.0
+                for j in range(starts[i], starts[i + 1]):
+                    d = heights[j] - separations[k]
+                    if d > 0.0:
+                        total += factors[q, j] * _power(d, exponent)
+                result[q, i, k] = total
     return result
 
 
@@ -58,14 +62,17 @@ def hertz_sums(scene: Scene, numbers: NDArray[np.int64], heights: Array, weights
     dict of str to ndarray
         Each quantity in SI units, shape (surfaces, separations).
     """
-    starts = np.concatenate([[0], np.cumsum(numbers)])
-    separations = np.array(scene.separations)
+    asked = [QUANTITIES[name] for name in scene.quantities]
     graded = weights
-    if any(QUANTITIES[name].modulus for name in scene.quantities):
+    if any(q.modulus for q in asked):
         graded = weights * scene.modulus(heights)
-    sums = {}
-    for name in scene.quantities:
-        q = QUANTITIES[name]
-        values = _sums(starts, heights, graded if q.modulus else weights, separations, round(2 * q.exponent))
-        sums[name] = q.scale(scene.surface) * values
-    return sums
+    sums = _sums(
+        np.concatenate([[0], np.cumsum(numbers)]),
+        heights,
+        np.stack([graded if q.modulus else weights for q in asked]),
+        np.array(scene.separations),
+        np.array([round(2 * q.exponent) for q in asked]),
+    )
+    for q, values in zip(asked, sums, strict=True):
+        values *= q.scale(scene.surface)
+    return dict(zip(scene.quantities, sums, strict=True))

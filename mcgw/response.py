@@ -24,7 +24,11 @@ __all__ = ["Response", "response_of"]
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
+Places = NDArray[np.uint64]
+_Blocks = tuple[Ints, Ints, Array]  # rows, first columns, values
 
+_WIDTH = 64  # surfaces at a time
+_FOUR = 4  # columns of a block
 _MOST_MOMENTS = 18  # what is not resolved by so many is left to the children
 
 
@@ -33,21 +37,24 @@ class Response:
     """A sparse matrix that runs from the moments to the answers by way of the tree.
 
     Rows are computed in order: row r is a combination of earlier rows, of which the first ones are
-    the moments of the cells and the last ones the answers.
+    the moments of the cells and the last ones the answers. A node's moments are neighbours, so entries
+    are kept as blocks of four columns, the last of them filled up with zeros.
 
     Parameters
     ----------
     layout : Layout
         The moments that each cell must have.
-    pointers, columns, values : ndarray
-        Compressed sparse rows of all that is computed.
+    pointers, columns : ndarray
+        First block of each computed row, and first column of each block.
+    values : ndarray
+        Shape (blocks, 4).
     shape : (int, int)
         Number of quantities and separations.
     """
 
     layout: Layout
-    pointers: Ints
-    columns: Ints
+    pointers: Places
+    columns: Places
     values: Array
     shape: tuple[int, int]
 
@@ -59,30 +66,34 @@ class Response:
 
 @njit(parallel=True, cache=True)
 def _apply(pointers: Any, columns: Any, values: Any, moments: Any, answers: int) -> Any:
-    """All rows for 32 surfaces at a time; the sum over a row has one order, whatever the block."""
+    """All rows for so many surfaces at a time; the sum over a row has one order, whatever the block."""
     given, surfaces = moments.shape
     computed = pointers.size - 1
     result = np.zeros((answers, surfaces))
-    for chunk in prange((surfaces + 31) // 32):
-        first = chunk * 32
-        n = min(32, surfaces - first)
-        table = np.zeros((given + computed, 32))
+    for chunk in prange((surfaces + _WIDTH - 1) // _WIDTH):
+        first = chunk * _WIDTH
+        n = min(_WIDTH, surfaces - first)
+        table = np.zeros((given + computed, _WIDTH))
         table[:given, :n] = moments[:, first : first + n]
-        for r in range(computed):
-            start, stop = pointers[r], pointers[r + 1]
-            row = given + r
-            for k in range(start, stop - 3, 4):  # four at once: the row itself is the bottleneck
-                a, b, c, d = values[k], values[k + 1], values[k + 2], values[k + 3]
-                ka, kb, kc, kd = columns[k], columns[k + 1], columns[k + 2], columns[k + 3]
-                for i in range(32):
-                    table[row, i] += (a * table[ka, i] + b * table[kb, i]) + (
-                        c * table[kc, i] + d * table[kd, i]
-                    )
-            for k in range(stop - (stop - start) % 4, stop):
-                for i in range(32):
-                    table[row, i] += values[k] * table[columns[k], i]
+        _fill(table.reshape(-1), given, pointers, columns, values)
         result[:, first : first + n] = table[given + computed - answers :, :n]
     return result
+
+
+@njit(nogil=True, cache=True)
+def _fill(table: Any, given: int, pointers: Any, columns: Any, values: Any) -> None:
+    """Compute all rows of a flat table. Unsigned places, for a signed one may count from the end."""
+    for r in range(pointers.size - 1):
+        row = np.uint64((given + r) * _WIDTH)
+        for block in range(pointers[r], pointers[r + 1]):
+            a, b, c, d = values[block, 0], values[block, 1], values[block, 2], values[block, 3]
+            ka = columns[block] * np.uint64(_WIDTH)
+            kb, kc, kd = ka + np.uint64(_WIDTH), ka + np.uint64(2 * _WIDTH), ka + np.uint64(3 * _WIDTH)
+            for k in range(_WIDTH):
+                i = np.uint64(k)
+                table[row + i] += (a * table[ka + i] + b * table[kb + i]) + (
+                    c * table[kc + i] + d * table[kd + i]
+                )
 
 
 def response_of(
@@ -130,19 +141,19 @@ def response_of(
     starts = layout.starts
     inner = starts[-1] + np.concatenate([[0], np.cumsum(plain[mesh.size :])]).astype(np.int64)
     node_row = np.concatenate([starts[:-1], inner[:-1]])
-    pairs = [
+    answers = int(inner[-1]) + _FOUR  # a block may reach so far
+    blocks = [
         *_transfers(mesh, tree, plain, node_row),
-        *_answers(entries, plain, rooted, node_row, int(inner[-1])),
+        *_answers(entries, plain, rooted, node_row, answers),
     ]
-    row, column, value = (np.concatenate(part) for part in zip(*pairs, strict=True)) if pairs else _NOTHING
+    row, column, value = (np.concatenate(part) for part in zip(*blocks, strict=True)) if blocks else _NOTHING
     order = np.argsort(row, kind="stable")
-    computed = int(inner[-1] - starts[-1]) + len(laws.h)
-    pointers = np.searchsorted(row[order], starts[-1] + np.arange(computed + 1))
+    pointers = np.searchsorted(row[order], np.arange(starts[-1], answers + len(laws.h) + 1))
     shape = (len(quantities), len(scene.separations))
-    return Response(layout, pointers, column[order], value[order], shape)
+    return Response(layout, pointers.astype(np.uint64), column[order].astype(np.uint64), value[order], shape)
 
 
-_NOTHING = (np.empty(0, np.int64), np.empty(0, np.int64), np.empty(0))
+_NOTHING = (np.empty(0, np.int64), np.empty(0, np.int64), np.empty((0, _FOUR)))
 
 
 @dataclass(frozen=True)
@@ -204,26 +215,32 @@ def _check_kept(mesh: Mesh, kept: Layout, needed: Layout) -> None:
         )
 
 
-def _transfers(mesh: Mesh, tree: Tree, plain: Ints, node_row: Ints) -> list[tuple[Ints, Ints, Array]]:
-    """Entries that make the moments of the parents."""
-    pairs = []
+def _transfers(mesh: Mesh, tree: Tree, plain: Ints, node_row: Ints) -> list[_Blocks]:
+    """Blocks that make the moments of the parents."""
+    blocks = []
     for node in range(mesh.size, tree.size):
         for child, right in ((tree.left[node], False), (tree.right[node], True)):
             matrix = transfer(tree.share(node), right, plain[node], plain[child])
-            row, column = np.tril_indices(len(matrix), m=matrix.shape[1])  # no degree is raised
-            pairs.append((node_row[node] + row, node_row[child] + column, matrix[row, column]))
-    return pairs
+            rows = node_row[node] + np.arange(len(matrix))
+            blocks.append(_blocks(rows, node_row[child], np.tril(matrix).T))  # no degree is raised
+    return blocks
 
 
-def _answers(
-    entries: list[_Entry], plain: Ints, rooted: Ints, node_row: Ints, first: int
-) -> list[tuple[Ints, Ints, Array]]:
-    """Entries that make the answers."""
-    pairs = []
+def _answers(entries: list[_Entry], plain: Ints, rooted: Ints, node_row: Ints, first: int) -> list[_Blocks]:
+    """Blocks that make the answers."""
+    blocks = []
     for entry in entries:
         size = rooted[entry.node] if entry.rooted else plain[entry.node]
         start = node_row[entry.node] + (plain[entry.node] if entry.rooted else 0)
-        c = entry.coefficients[:size]
-        moment, law = np.nonzero(c)
-        pairs.append((first + entry.laws[law], start + moment, c[moment, law]))
-    return pairs
+        blocks.append(_blocks(first + entry.laws, start, entry.coefficients[:size]))
+    return blocks
+
+
+def _blocks(rows: Ints, start: int, coefficients: Array) -> _Blocks:
+    """Coefficients (columns, rows) of neighbouring columns from `start` on, without blocks of zeros."""
+    n = -(-len(coefficients) // _FOUR)
+    filled = np.zeros((n * _FOUR, len(rows)))
+    filled[: len(coefficients)] = coefficients
+    blocks = filled.reshape(n, _FOUR, len(rows)).transpose(0, 2, 1)
+    block, row = np.nonzero(blocks.any(axis=2))
+    return rows[row], start + _FOUR * block, blocks[block, row]

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from analytic import QUANTITIES, Exponential
 from mcgw.aggregate import CROWDED, add_gaussian_moments
 from mcgw.cells import Mesh, mesh_of, no_cells
-from mcgw.counts import Counts, counts_of, generator, strata_of
+from mcgw.counts import counts_of, generator, strata_of
 from mcgw.extras import extra_heights
 from mcgw.hertz import hertz_sums
 from mcgw.moments import Layout, cell_moments
@@ -186,19 +186,9 @@ class Cells:
         add_gaussian_moments(self.scene.seed, first, counts.cells - single, layout, moments)
         if stratified:
             moments *= np.repeat(counts.weights[1:-1], layout.sizes)[:, None]
-        extras = self._extras(first, counts)
+        extras = extra_heights(self.scene, self.mesh, first, counts)
         numbers = counts.cells * counts.weights[1:-1, None]
         return Block(self.sums(first, moments, numbers, extras), moments.T, numbers.T, extras)
-
-    def _extras(self, first: int, counts: Counts) -> Array:
-        """Rows (surface, height, weight) of the asperities outside the cells."""
-        rows = [np.empty((0, 3))]
-        for i in np.flatnonzero(counts.low_extras + counts.high_extras):
-            low, high = int(counts.low_extras[i]), int(counts.high_extras[i])
-            heights = extra_heights(self.scene, self.mesh, first + int(i), low, high)
-            weights = np.repeat(counts.weights[[0, -1]], [low, high])
-            rows.append(np.column_stack([np.full(low + high, first + i), heights, weights]))
-        return np.concatenate(rows)
 
     def sums(self, first: int, moments: Array, counts: Array, extras: Array) -> dict[str, Array]:
         """Quantities of surfaces `first` ... from what was drawn.

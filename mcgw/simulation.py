@@ -108,7 +108,7 @@ def block_size(scene: Scene, sampler: Sampler) -> int:
         words += 3 * int(sampler.response.layout.starts[-1]) + 4 * sampler.mesh.size
     draws = {"direct": float(scene.n_asperities), "aggregate": 1e4}.get(sampler.name, touching)
     if sampler.name == "tail":
-        words += 4 * int(min(touching, 1e12))
+        words += 12 * int(min(touching, 1e12))
     size = int(min(_WORDS / words, _DRAWS / (draws + 1), 16 * GROUP))
     return max(size - size % GROUP, min(max(size, 1), GROUP))
 

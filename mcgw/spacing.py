@@ -14,9 +14,10 @@ from numpy.typing import NDArray
 
 from analytic import HeightLaw
 
-__all__ = ["cuts"]
+__all__ = ["SURE", "cuts", "price"]
 
 Array = NDArray[np.float64]
+Ints = NDArray[np.int64]
 
 SURE = 400  # so many expected contacts are never fewer than half
 _DIGITS = 11.8  # that the moments must give, of a law or of the sum of a surface
@@ -82,10 +83,15 @@ def _prices(law: HeightLaw, n: int, low: float, gap: float, upper: Array, distan
         digits = _DIGITS + np.log10(part)
         plain = 1 + digits / _rate(np.minimum(1 + 2 * distance / width, 2 / bend))
         rooted = 1 + digits / _rate(2 / bend)
-    each = 1 + _FIVE_MORE * _steps(plain - 11)
     first = used & (upper == width)
-    each += np.where(first, _ROOT + _FIVE_MORE * _steps(rooted - 6), 0.0)
+    each = price(plain, np.where(first, rooted, 0.0))
     return np.asarray((np.where(used, _CELL + expected * each, 0.0)).sum(axis=1))
+
+
+def price(plain: Array | Ints, rooted: Array | Ints) -> Array:
+    """What an asperity costs that gives so many moments: 1 for eleven plain ones."""
+    roots = np.where(rooted > 0, _ROOT + _FIVE_MORE * _steps(rooted - 6), 0.0)
+    return np.asarray(1 + _FIVE_MORE * _steps(plain - 11) + roots)
 
 
 def _rate(z: Array) -> Array:
@@ -94,6 +100,6 @@ def _rate(z: Array) -> Array:
     return np.asarray(np.log10(z + np.sqrt(z * z - 1)))
 
 
-def _steps(moments: Array) -> Array:
+def _steps(moments: Array | Ints) -> Array:
     """How many times five."""
-    return np.ceil(np.clip(moments, 0, 100) / 5)
+    return np.asarray(np.ceil(np.clip(moments, 0, 100) / 5))

@@ -28,6 +28,7 @@ ORDER = (
     "spacing",
     "cells",
     "tree",
+    "uniform_sums",
     "moments",
     "laws",
     "response",
