@@ -9,7 +9,6 @@ away is the shape: with a threshold of 1, 1 % of the surfaces at light contact h
 one in 1e5, with 16 or more none.
 """
 
-from concurrent.futures import ThreadPoolExecutor
 from functools import cache
 from typing import Any
 
@@ -20,6 +19,7 @@ from numpy.polynomial.legendre import leggauss
 from numpy.typing import NDArray
 from scipy.special import ndtri
 
+from mcgw.in_threads import in_threads
 from mcgw.moments import Layout
 from mcgw.philox import MOMENTS, centred
 
@@ -124,11 +124,12 @@ def add_gaussian_moments(seed: int, first: int, counts: Ints, layout: Layout, mo
         law = _law_of_moments(int(layout.plain[cell]), int(layout.rooted[cell]))
         means[start : start + size], roots[start : start + size, :size] = law
     words = _words(np.uint64(seed), first, rows, counts.shape[1])
-    with ThreadPoolExecutor(get_num_threads()) as pool:  # SciPy computes without Python's lock
-        z = np.concatenate(list(pool.map(_normal, np.array_split(words, get_num_threads()))))
-    _mix(moments, counts[crowded], rows, (starts, sizes, means, roots), z)
+    in_threads(_make_normal, np.array_split(words, get_num_threads()))
+    _mix(moments, counts[crowded], rows, (starts, sizes, means, roots), words)
 
 
-def _normal(x: Array) -> Array:
-    """Normal numbers of centred uniforms."""
-    return np.asarray(ndtri((1 + x) / 2))
+def _make_normal(x: Array) -> None:
+    """Turn centred uniforms into normal numbers, in place."""
+    x += 1
+    x /= 2
+    ndtri(x, out=x)

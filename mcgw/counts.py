@@ -5,16 +5,16 @@ child is binomial with the child's share. So the cells are multinomial, or indep
 every probability a ratio of sums of positive terms: accurate however far into the tail.
 """
 
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
 import numpy as np
-from numba import get_num_threads, njit
+from numba import njit
 from numpy.typing import NDArray
 
 from mcgw.cells import Mesh
+from mcgw.in_threads import in_threads
 from mcgw.scene import Scene
 
 __all__ = ["Counts", "counts_of", "generator", "strata_of"]
@@ -65,8 +65,7 @@ def counts_of(scene: Scene, mesh: Mesh, first: int, n: int) -> Counts:
     """
     halvings = _halvings(np.concatenate([[mesh.low_extras], mesh.probability, [mesh.high_extras]]))
     groups = range(first // GROUP, -(-(first + n) // GROUP))
-    with ThreadPoolExecutor(get_num_threads()) as pool:  # drawn without Python's lock
-        drawn = np.concatenate(list(pool.map(partial(_group, scene, halvings), groups)), axis=1)
+    drawn = np.concatenate(in_threads(partial(_group, scene, halvings), groups), axis=1)
     skip = first - groups[0] * GROUP
     chosen = drawn[:, skip : skip + n]
     weights = np.ones(mesh.size + 2)

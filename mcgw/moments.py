@@ -57,11 +57,11 @@ def _sum_cells(
     for at in range(bounds[0], bounds[1]):
         cell, surface = at // surfaces, at % surfaces
         n, start = counts[cell, surface], starts[cell]
-        if n == 0:
-            continue
         plain, rooted = orders[cell, 0], orders[cell, 1]
         strata = n if stratified else 0
-        if n <= _PIECE:
+        if n == 0:
+            w[PLAIN:WORDS] = 0.0
+        elif n <= _PIECE:
             sum_uniforms(w, seed, first + surface, cell, 0, n, strata, (plain, rooted))
         else:
             _sum_pieces(w, seed, first + surface, cell, n, strata, (plain, rooted))
@@ -76,7 +76,7 @@ def _all_cells(
     seed: Any, first: Any, counts: Any, starts: Any, orders: Any, bounds: Any, stratified: Any
 ) -> Any:
     """Every thread has a run of cells: no number of threads changes the order of a sum."""
-    moments = np.zeros((starts[-1], counts.shape[1]))
+    moments = np.empty((starts[-1], counts.shape[1]))
     for thread in prange(bounds.size - 1):
         _sum_cells(seed, first, counts, starts, orders, bounds[thread : thread + 2], stratified, moments)
     return moments

@@ -73,18 +73,22 @@ def _apply(pointers: Any, columns: Any, values: Any, moments: Any, answers: int)
     for chunk in prange((surfaces + _WIDTH - 1) // _WIDTH):
         first = chunk * _WIDTH
         n = min(_WIDTH, surfaces - first)
-        table = np.zeros((given + computed, _WIDTH))
+        table = np.empty((given + computed + _FOUR, _WIDTH))
+        table[:given, n:] = 0.0
         table[:given, :n] = moments[:, first : first + n]
         _fill(table.reshape(-1), given, pointers, columns, values)
-        result[:, first : first + n] = table[given + computed - answers :, :n]
+        result[:, first : first + n] = table[given + computed - answers : given + computed, :n]
     return result
 
 
 @njit(nogil=True, cache=True)
 def _fill(table: Any, given: int, pointers: Any, columns: Any, values: Any) -> None:
     """Compute all rows of a flat table. Unsigned places, for a signed one may count from the end."""
+    table[given * _WIDTH : (given + _FOUR) * _WIDTH] = 0.0
     for r in range(pointers.size - 1):
         row = np.uint64((given + r) * _WIDTH)
+        for k in range(_WIDTH):  # a block may reach so far beyond what is computed
+            table[row + np.uint64(_FOUR * _WIDTH + k)] = 0.0
         for block in range(pointers[r], pointers[r + 1]):
             a, b, c, d = values[block, 0], values[block, 1], values[block, 2], values[block, 3]
             ka = columns[block] * np.uint64(_WIDTH)

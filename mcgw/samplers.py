@@ -23,6 +23,7 @@ from mcgw.extras import extra_heights
 from mcgw.hertz import hertz_sums
 from mcgw.moments import Layout, cell_moments
 from mcgw.response import Response, response_of
+from mcgw.room import keep_freed_memory
 from mcgw.scene import Scene
 
 __all__ = ["Block", "Cells", "Direct", "Sampler", "response_to", "sampler_of"]
@@ -92,6 +93,7 @@ def sampler_of(scene: Scene) -> "Sampler":
         "stratified": partial(mesh_of, split=False, rare=1e-9),
     }
     mesh = meshes[name](scene)
+    keep_freed_memory()
     return Cells(scene, mesh, response_to(scene, mesh), name)
 
 

@@ -18,8 +18,8 @@ from mcgw.stopping import Running, checkpoints, decide
 
 __all__ = ["block_size", "blocks", "kept", "simulate", "use_threads"]
 
-_WORDS = 4_000_000  # numbers a block may hold
-_DRAWS = 1e8  # asperities a block may draw, so that a bar moves every second
+_WORDS = 8_000_000  # numbers a block may hold
+_DRAWS = 1.5e8  # asperities a block may draw, so that a bar moves every second
 
 
 def simulate(

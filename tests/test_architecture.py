@@ -26,6 +26,7 @@ ORDER = (
     "scene_file",
     "hertz",
     "spacing",
+    "in_threads",
     "cells",
     "tree",
     "uniform_sums",
