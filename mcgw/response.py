@@ -59,17 +59,18 @@ class Response:
     shape: tuple[int, int]
 
     def __matmul__(self, moments: Array) -> Array:
-        """Quantities of every surface: moments (rows, surfaces) to (quantities, separations, surfaces)."""
-        answers = _apply(self.pointers, self.columns, self.values, moments, self.shape[0] * self.shape[1])
-        return np.asarray(answers).reshape(*self.shape, moments.shape[1])
+        """Quantities of every surface: moments (rows, surfaces) to (quantities, surfaces, separations)."""
+        return np.asarray(_apply(self.pointers, self.columns, self.values, moments, self.shape))
 
 
 @njit(parallel=True, cache=True)
-def _apply(pointers: Any, columns: Any, values: Any, moments: Any, answers: int) -> Any:
+def _apply(pointers: Any, columns: Any, values: Any, moments: Any, shape: Any) -> Any:
     """All rows for so many surfaces at a time; the sum over a row has one order, whatever the block."""
     given, surfaces = moments.shape
+    quantities, separations = shape
     computed = pointers.size - 1
-    result = np.zeros((answers, surfaces))
+    answers = given + computed - quantities * separations
+    result = np.empty((quantities, surfaces, separations))
     for chunk in prange((surfaces + _WIDTH - 1) // _WIDTH):
         first = chunk * _WIDTH
         n = min(_WIDTH, surfaces - first)
@@ -77,7 +78,10 @@ def _apply(pointers: Any, columns: Any, values: Any, moments: Any, answers: int)
         table[:given, n:] = 0.0
         table[:given, :n] = moments[:, first : first + n]
         _fill(table.reshape(-1), given, pointers, columns, values)
-        result[:, first : first + n] = table[given + computed - answers : given + computed, :n]
+        for q in range(quantities):
+            for i in range(n):
+                for k in range(separations):
+                    result[q, first + i, k] = table[answers + q * separations + k, i]
     return result
 
 

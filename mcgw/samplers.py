@@ -209,15 +209,17 @@ class Cells:
         dict of str to ndarray
             Each quantity in SI units, shape (surfaces, separations).
         """
-        scene, n = self.scene, moments.shape[1]
-        numbers = np.bincount(extras[:, 0].astype(np.int64) - first, minlength=n)
-        sums = hertz_sums(
-            scene, numbers, np.ascontiguousarray(extras[:, 1]), np.ascontiguousarray(extras[:, 2])
-        )
+        scene = self.scene
+        once, column = np.unique(scene.separations, return_inverse=True)
+        columns = slice(None) if np.array_equal(once, scene.separations) else column
         answers = iter(self.response @ moments)
-        column = np.searchsorted(sorted(set(scene.separations)), scene.separations)
+        sums = {}
         for name in scene.quantities:
-            sums[name] += self._contacts(counts) if name == "contacts" else next(answers).T[:, column]
+            sums[name] = self._contacts(counts) if name == "contacts" else next(answers)[:, columns]
+        where, numbers = np.unique(extras[:, 0].astype(np.int64) - first, return_counts=True)
+        heights, weights = np.ascontiguousarray(extras[:, 1:].T)
+        for name, values in hertz_sums(scene, numbers, heights, weights).items():
+            sums[name][where] += values
         return sums
 
     def _contacts(self, counts: Array) -> Array:
