@@ -24,12 +24,12 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from mcgw.asperities import heights
     from mcgw.ensemble import Ensemble
+    from mcgw.sampling.asperities import heights
     from mcgw.scene import Scene, SceneError
     from mcgw.scene_file import load_scene, scene_from, scene_text
     from mcgw.simulation import simulate
-    from mcgw.store import open_ensemble
+    from mcgw.store.ensembles import open_ensemble
 
 __all__ = [
     "Ensemble",
@@ -52,9 +52,9 @@ _HOME = {
     "Ensemble": "ensemble",
     "Scene": "scene",
     "SceneError": "scene",
-    "heights": "asperities",
+    "heights": "sampling.asperities",
     "load_scene": "scene_file",
-    "open_ensemble": "store",
+    "open_ensemble": "store.ensembles",
     "scene_from": "scene_file",
     "scene_text": "scene_file",
     "simulate": "simulation",

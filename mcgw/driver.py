@@ -12,7 +12,7 @@ from typing import Any
 
 from mcgw.engines import Engine, EngineLostError, WorkerDiedError
 from mcgw.errors import RunError, StoppedError
-from mcgw.shards import Span
+from mcgw.store.shards import Span
 
 __all__ = ["Signals", "drive", "heed_signals"]
 

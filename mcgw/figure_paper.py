@@ -10,10 +10,10 @@ from numpy.typing import NDArray
 
 import analytic
 from analytic import QUANTITIES, Exponential
-from mcgw.asperities import heights
 from mcgw.ensemble import Ensemble
 from mcgw.figure_data import FigureData, Panel, Points, Series, ratio_of_sums
 from mcgw.regrade import paired_ratio, regrade
+from mcgw.sampling.asperities import heights
 from mcgw.scene import Scene
 from mcgw.simulation import simulate
 

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import analytic
-from mcgw.samplers import Sampler
+from mcgw.sampling.samplers import Sampler
 from mcgw.scene import Scene
 from mcgw.simulation import block_size
 from mcgw.stopping import checkpoints, z_of

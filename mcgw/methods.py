@@ -14,11 +14,11 @@ from numpy.typing import NDArray
 from scipy.integrate import quad
 
 import analytic
-from mcgw.asperities import heights
-from mcgw.cells import mesh_of
-from mcgw.hertz import hertz_sums
-from mcgw.response import response_of
-from mcgw.samplers import Cells, Sampler, response_to, sampler_of
+from mcgw.sampling.asperities import heights
+from mcgw.sampling.cells import mesh_of
+from mcgw.sampling.hertz import hertz_sums
+from mcgw.sampling.response import response_of
+from mcgw.sampling.samplers import Cells, Sampler, response_to, sampler_of
 from mcgw.scene import Scene
 from mcgw.simulation import blocks
 

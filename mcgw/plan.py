@@ -6,7 +6,7 @@ import numpy as np
 
 from analytic import QUANTITIES
 from mcgw.forecast import forecast, seconds_per_surface
-from mcgw.samplers import Cells, sampler_of
+from mcgw.sampling.samplers import Cells, sampler_of
 from mcgw.scene import Scene
 from mcgw.simulation import use_threads
 

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from analytic import Grading
 from mcgw.ensemble import Arrays, Ensemble
-from mcgw.samplers import Block, Cells, response_to, sampler_of
+from mcgw.sampling.samplers import Block, Cells, response_to, sampler_of
 from mcgw.simulation import kept
 
 __all__ = ["Paired", "paired_ratio", "regrade"]

@@ -1,29 +1,28 @@
-"""From a scene to its file: begin, go on, extend, merge."""
+"""From a scene to its file: begin, go on, extend."""
 
-import os
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from time import perf_counter
 from typing import Any
 
-from mcgw.child import ChildError, run_child
-from mcgw.disk import check_output, remove_stale, sync, temporary_beside
 from mcgw.driver import Signals, drive, heed_signals
 from mcgw.engines import Engine, Threads
 from mcgw.ensemble import Arrays, Ensemble
 from mcgw.errors import RunError, StoreError
+from mcgw.joining import clear, merge_once, missing_of
 from mcgw.room import check_room
-from mcgw.rundir import Run, missing, parts_of
-from mcgw.samplers import Sampler, sampler_of
+from mcgw.sampling.samplers import Sampler, sampler_of
 from mcgw.scene import Scene
 from mcgw.scene_file import scene_from, scene_text
-from mcgw.shards import Span
-from mcgw.store import finished, open_ensemble, save
+from mcgw.store.disk import check_output
+from mcgw.store.ensembles import finished, open_ensemble, save
+from mcgw.store.rundir import Run, parts_of
+from mcgw.store.shards import Span
 from mcgw.work import columns, commit_block, draw, shard_size
 
-__all__ = ["Part", "merge", "run", "run_part"]
+__all__ = ["Part", "run", "run_part"]
 
 Progress = Callable[[int], Any]
 _ROUNDS = 3  # of merging, if shards turn out damaged
@@ -104,7 +103,7 @@ def run(
     path = Path(path)
     sampler, size, done = _prepare(scene, path, threads)
     if done == scene.n_surfaces:
-        _clear(path, scene, sampler)
+        clear(path, scene, sampler.name)
         (progress or _silent)(done)
         return open_ensemble(path)
     with heed_signals() as signals, _engine_or_threads(engine) as drawing:
@@ -124,7 +123,7 @@ def run_part(
     threads: int | None = None,
     progress: Progress | None = None,
 ) -> int:
-    """Draw one job's share of the blocks; `merge` makes the file once all are there.
+    """Draw one job's share of the blocks; `mcgw.joining.merge` makes the file once all are there.
 
     Parameters
     ----------
@@ -156,44 +155,7 @@ def run_part(
     started = Run.begin(parts_of(path), scene, sampler.name, size)
     with heed_signals() as signals, started.locked(shared=True), _engine_or_threads(None) as drawing:
         _draw_missing(started, done, _Session(drawing, threads, progress or _silent, signals), part)
-        return sum(span.n for span in _missing(started, done))
-
-
-def merge(path: str | Path) -> Ensemble:
-    """Make the file of a run whose blocks are all there.
-
-    Parameters
-    ----------
-    path : str or Path
-        The file to be.
-
-    Returns
-    -------
-    Ensemble
-        That reads from it.
-
-    Raises
-    ------
-    StoreError
-        If there is no such run.
-    RunError
-        If blocks are missing, or the disk does not take the file.
-    """
-    path = Path(path)
-    if path.exists() and not parts_of(path).exists():
-        return open_ensemble(path)
-    started = Run.open(parts_of(path))
-    with heed_signals() as signals, started.locked():
-        done = finished(path, started.scene, started.sampler)
-        shards = started.sweep()
-        gaps = missing(started.scene.n_surfaces, started.size, _held(done, shards))
-        if gaps:
-            raise RunError(
-                f"{path}: {sum(span.n for span in gaps)} of {started.scene.n_surfaces} surfaces are missing, "
-                f"from {gaps[0].first} on; run the jobs that make them again"
-            )
-        _merge_once(started, path, signals)
-    return open_ensemble(path)
+        return sum(span.n for span in missing_of(started, done))
 
 
 def _prepare(scene: Scene, path: Path, threads: int | None) -> tuple[Sampler, int, int]:
@@ -266,7 +228,7 @@ def _in_blocks(scene: Scene, sampler: Sampler, path: Path, size: int, session: _
                 started.sweep()
                 done = finished(path, scene, sampler.name)
                 _draw_missing(started, done, session)
-                if _merge_once(started, path, session.signals):
+                if merge_once(started, path, session.signals):
                     return
     except OSError as error:
         raise RunError(
@@ -276,17 +238,9 @@ def _in_blocks(scene: Scene, sampler: Sampler, path: Path, size: int, session: _
     raise RunError(f"{parts_of(path)}: shards are damaged again and again; is the disk failing?")
 
 
-def _held(done: int, shards: Any) -> list[Span]:
-    return [*([Span(0, done)] if done else []), *(shard.span for shard in shards)]
-
-
-def _missing(started: Run, done: int) -> list[Span]:
-    return missing(started.scene.n_surfaces, started.size, _held(done, started.shards()))
-
-
 def _draw_missing(started: Run, done: int, session: _Session, part: Part | None = None) -> None:
     """Commit every block that is missing, or of these a job's share."""
-    spans = _missing(started, done)
+    spans = missing_of(started, done)
     count = started.scene.n_surfaces - sum(span.n for span in spans)
     if part:
         spans = [span for span in spans if part.mine(span, started.size)]
@@ -310,42 +264,3 @@ def _draw_missing(started: Run, done: int, session: _Session, part: Part | None 
     session.signals.check(
         f"{count} of {total} surfaces are kept in {started.folder}; the same command goes on"
     )
-
-
-def _merge_once(started: Run, path: Path, signals: Signals) -> bool:
-    """Make the file and remove the shards; False if a shard turned out damaged."""
-    temporary = temporary_beside(started.folder / path.name)
-    try:
-        _merge_in_child(started.folder, path, temporary)
-        os.replace(temporary, path)
-        sync(path.parent)
-    except ChildError as error:
-        signals.check(f"all blocks are kept in {started.folder}; the same command merges them")
-        if error.how == "exit code 3":
-            return False
-        raise RunError(
-            f"{path}: cannot be merged ({error}); is the disk full? All blocks are kept in "
-            f"{started.folder}, the same command goes on"
-        ) from None
-    finally:
-        with suppress(OSError):
-            temporary.unlink()
-    started.remove()
-    return True
-
-
-def _merge_in_child(folder: Path, path: Path, temporary: Path) -> None:
-    run_child("mcgw.merge", str(folder), str(path), str(temporary))
-
-
-def _clear(path: Path, scene: Scene, sampler: Sampler) -> None:
-    """Remove the folder of a run whose file was finished just before it died."""
-    remove_stale(path)
-    folder = parts_of(path)
-    if (folder / "run.toml").is_file():
-        left = Run.begin(folder, scene, sampler.name, 1)
-        with left.locked():
-            left.remove()
-    for empty in (folder / "shards", folder):
-        with suppress(OSError):  # it is not there, or not empty
-            empty.rmdir()

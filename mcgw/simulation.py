@@ -9,10 +9,10 @@ from typing import Any
 import numba
 import numpy as np
 
-from mcgw.counts import GROUP
 from mcgw.ensemble import Arrays, Ensemble
 from mcgw.room import check_memory
-from mcgw.samplers import Block, Cells, Sampler, sampler_of
+from mcgw.sampling.counts import GROUP
+from mcgw.sampling.samplers import Block, Cells, Sampler, sampler_of
 from mcgw.scene import Scene
 from mcgw.stopping import Running, checkpoints, decide
 

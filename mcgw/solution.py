@@ -9,7 +9,7 @@ from scipy.stats import t as student
 
 import analytic
 from analytic import QUANTITIES, Quantity
-from mcgw.asperities import heights
+from mcgw.sampling.asperities import heights
 from mcgw.scene import Scene
 
 __all__ = ["Solution", "separation_on", "solve"]

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from scipy.stats import norm
 from scipy.stats import t as student
 
-from mcgw.counts import GROUP
+from mcgw.sampling.counts import GROUP
 from mcgw.scene import Scene
 
 __all__ = ["CONFIDENCE", "Decision", "Running", "checkpoints", "decide", "upper_contacts", "z_of"]

@@ -12,7 +12,7 @@ from mcgw.forecast import forecast
 from mcgw.running import run
 from mcgw.scene import Scene
 from mcgw.stopping import Running, checkpoints, decide
-from mcgw.store import open_ensemble
+from mcgw.store.ensembles import open_ensemble
 
 __all__ = ["run_until_known"]
 

@@ -6,11 +6,11 @@ from time import perf_counter
 import numpy as np
 
 from mcgw.errors import RunError
-from mcgw.rundir import Run, identity_of
-from mcgw.samplers import Sampler, sampler_of
+from mcgw.sampling.samplers import Sampler, sampler_of
 from mcgw.scene import Scene
-from mcgw.shards import Arrays, Span, commit_shard
 from mcgw.simulation import block_size, kept, use_threads
+from mcgw.store.rundir import Run, identity_of
+from mcgw.store.shards import Arrays, Span, commit_shard
 
 __all__ = ["columns", "commit_block", "draw", "shard_size"]
 

@@ -10,11 +10,11 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
 import mcgw
-from mcgw.cells import mesh_of
 from mcgw.figure_more import more_figures
 from mcgw.figure_paper import Samples
 from mcgw.figures import draw
 from mcgw.plots import STYLE
+from mcgw.sampling.cells import mesh_of
 
 HERE = Path(__file__).parent
 FOLDER = HERE / "pictures"

@@ -9,9 +9,9 @@ from scipy.stats import kurtosis, skew
 
 import analytic
 import mcgw
-from mcgw import samplers
-from mcgw.aggregate import _law_of_moments
 from mcgw.ensemble import Arrays, Ensemble
+from mcgw.sampling import samplers
+from mcgw.sampling.aggregate import _law_of_moments
 
 GATE = 5.0
 

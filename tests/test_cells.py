@@ -5,10 +5,10 @@ import numpy as np
 import pytest
 
 import analytic
-from mcgw.cells import mesh_of, no_cells
-from mcgw.counts import GROUP, _halvings, counts_of, generator
-from mcgw.samplers import sampler_of
-from mcgw.spacing import cuts
+from mcgw.sampling.cells import mesh_of, no_cells
+from mcgw.sampling.counts import GROUP, _halvings, counts_of, generator
+from mcgw.sampling.samplers import sampler_of
+from mcgw.sampling.spacing import cuts
 
 
 def mass(a, b):

@@ -8,7 +8,7 @@ from oracles import sums_of_heights
 
 import analytic
 import mcgw
-from mcgw.samplers import sampler_of
+from mcgw.sampling.samplers import sampler_of
 
 GRADINGS = {
     "gamma 0": analytic.Exponential(0.0),

@@ -10,14 +10,15 @@ from pathlib import Path
 
 import pytest
 
-from mcgw import running, store
+from mcgw import running
 from mcgw.dask_engine import Dask, check_address
 from mcgw.driver import Signals, drive
 from mcgw.engines import Processes, Threads
 from mcgw.errors import RunError
-from mcgw.rundir import parts_of
 from mcgw.running import run
-from mcgw.shards import Span
+from mcgw.store import ensembles
+from mcgw.store.rundir import parts_of
+from mcgw.store.shards import Span
 
 SIZE, SURFACES = 8, 72
 HERE = Path(__file__).parent
@@ -38,7 +39,7 @@ def scene(make_scene):
 
 
 def digest(path):
-    problem, found = store.verify(path)
+    problem, found = ensembles.verify(path)
     assert problem == ""
     return found
 

@@ -14,9 +14,9 @@ from scipy.special import log_ndtr
 
 import analytic
 import mcgw
-from mcgw.counts import counts_of
-from mcgw.moments import Layout, _add_compensated, cell_moments
-from mcgw.samplers import sampler_of
+from mcgw.sampling.counts import counts_of
+from mcgw.sampling.moments import Layout, _add_compensated, cell_moments
+from mcgw.sampling.samplers import sampler_of
 from mcgw.scene import Scene, SceneError
 
 GAMMA_STAR = math.exp(0.5) / (math.exp(0.5) - 1)

@@ -25,8 +25,8 @@ from analytic import (
     ScipyHeights,
     Weibull,
 )
-from mcgw.asperities import heights
-from mcgw.hertz import hertz_sums
+from mcgw.sampling.asperities import heights
+from mcgw.sampling.hertz import hertz_sums
 
 SAMPLE = np.random.default_rng(1).weibull(1.6, size=3000)
 LAWS = {

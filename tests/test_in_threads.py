@@ -4,7 +4,7 @@ import threading
 
 import pytest
 
-from mcgw.in_threads import in_threads
+from mcgw.sampling.in_threads import in_threads
 from mcgw.simulation import use_threads
 
 

@@ -13,11 +13,11 @@ import pytest
 
 import analytic
 import mcgw
-from mcgw import guard, store
-from mcgw.child import ChildError, run_child
 from mcgw.errors import StoreError
 from mcgw.running import run
 from mcgw.scene import Scene
+from mcgw.store import ensembles, guard
+from mcgw.store.child import ChildError, run_child
 
 TESTS = Path(__file__).parent
 SECRET = "key = correct horse battery staple"
@@ -221,7 +221,7 @@ def test_a_child_that_crashes_hangs_or_is_greedy_is_an_error(path, monkeypatch, 
     (tmp_path / "crash.py").write_text("import os\nos.abort()\n")
     (tmp_path / "hang.py").write_text("import time\ntime.sleep(60)\n")
     (tmp_path / "greedy.py").write_text(
-        "from mcgw.child import limit_memory\nlimit_memory(2**28)\nx = bytearray(2**30)\n"
+        "from mcgw.store.child import limit_memory\nlimit_memory(2**28)\nx = bytearray(2**30)\n"
     )
     monkeypatch.setenv("PYTHONPATH", str(tmp_path))
     with pytest.raises(ChildError, match="crashed with SIGABRT"):
@@ -279,6 +279,6 @@ def test_more_fuzzed_input(kind, count):
 def test_verify_names_what_is_wrong_with_a_hostile_file(path):
     with h5py.File(path, "r+") as data:
         soft_loop(data, path.parent)
-    problem, found = store.verify(path)
+    problem, found = ensembles.verify(path)
     assert "a link to another place" in problem
     assert found == "unreadable"

@@ -13,11 +13,11 @@ import pytest
 import analytic
 import mcgw
 from mcgw import running
-from mcgw.disk import check_output
 from mcgw.errors import StoreError
 from mcgw.room import check_room, memory_available
 from mcgw.running import run
 from mcgw.scene import SceneError
+from mcgw.store.disk import check_output
 from mcgw.validity import notes
 
 GOOD = """
@@ -315,7 +315,7 @@ def row_56_block_sizes(make, tmp_path, monkeypatch):
 def row_58_clocks(make, tmp_path, monkeypatch):
     found = []
     for date in ("1970-01-01T00:00:00+00:00", "2038-01-20T00:00:00+00:00"):
-        monkeypatch.setattr("mcgw.layout.now", lambda date=date: date)
+        monkeypatch.setattr("mcgw.store.layout.now", lambda date=date: date)
         run(make(n_surfaces=3), tmp_path / f"{len(found)}.h5")
         with h5py.File(tmp_path / f"{len(found)}.h5") as file:
             assert file.attrs["date"] == date

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.stats import kstest
 
-from mcgw.philox import CELLS, EXTRAS, centred, philox, uniforms
+from mcgw.sampling.philox import CELLS, EXTRAS, centred, philox, uniforms
 
 # Random123, kat_vectors: philox4x32 10, counter, key, output.
 KNOWN = [

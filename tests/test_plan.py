@@ -6,7 +6,7 @@ import pytest
 import analytic
 from mcgw.cli import main
 from mcgw.plan import plan_of, plan_text
-from mcgw.samplers import sampler_of
+from mcgw.sampling.samplers import sampler_of
 
 
 def test_plan_says_what_is_drawn(make_scene):

@@ -9,7 +9,7 @@ import analytic
 import mcgw
 from mcgw.regrade import paired_ratio, regrade
 from mcgw.running import run
-from mcgw.store import save
+from mcgw.store.ensembles import save
 
 H = tuple(np.linspace(0, 4, 21))
 
@@ -110,7 +110,7 @@ def test_what_cannot_be_regraded(base, make_scene):
 
 def test_moments_of_another_version(base, monkeypatch):
     """Cells priced otherwise are other cells: their moments must not be taken for these."""
-    monkeypatch.setattr("mcgw.spacing._CELL", 4000.0)
+    monkeypatch.setattr("mcgw.sampling.spacing._CELL", 4000.0)
     with pytest.raises(ValueError, match="another version of mcgw"):
         regrade(base, analytic.Exponential(0.5))
 

@@ -16,7 +16,7 @@ from mcgw.cli import main
 from mcgw.doubts import doubts
 from mcgw.report_html import _number, _with_error, report_html
 from mcgw.running import run
-from mcgw.store import read_attributes
+from mcgw.store.ensembles import read_attributes
 
 QUICK = Path(__file__).parent.parent / "runs" / "quick.toml"
 BROWSER = shutil.which("chromium") or shutil.which("google-chrome")

@@ -5,8 +5,8 @@ import pytest
 
 import analytic
 import mcgw
-from mcgw.moments import Layout, cell_moments
-from mcgw.samplers import sampler_of
+from mcgw.sampling.moments import Layout, cell_moments
+from mcgw.sampling.samplers import sampler_of
 from mcgw.scene import SAMPLERS
 
 

@@ -9,11 +9,11 @@ from hypothesis import strategies as st
 
 import analytic
 import mcgw
-from mcgw.rundir import missing
-from mcgw.samplers import sampler_of
+from mcgw.sampling.samplers import sampler_of
 from mcgw.scene import SAMPLERS, Scene
-from mcgw.seal import Seal
-from mcgw.shards import Span
+from mcgw.store.rundir import missing
+from mcgw.store.seal import Seal
+from mcgw.store.shards import Span
 
 settings.register_profile("fixed", derandomize=True, deadline=None, max_examples=40)
 settings.load_profile("fixed")
@@ -120,7 +120,7 @@ def test_gaps_and_what_is_held_make_the_whole(n, size, cuts):
 def test_no_bytes_are_taken_for_a_seal(data):
     try:
         Seal.from_bytes(data)
-    except mcgw.store.StoreError:
+    except mcgw.store.ensembles.StoreError:
         return
     raise AssertionError(data)
 

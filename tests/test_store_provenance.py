@@ -12,11 +12,11 @@ import pytest
 
 import analytic
 import mcgw
-from mcgw import store
 from mcgw.errors import StoreError
 from mcgw.running import run
-from mcgw.samplers import sampler_of
+from mcgw.sampling.samplers import sampler_of
 from mcgw.scene import SAMPLERS, Scene
+from mcgw.store import ensembles
 
 GOLDEN = Path(__file__).parent / "golden_samplers.json"
 
@@ -34,11 +34,11 @@ GOLDEN = Path(__file__).parent / "golden_samplers.json"
 )
 def test_the_scene_in_a_file_reproduces_its_digest(make_scene, tmp_path, change):
     run(make_scene(n_surfaces=10, title='Ra = 1 \u00b5m, "quoted"', **change), tmp_path / "a.h5")
-    attributes = store.read_attributes(tmp_path / "a.h5")
+    attributes = ensembles.read_attributes(tmp_path / "a.h5")
     again = mcgw.scene_from(attributes["scene"])
     run(again, tmp_path / "b.h5")
-    assert store.read_attributes(tmp_path / "b.h5")["digest"] == attributes["digest"]
-    assert store.verify(tmp_path / "b.h5") == ("", attributes["digest"])
+    assert ensembles.read_attributes(tmp_path / "b.h5")["digest"] == attributes["digest"]
+    assert ensembles.verify(tmp_path / "b.h5") == ("", attributes["digest"])
 
 
 def test_what_is_recorded(make_scene, tmp_path):
@@ -56,9 +56,9 @@ def test_a_scene_without_a_seed_goes_on_with_the_recorded_one(tmp_path):
     text = (Path(__file__).parent.parent / "runs" / "quick.toml").read_text()
     scene, path = tmp_path / "s.toml", tmp_path / "e.h5"
     scene.write_text("\n".join(line for line in text.splitlines() if not line.startswith("seed")))
-    first = mcgw.load_scene(scene, seed=lambda: store.recorded_seed(path))
+    first = mcgw.load_scene(scene, seed=lambda: ensembles.recorded_seed(path))
     run(first, path)
-    assert mcgw.load_scene(scene, seed=lambda: store.recorded_seed(path)) == first
+    assert mcgw.load_scene(scene, seed=lambda: ensembles.recorded_seed(path)) == first
     assert mcgw.load_scene(scene).seed != first.seed
 
 
@@ -136,7 +136,7 @@ def test_digests_of_two_processes_are_equal(make_scene, tmp_path):
         words = ["run", scene, "-o", path, "--threads", threads]
         call = [sys.executable, "-m", "mcgw", *map(str, words)]
         subprocess.run(call, env=env, check=True, capture_output=True)
-        found.add(store.read_attributes(path)["digest"])
+        found.add(ensembles.read_attributes(path)["digest"])
     assert len(found) == 1
 
 

@@ -16,13 +16,15 @@ import numpy as np
 import pytest
 
 import mcgw
-from mcgw import merge as merging
-from mcgw import probe, running, store, work
-from mcgw.child import ChildError
+from mcgw import joining, running, work
 from mcgw.errors import RunError, StoppedError, StoreError
-from mcgw.rundir import Run, missing, parts_of
-from mcgw.running import Part, merge, run, run_part
-from mcgw.shards import Span
+from mcgw.joining import merge
+from mcgw.running import Part, run, run_part
+from mcgw.store import ensembles, probe
+from mcgw.store import merge as merging
+from mcgw.store.child import ChildError
+from mcgw.store.rundir import Run, missing, parts_of
+from mcgw.store.shards import Span
 
 SIZE, SURFACES = 16, 100
 HERE = Path(__file__).parent
@@ -41,8 +43,8 @@ def small_blocks(monkeypatch):
 @pytest.fixture(autouse=True)
 def _in_this_process(request, monkeypatch):
     """Merge and look here: children take most of the time. Tests of the command line have them."""
-    monkeypatch.setattr(running, "_merge_in_child", merged_here)
-    monkeypatch.setattr(store, "examine", lambda path: probe.describe(str(path)))
+    monkeypatch.setattr(joining, "_merge_in_child", merged_here)
+    monkeypatch.setattr(ensembles, "examine", lambda path: probe.describe(str(path)))
 
 
 def merged_here(folder, path, temporary):
@@ -75,7 +77,7 @@ def halted(scene, path, surfaces):
 
 
 def digest(path):
-    problem, found = store.verify(path)
+    problem, found = ensembles.verify(path)
     assert problem == ""
     return found
 
@@ -118,7 +120,7 @@ def test_moments_are_kept_through_shards_and_extension(small_blocks, make_scene,
     whole = mcgw.simulate(scene)
     for name in ("load", "moments", "cells", "extras"):
         np.testing.assert_array_equal(grown.sums.read(name, 0, None), whole.sums.read(name, 0, None))
-    assert digest(tmp_path / "e.h5") == store.read_attributes(tmp_path / "e.h5")["digest"]
+    assert digest(tmp_path / "e.h5") == ensembles.read_attributes(tmp_path / "e.h5")["digest"]
 
 
 def test_n_surfaces_is_the_total(small_blocks, scene, tmp_path, expected):
@@ -126,10 +128,10 @@ def test_n_surfaces_is_the_total(small_blocks, scene, tmp_path, expected):
     path = tmp_path / "e.h5"
     run(replace(scene, n_surfaces=5), path)
     run(replace(scene, n_surfaces=37), path)
-    assert store.open_ensemble(path).n_surfaces == 37
+    assert ensembles.open_ensemble(path).n_surfaces == 37
     with pytest.raises(HaltError):
         run(replace(scene, n_surfaces=90), path, progress=stop_after(64))
-    assert store.open_ensemble(path).n_surfaces == 37  # the finished file stays as it is
+    assert ensembles.open_ensemble(path).n_surfaces == 37  # the finished file stays as it is
     run(scene, path)
     assert digest(path) == expected
     with pytest.raises(StoreError, match="holds 100 surfaces already"):
@@ -162,7 +164,7 @@ def test_another_scene_or_seed_in_that_place_is_refused(small_blocks, scene, tmp
 def test_another_version_is_refused(small_blocks, scene, tmp_path, monkeypatch):
     path = tmp_path / "e.h5"
     halted(scene, path, 40)
-    monkeypatch.setattr("mcgw.rundir.versions", lambda **_: "mcgw 99")
+    monkeypatch.setattr("mcgw.store.rundir.versions", lambda **_: "mcgw 99")
     with pytest.raises(StoreError, match=r"drawn with .*, this is mcgw 99"):
         run(scene, path)
 
@@ -185,7 +187,7 @@ def test_damage_is_put_aside_and_drawn_again(small_blocks, scene, tmp_path, expe
     shards[1].write_bytes(shards[1].read_bytes()[:-700])  # truncated
     shards[2].write_bytes(shards[3].read_bytes())  # another block
     (shards[3].parent / ".left.tmp").write_bytes(b"half")
-    assert store.open_ensemble(path).n_surfaces <= 32
+    assert ensembles.open_ensemble(path).n_surfaces <= 32
     with pytest.raises(HaltError):
         run(scene, path, progress=stop_after(0))
     assert len(list(parts_of(path).glob("shards/*.bad"))) == 3
@@ -195,15 +197,15 @@ def test_damage_is_put_aside_and_drawn_again(small_blocks, scene, tmp_path, expe
 
 
 def test_damage_found_while_merging_is_mended(small_blocks, scene, tmp_path, expected, monkeypatch):
-    path, merged = tmp_path / "e.h5", running._merge_in_child
+    path, merged = tmp_path / "e.h5", joining._merge_in_child
 
     def damage_first(folder, *rest):
-        monkeypatch.setattr(running, "_merge_in_child", merged)
+        monkeypatch.setattr(joining, "_merge_in_child", merged)
         shard = min(folder.glob("shards/*.h5"))
         shard.write_bytes(shard.read_bytes()[:-1])
         merged(folder, *rest)
 
-    monkeypatch.setattr(running, "_merge_in_child", damage_first)
+    monkeypatch.setattr(joining, "_merge_in_child", damage_first)
     run(scene, path)
     assert digest(path) == expected
 
@@ -211,12 +213,12 @@ def test_damage_found_while_merging_is_mended(small_blocks, scene, tmp_path, exp
 def test_a_run_in_progress_can_be_read(small_blocks, scene, tmp_path):
     path = tmp_path / "e.h5"
     halted(scene, path, 48)
-    ensemble, whole = store.open_ensemble(path), mcgw.simulate(scene)
+    ensemble, whole = ensembles.open_ensemble(path), mcgw.simulate(scene)
     m = ensemble.n_surfaces
     assert m % SIZE == 0
     np.testing.assert_array_equal(ensemble.load, whole.load[:m])
     np.testing.assert_allclose(ensemble.mean("area"), whole.area[:m].mean(axis=0), rtol=1e-12)  # rounding
-    assert not store.read_attributes(path)["complete"]
+    assert not ensembles.read_attributes(path)["complete"]
 
 
 def test_jobs_that_share_a_run(small_blocks, scene, tmp_path, expected):
@@ -267,15 +269,15 @@ def test_every_bit_of_the_file_counts(small_blocks, scene, tmp_path):
         changed[bit // 8] ^= 1 << bit % 8
         copy.write_bytes(changed)
         with pytest.raises(StoreError):
-            store.check_seal(copy)
+            ensembles.check_seal(copy)
     for length in rng.choice(len(data), 300, replace=False):
         copy.write_bytes(data[:length])
         with pytest.raises(StoreError):
-            store.check_seal(copy)
+            ensembles.check_seal(copy)
     copy.write_bytes(data)
-    assert store.verify(copy)[0] == ""
+    assert ensembles.verify(copy)[0] == ""
     copy.write_bytes(changed)
-    assert store.verify(copy)[0].startswith("damaged")
+    assert ensembles.verify(copy)[0].startswith("damaged")
 
 
 def test_changed_data_with_a_good_seal_are_noticed(scene, tmp_path):
@@ -284,8 +286,8 @@ def test_changed_data_with_a_good_seal_are_noticed(scene, tmp_path):
     with h5py.File(path, "r+") as file:
         file["load"][3, 1] *= 1 + 1e-15
     body = path.read_bytes()
-    path.write_bytes(body + store.seal_of(body))
-    assert store.verify(path)[0] == "its data have another digest than it says"
+    path.write_bytes(body + ensembles.seal_of(body))
+    assert ensembles.verify(path)[0] == "its data have another digest than it says"
 
 
 def test_room_is_asked_for_what_is_not_there_yet(small_blocks, scene, tmp_path, monkeypatch):

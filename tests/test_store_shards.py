@@ -6,10 +6,10 @@ import h5py
 import numpy as np
 import pytest
 
-from mcgw.disk import write_whole
 from mcgw.errors import StoreError
-from mcgw.seal import SEAL_BYTES, Seal, check_seal, read_sealed, seal_of
-from mcgw.shards import Span, commit_shard, content_digest, open_shard, pack
+from mcgw.store.disk import write_whole
+from mcgw.store.seal import SEAL_BYTES, Seal, check_seal, read_sealed, seal_of
+from mcgw.store.shards import Span, commit_shard, content_digest, open_shard, pack
 
 RUN, SPAN = "a" * 64, Span(40, 5)
 FLIPS, TRUNCATIONS = 600, 300

@@ -22,7 +22,7 @@ def execute(args: argparse.Namespace) -> int:
     from mcgw.csv_table import write_csv
     from mcgw.plots import save_comparison
     from mcgw.report_text import COMPARISON_HEADER, comparison_rows, comparison_table, verdict_line
-    from mcgw.store import open_ensemble
+    from mcgw.store.ensembles import open_ensemble
 
     comparison = compare(open_ensemble(args.file))
     path = args.output or args.file.with_suffix(".png")

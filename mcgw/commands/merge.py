@@ -19,7 +19,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def execute(args: argparse.Namespace) -> int:
     """Merge and say where the file is."""
-    from mcgw.running import merge
+    from mcgw.joining import merge
 
     path = args.file or args.output
     if path is None:

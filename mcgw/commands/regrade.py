@@ -27,7 +27,7 @@ def execute(args: argparse.Namespace) -> int:
     from mcgw.csv_table import write_csv
     from mcgw.regrade import regrade
     from mcgw.report_text import RATIO_HEADER, ratio_rows, ratio_table
-    from mcgw.store import open_ensemble, save
+    from mcgw.store.ensembles import open_ensemble, save
 
     old = open_ensemble(args.file)
     grading: Grading

@@ -16,7 +16,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 def execute(args: argparse.Namespace) -> int:
     """Write the page and say where it is."""
     from mcgw.report_html import report_html
-    from mcgw.store import open_ensemble, read_attributes
+    from mcgw.store.ensembles import open_ensemble, read_attributes
 
     page = report_html(open_ensemble(args.file), read_attributes(args.file))
     path = args.output or args.file.with_suffix(".html")

@@ -39,7 +39,7 @@ def execute(args: argparse.Namespace) -> int:
     """Run and say where the file is."""
     from mcgw.running import run, run_part
     from mcgw.scene_file import load_scene
-    from mcgw.store import recorded_seed
+    from mcgw.store.ensembles import recorded_seed
 
     path = args.output or args.scene.parent / "out" / f"{args.scene.stem}.h5"
     part = _part(args.shard)
@@ -69,7 +69,7 @@ def execute(args: argparse.Namespace) -> int:
 def _until_known(scene: "Scene", path: Path, args: argparse.Namespace) -> int:
     """Draw until the stop rule is content, and say how well every mean is known."""
     from mcgw.forecast import forecast, seconds_per_surface
-    from mcgw.samplers import sampler_of
+    from mcgw.sampling.samplers import sampler_of
     from mcgw.stop_report import after, before
     from mcgw.until_known import run_until_known
 

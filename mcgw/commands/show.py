@@ -24,7 +24,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def execute(args: argparse.Namespace) -> int:
     """Print to standard output; writes no file."""
-    from mcgw.store import open_ensemble, read_attributes, verify
+    from mcgw.store.ensembles import open_ensemble, read_attributes, verify
 
     if args.plan:
         from mcgw.plan import plan_of, plan_text

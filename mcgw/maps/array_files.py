@@ -9,11 +9,11 @@ import h5py
 import numpy as np
 from numpy.typing import NDArray
 
-from mcgw.disk import whole_file
 from mcgw.maps.asperities import Asperities
 from mcgw.maps.lengths import METRES
 from mcgw.maps.topography import Topography, checked_shape
 from mcgw.npy_file import open_npy
+from mcgw.store.disk import whole_file
 
 __all__ = ["read_h5", "read_npy", "read_text", "sidecar_of", "write_h5", "write_npy"]
 

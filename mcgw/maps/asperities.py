@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from mcgw.asperities import heights
-from mcgw.philox import POSITIONS, uniforms
+from mcgw.sampling.asperities import heights
+from mcgw.sampling.philox import POSITIONS, uniforms
 from mcgw.scene import Scene
 
 __all__ = ["Asperities", "asperities_of"]

@@ -7,10 +7,10 @@ from typing import Literal
 import numpy as np
 
 from analytic import Gaussian, HeightLaw, HeightTable, MeasuredHeights, Surface
-from mcgw.disk import whole_file
 from mcgw.maps.fit import Fit
 from mcgw.scene import Scene
 from mcgw.scene_file import scene_text
+from mcgw.store.disk import whole_file
 
 __all__ = ["fitted_scene", "write_scene"]
 

@@ -11,11 +11,11 @@ from matplotlib.colors import LogNorm, Normalize
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from mcgw.disk import whole_file
 from mcgw.maps.asperities import Asperities
 from mcgw.maps.envelope import envelope
 from mcgw.maps.topography import Topography
 from mcgw.scene import Scene
+from mcgw.store.disk import whole_file
 
 __all__ = ["Spots", "save_contact_map", "spots_at"]
 

@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 from samplers import S1
 
-from mcgw.samplers import sampler_of
+from mcgw.sampling.samplers import sampler_of
 from mcgw.scene import Scene
 from mcgw.simulation import block_size
 

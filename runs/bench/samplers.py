@@ -14,8 +14,8 @@ import numpy as np
 from numba import njit, prange
 
 import analytic
-from mcgw.philox import centred
-from mcgw.samplers import sampler_of
+from mcgw.sampling.philox import centred
+from mcgw.sampling.samplers import sampler_of
 from mcgw.scene import Scene
 from mcgw.simulation import block_size
 

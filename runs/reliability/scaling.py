@@ -18,7 +18,7 @@ import numpy as np
 from mcgw.dask_engine import Dask
 from mcgw.driver import Signals, drive
 from mcgw.engines import Processes, Threads
-from mcgw.shards import Span, commit_shard
+from mcgw.store.shards import Span, commit_shard
 
 SECONDS, ROWS, COLUMNS = 1.0, 1024, 128
 RUN = hashlib.sha256(b"scaling").hexdigest()

@@ -17,11 +17,12 @@ from pathlib import Path
 import numpy as np
 
 import analytic
-from mcgw import merge, probe, running, shards, store, work
-from mcgw.child import ChildError
+from mcgw import joining, running, work
 from mcgw.errors import RunError, StoreError
-from mcgw.rundir import Run, parts_of
 from mcgw.scene import Scene
+from mcgw.store import ensembles, merge, probe, shards
+from mcgw.store.child import ChildError
+from mcgw.store.rundir import Run, parts_of
 
 MODES = {"kill": 1, "torn": 2, "ENOSPC": 3, "EIO": 4}
 ROWS = 8
@@ -58,8 +59,8 @@ def prepare():
     work.draw = made_up
     running.shard_size = lambda scene, sampler: ROWS
     running.columns = lambda scene, sampler: 6
-    running._merge_in_child = merged_here
-    store.examine = lambda path: probe.describe(str(path))
+    joining._merge_in_child = merged_here
+    ensembles.examine = lambda path: probe.describe(str(path))
     if "MCGW_IN_PLACE" in os.environ:  # the wrong way, which the harness must notice
         shards.write_whole = written_in_place
 
@@ -121,7 +122,7 @@ def struck(scene, file, n, mode):
 def found(scene, file, acked, digest):
     """What is wrong with what lies there: all that was committed must be readable and right."""
     if file.exists():
-        problem, now = store.verify(file)
+        problem, now = ensembles.verify(file)
         return [] if not problem and now == digest else [f"final file: {problem or now}"]
     if not (parts_of(file) / "run.toml").exists():
         return ["lost everything"] if acked else []
@@ -150,7 +151,7 @@ def trial(scene, folder, n, mode, digest):
     wrong += found(scene, file, acked, digest)
     if forked(lambda: attempt(scene, file)) or not file.exists():
         wrong.append("did not go on")
-    elif store.verify(file) != ("", digest):
+    elif ensembles.verify(file) != ("", digest):
         wrong.append("another digest after going on")
     if [path.name for path in folder.iterdir()] != ["e.h5"]:
         wrong.append(f"left behind: {sorted(path.name for path in folder.iterdir())}")
@@ -164,7 +165,7 @@ def main(folder, mode, blocks, stride):
     whole.mkdir(parents=True)
     if attempt(scene, whole / "e.h5"):
         sys.exit("the run fails without being struck")
-    digest = store.verify(whole / "e.h5")[1]
+    digest = ensembles.verify(whole / "e.h5")[1]
     gc.collect()
     problems, n = {}, 1
     while True:

@@ -14,8 +14,8 @@ from pathlib import Path
 
 from harness import ROWS, attempt, forked, prepare, scene_of
 
-from mcgw import store
-from mcgw.rundir import Run, parts_of
+from mcgw.store import ensembles
+from mcgw.store.rundir import Run, parts_of
 
 BLOCKS = 120
 
@@ -43,7 +43,7 @@ def main(folder, kills):
     begin = time.perf_counter()
     forked(lambda: attempt(scene, whole))
     span = time.perf_counter() - begin
-    digest = store.verify(whole)[1]
+    digest = ensembles.verify(whole)[1]
     count = {"kills": 0, "rounds": 0, "refused": 0, "vanished": 0, "wrong": 0}
     while count["kills"] < kills:
         before = committed(file)
@@ -57,14 +57,14 @@ def main(folder, kills):
         count["kills"] += os.waitpid(pid, 0)[1] == signal.SIGKILL
         if file.exists():
             count["wrong"] += forked(lambda: attempt(scene, file)) != 0
-            count["wrong"] += store.verify(file) != ("", digest)
+            count["wrong"] += ensembles.verify(file) != ("", digest)
             count["rounds"] += 1
             file.unlink()
             shutil.rmtree(parts_of(file), ignore_errors=True)
         else:
             count["vanished"] += len(before - committed(file))
     count["wrong"] += forked(lambda: attempt(scene, file)) != 0
-    count["wrong"] += store.verify(file) != ("", digest)
+    count["wrong"] += ensembles.verify(file) != ("", digest)
     sys.stdout.write(json.dumps({**count, "surfaces": ROWS * BLOCKS}) + "\n")
 
 

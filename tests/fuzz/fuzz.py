@@ -15,10 +15,10 @@ import tempfile
 from pathlib import Path
 
 import mcgw
-from mcgw import probe, store
 from mcgw.errors import StoreError
 from mcgw.running import run
 from mcgw.scene import SceneError
+from mcgw.store import ensembles, probe
 
 MEMORY, SECONDS = 2**31, 4
 SCENE = """title = "fuzz"
@@ -204,12 +204,12 @@ def look(path):
 
 
 def use(path):
-    store.examine = lambda path: json.loads(json.dumps(probe.describe(str(path))))
+    ensembles.examine = lambda path: json.loads(json.dumps(probe.describe(str(path))))
     try:
-        ensemble = store.open_ensemble(path)
+        ensemble = ensembles.open_ensemble(path)
         for name in ensemble.scene.quantities:
             ensemble.mean(name)
-        store.verify(path)
+        ensembles.verify(path)
     except (StoreError, SceneError):
         pass
     return 0

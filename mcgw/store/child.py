@@ -23,7 +23,7 @@ def run_child(module: str, *arguments: str, seconds: float | None = None) -> str
     Parameters
     ----------
     module : str
-        Such as ``"mcgw.probe"``; it is run as a script.
+        Such as ``"mcgw.store.probe"``; it is run as a script.
     arguments : str
         Its command line.
     seconds : float, optional
@@ -39,7 +39,7 @@ def run_child(module: str, *arguments: str, seconds: float | None = None) -> str
     ChildError
         If it does not end with exit code 0 in time.
     """
-    home = str(Path(__file__).resolve().parent.parent)
+    home = str(Path(__file__).resolve().parents[2])
     paths = [home, *filter(None, [os.environ.get("PYTHONPATH")])]
     # One thread: a child that reads a file needs no pool of them, and their stacks count as memory.
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(paths), "OPENBLAS_NUM_THREADS": "1"}

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.polynomial import chebyshev
 from numpy.typing import NDArray
 
-from mcgw.cells import NODES, TO_COEFFICIENTS, Mesh
+from mcgw.sampling.cells import NODES, TO_COEFFICIENTS, Mesh
 
 __all__ = ["Tree", "transfer", "tree_over"]
 

@@ -1,9 +1,9 @@
 """What an HDF5 file from elsewhere must be before it is read: plain datasets at the root or in one group.
 
 HDF5 follows external links, external storage and virtual datasets to any file of the machine, and a
-crafted file can crash the library, so this runs as a script in a process of its own (`mcgw.guard`)::
+crafted file can crash the library, so this runs as a script in a process of its own (`mcgw.store.guard`)::
 
-    python -m mcgw.probe FILE ... --memory BYTES
+    python -m mcgw.store.probe FILE ... --memory BYTES
 
 It prints one line of JSON a file: its attributes and datasets, or why it is refused.
 """
@@ -165,7 +165,7 @@ def _read(data: h5py.Dataset) -> None:
 
 
 def _main(paths: list[str], memory: int) -> None:
-    from mcgw.child import limit_memory
+    from mcgw.store.child import limit_memory
 
     limit_memory(memory)
     for path in paths:

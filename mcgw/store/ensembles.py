@@ -1,52 +1,22 @@
-"""Ensembles as HDF5 files, and the runs that make them.
+"""Ensemble files: opened, read piece by piece, verified, saved; the schema stands in `mcgw.store`."""
 
-A file appears whole or not at all. Its schema (``filetype = "mcgw-ensemble"``, ``format = [1, 0]``)::
-
-    /                     attributes: filetype, format, title, scene (TOML text of the resolved scene),
-                          seed, sampler, complete, digest, versions, draws, run, commit, date, cpu,
-                          wall_seconds
-    /surface              int64 (surfaces,)               dimension scale: numbers of the surfaces
-    /separation           float64 (separations,)          dimension scale: d/sigma
-    /load                 float64 (surfaces, separations) N
-    /area                 float64 (surfaces, separations) m^2
-    /stiffness            float64 (surfaces, separations) N/m
-    /contacts             int64   (surfaces, separations) 1   (float64 expectation if stratified)
-    /conductance          float64 (surfaces, separations) m   (times 1/rho)
-
-and, if the scene says ``keep = "moments"``, what `mcgw.regrade` starts from::
-
-    /drawn/moments        float64 (surfaces, moments)     sums of Chebyshev polynomials, cell by cell
-    /drawn/cells          float64 (surfaces, cells)       asperities in each cell
-    /drawn/extras         float64 (extras, 3)             surface, height, weight of those outside
-
-Every dataset has the attributes `units` and `long_name`; only quantities that the scene asks for are
-there. Chunked, shuffled, compressed with gzip. `digest` is over scene and data, `run` over what the
-numbers of a surface depend on (scene but for the number of surfaces, sampler, and the versions in
-`draws`). After the HDF5 data stand 512 bytes, the seal (`mcgw.seal`), with the digest of the file's bytes.
-
-A run that fits one block is written in one atomic step. Any other grows as shards in ``FILE.parts/``
-(`mcgw.rundir`), which are merged at the end (`mcgw.merge`) and then removed.
-"""
-
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import h5py
-import numpy as np
-from numpy.typing import NDArray
 
-from mcgw.disk import check_output, remove_stale, write_whole
 from mcgw.ensemble import Ensemble
 from mcgw.errors import RunError, StoreError
-from mcgw.guard import examine, examine_all
-from mcgw.layout import FILETYPE, FORMAT, build, values_digest, where
-from mcgw.provenance import versions
-from mcgw.rundir import Run, difference, identity_of, parts_of
 from mcgw.scene import Scene
 from mcgw.scene_file import scene_from, scene_text
-from mcgw.seal import check_seal, seal_of
-from mcgw.shards import DRAWN, RAGGED, Shard, Span
+from mcgw.store.disk import check_output, remove_stale, write_whole
+from mcgw.store.guard import examine, examine_all
+from mcgw.store.layout import FILETYPE, FORMAT, build, values_digest
+from mcgw.store.provenance import versions
+from mcgw.store.rundir import Run, difference, identity_of, parts_of
+from mcgw.store.seal import check_seal, seal_of
+from mcgw.store.shards import DRAWN, Span
+from mcgw.store.sums import FileSums, ShardSums
 
 __all__ = [
     "StoreError",
@@ -57,55 +27,6 @@ __all__ = [
     "save",
     "verify",
 ]
-
-
-@dataclass(frozen=True)
-class FileSums:
-    """The datasets of an ensemble file, opened for each reading."""
-
-    path: Path
-
-    def read(self, name: str, start: int, stop: int | None) -> NDArray[Any]:
-        """Rows `start` to `stop` (None: to the end) of a dataset."""
-        try:
-            with h5py.File(self.path, "r") as file:
-                return np.asarray(file[where(name)][start:stop])
-        except OSError:
-            raise StoreError(f"{self.path}: cannot be read; is it damaged? See mcgw show --verify") from None
-
-    def rows(self) -> int:
-        """Number of surfaces."""
-        with h5py.File(self.path, "r") as file:
-            return int(file["surface"].shape[0])
-
-
-@dataclass(frozen=True)
-class ShardSums:
-    """The blocks that a run had committed when it was looked at."""
-
-    shards: tuple[Shard, ...]
-
-    def read(self, name: str, start: int, stop: int | None) -> NDArray[Any]:
-        """Rows `start` to `stop` of what is there; of the ragged table all."""
-        rows, parts, first = self.rows() if stop is None else stop, [], 0
-        for shard in self.shards:
-            low, high = max(start - first, 0), min(rows - first, shard.span.n)
-            if name == RAGGED:
-                parts.append(self._arrays(shard)[name])
-            elif low < high:
-                parts.append(self._arrays(shard)[name][low:high])
-            first += shard.span.n
-        return np.concatenate(parts)[slice(start, stop) if name == RAGGED else slice(None)]
-
-    def rows(self) -> int:
-        """Number of surfaces."""
-        return sum(shard.span.n for shard in self.shards)
-
-    @staticmethod
-    def _arrays(shard: Shard) -> dict[str, NDArray[Any]]:
-        if not shard.path.exists():
-            raise StoreError(f"{shard.path}: is gone; its run has ended, open the file again")
-        return shard.arrays()
 
 
 def open_ensemble(path: str | Path) -> Ensemble:

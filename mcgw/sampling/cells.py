@@ -4,7 +4,7 @@ Every separation and every break of the grading is an edge. Inside a cell the he
 and equally distributed: s = a + t(u), with u uniform on (0, 1) and t the cell's own inverse
 distribution, smooth in u and known to full relative accuracy. No cell is wider than its distance to the
 next separation below, where the laws of contact have a root (the mesh of a fast multipole method); how
-much narrower it is, is a matter of price (`mcgw.spacing`).
+much narrower it is, is a matter of price (`mcgw.sampling.spacing`).
 
 Every break of the law of heights is an edge too, and cells shrink towards an end of its support where
 its density is a broken power. Where less than one asperity in ten surfaces is expected there are no
@@ -21,8 +21,8 @@ from numpy.polynomial.legendre import leggauss
 from numpy.typing import NDArray
 
 from analytic import Grading, HeightLaw, resolved_breaks
+from mcgw.sampling.spacing import cuts
 from mcgw.scene import Scene
-from mcgw.spacing import cuts
 
 __all__ = ["NODES", "TO_COEFFICIENTS", "Mesh", "height_noise", "mesh_of", "no_cells"]
 

@@ -14,11 +14,11 @@ import numpy as np
 from numba import njit, prange
 from numpy.typing import NDArray
 
-from mcgw.cells import Mesh
-from mcgw.laws import ACCURACY, Laws
-from mcgw.moments import Layout
+from mcgw.sampling.cells import Mesh
+from mcgw.sampling.laws import ACCURACY, Laws
+from mcgw.sampling.moments import Layout
+from mcgw.sampling.tree import Tree, transfer, tree_over
 from mcgw.scene import Scene
-from mcgw.tree import Tree, transfer, tree_over
 
 __all__ = ["Response", "response_of"]
 

@@ -23,12 +23,12 @@ from typing import Any
 
 import tomli_w
 
-from mcgw.disk import remove_stale, sync, write_whole
 from mcgw.errors import RunError, StoreError
-from mcgw.provenance import now, versions
 from mcgw.scene import Scene, SceneError
 from mcgw.scene_file import scene_from, scene_text
-from mcgw.shards import Shard, Span, open_shard
+from mcgw.store.disk import remove_stale, sync, write_whole
+from mcgw.store.provenance import now, versions
+from mcgw.store.shards import Shard, Span, open_shard
 
 __all__ = ["Run", "difference", "identity_of", "missing", "parts_of"]
 

@@ -39,7 +39,7 @@ def provenance() -> dict[str, str]:
 @cache
 def _commit() -> str:
     """Commit of a source checkout, "unknown" for an installed package."""
-    here = Path(__file__).resolve().parent.parent
+    here = Path(__file__).resolve().parents[2]
     if not (here / ".git").exists():
         return "unknown"
     call = ["git", "-C", str(here), "rev-parse", "HEAD"]

@@ -1,6 +1,6 @@
 """From shards to the file, in a process of its own: the HDF5 library may crash on a full disk.
 
-Run as a script: ``python -m mcgw.merge FOLDER TARGET TEMPORARY``. The file is written under the
+Run as a script: ``python -m mcgw.store.merge FOLDER TARGET TEMPORARY``. The file is written under the
 temporary name, read back, compared with the digest of the shards, sealed and flushed; the caller gives
 it its name. Exit code 3: a shard is damaged.
 """
@@ -12,12 +12,12 @@ from pathlib import Path
 
 import h5py
 
-from mcgw.disk import SteadyFile
 from mcgw.errors import StoreError
-from mcgw.layout import build, file_pieces, values_digest
-from mcgw.rundir import Run
-from mcgw.seal import Seal, sha256_of
-from mcgw.shards import Arrays, Shard, Span
+from mcgw.store.disk import SteadyFile
+from mcgw.store.layout import build, file_pieces, values_digest
+from mcgw.store.rundir import Run
+from mcgw.store.seal import Seal, sha256_of
+from mcgw.store.shards import Arrays, Shard, Span
 
 __all__ = ["DAMAGED", "merge_into"]
 

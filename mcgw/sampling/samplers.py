@@ -16,14 +16,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analytic import QUANTITIES, Exponential
-from mcgw.aggregate import CROWDED, add_gaussian_moments
-from mcgw.cells import Mesh, mesh_of, no_cells
-from mcgw.counts import counts_of, generator, strata_of
-from mcgw.extras import extra_heights
-from mcgw.hertz import hertz_sums
-from mcgw.moments import Layout, cell_moments
-from mcgw.response import Response, response_of
 from mcgw.room import keep_freed_memory
+from mcgw.sampling.aggregate import CROWDED, add_gaussian_moments
+from mcgw.sampling.cells import Mesh, mesh_of, no_cells
+from mcgw.sampling.counts import counts_of, generator, strata_of
+from mcgw.sampling.extras import extra_heights
+from mcgw.sampling.hertz import hertz_sums
+from mcgw.sampling.moments import Layout, cell_moments
+from mcgw.sampling.response import Response, response_of
 from mcgw.scene import Scene
 
 __all__ = ["Block", "Cells", "Direct", "Sampler", "response_to", "sampler_of"]

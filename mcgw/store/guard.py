@@ -7,9 +7,9 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
-from mcgw.child import ChildError, run_child
-from mcgw.disk import open_regular
 from mcgw.errors import StoreError
+from mcgw.store.child import ChildError, run_child
+from mcgw.store.disk import open_regular
 
 __all__ = ["examine", "examine_all"]
 
@@ -57,7 +57,7 @@ def examine_all(paths: Sequence[Path]) -> None:
         size = sum(path.stat().st_size for path in some)
         words = [*map(str, some), "--memory", str(_MEMORY)]
         try:
-            said = run_child("mcgw.probe", *words, seconds=_SECONDS + size / _BYTES_A_SECOND)
+            said = run_child("mcgw.store.probe", *words, seconds=_SECONDS + size / _BYTES_A_SECOND)
         except ChildError as error:
             raise StoreError(f"{some[0].parent}: damaged or hostile; reading it {error.how}") from None
         for path, line in zip(some, said.splitlines(), strict=True):
@@ -70,7 +70,7 @@ def _examined(path: Path, shown: Path, state: tuple[int, int, int]) -> dict[str,
     """The same file is examined once: `state` changes when it does."""
     seconds = _SECONDS + state[1] / _BYTES_A_SECOND
     try:
-        said = run_child("mcgw.probe", str(path), "--memory", str(_MEMORY), seconds=seconds)
+        said = run_child("mcgw.store.probe", str(path), "--memory", str(_MEMORY), seconds=seconds)
         answer: dict[str, Any] = json.loads(said)
     except ChildError as error:
         raise StoreError(f"{shown}: damaged or hostile; reading it {error.how}") from None

@@ -13,8 +13,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from mcgw.cells import Mesh
-from mcgw.in_threads import in_threads
+from mcgw.sampling.cells import Mesh
+from mcgw.sampling.in_threads import in_threads
 from mcgw.scene import Scene
 
 __all__ = ["Counts", "counts_of", "generator", "strata_of"]

@@ -6,9 +6,9 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from mcgw.cells import Mesh
-from mcgw.counts import Counts
-from mcgw.philox import EXTRAS, centred
+from mcgw.sampling.cells import Mesh
+from mcgw.sampling.counts import Counts
+from mcgw.sampling.philox import EXTRAS, centred
 from mcgw.scene import Scene
 
 __all__ = ["extra_heights"]

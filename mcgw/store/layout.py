@@ -10,10 +10,10 @@ from numpy.typing import NDArray
 
 from analytic import QUANTITIES
 from mcgw.errors import StoreError
-from mcgw.provenance import now, provenance
 from mcgw.scene import Scene
 from mcgw.scene_file import scene_text
-from mcgw.shards import DRAWN, RAGGED, Arrays, Span
+from mcgw.store.provenance import now, provenance
+from mcgw.store.shards import DRAWN, RAGGED, Arrays, Span
 
 __all__ = ["FILETYPE", "FORMAT", "build", "file_pieces", "values_digest", "where"]
 

@@ -15,9 +15,9 @@ import h5py
 import numpy as np
 from numpy.typing import NDArray
 
-from mcgw.disk import write_whole
 from mcgw.errors import StoreError
-from mcgw.seal import Seal, read_sealed, seal_of
+from mcgw.store.disk import write_whole
+from mcgw.store.seal import Seal, read_sealed, seal_of
 
 __all__ = [
     "DRAWN",
@@ -183,7 +183,7 @@ def _described(path: Path, seal: Seal) -> tuple[Shard, str]:
 
 def _unpack(body: bytes, path: Path) -> Arrays:
     """Arrays of an HDF5 file in memory that must be as `pack` makes it."""
-    from mcgw.probe import RefusedError, check_plain
+    from mcgw.store.probe import RefusedError, check_plain
 
     try:
         with h5py.File(h5py.h5f.open_file_image(body), "r") as file:

@@ -6,9 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analytic import QUANTITIES, Grading, resolved_breaks
-from mcgw.cells import NODES, TO_COEFFICIENTS, height_noise
+from mcgw.sampling.cells import NODES, TO_COEFFICIENTS, height_noise
+from mcgw.sampling.spacing import SURE
 from mcgw.scene import Scene
-from mcgw.spacing import SURE
 
 __all__ = ["ACCURACY", "Laws"]
 

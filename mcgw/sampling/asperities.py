@@ -3,11 +3,11 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from mcgw.counts import counts_of
-from mcgw.extras import extra_heights
-from mcgw.philox import CELLS, REST, uniforms
 from mcgw.room import check_memory
-from mcgw.samplers import Cells, sampler_of
+from mcgw.sampling.counts import counts_of
+from mcgw.sampling.extras import extra_heights
+from mcgw.sampling.philox import CELLS, REST, uniforms
+from mcgw.sampling.samplers import Cells, sampler_of
 from mcgw.scene import Scene
 
 __all__ = ["heights"]
@@ -58,7 +58,7 @@ def _untouched(scene: Scene, surface: int, touching: int) -> int:
     """Number of asperities below every separation."""
     if scene.count == "fixed":
         return scene.n_asperities - touching
-    from mcgw.counts import generator
+    from mcgw.sampling.counts import generator
 
     expected = scene.n_asperities * float(scene.heights.below(np.array(scene.lowest)))
     return int(generator(scene.seed, REST, surface).poisson(expected))

@@ -19,9 +19,9 @@ from numpy.polynomial.legendre import leggauss
 from numpy.typing import NDArray
 from scipy.special import ndtri
 
-from mcgw.in_threads import in_threads
-from mcgw.moments import Layout
-from mcgw.philox import MOMENTS, centred
+from mcgw.sampling.in_threads import in_threads
+from mcgw.sampling.moments import Layout
+from mcgw.sampling.philox import MOMENTS, centred
 
 __all__ = ["CROWDED", "add_gaussian_moments"]
 

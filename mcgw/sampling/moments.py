@@ -5,7 +5,7 @@ Of the n uniforms u of a cell, with x = 2u - 1, the sums over the asperities
     T_j = sum T_j(x),  j < plain        R_j = sum sqrt(u) T_j(x),  j < rooted
 
 of Chebyshev polynomials determine every smooth law of the height, and every smooth law times the
-root of the distance from the cell's start (`mcgw.response`).
+root of the distance from the cell's start (`mcgw.sampling.response`).
 """
 
 from dataclasses import dataclass
@@ -15,8 +15,8 @@ import numpy as np
 from numba import get_num_threads, njit, prange
 from numpy.typing import NDArray
 
-from mcgw.spacing import price
-from mcgw.uniform_sums import PLAIN, ROOTED, WORDS, sum_uniforms
+from mcgw.sampling.spacing import price
+from mcgw.sampling.uniform_sums import PLAIN, ROOTED, WORDS, sum_uniforms
 
 __all__ = ["Layout", "cell_moments"]
 

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from numba import njit
 
-from mcgw.philox import CELLS, centred
+from mcgw.sampling.philox import CELLS, centred
 
 __all__ = ["PLAIN", "ROOTED", "WORDS", "sum_uniforms"]
 

@@ -1,0 +1,103 @@
+"""From the blocks of a run to its file."""
+
+import os
+from collections.abc import Iterable
+from contextlib import suppress
+from pathlib import Path
+
+from mcgw.driver import Signals, heed_signals
+from mcgw.ensemble import Ensemble
+from mcgw.errors import RunError
+from mcgw.scene import Scene
+from mcgw.store.child import ChildError, run_child
+from mcgw.store.disk import remove_stale, sync, temporary_beside
+from mcgw.store.ensembles import finished, open_ensemble
+from mcgw.store.rundir import Run, missing, parts_of
+from mcgw.store.shards import Shard, Span
+
+__all__ = ["clear", "merge", "merge_once", "missing_of"]
+
+
+def merge(path: str | Path) -> Ensemble:
+    """Make the file of a run whose blocks are all there.
+
+    Parameters
+    ----------
+    path : str or Path
+        The file to be.
+
+    Returns
+    -------
+    Ensemble
+        That reads from it.
+
+    Raises
+    ------
+    StoreError
+        If there is no such run.
+    RunError
+        If blocks are missing, or the disk does not take the file.
+    """
+    path = Path(path)
+    if path.exists() and not parts_of(path).exists():
+        return open_ensemble(path)
+    started = Run.open(parts_of(path))
+    with heed_signals() as signals, started.locked():
+        done = finished(path, started.scene, started.sampler)
+        shards = started.sweep()
+        gaps = missing(started.scene.n_surfaces, started.size, _held(done, shards))
+        if gaps:
+            raise RunError(
+                f"{path}: {sum(span.n for span in gaps)} of {started.scene.n_surfaces} surfaces are missing, "
+                f"from {gaps[0].first} on; run the jobs that make them again"
+            )
+        merge_once(started, path, signals)
+    return open_ensemble(path)
+
+
+def _held(done: int, shards: Iterable[Shard]) -> list[Span]:
+    return [*([Span(0, done)] if done else []), *(shard.span for shard in shards)]
+
+
+def missing_of(started: Run, done: int) -> list[Span]:
+    """Blocks of a run that neither its file nor a shard holds."""
+    return missing(started.scene.n_surfaces, started.size, _held(done, started.shards()))
+
+
+def merge_once(started: Run, path: Path, signals: Signals) -> bool:
+    """Make the file and remove the shards; False if a shard turned out damaged."""
+    temporary = temporary_beside(started.folder / path.name)
+    try:
+        _merge_in_child(started.folder, path, temporary)
+        os.replace(temporary, path)
+        sync(path.parent)
+    except ChildError as error:
+        signals.check(f"all blocks are kept in {started.folder}; the same command merges them")
+        if error.how == "exit code 3":
+            return False
+        raise RunError(
+            f"{path}: cannot be merged ({error}); is the disk full? All blocks are kept in "
+            f"{started.folder}, the same command goes on"
+        ) from None
+    finally:
+        with suppress(OSError):
+            temporary.unlink()
+    started.remove()
+    return True
+
+
+def _merge_in_child(folder: Path, path: Path, temporary: Path) -> None:
+    run_child("mcgw.store.merge", str(folder), str(path), str(temporary))
+
+
+def clear(path: Path, scene: Scene, sampler: str) -> None:
+    """Remove the folder of a run whose file was finished just before it died."""
+    remove_stale(path)
+    folder = parts_of(path)
+    if (folder / "run.toml").is_file():
+        left = Run.begin(folder, scene, sampler, 1)
+        with left.locked():
+            left.remove()
+    for empty in (folder / "shards", folder):
+        with suppress(OSError):  # it is not there, or not empty
+            empty.rmdir()
