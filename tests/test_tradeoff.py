@@ -8,7 +8,7 @@ import pytest
 
 import analytic
 import mcgw
-from mcgw.methods import reference
+from mcgw.methods import _ByMoments, reference
 from mcgw.plots_tradeoff import save_tradeoff
 from mcgw.tradeoff import tradeoff, write_csv
 
@@ -82,3 +82,9 @@ def test_record_and_figure(found, tmp_path):
 def test_no_time_is_refused(scene):
     with pytest.raises(ValueError, match="seconds = 0: give a number > 0"):
         tradeoff(scene, seconds=0)
+
+
+def test_moments_are_judged_at_their_own_separations(scene):
+    """Separations may come in any order, and more than once."""
+    asked = replace(scene, separations=(1.0, 0.0, 2.0, 1.0), n_asperities=10**4)
+    assert np.abs(_ByMoments.of(asked, (0, 1, 2, 3))(1e13, 0)).max() < 1e-12

@@ -32,12 +32,16 @@ def _times_u(order: int) -> Array:
 class Laws:
     """All laws that are asked for, one an array element: ``scale (s - h)^exponent e(s)^modulus``.
 
+    Quantity by quantity, at increasing separations.
+
     Parameters
     ----------
     h, exponent, modulus, scale : ndarray
         Of each law.
     total : ndarray
         Mean sum over a surface, where so many touch that it is sure to be of that size; else 0.
+    separations : int
+        Laws of each quantity.
     n_asperities : int
         Of a surface.
     grading : Grading
@@ -53,6 +57,7 @@ class Laws:
     modulus: NDArray[np.bool_]
     scale: Array
     total: Array
+    separations: int
     n_asperities: int
     grading: Grading
     breaks: Array
@@ -68,7 +73,7 @@ class Laws:
         lasting: bool,
         accuracy: float = ACCURACY,
     ) -> "Laws":
-        """The laws of some quantities at all separations, quantity by quantity, for heights in between.
+        """The laws of some quantities at all separations, which increase, for heights in between.
 
         If they are to be lasting, they are resolved as if every surface could have a single contact.
         """
@@ -80,6 +85,7 @@ class Laws:
             modulus=np.repeat(np.array([q.modulus for q in chosen], dtype=bool), repeat),
             scale=np.repeat([q.scale(scene.surface) for q in chosen], repeat),
             total=np.zeros(len(chosen) * repeat),
+            separations=repeat,
             n_asperities=scene.n_asperities,
             grading=scene.modulus,
             breaks=np.array(resolved_breaks(scene.modulus, *between)),
@@ -112,12 +118,12 @@ class Laws:
         return self.modulus[which] & np.any((a < self.breaks) & (self.breaks < b))
 
     def nearest(self, a: float) -> Ints:
-        """Of each kind the smooth law with the highest separation: the hardest to resolve."""
-        smooth = np.flatnonzero(self.smooth_from(np.arange(len(self.h)), a))
-        kind = 4 * self.exponent + self.modulus  # exponents are multiples of a half
-        order = smooth[np.lexsort((self.h[smooth], kind[smooth]))]
-        last = np.diff(kind[order], append=np.nan) != 0
-        return np.asarray(order[last])
+        """Of each quantity the smooth law with the highest separation: the hardest to resolve."""
+        first = np.arange(0, len(self.h), max(self.separations, 1))
+        below = np.searchsorted(self.h[: self.separations], a)
+        upto = np.searchsorted(self.h[: self.separations], a, side="right")
+        smooth = np.where(self.exponent[first] % 1 == 0, upto, below)
+        return np.asarray((first + smooth - 1)[smooth > 0])
 
     def plain(self, which: Ints, a: float, t: Array, probability: float) -> tuple[Array, Ints]:
         """Coefficients of laws that are smooth at the heights ``a + t``, and how many count.

@@ -7,7 +7,7 @@ node stands in for all its cells wherever the law is resolved on it; else its ch
 ever compiled: any Python E*(s) is evaluated at 20 heights a node.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -122,7 +122,8 @@ def response_of(
     mesh : Mesh
         Cells with every separation and every break of the grading on an edge.
     quantities : tuple of str
-        Rows of the answer.
+        Which answers there are. Each separation has its own once, in increasing order: repeated or
+        permuted ones give the same bits.
     kept : Layout, optional
         The moments there are; left out: as many as it takes.
     lasting : bool, optional
@@ -141,6 +142,7 @@ def response_of(
     ValueError
         If the grading is not resolved on a cell, or not by the moments there are.
     """
+    scene = replace(scene, separations=tuple(sorted(set(scene.separations))))
     tree = tree_over(mesh)
     between = (mesh.edges[0], mesh.edges[-1]) if mesh.size else (0.0, 0.0)
     laws = Laws.of(scene, quantities, between, lasting=lasting or kept is not None, accuracy=accuracy)

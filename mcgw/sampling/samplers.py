@@ -101,9 +101,7 @@ def response_to(scene: Scene, mesh: Mesh, kept: Layout | None = None) -> Respons
     """Response for all that moments can tell; contacts are counted."""
     if scene.keep == "moments" and kept is None:
         kept = _lasting_layout(scene, mesh)
-    # Each separation once and in order: repeated or permuted ones give the same bits.
-    once = replace(scene, separations=tuple(sorted(set(scene.separations))))
-    return response_of(once, mesh, _summed(scene.quantities), kept=kept)
+    return response_of(scene, mesh, _summed(scene.quantities), kept=kept)
 
 
 def _summed(quantities: Iterable[str]) -> tuple[str, ...]:
