@@ -183,3 +183,29 @@ def test_a_smooth_step_under_any_law(make_scene, law, middle, slope, separations
     )
     sampler = sampler_of(scene)
     assert max(worst(scene, surface, sampler) for surface in range(MANY)) < 1e-12
+
+
+@pytest.mark.parametrize("keep", ["sums", "moments"])
+@pytest.mark.parametrize(
+    ("shape", "gamma", "separations", "n"),
+    [
+        (4.63, 0.7144619, (-1.655150524, 2.22019398), 17),
+        (45.423, 1.43735, (0.46187410402, 3.14785127), 6),
+        (1.80686, 0.6479186, (-1.87281584, -1.85053286), 9407),
+        (1.6853, 0.69289, (-3.42293094, 2.2294051), 1638),
+    ],
+)
+def test_a_smooth_grading_is_never_refused(make_scene, shape, gamma, separations, n, keep):
+    """Where the law of heights bends as fast as cells allow, a cell needs all but one of its coefficients."""
+    scene = make_scene(
+        heights=analytic.Weibull(shape),
+        grading=analytic.Exponential(gamma),
+        negative="allow",
+        separations=separations,
+        n_asperities=n,
+        keep=keep,
+        sampler="cells",
+        quantities=tuple(analytic.QUANTITIES),
+    )
+    sampler = sampler_of(scene)
+    assert max(worst(scene, surface, sampler) for surface in range(MANY)) < 1e-12

@@ -29,7 +29,7 @@ _Blocks = tuple[Ints, Ints, Array]  # rows, first columns, values
 
 _WIDTH = 64  # surfaces at a time
 _FOUR = 4  # columns of a block
-_MOST_MOMENTS = 18  # what is not resolved by so many is left to the children
+_MOST, _MOST_IN_CELL = 18, 19  # moments: what is not resolved by so many is left to the children, or refused
 
 
 @dataclass(frozen=True)
@@ -191,7 +191,7 @@ def _walk(mesh: Mesh, tree: Tree, laws: Laws, kept: Layout | None) -> tuple[list
             smooth &= ~laws.broken_between(which, a, b)
         p = tree.probability[node]
         c, needed = laws.plain(which[smooth], a, t, p)
-        done = needed <= _MOST_MOMENTS
+        done = needed <= (_MOST if tree.left[node] >= 0 else _MOST_IN_CELL)
         if done.any():
             entries.append(_Entry(node, False, which[smooth][done], c[:, done]))
         rest = np.concatenate([which[smooth][~done], which[~smooth]])
