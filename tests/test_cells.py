@@ -120,13 +120,15 @@ def test_compiled_counts_are_those_of_numpy(make_scene, count):
 
 
 def test_what_auto_takes(make_scene):
-    """Cells for everything but a handful of contacts at hundreds of separations, which keep no moments."""
-    many = tuple(np.linspace(0, 4, 600))
+    """One by one where a handful touches, more with many separations; cells for all else, and for moments."""
+    many = tuple(np.linspace(0, 4, 601))
     cases = {
-        "cells": ({}, {"n_asperities": 1}, {"n_asperities": 10**12}, {"separations": many}),
+        "cells": ({}, {"n_asperities": 10**12}, {"separations": many}, {"n_asperities": 200}),
         "tail": (
-            {"separations": many, "n_asperities": 20},
-            {"separations": many[300:], "n_asperities": 99},
+            {"n_asperities": 1},
+            {"n_asperities": 20},
+            {"separations": many, "n_asperities": 100},
+            {"separations": many[300:], "n_asperities": 1000},
         ),
     }
     for name, scenes in cases.items():

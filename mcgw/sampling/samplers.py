@@ -117,10 +117,10 @@ def _lasting_layout(scene: Scene, mesh: Mesh) -> Layout:
 
 
 def _cheapest(scene: Scene) -> str:
-    """Cells, unless most of them would be empty: many separations, few contacts (`runs/bench/auto.py`)."""
+    """Cells, unless most of them would be empty (`runs/bench/auto.py`)."""
     touching = scene.n_asperities * float(scene.heights.above(np.array(scene.lowest)))
-    empty = 12 * touching < len(scene.separations) - 250
-    return "tail" if empty and scene.keep == "sums" else "cells"
+    few = touching < 20 + len(scene.separations) / 15
+    return "tail" if few and scene.keep == "sums" else "cells"
 
 
 @dataclass(frozen=True)
