@@ -44,8 +44,7 @@ def merge(path: str | Path) -> Ensemble:
     started = Run.open(parts_of(path))
     with heed_signals() as signals, started.locked():
         done = finished(path, started.scene, started.sampler)
-        shards = started.sweep()
-        gaps = missing(started.scene.n_surfaces, started.size, _held(done, shards))
+        gaps = missing_of(started, done, started.sweep())
         if gaps:
             raise RunError(
                 f"{path}: {sum(span.n for span in gaps)} of {started.scene.n_surfaces} surfaces are missing, "
@@ -55,13 +54,10 @@ def merge(path: str | Path) -> Ensemble:
     return open_ensemble(path)
 
 
-def _held(done: int, shards: Iterable[Shard]) -> list[Span]:
-    return [*([Span(0, done)] if done else []), *(shard.span for shard in shards)]
-
-
-def missing_of(started: Run, done: int) -> list[Span]:
-    """Blocks of a run that neither its file nor a shard holds."""
-    return missing(started.scene.n_surfaces, started.size, _held(done, started.shards()))
+def missing_of(started: Run, done: int, shards: Iterable[Shard]) -> list[Span]:
+    """Blocks of a run that neither its file, of `done` surfaces, nor one of its shards holds."""
+    held = [*([Span(0, done)] if done else []), *(shard.span for shard in shards)]
+    return missing(started.scene.n_surfaces, started.size, held)
 
 
 def merge_once(started: Run, path: Path, signals: Signals) -> bool:

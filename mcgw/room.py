@@ -1,4 +1,4 @@
-"""Is there room? Asked before anything is computed, in whole numbers that do not wrap."""
+"""Is there room? Asked before anything is computed, in whole numbers that do not wrap. And how it is kept."""
 
 import shutil
 from functools import cache

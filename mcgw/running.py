@@ -154,8 +154,9 @@ def run_part(
         return 0
     started = Run.begin(parts_of(path), scene, sampler.name, size)
     with heed_signals() as signals, started.locked(shared=True), _engine_or_threads(None) as drawing:
-        _draw_missing(started, done, _Session(drawing, threads, progress or _silent, signals), part)
-        return sum(span.n for span in missing_of(started, done))
+        gaps = missing_of(started, done, started.shards())
+        _draw_missing(started, gaps, _Session(drawing, threads, progress or _silent, signals), part)
+        return sum(span.n for span in missing_of(started, done, started.shards()))
 
 
 def _prepare(scene: Scene, path: Path, threads: int | None) -> tuple[Sampler, int, int]:
@@ -225,9 +226,9 @@ def _in_blocks(scene: Scene, sampler: Sampler, path: Path, size: int, session: _
         with started.locked():
             started.freeze()
             for _ in range(_ROUNDS):
-                started.sweep()
+                shards = started.sweep()
                 done = finished(path, scene, sampler.name)
-                _draw_missing(started, done, session)
+                _draw_missing(started, missing_of(started, done, shards), session)
                 if merge_once(started, path, session.signals):
                     return
     except OSError as error:
@@ -238,9 +239,8 @@ def _in_blocks(scene: Scene, sampler: Sampler, path: Path, size: int, session: _
     raise RunError(f"{parts_of(path)}: shards are damaged again and again; is the disk failing?")
 
 
-def _draw_missing(started: Run, done: int, session: _Session, part: Part | None = None) -> None:
+def _draw_missing(started: Run, spans: list[Span], session: _Session, part: Part | None = None) -> None:
     """Commit every block that is missing, or of these a job's share."""
-    spans = missing_of(started, done)
     count = started.scene.n_surfaces - sum(span.n for span in spans)
     if part:
         spans = [span for span in spans if part.mine(span, started.size)]

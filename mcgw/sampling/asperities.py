@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mcgw.room import check_memory
-from mcgw.sampling.counts import counts_of
+from mcgw.sampling.counts import counts_of, generator
 from mcgw.sampling.extras import extra_heights
 from mcgw.sampling.philox import CELLS, REST, uniforms
 from mcgw.sampling.samplers import Cells, sampler_of
@@ -58,7 +58,5 @@ def _untouched(scene: Scene, surface: int, touching: int) -> int:
     """Number of asperities below every separation."""
     if scene.count == "fixed":
         return scene.n_asperities - touching
-    from mcgw.sampling.counts import generator
-
     expected = scene.n_asperities * float(scene.heights.below(np.array(scene.lowest)))
     return int(generator(scene.seed, REST, surface).poisson(expected))

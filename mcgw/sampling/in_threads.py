@@ -14,12 +14,11 @@ from numba import get_num_threads
 
 __all__ = ["in_threads"]
 
+_Item = TypeVar("_Item")
+_Result = TypeVar("_Result")
 
-Item = TypeVar("Item")
-Result = TypeVar("Result")
 
-
-def in_threads(call: Callable[[Item], Result], items: Sequence[Item]) -> list[Result]:
+def in_threads(call: Callable[[_Item], _Result], items: Sequence[_Item]) -> list[_Result]:
     """Call for every item, on as many threads as the compiled loops may use.
 
     Parameters
@@ -35,7 +34,7 @@ def in_threads(call: Callable[[Item], Result], items: Sequence[Item]) -> list[Re
         Results in the order of the items.
     """
 
-    def run(places: Iterable[int]) -> list[Result]:
+    def run(places: Iterable[int]) -> list[_Result]:
         return [call(items[i]) for i in places]
 
     own, *others = np.array_split(np.arange(len(items)), min(get_num_threads(), max(len(items), 1)))

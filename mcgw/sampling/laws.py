@@ -119,7 +119,7 @@ class Laws:
 
     def nearest(self, a: float) -> Ints:
         """Of each quantity the smooth law with the highest separation: the hardest to resolve."""
-        first = np.arange(0, len(self.h), max(self.separations, 1))
+        first = np.arange(0, len(self.h), self.separations)
         below = np.searchsorted(self.h[: self.separations], a)
         upto = np.searchsorted(self.h[: self.separations], a, side="right")
         smooth = np.where(self.exponent[first] % 1 == 0, upto, below)

@@ -38,7 +38,7 @@ def _add_compensated(total: Any, carry: Any, sums: Any) -> None:
 
 @njit(nogil=True, cache=True)
 def _sum_pieces(w: Any, seed: Any, surface: Any, cell: Any, n: Any, strata: Any, orders: Any) -> None:
-    """Do the same for all `n` asperities of a cell that has very many."""
+    """Sum all `n` uniforms of a cell that has very many, in pieces; else as `sum_uniforms`."""
     sums = w[PLAIN:WORDS]
     total, carry = np.zeros(sums.size), np.zeros(sums.size)
     for start in range(0, n, _PIECE):

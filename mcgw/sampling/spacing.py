@@ -52,8 +52,8 @@ def cuts(law: HeightLaw, n: int, low: float, high: float, before: float) -> Arra
     width = np.diff(upper, axis=1, prepend=0.0)
     distance = np.where(upper > width, upper - width, before / gap)
     allowed = (width <= distance * (1 + 1e-9)).all(axis=1)
-    price = np.where(allowed, _prices(law, n, low, gap, upper, distance), np.inf)
-    cheapest = np.argmax(price <= price.min() * (1 + 1e-9))  # the first one: rounding breaks no tie
+    prices = np.where(allowed, _prices(law, n, low, gap, upper, distance), np.inf)
+    cheapest = np.argmax(prices <= prices.min() * (1 + 1e-9))  # the first one: rounding breaks no tie
     return np.concatenate([[low], low + gap * upper[cheapest][width[cheapest] > 0][:-1], [high]])
 
 

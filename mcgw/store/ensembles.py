@@ -1,4 +1,4 @@
-"""Ensemble files: opened, read piece by piece, verified, saved; the schema stands in `mcgw.store`."""
+"""Ensemble files: opened, verified, saved; the schema stands in `mcgw.store`."""
 
 from pathlib import Path
 from typing import Any
