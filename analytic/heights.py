@@ -78,8 +78,8 @@ class Gaussian:
     singular: ClassVar[tuple[float, ...]] = ()
 
     def span(self, s: float) -> float:
-        """Where the logarithm of the density changes by about 0.6."""
-        return 0.6 / (1 + abs(s))
+        """Where the logarithm of the density changes by about 0.8."""
+        return 0.8 / (1 + abs(s))
 
     def sample(self, rng: np.random.Generator, n: int) -> Array:
         """Standard normal numbers."""

@@ -21,7 +21,7 @@ __all__ = ["law_integral", "law_rule"]
 Array = NDArray[np.float64]
 
 _NODES = 64
-_SPANS = 8.0  # a piece over which the density changes by a factor of 50 needs some 30 nodes
+_SPANS = 6.0  # a piece over which the density changes by a factor of 50 needs some 30 nodes
 _WIDEST = 4.0
 _GROWTH = 8.0  # of the pieces away from a singular end
 _TINY = 1e-14  # distance from such an end, below which heights are not told apart

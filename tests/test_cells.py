@@ -6,7 +6,6 @@ import pytest
 
 import analytic
 from mcgw.sampling.cells import mesh_of, no_cells
-from mcgw.sampling.counts import GROUP, _halvings, counts_of, generator
 from mcgw.sampling.samplers import sampler_of
 from mcgw.sampling.spacing import cuts
 
@@ -91,32 +90,6 @@ def test_crowds_pay_for_more_cells():
     assert sizes == sorted(sizes)
     assert sizes[0] == sizes[1] == 1
     assert sizes[-1] > 4
-
-
-@pytest.mark.parametrize("count", ["fixed", "poisson"])
-def test_compiled_counts_are_those_of_numpy(make_scene, count):
-    """The same halving as plain loops over NumPy's own generator: number for number."""
-    scene = make_scene(separations=tuple(np.linspace(0, 6, 13)), n_asperities=10**7, count=count, seed=9)
-    mesh = mesh_of(scene)
-    p = np.concatenate([[mesh.low_extras], mesh.probability, [mesh.high_extras]])
-    rng = generator(scene.seed, 0, 1)
-    halvings = _halvings(p)
-    draw = rng.poisson if count == "poisson" else lambda mean: rng.binomial(10**7, mean / 10**7)
-    nodes = [[int(draw(10**7 * halvings.touching)) for _ in range(GROUP)]]
-    parent = 0
-    for size in halvings.sizes:
-        children = []
-        for node in nodes:
-            share, turned = halvings.shares[parent], halvings.turned[parent]
-            rarer = [int(rng.binomial(n, share)) if n and share else 0 for n in node]
-            other = [n - r for n, r in zip(node, rarer, strict=True)]
-            children += [other, rarer] if turned else [rarer, other]
-            parent += 1
-        nodes = children[:size]
-    found = counts_of(scene, mesh, GROUP, GROUP)
-    np.testing.assert_array_equal(found.cells, nodes[1:-1])
-    np.testing.assert_array_equal(found.high_extras, nodes[-1])
-    assert halvings.shares[halvings.shares > 0].min() > 1e-8  # none is drawn as a Poisson number
 
 
 def test_what_auto_takes(make_scene):

@@ -30,6 +30,7 @@ Array = NDArray[np.float64]
 
 _ROUNDING = 1e-9  # of the width of a cell
 _SHORT, _MOST_HALVINGS = 13, 60  # terms for a grading on a cell, and how often it is cut to get there
+_FAR, _NARROWER = 2.0, 0.75  # spans from a root of the laws of contact, and what is left of one nearer by
 _CLOSEST = 2.0**-40  # of a cell to an end of the support that is a broken power
 
 _ORDER = 20
@@ -39,7 +40,7 @@ _X, _W = leggauss(20)
 _X, _W = (1 + _X) / 2, _W / 2
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Mesh:
     """Cells of a scene.
 
@@ -137,9 +138,11 @@ def _power_of_two_below(distance: float) -> float:
     return 2.0 ** math.floor(math.log2(max(distance, _CLOSEST)))
 
 
-def _widest(law: HeightLaw, a: float) -> float:
-    """How wide the law lets a cell above `a` be."""
+def _widest(law: HeightLaw, a: float, distance: float) -> float:
+    """How wide the law of heights lets a cell above `a` be: less, where a law of contact bends as well."""
     width = law.span(a)
+    if distance < _FAR * width:
+        width *= _NARROWER
     for end in law.singular:
         width = min(width, a - end if end < a else (end - a) / 2)
     return width
@@ -162,7 +165,7 @@ def _refined(law: HeightLaw, separations: Array, marks: Array) -> Array:
     for mark in marks[1:]:
         while (a := edges[-1]) < mark:
             below = separations[np.searchsorted(separations, a) - 1] if separations[0] < a else -np.inf
-            widest, room = min(a - below, _widest(law, a)), mark - a
+            widest, room = min(a - below, _widest(law, a, a - below)), mark - a
             if room <= widest * (1 + _ROUNDING):
                 edges.append(mark)
             else:

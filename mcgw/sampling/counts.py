@@ -1,12 +1,10 @@
-"""How many asperities fall into each cell: drawn exactly, by halving.
+"""How many asperities fall into each cell: drawn exactly.
 
-The number in contact is binomial (fixed N) or Poisson; given that of a node, the number in its left
-child is binomial with the child's share. So the cells are multinomial, or independent Poisson, with
-every probability a ratio of sums of positive terms: accurate however far into the tail.
+The number in contact is binomial (fixed N) or Poisson, by NumPy's generator. It is shared out by
+halving (`mcgw.sampling.halving`), so the cells are multinomial, or independent Poisson.
 """
 
 from dataclasses import dataclass
-from functools import partial
 from typing import Any
 
 import numpy as np
@@ -14,15 +12,15 @@ from numba import njit
 from numpy.typing import NDArray
 
 from mcgw.sampling.cells import Mesh
-from mcgw.sampling.in_threads import in_threads
+from mcgw.sampling.halving import halvings_of, share_out
 from mcgw.scene import Scene
 
-__all__ = ["Counts", "counts_of", "generator", "strata_of"]
+__all__ = ["GROUP", "Counts", "contacts_above", "counts_of", "generator", "strata_of"]
 
+Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 GROUP = 64  # surfaces that share a NumPy generator, which takes longer to make than to use
-_BITS = 2.0**46  # of a probability: the last ones differ between kinds of CPU
 _RARE = 1e-8  # below, binomial and Poisson differ less than 1 - p is rounded
 
 
@@ -63,13 +61,10 @@ def counts_of(scene: Scene, mesh: Mesh, first: int, n: int) -> Counts:
     Counts
         A pure function of the seed and the number of the surface.
     """
-    halvings = _halvings(np.concatenate([[mesh.low_extras], mesh.probability, [mesh.high_extras]]))
-    groups = range(first // GROUP, -(-(first + n) // GROUP))
-    drawn = np.concatenate(in_threads(partial(_group, scene, halvings), groups), axis=1)
-    skip = first - groups[0] * GROUP
-    chosen = drawn[:, skip : skip + n]
+    halvings = halvings_of(mesh)
+    drawn = share_out(scene.seed, first, _touching(scene, halvings.touching, first, n), halvings)
     weights = np.ones(mesh.size + 2)
-    return Counts(np.ascontiguousarray(chosen[1:-1]), chosen[0], chosen[-1], weights)
+    return Counts(np.ascontiguousarray(drawn[1:-1]), drawn[0], drawn[-1], weights)
 
 
 def strata_of(scene: Scene, mesh: Mesh, n: int) -> Counts:
@@ -100,93 +95,53 @@ def strata_of(scene: Scene, mesh: Mesh, n: int) -> Counts:
     return Counts(np.ascontiguousarray(alike[1:-1]), alike[0], alike[-1], weights)
 
 
+def contacts_above(counts: Array, cells: Ints) -> Array:
+    """Number of asperities in some cells and all those above.
+
+    Parameters
+    ----------
+    counts : ndarray
+        In each cell, shape (cells, surfaces).
+    cells : ndarray of int
+        Lowest ones.
+
+    Returns
+    -------
+    ndarray
+        Shape (surfaces, lowest ones).
+    """
+    return np.asarray(_above(counts, cells))
+
+
+@njit(nogil=True, cache=True)
+def _above(counts: Any, lowest: Any) -> Any:
+    cells, surfaces = counts.shape
+    above = np.zeros((cells + 1, surfaces))
+    for cell in range(cells - 1, -1, -1):
+        for i in range(surfaces):
+            above[cell, i] = above[cell + 1, i] + counts[cell, i]
+    result = np.empty((surfaces, lowest.size))
+    for i in range(surfaces):
+        for k in range(lowest.size):
+            result[i, k] = above[lowest[k], i]
+    return result
+
+
 def generator(seed: int, purpose: int, number: int) -> np.random.Generator:
     """NumPy's generator for one purpose and number, a pure function of these and the seed."""
     return np.random.Generator(np.random.Philox(key=seed, counter=[0, 0, number, purpose]))
 
 
-@dataclass(frozen=True)
-class _Halvings:
-    """How numbers are shared out, level by level from the root.
-
-    Parameters
-    ----------
-    touching : float
-        Probability of all.
-    shares : ndarray
-        Of the rarer child in its parent, for all parents of all levels.
-    turned : ndarray of bool
-        Where the right child is the rarer one, alike.
-    sizes : ndarray of int
-        Number of nodes on each level below the root.
-    """
-
-    touching: float
-    shares: NDArray[np.float64]
-    turned: NDArray[np.bool_]
-    sizes: Ints
+def _touching(scene: Scene, p: float, first: int, n: int) -> Array:
+    """Numbers in contact of surfaces `first` ... `first + n - 1`, by NumPy's generator."""
+    groups = range(first // GROUP, -(-(first + n) // GROUP))
+    drawn = [_group(scene, p, generator(scene.seed, 0, group)) for group in groups]
+    skip = first - groups[0] * GROUP
+    return np.concatenate(drawn).astype(np.float64)[skip : skip + n]
 
 
-def _halvings(probability: NDArray[np.float64]) -> _Halvings:
-    shares, turned, sizes = [np.empty(0)], [np.empty(0, dtype=bool)], []
-    while len(probability) > 1:
-        sizes.append(len(probability))
-        pairs = np.concatenate([probability, np.zeros(len(probability) % 2)])
-        left, right = pairs[::2], pairs[1::2]
-        probability = left + right
-        total = np.where(probability > 0, probability, 1.0)
-        shares.append(_rounded(np.minimum(left, right) / total))
-        turned.append(_rounded(left / total) > 0.5)
-    touching = float(_rounded(np.minimum(probability[0], 1.0)))
-    levels = np.array(sizes[::-1], dtype=np.int64)
-    return _Halvings(touching, np.concatenate(shares[::-1]), np.concatenate(turned[::-1]), levels)
-
-
-def _rounded(p: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Round to 46 bits: a half must be a half, where rarer and other, or NumPy's methods, change places."""
-    mantissa, exponent = np.frexp(p)
-    return np.asarray(np.ldexp(np.rint(mantissa * _BITS) / _BITS, exponent))
-
-
-def _group(scene: Scene, halvings: _Halvings, group: int) -> Ints:
-    """Numbers of a group of surfaces: shape (categories, GROUP)."""
-    rng = generator(scene.seed, 0, group)
-    n, p = scene.n_asperities, halvings.touching
-    numbers = rng.poisson(n * p, GROUP) if scene.count == "poisson" else _all_touching(rng, n, p)
-    return np.asarray(_share_out(rng, numbers, halvings.shares, halvings.turned, halvings.sizes))
-
-
-@njit(nogil=True, cache=True)
-def _all_touching(rng: Any, n: Any, p: Any) -> Any:
-    numbers = np.empty(GROUP, dtype=np.int64)
-    for i in range(GROUP):
-        numbers[i] = _binomial(rng, n, p)
-    return numbers
-
-
-@njit(nogil=True, cache=True)
-def _share_out(rng: Any, numbers: Any, shares: Any, turned: Any, sizes: Any) -> Any:
-    """Halve the numbers, level by level."""
-    parents = numbers.copy().reshape(1, numbers.size)
-    parent = 0
-    for size in sizes:
-        children = np.empty((size, numbers.size), dtype=np.int64)
-        for left in range(0, size, 2):
-            for i in range(numbers.size):
-                n = parents[left // 2, i]
-                rarer = _binomial(rng, n, shares[parent])
-                first = n - rarer if turned[parent] else rarer
-                children[left, i] = first
-                if left + 1 < size:
-                    children[left + 1, i] = n - first
-            parent += 1
-        parents = children
-    return parents
-
-
-@njit(nogil=True, cache=True)
-def _binomial(rng: Any, n: Any, p: Any) -> Any:
-    """Binomial number; a Poisson one where p is so small that NumPy's 1 - p would lose it."""
-    if n == 0 or p == 0.0:
-        return 0
-    return rng.binomial(n, p) if p >= _RARE else min(rng.poisson(n * p), n)
+def _group(scene: Scene, p: float, rng: np.random.Generator) -> Ints:
+    n = scene.n_asperities
+    if scene.count == "poisson":
+        return rng.poisson(n * p, GROUP)
+    return rng.binomial(n, p, GROUP) if p >= _RARE else np.minimum(rng.poisson(n * p, GROUP), n)

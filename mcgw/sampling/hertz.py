@@ -1,17 +1,21 @@
 """Sums of Hertz contacts over given heights, by plain loops: slow, literal, trusted."""
 
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
-from numba import njit, prange
+from numba import get_num_threads, njit
 from numpy.typing import NDArray
 
 from analytic import QUANTITIES
+from mcgw.sampling.in_threads import in_threads
 from mcgw.scene import Scene
 
 __all__ = ["hertz_sums"]
 
 Array = NDArray[np.float64]
+
+_ALONE = 10**6  # contacts that take no longer than another thread takes to wake
 
 
 @njit(cache=True, inline="always")
@@ -23,12 +27,12 @@ def _power(d: float, twice: int) -> float:
     return power
 
 
-@njit(parallel=True, cache=True)
+@njit(nogil=True, cache=True)
 def _sums(starts: Any, heights: Any, factors: Any, separations: Any, twice: Any) -> Any:
     """For each quantity, surface and separation the sum of ``factor (s - h)^(twice/2)`` over s > h."""
     surfaces = starts.size - 1
     result = np.zeros((twice.size, surfaces, separations.size))
-    for i in prange(surfaces):
+    for i in range(surfaces):
         if starts[i] == starts[i + 1]:
             continue
         for q in range(twice.size):
@@ -66,13 +70,14 @@ def hertz_sums(scene: Scene, numbers: NDArray[np.int64], heights: Array, weights
     graded = weights
     if any(q.modulus for q in asked):
         graded = weights * scene.modulus(heights)
-    sums = _sums(
-        np.concatenate([[0], np.cumsum(numbers)]),
-        heights,
-        np.stack([graded if q.modulus else weights for q in asked]),
-        np.array(scene.separations),
-        np.array([round(2 * q.exponent) for q in asked]),
-    )
+    starts = np.concatenate([[0], np.cumsum(numbers)])
+    factors = np.stack([graded if q.modulus else weights for q in asked])
+    separations, twice = np.array(scene.separations), np.array([round(2 * q.exponent) for q in asked])
+    threads = get_num_threads() if factors.size * separations.size > _ALONE else 1
+    ends = np.linspace(0, len(numbers), threads + 1).astype(np.int64)
+    shares = [starts[first : last + 1] for first, last in pairwise(ends)]
+    parts = in_threads(lambda share: _sums(share, heights, factors, separations, twice), shares)
+    sums = np.concatenate(parts, axis=1)
     for q, values in zip(asked, sums, strict=True):
         values *= q.scale(scene.surface)
     return dict(zip(scene.quantities, sums, strict=True))

@@ -16,11 +16,11 @@ from numba import get_num_threads, njit, prange
 from numpy.typing import NDArray
 
 from mcgw.sampling.spacing import price
-from mcgw.sampling.uniform_sums import PLAIN, ROOTED, WORDS, sum_uniforms
+from mcgw.sampling.uniform_sums import PLAIN, ROOTED, WORDS, sum_uniforms, unfold
 
 __all__ = ["Layout", "cell_moments"]
 
-_START = 150.0  # asperities that take as long to draw as a cell takes to begin
+_START = 140.0  # asperities that take as long to draw as a cell takes to begin
 _PIECE = 512 * 512  # a plain sum of so many terms is good to 1e-14; beyond, it is compensated
 
 
@@ -48,27 +48,64 @@ def _sum_pieces(w: Any, seed: Any, surface: Any, cell: Any, n: Any, strata: Any,
 
 
 @njit(nogil=True, cache=True)
-def _sum_cells(
-    seed: Any, first: Any, counts: Any, starts: Any, orders: Any, bounds: Any, stratified: Any, moments: Any
+def _sum_cell(
+    w: Any,
+    seed: Any,
+    first: Any,
+    cell: Any,
+    counts: Any,
+    start: Any,
+    orders: Any,
+    stratified: Any,
+    moments: Any,
 ) -> None:
-    """Sum a run of cells, all surfaces of one after the other, each to its own place."""
-    w = np.ones(WORDS)
-    surfaces = counts.shape[1]
-    for at in range(bounds[0], bounds[1]):
-        cell, surface = at // surfaces, at % surfaces
-        n, start = counts[cell, surface], starts[cell]
-        plain, rooted = orders[cell, 0], orders[cell, 1]
+    """Sum a cell of some consecutive surfaces, each to its own column, from row `start` on."""
+    plain, rooted = orders
+    if not counts.any():
+        moments[start : start + np.uint64(plain + rooted)] = 0.0
+        return
+    for surface in range(counts.size):
+        n = counts[surface]
         strata = n if stratified else 0
         if n == 0:
             w[PLAIN:WORDS] = 0.0
         elif n <= _PIECE:
-            sum_uniforms(w, seed, first + surface, cell, 0, n, strata, (plain, rooted))
+            sum_uniforms(w, seed, first + surface, cell, 0, n, strata, orders)
         else:
-            _sum_pieces(w, seed, first + surface, cell, n, strata, (plain, rooted))
+            _sum_pieces(w, seed, first + surface, cell, n, strata, orders)
         for j in range(plain):
-            moments[start + j, surface] = w[PLAIN + j]
+            moments[start + np.uint64(j), np.uint64(surface)] = w[np.uint64(PLAIN + j)]
         for j in range(rooted):
-            moments[start + plain + j, surface] = w[ROOTED + j]
+            moments[start + np.uint64(plain + j), np.uint64(surface)] = w[np.uint64(ROOTED + j)]
+    unfold(moments, start, plain)
+    unfold(moments, start + plain, rooted)
+
+
+@njit(nogil=True, cache=True)
+def _sum_cells(
+    seed: Any, first: Any, counts: Any, starts: Any, orders: Any, bounds: Any, stratified: Any, moments: Any
+) -> None:
+    """Sum a run of cells, all surfaces of one after the other."""
+    w = np.ones(WORDS)
+    surfaces = counts.shape[1]
+    at, end = bounds
+    while at < end:
+        cell, surface = at // surfaces, at % surfaces
+        stop = min(surfaces, surface + end - at)
+        some = slice(surface, stop)
+        needed = (orders[cell, 0], orders[cell, 1])
+        _sum_cell(
+            w,
+            seed,
+            first + surface,
+            cell,
+            counts[cell, some],
+            np.uint64(starts[cell]),
+            needed,
+            stratified,
+            moments[:, some],
+        )
+        at += stop - surface
 
 
 @njit(parallel=True, cache=True)
@@ -130,9 +167,15 @@ def cell_moments(
         Shape (moments, surfaces): the same bits for any number of threads and in any block.
     """
     counts = np.where(layout.sizes[:, None] > 0, counts, 0)  # what nobody asks for is not drawn
-    work = np.cumsum(np.where(counts > 0, _START + counts * price(layout.plain, layout.rooted)[:, None], 0.0))
-    threads = get_num_threads()
-    shares = np.searchsorted(work, np.arange(1, threads) * (work[-1:].sum() / threads))
-    bounds = np.array([0, *shares, counts.size])
     orders = np.column_stack([layout.plain, layout.rooted])
-    return np.asarray(_all_cells(np.uint64(seed), first, counts, layout.starts, orders, bounds, stratified))
+    return np.asarray(
+        _all_cells(np.uint64(seed), first, counts, layout.starts, orders, _shares(counts, layout), stratified)
+    )
+
+
+def _shares(counts: NDArray[np.int64], layout: Layout) -> NDArray[np.int64]:
+    """Where the work of each thread begins and ends, counted through the surfaces of each cell in turn."""
+    each = price(layout.plain, layout.rooted)
+    work = np.concatenate([[0.0], np.cumsum(_START * counts.shape[1] + counts.sum(axis=1) * each)])
+    ends = np.linspace(0, work[-1], get_num_threads() + 1)
+    return np.asarray(np.interp(ends, work, counts.shape[1] * np.arange(len(work))), dtype=np.int64)

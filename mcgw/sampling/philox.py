@@ -24,10 +24,21 @@ import numpy as np
 from numba import njit, uint32, uint64
 from numpy.typing import NDArray
 
-__all__ = ["CELLS", "EXTRAS", "MOMENTS", "POSITIONS", "REST", "TAIL", "centred", "philox", "uniforms"]
+__all__ = [
+    "CELLS",
+    "COUNTS",
+    "EXTRAS",
+    "MOMENTS",
+    "POSITIONS",
+    "REST",
+    "TAIL",
+    "centred",
+    "philox",
+    "uniforms",
+]
 
 # Purposes: streams of the same surface that must not overlap.
-CELLS, TAIL, EXTRAS, MOMENTS, REST, POSITIONS = range(6)
+CELLS, TAIL, EXTRAS, MOMENTS, REST, POSITIONS, COUNTS = range(7)
 
 _M0, _M1 = uint64(0xD2511F53), uint64(0xCD9E8D57)
 _W0, _W1 = uint64(0x9E3779B9), uint64(0xBB67AE85)

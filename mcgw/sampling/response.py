@@ -28,26 +28,33 @@ Places = NDArray[np.uint64]
 _Blocks = tuple[Ints, Ints, Array]  # rows, first columns, values
 
 _WIDTH = 64  # surfaces at a time
-_FOUR = 4  # columns of a block
-_MOST, _MOST_IN_CELL = 18, 19  # moments: what is not resolved by so many is left to the children, or refused
+_FOUR = 4  # rows and columns of a tile
+_MOST, _MOST_IN_CELL = 12, 19  # moments: what is not resolved by so many is left to the children, or refused
+
+
+@njit(inline="always")
+def _in_fours(rows: Any) -> Any:
+    """Rounded up."""
+    return (rows + _FOUR - 1) // _FOUR * _FOUR
 
 
 @dataclass(frozen=True)
 class Response:
     """A sparse matrix that runs from the moments to the answers by way of the tree.
 
-    Rows are computed in order: row r is a combination of earlier rows, of which the first ones are
-    the moments of the cells and the last ones the answers. A node's moments are neighbours, so entries
-    are kept as blocks of four columns, the last of them filled up with zeros.
+    Rows are computed in order, four at a time: each is a combination of earlier rows, of which the first
+    ones are the moments of the cells and the last ones the answers. A node's moments are neighbours, and
+    so are the answers it has a part in: entries are kept as tiles of four rows and columns, filled up
+    with zeros.
 
     Parameters
     ----------
     layout : Layout
         The moments that each cell must have.
     pointers, columns : ndarray
-        First block of each computed row, and first column of each block.
-    values : ndarray
-        Shape (blocks, 4).
+        First tile of each four computed rows, and first column of each tile.
+    tiles : ndarray
+        Shape (tiles, 4, 4).
     shape : (int, int)
         Number of quantities and separations.
     """
@@ -55,29 +62,30 @@ class Response:
     layout: Layout
     pointers: Places
     columns: Places
-    values: Array
+    tiles: Array
     shape: tuple[int, int]
 
     def __matmul__(self, moments: Array) -> Array:
         """Quantities of every surface: moments (rows, surfaces) to (quantities, surfaces, separations)."""
-        return np.asarray(_apply(self.pointers, self.columns, self.values, moments, self.shape))
+        return np.asarray(_apply(self.pointers, self.columns, self.tiles, moments, self.shape))
 
 
 @njit(parallel=True, cache=True)
-def _apply(pointers: Any, columns: Any, values: Any, moments: Any, shape: Any) -> Any:
+def _apply(pointers: Any, columns: Any, tiles: Any, moments: Any, shape: Any) -> Any:
     """All rows for so many surfaces at a time; the sum over a row has one order, whatever the block."""
     given, surfaces = moments.shape
     quantities, separations = shape
-    computed = pointers.size - 1
-    answers = given + computed - quantities * separations
+    computed = _FOUR * (pointers.size - 1)
+    answers = given + _FOUR + computed - _in_fours(quantities * separations)
     result = np.empty((quantities, surfaces, separations))
     for chunk in prange((surfaces + _WIDTH - 1) // _WIDTH):
         first = chunk * _WIDTH
         n = min(_WIDTH, surfaces - first)
-        table = np.empty((given + computed + _FOUR, _WIDTH))
+        table = np.empty((given + _FOUR + computed, _WIDTH))
         table[:given, n:] = 0.0
         table[:given, :n] = moments[:, first : first + n]
-        _fill(table.reshape(-1), given, pointers, columns, values)
+        table[given : given + _FOUR] = 0.0  # a tile may reach so far beyond
+        _fill(table.reshape(-1), given + _FOUR, pointers, columns, tiles)
         for q in range(quantities):
             for i in range(n):
                 for k in range(separations):
@@ -85,23 +93,29 @@ def _apply(pointers: Any, columns: Any, values: Any, moments: Any, shape: Any) -
     return result
 
 
-@njit(nogil=True, cache=True)
-def _fill(table: Any, given: int, pointers: Any, columns: Any, values: Any) -> None:
-    """Compute all rows of a flat table. Unsigned places, for a signed one may count from the end."""
-    table[given * _WIDTH : (given + _FOUR) * _WIDTH] = 0.0
-    for r in range(pointers.size - 1):
-        row = np.uint64((given + r) * _WIDTH)
-        for k in range(_WIDTH):  # a block may reach so far beyond what is computed
-            table[row + np.uint64(_FOUR * _WIDTH + k)] = 0.0
-        for block in range(pointers[r], pointers[r + 1]):
-            a, b, c, d = values[block, 0], values[block, 1], values[block, 2], values[block, 3]
-            ka = columns[block] * np.uint64(_WIDTH)
+@njit(nogil=True, cache=True, fastmath={"contract"})
+def _fill(table: Any, row: int, pointers: Any, columns: Any, tiles: Any) -> None:
+    """Compute a flat table from a row on. Unsigned places, for a signed one may count from the end."""
+    sums = np.empty(_FOUR * _WIDTH)
+    for group in range(pointers.size - 1):
+        sums[:] = 0.0
+        for tile in range(pointers[group], pointers[group + 1]):
+            ka = columns[tile] * np.uint64(_WIDTH)
             kb, kc, kd = ka + np.uint64(_WIDTH), ka + np.uint64(2 * _WIDTH), ka + np.uint64(3 * _WIDTH)
+            a0, b0, c0, d0 = tiles[tile, 0, 0], tiles[tile, 0, 1], tiles[tile, 0, 2], tiles[tile, 0, 3]
+            a1, b1, c1, d1 = tiles[tile, 1, 0], tiles[tile, 1, 1], tiles[tile, 1, 2], tiles[tile, 1, 3]
+            a2, b2, c2, d2 = tiles[tile, 2, 0], tiles[tile, 2, 1], tiles[tile, 2, 2], tiles[tile, 2, 3]
+            a3, b3, c3, d3 = tiles[tile, 3, 0], tiles[tile, 3, 1], tiles[tile, 3, 2], tiles[tile, 3, 3]
             for k in range(_WIDTH):
                 i = np.uint64(k)
-                table[row + i] += (a * table[ka + i] + b * table[kb + i]) + (
-                    c * table[kc + i] + d * table[kd + i]
-                )
+                w, x, y, z = table[ka + i], table[kb + i], table[kc + i], table[kd + i]
+                sums[i] += (a0 * w + b0 * x) + (c0 * y + d0 * z)
+                sums[i + np.uint64(_WIDTH)] += (a1 * w + b1 * x) + (c1 * y + d1 * z)
+                sums[i + np.uint64(2 * _WIDTH)] += (a2 * w + b2 * x) + (c2 * y + d2 * z)
+                sums[i + np.uint64(3 * _WIDTH)] += (a3 * w + b3 * x) + (c3 * y + d3 * z)
+        at = np.uint64((row + _FOUR * group) * _WIDTH)
+        for k in range(_FOUR * _WIDTH):
+            table[at + np.uint64(k)] = sums[np.uint64(k)]
 
 
 def response_of(
@@ -149,18 +163,26 @@ def response_of(
     entries, plain, rooted = _walk(mesh, tree, laws, kept)
     layout = Layout(plain[: mesh.size], rooted)
     starts = layout.starts
-    inner = starts[-1] + np.concatenate([[0], np.cumsum(plain[mesh.size :])]).astype(np.int64)
-    node_row = np.concatenate([starts[:-1], inner[:-1]])
-    answers = int(inner[-1]) + _FOUR  # a block may reach so far
+    inner = starts[-1] + _FOUR + np.concatenate([[0], np.cumsum(_in_fours(plain[mesh.size :]))])
+    node_row = np.concatenate([starts[:-1], inner[:-1]]).astype(np.int64)
     blocks = [
         *_transfers(mesh, tree, plain, node_row),
-        *_answers(entries, plain, rooted, node_row, answers),
+        *_answers(entries, plain, rooted, node_row, inner[-1]),
     ]
-    row, column, value = (np.concatenate(part) for part in zip(*blocks, strict=True)) if blocks else _NOTHING
-    order = np.argsort(row, kind="stable")
-    pointers = np.searchsorted(row[order], np.arange(starts[-1], answers + len(laws.h) + 1))
     shape = (len(quantities), len(scene.separations))
-    return Response(layout, pointers.astype(np.uint64), column[order].astype(np.uint64), value[order], shape)
+    groups = (inner[-1] - inner[0] + _in_fours(len(laws.h))) // _FOUR
+    return Response(layout, *_tiled(blocks, inner[0], groups), shape)
+
+
+def _tiled(blocks: list[_Blocks], first: int, groups: int) -> tuple[Places, Places, Array]:
+    """Gather blocks of single rows into tiles: pointers, columns, tiles."""
+    row, column, value = (np.concatenate(part) for part in zip(*blocks, strict=True)) if blocks else _NOTHING
+    group, place = np.divmod(row - first, _FOUR)
+    key, tile = np.unique(np.stack([group, column]), axis=1, return_inverse=True)
+    tiles = np.zeros((key.shape[1], _FOUR, _FOUR))
+    tiles[tile, place] = value
+    pointers = np.searchsorted(key[0], np.arange(groups + 1))
+    return pointers.astype(np.uint64), key[1].astype(np.uint64), tiles
 
 
 _NOTHING = (np.empty(0, np.int64), np.empty(0, np.int64), np.empty((0, _FOUR)))

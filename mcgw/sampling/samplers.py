@@ -19,7 +19,7 @@ from analytic import QUANTITIES, Exponential
 from mcgw.room import keep_freed_memory
 from mcgw.sampling.aggregate import CROWDED, add_gaussian_moments
 from mcgw.sampling.cells import Mesh, mesh_of, no_cells
-from mcgw.sampling.counts import counts_of, generator, strata_of
+from mcgw.sampling.counts import Counts, contacts_above, counts_of, generator, strata_of
 from mcgw.sampling.extras import extra_heights
 from mcgw.sampling.hertz import hertz_sums
 from mcgw.sampling.moments import Layout, cell_moments
@@ -175,20 +175,27 @@ class Cells:
 
     def block(self, first: int, n: int) -> Block:
         """Results of surfaces `first` ... `first + n - 1`."""
-        stratified = self.name == "stratified"
-        counts = (
-            strata_of(self.scene, self.mesh, n) if stratified else counts_of(self.scene, self.mesh, first, n)
-        )
-        least = self.crowded if self.name == "aggregate" else np.iinfo(np.int64).max
-        single = np.where(counts.cells < least, counts.cells, 0)
-        layout = self.response.layout
-        moments = cell_moments(self.scene.seed, first, single, layout, stratified=stratified)
-        add_gaussian_moments(self.scene.seed, first, counts.cells - single, layout, moments)
-        if stratified:
-            moments *= np.repeat(counts.weights[1:-1], layout.sizes)[:, None]
+        if self.name == "stratified":
+            counts = strata_of(self.scene, self.mesh, n)
+        else:
+            counts = counts_of(self.scene, self.mesh, first, n)
+        moments = self._moments(first, counts)
         extras = extra_heights(self.scene, self.mesh, first, counts)
         numbers = counts.cells * counts.weights[1:-1, None]
         return Block(self.sums(first, moments, numbers, extras), moments.T, numbers.T, extras)
+
+    def _moments(self, first: int, counts: Counts) -> Array:
+        seed, layout = self.scene.seed, self.response.layout
+        if self.name == "aggregate":
+            crowds = np.where(counts.cells >= self.crowded, counts.cells, 0)
+            moments = cell_moments(seed, first, counts.cells - crowds, layout)
+            add_gaussian_moments(seed, first, crowds, layout, moments)
+            return moments
+        stratified = self.name == "stratified"
+        moments = cell_moments(seed, first, counts.cells, layout, stratified=stratified)
+        if stratified:
+            moments *= np.repeat(counts.weights[1:-1], layout.sizes)[:, None]
+        return moments
 
     def sums(self, first: int, moments: Array, counts: Array, extras: Array) -> dict[str, Array]:
         """Quantities of surfaces `first` ... from what was drawn.
@@ -213,15 +220,16 @@ class Cells:
         answers = iter(self.response @ moments)
         sums = {}
         for name in scene.quantities:
-            sums[name] = self._contacts(counts) if name == "contacts" else next(answers)[:, columns]
+            sums[name] = (
+                contacts_above(counts, self._places()) if name == "contacts" else next(answers)[:, columns]
+            )
         where, numbers = np.unique(extras[:, 0].astype(np.int64) - first, return_counts=True)
         heights, weights = np.ascontiguousarray(extras[:, 1:].T)
-        for name, values in hertz_sums(scene, numbers, heights, weights).items():
-            sums[name][where] += values
+        with np.errstate(over="ignore"):  # as in the product: what is too large is infinite
+            for name, values in hertz_sums(scene, numbers, heights, weights).items():
+                sums[name][where] += values
         return sums
 
-    def _contacts(self, counts: Array) -> Array:
-        """Number of asperities in the cells above each separation."""
-        above = np.zeros((counts.shape[1], self.mesh.size + 1))
-        np.cumsum(counts.T[:, ::-1], axis=1, out=above[:, 1:])
-        return above[:, self.mesh.size - np.searchsorted(self.mesh.edges[:-1], self.scene.separations)]
+    def _places(self) -> Ints:
+        """First cell above each separation."""
+        return np.searchsorted(self.mesh.edges[:-1], self.scene.separations)

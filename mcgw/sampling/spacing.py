@@ -2,7 +2,7 @@
 
 A cell takes time to begin, and each of its asperities the more, the more moments are needed. How many
 depends on how far the cell is from the root of the nearest law of contact: cells as wide as their
-distance to the next separation below need about fifteen, cells half as wide eleven. So cells grow
+distance to the next separation below need about fifteen, cells half as wide ten. So cells grow
 geometrically from a separation upwards, and how fast, and to how many, is chosen for each gap.
 """
 
@@ -24,8 +24,8 @@ _DIGITS = 11.8  # that the moments must give, of a law or of the sum of a surfac
 _GROWTHS = (2.0, 1.8, 1.6, 1.5, 1.45, 1.4, 1.3, 1.2)  # with 2 each cell is as wide as it may be
 _MORE = 8  # cells than the fewest possible
 
-# Prices, in asperities that give eleven moments.
-_CELL, _ROOT, _FIVE_MORE = 400.0, 0.3, 0.35
+# Prices, in asperities that give ten moments.
+_CELL, _FIVE_MORE, _ROOT, _FIVE_ROOTS_MORE = 350.0, 0.25, 0.3, 0.2
 
 
 def cuts(law: HeightLaw, n: int, low: float, high: float, before: float) -> Array:
@@ -89,9 +89,9 @@ def _prices(law: HeightLaw, n: int, low: float, gap: float, upper: Array, distan
 
 
 def price(plain: Array | Ints, rooted: Array | Ints) -> Array:
-    """What an asperity costs that gives so many moments: 1 for eleven plain ones."""
-    roots = np.where(rooted > 0, _ROOT + _FIVE_MORE * _steps(rooted - 6), 0.0)
-    return np.asarray(1 + _FIVE_MORE * _steps(plain - 11) + roots)
+    """What an asperity costs that gives so many moments: 1 for ten plain ones."""
+    roots = np.where(rooted > 0, _ROOT + _FIVE_ROOTS_MORE * _steps(rooted - 6), 0.0)
+    return np.asarray(1 + _FIVE_MORE * _steps(plain - 10) + roots)
 
 
 def _rate(z: Array) -> Array:

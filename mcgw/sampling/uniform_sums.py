@@ -16,7 +16,7 @@ from numba import njit
 
 from mcgw.sampling.philox import CELLS, centred
 
-__all__ = ["PLAIN", "ROOTED", "WORDS", "sum_uniforms"]
+__all__ = ["PLAIN", "ROOTED", "WORDS", "sum_uniforms", "unfold"]
 
 _BUFFER = 1024  # uniforms at a time: they stay in the innermost cache
 _ROOT, _ONE, PLAIN, ROOTED, WORDS = 1024, 2048, 3072, 3104, 3136  # where the rest begins, and its end
@@ -35,10 +35,10 @@ def _five(x: Any) -> Any:
 
 
 def _adder(plain: int, rooted: int) -> Any:
-    """Loop that adds the sums of T_1 ... T_5, T_5 T_1 ... T_5 T_5 and, past eleven, T_10 T_1 ... T_10 T_5.
+    """Loop that adds the sums of T_1 ... T_5, T_5 T_1 ... T_5 T_4; past ten, T_5 T_5, T_10 T_1 ... T_10 T_5.
 
-    Of the rooted ones it adds none, six (sqrt(u) T_0 ... T_5) or eleven (and sqrt(u) T_5 T_1 ... T_5 T_5),
-    and leaves sqrt(u). What is not asked for is not in the machine code.
+    Of the rooted ones it adds none, four (sqrt(u) T_0 ... T_3), six or eleven (and sqrt(u) T_5 T_1 ...
+    T_5 T_5), and leaves sqrt(u). What is not asked for is not in the machine code.
     """
 
     @njit(nogil=True, cache=True, fastmath=_VECTOR)
@@ -57,8 +57,8 @@ def _adder(plain: int, rooted: int) -> Any:
             g += t5 * t2
             h += t5 * t3
             p += t5 * t4
-            q += t5 * t5
-            if plain > 11:
+            if plain > 10:
+                q += t5 * t5
                 t10 = 2 * t5 * t5 - 1.0
                 v1 += t10 * t1
                 v2 += t10 * t2
@@ -72,6 +72,7 @@ def _adder(plain: int, rooted: int) -> Any:
                 r1 += r * t1
                 r2 += r * t2
                 r3 += r * t3
+            if rooted > 4:
                 r4 += r * t4
                 r5 += r * t5
             if rooted > 6:
@@ -81,14 +82,17 @@ def _adder(plain: int, rooted: int) -> Any:
                 s3 += s * t3
                 s4 += s * t4
                 s5 += s * t5
-        for k, total in enumerate((a, b, c, d, e, f, g, h, p, q)):
+        for k, total in enumerate((a, b, c, d, e, f, g, h, p)):
             w[PLAIN + 1 + k] += total
-        if plain > 11:
-            for k, total in enumerate((v1, v2, v3, v4, v5)):
-                w[PLAIN + 11 + k] += total
+        if plain > 10:
+            for k, total in enumerate((q, v1, v2, v3, v4, v5)):
+                w[PLAIN + 10 + k] += total
         if rooted:
-            for k, total in enumerate((r0, r1, r2, r3, r4, r5)):
+            for k, total in enumerate((r0, r1, r2, r3)):
                 w[ROOTED + k] += total
+        if rooted > 4:
+            for k, total in enumerate((r4, r5)):
+                w[ROOTED + 4 + k] += total
         if rooted > 6:
             for k, total in enumerate((s1, s2, s3, s4, s5)):
                 w[ROOTED + 6 + k] += total
@@ -96,22 +100,26 @@ def _adder(plain: int, rooted: int) -> Any:
     return add
 
 
-_11_0, _11_6, _11_11 = _adder(11, 0), _adder(11, 6), _adder(11, 11)
-_16_0, _16_6, _16_11 = _adder(16, 0), _adder(16, 6), _adder(16, 11)
+_10_0, _10_4, _10_6, _10_11 = _adder(10, 0), _adder(10, 4), _adder(10, 6), _adder(10, 11)
+_16_0, _16_4, _16_6, _16_11 = _adder(16, 0), _adder(16, 4), _adder(16, 6), _adder(16, 11)
 
 
 @njit(nogil=True, cache=True)
 def _add(w: Any, n: Any, plain: Any, rooted: Any) -> None:
     """Add the sums of so many moments, by the shortest loop that will do."""
-    if plain <= 11:
+    if plain <= 10:
         if rooted == 0:
-            _11_0(w, n)
+            _10_0(w, n)
+        elif rooted <= 4:
+            _10_4(w, n)
         elif rooted <= 6:
-            _11_6(w, n)
+            _10_6(w, n)
         else:
-            _11_11(w, n)
+            _10_11(w, n)
     elif rooted == 0:
         _16_0(w, n)
+    elif rooted <= 4:
+        _16_4(w, n)
     elif rooted <= 6:
         _16_6(w, n)
     else:
@@ -139,14 +147,6 @@ def _five_more(w: Any, n: Any, m: Any, factor: Any, sums: Any) -> None:
         w[sums + 5 * m + 1 + k] += total
 
 
-@njit(nogil=True, cache=True)
-def _unfold(w: Any, sums: Any, orders: Any) -> None:
-    """Make sums of polynomials of the sums of products, from the lowest order on."""
-    for j in range(6, orders):
-        m = (j - 1) // 5 * 5
-        w[sums + j] = 2.0 * w[sums + j] - w[sums + 2 * m - j]
-
-
 @njit(nogil=True, cache=True, fastmath=_VECTOR)
 def _stratified(w: Any, n: Any, first: Any, strata: Any) -> None:
     """Move the uniform of asperity ``first + i`` into its own one of `strata` equal strata."""
@@ -163,7 +163,7 @@ def sum_uniforms(
     Parameters
     ----------
     w : ndarray
-        WORDS words; all ones when first used. Leaves T_j at ``PLAIN + j`` and R_j at ``ROOTED + j``.
+        WORDS words; all ones when first used. Leaves T_j at ``PLAIN + j`` and R_j at ``ROOTED + j``, folded.
     seed, surface, cell : int
         Whose uniforms.
     start, stop : int
@@ -182,5 +182,22 @@ def sum_uniforms(
             _stratified(w, n, first, strata)
         _add(w, n, plain, rooted)
     w[PLAIN] = stop - start
-    _unfold(w, PLAIN, plain)
-    _unfold(w, ROOTED, rooted)
+
+
+@njit(nogil=True, cache=True)
+def unfold(sums: Any, first: Any, orders: Any) -> None:
+    """Make sums of polynomials of the sums of products.
+
+    Parameters
+    ----------
+    sums : ndarray
+        Rows, one an order, as `sum_uniforms` leaves them.
+    first : int
+        Row of order 0.
+    orders : int
+        How many there are.
+    """
+    for j in range(6, orders):
+        m = (j - 1) // 5 * 5
+        for i in range(sums.shape[1]):
+            sums[first + j, i] = 2.0 * sums[first + j, i] - sums[first + 2 * m - j, i]

@@ -1,0 +1,168 @@
+"""Binomial numbers, against mpmath and the exact distribution, and shared out among cells."""
+
+import math
+
+import mpmath as mp
+import numpy as np
+import pytest
+from scipy import stats
+
+from mcgw.sampling import binomial
+from mcgw.sampling.binomial import SURFACES, TRIALS, WORDS, binomials
+from mcgw.sampling.cells import mesh_of
+from mcgw.sampling.counts import counts_of
+from mcgw.sampling.halving import halvings_of
+
+FALSE_ALARM = 1e-6  # of each chi-square test; the seeds are fixed
+
+CASES = [
+    (1, 0.5),
+    (3, 0.3),
+    (30, 0.01),
+    (39, 0.5),  # the largest mean that is inverted, and the smallest that is not
+    (40, 0.5),
+    (200, 0.1),
+    (1000, 0.5),
+    (10**6, 1e-6),
+    (10**6, 0.37),
+    (10**9, 3e-8),
+    (10**12, 1e-11),
+    (10**15, 2e-13),
+    (10**15, 0.5),
+    (2**53, 0.25),
+]
+
+
+def draw(n, p, m, *, seed=5, node=3, first=0):
+    """`m` numbers, one a surface."""
+    work, numbers = np.empty(WORDS), np.empty(m)
+    for start in range(0, m, SURFACES):
+        size = min(SURFACES, m - start)
+        work[TRIALS : TRIALS + size] = n
+        binomials(work, size, p, np.uint64(seed), np.uint64(first + start), np.uint64(node))
+        numbers[start : start + size] = work[:size]
+    return numbers
+
+
+def p_value(numbers, n, p):
+    """Of a chi-square test in classes that are about equally probable."""
+    law = stats.binom(n, p)
+    edges = np.unique(law.ppf(np.arange(1, 40) / 40))
+    expected = len(numbers) * np.diff(np.concatenate([[0], law.cdf(edges), [1]]))
+    found = np.bincount(np.searchsorted(edges, numbers), minlength=len(expected))
+    few = expected < 5
+    expected, found = (np.append(x[~few], x[few].sum()) for x in (expected, found))
+    return stats.chi2.sf(((found - expected) ** 2 / np.maximum(expected, 1e-300)).sum(), np.sum(~few) - 1)
+
+
+@pytest.mark.parametrize(("n", "p"), CASES)
+def test_numbers_have_the_binomial_law(n, p):
+    numbers = draw(n, p, 200_000)
+    assert (numbers == np.floor(numbers)).all()
+    assert 0 <= numbers.min() <= numbers.max() <= n
+    assert p_value(numbers, n, p) > FALSE_ALARM
+
+
+@pytest.mark.parametrize(("n", "p", "off"), [(40, 0.5, 1.01), (1000, 0.5, 1.002), (10**15, 2e-13, 1.005)])
+def test_the_chi_square_test_sees_a_wrong_probability(n, p, off):
+    assert p_value(draw(n, p * off, 200_000), n, p) < FALSE_ALARM
+
+
+def test_the_ratio_of_probabilities_against_mpmath():
+    """What decides on acceptance: to 2e-12, near the mode and far from it, for any number of trials."""
+    rng, worst = np.random.default_rng(1), 0.0
+    for _ in range(400):
+        n = float(np.floor(10 ** rng.uniform(1.7, 15)))
+        p = min(10 ** rng.uniform(math.log10(20.5 / n), math.log10(0.5)), 0.5)
+        sd = math.sqrt(n * p * (1 - p))
+        k = float(np.clip(np.floor(n * p + rng.uniform(-8, 8) * sd), 0, n))
+        mode = math.floor((n + 1) * p)
+        ends = (max(x, binomial._ZERO) * max(n - x, binomial._ZERO) for x in (mode, k))
+        found = (
+            binomial._shortfall(n, p, mode)
+            - binomial._shortfall(n, p, k)
+            + 0.5 * math.log(next(ends) / next(ends))
+        )
+        with mp.workdps(60):
+            exact = log_probability(n, p, k) - log_probability(n, p, mode)
+        rounded = 2.0**-53 * (k + mode) * (abs(k - n * p) + 1) / sd**2  # that of n p: as if p were another one
+        worst = max(worst, abs(found - float(exact)) - rounded)
+    assert worst < 2e-12
+
+
+def log_probability(n, p, k):
+    """At 60 digits."""
+    n, p, k = mp.mpf(n), mp.mpf(p), mp.mpf(k)
+    return (
+        mp.loggamma(n + 1)
+        - mp.loggamma(k + 1)
+        - mp.loggamma(n - k + 1)
+        + k * mp.log(p)
+        + (n - k) * mp.log1p(-p)
+    )
+
+
+@pytest.mark.parametrize("mean", [20.0, 25.0, 60.0, 1e3, 1e6, 1e11])
+@pytest.mark.parametrize("p", [0.5, 0.3, 1e-3])
+def test_the_hat_covers_the_law_and_the_squeeze_is_below_it(mean, p):
+    """All that rejection rests on, at 20 000 uniforms, with no random number."""
+    n = float(math.ceil(mean / p))
+    for u in np.linspace(-0.4999, 0.4999, 20_001):
+        k, _, w = binomial._proposal(n, p, u, 0.5)  # the largest v: the hat itself
+        if 0 <= k <= n:
+            assert not binomial._accepted(n, p, k, w * (1 + 1e-9))
+        b = 1.15 + 2.53 * math.sqrt(n * p * (1 - p))
+        k, sure, w = binomial._proposal(n, p, u, 0.42 - 4.2 / b)  # the largest v that is sure
+        assert sure == (0.5 - abs(u) >= 0.07)
+        assert not sure or binomial._accepted(n, p, k, w)
+
+
+def test_a_number_is_a_function_of_seed_surface_and_node():
+    whole = draw(1000, 0.3, 300)
+    np.testing.assert_array_equal(draw(1000, 0.3, 100, first=150), whole[150:250])
+    for other in ({"seed": 6}, {"node": 4}, {"first": 2**40}):
+        assert abs(np.corrcoef(whole, draw(1000, 0.3, 300, **other))[0, 1]) < 5 / math.sqrt(300)
+
+
+def test_the_ends_of_the_uniforms():
+    """Rounding can leave a uniform of one: the number stays a number."""
+    for n, p in ((1.0, 0.5), (39.0, 0.5), (1e15, 1e-15), (1e15, 1.9e-14)):
+        for u in (0.0, 1e-20, 1.0 - 2**-53, 1.0):
+            assert 0 <= binomial._inverse(n, p, math.log1p(-p), u) <= min(n, 110)
+    assert binomial._inverse(5.0, 0.0, 0.0, 1.0) == 0
+
+
+@pytest.mark.parametrize("count", ["fixed", "poisson"])
+def test_cells_share_the_contacts_as_single_draws_would(make_scene, count):
+    """The same halving as plain loops, one surface and one number at a time."""
+    scene = make_scene(separations=tuple(np.linspace(0, 6, 13)), n_asperities=10**7, count=count, seed=9)
+    mesh, surface = mesh_of(scene), 70
+    halvings, found = halvings_of(mesh), counts_of(scene, mesh, surface, 3)
+    leaves = [int(found.low_extras[0]), *found.cells[:, 0].tolist(), int(found.high_extras[0])]
+    nodes, parent = [sum(leaves)], 0
+    for size in halvings.sizes:
+        children = []
+        for node in nodes:
+            rarer = int(draw(node, halvings.shares[parent], 1, seed=9, node=parent, first=surface)[0])
+            children += [node - rarer, rarer] if halvings.turned[parent] else [rarer, node - rarer]
+            parent += 1
+        nodes = children[:size]
+    assert nodes == leaves
+
+
+@pytest.mark.parametrize("count", ["fixed", "poisson"])
+def test_counts_are_multinomial_or_independent(make_scene, count):
+    """Means, variances and covariances of all pairs of cells: |z| < 5.5, false alarms 4e-8 a number."""
+    scene = make_scene(separations=(-0.5, 0.0, 1.0, 2.0), n_asperities=2000, count=count, seed=3)
+    mesh, m = mesh_of(scene), 40_000
+    counts = counts_of(scene, mesh, 0, m).cells.astype(float)
+    n, p = scene.n_asperities, mesh.probability
+    exact = n * (np.diag(p) - (np.outer(p, p) if count == "fixed" else 0))
+    sd = np.sqrt(np.diag(exact))
+    assert np.abs((counts.mean(axis=1) - n * p) / sd * np.sqrt(m)).max() < 5.5
+    correlation = (np.cov(counts) - exact) / np.outer(sd, sd)
+    spread = np.sqrt(1 + np.eye(len(p)) * (1 + 1 / (n * p)))  # of a pair, and of a variance with its kurtosis
+    assert np.abs(correlation / spread * np.sqrt(m)).max() < 5.5
+    wrong = exact + (n * np.outer(p, p) if count == "fixed" else -n * np.outer(p, p))  # the other law
+    seen = (np.cov(counts) - wrong) / np.outer(sd, sd) / spread * np.sqrt(m)
+    assert np.abs(seen).max() > 5.5
