@@ -85,7 +85,7 @@ def test_the_ratio_of_probabilities_against_mpmath():
         )
         with mp.workdps(60):
             exact = log_probability(n, p, k) - log_probability(n, p, mode)
-        rounded = 2.0**-53 * (k + mode) * (abs(k - n * p) + 1) / sd**2  # that of n p: as if p were another one
+        rounded = 2.0**-53 * (k + mode) * (abs(k - n * p) + 1) / sd**2  # of n p: another p
         worst = max(worst, abs(found - float(exact)) - rounded)
     assert worst < 2e-12
 
