@@ -112,7 +112,7 @@ def block_size(scene: Scene, sampler: Sampler) -> int:
     draws = {"direct": float(scene.n_asperities), "aggregate": 1e4}.get(sampler.name, touching)
     if sampler.name == "tail":
         words += 12 * int(min(touching, 1e12))
-    size = int(min(_WORDS / words, _DRAWS / (draws + 1), 15 * GROUP))
+    size = int(min(_WORDS / words, _DRAWS / (draws + 1), 30 * GROUP))
     return (size // GROUP // 4 * 4 + 2) * GROUP if size >= GROUP else max(size, 1)
 
 

@@ -20,7 +20,7 @@ Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 SURE = 400  # so many expected contacts are never fewer than half
-_DIGITS = 11.8  # that the moments must give, of a law or of the sum of a surface
+_DIGITS = 11.4  # that the moments must give, of a law or of the sum of a surface
 _GROWTHS = (2.0, 1.8, 1.6, 1.5, 1.45, 1.4, 1.3, 1.2)  # with 2 each cell is as wide as it may be
 _MORE = 8  # cells than the fewest possible
 
@@ -81,7 +81,7 @@ def _prices(law: HeightLaw, n: int, low: float, gap: float, upper: Array, distan
         reach = gap * (np.where(np.isfinite(distance), distance, 0.0) + width)
         part = np.where(n * above > SURE, expected / (n * above) * np.sqrt(reach), 1.0)
         digits = _DIGITS + np.log10(part)
-        plain = 1 + digits / _rate(np.minimum(1 + 2 * distance / width, 2 / bend))
+        plain = digits / _rate(np.minimum(1 + 2 * distance / width, 2 / bend))
         rooted = 1 + digits / _rate(2 / bend)
     first = used & (upper == width)
     each = price(plain, np.where(first, rooted, 0.0))
