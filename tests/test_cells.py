@@ -96,12 +96,12 @@ def test_what_auto_takes(make_scene):
     """One by one where a handful touches, more with many separations; cells for all else, and for moments."""
     many = tuple(np.linspace(0, 4, 601))
     cases = {
-        "cells": ({}, {"n_asperities": 10**12}, {"separations": many}, {"n_asperities": 200}),
+        "cells": ({}, {"n_asperities": 10**12}, {"separations": many}, {"n_asperities": 50}),
         "tail": (
             {"n_asperities": 1},
-            {"n_asperities": 20},
-            {"separations": many, "n_asperities": 100},
-            {"separations": many[300:], "n_asperities": 1000},
+            {"n_asperities": 8},
+            {"separations": many, "n_asperities": 60},
+            {"separations": many[300:], "n_asperities": 800},
         ),
     }
     for name, scenes in cases.items():

@@ -119,7 +119,7 @@ def _lasting_layout(scene: Scene, mesh: Mesh) -> Layout:
 def _cheapest(scene: Scene) -> str:
     """Cells, unless most of them would be empty (`runs/bench/auto.py`)."""
     touching = scene.n_asperities * float(scene.heights.above(np.array(scene.lowest)))
-    few = touching < 20 + len(scene.separations) / 15
+    few = touching < 5 + len(scene.separations) / 20
     return "tail" if few and scene.keep == "sums" else "cells"
 
 
