@@ -1,6 +1,7 @@
 """Imports point one way, and nothing is compiled or drawn before it is needed."""
 
 import ast
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -8,6 +9,7 @@ from pathlib import Path
 import pytest
 
 import mcgw
+from mcgw import sampling
 
 # Each file imports only from files before it. Commands come last and are not imported by anything.
 ORDER = (
@@ -139,3 +141,26 @@ def test_nothing_heavy_is_imported_early(code):
     probe = f"{code}\nimport sys\nprint(*({{'numba', 'h5py', 'matplotlib', 'scipy'}} & set(sys.modules)))"
     found = subprocess.run([sys.executable, "-c", probe], capture_output=True, text=True, check=True)
     assert found.stdout.strip() == ""
+
+
+def test_kernels_older_than_a_file_are_compiled_anew(tmp_path):
+    """A kernel holds the functions it calls from other files, which numba does not look at."""
+    source, kernel = tmp_path / "a.py", tmp_path / "__pycache__" / "b.nbi"
+    kernel.parent.mkdir()
+    for path in (source, kernel):
+        path.touch()
+    for changed, kept in ((kernel.stat().st_mtime - 5, True), (kernel.stat().st_mtime + 5, False)):
+        os.utime(source, (changed, changed))
+        sampling._forget_old_kernels(tmp_path)
+        assert kernel.exists() == kept
+    sampling._forget_old_kernels(tmp_path / "nowhere")
+
+
+def test_compiled_functions_lie_where_old_kernels_are_looked_for():
+    """Those of one package only call each other: a folder is all that has to be watched."""
+    for name, path in parts().items():
+        if "njit" in path.read_text():
+            assert name.startswith("sampling."), name
+    for path in (ROOT / "maps").glob("*.py"):
+        if "njit" in path.read_text():
+            assert not any(name.startswith("sampling") for name in imports(path)), path.name
