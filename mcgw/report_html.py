@@ -15,8 +15,8 @@ from analytic import QUANTITIES
 from mcgw.compare import Comparison, compare
 from mcgw.doubts import doubts
 from mcgw.ensemble import Ensemble
-from mcgw.figure_data import FigureData, Panel, Points, Series
-from mcgw.figures import draw
+from mcgw.figures.data import FigureData, Panel, Points, Series
+from mcgw.figures.drawing import draw
 from mcgw.plots import STYLE, grading_label, quantity_figure
 from mcgw.report_text import verdict_line
 

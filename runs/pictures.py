@@ -10,9 +10,9 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
 import mcgw
-from mcgw.figure_more import more_figures
-from mcgw.figure_paper import Samples
-from mcgw.figures import draw
+from mcgw.figures.drawing import draw
+from mcgw.figures.further import further_figures
+from mcgw.figures.samples import Samples
 from mcgw.plots import STYLE
 from mcgw.sampling.cells import mesh_of
 
@@ -25,7 +25,7 @@ def trend():
     """Equal separation against equal load, from `mcgw figures`."""
     scene = mcgw.load_scene(HERE / "demo.toml")
     samples = Samples(scene.surface, 200, scene.n_asperities, scene.seed, 100)
-    data = next(x for x in more_figures(samples) if x.name == "equal-load")
+    data = next(x for x in further_figures(samples) if x.name == "equal-load")
     draw(replace(data, panels=data.panels[:2])).savefig(FOLDER / "equal-load.png", dpi=110)
 
 

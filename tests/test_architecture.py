@@ -74,14 +74,18 @@ ORDER = (
     "csv_table",
     "solution",
     "solution_text",
-    "figure_data",
-    "figure_paper",
-    "figure_more",
+    "figures.data",
+    "figures.samples",
+    "figures.paper",
+    "figures.equal_load",
+    "figures.finite",
+    "figures.summits",
+    "figures.further",
     "doubts",
     "plots",
     "plots_converge",
     "plots_tradeoff",
-    "figures",
+    "figures.drawing",
     "report_text",
     "report_html",
     "cli",
@@ -98,7 +102,9 @@ def imports(path):
 
 def parts():
     """All files that stand in one order, by the names of their modules."""
-    files = [path for folder in (".", "sampling", "store") for path in (ROOT / folder).glob("*.py")]
+    files = [
+        path for folder in (".", "figures", "sampling", "store") for path in (ROOT / folder).glob("*.py")
+    ]
     named = {".".join(path.relative_to(ROOT).with_suffix("").parts): path for path in files}
     return {name: path for name, path in named.items() if not path.stem.startswith("_")}
 
@@ -123,8 +129,10 @@ def test_only_those_that_compare_take_integrals_from_theory():
         "methods",
         "principal",
         "solution",
-        "figure_paper",
-        "figure_more",
+        "paper",
+        "equal_load",
+        "finite",
+        "summits",
         "doubts",
         "report_html",
     }  # where Monte Carlo and theory are put side by side

@@ -7,10 +7,12 @@ import pytest
 from conftest import SURFACE
 
 import analytic
-from mcgw.figure_data import FigureData, Panel, Points, Series, ratio_of_sums
-from mcgw.figure_more import law_of_load, more_figures
-from mcgw.figure_paper import Samples, paper_figures
-from mcgw.figures import draw, save_figures
+from mcgw.figures.data import FigureData, Panel, Points, Series, ratio_of_sums
+from mcgw.figures.drawing import draw, save_figures
+from mcgw.figures.finite import law_of_load
+from mcgw.figures.further import further_figures
+from mcgw.figures.paper import paper_figures
+from mcgw.figures.samples import Samples
 
 THEORY_ALONE = {"figure-1", "negative-modulus"}
 
@@ -18,7 +20,7 @@ THEORY_ALONE = {"figure-1", "negative-modulus"}
 @pytest.fixture(scope="module")
 def figures():
     samples = Samples(SURFACE, n_surfaces=400, n_asperities=30_000, seed=11, n_listed=20)
-    return {data.name: data for data in paper_figures(samples) + more_figures(samples)}
+    return {data.name: data for data in paper_figures(samples) + further_figures(samples)}
 
 
 def points(data):

@@ -20,9 +20,10 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def execute(args: argparse.Namespace) -> int:
     """Write PNG and SVG of each figure and say where they are."""
-    from mcgw.figure_more import more_figures
-    from mcgw.figure_paper import Samples, paper_figures
-    from mcgw.figures import save_figures
+    from mcgw.figures.drawing import save_figures
+    from mcgw.figures.further import further_figures
+    from mcgw.figures.paper import paper_figures
+    from mcgw.figures.samples import Samples
     from mcgw.scene_file import load_scene, scene_from
 
     if args.scene:
@@ -36,6 +37,6 @@ def execute(args: argparse.Namespace) -> int:
             f"ensemble.n_asperities = {scene.n_asperities}: figures list heights one by one; give at most 1e6"
         )
     samples = Samples(scene.surface, 2000, scene.n_asperities, scene.seed, 100)
-    for path in save_figures(paper_figures(samples) + more_figures(samples), args.output, csv=args.csv):
+    for path in save_figures(paper_figures(samples) + further_figures(samples), args.output, csv=args.csv):
         print(path)
     return 0

@@ -9,10 +9,21 @@ from numpy.typing import NDArray
 
 from mcgw.csv_table import Row
 
-__all__ = ["FIGURE_HEADER", "FigureData", "Panel", "Points", "Series", "figure_rows", "ratio_of_sums"]
+__all__ = [
+    "FIGURE_HEADER",
+    "GAMMA",
+    "SEPARATION",
+    "FigureData",
+    "Panel",
+    "Points",
+    "Series",
+    "figure_rows",
+    "ratio_of_sums",
+]
 
 Array = NDArray[np.float64]
 
+GAMMA, SEPARATION = "grading factor γ", "separation d/σ"
 FIGURE_HEADER = ("panel", "series", "kind", "x", "theory", "mean", "stderr")
 
 

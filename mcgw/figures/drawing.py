@@ -1,4 +1,4 @@
-"""All figures of `mcgw figures`: numbers from `figure_paper` and `figure_more`, drawn alike."""
+"""The look of every figure, and the files it is written to."""
 
 import textwrap
 from collections.abc import Iterator
@@ -11,7 +11,7 @@ from cycler import cycler
 from matplotlib.figure import Figure
 
 from mcgw.csv_table import write_csv
-from mcgw.figure_data import FIGURE_HEADER, FigureData, Panel, Points, Series, figure_rows
+from mcgw.figures.data import FIGURE_HEADER, FigureData, Panel, Points, Series, figure_rows
 from mcgw.plots import STYLE
 
 __all__ = ["draw", "save_figures"]

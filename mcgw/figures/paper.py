@@ -1,8 +1,6 @@
 """Numbers of Figures 1 to 6 of the paper, with Monte-Carlo points."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from functools import cached_property
 from typing import Literal
 
 import numpy as np
@@ -10,14 +8,11 @@ from numpy.typing import NDArray
 
 import analytic
 from analytic import QUANTITIES, Exponential
-from mcgw.ensemble import Ensemble
-from mcgw.figure_data import FigureData, Panel, Points, Series, ratio_of_sums
-from mcgw.regrade import paired_ratio, regrade
-from mcgw.sampling.asperities import heights
-from mcgw.scene import Scene
-from mcgw.simulation import simulate
+from mcgw.figures.data import GAMMA, SEPARATION, FigureData, Panel, Points, Series, ratio_of_sums
+from mcgw.figures.samples import Samples
+from mcgw.regrade import paired_ratio
 
-__all__ = ["NEGATIVE", "POSITIVE", "Samples", "paper_figures"]
+__all__ = ["NEGATIVE", "POSITIVE", "paper_figures"]
 
 Array = NDArray[np.float64]
 Weight = Literal["number", "area", "load"]
@@ -26,79 +21,6 @@ POSITIVE, NEGATIVE = (1.0, 1.2, 1.5, 2.0), (1.0, 0.8, 0.5, 0.2)
 _GAMMAS = {"a": np.array([1.2, 1.4, 1.6, 1.8, 2.0]), "b": np.array([0.2, 0.4, 0.6, 0.8])}
 _RANGES = {"a": (1.0, 2.0), "b": (0.2, 1.0)}
 _H = np.arange(5.0)
-_GAMMA = "grading factor γ"
-_SEPARATION = "separation d/σ"
-
-
-@dataclass(frozen=True)
-class Samples:
-    """The surfaces behind the figures, drawn when first asked for.
-
-    Parameters
-    ----------
-    surface : Surface
-        Its parameters, SI.
-    n_surfaces, n_asperities, seed : int
-        The ensemble that is regraded.
-    n_listed : int
-        Surfaces whose heights are listed one by one.
-    """
-
-    surface: analytic.Surface
-    n_surfaces: int
-    n_asperities: int
-    seed: int
-    n_listed: int
-
-    @cached_property
-    def base(self) -> Ensemble:
-        """The homogeneous ensemble, with its moments."""
-        scene = Scene(
-            surface=self.surface,
-            separations=tuple(np.linspace(0, 4, 17)),
-            quantities=tuple(QUANTITIES),
-            n_surfaces=self.n_surfaces,
-            n_asperities=self.n_asperities,
-            seed=self.seed,
-            keep="moments",
-        )
-        return simulate(scene)
-
-    @cached_property
-    def _graded(self) -> dict[float, Ensemble]:
-        return {1.0: self.base}
-
-    def graded(self, gamma: float) -> Ensemble:
-        """The same surfaces with the paper's grading."""
-        if gamma not in self._graded:
-            self._graded[gamma] = regrade(self.base, Exponential(gamma))
-        return self._graded[gamma]
-
-    @cached_property
-    def heights(self) -> tuple[Array, ...]:
-        """Heights above s = -0.2 of each listed surface."""
-        scene = Scene(
-            surface=self.surface,
-            separations=(-0.2,),
-            n_surfaces=self.n_listed,
-            n_asperities=self.n_asperities,
-            seed=self.seed,
-            sampler="tail",
-        )
-        return tuple(heights(scene, number) for number in range(self.n_listed))
-
-    @property
-    def caption(self) -> str:
-        """In words."""
-        return (
-            f"Markers: Monte-Carlo means with 95 % intervals, {self.n_surfaces} surfaces of "
-            f"{self.n_asperities:g} asperities, seed {self.seed}. Lines: theory."
-        )
-
-    @property
-    def listed_caption(self) -> str:
-        """In words, where the heights are listed."""
-        return self.caption.replace(f"{self.n_surfaces} surf", f"{self.n_listed} surf")
 
 
 def paper_figures(samples: Samples) -> list[FigureData]:
@@ -164,7 +86,7 @@ def _curves(samples: Samples, name: str, title: str, quantity: str, ylabel: str)
                 analytic.fn(q.exponent, h, e),
             )
             series.append(Series(f"γ = {gamma:g}", line, analytic.fn(q.exponent, line, e), points))
-        panels.append(Panel(panel, _SEPARATION, ylabel, tuple(series), ("linear", "log")))
+        panels.append(Panel(panel, SEPARATION, ylabel, tuple(series), ("linear", "log")))
     return FigureData(name, title, samples.caption, tuple(panels))
 
 
@@ -175,7 +97,7 @@ def _ratios(samples: Samples, name: str, title: str, quantity: str) -> FigureDat
     panels = tuple(
         Panel(
             f"{key}  {word}",
-            _GAMMA,
+            GAMMA,
             ylabel,
             tuple(_ratio_series(samples, quantity, h, key) for h in _H),
             level=1.0,
@@ -207,7 +129,7 @@ def _figure_4(samples: Samples) -> FigureData:
     line, gammas = np.linspace(0.2, 2, 73), np.concatenate([_GAMMAS["b"], _GAMMAS["a"]])
     just = tuple(Series(f"d/σ = {h:g}", line, line - (line - 1) * np.exp(-h)) for h in _H)
     panels = [
-        Panel("a  the paper's: just touching, s = d/σ", _GAMMA, r"$\psi/\psi_\mathrm{hom}$", just, level=1.0)
+        Panel("a  the paper's: just touching, s = d/σ", GAMMA, r"$\psi/\psi_\mathrm{hom}$", just, level=1.0)
     ]
     weights: Sequence[tuple[str, Weight]] = (
         ("b  mean over the contacts", "number"),
@@ -220,7 +142,7 @@ def _figure_4(samples: Samples) -> FigureData:
             mean, stderr = _mean_moduli(samples.heights, float(h), gammas, weight)
             points = Points(gammas, mean, stderr, _exact_moduli(h, gammas, weight))
             series.append(Series(f"d/σ = {h:g}", line, _exact_moduli(h, line, weight), points))
-        panels.append(Panel(title, _GAMMA, r"$\psi/\psi_\mathrm{hom}$", tuple(series), level=1.0))
+        panels.append(Panel(title, GAMMA, r"$\psi/\psi_\mathrm{hom}$", tuple(series), level=1.0))
     return FigureData(
         "figure-4",
         "Plasticity index over that of the homogeneous surface",

@@ -1,0 +1,32 @@
+"""The figures that the paper lacks."""
+
+from mcgw.figures.data import FigureData
+from mcgw.figures.equal_load import equal_load
+from mcgw.figures.finite import distribution, fluctuations
+from mcgw.figures.samples import Samples
+from mcgw.figures.summits import area_and_load, negative_modulus, who_carries
+
+__all__ = ["further_figures"]
+
+
+def further_figures(samples: Samples) -> list[FigureData]:
+    """Ratios at equal load, fluctuations, distribution, area against load, who carries, where it ends.
+
+    Parameters
+    ----------
+    samples : Samples
+        The surfaces.
+
+    Returns
+    -------
+    list of FigureData
+        In order.
+    """
+    return [
+        equal_load(samples),
+        fluctuations(samples),
+        distribution(samples),
+        area_and_load(samples),
+        who_carries(samples),
+        negative_modulus(),
+    ]
