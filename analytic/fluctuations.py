@@ -102,6 +102,14 @@ class HeightRule:
         """Mean products of all columns of `f`, which is `at_zero` below all heights."""
         return np.asarray((f * self.probabilities[:, None]).T @ f + self.below * np.outer(at_zero, at_zero))
 
+    def whitening(self, f: Array, at_zero: Array, least: float) -> Array:
+        """Matrix that turns columns of unit variance into uncorrelated ones, shape (columns, axes).
+
+        Combinations with a variance up to `least` are left out: differences of nearly equal columns.
+        """
+        size, axes = np.linalg.eigh(self.products(f, at_zero))
+        return np.asarray(axes[:, size > least] / np.sqrt(size[size > least]))
+
     def deviations(self, f: Array) -> tuple[Array, Array, Array]:
         """Mean of each column of `f`; its deviations at the heights; and that of 0, below all heights.
 

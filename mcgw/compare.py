@@ -16,7 +16,7 @@ Array = NDArray[np.float64]
 FALSE_ALARM = 1e-3
 _MOST_SEPARATIONS = 48
 _SKEW, _KURTOSIS = 0.1, 0.1  # so nearly Gaussian must a combination of means be to count
-_INDEPENDENT = 1e-9  # smallest eigenvalue of the correlation matrix that is no rounding error
+_INDEPENDENT = 1e-9  # variance of a combination that is no rounding error
 
 
 @dataclass(frozen=True)
@@ -157,8 +157,7 @@ def verdict(ensemble: Ensemble) -> Verdict:
 
     usable = _gaussian(rule, deviation, below, asperities)
     deviation, below, z = deviation[:, usable], below[usable], z[usable]
-    size, axes = np.linalg.eigh(rule.products(deviation, below))
-    axes = axes[:, size > _INDEPENDENT] / np.sqrt(size[size > _INDEPENDENT])
+    axes = rule.whitening(deviation, below, _INDEPENDENT)
     axes = axes[:, _gaussian(rule, deviation @ axes, below @ axes, asperities)]
     chi_square = float(np.sum((z @ axes) ** 2))
     degrees = axes.shape[1]

@@ -19,7 +19,7 @@ __all__ = ["Principal"]
 Array = NDArray[np.float64]
 
 _TOUCHING = 100  # asperities expected in contact, so that a single surface is nearly Gaussian
-_INDEPENDENT = 1e-6  # smallest eigenvalue: what is below is a difference of nearly equal columns
+_INDEPENDENT = 1e-6  # variance of a combination that is more than a difference of nearly equal columns
 _MOST_KURTOSIS = 0.5  # of a combination over surfaces
 
 
@@ -60,8 +60,7 @@ class Principal:
         chosen = np.flatnonzero(np.tile(touching > _TOUCHING, len(scene.quantities)) & (variance > 0))
         unit = np.sqrt(variance[chosen])
         deviation, below = deviation[:, chosen] / unit, below[chosen] / unit
-        size, axes = np.linalg.eigh(rule.products(deviation, below))
-        axes = axes[:, size > _INDEPENDENT] / np.sqrt(size[size > _INDEPENDENT])
+        axes = rule.whitening(deviation, below, _INDEPENDENT)
         along, low = deviation @ axes, below @ axes
         third = rule.probabilities @ along**3 + rule.below * low**3
         fourth = rule.probabilities @ along**4 + rule.below * low**4 - 3 * (scene.count == "fixed")

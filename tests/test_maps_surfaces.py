@@ -2,7 +2,6 @@
 
 import math
 import resource
-import time
 from pathlib import Path
 
 import h5py
@@ -145,29 +144,24 @@ def test_mean_number_that_hides_a_summit_by_the_integral():
     assert 1 - share == pytest.approx(2 * math.pi * 1e-7 * mean, rel=1e-6)
 
 
-def test_a_large_map_in_seconds(make_scene, tmp_path):
-    """1e6 asperities on 2048 x 2048 points, and memory in proportion (the full size is marked slow)."""
-    surface = analytic.Surface(1e-6, 1e-5, 1e10, 1e-4, 1e9)
-    scene = make_scene(surface=surface, n_asperities=10**6, sampler="cells")
-    field = asperities_of(scene, 0)
-    envelope(field, (8, 8))  # compiled
-    start = time.perf_counter()
-    assert envelope(field, (2048, 2048), periodic=True).heights.shape == (2048, 2048)
-    assert time.perf_counter() - start < 10
-
-
 @pytest.mark.slow
-def test_the_largest_map_in_ten_seconds_and_two_gigabytes(tmp_path):
+def test_the_largest_map_fits_two_gigabytes(tmp_path):
+    """4096 x 4096 points of 1e6 asperities; some of them by all caps. `runs/bench/maps.py` times it."""
     scene = scene_text(mcgw.load_scene(RUNS / "homogeneous.toml"))
     scene = scene.replace("n_asperities = 30000", "n_asperities = 1000000")
     assert "n_asperities = 1000000" in scene
     (tmp_path / "scene.toml").write_text(scene)
-    start = time.perf_counter()
     command = ["surface", str(tmp_path / "scene.toml"), "--shape", "4096", "-o", str(tmp_path / "map.sdf")]
     assert main(command) == 0
-    assert time.perf_counter() - start < 10
     assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss < 2e6
-    assert read_map(tmp_path / "map.sdf").heights.shape == (4096, 4096)
+    found = read_map(tmp_path / "map.sdf")
+    assert found.heights.shape == (4096, 4096)
+    field = asperities_of(mcgw.load_scene(tmp_path / "scene.toml"), 0)
+    pixel = field.size[0] / 4096
+    for row, column in np.random.default_rng(1).integers(0, 4096, (20, 2)):
+        dx, dy = (column + 0.5) * pixel - field.x, (row + 0.5) * pixel - field.y
+        cap = field.z - (dx**2 + dy**2) / (2 * field.radius)
+        assert found.heights[row, column] == pytest.approx(cap.max(), abs=1e-6 * np.ptp(found.heights))
 
 
 @pytest.mark.parametrize("name", ["at.png", "at.svg"])
