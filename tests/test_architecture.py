@@ -34,6 +34,7 @@ ORDER = (
     "sampling.uniform_sums",
     "sampling.moments",
     "sampling.laws",
+    "sampling.tiles",
     "sampling.response",
     "sampling.binomial",
     "sampling.halving",

@@ -8,15 +8,14 @@ ever compiled: any Python E*(s) is evaluated at 20 heights a node.
 """
 
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
-from numba import njit, prange
 from numpy.typing import NDArray
 
 from mcgw.sampling.cells import Mesh
 from mcgw.sampling.laws import ACCURACY, Laws
 from mcgw.sampling.moments import Layout
+from mcgw.sampling.tiles import FOUR, Blocks, Tiles, in_fours
 from mcgw.sampling.tree import Tree, transfer, tree_over
 from mcgw.scene import Scene
 
@@ -24,98 +23,31 @@ __all__ = ["Response", "response_of"]
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
-Places = NDArray[np.uint64]
-_Blocks = tuple[Ints, Ints, Array]  # rows, first columns, values
 
-_WIDTH = 64  # surfaces at a time
-_FOUR = 4  # rows and columns of a tile
 _MOST, _MOST_IN_CELL = 12, 19  # moments: what is not resolved by so many is left to the children, or refused
-
-
-@njit(inline="always")
-def _in_fours(rows: Any) -> Any:
-    """Rounded up."""
-    return (rows + _FOUR - 1) // _FOUR * _FOUR
 
 
 @dataclass(frozen=True)
 class Response:
     """A sparse matrix that runs from the moments to the answers by way of the tree.
 
-    Rows are computed in order, four at a time: each is a combination of earlier rows, of which the first
-    ones are the moments of the cells and the last ones the answers. A node's moments are neighbours, and
-    so are the answers it has a part in: entries are kept as tiles of four rows and columns, filled up
-    with zeros.
-
     Parameters
     ----------
     layout : Layout
         The moments that each cell must have.
-    pointers, columns : ndarray
-        First tile of each four computed rows, and first column of each tile.
-    tiles : ndarray
-        Shape (tiles, 4, 4).
+    tiles : Tiles
+        Given the moments of the cells: those of the nodes, and of these the answers.
     shape : (int, int)
         Number of quantities and separations.
     """
 
     layout: Layout
-    pointers: Places
-    columns: Places
-    tiles: Array
+    tiles: Tiles
     shape: tuple[int, int]
 
     def __matmul__(self, moments: Array) -> Array:
         """Quantities of every surface: moments (rows, surfaces) to (quantities, surfaces, separations)."""
-        return np.asarray(_apply(self.pointers, self.columns, self.tiles, moments, self.shape))
-
-
-@njit(parallel=True, cache=True)
-def _apply(pointers: Any, columns: Any, tiles: Any, moments: Any, shape: Any) -> Any:
-    """All rows for so many surfaces at a time; the sum over a row has one order, whatever the block."""
-    given, surfaces = moments.shape
-    quantities, separations = shape
-    computed = _FOUR * (pointers.size - 1)
-    answers = given + _FOUR + computed - _in_fours(quantities * separations)
-    result = np.empty((quantities, surfaces, separations))
-    for chunk in prange((surfaces + _WIDTH - 1) // _WIDTH):
-        first = chunk * _WIDTH
-        n = min(_WIDTH, surfaces - first)
-        table = np.empty((given + _FOUR + computed, _WIDTH))
-        table[:given, n:] = 0.0
-        table[:given, :n] = moments[:, first : first + n]
-        table[given : given + _FOUR] = 0.0  # a tile may reach so far beyond
-        _fill(table.reshape(-1), given + _FOUR, pointers, columns, tiles)
-        for q in range(quantities):
-            for i in range(n):
-                for k in range(separations):
-                    result[q, first + i, k] = table[answers + q * separations + k, i]
-    return result
-
-
-@njit(nogil=True, cache=True, fastmath={"contract"})
-def _fill(table: Any, row: int, pointers: Any, columns: Any, tiles: Any) -> None:
-    """Compute a flat table from a row on. Unsigned places, for a signed one may count from the end."""
-    sums = np.empty(_FOUR * _WIDTH)
-    for group in range(pointers.size - 1):
-        sums[:] = 0.0
-        for tile in range(pointers[group], pointers[group + 1]):
-            ka = columns[tile] * np.uint64(_WIDTH)
-            kb, kc, kd = ka + np.uint64(_WIDTH), ka + np.uint64(2 * _WIDTH), ka + np.uint64(3 * _WIDTH)
-            a0, b0, c0, d0 = tiles[tile, 0, 0], tiles[tile, 0, 1], tiles[tile, 0, 2], tiles[tile, 0, 3]
-            a1, b1, c1, d1 = tiles[tile, 1, 0], tiles[tile, 1, 1], tiles[tile, 1, 2], tiles[tile, 1, 3]
-            a2, b2, c2, d2 = tiles[tile, 2, 0], tiles[tile, 2, 1], tiles[tile, 2, 2], tiles[tile, 2, 3]
-            a3, b3, c3, d3 = tiles[tile, 3, 0], tiles[tile, 3, 1], tiles[tile, 3, 2], tiles[tile, 3, 3]
-            for k in range(_WIDTH):
-                i = np.uint64(k)
-                w, x, y, z = table[ka + i], table[kb + i], table[kc + i], table[kd + i]
-                sums[i] += (a0 * w + b0 * x) + (c0 * y + d0 * z)
-                sums[i + np.uint64(_WIDTH)] += (a1 * w + b1 * x) + (c1 * y + d1 * z)
-                sums[i + np.uint64(2 * _WIDTH)] += (a2 * w + b2 * x) + (c2 * y + d2 * z)
-                sums[i + np.uint64(3 * _WIDTH)] += (a3 * w + b3 * x) + (c3 * y + d3 * z)
-        at = np.uint64((row + _FOUR * group) * _WIDTH)
-        for k in range(_FOUR * _WIDTH):
-            table[at + np.uint64(k)] = sums[np.uint64(k)]
+        return self.tiles.apply(moments, self.shape)
 
 
 def response_of(
@@ -163,29 +95,15 @@ def response_of(
     entries, plain, rooted = _walk(mesh, tree, laws, kept)
     layout = Layout(plain[: mesh.size], rooted)
     starts = layout.starts
-    inner = starts[-1] + _FOUR + np.concatenate([[0], np.cumsum(_in_fours(plain[mesh.size :]))])
-    node_row = np.concatenate([starts[:-1], inner[:-1]]).astype(np.int64)
+    given = int(starts[-1])
+    inner = given + FOUR + np.concatenate([[0], np.cumsum(in_fours(plain[mesh.size :]))]).astype(np.int64)
+    node_row = np.concatenate([starts[:-1], inner[:-1]])
     blocks = [
         *_transfers(mesh, tree, plain, node_row),
         *_answers(entries, plain, rooted, node_row, inner[-1]),
     ]
-    shape = (len(quantities), len(scene.separations))
-    groups = (inner[-1] - inner[0] + _in_fours(len(laws.h))) // _FOUR
-    return Response(layout, *_tiled(blocks, inner[0], groups), shape)
-
-
-def _tiled(blocks: list[_Blocks], first: int, groups: int) -> tuple[Places, Places, Array]:
-    """Gather blocks of single rows into tiles: pointers, columns, tiles."""
-    row, column, value = (np.concatenate(part) for part in zip(*blocks, strict=True)) if blocks else _NOTHING
-    group, place = np.divmod(row - first, _FOUR)
-    key, tile = np.unique(np.stack([group, column]), axis=1, return_inverse=True)
-    tiles = np.zeros((key.shape[1], _FOUR, _FOUR))
-    tiles[tile, place] = value
-    pointers = np.searchsorted(key[0], np.arange(groups + 1))
-    return pointers.astype(np.uint64), key[1].astype(np.uint64), tiles
-
-
-_NOTHING = (np.empty(0, np.int64), np.empty(0, np.int64), np.empty((0, _FOUR)))
+    computed = int(inner[-1] - inner[0] + in_fours(len(laws.h)))
+    return Response(layout, Tiles.of(blocks, given, computed), (len(quantities), len(scene.separations)))
 
 
 @dataclass(frozen=True)
@@ -247,7 +165,7 @@ def _check_kept(mesh: Mesh, kept: Layout, needed: Layout) -> None:
         )
 
 
-def _transfers(mesh: Mesh, tree: Tree, plain: Ints, node_row: Ints) -> list[_Blocks]:
+def _transfers(mesh: Mesh, tree: Tree, plain: Ints, node_row: Ints) -> list[Blocks]:
     """Blocks that make the moments of the parents."""
     blocks = []
     for node in range(mesh.size, tree.size):
@@ -258,7 +176,7 @@ def _transfers(mesh: Mesh, tree: Tree, plain: Ints, node_row: Ints) -> list[_Blo
     return blocks
 
 
-def _answers(entries: list[_Entry], plain: Ints, rooted: Ints, node_row: Ints, first: int) -> list[_Blocks]:
+def _answers(entries: list[_Entry], plain: Ints, rooted: Ints, node_row: Ints, first: int) -> list[Blocks]:
     """Blocks that make the answers."""
     blocks = []
     for entry in entries:
@@ -268,11 +186,11 @@ def _answers(entries: list[_Entry], plain: Ints, rooted: Ints, node_row: Ints, f
     return blocks
 
 
-def _blocks(rows: Ints, start: int, coefficients: Array) -> _Blocks:
+def _blocks(rows: Ints, start: int, coefficients: Array) -> Blocks:
     """Coefficients (columns, rows) of neighbouring columns from `start` on, without blocks of zeros."""
-    n = -(-len(coefficients) // _FOUR)
-    filled = np.zeros((n * _FOUR, len(rows)))
+    n = -(-len(coefficients) // FOUR)
+    filled = np.zeros((n * FOUR, len(rows)))
     filled[: len(coefficients)] = coefficients
-    blocks = filled.reshape(n, _FOUR, len(rows)).transpose(0, 2, 1)
+    blocks = filled.reshape(n, FOUR, len(rows)).transpose(0, 2, 1)
     block, row = np.nonzero(blocks.any(axis=2))
-    return rows[row], start + _FOUR * block, blocks[block, row]
+    return rows[row], start + FOUR * block, blocks[block, row]
