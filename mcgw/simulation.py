@@ -12,11 +12,12 @@ import numpy as np
 from mcgw.ensemble import Arrays, Ensemble
 from mcgw.room import check_memory
 from mcgw.sampling.counts import GROUP
+from mcgw.sampling.in_threads import in_threads, pieces
 from mcgw.sampling.samplers import Block, Cells, Sampler, sampler_of
 from mcgw.scene import Scene
 from mcgw.stopping import Running, checkpoints, decide
 
-__all__ = ["block_size", "blocks", "kept", "simulate", "use_threads"]
+__all__ = ["block_size", "blocks", "drawn_blocks", "kept", "simulate", "use_threads"]
 
 _WORDS = 8_000_000  # numbers a block may hold
 _DRAWS = 1.5e8  # asperities a block may draw, so that a bar moves every second
@@ -72,8 +73,7 @@ def blocks(scene: Scene, sampler: Sampler) -> Iterator[tuple[int, Block]]:
     stops = [scene.n_surfaces] if scene.rel_err is None else checkpoints(scene.n_surfaces)
     first = 0
     for stop in stops:
-        while first < stop:
-            block = sampler.block(first, min(size, stop - first))
+        for block in drawn_blocks(sampler, first, stop, size):
             yield first, block
             first += len(block.sums[scene.quantities[0]])
             if scene.rel_err is not None:
@@ -82,6 +82,22 @@ def blocks(scene: Scene, sampler: Sampler) -> Iterator[tuple[int, Block]]:
                 return
         if scene.rel_err is not None and not decide(scene, running).go_on:
             return
+
+
+def drawn_blocks(sampler: Sampler, first: int, stop: int, size: int) -> Iterator[Block]:
+    """Results of surfaces `first` ... `stop - 1`, in order, in blocks of at most `size`.
+
+    Each thread draws blocks of its own. To share the work within a block, and wake the others for each
+    step of it, takes longer; that is left to a few, huge surfaces.
+    """
+
+    def block(ends: tuple[int, int]) -> Block:
+        return sampler.block(start + ends[0], ends[1] - ends[0])
+
+    threads = numba.get_num_threads() if size > 1 else 1  # a single surface may fill the memory
+    for start in range(first, stop, size * threads):
+        n = min(size * threads, stop - start)
+        yield from in_threads(block, pieces(n, GROUP if n >= GROUP * threads else 1))
 
 
 def _check_memory(scene: Scene, n_surfaces: int) -> None:

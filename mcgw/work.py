@@ -8,7 +8,7 @@ import numpy as np
 from mcgw.errors import RunError
 from mcgw.sampling.samplers import Sampler, sampler_of
 from mcgw.scene import Scene
-from mcgw.simulation import block_size, kept, use_threads
+from mcgw.simulation import block_size, drawn_blocks, kept, use_threads
 from mcgw.store.rundir import Run, identity_of
 from mcgw.store.shards import Arrays, Span, commit_shard
 
@@ -50,11 +50,10 @@ def draw(scene: Scene, sampler: Sampler, span: Span, threads: int | None) -> Arr
     dict of str to ndarray
         What is kept of them.
     """
-    size = block_size(scene, sampler)
     with use_threads(threads):
         parts = [
-            kept(scene, sampler.block(first, min(size, span.stop - first)))
-            for first in range(span.first, span.stop, size)
+            kept(scene, block)
+            for block in drawn_blocks(sampler, span.first, span.stop, block_size(scene, sampler))
         ]
     return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
 

@@ -173,3 +173,9 @@ def test_compiled_functions_lie_where_old_kernels_are_looked_for():
     for path in (ROOT / "maps").glob("*.py"):
         if "njit" in path.read_text():
             assert not any(name.startswith("sampling") for name in imports(path)), path.name
+
+
+def test_no_loop_of_the_sampler_has_threads_of_its_own():
+    """It is called from several threads, which not every kind of numba's own threads allows."""
+    for path in (ROOT / "sampling").glob("*.py"):
+        assert "prange" not in path.read_text(), path.name

@@ -3,8 +3,9 @@
 import threading
 
 import pytest
+from numba import get_num_threads
 
-from mcgw.sampling.in_threads import in_threads
+from mcgw.sampling.in_threads import in_threads, pieces
 from mcgw.simulation import use_threads
 
 
@@ -17,8 +18,6 @@ def test_all_results_in_order(threads, n):
 
 def test_two_calls_run_at_the_same_time():
     with use_threads(2):
-        from numba import get_num_threads
-
         if get_num_threads() < 2:
             pytest.skip("one core")
         meeting = threading.Barrier(2, timeout=60)  # broken, were one call to wait for the other
@@ -32,3 +31,23 @@ def test_an_error_of_any_share_comes_out():
 
     with use_threads(2), pytest.raises(ValueError, match="three"):
         in_threads(fail, range(4))
+
+
+def test_calls_within_a_call_run_alone():
+    """Else two threads would become four; and the caller has its threads back, even after an error."""
+    with use_threads(2):
+        most = get_num_threads()
+        assert in_threads(lambda _: get_num_threads(), range(1)) == [most]
+        assert in_threads(lambda _: get_num_threads(), range(4)) == [1] * 4 if most > 1 else [most] * 4
+        with pytest.raises(ZeroDivisionError):
+            in_threads(lambda x: 1 // x, range(4))
+        assert get_num_threads() == most
+
+
+@pytest.mark.parametrize(("n", "least"), [(0, 64), (1, 64), (65, 64), (130, 64), (1000, 64), (7, 1)])
+def test_pieces_cover_everything_once(n, least):
+    with use_threads(2):
+        cut = pieces(n, least)
+        assert [i for first, last in cut for i in range(first, last)] == list(range(n))
+        assert all(first % least == 0 for first, _ in cut)
+        assert 1 <= len(cut) <= get_num_threads()

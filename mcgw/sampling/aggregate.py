@@ -13,13 +13,12 @@ from functools import cache
 from typing import Any
 
 import numpy as np
-from numba import get_num_threads, njit, prange
+from numba import njit
 from numpy.polynomial import chebyshev
 from numpy.polynomial.legendre import leggauss
 from numpy.typing import NDArray
 from scipy.special import ndtri
 
-from mcgw.sampling.in_threads import in_threads
 from mcgw.sampling.moments import Layout
 from mcgw.sampling.philox import MOMENTS, centred
 
@@ -60,13 +59,12 @@ def _law_of_moments(plain: int, rooted: int) -> tuple[Array, Array]:
     return mean, root
 
 
-@njit(parallel=True, cache=True)
+@njit(nogil=True, cache=True)
 def _words(seed: Any, first_surface: Any, rows: Any, surfaces: Any) -> Any:
     """One centred uniform for each of some moments of each surface: shape (rows, surfaces)."""
     result = np.empty((rows.size, surfaces))
     last = rows[-1] + 1
-    for chunk in prange((surfaces + 7) // 8):  # as many as share a line of the cache
-        first = 8 * chunk
+    for first in range(0, surfaces, 8):  # as many as share a line of the cache
         n = min(8, surfaces - first)
         x = np.empty((n, (last + 63) // 64 * 64))
         for i in range(n):
@@ -77,12 +75,12 @@ def _words(seed: Any, first_surface: Any, rows: Any, surfaces: Any) -> Any:
     return result
 
 
-@njit(parallel=True, cache=True)
+@njit(nogil=True, cache=True)
 def _mix(moments: Any, counts: Any, rows: Any, laws: Any, z: Any) -> None:
     """Write ``n mean + sqrt(n) root z`` where n > 0, in one order of summation."""
     starts, sizes, means, roots = laws
     cells, surfaces = counts.shape
-    for c in prange(cells):
+    for c in range(cells):
         n, size, start = np.sqrt(counts[c].astype(np.float64)), sizes[c], starts[c]
         total = np.empty(surfaces)
         for j in range(size):
@@ -124,7 +122,7 @@ def add_gaussian_moments(seed: int, first: int, counts: Ints, layout: Layout, mo
         law = _law_of_moments(int(layout.plain[cell]), int(layout.rooted[cell]))
         means[start : start + size], roots[start : start + size, :size] = law
     words = _words(np.uint64(seed), first, rows, counts.shape[1])
-    in_threads(_make_normal, np.array_split(words, get_num_threads()))
+    _make_normal(words)
     _mix(moments, counts[crowded], rows, (starts, sizes, means, roots), words)
 
 

@@ -1,14 +1,13 @@
 """Sums of Hertz contacts over given heights, by plain loops: slow, literal, trusted."""
 
-from itertools import pairwise
 from typing import Any
 
 import numpy as np
-from numba import get_num_threads, njit
+from numba import njit
 from numpy.typing import NDArray
 
 from analytic import QUANTITIES
-from mcgw.sampling.in_threads import in_threads
+from mcgw.sampling.in_threads import in_threads, pieces
 from mcgw.scene import Scene
 
 __all__ = ["hertz_sums"]
@@ -73,9 +72,9 @@ def hertz_sums(scene: Scene, numbers: NDArray[np.int64], heights: Array, weights
     starts = np.concatenate([[0], np.cumsum(numbers)])
     factors = np.stack([graded if q.modulus else weights for q in asked])
     separations, twice = np.array(scene.separations), np.array([round(2 * q.exponent) for q in asked])
-    threads = get_num_threads() if factors.size * separations.size > _ALONE else 1
-    ends = np.linspace(0, len(numbers), threads + 1).astype(np.int64)
-    shares = [starts[first : last + 1] for first, last in pairwise(ends)]
+    few = factors.size * separations.size < _ALONE
+    ends = [(0, len(numbers))] if few else pieces(len(numbers), 1)
+    shares = [starts[first : last + 1] for first, last in ends]
     parts = in_threads(lambda share: _sums(share, heights, factors, separations, twice), shares)
     sums = np.concatenate(parts, axis=1)
     for q, values in zip(asked, sums, strict=True):

@@ -1,25 +1,28 @@
-"""Python calls side by side in threads, for work that lasts less than a millisecond.
+"""Python calls side by side in threads.
 
 The caller does the first share itself. If it waited, the system would wake its helpers on the one core
 that has just come free, one after the other, and move them to another core only milliseconds later.
+
+No loop of the sampler is compiled to run in parallel: numba's threads take as long to wake, and not all of
+its kinds may be called from several threads at once.
 """
 
 from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from itertools import chain
+from itertools import chain, pairwise
 from typing import TypeVar
 
 import numpy as np
-from numba import get_num_threads
+from numba import get_num_threads, set_num_threads
 
-__all__ = ["in_threads"]
+__all__ = ["in_threads", "pieces"]
 
 _Item = TypeVar("_Item")
 _Result = TypeVar("_Result")
 
 
 def in_threads(call: Callable[[_Item], _Result], items: Sequence[_Item]) -> list[_Result]:
-    """Call for every item, on as many threads as the compiled loops may use.
+    """Call for every item, on as many threads as numba has been told to use; calls within a call run alone.
 
     Parameters
     ----------
@@ -37,9 +40,24 @@ def in_threads(call: Callable[[_Item], _Result], items: Sequence[_Item]) -> list
     def run(places: Iterable[int]) -> list[_Result]:
         return [call(items[i]) for i in places]
 
+    def run_alone(places: Iterable[int]) -> list[_Result]:
+        before = get_num_threads()
+        set_num_threads(1)  # of this thread: what is called finds the others busy
+        try:
+            return run(places)
+        finally:
+            set_num_threads(before)
+
     own, *others = np.array_split(np.arange(len(items)), min(get_num_threads(), max(len(items), 1)))
     if not others:
         return run(own)
     with ThreadPoolExecutor(len(others)) as pool:
-        theirs = [pool.submit(run, places) for places in others]
-        return list(chain(run(own), *(one.result() for one in theirs)))
+        theirs = [pool.submit(run_alone, places) for places in others]
+        return list(chain(run_alone(own), *(one.result() for one in theirs)))
+
+
+def pieces(n: int, least: int) -> list[tuple[int, int]]:
+    """Cut ``0 ... n - 1`` for the threads there are, at multiples of `least`."""
+    groups = -(-n // least)
+    ends = np.linspace(0, groups, min(get_num_threads(), max(groups, 1)) + 1).astype(np.int64) * least
+    return list(pairwise(np.minimum(ends, n).tolist()))

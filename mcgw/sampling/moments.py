@@ -9,18 +9,21 @@ root of the distance from the cell's start (`mcgw.sampling.response`).
 """
 
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
-from numba import get_num_threads, njit, prange
+from numba import get_num_threads, njit
 from numpy.typing import NDArray
 
+from mcgw.sampling.in_threads import in_threads
 from mcgw.sampling.spacing import price
 from mcgw.sampling.uniform_sums import PLAIN, ROOTED, WORDS, sum_uniforms, unfold
 
 __all__ = ["Layout", "cell_moments"]
 
 _START = 170.0  # asperities that take as long to draw as a cell takes to begin
+_ALONE = 1e6  # asperities' work that a thread does before another one has begun
 _PIECE = 512 * 512  # a plain sum of so many terms is good to 1e-14; beyond, it is compensated
 
 
@@ -108,17 +111,6 @@ def _sum_cells(
         at += stop - surface
 
 
-@njit(parallel=True, cache=True)
-def _all_cells(
-    seed: Any, first: Any, counts: Any, starts: Any, orders: Any, bounds: Any, stratified: Any
-) -> Any:
-    """Every thread has a run of cells: no number of threads changes the order of a sum."""
-    moments = np.empty((starts[-1], counts.shape[1]))
-    for thread in prange(bounds.size - 1):
-        _sum_cells(seed, first, counts, starts, orders, bounds[thread : thread + 2], stratified, moments)
-    return moments
-
-
 @dataclass(frozen=True)
 class Layout:
     """Which moments a surface keeps.
@@ -167,15 +159,21 @@ def cell_moments(
         Shape (moments, surfaces): the same bits for any number of threads and in any block.
     """
     counts = np.where(layout.sizes[:, None] > 0, counts, 0)  # what nobody asks for is not drawn
-    orders = np.column_stack([layout.plain, layout.rooted])
-    return np.asarray(
-        _all_cells(np.uint64(seed), first, counts, layout.starts, orders, _shares(counts, layout), stratified)
-    )
+    starts, orders = layout.starts, np.column_stack([layout.plain, layout.rooted])
+    moments = np.empty((starts[-1], counts.shape[1]))
+
+    def sum_share(bounds: tuple[int, int]) -> None:
+        """Every thread has a run of cells: no number of threads changes the order of a sum."""
+        _sum_cells(np.uint64(seed), first, counts, starts, orders, bounds, stratified, moments)
+
+    in_threads(sum_share, list(pairwise(_shares(counts, layout).tolist())))
+    return moments
 
 
 def _shares(counts: NDArray[np.int64], layout: Layout) -> NDArray[np.int64]:
     """Where the work of each thread begins and ends, counted through the surfaces of each cell in turn."""
     each = price(layout.plain, layout.rooted)
     work = np.concatenate([[0.0], np.cumsum(_START * counts.shape[1] + counts.sum(axis=1) * each)])
-    ends = np.linspace(0, work[-1], get_num_threads() + 1)
+    threads = get_num_threads() if work[-1] > _ALONE else 1
+    ends = np.linspace(0, work[-1], threads + 1)
     return np.asarray(np.interp(ends, work, counts.shape[1] * np.arange(len(work))), dtype=np.int64)

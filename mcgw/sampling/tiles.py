@@ -10,8 +10,10 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numba import njit, prange
+from numba import njit
 from numpy.typing import NDArray
+
+from mcgw.sampling.in_threads import in_threads, pieces
 
 __all__ = ["FOUR", "Blocks", "Tiles", "in_fours"]
 
@@ -87,9 +89,14 @@ class Tiles:
         ndarray
             Shape (shape[0], surfaces, shape[1]).
         """
-        return np.asarray(
-            _apply(self.rows, self.lowest, self.pointers, self.columns, self.values, given, shape)
-        )
+        parts = self.rows, self.lowest, self.pointers, self.columns, self.values
+        result = np.empty((shape[0], given.shape[1], shape[1]))
+
+        def share(ends: tuple[int, int]) -> None:
+            _apply(*parts, given, ends, result)
+
+        in_threads(share, pieces(given.shape[1], _WIDTH))
+        return result
 
 
 _NOTHING: Blocks = (np.empty(0, np.int64), np.empty(0, np.int64), np.empty((0, FOUR)))
@@ -109,25 +116,24 @@ def _lowest(group: Ints, column: Ints, given: int, groups: int) -> Ints:
         lowest = reached
 
 
-@njit(parallel=True, cache=True)
-def _apply(rows: Any, lowest: Any, pointers: Any, columns: Any, values: Any, given: Any, shape: Any) -> Any:
-    """All rows for so many surfaces at a time; the sum over a row has one order, whatever the block."""
-    known, surfaces = given.shape
-    quantities, separations = shape
+@njit(nogil=True, cache=True)
+def _apply(
+    rows: Any, lowest: Any, pointers: Any, columns: Any, values: Any, given: Any, ends: Any, result: Any
+) -> None:
+    """All rows for some of the surfaces; the sum over a row has one order, whatever the block."""
+    known = given.shape[0]
+    quantities, _, separations = result.shape
     size = known + FOUR + FOUR * rows.size
     answers = size - (quantities * separations + FOUR - 1) // FOUR * FOUR
-    result = np.empty((quantities, surfaces, separations))
-    for chunk in prange((surfaces + _WIDTH - 1) // _WIDTH):
-        first = chunk * _WIDTH
-        n = min(_WIDTH, surfaces - first)
-        table = np.empty((size, _WIDTH))
+    table = np.empty((size, _WIDTH))
+    for first in range(ends[0], ends[1], _WIDTH):
+        n = min(_WIDTH, ends[1] - first)
         table[known : known + FOUR] = 0.0
         _sweep(table.reshape(-1), given, first, n, rows, lowest, pointers, columns, values)
         for q in range(quantities):
             for i in range(n):
                 for k in range(separations):
                     result[q, first + i, k] = table[answers + q * separations + k, i]
-    return result
 
 
 @njit(nogil=True, cache=True, fastmath={"contract"})

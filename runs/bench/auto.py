@@ -7,20 +7,22 @@ import time
 from dataclasses import replace
 
 import numpy as np
+from numba import get_num_threads
 from samplers import S1
 
 from mcgw.sampling.samplers import sampler_of
 from mcgw.scene import Scene
-from mcgw.simulation import block_size
+from mcgw.simulation import block_size, drawn_blocks
 
 
 def microseconds(scene: Scene) -> float:
     """Time a surface, the mesh and the response made beforehand."""
     sampler = sampler_of(scene)
-    n, times = min(block_size(scene, sampler), 2048), []
+    size, times = min(block_size(scene, sampler), 2048), []
+    n = size * get_num_threads()
     for _ in range(6):
         start = time.perf_counter()
-        sampler.block(0, n)
+        list(drawn_blocks(sampler, 0, n, size))
         times.append(time.perf_counter() - start)
     return float(np.median(times[1:])) / n * 1e6
 
