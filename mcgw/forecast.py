@@ -4,13 +4,12 @@ from dataclasses import dataclass
 from time import perf_counter
 
 import numpy as np
-from numba import get_num_threads
 from numpy.typing import NDArray
 
 import analytic
 from mcgw.sampling.samplers import Sampler
 from mcgw.scene import Scene
-from mcgw.simulation import block_size, drawn_blocks
+from mcgw.simulation import at_a_time, block_size, drawn_blocks
 from mcgw.stopping import checkpoints, z_of
 
 __all__ = ["Forecast", "forecast", "relative_spread", "seconds_per_surface"]
@@ -85,7 +84,7 @@ def forecast(scene: Scene) -> Forecast:
 def seconds_per_surface(scene: Scene, sampler: Sampler, *, rounds: int = 3) -> float:
     """Median wall time of drawing one surface in a block, after a warm-up."""
     size = min(block_size(scene, sampler), 256)
-    n = size * get_num_threads()
+    n = at_a_time(size)
     list(drawn_blocks(sampler, 0, n, size))
     times = []
     for _ in range(rounds):

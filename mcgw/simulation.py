@@ -17,7 +17,7 @@ from mcgw.sampling.samplers import Block, Cells, Sampler, sampler_of
 from mcgw.scene import Scene
 from mcgw.stopping import Running, checkpoints, decide
 
-__all__ = ["block_size", "blocks", "drawn_blocks", "kept", "simulate", "use_threads"]
+__all__ = ["at_a_time", "block_size", "blocks", "drawn_blocks", "kept", "simulate", "use_threads"]
 
 _WORDS = 8_000_000  # numbers a block may hold
 _DRAWS = 1.5e8  # asperities a block may draw, so that a bar moves every second
@@ -94,10 +94,15 @@ def drawn_blocks(sampler: Sampler, first: int, stop: int, size: int) -> Iterator
     def block(ends: tuple[int, int]) -> Block:
         return sampler.block(start + ends[0], ends[1] - ends[0])
 
-    threads = numba.get_num_threads() if size > 1 else 1  # a single surface may fill the memory
-    for start in range(first, stop, size * threads):
-        n = min(size * threads, stop - start)
-        yield from in_threads(block, pieces(n, GROUP if n >= GROUP * threads else 1))
+    step = at_a_time(size)
+    for start in range(first, stop, step):
+        n = min(step, stop - start)
+        yield from in_threads(block, pieces(n, GROUP if n >= GROUP * numba.get_num_threads() else 1))
+
+
+def at_a_time(size: int) -> int:
+    """Surfaces drawn side by side: a block for each thread, but one surface if that is a block."""
+    return size * numba.get_num_threads() if size > 1 else 1  # it may fill the memory
 
 
 def _check_memory(scene: Scene, n_surfaces: int) -> None:

@@ -11,9 +11,9 @@ import math
 from typing import Any
 
 import numpy as np
-from numba import njit, uint32, uint64
+from numba import njit, uint64
 
-from mcgw.sampling.philox import COUNTS, philox
+from mcgw.sampling.philox import COUNTS, two_wide
 
 __all__ = ["SURFACES", "TRIALS", "WORDS", "binomials"]
 
@@ -22,27 +22,10 @@ _UNIFORM, _WEIGHT, TRIALS, WORDS = 64, 128, 192, 256  # where the rest begins, a
 
 _SMALL = 20.0  # mean, below which inversion is faster; the rejection is proven from 10 on
 _NOTHING = 1e-18  # a probability that no uniform can show; every q^n with so small a mean is larger
-_LOW, _32 = uint64(0xFFFFFFFF), uint64(32)
-_SIGN, _UNIT = uint32(0x80000000), 2.0**-32
 _ZERO = 0.5 / math.pi  # stands for 0 in Stirling's formula, which makes it exact
 _ERRORS = np.array(
     [0.0] + [math.lgamma(k + 1) + k - (k + 0.5) * math.log(k) + 0.5 * math.log(_ZERO) for k in range(1, 16)]
 )
-
-
-@njit(inline="always", error_model="numpy")
-def _wide(high: Any, low: Any) -> Any:
-    """Give u - 1/2 for a uniform u of 64 bits."""
-    near = np.float64(np.int32(uint32(low) ^ _SIGN)) + 0.5
-    return ((np.float64(np.int32(uint32(high) ^ _SIGN)) + 0.5) + near * _UNIT) * _UNIT
-
-
-@njit(inline="always", error_model="numpy")
-def _uniforms(seed: Any, surface: Any, node: Any, attempt: Any) -> Any:
-    """Two uniforms of an attempt, less a half."""
-    c3 = (surface >> _32) | (uint64(COUNTS) << uint64(16))
-    w0, w1, w2, w3 = philox(attempt, node, surface & _LOW, c3, seed & _LOW, seed >> _32)
-    return _wide(w0, w1), _wide(w2, w3)
 
 
 @njit(inline="always", error_model="numpy")
@@ -62,7 +45,7 @@ def _proposal(n: Any, p: Any, u: Any, v: Any) -> Any:
 def _first_attempts(work: Any, surfaces: Any, p: Any, seed: Any, first: Any, node: Any) -> None:
     """Proposed numbers, their uniforms, and what is to be compared with their probability: -1 if sure."""
     for i in range(surfaces):
-        u, v = _uniforms(seed, first + uint64(i), node, uint64(0))
+        u, v = two_wide(seed, COUNTS, first + uint64(i), node, uint64(0))
         k, sure, w = _proposal(work[TRIALS + i], p, u, v)
         work[i] = k
         work[_UNIFORM + i] = u
@@ -113,7 +96,7 @@ def _again(n: Any, p: Any, seed: Any, surface: Any, node: Any) -> Any:
     """Repeat the rejection from the second attempt on."""
     attempt = uint64(1)
     while True:
-        u, v = _uniforms(seed, surface, node, attempt)
+        u, v = two_wide(seed, COUNTS, surface, node, attempt)
         k, sure, w = _proposal(n, p, u, v)
         if sure or _accepted(n, p, k, w):
             return k

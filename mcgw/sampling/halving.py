@@ -14,7 +14,6 @@ from numpy.typing import NDArray
 
 from mcgw.sampling.binomial import SURFACES, TRIALS, WORDS, binomials
 from mcgw.sampling.cells import Mesh
-from mcgw.sampling.in_threads import in_threads, pieces
 
 __all__ = ["Halvings", "halvings_of", "share_out"]
 
@@ -99,27 +98,19 @@ def share_out(seed: int, first: int, numbers: NDArray[np.float64], halvings: Hal
     ndarray of int
         Shape (categories, surfaces): a pure function of the seed, the surface and its number.
     """
-    parts = halvings.shares, halvings.turned, halvings.sizes
-    result = np.empty((halvings.sizes[-1], len(numbers)), dtype=np.int64)
-
-    def share(ends: tuple[int, int]) -> None:
-        _share_out(seed, first, numbers, *parts, ends, result)
-
-    in_threads(share, pieces(len(numbers), SURFACES))
-    return result
+    return np.asarray(_share_out(seed, first, numbers, halvings.shares, halvings.turned, halvings.sizes))
 
 
 @njit(nogil=True, cache=True)
-def _share_out(
-    seed: Any, first: Any, numbers: Any, shares: Any, turned: Any, sizes: Any, ends: Any, result: Any
-) -> None:
-    """Write the numbers of some of the surfaces."""
-    for start in range(ends[0], ends[1], SURFACES):
-        stop = min(start + SURFACES, ends[1])
+def _share_out(seed: Any, first: Any, numbers: Any, shares: Any, turned: Any, sizes: Any) -> Any:
+    result = np.empty((sizes[-1], numbers.size), dtype=np.int64)
+    for start in range(0, numbers.size, SURFACES):
+        stop = min(start + SURFACES, numbers.size)
         node = np.empty((sizes[-1] + 1, stop - start))
         node[0] = numbers[start:stop]
         _halve(node, uint64(first + start), uint64(seed), shares, turned, sizes)
         result[:, start:stop] = node[: sizes[-1]]
+    return result
 
 
 @njit(nogil=True, cache=True)

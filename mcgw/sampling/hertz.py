@@ -7,14 +7,11 @@ from numba import njit
 from numpy.typing import NDArray
 
 from analytic import QUANTITIES
-from mcgw.sampling.in_threads import in_threads, pieces
 from mcgw.scene import Scene
 
 __all__ = ["hertz_sums"]
 
 Array = NDArray[np.float64]
-
-_ALONE = 10**6  # contacts that take no longer than another thread takes to wake
 
 
 @njit(cache=True, inline="always")
@@ -69,14 +66,13 @@ def hertz_sums(scene: Scene, numbers: NDArray[np.int64], heights: Array, weights
     graded = weights
     if any(q.modulus for q in asked):
         graded = weights * scene.modulus(heights)
-    starts = np.concatenate([[0], np.cumsum(numbers)])
-    factors = np.stack([graded if q.modulus else weights for q in asked])
-    separations, twice = np.array(scene.separations), np.array([round(2 * q.exponent) for q in asked])
-    few = factors.size * separations.size < _ALONE
-    ends = [(0, len(numbers))] if few else pieces(len(numbers), 1)
-    shares = [starts[first : last + 1] for first, last in ends]
-    parts = in_threads(lambda share: _sums(share, heights, factors, separations, twice), shares)
-    sums = np.concatenate(parts, axis=1)
+    sums = _sums(
+        np.concatenate([[0], np.cumsum(numbers)]),
+        heights,
+        np.stack([graded if q.modulus else weights for q in asked]),
+        np.array(scene.separations),
+        np.array([round(2 * q.exponent) for q in asked]),
+    )
     for q, values in zip(asked, sums, strict=True):
         values *= q.scale(scene.surface)
     return dict(zip(scene.quantities, sums, strict=True))

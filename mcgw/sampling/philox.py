@@ -34,6 +34,7 @@ __all__ = [
     "TAIL",
     "centred",
     "philox",
+    "two_wide",
     "uniforms",
 ]
 
@@ -62,6 +63,24 @@ def _to_centred(word: Any) -> Any:
     return (np.float64(np.int32(uint32(word) ^ _SIGN)) + 0.5) * _UNIT
 
 
+@njit(nogil=True, cache=True, inline="always")
+def _stream(seed: Any, purpose: Any, surface: Any) -> Any:
+    """Counter words c2, c3 and key of a stream."""
+    return surface & _LOW, (surface >> _32) | (uint64(purpose) << uint64(16)), seed & _LOW, seed >> _32
+
+
+@njit(nogil=True, cache=True, inline="always")
+def two_wide(seed: Any, purpose: Any, surface: Any, cell: Any, block: Any) -> Any:
+    """Two uniforms of 64 bits from a block of a stream, less a half; all arguments but the purpose uint64."""
+    c2, c3, k0, k1 = _stream(seed, purpose, surface)
+    w0, w1, w2, w3 = philox(block, cell, c2, c3, k0, k1)
+    low = 0.5 * _UNIT
+    return (
+        0.5 * (_to_centred(w0) + low * _to_centred(w1)),
+        0.5 * (_to_centred(w2) + low * _to_centred(w3)),
+    )
+
+
 @njit(nogil=True, cache=True)
 def centred(out: Any, seed: Any, purpose: Any, surface: Any, cell: Any, first: Any, n: Any) -> None:
     """Uniforms `first` ... of a stream as x = 2u - 1 into ``out``, `first` a multiple of 64.
@@ -69,8 +88,7 @@ def centred(out: Any, seed: Any, purpose: Any, surface: Any, cell: Any, first: A
     Whole groups of 64 are written: `out` must have room for them.
     """
     seed, surface = uint64(seed), uint64(surface)
-    k0, k1 = seed & _LOW, seed >> _32
-    c2, c3 = surface & _LOW, (surface >> _32) | (uint64(purpose) << uint64(16))
+    c2, c3, k0, k1 = _stream(seed, purpose, surface)
     for group in range((n + 63) // 64):
         block = uint64(first // 4 + 16 * group)
         c0, c1 = block & _LOW, uint64(cell) | ((block >> _32) << uint64(20))

@@ -7,19 +7,18 @@ import time
 from dataclasses import replace
 
 import numpy as np
-from numba import get_num_threads
 from samplers import S1
 
 from mcgw.sampling.samplers import sampler_of
 from mcgw.scene import Scene
-from mcgw.simulation import block_size, drawn_blocks
+from mcgw.simulation import at_a_time, block_size, drawn_blocks
 
 
 def microseconds(scene: Scene) -> float:
     """Time a surface, the mesh and the response made beforehand."""
     sampler = sampler_of(scene)
     size, times = min(block_size(scene, sampler), 2048), []
-    n = size * get_num_threads()
+    n = at_a_time(size)
     for _ in range(6):
         start = time.perf_counter()
         list(drawn_blocks(sampler, 0, n, size))

@@ -11,13 +11,13 @@ from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
-from numba import get_num_threads, njit, prange
+from numba import njit, prange
 
 import analytic
 from mcgw.sampling.philox import centred
 from mcgw.sampling.samplers import sampler_of
 from mcgw.scene import Scene
-from mcgw.simulation import block_size, drawn_blocks
+from mcgw.simulation import at_a_time, block_size, drawn_blocks
 
 SURFACE = analytic.Surface(sigma=1.37e-6, radius=13e-6, eta=3.0e8, nominal_area=1e-4, E_star=78.6e9)
 S1 = Scene(
@@ -101,7 +101,7 @@ def block(scene: Scene) -> tuple[Callable[[], object], int]:
     """Blocks as a run would draw them, its mesh and response made beforehand."""
     sampler = sampler_of(scene)
     size = block_size(scene, sampler)
-    surfaces = size * get_num_threads()
+    surfaces = at_a_time(size)
     return (lambda: list(drawn_blocks(sampler, 0, surfaces, size))), surfaces
 
 
