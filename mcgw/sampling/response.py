@@ -1,10 +1,10 @@
 """Physics as a matrix: what each moment of each cell adds to each quantity at each separation.
 
-On a cell (or a node of the tree of cells) above a separation every law of contact is smooth in the
-cell's uniform u, so its Chebyshev coefficients turn the sums T_j into the sum of the law. On the cell
-that starts at the separation a half-integer law is sqrt(u) times smooth, and takes the sums R_j. A
-node stands in for all its cells wherever the law is resolved on it; else its children do. No law is
-ever compiled: any Python E*(s) is evaluated at 20 heights a node.
+On a cell above a separation every law of contact is smooth in the cell's uniform u, so its Chebyshev
+coefficients turn the sums T_j into the sum of the law. On the cell that starts at the separation a
+half-integer law is sqrt(u) times smooth, and takes the sums R_j. A node of the tree of cells stands in
+for all its cells wherever the law is resolved on it; else its children do. No law is ever compiled: any
+Python E*(s) is evaluated at 20 heights a node.
 """
 
 from dataclasses import dataclass, replace
@@ -16,7 +16,7 @@ from mcgw.sampling.cells import Mesh
 from mcgw.sampling.laws import ACCURACY, Laws
 from mcgw.sampling.moments import Layout
 from mcgw.sampling.tiles import FOUR, Blocks, Tiles, in_fours
-from mcgw.sampling.tree import Tree, transfer, tree_over
+from mcgw.sampling.tree import Tree, heights_above, transfer, tree_over
 from mcgw.scene import Scene
 
 __all__ = ["Response", "response_of"]
@@ -125,7 +125,7 @@ def _walk(mesh: Mesh, tree: Tree, laws: Laws, kept: Layout | None) -> tuple[list
         node, which, inherited = stack.pop()
         a, b = mesh.edges[tree.first[node]], mesh.edges[tree.last[node]]
         which = which[laws.h[which] < b]
-        t = tree.offsets(mesh, node)
+        t = heights_above(mesh, tree, node)
         smooth = laws.smooth_from(which, a)
         if tree.left[node] >= 0:
             smooth &= ~laws.broken_between(which, a, b)
@@ -144,7 +144,7 @@ def _walk(mesh: Mesh, tree: Tree, laws: Laws, kept: Layout | None) -> tuple[list
         # A law is smoother the farther it is, so what the parents need of this cell is no more than
         # the nearest laws need, down to one row that counts.
         _, nearest = laws.plain(laws.nearest(a), a, t, p)
-        plain[node] = max(needed.max(initial=0), min(inherited, nearest.max(initial=1)))
+        plain[node] = max(needed.max(initial=0), nearest.max(initial=1) if inherited > 1 else inherited)
         at_edge = which[~smooth]
         if at_edge.size:
             c, needed = laws.from_edge(at_edge, a, t, p)
@@ -169,10 +169,10 @@ def _transfers(mesh: Mesh, tree: Tree, plain: Ints, node_row: Ints) -> list[Bloc
     """Blocks that make the moments of the parents."""
     blocks = []
     for node in range(mesh.size, tree.size):
-        for child, right in ((tree.left[node], False), (tree.right[node], True)):
-            matrix = transfer(tree.share(node), right, plain[node], plain[child])
+        for child in (tree.left[node], tree.right[node]):
+            matrix = transfer(mesh, tree, node, child)[: plain[node], : plain[child]]
             rows = node_row[node] + np.arange(len(matrix))
-            blocks.append(_blocks(rows, node_row[child], np.tril(matrix).T))  # no degree is raised
+            blocks.append(_blocks(rows, node_row[child], matrix.T))
     return blocks
 
 

@@ -1,7 +1,9 @@
 """A binary tree over the cells: far from a separation, coarse cells serve as well as fine ones.
 
-The uniform of a parent cell is affine in its child's, so the moments of the parent follow from those
-of its children exactly: the upward pass of a fast multipole method.
+The variable of a cell is its uniform, that of a parent the height itself, from -1 to 1. A law of contact is
+smooth in the height on wide nodes too, where it would not be in a uniform: the tail of the law of heights
+is in the cells alone. The variable of a parent is affine in its child's, or a smooth function of a cell's
+uniform, so its moments follow from theirs: the upward pass of a fast multipole method.
 """
 
 from dataclasses import dataclass
@@ -28,7 +30,7 @@ class Tree:
     left, right : ndarray of int
         Children of each node, -1 for a cell.
     probability : ndarray
-        Of a height in each node.
+        Of a height in each node, shape (nodes,).
     """
 
     first: NDArray[np.int64]
@@ -41,22 +43,6 @@ class Tree:
     def size(self) -> int:
         """Number of nodes; the last one is the root."""
         return len(self.first)
-
-    def share(self, node: int) -> float:
-        """Share of the left child in its parent."""
-        left, right = self.probability[self.left[node]], self.probability[self.right[node]]
-        return float(left / (left + right)) if left + right > 0 else 0.5
-
-    def offsets(self, mesh: Mesh, node: int) -> Array:
-        """Heights of a node above its lower edge, at the Chebyshev points of its own uniform."""
-        first, last = self.first[node], self.last[node]
-        if last - first == 1:
-            return mesh.offsets(int(first), (1 + NODES) / 2)
-        bounds = np.concatenate([[0.0], np.cumsum(mesh.probability[first:last])])
-        at = bounds[-1] * (1 + NODES) / 2
-        cell = np.clip(np.searchsorted(bounds, at) - 1, 0, last - first - 1)
-        u = np.clip((at - bounds[cell]) / mesh.probability[first + cell], 0.0, 1.0)
-        return np.asarray((mesh.edges[first + cell] - mesh.edges[first]) + mesh.offsets(first + cell, u))
 
 
 def tree_over(mesh: Mesh) -> Tree:
@@ -79,7 +65,16 @@ def tree_over(mesh: Mesh) -> Tree:
     return Tree(links[0], links[1], links[2], links[3], np.array(probability, dtype=np.float64))
 
 
-def transfer(share: float, right: bool, rows: int, columns: int) -> Array:
+def heights_above(mesh: Mesh, tree: Tree, node: int) -> Array:
+    """Heights above the lower edge of a node, at the Chebyshev points of its own variable."""
+    if tree.left[node] < 0:
+        return mesh.offsets(node, (1 + NODES) / 2)
+    return np.asarray((mesh.edges[tree.last[node]] - mesh.edges[tree.first[node]]) * (1 + NODES) / 2)
+
+
+def transfer(mesh: Mesh, tree: Tree, node: int, child: int) -> Array:
     """Matrix from the moments T_k of a child to its part of the moments T_j of the parent."""
-    x = share * (NODES + 1) - 1 if not right else 2 * share - 1 + (1 - share) * (NODES + 1)
-    return np.asarray((TO_COEFFICIENTS @ chebyshev.chebvander(x, max(rows - 1, 0))).T[:rows, :columns])
+    start, end = mesh.edges[tree.first[node]], mesh.edges[tree.last[node]]
+    s = (mesh.edges[tree.first[child]] - start) + heights_above(mesh, tree, child)
+    matrix = (TO_COEFFICIENTS @ chebyshev.chebvander(2 * s / (end - start) - 1, len(NODES) - 1)).T
+    return np.asarray(matrix if tree.left[child] < 0 else np.tril(matrix))  # no degree is raised
