@@ -35,6 +35,7 @@ ORDER = (
     "sampling.moments",
     "sampling.laws",
     "sampling.tiles",
+    "sampling.assembly",
     "sampling.response",
     "sampling.binomial",
     "sampling.halving",

@@ -6,59 +6,77 @@ import pytest
 from mcgw.sampling.tiles import FOUR, Tiles, in_fours
 
 
-def random_blocks(rng, given, groups):
-    """Rows of four in a row; each needs a few given rows, and some of earlier groups."""
+def random_blocks(rng, given, computed):
+    """Groups of four rows; each row needs a few given groups, and some of earlier ones."""
     blocks = []
-    for group in range(groups):
-        for row in given + FOUR + FOUR * group + np.arange(FOUR):
+    for group in range(given, given + computed):
+        for row in FOUR * group + np.arange(FOUR):
             own = rng.integers(0, given, 2)
-            earlier = given + FOUR + FOUR * rng.integers(0, group, 2) if group else []
-            columns = np.unique(np.concatenate([own, earlier]).astype(np.int64))
-            values = rng.normal(0, 0.3, (len(columns), FOUR))
-            blocks.append((np.full(len(columns), row), columns, values))
+            earlier = rng.integers(given, group, 2) if group > given else []
+            columns = FOUR * np.unique(np.concatenate([own, earlier]).astype(np.int64))
+            blocks.append((np.full(len(columns), row), columns, rng.normal(0, 0.3, (len(columns), FOUR))))
     return blocks
 
 
-def dense(blocks, given, groups, moments):
+def gaps(rng, groups):
+    """Given rows in order, with rows of zeros in between; and how many there are."""
+    kept = rng.random(FOUR * groups) < 0.8
+    return np.where(kept, np.cumsum(kept) - 1, -1).reshape(-1, FOUR), int(kept.sum())
+
+
+def dense(blocks, given, computed, moments):
     """The same by plain loops."""
-    table = np.zeros((given + FOUR + FOUR * (groups + 1), moments.shape[1]))
-    table[:given] = moments
+    table = np.zeros((FOUR * computed + given.size, moments.shape[1]))
+    table[: given.size] = np.where(given.reshape(-1, 1) < 0, 0.0, moments[given.ravel()])
     for rows, columns, values in blocks:
         for row, column, four in zip(rows, columns, values, strict=True):
             table[row] += four @ table[column : column + FOUR]
-    return table[given + FOUR : given + FOUR + FOUR * groups]
+    return table[given.size :]
 
 
-@pytest.mark.parametrize(("given", "groups"), [(1, 1), (7, 3), (40, 25), (300, 60)])
+@pytest.mark.parametrize(("groups", "computed"), [(1, 1), (2, 3), (10, 25), (75, 60)])
 @pytest.mark.parametrize("surfaces", [1, 63, 64, 130])
-def test_every_row_is_that_of_a_dense_product(given, groups, surfaces):
-    rng = np.random.default_rng(given + surfaces)
-    blocks = random_blocks(rng, given, groups)
-    moments = rng.normal(size=(given, surfaces))
-    exact = dense(blocks, given, groups, moments)
-    tiles = Tiles.of(blocks, given, FOUR * groups)
-    found = tiles.apply(moments, (FOUR * groups, 1))[:, :, 0]
+def test_every_row_is_that_of_a_dense_product(groups, computed, surfaces):
+    """In random order of the answers, some rows being none."""
+    rng = np.random.default_rng(groups + surfaces)
+    blocks = random_blocks(rng, groups, computed)
+    given, rows = gaps(rng, groups)
+    moments = rng.normal(size=(rows, surfaces))
+    answers = rng.permutation(
+        np.where(np.arange(FOUR * computed) < 2 * computed, np.arange(FOUR * computed), -1)
+    )
+    exact = np.empty((2 * computed, surfaces))
+    exact[answers[answers >= 0]] = dense(blocks, given, computed, moments)[answers >= 0]
+    tiles = Tiles.of(blocks, given, answers.reshape(-1, FOUR))
+    found = tiles.apply(moments, (2, computed))
     scale = np.abs(exact).max(axis=1, keepdims=True) + 1
-    assert np.abs((found - exact) / scale).max() < 1e-13
-    np.testing.assert_array_equal(tiles.apply(moments[:, :1].copy(), (FOUR * groups, 1))[:, 0], found[:, :1])
+    assert np.abs((found.transpose(0, 2, 1).reshape(-1, surfaces) - exact) / scale).max() < 1e-13
+    np.testing.assert_array_equal(tiles.apply(moments[:, :1].copy(), (2, computed)), found[:, :1])
 
 
-def test_given_rows_come_in_when_they_are_first_needed():
-    """The sweep goes down, and no row is computed before those it needs."""
-    rng = np.random.default_rng(3)
-    blocks = random_blocks(rng, 40, 25)
-    tiles = Tiles.of(blocks, 40, 100)
-    assert (np.diff(tiles.lowest) <= 0).all()
-    done = {int(row): place for place, row in enumerate(tiles.rows)}
-    for place in range(len(tiles.rows)):
-        for column in tiles.columns[int(tiles.pointers[place]) : int(tiles.pointers[place + 1])].astype(int):
-            assert column >= tiles.lowest[place]
-            assert column <= 40 or done[44 + (column - 44) // FOUR * FOUR] < place
+def test_the_table_holds_what_is_needed_and_no_more():
+    """A chain of sums from the highest given group down: two groups and the next are there at a time."""
+    n = 100
+    blocks = []
+    for k in range(n):  # row k is given group n - 1 - k plus row k - 1
+        for source in (n - 1 - k, n + k - 1)[: 1 + (k > 0)]:
+            blocks.append(
+                (FOUR * (n + np.full(FOUR, k)) + np.arange(FOUR), np.full(FOUR, FOUR * source), np.eye(FOUR))
+            )
+    answers = np.where(np.arange(n)[:, None] == n - 1, np.arange(FOUR), -1)
+    tiles = Tiles.of(blocks, np.arange(FOUR * n).reshape(-1, FOUR), answers)
+    assert max(tiles.fetched.max(), tiles.computed.max()) == 2 * FOUR
+    assert tiles.fetches[:, 0].tolist() == [FOUR * (n - 1 - k) for k in range(n)]
+    moments = np.random.default_rng(3).integers(0, 1000, (FOUR * n, 5)).astype(float)
+    np.testing.assert_array_equal(
+        tiles.apply(moments, (1, FOUR))[0], moments.reshape(n, FOUR, 5).sum(axis=0).T
+    )
 
 
 def test_nothing_asked():
-    tiles = Tiles.of([], 5, 0)
+    none = np.empty((0, FOUR), dtype=np.int64)
+    tiles = Tiles.of([], np.array([[0, 1, 2, 3], [4, -1, -1, -1]]), none)
     assert tiles.apply(np.ones((5, 3)), (0, 4)).shape == (0, 3, 4)
     assert [int(in_fours(n)) for n in (0, 1, 4, 5)] == [0, 4, 4, 8]
-    silent = Tiles.of([], 5, 8)  # a separation above all cells
+    silent = Tiles.of([], none, np.arange(8).reshape(-1, FOUR))  # a separation above all cells
     np.testing.assert_array_equal(silent.apply(np.ones((5, 3)), (2, 4)), np.zeros((2, 3, 4)))

@@ -4,7 +4,8 @@
 ``counts``     how many asperities fall into each cell, exactly (`halving`, `binomial`)
 ``moments``    sums over the uniforms of a cell (`philox`, `uniform_sums`), or from their Gaussian limit
                (`aggregate`): all that a surface keeps
-``response``   physics as a sparse matrix in `tiles`: `laws` on the cells and on a `tree` over them
+``response``   physics as a sparse matrix: `laws` on the cells and on a `tree` over them, put together
+               (`assembly`) to rows that follow from each other (`tiles`)
 ``samplers``   a block of surfaces = response @ moments, and the few asperities outside the cells (`extras`,
                `hertz`)
 ``asperities`` the very heights that were summed, if anybody asks

@@ -12,11 +12,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from mcgw.sampling.assembly import Entry, tiles_of
 from mcgw.sampling.cells import Mesh
 from mcgw.sampling.laws import ACCURACY, Laws
 from mcgw.sampling.moments import Layout
-from mcgw.sampling.tiles import FOUR, Blocks, Tiles, in_fours
-from mcgw.sampling.tree import Tree, heights_above, transfer, tree_over
+from mcgw.sampling.tiles import Tiles
+from mcgw.sampling.tree import Tree, heights_above, tree_over
 from mcgw.scene import Scene
 
 __all__ = ["Response", "response_of"]
@@ -93,32 +94,13 @@ def response_of(
     between = (mesh.edges[0], mesh.edges[-1]) if mesh.size else (0.0, 0.0)
     laws = Laws.of(scene, quantities, between, lasting=lasting or kept is not None, accuracy=accuracy)
     entries, plain, rooted = _walk(mesh, tree, laws, kept)
-    layout = Layout(plain[: mesh.size], rooted)
-    starts = layout.starts
-    given = int(starts[-1])
-    inner = given + FOUR + np.concatenate([[0], np.cumsum(in_fours(plain[mesh.size :]))]).astype(np.int64)
-    node_row = np.concatenate([starts[:-1], inner[:-1]])
-    blocks = [
-        *_transfers(mesh, tree, plain, node_row),
-        *_answers(entries, plain, rooted, node_row, inner[-1]),
-    ]
-    computed = int(inner[-1] - inner[0] + in_fours(len(laws.h)))
-    return Response(layout, Tiles.of(blocks, given, computed), (len(quantities), len(scene.separations)))
+    tiles = tiles_of(mesh, tree, laws, entries, plain, rooted)
+    return Response(Layout(plain[: mesh.size], rooted), tiles, (len(quantities), len(scene.separations)))
 
 
-@dataclass(frozen=True)
-class _Entry:
-    """Coefficients of some laws on one node; `rooted` ones multiply the R_j."""
-
-    node: int
-    rooted: bool
-    laws: Ints
-    coefficients: Array
-
-
-def _walk(mesh: Mesh, tree: Tree, laws: Laws, kept: Layout | None) -> tuple[list[_Entry], Ints, Ints]:
+def _walk(mesh: Mesh, tree: Tree, laws: Laws, kept: Layout | None) -> tuple[list[Entry], Ints, Ints]:
     """From the root down: give each law to the coarsest nodes that resolve it."""
-    entries: list[_Entry] = []
+    entries: list[Entry] = []
     plain, rooted = np.zeros(tree.size, dtype=np.int64), np.zeros(mesh.size, dtype=np.int64)
     stack = [(tree.size - 1, np.arange(len(laws.h)), 0)] if tree.size else []
     while stack:
@@ -133,7 +115,7 @@ def _walk(mesh: Mesh, tree: Tree, laws: Laws, kept: Layout | None) -> tuple[list
         c, needed = laws.plain(which[smooth], a, t, p)
         done = needed <= (_MOST if tree.left[node] >= 0 else _MOST_IN_CELL)
         if done.any():
-            entries.append(_Entry(node, False, which[smooth][done], c[:, done]))
+            entries.append(Entry(node, False, which[smooth][done], c[:, done]))
         rest = np.concatenate([which[smooth][~done], which[~smooth]])
         if tree.left[node] >= 0:
             plain[node] = max(inherited, needed[done].max(initial=0))
@@ -149,7 +131,7 @@ def _walk(mesh: Mesh, tree: Tree, laws: Laws, kept: Layout | None) -> tuple[list
         if at_edge.size:
             c, needed = laws.from_edge(at_edge, a, t, p)
             rooted[node] = needed.max()
-            entries.append(_Entry(node, True, at_edge, c))
+            entries.append(Entry(node, True, at_edge, c))
     if kept:
         _check_kept(mesh, kept, Layout(plain[: mesh.size], rooted))
         plain[: mesh.size], rooted = kept.plain, kept.rooted
@@ -163,34 +145,3 @@ def _check_kept(mesh: Mesh, kept: Layout, needed: Layout) -> None:
         raise ValueError(
             f"the moments kept do not resolve this near s = {s:.4g}; simulate the scene anew with it"
         )
-
-
-def _transfers(mesh: Mesh, tree: Tree, plain: Ints, node_row: Ints) -> list[Blocks]:
-    """Blocks that make the moments of the parents."""
-    blocks = []
-    for node in range(mesh.size, tree.size):
-        for child in (tree.left[node], tree.right[node]):
-            matrix = transfer(mesh, tree, node, child)[: plain[node], : plain[child]]
-            rows = node_row[node] + np.arange(len(matrix))
-            blocks.append(_blocks(rows, node_row[child], matrix.T))
-    return blocks
-
-
-def _answers(entries: list[_Entry], plain: Ints, rooted: Ints, node_row: Ints, first: int) -> list[Blocks]:
-    """Blocks that make the answers."""
-    blocks = []
-    for entry in entries:
-        size = rooted[entry.node] if entry.rooted else plain[entry.node]
-        start = node_row[entry.node] + (plain[entry.node] if entry.rooted else 0)
-        blocks.append(_blocks(first + entry.laws, start, entry.coefficients[:size]))
-    return blocks
-
-
-def _blocks(rows: Ints, start: int, coefficients: Array) -> Blocks:
-    """Coefficients (columns, rows) of neighbouring columns from `start` on, without blocks of zeros."""
-    n = -(-len(coefficients) // FOUR)
-    filled = np.zeros((n * FOUR, len(rows)))
-    filled[: len(coefficients)] = coefficients
-    blocks = filled.reshape(n, FOUR, len(rows)).transpose(0, 2, 1)
-    block, row = np.nonzero(blocks.any(axis=2))
-    return rows[row], start + FOUR * block, blocks[block, row]

@@ -1,12 +1,14 @@
 """A sparse product in tiles: rows that are combinations of given rows, and of each other.
 
-The given rows are the moments of cells from the lowest height to the highest, and a computed row needs
-those of a range of heights. So rows are computed in one sweep from the highest cell down, in which given
-rows are fetched when they are first needed: what the next row needs is still in the cache.
+Rows go in groups of four, and a group has a place in a table only from when it is fetched or computed to
+when it is last needed. The given rows are the moments of cells from the lowest height to the highest, and a
+computed row needs those of a range of heights: so groups are computed in one sweep from the highest cell
+down, and the table is small enough to stay in the cache.
 """
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from heapq import heappop, heappush
 from typing import Any
 
 import numpy as np
@@ -19,7 +21,6 @@ __all__ = ["FOUR", "Blocks", "Tiles", "in_fours"]
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
-Places = NDArray[np.uint64]
 Blocks = tuple[Ints, Ints, Array]  # rows, first columns, values of shape (blocks, 4)
 
 FOUR = 4  # rows and columns of a tile
@@ -33,49 +34,78 @@ def in_fours(rows: Any) -> Any:
 
 @dataclass(frozen=True)
 class Tiles:
-    """Groups of four rows, in the order in which they are computed.
-
-    First come the given rows, then four that are zero, for a tile may reach beyond the given ones, then
-    the computed ones, in fours.
+    """Steps, each of which fetches some groups of given rows and computes one group.
 
     Parameters
     ----------
-    rows : ndarray of int
-        First row of each group.
-    lowest : ndarray of int
-        First given row that a group, or an earlier one, needs.
-    pointers, columns : ndarray
-        First tile of each group, and first column of each tile.
+    fetches : ndarray of int
+        Given row of each row of each group that is fetched, -1 for zeros; shape (fetches, 4).
+    fetch_ends, tile_ends : ndarray of int
+        How many groups are fetched, and tiles used, up to each step and with it.
+    fetched, used, computed : ndarray of int
+        Place in the table of each group that is fetched, each tile's column, each step's result.
     values : ndarray
         Shape (tiles, 4, 4).
+    answers : ndarray of int
+        Which answer each computed row is, -1 for none; shape (steps, 4).
     """
 
-    rows: Ints
-    lowest: Ints
-    pointers: Places
-    columns: Places
+    fetches: Ints
+    fetch_ends: Ints
+    fetched: Ints
+    tile_ends: Ints
+    used: Ints
     values: Array
+    computed: Ints
+    answers: Ints
 
     @classmethod
-    def of(cls, blocks: Sequence[Blocks], given: int, computed: int) -> "Tiles":
-        """Gather blocks of single rows, each of which needs given rows and rows of earlier groups."""
+    def of(cls, blocks: Sequence[Blocks], given: Ints, answers: Ints) -> "Tiles":
+        """Gather blocks of single rows, each of which needs given rows and rows of earlier groups.
+
+        Parameters
+        ----------
+        blocks : sequence of Blocks
+            Their rows and columns count the rows of `given`, then those of `answers`.
+        given : ndarray of int
+            The given row that each one is, -1 for zeros; shape (groups, 4).
+        answers : ndarray of int
+            Which answer each computed row is, -1 for none; shape (groups, 4).
+
+        Returns
+        -------
+        Tiles
+            In the order of the sweep.
+        """
         row, column, value = (np.concatenate(part) for part in zip(*(_NOTHING, *blocks), strict=True))
-        group, place = np.divmod(row - (given + FOUR), FOUR)
-        (group, column), tile = np.unique(np.stack([group, column]), axis=1, return_inverse=True)
+        group, place = np.divmod(row, FOUR)
+        (group, source), tile = np.unique(np.stack([group, column // FOUR]), axis=1, return_inverse=True)
         values = np.zeros((len(group), FOUR, FOUR))
         values[tile, place] = value
-        lowest = _lowest(group, column, given, computed // FOUR)
-        order = np.lexsort((np.arange(len(lowest)), -lowest))
-        turn = np.argsort(np.argsort(order)[group], kind="stable")
-        sizes = np.bincount(group, minlength=len(lowest))[order]
-        pointers = np.concatenate([[0], np.cumsum(sizes)])
-        rows = given + FOUR + FOUR * order
+        order = _sweep_down(group, source, len(given), len(answers))
+        steps = np.empty(len(given) + len(answers), dtype=np.int64)  # when a group comes into the table
+        steps[: len(given)] = len(order)
+        steps[len(given) + order] = np.arange(len(order))
+        step = steps[group]
+        np.minimum.at(steps[: len(given)], source[source < len(given)], step[source < len(given)])
+        last = steps.copy()
+        np.maximum.at(last, source, step)
+        places = FOUR * _places(steps, last)
+        fetches = np.argsort(steps[: len(given)], kind="stable")[: np.sum(steps[: len(given)] < len(order))]
+        turn = np.argsort(step, kind="stable")
         return cls(
-            rows, lowest[order], pointers.astype(np.uint64), column[turn].astype(np.uint64), values[turn]
+            fetches=given[fetches],
+            fetch_ends=np.cumsum(np.bincount(steps[fetches], minlength=len(order))),
+            fetched=places[fetches],
+            tile_ends=np.cumsum(np.bincount(step, minlength=len(order))),
+            used=places[source[turn]],
+            values=values[turn],
+            computed=places[len(given) + order],
+            answers=answers[order],
         )
 
     def apply(self, given: Array, shape: tuple[int, int]) -> Array:
-        """Answers, the last computed rows.
+        """Answers.
 
         Parameters
         ----------
@@ -89,11 +119,17 @@ class Tiles:
         ndarray
             Shape (shape[0], surfaces, shape[1]).
         """
-        parts = self.rows, self.lowest, self.pointers, self.columns, self.values
+        program = (
+            *(self.fetches, self.fetch_ends, self.fetched, self.tile_ends),
+            *(self.used.astype(np.uint64), self.values, self.computed, self.answers),
+        )
+        rows = int(max(self.fetched.max(initial=0), self.computed.max(initial=0))) + FOUR
         result = np.empty((shape[0], given.shape[1], shape[1]))
 
         def share(ends: tuple[int, int]) -> None:
-            _apply(*parts, given, ends, result)
+            table = np.empty(rows * _WIDTH)
+            for first in range(*ends, _WIDTH):
+                _sweep(program, table, given, first, min(_WIDTH, ends[1] - first), result)
 
         in_threads(share, pieces(given.shape[1], _WIDTH))
         return result
@@ -102,66 +138,55 @@ class Tiles:
 _NOTHING: Blocks = (np.empty(0, np.int64), np.empty(0, np.int64), np.empty((0, FOUR)))
 
 
-def _lowest(group: Ints, column: Ints, given: int, groups: int) -> Ints:
-    """First given row that each group needs, by way of the others too; `given` if none."""
-    lowest = np.full(groups, given)
-    np.minimum.at(lowest, group, np.minimum(column, given))
-    inner = column > given
-    source = (column[inner] - (given + FOUR)) // FOUR
+def _sweep_down(group: Ints, source: Ints, given: int, computed: int) -> Ints:
+    """Computed groups in the order of the lowest given group that each needs, by way of the others too."""
+    lowest = np.concatenate([np.arange(given), np.full(computed, given)])
     while True:  # as often as the tree has levels
         reached = lowest.copy()
-        np.minimum.at(reached, group[inner], lowest[source])
+        np.minimum.at(reached, group, lowest[source])
         if np.array_equal(reached, lowest):
-            return lowest
+            return np.lexsort((np.arange(computed), -lowest[given:]))
         lowest = reached
 
 
-@njit(nogil=True, cache=True)
-def _apply(
-    rows: Any, lowest: Any, pointers: Any, columns: Any, values: Any, given: Any, ends: Any, result: Any
-) -> None:
-    """All rows for some of the surfaces; the sum over a row has one order, whatever the block."""
-    known = given.shape[0]
-    quantities, _, separations = result.shape
-    size = known + FOUR + FOUR * rows.size
-    answers = size - (quantities * separations + FOUR - 1) // FOUR * FOUR
-    table = np.empty((size, _WIDTH))
-    for first in range(ends[0], ends[1], _WIDTH):
-        n = min(_WIDTH, ends[1] - first)
-        table[known : known + FOUR] = 0.0
-        _sweep(table.reshape(-1), given, first, n, rows, lowest, pointers, columns, values)
-        for q in range(quantities):
-            for i in range(n):
-                for k in range(separations):
-                    result[q, first + i, k] = table[answers + q * separations + k, i]
+def _places(first: Ints, last: Ints) -> Ints:
+    """Places, as few as can be, for what is there from one step to another."""
+    places = np.empty_like(first)
+    taken: list[tuple[int, int]] = []
+    free: list[int] = []
+    for item in np.argsort(first, kind="stable").tolist():
+        while taken and taken[0][0] < first[item]:
+            free.append(heappop(taken)[1])
+        places[item] = free.pop() if free else len(taken)
+        heappush(taken, (int(last[item]), int(places[item])))
+    return places
 
 
 @njit(nogil=True, cache=True, fastmath={"contract"})
-def _sweep(
-    table: Any,
-    given: Any,
-    first: Any,
-    n: Any,
-    rows: Any,
-    lowest: Any,
-    pointers: Any,
-    columns: Any,
-    values: Any,
-) -> None:
-    """Fill a flat table. Unsigned places, for a signed one may count from the end."""
+def _sweep(program: Any, table: Any, given: Any, first: Any, n: Any, result: Any) -> None:
+    """Take all steps for `n` surfaces from `first` on; the sum over a row has one order, in any block.
+
+    Unsigned places in the table, for a signed one may count from its end.
+    """
+    fetches, fetch_ends, fetched, tile_ends, used, values, computed, answers = program
+    width = np.uint64(_WIDTH)
+    separations = result.shape[2]
     sums = np.empty(FOUR * _WIDTH)
-    fetched = given.shape[0]
-    for group in range(rows.size):
-        for row in range(lowest[group], fetched):
-            for k in range(n):
-                table[np.uint64(row * _WIDTH + k)] = given[np.uint64(row), np.uint64(first + k)]
-            for k in range(n, _WIDTH):
-                table[np.uint64(row * _WIDTH + k)] = 0.0
-        fetched = lowest[group]
+    fetch = tile = 0
+    for step in range(computed.size):
+        while fetch < fetch_ends[step]:
+            for r in range(FOUR):
+                row, at = fetches[fetch, r], np.uint64(fetched[fetch] + r) * width
+                filled = n if row >= 0 else 0
+                for k in range(filled):
+                    table[at + np.uint64(k)] = given[np.uint64(row), np.uint64(first + k)]
+                for k in range(filled, _WIDTH):
+                    table[at + np.uint64(k)] = 0.0
+            fetch += 1
         sums[:] = 0.0
-        for tile in range(pointers[group], pointers[group + 1]):
-            ka = columns[tile] * np.uint64(_WIDTH)
-            kb, kc, kd = ka + np.uint64(_WIDTH), ka + np.uint64(2 * _WIDTH), ka + np.uint64(3 * _WIDTH)
+        while tile < tile_ends[step]:
+            ka = used[tile] * width
+            kb, kc, kd = ka + width, ka + np.uint64(2) * width, ka + np.uint64(3) * width
             a0, b0, c0, d0 = values[tile, 0, 0], values[tile, 0, 1], values[tile, 0, 2], values[tile, 0, 3]
             a1, b1, c1, d1 = values[tile, 1, 0], values[tile, 1, 1], values[tile, 1, 2], values[tile, 1, 3]
             a2, b2, c2, d2 = values[tile, 2, 0], values[tile, 2, 1], values[tile, 2, 2], values[tile, 2, 3]
@@ -170,9 +195,16 @@ def _sweep(
                 i = np.uint64(k)
                 w, x, y, z = table[ka + i], table[kb + i], table[kc + i], table[kd + i]
                 sums[i] += (a0 * w + b0 * x) + (c0 * y + d0 * z)
-                sums[i + np.uint64(_WIDTH)] += (a1 * w + b1 * x) + (c1 * y + d1 * z)
-                sums[i + np.uint64(2 * _WIDTH)] += (a2 * w + b2 * x) + (c2 * y + d2 * z)
-                sums[i + np.uint64(3 * _WIDTH)] += (a3 * w + b3 * x) + (c3 * y + d3 * z)
-        at = np.uint64(rows[group] * _WIDTH)
+                sums[i + width] += (a1 * w + b1 * x) + (c1 * y + d1 * z)
+                sums[i + np.uint64(2) * width] += (a2 * w + b2 * x) + (c2 * y + d2 * z)
+                sums[i + np.uint64(3) * width] += (a3 * w + b3 * x) + (c3 * y + d3 * z)
+            tile += 1
+        at = np.uint64(computed[step]) * width
         for k in range(FOUR * _WIDTH):
             table[at + np.uint64(k)] = sums[np.uint64(k)]
+        for r in range(FOUR):
+            answer = answers[step, r]
+            if answer >= 0:
+                q, separation = answer // separations, answer % separations
+                for k in range(n):
+                    result[q, first + k, separation] = sums[r * _WIDTH + k]
