@@ -37,6 +37,7 @@ ORDER = (
     "sampling.tiles",
     "sampling.assembly",
     "sampling.response",
+    "sampling.binomial_ratio",
     "sampling.binomial",
     "sampling.halving",
     "sampling.counts",

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from mcgw.sampling import binomial
+from mcgw.sampling import binomial, binomial_ratio
 from mcgw.sampling.binomial import SURFACES, TRIALS, WORDS, binomials
 from mcgw.sampling.cells import mesh_of
 from mcgw.sampling.counts import counts_of
@@ -19,8 +19,8 @@ CASES = [
     (1, 0.5),
     (3, 0.3),
     (30, 0.01),
-    (39, 0.5),  # the largest mean that is inverted, and the smallest that is not
-    (40, 0.5),
+    (55, 0.5),  # the largest mean that is inverted, and the smallest that is not
+    (56, 0.5),
     (200, 0.1),
     (1000, 0.5),
     (10**6, 1e-6),
@@ -69,25 +69,33 @@ def test_the_chi_square_test_sees_a_wrong_probability(n, p, off):
 
 
 def test_the_ratio_of_probabilities_against_mpmath():
-    """What decides on acceptance: to 2e-12, near the mode and far from it, for any number of trials."""
-    rng, worst = np.random.default_rng(1), 0.0
+    """What decides on acceptance: to 2e-12, near the mode and far from it, for any number of trials.
+
+    By the series, wherever these are said to serve, and without them.
+    """
+    rng, worst, served = np.random.default_rng(1), [], 0
     for _ in range(400):
-        n = float(np.floor(10 ** rng.uniform(1.7, 15)))
-        p = min(10 ** rng.uniform(math.log10(20.5 / n), math.log10(0.5)), 0.5)
+        n = float(np.floor(10 ** rng.uniform(1.8, 15)))
+        p = min(10 ** rng.uniform(math.log10(28.5 / n), math.log10(0.5)), 0.5)
         sd = math.sqrt(n * p * (1 - p))
         k = float(np.clip(np.floor(n * p + rng.uniform(-8, 8) * sd), 0, n))
-        mode = math.floor((n + 1) * p)
-        ends = (max(x, binomial._ZERO) * max(n - x, binomial._ZERO) for x in (mode, k))
+        mode = float(math.floor((n + 1) * p))
+        ends = (max(x, binomial_ratio._ZERO) * max(n - x, binomial_ratio._ZERO) for x in (mode, k))
         found = (
-            binomial._shortfall(n, p, mode)
-            - binomial._shortfall(n, p, k)
+            binomial_ratio._shortfall_anywhere(n, p, mode)
+            - binomial_ratio._shortfall_anywhere(n, p, k)
             + 0.5 * math.log(next(ends) / next(ends))
         )
         with mp.workdps(60):
-            exact = log_probability(n, p, k) - log_probability(n, p, mode)
+            exact = float(log_probability(n, p, k) - log_probability(n, p, mode))
         rounded = 2.0**-53 * (k + mode) * (abs(k - n * p) + 1) / sd**2  # of n p: another p
-        worst = max(worst, abs(found - float(exact)) - rounded)
-    assert worst < 2e-12
+        worst.append(abs(found - exact) - rounded)
+        ratio, known = binomial_ratio.ratio_over_mode(n, p, k)
+        if known:
+            served += 1
+            worst.append(abs(ratio / math.exp(exact) - 1) - rounded)
+    assert max(worst) < 2e-12
+    assert 300 < served < 400
 
 
 def log_probability(n, p, k):
@@ -102,7 +110,7 @@ def log_probability(n, p, k):
     )
 
 
-@pytest.mark.parametrize("mean", [20.0, 25.0, 60.0, 1e3, 1e6, 1e11])
+@pytest.mark.parametrize("mean", [28.0, 60.0, 1e3, 1e6, 1e11])
 @pytest.mark.parametrize("p", [0.5, 0.3, 1e-3])
 def test_the_hat_covers_the_law_and_the_squeeze_is_below_it(mean, p):
     """All that rejection rests on, at 20 000 uniforms, with no random number."""
@@ -110,11 +118,11 @@ def test_the_hat_covers_the_law_and_the_squeeze_is_below_it(mean, p):
     for u in np.linspace(-0.4999, 0.4999, 20_001):
         k, _, w = binomial._proposal(n, p, u, 0.5)  # the largest v: the hat itself
         if 0 <= k <= n:
-            assert not binomial._accepted(n, p, k, w * (1 + 1e-9))
+            assert not binomial_ratio.below_ratio(w * (1 + 1e-9), n, p, k)
         b = 1.15 + 2.53 * math.sqrt(n * p * (1 - p))
         k, sure, w = binomial._proposal(n, p, u, 0.42 - 4.2 / b)  # the largest v that is sure
         assert sure == (0.5 - abs(u) >= 0.07)
-        assert not sure or binomial._accepted(n, p, k, w)
+        assert not sure or binomial_ratio.below_ratio(w, n, p, k)
 
 
 def test_a_number_is_a_function_of_seed_surface_and_node():
@@ -126,10 +134,23 @@ def test_a_number_is_a_function_of_seed_surface_and_node():
 
 def test_the_ends_of_the_uniforms():
     """Rounding can leave a uniform of one: the number stays a number."""
-    for n, p in ((1.0, 0.5), (39.0, 0.5), (1e15, 1e-15), (1e15, 1.9e-14)):
-        for u in (0.0, 1e-20, 1.0 - 2**-53, 1.0):
-            assert 0 <= binomial._inverse(n, p, math.log1p(-p), u) <= min(n, 110)
-    assert binomial._inverse(5.0, 0.0, 0.0, 1.0) == 0
+    for n, p in ((1.0, 0.5), (55.0, 0.5), (1e15, 1e-15), (1e15, 2.7e-14), (5.0, 0.0)):
+        ends = (0.0, 1e-20, 1.0 - 2**-53, 1.0)
+        work = np.zeros(WORDS)
+        work[TRIALS : TRIALS + 4], work[binomial._LEFT : binomial._LEFT + 4] = n, ends
+        binomial._invert(work, 4, p)
+        assert 0 == work[0] == work[1] <= work[2] <= work[3] <= min(n, 130)
+    assert work[3] == 0
+
+
+def test_a_number_does_not_hang_on_its_neighbours():
+    """Some inverted, some not, in one block and one by one."""
+    rng, p, work = np.random.default_rng(4), 0.3, np.empty(WORDS)
+    trials = np.floor(10 ** rng.uniform(0, 5, SURFACES))
+    assert 10 < np.sum(trials * p < binomial._SMALL) < 54
+    work[TRIALS : TRIALS + SURFACES] = trials
+    binomials(work, SURFACES, p, np.uint64(5), np.uint64(0), np.uint64(3))
+    assert work[:SURFACES].tolist() == [draw(n, p, 1, first=i)[0] for i, n in enumerate(trials)]
 
 
 @pytest.mark.parametrize("count", ["fixed", "poisson"])

@@ -1,10 +1,9 @@
 """Binomial numbers, one for each surface of a block.
 
 Transformed rejection with a squeeze: BTRS of W. Hörmann, "The generation of binomial random variates",
-J. Stat. Comput. Simul. 46 (1993) 101. Three attempts in four need a comparison and no logarithm, so the
-first attempts of all surfaces run over the vector unit; only the others are gone through one by one.
-Their probabilities are by C. Loader's "Fast and accurate computation of binomial probabilities" (2000):
-no difference of large logarithms, whatever the number. Below a mean of twenty the distribution is inverted.
+J. Stat. Comput. Simul. 46 (1993) 101. Two attempts in three need a comparison, the others the ratio of two
+probabilities. Below a mean of 28 the distribution is inverted. All this runs over the vector unit, for the
+surfaces that are still without a number; only a few far from the mean are gone through one by one.
 """
 
 import math
@@ -13,19 +12,18 @@ from typing import Any
 import numpy as np
 from numba import njit, uint64
 
+from mcgw.sampling.binomial_ratio import below_ratio, ratio_over_mode
 from mcgw.sampling.philox import COUNTS, two_wide
 
 __all__ = ["SURFACES", "TRIALS", "WORDS", "binomials"]
 
 SURFACES = 64  # at a time
-_UNIFORM, _WEIGHT, TRIALS, WORDS = 64, 128, 192, 256  # where the rest begins, and its end
+TRIALS, _SURFACE, _PENDING, _PROPOSED, _WEIGHT, WORDS = 64, 128, 192, 256, 320, 384  # where the rest begins
+_LEFT, _PROBABILITY = _PROPOSED, _WEIGHT  # when the distribution is inverted
+_VECTOR = 8  # numbers that the vector unit takes at a time
 
-_SMALL = 20.0  # mean, below which inversion is faster; the rejection is proven from 10 on
+_SMALL = 28.0  # mean, below which inversion is as fast; the rejection is proven from 10 on
 _NOTHING = 1e-18  # a probability that no uniform can show; every q^n with so small a mean is larger
-_ZERO = 0.5 / math.pi  # stands for 0 in Stirling's formula, which makes it exact
-_ERRORS = np.array(
-    [0.0] + [math.lgamma(k + 1) + k - (k + 0.5) * math.log(k) + 0.5 * math.log(_ZERO) for k in range(1, 16)]
-)
 
 
 @njit(inline="always", error_model="numpy")
@@ -42,76 +40,84 @@ def _proposal(n: Any, p: Any, u: Any, v: Any) -> Any:
 
 
 @njit(nogil=True, cache=True, error_model="numpy")
-def _first_attempts(work: Any, surfaces: Any, p: Any, seed: Any, first: Any, node: Any) -> None:
-    """Proposed numbers, their uniforms, and what is to be compared with their probability: -1 if sure."""
-    for i in range(surfaces):
-        u, v = two_wide(seed, COUNTS, first + uint64(i), node, uint64(0))
-        k, sure, w = _proposal(work[TRIALS + i], p, u, v)
-        work[i] = k
-        work[_UNIFORM + i] = u
+def _propose(work: Any, m: Any, p: Any, seed: Any, first: Any, node: Any, attempt: Any) -> None:
+    """Propose numbers; leave what is to be compared with their probability, -1 if they are sure."""
+    for i in range(m):
+        u, v = two_wide(seed, COUNTS, first + uint64(work[_SURFACE + i]), node, attempt)
+        k, sure, w = _proposal(work[_PENDING + i], p, u, v)
+        work[_PROPOSED + i] = k
         work[_WEIGHT + i] = -1.0 if sure else w
 
 
 @njit(nogil=True, cache=True, error_model="numpy")
-def _stirling(k: Any) -> Any:
-    """Logarithm of ``k! / (sqrt(2 pi max(k, 1/(2 pi))) (k/e)^k)``."""
-    if k < 16:
-        return _ERRORS[int(k)]
-    x = 1.0 / (k * k)
-    return (1 / 12 - (1 / 360 - (1 / 1260 - (1 / 1680 - x / 1188) * x) * x) * x) / k
+def _judge(work: Any, m: Any, p: Any) -> None:
+    """Turn weights to -1 where the proposed number is accepted, else to infinity."""
+    for i in range(m):
+        w = work[_WEIGHT + i]
+        ratio, known = ratio_over_mode(work[_PENDING + i], p, work[_PROPOSED + i])
+        work[_WEIGHT + i] = (-1.0 if w <= ratio else np.inf) if known else w
+    for i in range(m):
+        w = work[_WEIGHT + i]
+        if 0.0 <= w < np.inf:
+            below = below_ratio(w, work[_PENDING + i], p, work[_PROPOSED + i])
+            work[_WEIGHT + i] = -1.0 if below else np.inf
 
 
-@njit(nogil=True, cache=True, error_model="numpy")
-def _deviance(k: Any, d: Any) -> Any:
-    """``k log(k/m) + m - k`` with m = k - d."""
-    v = d / (k + (k - d))
-    if abs(v) > 0.1:
-        return k * math.log(k / (k - d)) - d if k else -d
-    x = v * v
-    series = 1 / 3 + x * (
-        1 / 5 + x * (1 / 7 + x * (1 / 9 + x * (1 / 11 + x * (1 / 13 + x * (1 / 15 + x / 17)))))
-    )
-    return d * v + 2.0 * k * v * x * series
+@njit(nogil=True, cache=True)
+def _settle(work: Any, m: Any) -> Any:
+    """Write down what is accepted, gather the others, and count them."""
+    left = 0
+    for i in range(m):  # without a branch: what is not accepted is overwritten in the end
+        surface, n, k, w = work[_SURFACE + i], work[_PENDING + i], work[_PROPOSED + i], work[_WEIGHT + i]
+        work[np.uint64(surface)] = k
+        at = np.uint64(left)
+        work[at + np.uint64(_SURFACE)], work[at + np.uint64(_PENDING)] = surface, n
+        work[at + np.uint64(_PROPOSED)], work[at + np.uint64(_WEIGHT)] = k, w
+        left += w != -1.0
+    return left
 
 
-@njit(nogil=True, cache=True, error_model="numpy")
-def _shortfall(n: Any, p: Any, k: Any) -> Any:
-    """Logarithm of ``sqrt(n / (2 pi k (n - k)))`` over the probability of k, but for what k is not in."""
-    d = k - n * p
-    return _stirling(k) + _stirling(n - k) + _deviance(k, d) + _deviance(n - k, -d)
+@njit(nogil=True, cache=True)
+def _filled(work: Any, m: Any) -> Any:
+    """Round up to full vectors, with copies of the first."""
+    filled = (m + _VECTOR - 1) // _VECTOR * _VECTOR
+    for i in range(m, filled):
+        for part in (_SURFACE, _PENDING, _PROPOSED, _WEIGHT):
+            work[part + i] = work[part]
+    return filled
 
 
-@njit(nogil=True, cache=True, error_model="numpy")
-def _accepted(n: Any, p: Any, k: Any, w: Any) -> Any:
-    """Whether w is no more than the probability of k over that of the most probable number."""
-    if not 0 <= k <= n:
-        return False
-    mode = np.floor((n + 1.0) * p)
-    root = max(k, _ZERO) * max(n - k, _ZERO) / (mode * (n - mode))
-    return 0.5 * math.log(w * w * root) <= _shortfall(n, p, mode) - _shortfall(n, p, k)
-
-
-@njit(nogil=True, cache=True, error_model="numpy")
-def _again(n: Any, p: Any, seed: Any, surface: Any, node: Any) -> Any:
-    """Repeat the rejection from the second attempt on."""
-    attempt = uint64(1)
-    while True:
-        u, v = two_wide(seed, COUNTS, surface, node, attempt)
-        k, sure, w = _proposal(n, p, u, v)
-        if sure or _accepted(n, p, k, w):
-            return k
+@njit(nogil=True, cache=True)
+def _reject(work: Any, left: Any, p: Any, seed: Any, first: Any, node: Any) -> None:
+    """Propose numbers for the surfaces that are pending until all are accepted."""
+    attempt = uint64(0)
+    while left:
+        _propose(work, _filled(work, left), p, seed, first, node, attempt)
+        left = _settle(work, left)
+        _judge(work, _filled(work, left), p)
+        left = _settle(work, left)
         attempt += uint64(1)
 
 
 @njit(nogil=True, cache=True, error_model="numpy")
-def _inverse(n: Any, p: Any, log_q: Any, u: Any) -> Any:
-    """Smallest number with a distribution function of at least u, or beyond which nothing counts."""
-    k, odds, left, probability = 0.0, p / (1.0 - p), u, math.exp(n * log_q)
-    while left > probability > _NOTHING:
-        left -= probability
-        k += 1.0
-        probability *= (n - k + 1.0) / k * odds
-    return min(k, n)
+def _invert(work: Any, surfaces: Any, p: Any) -> None:
+    """Smallest number with a distribution function of `_LEFT` at least, or beyond which nothing counts."""
+    log_q, odds = math.log1p(-p), p / (1.0 - p)
+    for i in range(surfaces):
+        n = work[TRIALS + i]
+        work[i] = 0.0
+        work[_PROBABILITY + i] = math.exp(n * log_q) if n * p < _SMALL else 0.0
+    going = True
+    while going:
+        going = False
+        for i in range(surfaces):
+            n, k, left, probability = work[TRIALS + i], work[i], work[_LEFT + i], work[_PROBABILITY + i]
+            more = (left > probability) & (probability > _NOTHING) & (k < n)
+            k = k + 1.0 if more else k
+            work[i] = k
+            work[_LEFT + i] = left - probability if more else left
+            work[_PROBABILITY + i] = probability * ((n - k + 1.0) / k * odds) if more else probability
+            going |= more
 
 
 @njit(nogil=True, cache=True, error_model="numpy")
@@ -133,11 +139,14 @@ def binomials(work: Any, surfaces: Any, p: Any, seed: Any, first: Any, node: Any
     node : int
         Which number of a surface: the draws are a pure function of seed, surface and node.
     """
-    _first_attempts(work, surfaces, p, seed, first, node)
-    log_q = math.log1p(-p)
+    left = 0
     for i in range(surfaces):
-        k, u, w, n = work[i], work[_UNIFORM + i], work[_WEIGHT + i], work[TRIALS + i]
-        if n * p < _SMALL:
-            work[i] = _inverse(n, p, log_q, u + 0.5)
-        elif w >= 0 and not _accepted(n, p, k, w):
-            work[i] = _again(n, p, seed, first + uint64(i), node)
+        n = work[TRIALS + i]
+        if n * p >= _SMALL:
+            work[_SURFACE + left], work[_PENDING + left] = i, n
+            left += 1
+    if left < surfaces:
+        for i in range(surfaces):
+            work[_LEFT + i] = two_wide(seed, COUNTS, first + uint64(i), node, uint64(0))[0] + 0.5
+        _invert(work, surfaces, p)
+    _reject(work, left, p, seed, first, node)
