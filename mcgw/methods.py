@@ -18,7 +18,7 @@ from mcgw.sampling.asperities import heights
 from mcgw.sampling.cells import mesh_of
 from mcgw.sampling.hertz import hertz_sums
 from mcgw.sampling.response import response_of
-from mcgw.sampling.samplers import Cells, Sampler, response_to, sampler_of
+from mcgw.sampling.samplers import Cells, Sampler, aggregate_of, sampler_of
 from mcgw.scene import Scene
 from mcgw.simulation import blocks
 
@@ -99,9 +99,7 @@ def _by_aggregate(
     scene: Scene, chosen: tuple[int, ...], exact: Array, crowd: int, size: float, seed: int
 ) -> Array:
     asked = replace(scene, sampler="aggregate", n_surfaces=int(size), seed=seed, keep="sums")
-    mesh = mesh_of(asked, split=False)
-    sampler = Cells(asked, mesh, response_to(asked, mesh), "aggregate", crowd)
-    return _mean(asked, chosen, sampler) / exact - 1
+    return _mean(asked, chosen, aggregate_of(asked, crowd)) / exact - 1
 
 
 def _by_strata(scene: Scene, chosen: tuple[int, ...], exact: Array, size: float, seed: int) -> Array:

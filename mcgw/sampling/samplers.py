@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from analytic import QUANTITIES, Exponential
 from mcgw.room import keep_freed_memory
-from mcgw.sampling.aggregate import CROWDED, add_gaussian_moments
+from mcgw.sampling.aggregate import CROWDED, VARYING, Crowds, add_gaussian_moments
 from mcgw.sampling.cells import Mesh, mesh_of, no_cells
 from mcgw.sampling.counts import Counts, contacts_above, counts_of, generator, strata_of
 from mcgw.sampling.extras import extra_heights
@@ -26,7 +26,7 @@ from mcgw.sampling.moments import Layout, cell_moments
 from mcgw.sampling.response import Response, response_of
 from mcgw.scene import Scene
 
-__all__ = ["Block", "Cells", "Direct", "Sampler", "response_to", "sampler_of"]
+__all__ = ["Block", "Cells", "Direct", "Sampler", "aggregate_of", "response_to", "sampler_of"]
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -86,15 +86,38 @@ def sampler_of(scene: Scene) -> "Sampler":
     name = _cheapest(scene) if scene.sampler == "auto" else scene.sampler
     if name == "direct":
         return Direct(scene)
+    keep_freed_memory()
+    if name == "aggregate":
+        return aggregate_of(scene)
     meshes: dict[str, Callable[[Scene], Mesh]] = {
         "tail": no_cells,
         "cells": mesh_of,
-        "aggregate": partial(mesh_of, split=False),
         "stratified": partial(mesh_of, split=False, rare=1e-9),
     }
     mesh = meshes[name](scene)
-    keep_freed_memory()
     return Cells(scene, mesh, response_to(scene, mesh), name)
+
+
+def aggregate_of(scene: Scene, crowded: int = CROWDED) -> "Cells":
+    """Prepare ``aggregate`` with a threshold of one's own.
+
+    Parameters
+    ----------
+    scene : Scene
+        What is asked.
+    crowded : int, optional
+        Asperities in a cell, from which its moments count as Gaussian.
+
+    Returns
+    -------
+    Cells
+        If moments are kept all of them vary, for another grading may need them.
+    """
+    mesh = mesh_of(scene, split=False)
+    response = varying = response_to(scene, mesh)
+    if scene.keep == "sums":
+        varying = response_of(scene, mesh, _summed(scene.quantities), accuracy=VARYING)
+    return Cells(scene, mesh, response, "aggregate", Crowds(varying.layout, crowded))
 
 
 def response_to(scene: Scene, mesh: Mesh, kept: Layout | None = None) -> Response:
@@ -163,15 +186,15 @@ class Cells:
         Physics on this mesh.
     name : str
         Which of the family.
-    crowded : int, optional
-        For ``aggregate``: asperities in a cell, from which its moments count as Gaussian.
+    crowds : Crowds, optional
+        How ``aggregate`` draws crowded cells; left out: asperity by asperity.
     """
 
     scene: Scene
     mesh: Mesh
     response: Response
     name: str
-    crowded: int = CROWDED
+    crowds: Crowds | None = None
 
     def block(self, first: int, n: int) -> Block:
         """Results of surfaces `first` ... `first + n - 1`."""
@@ -186,10 +209,10 @@ class Cells:
 
     def _moments(self, first: int, counts: Counts) -> Array:
         seed, layout = self.scene.seed, self.response.layout
-        if self.name == "aggregate":
-            crowds = np.where(counts.cells >= self.crowded, counts.cells, 0)
-            moments = cell_moments(seed, first, counts.cells - crowds, layout)
-            add_gaussian_moments(seed, first, crowds, layout, moments)
+        if self.crowds:
+            crowded = np.where(counts.cells >= self.crowds.threshold, counts.cells, 0)
+            moments = cell_moments(seed, first, counts.cells - crowded, layout)
+            add_gaussian_moments(seed, first, crowded, layout, self.crowds.varying, moments)
             return moments
         stratified = self.name == "stratified"
         moments = cell_moments(seed, first, counts.cells, layout, stratified=stratified)
