@@ -22,7 +22,7 @@ from mcgw.sampling.uniform_sums import PLAIN, ROOTED, WORDS, sum_uniforms, unfol
 
 __all__ = ["Layout", "cell_moments"]
 
-_START = 170.0  # asperities that take as long to draw as a cell takes to begin
+_START = 80.0  # asperities that take as long to draw as a cell takes to begin
 _ALONE = 1e6  # asperities' work that a thread does before another one has begun
 _PIECE = 512 * 512  # a plain sum of so many terms is good to 1e-14; beyond, it is compensated
 

@@ -25,7 +25,7 @@ _GROWTHS = (2.0, 1.8, 1.6, 1.5, 1.45, 1.4, 1.3, 1.2)  # with 2 each cell is as w
 _MORE = 8  # cells than the fewest possible
 
 # Prices, in asperities that give ten moments.
-_CELL, _FIVE_MORE, _ROOT, _FIVE_ROOTS_MORE = 350.0, 0.25, 0.3, 0.2
+_CELL, _TWO_MORE, _FIVE_MORE, _ROOT, _FIVE_ROOTS_MORE = 250.0, 0.1, 0.25, 0.3, 0.2
 
 
 def cuts(law: HeightLaw, n: int, low: float, high: float, before: float) -> Array:
@@ -91,7 +91,8 @@ def _prices(law: HeightLaw, n: int, low: float, gap: float, upper: Array, distan
 def price(plain: Array | Ints, rooted: Array | Ints) -> Array:
     """What an asperity costs that gives so many moments: 1 for ten plain ones."""
     roots = np.where(rooted > 0, _ROOT + _FIVE_ROOTS_MORE * _steps(rooted - 6), 0.0)
-    return np.asarray(1 + _FIVE_MORE * _steps(plain - 10) + roots)
+    more = np.where(plain > 12, _FIVE_MORE * _steps(plain - 10), _TWO_MORE * (plain > 10))
+    return np.asarray(1 + more + roots)
 
 
 def _rate(z: Array) -> Array:

@@ -5,8 +5,9 @@ products of T_5 and T_1 ... T_5 stand for the orders 6 ... 10; those with T_10, 
 The loops know no physics; they have no branch, no exponential and no logarithm, and run at the width of
 the vector unit.
 
-A thread's workspace is one array, since each array that a function is given costs as much as ten
-asperities. It holds some uniforms x = 2u - 1 at a time, their roots, ones, and the sums.
+To begin a cell must cost little. A thread's workspace is one array, since each array that a function is given
+costs as much as ten asperities, and what is called once a cell is compiled into its caller. The workspace
+holds some uniforms x = 2u - 1 at a time, their roots, ones, and the sums.
 """
 
 from typing import Any
@@ -35,10 +36,11 @@ def _five(x: Any) -> Any:
 
 
 def _adder(plain: int, rooted: int) -> Any:
-    """Loop that adds the sums of T_1 ... T_5, T_5 T_1 ... T_5 T_4; past ten, T_5 T_5, T_10 T_1 ... T_10 T_5.
+    """Loop that adds the sums of T_1 ... T_5, T_5 T_1 ... T_5 T_4, past ten T_5 T_5, T_10 T_1 ... T_10 T_5.
 
-    Of the rooted ones it adds none, four (sqrt(u) T_0 ... T_3), six or eleven (and sqrt(u) T_5 T_1 ...
-    T_5 T_5), and leaves sqrt(u). What is not asked for is not in the machine code.
+    Of the plain ones it adds ten, twelve or sixteen. Of the rooted ones none, four (sqrt(u) T_0 ... T_3), six,
+    or eleven (and sqrt(u) T_5 T_1 ... T_5 T_5), and then leaves sqrt(u). What is not asked for is not in the
+    machine code.
     """
 
     @njit(nogil=True, cache=True, fastmath=_VECTOR)
@@ -61,13 +63,13 @@ def _adder(plain: int, rooted: int) -> Any:
                 q += t5 * t5
                 t10 = 2 * t5 * t5 - 1.0
                 v1 += t10 * t1
+            if plain > 12:
                 v2 += t10 * t2
                 v3 += t10 * t3
                 v4 += t10 * t4
                 v5 += t10 * t5
             if rooted:
                 r = np.sqrt(0.5 * t1 + 0.5)
-                w[_ROOT + i] = r
                 r0 += r
                 r1 += r * t1
                 r2 += r * t2
@@ -76,6 +78,7 @@ def _adder(plain: int, rooted: int) -> Any:
                 r4 += r * t4
                 r5 += r * t5
             if rooted > 6:
+                w[_ROOT + i] = r
                 s = r * t5
                 s1 += s * t1
                 s2 += s * t2
@@ -85,8 +88,11 @@ def _adder(plain: int, rooted: int) -> Any:
         for k, total in enumerate((a, b, c, d, e, f, g, h, p)):
             w[PLAIN + 1 + k] += total
         if plain > 10:
-            for k, total in enumerate((q, v1, v2, v3, v4, v5)):
+            for k, total in enumerate((q, v1)):
                 w[PLAIN + 10 + k] += total
+        if plain > 12:
+            for k, total in enumerate((v2, v3, v4, v5)):
+                w[PLAIN + 12 + k] += total
         if rooted:
             for k, total in enumerate((r0, r1, r2, r3)):
                 w[ROOTED + k] += total
@@ -101,10 +107,11 @@ def _adder(plain: int, rooted: int) -> Any:
 
 
 _10_0, _10_4, _10_6, _10_11 = _adder(10, 0), _adder(10, 4), _adder(10, 6), _adder(10, 11)
-_16_0, _16_4, _16_6, _16_11 = _adder(16, 0), _adder(16, 4), _adder(16, 6), _adder(16, 11)
+_12_0, _12_6, _12_11 = _adder(12, 0), _adder(12, 6), _adder(12, 11)
+_16_0, _16_6, _16_11 = _adder(16, 0), _adder(16, 6), _adder(16, 11)
 
 
-@njit(nogil=True, cache=True)
+@njit(inline="always")
 def _add(w: Any, n: Any, plain: Any, rooted: Any) -> None:
     """Add the sums of so many moments, by the shortest loop that will do."""
     if plain <= 10:
@@ -116,18 +123,25 @@ def _add(w: Any, n: Any, plain: Any, rooted: Any) -> None:
             _10_6(w, n)
         else:
             _10_11(w, n)
+    elif plain <= 12:
+        if rooted == 0:
+            _12_0(w, n)
+        elif rooted <= 6:
+            _12_6(w, n)
+        else:
+            _12_11(w, n)
     elif rooted == 0:
         _16_0(w, n)
-    elif rooted <= 4:
-        _16_4(w, n)
     elif rooted <= 6:
         _16_6(w, n)
     else:
         _16_11(w, n)
-    for m in range(3, (plain + 3) // 5):
-        _five_more(w, n, m, _ONE, PLAIN)
-    for m in range(2, (rooted + 3) // 5):
-        _five_more(w, n, m, _ROOT, ROOTED)
+    if plain > 16:
+        _five_more(w, n, 3, _ONE, PLAIN)
+    if rooted > 11:
+        _five_more(w, n, 2, _ROOT, ROOTED)
+    if rooted > 16:
+        _five_more(w, n, 3, _ROOT, ROOTED)
 
 
 @njit(nogil=True, cache=True, fastmath=_VECTOR)
@@ -154,7 +168,7 @@ def _stratified(w: Any, n: Any, first: Any, strata: Any) -> None:
         w[i] = (2.0 * (first + i) + 1.0 + w[i]) / strata - 1.0
 
 
-@njit(nogil=True, cache=True)
+@njit(inline="always")
 def sum_uniforms(
     w: Any, seed: Any, surface: Any, cell: Any, start: Any, stop: Any, strata: Any, orders: Any
 ) -> None:
@@ -174,7 +188,8 @@ def sum_uniforms(
         How many T_j and R_j are wanted; there may be more.
     """
     plain, rooted = orders
-    w[PLAIN:WORDS] = 0.0
+    for k in range(PLAIN, WORDS):
+        w[k] = 0.0
     for first in range(start, stop, _BUFFER):
         n = min(_BUFFER, stop - first)
         centred(w, seed, CELLS, surface, cell, first, n)
