@@ -38,9 +38,9 @@ def _five(x: Any) -> Any:
 def _adder(plain: int, rooted: int) -> Any:
     """Loop that adds the sums of T_1 ... T_5, T_5 T_1 ... T_5 T_4, past ten T_5 T_5, T_10 T_1 ... T_10 T_5.
 
-    Of the plain ones it adds ten, twelve or sixteen. Of the rooted ones none, four (sqrt(u) T_0 ... T_3), six,
-    or eleven (and sqrt(u) T_5 T_1 ... T_5 T_5), and then leaves sqrt(u). What is not asked for is not in the
-    machine code.
+    Of the plain ones it adds ten, twelve or sixteen; of the rooted ones none, four (sqrt(u) T_0 ... T_3), six
+    or eleven (and sqrt(u) T_5 T_1 ... T_5 T_5), then with the roots left behind. What is not asked for is not
+    in the machine code.
     """
 
     @njit(nogil=True, cache=True, fastmath=_VECTOR)
