@@ -96,11 +96,17 @@ def test_what_auto_takes(make_scene):
     """One by one where a handful touches, more with many separations; cells for all else, and for moments."""
     many = tuple(np.linspace(0, 4, 601))
     cases = {
-        "cells": ({}, {"n_asperities": 10**12}, {"separations": many}, {"n_asperities": 50}),
+        "cells": (
+            {},
+            {"n_asperities": 10**12},
+            {"separations": many},
+            {"n_asperities": 50},
+            {"separations": many, "n_asperities": 60},
+        ),
         "tail": (
             {"n_asperities": 1},
             {"n_asperities": 8},
-            {"separations": many, "n_asperities": 60},
+            {"separations": many, "n_asperities": 36},
             {"separations": many[300:], "n_asperities": 800},
         ),
     }
