@@ -19,7 +19,8 @@ from mcgw.stopping import Running, checkpoints, decide
 
 __all__ = ["at_a_time", "block_size", "blocks", "drawn_blocks", "kept", "simulate", "use_threads"]
 
-_WORDS = 8_000_000  # numbers a block may hold
+_WORDS = 4_000_000  # numbers of a block that stay in the outer cache
+_MOST_WORDS = 20_000_000  # numbers a block may hold
 _DRAWS = 1.5e8  # asperities a block may draw, so that a bar moves every second
 
 
@@ -124,17 +125,19 @@ def kept(scene: Scene, block: Block) -> dict[str, Any]:
 def block_size(scene: Scene, sampler: Sampler) -> int:
     """Surfaces a block: bounded by memory and time, twice an odd number of groups of counts if it can be.
 
-    With a multiple of eight the rows of the moments would share their places in the innermost cache.
+    With a multiple of eight the rows of the moments would share their places in the innermost cache. A
+    group is what the product takes at a time, whether it is full or not.
     """
     touching = scene.n_asperities * float(scene.heights.above(np.array(scene.lowest)))
     words = len(scene.separations) * len(scene.quantities)
     if isinstance(sampler, Cells):
-        words += 3 * int(sampler.response.layout.starts[-1]) + 4 * sampler.mesh.size
+        words += int(sampler.response.layout.starts[-1]) + 2 * sampler.mesh.size
     draws = {"direct": float(scene.n_asperities), "aggregate": 1e4}.get(sampler.name, touching)
     if sampler.name == "tail":
         words += 12 * int(min(touching, 1e12))
-    size = int(min(_WORDS / words, _DRAWS / (draws + 1), 30 * GROUP))
-    return (size // GROUP // 4 * 4 + 2) * GROUP if size >= GROUP else max(size, 1)
+    most = int(min(_MOST_WORDS / words, _DRAWS / (draws + 1), 30 * GROUP))
+    size = min(most, max(_WORDS // words, GROUP))
+    return (size // GROUP // 4 * 4 + 2) * GROUP if size > GROUP else max(size, 1)
 
 
 @contextmanager
