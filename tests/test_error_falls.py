@@ -5,6 +5,8 @@ import pytest
 
 import analytic
 import mcgw
+from mcgw.sampling.counts import strata_of
+from mcgw.sampling.samplers import sampler_of
 
 
 def rms_error(make_scene, sampler, m, n, repeats):
@@ -44,6 +46,21 @@ def test_stratified_falls_as_the_three_halves_power(make_scene):
     n = np.array([3200, 25600, 204800])  # fewer leave less than a stratum a cell
     errors = [rms_error(make_scene, "stratified", 1, k, REPEATS) for k in n]
     assert slope(n, errors) < -1.4
+
+
+@pytest.mark.parametrize("separations", [(0.0,), tuple(np.linspace(0, 4, 41))])
+def test_a_millionth_with_fewer_than_1e5_draws(make_scene, separations):
+    """The load at h = 0: each of 60 seeds, whose rms is 2e-7."""
+    errors = []
+    for seed in range(REPEATS):
+        scene = make_scene(
+            separations=separations, n_asperities=120_000, n_surfaces=1, sampler="stratified", seed=seed
+        )
+        exact = float(analytic.load(scene.surface, 0.0, scene.grading)) / scene.surface.n_asperities
+        errors.append(float(mcgw.simulate(scene).mean("load")[0]) / (exact * scene.n_asperities) - 1)
+    strata = strata_of(scene, sampler_of(scene).mesh, 1)
+    assert strata.cells.sum() + strata.low_extras.sum() + strata.high_extras.sum() < 1e5
+    assert np.abs(errors).max() < 1e-6
 
 
 def test_a_biased_sampler_has_another_slope():
