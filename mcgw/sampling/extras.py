@@ -72,6 +72,7 @@ def _centred_pairs(seed: Any, first: Any, stream: Any, numbers: Any) -> Any:
         n = 2 * numbers[i]
         if n:
             centred(room, seed, EXTRAS, first + i, stream, 0, n)
-            pairs[at : at + n] = room[:n]
+            for k in range(n):  # in one step it takes 2 s to compile: the text of its errors
+                pairs[at + k] = room[k]
             at += n
     return pairs

@@ -107,9 +107,12 @@ def _share_out(seed: Any, first: Any, numbers: Any, shares: Any, turned: Any, si
     for start in range(0, numbers.size, SURFACES):
         stop = min(start + SURFACES, numbers.size)
         node = np.empty((sizes[-1] + 1, stop - start))
-        node[0] = numbers[start:stop]
+        for i in range(start, stop):  # in one step it takes 2 s to compile: the text of its errors
+            node[0, i - start] = numbers[i]
         _halve(node, uint64(first + start), uint64(seed), shares, turned, sizes)
-        result[:, start:stop] = node[: sizes[-1]]
+        for category in range(sizes[-1]):
+            for i in range(start, stop):
+                result[category, i] = node[category, i - start]
     return result
 
 

@@ -47,7 +47,8 @@ def _sum_pieces(w: Any, seed: Any, surface: Any, cell: Any, n: Any, strata: Any,
     for start in range(0, n, _PIECE):
         sum_uniforms(w, seed, surface, cell, start, min(start + _PIECE, n), strata, orders)
         _add_compensated(total, carry, sums)
-    sums[:] = total + carry
+    for j in range(sums.size):
+        sums[j] = total[j] + carry[j]
 
 
 @njit(nogil=True, cache=True)
