@@ -27,6 +27,7 @@ ORDER = (
     "heights_section",
     "scene_file",
     "sampling.spacing",
+    "sampling.aligned",
     "sampling.in_threads",
     "sampling.hertz",
     "sampling.cells",

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from mcgw.sampling.aligned import aligned
 from mcgw.sampling.tiles import FOUR, Tiles, in_fours
 
 
@@ -80,3 +81,9 @@ def test_nothing_asked():
     assert [int(in_fours(n)) for n in (0, 1, 4, 5)] == [0, 4, 4, 8]
     silent = Tiles.of([], none, np.arange(8).reshape(-1, FOUR))  # a separation above all cells
     np.testing.assert_array_equal(silent.apply(np.ones((5, 3)), (2, 4)), np.zeros((2, 3, 4)))
+
+
+def test_arrays_begin_with_a_line_of_the_cache():
+    several = [aligned(3, n) for n in range(20)]
+    assert [x.shape for x in several] == [(3, n) for n in range(20)]
+    assert all(x.ctypes.data % 64 == 0 and x.flags.c_contiguous for x in several[1:])

@@ -16,6 +16,7 @@ import numpy as np
 from numba import get_num_threads, njit
 from numpy.typing import NDArray
 
+from mcgw.sampling.aligned import aligned
 from mcgw.sampling.in_threads import in_threads
 from mcgw.sampling.spacing import price
 from mcgw.sampling.uniform_sums import PLAIN, ROOTED, WORDS, sum_uniforms, unfold
@@ -161,7 +162,7 @@ def cell_moments(
     """
     counts = np.where(layout.sizes[:, None] > 0, counts, 0)  # what nobody asks for is not drawn
     starts, orders = layout.starts, np.column_stack([layout.plain, layout.rooted])
-    moments = np.empty((starts[-1], counts.shape[1]))
+    moments = aligned(int(starts[-1]), counts.shape[1])
 
     def sum_share(bounds: tuple[int, int]) -> None:
         """Every thread has a run of cells: no number of threads changes the order of a sum."""

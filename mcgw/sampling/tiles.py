@@ -15,6 +15,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from mcgw.sampling.aligned import aligned
 from mcgw.sampling.in_threads import in_threads, pieces
 
 __all__ = ["FOUR", "Blocks", "Tiles", "in_fours"]
@@ -127,9 +128,9 @@ class Tiles:
         result = np.empty((shape[0], given.shape[1], shape[1]))
 
         def share(ends: tuple[int, int]) -> None:
-            table = np.empty(rows * _WIDTH)
+            table, sums = aligned(rows * _WIDTH), aligned(FOUR * _WIDTH)
             for first in range(*ends, _WIDTH):
-                _sweep(program, table, given, first, min(_WIDTH, ends[1] - first), result)
+                _sweep(program, table, sums, given, first, min(_WIDTH, ends[1] - first), result)
 
         in_threads(share, pieces(given.shape[1], _WIDTH))
         return result
@@ -163,7 +164,7 @@ def _places(first: Ints, last: Ints) -> Ints:
 
 
 @njit(nogil=True, cache=True, fastmath={"contract"})
-def _sweep(program: Any, table: Any, given: Any, first: Any, n: Any, result: Any) -> None:
+def _sweep(program: Any, table: Any, sums: Any, given: Any, first: Any, n: Any, result: Any) -> None:
     """Take all steps for `n` surfaces from `first` on; the sum over a row has one order, in any block.
 
     Unsigned places in the table, for a signed one may count from its end.
@@ -171,7 +172,6 @@ def _sweep(program: Any, table: Any, given: Any, first: Any, n: Any, result: Any
     fetches, fetch_ends, fetched, tile_ends, used, values, computed, answers = program
     width = np.uint64(_WIDTH)
     separations = result.shape[2]
-    sums = np.empty(FOUR * _WIDTH)
     fetch = tile = 0
     for step in range(computed.size):
         while fetch < fetch_ends[step]:
