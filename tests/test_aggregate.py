@@ -13,7 +13,7 @@ import mcgw
 from mcgw.ensemble import Arrays, Ensemble
 from mcgw.sampling import samplers
 from mcgw.sampling.aggregate import Crowds, _law_of_moments, _partly
-from mcgw.sampling.response import response_of
+from mcgw.sampling.response import layout_of
 
 GATE = 5.0
 
@@ -160,7 +160,7 @@ def test_with_fewer_moments_the_variance_would_show(make_scene):
     """The companion: with an accuracy of 1e-2 in place of 1e-6 a thousandth is gone."""
     scene = make_scene(n_asperities=10**9, sampler="aggregate", count="poisson")
     sampler = samplers.sampler_of(scene)
-    few = response_of(scene, sampler.mesh, ("load", "area", "stiffness"), accuracy=1e-2).layout
+    few = layout_of(scene, sampler.mesh, ("load", "area", "stiffness"), accuracy=1e-2)
     blunt = dataclasses.replace(sampler, crowds=Crowds(few, 256))
     assert np.abs(variance(blunt) / variance(sampler) - 1).max() > 1e-4
 

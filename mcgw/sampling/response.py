@@ -20,7 +20,7 @@ from mcgw.sampling.tiles import Tiles
 from mcgw.sampling.tree import Tree, heights_above, tree_over
 from mcgw.scene import Scene
 
-__all__ = ["Response", "response_of"]
+__all__ = ["Response", "layout_of", "response_of"]
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -57,7 +57,6 @@ def response_of(
     quantities: tuple[str, ...],
     *,
     kept: Layout | None = None,
-    lasting: bool = False,
     accuracy: float = ACCURACY,
 ) -> Response:
     """Build the response of a mesh.
@@ -73,8 +72,6 @@ def response_of(
         permuted ones give the same bits.
     kept : Layout, optional
         The moments there are; left out: as many as it takes.
-    lasting : bool, optional
-        Resolve the laws for surfaces of any number of contacts.
     accuracy : float, optional
         Take as many moments as this needs.
 
@@ -89,13 +86,49 @@ def response_of(
     ValueError
         If the grading is not resolved on a cell, or not by the moments there are.
     """
-    scene = replace(scene, separations=tuple(sorted(set(scene.separations))))
-    tree = tree_over(mesh)
-    between = (mesh.edges[0], mesh.edges[-1]) if mesh.size else (0.0, 0.0)
-    laws = Laws.of(scene, quantities, between, lasting=lasting or kept is not None, accuracy=accuracy)
+    tree, laws = tree_over(mesh), _laws(scene, mesh, quantities, lasting=kept is not None, accuracy=accuracy)
     entries, plain, rooted = _walk(mesh, tree, laws, kept)
     tiles = tiles_of(mesh, tree, laws, entries, plain, rooted)
-    return Response(Layout(plain[: mesh.size], rooted), tiles, (len(quantities), len(scene.separations)))
+    return Response(Layout(plain[: mesh.size], rooted), tiles, (len(quantities), laws.separations))
+
+
+def layout_of(
+    scene: Scene,
+    mesh: Mesh,
+    quantities: tuple[str, ...],
+    *,
+    lasting: bool = False,
+    accuracy: float = ACCURACY,
+) -> Layout:
+    """Moments that a response would need, without making it.
+
+    Parameters
+    ----------
+    scene, mesh, quantities, accuracy
+        As for a response.
+    lasting : bool, optional
+        Resolve the laws for surfaces of any number of contacts.
+
+    Returns
+    -------
+    Layout
+        Of the cells of the mesh.
+
+    Raises
+    ------
+    ValueError
+        If the grading is not resolved on a cell.
+    """
+    laws = _laws(scene, mesh, quantities, lasting=lasting, accuracy=accuracy)
+    _, plain, rooted = _walk(mesh, tree_over(mesh), laws, None)
+    return Layout(plain[: mesh.size], rooted)
+
+
+def _laws(scene: Scene, mesh: Mesh, quantities: tuple[str, ...], *, lasting: bool, accuracy: float) -> Laws:
+    """The laws of some quantities on a mesh, each separation once, in increasing order."""
+    scene = replace(scene, separations=tuple(sorted(set(scene.separations))))
+    between = (mesh.edges[0], mesh.edges[-1]) if mesh.size else (0.0, 0.0)
+    return Laws.of(scene, quantities, between, lasting=lasting, accuracy=accuracy)
 
 
 def _walk(mesh: Mesh, tree: Tree, laws: Laws, kept: Layout | None) -> tuple[list[Entry], Ints, Ints]:

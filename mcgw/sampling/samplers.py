@@ -23,7 +23,7 @@ from mcgw.sampling.counts import Counts, contacts_above, counts_of, generator, s
 from mcgw.sampling.extras import extra_heights
 from mcgw.sampling.hertz import hertz_sums
 from mcgw.sampling.moments import Layout, cell_moments
-from mcgw.sampling.response import Response, response_of
+from mcgw.sampling.response import Response, layout_of, response_of
 from mcgw.scene import Scene
 
 __all__ = ["Block", "Cells", "Direct", "Sampler", "aggregate_of", "response_to", "sampler_of"]
@@ -114,10 +114,11 @@ def aggregate_of(scene: Scene, crowded: int = CROWDED) -> "Cells":
         If moments are kept all of them vary, for another grading may need them.
     """
     mesh = mesh_of(scene, split=False)
-    response = varying = response_to(scene, mesh)
+    response = response_to(scene, mesh)
+    varying = response.layout
     if scene.keep == "sums":
-        varying = response_of(scene, mesh, _summed(scene.quantities), accuracy=VARYING)
-    return Cells(scene, mesh, response, "aggregate", Crowds(varying.layout, crowded))
+        varying = layout_of(scene, mesh, _summed(scene.quantities), accuracy=VARYING)
+    return Cells(scene, mesh, response, "aggregate", Crowds(varying, crowded))
 
 
 def response_to(scene: Scene, mesh: Mesh, kept: Layout | None = None) -> Response:
@@ -134,7 +135,7 @@ def _summed(quantities: Iterable[str]) -> tuple[str, ...]:
 def _lasting_layout(scene: Scene, mesh: Mesh) -> Layout:
     """Moments that serve every quantity, this grading, and another exponential one."""
     others = [replace(scene, grading=Exponential(gamma), negative="allow") for gamma in (2.0, 0.5, 0.0)]
-    layouts = [response_of(x, mesh, _summed(QUANTITIES), lasting=True).layout for x in (scene, *others)]
+    layouts = [layout_of(x, mesh, _summed(QUANTITIES), lasting=True) for x in (scene, *others)]
     plain = np.max([layout.plain for layout in layouts], axis=0)
     return Layout(plain + 1, np.max([layout.rooted for layout in layouts], axis=0) + 1)  # one in reserve
 
