@@ -72,9 +72,7 @@ def _sum_cell(
     for surface in range(counts.size):
         n = counts[surface]
         strata = n if stratified else 0
-        if n == 0:
-            w[PLAIN:WORDS] = 0.0
-        elif n <= _PIECE:
+        if n <= _PIECE:
             sum_uniforms(w, seed, first + surface, cell, 0, n, strata, orders)
         else:
             _sum_pieces(w, seed, first + surface, cell, n, strata, orders)

@@ -55,7 +55,7 @@ class Tiles:
     fetch_ends: Ints
     fetched: Ints
     tile_ends: Ints
-    used: Ints
+    used: NDArray[np.uint64]
     values: Array
     computed: Ints
     answers: Ints
@@ -84,22 +84,22 @@ class Tiles:
         values = np.zeros((len(group), FOUR, FOUR))
         values[tile, place] = value
         order = _sweep_down(group, source, len(given), len(answers))
-        steps = np.empty(len(given) + len(answers), dtype=np.int64)  # when a group comes into the table
-        steps[: len(given)] = len(order)
+        steps = np.full(len(given) + len(answers), len(order))  # when a group comes into the table
         steps[len(given) + order] = np.arange(len(order))
         step = steps[group]
-        np.minimum.at(steps[: len(given)], source[source < len(given)], step[source < len(given)])
+        np.minimum.at(steps, source, step)  # of the given ones when first needed: others are there before
         last = steps.copy()
         np.maximum.at(last, source, step)
         places = FOUR * _places(steps, last)
-        fetches = np.argsort(steps[: len(given)], kind="stable")[: np.sum(steps[: len(given)] < len(order))]
+        asked = np.flatnonzero(steps[: len(given)] < len(order))
+        fetches = asked[np.argsort(steps[asked], kind="stable")]
         turn = np.argsort(step, kind="stable")
         return cls(
             fetches=given[fetches],
             fetch_ends=np.cumsum(np.bincount(steps[fetches], minlength=len(order))),
             fetched=places[fetches],
             tile_ends=np.cumsum(np.bincount(step, minlength=len(order))),
-            used=places[source[turn]],
+            used=places[source[turn]].astype(np.uint64),
             values=values[turn],
             computed=places[len(given) + order],
             answers=answers[order],
@@ -120,10 +120,8 @@ class Tiles:
         ndarray
             Shape (shape[0], surfaces, shape[1]).
         """
-        program = (
-            *(self.fetches, self.fetch_ends, self.fetched, self.tile_ends),
-            *(self.used.astype(np.uint64), self.values, self.computed, self.answers),
-        )
+        fetching = self.fetches, self.fetch_ends, self.fetched
+        program = *fetching, self.tile_ends, self.used, self.values, self.computed, self.answers
         rows = int(max(self.fetched.max(initial=0), self.computed.max(initial=0))) + FOUR
         result = np.empty((shape[0], given.shape[1], shape[1]))
 
