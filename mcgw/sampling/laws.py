@@ -1,4 +1,4 @@
-"""The laws of contact on a cell, as Chebyshev series in the cell's uniform."""
+"""The laws of contact on a cell or a node, as Chebyshev series in its variable."""
 
 from dataclasses import dataclass, replace
 
@@ -109,7 +109,7 @@ class Laws:
         return np.asarray(np.where(contacts > SURE, total, 0.0))
 
     def smooth_from(self, which: Ints, a: float) -> NDArray[np.bool_]:
-        """Which laws are smooth functions of the uniform on a cell that starts at `a`."""
+        """Which laws are smooth on a cell or a node that starts at `a`."""
         h = self.h[which]
         return np.asarray((h < a) | ((h == a) & (self.exponent[which] % 1 == 0)))
 
