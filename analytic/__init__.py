@@ -3,7 +3,8 @@
 The surface of Greenwood and Williamson (Gaussian summit heights, one radius) whose composite modulus
 E*(s) depends on the reduced summit height s = z/sigma. All separations are h = d/sigma, from the mean
 of the summit heights. The equations are those of "Contact mechanics of functionally graded rough
-surfaces", corrected; each docstring says what is misprinted.
+surfaces", corrected; each docstring says what is misprinted. `analytic.Model` has everything that belongs
+to one surface in one place; the functions that take a surface are short names for it.
 
 ========  ===================================  ================================================
 Equation  Function                             What it is
@@ -33,18 +34,22 @@ from analytic.contact import (
     barber_conductance,
     conductance,
     contacts,
+    covariance,
+    cumulants,
     load,
     mean,
+    separation_at,
     stiffness,
     stiffness_ratio,
 )
-from analytic.fluctuations import Cumulants, HeightRule, covariance, cumulants
 from analytic.gradings import Clipped, Custom, Exponential, Grading, Homogeneous
 from analytic.height_laws import ExponentialHeights, ScipyHeights, Weibull
+from analytic.height_rule import Fluctuations, HeightRule
 from analytic.heights import Gaussian, HeightLaw
 from analytic.integrals import fn, fn_between, fn_paper, fn_scaled
-from analytic.inversion import ratio_at_equal_load, separation_at
+from analytic.inversion import ratio_at_equal_load
 from analytic.measured_heights import HeightTable, MeasuredHeights
+from analytic.model import Cumulants, Model
 from analytic.plasticity import mean_modulus, plasticity_index
 from analytic.quantities import QUANTITIES, Quantity
 from analytic.resolution import first_negative, resolved_breaks
@@ -59,6 +64,7 @@ __all__ = [
     "Custom",
     "Exponential",
     "ExponentialHeights",
+    "Fluctuations",
     "Gaussian",
     "Grading",
     "HeightLaw",
@@ -66,6 +72,7 @@ __all__ = [
     "HeightTable",
     "Homogeneous",
     "MeasuredHeights",
+    "Model",
     "Quantity",
     "ScipyHeights",
     "Surface",

@@ -1,12 +1,20 @@
-"""Mean load, area, stiffness, contacts and conductance of a graded rough surface (Eqs. 1-6, 10-15)."""
+"""The theory as functions of a surface: short names for `analytic.Model`, and the ratios of the paper.
+
+All take ``grading`` (E*(s)/E*, left out: homogeneous) and ``heights`` (left out: Gaussian); separations h
+are reduced, d/sigma from the mean of the summit heights, any shape.
+"""
+
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from analytic.gradings import Grading
-from analytic.heights import HeightLaw
-from analytic.integrals import fn, fn_scaled
-from analytic.quantities import QUANTITIES
+from analytic.gradings import Grading, Homogeneous
+from analytic.height_rule import Count
+from analytic.heights import GAUSSIAN, HeightLaw
+from analytic.integrals import fn_scaled
+from analytic.model import Cumulants, Model
+from analytic.renamed import takes_heights
 from analytic.surface import Surface
 
 __all__ = [
@@ -16,8 +24,11 @@ __all__ = [
     "barber_conductance",
     "conductance",
     "contacts",
+    "covariance",
+    "cumulants",
     "load",
     "mean",
+    "separation_at",
     "stiffness",
     "stiffness_ratio",
 ]
@@ -25,167 +36,91 @@ __all__ = [
 Array = NDArray[np.float64]
 
 
+def _model(
+    surface: Surface,
+    grading: Grading | None,
+    heights: HeightLaw,
+    n_asperities: float | None = None,
+    count: Count = "fixed",
+) -> Model:
+    return Model(
+        surface,
+        grading=Homogeneous() if grading is None else grading,
+        heights=heights,
+        n_asperities=n_asperities,
+        count=count,
+    )
+
+
+@takes_heights
 def mean(
     surface: Surface,
     quantity: str,
     h: ArrayLike,
     grading: Grading | None = None,
     *,
-    law: HeightLaw | None = None,
+    heights: HeightLaw = GAUSSIAN,
 ) -> Array:
-    """Mean of a quantity over all surfaces, at given separations.
-
-    Parameters
-    ----------
-    surface : Surface
-        Parameters in SI units.
-    quantity : {"load", "area", "stiffness", "contacts", "conductance"}
-        What is summed over the asperities.
-    h : array_like
-        Reduced separations d/sigma, any shape.
-    grading : Grading, optional
-        E*(s)/E*; left out: homogeneous.
-    law : HeightLaw, optional
-        Law of the heights; left out: Gaussian.
-
-    Returns
-    -------
-    ndarray
-        ``eta A_n scale F*_n(h)`` in the unit of the quantity, in the shape of `h`.
-
-    Raises
-    ------
-    KeyError
-        If there is no such quantity.
-    """
-    q = QUANTITIES[quantity]
-    return (
-        surface.n_asperities * q.scale(surface) * fn(q.exponent, h, grading if q.modulus else None, law=law)
-    )
+    """Mean of a quantity over all surfaces: `Model.mean`, in the shape of `h`."""
+    return _model(surface, grading, heights).mean(quantity, h)
 
 
+@takes_heights
 def load(
-    surface: Surface, h: ArrayLike, grading: Grading | None = None, *, law: HeightLaw | None = None
+    surface: Surface, h: ArrayLike, grading: Grading | None = None, *, heights: HeightLaw = GAUSSIAN
 ) -> Array:
-    """Normal load P, N: Eqs. (1b), (3), (5), (6).
-
-    Parameters
-    ----------
-    surface : Surface
-        Parameters in SI units.
-    h : array_like
-        Reduced separations d/sigma, from the mean of the summit heights.
-    grading : Grading, optional
-        E*(s)/E*; left out: homogeneous.
-    law : HeightLaw, optional
-        Law of the heights; left out: Gaussian.
-
-    Returns
-    -------
-    ndarray
-        ``(4/3) A_n eta E* R^(1/2) sigma^(3/2) F*_{3/2}(h)``.
-    """
-    return mean(surface, "load", h, grading, law=law)
+    """Normal load P, N: Eqs. (1b), (3), (5), (6), ``(4/3) A_n eta E* R^(1/2) sigma^(3/2) F*_{3/2}(h)``."""
+    return mean(surface, "load", h, grading, heights=heights)
 
 
-def area(surface: Surface, h: ArrayLike, *, law: HeightLaw | None = None) -> Array:
-    """Real contact area A, m^2: Eq. (1a). The grading does not enter.
-
-    Parameters
-    ----------
-    surface : Surface
-        Parameters in SI units.
-    h : array_like
-        Reduced separations d/sigma.
-    law : HeightLaw, optional
-        Law of the heights; left out: Gaussian.
-
-    Returns
-    -------
-    ndarray
-        ``pi A_n eta sigma R F_1(h)``.
-    """
-    return mean(surface, "area", h, law=law)
+@takes_heights
+def area(surface: Surface, h: ArrayLike, *, heights: HeightLaw = GAUSSIAN) -> Array:
+    """Real contact area A, m^2: Eq. (1a), ``pi A_n eta sigma R F_1(h)``. The grading does not enter."""
+    return mean(surface, "area", h, heights=heights)
 
 
-def contacts(surface: Surface, h: ArrayLike, *, law: HeightLaw | None = None) -> Array:
-    """Mean number of asperities in contact.
-
-    Parameters
-    ----------
-    surface : Surface
-        Parameters in SI units.
-    h : array_like
-        Reduced separations d/sigma.
-    law : HeightLaw, optional
-        Law of the heights; left out: Gaussian.
-
-    Returns
-    -------
-    ndarray
-        ``A_n eta F_0(h)``.
-    """
-    return mean(surface, "contacts", h, law=law)
+@takes_heights
+def contacts(surface: Surface, h: ArrayLike, *, heights: HeightLaw = GAUSSIAN) -> Array:
+    """Mean number of asperities in contact, ``A_n eta F_0(h)``."""
+    return mean(surface, "contacts", h, heights=heights)
 
 
+@takes_heights
 def stiffness(
-    surface: Surface, h: ArrayLike, grading: Grading | None = None, *, law: HeightLaw | None = None
+    surface: Surface, h: ArrayLike, grading: Grading | None = None, *, heights: HeightLaw = GAUSSIAN
 ) -> Array:
-    """Normal stiffness K = -dP/dd, N/m.
+    """Normal stiffness K = -dP/dd, N/m, ``2 A_n eta E* (R sigma)^(1/2) F*_{1/2}(h)``.
 
     What Eqs. (14) and (15) of the paper call conductance is this, up to a factor.
-
-    Parameters
-    ----------
-    surface : Surface
-        Parameters in SI units.
-    h : array_like
-        Reduced separations d/sigma.
-    grading : Grading, optional
-        E*(s)/E*; left out: homogeneous.
-    law : HeightLaw, optional
-        Law of the heights; left out: Gaussian.
-
-    Returns
-    -------
-    ndarray
-        ``2 A_n eta E* (R sigma)^(1/2) F*_{1/2}(h)``.
     """
-    return mean(surface, "stiffness", h, grading, law=law)
+    return mean(surface, "stiffness", h, grading, heights=heights)
 
 
-def conductance(surface: Surface, h: ArrayLike, *, rho: float = 1.0, law: HeightLaw | None = None) -> Array:
-    """Contact conductance of the spots, each 4 a / rho.
+@takes_heights
+def conductance(surface: Surface, h: ArrayLike, *, rho: float = 1.0, heights: HeightLaw = GAUSSIAN) -> Array:
+    """Contact conductance of the spots, each 4 a / rho: ``(4/rho) A_n eta (R sigma)^(1/2) F_{1/2}(h)``.
 
     Barber's analogy holds spot by spot, ``C_i = 2 K_i/(E_i rho) = 4 a_i/rho`` with the spot's own
     modulus E_i, so at a given separation the conductance does not depend on the grading.
 
     Parameters
     ----------
-    surface : Surface
-        Parameters in SI units.
-    h : array_like
-        Reduced separations d/sigma.
+    surface, h, heights
+        As for `mean`.
     rho : float, optional
         Sum of the two resistivities: ohm m gives 1/ohm, m K/W gives W/K; 1 gives C rho in m.
-    law : HeightLaw, optional
-        Law of the heights; left out: Gaussian.
-
-    Returns
-    -------
-    ndarray
-        ``(4/rho) A_n eta (R sigma)^(1/2) F_{1/2}(h)``.
     """
-    return mean(surface, "conductance", h, law=law) / rho
+    return mean(surface, "conductance", h, heights=heights) / rho
 
 
+@takes_heights
 def barber_conductance(
     surface: Surface,
     h: ArrayLike,
     grading: Grading | None = None,
     *,
     rho: float = 1.0,
-    law: HeightLaw | None = None,
+    heights: HeightLaw = GAUSSIAN,
 ) -> Array:
     """The paper's conductance, Eq. (14) corrected: the stiffness with the factor of a homogeneous body.
 
@@ -196,88 +131,90 @@ def barber_conductance(
 
     Parameters
     ----------
-    surface : Surface
-        Parameters in SI units.
-    h : array_like
-        Reduced separations d/sigma.
-    grading : Grading, optional
-        E*(s)/E*; left out: homogeneous.
+    surface, h, grading, heights
+        As for `mean`.
     rho : float, optional
         Sum of the two resistivities, as in `conductance`.
-    law : HeightLaw, optional
-        Law of the heights; left out: Gaussian.
 
     Returns
     -------
     ndarray
         ``(4/rho) A_n eta (R sigma)^(1/2) F*_{1/2}(h)``.
     """
-    return 2 * stiffness(surface, h, grading, law=law) / (surface.E_star * rho)
+    return 2 * stiffness(surface, h, grading, heights=heights) / (surface.E_star * rho)
 
 
+@takes_heights
 def area_per_load(
-    surface: Surface, h: ArrayLike, grading: Grading | None = None, *, law: HeightLaw | None = None
+    surface: Surface, h: ArrayLike, grading: Grading | None = None, *, heights: HeightLaw = GAUSSIAN
 ) -> Array:
     """Real area per load A/P, m^2/N: Eq. (10), without a grading Eq. (11).
 
-    Parameters
-    ----------
-    surface : Surface
-        Parameters in SI units.
-    h : array_like
-        Reduced separations d/sigma.
-    grading : Grading, optional
-        E*(s)/E*; left out: homogeneous.
-    law : HeightLaw, optional
-        Law of the heights; left out: Gaussian.
-
-    Returns
-    -------
-    ndarray
-        ``(3 pi/4) (R/sigma)^(1/2)/E* F_1(h)/F*_{3/2}(h)``, also where both underflow.
+    ``(3 pi/4) (R/sigma)^(1/2)/E* F_1(h)/F*_{3/2}(h)``, also where both underflow.
     """
     factor = 0.75 * np.pi * np.sqrt(surface.radius / surface.sigma) / surface.E_star
-    return np.asarray(factor * fn_scaled(1, h, law=law) / fn_scaled(1.5, h, grading, law=law))
+    return np.asarray(factor * fn_scaled(1, h, heights=heights) / fn_scaled(1.5, h, grading, heights=heights))
 
 
-def area_per_load_ratio(h: ArrayLike, grading: Grading, *, law: HeightLaw | None = None) -> Array:
+@takes_heights
+def area_per_load_ratio(h: ArrayLike, grading: Grading, *, heights: HeightLaw = GAUSSIAN) -> Array:
     """A/P of the graded surface relative to the homogeneous one at the same separation, Eq. (12).
 
-    Parameters
-    ----------
-    h : array_like
-        Reduced separations d/sigma.
-    grading : Grading
-        E*(s)/E*.
-    law : HeightLaw, optional
-        Law of the heights; left out: Gaussian.
-
-    Returns
-    -------
-    ndarray
-        ``F_{3/2}(h)/F*_{3/2}(h)``.
+    ``F_{3/2}(h)/F*_{3/2}(h)``, in the shape of `h`.
     """
-    return fn_scaled(1.5, h, law=law) / fn_scaled(1.5, h, grading, law=law)
+    return fn_scaled(1.5, h, heights=heights) / fn_scaled(1.5, h, grading, heights=heights)
 
 
-def stiffness_ratio(h: ArrayLike, grading: Grading, *, law: HeightLaw | None = None) -> Array:
+@takes_heights
+def stiffness_ratio(h: ArrayLike, grading: Grading, *, heights: HeightLaw = GAUSSIAN) -> Array:
     """Stiffness of the graded surface relative to the homogeneous one at the same separation, Eq. (15).
 
     The paper calls it the ratio of the conductances; that one is 1 (see `conductance`). At equal
     load even its trend is the opposite: see `analytic.ratio_at_equal_load`.
 
-    Parameters
-    ----------
-    h : array_like
-        Reduced separations d/sigma.
-    grading : Grading
-        E*(s)/E*.
-    law : HeightLaw, optional
-        Law of the heights; left out: Gaussian.
-
-    Returns
-    -------
-    ndarray
-        ``F*_{1/2}(h)/F_{1/2}(h)``.
+    ``F*_{1/2}(h)/F_{1/2}(h)``, in the shape of `h`.
     """
-    return fn_scaled(0.5, h, grading, law=law) / fn_scaled(0.5, h, law=law)
+    return fn_scaled(0.5, h, grading, heights=heights) / fn_scaled(0.5, h, heights=heights)
+
+
+@takes_heights
+def cumulants(
+    surface: Surface,
+    quantity: str,
+    h: ArrayLike,
+    grading: Grading | None = None,
+    *,
+    n_asperities: float | None = None,
+    count: Count = "fixed",
+    heights: HeightLaw = GAUSSIAN,
+) -> Cumulants:
+    """Mean, variance, skewness and excess kurtosis of one finite surface: `Model.cumulants`."""
+    return _model(surface, grading, heights, n_asperities, count).cumulants(quantity, h)
+
+
+@takes_heights
+def covariance(
+    surface: Surface,
+    quantities: Sequence[str],
+    separations: ArrayLike,
+    grading: Grading | None = None,
+    *,
+    n_asperities: float | None = None,
+    count: Count = "fixed",
+    heights: HeightLaw = GAUSSIAN,
+) -> Array:
+    """Covariance over surfaces between all quantities at all separations: `Model.covariance`."""
+    return _model(surface, grading, heights, n_asperities, count).covariance(quantities, separations)
+
+
+@takes_heights
+def separation_at(
+    surface: Surface,
+    quantity: str,
+    value: ArrayLike,
+    grading: Grading | None = None,
+    *,
+    heights: HeightLaw = GAUSSIAN,
+) -> Array:
+    """Separation at which a mean has a given value: `Model.separation_at`."""
+    return _model(surface, grading, heights).separation_at(quantity, value)

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import log_ndtr, ndtr, ndtri, ndtri_exp
 
-__all__ = ["Gaussian", "HeightLaw", "exp_minus_half_square"]
+__all__ = ["GAUSSIAN", "Gaussian", "HeightLaw", "exp_minus_half_square"]
 
 Array = NDArray[np.float64]
 
@@ -110,3 +110,6 @@ class Gaussian:
     def from_above(self, p: Array, s: float) -> Array:
         """``-Phi^-1(p Phi(-s))``."""
         return -self.from_below(p, -s)
+
+
+GAUSSIAN = Gaussian()

@@ -13,8 +13,9 @@ from numpy.polynomial.legendre import leggauss
 from numpy.typing import ArrayLike, NDArray
 
 from analytic.gradings import Grading, Homogeneous
-from analytic.heights import Gaussian, HeightLaw, exp_minus_half_square
+from analytic.heights import GAUSSIAN, Gaussian, HeightLaw, exp_minus_half_square
 from analytic.law_rule import law_integral
+from analytic.renamed import takes_heights
 from analytic.resolution import resolved_breaks
 
 __all__ = ["fn", "fn_between", "fn_paper", "fn_scaled"]
@@ -78,13 +79,14 @@ def _sorted(n: float, h: Array, grading: Grading, between: tuple[float, float]) 
     return np.where(h >= 0, result, result / np.sqrt(2 * np.pi))
 
 
+@takes_heights
 def fn_scaled(
     n: float,
     h: ArrayLike,
     grading: Grading | None = None,
     *,
     between: tuple[float, float] = (-np.inf, np.inf),
-    law: HeightLaw | None = None,
+    heights: HeightLaw = GAUSSIAN,
 ) -> Array:
     """F_n or F*_n relative to the density at the separation.
 
@@ -98,8 +100,8 @@ def fn_scaled(
         E*(s)/E*; left out: homogeneous.
     between : (float, float), optional
         Count only heights between these two.
-    law : HeightLaw, optional
-        Law of the heights; left out: Gaussian.
+    heights : HeightLaw, optional
+        Law of the heights.
 
     Returns
     -------
@@ -117,8 +119,8 @@ def fn_scaled(
     if not np.all(np.isfinite(h)):
         raise ValueError("h: every separation must be finite")
     grading = Homogeneous() if grading is None else grading
-    if not (law is None or isinstance(law, Gaussian)):
-        return law_integral(n, h, law, grading, between)
+    if not isinstance(heights, Gaussian):
+        return law_integral(n, h, heights, grading, between)
     order = np.argsort(h, axis=None)
     ordered = h.reshape(-1, 1)[order] + 0.0  # makes -0.0 the same as 0.0
     result = np.empty(h.size)
@@ -128,13 +130,14 @@ def fn_scaled(
     return result.reshape(h.shape)
 
 
+@takes_heights
 def fn(
     n: float,
     h: ArrayLike,
     grading: Grading | None = None,
     *,
     log: bool = False,
-    law: HeightLaw | None = None,
+    heights: HeightLaw = GAUSSIAN,
 ) -> Array:
     r"""Integral F_n (Eq. 2), with a grading F*_n (Eqs. 3, 5, 7).
 
@@ -155,9 +158,9 @@ def fn(
         E*(s)/E*; left out: homogeneous.
     log : bool, optional
         Return the natural logarithm, which does not underflow; nan where the integral is negative.
-    law : HeightLaw, optional
-        Law of the heights, in the place of phi; left out: Gaussian. Another law is integrated to 1e-12
-        as far as its density reaches in double precision.
+    heights : HeightLaw, optional
+        Law of the heights, with its density in the place of phi. Another than the Gaussian is integrated
+        to 1e-12 as far as its density reaches in double precision.
 
     Returns
     -------
@@ -178,17 +181,20 @@ def fn(
     -5011.454471272
     """
     h = np.asarray(h, dtype=np.float64)
-    scaled = fn_scaled(n, h, grading, law=law)
-    if not (law is None or isinstance(law, Gaussian)):
+    scaled = fn_scaled(n, h, grading, heights=heights)
+    if not isinstance(heights, Gaussian):
         with np.errstate(divide="ignore", invalid="ignore"):
             return np.log(scaled) if log else scaled
     above = np.maximum(h, 0.0)
     if log:
         with np.errstate(divide="ignore", invalid="ignore"):
-            return np.log(scaled) - np.where(h >= 0, above * above / 2 + np.log(2 * np.pi) / 2, 0.0)
+            return np.asarray(
+                np.log(scaled) - np.where(h >= 0, above * above / 2 + np.log(2 * np.pi) / 2, 0.0)
+            )
     return scaled * np.where(h >= 0, exp_minus_half_square(above) / np.sqrt(2 * np.pi), 1.0)
 
 
+@takes_heights
 def fn_between(
     n: float,
     h: ArrayLike,
@@ -196,7 +202,7 @@ def fn_between(
     high: float,
     grading: Grading | None = None,
     *,
-    law: HeightLaw | None = None,
+    heights: HeightLaw = GAUSSIAN,
 ) -> Array:
     """Share of F*_n(h) that comes from heights between `low` and `high`.
 
@@ -212,15 +218,17 @@ def fn_between(
         Range of reduced heights; infinite for no bound.
     grading : Grading, optional
         E*(s)/E*; left out: homogeneous.
-    law : HeightLaw, optional
-        Law of the heights; left out: Gaussian.
+    heights : HeightLaw, optional
+        Law of the heights.
 
     Returns
     -------
     ndarray
         A share, 0 to 1 where the modulus is positive, in the shape of `h`.
     """
-    return fn_scaled(n, h, grading, between=(low, high), law=law) / fn_scaled(n, h, grading, law=law)
+    return fn_scaled(n, h, grading, between=(low, high), heights=heights) / fn_scaled(
+        n, h, grading, heights=heights
+    )
 
 
 def fn_paper(n: float, h: ArrayLike, gamma: float, ngp: int) -> Array:

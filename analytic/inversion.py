@@ -5,12 +5,11 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import brentq
 
 from analytic.gradings import Grading
-from analytic.heights import HeightLaw
+from analytic.heights import GAUSSIAN, HeightLaw
 from analytic.integrals import fn, fn_scaled
 from analytic.quantities import QUANTITIES, Quantity
-from analytic.surface import Surface
 
-__all__ = ["ratio_at_equal_load", "separation_at"]
+__all__ = ["ratio_at_equal_load", "separations_at"]
 
 Array = NDArray[np.float64]
 
@@ -18,55 +17,19 @@ _RANGE = (-40.0, 1000.0)
 _LAST_DIGITS = 4 * np.finfo(float).eps
 
 
-def separation_at(
-    surface: Surface,
-    quantity: str,
-    value: ArrayLike,
-    grading: Grading | None = None,
-    *,
-    law: HeightLaw | None = None,
+def separations_at(
+    quantity: Quantity, log_target: Array, grading: Grading | None, heights: HeightLaw
 ) -> Array:
-    """Separation at which a mean has a given value.
-
-    Parameters
-    ----------
-    surface : Surface
-        Parameters in SI units.
-    quantity : {"load", "area", "stiffness", "contacts", "conductance"}
-        What is known.
-    value : array_like
-        Its values, in its SI unit, any shape.
-    grading : Grading, optional
-        E*(s)/E*; left out: homogeneous.
-    law : HeightLaw, optional
-        Law of the heights; left out: Gaussian.
-
-    Returns
-    -------
-    ndarray
-        Reduced separations d/sigma; the largest one where a strongly negative modulus makes several.
+    """Largest h with ``log F*_n(h) = log_target``, in the shape of `log_target`.
 
     Raises
     ------
     ValueError
-        If a value is not positive or not reached between h = -40 and 1000.
+        If a value is not reached between h = -40 and 1000.
     """
-    q = QUANTITIES[quantity]
-    chosen = grading if q.modulus else None
-    target = np.asarray(value, dtype=np.float64)
-    per_surface = surface.n_asperities * q.scale(surface)
-    if not np.all(np.isfinite(target) & (target > 0)):
-        raise ValueError(f"{quantity} = {value!r}: give finite values > 0 {q.unit}")
-    return _separations(q, np.log(target / per_surface), chosen, law)
-
-
-def _separations(
-    quantity: Quantity, log_target: Array, grading: Grading | None, law: HeightLaw | None = None
-) -> Array:
-    """Largest h with ``log F*_n(h) = log_target``."""
     n = quantity.exponent
     grid = np.concatenate([np.linspace(_RANGE[0], 10, 251), np.geomspace(10.5, _RANGE[1], 60)])
-    on_grid = fn(n, grid, grading, log=True, law=law)
+    on_grid = fn(n, grid, grading, log=True, heights=heights)
     roots = []
     for target in log_target.ravel():
         high_enough = np.flatnonzero(on_grid >= target)
@@ -76,11 +39,11 @@ def _separations(
                 "give another value"
             )
         left, right = grid[high_enough[-1] : high_enough[-1] + 2].tolist()
-        roots.append(_root(left, right, (n, grading, law, target)))
+        roots.append(_root(left, right, (n, grading, heights, target)))
     return np.array(roots, dtype=np.float64).reshape(log_target.shape)
 
 
-def _root(left: float, right: float, problem: tuple[float, Grading | None, HeightLaw | None, float]) -> float:
+def _root(left: float, right: float, problem: tuple[float, Grading | None, HeightLaw, float]) -> float:
     # A target right at the end of the bracket may lie beyond it by a last digit.
     if _excess(left, *problem) <= 0:
         return left
@@ -89,12 +52,14 @@ def _root(left: float, right: float, problem: tuple[float, Grading | None, Heigh
     return float(brentq(_excess, left, right, problem, xtol=1e-15, rtol=_LAST_DIGITS))
 
 
-def _excess(h: float, n: float, grading: Grading | None, law: HeightLaw | None, log_target: float) -> float:
+def _excess(h: float, n: float, grading: Grading | None, heights: HeightLaw, log_target: float) -> float:
     """Logarithm relative to the target; -100 also where the integral is not positive."""
-    return float(np.fmax(fn(n, h, grading, log=True, law=law) - log_target, -100.0))
+    return float(np.fmax(fn(n, h, grading, log=True, heights=heights) - log_target, -100.0))
 
 
-def ratio_at_equal_load(quantity: str, h: ArrayLike, grading: Grading) -> Array:
+def ratio_at_equal_load(
+    quantity: str, h: ArrayLike, grading: Grading, *, heights: HeightLaw = GAUSSIAN
+) -> Array:
     """A mean of the graded surface relative to the homogeneous one under the same load.
 
     Parameters
@@ -105,6 +70,8 @@ def ratio_at_equal_load(quantity: str, h: ArrayLike, grading: Grading) -> Array:
         Reduced separations of the homogeneous surface, which set the load.
     grading : Grading
         E*(s)/E*.
+    heights : HeightLaw, optional
+        Law of the heights.
 
     Returns
     -------
@@ -121,8 +88,11 @@ def ratio_at_equal_load(quantity: str, h: ArrayLike, grading: Grading) -> Array:
     """
     q = QUANTITIES[quantity]
     h = np.asarray(h, dtype=np.float64)
-    other = _separations(QUANTITIES["load"], fn(1.5, h, log=True), grading)
-    chosen = grading if q.modulus else None
-    # Relative to the loads, which are equal: hardly sensitive to the last digits of h2, and no underflow.
-    graded = fn_scaled(q.exponent, other, chosen) / fn_scaled(1.5, other, grading)
-    return graded / (fn_scaled(q.exponent, h) / fn_scaled(1.5, h))
+    other = separations_at(QUANTITIES["load"], fn(1.5, h, log=True, heights=heights), grading, heights)
+
+    def per_load(at: Array, law: Grading | None) -> Array:
+        # Relative to the loads, which are equal: hardly sensitive to the last digits of h2, no underflow.
+        weight = law if q.modulus else None
+        return fn_scaled(q.exponent, at, weight, heights=heights) / fn_scaled(1.5, at, law, heights=heights)
+
+    return per_load(other, grading) / per_load(h, None)

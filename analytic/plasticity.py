@@ -7,8 +7,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from analytic.gradings import Grading
-from analytic.heights import HeightLaw
+from analytic.heights import GAUSSIAN, HeightLaw
 from analytic.integrals import fn_scaled
+from analytic.renamed import takes_heights
 
 __all__ = ["mean_modulus", "plasticity_index"]
 
@@ -33,12 +34,13 @@ class _Squared:
         return np.square(self.grading(s))
 
 
+@takes_heights
 def mean_modulus(
     h: ArrayLike,
     grading: Grading,
     *,
     weight: Literal["number", "area", "load"] = "load",
-    law: HeightLaw | None = None,
+    heights: HeightLaw = GAUSSIAN,
 ) -> Array:
     """Mean of E*(s)/E* over the asperities in contact.
 
@@ -50,8 +52,8 @@ def mean_modulus(
         E*(s)/E*.
     weight : {"number", "area", "load"}, optional
         What each contact counts for.
-    law : HeightLaw, optional
-        Law of the heights; left out: Gaussian.
+    heights : HeightLaw, optional
+        Law of the heights.
 
     Returns
     -------
@@ -70,9 +72,11 @@ def mean_modulus(
     1.727
     """
     if weight == "load":
-        return fn_scaled(1.5, h, _Squared(grading), law=law) / fn_scaled(1.5, h, grading, law=law)
+        return fn_scaled(1.5, h, _Squared(grading), heights=heights) / fn_scaled(
+            1.5, h, grading, heights=heights
+        )
     n = {"number": 0.0, "area": 1.0}[weight]
-    return fn_scaled(n, h, grading, law=law) / fn_scaled(n, h, law=law)
+    return fn_scaled(n, h, grading, heights=heights) / fn_scaled(n, h, heights=heights)
 
 
 def plasticity_index(modulus: ArrayLike, *, E_star: float, slope: float, hardness: float) -> Array:

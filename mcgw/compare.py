@@ -6,10 +6,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import chi2
 
-import analytic
+from analytic import QUANTITIES, Fluctuations
 from mcgw.ensemble import Ensemble
 
-__all__ = ["FALSE_ALARM", "Comparison", "Curve", "Verdict", "compare", "theory", "verdict"]
+__all__ = ["FALSE_ALARM", "Comparison", "Curve", "Verdict", "compare", "verdict"]
 
 Array = NDArray[np.float64]
 
@@ -88,13 +88,6 @@ class Comparison:
     verdict: Verdict
 
 
-def theory(ensemble: Ensemble, quantity: str) -> Array:
-    """Exact mean of a quantity for the ensemble's number of asperities, shape (separations,)."""
-    scene = ensemble.scene
-    per_asperity = analytic.mean(scene.surface, quantity, scene.separations, scene.modulus, law=scene.heights)
-    return per_asperity / scene.surface.n_asperities * scene.n_asperities
-
-
 def compare(ensemble: Ensemble) -> Comparison:
     """Compare the means of an ensemble with theory.
 
@@ -118,18 +111,12 @@ def compare(ensemble: Ensemble) -> Comparison:
     scene = ensemble.scene
     curves = {}
     for name in scene.quantities:
-        exact = analytic.cumulants(
-            scene.surface,
-            name,
-            scene.separations,
-            scene.modulus,
-            n_asperities=scene.n_asperities,
-            count=scene.count,
-            law=scene.heights,
-        )
+        variance = scene.theory.cumulants(name, scene.separations).variance
         low, high = ensemble.interval(name)
-        stderr = np.sqrt(exact.variance / ensemble.n_surfaces)
-        curves[name] = Curve(ensemble.mean(name), low, high, theory(ensemble, name), stderr)
+        stderr = np.sqrt(variance / ensemble.n_surfaces)
+        curves[name] = Curve(
+            ensemble.mean(name), low, high, scene.theory.mean(name, scene.separations), stderr
+        )
     return Comparison(ensemble, curves, verdict(ensemble))
 
 
@@ -142,23 +129,20 @@ def verdict(ensemble: Ensemble) -> Verdict:
     """
     scene = ensemble.scene
     h = _chosen(np.unique(scene.separations))
-    rule = analytic.HeightRule.over(h, scene.modulus, scene.heights)
-    terms = rule.terms(scene.quantities, h, scene.modulus)
-    deviation, below = rule.fluctuations(terms, scene.count)
-    variance = rule.probabilities @ deviation**2 + rule.below * below**2
+    parts = scene.theory.fluctuations(scene.quantities, h)
     index = [scene.separations.index(x) for x in h]
     difference = np.concatenate([_difference(ensemble, name)[index] for name in scene.quantities])
-
-    varies = variance > 0
-    unit = np.sqrt(variance[varies])
-    deviation, below = deviation[:, varies] / unit, below[varies] / unit
-    z = difference[varies] / unit * np.sqrt(ensemble.n_surfaces / scene.n_asperities)
     asperities = float(scene.n_asperities) * ensemble.n_surfaces
 
-    usable = _gaussian(rule, deviation, below, asperities)
-    deviation, below, z = deviation[:, usable], below[usable], z[usable]
-    axes = rule.whitening(deviation, below, _INDEPENDENT)
-    axes = axes[:, _gaussian(rule, deviation @ axes, below @ axes, asperities)]
+    variance = parts.moment(2)
+    varies = np.flatnonzero(variance > 0)
+    unit = np.sqrt(variance[varies])
+    parts = parts.take(varies, unit)
+    z = difference[varies] / unit * np.sqrt(ensemble.n_surfaces / scene.n_asperities)
+    usable = _gaussian(parts, asperities)
+    parts, z = parts.take(usable), z[usable]
+    axes = parts.whitening(_INDEPENDENT)
+    axes = axes[:, _gaussian(parts.turned(axes), asperities)]
     chi_square = float(np.sum((z @ axes) ** 2))
     degrees = axes.shape[1]
     return Verdict(chi_square, degrees, float(chi2.sf(chi_square, degrees)) if degrees else 1.0)
@@ -166,17 +150,15 @@ def verdict(ensemble: Ensemble) -> Verdict:
 
 def _difference(ensemble: Ensemble, quantity: str) -> Array:
     """Mean less theory, relative to what one asperity contributes at unit approach."""
-    scale = analytic.QUANTITIES[quantity].scale(ensemble.scene.surface)
-    return (ensemble.mean(quantity) - theory(ensemble, quantity)) / scale
+    scene = ensemble.scene
+    exact = scene.theory.mean(quantity, scene.separations)
+    return (ensemble.mean(quantity) - exact) / QUANTITIES[quantity].scale(scene.surface)
 
 
-def _gaussian(
-    rule: analytic.HeightRule, deviation: Array, below: Array, asperities: float
-) -> NDArray[np.bool_]:
+def _gaussian(parts: Fluctuations, asperities: float) -> NDArray[np.bool_]:
     """Which terms (columns of unit variance) have a nearly Gaussian mean over so many asperities."""
     with np.errstate(over="ignore", invalid="ignore"):  # where nothing ever touches
-        third = rule.probabilities @ deviation**3 + rule.below * below**3
-        fourth = rule.probabilities @ deviation**4 + rule.below * below**4
+        third, fourth = parts.moment(3), parts.moment(4)
     skew = np.abs(third) / np.sqrt(asperities)
     return np.asarray((skew < _SKEW) & (fourth / asperities < _KURTOSIS))
 

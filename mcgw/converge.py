@@ -173,7 +173,7 @@ def _repeats(scene: Scene, sums: Sums) -> list[Check]:
     """Surfaces that give the same number to the last bit, which independent ones never do."""
     name = next((name for name in scene.quantities if name != "contacts"), None)
     lowest = int(np.argmin(scene.separations))
-    if name is None or scene.n_asperities * float(scene.heights.above(np.array(scene.lowest))) < 100:
+    if name is None or scene.touching < 100:
         return []
     values = sums[name][:, lowest]
     again = len(values) - len(np.unique(values))

@@ -2,9 +2,6 @@
 
 import numpy as np
 
-import analytic
-from analytic import first_negative
-from mcgw.compare import theory
 from mcgw.ensemble import Ensemble
 
 __all__ = ["doubts"]
@@ -30,14 +27,18 @@ def doubts(ensemble: Ensemble) -> list[str]:
     scene, h = ensemble.scene, ensemble.separations
     surface, found = scene.surface, []
     share = scene.n_asperities / surface.n_asperities
-    crowded = h[analytic.area(surface, h, law=scene.heights) / surface.nominal_area * share > _CROWDED]
+    crowded = h[scene.theory.mean("area", h) / surface.nominal_area > _CROWDED]
     if crowded.size:
         found.append(
             f"Up to d/σ = {crowded.max():.3g} more than {_CROWDED:.0%} of the nominal area touches: "
             "asperities are no longer independent, and the load at that separation is overestimated."
         )
-    if h.min() < 0:
-        found.append("Below d/σ = 0 more than half of all summits touch; the model does not merge contacts.")
+    most = h[scene.heights.above(h) > 0.5]
+    if most.size:
+        found.append(
+            f"Up to d/σ = {most.max():.3g} more than half of all summits touch; the model does not merge "
+            "contacts."
+        )
     top = float(scene.heights.from_above(np.array(1 / scene.n_asperities), -40.0))
     steepest = float(np.sqrt(max(top - h.min(), 0.0) * surface.sigma / surface.radius))
     if steepest > _STEEP:
@@ -45,7 +46,7 @@ def doubts(ensemble: Ensemble) -> list[str]:
             f"The highest summits (s = {top:.1f}) have contacts of {steepest:.2f} times their radius at "
             "the lowest separation, more than Hertz's parabolic contact bears; metals yield far earlier."
         )
-    few = h[theory_contacts(ensemble) < _FEW]
+    few = h[scene.theory.mean("contacts", h) < _FEW]
     if few.size:
         found.append(
             f"From d/σ = {few.min():.3g} fewer than {_FEW:.0f} contacts are expected on a surface: "
@@ -56,7 +57,7 @@ def doubts(ensemble: Ensemble) -> list[str]:
             f"A surface has {scene.n_asperities:g} asperities, not η Aₙ = {surface.n_asperities:g}: loads "
             f"belong to {share:.3g} of the nominal area."
         )
-    if scene.negative != "error" and first_negative(scene.grading, h.min(), 8.3) is not None:
+    if scene.negative != "error" and scene.negative_above(scene.lowest) is not None:
         word = "set to zero" if scene.negative == "clip" else "left negative"
         found.append(
             f"The modulus is negative at heights that touch, and {word}: a fit taken beyond its range."
@@ -66,8 +67,3 @@ def doubts(ensemble: Ensemble) -> list[str]:
         "plasticity index (analytic.plasticity_index) before using loads at small separations."
     )
     return found
-
-
-def theory_contacts(ensemble: Ensemble) -> np.ndarray:
-    """Expected contacts of a surface, whether or not the ensemble counts them."""
-    return theory(ensemble, "contacts")

@@ -6,7 +6,6 @@ from time import perf_counter
 import numpy as np
 from numpy.typing import NDArray
 
-import analytic
 from mcgw.sampling.samplers import Sampler
 from mcgw.scene import Scene
 from mcgw.simulation import at_a_time, block_size, drawn_blocks
@@ -39,15 +38,7 @@ class Forecast:
 def relative_spread(scene: Scene, quantity: str) -> Array:
     """Exact standard deviation over surfaces relative to the mean, shape (separations,)."""
     h, back = np.unique(scene.separations, return_inverse=True)
-    exact = analytic.cumulants(
-        scene.surface,
-        quantity,
-        h,
-        scene.modulus,
-        n_asperities=scene.n_asperities,
-        count=scene.count,
-        law=scene.heights,
-    )
+    exact = scene.theory.cumulants(quantity, h)
     with np.errstate(divide="ignore", invalid="ignore"):
         spread = np.where(exact.mean != 0, np.sqrt(exact.variance) / np.abs(exact.mean), np.inf)
     return np.asarray(spread[back])
@@ -64,7 +55,7 @@ def forecast(scene: Scene) -> Forecast:
     Returns
     -------
     Forecast
-        From the exact variance of a finite surface (`analytic.cumulants`).
+        From the exact variance of a finite surface (`analytic.Model.cumulants`).
     """
     if scene.rel_err is None:
         return Forecast({}, scene.n_surfaces, ())

@@ -63,7 +63,7 @@ def methods_for(scene: Scene, chosen: tuple[int, ...]) -> tuple[Method, ...]:
     exact = reference(scene, chosen)
     surfaces = tuple(4.0**k for k in range(12))
     n = float(scene.n_asperities)
-    touching = n * float(scene.heights.above(np.array(scene.lowest)))
+    touching = scene.touching
     found = [
         Method(name, "surfaces", surfaces, -0.5, partial(_by_sampler, scene, chosen, exact, name), name)
         for name, draws in (("direct", n), ("tail", touching), ("cells", touching / 100))
@@ -165,7 +165,7 @@ def _quadratures(scene: Scene, chosen: tuple[int, ...], exact: Array) -> list[Me
     grading = scene.modulus if q.modulus else None
 
     def ours(_size: float, _seed: int) -> Array:
-        return factor * analytic.fn(q.exponent, h, grading, law=scene.heights) / exact - 1
+        return scene.theory.mean(q.name, h) / exact - 1
 
     def scipys(size: float, _seed: int) -> Array:
         rows = []

@@ -2,8 +2,6 @@
 
 from dataclasses import dataclass
 
-import numpy as np
-
 from analytic import QUANTITIES
 from mcgw.forecast import forecast, seconds_per_surface
 from mcgw.sampling.samplers import Cells, sampler_of
@@ -64,7 +62,7 @@ def plan_of(scene: Scene, *, threads: int | None = None) -> Plan:
         Nothing of the trial block is kept.
     """
     sampler = sampler_of(scene)
-    touching = scene.n_asperities * float(scene.heights.above(np.array(scene.lowest)))
+    touching = scene.touching
     cells = moments = 0
     drawn = float(scene.n_asperities) if sampler.name == "direct" else touching
     if isinstance(sampler, Cells):

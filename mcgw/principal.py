@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-import analytic
+from analytic import QUANTITIES
 from mcgw.scene import Scene
 
 __all__ = ["Principal"]
@@ -50,27 +50,20 @@ class Principal:
     def of(cls, scene: Scene) -> "Principal":
         """The axes of a scene: of those separations where single surfaces are nearly Gaussian."""
         n, h = scene.n_asperities, np.array(scene.separations)
-        rule = analytic.HeightRule.over(h, scene.modulus, scene.heights)
-        terms = rule.terms(scene.quantities, h, scene.modulus)
-        mean = rule.probabilities @ terms
-        deviation, below = rule.fluctuations(terms, scene.count)
-        variance = rule.probabilities @ deviation**2 + rule.below * below**2
-        share = scene.heights.above(h)
+        parts = scene.theory.fluctuations(scene.quantities, h)
+        variance, share = parts.moment(2), scene.heights.above(h)
         touching = n * np.minimum(share, 1 - share + (scene.count == "poisson"))
         chosen = np.flatnonzero(np.tile(touching > _TOUCHING, len(scene.quantities)) & (variance > 0))
         unit = np.sqrt(variance[chosen])
-        deviation, below = deviation[:, chosen] / unit, below[chosen] / unit
-        axes = rule.whitening(deviation, below, _INDEPENDENT)
-        along, low = deviation @ axes, below @ axes
-        third = rule.probabilities @ along**3 + rule.below * low**3
-        fourth = rule.probabilities @ along**4 + rule.below * low**4 - 3 * (scene.count == "fixed")
+        axes = parts.take(chosen, unit).whitening(_INDEPENDENT)
+        along = parts.take(chosen, unit).turned(axes)
+        third, fourth = along.moment(3), along.moment(4) - 3 * (scene.count == "fixed")
         good = np.abs(fourth) / n < _MOST_KURTOSIS
-        scale = np.array(
-            [analytic.QUANTITIES[scene.quantities[c // len(h)]].scale(scene.surface) for c in chosen.tolist()]
-        )
+        columns = tuple((scene.quantities[c // len(h)], c % len(h)) for c in chosen.tolist())
+        scale = np.array([QUANTITIES[name].scale(scene.surface) for name, _ in columns])
         return cls(
-            tuple((scene.quantities[c // len(h)], c % len(h)) for c in chosen.tolist()),
-            n * scale * mean[chosen],
+            columns,
+            n * scale * parts.mean[chosen],
             np.sqrt(n) * scale * unit,
             axes[:, good],
             third[good] / np.sqrt(n),

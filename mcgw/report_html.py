@@ -10,7 +10,6 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
 
-import analytic
 from analytic import QUANTITIES
 from mcgw.compare import Comparison, compare
 from mcgw.doubts import doubts
@@ -210,7 +209,7 @@ def _rows(pairs: Any) -> str:
 
 def _facts(ensemble: Ensemble) -> str:
     scene, x = ensemble.scene, ensemble.scene.surface
-    contacts = float(analytic.fn(0, scene.lowest)) * scene.n_asperities
+    contacts = float(scene.theory.mean("contacts", scene.lowest))
     return _rows(
         (
             ("standard deviation σ of the summit heights", f"{_number(x.sigma)} m"),

@@ -15,6 +15,7 @@ from analytic import (
     HeightLaw,
     Homogeneous,
     MeasuredHeights,
+    Model,
     Surface,
     Table,
     first_negative,
@@ -110,9 +111,32 @@ class Scene:
         return Clipped.of(self.grading) if self.negative == "clip" else self.grading
 
     @property
+    def theory(self) -> Model:
+        """The exact model of this very scene: its modulus, height law, number of asperities and count."""
+        return Model(
+            self.surface,
+            grading=self.modulus,
+            heights=self.heights,
+            n_asperities=float(self.n_asperities),
+            count=self.count,
+        )
+
+    @property
     def lowest(self) -> float:
         """The lowest separation: what lies below it never touches."""
         return min(self.separations)
+
+    @property
+    def touching(self) -> float:
+        """Asperities of a surface that are expected above the lowest separation."""
+        return self.n_asperities * float(self.heights.above(np.array(self.lowest)))
+
+    def negative_above(self, h: float) -> float | None:
+        """First height that touches at `h` where the grading is negative, clipped or not; or None."""
+        share, (bottom, end) = np.array(_BEYOND), self.heights.support
+        top = max(float(self.heights.from_above(share, -math.inf)), h + 1, max(self.separations) + 1)
+        start = max(h, float(self.heights.from_below(share, math.inf)) - 1, bottom)
+        return first_negative(self.grading, start, min(top, end)) if start < min(top, end) else None
 
     def _wrong_values(self) -> list[str]:
         problems = []
@@ -208,14 +232,8 @@ class Scene:
         """Negative moduli among the heights that touch."""
         if self.negative != "error":
             return []
-        share = np.array(_BEYOND)
-        highest = float(self.heights.from_above(share, -math.inf))
-        low, high = self.lowest, min(max(highest, max(self.separations) + 1), self.heights.support[1])
-        start = max(low, float(self.heights.from_below(share, math.inf)) - 1, self.heights.support[0])
-        if not start < high:
-            return []
         try:
-            where = first_negative(self.grading, start, high)
+            where = self.negative_above(self.lowest)
         except ValueError as error:
             return [str(error)]
         if where is None:
@@ -228,6 +246,6 @@ class Scene:
         else:
             key = "grading"
         return [
-            f"{key}: E*(s) is negative from s = {where:.4g}, which touches at h = {low:g}; raise the "
+            f"{key}: E*(s) is negative from s = {where:.4g}, which touches at h = {self.lowest:g}; raise the "
             'separations, or say negative = "clip" or "allow" under [grading]'
         ]

@@ -128,7 +128,7 @@ def block_size(scene: Scene, sampler: Sampler) -> int:
     With a multiple of eight the rows of the moments would share their places in the innermost cache. A
     group is what the product takes at a time, whether it is full or not.
     """
-    touching = scene.n_asperities * float(scene.heights.above(np.array(scene.lowest)))
+    touching = scene.touching
     words = len(scene.separations) * len(scene.quantities)
     if isinstance(sampler, Cells):
         words += int(sampler.response.layout.starts[-1]) + 2 * sampler.mesh.size

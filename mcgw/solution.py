@@ -1,13 +1,13 @@
 """The separation at a given load or real area: by theory, and on every surface for itself."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.optimize import brentq
 from scipy.stats import t as student
 
-import analytic
 from analytic import QUANTITIES, Quantity
 from mcgw.sampling.asperities import heights
 from mcgw.scene import Scene
@@ -20,9 +20,12 @@ _MARGIN = 6.0  # standard deviations of a surface's separation that are drawn at
 _MOST_HEIGHTS = 3e9
 _STEP = 0.5  # by which the search for a start goes down, where the margin was not enough
 _ENOUGH = 1e-14  # relative excess of load where Newton's steps are rounding errors
+_FINE = 1 / 64  # step of the search where a negative modulus makes the sum rise and fall
+_LOWEST = -40.0  # separation where that search ends
+_NOTHING = 1e-16  # share of the heights below all that are drawn
 _NEGATIVE = (
-    "the modulus is negative at a height that touches at h = {:.4g}, where a load has no single "
-    'separation; say negative = "clip" under [grading], or give less load'
+    "{} = {:g} {}: {} does not reach it without asperities of negative modulus, at s = {:.4g}; give less, "
+    'or say negative = "clip" or "allow" under [grading]'
 )
 
 
@@ -78,22 +81,20 @@ def solve(scene: Scene, given: str, values: Sequence[float]) -> list[Solution]:
     Raises
     ------
     ValueError
-        If a value is not reached, if the modulus of a contacting asperity is negative, if there are
-        too many asperities to draw, or if a surface has none.
+        If a value is not reached, or only with contacts of negative modulus where the scene does not allow
+        them, if there are too many asperities to draw, or if a surface has none.
     """
     if scene.n_surfaces < 2:
         raise ValueError(f"n_surfaces = {scene.n_surfaces}: an interval takes at least 2 surfaces")
     q = QUANTITIES[given]
     theory = [_theory(scene, q, value) for value in values]
-    lowest = min(at["separation"] - _MARGIN * _spread(scene, q, at["separation"]) for at in theory)
-    drawn = replace(scene, sampler="tail", keep="sums", separations=(lowest,), quantities=tuple(QUANTITIES))
-    touching = drawn.n_asperities * float(drawn.heights.above(np.array(lowest)))
-    if touching * drawn.n_surfaces > _MOST_HEIGHTS:
+    drawn = _drawn(scene, q, [at["separation"] for at in theory])
+    if drawn.touching * drawn.n_surfaces > _MOST_HEIGHTS:
         raise ValueError(
-            f"{drawn.n_surfaces} surfaces with {touching:.3g} contacts each are too many to solve singly; "
-            f"give fewer than {_MOST_HEIGHTS / touching:.0f} surfaces"
+            f"{drawn.n_surfaces} surfaces with {drawn.touching:.3g} contacts each are too many to solve "
+            f"singly; give fewer than {_MOST_HEIGHTS / drawn.touching:.0f} surfaces"
         )
-    rows = [_surface(drawn, number, q, values) for number in range(drawn.n_surfaces)]
+    rows = [_surface(scene, drawn, number, q, values) for number in range(drawn.n_surfaces)]
     return [
         Solution(given, float(value), at, {name: np.array([row[k][name] for row in rows]) for name in at})
         for k, (value, at) in enumerate(zip(values, theory, strict=True))
@@ -101,68 +102,104 @@ def solve(scene: Scene, given: str, values: Sequence[float]) -> list[Solution]:
 
 
 def _theory(scene: Scene, q: Quantity, value: float) -> dict[str, float]:
-    """Separation and all quantities of the mean surface, scaled to the scene's number of asperities."""
-    share = scene.n_asperities / scene.surface.n_asperities
-    h = float(analytic.separation_at(scene.surface, q.name, value / share, scene.modulus, law=scene.heights))
-    means = {
-        name: float(analytic.mean(scene.surface, name, h, scene.modulus, law=scene.heights)) * share
-        for name in QUANTITIES
-    }
-    return {"separation": h, **means}
+    """Separation and all quantities of the mean surface."""
+    h = float(scene.theory.separation_at(q.name, value))
+    if scene.negative == "error" and (where := scene.negative_above(h)) is not None:
+        raise ValueError(_NEGATIVE.format(q.name, value, q.unit, "the mean surface", where))
+    return {"separation": h, **{name: float(scene.theory.mean(name, h)) for name in QUANTITIES}}
 
 
-def _spread(scene: Scene, q: Quantity, h: float) -> float:
-    """Standard deviation of the separation of a surface, to first order: that of the sum over its slope."""
-    grading = scene.modulus if q.modulus else None
-    sums = analytic.cumulants(
-        scene.surface,
-        q.name,
-        h,
-        grading,
-        n_asperities=scene.n_asperities,
-        count=scene.count,
-        law=scene.heights,
+def _drawn(scene: Scene, q: Quantity, separations: Sequence[float]) -> Scene:
+    """The scene whose contacts are drawn: those that nearly every surface has at its own solution.
+
+    That is some standard deviations, to first order, below the solution of the mean surface, or all
+    heights. What the modulus is there does not matter yet.
+    """
+    bottom = float(scene.heights.from_below(np.array(_NOTHING), np.inf))
+    starts = []
+    for h in separations:
+        spread = float(scene.theory.std(q.name, h) / scene.theory.slope(q.name, h))
+        starts.append(max(h - _MARGIN * spread, min(h, bottom)))
+    return replace(
+        scene,
+        sampler="tail",
+        keep="sums",
+        separations=(min(starts),),
+        quantities=tuple(QUANTITIES),
+        negative="clip" if scene.negative == "clip" else "allow",
     )
-    slope = (
-        scene.n_asperities
-        * q.scale(scene.surface)
-        * q.exponent
-        * analytic.fn(q.exponent - 1, h, grading, law=scene.heights)
-    )
-    return float(np.sqrt(sums.variance) / slope)
 
 
-def _surface(scene: Scene, number: int, q: Quantity, values: Sequence[float]) -> list[dict[str, float]]:
+def _surface(
+    scene: Scene, drawn: Scene, number: int, q: Quantity, values: Sequence[float]
+) -> list[dict[str, float]]:
     """All quantities of one surface at each value."""
-    touching = _sorted(heights(scene, number))
+    touching = _sorted(heights(drawn, number))
     whole: Array | None = None
     rows = []
     for value in values:
         target = value / q.scale(scene.surface)
-        s, start = touching, scene.lowest
-        if _power_sum(scene, q, s, start) < target:  # rare: it lies below what was drawn
-            whole = _sorted(heights(scene, number, untouched=True)) if whole is None else whole
+        s = touching
+        h = _above(scene, q, s, target, drawn.lowest)
+        if h is None:  # rare: it lies below what was drawn
+            whole = _sorted(heights(drawn, number, untouched=True)) if whole is None else whole
             s = whole
-        if not s.size:
-            raise ValueError(f"surface {number} has not one asperity; give more n_asperities")
-        while _power_sum(scene, q, s, start) < target:
-            start -= _STEP
-        modulus = scene.modulus(s) if q.modulus else np.ones_like(s)
-        h = separation_on(s, modulus, q.exponent, target, start)
+            if not s.size:
+                raise ValueError(f"surface {number} has not one asperity; give more n_asperities")
+            h = _anywhere(scene, q, s, target, drawn.lowest)
+        negative = s[scene.modulus(s) < 0]
+        if h is None or (scene.negative == "error" and np.any(negative > h)):
+            raise ValueError(_NEGATIVE.format(q.name, value, q.unit, f"surface {number}", negative.max()))
         rows.append({"separation": h, **dict(_sums(scene, s, h))})
     return rows
+
+
+def _above(scene: Scene, q: Quantity, s: Array, target: float, start: float) -> float | None:
+    """The solution among separations from `start` on at which no modulus is negative, or None.
+
+    `s` are all heights above `start`, in falling order. Above the highest one of negative modulus the
+    sum falls with the separation: so there is no larger solution.
+    """
+    modulus = _weights(scene, q, s)
+    start = float(s[modulus < 0].max(initial=start))
+    if _power_sum(q, s, modulus, start) < target:
+        return None
+    return separation_on(s, modulus, q.exponent, target, start)
+
+
+def _anywhere(scene: Scene, q: Quantity, s: Array, target: float, start: float) -> float | None:
+    """The largest solution on all heights of a surface, in falling order; None if there is none."""
+    modulus = _weights(scene, q, s)
+    negative = s[modulus < 0]
+    if negative.size:
+        found = _above(scene, q, s, target, -np.inf)
+        if found is not None or scene.negative == "error":
+            return found
+        return _crossing(lambda h: _power_sum(q, s, modulus, h) - target, float(negative.max()))
+    while _power_sum(q, s, modulus, start) < target:
+        start -= _STEP
+    return separation_on(s, modulus, q.exponent, target, start)
+
+
+def _crossing(excess: Callable[[float], float], high: float) -> float | None:
+    """Largest root below `high`, where the function is negative; None down to the end of theory's range."""
+    for low in np.arange(high - _FINE, _LOWEST, -_FINE).tolist():
+        if excess(low) >= 0:
+            return float(brentq(excess, low, low + _FINE, xtol=1e-15, rtol=1e-14))
+    return None
 
 
 def _sorted(s: Array) -> Array:
     return np.sort(s)[::-1]
 
 
-def _power_sum(scene: Scene, q: Quantity, s: Array, h: float) -> float:
-    s = s[s > h]
-    weights = scene.modulus(s) if q.modulus else np.ones_like(s)
-    if weights.min(initial=0.0) < 0:
-        raise ValueError(_NEGATIVE.format(h))
-    return float(np.sum(weights * (s - h) ** q.exponent))
+def _weights(scene: Scene, q: Quantity, s: Array) -> Array:
+    return scene.modulus(s) if q.modulus else np.ones_like(s)
+
+
+def _power_sum(q: Quantity, s: Array, modulus: Array, h: float) -> float:
+    touching = s > h
+    return float(np.sum(modulus[touching] * (s[touching] - h) ** q.exponent))
 
 
 def _sums(scene: Scene, s: Array, h: float) -> Iterator[tuple[str, float]]:

@@ -21,7 +21,7 @@ _DRAWS = 4e8  # asperities a shard: a second or so
 def shard_size(scene: Scene, sampler: Sampler) -> int:
     """Surfaces a shard: a function of the scene alone, however many there are of them."""
     size, row = block_size(scene, sampler), 8 * columns(scene, sampler)
-    touching = scene.n_asperities * float(scene.heights.above(np.array(scene.lowest)))
+    touching = scene.touching
     draws = scene.n_asperities if sampler.name == "direct" else touching
     return size * int(max(min(_BYTES / (size * row), _DRAWS / (size * (draws + 1))), 1))
 

@@ -120,32 +120,49 @@ def test_imports_point_one_way():
             assert ORDER.index(name) < ORDER.index(this), f"{this} imports {name}"
 
 
-def test_only_those_that_compare_take_integrals_from_theory():
-    """The simulator shares the surface and its laws with the theory, never an integral."""
-    shared = {
-        "QUANTITIES", "Body", "Clipped", "Custom", "Exponential", "ExponentialHeights", "Gaussian", "Grading",
-        "HeightLaw", "HeightTable", "Homogeneous", "MeasuredHeights", "Quantity", "ScipyHeights", "Surface",
-        "Table", "Weibull", "composite_modulus", "first_negative", "resolved_breaks",
-    }  # fmt: skip
-    meeting = {
-        "compare",
-        "forecast",
-        "methods",
-        "principal",
-        "solution",
-        "paper",
-        "equal_load",
-        "finite",
-        "summits",
-        "doubts",
-        "report_html",
-    }  # where Monte Carlo and theory are put side by side
-    for path in [*parts().values(), *ROOT.glob("__*.py")]:
-        for node in ast.walk(ast.parse(path.read_text())):
+SHARED = {
+    "QUANTITIES", "Body", "Clipped", "Custom", "Exponential", "ExponentialHeights", "Gaussian", "Grading",
+    "HeightLaw", "HeightTable", "Homogeneous", "MeasuredHeights", "Quantity", "ScipyHeights", "Surface",
+    "Table", "Weibull", "composite_modulus", "first_negative", "resolved_breaks",
+}  # fmt: skip
+GAUSSIAN_FIGURES = {"figures/paper.py", "figures/equal_load.py", "figures/summits.py"}  # those of the paper
+
+
+def sources():
+    for path in sorted(ROOT.rglob("*.py")):
+        yield path.relative_to(ROOT).as_posix(), ast.parse(path.read_text())
+
+
+def test_the_simulator_takes_no_integral_from_theory():
+    """It shares the surface and its laws with the theory; what a scene's theory says it never asks."""
+    besides = {"scene.py": {"Model"}, "compare.py": {"Fluctuations"}}
+    whole = GAUSSIAN_FIGURES | {"methods.py"}  # the quadratures that tradeoff measures
+    for name, tree in sources():
+        for node in ast.walk(tree):
             if isinstance(node, ast.ImportFrom) and node.module == "analytic":
-                assert {alias.name for alias in node.names} <= shared, path.name
-            if isinstance(node, ast.Import) and path.stem not in meeting:
-                assert all(not alias.name.startswith("analytic") for alias in node.names), path.name
+                assert {alias.name for alias in node.names} <= SHARED | besides.get(name, set()), name
+            if isinstance(node, ast.Import) and name not in whole:
+                assert all(not alias.name.startswith("analytic") for alias in node.names), name
+            if name.startswith(("sampling/", "store/")):
+                assert not (isinstance(node, ast.Attribute) and node.attr == "theory"), name
+
+
+def test_no_default_stands_for_the_height_law_of_a_scene():
+    """The functions of 0.x are Gaussian unless told; `scene.theory` knows the scene's own law."""
+    forbidden = {
+        "area", "area_per_load", "area_per_load_ratio", "barber_conductance", "conductance", "contacts",
+        "covariance", "cumulants", "fn", "fn_between", "fn_scaled", "load", "mean", "mean_modulus",
+        "ratio_at_equal_load", "separation_at", "stiffness", "stiffness_ratio", "HeightRule", "Model",
+    }  # fmt: skip
+
+    def calls(tree):
+        for node in ast.walk(tree):
+            match node:
+                case ast.Attribute(value=ast.Name(id="analytic"), attr=name) if name in forbidden:
+                    yield name
+
+    seen = {name: set(calls(tree)) for name, tree in sources()}
+    assert {name for name, found in seen.items() if found} == GAUSSIAN_FIGURES  # and they do call them
 
 
 @pytest.mark.parametrize("code", ["import mcgw", "import mcgw.cli; mcgw.cli._parser()"])

@@ -54,7 +54,7 @@ def greenwood_williamson(n, h, gamma):
 @pytest.mark.parametrize("gamma", [0.2, 1.0, 2.0])
 def test_exponential_heights_have_a_closed_form(n, gamma):
     h = np.array([-1.0, -0.5, 0.0, 1.0, 5.0, 20.0, 200.0])
-    found = analytic.fn(n, h, Exponential(gamma), law=ExponentialHeights())
+    found = analytic.fn(n, h, Exponential(gamma), heights=ExponentialHeights())
     truth = [float(greenwood_williamson(n, x, gamma)) for x in h]
     # 64 nodes a piece, and exp(-201) known to 201 roundings of 1e-16; gamma = 2 loses a digit below 0.
     assert found == pytest.approx(truth, rel=1e-13)
@@ -75,7 +75,7 @@ def test_weibull_integrals_against_quadrature_in_x(shape, h):
 
         cuts = [low, *(low + mp.mpf(c) for c in ("0.01", "0.1", "0.4", "1", "2", "4", "9", "20", "50"))]
         truth = float(mp.quad(integrand, cuts))
-    assert float(analytic.fn(1.5, h, law=Weibull(shape))) == pytest.approx(truth, rel=1e-12)
+    assert float(analytic.fn(1.5, h, heights=Weibull(shape))) == pytest.approx(truth, rel=1e-12)
 
 
 @every_law
@@ -139,7 +139,7 @@ def gates(scene, law):
     for name in scene.quantities:
         exact = analytic.cumulants(
             scene.surface, name, scene.separations, scene.modulus,
-            n_asperities=scene.n_asperities, count=scene.count, law=law,
+            n_asperities=scene.n_asperities, count=scene.count, heights=law,
         )  # fmt: skip
         z = (ensemble.mean(name) - exact.mean) / np.sqrt(exact.variance / m)
         spread = exact.variance * np.sqrt(2 / (m - 1) + exact.excess_kurtosis / m)
@@ -181,7 +181,7 @@ def test_the_error_of_the_mean_falls_as_it_should(law, make_scene):
                 heights=law, separations=h, n_surfaces=surfaces, seed=seed, quantities=("load",)
             )
             exact = analytic.cumulants(
-                scene.surface, "load", h, scene.modulus, n_asperities=scene.n_asperities, law=law
+                scene.surface, "load", h, scene.modulus, n_asperities=scene.n_asperities, heights=law
             )
             z = (mcgw.simulate(scene).mean("load") - exact.mean) / np.sqrt(exact.variance / surfaces)
             squares.append(z**2)
@@ -190,8 +190,8 @@ def test_the_error_of_the_mean_falls_as_it_should(law, make_scene):
 
 def test_load_of_exponential_heights_is_proportional_to_area():
     """What Greenwood and Williamson built on: A/P, the mean pressure, is the same at every separation."""
-    ratio = analytic.fn(1, [0.0, 1.0, 4.0], law=ExponentialHeights()) / analytic.fn(
-        1.5, [0.0, 1.0, 4.0], law=ExponentialHeights()
+    ratio = analytic.fn(1, [0.0, 1.0, 4.0], heights=ExponentialHeights()) / analytic.fn(
+        1.5, [0.0, 1.0, 4.0], heights=ExponentialHeights()
     )
     assert ratio == pytest.approx(1 / math.gamma(2.5), rel=1e-13)
 
@@ -199,8 +199,8 @@ def test_load_of_exponential_heights_is_proportional_to_area():
 def test_the_separation_is_found_again_under_another_law():
     surface = analytic.Surface(1e-6, 1e-5, 1e9, 1e-6, 1e9)
     h = np.array([0.2, 1.7])
-    load = analytic.load(surface, h, law=Weibull(2.0))
-    assert analytic.separation_at(surface, "load", load, law=Weibull(2.0)) == pytest.approx(h, abs=1e-12)
+    load = analytic.load(surface, h, heights=Weibull(2.0))
+    assert analytic.separation_at(surface, "load", load, heights=Weibull(2.0)) == pytest.approx(h, abs=1e-12)
 
 
 def test_measured_heights_are_added_up_as_they_are(make_scene):
@@ -213,7 +213,7 @@ def test_measured_heights_are_added_up_as_they_are(make_scene):
         literal = sum((x - h) ** 1.5 * (2 - math.exp(-x)) for x in s if x > h)
         unit = analytic.QUANTITIES["load"].scale(scene.surface)
         assert mcgw.simulate(scene).load[0, k] == pytest.approx(unit * literal, rel=1e-12)
-        assert analytic.fn(1.5, h, Exponential(2.0), law=law) * SAMPLE.size == pytest.approx(
+        assert analytic.fn(1.5, h, Exponential(2.0), heights=law) * SAMPLE.size == pytest.approx(
             literal, rel=1e-12
         )
 
@@ -224,13 +224,13 @@ def test_a_table_comes_close_to_its_sample():
     for h in (-1.0, 0.0, 1.0, 2.0):
         f = np.maximum(np.array(sample.heights) - h, 0) ** 1.5
         error = f.std() / math.sqrt(f.size)
-        assert abs(float(analytic.fn(1.5, h, law=table)) - f.mean()) < 0.5 * error
+        assert abs(float(analytic.fn(1.5, h, heights=table)) - f.mean()) < 0.5 * error
 
 
 def test_ties_do_not_break_a_table():
     law = HeightTable.of(np.repeat([1.0, 1.0, 2.0, 5.0], 50))
     assert np.all(np.diff(law.s) > 0)
-    assert float(analytic.fn(0, -9.0, law=law)) == pytest.approx(1, rel=1e-14)
+    assert float(analytic.fn(0, -9.0, heights=law)) == pytest.approx(1, rel=1e-14)
 
 
 @given(st.lists(st.floats(-1e3, 1e3), min_size=2, max_size=60))

@@ -6,7 +6,6 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import ndtr
 
-import analytic
 from analytic import QUANTITIES
 from mcgw.figures.data import SEPARATION, FigureData, Panel, Points, Series
 from mcgw.figures.samples import Samples
@@ -51,13 +50,13 @@ def _power(n: int) -> str:
 
 
 def _exact_spread(name: str, h: Array, n: int, samples: Samples) -> Array:
-    c = analytic.cumulants(samples.surface, name, h, n_asperities=n)
+    c = replace(samples.base.scene, n_asperities=n).theory.cumulants(name, h)
     return np.asarray(np.sqrt(c.variance) / c.mean)
 
 
 def _spread_points(x: Array, h: Array, name: str, n: int, samples: Samples) -> Points:
     """std/mean where enough asperities touch, with the standard error of its influence function."""
-    known = x.shape[0] * n * analytic.fn(0, h) >= 400
+    known = x.shape[0] * n * samples.base.scene.heights.above(h) >= 400
     x, h = x[:, known], h[known]
     mean, std = x.mean(axis=0), x.std(axis=0, ddof=1)
     z = (x - mean) / std
@@ -107,11 +106,11 @@ def distribution(samples: Samples) -> FigureData:
 
 def _load_panel(samples: Samples, key: str, contacts: float) -> Panel:
     h, m = 2.5, 100_000
-    n = round(contacts / float(analytic.fn(0, h)))
+    n = round(contacts / float(samples.base.scene.heights.above(np.array(h))))
     scene = replace(
         samples.base.scene, keep="sums", separations=(h,), quantities=("load",), n_asperities=n, n_surfaces=m
     )
-    exact = analytic.cumulants(scene.surface, "load", h, n_asperities=n)
+    exact = scene.theory.cumulants("load", h)
     mean, std = float(exact.mean), float(np.sqrt(exact.variance))
     x = simulate(scene).load[:, 0] / mean
     width = std / mean / 4
@@ -127,7 +126,11 @@ def _load_panel(samples: Samples, key: str, contacts: float) -> Panel:
     points = Points(centre, share / width, np.sqrt(p * (1 - p) / m) / width, p / width)
     fine = np.linspace(max(0.0, 2 - top), top, 201)
     bell = np.exp(-(((fine - 1) * mean / std) ** 2) / 2) / np.sqrt(2 * np.pi) * mean / std
-    none = f"; no contact: {float(np.exp(n * np.log1p(-analytic.fn(0, h)))):.1%}" if contacts < 10 else ""
+    none = (
+        f"; no contact: {float(np.exp(n * np.log1p(-scene.heights.above(np.array(h))))):.1%}"
+        if contacts < 10
+        else ""
+    )
     return Panel(
         f"{key}  {contacts:g} contacts{none}",
         r"load over its mean, $P/\langle P\rangle$",

@@ -142,7 +142,7 @@ def _lasting_layout(scene: Scene, mesh: Mesh) -> Layout:
 
 def _cheapest(scene: Scene) -> str:
     """Cells, unless most of them would be empty (`runs/bench/auto.py`)."""
-    touching = scene.n_asperities * float(scene.heights.above(np.array(scene.lowest)))
+    touching = scene.touching
     few = touching < min(5 + len(scene.separations) / 20, 20)
     return "tail" if few and scene.keep == "sums" else "cells"
 

@@ -1,0 +1,172 @@
+"""A quadrature rule over the heights, and what makes a sum over independent asperities fluctuate.
+
+One surface has N independent asperities (or a Poisson number of them with mean N), so a quantity is
+a sum of N independent terms ``f(s_i)``. Its cumulants follow from integrals over one asperity. These
+are taken with a fixed set of heights and probabilities (`HeightRule`): Gauss-Legendre in
+``sqrt(s - h_k)`` on pieces that no separation and no break divides, graded towards separations with a
+close neighbour. Means and variances underflow with the density, beyond h = 37.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any, Literal
+
+import numpy as np
+from numpy.polynomial.legendre import leggauss
+from numpy.typing import ArrayLike, NDArray
+
+from analytic.gradings import Grading
+from analytic.heights import GAUSSIAN, Gaussian, HeightLaw, exp_minus_half_square
+from analytic.integrals import fn
+from analytic.law_rule import law_rule
+from analytic.quantities import QUANTITIES
+from analytic.renamed import takes_heights
+from analytic.resolution import resolved_breaks
+
+__all__ = ["Count", "Fluctuations", "HeightRule"]
+
+Array = NDArray[np.float64]
+Count = Literal["fixed", "poisson"]
+
+_REACH = 13.0
+_NODES = 64
+_STEP = 4.0  # widest piece, on which the density is resolved as far down as s = -40
+_RATIO = 8.0  # of a piece to its distance from the next separation below
+
+
+def _graded(h: Array) -> list[float]:
+    """Edges above close neighbours, whose ``sqrt(s - h)`` almost has its kink inside the next piece."""
+    edges = []
+    for lower, upper in pairwise(h):
+        distance = upper - lower
+        while distance < 1:
+            edges.append(upper + distance)
+            distance *= _RATIO
+    return edges
+
+
+@dataclass(frozen=True, slots=True)
+class HeightRule:
+    """Heights and their probabilities: ``E f(s) = probabilities @ f(heights)`` for any sum of Hertz terms.
+
+    Parameters
+    ----------
+    heights : ndarray
+        Reduced heights above the lowest separation, shape (m,).
+    probabilities : ndarray
+        Their weights, shape (m,).
+    below : float
+        Probability of a height below the lowest separation, where nothing touches.
+    """
+
+    heights: Array
+    probabilities: Array
+    below: float
+
+    @classmethod
+    @takes_heights
+    def over(cls, separations: ArrayLike, grading: Grading, heights: HeightLaw = GAUSSIAN) -> "HeightRule":
+        """The rule for these reduced separations, this grading and law of the heights."""
+        h = np.unique(np.asarray(separations, dtype=np.float64))
+        if not isinstance(heights, Gaussian):
+            return cls(*law_rule(heights, h, grading), float(heights.below(h[0])))
+        low, last = float(h[0]), max(float(h[-1]), 0.0)
+        top = last + _REACH**2 / (last + np.hypot(last, _REACH))
+        regular = _STEP * np.arange(np.floor(low / _STEP) + 1, np.ceil(top / _STEP))
+        cuts = [*h, *_graded(h), *regular, *resolved_breaks(grading, max(low, -_REACH), top), top]
+        edges = np.unique([c for c in cuts if c <= top])
+        x, w = leggauss(_NODES)
+        x, w = (1 + x) / 2, w / 2
+        pieces = []
+        for left, right in pairwise(edges):
+            anchor = h[h <= left][-1]
+            start, stop = np.sqrt(left - anchor), np.sqrt(right - anchor)
+            v = start + (stop - start) * x
+            s = anchor + v * v
+            density = exp_minus_half_square(s) / np.sqrt(2 * np.pi)
+            pieces.append((s, 2 * v * (stop - start) * w * density))
+        s, probabilities = (np.concatenate(part) for part in zip(*pieces, strict=True))
+        return cls(s, probabilities, float(fn(0, -h[0])))
+
+    def fluctuations(self, f: Array, count: Count) -> "Fluctuations":
+        """What makes sums of the columns of `f` fluctuate.
+
+        For a fixed number of asperities the deviations of the terms from their means, counted from what
+        almost every asperity contributes (nothing, or the same), so that a variance like 1e-89 keeps its
+        digits; for a Poisson number the terms themselves.
+        """
+        mean = self.probabilities @ f
+        if count == "poisson" or not self.heights.size:
+            return Fluctuations(self, mean, f, np.zeros(f.shape[1]))
+        usual = np.zeros(f.shape[1]) if self.below > 0.5 else f[np.argmax(self.probabilities)]
+        shifted = f - usual
+        offset = self.probabilities @ shifted - self.below * usual
+        return Fluctuations(self, mean, shifted - offset, -usual - offset)
+
+    def terms(self, quantities: Sequence[str], separations: ArrayLike, grading: Grading) -> Array:
+        """What one asperity adds to each quantity, over its scale: shape (m, quantities * separations)."""
+        h = np.asarray(separations, dtype=np.float64)
+        approach = self.heights[:, None] - h
+        modulus = grading(self.heights)[:, None]
+        columns = []
+        for name in quantities:
+            q = QUANTITIES[name]
+            power = np.where(approach > 0, np.abs(approach) ** q.exponent, 0.0)
+            columns.append(power * modulus**q.modulus)
+        return np.concatenate(columns, axis=1)
+
+
+@dataclass(frozen=True, slots=True)
+class Fluctuations:
+    """Random parts of what one asperity contributes to some sums, the columns.
+
+    A sum over N asperities has N times the variance, and N times the third cumulant, of one.
+
+    Parameters
+    ----------
+    rule : HeightRule
+        Heights and their probabilities.
+    mean : ndarray
+        What one asperity contributes in the mean, shape (columns,).
+    at_heights : ndarray
+        The random part at each height of the rule, shape (m, columns).
+    below : ndarray
+        That below all of them, shape (columns,).
+    """
+
+    rule: HeightRule
+    mean: Array
+    at_heights: Array
+    below: Array
+
+    def moment(self, k: int) -> Array:
+        """Mean of the `k`-th power, shape (columns,)."""
+        rule = self.rule
+        return np.asarray(rule.probabilities @ self.at_heights**k + rule.below * self.below**k)
+
+    def products(self) -> Array:
+        """Mean products of all columns, shape (columns, columns)."""
+        weighted = self.at_heights * self.rule.probabilities[:, None]
+        return np.asarray(weighted.T @ self.at_heights + self.rule.below * np.outer(self.below, self.below))
+
+    def take(self, columns: NDArray[Any], unit: Array | float = 1.0) -> "Fluctuations":
+        """Some of the columns, in units of `unit`."""
+        return Fluctuations(
+            self.rule,
+            self.mean[columns] / unit,
+            self.at_heights[:, columns] / unit,
+            self.below[columns] / unit,
+        )
+
+    def turned(self, axes: Array) -> "Fluctuations":
+        """Combinations of the columns; `axes` has shape (columns, combinations)."""
+        return Fluctuations(self.rule, self.mean @ axes, self.at_heights @ axes, self.below @ axes)
+
+    def whitening(self, least: float) -> Array:
+        """Matrix that turns columns of unit variance into uncorrelated ones, shape (columns, axes).
+
+        Combinations with a variance up to `least` are left out: differences of nearly equal columns.
+        """
+        size, axes = np.linalg.eigh(self.products())
+        return np.asarray(axes[:, size > least] / np.sqrt(size[size > least]))

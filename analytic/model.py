@@ -1,0 +1,200 @@
+"""The exact statistics of one rough surface in contact: means, fluctuations and their inversion."""
+
+from collections.abc import Sequence
+from dataclasses import KW_ONLY, dataclass, field
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from analytic.gradings import Grading, Homogeneous
+from analytic.height_rule import Count, Fluctuations, HeightRule
+from analytic.heights import Gaussian, HeightLaw
+from analytic.integrals import fn
+from analytic.inversion import separations_at
+from analytic.quantities import QUANTITIES, Quantity
+from analytic.surface import Surface
+
+__all__ = ["Cumulants", "Model"]
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class Cumulants:
+    """Exact statistics of a quantity over surfaces, each an array over the separations.
+
+    Parameters
+    ----------
+    mean, variance : ndarray
+        In the unit of the quantity, and its square.
+    skewness, excess_kurtosis : ndarray
+        Of the distribution over surfaces; nan where the variance is 0.
+    """
+
+    mean: Array
+    variance: Array
+    skewness: Array
+    excess_kurtosis: Array
+
+
+@dataclass(frozen=True)
+class Model:
+    """A rough surface with everything that determines its contact.
+
+    Quantities are "load" (N), "area" (m^2), "stiffness" (N/m), "contacts" (1) and "conductance" (times
+    the resistivity, m); separations are reduced, d/sigma from the mean of the summit heights. What a
+    surface has of a quantity is the sum over its asperities, which are independent.
+
+    Parameters
+    ----------
+    surface : Surface
+        Parameters in SI units.
+    grading : Grading, optional
+        E*(s)/E*; left out: homogeneous.
+    heights : HeightLaw, optional
+        Law of the reduced heights; left out: Gaussian.
+    n_asperities : float, optional
+        Asperities on the surface; left out: eta A_n.
+    count : {"fixed", "poisson"}, optional
+        Whether their number is the same on every surface, or the mean of a Poisson law (a window on an
+        unbounded surface).
+
+    Raises
+    ------
+    ValueError
+        If `n_asperities` is not a positive finite number, or `count` another word.
+
+    Examples
+    --------
+    >>> import analytic
+    >>> surface = analytic.Surface(sigma=1e-6, radius=1e-5, eta=1e9, nominal_area=1e-6, E_star=1e9)
+    >>> model = analytic.Model(surface, heights=analytic.ExponentialHeights())
+    >>> float(model.mean("contacts", 1.0).round(3))
+    135.335
+    """
+
+    surface: Surface
+    _: KW_ONLY
+    grading: Grading = field(default_factory=Homogeneous)
+    heights: HeightLaw = field(default_factory=Gaussian)
+    n_asperities: float | None = None
+    count: Count = "fixed"
+
+    def __post_init__(self) -> None:
+        if not (np.isfinite(self.number) and self.number > 0):
+            raise ValueError(f"n_asperities = {self.n_asperities!r}: give a finite number > 0")
+        if self.count not in ("fixed", "poisson"):
+            raise ValueError(f'count = {self.count!r}: give "fixed" or "poisson"')
+
+    @property
+    def number(self) -> float:
+        """Asperities on a surface, or their mean number."""
+        return self.surface.n_asperities if self.n_asperities is None else self.n_asperities
+
+    def mean(self, quantity: str, h: ArrayLike) -> Array:
+        """Mean over surfaces: ``N scale F*_n(h)``.
+
+        Parameters
+        ----------
+        quantity : str
+            Its name.
+        h : array_like
+            Reduced separations, any shape.
+
+        Returns
+        -------
+        ndarray
+            In the unit of the quantity, in the shape of `h`.
+
+        Raises
+        ------
+        KeyError
+            If there is no such quantity.
+        """
+        q = QUANTITIES[quantity]
+        return self._unit(q) * fn(q.exponent, h, self._grading(q), heights=self.heights)
+
+    def slope(self, quantity: str, h: ArrayLike) -> Array:
+        """How fast the mean of the load or the area falls with the separation, per unit of h."""
+        q = QUANTITIES[quantity]
+        return self._unit(q) * q.exponent * fn(q.exponent - 1, h, self._grading(q), heights=self.heights)
+
+    def cumulants(self, quantity: str, h: ArrayLike) -> Cumulants:
+        """Mean, variance, skewness and excess kurtosis over surfaces, in the shape of `h`."""
+        h = np.asarray(h, dtype=np.float64)
+        rows = [self._one_asperity(quantity, x) for x in h.ravel()]
+        k1, k2, k3, k4 = np.array(rows).reshape(*h.shape, 4).transpose(-1, *range(h.ndim))
+        n, scale = self.number, QUANTITIES[quantity].scale(self.surface)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return Cumulants(
+                n * scale * k1, n * scale**2 * k2, k3 / k2 / np.sqrt(n * k2), k4 / k2 / (n * k2)
+            )  # k2 to a power would underflow long before these ratios overflow
+
+    def std(self, quantity: str, h: ArrayLike) -> Array:
+        """Standard deviation over surfaces, in the shape of `h`."""
+        return np.sqrt(self.cumulants(quantity, h).variance)
+
+    def covariance(self, quantities: Sequence[str], separations: ArrayLike) -> Array:
+        """Covariance over surfaces between Q quantities at K separations.
+
+        Returns
+        -------
+        ndarray
+            Shape (Q, K, Q, K), in the product of the units.
+        """
+        h = np.asarray(separations, dtype=np.float64)
+        matrix = self.fluctuations(quantities, h).products()
+        scale = np.repeat([QUANTITIES[name].scale(self.surface) for name in quantities], h.size)
+        return np.asarray(self.number * matrix * np.outer(scale, scale)).reshape(
+            2 * (len(quantities), h.size)
+        )
+
+    def separation_at(self, quantity: str, value: ArrayLike) -> Array:
+        """Separation at which the mean has a given value.
+
+        Parameters
+        ----------
+        quantity : str
+            What is known.
+        value : array_like
+            Its values, in its SI unit, any shape.
+
+        Returns
+        -------
+        ndarray
+            Reduced separations; the largest one where a strongly negative modulus makes several.
+
+        Raises
+        ------
+        ValueError
+            If a value is not positive or not reached between h = -40 and 1000.
+        """
+        q = QUANTITIES[quantity]
+        target = np.asarray(value, dtype=np.float64)
+        if not np.all(np.isfinite(target) & (target > 0)):
+            raise ValueError(f"{quantity} = {value!r}: give finite values > 0 {q.unit}")
+        return separations_at(q, np.log(target / self._unit(q)), self._grading(q), self.heights)
+
+    def rule(self, separations: ArrayLike) -> HeightRule:
+        """Heights and probabilities for integrals over one asperity at these separations."""
+        return HeightRule.over(separations, self.grading, self.heights)
+
+    def fluctuations(self, quantities: Sequence[str], separations: ArrayLike) -> Fluctuations:
+        """What one asperity adds to each quantity at each separation, over its scale.
+
+        Columns are quantity by quantity, at increasing number of the separation.
+        """
+        rule = self.rule(separations)
+        return rule.fluctuations(rule.terms(quantities, separations, self.grading), self.count)
+
+    def _unit(self, q: Quantity) -> float:
+        return self.number * q.scale(self.surface)
+
+    def _grading(self, q: Quantity) -> Grading | None:
+        return self.grading if q.modulus else None
+
+    def _one_asperity(self, quantity: str, h: float) -> tuple[float, ...]:
+        """First four cumulants that one asperity contributes, over the scale."""
+        part = self.fluctuations([quantity], [h])
+        m2, m3, m4 = (float(part.moment(k)[0]) for k in (2, 3, 4))
+        return float(part.mean[0]), m2, m3, m4 - 3 * m2 * m2 * (self.count == "fixed")
