@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from analytic.gradings import Grading, Homogeneous
 from analytic.height_rule import Count
 from analytic.heights import GAUSSIAN, HeightLaw
-from analytic.integrals import fn_scaled
+from analytic.integrals import quotient
 from analytic.model import Cumulants, Model
 from analytic.renamed import takes_heights
 from analytic.surface import Surface
@@ -153,7 +153,7 @@ def area_per_load(
     ``(3 pi/4) (R/sigma)^(1/2)/E* F_1(h)/F*_{3/2}(h)``, also where both underflow.
     """
     factor = 0.75 * np.pi * np.sqrt(surface.radius / surface.sigma) / surface.E_star
-    return np.asarray(factor * fn_scaled(1, h, heights=heights) / fn_scaled(1.5, h, grading, heights=heights))
+    return np.asarray(factor * quotient(h, (1, None), (1.5, grading), heights))
 
 
 @takes_heights
@@ -162,7 +162,7 @@ def area_per_load_ratio(h: ArrayLike, grading: Grading, *, heights: HeightLaw = 
 
     ``F_{3/2}(h)/F*_{3/2}(h)``, in the shape of `h`.
     """
-    return fn_scaled(1.5, h, heights=heights) / fn_scaled(1.5, h, grading, heights=heights)
+    return quotient(h, (1.5, None), (1.5, grading), heights)
 
 
 @takes_heights
@@ -174,7 +174,7 @@ def stiffness_ratio(h: ArrayLike, grading: Grading, *, heights: HeightLaw = GAUS
 
     ``F*_{1/2}(h)/F_{1/2}(h)``, in the shape of `h`.
     """
-    return fn_scaled(0.5, h, grading, heights=heights) / fn_scaled(0.5, h, heights=heights)
+    return quotient(h, (0.5, grading), (0.5, None), heights)
 
 
 @takes_heights

@@ -12,7 +12,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["Clipped", "Custom", "Exponential", "Grading", "Homogeneous"]
+__all__ = ["Clipped", "Custom", "Exponential", "Grading", "Homogeneous", "Squared"]
 
 Array = NDArray[np.float64]
 
@@ -111,7 +111,8 @@ class Custom:
         ValueError
             If a value is not finite, or the shape is another one.
         """
-        value = np.asarray(self.function(s), dtype=np.float64)
+        with np.errstate(all="ignore"):  # what comes of it is told below
+            value = np.asarray(self.function(s), dtype=np.float64)
         if value.shape not in (s.shape, ()):
             raise ValueError(f"grading: gave shape {value.shape} for heights of shape {s.shape}")
         value = np.broadcast_to(value, s.shape)
@@ -119,6 +120,27 @@ class Custom:
             where = float(s[~np.isfinite(value)].flat[0])
             raise ValueError(f"grading: E*(s)/E* is not finite at s = {where:.6g}")
         return value
+
+
+@dataclass(frozen=True)
+class Squared:
+    """The square of a grading: the modulus weighted by the load, which has the modulus once already."""
+
+    grading: Grading
+
+    @property
+    def breaks(self) -> tuple[float, ...]:
+        """Those of the grading."""
+        return self.grading.breaks
+
+    @property
+    def smooth(self) -> bool:
+        """As the grading."""
+        return self.grading.smooth
+
+    def __call__(self, s: Array) -> Array:
+        """The squares of its values."""
+        return np.square(self.grading(s))
 
 
 @dataclass(frozen=True)
@@ -143,7 +165,12 @@ class Clipped:
 
     @property
     def smooth(self) -> bool:
-        """As the grading, where its zeros are known."""
+        """As the grading, where its zeros are known, or that it has none."""
+        match self.grading:
+            case Homogeneous():
+                return True
+            case Exponential(gamma=gamma) if 0 <= gamma <= 1:
+                return True
         return self.grading.smooth and bool(self.zeros)
 
     def __call__(self, s: Array) -> Array:

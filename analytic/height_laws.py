@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.special import gammaln
+from scipy.special import gammaln, zeta
 
 from analytic.heights import HeightLaw
 from analytic.resolution import resolved_breaks
@@ -19,6 +19,7 @@ __all__ = ["ExponentialHeights", "ScipyHeights", "Weibull", "narrowest"]
 
 Array = NDArray[np.float64]
 
+_SERIES = 4.0  # shape of a Weibull law from which on its spread is summed in powers of its inverse
 _BEND = 0.5  # change of the logarithm of the density over a span
 
 
@@ -102,18 +103,14 @@ class Weibull:
             raise ValueError(f"shape = {self.shape!r}: give a number from 1 to 100")
 
     @cached_property
-    def _mean_std(self) -> tuple[float, float]:
-        """Mean and standard deviation of the unreduced variable x of scale 1."""
-        k = self.shape
-        mean = math.exp(gammaln(1 + 1 / k))
-        # as a difference of exponentials relative to the mean: no cancellation for large shapes
-        return mean, mean * math.sqrt(math.expm1(gammaln(1 + 2 / k) - 2 * gammaln(1 + 1 / k)))
+    def _spread(self) -> tuple[float, float]:
+        """Deviation over mean of the unreduced x of scale 1, and the logarithm of the mean of x times k."""
+        return _weibull_spread(self.shape)
 
     @property
     def support(self) -> tuple[float, float]:
         """From x = 0 on."""
-        mean, std = self._mean_std
-        return (-mean / std, math.inf)
+        return (-1 / self._spread[0], math.inf)
 
     @property
     def breaks(self) -> tuple[float, ...]:
@@ -129,45 +126,75 @@ class Weibull:
         """Where the logarithm of the density changes evenly, by at most one half."""
         return narrowest(self, s)
 
-    def _x(self, s: Array) -> Array:
-        return np.maximum(self._mean_std[1] * (s - self.support[0]), 0.0)
+    def _log_x(self, s: Array) -> Array:
+        """Logarithm of x over its mean: neither near 1 nor near the lower end does a digit cancel."""
+        spread = self._spread[0]
+        relative = np.maximum(spread * np.asarray(s), -1.0)
+        above_end = np.maximum(spread * (np.asarray(s) - self.support[0]), 0.0)
+        with np.errstate(divide="ignore"):
+            return np.where(relative > -0.5, np.log1p(relative), np.log(above_end))
 
-    def _s(self, x: Array) -> Array:
-        mean, std = self._mean_std
-        return (x - mean) / std
+    def _power(self, s: Array) -> Array:
+        """``x^k``."""
+        return np.asarray(np.exp(self.shape * self._log_x(s) + self._spread[1]))
+
+    def _s(self, power: Array) -> Array:
+        """Height of a given ``x^k``."""
+        spread, log_mean = self._spread
+        with np.errstate(divide="ignore"):
+            return np.asarray(np.expm1((np.log(power) - log_mean) / self.shape) / spread)
 
     def sample(self, rng: np.random.Generator, n: int) -> Array:
-        """NumPy's Weibull numbers, reduced."""
-        return self._s(rng.weibull(self.shape, n))
+        """Powers of NumPy's standard exponential numbers, reduced."""
+        return self._s(rng.standard_exponential(n))
 
     def density(self, s: Array) -> Array:
         """``k x^(k-1) exp(-x^k)`` times the standard deviation of x."""
-        x, k = self._x(s), self.shape
+        spread, log_mean = self._spread
+        rise = (self.shape - 1) * self._log_x(s) if self.shape > 1 else 0.0
+        slope = self.shape * spread * np.exp(rise + log_mean)
         inside = np.asarray(s) >= self.support[0]
-        return np.asarray(np.where(inside, self._mean_std[1] * k * x ** (k - 1) * np.exp(-(x**k)), 0.0))
+        return np.asarray(np.where(inside, slope * np.exp(-self._power(s)), 0.0))
 
     def log_ratio(self, s: Array, t: Array) -> Array:
         """Of the density, by the relative change of x."""
-        x, k = self._x(s), self.shape
-        step = np.log1p(self._mean_std[1] * t / x) if k > 1 else 0.0
-        rise = x**k * np.expm1(k * step) if k > 1 else self._mean_std[1] * t
-        return np.asarray((k - 1) * step - rise)
+        k = self.shape
+        if k == 1:
+            return np.asarray(-t + 0 * np.asarray(s))
+        step = np.log1p(t / (np.asarray(s) - self.support[0]))
+        return np.asarray((k - 1) * step - self._power(s) * np.expm1(k * step))
 
     def below(self, s: Array) -> Array:
         """``1 - exp(-x^k)``."""
-        return np.asarray(-np.expm1(-(self._x(s) ** self.shape)))
+        return np.asarray(-np.expm1(-self._power(s)))
 
     def above(self, s: Array) -> Array:
         """``exp(-x^k)``."""
-        return np.asarray(np.exp(-(self._x(s) ** self.shape)))
+        return np.asarray(np.exp(-self._power(s)))
 
     def from_below(self, p: Array, s: float) -> Array:
         """``(-log(1 - p below(s)))^(1/k)``, reduced."""
-        return self._s((-np.log1p(-p * self.below(np.array(s)))) ** (1 / self.shape))
+        return self._s(-np.log1p(-p * self.below(np.array(s))))
 
     def from_above(self, p: Array, s: float) -> Array:
         """``(x(s)^k - log(p))^(1/k)``, reduced."""
-        return self._s((self._x(np.array(s)) ** self.shape - np.log(p)) ** (1 / self.shape))
+        return self._s(self._power(np.array(s)) - np.log(p))
+
+
+def _weibull_spread(k: float) -> tuple[float, float]:
+    """Deviation over mean of a Weibull variable of scale 1, and k times the logarithm of its mean.
+
+    ``x^k`` makes k times an error of the first, so it is summed in powers of 1/k, whose coefficients are
+    zeta functions, where the difference of logarithms of Gamma functions would cancel.
+    """
+    if k < _SERIES:
+        logs = gammaln(1 + 1 / k), gammaln(1 + 2 / k)
+        return math.sqrt(math.expm1(logs[1] - 2 * logs[0])), float(k * logs[0])
+    m = np.arange(2, 80)
+    terms = (-1.0) ** m * zeta(m) / m
+    log_square = math.fsum(terms * (2.0**m - 2) * k ** (-1.0 * m))
+    log_mean = math.fsum([-np.euler_gamma, *(terms * k ** (1.0 - m))])
+    return math.sqrt(math.expm1(log_square)), log_mean
 
 
 @dataclass(frozen=True, eq=False)

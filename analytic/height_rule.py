@@ -21,6 +21,7 @@ from analytic.heights import GAUSSIAN, Gaussian, HeightLaw, exp_minus_half_squar
 from analytic.integrals import fn
 from analytic.law_rule import law_rule
 from analytic.quantities import QUANTITIES
+from analytic.reach import Weight, tame
 from analytic.renamed import takes_heights
 from analytic.resolution import resolved_breaks
 
@@ -31,6 +32,7 @@ Count = Literal["fixed", "poisson"]
 
 _REACH = 13.0
 _NODES = 64
+_POWER = 4  # of the modulus in the kurtosis
 _STEP = 4.0  # widest piece, on which the density is resolved as far down as s = -40
 _RATIO = 8.0  # of a piece to its distance from the next separation below
 
@@ -44,6 +46,18 @@ def _graded(h: Array) -> list[float]:
             edges.append(upper + distance)
             distance *= _RATIO
     return edges
+
+
+def _ends(h: Array, grading: Grading) -> tuple[float, float]:
+    """Range of the rule under the normal law: from the lowest separation to where nothing is left."""
+    low, last = float(h[0]), max(float(h[-1]), 0.0)
+    top = last + _REACH**2 / (last + np.hypot(last, _REACH))
+    if tame(grading):
+        return low, top
+    weight = Weight(lambda s: -s * s / 2, grading, _POWER)
+    start = max(low, -_REACH)
+    top = max(weight.reach(max(x, start), top, np.inf) for x in (low, last))
+    return (weight.reach(0.0, -_REACH, low) if low < -_REACH else low), top
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,11 +85,10 @@ class HeightRule:
         h = np.unique(np.asarray(separations, dtype=np.float64))
         if not isinstance(heights, Gaussian):
             return cls(*law_rule(heights, h, grading), float(heights.below(h[0])))
-        low, last = float(h[0]), max(float(h[-1]), 0.0)
-        top = last + _REACH**2 / (last + np.hypot(last, _REACH))
+        low, top = _ends(h, grading)
         regular = _STEP * np.arange(np.floor(low / _STEP) + 1, np.ceil(top / _STEP))
-        cuts = [*h, *_graded(h), *regular, *resolved_breaks(grading, max(low, -_REACH), top), top]
-        edges = np.unique([c for c in cuts if c <= top])
+        cuts = [low, *h, *_graded(h), *regular, *resolved_breaks(grading, max(low, -_REACH), top), top]
+        edges = np.unique([c for c in cuts if low <= c <= top])
         x, w = leggauss(_NODES)
         x, w = (1 + x) / 2, w / 2
         pieces = []

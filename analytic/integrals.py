@@ -15,15 +15,20 @@ from numpy.typing import ArrayLike, NDArray
 from analytic.gradings import Grading, Homogeneous
 from analytic.heights import GAUSSIAN, Gaussian, HeightLaw, exp_minus_half_square
 from analytic.law_rule import law_integral
+from analytic.magnitude import log_unit, over_unit
+from analytic.reach import Weight, tame
 from analytic.renamed import takes_heights
 from analytic.resolution import resolved_breaks
 
-__all__ = ["fn", "fn_between", "fn_paper", "fn_scaled"]
+__all__ = ["fn", "fn_between", "fn_paper", "fn_scaled", "quotient"]
 
 Array = NDArray[np.float64]
 
-_REACH = 13.0  # phi(13)/phi(0) = 2e-37: what lies beyond can carry any modulus up to exp(4|s|)
+_REACH = 13.0  # phi(13)/phi(0) = 2e-37: enough for any modulus up to exp(3|s|); steeper ones reach farther
 _NODES = 64
+_WIDEST = 4.0
+_TRIED = 9  # separations of a column at which the reach is looked for
+_ALL = (-np.inf, np.inf)
 _BLOCK = 192  # separations at a time: nodes x block x 8 bytes stay in the cache
 
 
@@ -34,8 +39,8 @@ def _legendre(nodes: int) -> tuple[Array, Array]:
     return (1 + x) / 2, w / 2
 
 
-def _panel(n: float, h: Array, grading: Grading, low: Array, high: Array) -> Array:
-    """``int (s-h)^n g phi / phi(max(h, 0))`` over s from `low` to `high`, columns like `h`."""
+def _panel(n: float, h: Array, grading: Grading, unit: Array, low: Array, high: Array) -> Array:
+    """``int (s-h)^n g phi / phi(max(h, 0))`` over s from `low` to `high`, in units of g; columns like `h`."""
     x, w = _legendre(_NODES)
     above = np.maximum(h, 0.0)
     start = np.sqrt(low - h)
@@ -54,7 +59,7 @@ def _panel(n: float, h: Array, grading: Grading, low: Array, high: Array) -> Arr
     terms *= beyond
     np.exp(terms, out=terms)
     if not isinstance(grading, Homogeneous):
-        terms *= grading(beyond + above)
+        terms *= over_unit(grading, beyond + above, unit)
     if later:
         for _ in range(odd):  # products are ten times faster than a power
             terms *= v
@@ -62,21 +67,84 @@ def _panel(n: float, h: Array, grading: Grading, low: Array, high: Array) -> Arr
     return np.asarray((terms @ (2 * w))[:, None] * width ** (odd + 1))
 
 
-def _sorted(n: float, h: Array, grading: Grading, between: tuple[float, float]) -> Array:
+def _top(above: Array, reach: float) -> Array:
+    """Where the density is lower than at `above` by as much as it is at `reach` than at 0."""
+    return np.asarray(above + reach**2 / (above + np.sqrt(above * above + reach**2)))
+
+
+def _reaches(grading: Grading, h: Array, above: Array, between: tuple[float, float]) -> tuple[float, float]:
+    """Reach on either side that serves all separations of a sorted column."""
+    if tame(grading):
+        return _REACH, _REACH
+    weight = Weight(lambda s: -s * s / 2, grading, 1)
+    upper = lower = _REACH
+    for k in np.unique(np.linspace(0, len(h) - 1, _TRIED).astype(int)):
+        start = max(float(above[k, 0]), 0.0)
+        end = min(float(_top(np.array(start), _REACH)), between[1])
+        if start < end < between[1]:
+            found = weight.reach(start, end, between[1])
+            upper = max(upper, float(np.sqrt(found**2 - start**2)))
+    bottom = max(float(h[0, 0]), between[0])
+    if bottom < -_REACH:
+        lower = -weight.reach(0.0, -_REACH, bottom)
+    return upper, lower
+
+
+def _sorted(n: float, h: Array, grading: Grading, unit: Array, between: tuple[float, float]) -> Array:
     """Scaled integral for a sorted column of separations, cut at the breaks and at the mean height."""
-    above = np.maximum(np.maximum(h, between[0]), 0.0)
-    top = above + _REACH**2 / (above + np.sqrt(above * above + _REACH**2))
-    top = np.minimum(top, between[1])
-    bottom = np.minimum(np.maximum(np.maximum(h, -_REACH), between[0]), top)
+    first = np.maximum(h, between[0])
+    upper, lower = _reaches(grading, h, first, between)
+    top = np.minimum(_top(np.maximum(first, 0.0), upper), between[1])
+    bottom = np.minimum(np.maximum(first, -lower), top)
     cuts = {0.0, *resolved_breaks(grading, float(bottom[0, 0]), float(top[-1, 0]))}
+    if max(upper, lower) > _REACH:  # farther than what one rule resolves of the density
+        cuts |= set(np.arange(np.ceil(bottom[0, 0] / _WIDEST), top[-1, 0] / _WIDEST) * _WIDEST)
     result = np.zeros_like(h)
     for left, right in pairwise([-np.inf, *sorted(cuts), np.inf]):
         low, high = np.clip(left, bottom, top), np.clip(right, bottom, top)
         inside = np.flatnonzero(high > low)
         for k in range(0, inside.size, _BLOCK):
             i = inside[k : k + _BLOCK]
-            result[i] += _panel(n, h[i], grading, low[i], high[i])
+            result[i] += _panel(n, h[i], grading, unit[i], low[i], high[i])
     return np.where(h >= 0, result, result / np.sqrt(2 * np.pi))
+
+
+def _in_units(
+    n: float,
+    h: ArrayLike,
+    grading: Grading | None,
+    between: tuple[float, float],
+    heights: HeightLaw,
+) -> tuple[Array, Array]:
+    """As `fn_scaled`, over the unit of the grading at each separation; and the logarithm of that unit."""
+    h = np.asarray(h, dtype=np.float64)
+    if n < 0 or (2 * n) % 1:
+        raise ValueError(f"n = {n!r}: give a multiple of 1/2 that is not negative")
+    if not np.all(np.isfinite(h)):
+        raise ValueError("h: every separation must be finite")
+    grading = Homogeneous() if grading is None else grading
+    if not isinstance(heights, Gaussian):
+        return law_integral(n, h, heights, grading, between)
+    unit = np.zeros(h.shape)
+    if not isinstance(grading, Homogeneous):
+        unit = log_unit(grading, np.maximum(h, -_REACH))
+    order = np.argsort(h, axis=None)
+    ordered = h.reshape(-1, 1)[order] + 0.0  # makes -0.0 the same as 0.0
+    units = unit.reshape(-1, 1)[order]
+    result = np.empty(h.size)
+    gaps = np.flatnonzero(np.diff(ordered[:, 0]) > 2 * _REACH) + 1  # no need to know the grading in between
+    for i in np.split(np.arange(h.size), gaps) if h.size else ():
+        result[order[i]] = _sorted(n, ordered[i], grading, units[i], between)[:, 0]
+    return result.reshape(h.shape), unit
+
+
+def quotient(
+    h: ArrayLike, above: tuple[float, Grading | None], below: tuple[float, Grading | None], heights: HeightLaw
+) -> Array:
+    """Quotient of two integrals, each by its power and grading, also where both underflow."""
+    (a, unit_a), (b, unit_b) = (_in_units(n, h, g, _ALL, heights) for n, g in (above, below))
+    with np.errstate(over="ignore"):
+        return np.asarray(a / b * np.exp(unit_a - unit_b))
 
 
 @takes_heights
@@ -85,7 +153,7 @@ def fn_scaled(
     h: ArrayLike,
     grading: Grading | None = None,
     *,
-    between: tuple[float, float] = (-np.inf, np.inf),
+    between: tuple[float, float] = _ALL,
     heights: HeightLaw = GAUSSIAN,
 ) -> Array:
     """F_n or F*_n relative to the density at the separation.
@@ -113,21 +181,8 @@ def fn_scaled(
     ValueError
         If `n` is negative or no multiple of 1/2, or a separation is not finite.
     """
-    h = np.asarray(h, dtype=np.float64)
-    if n < 0 or (2 * n) % 1:
-        raise ValueError(f"n = {n!r}: give a multiple of 1/2 that is not negative")
-    if not np.all(np.isfinite(h)):
-        raise ValueError("h: every separation must be finite")
-    grading = Homogeneous() if grading is None else grading
-    if not isinstance(heights, Gaussian):
-        return law_integral(n, h, heights, grading, between)
-    order = np.argsort(h, axis=None)
-    ordered = h.reshape(-1, 1)[order] + 0.0  # makes -0.0 the same as 0.0
-    result = np.empty(h.size)
-    gaps = np.flatnonzero(np.diff(ordered[:, 0]) > 2 * _REACH) + 1  # no need to know the grading in between
-    for i in np.split(np.arange(h.size), gaps) if h.size else ():
-        result[order[i]] = _sorted(n, ordered[i], grading, between)[:, 0]
-    return result.reshape(h.shape)
+    value, unit = _in_units(n, h, grading, between, heights)
+    return np.asarray(value * np.exp(unit))
 
 
 @takes_heights
@@ -181,17 +236,15 @@ def fn(
     -5011.454471272
     """
     h = np.asarray(h, dtype=np.float64)
-    scaled = fn_scaled(n, h, grading, heights=heights)
-    if not isinstance(heights, Gaussian):
-        with np.errstate(divide="ignore", invalid="ignore"):
-            return np.log(scaled) if log else scaled
-    above = np.maximum(h, 0.0)
+    value, unit = _in_units(n, h, grading, _ALL, heights)
+    relative = (h >= 0) & isinstance(heights, Gaussian)
+    above = np.where(relative, h, 0.0)
     if log:
         with np.errstate(divide="ignore", invalid="ignore"):
-            return np.asarray(
-                np.log(scaled) - np.where(h >= 0, above * above / 2 + np.log(2 * np.pi) / 2, 0.0)
-            )
-    return scaled * np.where(h >= 0, exp_minus_half_square(above) / np.sqrt(2 * np.pi), 1.0)
+            density = np.where(relative, above * above / 2 + np.log(2 * np.pi) / 2, 0.0)
+            return np.asarray(np.log(value) + unit - density)
+    density = np.where(relative, exp_minus_half_square(above) / np.sqrt(2 * np.pi), 1.0)
+    return np.asarray(value * np.exp(unit) * density)
 
 
 @takes_heights
@@ -226,9 +279,9 @@ def fn_between(
     ndarray
         A share, 0 to 1 where the modulus is positive, in the shape of `h`.
     """
-    return fn_scaled(n, h, grading, between=(low, high), heights=heights) / fn_scaled(
-        n, h, grading, heights=heights
-    )
+    part, _ = _in_units(n, h, grading, (low, high), heights)
+    whole, _ = _in_units(n, h, grading, _ALL, heights)
+    return part / whole
 
 
 def fn_paper(n: float, h: ArrayLike, gamma: float, ngp: int) -> Array:

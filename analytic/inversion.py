@@ -6,7 +6,7 @@ from scipy.optimize import brentq
 
 from analytic.gradings import Grading
 from analytic.heights import GAUSSIAN, HeightLaw
-from analytic.integrals import fn, fn_scaled
+from analytic.integrals import fn, quotient
 from analytic.quantities import QUANTITIES, Quantity
 
 __all__ = ["ratio_at_equal_load", "separations_at"]
@@ -90,9 +90,6 @@ def ratio_at_equal_load(
     h = np.asarray(h, dtype=np.float64)
     other = separations_at(QUANTITIES["load"], fn(1.5, h, log=True, heights=heights), grading, heights)
 
-    def per_load(at: Array, law: Grading | None) -> Array:
-        # Relative to the loads, which are equal: hardly sensitive to the last digits of h2, no underflow.
-        weight = law if q.modulus else None
-        return fn_scaled(q.exponent, at, weight, heights=heights) / fn_scaled(1.5, at, law, heights=heights)
-
-    return per_load(other, grading) / per_load(h, None)
+    # Relative to the loads, which are equal: hardly sensitive to the last digits of h2, and no underflow.
+    graded = quotient(other, (q.exponent, grading if q.modulus else None), (1.5, grading), heights)
+    return graded / quotient(h, (q.exponent, None), (1.5, None), heights)

@@ -13,7 +13,9 @@ from numpy.typing import NDArray
 
 from analytic.gradings import Grading
 from analytic.heights import HeightLaw
+from analytic.magnitude import log_unit, over_unit
 from analytic.measured_heights import MeasuredHeights
+from analytic.reach import Weight
 from analytic.resolution import resolved_breaks
 
 __all__ = ["law_integral", "law_rule"]
@@ -25,14 +27,26 @@ _SPANS = 6.0  # a piece over which the density changes by a factor of 50 needs s
 _WIDEST = 4.0
 _GROWTH = 8.0  # of the pieces away from a singular end
 _TINY = 1e-14  # distance from such an end, below which heights are not told apart
+_UNDERFLOW = -745.0  # logarithm of the least density
+_RAREST = 1e-290  # share of the heights next to which densities underflow
 _NOTHING = 1e-32  # share of the touching heights that can be left out
 
 
-def _ends(law: HeightLaw, low: float) -> tuple[float, float]:
+def _ends(law: HeightLaw, low: float, grading: Grading, power: int, exponent: float) -> tuple[float, float]:
     """Range of the rule: from `low` or the lowest height there is to where nothing is left."""
-    start = max(low, float(law.from_below(np.array(_NOTHING), np.inf)), law.support[0])
-    top = float(law.from_above(np.array(_NOTHING), start))
-    return start, min(top, law.support[1])
+    low, high = max(low, law.support[0]), law.support[1]
+    start = max(low, float(law.from_below(np.array(_NOTHING), np.inf)))
+    top = min(float(law.from_above(np.array(_NOTHING), start)), high)
+    if not (start < top and law.above(np.array(start)) > _RAREST):
+        return start, top
+
+    def log_density(s: Array) -> Array:
+        with np.errstate(divide="ignore"):
+            return np.maximum(np.log(law.density(s)), _UNDERFLOW)
+
+    weight = Weight(log_density, grading, power, exponent)
+    middle = float(np.clip(law.from_above(np.array(0.5), start), start, top))
+    return weight.reach(middle, start, low), weight.reach(start, top, high)
 
 
 def _edges(law: HeightLaw, start: float, top: float) -> list[float]:
@@ -55,7 +69,9 @@ def _edges(law: HeightLaw, start: float, top: float) -> list[float]:
     return edges
 
 
-def law_rule(law: HeightLaw, separations: Array, grading: Grading) -> tuple[Array, Array]:
+def law_rule(
+    law: HeightLaw, separations: Array, grading: Grading, *, power: int = 4, exponent: float = 0.0
+) -> tuple[Array, Array]:
     """Heights and probabilities: ``E f(s) = probabilities @ f(heights)`` for sums of Hertz terms.
 
     Parameters
@@ -66,6 +82,9 @@ def law_rule(law: HeightLaw, separations: Array, grading: Grading) -> tuple[Arra
         Reduced separations, increasing; f may have a root above each.
     grading : Grading
         Its breaks are ends of pieces.
+    power, exponent : optional
+        Highest powers of the modulus and of the approach that are summed, for gradings that rise as fast
+        as heights become rare; 4 is that of the kurtosis.
 
     Returns
     -------
@@ -76,7 +95,7 @@ def law_rule(law: HeightLaw, separations: Array, grading: Grading) -> tuple[Arra
         s = np.array(law.heights)
         s = s[s > separations[0]]
         return s, np.full(s.size, 1 / len(law.heights))
-    start, top = _ends(law, float(separations[0]))
+    start, top = _ends(law, float(separations[0]), grading, power, exponent)
     if not start < top:
         return np.empty(0), np.empty(0)
     cuts = {*_edges(law, start, top), *resolved_breaks(grading, start, top)}
@@ -116,7 +135,9 @@ def _graded(separations: Array, start: float, top: float) -> list[float]:
     return [e for e in edges if start < e < top]
 
 
-def law_integral(n: float, h: Array, law: HeightLaw, grading: Grading, between: tuple[float, float]) -> Array:
+def law_integral(
+    n: float, h: Array, law: HeightLaw, grading: Grading, between: tuple[float, float]
+) -> tuple[Array, Array]:
     """``int_h^inf (s-h)^n density(s) grading(s) ds``, separation by separation.
 
     Parameters
@@ -134,16 +155,21 @@ def law_integral(n: float, h: Array, law: HeightLaw, grading: Grading, between: 
 
     Returns
     -------
-    ndarray
-        In the shape of `h`.
+    (ndarray, ndarray)
+        In the shape of `h`: the integral over a unit, and the logarithm of that unit, 0 where the grading
+        is of an ordinary size.
     """
-    values = []
+    rows = []
     for x in h.ravel():
         marks = [float(b) for b in between if np.isfinite(b) and b > x]
-        s, p = law_rule(law, np.array([x]), _Cut(grading, tuple(marks)))
-        approach = (s - x) ** n * grading(s)
-        values.append(float(p @ np.where((s >= between[0]) & (s <= between[1]), approach, 0.0)))
-    return np.array(values, dtype=np.float64).reshape(h.shape)
+        cut = _Cut(grading, tuple(marks))
+        s, p = law_rule(law, np.array([x]), cut, power=1, exponent=n + 1)
+        unit = log_unit(grading, s[:1]) if s.size else np.zeros(1)
+        terms = (s - x) ** n * over_unit(grading, s, unit)
+        inside = (s >= between[0]) & (s <= between[1])
+        rows.append((float(p @ np.where(inside, terms, 0.0)), float(unit[0])))
+    value, units = np.array(rows, dtype=np.float64).reshape(-1, 2).T
+    return value.reshape(h.shape), units.reshape(h.shape)
 
 
 class _Cut:

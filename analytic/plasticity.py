@@ -1,37 +1,18 @@
 """Plasticity index of a graded surface, at a height and averaged over the contacts (Eq. 13)."""
 
-from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from analytic.gradings import Grading
+from analytic.gradings import Grading, Squared
 from analytic.heights import GAUSSIAN, HeightLaw
-from analytic.integrals import fn_scaled
+from analytic.integrals import quotient
 from analytic.renamed import takes_heights
 
 __all__ = ["mean_modulus", "plasticity_index"]
 
 Array = NDArray[np.float64]
-
-
-@dataclass(frozen=True)
-class _Squared:
-    """The square of a grading: the modulus weighted by the load, which has the modulus once already."""
-
-    grading: Grading
-
-    @property
-    def breaks(self) -> tuple[float, ...]:
-        return self.grading.breaks
-
-    @property
-    def smooth(self) -> bool:
-        return self.grading.smooth
-
-    def __call__(self, s: Array) -> Array:
-        return np.square(self.grading(s))
 
 
 @takes_heights
@@ -72,11 +53,9 @@ def mean_modulus(
     1.727
     """
     if weight == "load":
-        return fn_scaled(1.5, h, _Squared(grading), heights=heights) / fn_scaled(
-            1.5, h, grading, heights=heights
-        )
+        return quotient(h, (1.5, Squared(grading)), (1.5, grading), heights)
     n = {"number": 0.0, "area": 1.0}[weight]
-    return fn_scaled(n, h, grading, heights=heights) / fn_scaled(n, h, heights=heights)
+    return quotient(h, (n, grading), (n, None), heights)
 
 
 def plasticity_index(modulus: ArrayLike, *, E_star: float, slope: float, hardness: float) -> Array:

@@ -99,10 +99,15 @@ def converge(
     Raises
     ------
     ValueError
-        If the sampler is ``stratified``, which draws no ensemble.
+        If the sampler is ``stratified``, which draws no ensemble, or nothing touches.
     """
     if scene.sampler == "stratified":
         raise ValueError('sampler = "stratified" draws means, not an ensemble; converge takes another one')
+    if not scene.touching:
+        raise ValueError(
+            f"contact.separations: no height reaches d/sigma = {scene.lowest:g}: nothing touches, and "
+            "there is nothing to test; give lower ones"
+        )
     draw = draw or _own
     scene = _tested(scene)
     parts = []

@@ -126,7 +126,8 @@ def _draw_curve(axis: Any, h: np.ndarray, curve: Curve) -> None:
         label="Monte Carlo, 95 %",
         zorder=3,
     )
-    axis.set_yscale("log")
+    if np.any(positive) or np.any(curve.theory > 0):
+        axis.set_yscale("log")
 
 
 def _draw_residual(axis: Any, h: np.ndarray, curve: Curve) -> None:

@@ -16,6 +16,7 @@ __all__ = ["Paired", "paired_ratio", "regrade"]
 Array = NDArray[np.float64]
 
 _ROWS = 1024  # surfaces at a time
+_PAIRED = ("surface", "separations", "heights", "n_asperities", "count", "seed")
 
 
 def regrade(
@@ -135,11 +136,17 @@ def paired_ratio(numerator: Ensemble, denominator: Ensemble, quantity: str) -> P
     Raises
     ------
     ValueError
-        If the two differ in number of surfaces or separations.
+        If the two differ in anything but grading and quantities; the line says in what.
     """
+    differ = [name for name in _PAIRED if getattr(numerator.scene, name) != getattr(denominator.scene, name)]
+    differ += [
+        name for name in ("n_surfaces", "sampler") if getattr(numerator, name) != getattr(denominator, name)
+    ]
+    if differ:
+        raise ValueError(
+            f"a paired ratio takes two ensembles of the same surfaces; these differ in {', '.join(differ)}"
+        )
     b, a = (e.values(quantity).astype(np.float64) for e in (numerator, denominator))
-    if a.shape != b.shape or numerator.scene.seed != denominator.scene.seed:
-        raise ValueError("a paired ratio takes two ensembles of the same surfaces and separations")
     ratio = b.mean(axis=0) / a.mean(axis=0)
     residual = (b - ratio * a).var(axis=0, ddof=1)
     apart = b.var(axis=0, ddof=1) + ratio**2 * a.var(axis=0, ddof=1)

@@ -161,7 +161,11 @@ def _spread(comparison: Comparison) -> FigureData:
     series = []
     for name in scene.quantities:
         curve = comparison.curves[name]
-        exact = curve.stderr * np.sqrt(ensemble.n_surfaces) / np.abs(curve.theory)
+        touches = curve.theory != 0
+        exact = np.full(len(h), np.nan)
+        exact[touches] = (curve.stderr * np.sqrt(ensemble.n_surfaces))[touches] / np.abs(
+            curve.theory[touches]
+        )
         known = (ensemble.mean(name) > 0) & (exact > 0)
         mean, std = ensemble.mean(name)[known], ensemble.std(name)[known]
         points = Points(h[known], std / mean, np.zeros(known.sum()), exact[known])

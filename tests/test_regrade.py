@@ -104,8 +104,29 @@ def test_what_cannot_be_regraded(base, make_scene):
         regrade(base, analytic.Custom(lambda s: 2 + np.sin(20 * s)))
     with pytest.raises(ValueError, match="keeps no moments"):
         regrade(mcgw.simulate(make_scene()), analytic.Homogeneous())
-    with pytest.raises(ValueError, match="same surfaces"):
-        paired_ratio(base, mcgw.simulate(make_scene()), "load")
+
+
+@pytest.mark.parametrize(
+    ("change", "told"),
+    [
+        ({"seed": 5}, "seed"),
+        ({"count": "poisson"}, "count"),
+        ({"n_asperities": 3001}, "n_asperities"),
+        ({"n_surfaces": 8}, "n_surfaces"),
+        ({"heights": analytic.Weibull(2.0)}, "heights"),
+        ({"separations": (0.0, 1.5)}, "separations"),
+        ({"separations": (0.5, 1.0), "seed": 5}, "separations, seed"),
+        ({"sampler": "tail"}, "sampler"),
+        ({"surface": analytic.Surface(1e-6, 1e-5, 1e9, 1e-6, 1e9)}, "surface"),
+    ],
+)
+def test_a_pair_is_of_the_same_surfaces(make_scene, change, told):
+    """Anything but the grading that differs is named; the companion pair of two gradings passes."""
+    values = {"separations": (0.0, 1.0), "sampler": "cells", "n_surfaces": 9}
+    one = mcgw.simulate(make_scene(**values))
+    with pytest.raises(ValueError, match=rf"the same surfaces; these differ in {told}$"):
+        paired_ratio(mcgw.simulate(make_scene(**(values | change))), one, "load")
+    paired_ratio(mcgw.simulate(make_scene(**values, grading=analytic.Exponential(0.5))), one, "load")
 
 
 def test_moments_of_another_version(base, monkeypatch):

@@ -54,7 +54,10 @@ def draw(data: FigureData) -> Figure:
 
 
 def _draw_panel(axis: Any, panel: Panel) -> None:
-    axis.set(xlabel=panel.xlabel, ylabel=panel.ylabel, xscale=panel.scales[0], yscale=panel.scales[1])
+    positive = [float(y[y > 0].min()) for y in (x.theory for x in panel.series) if np.any(y > 0)]
+    logarithmic = panel.scales[1] == "log" and bool(positive)  # such an axis has no place for 0 alone
+    yscale = "linear" if panel.scales[1] == "log" and not positive else panel.scales[1]
+    axis.set(xlabel=panel.xlabel, ylabel=panel.ylabel, xscale=panel.scales[0], yscale=yscale)
     axis.set_title(panel.title, loc="left")
     if panel.level is not None:
         axis.axhline(panel.level, color="0.55", lw=0.8, zorder=1)
@@ -62,9 +65,8 @@ def _draw_panel(axis: Any, panel: Panel) -> None:
         _draw_series(axis, series, _HOMOGENEOUS if series.label == "γ = 1" else look, panel)
     if panel.ylim:
         axis.set_ylim(panel.ylim)
-    elif panel.scales[1] == "log":
-        least = min(float(np.min(x.theory[x.theory > 0])) for x in panel.series)
-        axis.set_ylim(bottom=0.6 * least)
+    elif logarithmic:
+        axis.set_ylim(bottom=0.6 * min(positive))
     axis.legend(fontsize=8, handlelength=3)
 
 
