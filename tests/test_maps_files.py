@@ -122,7 +122,7 @@ def test_text_without_a_size_needs_one(tmp_path):
     (tmp_path / "map.csv").write_text("1,2\n3,4\n")
     with pytest.raises(ValueError, match="--pixel"):
         read_map(tmp_path / "map.csv")
-    assert read_map(tmp_path / "map.csv", pixel=(1e-6, 1e-6)).heights.tolist() == [[1, 2], [3, 4]]
+    assert read_map(tmp_path / "map.csv", pixel=(1e-6, 1e-6), unit="m").heights.tolist() == [[1, 2], [3, 4]]
 
 
 @every_format
@@ -244,6 +244,51 @@ def test_a_zip_bomb_is_refused_before_it_unpacks(tmp_path):
                 member.write(bytes(8 * n))
     with pytest.raises(ValueError, match="that is refused"):
         read_map(path)
+
+
+MAIN = """<?xml version="1.0" encoding="UTF-8"?>
+<p:ISO5436_2 xmlns:p="http://www.opengps.eu/2008/ISO5436_2">
+<Record1><Revision>ISO5436 - 2000</Revision><FeatureType>SUR</FeatureType><Axes>
+<CX><AxisType>I</AxisType><DataType>D</DataType><Increment>1.5e-6</Increment><Offset>0</Offset></CX>
+<CY><AxisType>I</AxisType><DataType>D</DataType><Increment>4e-6</Increment><Offset>0</Offset></CY>
+<CZ><AxisType>A</AxisType><DataType>I</DataType><Increment>2.5e-9</Increment><Offset>1e-6</Offset></CZ>
+</Axes></Record1>
+<Record3><MatrixDimension><SizeX>3</SizeX><SizeY>2</SizeY><SizeZ>1</SizeZ></MatrixDimension>
+<DataLink><PointDataLink>bindata/data.bin</PointDataLink></DataLink></Record3>
+<Record4><ChecksumFile>md5checksum.hex</ChecksumFile></Record4>
+</p:ISO5436_2>"""
+
+
+def test_an_integer_x3p_made_by_hand(tmp_path):
+    """Three points along x and two along y, 16 bits: increment and offset of each axis are applied."""
+    with zipfile.ZipFile(tmp_path / "hand.x3p", "w") as archive:
+        archive.writestr("main.xml", MAIN)
+        archive.writestr("bindata/data.bin", struct.pack("<6h", 0, 1, 2, -400, 400, 32767))
+    found = read_map(tmp_path / "hand.x3p")
+    assert found.pixel == (1.5e-6, 4e-6)
+    assert found.heights == pytest.approx(
+        np.array([[1e-6, 1.0025e-6, 1.005e-6], [0, 2e-6, 82.9175e-6]]), rel=1e-12, abs=1e-18
+    )
+
+
+@pytest.mark.parametrize("kind", ["<f4", ">f8", ">i2", "<u1", "<i8", "<f2"])
+@pytest.mark.parametrize("order", ["C", "F"])
+def test_arrays_of_every_kind_are_read_as_numbers(kind, order, tmp_path):
+    numbers = np.array([[0, 1, 2], [3, 4, 200]])
+    np.save(tmp_path / "map.npy", np.asarray(numbers.astype(kind), order=order))
+    found = read_map(tmp_path / "map.npy", pixel=(2.0, 3.0), unit="nm")
+    assert found.heights == pytest.approx(1e-9 * numbers, rel=1e-15)
+    assert found.heights.dtype == np.float64
+
+
+@pytest.mark.parametrize("name", ["map.sdf", "map.x3p", "map.h5"])
+def test_what_a_file_tells_is_not_told_again(name, topography, tmp_path):
+    write_map(topography, tmp_path / name)
+    with pytest.raises(ValueError, match="leave --pixel out"):
+        read_map(tmp_path / name, pixel=(1e-6, 1e-6))
+    with pytest.raises(ValueError, match="leave --unit out"):
+        read_map(tmp_path / name, unit="um")
+    assert np.array_equal(read_map(tmp_path / name, unit="m").heights, topography.heights)
 
 
 @pytest.mark.parametrize(

@@ -26,6 +26,9 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--pixel", metavar="LENGTH", help="size of a pixel, where the file does not tell it")
     parser.add_argument(
+        "--unit", metavar="UNIT", help="of the heights, as um, where the file does not tell it (m)"
+    )
+    parser.add_argument(
         "--use", choices=("moments", "summits", "caps"), default="summits",
         help="which estimate goes into the scene (summits)",
     )  # fmt: skip
@@ -50,10 +53,12 @@ def execute(args: argparse.Namespace) -> int:
         raise ValueError(f"--parts {args.parts}: give 2 or more, to have sub-areas to compare")
     cutoff = None if args.cutoff == "none" else metres(args.cutoff)
     pixel = None if args.pixel is None else (metres(args.pixel),) * 2
-    topography = read_map(args.map, pixel=pixel)
+    topography = read_map(args.map, pixel=pixel, unit=args.unit)
     fit = fit_map(topography, cutoff=cutoff, form=args.form, across=args.parts)
     filtered = "none" if cutoff is None else f"{cutoff:g} m (Gaussian, ISO 16610-61)"
     head = f"{args.map.name}: form taken off: {args.form}; cutoff: {filtered}"
+    if topography.assumed_unit:
+        head += f"; heights taken in {topography.assumed_unit}, since the file tells no unit"
     text = [head, *_table(fit), *(f"warning: {line}" for line in doubts(fit, topography, cutoff))]
     print("\n".join(text))
     scene = fitted_scene(

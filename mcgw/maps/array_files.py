@@ -1,27 +1,22 @@
-"""Maps as NumPy arrays with a JSON sidecar, as HDF5 with the asperities, and as plain text."""
+"""Maps as NumPy arrays with a JSON sidecar, and as HDF5 with the asperities."""
 
 import json
-import re
 from pathlib import Path
 from typing import Any
 
 import h5py
 import numpy as np
-from numpy.typing import NDArray
 
 from mcgw.maps.asperities import Asperities
-from mcgw.maps.lengths import METRES
+from mcgw.maps.height_unit import height_unit
 from mcgw.maps.topography import Topography, checked_shape
 from mcgw.npy_file import open_npy
 from mcgw.store.disk import whole_file
 
-__all__ = ["read_h5", "read_npy", "read_text", "sidecar_of", "write_h5", "write_npy"]
+__all__ = ["read_h5", "read_npy", "sidecar_of", "write_h5", "write_npy"]
 
 _FILETYPE = "mcgw-surface"
 _MOST_JSON = 2**16
-_MOST_LINE = 2**24
-_LENGTH = re.compile(r"#\s*(Width|Height)\s*:\s*([-+.\deE]+)\s*(\S+)\s*$")
-_UNIT = re.compile(r"#\s*Value units\s*:\s*(\S+)\s*$")
 
 
 def sidecar_of(path: Path) -> Path:
@@ -51,8 +46,8 @@ def write_npy(topography: Topography, path: Path) -> None:
         beside.write_text(json.dumps(facts, indent=2) + "\n", encoding="utf-8")
 
 
-def read_npy(path: Path, pixel: tuple[float, float] | None = None) -> Topography:
-    """Read an array; its pixel size from the sidecar, unless given.
+def read_npy(path: Path, pixel: tuple[float, float] | None = None, unit: str | None = None) -> Topography:
+    """Read an array; its pixel size and the unit of its heights from the sidecar, unless given.
 
     Raises
     ------
@@ -65,13 +60,15 @@ def read_npy(path: Path, pixel: tuple[float, float] | None = None) -> Topography
     if array.ndim != 2:
         raise ValueError(f"{path}: holds {array.ndim} dimension(s); a map has rows and columns")
     checked_shape(*array.shape)
-    periodic = False
+    periodic, told = False, None
     if pixel is None:
-        pixel, periodic = _sidecar(path)
-    return Topography(np.array(array, dtype=np.float64), pixel, periodic)
+        pixel, periodic, told = _sidecar(path)
+    metre, assumed = height_unit(path, told, unit)
+    return Topography(np.array(array, dtype=np.float64) * metre, pixel, periodic, assumed)
 
 
-def _sidecar(path: Path) -> tuple[tuple[float, float], bool]:
+def _sidecar(path: Path) -> tuple[tuple[float, float], bool, str | None]:
+    """Pixel, whether the map is periodic, and the unit of heights."""
     beside = sidecar_of(path)
     if not beside.is_file():
         raise ValueError(f"{path}: no {beside.name} beside it tells the size of a pixel; give --pixel")
@@ -82,7 +79,7 @@ def _sidecar(path: Path) -> tuple[tuple[float, float], bool]:
         dx, dy = (float(p) for p in facts["pixel"])
         if facts.get("unit", "m") != "m":
             raise ValueError(f"unit is {facts['unit']!r}, not 'm'")
-        return (dx, dy), bool(facts.get("periodic", False))
+        return (dx, dy), bool(facts.get("periodic", False)), facts.get("unit")
     except (AttributeError, KeyError, RecursionError, TypeError, ValueError) as error:
         raise ValueError(f'{beside}: must hold "pixel": [dx, dy] in m: {error}') from None
 
@@ -112,8 +109,8 @@ def write_h5(topography: Topography, path: Path, field: Asperities | None = None
         file["scene"] = scene  # a dataset: an attribute ends at 64 kB
 
 
-def read_h5(path: Path) -> Topography:
-    """Read the map of such a file.
+def read_h5(path: Path, unit: str | None = None) -> Topography:
+    """Read the map of such a file; `unit` is that of heights, where it tells none.
 
     Raises
     ------
@@ -129,79 +126,9 @@ def read_h5(path: Path) -> Topography:
             data = file["height"]
             checked_shape(*data.shape)
             dx, dy = (float(p) for p in file.attrs["pixel"])
-            return Topography(data[...].astype(np.float64), (dx, dy), bool(file.attrs["periodic"]))
+            told = data.attrs.get("units")
+            metre, assumed = height_unit(path, None if told is None else str(told), unit)
+            heights = data[...].astype(np.float64) * metre
+            return Topography(heights, (dx, dy), bool(file.attrs["periodic"]), assumed)
     except (KeyError, TypeError) as error:
         raise ValueError(f"{path}: is a damaged {_FILETYPE} file: {error}") from None
-
-
-def read_text(path: Path, pixel: tuple[float, float] | None = None) -> Topography:
-    """Read a matrix of numbers, one row a line, parted by spaces, tabs, commas or semicolons.
-
-    Lines that begin with # are comments; of those that Gwyddion writes, ``Width``, ``Height`` and
-    ``Value units`` are understood. Without a unit heights are in m.
-
-    Parameters
-    ----------
-    path : Path
-        The file.
-    pixel : (float, float), optional
-        Size of a pixel, m; needed where no comment tells the width and height of the map.
-
-    Returns
-    -------
-    Topography
-        Heights in m; ``nan``, ``BAD`` and ``---`` are missing points.
-
-    Raises
-    ------
-    ValueError
-        If a row has another length than the first, or a word is no number, or no pixel size is known.
-    OSError
-        If it cannot be read.
-    """
-    rows: list[NDArray[np.float64]] = []
-    extent: dict[str, float] = {}
-    unit, total = 1.0, 0
-    with open(path, encoding="utf-8", errors="replace") as file:
-        for number, line in enumerate(iter(lambda: file.readline(_MOST_LINE), ""), 1):
-            if not line.strip():
-                continue
-            if line.startswith("#"):
-                if found := _LENGTH.match(line):
-                    extent[found[1]] = float(found[2]) * _metres_in(path, found[3])
-                elif found := _UNIT.match(line):
-                    unit = _metres_in(path, found[1])
-                continue
-            rows.append(_row(path, number, line))
-            if rows[-1].size != rows[0].size:
-                raise ValueError(
-                    f"{path}: line {number} has {rows[-1].size} numbers, the first row {rows[0].size}"
-                )
-            total += rows[-1].size
-            checked_shape(1, total)
-    if not rows:
-        raise ValueError(f"{path}: holds no numbers")
-    heights = np.array(rows) * unit
-    if pixel is None:
-        if set(extent) != {"Width", "Height"}:
-            raise ValueError(f"{path}: does not tell the size of a pixel; give --pixel")
-        pixel = extent["Width"] / heights.shape[1], extent["Height"] / heights.shape[0]
-    return Topography(heights, pixel)
-
-
-def _row(path: Path, number: int, line: str) -> NDArray[np.float64]:
-    words = re.sub(r"[,;]", " ", line).split()
-    words = ["nan" if word in ("BAD", "---") else word for word in words]
-    try:
-        row = np.array([float(word) for word in words])
-    except ValueError as error:
-        raise ValueError(f"{path}: line {number}: {str(error)[:80]}") from None
-    if np.any(np.isinf(row)):
-        raise ValueError(f"{path}: line {number}: a height is infinite")
-    return row
-
-
-def _metres_in(path: Path, unit: str) -> float:
-    if unit not in METRES:
-        raise ValueError(f"{path}: {unit!r} is no unit of length known here: {', '.join(METRES)}")
-    return METRES[unit]

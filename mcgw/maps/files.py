@@ -5,11 +5,12 @@ from pathlib import Path
 
 import numpy as np
 
-from mcgw.maps.array_files import read_h5, read_npy, read_text, sidecar_of, write_h5, write_npy
+from mcgw.maps.array_files import read_h5, read_npy, sidecar_of, write_h5, write_npy
 from mcgw.maps.asperities import Asperities
-from mcgw.maps.lengths import METRES
+from mcgw.maps.height_unit import height_unit
 from mcgw.maps.sdf import read_sdf, write_sdf
-from mcgw.maps.topography import Topography, checked_shape
+from mcgw.maps.text_file import read_text
+from mcgw.maps.topography import STEEPEST, Topography, checked_shape
 from mcgw.maps.x3p import read_x3p, write_x3p
 
 __all__ = ["WRITTEN", "check_ending", "read_map", "write_map"]
@@ -72,7 +73,7 @@ def write_map(
     return [path]
 
 
-def read_map(path: Path, *, pixel: tuple[float, float] | None = None) -> Topography:
+def read_map(path: Path, *, pixel: tuple[float, float] | None = None, unit: str | None = None) -> Topography:
     """Read a map in the format of the file's ending.
 
     Parameters
@@ -82,6 +83,8 @@ def read_map(path: Path, *, pixel: tuple[float, float] | None = None) -> Topogra
         installed.
     pixel : (float, float), optional
         Size of a pixel, m, for arrays and text that do not tell it.
+    unit : str, optional
+        Of the heights, for files that do not tell it; m if left out.
 
     Returns
     -------
@@ -91,27 +94,39 @@ def read_map(path: Path, *, pixel: tuple[float, float] | None = None) -> Topogra
     Raises
     ------
     ValueError
-        If the file is damaged or of an unknown kind.
+        If the file is damaged or of an unknown kind, tells another pixel or unit than given, or tells no
+        unit where m would make it too steep.
     OSError
         If it cannot be read.
     """
     if not path.is_file():
         raise ValueError(f"{path}: is no regular file" if path.exists() else f"{path}: no such file")
+    topography = _read(path, pixel, unit)
+    if topography.assumed_unit and topography.steepness > STEEPEST:
+        raise ValueError(
+            f"{path}: tells no unit of its heights, and in {topography.assumed_unit} their usual slope is "
+            f"{topography.steepness:.3g}; give --unit (um, nm, ...), or another --pixel"
+        )
+    return topography
+
+
+def _read(path: Path, pixel: tuple[float, float] | None, unit: str | None) -> Topography:
     ending = path.suffix.lower()
-    if ending == ".sdf":
-        return read_sdf(path)
-    if ending == ".x3p":
-        return read_x3p(path)
     if ending == ".npy":
-        return read_npy(path, pixel)
-    if ending == ".h5":
-        return read_h5(path)
+        return read_npy(path, pixel, unit)
     if ending in _TEXT:
-        return read_text(path, pixel)
-    return _from_surface_topography(path)
+        return read_text(path, pixel, unit)
+    if pixel is not None:
+        raise ValueError(f"{path}: tells the size of a pixel itself; leave --pixel out")
+    if ending == ".h5":
+        return read_h5(path, unit)
+    if ending not in (".sdf", ".x3p"):
+        return _from_surface_topography(path, unit)
+    height_unit(path, "m", unit)
+    return read_sdf(path) if ending == ".sdf" else read_x3p(path)
 
 
-def _from_surface_topography(path: Path) -> Topography:
+def _from_surface_topography(path: Path, unit: str | None) -> Topography:
     """Any of the many formats that SurfaceTopography reads."""
     try:
         library = import_module("SurfaceTopography")
@@ -123,12 +138,13 @@ def _from_surface_topography(path: Path) -> Topography:
     try:
         found = library.read_topography(str(path))
     except Exception as error:  # its readers raise errors of many kinds
-        raise ValueError(f"{path}: SurfaceTopography cannot read it: {error}") from None
-    if found.unit not in METRES or found.dim != 2:
-        raise ValueError(f"{path}: its unit is {found.unit!r}; only maps in a unit of length are taken")
+        reason = " ".join(str(error).split())[:160]
+        raise ValueError(f"{path}: SurfaceTopography cannot read it: {reason}") from None
+    if found.dim != 2:
+        raise ValueError(f"{path}: is a profile along a line; a map has rows and columns")
     columns, rows = found.nb_grid_pts
     checked_shape(rows, columns)
-    metre = METRES[found.unit]
+    metre, assumed = height_unit(path, found.unit, unit)  # of lengths along x and y too
     heights = np.ma.filled(np.ma.masked_invalid(found.heights()), np.nan).T * metre
     dx, dy = (float(p) * metre for p in found.pixel_size)
-    return Topography(np.ascontiguousarray(heights), (dx, dy), bool(found.is_periodic))
+    return Topography(np.ascontiguousarray(heights), (dx, dy), bool(found.is_periodic), assumed)

@@ -6,11 +6,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["MOST_PIXELS", "Topography", "checked_shape"]
+__all__ = ["MOST_PIXELS", "STEEPEST", "Topography", "checked_shape"]
 
 Array = NDArray[np.float64]
 
 MOST_PIXELS = 2**28  # 16384 x 16384: 2 GiB as float64
+STEEPEST = 10.0  # 84 degrees: no instrument that gives a height map sees such slopes all over it
 
 
 @dataclass(frozen=True)
@@ -26,6 +27,8 @@ class Topography:
         dx and dy, m.
     periodic : bool, optional
         Whether opposite edges fit together.
+    assumed_unit : str, optional
+        What heights were taken to be in where nobody told it; empty: it is known.
 
     Raises
     ------
@@ -36,6 +39,7 @@ class Topography:
     heights: Array
     pixel: tuple[float, float]
     periodic: bool = False
+    assumed_unit: str = ""
 
     def __post_init__(self) -> None:
         if self.heights.ndim != 2:
@@ -54,6 +58,16 @@ class Topography:
     def missing(self) -> int:
         """Number of points without a height."""
         return int(np.count_nonzero(~np.isfinite(self.heights)))
+
+    @property
+    def steepness(self) -> float:
+        """The usual slope: from medians of the differences between neighbours, which no spike changes."""
+        usual = [
+            float(np.nanmedian(np.abs(differences))) / pixel
+            for axis, pixel in ((1, self.pixel[0]), (0, self.pixel[1]))
+            if np.isfinite(differences := np.diff(self.heights, axis=axis)).any()
+        ]
+        return math.hypot(*usual)
 
 
 def checked_shape(rows: int, columns: int) -> tuple[int, int]:

@@ -1,0 +1,153 @@
+"""Text as instruments and spreadsheets of any country write it; and in which unit its heights are."""
+
+import json
+
+import h5py
+import numpy as np
+import pytest
+
+from mcgw.cli import main
+from mcgw.maps.array_files import write_h5
+from mcgw.maps.files import read_map
+from mcgw.maps.spectrum import Spectrum, gaussian_map
+from mcgw.maps.topography import Topography
+
+NAN = np.nan
+PIXEL = (1e-6, 1e-6)
+
+
+def read(tmp_path, content, encoding="utf-8"):
+    path = tmp_path / "map.csv"
+    path.write_bytes(content.encode(encoding))
+    return read_map(path, pixel=(1.0, 1.0), unit="m").heights
+
+
+@pytest.mark.parametrize(
+    ("content", "expected"),
+    [
+        ("1.5,2.5\n3,4\n", [[1.5, 2.5], [3, 4]]),
+        ("1,2,3\n", [[1, 2, 3]]),  # nothing else parts the numbers
+        ("1, 2, 3\n", [[1, 2, 3]]),
+        ("1,5\n2,5\n", [[1, 5], [2, 5]]),
+        ("1.5 2.5\n  3   4\n", [[1.5, 2.5], [3, 4]]),
+        ("1.5\t2.5\r\n3\t4\r\n", [[1.5, 2.5], [3, 4]]),
+        ("1,23;4,56\n7;8,5\n", [[1.23, 4.56], [7, 8.5]]),
+        ("1,2; 3,4\n", [[1.2, 3.4]]),
+        ("1,23\t4,56\n7\t8\n", [[1.23, 4.56], [7, 8]]),
+        ("-1,23 +4,56\n7 8,\n", [[-1.23, 4.56], [7, 8]]),
+        ("1,5e-6;2,5E+06\n", [[1.5e-6, 2.5e6]]),
+        ("0,001;0,0002\n", [[1e-3, 2e-4]]),
+        ("1;2;3\n", [[1, 2, 3]]),
+        ("1;2\t3 4\n", [[1, 2, 3, 4]]),
+        ("1,,3\n4,5,6\n", [[1, NAN, 3], [4, 5, 6]]),
+        ("1,5;;3\n4;5;6\n", [[1.5, NAN, 3], [4, 5, 6]]),
+        ("\t2\t3\n4\t5\t\n", [[NAN, 2, 3], [4, 5, NAN]]),
+        ("1\t2\n\t\n3\t4\n", [[1, 2], [NAN, NAN], [3, 4]]),
+        ("1;nan;BAD\n---;5,5;6\n", [[1, NAN, NAN], [NAN, 5.5, 6]]),
+        ("1;2;\n3;4;\n", [[1, 2], [3, 4]]),  # every line ends with a separator
+        ("# nm, as measured\n\n1 2\n", [[1, 2]]),
+    ],
+)
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16"])
+def test_numbers_of_every_country(content, expected, encoding, tmp_path):
+    found = read(tmp_path, content, encoding)
+    assert found.shape == np.shape(expected)
+    assert np.array_equal(found, expected, equal_nan=True)
+
+
+@pytest.mark.parametrize(
+    ("content", "told"),
+    [
+        ("1,2, 3,4\n", "inside numbers and between them"),
+        ("1,2,3;4,5,6\n", "by commas and by something else"),
+        ("1.234,5;6,5\n", "inside numbers and between them|something else"),
+        ("0,0012,0,0013\n", "begins with 0"),
+        ('"1,5","2,5"\n', "line 1: could not convert"),
+        ("x in nm, y in nm\n1, 2\n", "line 1: could not convert"),
+        ("X;Y\n1;2\n", "line 1: could not convert"),
+        ("1,5;2\n3;4;5\n", "line 2 has 3 numbers, the first row 2"),
+    ],
+)
+def test_what_may_mean_two_things_is_refused_in_one_line(content, told, tmp_path):
+    with pytest.raises(ValueError, match=told) as error:
+        read(tmp_path, content)
+    assert "\n" not in str(error.value)
+
+
+def test_the_extent_may_have_decimal_commas(tmp_path):
+    (tmp_path / "map.txt").write_text(
+        "# Width: 7,5 um\n# Height: 5,0 um\n# Value units: nm\n1,5 2 3\n4 5 6\n"
+    )
+    found = read_map(tmp_path / "map.txt")
+    assert found.pixel == pytest.approx((2.5e-6, 2.5e-6))
+    assert found.heights == pytest.approx(1e-9 * np.array([[1.5, 2, 3], [4, 5, 6]]))
+
+
+@pytest.fixture(scope="module")
+def rough():
+    """Heights of 1 um on pixels of 1 um: an rms slope of 0.4."""
+    return gaussian_map(Spectrum(1e-6, 16e-6, 8e-6), (128, 128), PIXEL, np.random.default_rng(1))
+
+
+def without_unit(path, heights):
+    """The same numbers in a file that names no unit."""
+    if path.suffix == ".npy":
+        np.save(path, heights)
+        path.with_suffix(".json").write_text(json.dumps({"pixel": PIXEL}))
+    elif path.suffix == ".h5":
+        write_h5(Topography(heights, PIXEL), path)
+        with h5py.File(path, "r+") as file:
+            del file["height"].attrs["units"]
+    else:
+        np.savetxt(path, heights, delimiter=";", header="Width: 128 um\nHeight: 128 um")
+    return path
+
+
+@pytest.mark.parametrize("name", ["map.txt", "map.npy", "map.h5"])
+def test_heights_in_micrometres_do_not_pass_as_metres(name, rough, tmp_path, capsys):
+    path, out = without_unit(tmp_path / name, 1e6 * rough.heights), tmp_path / "x.toml"
+    assert main(["fit", str(path), "--cutoff", "none", "-o", str(out)]) == 2
+    error = capsys.readouterr().err
+    assert "--unit" in error
+    assert error.count("\n") == 1
+    assert not out.exists()
+    assert main(["fit", str(path), "--cutoff", "none", "--unit", "um", "-o", str(out)]) == 0
+    assert "slope" not in capsys.readouterr().out
+    assert read_map(path, unit="um").heights == pytest.approx(rough.heights, rel=1e-12)
+
+
+@pytest.mark.parametrize("name", ["map.txt", "map.npy", "map.h5"])
+def test_an_assumed_unit_is_told(name, rough, tmp_path, capsys):
+    path, out = without_unit(tmp_path / name, rough.heights), tmp_path / "x.toml"
+    assert main(["fit", str(path), "--cutoff", "none", "-o", str(out)]) == 0
+    assert "heights taken in m, since the file tells no unit" in capsys.readouterr().out
+    assert "heights taken in m" in out.read_text()
+    assert read_map(path, unit="m").assumed_unit == ""
+
+
+@pytest.mark.parametrize("unit", ["m", "mm", "um", "µm", "nm", "pm", "cm", "Å"])
+def test_every_unit(unit, tmp_path):
+    metre = {"m": 1, "cm": 1e-2, "mm": 1e-3, "um": 1e-6, "µm": 1e-6, "nm": 1e-9, "pm": 1e-12, "Å": 1e-10}[
+        unit
+    ]
+    (tmp_path / "map.txt").write_text("1 2\n3 4\n")
+    found = read_map(tmp_path / "map.txt", pixel=(1.0, 1.0), unit=unit)
+    assert found.heights == pytest.approx(metre * np.array([[1, 2], [3, 4]]), rel=1e-15)
+
+
+def test_units_that_are_wrong_are_refused(tmp_path):
+    (tmp_path / "map.txt").write_text("# Value units: nm\n1 2\n3 4\n", encoding="utf-8")
+    with pytest.raises(ValueError, match="in nm as the file says, not in um"):
+        read_map(tmp_path / "map.txt", pixel=(1.0, 1.0), unit="um")
+    with pytest.raises(ValueError, match="'furlong' is no unit"):
+        read_map(tmp_path / "map.txt", pixel=(1.0, 1.0), unit="furlong")
+
+
+def test_steepness_is_that_of_the_map_and_not_of_a_spike():
+    y, x = np.mgrid[0:40, 0:50]
+    plane = 3e-6 * x + 8e-6 * y
+    assert Topography(plane, (1e-6, 2e-6)).steepness == pytest.approx(5)
+    plane[7, 9] = 1.0
+    assert Topography(plane, (1e-6, 2e-6)).steepness == pytest.approx(5)
+    plane[20] = np.nan
+    assert Topography(plane, (1e-6, 2e-6)).steepness == pytest.approx(5)
