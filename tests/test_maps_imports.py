@@ -12,7 +12,8 @@ import mcgw
 ROOT = Path(mcgw.__file__).parent
 ORDER = (
     "lengths", "height_unit", "topography", "nayak", "asperities", "envelope", "sdf", "x3p",
-    "array_files", "text_file", "files", "spectrum", "form", "tally", "hiding", "fit", "doubts", "fitted_scene", "spots",
+    "array_files", "text_file", "files", "spectrum", "form", "waves", "levels", "spikes", "tally",
+    "leverage", "hiding", "fit", "flaws", "doubts", "fitted_scene", "spots",
 )  # fmt: skip
 NEVER = ("compare", "plots", "cli", "commands", "store.ensembles", "report_text", "regrade")
 

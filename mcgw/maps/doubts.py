@@ -1,6 +1,7 @@
-"""Why a fit may not be trusted: the pixel, the shape of the heights, the crowd of summits."""
+"""Why a fit may not be trusted: the map, the pixel, the shape of the heights, the crowd of summits."""
 
 from mcgw.maps.fit import Fit
+from mcgw.maps.flaws import flaws
 from mcgw.maps.hiding import CROWDED, visible
 from mcgw.maps.topography import Topography
 
@@ -29,7 +30,12 @@ def doubts(fit: Fit, topography: Topography, cutoff: float | None) -> list[str]:
     list of str
         Empty if nothing speaks against it.
     """
-    return [*_of_the_pixel(fit, max(topography.pixel), cutoff), *_of_the_heights(fit), *_of_the_summits(fit)]
+    return [
+        *flaws(fit, topography),
+        *_of_the_pixel(fit, max(topography.pixel), cutoff),
+        *_of_the_heights(fit),
+        *_of_the_summits(fit),
+    ]
 
 
 def _of_the_pixel(fit: Fit, pixel: float, cutoff: float | None) -> list[str]:

@@ -6,12 +6,16 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.special import ndtr, stdtrit
 
 from mcgw.maps.form import Form, smooth, without_form
 from mcgw.maps.hiding import Visible, unhidden, visible
+from mcgw.maps.levels import form_left
+from mcgw.maps.leverage import Alone, alone_of
 from mcgw.maps.nayak import SpectralMoments
 from mcgw.maps.tally import SUMS, Tally, tally_of
 from mcgw.maps.topography import Topography
+from mcgw.maps.waves import Waves, waves_of
 
 __all__ = ["METHODS", "Estimate", "Fit", "fit_map", "mean_squares"]
 
@@ -28,7 +32,7 @@ _FLAT = 0.5  # of the median curvature
 
 @dataclass(frozen=True)
 class Estimate:
-    """The three parameters by one method, each with its standard error over sub-areas.
+    """The three parameters by one method, each with its standard error.
 
     Parameters
     ----------
@@ -68,6 +72,12 @@ class Fit:
         What a map shows of a field of independent caps like this one.
     mean_squares : dict of str to float
         Of slopes and second derivatives, by the names of `mcgw.maps.tally.SUMS`.
+    form : {"none", "plane", "quadratic"}
+        What was taken off.
+    waves : Waves
+        Errors that follow from how few waves the map holds.
+    alone : Alone or None
+        The sub-area that carries the map alone, if one does.
     """
 
     estimates: dict[str, Estimate]
@@ -79,12 +89,16 @@ class Fit:
     area: float
     visible: Visible | None
     mean_squares: dict[str, float]
+    form: Form
+    waves: Waves
+    alone: Alone | None
 
 
 def fit_map(topography: Topography, *, cutoff: float | None, form: Form = "plane", across: int = 4) -> Fit:
     """Estimate eta, R and sigma of a map.
 
-    Standard errors are those of a jackknife over the sub-areas.
+    Standard errors are those of a jackknife over the sub-areas, or those that follow from the number of
+    waves on the map, if larger: sub-areas share its long waves.
 
     Parameters
     ----------
@@ -105,7 +119,8 @@ def fit_map(topography: Topography, *, cutoff: float | None, form: Form = "plane
     Raises
     ------
     ValueError
-        If points are missing, the map is flat, has too few summits or is too small.
+        If points are missing, the map is flat, has too few summits or is too small, or an estimate of
+        sigma is more than the map's peak to valley.
     """
     if topography.missing:
         raise ValueError(f"the map lacks {topography.missing} points (nan): crop it, or fill them in first")
@@ -115,26 +130,61 @@ def fit_map(topography: Topography, *, cutoff: float | None, form: Form = "plane
     used = plain if cutoff is None else smooth(plain, cutoff)
     tally = _without_summit_form(tally_of(used, across=across), form)
     if tally.heights.size < 4 * tally.parts:
+        form_too = ", or --form quadratic" if form_left(topography, form) else ""
         raise ValueError(
             f"{tally.heights.size} summits are too few for {tally.parts} sub-areas; "
-            "give a larger map, a shorter cutoff, or fewer sub-areas"
+            f"give a larger map, a shorter cutoff, or fewer sub-areas{form_too}"
         )
     estimates = {"moments": _estimate(tally, _by_moments), "summits": _estimate(tally, _by_summits)}
     blur = math.hypot(max(used.pixel), _BLUR * (cutoff or 0.0))
     caps = _caps(tally, blur)
+    peak_to_valley = float(np.ptp(used.heights))
+    if caps is not None and caps.sigma[0] > peak_to_valley:
+        caps = None  # so many would have to hide that those seen no longer tell
     if caps is not None:
         estimates["caps"] = caps
+    waves = waves_of(used)
+    estimates = {name: _with_waves(e, waves) for name, e in estimates.items()}
+    _check_sigma(estimates, peak_to_valley)
     return Fit(
         estimates,
         _moments(tally),
-        _jackknife(tally, lambda t: np.array([_moments(t).alpha]))[0],
+        _at_least(_jackknife(tally, lambda t: np.array([_moments(t).alpha]))[0], waves.alpha),
         _jackknife(tally, lambda t: np.array([_skewness(t)]))[0],
         tally.heights - tally.heights.mean(),
         float(tally.heights.mean()) - mean_squares(tally)["z"],
         tally.area,
         None if caps is None else visible(caps.overlap, blur / math.sqrt(2 * caps.radius[0] * caps.sigma[0])),
         mean_squares(tally),
+        form,
+        waves,
+        alone_of(tally),
     )
+
+
+def _at_least(estimate: tuple[float, float], relative: float) -> tuple[float, float]:
+    """An estimate with no smaller a relative error."""
+    value, error = estimate
+    return value, max(error, relative * value)
+
+
+def _with_waves(estimate: Estimate, waves: Waves) -> Estimate:
+    """The parameters with errors no smaller than the few waves on a map allow."""
+    return Estimate(
+        _at_least(estimate.eta, waves.eta),
+        _at_least(estimate.radius, waves.radius),
+        _at_least(estimate.sigma, waves.sigma),
+    )
+
+
+def _check_sigma(estimates: dict[str, Estimate], peak_to_valley: float) -> None:
+    """No standard deviation is more than the range."""
+    for name, estimate in estimates.items():
+        if not estimate.sigma[0] <= peak_to_valley:
+            raise ValueError(
+                f"sigma of {METHODS[name]} is {estimate.sigma[0]:.4g} m, more than the peak to valley of "
+                f"the map, {peak_to_valley:.4g} m; look at the map, and crop what does not belong to it"
+            )
 
 
 def _without_summit_form(tally: Tally, form: Form) -> Tally:
@@ -149,11 +199,15 @@ def _without_summit_form(tally: Tally, form: Form) -> Tally:
 
 
 def _jackknife(tally: Tally, statistic: Callable[[Tally], NDArray[np.float64]]) -> list[tuple[float, float]]:
-    """Values, and standard errors by leaving out one sub-area after the other."""
+    """Values, and errors by leaving out one sub-area after the other.
+
+    They are standard errors widened as Student's t asks for so few sub-areas: two of them hold 95 %.
+    """
     values = statistic(tally)
     without = np.array([statistic(tally.without(part)) for part in range(tally.parts)])
     n = tally.parts
     errors = np.sqrt((n - 1) / n * ((without - without.mean(axis=0)) ** 2).sum(axis=0))
+    errors *= stdtrit(n - 1, ndtr(2.0)) / 2
     return list(zip(values.tolist(), errors.tolist(), strict=True))
 
 

@@ -5,7 +5,8 @@ from dataclasses import dataclass
 
 __all__ = ["SpectralMoments"]
 
-_SPREAD = 0.8968  # Bush, Gibson and Thomas (1975): variance of the summit heights is (1 - 0.8968/alpha) m0
+# Variance of the summit heights is (1 - 0.8968/alpha) m0 (Bush, Gibson and Thomas 1975).
+_SPREAD = 1 + 16 / math.pi - 3 * math.sqrt(3)
 
 
 @dataclass(frozen=True, slots=True)

@@ -81,15 +81,29 @@ def _is_summit(z: Any, j: Any, i: Any) -> Any:
 
 
 @njit(nogil=True, cache=True)
+def _rise(g: Any, c: Any) -> Any:
+    """Highest value of ``g t + c t^2/2`` for t from -1/2 to 1/2."""
+    if c < 0 and abs(g) < -c / 2:
+        return -g * g / (2 * c)
+    return abs(g) / 2 + c / 8
+
+
+@njit(nogil=True, cache=True)
 def _apex(z: Any, j: Any, i: Any) -> Any:
-    """Height of the paraboloid through a summit and its neighbours."""
+    """Highest point, within the summit's own pixel, of the paraboloid through it and its neighbours."""
     gx, gy = (z[j, i + 1] - z[j, i - 1]) / 2, (z[j + 1, i] - z[j - 1, i]) / 2
     xx, yy = z[j, i + 1] - 2 * z[j, i] + z[j, i - 1], z[j + 1, i] - 2 * z[j, i] + z[j - 1, i]
     xy = (z[j + 1, i + 1] - z[j + 1, i - 1] - z[j - 1, i + 1] + z[j - 1, i - 1]) / 4
+    best = 0.0
+    for side in (-0.5, 0.5):
+        best = max(best, gx * side + xx / 8 + _rise(gy + xy * side, yy))
+        best = max(best, gy * side + yy / 8 + _rise(gx + xy * side, xx))
     det = xx * yy - xy * xy
-    if det <= 0:
-        return z[j, i]
-    return z[j, i] - (gx * gx * yy - 2 * gx * gy * xy + gy * gy * xx) / (2 * det)
+    x, y = gy * xy - gx * yy, gx * xy - gy * xx  # of the vertex, times det
+    if det > 0 and 2 * max(abs(x), abs(y)) < det:
+        x, y = x / det, y / det
+        best = max(best, gx * x + gy * y + (xx * x * x + yy * y * y) / 2 + xy * x * y)
+    return z[j, i] + best
 
 
 @njit(nogil=True, cache=True)
@@ -152,7 +166,9 @@ def tally_of(topography: Topography, *, across: int = 4) -> Tally:
     z = np.pad(z, _EDGE, mode="wrap") if topography.periodic else z
     rows, columns = (n - 2 * _EDGE for n in z.shape)
     if min(rows, columns) < 4 * across:
-        raise ValueError(f"{columns} x {rows} points are left: too few for {across} x {across} sub-areas")
+        raise ValueError(
+            f"{max(columns, 0)} x {max(rows, 0)} points are left: too few for {across} x {across} sub-areas"
+        )
     sums = np.zeros((len(SUMS), across * across))
     summits, part = np.empty((4, rows * columns // 2 + 1)), np.empty(rows * columns // 2 + 1, dtype=np.int64)
     found = _pass(z, *topography.pixel, across, sums, summits, part)

@@ -1,0 +1,128 @@
+"""What a plane does not take off a map: a step between two terraces, a spherical or cylindrical form."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import fft
+
+from mcgw.maps.form import Form, without_form
+from mcgw.maps.topography import Topography
+from mcgw.maps.waves import block_means
+
+__all__ = ["FormLeft", "Step", "form_left", "step_of"]
+
+Array = NDArray[np.float64]
+
+_COARSE, _BLOCKS = 192, 24
+_ISOLATED = 6.0  # times the usual difference along a line: 4 standard deviations of Gaussian ones
+_LINES = 0.5  # of all lines across a step
+_LONGEST = 2.3  # waves on the map; there are 20 such wave vectors
+_STRONGER, _COUNTS = 3.0, 0.05
+
+
+@dataclass(frozen=True, slots=True)
+class Step:
+    """Two levels that meet at a line.
+
+    Parameters
+    ----------
+    axis : {"x", "y"}
+        Along which the level changes.
+    place : float
+        About where, m.
+    height : float
+        Difference of the levels, m.
+    """
+
+    axis: str
+    place: float
+    height: float
+
+
+@dataclass(frozen=True, slots=True)
+class FormLeft:
+    """A surface of second order that was not taken off.
+
+    Parameters
+    ----------
+    share : float
+        Of the variance of heights.
+    height : float
+        Its peak to valley, m.
+    """
+
+    share: float
+    height: float
+
+
+def step_of(topography: Topography) -> Step | None:
+    """Find the step between two terraces, the larger one of the two axes.
+
+    On at least half of all lines across it, one difference between medians of small areas must be six
+    times the usual one, all of one sign, and two times any of the other sign: waves, form and roughness
+    change their level everywhere, and a ridge rises and falls.
+
+    Parameters
+    ----------
+    topography : Topography
+        As measured; without missing points.
+
+    Returns
+    -------
+    Step or None
+        None if no step is larger than the standard deviation of all heights without plane.
+    """
+    medians = _medians(block_means(topography.heights, _COARSE))
+    found = []
+    for axis, size, levels in zip("xy", topography.size, (medians, medians.T), strict=True):
+        changes = levels[:, 2:] - levels[:, :-2]  # over two, since a step may cross an area
+        changes = changes - np.median(changes)
+        at = np.argmax(np.abs(changes), axis=1)
+        largest = np.take_along_axis(changes, at[:, None], axis=1)[:, 0]
+        sign = np.sign(np.median(largest))
+        back = np.max(-sign * changes, axis=1)
+        steps = sign * largest > np.maximum(_ISOLATED * np.median(np.abs(changes), axis=1), 2 * back)
+        if steps.mean() >= _LINES:
+            place = (np.median(at[steps]) + 1.5) / levels.shape[1] * size
+            found.append(Step(axis, float(place), float(abs(np.median(largest[steps])))))
+    step = max(found, key=lambda s: s.height, default=None)
+    rms = float(without_form(topography, "plane").heights.std())
+    return step if step is not None and step.height > rms else None
+
+
+def _medians(z: Array) -> Array:
+    """Of at most 24 areas along each axis, or more by half."""
+    down, along = (max(n // _BLOCKS, 1) for n in z.shape)
+    rows, columns = z.shape[0] // down, z.shape[1] // along
+    areas = z[: rows * down, : columns * along].reshape(rows, down, columns, along)
+    return np.asarray(np.median(areas, axis=(1, 3)))
+
+
+def form_left(topography: Topography, form: Form) -> FormLeft | None:
+    """Find a second-order surface that is more than long waves.
+
+    Parameters
+    ----------
+    topography : Topography
+        As measured; without missing points.
+    form : {"none", "plane", "quadratic"}
+        What is taken off.
+
+    Returns
+    -------
+    FormLeft or None
+        None unless it holds more than a twentieth of the variance, and three times what the longest
+        waves do, two on the map, once it is taken off.
+    """
+    taken, rest = without_form(topography, form).heights, without_form(topography, "quadratic").heights
+    left = taken - rest
+    variance = float(left.var())
+    share = variance / float(taken.var())
+    coarse = block_means(rest, _COARSE)
+    power = np.abs(fft.fft2(coarse) / coarse.size) ** 2
+    along, down = (fft.fftfreq(n) * n for n in coarse.shape[::-1])
+    longest = float(power[np.hypot(along, down[:, None]) < _LONGEST].sum())
+    if share < _COUNTS or variance < _STRONGER * longest:
+        return None
+    return FormLeft(share, float(np.ptp(left)))

@@ -1,0 +1,54 @@
+"""Whether one sub-area carries the whole map."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from mcgw.maps.tally import SUMS, Tally
+
+__all__ = ["Alone", "alone_of"]
+
+_HALF = 0.5
+
+
+@dataclass(frozen=True, slots=True)
+class Alone:
+    """A sub-area without which a mean square is less than half.
+
+    Parameters
+    ----------
+    moment : {"m0", "m2", "m4"}
+        Of heights, slopes or second derivatives.
+    left : float
+        Share of it that is left without this sub-area.
+    column, row : int
+        Which sub-area, from 0.
+    across : int
+        Sub-areas along each axis.
+    """
+
+    moment: str
+    left: float
+    column: int
+    row: int
+    across: int
+
+
+def alone_of(tally: Tally) -> Alone | None:
+    """The sub-area that most of a mean square stands on, if there is one; m4 before m2 before m0."""
+    sums = dict(zip(SUMS, tally.sums, strict=True))
+    points = sums["points"]
+    mean = sums["z"].sum() / points.sum()
+    squares = {
+        "m4": sums["bend"],
+        "m2": sums["slope_x"] + sums["slope_y"],
+        "m0": sums["z2"] - 2 * mean * sums["z"] + mean**2 * points,
+    }
+    across = round(tally.parts**0.5)
+    for moment, square in squares.items():
+        part = int(np.argmax(square))
+        rest = (square.sum() - square[part]) / (points.sum() - points[part])
+        left = float(rest / (square.sum() / points.sum()))
+        if left < _HALF:
+            return Alone(moment, left, part % across, part // across, across)
+    return None
