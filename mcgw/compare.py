@@ -131,7 +131,8 @@ def verdict(ensemble: Ensemble) -> Verdict:
     h = _chosen(np.unique(scene.separations))
     parts = scene.theory.fluctuations(scene.quantities, h)
     index = [scene.separations.index(x) for x in h]
-    difference = np.concatenate([_difference(ensemble, name)[index] for name in scene.quantities])
+    means = [ensemble.mean(q)[index] / QUANTITIES[q].scale(scene.surface) for q in scene.quantities]
+    difference = np.concatenate(means) - scene.n_asperities * parts.mean
     asperities = float(scene.n_asperities) * ensemble.n_surfaces
 
     variance = parts.moment(2)
@@ -146,13 +147,6 @@ def verdict(ensemble: Ensemble) -> Verdict:
     chi_square = float(np.sum((z @ axes) ** 2))
     degrees = axes.shape[1]
     return Verdict(chi_square, degrees, float(chi2.sf(chi_square, degrees)) if degrees else 1.0)
-
-
-def _difference(ensemble: Ensemble, quantity: str) -> Array:
-    """Mean less theory, relative to what one asperity contributes at unit approach."""
-    scene = ensemble.scene
-    exact = scene.theory.mean(quantity, scene.separations)
-    return (ensemble.mean(quantity) - exact) / QUANTITIES[quantity].scale(scene.surface)
 
 
 def _gaussian(parts: Fluctuations, asperities: float) -> NDArray[np.bool_]:

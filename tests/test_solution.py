@@ -119,9 +119,9 @@ def entered(monkeypatch, name):
     """Calls of a function of `mcgw.solution` from now on."""
     calls, function = [], getattr(mcgw.solution, name)
 
-    def counted(*args):
+    def counted(*args, **options):
         calls.append(args)
-        return function(*args)
+        return function(*args, **options)
 
     monkeypatch.setattr(mcgw.solution, name, counted)
     return calls
