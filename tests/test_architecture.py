@@ -32,6 +32,7 @@ ORDER = (
     "sampling.hertz",
     "sampling.cells",
     "sampling.tree",
+    "sampling.lanes",
     "sampling.uniform_sums",
     "sampling.moments",
     "sampling.laws",

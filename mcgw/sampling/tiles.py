@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from mcgw.sampling.aligned import aligned
 from mcgw.sampling.in_threads import in_threads, pieces
+from mcgw.sampling.lanes import fused
 
 __all__ = ["FOUR", "Blocks", "Tiles", "in_fours"]
 
@@ -161,7 +162,7 @@ def _places(first: Ints, last: Ints) -> Ints:
     return places
 
 
-@njit(nogil=True, cache=True, fastmath={"contract"})
+@njit(nogil=True, cache=True)
 def _sweep(program: Any, table: Any, sums: Any, given: Any, first: Any, n: Any, result: Any) -> None:
     """Take all steps for `n` surfaces from `first` on; the sum over a row has one order, in any block.
 
@@ -192,10 +193,10 @@ def _sweep(program: Any, table: Any, sums: Any, given: Any, first: Any, n: Any, 
             for k in range(_WIDTH):
                 i = np.uint64(k)
                 w, x, y, z = table[ka + i], table[kb + i], table[kc + i], table[kd + i]
-                sums[i] += (a0 * w + b0 * x) + (c0 * y + d0 * z)
-                sums[i + width] += (a1 * w + b1 * x) + (c1 * y + d1 * z)
-                sums[i + np.uint64(2) * width] += (a2 * w + b2 * x) + (c2 * y + d2 * z)
-                sums[i + np.uint64(3) * width] += (a3 * w + b3 * x) + (c3 * y + d3 * z)
+                sums[i] += fused(a0, w, b0 * x) + fused(c0, y, d0 * z)
+                sums[i + width] += fused(a1, w, b1 * x) + fused(c1, y, d1 * z)
+                sums[i + np.uint64(2) * width] += fused(a2, w, b2 * x) + fused(c2, y, d2 * z)
+                sums[i + np.uint64(3) * width] += fused(a3, w, b3 * x) + fused(c3, y, d3 * z)
             tile += 1
         at = np.uint64(computed[step]) * width
         for k in range(FOUR * _WIDTH):

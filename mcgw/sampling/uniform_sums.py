@@ -2,8 +2,8 @@
 
 Only five polynomials are ever computed. Since ``2 T_m T_k = T_{m+k} + T_{m-k}``, the sums of the
 products of T_5 and T_1 ... T_5 stand for the orders 6 ... 10; those with T_10, for 11 ... 15; and so on.
-The loops know no physics; they have no branch, no exponential and no logarithm, and run at the width of
-the vector unit.
+The loops know no physics; they have no branch, no exponential and no logarithm, and go over four uniforms
+at a time (`mcgw.sampling.lanes`).
 
 To begin a cell must cost little. A thread's workspace is one array, since each array that a function is given
 costs as much as ten asperities, and what is called once a cell is compiled into its caller. The workspace
@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 from numba import njit
 
+from mcgw.sampling.lanes import LANES, alike, fused, load, roots, store, total
 from mcgw.sampling.philox import CELLS, centred
 
 __all__ = ["PLAIN", "ROOTED", "WORDS", "sum_uniforms", "unfold"]
@@ -22,17 +23,15 @@ __all__ = ["PLAIN", "ROOTED", "WORDS", "sum_uniforms", "unfold"]
 _BUFFER = 1024  # uniforms at a time: they stay in the innermost cache
 _ROOT, _ONE, PLAIN, ROOTED, WORDS = 1024, 2048, 3072, 3104, 3136  # where the rest begins, and its end
 
-# A vectorised sum needs to reorder its terms, and nothing else: no NaN and no infinity is assumed away.
-_VECTOR = {"reassoc", "nsz", "contract"}
-
 
 @njit(inline="always")
 def _five(x: Any) -> Any:
     """T_1 ... T_5 at x."""
-    t2 = 2 * x * x - 1.0
-    t3 = 2 * x * t2 - x
-    t4 = 2 * x * t3 - t2
-    return x, t2, t3, t4, 2 * x * t4 - t3
+    twice, minus = x + x, alike(-1.0)
+    t2 = fused(twice, x, minus)
+    t3 = fused(twice, t2, minus * x)
+    t4 = fused(twice, t3, minus * t2)
+    return x, t2, t3, t4, fused(twice, t4, minus * t3)
 
 
 def _adder(plain: int, rooted: int) -> Any:
@@ -40,68 +39,70 @@ def _adder(plain: int, rooted: int) -> Any:
 
     Of the plain ones it adds ten, twelve or sixteen; of the rooted ones none, four (sqrt(u) T_0 ... T_3), six
     or eleven (and sqrt(u) T_5 T_1 ... T_5 T_5), then with the roots left behind. What is not asked for is not
-    in the machine code.
+    in the machine code. `n` is a multiple of LANES, and of the last terms so many as `filled` are at x = 1,
+    where each polynomial is 1: they are taken off again.
     """
 
-    @njit(nogil=True, cache=True, fastmath=_VECTOR)
-    def add(w: Any, n: Any) -> None:
-        a = b = c = d = e = f = g = h = p = q = 0.0
-        v1 = v2 = v3 = v4 = v5 = 0.0
-        r0 = r1 = r2 = r3 = r4 = r5 = s1 = s2 = s3 = s4 = s5 = 0.0
-        for i in range(n):
-            t1, t2, t3, t4, t5 = _five(w[i])
+    @njit(nogil=True, cache=True)
+    def add(w: Any, n: Any, filled: Any) -> None:
+        a = b = c = d = e = f = g = h = p = q = alike(0.0)
+        v1 = v2 = v3 = v4 = v5 = alike(0.0)
+        r0 = r1 = r2 = r3 = r4 = r5 = s1 = s2 = s3 = s4 = s5 = alike(0.0)
+        half, minus = alike(0.5), alike(-1.0)
+        for i in range(0, n, LANES):
+            t1, t2, t3, t4, t5 = _five(load(w, i))
             a += t1
             b += t2
             c += t3
             d += t4
             e += t5
-            f += t5 * t1
-            g += t5 * t2
-            h += t5 * t3
-            p += t5 * t4
+            f = fused(t5, t1, f)
+            g = fused(t5, t2, g)
+            h = fused(t5, t3, h)
+            p = fused(t5, t4, p)
             if plain > 10:
-                q += t5 * t5
-                t10 = 2 * t5 * t5 - 1.0
-                v1 += t10 * t1
+                q = fused(t5, t5, q)
+                t10 = fused(t5 + t5, t5, minus)
+                v1 = fused(t10, t1, v1)
             if plain > 12:
-                v2 += t10 * t2
-                v3 += t10 * t3
-                v4 += t10 * t4
-                v5 += t10 * t5
+                v2 = fused(t10, t2, v2)
+                v3 = fused(t10, t3, v3)
+                v4 = fused(t10, t4, v4)
+                v5 = fused(t10, t5, v5)
             if rooted:
-                r = np.sqrt(0.5 * t1 + 0.5)
+                r = roots(fused(half, t1, half))
                 r0 += r
-                r1 += r * t1
-                r2 += r * t2
-                r3 += r * t3
+                r1 = fused(r, t1, r1)
+                r2 = fused(r, t2, r2)
+                r3 = fused(r, t3, r3)
             if rooted > 4:
-                r4 += r * t4
-                r5 += r * t5
+                r4 = fused(r, t4, r4)
+                r5 = fused(r, t5, r5)
             if rooted > 6:
-                w[_ROOT + i] = r
+                store(w, _ROOT + i, r)
                 s = r * t5
-                s1 += s * t1
-                s2 += s * t2
-                s3 += s * t3
-                s4 += s * t4
-                s5 += s * t5
-        for k, total in enumerate((a, b, c, d, e, f, g, h, p)):
-            w[PLAIN + 1 + k] += total
+                s1 = fused(s, t1, s1)
+                s2 = fused(s, t2, s2)
+                s3 = fused(s, t3, s3)
+                s4 = fused(s, t4, s4)
+                s5 = fused(s, t5, s5)
+        for k, lanes in enumerate((a, b, c, d, e, f, g, h, p)):
+            w[PLAIN + 1 + k] += total(lanes) - filled
         if plain > 10:
-            for k, total in enumerate((q, v1)):
-                w[PLAIN + 10 + k] += total
+            for k, lanes in enumerate((q, v1)):
+                w[PLAIN + 10 + k] += total(lanes) - filled
         if plain > 12:
-            for k, total in enumerate((v2, v3, v4, v5)):
-                w[PLAIN + 12 + k] += total
+            for k, lanes in enumerate((v2, v3, v4, v5)):
+                w[PLAIN + 12 + k] += total(lanes) - filled
         if rooted:
-            for k, total in enumerate((r0, r1, r2, r3)):
-                w[ROOTED + k] += total
+            for k, lanes in enumerate((r0, r1, r2, r3)):
+                w[ROOTED + k] += total(lanes) - filled
         if rooted > 4:
-            for k, total in enumerate((r4, r5)):
-                w[ROOTED + 4 + k] += total
+            for k, lanes in enumerate((r4, r5)):
+                w[ROOTED + 4 + k] += total(lanes) - filled
         if rooted > 6:
-            for k, total in enumerate((s1, s2, s3, s4, s5)):
-                w[ROOTED + 6 + k] += total
+            for k, lanes in enumerate((s1, s2, s3, s4, s5)):
+                w[ROOTED + 6 + k] += total(lanes) - filled
 
     return add
 
@@ -112,56 +113,62 @@ _16_0, _16_6, _16_11 = _adder(16, 0), _adder(16, 6), _adder(16, 11)
 
 
 @njit(inline="always")
-def _add(w: Any, n: Any, plain: Any, rooted: Any) -> None:
-    """Add the sums of so many moments, by the shortest loop that will do."""
+def _add(w: Any, count: Any, plain: Any, rooted: Any) -> None:
+    """Add the sums of so many moments over `count` uniforms, by the shortest loop that will do."""
+    n = (count + LANES - 1) // LANES * LANES
+    filled = n - count
+    for i in range(count, n):
+        w[i] = 1.0
     if plain <= 10:
         if rooted == 0:
-            _10_0(w, n)
+            _10_0(w, n, filled)
         elif rooted <= 4:
-            _10_4(w, n)
+            _10_4(w, n, filled)
         elif rooted <= 6:
-            _10_6(w, n)
+            _10_6(w, n, filled)
         else:
-            _10_11(w, n)
+            _10_11(w, n, filled)
     elif plain <= 12:
         if rooted == 0:
-            _12_0(w, n)
+            _12_0(w, n, filled)
         elif rooted <= 6:
-            _12_6(w, n)
+            _12_6(w, n, filled)
         else:
-            _12_11(w, n)
+            _12_11(w, n, filled)
     elif rooted == 0:
-        _16_0(w, n)
+        _16_0(w, n, filled)
     elif rooted <= 6:
-        _16_6(w, n)
+        _16_6(w, n, filled)
     else:
-        _16_11(w, n)
+        _16_11(w, n, filled)
     if plain > 16:
-        _five_more(w, n, 3, _ONE, PLAIN)
+        _five_more(w, n, filled, 3, _ONE, PLAIN)
     if rooted > 11:
-        _five_more(w, n, 2, _ROOT, ROOTED)
+        _five_more(w, n, filled, 2, _ROOT, ROOTED)
     if rooted > 16:
-        _five_more(w, n, 3, _ROOT, ROOTED)
+        _five_more(w, n, filled, 3, _ROOT, ROOTED)
 
 
-@njit(nogil=True, cache=True, fastmath=_VECTOR)
-def _five_more(w: Any, n: Any, m: Any, factor: Any, sums: Any) -> None:
+@njit(nogil=True, cache=True)
+def _five_more(w: Any, n: Any, filled: Any, m: Any, factor: Any, sums: Any) -> None:
     """Add sums of T_5m T_1 ... T_5m T_5, m = 2 or 3, times a factor: T_5m is T_m of T_5."""
-    c0, c1, c2, c3 = (-1.0, 0.0, 2.0, 0.0) if m == 2 else (0.0, -3.0, 0.0, 4.0)
-    a = b = c = d = e = 0.0
-    for i in range(n):
-        t1, t2, t3, t4, t5 = _five(w[i])
-        f = (((c3 * t5 + c2) * t5 + c1) * t5 + c0) * w[factor + i]
-        a += f * t1
-        b += f * t2
-        c += f * t3
-        d += f * t4
-        e += f * t5
-    for k, total in enumerate((a, b, c, d, e)):
-        w[sums + 5 * m + 1 + k] += total
+    a = b = c = d = e = alike(0.0)
+    for i in range(0, n, LANES):
+        t1, t2, t3, t4, t5 = _five(load(w, i))
+        f = fused(t5 + t5, t5, alike(-1.0))
+        if m == 3:
+            f = fused(t5 + t5, f, alike(-1.0) * t5)
+        f *= load(w, factor + i)
+        a = fused(f, t1, a)
+        b = fused(f, t2, b)
+        c = fused(f, t3, c)
+        d = fused(f, t4, d)
+        e = fused(f, t5, e)
+    for k, lanes in enumerate((a, b, c, d, e)):
+        w[sums + 5 * m + 1 + k] += total(lanes) - filled
 
 
-@njit(nogil=True, cache=True, fastmath=_VECTOR)
+@njit(nogil=True, cache=True)
 def _stratified(w: Any, n: Any, first: Any, strata: Any) -> None:
     """Move the uniform of asperity ``first + i`` into its own one of `strata` equal strata."""
     for i in range(n):
