@@ -12,6 +12,8 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from analytic.elementary import exp
+
 __all__ = ["Clipped", "Custom", "Exponential", "Grading", "Homogeneous", "Squared"]
 
 Array = NDArray[np.float64]
@@ -77,7 +79,7 @@ class Exponential:
 
     def __call__(self, s: Array) -> Array:
         """``gamma - (gamma - 1) exp(-s)``, Eq. (4)."""
-        return self.gamma - (self.gamma - 1) * np.exp(-s)
+        return self.gamma - (self.gamma - 1) * exp(-s)
 
     @property
     def zero(self) -> float:

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import gammaln, zeta
 
+from analytic.elementary import exp, expm1, log, log1p
 from analytic.heights import HeightLaw
 from analytic.resolution import resolved_breaks
 
@@ -60,7 +61,7 @@ class ExponentialHeights:
 
     def density(self, s: Array) -> Array:
         """``exp(-1 - s)`` for s >= -1."""
-        return np.asarray(np.where(s >= -1, np.exp(-1 - np.maximum(s, -1.0)), 0.0))
+        return np.asarray(np.where(s >= -1, exp(-1 - np.maximum(s, -1.0)), 0.0))
 
     def log_ratio(self, s: Array, t: Array) -> Array:
         """``-t``."""
@@ -68,19 +69,19 @@ class ExponentialHeights:
 
     def below(self, s: Array) -> Array:
         """``1 - exp(-1 - s)``."""
-        return np.asarray(-np.expm1(-1 - np.maximum(s, -1.0)))
+        return np.asarray(-expm1(-1 - np.maximum(s, -1.0)))
 
     def above(self, s: Array) -> Array:
         """``exp(-1 - s)``."""
-        return np.asarray(np.exp(-1 - np.maximum(s, -1.0)))
+        return np.asarray(exp(-1 - np.maximum(s, -1.0)))
 
     def from_below(self, p: Array, s: float) -> Array:
         """``-1 - log(1 - p below(s))``."""
-        return np.asarray(-1 - np.log1p(-p * self.below(np.array(s))))
+        return np.asarray(-1 - log1p(-p * self.below(np.array(s))))
 
     def from_above(self, p: Array, s: float) -> Array:
         """``max(s, -1) - log(p)``."""
-        return np.asarray(max(s, -1.0) - np.log(p))
+        return np.asarray(max(s, -1.0) - log(p))
 
 
 @dataclass(frozen=True)

@@ -16,8 +16,9 @@ import numpy as np
 from numpy.polynomial.legendre import leggauss
 from numpy.typing import ArrayLike, NDArray
 
+from analytic.elementary import exp_minus_half_square
 from analytic.gradings import Grading
-from analytic.heights import GAUSSIAN, Gaussian, HeightLaw, exp_minus_half_square
+from analytic.heights import GAUSSIAN, Gaussian, HeightLaw
 from analytic.integrals import fn
 from analytic.law_rule import law_rule
 from analytic.quantities import QUANTITIES

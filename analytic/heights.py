@@ -5,17 +5,15 @@ from typing import ClassVar, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.special import log_ndtr, ndtr, ndtri, ndtri_exp
+from scipy.special import log_ndtr, ndtri_exp
 
-__all__ = ["GAUSSIAN", "Gaussian", "HeightLaw", "exp_minus_half_square"]
+from analytic.elementary import exp_minus_half_square, ndtr, ndtri
+
+__all__ = ["GAUSSIAN", "Gaussian", "HeightLaw"]
 
 Array = NDArray[np.float64]
 
-
-def exp_minus_half_square(h: Array) -> Array:
-    """exp(-h^2/2) to full relative accuracy: the square is split so that its rounding drops out."""
-    a = np.round(16 * h) / 16
-    return np.exp(-a * a / 2) * np.exp(-(h - a) * (h + a) / 2)
+_FAR = -30.0  # below, where no height is ever drawn, probabilities underflow
 
 
 class HeightLaw(Protocol):
@@ -95,16 +93,16 @@ class Gaussian:
 
     def below(self, s: Array) -> Array:
         """``Phi(s)``."""
-        return np.asarray(ndtr(s))
+        return ndtr(s)
 
     def above(self, s: Array) -> Array:
         """``Phi(-s)``."""
-        return np.asarray(ndtr(-s))
+        return ndtr(-s)
 
     def from_below(self, p: Array, s: float) -> Array:
         """``Phi^-1(p Phi(s))``, by logarithms where that underflows."""
-        if s > -5:
-            return np.asarray(ndtri(p * ndtr(s)))
+        if s > _FAR:
+            return ndtri(p * ndtr(s))
         return np.asarray(ndtri_exp(np.log(p) + log_ndtr(s)))
 
     def from_above(self, p: Array, s: float) -> Array:

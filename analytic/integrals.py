@@ -12,8 +12,9 @@ import numpy as np
 from numpy.polynomial.legendre import leggauss
 from numpy.typing import ArrayLike, NDArray
 
+from analytic.elementary import exp_minus_half_square
 from analytic.gradings import Grading, Homogeneous
-from analytic.heights import GAUSSIAN, Gaussian, HeightLaw, exp_minus_half_square
+from analytic.heights import GAUSSIAN, Gaussian, HeightLaw
 from analytic.law_rule import law_integral
 from analytic.magnitude import log_unit, over_unit
 from analytic.reach import Weight, tame

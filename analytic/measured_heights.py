@@ -163,8 +163,8 @@ class HeightTable:
 def _mean_std(x: Array, p: Array) -> tuple[float, float]:
     """Of heights spread evenly between the points."""
     mass, middle, width = np.diff(p), (x[1:] + x[:-1]) / 2, np.diff(x)
-    mean = float(mass @ middle)
-    return mean, float(np.sqrt(mass @ ((middle - mean) ** 2 + width**2 / 12)))
+    mean = float((mass * middle).sum())
+    return mean, float(np.sqrt((mass * ((middle - mean) ** 2 + width**2 / 12)).sum()))
 
 
 def _ranks(k: int) -> NDArray[np.int64]:

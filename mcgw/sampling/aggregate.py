@@ -19,12 +19,12 @@ from typing import Any
 import numpy as np
 from numba import njit
 from numpy.polynomial import chebyshev
-from numpy.polynomial.legendre import leggauss
 from numpy.typing import NDArray
-from scipy.special import ndtri
 
+from analytic.elementary import ndtri
 from mcgw.sampling.moments import Layout
 from mcgw.sampling.philox import MOMENTS, centred
+from mcgw.sampling.rules import gauss_legendre, product, triangle
 
 __all__ = ["CROWDED", "VARYING", "Crowds", "add_gaussian_moments"]
 
@@ -59,8 +59,8 @@ def _law_of_moments(plain: int, rooted: int) -> tuple[Array, Array]:
     eigenvalues are lost to rounding. The rooted ones are nearly dependent: with the highest first
     no later one has a larger part along a direction than the one that gave it.
     """
-    v, w = leggauss(48)
-    v, w = (1 + v) / 2, w / 2 * (1 + v)  # u = v^2: the integrands are polynomials in v
+    v, w = gauss_legendre(48)
+    w = 2 * v * w  # u = v^2: the integrands are polynomials in v
     x = 2 * v * v - 1
     b = np.concatenate(
         [
@@ -69,14 +69,13 @@ def _law_of_moments(plain: int, rooted: int) -> tuple[Array, Array]:
         ],
         axis=1,
     )
-    mean = w @ b
+    mean = product(w, b)
     if plain:
         mean[0] = 1.0  # T_0 counts the asperities
     varying = [*range(min(plain, 1), plain), *range(plain + rooted - 1, plain - 1, -1)]
     order = np.array(varying, dtype=np.int64)
-    triangle = np.linalg.qr((b - mean)[:, order] * np.sqrt(w)[:, None], mode="r")
     root = np.zeros((plain + rooted, len(order)))
-    root[order] = (triangle * np.sign(np.diag(triangle))[:, None]).T
+    root[order] = triangle((b - mean)[:, order] * np.sqrt(w)[:, None]).T
     return mean, root
 
 
@@ -159,13 +158,6 @@ def add_gaussian_moments(
         roots[start : start + root.shape[0], : root.shape[1]] = root
     words = np.repeat(varying.starts[crowded] - starts[:-1, 1], widths[:, 1]) + np.arange(starts[-1, 1])
     z = _words(np.uint64(seed), first, words, counts.shape[1])
-    _make_normal(z)
+    z = ndtri((1 + z) / 2)
     means = np.concatenate([mean for mean, _ in laws])
     _mix(moments, counts[crowded], layout.starts[crowded], starts, means, roots, z)
-
-
-def _make_normal(x: Array) -> None:
-    """Turn centred uniforms into normal numbers, in place."""
-    x += 1
-    x /= 2
-    ndtri(x, out=x)

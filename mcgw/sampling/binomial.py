@@ -6,13 +6,13 @@ probabilities. Below a mean of 28 the distribution is inverted. All this runs ov
 surfaces that are still without a number; only a few far from the mean are gone through one by one.
 """
 
-import math
 from typing import Any
 
 import numpy as np
 from numba import njit, uint64
 
 from mcgw.sampling.binomial_ratio import below_ratio, ratio_over_mode
+from mcgw.sampling.exp_log import exp_minus, log_one_minus
 from mcgw.sampling.philox import COUNTS, two_wide
 
 __all__ = ["SURFACES", "TRIALS", "WORDS", "binomials"]
@@ -102,11 +102,11 @@ def _reject(work: Any, left: Any, p: Any, seed: Any, first: Any, node: Any) -> N
 @njit(nogil=True, cache=True, error_model="numpy")
 def _invert(work: Any, surfaces: Any, p: Any) -> None:
     """Smallest number with a distribution function of `_LEFT` at least, or beyond which nothing counts."""
-    log_q, odds = math.log1p(-p), p / (1.0 - p)
+    log_q, odds = log_one_minus(p), p / (1.0 - p)
     for i in range(surfaces):
         n = work[TRIALS + i]
         work[i] = 0.0
-        work[_PROBABILITY + i] = math.exp(n * log_q) if n * p < _SMALL else 0.0
+        work[_PROBABILITY + i] = exp_minus(-n * log_q) if n * p < _SMALL else 0.0
     going = True
     while going:
         going = False

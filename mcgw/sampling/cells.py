@@ -17,10 +17,11 @@ from itertools import pairwise
 
 import numpy as np
 from numpy.polynomial import chebyshev
-from numpy.polynomial.legendre import leggauss
 from numpy.typing import NDArray
 
 from analytic import Grading, HeightLaw, resolved_breaks
+from analytic.elementary import exp
+from mcgw.sampling.rules import chebyshev_points, chebyshev_transform, gauss_legendre, product
 from mcgw.sampling.spacing import cuts
 from mcgw.scene import Scene
 
@@ -34,10 +35,9 @@ _FAR, _NARROWER = 2.0, 0.75  # spans from a root of the laws of contact, and wha
 _CLOSEST = 2.0**-40  # of a cell to an end of the support that is a broken power
 
 _ORDER = 20
-NODES = chebyshev.chebpts1(_ORDER)
-TO_COEFFICIENTS = np.linalg.inv(chebyshev.chebvander(NODES, _ORDER - 1))
-_X, _W = leggauss(20)
-_X, _W = (1 + _X) / 2, _W / 2
+NODES = chebyshev_points(_ORDER)
+TO_COEFFICIENTS = chebyshev_transform(NODES)
+_X, _W = gauss_legendre(20)
 
 
 @dataclass(frozen=True, eq=False)
@@ -182,7 +182,7 @@ def _resolving(grading: Grading, law: HeightLaw, edges: Array) -> Array:
         stretch = _stretch(law, a, width, _mass(law, a, width[:, None])[:, 0])
         t = (1 + NODES) / 2 * chebyshev.chebval(NODES, stretch)
         e = grading(a[:, None] + t)
-        tail = np.abs(TO_COEFFICIENTS @ e.T)[_SHORT:].sum(axis=0)
+        tail = np.abs(product(TO_COEFFICIENTS, e.T))[_SHORT:].sum(axis=0)
         rough = tail > 1e-13 * np.abs(e).max(axis=1) + height_noise(a, t, e)
         if not rough.any():
             break
@@ -199,7 +199,7 @@ def height_noise(a: Array | float, t: Array, e: Array) -> Array:
 def _mass(law: HeightLaw, a: Array, t: Array) -> Array:
     """Probability between a and a + t, relative to the density at a: `t` has shape (cells, ...)."""
     tau = t[..., None] * _X
-    return np.asarray(t * (np.exp(law.log_ratio(a[:, None, None], tau)) @ _W))
+    return t * product(exp(law.log_ratio(a[:, None, None], tau)), _W)
 
 
 def _stretch(law: HeightLaw, a: Array, width: Array, mass: Array) -> Array:
@@ -207,5 +207,5 @@ def _stretch(law: HeightLaw, a: Array, width: Array, mass: Array) -> Array:
     u = (1 + NODES) / 2
     t = width[:, None] * u
     for _ in range(8):  # the mass is nearly linear in t: quadratic convergence from the first step
-        t = t - (_mass(law, a, t) - u * mass[:, None]) / np.exp(law.log_ratio(a[:, None], t))
-    return np.asarray(TO_COEFFICIENTS @ (t / u).T)
+        t = t - (_mass(law, a, t) - u * mass[:, None]) / exp(law.log_ratio(a[:, None], t))
+    return product(TO_COEFFICIENTS, (t / u).T)

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from analytic import QUANTITIES, Grading, resolved_breaks
 from mcgw.sampling.cells import NODES, TO_COEFFICIENTS, height_noise
+from mcgw.sampling.rules import product
 from mcgw.sampling.spacing import SURE
 from mcgw.scene import Scene
 
@@ -26,6 +27,14 @@ def _times_u(order: int) -> Array:
     matrix = np.eye(order) / 2 + np.eye(order, k=1) / 4 + np.eye(order, k=-1) / 4
     matrix[1, 0] = 0.5
     return matrix
+
+
+def _power(base: Array, exponent: Array) -> Array:
+    """``base**exponent`` for whole and half-integer exponents, by products and roots: each is rounded alike."""
+    power = np.where(exponent % 1 == 0, 1.0, np.sqrt(base))
+    for whole in range(int(exponent.max(initial=0))):
+        power = np.where(exponent >= whole + 1, power * base, power)
+    return power
 
 
 @dataclass(frozen=True)
@@ -102,7 +111,7 @@ class Laws:
         touching = scene.heights.above(h)
         approach = np.array([np.maximum(scene.heights.from_above(share, x) - x, 0.0) for x in h])[law]
         graded = np.where(self.modulus[:, None], self.grading(approach + self.h[:, None]), 1.0)
-        mean = np.mean(graded * approach ** self.exponent[:, None], axis=1)
+        mean = np.mean(graded * _power(approach, self.exponent[:, None]), axis=1)
         contacts = scene.n_asperities * touching[law]
         with np.errstate(over="ignore"):
             total = np.minimum(np.abs(self.scale * mean) * contacts, np.finfo(float).max)
@@ -125,35 +134,37 @@ class Laws:
         smooth = np.where(self.exponent[first] % 1 == 0, upto, below)
         return np.asarray((first + smooth - 1)[smooth > 0])
 
-    def plain(self, which: Ints, a: float, t: Array, probability: float) -> tuple[Array, Ints]:
-        """Coefficients of laws that are smooth at the heights ``a + t``, and how many count.
+    def plain(self, which: Ints, a: float, t: Array, e: Array, probability: float) -> tuple[Array, Ints]:
+        """Coefficients of laws that are smooth at the heights ``a + t``, of modulus `e`, and how many count.
 
         Shape (order, laws) and (laws,). What no sum over many nodes can show is zero.
         """
-        c = self._coefficients(which, a, t, (a - self.h[which]) + t[:, None])
-        needed, seen = self._needed(c, which, a, t, probability)
+        c = self._coefficients(which, e, (a - self.h[which]) + t[:, None])
+        needed, seen = self._needed(c, which, a, t, e, probability)
         c[np.arange(len(c))[:, None] >= seen] = 0.0
         edge = self.h[which] == a
         if edge.any():
-            c[:, edge], needed[edge] = self.from_edge(which[edge], a, t, probability)
+            c[:, edge], needed[edge] = self.from_edge(which[edge], a, t, e, probability)
         return c, needed
 
-    def from_edge(self, which: Ints, a: float, t: Array, probability: float) -> tuple[Array, Ints]:
+    def from_edge(self, which: Ints, a: float, t: Array, e: Array, probability: float) -> tuple[Array, Ints]:
         """Coefficients of laws whose separation is `a` itself, divided by sqrt(u) if half-integer.
 
         With t = u q(u) such a law is ``u^n q^n e``. The series is cut before the whole power of u is
         put in, so that the law stays relatively accurate down to u = 0.
         """
-        c = self._coefficients(which, a, t, (t / _U)[:, None])
-        needed, _ = self._needed(c, which, a, t, probability)
+        c = self._coefficients(which, e, (t / _U)[:, None])
+        needed, _ = self._needed(c, which, a, t, e, probability)
         c[np.arange(len(c))[:, None] >= needed] = 0.0
         for power in range(int(self.exponent[which].max(initial=0))):
             more = self.exponent[which] >= power + 1
-            c[:, more] = _times_u(len(c)) @ c[:, more]
+            c[:, more] = product(_times_u(len(c)), c[:, more])
             needed = needed + more
         return c, needed
 
-    def _needed(self, c: Array, which: Ints, a: float, t: Array, probability: float) -> tuple[Ints, Ints]:
+    def _needed(
+        self, c: Array, which: Ints, a: float, t: Array, e: Array, probability: float
+    ) -> tuple[Ints, Ints]:
         """Number of leading coefficients that describe each law (a column) accurately.
 
         Relative to the largest value on the cell; or, where it is sure, to the whole sum of a surface.
@@ -162,7 +173,6 @@ class Laws:
         tail = np.cumsum(np.abs(c)[::-1], axis=0)[::-1]
         crowd = self.n_asperities * probability + _SCATTER
         enough = np.maximum(tail[0], self.total[which] / crowd)
-        e = self.grading(a + t)
         relative = height_noise(a, t, e) / max(np.abs(e).max(), np.finfo(float).tiny)
         noise = np.where(self.modulus[which], relative, 0.0) * tail[0]
         limits = (
@@ -171,6 +181,6 @@ class Laws:
         needed, seen = (np.asarray((tail > limit).sum(axis=0), dtype=np.int64) for limit in limits)
         return needed, seen
 
-    def _coefficients(self, which: Ints, a: float, t: Array, base: Array) -> Array:
-        graded = np.where(self.modulus[which], self.grading(a + t)[:, None], 1.0)
-        return np.asarray(TO_COEFFICIENTS @ (self.scale[which] * graded * base ** self.exponent[which]))
+    def _coefficients(self, which: Ints, e: Array, base: Array) -> Array:
+        graded = np.where(self.modulus[which], e[:, None], 1.0)
+        return product(TO_COEFFICIENTS, self.scale[which] * graded * _power(base, self.exponent[which]))

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mcgw.sampling.assembly import Entry, tiles_of
-from mcgw.sampling.cells import Mesh
+from mcgw.sampling.cells import NODES, Mesh
 from mcgw.sampling.laws import ACCURACY, Laws
 from mcgw.sampling.moments import Layout
 from mcgw.sampling.tiles import Tiles
@@ -135,17 +135,20 @@ def _walk(mesh: Mesh, tree: Tree, laws: Laws, kept: Layout | None) -> tuple[list
     """From the root down: give each law to the coarsest nodes that resolve it."""
     entries: list[Entry] = []
     plain, rooted = np.zeros(tree.size, dtype=np.int64), np.zeros(mesh.size, dtype=np.int64)
+    start = mesh.edges[tree.first]
+    heights = [heights_above(mesh, tree, node) for node in range(tree.size)]
+    moduli = laws.grading(start[:, None] + np.reshape(heights, (tree.size, len(NODES))))
     stack = [(tree.size - 1, np.arange(len(laws.h)), 0)] if tree.size else []
     while stack:
         node, which, inherited = stack.pop()
-        a, b = mesh.edges[tree.first[node]], mesh.edges[tree.last[node]]
+        a, b = start[node], mesh.edges[tree.last[node]]
         which = which[laws.h[which] < b]
-        t = heights_above(mesh, tree, node)
+        t, e = heights[node], moduli[node]
         smooth = laws.smooth_from(which, a)
         if tree.left[node] >= 0:
             smooth &= ~laws.broken_between(which, a, b)
         p = tree.probability[node]
-        c, needed = laws.plain(which[smooth], a, t, p)
+        c, needed = laws.plain(which[smooth], a, t, e, p)
         done = needed <= (_MOST if tree.left[node] >= 0 else _MOST_IN_CELL)
         if done.any():
             entries.append(Entry(node, False, which[smooth][done], c[:, done]))
@@ -158,11 +161,11 @@ def _walk(mesh: Mesh, tree: Tree, laws: Laws, kept: Layout | None) -> tuple[list
             raise ValueError(f"grading: not resolved near s = {a:.6g}; give its breaks, or a smoother one")
         # A law is smoother the farther it is, so what the parents need of this cell is no more than
         # the nearest laws need, down to one row that counts.
-        _, nearest = laws.plain(laws.nearest(a), a, t, p)
+        _, nearest = laws.plain(laws.nearest(a), a, t, e, p)
         plain[node] = max(needed.max(initial=0), nearest.max(initial=1) if inherited > 1 else inherited)
         at_edge = which[~smooth]
         if at_edge.size:
-            c, needed = laws.from_edge(at_edge, a, t, p)
+            c, needed = laws.from_edge(at_edge, a, t, e, p)
             rooted[node] = needed.max()
             entries.append(Entry(node, True, at_edge, c))
     if kept:

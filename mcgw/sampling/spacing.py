@@ -61,11 +61,11 @@ def cuts(law: HeightLaw, n: int, low: float, high: float, before: float) -> Arra
 def _ladders(fewest: int) -> Array:
     """Upper edges of the cells of a gap of length 1: each row a choice, unused cells first and empty."""
     most = fewest + _MORE
-    rungs = np.arange(1 - most, 1)
     rows = []
     for growth in _GROWTHS:
+        rungs = np.cumprod([1.0, *[1 / growth] * (most - 1)])[::-1]  # the same bits on every processor
         for parts in range(fewest, most + 1):
-            rows.append(np.where(rungs > -parts, growth**rungs, 0.0))
+            rows.append(np.where(np.arange(most) >= most - parts, rungs, 0.0))
     return np.array(rows)
 
 

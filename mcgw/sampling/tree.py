@@ -13,6 +13,7 @@ from numpy.polynomial import chebyshev
 from numpy.typing import NDArray
 
 from mcgw.sampling.cells import NODES, TO_COEFFICIENTS, Mesh
+from mcgw.sampling.rules import product
 
 __all__ = ["Tree", "transfer", "tree_over"]
 
@@ -76,5 +77,5 @@ def transfer(mesh: Mesh, tree: Tree, node: int, child: int) -> Array:
     """Matrix from the moments T_k of a child to its part of the moments T_j of the parent."""
     start, end = mesh.edges[tree.first[node]], mesh.edges[tree.last[node]]
     s = (mesh.edges[tree.first[child]] - start) + heights_above(mesh, tree, child)
-    matrix = (TO_COEFFICIENTS @ chebyshev.chebvander(2 * s / (end - start) - 1, len(NODES) - 1)).T
+    matrix = product(TO_COEFFICIENTS, chebyshev.chebvander(2 * s / (end - start) - 1, len(NODES) - 1)).T
     return np.asarray(matrix if tree.left[child] < 0 else np.tril(matrix))  # no degree is raised
