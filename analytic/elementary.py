@@ -26,11 +26,11 @@ _SMALLEST, _LARGEST = -745.2, 709.79  # beyond, exp is 0 or infinite
 _HALF = np.sqrt(0.5)
 
 
-def _in_pieces(function: Callable[[Array], Array]) -> Callable[[Any], Any]:
+def _in_pieces(function: Callable[[Array], Array]) -> Callable[[Any], Array]:
     """Have a function of a vector take anything, in pieces that stay in the cache."""
 
     @wraps(function)
-    def of_anything(x: Any) -> Any:
+    def of_anything(x: Any) -> Array:
         x = np.asarray(x, dtype=np.float64)
         if x.size <= _PIECE:
             return function(x.ravel()).reshape(x.shape)
@@ -107,14 +107,14 @@ def log(x: Array) -> Array:
     z = s * s
     series = z * _polynomial([2 / (2 * j + 1) for j in range(11, 0, -1)], z)
     # log(1 + f) = f - s (f - series): f is exact, and the rest is small
-    value = k * _LOG2_HIGH + (f - (s * (f - series) - k * _LOG2_LOW))
+    value = np.asarray(k * _LOG2_HIGH + (f - (s * (f - series) - k * _LOG2_LOW)), dtype=np.float64)
     value[x == 0] = -np.inf
     value[x == np.inf] = np.inf
     return value
 
 
 def expm1(x: Any) -> Array:
-    """``exp(x) - 1``, accurate for small `x`: the error of ``exp(x)`` drops out of the quotient (W. Kahan)."""
+    """``exp(x) - 1``, accurate for small `x`: the error of ``exp(x)`` drops out (W. Kahan)."""
     x = np.asarray(x, dtype=np.float64)
     u = exp(x)
     with np.errstate(invalid="ignore", divide="ignore"):

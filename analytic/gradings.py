@@ -12,7 +12,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from analytic.elementary import exp
+from analytic.elementary import exp, log
 
 __all__ = ["Clipped", "Custom", "Exponential", "Grading", "Homogeneous", "Squared"]
 
@@ -86,7 +86,7 @@ class Exponential:
         """Height where the modulus vanishes (nan for gamma in [0, 1]); it is negative on one side."""
         if 0 <= self.gamma <= 1:
             return math.nan
-        return -math.log(self.gamma / (self.gamma - 1))
+        return -float(log(self.gamma / (self.gamma - 1)))
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,7 @@ from mcgw.errors import RunError
 from mcgw.sampling.samplers import Sampler, sampler_of
 from mcgw.scene import Scene
 from mcgw.simulation import block_size, drawn_blocks, kept, use_threads
-from mcgw.store.rundir import Run, identity_of
+from mcgw.store.rundir import Run, difference, identity_of
 from mcgw.store.shards import Arrays, Span, commit_shard
 
 __all__ = ["columns", "commit_block", "draw", "shard_size"]
@@ -79,7 +79,8 @@ def commit_block(folder: str, first: int, n: int, threads: int | None = 1) -> st
     if shard := run.held(span):
         return shard.digest
     if identity_of(run.scene, run.sampler) != run.identity:
-        raise RunError(f"{folder}: this worker has other versions than the run, which has {run.drawn_with}")
+        why = difference(run.scene, run.drawn_with, run.scene, run.sampler)
+        raise RunError(f"{folder}: this worker cannot draw for that run: {why}")
     started = perf_counter()
     arrays = draw(run.scene, _sampler(run), span, threads)
     path = run.shards_folder / span.file_name

@@ -30,6 +30,7 @@ ORDER = (
     "sampling.aligned",
     "sampling.in_threads",
     "sampling.hertz",
+    "store.arithmetic",
     "sampling.lanes",
     "sampling.rules",
     "sampling.cells",

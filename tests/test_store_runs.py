@@ -164,7 +164,7 @@ def test_another_scene_or_seed_in_that_place_is_refused(small_blocks, scene, tmp
 def test_another_version_is_refused(small_blocks, scene, tmp_path, monkeypatch):
     path = tmp_path / "e.h5"
     halted(scene, path, 40)
-    monkeypatch.setattr("mcgw.store.rundir.versions", lambda **_: "mcgw 99")
+    monkeypatch.setattr("mcgw.store.arithmetic.versions", lambda **_: "mcgw 99")
     with pytest.raises(StoreError, match=r"drawn with .*, this is mcgw 99"):
         run(scene, path)
 

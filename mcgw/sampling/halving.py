@@ -98,7 +98,8 @@ def share_out(seed: int, first: int, numbers: NDArray[np.float64], halvings: Hal
     ndarray of int
         Shape (categories, surfaces): a pure function of the seed, the surface and its number.
     """
-    return np.asarray(_share_out(seed, first, numbers, halvings.shares, halvings.turned, halvings.sizes))
+    tree = halvings.shares, halvings.turned, halvings.sizes
+    return np.asarray(_share_out(np.uint64(seed), first, numbers, *tree))
 
 
 @njit(nogil=True, cache=True)
@@ -109,7 +110,7 @@ def _share_out(seed: Any, first: Any, numbers: Any, shares: Any, turned: Any, si
         node = np.empty((sizes[-1] + 1, stop - start))
         for i in range(start, stop):  # in one step it takes 2 s to compile: the text of its errors
             node[0, i - start] = numbers[i]
-        _halve(node, uint64(first + start), uint64(seed), shares, turned, sizes)
+        _halve(node, uint64(first + start), seed, shares, turned, sizes)
         for category in range(sizes[-1]):
             for i in range(start, stop):
                 result[category, i] = node[category, i - start]

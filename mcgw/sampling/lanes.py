@@ -7,6 +7,7 @@ fuse calls a function of the C library that rounds alike, and is slow.
 """
 
 import operator
+from collections.abc import Callable
 from typing import Any
 
 from llvmlite import ir
@@ -24,7 +25,7 @@ _VECTOR = ir.VectorType(_DOUBLE, LANES)
 _ALIGNED = 8  # bytes: a vector may begin at any number
 
 
-class _Lanes(types.Type):  # type: ignore[misc]
+class _Lanes(types.Type):
     """Numba's type of four numbers."""
 
     def __init__(self) -> None:
@@ -35,12 +36,12 @@ _lanes = _Lanes()
 
 
 @register_model(_Lanes)
-class _LanesModel(models.PrimitiveModel):  # type: ignore[misc]
+class _LanesModel(models.PrimitiveModel):
     def __init__(self, manager: Any, kind: Any) -> None:
         super().__init__(manager, kind, _VECTOR)
 
 
-class _LaneByLane(ConcreteTemplate):  # type: ignore[misc]
+class _LaneByLane(ConcreteTemplate):
     cases = [signature(_lanes, _lanes, _lanes)]  # noqa: RUF012 - as numba wants it
 
 
@@ -60,6 +61,11 @@ _operate((operator.sub, operator.isub), "fsub")
 _operate((operator.mul, operator.imul), "fmul")
 
 
+def _intrinsic(function: Callable[..., Any]) -> Any:
+    """Make a function of code that writes instructions; what it takes is not what its caller gives."""
+    return intrinsic(function)
+
+
 def _called(builder: Any, name: str, *args: Any) -> Any:
     """Call one of LLVM's own functions, of numbers or of lanes."""
     kind = args[0].type
@@ -74,7 +80,7 @@ def _element(context: Any, builder: Any, array_type: Any, array: Any, index: Any
     return builder.bitcast(builder.gep(data, [index]), _VECTOR.as_pointer())
 
 
-@intrinsic  # type: ignore[untyped-decorator]
+@_intrinsic
 def fused(_typing: Any, a: Any, b: Any, c: Any) -> Any:
     """``a b + c``, rounded once; of numbers or of lanes."""
 
@@ -84,7 +90,7 @@ def fused(_typing: Any, a: Any, b: Any, c: Any) -> Any:
     return a(a, b, c), code
 
 
-@intrinsic  # type: ignore[untyped-decorator]
+@_intrinsic
 def roots(_typing: Any, a: Any) -> Any:
     """Square root of each lane."""
 
@@ -94,8 +100,8 @@ def roots(_typing: Any, a: Any) -> Any:
     return a(a), code
 
 
-@intrinsic  # type: ignore[untyped-decorator]
-def alike(_typing: Any, number: Any) -> Any:
+@_intrinsic
+def alike(_typing: Any, _number: Any) -> Any:
     """The same number in each lane."""
 
     def code(_context: Any, builder: Any, _sig: Any, args: Any) -> Any:
@@ -106,8 +112,8 @@ def alike(_typing: Any, number: Any) -> Any:
     return _lanes(types.float64), code
 
 
-@intrinsic  # type: ignore[untyped-decorator]
-def load(_typing: Any, array: Any, index: Any) -> Any:
+@_intrinsic
+def load(_typing: Any, array: Any, _index: Any) -> Any:
     """Numbers `index` ... `index + 3` of a contiguous array."""
 
     def code(context: Any, builder: Any, sig: Any, args: Any) -> Any:
@@ -116,8 +122,8 @@ def load(_typing: Any, array: Any, index: Any) -> Any:
     return _lanes(array, types.intp), code
 
 
-@intrinsic  # type: ignore[untyped-decorator]
-def store(_typing: Any, array: Any, index: Any, value: Any) -> Any:
+@_intrinsic
+def store(_typing: Any, array: Any, _index: Any, value: Any) -> Any:
     """Write them."""
 
     def code(context: Any, builder: Any, sig: Any, args: Any) -> Any:
@@ -127,7 +133,7 @@ def store(_typing: Any, array: Any, index: Any, value: Any) -> Any:
     return types.void(array, types.intp, value), code
 
 
-@intrinsic  # type: ignore[untyped-decorator]
+@_intrinsic
 def total(_typing: Any, a: Any) -> Any:
     """Sum of the lanes, in one order: ``(0 + 2) + (1 + 3)``."""
 

@@ -30,7 +30,7 @@ def _times_u(order: int) -> Array:
 
 
 def _power(base: Array, exponent: Array) -> Array:
-    """``base**exponent`` for whole and half-integer exponents, by products and roots: each is rounded alike."""
+    """``base**exponent`` for whole and half-integer exponents, by products and roots."""
     power = np.where(exponent % 1 == 0, 1.0, np.sqrt(base))
     for whole in range(int(exponent.max(initial=0))):
         power = np.where(exponent >= whole + 1, power * base, power)

@@ -19,12 +19,12 @@ __all__ = ["chebyshev_points", "chebyshev_transform", "gauss_legendre", "product
 Array = NDArray[np.float64]
 
 
-def _sine(x: Array) -> Array:
+def _sine(x: Any) -> Array:
     """Taylor's series, for numbers from -pi/2 to pi/2."""
-    value = np.ones_like(x)
+    value = np.ones(x.shape)
     for k in range(26, 0, -2):
         value = 1.0 - value * (x * x) / (k * (k + 1))
-    return x * value
+    return np.asarray(x * value)
 
 
 def chebyshev_points(n: int) -> Array:
@@ -35,7 +35,7 @@ def chebyshev_points(n: int) -> Array:
 def chebyshev_transform(points: Array) -> Array:
     """Matrix from values at the Chebyshev points to coefficients of the series, shape (n, n)."""
     n = len(points)
-    matrix = chebyshev.chebvander(points, n - 1).T * (2 / n)
+    matrix = np.asarray(chebyshev.chebvander(points, n - 1).T * (2 / n), dtype=np.float64)
     matrix[0] /= 2
     return matrix
 

@@ -12,7 +12,6 @@ holds some uniforms x = 2u - 1 at a time, their roots, ones, and the sums.
 
 from typing import Any
 
-import numpy as np
 from numba import njit
 
 from mcgw.sampling.lanes import LANES, alike, fused, load, roots, store, total

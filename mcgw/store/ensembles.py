@@ -9,10 +9,10 @@ from mcgw.ensemble import Ensemble
 from mcgw.errors import RunError, StoreError
 from mcgw.scene import Scene
 from mcgw.scene_file import scene_from, scene_text
+from mcgw.store.arithmetic import drawn_with
 from mcgw.store.disk import check_output, remove_stale, write_whole
 from mcgw.store.guard import examine, examine_all
 from mcgw.store.layout import FILETYPE, FORMAT, build, values_digest
-from mcgw.store.provenance import versions
 from mcgw.store.rundir import Run, difference, identity_of, parts_of
 from mcgw.store.seal import check_seal, seal_of
 from mcgw.store.shards import DRAWN, Span
@@ -161,7 +161,7 @@ def finished(path: Path, scene: Scene, sampler: str) -> int:
         return 0
     attributes, there = _described(path)
     if attributes.get("run") != identity_of(scene, sampler):
-        what = difference(there, str(attributes.get("draws", "another version")), scene)
+        what = difference(there, str(attributes.get("draws", "another version")), scene, sampler)
         raise StoreError(f"{path}: holds a different ensemble: {what}; choose another -o, or remove it")
     if there.n_surfaces > scene.n_surfaces:
         raise StoreError(
@@ -209,7 +209,7 @@ def save(ensemble: Ensemble, path: str | Path, *, wall_seconds: float = 0.0) -> 
             ensemble.sampler,
             [(Span(0, ensemble.n_surfaces), arrays)],
             run=identity_of(scene, ensemble.sampler),
-            draws=versions(of_draws=True),
+            draws=drawn_with(scene, ensemble.sampler),
             wall_seconds=wall_seconds,
         )
         file.flush()

@@ -26,8 +26,9 @@ import tomli_w
 from mcgw.errors import RunError, StoreError
 from mcgw.scene import Scene, SceneError
 from mcgw.scene_file import scene_from, scene_text
+from mcgw.store.arithmetic import KIND, drawn_with
 from mcgw.store.disk import remove_stale, sync, write_whole
-from mcgw.store.provenance import now, versions
+from mcgw.store.provenance import now
 from mcgw.store.shards import Shard, Span, open_shard
 
 __all__ = ["Run", "difference", "identity_of", "missing", "parts_of"]
@@ -47,12 +48,12 @@ def frozen_text(scene: Scene) -> str:
 
 
 def identity_of(scene: Scene, sampler: str) -> str:
-    """SHA-256 of all that the numbers of a surface depend on: frozen scene, sampler, versions."""
-    parts = (frozen_text(scene), sampler, versions(of_draws=True))
+    """SHA-256 of all that the numbers of a surface depend on: frozen scene, sampler, what draws."""
+    parts = (frozen_text(scene), sampler, drawn_with(scene, sampler))
     return hashlib.sha256("\0".join(parts).encode()).hexdigest()
 
 
-def difference(scene: Scene, drawn_with: str, wanted: Scene) -> str:
+def difference(scene: Scene, made_with: str, wanted: Scene, sampler: str) -> str:
     """What keeps two runs from being one, in words."""
     there, here = (dict(_flat(tomllib.loads(frozen_text(s)))) for s in (scene, wanted))
     for key, value in here.items():
@@ -61,7 +62,10 @@ def difference(scene: Scene, drawn_with: str, wanted: Scene) -> str:
     for key, value in there.items():
         if key not in here:
             return f"{key} is {_short(value)} there and not given here"
-    return f"it was drawn with {drawn_with}, this is {versions(of_draws=True)}"
+    this = drawn_with(wanted, sampler)
+    if made_with.partition(KIND)[0] == this.partition(KIND)[0] and made_with != this:
+        return "it was drawn on another kind of processor, which rounds exponentials and logarithms otherwise"
+    return f"it was drawn with {made_with}, this is {this}"
 
 
 def _flat(table: dict[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
@@ -94,7 +98,7 @@ class Run:
     identity : str
         See `identity_of`.
     drawn_with : str
-        Versions that draw.
+        Versions that draw, and the kind of processor where it counts.
     date : str
         When it began.
     """
@@ -126,14 +130,14 @@ class Run:
         sync(folder.parent)
         with suppress(FileExistsError):
             new = cls(
-                folder, scene, sampler, size, identity_of(scene, sampler), versions(of_draws=True), now()
+                folder, scene, sampler, size, identity_of(scene, sampler), drawn_with(scene, sampler), now()
             )
             new._write(replace=False)
             return new
         old = cls.open(folder)
         if old.identity != identity_of(scene, sampler):
             raise StoreError(
-                f"{folder}: holds a different run: {difference(old.scene, old.drawn_with, scene)}; "
+                f"{folder}: holds a different run: {difference(old.scene, old.drawn_with, scene, sampler)}; "
                 "choose another -o, or remove it"
             )
         return replace(old, scene=scene)

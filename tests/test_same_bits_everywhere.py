@@ -1,0 +1,244 @@
+"""The same bits on every x86-64: child processes that believe that they are on an older processor."""
+
+import hashlib
+import json
+import math
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from numpy._core import _multiarray_umath as umath
+
+import analytic
+from mcgw.errors import RunError, StoreError
+from mcgw.running import Part, run, run_part
+from mcgw.sampling.samplers import sampler_of
+from mcgw.scene import SAMPLERS, Scene
+from mcgw.store import arithmetic
+from mcgw.work import commit_block
+
+GRADINGS = {
+    "homogeneous": analytic.Homogeneous(),
+    "exponential": analytic.Exponential(2.0),
+    "clipped": analytic.Exponential(3.0),
+    "table": analytic.Table([-5.0, 0.0, 9.0], [0.5, 1.0, 1.7]),
+}
+HEIGHTS = {
+    "gaussian": analytic.Gaussian(),
+    "exponential": analytic.ExponentialHeights(),
+    "table": analytic.HeightTable([-2.0, -1.0, 0.0, 0.7, 2.0, 3.0], [0.0, 0.1, 0.4, 0.8, 0.97, 1.0]),
+}
+PAIRS = [(grading, "gaussian") for grading in GRADINGS] + [("exponential", law) for law in list(HEIGHTS)[1:]]
+
+OLD_BLAS = {"OPENBLAS_CORETYPE": "Prescott"}
+OLD_C = {"GLIBC_TUNABLES": "glibc.cpu.hwcaps=-AVX,-AVX2,-FMA,-FMA4,-AVX_Usable,-AVX2_Usable,-FMA_Usable"}
+OLD_NUMPY = {
+    "NPY_DISABLE_CPU_FEATURES": " ".join(f for f in umath.__cpu_dispatch__ if umath.__cpu_features__[f])
+}
+NO_VECTORS = {"NUMBA_CPU_NAME": "generic", "NUMBA_CPU_FEATURES": ""}  # two numbers at a time, nothing fused
+HASWELL = {"NUMBA_CPU_NAME": "haswell", "NUMBA_CPU_FEATURES": ""}
+
+
+def made(sampler, grading, heights):
+    """A few surfaces with crowded and empty cells, extras on both sides, and contacts one by one."""
+    surface = analytic.Surface(sigma=1.37e-6, radius=13e-6, eta=3.0e8, nominal_area=1e-4, E_star=78.6e9)
+    return Scene(
+        surface=surface,
+        separations=(0.0, 0.3, 1.7),
+        grading=GRADINGS[grading],
+        negative="clip" if grading == "clipped" else "error",
+        heights=HEIGHTS[heights],
+        n_asperities=5000,
+        seed=20240601,
+        sampler=sampler,
+    )
+
+
+def digests():
+    """Of all that is drawn, and of the set-up, for each sampler that owes the same bits to everybody."""
+    found = {}
+    for sampler in SAMPLERS[2:]:
+        for pair in PAIRS:
+            drawn = sampler_of(made(sampler, *pair))
+            block = drawn.block(3, 5)
+            parts = (*block.sums.values(), block.counts, block.moments, block.extras, drawn.mesh.edges)
+            sha = hashlib.sha256(b"".join(np.ascontiguousarray(part).tobytes() for part in parts))
+            found[f"{sampler} {pair}"] = sha.hexdigest()
+    return found
+
+
+def report():
+    return {"digests": digests(), "kind": arithmetic.kind_of_processor()}
+
+
+@pytest.fixture(scope="module")
+def here():
+    return report()
+
+
+def elsewhere(cpu):
+    """What a process finds that was told to be on another processor."""
+    code = "import json, test_same_bits_everywhere as t; print(json.dumps(t.report()))"
+    path = os.pathsep.join(map(str, (Path(__file__).parent, Path(__file__).parent.parent)))
+    call = [sys.executable, "-W", "ignore", "-c", code]
+    done = subprocess.run(call, env=os.environ | {"PYTHONPATH": path} | cpu, capture_output=True, check=True)
+    return json.loads(done.stdout)
+
+
+@pytest.mark.parametrize(
+    "cpu",
+    [
+        OLD_BLAS | OLD_C | OLD_NUMPY,
+        pytest.param(OLD_BLAS | OLD_C | OLD_NUMPY | NO_VECTORS, marks=pytest.mark.slow),
+        pytest.param(HASWELL, marks=pytest.mark.slow),
+    ],
+    ids=["libraries", "everything", "haswell"],
+)
+def test_every_processor_draws_the_same_bits(here, cpu):
+    assert elsewhere(cpu)["digests"] == here["digests"]
+
+
+@pytest.mark.skipif(
+    "FMA" not in Path("/proc/cpuinfo").read_text().upper(), reason="no younger than the oldest"
+)
+def test_the_older_processor_rounds_otherwise(here):
+    """Otherwise the test above says nothing."""
+    assert elsewhere(OLD_BLAS | OLD_C | OLD_NUMPY)["kind"] != here["kind"]
+
+
+def test_the_compiler_neither_fuses_nor_reorders():
+    """Where sums are written out, no kernel may ask for the fast arithmetic that depends on the processor."""
+    import mcgw.sampling
+
+    for path in Path(mcgw.sampling.__file__).parent.glob("*.py"):
+        for word in ("fastmath", "reassoc", "contract", "import leggauss", "linalg", " @ "):
+            lines = [
+                line
+                for line in path.read_text().splitlines()
+                if word in line and "self.response @" not in line
+            ]
+            assert not [line for line in lines if '"""' not in line and "``" not in line], (path.name, word)
+
+
+@pytest.mark.parametrize(
+    ("change", "depends"),
+    [
+        ({}, False),
+        ({"grading": GRADINGS["clipped"], "negative": "clip"}, False),
+        ({"grading": GRADINGS["table"], "heights": HEIGHTS["table"]}, False),
+        ({"sampler": "direct"}, True),
+        ({"grading": analytic.Custom(np.cosh)}, True),
+        ({"grading": analytic.Clipped(analytic.Custom(np.sinh))}, True),
+        ({"heights": analytic.Weibull(3.6)}, True),
+    ],
+)
+def test_what_depends_on_the_processor(make_scene, change, depends):
+    scene = make_scene(**change)
+    sampler = "cells" if scene.sampler == "auto" else scene.sampler
+    assert arithmetic.depends_on_processor(scene, sampler) == depends
+    assert (arithmetic.kind_of_processor() in arithmetic.drawn_with(scene, sampler)) == depends
+
+
+WHY = "another kind of processor, which rounds exponentials and logarithms otherwise"
+
+
+@pytest.mark.parametrize("heights", [analytic.Weibull(3.6), analytic.Gaussian()], ids=["foreign", "own"])
+def test_a_run_goes_on_where_it_was_drawn(make_scene, tmp_path, monkeypatch, heights):
+    """Extended, resumed, sharded, drawn by a worker: refused with the reason, or the same bits."""
+    scene = make_scene(heights=heights, sampler="tail", n_surfaces=4)
+    more = make_scene(heights=heights, sampler="tail", n_surfaces=8)
+    whole, begun = tmp_path / "whole.h5", tmp_path / "begun.h5"
+    run(scene, whole)
+    monkeypatch.setattr("mcgw.running.shard_size", lambda *_: 4)
+    run_part(more, begun, Part(1, 2))
+    monkeypatch.setattr(arithmetic, "kind_of_processor", lambda: "00000000")
+    going_on = [
+        (StoreError, lambda: run(more, whole)),
+        (StoreError, lambda: run_part(more, begun, Part(2, 2))),
+        (RunError, lambda: commit_block(f"{begun}.parts", 4, 4)),
+        (StoreError, lambda: run(more, begun)),
+    ]
+    for kind, call in going_on:
+        if isinstance(heights, analytic.Gaussian):
+            call()
+            continue
+        with pytest.raises(kind, match=WHY) as caught:
+            call()
+        assert "\n" not in str(caught.value)
+
+
+def test_elementary_functions_against_mpmath():
+    """To a few units of the last digit, and where NumPy's have their limits."""
+    import mpmath as mp
+
+    from analytic import elementary
+
+    rng = np.random.default_rng(1)
+    spread = np.exp(rng.uniform(-700, 700, 300))
+    small = np.concatenate([rng.uniform(-1, 1, 200), 10.0 ** rng.uniform(-17, 0, 200)])
+    cases = [
+        (elementary.exp, mp.exp, np.concatenate([small, rng.uniform(-700, 700, 300)])),
+        (elementary.expm1, mp.expm1, np.concatenate([small, -small, rng.uniform(-30, 700, 300)])),
+        (elementary.log, mp.log, np.concatenate([spread, 1 + 0.01 * small])),
+        (elementary.log1p, mp.log1p, np.concatenate([spread, small, -0.999 * small])),
+        (elementary.ndtr, mp.ncdf, np.concatenate([rng.uniform(-8, 8, 200), rng.uniform(-37, 0, 200)])),
+    ]
+    with mp.workdps(40):
+        for ours, exact, x in cases:
+            wanted = [exact(mp.mpf(v)) for v in x.tolist()]
+            error = [abs(mp.mpf(a) / b - 1) for a, b in zip(ours(x).tolist(), wanted, strict=True) if b]
+            assert max(error) < 6 * 2.0**-53 * (2 if ours in (elementary.expm1, elementary.ndtr) else 1), ours
+        p = np.concatenate([rng.uniform(0, 1, 200), np.exp(rng.uniform(-600, 0, 200))])
+        for share, x in zip(p.tolist(), elementary.ndtri(p).tolist(), strict=True):
+            slope = mp.npdf(x) / mp.ncdf(x)  # by how much of itself the share changes with x
+            assert abs(mp.ncdf(x) / mp.mpf(share) - 1) < 8 * 2.0**-53 * (1 + slope * abs(x))
+    np.testing.assert_array_equal(elementary.exp([-800, -np.inf, 710, np.inf]), [0, 0, np.inf, np.inf])
+    np.testing.assert_array_equal(elementary.log([0, np.inf]), [-np.inf, np.inf])
+    np.testing.assert_array_equal(elementary.ndtri([0, 0.5, 1]), [-np.inf, 0, np.inf])
+    np.testing.assert_array_equal(elementary.ndtr([-np.inf, np.inf]), [0, 1])
+    assert math.isnan(elementary.exp(math.nan))
+
+
+def test_compiled_exponential_and_logarithm_against_mpmath():
+    import mpmath as mp
+
+    from mcgw.sampling.exp_log import exp_minus, log, log_one_minus
+
+    rng = np.random.default_rng(2)
+    small = 10.0 ** rng.uniform(-17, -0.31, 300)
+    cases = [
+        (exp_minus, lambda y: mp.exp(-y), rng.uniform(0, 40, 300)),
+        (log, mp.log, np.exp(rng.uniform(-100, 100, 300))),
+        (log_one_minus, lambda p: mp.log(1 - p), small),
+    ]
+    with mp.workdps(40):
+        for ours, exact, x in cases:
+            error = [abs(mp.mpf(float(ours(v))) / exact(mp.mpf(v)) - 1) for v in x.tolist()]
+            assert max(error) < 8 * 2.0**-53, ours
+
+
+def test_rules_integrate_and_interpolate():
+    """Gauss's rule to the degree it owes, the transform as the inverse of values, the triangle as NumPy's."""
+    from numpy.polynomial import chebyshev
+
+    from mcgw.sampling import rules
+
+    for n in (5, 20, 48):
+        x, w = rules.gauss_legendre(n)
+        k = np.arange(2 * n)
+        np.testing.assert_allclose((w[:, None] * x[:, None] ** k).sum(axis=0), 1 / (k + 1), rtol=1e-13)
+    points = rules.chebyshev_points(20)
+    values = chebyshev.chebvander(points, 19)
+    np.testing.assert_allclose(
+        rules.product(rules.chebyshev_transform(points), values), np.eye(20), atol=3e-15
+    )
+    matrix = np.random.default_rng(3).normal(size=(30, 12))
+    np.testing.assert_allclose(
+        rules.triangle(matrix),
+        np.abs(np.linalg.qr(matrix, mode="r")) * np.sign(rules.triangle(matrix)),
+        atol=1e-14,
+    )
+    np.testing.assert_allclose(rules.product(matrix.T, matrix), matrix.T @ matrix, rtol=1e-12, atol=1e-12)
