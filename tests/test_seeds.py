@@ -1,0 +1,97 @@
+"""All 64 bits of a seed, everywhere, and after a smaller seed in the same process."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+
+import mcgw
+from mcgw.cli import main
+from mcgw.converge import converge
+from mcgw.errors import StoreError
+from mcgw.figures.samples import Samples
+from mcgw.regrade import regrade
+from mcgw.running import run
+from mcgw.sampling.asperities import heights
+from mcgw.sampling.samplers import sampler_of
+from mcgw.scene import SAMPLERS, SceneError
+from mcgw.store import ensembles
+
+SMALL, LARGE = 1, [2**63 - 1, 2**63, 2**64 - 1]
+QUICK = (Path(__file__).parent.parent / "runs" / "quick.toml").read_text()
+
+
+@pytest.mark.parametrize("count", ["fixed", "poisson"])
+@pytest.mark.parametrize("sampler", SAMPLERS[1:])
+def test_every_sampler_takes_every_seed(make_scene, sampler, count):
+    """One ensemble each, however large its neighbours."""
+    drawn = [
+        sampler_of(make_scene(sampler=sampler, count=count, seed=seed)).block(0, 3).sums["load"][:, 0]
+        for seed in (SMALL, *LARGE, 2**63 + SMALL, 2**32 + SMALL, SMALL)
+    ]
+    np.testing.assert_array_equal(drawn[0], drawn[-1])
+    assert len(np.unique(drawn)) == 3 * (len(drawn) - 1)
+
+
+@pytest.mark.parametrize("seed", LARGE)
+@pytest.mark.parametrize("sampler", ["cells", "direct"])
+def test_a_file_keeps_the_seed_and_goes_on_with_it(make_scene, tmp_path, sampler, seed):
+    scene = make_scene(sampler=sampler, seed=seed, n_surfaces=3, keep="sums")
+    path, whole = tmp_path / "a.h5", tmp_path / "b.h5"
+    run(make_scene(seed=SMALL, n_surfaces=3), tmp_path / "small.h5")
+    run(scene, path)
+    assert ensembles.recorded_seed(path) == seed == mcgw.open_ensemble(path).scene.seed
+    with h5py.File(path) as file:
+        assert file.attrs["seed"].dtype == np.uint64
+        assert int(file.attrs["seed"]) == seed
+    longer = replace(scene, n_surfaces=6)
+    run(longer, path)
+    run(longer, whole)
+    assert ensembles.read_attributes(path)["digest"] == ensembles.read_attributes(whole)["digest"]
+    with pytest.raises(StoreError, match=r"ensemble\.seed is"):
+        run(replace(longer, seed=seed - 1), path)
+
+
+@pytest.mark.parametrize("seed", LARGE)
+def test_commands_take_it(tmp_path, capsys, seed):
+    scene, path = tmp_path / "s.toml", tmp_path / "e.h5"
+    text = QUICK.replace("n_surfaces = 200", "n_surfaces = 4").replace("seed = 1", f"seed = {seed}")
+    scene.write_text(text)
+    for command in (
+        ["run", scene, "-o", path],
+        ["show", path],
+        ["show", "--plan", scene],
+        ["compare", path],
+        ["report", path, "-o", tmp_path / "r.html"],
+        ["solve", scene, "--load", "20N"],
+        ["surface", scene, "--surface", "1", "-o", tmp_path / "m.npy", "--shape", "64"],
+    ):
+        code = main([str(word) for word in command])
+        said = capsys.readouterr()
+        assert code in (0, 1), (command, said.err)
+        if command[0] in ("run", "show", "solve", "surface") and "--plan" not in command:
+            assert str(seed) in said.out + said.err, command
+        assert "Overflow" not in said.err
+
+
+@pytest.mark.parametrize("seed", LARGE)
+def test_heights_figures_regrading_and_convergence_take_it(make_scene, seed):
+    scene = make_scene(seed=seed, n_surfaces=64, n_asperities=300, separations=(0.0, 1.0), sampler="cells")
+    touching = heights(scene, 0, untouched=True)
+    assert touching.size == 300
+    assert np.sum(touching > 0) == sampler_of(scene).block(0, 1).sums["contacts"][0, 0]
+    samples = Samples(scene.surface, 20, 30_000, seed, 1)
+    assert regrade(samples.base, samples.base.scene.grading).scene.seed == seed
+    assert samples.heights[0].size
+    seen = []
+    converge(scene, lambda x: seen.append(x.seed) or sampler_of(x).block(0, x.n_surfaces).sums, seeds=3)
+    assert {(seed + k) % 2**64 for k in range(3)} <= set(seen)
+    assert all(0 <= value < 2**64 for value in seen)
+
+
+@pytest.mark.parametrize("seed", [-1, 2**64])
+def test_other_seeds_are_refused(make_scene, seed):
+    with pytest.raises(SceneError, match="whole number from 0 to"):
+        make_scene(seed=seed)
