@@ -19,7 +19,7 @@ __all__ = ["Halvings", "halvings_of", "share_out"]
 
 Ints = NDArray[np.int64]
 
-_BITS = 2.0**46  # of a probability: the last ones differ between kinds of CPU
+_BITS = 2.0**46  # of a probability: of a law of scipy.stats the last ones differ between kinds of CPU
 
 
 @dataclass(frozen=True)
