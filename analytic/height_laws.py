@@ -4,9 +4,10 @@ All are reduced: s = (z - mean)/(standard deviation). Separations stay d/sigma f
 """
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
-from typing import Any
+from functools import cached_property, partial
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,14 +15,18 @@ from scipy.special import gammaln, zeta
 
 from analytic.elementary import exp, expm1, log, log1p
 from analytic.heights import HeightLaw
+from analytic.in_time import in_time
 from analytic.resolution import resolved_breaks
 
 __all__ = ["ExponentialHeights", "ScipyHeights", "Weibull", "narrowest"]
 
 Array = NDArray[np.float64]
+T = TypeVar("T")
 
 _SERIES = 4.0  # shape of a Weibull law from which on its spread is summed in powers of its inverse
 _BEND = 0.5  # change of the logarithm of the density over a span
+_SECONDS = 5.0  # for moments, or jumps, of a law of scipy: some are integrals of integrals
+_TRIAL, _TRIAL_SECONDS = np.array([1e-9, 0.1, 0.5, 0.9]), 1.0  # a few of the thousands of calls to come
 
 
 def narrowest(law: HeightLaw, s: float) -> float:
@@ -213,7 +218,8 @@ class ScipyHeights:
     Raises
     ------
     ValueError
-        If it is not continuous, or its variance is not positive and finite.
+        If it is not continuous, its variance is not positive and finite, or scipy takes seconds to
+        evaluate it.
     """
 
     distribution: Any
@@ -226,10 +232,16 @@ class ScipyHeights:
             raise ValueError(
                 f"{self._name}: its mean is {mean:g} and its deviation {std:g}; both must be finite"
             )
+        for function in (self.distribution.ppf, self.distribution.isf):
+            self._in_time(_TRIAL_SECONDS, partial(function, _TRIAL), "a few heights of given probability")
 
     @property
     def _name(self) -> str:
         return str(getattr(getattr(self.distribution, "dist", None), "name", self.distribution))
+
+    def _in_time(self, seconds: float, call: Callable[[], T], what: str) -> T:
+        problem = f"{self._name}: {what} take scipy longer than {seconds:g} s; give another law, or a table"
+        return in_time(seconds, call, problem)
 
     @property
     def _key(self) -> tuple[str, str, str]:
@@ -243,7 +255,8 @@ class ScipyHeights:
 
     @cached_property
     def _mean_std(self) -> tuple[float, float]:
-        return float(self.distribution.mean()), float(self.distribution.std())
+        law = self.distribution
+        return self._in_time(_SECONDS, lambda: (float(law.mean()), float(law.std())), "mean and deviation")
 
     @cached_property
     def support(self) -> tuple[float, float]:
@@ -256,7 +269,8 @@ class ScipyHeights:
     def breaks(self) -> tuple[float, ...]:
         """Heights that cut the density, between its 1e-9 quantiles, into smooth curves."""
         low, high = self.from_below(np.array(1e-9), math.inf), self.from_above(np.array(1e-9), -math.inf)
-        return resolved_breaks(_Density(self), float(low), float(high))
+        found = partial(resolved_breaks, _Density(self), float(low), float(high))
+        return self._in_time(_SECONDS, found, "jumps and kinks of the density")
 
     @property
     def singular(self) -> tuple[float, ...]:

@@ -1,7 +1,7 @@
 """A measured grading: points of E*(s)/E* against height, from a CSV file or a nanoindenter."""
 
 import csv
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -83,19 +83,36 @@ class Table:
         Raises
         ------
         ValueError
-            If the header is another one or a row is not two numbers.
+            If the header is another one, a row is not two numbers, or there is no such regular file.
         """
-        with open(path, newline="", encoding="utf-8-sig") as file:
-            header, *rows = [row for row in csv.reader(file) if row] or [[]]
+        if not Path(path).is_file():
+            raise ValueError(f"{path}: {'is no regular' if Path(path).exists() else 'no such'} file")
+        try:
+            with open(path, newline="", encoding="utf-8-sig") as file:
+                return cls.from_lines(file, sigma=sigma, E_star=E_star)
+        except ValueError as error:
+            raise ValueError(f"{path}: {error}") from None
+
+    @classmethod
+    def from_lines(cls, lines: Iterable[str], *, sigma: float, E_star: float) -> "Table":
+        """As `from_csv`, of the lines of such a file.
+
+        Raises
+        ------
+        ValueError
+            Which says what is wrong, and quotes nothing of what stands there.
+        """
+        try:
+            header, *rows = [row for row in csv.reader(lines) if row] or [[]]
+        except csv.Error as error:
+            raise ValueError(f"is no table: {error}") from None
         units = {"s": 1.0, "z": sigma, "ratio": 1.0, "E_star": E_star}
         names = [name.strip() for name in header]
         if len(names) != 2 or names[0] not in ("s", "z") or names[1] not in ("ratio", "E_star"):
-            raise ValueError(
-                f"{path}: the header must be s or z, then ratio or E_star, not {','.join(names)!r}"
-            )
+            raise ValueError("the first line must be s or z, a comma, then ratio or E_star")
         try:
             data = np.array([[float(a), float(b)] for a, b in rows]).reshape(-1, 2)
         except ValueError:
-            raise ValueError(f"{path}: every row below the header must be two numbers") from None
+            raise ValueError("every line below the header must be two numbers, parted by a comma") from None
         data = data[np.argsort(data[:, 0], kind="stable")] / [units[names[0]], units[names[1]]]
         return cls(data[:, 0].tolist(), data[:, 1].tolist())

@@ -30,11 +30,13 @@ if TYPE_CHECKING:
     from mcgw.scene_file import load_scene, scene_from, scene_text
     from mcgw.simulation import simulate
     from mcgw.store.ensembles import open_ensemble
+    from mcgw.surface import Surface
 
 __all__ = [
     "Ensemble",
     "Scene",
     "SceneError",
+    "Surface",
     "heights",
     "load_scene",
     "open_ensemble",
@@ -52,6 +54,7 @@ _HOME = {
     "Ensemble": "ensemble",
     "Scene": "scene",
     "SceneError": "scene",
+    "Surface": "surface",
     "heights": "sampling.asperities",
     "load_scene": "scene_file",
     "open_ensemble": "store.ensembles",

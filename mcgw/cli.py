@@ -2,11 +2,14 @@
 
 import argparse
 import sys
+import warnings
 from collections.abc import Sequence
 from importlib import import_module
 from importlib.metadata import PackageNotFoundError, version
+from typing import Any
 
 from mcgw.errors import RunError
+from mcgw.terminal import drop_output, one_line, plain_output
 
 COMMANDS = (
     "init",
@@ -39,9 +42,18 @@ def main(argv: Sequence[str] | None = None) -> int:
         0: done; 1: a comparison or a run failed; 2: bad input; 130, 143: interrupted by a
         signal.
     """
-    args = _parser().parse_args(argv)
+    with plain_output():
+        return _main(argv)
+
+
+def _main(argv: Sequence[str] | None) -> int:
     try:
-        return int(args.execute(args))
+        args = _parser().parse_args(argv)
+        with warnings.catch_warnings():
+            warnings.showwarning = _show_warning  # type: ignore[assignment]
+            code = int(args.execute(args))
+        sys.stdout.flush()
+        return code
     except KeyboardInterrupt:
         print("mcgw: interrupted", file=sys.stderr)
         return 130
@@ -49,12 +61,22 @@ def main(argv: Sequence[str] | None = None) -> int:
         print(f"mcgw: {error}", file=sys.stderr)
         return error.code
     except BrokenPipeError:  # the reader of our output has seen enough
-        sys.stderr.close()
+        drop_output()
         return 0
+    except MemoryError as error:
+        print(f"mcgw: the memory does not suffice ({one_line(str(error))}); ask for less", file=sys.stderr)
+        return 1
     except (ValueError, OSError) as error:
+        if isinstance(error, OSError) and error.filename == "standard output":
+            drop_output()
         for line in str(error).splitlines():
-            print(f"mcgw: {line}", file=sys.stderr)
+            print(f"mcgw: {one_line(line)}", file=sys.stderr)
         return 2
+
+
+def _show_warning(message: Warning | str, *_: Any) -> None:
+    """Warnings are for the user: one line, without the place in the code."""
+    print(f"mcgw: warning: {one_line(str(message))}", file=sys.stderr)
 
 
 def _parser() -> argparse.ArgumentParser:

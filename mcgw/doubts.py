@@ -3,6 +3,7 @@
 import numpy as np
 
 from mcgw.ensemble import Ensemble
+from mcgw.plausible import unit_doubts
 
 __all__ = ["doubts"]
 
@@ -25,7 +26,7 @@ def doubts(ensemble: Ensemble) -> list[str]:
         One sentence each; empty where the model has no known trouble.
     """
     scene, h = ensemble.scene, ensemble.separations
-    surface, found = scene.surface, []
+    surface, found = scene.surface, unit_doubts(scene)
     share = scene.n_asperities / surface.n_asperities
     crowded = h[scene.theory.mean("area", h) / surface.nominal_area > _CROWDED]
     if crowded.size:

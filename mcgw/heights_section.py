@@ -18,12 +18,13 @@ from analytic import (
     Weibull,
 )
 from mcgw.npy_file import open_npy
+from mcgw.plain_file import read_text
 from mcgw.section import Section
 
 __all__ = ["LAWS", "heights_law", "heights_table", "read_heights"]
 
 LAWS = ("gaussian", "exponential", "weibull", "table", "scipy")
-_MOST_BYTES = 2**30
+_MOST_BYTES = 2**28
 
 
 def heights_law(section: Section, folder: Path) -> HeightLaw:
@@ -75,10 +76,9 @@ def _table(section: Section, folder: Path) -> HeightLaw:
             return HeightTable(s or (), share or ())
         sample = read_heights(folder / str(file)) if heights is None else heights
         return HeightTable.of(sample) if resample is not False else MeasuredHeights(sample)
-    except (OSError, TypeError, ValueError) as error:
-        reason = f"{error.strerror}: {error.filename}" if isinstance(error, OSError) else str(error)
+    except (TypeError, ValueError) as error:
         advice = "give heights (a list), a file of them, or points s and share"
-        section.fail(key, {"file": file, "heights": heights, "s": s}[key], f"{advice}; {reason}")
+        section.fail(key, {"file": file, "heights": heights, "s": s}[key], f"{advice}; {error}")
         return Gaussian()
 
 
@@ -97,21 +97,22 @@ def read_heights(path: Path) -> NDArray[np.float64]:
 
     Raises
     ------
-    OSError
-        If it cannot be read.
     ValueError
-        If it is not there, longer than a gigabyte, or does not hold numbers.
+        If it cannot be read, is longer than 256 MB, or does not hold numbers; nothing of what stands
+        there is quoted.
     """
-    if not path.is_file():
-        raise ValueError(f"{path}: no such file")
-    if path.stat().st_size > _MOST_BYTES:
-        raise ValueError(f"{path}: longer than {_MOST_BYTES} bytes; give a part of these heights")
     if path.suffix == ".npy":
-        return np.asarray(open_npy(path), dtype=np.float64).ravel()
+        array = open_npy(path)
+        if array.nbytes > _MOST_BYTES:
+            raise ValueError(f"{path}: longer than {_MOST_BYTES} bytes; give a part of these heights")
+        return np.asarray(array, dtype=np.float64).ravel()
+    lines = read_text(path, _MOST_BYTES).splitlines()
     try:
-        return np.loadtxt(path, dtype=np.float64, delimiter=",", ndmin=1).ravel()
-    except ValueError as error:
-        raise ValueError(f"{path.name}: give one height a line; {error}") from None
+        return np.loadtxt(lines, dtype=np.float64, delimiter=",", ndmin=1).ravel()
+    except ValueError:
+        raise ValueError(
+            f"{path}: give one height a line, or equally many on each, parted by commas"
+        ) from None
 
 
 def _scipy(section: Section) -> HeightLaw:

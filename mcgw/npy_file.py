@@ -1,14 +1,21 @@
 """NumPy's own files of real numbers, opened without trust."""
 
+import os
 import warnings
 from pathlib import Path
 from tokenize import TokenError
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
+from mcgw.errors import StoreError
+from mcgw.plain_file import open_regular
+
 __all__ = ["open_npy"]
+
+_UNSOUND = (EOFError, KeyError, MemoryError, OverflowError, SyntaxError, TokenError, TypeError, ValueError)
+_HEADERS = {(1, 0): np.lib.format.read_array_header_1_0, (2, 0): np.lib.format.read_array_header_2_0}
 
 
 def open_npy(path: Path) -> NDArray[Any]:
@@ -27,17 +34,19 @@ def open_npy(path: Path) -> NDArray[Any]:
     Raises
     ------
     ValueError
-        If it is damaged, or holds anything else.
-    OSError
-        If it cannot be read.
+        If it cannot be read, is damaged, or holds anything else.
     """
     try:
-        with warnings.catch_warnings():
+        with os.fdopen(open_regular(path), "rb") as file, warnings.catch_warnings():
             warnings.simplefilter("ignore")  # a header in the style of Python 2 is as good
-            array = np.load(path, mmap_mode="r", allow_pickle=False)
-    except (EOFError, MemoryError, OverflowError, SyntaxError, TokenError, TypeError, ValueError) as error:
+            version = np.lib.format.read_magic(file)
+            shape, by_columns, dtype = _HEADERS[version](file)
+            if dtype.kind not in "fiu":
+                raise ValueError("its numbers are not real")
+            order: Literal["F", "C"] = "F" if by_columns else "C"
+            return np.memmap(file, dtype, "r", file.tell(), shape, order)
+    except StoreError:
+        raise
+    except _UNSOUND as error:
         reason = (str(error).splitlines() or ["damaged"])[0]
         raise ValueError(f"{path}: is no sound .npy file: {reason}") from None
-    if not isinstance(array, np.ndarray) or array.dtype.kind not in "fiu":
-        raise ValueError(f"{path}: holds no array of real numbers")
-    return array

@@ -3,10 +3,12 @@
 from dataclasses import dataclass
 
 from analytic import QUANTITIES
-from mcgw.forecast import forecast, seconds_per_surface
+from mcgw.duration import draws_per_surface, in_words, seconds_for
+from mcgw.forecast import forecast
 from mcgw.sampling.samplers import Cells, sampler_of
 from mcgw.scene import Scene
 from mcgw.simulation import use_threads
+from mcgw.terminal import one_line
 
 __all__ = ["Plan", "plan_of", "plan_text"]
 
@@ -64,23 +66,20 @@ def plan_of(scene: Scene, *, threads: int | None = None) -> Plan:
     sampler = sampler_of(scene)
     touching = scene.touching
     cells = moments = 0
-    drawn = float(scene.n_asperities) if sampler.name == "direct" else touching
     if isinstance(sampler, Cells):
         layout = sampler.response.layout
         cells, moments = sampler.mesh.size, int(layout.sizes.sum())
-        drawn = drawn if moments or sampler.name == "tail" or not cells else 0.0
-        drawn = min(drawn, float(moments)) if sampler.name == "aggregate" else drawn
     columns = len(scene.separations) * len(scene.quantities)
     columns += (moments + cells) * (scene.keep == "moments")
     surfaces = forecast(scene).surfaces
     with use_threads(threads):
-        seconds = surfaces * seconds_per_surface(scene, sampler)
+        seconds = seconds_for(scene, sampler, surfaces)
     return Plan(
         sampler.name,
         surfaces,
         float(scene.n_asperities),
         touching,
-        drawn,
+        draws_per_surface(scene, sampler),
         cells,
         moments,
         8 * columns * surfaces,
@@ -92,7 +91,7 @@ def plan_text(scene: Scene, plan: Plan) -> str:
     """The plan in words, with what is not done and why."""
     spared = plan.asperities - plan.touching
     lines = [
-        scene.title or "scene",
+        one_line(scene.title) or "scene",
         f"  surfaces      {plan.surfaces} of {scene.n_asperities} asperities ({scene.count})",
         f"  sampler       {plan.sampler}" + (" (chosen by auto)" if scene.sampler == "auto" else ""),
         f"  touching      {plan.touching:.4g} of a surface, at the lowest d/sigma = {scene.lowest:g}",
@@ -100,7 +99,7 @@ def plan_text(scene: Scene, plan: Plan) -> str:
         f"  cells         {plan.cells}, with {plan.moments} moments a surface",
         f"  quantities    {', '.join(scene.quantities)} at {len(scene.separations)} separations",
         f"  results       {plan.bytes / 1e6:.4g} MB before compression",
-        f"  time          about {plan.seconds:.2g} s on this machine",
+        f"  time          about {in_words(plan.seconds)} on this machine",
         "not done:",
     ]
     if plan.sampler != "direct":

@@ -10,8 +10,10 @@ from matplotlib.figure import Figure
 
 from analytic import Exponential, Grading, Homogeneous
 from mcgw.compare import Comparison, Curve
+from mcgw.scene import Scene
+from mcgw.terminal import one_line
 
-__all__ = ["STYLE", "grading_label", "quantity_figure", "save_comparison"]
+__all__ = ["STYLE", "grading_label", "quantity_figure", "save_comparison", "shown_title"]
 
 # One style for all figures: colours of Okabe and Ito, told apart by colour-blind readers and in grey.
 STYLE: Any = {
@@ -34,6 +36,11 @@ _TITLES = {
     "contacts": "Contacts",
     "conductance": r"Conductance $C\rho$ (m)",
 }
+
+
+def shown_title(scene: Scene, otherwise: str) -> str:
+    """Title of a scene as one line of plain text: no escape sequences, no mathematics between dollars."""
+    return one_line(scene.title).replace("$", r"\$") or otherwise
 
 
 def grading_label(grading: Grading) -> str:
@@ -70,7 +77,7 @@ def save_comparison(comparison: Comparison, path: str | Path) -> None:
         verdict = comparison.verdict
         word = "agree" if verdict.agrees else "DISAGREE"
         figure.suptitle(
-            f"{scene.title or 'Ensemble'}\nMonte Carlo and theory {word}: "
+            f"{shown_title(scene, 'Ensemble')}\nMonte Carlo and theory {word}: "
             f"χ² = {verdict.chi_square:.1f} for {verdict.degrees} degrees of freedom, p = {verdict.p:.3g}",
             fontsize=10,
         )

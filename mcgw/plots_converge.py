@@ -11,7 +11,7 @@ from scipy.stats import norm
 from mcgw.checks import Slope
 from mcgw.compare import FALSE_ALARM
 from mcgw.converge import Convergence
-from mcgw.plots import STYLE
+from mcgw.plots import STYLE, shown_title
 
 __all__ = ["save_convergence"]
 
@@ -42,7 +42,7 @@ def save_convergence(found: Convergence, path: str | Path) -> None:
         _draw_checks(bottom.subplots(), found)
         word = "passed" if found.passed else "FAILED"
         figure.suptitle(
-            f"{found.scene.title or 'Scene'}\nStatistical convergence {word}: p = {found.p:.3g} over "
+            f"{shown_title(found.scene, 'Scene')}\nStatistical convergence {word}: p = {found.p:.3g} over "
             f"{len(found.checks)} checks (false alarms: 1 in {1 / FALSE_ALARM:.0f})",
             fontsize=10,
         )

@@ -7,7 +7,7 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
 
-from mcgw.plots import STYLE
+from mcgw.plots import STYLE, shown_title
 from mcgw.tradeoff import Tradeoff
 
 __all__ = ["save_tradeoff"]
@@ -34,7 +34,7 @@ def save_tradeoff(found: Tradeoff, path: str | Path) -> None:
             axis.set_title(f"$d/\\sigma$ = {h:g}")
             axis.set_xlabel("CPU time (s)")
         axes[0].set_ylabel(f"rms relative error of the mean {found.scene.quantities[0]}")
-        figure.suptitle(found.scene.title or "Work and precision", fontsize=10)
+        figure.suptitle(shown_title(found.scene, "Work and precision"), fontsize=10)
         handles, labels = axes[0].get_legend_handles_labels()
         figure.legend(handles, labels, loc="outside lower center", ncols=3, fontsize=8)
         figure.savefig(path)

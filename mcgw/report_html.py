@@ -18,6 +18,7 @@ from mcgw.figures.data import FigureData, Panel, Points, Series
 from mcgw.figures.drawing import draw
 from mcgw.plots import STYLE, grading_label, quantity_figure
 from mcgw.report_text import verdict_line
+from mcgw.terminal import one_line
 
 __all__ = ["report_html"]
 
@@ -114,7 +115,7 @@ def report_html(ensemble: Ensemble, attributes: dict[str, Any]) -> str:
         figures.append(_svg(draw(_spread(comparison)), "std over mean against separation"))
     return _PAGE.substitute(
         style=_STYLE,
-        title=escape(ensemble.scene.title or "Ensemble of rough surfaces"),
+        title=escape(one_line(ensemble.scene.title) or "Ensemble of rough surfaces"),
         words=_words(ensemble),
         bad="" if comparison.verdict.agrees else " bad",
         verdict=escape(verdict_line(comparison.verdict)),

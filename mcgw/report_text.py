@@ -10,6 +10,7 @@ from mcgw.compare import FALSE_ALARM, Comparison, Verdict
 from mcgw.csv_table import Row
 from mcgw.ensemble import Ensemble
 from mcgw.regrade import Paired, paired_ratio
+from mcgw.terminal import one_line
 
 __all__ = [
     "COMPARISON_HEADER",
@@ -49,7 +50,7 @@ def summary(ensemble: Ensemble, attributes: dict[str, Any]) -> str:
     """What a file holds: provenance and a table of means."""
     scene = ensemble.scene
     lines = [
-        scene.title or "ensemble",
+        one_line(scene.title) or "ensemble",
         f"  surfaces      {ensemble.n_surfaces} of {scene.n_asperities} asperities ({scene.count})",
         f"  separations   {len(scene.separations)} from {min(scene.separations):g} to "
         f"{max(scene.separations):g} (d/sigma)",

@@ -1,8 +1,9 @@
 """What is asked: surface, grading, contact and ensemble, checked before anything is computed."""
 
+import dataclasses
 import math
 from dataclasses import dataclass, field
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 
@@ -20,12 +21,15 @@ from analytic import (
     Table,
     first_negative,
 )
+from mcgw.surface import SURFACE_UNITS
+from mcgw.units import quantity
 
-__all__ = ["SAMPLERS", "Scene", "SceneError"]
+__all__ = ["SAMPLERS", "LeftOut", "Scene", "SceneError"]
 
 _LEAST = 1e-100  # next to it, powers of a distance are beyond double precision
 SAMPLERS = ("auto", "direct", "tail", "cells", "aggregate", "stratified")
 MOST_ASPERITIES = 2**53  # counts are exact in double precision up to here
+_SURFACES, _MOST_SURFACES = 1000, 10**9  # where n_surfaces is left out; where rel_err is to decide
 _BEYOND = 1e-16  # share of the heights that lie above what is checked for negative moduli
 
 
@@ -35,6 +39,10 @@ class SceneError(ValueError):
     def __init__(self, problems: list[str]) -> None:
         self.problems = problems
         super().__init__("\n".join(problems))
+
+
+class LeftOut(int):
+    """A whole number that nobody gave: it equals any other, but is found anew when the scene changes."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -58,9 +66,10 @@ class Scene:
     quantities : tuple of str, optional
         Which sums to compute: names of `analytic.QUANTITIES`.
     n_surfaces : int, optional
-        Number of surfaces M; with `rel_err`, the most that may be drawn.
+        Number of surfaces M, left out: 1000; with `rel_err` the most that may be drawn, left out: 1e9.
     n_asperities : int, optional
-        Asperities on each (their mean number if `count` is "poisson"); left out: eta A_n, rounded.
+        Asperities on each (their mean number if `count` is "poisson"); left out: eta A_n, rounded, of
+        whatever surface the scene has, so that N follows if the surface is replaced.
     count : {"fixed", "poisson"}, optional
         Law of their number.
     seed : int, optional
@@ -87,8 +96,8 @@ class Scene:
     negative: Literal["error", "clip", "allow"] = "error"
     heights: HeightLaw = field(default_factory=Gaussian)
     quantities: tuple[str, ...] = ("load", "area", "stiffness", "contacts")
-    n_surfaces: int = 1000
-    n_asperities: int = 0
+    n_surfaces: int = LeftOut()
+    n_asperities: int = LeftOut()
     count: Literal["fixed", "poisson"] = "fixed"
     seed: int = 0
     sampler: str = "auto"
@@ -97,13 +106,61 @@ class Scene:
     max_seconds: float | None = None
 
     def __post_init__(self) -> None:
-        if not self.n_asperities:
-            object.__setattr__(self, "n_asperities", round(min(self.surface.n_asperities, 2.0**62)))
+        self._fill("n_asperities", round(min(self.surface.n_asperities, 2.0**62)))
+        self._fill("n_surfaces", _SURFACES if self.rel_err is None else _MOST_SURFACES)
         object.__setattr__(self, "separations", tuple(float(h) + 0.0 for h in self.separations))
         problems = [*self._wrong_values(), *self._wrong_scales(), *self._wrong_measured()]
-        problems = problems or self._wrong_modulus()
+        problems = problems or self._wrong_modulus() or self._wrong_grading()
         if problems:
             raise SceneError(problems)
+
+    def _fill(self, key: str, value: int) -> None:
+        """Give what was left out, now or in the scene that this one was made of, its value."""
+        if isinstance(getattr(self, key), LeftOut):
+            object.__setattr__(self, key, LeftOut(value))
+
+    @property
+    def left_out(self) -> tuple[str, ...]:
+        """Which of the numbers that depend on something else nobody gave: n_asperities, seed."""
+        return tuple(key for key in ("n_asperities", "seed") if isinstance(getattr(self, key), LeftOut))
+
+    def replace(self, **changes: Any) -> "Scene":
+        """The scene with other values; what was left out follows.
+
+        Parameters
+        ----------
+        **changes
+            Fields of the scene or of its surface; those of the surface, and `max_seconds`, may be texts
+            with units.
+
+        Returns
+        -------
+        Scene
+            Checked anew.
+
+        Raises
+        ------
+        TypeError
+            If there is no such field.
+        SceneError, ValueError
+            If a value is wrong.
+
+        Examples
+        --------
+        >>> from mcgw import Surface
+        >>> surface = Surface("1 um", "10 um", "300/mm^2", "1 cm^2", "80 GPa")
+        >>> scene = Scene(surface=surface, separations=(1.0,))
+        >>> scene.n_asperities, scene.replace(nominal_area="10 cm^2").n_asperities
+        (30000, 300000)
+        """
+        of_surface = {key: changes.pop(key) for key in SURFACE_UNITS if key in changes}
+        if of_surface:
+            values = {key: quantity(value, SURFACE_UNITS[key], key) for key, value in of_surface.items()}
+            surface = changes.get("surface", self.surface)
+            changes["surface"] = dataclasses.replace(surface, **values)
+        if isinstance(changes.get("max_seconds"), str):
+            changes["max_seconds"] = quantity(changes["max_seconds"], "s", "max_seconds")
+        return dataclasses.replace(self, **changes)
 
     @property
     def modulus(self) -> Grading:
@@ -133,10 +190,10 @@ class Scene:
 
     def negative_above(self, h: float) -> float | None:
         """First height that touches at `h` where the grading is negative, clipped or not; or None."""
-        share, (bottom, end) = np.array(_BEYOND), self.heights.support
-        top = max(float(self.heights.from_above(share, -math.inf)), h + 1, max(self.separations) + 1)
-        start = max(h, float(self.heights.from_below(share, math.inf)) - 1, bottom)
-        return first_negative(self.grading, start, min(top, end)) if start < min(top, end) else None
+        bottom, end = self.heights.support
+        high = min(max(self._highest(), h + 1), end)
+        start = max(h, float(self.heights.from_below(np.array(_BEYOND), math.inf)) - 1, bottom)
+        return first_negative(self.grading, start, high) if start < high else None
 
     def _wrong_values(self) -> list[str]:
         problems = []
@@ -204,6 +261,28 @@ class Scene:
                     "beyond double precision; check sigma, radius and E_star"
                 )
         return problems
+
+    def _wrong_grading(self) -> list[str]:
+        """Sums that the grading makes larger than double precision holds."""
+        ends = np.array(sorted({self.lowest, self._highest(), *self.separations}))
+        with np.errstate(all="ignore"):
+            try:
+                steepest = float(np.max(np.abs(self.modulus(ends))))
+            except ValueError:
+                return []  # `_wrong_modulus` says why
+            stiff = [QUANTITIES[name] for name in self.quantities if QUANTITIES[name].modulus]
+            sums = [q.scale(self.surface) * steepest * float(self.n_asperities) * 1e4 for q in stiff]
+        if all(value < np.finfo(float).max for value in sums):
+            return []
+        key = (
+            f"grading.gamma = {self.grading.gamma:g}" if isinstance(self.grading, Exponential) else "grading"
+        )
+        return [f"{key}: E*(s)/E* reaches {steepest:.3g}, and sums leave double precision; give a modest one"]
+
+    def _highest(self) -> float:
+        """Height that hardly an asperity exceeds, above every separation."""
+        top = float(self.heights.from_above(np.array(_BEYOND), -math.inf))
+        return min(max(top, max(self.separations) + 1), self.heights.support[1])
 
     def _wrong_measured(self) -> list[str]:
         """Measured heights are one surface, added up and not drawn."""

@@ -2,7 +2,6 @@
 
 import math
 import secrets
-import tomllib
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -12,14 +11,18 @@ import tomli_w
 
 from analytic import QUANTITIES, Body, Exponential, Grading, Homogeneous, Surface, Table, composite_modulus
 from mcgw.heights_section import heights_law, heights_table
-from mcgw.scene import SAMPLERS, Scene, SceneError
+from mcgw.plain_file import read_bytes, read_text
+from mcgw.scene import SAMPLERS, LeftOut, Scene, SceneError
 from mcgw.section import Section
+from mcgw.surface import SURFACE_UNITS
+from mcgw.toml_text import loads
+from mcgw.units import quantity
 
-__all__ = ["load_scene", "scene_from", "scene_text"]
+__all__ = ["load_scene", "read_grading", "scene_from", "scene_text"]
 
 _MOST_BYTES = 2**20
+_MOST_TABLE = 2**24  # bytes of a grading as CSV
 _MOST_SEPARATIONS = 100_000
-_MOST_SURFACES = 10**9  # where rel_err is to decide
 
 
 def load_scene(path: str | Path, *, seed: Callable[[], int | None] | None = None) -> Scene:
@@ -43,11 +46,11 @@ def load_scene(path: str | Path, *, seed: Callable[[], int | None] | None = None
         With one line for each mistake: the key, the value, and what would do.
     """
     path = Path(path)
-    if not path.is_file():
-        raise SceneError([f"{path}: is no regular file" if path.exists() else f"{path}: no such file"])
-    if path.stat().st_size > _MOST_BYTES:
-        raise SceneError([f"{path}: longer than {_MOST_BYTES} bytes, which no scene is"])
-    return scene_from(path.read_bytes(), folder=path.parent, seed=seed)
+    try:
+        text = read_bytes(path, _MOST_BYTES)
+    except ValueError as error:
+        raise SceneError([str(error)]) from None
+    return scene_from(text, folder=path.parent, seed=seed)
 
 
 def scene_from(
@@ -75,7 +78,7 @@ def scene_from(
         With one line for each mistake.
     """
     try:
-        document = tomllib.loads(text if isinstance(text, str) else text.decode("utf-8"))
+        document = loads(text if isinstance(text, str) else text.decode("utf-8"))
     except (ValueError, RecursionError) as error:
         reason = str(error).splitlines()[0] if str(error) else "nested too deeply"
         raise SceneError([f"not a TOML scene: {reason}"]) from None
@@ -88,7 +91,7 @@ def scene_from(
         **_grading(parts["grading"], surface, folder or Path()),
         "heights": heights_law(parts["heights"], folder or Path()),
         **_contact(parts["contact"]),
-        **_ensemble(parts["ensemble"], seed),
+        **_ensemble(parts["ensemble"], surface, seed),
     }
     for section in (top, *parts.values()):
         section.finish()
@@ -98,9 +101,10 @@ def scene_from(
 
 
 def _surface(section: Section) -> Surface | None:
-    units = {"sigma": "m", "radius": "m", "eta": "1/m^2", "nominal_area": "m^2"}
-    values = {key: section.number(key, unit=unit) for key, unit in units.items()}
-    values["E_star"] = _bodies(section) if "bodies" in section else section.number("E_star", unit="Pa")
+    values = {
+        key: _bodies(section) if key == "E_star" and "bodies" in section else section.number(key, unit=unit)
+        for key, unit in SURFACE_UNITS.items()
+    }
     if any(math.isnan(value) for value in values.values()):
         return None
     return Surface(**values)
@@ -111,11 +115,17 @@ def _bodies(section: Section) -> float:
     if "E_star" in section:
         section.fail("E_star", section.take("E_star"), "give either E_star or bodies, not both")
     try:
-        return composite_modulus([Body(**{k: float(v) for k, v in body.items()}) for body in given])
-    except (TypeError, ValueError, AttributeError) as error:
+        return composite_modulus([_body(**body) for body in given])
+    except (TypeError, ValueError) as error:
         reason = str(error) if type(error) is ValueError else "each needs E in Pa and may have nu"
         section.fail("bodies", given, f"give two, as [{{E = 70e9, nu = 0.33}}, {{E = inf}}]; {reason}")
         return math.nan
+
+
+def _body(E: float | str, **nu: float) -> Body:
+    if any(isinstance(value, str | bool) for value in nu.values()) or isinstance(E, bool):
+        raise TypeError
+    return Body(quantity(E, "Pa", "E"), **nu)
 
 
 def _grading(section: Section, surface: Surface | None, folder: Path) -> dict[str, Any]:
@@ -138,13 +148,26 @@ def _table(section: Section, surface: Surface | None, folder: Path) -> Table | N
     try:
         if file is None:
             return Table(s or (), ratio or ())
-        if surface is None:
-            return None
-        return Table.from_csv(folder / file, sigma=surface.sigma, E_star=surface.E_star)
-    except (OSError, TypeError, ValueError) as error:
-        reason = f"{error.strerror}: {error.filename}" if isinstance(error, OSError) else str(error)
-        section.fail("file" if file else "s", file or s, f"give a CSV file, or lists s and ratio; {reason}")
+        return read_grading(folder / file, surface) if surface else None
+    except (TypeError, ValueError) as error:
+        key, given = ("s", s) if file is None else ("file", file)
+        section.fail(key, given, f"give a CSV file, or lists s and ratio; {error}")
         return None
+
+
+def read_grading(path: Path, surface: Surface) -> Table:
+    """A grading from a CSV file of bounded length, as `analytic.Table.from_csv` reads it.
+
+    Raises
+    ------
+    ValueError
+        If it cannot be read, or is no such table.
+    """
+    lines = read_text(path, _MOST_TABLE).splitlines()
+    try:
+        return Table.from_lines(lines, sigma=surface.sigma, E_star=surface.E_star)
+    except ValueError as error:
+        raise ValueError(f"{path}: {error}") from None
 
 
 def _contact(section: Section) -> dict[str, Any]:
@@ -186,20 +209,45 @@ def _separations(section: Section) -> tuple[float, ...]:
     return tuple(float(h) for h in values)
 
 
-def _ensemble(section: Section, seed: Callable[[], int | None] | None) -> dict[str, Any]:
+def _ensemble(
+    section: Section, surface: Surface | None, seed: Callable[[], int | None] | None
+) -> dict[str, Any]:
     other = None if "seed" in section or seed is None else seed()
     values = {
         "n_surfaces": _most_surfaces(section),
         "n_asperities": section.whole("n_asperities", None, least=1),
         "count": section.choice("count", "fixed", ("fixed", "poisson")),
-        "seed": section.whole("seed", secrets.randbits(63) if other is None else other),
+        "seed": section.whole("seed", LeftOut(secrets.randbits(63) if other is None else other)),
         "sampler": section.choice("sampler", "auto", SAMPLERS),
         "keep": section.choice("keep", "sums", ("sums", "moments")),
-        "rel_err": section.number("rel_err") if "rel_err" in section else None,
-        "max_seconds": section.number("max_seconds") if "max_seconds" in section else None,
+        "rel_err": section.number("rel_err", unit="1") if "rel_err" in section else None,
+        "max_seconds": section.number("max_seconds", unit="s") if "max_seconds" in section else None,
     }
     section.known("rel_err", "max_seconds", "max_surfaces", "n_surfaces")
+    for key in _left_out(section, surface, values["n_asperities"]):
+        if values[key] is not None:
+            values[key] = LeftOut(values[key])
     return {key: value for key, value in values.items() if value is not None}
+
+
+def _left_out(section: Section, surface: Surface | None, n_asperities: int | None) -> list[str]:
+    """Which values, though written here, nobody gave when the scene was asked: see `scene_text`."""
+    given = section.take("left_out")
+    keys = ["n_asperities", "seed"]
+    if given is None:
+        return []
+    if not (isinstance(given, list) and all(key in keys for key in given)):
+        section.fail("left_out", given, f"give a list of {', '.join(keys)}, or leave it out")
+        return []
+    if "n_asperities" in given and surface and n_asperities not in (None, round(surface.n_asperities)):
+        section.fail(
+            "n_asperities",
+            n_asperities,
+            f"left_out says that nobody gave it, but eta * nominal_area is {surface.n_asperities:.10g}; "
+            "take it out of left_out, or leave n_asperities out",
+        )
+        return []
+    return given
 
 
 def _most_surfaces(section: Section) -> int | None:
@@ -207,15 +255,15 @@ def _most_surfaces(section: Section) -> int | None:
     if "rel_err" not in section:
         if "max_surfaces" in section:
             section.fail("max_surfaces", section.take("max_surfaces"), "goes with rel_err; give n_surfaces")
-        return section.whole("n_surfaces", 1000, least=1)  # type: ignore[no-any-return]
+        return section.whole("n_surfaces", None, least=1)  # type: ignore[no-any-return]
     if "n_surfaces" in section:
         advice = "rel_err decides how many; give max_surfaces for the most, or leave rel_err out"
         section.fail("n_surfaces", section.take("n_surfaces"), advice)
-    return section.whole("max_surfaces", _MOST_SURFACES, least=1)  # type: ignore[no-any-return]
+    return section.whole("max_surfaces", None, least=1)  # type: ignore[no-any-return]
 
 
-def scene_text(scene: Scene, *, heights_file: str | None = None) -> str:
-    """TOML text of a scene with nothing left out: read again, it gives the same scene.
+def scene_text(scene: Scene, *, heights_file: str | None = None, left_out: bool = True) -> str:
+    """TOML text of a scene with every value: read again, it gives the same scene.
 
     Parameters
     ----------
@@ -223,6 +271,9 @@ def scene_text(scene: Scene, *, heights_file: str | None = None) -> str:
         With a grading that a file can hold.
     heights_file : str, optional
         Name beside the scene of a file that holds its measured heights, in the place of a list.
+    left_out : bool, optional
+        Whether `left_out` under ``[ensemble]`` lists the numbers that nobody gave, so that
+        n_asperities follows when the surface of a scene that was read is replaced.
 
     Returns
     -------
@@ -230,10 +281,9 @@ def scene_text(scene: Scene, *, heights_file: str | None = None) -> str:
         The text; a grading that is a Python function is named, but cannot be read again.
     """
     surface = scene.surface
-    keys = ("sigma", "radius", "eta", "nominal_area", "E_star")
     document = {
         "title": scene.title,
-        "surface": {key: float(getattr(surface, key)) for key in keys},
+        "surface": {key: float(getattr(surface, key)) for key in SURFACE_UNITS},
         "grading": {**_grading_table(scene.grading), "negative": scene.negative},
         "heights": heights_table(scene.heights, heights_file),
         "contact": {"separations": list(scene.separations), "quantities": list(scene.quantities)},
@@ -245,6 +295,7 @@ def scene_text(scene: Scene, *, heights_file: str | None = None) -> str:
                 for key in ("rel_err", "max_seconds")
                 if (value := getattr(scene, key)) is not None
             },
+            **({"left_out": list(scene.left_out)} if left_out and scene.left_out else {}),
         },
     }
     return tomli_w.dumps(document)

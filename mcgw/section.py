@@ -5,9 +5,13 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
+from mcgw.terminal import one_line
+from mcgw.units import EXAMPLES, parse
+
 __all__ = ["Section"]
 
 _MISSING: Any = object()
+_MOST_NAMED = 20  # unknown keys of a table: more say nothing new
 
 
 class Section:
@@ -46,15 +50,21 @@ class Section:
         return key in self.table
 
     def number(self, key: str, default: float = _MISSING, *, unit: str = "", positive: bool = True) -> float:
-        """Read a finite number, by default a positive one."""
+        """Read a finite number, by default a positive one; with a unit also a text, as "1.37 um"."""
         value = self._take(key, default, unit)
         if value is default:
             return float("nan") if value is _MISSING else value
-        wanted = f"give a finite number{' > 0' if positive else ''}{f' in {unit}' if unit else ''}"
+        wanted = f"give a finite number{' > 0' if positive else ''}"
+        if unit:
+            wanted += f"{f' in {unit}' if unit != '1' else ''}, such as {EXAMPLES[unit]}"
         try:
+            if unit and isinstance(value, str):
+                return parse(value, unit)
             number = float(value) if _is_number(value) else math.nan
         except OverflowError:
             number = math.inf
+        except ValueError:
+            number = math.nan
         if not math.isfinite(number) or (positive and number <= 0):
             self.fail(key, value, wanted)
             return math.nan
@@ -97,13 +107,16 @@ class Section:
 
     def finish(self) -> None:
         """Note every key that was not read."""
-        for key in self.table:
-            if key not in self._known:
-                nearest = _nearest(key, self._known) or f"known here: {', '.join(self._known)}"
-                self.problems.append(f"{self._path(key)}: unknown key; {nearest.removesuffix(' ')}")
+        unknown = [key for key in self.table if key not in self._known]
+        for key in unknown[:_MOST_NAMED]:
+            nearest = _nearest(key[:99], self._known) or f"known here: {', '.join(self._known)}"
+            self.problems.append(f"{self._path(key)}: unknown key; {nearest.removesuffix(' ')}")
+        if len(unknown) > _MOST_NAMED:
+            self.problems.append(f"[{self.name}]: {len(unknown) - _MOST_NAMED} more unknown keys")
 
     def _path(self, key: str) -> str:
-        return f"{self.name}.{key}" if self.name else key
+        shown = one_line(key if len(key) <= 60 else f"{key[:57]}...")
+        return f"{self.name}.{shown}" if self.name else shown
 
     def _take(self, key: str, default: Any, unit: str = "") -> Any:
         self._known.append(key)

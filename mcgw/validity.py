@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from mcgw.plausible import unit_doubts
 from mcgw.scene import Scene
 
 __all__ = ["notes"]
@@ -27,7 +28,7 @@ def notes(scene: Scene) -> list[str]:
     touching = float(law.above(np.array(scene.lowest)))
     deep = float(law.above(np.array(scene.lowest + depth)))
     share = deep / touching if touching > 0 else 0.0
-    found = []
+    found = unit_doubts(scene)
     if share > _SHARE or surface.sigma >= surface.radius:
         found.append(
             f"surface.radius = {surface.radius:g} m: at d/sigma = {scene.lowest:g} a share of {share:.2g} "

@@ -6,7 +6,7 @@ from time import perf_counter
 import numpy as np
 
 from mcgw.errors import RunError
-from mcgw.sampling.samplers import Sampler, sampler_of
+from mcgw.sampling.samplers import Cells, Sampler, sampler_of
 from mcgw.scene import Scene
 from mcgw.simulation import block_size, drawn_blocks, kept, use_threads
 from mcgw.store.rundir import Run, difference, identity_of
@@ -15,6 +15,7 @@ from mcgw.store.shards import Arrays, Span, commit_shard
 __all__ = ["columns", "commit_block", "draw", "shard_size"]
 
 _BYTES = 2**23  # of a shard: large enough that its flushing costs little
+_OF_AN_EXTRA = 3  # asperity outside the cells: surface, height, weight
 _DRAWS = 4e8  # asperities a shard: a second or so
 
 
@@ -28,7 +29,10 @@ def shard_size(scene: Scene, sampler: Sampler) -> int:
 
 def columns(scene: Scene, sampler: Sampler) -> int:
     """Numbers kept of a surface."""
-    return sum(values.shape[1] for values in kept(scene, sampler.block(0, 1)).values())
+    sums = len(scene.separations) * len(scene.quantities)
+    if scene.keep == "sums" or not isinstance(sampler, Cells):
+        return sums
+    return sums + int(sampler.response.layout.starts[-1]) + sampler.mesh.size + _OF_AN_EXTRA
 
 
 def draw(scene: Scene, sampler: Sampler, span: Span, threads: int | None) -> Arrays:

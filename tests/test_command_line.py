@@ -98,7 +98,7 @@ def test_compare_fails_where_they_differ(file, tmp_path):
 @pytest.mark.parametrize(
     ("words", "message"),
     [
-        (("run", "absent.toml"), "absent.toml: no such file"),
+        (("run", "absent.toml"), "absent.toml: No such file"),
         (("show", "absent.h5"), "absent.h5: No such file"),
         (("compare", SCENE), "not an HDF5 file"),
         (("run", SCENE, "--threads", "0", "-o", "x.h5"), "threads = 0: give a whole number >= 1"),

@@ -285,7 +285,7 @@ def test_a_scene_with_heights_reads_the_same_again(section):
         ('law = "weibull"\nshape = 0.2', r"heights\.shape = 0\.2: give a number from 1 to 100"),
         ('law = "table"\nheights = [1.0, 1.0]', "all alike"),
         ('law = "table"\nheights = ["a"]', "give heights"),
-        ('law = "table"\nfile = "nowhere.csv"', "no such file"),
+        ('law = "table"\nfile = "nowhere.csv"', "No such file"),
         ('law = "table"\ns = [0.0, 1.0]\nshare = [0.0, 0.4]', "share from 0 to 1"),
         ('law = "scipy"\nname = "poisson"', "continuous distribution"),
         ('law = "scipy"\nname = "gamma"', "give its shapes"),

@@ -12,9 +12,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from mcgw.maps.files import read_map, write_map
-from mcgw.maps.lengths import metres
 from mcgw.maps.sdf import read_sdf
 from mcgw.maps.topography import Topography
+from mcgw.units import METRES
 
 NAMES = ["map.sdf", "map.ascii.sdf", "map.x3p", "map.npy", "map.h5"]
 every_format = pytest.mark.parametrize("name", NAMES)
@@ -46,7 +46,7 @@ def test_missing_points_stay_missing(name, topography, tmp_path):
 
 def metres_of(library_topography):
     """Heights in m as rows of y, and the size in m, of another library's map."""
-    unit = metres(f"1 {library_topography.unit}")
+    unit = METRES[library_topography.unit]
     heights = np.ma.filled(library_topography.heights(), np.nan).T * unit
     return heights, tuple(float(x) * unit for x in library_topography.physical_sizes)
 

@@ -11,7 +11,7 @@ import mcgw
 
 ROOT = Path(mcgw.__file__).parent
 ORDER = (
-    "lengths", "height_unit", "topography", "nayak", "asperities", "envelope", "sdf", "x3p",
+    "height_unit", "topography", "nayak", "asperities", "envelope", "sdf", "x3p",
     "array_files", "text_file", "files", "spectrum", "form", "waves", "levels", "spikes", "tally",
     "leverage", "hiding", "fit", "flaws", "doubts", "fitted_scene", "spots",
 )  # fmt: skip

@@ -106,7 +106,7 @@ BAD = {
     "no file": (
         "[contact]",
         '[grading]\nlaw = "table"\nfile = "absent.csv"\n[contact]',
-        "grading.file = 'absent.csv': give a CSV file, or lists s and ratio; No such file",
+        "grading.file = 'absent.csv': give a CSV file, or lists s and ratio; absent.csv: No such file",
     ),
     "scale": ("E_star = 1e11", "E_star = 1e308", "beyond double precision"),
     "quantity": (
@@ -158,7 +158,7 @@ def test_a_wrong_scene_in_python_is_refused_too():
 
 
 def test_files_that_are_none(tmp_path):
-    with pytest.raises(SceneError, match="no such file"):
+    with pytest.raises(SceneError, match="No such file"):
         mcgw.load_scene(tmp_path / "absent.toml")
     with pytest.raises(SceneError, match="no regular file"):
         mcgw.load_scene(tmp_path)

@@ -195,7 +195,7 @@ def test_units():
     assert parse("3", "N") == 3
     assert parse("2e1kN", "N") == 20e3
     assert parse(".5%", "1") == 0.005
-    for text, unit in (("1psi", "Pa"), ("-1Pa", "Pa"), ("0", "N"), ("kN", "N"), ("1Pa", "N"), ("nan", "1")):
+    for text, unit in (("-1Pa", "Pa"), ("0", "N"), ("kN", "N"), ("1Pa", "N"), ("nan", "1")):
         with pytest.raises(ValueError, match="give a number > 0 with its unit"):
             parse(text, unit)
 

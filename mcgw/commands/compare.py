@@ -18,13 +18,16 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def execute(args: argparse.Namespace) -> int:
     """Print table and verdict, save the figure."""
+    from mcgw.commands.notes import tell_notes
     from mcgw.compare import compare
     from mcgw.csv_table import write_csv
     from mcgw.plots import save_comparison
     from mcgw.report_text import COMPARISON_HEADER, comparison_rows, comparison_table, verdict_line
     from mcgw.store.ensembles import open_ensemble
 
-    comparison = compare(open_ensemble(args.file))
+    ensemble = open_ensemble(args.file)
+    tell_notes(ensemble.scene)
+    comparison = compare(ensemble)
     path = args.output or args.file.with_suffix(".png")
     save_comparison(comparison, path)
     print(comparison_table(comparison))

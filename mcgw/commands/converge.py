@@ -21,12 +21,14 @@ def execute(args: argparse.Namespace) -> int:
     """Print every check and the verdict, save the figure."""
     from tqdm import tqdm
 
+    from mcgw.commands.notes import tell_notes
     from mcgw.compare import FALSE_ALARM
     from mcgw.converge import SEEDS, converge
     from mcgw.plots_converge import save_convergence
     from mcgw.scene_file import load_scene
 
     scene = load_scene(args.scene)
+    tell_notes(scene)
     folder = args.output or args.scene.parent / "out"
     folder.mkdir(parents=True, exist_ok=True)
     with tqdm(total=SEEDS, unit=" ensembles", disable=None, leave=False) as bar:

@@ -36,7 +36,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         "--heights", choices=("gaussian", "table", "measured"), default="gaussian",
         help="law of the heights: gaussian, the summits' own resampled, or just as they are (gaussian)",
     )  # fmt: skip
-    parser.add_argument("--E-star", type=float, default=1e11, metavar="PA", help="composite modulus (1e11)")
+    parser.add_argument("--E-star", default="100 GPa", metavar="E", help="composite modulus (100 GPa)")
     parser.add_argument("--parts", type=int, default=4, help="sub-areas along each axis, for errors (4)")
     parser.add_argument("-o", "--output", type=Path, required=True, metavar="SCENE", help="TOML file")
 
@@ -47,12 +47,13 @@ def execute(args: argparse.Namespace) -> int:
     from mcgw.maps.files import read_map
     from mcgw.maps.fit import fit_map
     from mcgw.maps.fitted_scene import fitted_scene, write_scene
-    from mcgw.maps.lengths import metres
+    from mcgw.units import parse
 
     if args.parts < 2:
         raise ValueError(f"--parts {args.parts}: give 2 or more, to have sub-areas to compare")
-    cutoff = None if args.cutoff == "none" else metres(args.cutoff)
-    pixel = None if args.pixel is None else (metres(args.pixel),) * 2
+    cutoff = None if args.cutoff == "none" else parse(args.cutoff, "m", "--cutoff")
+    E_star = parse(args.E_star, "Pa", "--E-star")
+    pixel = None if args.pixel is None else (parse(args.pixel, "m", "--pixel"),) * 2
     topography = read_map(args.map, pixel=pixel, unit=args.unit)
     fit = fit_map(topography, cutoff=cutoff, form=args.form, across=args.parts)
     filtered = "none" if cutoff is None else f"{cutoff:g} m (Gaussian, ISO 16610-61)"
@@ -61,9 +62,7 @@ def execute(args: argparse.Namespace) -> int:
         head += f"; heights taken in {topography.assumed_unit}, since the file tells no unit"
     text = [head, *_table(fit), *(f"warning: {line}" for line in doubts(fit, topography, cutoff))]
     print("\n".join(text))
-    scene = fitted_scene(
-        fit, use=args.use, heights=args.heights, E_star=args.E_star, title=f"Fitted to {head}"
-    )
+    scene = fitted_scene(fit, use=args.use, heights=args.heights, E_star=E_star, title=f"Fitted to {head}")
     for path in write_scene(scene, args.output, fit if args.heights == "measured" else None, text):
         print(path)
     return 0

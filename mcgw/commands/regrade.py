@@ -23,17 +23,17 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def execute(args: argparse.Namespace) -> int:
     """Write the new ensemble and print its ratios to the old one."""
-    from analytic import Exponential, Grading, Table
+    from analytic import Exponential, Grading
     from mcgw.csv_table import write_csv
     from mcgw.regrade import regrade
     from mcgw.report_text import RATIO_HEADER, ratio_rows, ratio_table
+    from mcgw.scene_file import read_grading
     from mcgw.store.ensembles import open_ensemble, save
 
     old = open_ensemble(args.file)
     grading: Grading
     if args.grading:
-        surface = old.scene.surface
-        grading = Table.from_csv(args.grading, sigma=surface.sigma, E_star=surface.E_star)
+        grading = read_grading(args.grading, old.scene.surface)
     else:
         grading = Exponential(args.gamma)
     path = args.output or args.file.with_suffix(".regraded.h5")

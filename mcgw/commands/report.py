@@ -15,10 +15,13 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def execute(args: argparse.Namespace) -> int:
     """Write the page and say where it is."""
+    from mcgw.commands.notes import tell_notes
     from mcgw.report_html import report_html
     from mcgw.store.ensembles import open_ensemble, read_attributes
 
-    page = report_html(open_ensemble(args.file), read_attributes(args.file))
+    ensemble = open_ensemble(args.file)
+    tell_notes(ensemble.scene)
+    page = report_html(ensemble, read_attributes(args.file))
     path = args.output or args.file.with_suffix(".html")
     path.write_text(page, encoding="utf-8")
     print(f"{path}: report, {len(page.encode()) / 1e6:.2f} MB; open it in a browser")

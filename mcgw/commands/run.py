@@ -1,7 +1,6 @@
 """``mcgw run``: draw an ensemble into a file."""
 
 import argparse
-import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -12,6 +11,7 @@ if TYPE_CHECKING:
 
 HELP = "simulate a scene: draw its surfaces and store load, area, ... in HDF5; goes on where it stopped"
 EXAMPLE = "mcgw run runs/demo.toml -o demo.h5"
+_LONG = 60.0  # seconds from which on a run says beforehand how long it takes
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
@@ -37,6 +37,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def execute(args: argparse.Namespace) -> int:
     """Run and say where the file is."""
+    from mcgw.commands.notes import tell_notes
     from mcgw.running import run, run_part
     from mcgw.scene_file import load_scene
     from mcgw.store.ensembles import recorded_seed
@@ -44,8 +45,7 @@ def execute(args: argparse.Namespace) -> int:
     path = args.output or args.scene.parent / "out" / f"{args.scene.stem}.h5"
     part = _part(args.shard)
     scene = load_scene(args.scene, seed=lambda: recorded_seed(path))
-    for note in _notes(scene, args.threads):
-        print(f"mcgw: note: {note}", file=sys.stderr)
+    tell_notes(scene, *_of_threads(args.threads), *_of_time(scene))
     if scene.rel_err is not None or scene.max_seconds is not None:
         return _until_known(scene, path, args)
     bar = _Bar(scene.n_surfaces)
@@ -90,15 +90,30 @@ def _until_known(scene: "Scene", path: Path, args: argparse.Namespace) -> int:
     return 0
 
 
-def _notes(scene: "Scene", threads: int | None) -> list[str]:
+def _of_threads(threads: int | None) -> list[str]:
     from numba import get_num_threads
 
-    from mcgw.validity import notes
+    if threads is None or threads <= get_num_threads():
+        return []
+    return [f"--threads {threads}: this machine has {get_num_threads()}, all are used"]
 
-    found = notes(scene)
-    if threads is not None and threads > get_num_threads():
-        found.append(f"--threads {threads}: this machine has {get_num_threads()}, all are used")
-    return found
+
+def _of_time(scene: "Scene") -> list[str]:
+    """How long it will take, where that is more than a minute."""
+    from mcgw.duration import draws_per_surface, in_words, seconds_for
+    from mcgw.sampling.samplers import sampler_of
+
+    if scene.rel_err is not None or scene.max_seconds is not None:
+        return []  # a forecast is printed, or the end is known
+    sampler, m = sampler_of(scene), scene.n_surfaces
+    seconds = seconds_for(scene, sampler, m, at_least=_LONG / 4)
+    if seconds < _LONG:
+        return []
+    drawn = draws_per_surface(scene, sampler) * m
+    return [
+        f"{m:g} surfaces of {scene.n_asperities:g} asperities: about {in_words(seconds)} on this machine "
+        f"({drawn:.2g} draws); Ctrl-C keeps what is done, mcgw show --plan tells more"
+    ]
 
 
 def _engine(args: argparse.Namespace) -> "Engine | None":

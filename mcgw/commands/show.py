@@ -24,6 +24,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def execute(args: argparse.Namespace) -> int:
     """Print to standard output; writes no file."""
+    from mcgw.commands.notes import tell_notes
     from mcgw.store.ensembles import open_ensemble, read_attributes, verify
 
     if args.plan:
@@ -31,6 +32,7 @@ def execute(args: argparse.Namespace) -> int:
         from mcgw.scene_file import load_scene
 
         scene = load_scene(args.file)
+        tell_notes(scene)
         print(plan_text(scene, plan_of(scene)))
         return 0
     if args.verify:
@@ -47,6 +49,7 @@ def execute(args: argparse.Namespace) -> int:
         from mcgw.report_text import SUMMARY_HEADER, summary, summary_rows
 
         ensemble = open_ensemble(args.file)
+        tell_notes(ensemble.scene)
         print(summary(ensemble, attributes))
         if args.csv:
             write_csv(args.csv, SUMMARY_HEADER, summary_rows(ensemble))

@@ -24,6 +24,7 @@ def execute(args: argparse.Namespace) -> int:
     """Print a table for each load; write it as CSV if asked to."""
     from dataclasses import replace
 
+    from mcgw.commands.notes import tell_notes
     from mcgw.csv_table import write_csv
     from mcgw.scene_file import load_scene
     from mcgw.solution import solve
@@ -33,12 +34,14 @@ def execute(args: argparse.Namespace) -> int:
     scene = load_scene(args.scene)
     if args.surfaces is not None:
         scene = replace(scene, n_surfaces=args.surfaces)
+    tell_notes(scene)
+    area = scene.surface.nominal_area
     if args.load:
-        given, values = "load", [parse(text, "N") for text in args.load]
+        given, values = "load", [parse(text, "N", "--load") for text in args.load]
     elif args.pressure:
-        given, values = "load", [parse(text, "Pa") * scene.surface.nominal_area for text in args.pressure]
+        given, values = "load", [parse(p, "Pa", "--pressure") * area for p in args.pressure]
     else:
-        given, values = "area", [parse(text, "1") * scene.surface.nominal_area for text in args.area_fraction]
+        given, values = "area", [parse(a, "1", "--area-fraction") * area for a in args.area_fraction]
     solutions = solve(scene, given, values)
     print(solution_table(scene, solutions))
     if args.csv:

@@ -69,15 +69,18 @@ def _shape(text: str) -> tuple[int, int | None]:
 
 
 def _asperities(args: argparse.Namespace) -> int:
+    from mcgw.commands.notes import tell_notes
     from mcgw.maps.asperities import asperities_of
     from mcgw.maps.envelope import envelope
     from mcgw.maps.files import write_map
-    from mcgw.maps.lengths import metres
     from mcgw.maps.spots import save_contact_map, spots_at
     from mcgw.scene_file import load_scene, scene_text
+    from mcgw.units import parse
 
     scene = load_scene(args.scene)
-    field = asperities_of(scene, args.surface, width=None if args.width is None else metres(args.width))
+    tell_notes(scene)
+    width = None if args.width is None else parse(args.width, "m", "--width")
+    field = asperities_of(scene, args.surface, width=width)
     if args.at is not None:
         spots = spots_at(scene, field, args.at)
         save_contact_map(field, spots, args.output, colour=args.colour, periodic=args.periodic)
@@ -123,8 +126,8 @@ def _spectrum(args: argparse.Namespace) -> int:
     import numpy as np
 
     from mcgw.maps.files import write_map
-    from mcgw.maps.lengths import metres
     from mcgw.maps.spectrum import gaussian_map, moments_on_grid, spectrum_from
+    from mcgw.units import parse
 
     if args.at is not None or args.scene is not None:
         raise ValueError("--from-spectrum: draws a map without asperities; leave out SCENE and --at")
@@ -132,7 +135,7 @@ def _spectrum(args: argparse.Namespace) -> int:
         raise ValueError("--pixel: give the size of a pixel, as --pixel 0.5um")
     if args.seed < 0:
         raise ValueError(f"--seed {args.seed}: give a whole number >= 0")
-    pixel = metres(args.pixel)
+    pixel = parse(args.pixel, "m", "--pixel")
     columns, rows = _shape(args.shape)
     shape = (columns if rows is None else rows, columns)
     spectrum = spectrum_from(args.from_spectrum)

@@ -13,22 +13,26 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "-o", "--output", type=Path, metavar="DIR", help="folder of table and figure; default: out beside it"
     )
-    parser.add_argument("--seconds", type=float, default=60.0, metavar="S", help="bound; default: 60")
+    parser.add_argument("--seconds", default="60", metavar="TIME", help="bound, as 5 min; default: 60 (s)")
 
 
 def execute(args: argparse.Namespace) -> int:
     """Print the table and the advice, save the record and the figure."""
     from tqdm import tqdm
 
+    from mcgw.commands.notes import tell_notes
     from mcgw.plots_tradeoff import save_tradeoff
     from mcgw.scene_file import load_scene
     from mcgw.tradeoff import tradeoff, write_csv
+    from mcgw.units import parse
 
+    seconds = parse(args.seconds, "s", "--seconds")
     scene = load_scene(args.scene)
+    tell_notes(scene)
     folder = args.output or args.scene.parent / "out"
     folder.mkdir(parents=True, exist_ok=True)
     with tqdm(total=100, unit="%", disable=None, leave=False) as bar:
-        found = tradeoff(scene, seconds=args.seconds, progress=lambda share: bar.update(100 * share - bar.n))
+        found = tradeoff(scene, seconds=seconds, progress=lambda share: bar.update(100 * share - bar.n))
     table, figure = (folder / f"{args.scene.stem}-tradeoff.{end}" for end in ("csv", "png"))
     write_csv(found, table)
     save_tradeoff(found, figure)

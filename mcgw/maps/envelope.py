@@ -10,9 +10,10 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numba import njit, prange
+from numba import prange
 from numpy.typing import NDArray
 
+from mcgw.compiling import njit
 from mcgw.maps.asperities import Asperities
 from mcgw.maps.topography import Topography, checked_shape
 

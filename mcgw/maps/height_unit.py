@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from mcgw.maps.lengths import METRES
+from mcgw.units import METRES
 
 __all__ = ["height_unit", "metres_in"]
 

@@ -8,13 +8,14 @@ from numpy.typing import NDArray
 from scipy import fft
 from scipy.optimize import brentq
 
-from mcgw.maps.lengths import metres
 from mcgw.maps.nayak import SpectralMoments
 from mcgw.maps.topography import Topography, checked_shape
+from mcgw.units import parse
 
 __all__ = ["Spectrum", "gaussian_map", "moments_on_grid", "spectrum_from"]
 
 _HURST = 0.8
+_UNITS = {"rms": "m", "long": "m", "short": "m", "m0": "m^2", "m4": "1/m^2"}
 _NARROWEST, _WIDEST = 1 + 1e-6, 1e6  # ratio of the long to the short wavelength
 
 
@@ -183,7 +184,7 @@ def spectrum_from(text: str) -> Spectrum:
         key = key.strip()
         if key not in ("rms", "long", "short", "hurst", "m0", "m2", "m4") or key in given:
             raise ValueError(f"{part!r}: give rms, long, short and hurst, or m0, m2, m4 and hurst, each once")
-        given[key] = metres(value) if key in ("rms", "long", "short") else _number(key, value)
+        given[key] = parse(value, _UNITS[key], key) if key in _UNITS else _number(key, value)
     hurst = given.pop("hurst", _HURST)
     if set(given) == {"m0", "m2", "m4"}:
         return Spectrum.with_moments(SpectralMoments(**given), hurst)

@@ -4,9 +4,9 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from mcgw.compiling import njit
 from mcgw.maps.topography import Topography
 
 __all__ = ["SUMS", "Tally", "tally_of"]

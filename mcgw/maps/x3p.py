@@ -182,6 +182,12 @@ class _Reader:
             raise ValueError(f"{_MAIN}: {path} = {text!r} is no number")
         return value
 
+    def _increment(self, path: str, default: str | None = None) -> float:
+        value = self._number(path, default)
+        if not value > 0:
+            raise ValueError(f"{_MAIN}: {path} = {value!r}: an increment must be > 0 (m)")
+        return value
+
     def _whole(self, path: str) -> int:
         value = self._number(path)
         if value != int(value):
@@ -201,12 +207,12 @@ class _Reader:
             raise ValueError(f"{_MAIN}: SizeZ is not 1; a map has one layer")
         columns, rows = (self._whole(f"Record3/MatrixDimension/Size{axis}") for axis in "XY")
         checked_shape(rows, columns)
-        pixel = tuple(abs(self._number(f"Record1/Axes/C{axis}/Increment")) for axis in "XY")
+        pixel = tuple(self._increment(f"Record1/Axes/C{axis}/Increment") for axis in "XY")
         kind = self._text("Record1/Axes/CZ/DataType")
         if kind not in _TYPES:
             raise ValueError(f"{_MAIN}: DataType {kind!r} of CZ is not one of {', '.join(_TYPES)}")
         heights = self._heights(rows * columns, kind)
-        heights *= self._number("Record1/Axes/CZ/Increment", "1")
+        heights *= self._increment("Record1/Axes/CZ/Increment", "1")
         heights += self._number("Record1/Axes/CZ/Offset", "0")
         self._mark_missing(heights)
         return Topography(heights.reshape(rows, columns), (pixel[0], pixel[1]))

@@ -17,11 +17,11 @@ from functools import cache
 from typing import Any
 
 import numpy as np
-from numba import njit
 from numpy.polynomial import chebyshev
 from numpy.typing import NDArray
 
 from analytic.elementary import ndtri
+from mcgw.compiling import njit
 from mcgw.sampling.moments import Layout
 from mcgw.sampling.philox import MOMENTS, centred
 from mcgw.sampling.rules import gauss_legendre, product, triangle

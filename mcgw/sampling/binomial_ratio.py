@@ -9,8 +9,8 @@ import math
 from typing import Any
 
 import numpy as np
-from numba import njit
 
+from mcgw.compiling import njit
 from mcgw.sampling.exp_log import log
 
 __all__ = ["below_ratio", "ratio_over_mode"]

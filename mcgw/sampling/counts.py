@@ -8,9 +8,9 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from mcgw.compiling import njit
 from mcgw.sampling.cells import Mesh
 from mcgw.sampling.halving import halvings_of, share_out
 from mcgw.scene import Scene

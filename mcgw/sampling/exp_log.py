@@ -8,7 +8,8 @@ import math
 from typing import Any
 
 import numpy as np
-from numba import njit
+
+from mcgw.compiling import njit
 
 __all__ = ["exp_minus", "log", "log_one_minus"]
 

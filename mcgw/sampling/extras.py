@@ -3,9 +3,10 @@
 from typing import Any
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from mcgw.compiling import njit
+from mcgw.room import check_memory
 from mcgw.sampling.cells import Mesh
 from mcgw.sampling.counts import Counts
 from mcgw.sampling.philox import EXTRAS, centred
@@ -16,6 +17,7 @@ __all__ = ["extra_heights"]
 Array = NDArray[np.float64]
 
 _HIGH, _LOW = 0, 1  # streams
+_MANY, _BYTES = 10**7, 100  # heights that are worth asking whether there is room; bytes of one
 
 
 def extra_heights(scene: Scene, mesh: Mesh, first: int, counts: Counts) -> Array:
@@ -38,6 +40,9 @@ def extra_heights(scene: Scene, mesh: Mesh, first: int, counts: Counts) -> Array
         Rows (number of the surface, reduced height, weight), surface by surface, low ones first.
     """
     law = scene.heights
+    number = int(counts.high_extras.sum() + counts.low_extras.sum())
+    if number > _MANY:
+        check_memory(f"ensemble.sampler: to list {number:.4g} heights one by one", _BYTES * number)
     edge = float(mesh.edges[-1]) if mesh.size else scene.lowest
     heights = law.from_above(_wide_uniforms(scene.seed, first, _HIGH, counts.high_extras), edge)
     rows = _rows(first, counts.high_extras, heights, counts.weights[-1])

@@ -9,9 +9,10 @@ from functools import lru_cache
 from typing import Any
 
 import numpy as np
-from numba import njit, uint64
+from numba import uint64
 from numpy.typing import NDArray
 
+from mcgw.compiling import njit
 from mcgw.sampling.binomial import SURFACES, TRIALS, WORDS, binomials
 from mcgw.sampling.cells import Mesh
 

@@ -3,10 +3,10 @@
 from typing import Any
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from analytic import QUANTITIES
+from mcgw.compiling import njit
 from mcgw.scene import Scene
 
 __all__ = ["hertz_sums"]

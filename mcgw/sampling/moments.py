@@ -13,9 +13,10 @@ from itertools import pairwise
 from typing import Any
 
 import numpy as np
-from numba import get_num_threads, njit
+from numba import get_num_threads
 from numpy.typing import NDArray
 
+from mcgw.compiling import njit
 from mcgw.sampling.aligned import aligned
 from mcgw.sampling.in_threads import in_threads
 from mcgw.sampling.spacing import price

@@ -21,8 +21,10 @@ stream is word w of block 16 g + i.
 from typing import Any
 
 import numpy as np
-from numba import njit, uint32, uint64
+from numba import uint32, uint64
 from numpy.typing import NDArray
+
+from mcgw.compiling import njit
 
 __all__ = [
     "CELLS",

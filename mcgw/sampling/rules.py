@@ -8,10 +8,10 @@ from functools import cache
 from typing import Any
 
 import numpy as np
-from numba import njit
 from numpy.polynomial import chebyshev
 from numpy.typing import NDArray
 
+from mcgw.compiling import njit
 from mcgw.sampling.lanes import fused
 
 __all__ = ["chebyshev_points", "chebyshev_transform", "gauss_legendre", "product", "triangle"]

@@ -12,9 +12,9 @@ from heapq import heappop, heappush
 from typing import Any
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from mcgw.compiling import njit
 from mcgw.sampling.aligned import aligned
 from mcgw.sampling.in_threads import in_threads, pieces
 from mcgw.sampling.lanes import fused

@@ -8,7 +8,6 @@ import glob
 import os
 import secrets
 import socket
-import stat
 import zlib
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
@@ -20,7 +19,6 @@ from mcgw.errors import StoreError
 __all__ = [
     "SteadyFile",
     "check_output",
-    "open_regular",
     "remove_stale",
     "sync",
     "temporary_beside",
@@ -188,24 +186,6 @@ def sync(path: Path) -> None:
         os.fsync(fd)
     finally:
         os.close(fd)
-
-
-def open_regular(path: Path) -> int:
-    """Descriptor of a regular file, for reading; a pipe or device is refused without waiting for it.
-
-    Raises
-    ------
-    StoreError
-        If there is none, or it is no regular file.
-    """
-    try:
-        fd = os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC)
-    except (OSError, ValueError) as error:
-        raise StoreError(f"{path}: {getattr(error, 'strerror', None) or error}") from None
-    if not stat.S_ISREG(os.fstat(fd).st_mode):
-        os.close(fd)
-        raise StoreError(f"{path}: is no regular file")
-    return fd
 
 
 def check_output(path: Path) -> None:

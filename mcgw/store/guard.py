@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import Any
 
 from mcgw.errors import StoreError
+from mcgw.plain_file import open_regular
 from mcgw.store.child import ChildError, run_child
-from mcgw.store.disk import open_regular
 
 __all__ = ["examine", "examine_all"]
 

@@ -99,7 +99,7 @@ class _Digest:
     """SHA-256 over a scene and named tables that come in pieces: not over the bytes of a container."""
 
     def __init__(self, scene: Scene) -> None:
-        self._scene = scene_text(scene)
+        self._scene = scene_text(scene, left_out=False)
         self._tables: dict[str, Any] = {}
 
     def add(self, name: str, values: NDArray[Any]) -> None:

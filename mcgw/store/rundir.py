@@ -14,7 +14,6 @@ import hashlib
 import os
 import shutil
 import socket
-import tomllib
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, replace
@@ -30,6 +29,7 @@ from mcgw.store.arithmetic import KIND, drawn_with
 from mcgw.store.disk import remove_stale, sync, write_whole
 from mcgw.store.provenance import now
 from mcgw.store.shards import Shard, Span, open_shard
+from mcgw.toml_text import loads
 
 __all__ = ["Run", "difference", "identity_of", "missing", "parts_of"]
 
@@ -43,8 +43,8 @@ def parts_of(path: Path) -> Path:
 
 
 def frozen_text(scene: Scene) -> str:
-    """What of a scene must stay the same while its ensemble grows."""
-    return scene_text(replace(scene, n_surfaces=1))
+    """What of a scene must stay the same while its ensemble grows: the values, whoever gave them."""
+    return scene_text(replace(scene, n_surfaces=1), left_out=False)
 
 
 def identity_of(scene: Scene, sampler: str) -> str:
@@ -55,7 +55,7 @@ def identity_of(scene: Scene, sampler: str) -> str:
 
 def difference(scene: Scene, made_with: str, wanted: Scene, sampler: str) -> str:
     """What keeps two runs from being one, in words."""
-    there, here = (dict(_flat(tomllib.loads(frozen_text(s)))) for s in (scene, wanted))
+    there, here = (dict(_flat(loads(frozen_text(s)))) for s in (scene, wanted))
     for key, value in here.items():
         if there.get(key) != value:
             return f"{key} is {_short(there.get(key))} there and {_short(value)} here"
@@ -175,7 +175,7 @@ class Run:
         try:
             fd = os.open(file, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK)
             with os.fdopen(fd, "rb") as opened:
-                said = tomllib.loads(opened.read(_MOST_BYTES).decode())
+                said = loads(opened.read(_MOST_BYTES).decode())
             if said["filetype"] != _FILETYPE or said["format"][0] != _FORMAT[0]:
                 raise StoreError(f"{file}: is no run of format {_FORMAT[0]}.x, but {said['format']}")
             scene = scene_from(said["scene"])

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from mcgw.errors import StoreError
-from mcgw.store.disk import open_regular
+from mcgw.plain_file import open_regular
 
 __all__ = ["SEAL_BYTES", "Seal", "check_seal", "read_seal", "read_sealed", "seal_of", "sha256_of"]
 

@@ -1,0 +1,14 @@
+"""What a command says beside its answer, on standard error."""
+
+import sys
+
+from mcgw.scene import Scene
+from mcgw.validity import notes
+
+__all__ = ["tell_notes"]
+
+
+def tell_notes(scene: Scene, *more: str) -> None:
+    """Say where the model is strained, which units look wrong, and what else there is to say."""
+    for line in (*notes(scene), *more):
+        print(f"mcgw: note: {line}", file=sys.stderr)

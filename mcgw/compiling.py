@@ -1,0 +1,73 @@
+"""Compiled loops, kept on the disk where that can be done."""
+
+import os
+import warnings
+from collections.abc import Callable
+from functools import cache
+from typing import Any
+
+import numba
+
+from mcgw.errors import RunError
+
+__all__ = ["njit"]
+
+if numba.core.config.DISABLE_JIT:
+    raise RunError(
+        "NUMBA_DISABLE_JIT is set, but the loops of mcgw count in unsigned words that only compiled code "
+        "keeps; unset it",
+        code=2,
+    )
+
+
+def njit(**options: Any) -> Callable[[Any], Any]:
+    """As `numba.njit`; where a compiled loop cannot be kept for the next time, it is only said.
+
+    Parameters
+    ----------
+    **options
+        Those of `numba.njit`.
+
+    Returns
+    -------
+    callable
+        A decorator.
+    """
+
+    def decorate(function: Any) -> Any:
+        try:
+            compiled = numba.njit(**options)(function)
+        except RuntimeError as error:  # no folder can be written to
+            if not options.get("cache"):
+                raise
+            _say("any folder", str(error))
+            return numba.njit(**{**options, "cache": False})(function)
+        if options.get("cache"):
+            _go_on_when_full(compiled._cache)
+        return compiled
+
+    return decorate
+
+
+def _go_on_when_full(kept: Any) -> None:
+    """Let a full disk cost the time of compiling again, not the run."""
+    save = kept.save_overload
+
+    def try_to_save(signature: Any, data: Any) -> None:
+        try:
+            save(signature, data)
+        except OSError as error:
+            _say(kept.cache_path, error.strerror or str(error))
+
+    kept.save_overload = try_to_save
+
+
+@cache
+def _say(folder: str, reason: str) -> None:
+    """Once for each folder and reason."""
+    where = os.environ.get("NUMBA_CACHE_DIR")
+    advice = "make room there" if where else "make room there, or set NUMBA_CACHE_DIR to another folder"
+    warnings.warn(
+        f"compiled loops cannot be kept in {folder} ({reason}) and take 15 s in every process; {advice}",
+        stacklevel=2,
+    )

@@ -1,0 +1,89 @@
+"""What a command prints: text that cannot steer a terminal, to streams that may be closed or full."""
+
+import os
+import re
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from typing import Any
+
+__all__ = ["drop_output", "one_line", "plain_output"]
+
+
+def one_line(text: str) -> str:
+    r"""A text in which every character that is not printable stands as its escape.
+
+    Examples
+    --------
+    >>> one_line("red \x1b[31m\nE*")
+    'red \\x1b[31m\\nE*'
+    """
+    if text.isprintable():
+        return text
+    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text)
+
+
+class _Plain:
+    """A stream that passes on printable characters and the ends of lines."""
+
+    def __init__(self, stream: Any, name: str, ends: str) -> None:
+        self._stream, self._name, self._ends = stream, name, ends
+        if hasattr(stream, "reconfigure"):
+            stream.reconfigure(errors="backslashreplace")  # not every terminal has an eta
+
+    def write(self, text: str) -> int:
+        """Write a text, with what is not printable as its escape."""
+        shown = "".join(
+            line if line in self._ends else one_line(line) for line in re.split(f"([{self._ends}])", text)
+        )
+        with self._named():
+            self._stream.write(shown)
+        return len(text)
+
+    def flush(self) -> None:
+        """Pass on what is held back."""
+        with self._named():
+            self._stream.flush()
+
+    @contextmanager
+    def _named(self) -> Iterator[None]:
+        try:
+            yield
+        except BrokenPipeError:
+            raise
+        except OSError as error:
+            error.filename = self._name
+            raise
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._stream, name)
+
+
+@contextmanager
+def plain_output() -> Iterator[None]:
+    """Let nothing but text reach the terminal, and replace streams that were closed by an empty one."""
+    _open_closed()
+    before = sys.stdout, sys.stderr
+    sys.stdout = _Plain(sys.stdout, "standard output", "\n")
+    sys.stderr = _Plain(sys.stderr, "standard error", "\n\r")
+    try:
+        yield
+    finally:
+        sys.stdout, sys.stderr = before
+
+
+def drop_output() -> None:
+    """Forget what standard output could not take, so that leaving the process does not try again."""
+    with suppress(OSError, ValueError):
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
+def _open_closed() -> None:
+    """Put the empty device in the place of closed descriptors, before a file of ours gets their numbers."""
+    for number, name, mode in ((0, "stdin", "r"), (1, "stdout", "w"), (2, "stderr", "w")):
+        try:
+            os.fstat(number)
+        except OSError:
+            os.open(os.devnull, os.O_RDWR)  # takes the lowest number that is free
+        if getattr(sys, name) is None:
+            setattr(sys, name, open(number, mode, closefd=False))  # noqa: SIM115 - for as long as the process

@@ -1,0 +1,295 @@
+"""Closed streams, full disks, files that never end: one line and an end, whatever a command is run in."""
+
+import gzip
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import mcgw
+from mcgw.terminal import one_line
+
+ROOT = Path(__file__).parent.parent
+SCENE = (ROOT / "runs" / "quick.toml").read_text()
+ENV = os.environ | {"PYTHONPATH": str(ROOT)}
+
+
+def call(words, folder, *, redirect="", env=None, seconds=60):
+    """A command through a shell, in a process that is stopped if it hangs."""
+    line = f"exec {sys.executable} -m mcgw {words} {redirect}"
+    return subprocess.run(
+        ["bash", "-c", line], cwd=folder, env=ENV | (env or {}), capture_output=True, text=True,
+        timeout=seconds, check=False,
+    )  # fmt: skip
+
+
+def put(folder, text=SCENE, **changes):
+    """A scene in the folder, lines of some keys replaced."""
+    lines = text.splitlines()
+    for key, value in changes.items():
+        at = [i for i, line in enumerate(lines) if line.startswith(f"{key} ")]
+        lines[at[0]] = f"{key} = {value}"
+    (folder / "s.toml").write_text("\n".join(lines) + "\n")
+
+
+def refused(done, message, lines=1):
+    """Exit code 2 and so many lines, one of which says this; no traceback."""
+    assert done.returncode == 2, done.stderr
+    assert message in done.stderr, done.stderr
+    assert len(done.stderr.splitlines()) == lines, done.stderr
+    assert all(len(line) < 400 for line in done.stderr.splitlines())
+
+
+@pytest.mark.parametrize("redirect", ["2>&-", ">&-", "<&- >&- 2>&-"])
+def test_a_run_with_closed_streams_makes_its_file(redirect, tmp_path):
+    put(tmp_path)
+    done = call("run s.toml -o e.h5", tmp_path, redirect=redirect)
+    assert done.returncode == 0, done.stderr
+    there = mcgw.open_ensemble(tmp_path / "e.h5")
+    np.testing.assert_array_equal(there.load, mcgw.simulate(there.scene).load)
+    assert "Traceback" not in done.stderr
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["e.h5", "s.toml"]
+
+
+def test_an_error_with_closed_streams_keeps_its_exit_code(tmp_path):
+    for redirect in ("2>&-", ">&-", ">&- 2>&-"):
+        done = call("run absent.toml", tmp_path, redirect=redirect)
+        assert done.returncode == 2
+        assert "Traceback" not in done.stderr + done.stdout
+
+
+@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="no device that is always full")
+def test_a_full_standard_output_is_named(tmp_path):
+    put(tmp_path)
+    done = call("show --plan s.toml", tmp_path, redirect=">/dev/full")
+    refused(done, "No space left on device: 'standard output'")
+
+
+def test_without_compiled_loops_it_is_said(tmp_path):
+    put(tmp_path)
+    done = call("run s.toml -o e.h5", tmp_path, env={"NUMBA_DISABLE_JIT": "1"})
+    refused(done, "NUMBA_DISABLE_JIT is set")
+    assert "unset it" in done.stderr
+    assert not (tmp_path / "e.h5").exists()
+
+
+FULL = """
+import errno, os, sys
+from numba.core import caching
+from mcgw.cli import main
+
+def full(self, name, mode="wb"):
+    raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+caching.IndexDataCacheFile._open_for_write = full
+sys.exit(main(sys.argv[1:]))
+"""
+
+
+def test_a_full_folder_of_kernels_costs_time_not_the_run(tmp_path):
+    """The disk is full for kernels only, as for a home with a quota: what cannot be kept is used."""
+    put(tmp_path)
+    (tmp_path / "kernels").mkdir()
+    words = [sys.executable, "-c", FULL, "show", "--plan", "s.toml"]
+    env = ENV | {"NUMBA_CACHE_DIR": str(tmp_path / "kernels")}
+    done = subprocess.run(
+        words, cwd=tmp_path, env=env, capture_output=True, text=True, timeout=300, check=False
+    )
+    assert done.returncode == 0, done.stderr
+    lines = done.stderr.splitlines()
+    assert lines
+    for line in lines:
+        assert line.startswith(f"mcgw: warning: compiled loops cannot be kept in {tmp_path / 'kernels'}")
+        assert "(No space left on device)" in line
+    assert len(lines) == 1
+
+
+def test_tail_with_more_asperities_than_memory_is_refused_before_drawing(tmp_path):
+    put(tmp_path, SCENE.replace("[ensemble]", '[ensemble]\nsampler = "tail"'), n_asperities=10**15)
+    done = call("run s.toml -o e.h5", tmp_path)
+    lines = [line for line in done.stderr.splitlines() if "note:" not in line]
+    assert done.returncode == 2, done.stderr
+    assert len(lines) == 1
+    assert "to list 5e+14 heights one by one needs" in lines[0]
+    with pytest.raises(ValueError, match="heights one by one needs .* GiB of memory"):
+        mcgw.simulate(mcgw.load_scene(tmp_path / "s.toml"))
+
+
+def test_a_long_run_says_so_before_it_begins(tmp_path):
+    put(tmp_path, n_surfaces="1000000000", n_asperities="1000000000")
+    with subprocess.Popen(
+        [sys.executable, "-m", "mcgw", "run", "s.toml", "-o", "e.h5"],
+        cwd=tmp_path, env=ENV, stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True,
+    ) as process:  # fmt: skip
+        try:
+            said = process.stderr.readline()
+        finally:
+            process.kill()
+    assert said.startswith("mcgw: note: 1e+09 surfaces of 1e+09 asperities: about ")
+    assert " years on this machine (5e+17 draws)" in said
+
+
+def test_a_short_run_says_nothing(tmp_path):
+    put(tmp_path)
+    assert call("run s.toml -o e.h5", tmp_path).stderr == ""
+
+
+EVIL = "\\u001b]0;owned\\u0007\\u001b[31mred\\r$x_{\\u202e\\nverdict: agrees"
+
+
+def test_titles_cannot_steer_the_terminal(tmp_path):
+    put(tmp_path, title=f'"{EVIL}"', n_surfaces=20)
+    assert call("run s.toml -o e.h5", tmp_path).returncode == 0
+    page, picture = tmp_path / "e.html", tmp_path / "e.svg"
+    shown = [
+        call("show --plan s.toml", tmp_path), call("show e.h5", tmp_path), call("show --scene e.h5", tmp_path),
+        call(f"compare e.h5 -o {picture}", tmp_path), call(f"report e.h5 -o {page}", tmp_path),
+    ]  # fmt: skip
+    for done in shown:
+        assert done.returncode == 0, done.stderr
+        for line in (done.stdout + done.stderr).splitlines():
+            assert line.isprintable(), line
+        assert "verdict: agrees" not in done.stdout.splitlines()
+    assert mcgw.scene_from(shown[2].stdout) == mcgw.load_scene(tmp_path / "s.toml")
+    for text in (page.read_text(), picture.read_text()):
+        assert not {"\x1b", "\x07", "\u202e"} & set(text)
+    assert "red\\r$x_{" in picture.read_text()
+
+
+def test_names_of_files_cannot_steer_the_terminal(tmp_path):
+    for name in (b"\x1b[31mred.toml", b"\xff\xfe.toml", b"\x9b31m.toml"):
+        words = [sys.executable, "-m", "mcgw", "run", os.fsdecode(name)]
+        done = subprocess.run(words, cwd=tmp_path, env=ENV, capture_output=True, timeout=60, check=False)
+        assert done.returncode == 2
+        (line,) = done.stderr.decode().splitlines()
+        assert line.isprintable()
+        assert line.endswith("No such file or directory")
+
+
+def test_one_line_keeps_what_is_printable():
+    for text in ("", "Kontakt σ = 1 µm²", "日本", "$x$ \\"):
+        assert one_line(text) == text
+    assert one_line("a\tb\nc\x9b\u2028\udcff") == "a\\tb\\nc\\x9b\\u2028\\udcff"
+
+
+# --- files that a scene names ---------------------------------------------------------------------------
+
+
+def fifo(path):
+    os.mkfifo(path)
+
+
+def bomb(path):
+    path.write_bytes(gzip.compress(b"1.0\n" * 50_000_000, 1))
+
+
+def passwords(path):
+    path.write_text("root:secret,hash\nuser:word\n")
+
+
+def device(path):
+    path.symlink_to("/dev/zero")
+
+
+def folder(path):
+    path.mkdir()
+
+
+WRONG_FILES = {
+    "fifo": (fifo, "is no regular file"),
+    "device": (device, "is no regular file"),
+    "folder": (folder, "is no regular file"),
+    "absent": (lambda path: None, "No such file"),
+    "secret": (passwords, ""),
+}
+TABLES = {
+    "grading": '[grading]\nlaw = "table"\nfile = "{}"\n[contact]',
+    "heights": '[heights]\nlaw = "table"\nfile = "{}"\n[contact]',
+}
+
+
+@pytest.mark.parametrize("kind", WRONG_FILES)
+@pytest.mark.parametrize(
+    ("table", "name"), [("grading", "f.csv"), ("heights", "f.csv"), ("heights", "f.npy")]
+)
+def test_a_file_of_a_scene_that_is_none_is_refused_at_once(table, name, kind, tmp_path):
+    make, message = WRONG_FILES[kind]
+    make(tmp_path / name)
+    text = SCENE.replace('[grading]\nlaw = "exponential"\ngamma = 1.5\n', "")
+    put(tmp_path, text.replace("[contact]", TABLES[table].format(name)))
+    done = call("show --plan s.toml", tmp_path, seconds=30)
+    refused(done, message)
+    assert done.stderr.startswith(f"mcgw: {table}.file = '{name}': ")
+    assert "secret" not in done.stderr.replace(name, "")
+    assert "hash" not in done.stderr
+
+
+def test_a_packed_list_of_heights_is_not_unpacked(tmp_path):
+    bomb(tmp_path / "heights.gz")
+    assert (tmp_path / "heights.gz").stat().st_size < 2e6
+    put(tmp_path, SCENE.replace("[contact]", TABLES["heights"].format("heights.gz")))
+    refused(call("show --plan s.toml", tmp_path, seconds=30), "heights.gz: is no text in UTF-8")
+
+
+def test_a_table_of_regrade_is_read_as_carefully(tmp_path):
+    put(tmp_path, SCENE.replace("[ensemble]", '[ensemble]\nkeep = "moments"'), n_surfaces=5)
+    assert call("run s.toml -o e.h5", tmp_path).returncode == 0
+    os.mkfifo(tmp_path / "pipe.csv")
+    passwords(tmp_path / "p.csv")
+    refused(call("regrade e.h5 --grading pipe.csv -o r.h5", tmp_path), "pipe.csv: is no regular file")
+    done = call("regrade e.h5 --grading p.csv -o r.h5", tmp_path)
+    refused(done, "p.csv: the first line must be s or z, a comma, then ratio or E_star")
+    assert "secret" not in done.stderr
+
+
+HOSTILE = {
+    "dotted key": "a" + ".a" * 200_000 + " = 1\n",
+    "dotted quoted key": '"a"' + '."a"' * 100_000 + " = 1\n",
+    "dotted header": "[a" + ".a" * 200_000 + "]\n",
+    "spaced dots": "a" + " . a" * 100_000 + " = 1\n",
+    "lists in lists": "a = " + "[" * 200_000 + "]" * 200_000 + "\n",
+    "tables in tables": "a = " + "{a = " * 100_000 + "1" + "}" * 100_000 + "\n",
+    "unknown keys": "".join(f"k{i} = 1\n" for i in range(100_000)),
+    "quotes": 'a = "' + '\\"' * 400_000 + "\n",
+    "single quotes": "a = " + "'" * 400_001 + "\n",
+    "a long key": "a" * 500_000 + " = 1\n",
+    "quantities": "[contact]\nquantities = [" + "'x'," * 100_000 + "]\n",
+}
+
+
+@pytest.mark.parametrize("kind", HOSTILE)
+def test_hostile_texts_end_in_a_few_lines(kind, tmp_path):
+    (tmp_path / "s.toml").write_text(HOSTILE[kind] + ("" if kind == "quantities" else SCENE))
+    done = call("show --plan s.toml", tmp_path, seconds=30)
+    assert done.returncode == 2
+    assert 1 <= len(done.stderr.splitlines()) < 40
+    assert all(line.startswith("mcgw: ") and len(line) < 400 for line in done.stderr.splitlines())
+
+
+def test_texts_with_many_dots_are_still_read():
+    """Numbers in one line, sentences, and dots in texts are no dotted keys."""
+    title = "one. two. three. " * 100 + "a.b" * 300
+    numbers = ", ".join(f"{i / 1000:.3f}" for i in range(2000))
+    text = SCENE.replace('"Quick look"', f'"{title}" # {"x." * 500}')
+    text = text.replace("{start = 0.0, stop = 4.0, num = 9}", f"[{numbers}]")
+    scene = mcgw.scene_from(text)
+    assert scene.title == title
+    assert len(scene.separations) == 2000
+
+
+SLOW_LAWS = {"studentized_range": "{k = 3.0, df = 10.0}", "kappa4": "{h = 0.1, k = 0.0}"}
+
+
+@pytest.mark.parametrize("law", SLOW_LAWS)
+def test_slow_laws_of_scipy_are_refused(law, tmp_path):
+    heights = f'[heights]\nlaw = "scipy"\nname = "{law}"\nshapes = {SLOW_LAWS[law]}\n[contact]'
+    put(tmp_path, SCENE.replace("[contact]", heights))
+    refused(call("show --plan s.toml", tmp_path, seconds=100), "take scipy longer than")
+
+
+def test_infinite_sums_are_refused(tmp_path):
+    put(tmp_path, gamma="1e308")
+    refused(call("run s.toml -o e.h5", tmp_path), "grading.gamma = 1e+308: E*(s)/E* reaches ")
