@@ -12,7 +12,7 @@ from mcgw.errors import RunError
 
 __all__ = ["njit"]
 
-if numba.core.config.DISABLE_JIT:
+if numba.config.DISABLE_JIT:  # type: ignore[attr-defined, unused-ignore]
     raise RunError(
         "NUMBA_DISABLE_JIT is set, but the loops of mcgw count in unsigned words that only compiled code "
         "keeps; unset it",

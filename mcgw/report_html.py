@@ -18,7 +18,7 @@ from mcgw.figures.data import FigureData, Panel, Points, Series
 from mcgw.figures.drawing import draw
 from mcgw.plots import STYLE, grading_label, quantity_figure
 from mcgw.report_text import verdict_line
-from mcgw.terminal import one_line
+from mcgw.terminal import one_line, plain_text
 
 __all__ = ["report_html"]
 
@@ -127,7 +127,7 @@ def report_html(ensemble: Ensemble, attributes: dict[str, Any]) -> str:
             (key, escape(str(attributes[key])))
             for key in ("digest", "seed", "sampler", "date", "versions", "commit", "cpu")
         ),
-        scene=escape(_shorter(attributes["scene"])),
+        scene=escape(plain_text(_shorter(attributes["scene"]))),
     )
 
 

@@ -11,6 +11,7 @@ from mcgw.units import EXAMPLES, parse
 __all__ = ["Section"]
 
 _MISSING: Any = object()
+_MOST_WHOLE = 2**64  # what is larger has hundreds of digits, if it likes
 _MOST_NAMED = 20  # unknown keys of a table: more say nothing new
 
 
@@ -76,7 +77,7 @@ class Section:
         if value is default:
             return None if value is _MISSING else value
         whole = _is_number(value) and math.isfinite(value) and value == int(value) if _fits(value) else False
-        if not whole or value < least:
+        if not whole or not least <= value <= _MOST_WHOLE:
             self.fail(key, value, f"give a whole number >= {least}")
             return None
         return int(value)

@@ -7,7 +7,9 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from typing import Any
 
-__all__ = ["drop_output", "one_line", "plain_output"]
+__all__ = ["drop_output", "one_line", "plain_output", "plain_text"]
+
+_SHORT = {"\n": "\\n", "\r": "\\r", "\t": "\\t"}
 
 
 def one_line(text: str) -> str:
@@ -16,11 +18,20 @@ def one_line(text: str) -> str:
     Examples
     --------
     >>> one_line("red \x1b[31m\nE*")
-    'red \\x1b[31m\\nE*'
+    'red \\u001b[31m\\nE*'
     """
     if text.isprintable():
         return text
-    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text)
+    return "".join(c if c.isprintable() else _SHORT.get(c) or _escape(ord(c)) for c in text)
+
+
+def plain_text(text: str) -> str:
+    """Lines, each as by `one_line`; what was TOML still is."""
+    return "\n".join(map(one_line, text.split("\n")))
+
+
+def _escape(code: int) -> str:
+    return f"\\u{code:04x}" if code < 2**16 else f"\\U{code:08x}"
 
 
 class _Plain:
