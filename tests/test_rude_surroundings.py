@@ -9,7 +9,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import scipy.stats
 
+import analytic
 import mcgw
 from mcgw.terminal import one_line
 
@@ -312,14 +314,30 @@ def test_texts_with_many_dots_are_still_read():
     assert len(scene.separations) == 2000
 
 
-SLOW_LAWS = {"studentized_range": "{k = 3.0, df = 10.0}", "kappa4": "{h = 0.1, k = 0.0}"}
-
-
-@pytest.mark.parametrize("law", SLOW_LAWS)
-def test_slow_laws_of_scipy_are_refused(law, tmp_path):
-    heights = f'[heights]\nlaw = "scipy"\nname = "{law}"\nshapes = {SLOW_LAWS[law]}\n[contact]'
-    put(tmp_path, SCENE.replace("[contact]", heights))
+def test_a_slow_law_of_scipy_is_refused(tmp_path):
+    law = 'law = "scipy"\nname = "studentized_range"\nshapes = {k = 3.0, df = 10.0}'
+    put(tmp_path, SCENE.replace("[contact]", f"[heights]\n{law}\n[contact]"))
     refused(call("show --plan s.toml", tmp_path, seconds=100), "take scipy longer than")
+
+
+SLOW_LAWS = [
+    scipy.stats.kappa4(0.1, 0.0), scipy.stats.ksone(1000), scipy.stats.kstwo(10),
+    scipy.stats.recipinvgauss(0.63), scipy.stats.vonmises(3.99), scipy.stats.studentized_range(3.0, 10.0),
+]  # fmt: skip
+
+
+@pytest.mark.filterwarnings("ignore")  # their integrals do not converge either
+@pytest.mark.parametrize("law", SLOW_LAWS, ids=lambda law: law.dist.name)
+def test_slow_laws_are_given_up_after_their_time(law, monkeypatch):
+    """By a bound of a tenth of a second here; their moments take minutes."""
+    monkeypatch.setattr("analytic.height_laws._SECONDS", 0.1)
+    profile = sys.getprofile()
+    with pytest.raises(
+        ValueError, match=r"^\w+: mean and deviation take scipy longer than 0\.1 s; give another"
+    ):
+        analytic.ScipyHeights(law)
+    assert sys.getprofile() is profile
+    assert analytic.ScipyHeights(scipy.stats.gamma(4.0)).support[0] == -2.0
 
 
 def test_infinite_sums_are_refused(tmp_path):
