@@ -217,6 +217,14 @@ def all_zero(members):
         (replaced(b"SUR", b"PCL"), "only SUR is read"),
         (replaced(b"<Record1>", b"<!DOCTYPE a><Record1>"), "declares entities"),
         (replaced(b"</Record1>", b""), "mismatched tag"),
+        *(
+            (
+                replaced(b"<Increment>%s<" % old, b"<Increment>%s<" % new),
+                f"C{axis}/Increment = .* must be > 0",
+            )
+            for axis, old in (("X", b"1e-06"), ("Y", b"2.5e-06"), ("Z", b"1.0"))
+            for new in (b"0", b"-1e-6")
+        ),
         (blown_up, "more than 1048576"),
         (all_zero, "checksum"),
     ],

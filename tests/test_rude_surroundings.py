@@ -161,6 +161,19 @@ def test_a_short_run_says_nothing(tmp_path):
     assert call("run s.toml -o e.h5", tmp_path).stderr == ""
 
 
+def test_a_doubted_unit_is_told_by_every_command_that_speaks_of_the_scene(tmp_path):
+    """Once, on standard error, and the exit code stays."""
+    put(tmp_path, E_star="50", n_surfaces=20)
+    words = [
+        "show --plan s.toml", "solve s.toml --pressure 0.001 --surfaces 5", "run s.toml -o e.h5", "show e.h5",
+        "compare e.h5", "surface s.toml --shape 8 -o m.npy",
+    ]  # fmt: skip
+    for done in calls(words, tmp_path):
+        assert done.returncode == 0, done.stderr
+        asked = "mcgw: note: surface.E_star = 50: 50 Pa is softer than any gel; did you mean 50 GPa = 5e+10?"
+        assert done.stderr.splitlines().count(asked) == 1, done.args
+
+
 EVIL = "\\u001b]0;owned\\u0007\\u001b[31mred\\r$x_{\\u202e\\nverdict: agrees"
 
 
