@@ -11,7 +11,7 @@ from mcgw.units import EXAMPLES, parse
 __all__ = ["Section"]
 
 _MISSING: Any = object()
-_MOST_WHOLE = 2**64  # what is larger has hundreds of digits, if it likes
+_MOST_WHOLE = 10**30  # so that no message has hundreds of digits
 _MOST_NAMED = 20  # unknown keys of a table: more say nothing new
 
 

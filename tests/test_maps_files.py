@@ -220,7 +220,7 @@ def all_zero(members):
         *(
             (
                 replaced(b"<Increment>%s<" % old, b"<Increment>%s<" % new),
-                f"C{axis}/Increment = .* must be > 0",
+                f"C{axis}/Increment = .*must be >",
             )
             for axis, old in (("X", b"1e-06"), ("Y", b"2.5e-06"), ("Z", b"1.0"))
             for new in (b"0", b"-1e-6")
