@@ -4,6 +4,8 @@ import csv
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
+from mcgw.formats.files import whole_file
+
 __all__ = ["Row", "write_csv"]
 
 Row = Sequence[float | str]
@@ -21,7 +23,7 @@ def write_csv(path: str | Path, header: Sequence[str], rows: Iterable[Row]) -> N
     rows : iterable of sequences
         Text as it is; numbers with as many digits as they have.
     """
-    with open(path, "w", newline="", encoding="utf-8") as file:
+    with whole_file(Path(path)) as unfinished, open(unfinished, "w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow(header)
         writer.writerows([x if isinstance(x, str) else repr(float(x)) for x in row] for row in rows)

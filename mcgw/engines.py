@@ -5,7 +5,6 @@ what lies on the disk.
 """
 
 import multiprocessing
-import os
 import signal
 import threading
 from collections.abc import Callable
@@ -13,6 +12,8 @@ from concurrent.futures import Future, ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from queue import SimpleQueue
 from typing import Any, Protocol
+
+from mcgw.lifeline import end_with
 
 __all__ = ["Engine", "EngineLostError", "Processes", "Threads", "WorkerDiedError"]
 
@@ -127,12 +128,7 @@ def _begin_worker() -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     parent = multiprocessing.parent_process()
     if parent is not None:
-
-        def follow() -> None:
-            parent.join()
-            os._exit(1)
-
-        threading.Thread(target=follow, daemon=True).start()
+        end_with(parent.sentinel, parent.join)
 
 
 def pass_on(done: Any, outer: "Future[Any]", died: Any, lost: Any) -> None:

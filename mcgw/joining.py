@@ -1,21 +1,21 @@
 """From the blocks of a run to its file."""
 
-import os
 from collections.abc import Iterable
 from contextlib import suppress
 from pathlib import Path
 
 from mcgw.driver import Signals, heed_signals
 from mcgw.ensemble import Ensemble
-from mcgw.errors import RunError
-from mcgw.scene import Scene
+from mcgw.errors import RunError, StoreError
+from mcgw.formats.files import rename_over, state_of, sync, temporary_beside
 from mcgw.store.child import ChildError, run_child
-from mcgw.store.disk import remove_stale, sync, temporary_beside
 from mcgw.store.ensembles import finished, open_ensemble
+from mcgw.store.leftovers import tidy
+from mcgw.store.lock import locked
 from mcgw.store.rundir import Run, missing, parts_of
 from mcgw.store.shards import Shard, Span
 
-__all__ = ["clear", "merge", "merge_once", "missing_of"]
+__all__ = ["merge", "merge_once", "missing_of"]
 
 
 def merge(path: str | Path) -> Ensemble:
@@ -39,10 +39,13 @@ def merge(path: str | Path) -> Ensemble:
         If blocks are missing, or the disk does not take the file.
     """
     path = Path(path)
-    if path.exists() and not parts_of(path).exists():
-        return open_ensemble(path)
-    started = Run.open(parts_of(path))
-    with heed_signals() as signals, started.locked():
+    tidy(path)
+    if not parts_of(path).exists():
+        if path.exists():
+            return open_ensemble(path)
+        raise StoreError(f"{path}: neither this file nor blocks of it ({parts_of(path)}) are there")
+    with heed_signals() as signals, locked(parts_of(path)):
+        started = Run.open(parts_of(path))
         done = finished(path, started.scene, started.sampler)
         gaps = missing_of(started, done, started.sweep())
         if gaps:
@@ -61,12 +64,18 @@ def missing_of(started: Run, done: int, shards: Iterable[Shard]) -> list[Span]:
 
 
 def merge_once(started: Run, path: Path, signals: Signals) -> bool:
-    """Make the file and remove the shards; False if a shard turned out damaged."""
-    temporary = temporary_beside(started.folder / path.name)
+    """Make the file and remove the shards; False if a shard turned out damaged. Only with the lock."""
+    temporary, before = temporary_beside(started.folder / path.name), state_of(path)
+    finished(path, started.scene, started.sampler)
     try:
         _merge_in_child(started.folder, path, temporary)
-        os.replace(temporary, path)
+        rename_over(temporary, path, before)
         sync(path.parent)
+    except FileExistsError as error:
+        raise RunError(
+            f"{path}: {error.strerror}; it is left as it is. All blocks are kept in {started.folder}: move "
+            "that file away, the same command goes on"
+        ) from None
     except ChildError as error:
         signals.check(f"all blocks are kept in {started.folder}; the same command merges them")
         if error.how == "exit code 3":
@@ -84,16 +93,3 @@ def merge_once(started: Run, path: Path, signals: Signals) -> bool:
 
 def _merge_in_child(folder: Path, path: Path, temporary: Path) -> None:
     run_child("mcgw.store.merge", str(folder), str(path), str(temporary))
-
-
-def clear(path: Path, scene: Scene, sampler: str) -> None:
-    """Remove the folder of a run whose file was finished just before it died."""
-    remove_stale(path)
-    folder = parts_of(path)
-    if (folder / "run.toml").is_file():
-        left = Run.begin(folder, scene, sampler, 1)
-        with left.locked():
-            left.remove()
-    for empty in (folder / "shards", folder):
-        with suppress(OSError):  # it is not there, or not empty
-            empty.rmdir()

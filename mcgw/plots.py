@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 
 from analytic import Exponential, Grading, Homogeneous
 from mcgw.compare import Comparison, Curve
+from mcgw.formats.pictures import save_figure
 from mcgw.scene import Scene
 from mcgw.terminal import one_line
 
@@ -86,7 +87,7 @@ def save_comparison(comparison: Comparison, path: str | Path) -> None:
             f"{grading_label(scene.grading)}; sampler {ensemble.sampler}, seed {scene.seed}"
         )
         figure.supxlabel(f"separation $d/\\sigma$\n{caption}", fontsize=9)
-        figure.savefig(path)
+        save_figure(figure, path)
 
 
 def quantity_figure(comparison: Comparison, name: str) -> Figure:

@@ -11,6 +11,7 @@ from scipy.stats import norm
 from mcgw.checks import Slope
 from mcgw.compare import FALSE_ALARM
 from mcgw.converge import Convergence
+from mcgw.formats.pictures import save_figure
 from mcgw.plots import STYLE, shown_title
 
 __all__ = ["save_convergence"]
@@ -46,7 +47,7 @@ def save_convergence(found: Convergence, path: str | Path) -> None:
             f"{len(found.checks)} checks (false alarms: 1 in {1 / FALSE_ALARM:.0f})",
             fontsize=10,
         )
-        figure.savefig(path)
+        save_figure(figure, path)
 
 
 def _say(axis: Any, text: str) -> None:

@@ -7,6 +7,7 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
 
+from mcgw.formats.pictures import save_figure
 from mcgw.plots import STYLE, shown_title
 from mcgw.tradeoff import Tradeoff
 
@@ -37,7 +38,7 @@ def save_tradeoff(found: Tradeoff, path: str | Path) -> None:
         figure.suptitle(shown_title(found.scene, "Work and precision"), fontsize=10)
         handles, labels = axes[0].get_legend_handles_labels()
         figure.legend(handles, labels, loc="outside lower center", ncols=3, fontsize=8)
-        figure.savefig(path)
+        save_figure(figure, path)
 
 
 def _draw(axis: Any, found: Tradeoff, k: int) -> None:

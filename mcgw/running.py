@@ -11,15 +11,17 @@ from mcgw.driver import Signals, drive, heed_signals
 from mcgw.engines import Engine, Threads
 from mcgw.ensemble import Arrays, Ensemble
 from mcgw.errors import RunError, StoreError
-from mcgw.joining import clear, merge_once, missing_of
+from mcgw.formats.files import check_output
+from mcgw.joining import merge_once, missing_of
 from mcgw.room import check_room
 from mcgw.sampling.samplers import Sampler, sampler_of
 from mcgw.scene import Scene
 from mcgw.scene_file import scene_from, scene_text
-from mcgw.store.disk import check_output
-from mcgw.store.ensembles import finished, open_ensemble, save
+from mcgw.store.ensembles import finished, open_ensemble, write_ensemble
+from mcgw.store.leftovers import drop_leftovers, tidy
+from mcgw.store.lock import locked
 from mcgw.store.rundir import Run, parts_of
-from mcgw.store.shards import Span
+from mcgw.store.shards import Shard, Span
 from mcgw.work import columns, commit_block, draw, shard_size
 
 __all__ = ["Part", "run", "run_part"]
@@ -103,15 +105,18 @@ def run(
     path = Path(path)
     sampler, size, done = _prepare(scene, path, threads)
     if done == scene.n_surfaces:
-        clear(path, scene, sampler.name)
+        tidy(path)
         (progress or _silent)(done)
         return open_ensemble(path)
     with heed_signals() as signals, _engine_or_threads(engine) as drawing:
         session = _Session(drawing, threads if engine is None else 1, progress or _silent, signals)
-        if engine is None and scene.n_surfaces <= size and not parts_of(path).exists():
-            _at_once(scene, sampler, path, session)
-        else:
-            _in_blocks(scene, sampler, path, size, session)
+        with locked(parts_of(path)):
+            drop_leftovers(path)
+            begun = (parts_of(path) / "run.toml").exists()
+            if engine is None and scene.n_surfaces <= size and not begun:
+                _at_once(scene, sampler, path, session)
+            else:
+                _in_blocks(scene, sampler, path, size, session)
     return open_ensemble(path)
 
 
@@ -152,8 +157,14 @@ def run_part(
     sampler, size, done = _prepare(scene, path, threads)
     if done == scene.n_surfaces:
         return 0
-    started = Run.begin(parts_of(path), scene, sampler.name, size)
-    with heed_signals() as signals, started.locked(shared=True), _engine_or_threads(None) as drawing:
+    tidy(path)
+    with (
+        heed_signals() as signals,
+        locked(parts_of(path), shared=True),
+        _engine_or_threads(None) as drawing,
+    ):
+        done = finished(path, scene, sampler.name)  # again: the last of the jobs may have been merged
+        started = Run.begin(parts_of(path), scene, sampler.name, size)
         gaps = missing_of(started, done, started.shards())
         _draw_missing(started, gaps, _Session(drawing, threads, progress or _silent, signals), part)
         return sum(span.n for span in missing_of(started, done, started.shards()))
@@ -201,7 +212,9 @@ def _engine_or_threads(engine: Engine | None) -> Iterator[Engine]:
 
 
 def _at_once(scene: Scene, sampler: Sampler, path: Path, session: _Session) -> None:
-    """The whole ensemble as one block, and its file in one step."""
+    """The whole ensemble as one block, and its file in one step. Only with the lock."""
+    if finished(path, scene, sampler.name) == scene.n_surfaces:  # another process was quicker
+        return
     answers: list[Any] = []
     started = perf_counter()
     session.progress(0)
@@ -215,28 +228,38 @@ def _at_once(scene: Scene, sampler: Sampler, path: Path, session: _Session) -> N
     )
     session.signals.check("nothing was kept, the run is one block; the same command starts it again")
     ensemble = Ensemble(scene, sampler.name, Arrays(answers[0]))
-    save(ensemble, path, wall_seconds=perf_counter() - started)
+    write_ensemble(ensemble, path, wall_seconds=perf_counter() - started)
     session.progress(scene.n_surfaces)
 
 
 def _in_blocks(scene: Scene, sampler: Sampler, path: Path, size: int, session: _Session) -> None:
-    """Shards until none is missing, then the file."""
+    """Shards until none is missing, then the file. Only with the lock."""
     try:
         started = Run.begin(parts_of(path), scene, sampler.name, size)
-        with started.locked():
-            started.freeze()
-            for _ in range(_ROUNDS):
-                shards = started.sweep()
-                done = finished(path, scene, sampler.name)
-                _draw_missing(started, missing_of(started, done, shards), session)
-                if merge_once(started, path, session.signals):
-                    return
+        started.freeze()
+        for _ in range(_ROUNDS):
+            shards = started.sweep()
+            done = finished(path, scene, sampler.name)
+            _refuse_more(started, shards)
+            _draw_missing(started, missing_of(started, done, shards), session)
+            if merge_once(started, path, session.signals):
+                return
     except OSError as error:
         raise RunError(
             f"{error.filename or path}: {error.strerror or error}; finished blocks are kept in "
             f"{parts_of(path)}, the same command goes on once that is mended"
         ) from None
     raise RunError(f"{parts_of(path)}: shards are damaged again and again; is the disk failing?")
+
+
+def _refuse_more(started: Run, shards: list[Shard]) -> None:
+    """Blocks beyond what is asked are not thrown away."""
+    n, wanted = max((shard.span.stop for shard in shards), default=0), started.scene.n_surfaces
+    if n > wanted:
+        raise StoreError(
+            f"{started.folder}: holds surfaces up to number {n} already, more than ensemble.n_surfaces = "
+            f"{wanted}; ask for as many or more, or choose another -o"
+        )
 
 
 def _draw_missing(started: Run, spans: list[Span], session: _Session, part: Part | None = None) -> None:

@@ -18,7 +18,7 @@ from mcgw.surface import SURFACE_UNITS
 from mcgw.toml_text import loads
 from mcgw.units import quantity
 
-__all__ = ["load_scene", "read_grading", "scene_from", "scene_text"]
+__all__ = ["files_of", "load_scene", "read_grading", "scene_from", "scene_text"]
 
 _MOST_BYTES = 2**20
 _MOST_TABLE = 2**24  # bytes of a grading as CSV
@@ -51,6 +51,25 @@ def load_scene(path: str | Path, *, seed: Callable[[], int | None] | None = None
     except ValueError as error:
         raise SceneError([str(error)]) from None
     return scene_from(text, folder=path.parent, seed=seed)
+
+
+def files_of(path: str | Path) -> list[Path]:
+    """File of a scene, and the files that it names.
+
+    Parameters
+    ----------
+    path : str or Path
+        A scene that `load_scene` has read.
+
+    Returns
+    -------
+    list of Path
+        Itself first, then every ``file`` of its sections.
+    """
+    path = Path(path)
+    sections = loads(read_bytes(path, _MOST_BYTES).decode()).values()
+    named = [section["file"] for section in sections if isinstance(section, dict) and "file" in section]
+    return [path, *(path.parent / name for name in named)]
 
 
 def scene_from(

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mcgw.forecast import relative_spread
+from mcgw.formats.files import whole_file
 from mcgw.methods import Method, methods_for
 from mcgw.scene import Scene
 
@@ -258,7 +259,7 @@ def write_csv(found: Tradeoff, path: str | Path) -> None:
         The file.
     """
     columns = [f"rms_relative_error_at_h_{h:g}" for h in found.separations]
-    with open(path, "w", newline="") as file:
+    with whole_file(Path(path)) as unfinished, open(unfinished, "w", newline="") as file:
         table = csv.writer(file)
         ends = ["rms_uncertainty", "cpu_s", "wall_s", "peak_growth_bytes", "seeds"]
         table.writerow(["method", "size", "size_counts", *columns, *ends])

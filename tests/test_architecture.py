@@ -19,8 +19,13 @@ ORDER = (
     "terminal",
     "plain_file",
     "toml_text",
+    "lifeline",
+    "formats.files",
+    "formats.pictures",
     "store.disk",
+    "store.lock",
     "store.seal",
+    "outputs",
     "store.child",
     "store.probe",
     "store.guard",
@@ -76,6 +81,7 @@ ORDER = (
     "driver",
     "store.sums",
     "store.ensembles",
+    "store.leftovers",
     "joining",
     "running",
     "until_known",
@@ -118,7 +124,9 @@ def imports(path):
 def parts():
     """All files that stand in one order, by the names of their modules."""
     files = [
-        path for folder in (".", "figures", "sampling", "store") for path in (ROOT / folder).glob("*.py")
+        path
+        for folder in (".", "figures", "formats", "sampling", "store")
+        for path in (ROOT / folder).glob("*.py")
     ]
     named = {".".join(path.relative_to(ROOT).with_suffix("").parts): path for path in files}
     return {name: path for name, path in named.items() if not path.stem.startswith("_")}

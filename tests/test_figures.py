@@ -10,8 +10,8 @@ import analytic
 from mcgw.figures.data import FigureData, Panel, Points, Series, ratio_of_sums
 from mcgw.figures.drawing import draw, save_figures
 from mcgw.figures.finite import law_of_load
-from mcgw.figures.further import further_figures
-from mcgw.figures.paper import paper_figures
+from mcgw.figures.further import FURTHER, further_figures
+from mcgw.figures.paper import PAPER, paper_figures
 from mcgw.figures.samples import Samples
 
 THEORY_ALONE = {"figure-1", "negative-modulus"}
@@ -29,6 +29,7 @@ def points(data):
 
 def test_all_are_there(figures):
     assert [f"figure-{k}" for k in range(1, 7)] == list(figures)[:6]
+    assert (*PAPER, *FURTHER) == tuple(figures)  # the names that are checked before anything is drawn
     assert set(list(figures)[6:]) == {
         "equal-load", "fluctuations", "distribution", "area-and-load", "who-carries", "negative-modulus"
     }  # fmt: skip

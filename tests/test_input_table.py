@@ -14,10 +14,10 @@ import analytic
 import mcgw
 from mcgw import running
 from mcgw.errors import StoreError
+from mcgw.formats.files import check_output
 from mcgw.room import check_room, memory_available
 from mcgw.running import run
 from mcgw.scene import SceneError
-from mcgw.store.disk import check_output
 from mcgw.validity import notes
 
 GOOD = """

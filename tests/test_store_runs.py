@@ -23,7 +23,8 @@ from mcgw.running import Part, run, run_part
 from mcgw.store import ensembles, probe
 from mcgw.store import merge as merging
 from mcgw.store.child import ChildError
-from mcgw.store.rundir import Run, missing, parts_of
+from mcgw.store.lock import LockedError, locked
+from mcgw.store.rundir import missing, parts_of
 from mcgw.store.shards import Span
 
 SIZE, SURFACES = 16, 100
@@ -171,8 +172,7 @@ def test_another_version_is_refused(small_blocks, scene, tmp_path, monkeypatch):
 
 def test_two_drivers(small_blocks, scene, tmp_path):
     path = tmp_path / "e.h5"
-    started = Run.begin(parts_of(path), scene, "tail", SIZE)
-    with started.locked(), pytest.raises(StoreError, match=f"locked by pid {os.getpid()} on"):
+    with locked(parts_of(path)), pytest.raises(LockedError, match=f"locked by pid {os.getpid()} on"):
         run(scene, path)
     run(scene, path)
 
@@ -250,7 +250,7 @@ def test_planted_links_are_not_followed(small_blocks, scene, tmp_path):
     elsewhere = tmp_path / "elsewhere"
     elsewhere.mkdir()
     parts_of(tmp_path / "e.h5").symlink_to(elsewhere)
-    with pytest.raises(StoreError, match="is no folder"):
+    with pytest.raises(StoreError, match="is not a folder"):
         run(scene, tmp_path / "e.h5")
     assert not list(elsewhere.iterdir())
     (tmp_path / "f.h5").symlink_to(elsewhere / "victim")

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from mcgw.errors import StoreError
-from mcgw.store.disk import write_whole
+from mcgw.formats.files import write_whole
 from mcgw.store.seal import SEAL_BYTES, Seal, check_seal, read_sealed, seal_of
 from mcgw.store.shards import Span, commit_shard, content_digest, open_shard, pack
 

@@ -11,7 +11,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of this command."""
     parser.add_argument("file", type=Path, metavar="FILE", help="ensemble file (HDF5)")
     parser.add_argument(
-        "-o", "--output", type=Path, metavar="PNG", help="figure (.png, .pdf, .svg); default: FILE.png"
+        "-o", "--output", type=Path, metavar="PNG", help="figure (.png, .pdf, .svg, ...); default: FILE.png"
     )
     parser.add_argument("--csv", type=Path, metavar="FILE", help="also write the table of all separations")
 
@@ -21,14 +21,17 @@ def execute(args: argparse.Namespace) -> int:
     from mcgw.commands.notes import tell_notes
     from mcgw.compare import compare
     from mcgw.csv_table import write_csv
+    from mcgw.outputs import CSV, Output, check_outputs, figure_format
     from mcgw.plots import save_comparison
     from mcgw.report_text import COMPARISON_HEADER, comparison_rows, comparison_table, verdict_line
     from mcgw.store.ensembles import open_ensemble
 
+    path = args.output or args.file.with_suffix(".png")
     ensemble = open_ensemble(args.file)
     tell_notes(ensemble.scene)
+    table = [Output(args.csv, CSV, "--csv")] if args.csv else []
+    check_outputs([Output(path, figure_format()), *table], inputs=[args.file])
     comparison = compare(ensemble)
-    path = args.output or args.file.with_suffix(".png")
     save_comparison(comparison, path)
     print(comparison_table(comparison))
     if args.csv:

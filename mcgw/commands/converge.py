@@ -24,16 +24,17 @@ def execute(args: argparse.Namespace) -> int:
     from mcgw.commands.notes import tell_notes
     from mcgw.compare import FALSE_ALARM
     from mcgw.converge import SEEDS, converge
+    from mcgw.outputs import Output, check_outputs, figure_format
     from mcgw.plots_converge import save_convergence
-    from mcgw.scene_file import load_scene
+    from mcgw.scene_file import files_of, load_scene
 
     scene = load_scene(args.scene)
     tell_notes(scene)
     folder = args.output or args.scene.parent / "out"
-    folder.mkdir(parents=True, exist_ok=True)
+    path = folder / f"{args.scene.stem}-converge.png"
+    check_outputs([Output(path, figure_format())], inputs=files_of(args.scene))
     with tqdm(total=SEEDS, unit=" ensembles", disable=None, leave=False) as bar:
         found = converge(scene, progress=bar.update)
-    path = folder / f"{args.scene.stem}-converge.png"
     save_convergence(found, path)
     print(
         f"{SEEDS} ensembles of {found.scene.n_surfaces} surfaces of {found.scene.n_asperities:g} asperities"

@@ -20,11 +20,12 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def execute(args: argparse.Namespace) -> int:
     """Write PNG and SVG of each figure and say where they are."""
-    from mcgw.figures.drawing import save_figures
-    from mcgw.figures.further import further_figures
-    from mcgw.figures.paper import paper_figures
+    from mcgw.figures.drawing import figure_files, save_figures
+    from mcgw.figures.further import FURTHER, further_figures
+    from mcgw.figures.paper import PAPER, paper_figures
     from mcgw.figures.samples import Samples
-    from mcgw.scene_file import load_scene, scene_from
+    from mcgw.outputs import CSV, Output, check_outputs, figure_format
+    from mcgw.scene_file import files_of, load_scene, scene_from
 
     if args.scene:
         scene = load_scene(args.scene)
@@ -36,6 +37,14 @@ def execute(args: argparse.Namespace) -> int:
         raise ValueError(
             f"ensemble.n_asperities = {scene.n_asperities}: figures list heights one by one; give at most 1e6"
         )
+    check_outputs(
+        [
+            Output(path, CSV if path.suffix == ".csv" else figure_format())
+            for name in (*PAPER, *FURTHER)
+            for path in figure_files(args.output, name, csv=args.csv)
+        ],
+        inputs=files_of(args.scene) if args.scene else (),
+    )
     samples = Samples(scene.surface, 2000, scene.n_asperities, scene.seed, 100)
     for path in save_figures(paper_figures(samples) + further_figures(samples), args.output, csv=args.csv):
         print(path)

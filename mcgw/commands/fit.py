@@ -44,9 +44,10 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 def execute(args: argparse.Namespace) -> int:
     """Print the estimates side by side with warnings, write the scene, and say where it is."""
     from mcgw.maps.doubts import doubts
-    from mcgw.maps.files import read_map
+    from mcgw.maps.files import files_of_map, read_map
     from mcgw.maps.fit import fit_map
-    from mcgw.maps.fitted_scene import fitted_scene, write_scene
+    from mcgw.maps.fitted_scene import fitted_scene, heights_beside, write_scene
+    from mcgw.outputs import NPY, TOML, Output, check_outputs
     from mcgw.units import parse
 
     if args.parts < 2:
@@ -55,6 +56,8 @@ def execute(args: argparse.Namespace) -> int:
     E_star = parse(args.E_star, "Pa", "--E-star")
     pixel = None if args.pixel is None else (parse(args.pixel, "m", "--pixel"),) * 2
     topography = read_map(args.map, pixel=pixel, unit=args.unit)
+    beside = [Output(heights_beside(args.output), NPY)] if args.heights == "measured" else []
+    check_outputs([Output(args.output, TOML), *beside], inputs=files_of_map(args.map))
     fit = fit_map(topography, cutoff=cutoff, form=args.form, across=args.parts)
     filtered = "none" if cutoff is None else f"{cutoff:g} m (Gaussian, ISO 16610-61)"
     head = f"{args.map.name}: form taken off: {args.form}; cutoff: {filtered}"

@@ -34,11 +34,14 @@ def execute(args: argparse.Namespace) -> int:
     """Write the scene, never over another file."""
     from importlib.resources import files
 
-    text = (files("mcgw") / "presets" / f"{args.preset}.toml").read_text(encoding="utf-8")
+    from mcgw.formats.files import write_whole
+    from mcgw.outputs import TOML, Output, check_outputs
+
+    text = (files("mcgw") / "presets" / f"{args.preset}.toml").read_bytes()
     path = args.output or Path(f"{args.preset}.toml")
+    check_outputs([Output(path, TOML)])
     try:
-        with open(path, "x", encoding="utf-8") as file:
-            file.write(text)
+        write_whole(path, [text], expected=None)
     except FileExistsError:
         raise ValueError(f"{path}: is already there; give another name with -o") from None
     print(f"{path}: {PRESETS[args.preset]}\nnext: mcgw run {path} -o {path.with_suffix('.h5')}")

@@ -19,11 +19,18 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def execute(args: argparse.Namespace) -> int:
     """Merge and say where the file is."""
+    from mcgw.formats.files import state_of
     from mcgw.joining import merge
+    from mcgw.outputs import HDF5, Output, check_outputs
 
     path = args.file or args.output
     if path is None:
         raise ValueError("give the file to be made: mcgw merge FILE")
+    if args.output not in (None, path):
+        raise ValueError(f"-o {args.output}: the blocks of {path} make that file; leave out one of the two")
+    check_outputs([Output(path, HDF5, grows=True)])
+    before = state_of(path)
     ensemble = merge(path)
-    print(f"{path}: {ensemble.n_surfaces} surfaces, seed {ensemble.scene.seed}")
+    done = "was finished before, " if state_of(path) == before else ""
+    print(f"{path}: {done}{ensemble.n_surfaces} surfaces, seed {ensemble.scene.seed}")
     return 0

@@ -23,12 +23,15 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def execute(args: argparse.Namespace) -> int:
     """Write the new ensemble and print its ratios to the old one."""
+    from dataclasses import replace
+
     from analytic import Exponential, Grading
     from mcgw.csv_table import write_csv
+    from mcgw.outputs import CSV, HDF5, Output, check_outputs
     from mcgw.regrade import regrade
     from mcgw.report_text import RATIO_HEADER, ratio_rows, ratio_table
     from mcgw.scene_file import read_grading
-    from mcgw.store.ensembles import open_ensemble, save
+    from mcgw.store.ensembles import finished, open_ensemble, save
 
     old = open_ensemble(args.file)
     grading: Grading
@@ -37,6 +40,10 @@ def execute(args: argparse.Namespace) -> int:
     else:
         grading = Exponential(args.gamma)
     path = args.output or args.file.with_suffix(".regraded.h5")
+    table = [Output(args.csv, CSV, "--csv")] if args.csv else []
+    inputs = [args.file, *([args.grading] if args.grading else [])]
+    check_outputs([Output(path, HDF5, grows=True), *table], inputs=inputs)
+    finished(path, replace(old.scene, grading=grading, n_surfaces=old.n_surfaces), old.sampler)
     new = save(regrade(old, grading), path)
     print(ratio_table(new, old))
     print(f"{path}: {new.n_surfaces} surfaces, the same as in {args.file}")

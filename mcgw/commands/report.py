@@ -16,13 +16,16 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 def execute(args: argparse.Namespace) -> int:
     """Write the page and say where it is."""
     from mcgw.commands.notes import tell_notes
+    from mcgw.formats.files import write_whole
+    from mcgw.outputs import HTML, Output, check_outputs
     from mcgw.report_html import report_html
     from mcgw.store.ensembles import open_ensemble, read_attributes
 
+    path = args.output or args.file.with_suffix(".html")
     ensemble = open_ensemble(args.file)
     tell_notes(ensemble.scene)
+    check_outputs([Output(path, HTML)], inputs=[args.file])
     page = report_html(ensemble, read_attributes(args.file))
-    path = args.output or args.file.with_suffix(".html")
-    path.write_text(page, encoding="utf-8")
+    write_whole(path, [page.encode()])
     print(f"{path}: report, {len(page.encode()) / 1e6:.2f} MB; open it in a browser")
     return 0

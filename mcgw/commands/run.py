@@ -38,13 +38,15 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 def execute(args: argparse.Namespace) -> int:
     """Run and say where the file is."""
     from mcgw.commands.notes import tell_notes
+    from mcgw.outputs import HDF5, Output, check_outputs
     from mcgw.running import run, run_part
-    from mcgw.scene_file import load_scene
+    from mcgw.scene_file import files_of, load_scene
     from mcgw.store.ensembles import recorded_seed
 
     path = args.output or args.scene.parent / "out" / f"{args.scene.stem}.h5"
     part = _part(args.shard)
     scene = load_scene(args.scene, seed=lambda: recorded_seed(path))
+    check_outputs([Output(path, HDF5, grows=True)], inputs=files_of(args.scene))
     tell_notes(scene, *_of_threads(args.threads), *_of_time(scene))
     if scene.rel_err is not None or scene.max_seconds is not None:
         return _until_known(scene, path, args)

@@ -23,10 +23,14 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def execute(args: argparse.Namespace) -> int:
-    """Print to standard output; writes no file."""
+    """Print to standard output; with --csv, write the table there."""
     from mcgw.commands.notes import tell_notes
+    from mcgw.outputs import CSV, Output, check_outputs
     from mcgw.store.ensembles import open_ensemble, read_attributes, verify
+    from mcgw.store.leftovers import tidy
 
+    if args.csv and (args.scene or args.digest or args.plan or args.verify):
+        raise ValueError(f"--csv {args.csv}: writes the table of the summary; leave out the other option")
     if args.plan:
         from mcgw.plan import plan_of, plan_text
         from mcgw.scene_file import load_scene
@@ -35,6 +39,7 @@ def execute(args: argparse.Namespace) -> int:
         tell_notes(scene)
         print(plan_text(scene, plan_of(scene)))
         return 0
+    tidy(args.file)
     if args.verify:
         problem, found = verify(args.file)
         print(f"{args.file}: {f'DAMAGED, {problem}' if problem else 'intact'} ({found})")
@@ -50,6 +55,7 @@ def execute(args: argparse.Namespace) -> int:
 
         ensemble = open_ensemble(args.file)
         tell_notes(ensemble.scene)
+        check_outputs([Output(args.csv, CSV, "--csv")] if args.csv else [], inputs=[args.file])
         print(summary(ensemble, attributes))
         if args.csv:
             write_csv(args.csv, SUMMARY_HEADER, summary_rows(ensemble))

@@ -26,12 +26,14 @@ def execute(args: argparse.Namespace) -> int:
 
     from mcgw.commands.notes import tell_notes
     from mcgw.csv_table import write_csv
-    from mcgw.scene_file import load_scene
+    from mcgw.outputs import CSV, Output, check_outputs
+    from mcgw.scene_file import files_of, load_scene
     from mcgw.solution import solve
     from mcgw.solution_text import SOLUTION_HEADER, solution_rows, solution_table
     from mcgw.units import parse
 
     scene = load_scene(args.scene)
+    check_outputs([Output(args.csv, CSV, "--csv")] if args.csv else [], inputs=files_of(args.scene))
     if args.surfaces is not None:
         scene = replace(scene, n_surfaces=args.surfaces)
     tell_notes(scene)

@@ -13,8 +13,6 @@ if TYPE_CHECKING:
 HELP = "write one surface of an ensemble, or a Gaussian map, as a height map"
 EXAMPLE = "mcgw surface runs/demo.toml --surface 3 -o map.sdf"
 
-_FIGURES = (".png", ".svg", ".pdf")
-
 
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of this command."""
@@ -46,18 +44,25 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def execute(args: argparse.Namespace) -> int:
     """Write the map or the figure, and say where it is and what hides in it."""
-    from mcgw.maps.files import check_ending
-
-    drawn = args.at is not None
-    if drawn and args.output.suffix.lower() not in _FIGURES:
-        raise ValueError(f"{args.output}: --at draws a figure; give a name in {', '.join(_FIGURES)}")
-    if not drawn:
-        check_ending(args.output)
     if args.from_spectrum is not None:
         return _spectrum(args)
     if args.scene is None:
         raise ValueError("SCENE: give a scene (TOML), or --from-spectrum")
     return _asperities(args)
+
+
+def _check_output(args: argparse.Namespace) -> None:
+    from mcgw.maps.files import WRITTEN, files_of_map
+    from mcgw.outputs import JSON, Format, Output, check_outputs, figure_format
+    from mcgw.scene_file import files_of
+
+    inputs = files_of(args.scene) if args.scene else []
+    if args.at is not None:
+        check_outputs([Output(args.output, figure_format())], inputs=inputs)
+        return
+    map_file, *beside = files_of_map(args.output)
+    outputs = [Output(map_file, Format("a map", WRITTEN)), *(Output(path, JSON) for path in beside)]
+    check_outputs(outputs, inputs=inputs)
 
 
 def _shape(text: str) -> tuple[int, int | None]:
@@ -80,6 +85,7 @@ def _asperities(args: argparse.Namespace) -> int:
     scene = load_scene(args.scene)
     tell_notes(scene)
     width = None if args.width is None else parse(args.width, "m", "--width")
+    _check_output(args)
     field = asperities_of(scene, args.surface, width=width)
     if args.at is not None:
         spots = spots_at(scene, field, args.at)
@@ -139,6 +145,7 @@ def _spectrum(args: argparse.Namespace) -> int:
     columns, rows = _shape(args.shape)
     shape = (columns if rows is None else rows, columns)
     spectrum = spectrum_from(args.from_spectrum)
+    _check_output(args)
     topography = gaussian_map(spectrum, shape, (pixel, pixel), np.random.default_rng(args.seed))
     for path in write_map(topography, args.output):
         print(path)

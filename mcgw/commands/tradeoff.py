@@ -21,8 +21,9 @@ def execute(args: argparse.Namespace) -> int:
     from tqdm import tqdm
 
     from mcgw.commands.notes import tell_notes
+    from mcgw.outputs import CSV, Output, check_outputs, figure_format
     from mcgw.plots_tradeoff import save_tradeoff
-    from mcgw.scene_file import load_scene
+    from mcgw.scene_file import files_of, load_scene
     from mcgw.tradeoff import tradeoff, write_csv
     from mcgw.units import parse
 
@@ -30,10 +31,10 @@ def execute(args: argparse.Namespace) -> int:
     scene = load_scene(args.scene)
     tell_notes(scene)
     folder = args.output or args.scene.parent / "out"
-    folder.mkdir(parents=True, exist_ok=True)
+    table, figure = (folder / f"{args.scene.stem}-tradeoff.{end}" for end in ("csv", "png"))
+    check_outputs([Output(table, CSV), Output(figure, figure_format())], inputs=files_of(args.scene))
     with tqdm(total=100, unit="%", disable=None, leave=False) as bar:
         found = tradeoff(scene, seconds=seconds, progress=lambda share: bar.update(100 * share - bar.n))
-    table, figure = (folder / f"{args.scene.stem}-tradeoff.{end}" for end in ("csv", "png"))
     write_csv(found, table)
     save_tradeoff(found, figure)
     quantity = scene.quantities[0]

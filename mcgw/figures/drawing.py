@@ -12,9 +12,10 @@ from matplotlib.figure import Figure
 
 from mcgw.csv_table import write_csv
 from mcgw.figures.data import FIGURE_HEADER, FigureData, Panel, Points, Series, figure_rows
+from mcgw.formats.pictures import save_figure
 from mcgw.plots import STYLE
 
-__all__ = ["draw", "save_figures"]
+__all__ = ["draw", "figure_files", "save_figures"]
 
 _WIDTH, _HEIGHT = 3.7, 2.9  # of a panel, inches
 # Told apart in grey print by dashes and markers, and by colour-blind readers by their lightness too.
@@ -109,6 +110,11 @@ def _draw_points(axis: Any, points: Points, look: dict[str, Any], logarithmic: b
     )
 
 
+def figure_files(folder: Path, name: str, *, csv: bool) -> list[Path]:
+    """Files of the figure of this name."""
+    return [folder / f"{name}.{ending}" for ending in ("png", "svg", *(["csv"] if csv else []))]
+
+
 def save_figures(figures: list[FigureData], folder: Path, *, csv: bool = False) -> Iterator[Path]:
     """Write each figure as PNG and SVG.
 
@@ -129,12 +135,10 @@ def save_figures(figures: list[FigureData], folder: Path, *, csv: bool = False) 
     folder.mkdir(parents=True, exist_ok=True)
     for data in figures:
         figure = draw(data)
-        for ending in ("png", "svg"):
-            path = folder / f"{data.name}.{ending}"
-            with mpl.rc_context(STYLE | {"svg.hashsalt": "mcgw"}):
-                figure.savefig(path, metadata={"Date": None} if ending == "svg" else None)
-            yield path
-        if csv:
-            path = folder / f"{data.name}.csv"
-            write_csv(path, FIGURE_HEADER, figure_rows(data))
+        for path in figure_files(folder, data.name, csv=csv):
+            if path.suffix == ".csv":
+                write_csv(path, FIGURE_HEADER, figure_rows(data))
+            else:
+                with mpl.rc_context(STYLE | {"svg.hashsalt": "mcgw"}):
+                    save_figure(figure, path, metadata={"Date": None} if path.suffix == ".svg" else None)
             yield path

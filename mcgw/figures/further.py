@@ -6,7 +6,17 @@ from mcgw.figures.finite import distribution, fluctuations
 from mcgw.figures.samples import Samples
 from mcgw.figures.summits import area_and_load, negative_modulus, who_carries
 
-__all__ = ["further_figures"]
+__all__ = ["FURTHER", "further_figures"]
+
+# Names of their files.
+FURTHER = (
+    "equal-load",
+    "fluctuations",
+    "distribution",
+    "area-and-load",
+    "who-carries",
+    "negative-modulus",
+)
 
 
 def further_figures(samples: Samples) -> list[FigureData]:

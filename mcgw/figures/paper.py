@@ -12,7 +12,9 @@ from mcgw.figures.data import GAMMA, SEPARATION, FigureData, Panel, Points, Seri
 from mcgw.figures.samples import Samples
 from mcgw.regrade import paired_ratio
 
-__all__ = ["NEGATIVE", "POSITIVE", "paper_figures"]
+__all__ = ["NEGATIVE", "PAPER", "POSITIVE", "paper_figures"]
+
+PAPER = tuple(f"figure-{i}" for i in range(1, 7))  # names of their files
 
 Array = NDArray[np.float64]
 Weight = Literal["number", "area", "load"]

@@ -13,22 +13,15 @@ from mcgw.maps.text_file import read_text
 from mcgw.maps.topography import STEEPEST, Topography, checked_shape
 from mcgw.maps.x3p import read_x3p, write_x3p
 
-__all__ = ["WRITTEN", "check_ending", "read_map", "write_map"]
+__all__ = ["WRITTEN", "files_of_map", "read_map", "write_map"]
 
 WRITTEN = (".sdf", ".ascii.sdf", ".x3p", ".npy", ".h5")
 _TEXT = (".txt", ".csv", ".asc", ".dat", ".tsv")
 
 
-def check_ending(path: Path) -> None:
-    """See that a map can be written under this name.
-
-    Raises
-    ------
-    ValueError
-        If no writer has this ending.
-    """
-    if path.suffix.lower() not in WRITTEN:
-        raise ValueError(f"{path}: the ending chooses the format; give one of {', '.join(WRITTEN)}")
+def files_of_map(path: Path) -> list[Path]:
+    """Files of a map of this name: itself, and what lies beside it."""
+    return [path, sidecar_of(path)] if path.suffix.lower() == ".npy" else [path]
 
 
 def write_map(
@@ -59,7 +52,6 @@ def write_map(
     OSError
         If it cannot be written.
     """
-    check_ending(path)
     match path.suffix.lower():
         case ".sdf":
             write_sdf(topography, path, text=path.name.lower().endswith(".ascii.sdf"))
@@ -67,10 +59,11 @@ def write_map(
             write_x3p(topography, path)
         case ".npy":
             write_npy(topography, path)
-            return [path, sidecar_of(path)]
         case ".h5":
             write_h5(topography, path, field, scene=scene)
-    return [path]
+        case _:
+            raise ValueError(f"{path}: the ending chooses the format; give one of {', '.join(WRITTEN)}")
+    return files_of_map(path)
 
 
 def read_map(path: Path, *, pixel: tuple[float, float] | None = None, unit: str | None = None) -> Topography:

@@ -7,12 +7,12 @@ from typing import Literal
 import numpy as np
 
 from analytic import Gaussian, HeightLaw, HeightTable, MeasuredHeights, Surface
+from mcgw.formats.files import whole_file
 from mcgw.maps.fit import Fit
 from mcgw.scene import Scene
 from mcgw.scene_file import scene_text
-from mcgw.store.disk import whole_file
 
-__all__ = ["fitted_scene", "write_scene"]
+__all__ = ["fitted_scene", "heights_beside", "write_scene"]
 
 Law = Literal["gaussian", "table", "measured"]
 
@@ -65,6 +65,11 @@ def fitted_scene(fit: Fit, *, use: str, heights: Law, E_star: float, title: str)
     return Scene(surface=surface, separations=separations, title=title, heights=law, seed=1)
 
 
+def heights_beside(path: Path) -> Path:
+    """Where the summit heights of a fitted scene lie."""
+    return path.with_name(f"{path.stem}.heights.npy")
+
+
 def write_scene(scene: Scene, path: Path, measured: Fit | None, comments: list[str]) -> list[Path]:
     """Write a scene with what was found as comments above it.
 
@@ -95,7 +100,7 @@ def write_scene(scene: Scene, path: Path, measured: Fit | None, comments: list[s
         with whole_file(path) as unfinished:
             unfinished.write_text(text + scene_text(scene), encoding="utf-8")
         return [path]
-    beside = path.with_name(f"{path.stem}.heights.npy")
+    beside = heights_beside(path)
     with whole_file(path) as unfinished, whole_file(beside) as numbers:
         with open(numbers, "wb") as file:
             np.save(file, measured.summits)

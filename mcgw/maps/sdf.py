@@ -17,8 +17,8 @@ from typing import BinaryIO
 import numpy as np
 from numpy.typing import NDArray
 
+from mcgw.formats.files import whole_file
 from mcgw.maps.topography import Topography, checked_shape
-from mcgw.store.disk import whole_file
 
 __all__ = ["read_sdf", "write_sdf"]
 

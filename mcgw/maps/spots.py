@@ -11,11 +11,11 @@ from matplotlib.colors import LogNorm, Normalize
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
+from mcgw.formats.pictures import save_figure
 from mcgw.maps.asperities import Asperities
 from mcgw.maps.envelope import envelope
 from mcgw.maps.topography import Topography
 from mcgw.scene import Scene
-from mcgw.store.disk import whole_file
 
 __all__ = ["Spots", "save_contact_map", "spots_at"]
 
@@ -137,8 +137,7 @@ def save_contact_map(
     whole = inside.all() and window[1] - window[0] >= field.size[0]
     seen = "" if whole else f", {np.count_nonzero(inside)} in this window of the map"
     axes.set_title(f"{spots.radius.size} contacts at $d/\\sigma$ = {spots.separation:g}{seen}", fontsize=10)
-    with whole_file(path) as unfinished:
-        figure.savefig(unfinished, dpi=_DPI, format=path.suffix[1:].lower())
+    save_figure(figure, path, dpi=_DPI)
 
 
 def _inside(spots: Spots, window: tuple[float, float, float, float]) -> NDArray[np.bool_]:

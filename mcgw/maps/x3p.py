@@ -15,8 +15,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from mcgw.formats.files import whole_file
 from mcgw.maps.topography import Topography, checked_shape
-from mcgw.store.disk import whole_file
 
 __all__ = ["read_x3p", "write_x3p"]
 

@@ -6,7 +6,7 @@
                (`aggregate`): all that a surface keeps
 ``response``   physics as a sparse matrix: `laws` on the cells and on a `tree` over them, put together
                (`assembly`) to rows that follow from each other (`tiles`)
-``lanes``      four numbers at a time; with `rules` and `exp_log` what makes the bits the same on every processor
+``lanes``      four numbers at a time; with `rules` and `exp_log` it makes the same bits on every processor
 ``samplers``   a block of surfaces = response @ moments, and the few asperities outside the cells (`extras`,
                `hertz`)
 ``asperities`` the very heights that were summed, if anybody asks

@@ -25,5 +25,7 @@ numbers of a surface depend on (scene but for the number of surfaces, sampler, a
 `draws`). After the HDF5 data stand 512 bytes, the seal (`seal`), with the digest of the file's bytes.
 
 A run that fits one block is written in one atomic step. Any other grows as shards in ``FILE.parts/``
-(`rundir`), which are merged at the end (`merge`) and then removed.
+(`rundir`), which are merged at the end (`merge`) and then removed. Whoever writes the file, in whatever way,
+holds the lock in that folder (`lock`); what a killed process leaves there is cleared by the next command
+(`leftovers`).
 """

@@ -23,7 +23,7 @@ def run_child(module: str, *arguments: str, seconds: float | None = None) -> str
     Parameters
     ----------
     module : str
-        Such as ``"mcgw.store.probe"``; it is run as a script.
+        Such as ``"mcgw.store.probe"``; it is run as a script, and ends with this process.
     arguments : str
         Its command line.
     seconds : float, optional
@@ -43,13 +43,17 @@ def run_child(module: str, *arguments: str, seconds: float | None = None) -> str
     paths = [home, *filter(None, [os.environ.get("PYTHONPATH")])]
     # One thread: a child that reads a file needs no pool of them, and their stacks count as memory.
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(paths), "OPENBLAS_NUM_THREADS": "1"}
-    call = [sys.executable, "-P", "-m", module, *arguments]
+    call = [sys.executable, "-P", "-m", "mcgw.lifeline", module, *arguments]
+    lifeline, ours = os.pipe()
     try:
         done = subprocess.run(
-            call, env=environment, capture_output=True, timeout=seconds, check=False, stdin=subprocess.DEVNULL
+            call, env=environment, capture_output=True, timeout=seconds, check=False, stdin=lifeline
         )
     except subprocess.TimeoutExpired:
         raise ChildError(f"took more than {seconds:g} s", "") from None
+    finally:
+        os.close(lifeline)
+        os.close(ours)
     if done.returncode == 0:
         return done.stdout.decode(errors="replace")
     how = f"exit code {done.returncode}"

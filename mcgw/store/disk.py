@@ -1,101 +1,15 @@
-"""Files that appear whole or not at all.
+"""How the store reads and writes: regular files only, and no error of the disk shown to HDF5."""
 
-Data go under a temporary name, are flushed to the disk, and get their own name in one step; the folder
-is flushed last. A temporary name is never one that exists: nothing planted there is followed.
-"""
-
-import glob
 import os
-import secrets
-import socket
-import zlib
-from collections.abc import Iterable, Iterator
-from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
-from mcgw.errors import StoreError
-
-__all__ = [
-    "SteadyFile",
-    "check_output",
-    "remove_stale",
-    "sync",
-    "temporary_beside",
-    "whole_file",
-    "write_whole",
-]
+__all__ = ["SteadyFile", "parts_of"]
 
 
-def temporary_beside(path: Path) -> Path:
-    """A new name in the same folder, of this process alone, on whatever host."""
-    return path.with_name(f"{_stem(path)}{os.getpid()}-{secrets.token_hex(4)}.tmp")
-
-
-def remove_stale(path: Path) -> None:
-    """Remove the temporary files that processes of this host, now dead, left beside a file."""
-    for left in path.parent.glob(f"{glob.escape(_stem(path))}*.tmp"):
-        pid = left.name.removeprefix(_stem(path)).split("-")[0]
-        if pid.isdecimal() and not _alive(int(pid)):
-            left.unlink(missing_ok=True)
-
-
-def _stem(path: Path) -> str:
-    host = zlib.crc32(socket.gethostname().encode())
-    return f".{path.name[:100]}.{host:08x}-"
-
-
-def _alive(pid: int) -> bool:
-    try:
-        os.kill(pid, 0)
-    except ProcessLookupError:
-        return False
-    except (OSError, OverflowError):
-        pass
-    return True
-
-
-@contextmanager
-def whole_file(path: Path, *, replace: bool = True) -> Iterator[Path]:
-    """Name to write a file under; at the end it takes the place of `path`, on an error it goes.
-
-    Parameters
-    ----------
-    path : Path
-        Its name; a link of that name is replaced, not followed.
-    replace : bool, optional
-        If not, a file that is already there stays, and `FileExistsError` is raised.
-
-    Raises
-    ------
-    OSError
-        If it cannot be written; then nothing is left behind and an older file is as it was.
-    """
-    temporary = temporary_beside(path)
-    try:
-        yield temporary
-        sync(temporary)
-        if replace:
-            os.replace(temporary, path)
-        else:
-            os.link(temporary, path)
-            os.unlink(temporary)
-        sync(path.parent)
-    except BaseException:
-        with suppress(OSError):  # it has its own name by now, or was never made
-            os.unlink(temporary)
-        raise
-
-
-def write_whole(path: Path, pieces: Iterable[bytes], *, replace: bool = True) -> None:
-    """Write a file of these contents by `whole_file`."""
-    flags = os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_NOFOLLOW
-    with (
-        whole_file(path, replace=replace) as temporary,
-        os.fdopen(os.open(temporary, flags, 0o644), "wb") as file,
-    ):
-        for piece in pieces:
-            file.write(piece)
+def parts_of(path: Path) -> Path:
+    """Folder of the run that makes a file."""
+    return path.with_name(f"{path.name}.parts")
 
 
 class SteadyFile:
@@ -177,34 +91,3 @@ class SteadyFile:
     def close(self) -> None:
         """Close it, whatever became of it."""
         self._file.close()
-
-
-def sync(path: Path) -> None:
-    """Flush a file, or the names in a folder, to the disk."""
-    fd = os.open(path, os.O_RDONLY)
-    try:
-        os.fsync(fd)
-    finally:
-        os.close(fd)
-
-
-def check_output(path: Path) -> None:
-    """Refuse a place where no file can be put, before anything is computed; make its folder.
-
-    Raises
-    ------
-    StoreError
-        If the name is taken by something else than a file, is a link or too long, or if the folder
-        cannot be made or written.
-    """
-    name = path.name
-    try:
-        if name in ("", ".", "..") or len(os.fsencode(name)) > 200 or not name.isprintable():
-            raise StoreError(f"{str(path)!r}: is no name for a file; choose another -o")
-        if path.is_symlink() or (path.exists() and not path.is_file()):
-            raise StoreError(f"{path}: is no regular file; choose another -o")
-        path.parent.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise StoreError(f"{path}: cannot be written ({error.strerror or error})") from None
-    if not os.access(path.parent, os.W_OK | os.X_OK):
-        raise StoreError(f"{path}: cannot be written (the folder {path.parent} is read-only)")

@@ -7,12 +7,13 @@ import h5py
 
 from mcgw.ensemble import Ensemble
 from mcgw.errors import RunError, StoreError
+from mcgw.formats.files import check_output, state_of, write_whole
 from mcgw.scene import Scene
 from mcgw.scene_file import scene_from, scene_text
 from mcgw.store.arithmetic import drawn_with
-from mcgw.store.disk import check_output, remove_stale, write_whole
 from mcgw.store.guard import examine, examine_all
 from mcgw.store.layout import FILETYPE, FORMAT, build, values_digest
+from mcgw.store.lock import locked
 from mcgw.store.rundir import Run, difference, identity_of, parts_of
 from mcgw.store.seal import check_seal, seal_of
 from mcgw.store.shards import DRAWN, Span
@@ -26,6 +27,7 @@ __all__ = [
     "recorded_seed",
     "save",
     "verify",
+    "write_ensemble",
 ]
 
 
@@ -49,7 +51,7 @@ def open_ensemble(path: str | Path) -> Ensemble:
     """
     path = Path(path)
     if not path.exists() and parts_of(path).is_dir():
-        run = Run.open(parts_of(path))
+        run = _run_of(path)
         shards = tuple(run.shards())
         if not shards:
             raise StoreError(f"{path}: no block of its run is finished yet")
@@ -69,7 +71,7 @@ def read_attributes(path: Path) -> dict[str, Any]:
     """
     if path.exists() or not parts_of(path).is_dir():
         return _described(path)[0]
-    run = Run.open(parts_of(path))
+    run = _run_of(path)
     seconds = sum(shard.seconds for shard in run.shards())
     known = {"versions": run.drawn_with, "commit": "unknown", "cpu": "its workers", "wall_seconds": seconds}
     return {
@@ -80,6 +82,13 @@ def read_attributes(path: Path) -> dict[str, Any]:
         "digest": "none before it is complete",
         "date": run.date,
     }
+
+
+def _run_of(path: Path) -> Run:
+    """The run that makes a file; one that is a single block says nothing of itself."""
+    if not (parts_of(path) / "run.toml").exists():
+        raise StoreError(f"{path}: no block of its run is finished yet")
+    return Run.open(parts_of(path))
 
 
 def _described(path: Path) -> tuple[dict[str, Any], Scene]:
@@ -174,7 +183,7 @@ def finished(path: Path, scene: Scene, sampler: str) -> int:
 
 
 def save(ensemble: Ensemble, path: str | Path, *, wall_seconds: float = 0.0) -> Ensemble:
-    """Write an ensemble that lies in memory, in one atomic step.
+    """Write an ensemble that lies in memory, in one atomic step; never over another one.
 
     Parameters
     ----------
@@ -193,13 +202,35 @@ def save(ensemble: Ensemble, path: str | Path, *, wall_seconds: float = 0.0) -> 
     Raises
     ------
     StoreError
-        If the place cannot be written.
+        If the place cannot be written, another process writes there, or another ensemble, or a run that
+        is not finished, has it.
     RunError
         If the disk does not take it.
     """
-    path, scene = Path(path), ensemble.scene
+    path = Path(path)
     check_output(path)
-    remove_stale(path)
+    with locked(parts_of(path)):
+        if (parts_of(path) / "run.toml").exists():
+            raise StoreError(
+                f"{path}: a run that makes this file is not finished; finish it, choose another -o, "
+                f"or remove {parts_of(path)}"
+            )
+        write_ensemble(ensemble, path, wall_seconds=wall_seconds)
+    return open_ensemble(path)
+
+
+def write_ensemble(ensemble: Ensemble, path: Path, *, wall_seconds: float) -> None:
+    """Write an ensemble in one atomic step, over none but a part of itself. Only with the lock.
+
+    Raises
+    ------
+    StoreError
+        If another ensemble, or anything else, has this name.
+    RunError
+        If the disk does not take it.
+    """
+    scene, before = ensemble.scene, state_of(path)
+    finished(path, scene, ensemble.sampler)
     names = [*scene.quantities, *(DRAWN if scene.keep == "moments" else ())]
     arrays = {name: ensemble.sums.read(name, 0, None) for name in names}
     with h5py.File("ensemble", "w-", driver="core", backing_store=False, libver=("v108", "v110")) as file:
@@ -215,9 +246,10 @@ def save(ensemble: Ensemble, path: str | Path, *, wall_seconds: float = 0.0) -> 
         file.flush()
         image = bytes(file.id.get_file_image())
     try:
-        write_whole(path, (image, seal_of(image)))
+        write_whole(path, (image, seal_of(image)), expected=before)
+    except FileExistsError as error:
+        raise StoreError(f"{path}: {error.strerror}; it is left as it is, choose another -o") from None
     except OSError as error:
         raise RunError(
             f"{path}: cannot be written ({error.strerror or error}); make room and repeat"
         ) from None
-    return open_ensemble(path)

@@ -3,19 +3,17 @@
 ::
 
     run.toml    the frozen scene, its identity, the versions that draw, the size of a block
-    lock        held by the driver, freed by the kernel when it dies
+    lock        held by whoever writes the file, freed by the kernel when it dies (`lock`)
     shards/     block-0000000000042.h5: the surfaces from number 42 on
 
 The set of valid shards is the only record of progress.
 """
 
-import fcntl
 import hashlib
 import os
 import shutil
-import socket
 from collections.abc import Iterable, Iterator
-from contextlib import contextmanager, suppress
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -23,23 +21,20 @@ from typing import Any
 import tomli_w
 
 from mcgw.errors import RunError, StoreError
+from mcgw.formats.files import Expected, sync, write_whole
 from mcgw.scene import Scene, SceneError
 from mcgw.scene_file import scene_from, scene_text
 from mcgw.store.arithmetic import KIND, drawn_with
-from mcgw.store.disk import remove_stale, sync, write_whole
+from mcgw.store.disk import parts_of
+from mcgw.store.lock import refuse_link
 from mcgw.store.provenance import now
 from mcgw.store.shards import Shard, Span, open_shard
 from mcgw.toml_text import loads
 
-__all__ = ["Run", "difference", "identity_of", "missing", "parts_of"]
+__all__ = ["Run", "difference", "identity_of", "missing", "parts_of", "remove_run"]
 
 _FILETYPE, _FORMAT = "mcgw-run", [1, 0]
 _MOST_BYTES = 2**23
-
-
-def parts_of(path: Path) -> Path:
-    """Folder of the run that makes a file."""
-    return path.with_name(f"{path.name}.parts")
 
 
 def frozen_text(scene: Scene) -> str:
@@ -118,21 +113,21 @@ class Run:
 
     @classmethod
     def begin(cls, folder: Path, scene: Scene, sampler: str, size: int) -> "Run":
-        """Make the folder, or open the one that is there.
+        """Begin a run, or go on with the one that is there. Only with the lock.
 
         Raises
         ------
         StoreError
             If it belongs to another scene, seed or version, or is no folder of a run.
         """
-        _refuse_link(folder)
+        refuse_link(folder)
         (folder / "shards").mkdir(parents=True, exist_ok=True)
         sync(folder.parent)
         with suppress(FileExistsError):
             new = cls(
                 folder, scene, sampler, size, identity_of(scene, sampler), drawn_with(scene, sampler), now()
             )
-            new._write(replace=False)
+            new._write(expected=None)
             return new
         old = cls.open(folder)
         if old.identity != identity_of(scene, sampler):
@@ -142,7 +137,7 @@ class Run:
             )
         return replace(old, scene=scene)
 
-    def _write(self, *, replace: bool) -> None:
+    def _write(self, *, expected: Expected) -> None:
         document = {
             "filetype": _FILETYPE,
             "format": _FORMAT,
@@ -154,12 +149,12 @@ class Run:
             "scene": scene_text(self.scene),
         }
         text = tomli_w.dumps(document, multiline_strings=True)
-        write_whole(self.folder / "run.toml", (text.encode(),), replace=replace)
+        write_whole(self.folder / "run.toml", (text.encode(),), expected=expected)
 
     def freeze(self) -> None:
         """Record how many surfaces are wanted now."""
         if Run.open(self.folder).scene != self.scene:
-            self._write(replace=True)
+            self._write(expected="anything")
 
     @classmethod
     def open(cls, folder: Path) -> "Run":
@@ -170,7 +165,7 @@ class Run:
         StoreError
             If there is none, or it cannot be read.
         """
-        _refuse_link(folder)
+        refuse_link(folder)
         file = folder / "run.toml"
         try:
             fd = os.open(file, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK)
@@ -224,40 +219,16 @@ class Run:
             return None
         return shard if shard.span == span else None
 
-    @contextmanager
-    def locked(self, *, shared: bool = False) -> Iterator[None]:
-        """Hold the run: one driver, or several that each make a share of the blocks.
-
-        Raises
-        ------
-        StoreError
-            If another process holds it.
-        """
-        path = self.folder / "lock"
-        fd = os.open(path, os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW | os.O_CLOEXEC, 0o644)
-        try:
-            try:
-                fcntl.flock(fd, (fcntl.LOCK_SH if shared else fcntl.LOCK_EX) | fcntl.LOCK_NB)
-            except BlockingIOError:
-                holder = os.pread(fd, 200, 0).decode(errors="replace").strip() or "another process"
-                raise StoreError(f"{self.folder}: locked by {holder}, which works on this run") from None
-            if not path.exists() or os.fstat(fd).st_ino != path.stat().st_ino:
-                raise StoreError(f"{self.folder}: its run has just ended; repeat the command")
-            if not shared:
-                os.ftruncate(fd, 0)
-                os.pwrite(fd, f"pid {os.getpid()} on {socket.gethostname()}\n".encode(), 0)
-            yield
-        finally:
-            os.close(fd)
-
     def remove(self) -> None:
-        """Remove the folder, what identifies it last. Only with the lock."""
-        shutil.rmtree(self.shards_folder)
-        for name in ("lock", "run.toml"):
-            (self.folder / name).unlink(missing_ok=True)
-        remove_stale(self.folder / "run.toml")
-        with suppress(OSError):  # something of somebody else's lies there
-            self.folder.rmdir()
+        """Remove all but the lock, what identifies the run last. Only with the lock."""
+        remove_run(self.folder)
+
+
+def remove_run(folder: Path) -> None:
+    """Remove a run, readable or not; its lock stays, and with it the folder. Only with the lock."""
+    shutil.rmtree(folder / "shards", ignore_errors=True)  # a worker that lost its driver may add to it
+    for left in (*folder.glob(".*.tmp"), folder / "run.toml"):
+        left.unlink(missing_ok=True)
 
 
 def missing(n_surfaces: int, size: int, held: Iterable[Span]) -> list[Span]:
@@ -270,8 +241,3 @@ def missing(n_surfaces: int, size: int, held: Iterable[Span]) -> list[Span]:
             stop = end
         stop = max(stop, span.stop)
     return gaps
-
-
-def _refuse_link(folder: Path) -> None:
-    if folder.is_symlink() or (folder.exists() and not folder.is_dir()):
-        raise StoreError(f"{folder}: is no folder; remove it or choose another -o")

@@ -16,10 +16,19 @@ from typing import Any
 from mcgw.errors import StoreError
 from mcgw.plain_file import open_regular
 
-__all__ = ["SEAL_BYTES", "Seal", "check_seal", "read_seal", "read_sealed", "seal_of", "sha256_of"]
+__all__ = [
+    "SEAL_BYTES",
+    "SEAL_MAGIC",
+    "Seal",
+    "check_seal",
+    "read_seal",
+    "read_sealed",
+    "seal_of",
+    "sha256_of",
+]
 
 SEAL_BYTES = 512
-_MAGIC = b"MCGWSEAL"
+SEAL_MAGIC = b"MCGWSEAL"
 _HEAD = SEAL_BYTES - hashlib.sha256().digest_size
 _PIECE = 2**22
 
@@ -45,7 +54,7 @@ class Seal:
     def to_bytes(self) -> bytes:
         """The 512 bytes."""
         text = json.dumps({"length": self.length, "sha256": self.sha256, "notes": self.notes})
-        head = (_MAGIC + text.encode()).ljust(_HEAD)
+        head = (SEAL_MAGIC + text.encode()).ljust(_HEAD)
         if len(head) > _HEAD:
             raise ValueError(f"seal: {len(head)} bytes of notes, more than {_HEAD}")
         return head + hashlib.sha256(head).digest()
@@ -60,10 +69,14 @@ class Seal:
             If it is no seal, or a damaged one.
         """
         head, digest = data[:_HEAD], data[_HEAD:]
-        if len(data) != SEAL_BYTES or not head.startswith(_MAGIC) or hashlib.sha256(head).digest() != digest:
+        if (
+            len(data) != SEAL_BYTES
+            or not head.startswith(SEAL_MAGIC)
+            or hashlib.sha256(head).digest() != digest
+        ):
             raise StoreError("not a whole file of mcgw, or a damaged one")
         try:
-            said = json.loads(head[len(_MAGIC) :])
+            said = json.loads(head[len(SEAL_MAGIC) :])
             return cls(int(said["length"]), str(said["sha256"]), dict(said["notes"]))
         except (ValueError, KeyError, TypeError):
             raise StoreError("its seal cannot be read") from None

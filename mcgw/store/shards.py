@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mcgw.errors import StoreError
-from mcgw.store.disk import write_whole
+from mcgw.formats.files import write_whole
 from mcgw.store.seal import Seal, read_sealed, seal_of
 
 __all__ = [

@@ -20,7 +20,7 @@ import analytic
 from mcgw import joining, running, work
 from mcgw.errors import RunError, StoreError
 from mcgw.scene import Scene
-from mcgw.store import ensembles, merge, probe, shards
+from mcgw.store import ensembles, lock, merge, probe, shards
 from mcgw.store.child import ChildError
 from mcgw.store.rundir import Run, parts_of
 
@@ -57,6 +57,7 @@ def merged_here(folder, path, temporary):
 
 def prepare():
     work.draw = made_up
+    lock.PATIENCE = 0.0  # a second driver is refused at once
     running.shard_size = lambda scene, sampler: ROWS
     running.columns = lambda scene, sampler: 6
     joining._merge_in_child = merged_here

@@ -1,0 +1,171 @@
+"""Files that appear whole or not at all.
+
+Data go under a temporary name, are flushed to the disk, and get their own name in one step; the folder
+is flushed last. A temporary name is never one that exists: nothing planted there is followed.
+"""
+
+import errno
+import glob
+import os
+import secrets
+import socket
+import zlib
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from typing import Literal
+
+from mcgw.errors import StoreError
+
+__all__ = [
+    "Expected",
+    "State",
+    "check_output",
+    "remove_stale",
+    "rename_over",
+    "state_of",
+    "sync",
+    "temporary_beside",
+    "whole_file",
+    "write_whole",
+]
+
+# What tells a file from another that has taken its name: inode, size, time of the last change.
+State = tuple[int, int, int]
+Expected = State | None | Literal["anything"]
+
+
+def state_of(path: Path) -> State | None:
+    """Which file bears a name now; None if there is none."""
+    try:
+        status = os.lstat(path)
+    except FileNotFoundError:
+        return None
+    return status.st_ino, status.st_size, status.st_mtime_ns
+
+
+def temporary_beside(path: Path) -> Path:
+    """A new name in the same folder, of this process alone, on whatever host."""
+    return path.with_name(f"{_stem(path)}{os.getpid()}-{secrets.token_hex(4)}.tmp")
+
+
+def remove_stale(path: Path) -> None:
+    """Remove the temporary files that processes of this host, now dead, left beside a file."""
+    for left in path.parent.glob(f"{glob.escape(_stem(path))}*.tmp"):
+        pid = left.name.removeprefix(_stem(path)).split("-")[0]
+        if pid.isdecimal() and not _alive(int(pid)):
+            with suppress(OSError):  # not ours to remove
+                left.unlink()
+
+
+def _stem(path: Path) -> str:
+    host = zlib.crc32(socket.gethostname().encode())
+    return f".{path.name[:100]}.{host:08x}-"
+
+
+def _alive(pid: int) -> bool:
+    try:
+        os.kill(pid, 0)
+    except ProcessLookupError:
+        return False
+    except (OSError, OverflowError):
+        pass
+    return True
+
+
+@contextmanager
+def whole_file(path: Path, *, expected: Expected = "anything") -> Iterator[Path]:
+    """Name to write a file under; at the end it takes the place of `path`, on an error it goes.
+
+    Parameters
+    ----------
+    path : Path
+        Its name; a link of that name is replaced, not followed.
+    expected : State or None, optional
+        Which file is to be replaced, from `state_of`; None: there must be none.
+
+    Raises
+    ------
+    FileExistsError
+        If another file than the expected one has this name at the end.
+    OSError
+        If it cannot be written; then nothing is left behind and an older file is as it was.
+    """
+    temporary = temporary_beside(path)
+    try:
+        yield temporary
+        sync(temporary)
+        rename_over(temporary, path, expected)
+        sync(path.parent)
+    except BaseException:
+        with suppress(OSError):  # it has its own name by now, or was never made
+            os.unlink(temporary)
+        raise
+
+
+def rename_over(temporary: Path, path: Path, expected: Expected) -> None:
+    """Give a finished file its name, unless that belongs to another file than the expected one."""
+    if expected is None:
+        try:
+            os.link(temporary, path)  # unlike a rename, it never replaces anything
+        except FileExistsError:
+            raise
+        except OSError:  # a file system without hard links
+            _refuse_another(path, None)
+            os.replace(temporary, path)
+        else:
+            os.unlink(temporary)
+        return
+    if expected != "anything":
+        _refuse_another(path, expected)
+    os.replace(temporary, path)
+
+
+def _refuse_another(path: Path, expected: State | None) -> None:
+    if state_of(path) != expected:
+        raise FileExistsError(errno.EEXIST, "another file has taken this name meanwhile", str(path))
+
+
+def write_whole(path: Path, pieces: Iterable[bytes], *, expected: Expected = "anything") -> None:
+    """Write a file of these contents by `whole_file`."""
+    flags = os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_NOFOLLOW
+    with (
+        whole_file(path, expected=expected) as temporary,
+        os.fdopen(os.open(temporary, flags, 0o644), "wb") as file,
+    ):
+        for piece in pieces:
+            file.write(piece)
+
+
+def sync(path: Path) -> None:
+    """Flush a file, or the names in a folder, to the disk."""
+    fd = os.open(path, os.O_RDONLY)
+    try:
+        os.fsync(fd)
+    finally:
+        os.close(fd)
+
+
+def check_output(path: Path) -> None:
+    """Refuse a place where no file can be put, before anything is computed; make its folder.
+
+    Temporary files that dead processes left there are removed.
+
+    Raises
+    ------
+    StoreError
+        If the name is taken by something else than a file, is a link or too long, or if the folder
+        cannot be made or written.
+    """
+    name = path.name
+    try:
+        if name in ("", ".", "..") or len(os.fsencode(name)) > 200 or not name.isprintable():
+            raise StoreError(f"{str(path)!r}: is no name for a file; choose another -o")
+        if path.is_symlink() or (path.exists() and not path.is_file()):
+            raise StoreError(f"{path}: is no regular file; choose another -o")
+        path.parent.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise StoreError(f"{path}: cannot be written ({error.strerror or error})") from None
+    if not os.access(path.parent, os.W_OK | os.X_OK):
+        raise StoreError(f"{path}: cannot be written (the folder {path.parent} is read-only)")
+    remove_stale(path)

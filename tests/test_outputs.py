@@ -1,0 +1,312 @@
+"""What commands may write: never what they read, never an ensemble, never half a file."""
+
+import os
+import shutil
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from overwrites import CASES, attempt, contents, prepare, ways
+
+import mcgw
+from mcgw import outputs
+from mcgw.cli import main
+from mcgw.errors import StoreError
+from mcgw.formats.files import rename_over, state_of, write_whole
+from mcgw.outputs import CSV, Output, check_outputs
+from mcgw.store import ensembles, guard, probe
+
+
+@pytest.fixture(autouse=True)
+def _look_here(monkeypatch):
+    """Look at files in this process: children take most of the time."""
+    monkeypatch.setattr(ensembles, "examine", lambda path: probe.describe(str(path)))
+
+
+@pytest.fixture(scope="module")
+def inputs(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("inputs")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(ensembles, "examine", lambda path: probe.describe(str(path)))
+        patch.chdir(folder)
+        prepare(folder)
+    return folder
+
+
+@pytest.fixture
+def here(inputs, tmp_path, monkeypatch):
+    """A folder of its own with all inputs, as the current one."""
+    shutil.copytree(inputs, tmp_path / "here")
+    monkeypatch.chdir(tmp_path / "here")
+    return tmp_path / "here"
+
+
+def told(capsys, words, code=2):
+    """The one line that a command ends with."""
+    capsys.readouterr()
+    assert main([str(word) for word in words]) == code
+    err = capsys.readouterr().err
+    assert len(err.splitlines()) == 1, err
+    return err
+
+
+@pytest.mark.parametrize(("case", "way"), [(case, way) for case in CASES for way in ways(case)])
+def test_no_command_writes_over_what_it_reads(case, way, here, capsys):
+    code, changed = attempt(case, way)
+    assert (code, changed) == (2, [])
+    err = capsys.readouterr().err.splitlines()
+    assert sum(line.startswith("mcgw: ") for line in err) == 1
+    assert "is an input" in err[-1]
+
+
+def test_the_cases_would_write_without_the_guard(here, monkeypatch, capsys):
+    """A companion: the same attempts do harm when nothing is asked."""
+    monkeypatch.setattr(outputs, "same_file", lambda one, other: False)
+    for case in ("solve, table", "surface", "surface, to HDF5"):
+        code, changed = attempt(case, "hard link")
+        assert code in (0, 1), case
+        assert changed, case
+        shutil.rmtree("there")
+
+
+OVER_AN_ENSEMBLE = [
+    "compare e.h5 -o OTHER.png",
+    "compare e.h5 --csv OTHER.csv",
+    "show e.h5 --csv OTHER.csv",
+    "report e.h5 -o OTHER.html",
+    "solve moments.toml --pressure 1MPa --csv OTHER.csv",
+    "surface moments.toml -o OTHER.sdf",
+    "surface moments.toml -o OTHER.h5",
+    "fit map.npy --cutoff none -o OTHER.toml",
+    "init -o OTHER.toml",
+]
+
+
+@pytest.mark.parametrize("words", OVER_AN_ENSEMBLE)
+def test_no_ensemble_is_replaced_by_something_else(words, here, capsys):
+    ending = words.rpartition(".")[2]
+    shutil.copy("e.h5", f"other.{ending}")
+    before = contents()
+    err = told(capsys, words.replace("OTHER", "other").split())
+    assert "is an ensemble of mcgw, which this would replace" in err
+    assert contents() == before
+
+
+def test_a_damaged_ensemble_is_not_replaced_either(here, capsys):
+    data = (here / "e.h5").read_bytes()[:-100]
+    (here / "other.csv").write_bytes(data)
+    assert "is an HDF5 file, which this would replace" in told(capsys, ["show", "e.h5", "--csv", "other.csv"])
+    assert (here / "other.csv").read_bytes() == data
+
+
+def test_an_earlier_output_is_replaced(here):
+    for _ in range(2):
+        assert main(["show", "e.h5", "--csv", "table2.csv"]) == 0
+        assert main(["surface", "moments.toml", "--shape", "16", "-o", "m.h5"]) == 0
+
+
+ENDINGS = [
+    ("run scene.toml -o x.csv", "an ensemble is written there, whose name ends in .h5, .hdf5"),
+    ("run scene.toml -o x.png", "an ensemble"),
+    ("run scene.toml -o x", "an ensemble"),
+    ("run scene.toml --shard 1/2 -o x.csv", "an ensemble"),
+    ("merge x.csv", "an ensemble"),
+    ("regrade e.h5 --gamma 1 -o x.png", "an ensemble"),
+    ("regrade e.h5 --gamma 1 --csv x.h5", "--csv x.h5: a table"),
+    ("compare e.h5 -o x.h5", "a figure is written there, whose name ends in .eps"),
+    ("compare e.h5 -o x.xcf", "a figure"),
+    ("compare e.h5 --csv x.h5", "a table"),
+    ("show e.h5 --csv x.h5", "a table"),
+    ("report e.h5 -o x.h5", "a web page"),
+    ("solve scene.toml --pressure 1MPa --csv x.h5", "a table"),
+    ("surface scene.toml -o x.tiff", "a map is written there, whose name ends in .sdf"),
+    ("surface scene.toml --at 1 -o x.sdf", "a figure"),
+    ("fit map.npy --cutoff none -o x.h5", "a scene"),
+    ("init -o x.h5", "a scene"),
+]
+
+
+@pytest.mark.parametrize(("words", "message"), ENDINGS)
+def test_endings_fit_what_is_written(words, message, here, capsys):
+    before = contents()
+    assert message in told(capsys, words.split())
+    assert contents() == before
+
+
+def test_every_format_of_matplotlib_is_a_figure():
+    from matplotlib.figure import Figure
+
+    known = Figure().canvas.get_supported_filetypes()
+    assert set(outputs.figure_format().endings) == {f".{name}" for name in known}
+    assert {".png", ".pdf", ".svg"} <= set(outputs.figure_format().endings)
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        ("compare e.h5 -o a.svg --csv a.svg", "is what -o writes too"),
+        ("regrade e.h5 --gamma 1.1 -o a.h5 --csv there/../a.h5", "is what -o writes too"),
+        ("merge e.h5 -o other.h5", "leave out one of the two"),
+        ("show e.h5 --digest --csv a.csv", "leave out the other option"),
+        ("compare e.h5 -o e.h5.parts/a.png", "is the folder of the run that makes e.h5"),
+        ("compare e.h5 -o map.npy/a.png", "map.npy/a.png: cannot be written"),
+        ("converge scene.toml -o e.h5", "e.h5/scene-converge.png: cannot be written"),
+        ("figures -o e.h5", "cannot be written"),
+        ("show e.h5 --csv .", "a table is written there"),
+    ],
+)
+def test_places_that_will_not_do(words, message, here, capsys):
+    (here / "there").mkdir()
+    before = contents()
+    if "there" not in words:
+        (here / "there").rmdir()
+    assert message in told(capsys, words.split())
+    assert contents() == before
+
+
+WRITE = [
+    ("run moments.toml -o OUT", ".h5"),
+    ("compare e.h5 -o OUT", ".png"),
+    ("report e.h5 -o OUT", ".html"),
+    ("show e.h5 --csv OUT", ".csv"),
+    ("regrade e.h5 --gamma 1.1 -o OUT", ".h5"),
+    ("solve moments.toml --pressure 1MPa --csv OUT", ".csv"),
+    ("surface moments.toml --shape 16 -o OUT", ".npy"),
+    ("surface moments.toml --at 0 -o OUT", ".svg"),
+    ("init -o OUT", ".toml"),
+]
+
+
+@pytest.mark.parametrize(("words", "ending"), WRITE)
+def test_folders_are_made_alike(words, ending, here):
+    out = here / "new" / "deeper" / f"x{ending}"
+    assert main(words.replace("OUT", str(out)).split()) in (0, 1)
+    assert out.is_file()
+    assert not list(out.parent.glob(".*"))
+
+
+@pytest.mark.parametrize(("words", "ending"), WRITE)
+@pytest.mark.parametrize("kind", ["folder", "pipe"])
+def test_something_in_the_way_is_one_line(words, ending, kind, here, capsys):
+    out = here / f"x{ending}"
+    out.mkdir() if kind == "folder" else os.mkfifo(out)
+    assert "is no regular file" in told(capsys, words.replace("OUT", str(out)).split())
+
+
+@pytest.mark.parametrize(("words", "ending"), WRITE)
+def test_a_disk_that_fails_leaves_the_older_file(words, ending, here, monkeypatch, capsys):
+    """The old file is there bit by bit, and nothing lies beside it."""
+    out = here / f"x{ending}"
+    if ending not in (".h5", ".toml"):
+        out.write_bytes(b"old")
+
+    def fail(fd):
+        raise OSError(28, "No space left on device")
+
+    before = contents()
+    monkeypatch.setattr(os, "fsync", fail)
+    assert main(words.replace("OUT", str(out)).split()) in (1, 2)
+    assert contents() == before
+
+
+def test_regrade_never_replaces_another_ensemble(here, capsys):
+    assert main(["regrade", "e.h5", "--gamma", "1.1", "-o", "r.h5"]) == 0
+    before = contents()
+    assert main(["regrade", "e.h5", "--gamma", "1.1", "-o", "r.h5"]) == 0  # the same one again
+    assert mcgw.open_ensemble("r.h5").n_surfaces == 8
+    first = (here / "r.h5").read_bytes()
+    err = told(capsys, ["regrade", "e.h5", "--gamma", "1.2", "-o", "r.h5"])
+    assert "holds a different ensemble: grading.gamma is 1.1 there and 1.2 here" in err
+    assert (here / "r.h5").read_bytes() == first
+    assert before.keys() == contents().keys()
+
+
+def test_a_map_does_not_take_the_name_of_an_unfinished_run(here, capsys):
+    (here / "m.h5.parts").mkdir()
+    err = told(capsys, ["surface", "moments.toml", "-o", "m.h5"])
+    assert "a run that makes this file is not finished" in err
+
+
+def test_nothing_is_put_into_the_folder_of_any_run(tmp_path):
+    folder = tmp_path / "a.h5.parts"
+    folder.mkdir()
+    (folder / "lock").touch()
+    for name in (folder, folder / "shards" / "x.csv"):
+        with pytest.raises(StoreError, match="is the folder of a run"):
+            check_outputs([Output(name, CSV)])
+
+
+def test_a_name_taken_meanwhile_is_left_alone(tmp_path):
+    new, path = tmp_path / "new", tmp_path / "a"
+    new.write_bytes(b"new")
+    path.write_bytes(b"old")
+    seen = state_of(path)
+    os.replace(path, tmp_path / "moved")
+    path.write_bytes(b"another")
+    for expected in (seen, None):
+        with pytest.raises(FileExistsError, match=r"another file|exists"):
+            rename_over(new, path, expected)
+        with pytest.raises(FileExistsError):
+            write_whole(path, [b"x"], expected=expected)
+    assert path.read_bytes() == b"another"
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["a", "moved", "new"]
+    rename_over(new, path, state_of(path))
+    assert path.read_bytes() == b"new"
+
+
+def test_without_hard_links_a_taken_name_is_refused_as_well(tmp_path, monkeypatch):
+    def none(*names):
+        raise PermissionError(1, "Operation not permitted")
+
+    monkeypatch.setattr(os, "link", none)
+    write_whole(tmp_path / "a", [b"x"], expected=None)
+    with pytest.raises(FileExistsError, match="another file"):
+        write_whole(tmp_path / "a", [b"y"], expected=None)
+    assert [p.name for p in tmp_path.iterdir()] == ["a"]
+
+
+def test_a_file_that_appears_while_a_run_draws_is_left_alone(make_scene, tmp_path, monkeypatch):
+    from mcgw import running
+
+    monkeypatch.setattr(ensembles, "examine", guard.examine)
+    path, drawn = tmp_path / "e.h5", running.draw
+
+    def slowly(*arguments):
+        path.write_bytes(b"precious")
+        return drawn(*arguments)
+
+    monkeypatch.setattr(running, "draw", slowly)
+    with pytest.raises(StoreError):
+        running.run(make_scene(n_surfaces=4), path)
+    assert path.read_bytes() == b"precious"
+    assert [p.name for p in tmp_path.iterdir()] == ["e.h5"]
+
+
+def test_leftovers_of_the_dead_go_with_the_next_output(here):
+    call = [sys.executable, "-c", "import os; print(os.getpid())"]
+    dead = subprocess.run(call, capture_output=True, text=True, check=True)
+    from mcgw.formats.files import temporary_beside
+
+    mine = temporary_beside(here / "x.csv")
+    theirs = mine.with_name(mine.name.replace(f"-{os.getpid()}-", f"-{dead.stdout.strip()}-"))
+    mine.touch()
+    theirs.touch()
+    assert theirs != mine
+    assert main(["show", "e.h5", "--csv", "x.csv"]) == 0
+    assert mine.exists()
+    assert not theirs.exists()
+
+
+def test_save_in_python_keeps_what_is_there(make_scene, tmp_path, monkeypatch):
+    monkeypatch.setattr(ensembles, "examine", guard.examine)
+    one, other = (mcgw.simulate(make_scene(n_surfaces=4, seed=seed)) for seed in (1, 2))
+    ensembles.save(one, tmp_path / "e.h5")
+    with pytest.raises(StoreError, match=r"ensemble\.seed is 1 there and 2 here"):
+        ensembles.save(other, tmp_path / "e.h5")
+    (tmp_path / "f.h5").write_bytes(b"precious")
+    with pytest.raises(StoreError, match="not an HDF5 file"):
+        ensembles.save(one, tmp_path / "f.h5")
+    assert (tmp_path / "f.h5").read_bytes() == b"precious"
+    np.testing.assert_array_equal(mcgw.open_ensemble(tmp_path / "e.h5").load, one.load)
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["e.h5", "f.h5"]
