@@ -16,7 +16,7 @@ from mcgw.store.layout import FILETYPE, FORMAT, build, values_digest
 from mcgw.store.lock import locked
 from mcgw.store.rundir import Run, difference, identity_of, parts_of
 from mcgw.store.seal import check_seal, seal_of
-from mcgw.store.shards import DRAWN, Span
+from mcgw.store.shards import DRAWN, Span, in_memory
 from mcgw.store.sums import FileSums, ShardSums
 
 __all__ = [
@@ -233,8 +233,8 @@ def write_ensemble(ensemble: Ensemble, path: Path, *, wall_seconds: float) -> No
     finished(path, scene, ensemble.sampler)
     names = [*scene.quantities, *(DRAWN if scene.keep == "moments" else ())]
     arrays = {name: ensemble.sums.read(name, 0, None) for name in names}
-    with h5py.File("ensemble", "w-", driver="core", backing_store=False, libver=("v108", "v110")) as file:
-        build(
+    body = in_memory(
+        lambda file: build(
             file,
             scene,
             ensemble.sampler,
@@ -243,10 +243,9 @@ def write_ensemble(ensemble: Ensemble, path: Path, *, wall_seconds: float) -> No
             draws=drawn_with(scene, ensemble.sampler),
             wall_seconds=wall_seconds,
         )
-        file.flush()
-        image = bytes(file.id.get_file_image())
+    )
     try:
-        write_whole(path, (image, seal_of(image)), expected=before)
+        write_whole(path, (body, seal_of(body)), expected=before)
     except FileExistsError as error:
         raise StoreError(f"{path}: {error.strerror}; it is left as it is, choose another -o") from None
     except OSError as error:

@@ -17,7 +17,7 @@ from mcgw.store.disk import SteadyFile
 from mcgw.store.layout import build, file_pieces, values_digest
 from mcgw.store.rundir import Run
 from mcgw.store.seal import Seal, sha256_of
-from mcgw.store.shards import Arrays, Shard, Span
+from mcgw.store.shards import LIBVER, Arrays, Shard, Span
 
 __all__ = ["DAMAGED", "merge_into"]
 
@@ -48,7 +48,7 @@ def merge_into(folder: Path, target: Path, temporary: Path) -> None:
     shards = run.shards()
     seconds = sum(shard.seconds for shard in shards) + _seconds_of(target)
     with closing(SteadyFile(temporary)) as raw:
-        with h5py.File(raw, "w", libver=("v108", "v110"), rdcc_nbytes=_CACHE) as file:
+        with h5py.File(raw, "w", libver=LIBVER, rdcc_nbytes=_CACHE) as file:
             digest = build(
                 file,
                 run.scene,

@@ -7,6 +7,8 @@ values), which does not depend on how HDF5 laid out the file.
 """
 
 import hashlib
+import io
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -21,12 +23,14 @@ from mcgw.store.seal import Seal, read_sealed, seal_of
 
 __all__ = [
     "DRAWN",
+    "LIBVER",
     "RAGGED",
     "Arrays",
     "Shard",
     "Span",
     "commit_shard",
     "content_digest",
+    "in_memory",
     "open_shard",
     "pack",
 ]
@@ -35,8 +39,8 @@ Arrays = dict[str, NDArray[Any]]
 
 RAGGED = "extras"  # the one table whose rows are not surfaces
 DRAWN = ("moments", "cells", RAGGED)  # what `keep = "moments"` adds to the quantities
+LIBVER = ("v108", "v110")  # checksums on all metadata, and every HDF5 of the last decade reads it
 _MOST_DATASETS = 64
-_OLD = ("v108", "v110")  # every HDF5 of the last decade reads it
 
 
 @dataclass(frozen=True, order=True)
@@ -97,13 +101,26 @@ class Shard:
         return arrays
 
 
+def in_memory(fill: Callable[[h5py.File], Any]) -> bytes:
+    """Bytes of an HDF5 file that is made in memory.
+
+    By a Python file object: in the file image of an HDF5 before 2.0 the checksum of the superblock
+    does not hold, and the file cannot be opened.
+    """
+    body = io.BytesIO()
+    with h5py.File(body, "w", libver=LIBVER) as file:
+        fill(file)
+    return body.getvalue()
+
+
 def pack(arrays: Arrays) -> bytes:
     """HDF5 file with these arrays, in memory."""
-    with h5py.File("shard", "w-", driver="core", backing_store=False, libver=_OLD, track_order=False) as file:
+
+    def fill(file: h5py.File) -> None:
         for name in sorted(arrays):
             file.create_dataset(name, data=arrays[name])
-        file.flush()
-        return bytes(file.id.get_file_image())
+
+    return in_memory(fill)
 
 
 def commit_shard(path: Path, run: str, span: Span, arrays: Arrays, seconds: float) -> Shard:
