@@ -27,6 +27,7 @@ ORDER = (
     "store.seal",
     "outputs",
     "store.child",
+    "store.head",
     "store.probe",
     "store.guard",
     "store.provenance",

@@ -1,6 +1,6 @@
 """Ensembles as HDF5 files, and the folders of the runs that make them.
 
-A file appears whole or not at all. Its schema (``filetype = "mcgw-ensemble"``, ``format = [1, 0]``)::
+A file appears whole or not at all. Its schema (``filetype = "mcgw-ensemble"``, ``format = [1, 1]``)::
 
     /                     attributes: filetype, format, title, scene (TOML text of the resolved scene),
                           seed, sampler, complete, digest, versions, draws, run, commit, date, cpu,
@@ -20,9 +20,12 @@ and, if the scene says ``keep = "moments"``, what `mcgw.regrade` starts from::
     /drawn/extras         float64 (extras, 3)             surface, height, weight of those outside
 
 Every dataset has the attributes `units` and `long_name`; only quantities that the scene asks for are
-there. Chunked, shuffled, compressed with gzip. `digest` is over scene and data, `run` over what the
-numbers of a surface depend on (scene but for the number of surfaces, sampler, and the versions in
-`draws`). After the HDF5 data stand 512 bytes, the seal (`seal`), with the digest of the file's bytes.
+there. Chunked, shuffled, compressed with gzip, each chunk with a checksum (Fletcher). `digest` is over
+scene and data, `run` over what the numbers of a surface depend on (scene but for the number of surfaces,
+sampler, and the versions in `draws`). After the HDF5 data stand 512 bytes, the seal (`seal`), with the
+digest of the file's bytes and that of its head (`head`: attributes, types, shapes, scales). That of the
+head is checked on every opening, that of all bytes by ``mcgw show --verify``; files of format 1.0 have
+none of the head.
 
 A run that fits one block is written in one atomic step. Any other grows as shards in ``FILE.parts/``
 (`rundir`), which are merged at the end (`merge`) and then removed. Whoever writes the file, in whatever way,

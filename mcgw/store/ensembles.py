@@ -1,9 +1,11 @@
 """Ensemble files: opened, verified, saved; the schema stands in `mcgw.store`."""
 
+import io
 from pathlib import Path
 from typing import Any
 
 import h5py
+import numpy as np
 
 from mcgw.ensemble import Ensemble
 from mcgw.errors import RunError, StoreError
@@ -12,10 +14,11 @@ from mcgw.scene import Scene
 from mcgw.scene_file import scene_from, scene_text
 from mcgw.store.arithmetic import drawn_with
 from mcgw.store.guard import examine, examine_all
-from mcgw.store.layout import FILETYPE, FORMAT, build, values_digest
+from mcgw.store.head import MOST_SCALE
+from mcgw.store.layout import FILETYPE, FORMAT, build, seal_notes, values_digest
 from mcgw.store.lock import locked
 from mcgw.store.rundir import Run, difference, identity_of, parts_of
-from mcgw.store.seal import check_seal, seal_of
+from mcgw.store.seal import check_seal, read_seal, seal_of
 from mcgw.store.shards import DRAWN, Span, in_memory
 from mcgw.store.sums import FileSums, ShardSums
 
@@ -92,15 +95,18 @@ def _run_of(path: Path) -> Run:
 
 
 def _described(path: Path) -> tuple[dict[str, Any], Scene]:
-    """Attributes and scene of a file whose datasets are those that its scene declares."""
+    """Attributes and scene of a file that are as they were written, with the datasets that they declare."""
     answer = examine(path)
-    attributes, datasets = answer["attributes"], answer["datasets"]
+    attributes = answer["attributes"]
     if attributes.get("filetype") != FILETYPE:
         raise StoreError(f"{path}: not an ensemble file (filetype is not {FILETYPE!r})")
     try:
         major, minor = (int(part) for part in attributes["format"])
         if major != FORMAT[0]:
             raise StoreError(f"{path}: format {major}.{minor}; this version reads {FORMAT[0]}.x")
+        head = read_seal(path).notes.get("head")
+        if head != answer["head"] and (head or minor):  # files of format 1.0 have none
+            raise StoreError(f"{path}: damaged (checksum mismatch of its scene, attributes or scales)")
         scene = scene_from(str(attributes["scene"]))
         for key in ("sampler", "digest", "complete", "date", "cpu", "versions", "commit"):
             attributes[key]
@@ -111,13 +117,23 @@ def _described(path: Path) -> tuple[dict[str, Any], Scene]:
         if isinstance(error, StoreError):
             raise
         raise StoreError(f"{path}: its scene is none: {str(error).splitlines()[0]}") from None
+    _check_tables(path, scene, answer["datasets"])
+    return attributes, scene
+
+
+def _check_tables(path: Path, scene: Scene, datasets: dict[str, Any]) -> None:
+    """The datasets must have the shapes that the scene declares, and the scales its values."""
     shapes = {"surface": [scene.n_surfaces], "separation": [len(scene.separations)]}
     shapes |= {name: [scene.n_surfaces, len(scene.separations)] for name in scene.quantities}
     for name, shape in shapes.items():
         if name not in datasets or datasets[name][1] != shape:
             found = datasets.get(name, ["", "none"])[1]
             raise StoreError(f"{path}: {name} has shape {found}, its scene declares {shape}")
-    return attributes, scene
+    scales = {"separation": scene.separations, "surface": range(min(scene.n_surfaces, MOST_SCALE))}
+    with h5py.File(path, "r") as file:
+        for name, values in scales.items():
+            if not np.array_equal(file[name][: len(values)], values):
+                raise StoreError(f"{path}: {name} does not hold the values that its scene declares")
 
 
 def verify(path: Path) -> tuple[str, str]:
@@ -244,8 +260,10 @@ def write_ensemble(ensemble: Ensemble, path: Path, *, wall_seconds: float) -> No
             wall_seconds=wall_seconds,
         )
     )
+    with h5py.File(io.BytesIO(body), "r") as file:
+        notes = seal_notes(file)
     try:
-        write_whole(path, (body, seal_of(body)), expected=before)
+        write_whole(path, (body, seal_of(body, **notes)), expected=before)
     except FileExistsError as error:
         raise StoreError(f"{path}: {error.strerror}; it is left as it is, choose another -o") from None
     except OSError as error:

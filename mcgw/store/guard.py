@@ -29,7 +29,7 @@ def examine(path: Path) -> dict[str, Any]:
     Returns
     -------
     dict
-        ``{"attributes": {...}, "datasets": {name: [type, shape]}}``.
+        ``{"attributes": {...}, "datasets": {name: [type, shape]}, "head": digest}``.
 
     Raises
     ------

@@ -14,7 +14,7 @@ import h5py
 
 from mcgw.errors import StoreError
 from mcgw.store.disk import SteadyFile
-from mcgw.store.layout import build, file_pieces, values_digest
+from mcgw.store.layout import build, file_pieces, seal_notes, values_digest
 from mcgw.store.rundir import Run
 from mcgw.store.seal import Seal, sha256_of
 from mcgw.store.shards import LIBVER, Arrays, Shard, Span
@@ -62,8 +62,9 @@ def merge_into(folder: Path, target: Path, temporary: Path) -> None:
         with h5py.File(temporary, "r") as file:
             if file.attrs["digest"] != digest or values_digest(file, run.scene) != digest:
                 raise OSError(f"{temporary}: reads otherwise than written")
+            notes = seal_notes(file)
         length = temporary.stat().st_size
-        raw.seal(Seal(length, sha256_of(temporary, length), {}).to_bytes())
+        raw.seal(Seal(length, sha256_of(temporary, length), notes).to_bytes())
 
 
 def _checked(raw: SteadyFile, pieces: Iterator[tuple[Span, Arrays]]) -> Iterator[tuple[Span, Arrays]]:

@@ -17,6 +17,8 @@ from typing import Any
 import h5py
 import numpy as np
 
+from mcgw.store.head import head_digest
+
 __all__ = ["RefusedError", "check_plain", "describe"]
 
 GROUP = "drawn"
@@ -121,7 +123,7 @@ def describe(path: str) -> dict[str, Any]:
     Returns
     -------
     dict
-        ``{"attributes": {...}, "datasets": {name: [type, shape]}}``.
+        ``{"attributes": {...}, "datasets": {name: [type, shape]}, "head": digest}``.
 
     Raises
     ------
@@ -139,7 +141,7 @@ def describe(path: str) -> dict[str, Any]:
             for name in names:
                 _read(file[name])
         found = {name: [file[name].dtype.str, list(file[name].shape)] for name in names}
-    return {"attributes": attributes, "datasets": found}
+        return {"attributes": attributes, "datasets": found, "head": head_digest(file, names)}
 
 
 def _plain_value(name: str, attributes: Any) -> Any:

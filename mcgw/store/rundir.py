@@ -2,7 +2,8 @@
 
 ::
 
-    run.toml    the frozen scene, its identity, the versions that draw, the size of a block
+    run.toml    the frozen scene, its identity, the versions that draw, the size of a block;
+                last, the SHA-256 of all that stands before
     lock        held by whoever writes the file, freed by the kernel when it dies (`lock`)
     shards/     block-0000000000042.h5: the surfaces from number 42 on
 
@@ -33,7 +34,8 @@ from mcgw.toml_text import loads
 
 __all__ = ["Run", "difference", "identity_of", "missing", "parts_of", "remove_run"]
 
-_FILETYPE, _FORMAT = "mcgw-run", [1, 0]
+_FILETYPE, _FORMAT = "mcgw-run", [1, 1]
+_CHECKSUM = 'sha256 = "'
 _MOST_BYTES = 2**23
 
 
@@ -148,8 +150,9 @@ class Run:
             "date": self.date,
             "scene": scene_text(self.scene),
         }
-        text = tomli_w.dumps(document, multiline_strings=True)
-        write_whole(self.folder / "run.toml", (text.encode(),), expected=expected)
+        text = tomli_w.dumps(document, multiline_strings=True).encode()
+        checksum = f'{_CHECKSUM}{hashlib.sha256(text).hexdigest()}"\n'
+        write_whole(self.folder / "run.toml", (text, checksum.encode()), expected=expected)
 
     def freeze(self) -> None:
         """Record how many surfaces are wanted now."""
@@ -170,7 +173,7 @@ class Run:
         try:
             fd = os.open(file, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK)
             with os.fdopen(fd, "rb") as opened:
-                said = loads(opened.read(_MOST_BYTES).decode())
+                said = _unchanged(opened.read(_MOST_BYTES))
             if said["filetype"] != _FILETYPE or said["format"][0] != _FORMAT[0]:
                 raise StoreError(f"{file}: is no run of format {_FORMAT[0]}.x, but {said['format']}")
             scene = scene_from(said["scene"])
@@ -181,7 +184,8 @@ class Run:
         except (SceneError, KeyError, TypeError, ValueError) as error:
             if isinstance(error, StoreError):
                 raise
-            raise StoreError(f"{file}: damaged; remove {folder} to start again") from None
+            what = "checksum mismatch" if isinstance(error, _ChangedError) else "it cannot be read"
+            raise StoreError(f"{file}: damaged ({what}); remove {folder} to start again") from None
 
     def shards(self) -> list[Shard]:
         """Valid shards in order, each checked bit by bit."""
@@ -241,3 +245,17 @@ def missing(n_surfaces: int, size: int, held: Iterable[Span]) -> list[Span]:
             stop = end
         stop = max(stop, span.stop)
     return gaps
+
+
+class _ChangedError(ValueError):
+    """The checksum does not hold."""
+
+
+def _unchanged(data: bytes) -> dict[str, Any]:
+    """What a run.toml says, if its checksum holds; those of format 1.0 have none."""
+    said = loads(data.decode())
+    text = data.rpartition(_CHECKSUM.encode())[0]
+    expected = hashlib.sha256(text).hexdigest() if said["format"] != [1, 0] or "sha256" in said else None
+    if said.get("sha256") != expected:
+        raise _ChangedError
+    return said

@@ -74,7 +74,7 @@ class Seal:
             or not head.startswith(SEAL_MAGIC)
             or hashlib.sha256(head).digest() != digest
         ):
-            raise StoreError("not a whole file of mcgw, or a damaged one")
+            raise StoreError("not a whole file of mcgw: no seal at its end, so it was cut off or changed")
         try:
             said = json.loads(head[len(SEAL_MAGIC) :])
             return cls(int(said["length"]), str(said["sha256"]), dict(said["notes"]))
@@ -100,7 +100,7 @@ def read_sealed(path: Path) -> tuple[Seal, bytes]:
     seal = _seal(path, data[-SEAL_BYTES:], len(data))
     body = data[:-SEAL_BYTES]
     if hashlib.sha256(body).hexdigest() != seal.sha256:
-        raise StoreError(f"{path}: damaged (its digest is another)")
+        raise StoreError(f"{path}: damaged (checksum mismatch)")
     return seal, body
 
 
@@ -128,7 +128,7 @@ def check_seal(path: Path) -> Seal:
     """
     seal = read_seal(path)
     if sha256_of(path, seal.length) != seal.sha256:
-        raise StoreError(f"{path}: damaged (its digest is another)")
+        raise StoreError(f"{path}: damaged (checksum mismatch)")
     return seal
 
 

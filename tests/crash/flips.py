@@ -1,0 +1,121 @@
+"""Single bits flipped where a file says what its numbers mean: ``python flips.py FOLDER FLIPS [old]``.
+
+Prints one JSON line: for each kind of place the flips tried, those seen when the ensemble is opened, and
+where the others were. With "old" the files are of format 1.0, which had no checksum there.
+"""
+
+import json
+import os
+import random
+import sys
+from pathlib import Path
+
+import h5py
+import numpy as np
+from harness import ROWS, forked, prepare, scene_of
+
+from mcgw import running
+from mcgw.errors import StoreError
+from mcgw.running import Part, run, run_part
+from mcgw.store import ensembles, layout, merge, probe
+from mcgw.store.rundir import parts_of
+
+BLOCKS = 5
+
+
+def made(folder):
+    """A file of one block, one that was merged, and a run in progress."""
+    scene, files = scene_of(BLOCKS), [folder / f"{name}.h5" for name in ("one-block", "merged", "begun")]
+    in_blocks, running.shard_size = running.shard_size, lambda scene, sampler: BLOCKS * ROWS
+    run(scene, files[0])
+    running.shard_size = in_blocks
+    run(scene, files[1])
+    run_part(scene, files[2], Part(1, 2))
+    return files
+
+
+def occurrences(data, piece, before=b""):
+    """Offsets of all bytes of a piece, wherever it stands behind `before`."""
+    start, found = data.find(before + piece), []
+    while start >= 0:
+        first = start + len(before)
+        found += range(first, first + len(piece))
+        start = data.find(before + piece, start + 1)
+    return found
+
+
+def attribute_bytes(data, attributes):
+    """Offsets of attributes: texts, whose lengths stand before them, and numbers that are there once."""
+    found = {}
+    for name, value in attributes.items():
+        if isinstance(value, str):
+            text = value.encode()
+            found[name] = occurrences(data, text, len(text).to_bytes(8, "little"))
+        elif isinstance(value, np.generic | np.ndarray) and value.nbytes >= 8 and value.dtype.kind in "iuf":
+            places = occurrences(data, value.tobytes())
+            found[name] = places if len(places) == value.nbytes else []
+    return found
+
+
+def places_of(file):
+    """Offsets in a finished file, by kind."""
+    data, places = file.read_bytes(), {"attributes": [], "scales": []}
+    with h5py.File(file, "r") as opened:
+        root = attribute_bytes(data, opened.attrs)
+        places["scene"] = root.pop("scene")
+        for item in (root, *(attribute_bytes(data, opened[name].attrs) for name in opened)):
+            places["attributes"] += [offset for offsets in item.values() for offset in offsets]
+        for name in ("surface", "separation"):
+            table = opened[name].id
+            chunks = [table.get_chunk_info(i) for i in range(table.get_num_chunks())]
+            places["scales"] += [c.byte_offset + i for c in chunks for i in range(c.size)]
+    return {f"{file.stem}: {kind}": (file, offsets) for kind, offsets in places.items()}
+
+
+def seen(file, whole):
+    """Whether opening tells: by an error, or because a damaged shard is left out."""
+
+    def look():
+        sys.stderr = open(os.devnull, "w")  # noqa: SIM115
+        try:
+            return int(ensembles.open_ensemble(file).n_surfaces < whole)
+        except (StoreError, probe.RefusedError, OSError, RuntimeError, ValueError, KeyError, TypeError):
+            return 1
+
+    return forked(look) != 0
+
+
+def main(folder, flips, *, old=False):
+    prepare()
+    if old:
+        layout.FORMAT = (1, 0)
+        for module in (ensembles, merge):
+            module.seal_notes = lambda file: {}
+    folder.mkdir(parents=True)
+    dice, (one, merged, begun) = random.Random(1), made(folder)
+    places = places_of(one) | places_of(merged)
+    shards = sorted(parts_of(begun).glob("shards/*.h5"))
+    for path in (parts_of(begun) / "run.toml", *shards):
+        places[path.name] = (path, range(path.stat().st_size))
+    held = {begun: ensembles.open_ensemble(begun).n_surfaces}
+    tally = {kind: {"flips": 0, "seen": 0, "unseen": []} for kind in places}
+    for i in range(flips):
+        kind = list(places)[i % len(places)]
+        path, offsets = places[kind]
+        opened = path if path in (one, merged) else begun
+        data = bytearray(good := path.read_bytes())
+        at = dice.choice(offsets)
+        data[at] ^= 1 << dice.randrange(8)
+        path.write_bytes(data)
+        tally[kind]["flips"] += 1
+        if seen(opened, held.get(opened, 0)):
+            tally[kind]["seen"] += 1
+        else:
+            tally[kind]["unseen"].append(at)
+        path.write_bytes(good)
+    unseen = sum(len(found["unseen"]) for found in tally.values())
+    sys.stdout.write(json.dumps({"flips": flips, "unseen": unseen, "where": tally}) + "\n")
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1]), int(sys.argv[2]), old="old" in sys.argv[3:])
