@@ -8,6 +8,7 @@ from pathlib import Path
 from mcgw.errors import StoreError
 from mcgw.formats.files import check_output
 from mcgw.store.disk import parts_of
+from mcgw.store.lock import LOCK_FILES
 from mcgw.store.seal import SEAL_BYTES, SEAL_MAGIC
 
 __all__ = [
@@ -123,7 +124,7 @@ def _refuse_run(output: Output, inputs: list[Path]) -> None:
         if place.is_relative_to(os.path.realpath(parts_of(path))):
             raise output.refuse(f"{parts_of(path)} is the folder of the run that makes {path}")
     for folder in (place, *place.parents):
-        if folder.suffix == ".parts" and (folder / "lock").exists():
+        if folder.suffix == ".parts" and any((folder / name).exists() for name in LOCK_FILES):
             raise output.refuse(f"{folder} is the folder of a run")
 
 

@@ -183,7 +183,7 @@ def leave_behind(path, scene, *, shards):
     """What processes killed at the worst moments leave."""
     folder = parts_of(path)
     (folder / "shards").mkdir(parents=True)
-    (folder / "lock").write_text("pid 1 on here\n")
+    (folder / "holder").write_text("pid 1 on here\n")
     (folder / ".e.h5.0-1-2.tmp").write_bytes(b"half a file")
     (folder / "shards" / ".block.tmp").write_bytes(b"half a block")
     (folder / "shards" / "block-0000000000016.h5").write_bytes(b"of a worker whose driver is gone")

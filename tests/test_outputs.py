@@ -231,7 +231,7 @@ def test_a_map_does_not_take_the_name_of_an_unfinished_run(here, capsys):
 def test_nothing_is_put_into_the_folder_of_any_run(tmp_path):
     folder = tmp_path / "a.h5.parts"
     folder.mkdir()
-    (folder / "lock").touch()
+    (folder / "lock.db").touch()
     for name in (folder, folder / "shards" / "x.csv"):
         with pytest.raises(StoreError, match="is the folder of a run"):
             check_outputs([Output(name, CSV)])

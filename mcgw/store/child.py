@@ -6,7 +6,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-__all__ = ["ChildError", "limit_memory", "run_child"]
+__all__ = ["ChildError", "limit_memory", "memory_limit", "run_child"]
 
 
 class ChildError(Exception):
@@ -64,9 +64,26 @@ def run_child(module: str, *arguments: str, seconds: float | None = None) -> str
 
 
 def limit_memory(size: int) -> None:
-    """Let this process use at most so many bytes, where the system knows such limits."""
+    """Let this process use at most so many bytes, or as many as it may have if that is less.
+
+    Where there is no module `resource` (Windows) nothing caps it but the machine. What a file can make
+    the process ask for is bounded all the same by what `mcgw.store.probe` lets it declare, and its time
+    is by the caller.
+    """
     try:
         import resource
-    except ImportError:  # Windows
+    except ImportError:
         return
-    resource.setrlimit(resource.RLIMIT_AS, (size, size))
+    limits = [limit for limit in resource.getrlimit(resource.RLIMIT_AS) if limit != resource.RLIM_INFINITY]
+    least = min([size, *limits])
+    resource.setrlimit(resource.RLIMIT_AS, (least, least))
+
+
+def memory_limit() -> int | None:
+    """Bytes of address space that a child of this process may have at most; None: no limit, or unknown."""
+    try:
+        import resource
+    except ImportError:
+        return None
+    soft, _ = resource.getrlimit(resource.RLIMIT_AS)
+    return None if soft == resource.RLIM_INFINITY else soft

@@ -1,22 +1,32 @@
 """The lock of a file in the making: one process writes it, or several that each make a share of its blocks.
 
-It lies in the folder of the run (`mcgw.store.disk.parts_of`), is freed by the kernel when its holder dies,
-and goes together with the folder when nothing else is left there.
+It lies in the folder of the run (`mcgw.store.disk.parts_of`) and goes together with the folder when nothing
+else is left there. The system frees it when its holder dies, however that happens. It is the lock of an
+SQLite file that stays empty, which every system has. Such a lock goes when *any* descriptor of its file is
+closed, so nothing else may open that file: who holds it stands in another one.
 """
 
-import fcntl
 import os
 import socket
+import sqlite3
 from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import AbstractContextManager, ExitStack, contextmanager, suppress
 from pathlib import Path
 from time import monotonic, sleep
 
-from mcgw.errors import StoreError
+from filelock import ReadWriteLock, Timeout
 
-__all__ = ["LockedError", "locked", "refuse_link"]
+from mcgw.errors import StoreError
+from mcgw.formats.files import write_whole
+from mcgw.plain_file import read_text
+
+__all__ = ["LOCK_FILES", "LockedError", "locked", "refuse_link"]
 
 PATIENCE = 1.0  # seconds: a process that was killed may need a moment to die
+
+_LOCK, _HOLDER = "lock.db", "holder"
+LOCK_FILES = (_HOLDER, _LOCK)
+_MOST_BYTES = 200
 
 
 class LockedError(StoreError):
@@ -30,7 +40,7 @@ def locked(folder: Path, *, shared: bool = False, patience: float | None = None)
     Parameters
     ----------
     folder : Path
-        From `mcgw.store.disk.parts_of`.
+        From `mcgw.store.disk.parts_of`. It gets the files `LOCK_FILES`, which go with it.
     shared : bool, optional
         One of several jobs that each make a share of the blocks.
     patience : float, optional
@@ -39,55 +49,65 @@ def locked(folder: Path, *, shared: bool = False, patience: float | None = None)
     Raises
     ------
     LockedError
-        If another process holds it.
+        If another process or thread holds it.
     StoreError
         If something else than a folder is there, or it cannot be made or locked.
     """
-    try:
-        fd = _taken(folder, shared, PATIENCE if patience is None else patience)
-    except OSError as error:
-        raise StoreError(f"{folder}: cannot be locked ({error.strerror or error})") from None
-    try:
+    with ExitStack() as held:
+        until = monotonic() + (PATIENCE if patience is None else patience)
+        while (problem := _try(folder, shared, held)) is not None:
+            if monotonic() >= until:
+                raise LockedError(f"{folder}: {problem}")
+            sleep(0.02)
         with suppress(OSError):  # a full disk; it is only for people
-            os.ftruncate(fd, 0)
-            os.pwrite(fd, f"pid {os.getpid()} on {socket.gethostname()}\n".encode(), 0)
-        yield
-    finally:
-        with suppress(OSError):
-            if not shared and os.listdir(folder) == ["lock"]:
-                os.unlink(folder / "lock")
-                os.rmdir(folder)
-        os.close(fd)
+            if shared:
+                (folder / _HOLDER).unlink(missing_ok=True)
+            else:
+                text = f"pid {os.getpid()} on {socket.gethostname()}\n"
+                write_whole(folder / _HOLDER, (text.encode(),))
+        try:
+            yield
+        finally:
+            if not shared:
+                _remove_if_empty(folder)
 
 
-def _taken(folder: Path, shared: bool, patience: float) -> int:
-    """Descriptor of the lock that is in the folder, and not of one that has just been removed with it."""
-    until = monotonic() + patience
-    while True:
-        refuse_link(folder)
-        folder.mkdir(parents=True, exist_ok=True)
-        holder = "another process"
-        with suppress(FileNotFoundError):  # the folder went as its run ended
-            fd = os.open(folder / "lock", os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW | os.O_CLOEXEC, 0o644)
-            try:
-                fcntl.flock(fd, (fcntl.LOCK_SH if shared else fcntl.LOCK_EX) | fcntl.LOCK_NB)
-                if _is(fd, folder / "lock"):
-                    return fd
-            except BlockingIOError:
-                holder = os.pread(fd, 200, 0).decode(errors="replace").strip() or holder
-            except BaseException:
-                os.close(fd)
-                raise
-            os.close(fd)
-        if monotonic() >= until:
-            raise LockedError(f"{folder}: locked by {holder}, which works on this run")
-        sleep(0.02)
+def _try(folder: Path, shared: bool, held: ExitStack) -> str | None:
+    """Take the lock at once, or tell why it cannot be had now."""
+    refuse_link(folder)
+    try:
+        # Writable by its owner alone: otherwise the lock makes names of its own there, and may leave them.
+        folder.mkdir(mode=0o755, parents=True, exist_ok=True)
+        held.enter_context(_lock(folder, shared))
+    except Timeout:
+        return f"locked by {_holder(folder)}, which works on this run"
+    except sqlite3.Error as error:
+        raise StoreError(f"{folder}: cannot be locked ({error}); choose another -o") from None
+    except OSError as error:
+        if error.errno is None or isinstance(error, FileNotFoundError):
+            return "its run has just ended; repeat the command"  # the folder went between two steps
+        raise StoreError(f"{folder}: cannot be locked ({error.strerror or error})") from None
+    return None
 
 
-def _is(fd: int, path: Path) -> bool:
-    with suppress(FileNotFoundError):
-        return os.path.samestat(os.fstat(fd), os.lstat(path))
-    return False
+def _lock(folder: Path, shared: bool) -> AbstractContextManager[None]:
+    lock = ReadWriteLock(folder / _LOCK, is_singleton=False)
+    return (lock.read_lock if shared else lock.write_lock)(blocking=False)
+
+
+def _remove_if_empty(folder: Path) -> None:
+    with suppress(OSError):
+        if set(os.listdir(folder)) <= set(LOCK_FILES):
+            for name in LOCK_FILES:
+                (folder / name).unlink(missing_ok=True)
+            folder.rmdir()
+
+
+def _holder(folder: Path) -> str:
+    try:
+        return read_text(folder / _HOLDER, _MOST_BYTES).strip() or "another process"
+    except StoreError:
+        return "another process"
 
 
 def refuse_link(folder: Path) -> None:

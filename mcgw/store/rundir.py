@@ -4,7 +4,8 @@
 
     run.toml    the frozen scene, its identity, the versions that draw, the size of a block;
                 last, the SHA-256 of all that stands before
-    lock        held by whoever writes the file, freed by the kernel when it dies (`lock`)
+    lock.db     held by whoever writes the file, freed by the system when it dies (`lock`)
+    holder      who that is
     shards/     block-0000000000042.h5: the surfaces from number 42 on
 
 The set of valid shards is the only record of progress.

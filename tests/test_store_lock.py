@@ -1,0 +1,173 @@
+"""One driver alone or several that share: between threads and processes, freed however a holder ends."""
+
+import os
+import subprocess
+import sys
+import threading
+from contextlib import ExitStack
+from pathlib import Path
+
+import pytest
+
+import mcgw
+from mcgw import running
+from mcgw.errors import StoreError
+from mcgw.running import run
+from mcgw.store.lock import LOCK_FILES, locked
+from mcgw.store.rundir import parts_of
+
+ROOT = Path(mcgw.__file__).parents[1]
+ENV = os.environ | {"PYTHONPATH": str(ROOT)}
+
+# A process that holds the lock until it is killed; its own child, made by a fork, lives on.
+HOLD = """
+import os, sys, time
+from pathlib import Path
+from mcgw.store.lock import locked
+with locked(Path(sys.argv[1]), shared=sys.argv[2] == "shared"):
+    child = os.fork()
+    if not child:
+        time.sleep(600)
+    print(child, flush=True)
+    time.sleep(600)
+"""
+
+
+def free(folder, *, shared):
+    try:
+        with locked(folder, shared=shared):
+            return True
+    except StoreError:
+        return False
+
+
+def in_a_thread(folder, *, shared):
+    found = []
+    thread = threading.Thread(target=lambda: found.append(free(folder, shared=shared)))
+    thread.start()
+    thread.join()
+    return found[0]
+
+
+@pytest.mark.parametrize("ask", [free, in_a_thread])
+def test_alone_or_shared(tmp_path, ask):
+    with locked(tmp_path):
+        assert not ask(tmp_path, shared=False)
+        assert not ask(tmp_path, shared=True)
+        with pytest.raises(StoreError, match=f"locked by pid {os.getpid()} on .*, which works on this run"):
+            locked(tmp_path).__enter__()
+    with locked(tmp_path, shared=True):
+        assert ask(tmp_path, shared=True)
+        assert not ask(tmp_path, shared=False)
+    assert ask(tmp_path, shared=False)
+    assert not tmp_path.exists()
+
+
+def test_several_share_until_the_last_one_leaves(tmp_path):
+    with ExitStack() as first, ExitStack() as second:
+        first.enter_context(locked(tmp_path, shared=True))
+        second.enter_context(locked(tmp_path, shared=True))
+        first.close()
+        assert not free(tmp_path, shared=False)
+    assert free(tmp_path, shared=False)
+
+
+@pytest.mark.parametrize("how", ["shared", "alone"])
+def test_kill_9_frees_it_though_a_child_of_the_holder_lives(tmp_path, how):
+    holder = subprocess.Popen([sys.executable, "-c", HOLD, tmp_path, how], env=ENV, stdout=subprocess.PIPE)
+    child = int(holder.stdout.readline())
+    try:
+        assert free(tmp_path, shared=True) == (how == "shared")
+        if how == "alone":
+            with pytest.raises(StoreError, match=f"locked by pid {holder.pid} on"):
+                locked(tmp_path).__enter__()
+        assert not free(tmp_path, shared=False)
+        holder.kill()
+        holder.wait()
+        assert free(tmp_path, shared=False)
+    finally:
+        holder.kill()
+        os.kill(child, 9)
+        holder.communicate()
+
+
+def test_who_shared_it_last_is_not_taken_for_the_one_before(tmp_path):
+    with locked(tmp_path):
+        pass
+    with locked(tmp_path, shared=True), pytest.raises(StoreError, match="locked by another process"):
+        locked(tmp_path).__enter__()
+
+
+def test_nothing_planted_is_followed(tmp_path):
+    victim, folder = tmp_path / "victim", tmp_path / "run"
+    folder.mkdir()
+    victim.write_text("mine")
+    (folder / "holder").symlink_to(victim)
+    with locked(folder):
+        assert not (folder / "holder").is_symlink()
+        assert {path.name for path in folder.iterdir()} == set(LOCK_FILES)
+    assert not folder.exists()
+    folder.mkdir()
+    (folder / "lock.db").symlink_to(victim)
+    with pytest.raises(StoreError, match="cannot be locked"):
+        locked(folder).__enter__()
+    assert victim.read_text() == "mine"
+
+
+def test_a_run_in_a_folder_open_to_all_leaves_nothing(tmp_path, make_scene, monkeypatch):
+    """The lock would make names of its own in a folder that others can write."""
+    monkeypatch.setattr(running, "shard_size", lambda scene, sampler: 4)
+    tmp_path.chmod(0o777)
+    before = os.umask(0)
+    try:
+        run(make_scene(separations=(2.0,), sampler="tail", n_surfaces=12), tmp_path / "e.h5")
+    finally:
+        os.umask(before)
+    assert [path.name for path in tmp_path.iterdir()] == ["e.h5"]
+    assert not parts_of(tmp_path / "e.h5").exists()
+
+
+HIDDEN = """
+import importlib.abc, sys
+class Hide(importlib.abc.MetaPathFinder):
+    def find_spec(self, name, path=None, target=None):
+        if name in ("fcntl", "resource"):
+            raise ModuleNotFoundError(f"No module named {name!r}", name=name)
+sys.meta_path.insert(0, Hide())
+"""
+DOOR = """
+import sys, importlib, pkgutil
+from pathlib import Path
+import mcgw, numpy
+from mcgw import cli, running
+from mcgw.errors import StoreError
+from mcgw.store.lock import locked
+for found in pkgutil.walk_packages(mcgw.__path__, "mcgw."):
+    if found.name not in ("mcgw.__main__", "mcgw.dask_engine"):
+        importlib.import_module(found.name)
+scene = mcgw.load_scene(sys.argv[1])
+loads = mcgw.simulate(scene).load
+for size, name in ((10**6, "whole.h5"), (64, "blocks.h5")):
+    running.shard_size = lambda scene, sampler, size=size: size
+    assert cli.main(["run", sys.argv[1], "-o", name]) == 0
+    assert cli.main(["show", name]) == 0
+    assert numpy.array_equal(mcgw.open_ensemble(name).load, loads)
+with locked(Path()):
+    try:
+        locked(Path()).__enter__()
+    except StoreError:
+        print("locked")
+assert not {"fcntl", "resource"} & set(sys.modules)
+"""
+
+
+def test_all_works_where_fcntl_and_resource_are_missing(tmp_path):
+    """Hidden from this interpreter and from its children."""
+    (tmp_path / "sitecustomize.py").write_text(HIDDEN)
+    env = ENV | {"PYTHONPATH": os.pathsep.join([str(tmp_path), str(ROOT)])}
+    hidden = subprocess.run([sys.executable, "-c", "import fcntl"], env=env, capture_output=True, check=False)
+    assert b"No module named 'fcntl'" in hidden.stderr
+    call = [sys.executable, "-c", DOOR, ROOT / "runs" / "quick.toml"]
+    done = subprocess.run(call, env=env, cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.endswith("locked\n")
