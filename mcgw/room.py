@@ -8,6 +8,7 @@ import numpy as np
 
 from mcgw.errors import StoreError
 from mcgw.scene import Scene
+from mcgw.store.child import memory_limit
 
 __all__ = ["check_memory", "check_room", "keep_freed_memory", "memory_available"]
 
@@ -70,12 +71,15 @@ def check_memory(what: str, size: int) -> None:
 
 
 def memory_available() -> int:
-    """Bytes that this process may still take: of the machine and of its control group."""
+    """Bytes that this process may still take: of the machine, of its control group, and by `ulimit -v`."""
     limits = [_number(line.split()[1]) * 1024 for line in _lines("/proc/meminfo") if "MemAvailable" in line]
     used = [_number(line) for line in _lines("/sys/fs/cgroup/memory.current")]
     most = [_number(line) for line in _lines("/sys/fs/cgroup/memory.max") if line.strip() != "max"]
     if used and most:
         limits.append(max(most[0] - used[0], 0))
+    if (limit := memory_limit()) is not None:
+        taken = [_number(line.split()[1]) * 1024 for line in _lines("/proc/self/status") if "VmSize" in line]
+        limits.append(max(limit - sum(taken), 0))
     return min(limits, default=_MOST)
 
 

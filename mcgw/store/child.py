@@ -63,8 +63,8 @@ def run_child(module: str, *arguments: str, seconds: float | None = None) -> str
     raise ChildError(how, lines[-1] if lines else "")
 
 
-def limit_memory(size: int) -> None:
-    """Let this process use at most so many bytes, or as many as it may have if that is less.
+def limit_memory(size: int) -> int:
+    """Let this process use at most so many bytes, or as many as it may have if that is less: the limit.
 
     Where there is no module `resource` (Windows) nothing caps it but the machine. What a file can make
     the process ask for is bounded all the same by what `mcgw.store.probe` lets it declare, and its time
@@ -73,14 +73,15 @@ def limit_memory(size: int) -> None:
     try:
         import resource
     except ImportError:
-        return
+        return size
     limits = [limit for limit in resource.getrlimit(resource.RLIMIT_AS) if limit != resource.RLIM_INFINITY]
     least = min([size, *limits])
     resource.setrlimit(resource.RLIMIT_AS, (least, least))
+    return least
 
 
 def memory_limit() -> int | None:
-    """Bytes of address space that a child of this process may have at most; None: no limit, or unknown."""
+    """Bytes of address space that this process and each child may have; None: no limit, or not known."""
     try:
         import resource
     except ImportError:

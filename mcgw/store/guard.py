@@ -9,11 +9,12 @@ from typing import Any
 
 from mcgw.errors import StoreError
 from mcgw.plain_file import open_regular
-from mcgw.store.child import ChildError, run_child
+from mcgw.store.child import ChildError, memory_limit, run_child
+from mcgw.store.seal import check_seal
 
 __all__ = ["examine", "examine_all"]
 
-_MEMORY = 2**31  # address space of the child; HDF5 and NumPy take a quarter of it
+_MEMORY = 2**31  # address space of the child; HDF5 and NumPy take a tenth of it
 _AT_ONCE = 500
 _SECONDS, _BYTES_A_SECOND = 4.0, 50e6
 
@@ -34,7 +35,8 @@ def examine(path: Path) -> dict[str, Any]:
     Raises
     ------
     StoreError
-        If it is not there, no plain file of numbers, damaged, or takes too long or too much memory.
+        If it is not there, no plain file of numbers, damaged, or takes too long or too much memory; or if
+        this process may have too little memory for looking.
     """
     fd = open_regular(path)
     try:
@@ -59,9 +61,13 @@ def examine_all(paths: Sequence[Path]) -> None:
         try:
             said = run_child("mcgw.store.probe", *words, seconds=_SECONDS + size / _BYTES_A_SECOND)
         except ChildError as error:
+            for path in some:
+                _blame_memory(path, path)
             raise StoreError(f"{some[0].parent}: damaged or hostile; reading it {error.how}") from None
         for path, line in zip(some, said.splitlines(), strict=True):
             if "refused" in (answer := json.loads(line)):
+                if "sure" not in answer:
+                    _blame_memory(path, path)
                 raise StoreError(f"{path}: refused: {answer['refused']}")
 
 
@@ -73,9 +79,27 @@ def _examined(path: Path, shown: Path, state: tuple[int, int, int]) -> dict[str,
         said = run_child("mcgw.store.probe", str(path), "--memory", str(_MEMORY), seconds=seconds)
         answer: dict[str, Any] = json.loads(said)
     except ChildError as error:
+        _blame_memory(path, shown)
         raise StoreError(f"{shown}: damaged or hostile; reading it {error.how}") from None
     except ValueError:
         raise StoreError(f"{shown}: not an HDF5 file, or a damaged one") from None
     if "refused" in answer:
+        if "sure" not in answer:
+            _blame_memory(path, shown)
         raise StoreError(f"{shown}: refused: {answer['refused']}")
     return answer
+
+
+def _blame_memory(path: Path, shown: Path) -> None:
+    """Raise if the child may have less memory than it is meant to have, and the file is as it was written."""
+    limit = memory_limit()
+    if limit is None or limit >= _MEMORY:
+        return
+    try:
+        check_seal(path)
+    except StoreError:
+        return
+    raise StoreError(
+        f"{shown}: cannot be looked at with the memory that this process may have (ulimit -v {limit // 1024}); "
+        f"allow more, {_MEMORY // 1024} is always enough"
+    )

@@ -5,7 +5,8 @@ crafted file can crash the library, so this runs as a script in a process of its
 
     python -m mcgw.store.probe FILE ... --memory BYTES
 
-It prints one line of JSON a file: its attributes and datasets, or why it is refused.
+It prints one line of JSON a file: its attributes and datasets, or why it is refused; "sure" if that is not
+for a want of memory.
 """
 
 import json
@@ -169,14 +170,14 @@ def _read(data: h5py.Dataset) -> None:
 def _main(paths: list[str], memory: int) -> None:
     from mcgw.store.child import limit_memory
 
-    limit_memory(memory)
+    memory = limit_memory(memory)
     for path in paths:
         try:
             answer = describe(path)
         except MemoryError:
             answer = {"refused": f"needs more than {memory} bytes of memory"}
         except RefusedError as error:
-            answer = {"refused": str(error)}
+            answer = {"refused": str(error), "sure": True}
         except Exception:  # HDF5 reports damage as any of a dozen exceptions
             answer = {"refused": "not an HDF5 file, or a damaged one"}
         sys.stdout.write(json.dumps(answer) + "\n")
