@@ -67,7 +67,7 @@ def test_too_little_memory_is_not_blamed_on_the_file(file):
     found = limited(TIGHT, "-c", LOOK, file).stdout.splitlines()
     assert len(found) == 2
     for line in found:
-        assert line.startswith(f"{file}: cannot be looked at with the memory that this process may have")
+        assert line.startswith(f"{file}: cannot be looked at with the memory this process may have")
         assert f"(ulimit -v {TIGHT * 1024})" in line
     assert limited(1024, "-c", LOOK, file).stdout == ""
 

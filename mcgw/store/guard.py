@@ -100,6 +100,6 @@ def _blame_memory(path: Path, shown: Path) -> None:
     except StoreError:
         return
     raise StoreError(
-        f"{shown}: cannot be looked at with the memory that this process may have (ulimit -v {limit // 1024}); "
+        f"{shown}: cannot be looked at with the memory this process may have (ulimit -v {limit // 1024}); "
         f"allow more, {_MEMORY // 1024} is always enough"
     )
