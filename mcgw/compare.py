@@ -158,6 +158,7 @@ def _gaussian(parts: Fluctuations, asperities: float) -> NDArray[np.bool_]:
 
 
 def _chosen(separations: Array) -> Array:
-    """Some of many separations, evenly."""
-    step = -(-len(separations) // _MOST_SEPARATIONS)
-    return separations[::step]
+    """Some of many separations, evenly, with the first and the last."""
+    n = len(separations)
+    chosen = np.unique(np.linspace(0, n - 1, min(n, _MOST_SEPARATIONS)).round().astype(int))
+    return np.asarray(separations[chosen])

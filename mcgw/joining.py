@@ -53,7 +53,8 @@ def merge(path: str | Path) -> Ensemble:
                 f"{path}: {sum(span.n for span in gaps)} of {started.scene.n_surfaces} surfaces are missing, "
                 f"from {gaps[0].first} on; run the jobs that make them again"
             )
-        merge_once(started, path, signals)
+        if not merge_once(started, path, signals):
+            raise RunError(f"{started.folder}: a shard is damaged; run the jobs again, which draw it anew")
     return open_ensemble(path)
 
 

@@ -126,7 +126,9 @@ def _engine(args: argparse.Namespace) -> "Engine | None":
     if args.workers is not None or args.scheduler is not None:
         from mcgw.dask_engine import Dask
 
-        return Dask(args.scheduler, workers=args.workers or 1, insecure=args.insecure)
+        return Dask(
+            args.scheduler, workers=1 if args.workers is None else args.workers, insecure=args.insecure
+        )
     return None
 
 

@@ -1,0 +1,176 @@
+"""What the verdict rests on: every quantity at every separation, and as many degrees as there are."""
+
+import dataclasses
+from itertools import pairwise
+
+import exact
+import numpy as np
+import pytest
+from scipy.stats import chi2
+
+import analytic
+import mcgw
+from mcgw.compare import FALSE_ALARM, Verdict, compare, verdict
+from mcgw.ensemble import Arrays
+
+QUANTITIES = tuple(analytic.QUANTITIES)
+H = (2.0, 0.0, 1.0)  # in no order: a verdict that sorts one of two lists would show
+
+
+@pytest.fixture(scope="module")
+def ensemble():
+    """Means of 500 surfaces known to 0.1 to 0.4 %: what is 2 % off is off by 5 to 20 standard errors."""
+    from conftest import SURFACE
+
+    scene = mcgw.Scene(
+        surface=SURFACE,
+        separations=H,
+        grading=analytic.Exponential(2.0),
+        quantities=QUANTITIES,
+        n_asperities=30_000,
+        n_surfaces=500,
+        seed=3,
+    )
+    return mcgw.simulate(scene)
+
+
+def scaled(ensemble, factors):
+    """The same ensemble in memory, some columns multiplied: {(quantity, separation's number): factor}."""
+    arrays = {name: ensemble.values(name).astype(float) for name in ensemble.scene.quantities}
+    for (name, k), factor in factors.items():
+        arrays[name][:, k] *= factor
+    return dataclasses.replace(ensemble, sums=Arrays(arrays))
+
+
+def test_the_ensemble_agrees_as_it_is(ensemble):
+    assert verdict(scaled(ensemble, {})).agrees
+    assert verdict(scaled(ensemble, {})) == verdict(ensemble)
+
+
+@pytest.mark.parametrize("factor", [0.98, 1.02])
+@pytest.mark.parametrize("quantity", QUANTITIES)
+def test_each_quantity_alone_2_percent_off_breaks_it(ensemble, quantity, factor):
+    wrong = scaled(ensemble, dict.fromkeys([(quantity, k) for k in range(len(H))], factor))
+    assert not verdict(wrong).agrees
+    assert compare(wrong).verdict == verdict(wrong)
+
+
+@pytest.mark.parametrize("k", range(len(H)))
+@pytest.mark.parametrize("quantity", QUANTITIES)
+def test_each_mean_alone_2_percent_off_breaks_it(ensemble, quantity, k):
+    assert not verdict(scaled(ensemble, {(quantity, k): 1.02})).agrees
+
+
+def test_the_last_of_many_separations_counts(make_scene):
+    """More separations than a verdict looks at: the first and the last are among those it takes."""
+    scene = make_scene(separations=tuple(np.linspace(0, 2, 60)), quantities=("load",), n_asperities=30_000)
+    found = mcgw.simulate(scene)
+    assert verdict(found).agrees
+    for k in (0, 59):
+        assert not verdict(scaled(found, {("load", k): 1.02})).agrees
+
+
+def independent(ensemble):
+    """Chi-square and degrees by a quadrature of its own, for an ensemble in which every mean counts."""
+    scene = ensemble.scene
+    columns = [(name, h) for name in scene.quantities for h in scene.separations]
+    matrix = exact.covariance(scene, columns) / ensemble.n_surfaces
+    unit = np.sqrt(np.diag(matrix))
+    difference = np.concatenate(
+        [ensemble.values(name).mean(axis=0) - exact.mean(scene, name) for name in scene.quantities]
+    )
+    size, axes = np.linalg.eigh(matrix / np.outer(unit, unit))
+    keep = size > 1e-9  # below, a combination is a difference of equal columns
+    z = (difference / unit) @ axes[:, keep] / np.sqrt(size[keep])
+    return float(z @ z), int(keep.sum()), size
+
+
+@pytest.mark.parametrize("count", ["fixed", "poisson"])
+def test_chi_square_and_p_are_those_of_the_exact_covariance(ensemble, count):
+    found = mcgw.simulate(dataclasses.replace(ensemble.scene, count=count))
+    chi_square, degrees, size = independent(found)
+    assert size.min() > 1e-8  # far enough from where one would be thrown out
+    said = verdict(found)
+    assert said.degrees == degrees == len(QUANTITIES) * len(H)
+    assert said.chi_square == pytest.approx(chi_square, rel=1e-6)
+    assert said.p == pytest.approx(chi2.sf(chi_square, degrees), rel=1e-5)
+
+
+def test_a_quantity_that_is_a_multiple_of_another_adds_no_degree(ensemble):
+    """Without a grading the stiffness is the conductance times E*/2."""
+    plain = dataclasses.replace(ensemble.scene, grading=analytic.Homogeneous())
+    assert verdict(mcgw.simulate(plain)).degrees == (len(QUANTITIES) - 1) * len(H)
+
+
+@pytest.mark.parametrize("n_surfaces", [20, 200, 2000])
+def test_what_is_thrown_out_where_few_touch(make_scene, n_surfaces):
+    """One quantity at one separation: it counts where the exact law of its mean is within 0.1 of Gaussian."""
+    taken = []
+    for h in np.linspace(0, 4, 17):
+        scene = make_scene(separations=(h,), quantities=("load",), n_surfaces=n_surfaces)
+        s, p = exact.nodes(scene, h)
+        x = exact.term(scene, "load", s, h)
+        m1 = p @ x
+        below = 1 - p.sum()
+        k2, k3, k4 = (p @ (x - m1) ** k + below * (-m1) ** k for k in (2, 3, 4))
+        asperities = scene.n_asperities * n_surfaces
+        skewness, kurtosis = k3 / k2**1.5 / np.sqrt(asperities), (k4 / k2**2) / asperities
+        counts = skewness < 0.1 and kurtosis < 0.1
+        assert verdict(mcgw.simulate(scene)).degrees == counts, h
+        taken.append(counts)
+    assert taken[0]
+    assert not taken[-1]
+
+
+def test_degrees_of_a_fixed_scene(make_scene):
+    """By the count above carried to all combinations: nine separations, four quantities, 200 surfaces."""
+    assert verdict(mcgw.simulate(make_scene())).degrees == degrees_by_hand(make_scene())
+
+
+def degrees_by_hand(scene):
+    """Combinations of the usable means that are Gaussian to within 0.1, by a rule of heights of its own."""
+    h = np.array(scene.separations)
+    edges = np.unique(np.concatenate([h, h.min() + np.linspace(0, 12, 25) ** 2 / 12]))
+    s, p = [], []
+    x, w = np.polynomial.legendre.leggauss(40)
+    for a, b in pairwise(edges):
+        v = np.sqrt(b - a) * (1 + x) / 2  # square roots begin at every separation
+        s.append(a + v * v)
+        p.append(np.sqrt(b - a) / 2 * w * 2 * v * exact.heights_of(scene).pdf(a + v * v))
+    s, p = np.concatenate(s), np.concatenate(p)
+    f = np.stack([exact.term(scene, name, s, x) for name in scene.quantities for x in h], axis=1)
+    f = np.concatenate([f, np.zeros((1, f.shape[1]))])
+    p = np.append(p, 1 - p.sum())  # below all separations
+    asperities = scene.n_asperities * scene.n_surfaces
+
+    def gaussian(y):
+        return (np.abs(p @ y**3) / np.sqrt(asperities) < 0.1) & (p @ y**4 / asperities < 0.1)
+
+    f -= p @ f
+    f /= np.sqrt(p @ f**2)
+    f = f[:, gaussian(f)]
+    size, axes = np.linalg.eigh((f * p[:, None]).T @ f)
+    y = f @ (axes[:, size > 1e-9] / np.sqrt(size[size > 1e-9]))
+    return int(gaussian(y).sum())
+
+
+def test_the_rate_of_false_alarms_is_one_in_a_thousand():
+    assert FALSE_ALARM == 1e-3
+    assert Verdict(1.0, 1, 1.001e-3).agrees
+    assert not Verdict(1.0, 1, 0.999e-3).agrees
+
+
+def test_curves_are_those_of_the_exact_law(ensemble):
+    scene, curves = ensemble.scene, compare(ensemble).curves
+    assert tuple(curves) == QUANTITIES
+    for name, curve in curves.items():
+        values = ensemble.values(name).astype(float)
+        np.testing.assert_allclose(curve.mean, values.mean(axis=0), rtol=1e-12)
+        np.testing.assert_allclose(curve.theory, exact.mean(scene, name), rtol=1e-10)
+        stderr = exact.std(scene, name) / np.sqrt(len(values))
+        np.testing.assert_allclose(curve.stderr, stderr, rtol=1e-8)
+        np.testing.assert_allclose(
+            curve.residual, (values.mean(axis=0) - exact.mean(scene, name)) / stderr, rtol=1e-5, atol=1e-6
+        )
+        assert np.all(curve.low < curve.mean)
+        assert np.all(curve.mean < curve.high)
