@@ -140,10 +140,85 @@ def test_files(figures, tmp_path):
     assert again[1].read_bytes() == (tmp_path / "new" / "figure-3.svg").read_bytes()
 
 
-def test_axes_carry_units(figures):
-    bare = {"E*(s)/E*", "std / mean", "probability density", "share per σ", "grading factor γ"}
-    for data in figures.values():
-        for panel in data.panels:
-            for label in (panel.xlabel, panel.ylabel):
-                known = label in bare or any(mark in label for mark in ("/", "(", "F^*"))
-                assert known, (data.name, label)
+H, G, S = "separation d/σ", "grading factor γ", "summit height s = z/σ"
+AXES = {
+    "figure-1": [(S, "E*(s)/E*")] * 2,
+    "figure-2": [(H, r"load integral $F^*_{3/2}$")] * 2,
+    "figure-3": [(G, r"$(A/P)\,/\,(A/P)_\mathrm{hom}$")] * 2,
+    "figure-4": [(G, r"$\psi/\psi_\mathrm{hom}$")] * 4,
+    "figure-5": [(H, r"stiffness integral $F^*_{1/2}$")] * 2,
+    "figure-6": [(G, r"$K/K_\mathrm{hom}$")] * 2,
+    "equal-load": [(G, rf"${q}/{q}_\mathrm{{hom}}$") for q in "KCAK"],
+    "fluctuations": [(H, "std / mean")] * 3,
+    "distribution": [(r"load over its mean, $P/\langle P\rangle$", "probability density")] * 3,
+    "area-and-load": [
+        (r"pressure $P/A_n$ (MPa)", r"real area fraction $A/A_n$"),
+        (H, r"$d\,\ln A/d\,\ln P$"),
+    ],
+    "who-carries": [(S, "E*(s)/E*"), (S, "share per σ")],
+    "negative-modulus": [(G, S)],
+}
+
+
+def test_axes_say_what_is_drawn_and_in_which_unit(figures):
+    assert list(AXES) == list(figures)
+    for name, data in figures.items():
+        assert [(panel.xlabel, panel.ylabel) for panel in data.panels] == AXES[name], name
+
+
+def test_curves_carry_the_label_of_their_grading_or_separation(figures):
+    """A line drawn under another's label: theory by the label alone, in two panels of each kind."""
+    for name, n in (("figure-2", 1.5), ("figure-5", 0.5)):
+        for panel in figures[name].panels:
+            for series in panel.series:
+                grading = analytic.Exponential(float(series.label.removeprefix("γ = ")))
+                np.testing.assert_allclose(series.theory, analytic.fn(n, series.x, grading), rtol=1e-12)
+    for panel in figures["figure-6"].panels:
+        for series in panel.series:
+            h = float(series.label.removeprefix("d/σ = "))
+            for gamma, value in list(zip(series.x, series.theory, strict=True))[::20]:
+                exact = analytic.stiffness_ratio(h, analytic.Exponential(gamma))
+                assert value == pytest.approx(float(exact), rel=1e-12)
+
+
+def test_pressures_and_area_fractions_are_those_of_the_paper(figures):
+    """P/A_n in MPa and A/A_n at d = 0, gamma = 2: closed forms of F_1 and F*_{3/2}."""
+    series = figures["area-and-load"].panels[0].series[0]
+    assert series.label == "γ = 2"
+    x = SURFACE
+    area = np.pi * x.eta * x.radius * x.sigma / np.sqrt(2 * np.pi)
+    f = float(analytic.fn(1.5, 0.0, analytic.Exponential(2.0)))
+    pressure = 4 / 3 * x.eta * x.E_star * x.radius**0.5 * x.sigma**1.5 * f / 1e6
+    assert (series.x[0], series.theory[0]) == (pytest.approx(pressure), pytest.approx(area))
+    assert series.points.x[0] == pytest.approx(pressure, rel=0.01)
+    assert series.points.mean[0] == pytest.approx(area, rel=0.01)
+
+
+def test_captions_count_what_was_drawn(figures):
+    for name in ("figure-2", "figure-3", "figure-5", "figure-6", "area-and-load"):
+        assert "400 surfaces of 30000 asperities, seed 11" in figures[name].caption
+    for name in ("figure-4", "who-carries", "equal-load"):
+        assert "20 surfaces of 30000 asperities, seed 11" in figures[name].caption
+    assert "(a: 400 surfaces.)" in figures["equal-load"].caption
+
+
+def test_a_csv_has_every_number_of_its_figure(figures, tmp_path):
+    data = figures["figure-6"]
+    *_, path = save_figures([data], tmp_path, csv=True)
+    rows = list(csv.DictReader(path.read_text().splitlines()))
+    expected = []
+    for panel in data.panels:
+        for s in panel.series:
+            expected += [
+                (panel.title, s.label, "line", x, y, "", "") for x, y in zip(s.x, s.theory, strict=True)
+            ]
+            p = s.points
+            expected += [
+                (panel.title, s.label, "point", *numbers)
+                for numbers in zip(p.x, p.exact, p.mean, p.stderr, strict=True)
+            ]
+    found = [tuple(row.values()) for row in rows]
+    assert len(found) == len(expected)
+    for a, b in zip(found, expected, strict=True):
+        assert a[:3] == b[:3]
+        assert [float(x) if x else "" for x in a[3:]] == list(b[3:])

@@ -24,6 +24,21 @@ def test_plan_says_what_is_drawn(make_scene):
     assert "conductance: not asked for" in text
 
 
+def test_plan_counts_what_is_kept_and_says_who_chose(make_scene):
+    """Bytes of the sums, and of moments and cells where they are kept; auto is named where it chose."""
+    scene = make_scene(sampler="cells", keep="moments", separations=(1.0, 2.0))
+    plan = plan_of(scene)
+    drawn = sampler_of(scene).block(0, 1)
+    assert plan.bytes == 8 * 200 * (2 * 4 + drawn.moments.shape[1] + drawn.counts.shape[1])
+    assert "chosen by auto" not in plan_text(scene, plan)
+    assert "sampler       cells" in plan_text(scene, plan)
+    assert "chosen by auto" in plan_text(make_scene(sampler="auto"), plan)
+    text = plan_text(scene, plan)
+    assert f"touching      {plan.touching:.4g} of a surface, at the lowest d/sigma = 1" in text
+    assert f"results       {plan.bytes / 1e6:.4g} MB" in text
+    assert f"  {3000 - plan.touching:.4g} asperities of a surface lie below" in text
+
+
 def test_contacts_alone_draw_no_height(make_scene):
     scene = make_scene(quantities=("contacts",), sampler="cells")
     plan = plan_of(scene)

@@ -129,6 +129,40 @@ def test_a_pair_is_of_the_same_surfaces(make_scene, change, told):
     paired_ratio(mcgw.simulate(make_scene(**values, grading=analytic.Exponential(0.5))), one, "load")
 
 
+def other_seed(make_scene, **changes):
+    """Two ensembles of one shape: other seeds, otherwise alike."""
+    some = {"separations": (0.0, 1.0), "n_surfaces": 50} | changes
+    return [mcgw.simulate(make_scene(**some, seed=seed)) for seed in (1, 2)]
+
+
+def test_ensembles_of_different_seeds_are_no_pair(make_scene):
+    """Of the same shape, so that nothing else keeps them apart."""
+    one, other = other_seed(make_scene)
+    with pytest.raises(ValueError, match="same surfaces"):
+        paired_ratio(one, other, "load")
+    with pytest.raises(ValueError, match="same surfaces"):
+        paired_ratio(other, one, "area")
+    same = mcgw.simulate(dataclasses.replace(one.scene, grading=analytic.Exponential(0.5)))
+    assert np.all(paired_ratio(same, one, "load").ratio < 1)
+
+
+def test_a_ratio_of_the_same_surfaces_by_hand(make_scene):
+    scene = make_scene(separations=(0.0, 1.0), n_surfaces=80)
+    new = mcgw.simulate(dataclasses.replace(scene, grading=analytic.Exponential(0.5)))
+    old = mcgw.simulate(scene)
+    pair = paired_ratio(new, old, "load")
+    b, a = new.load, old.load
+    ratio = b.sum(axis=0) / a.sum(axis=0)
+    np.testing.assert_allclose(pair.ratio, ratio, rtol=1e-13)
+    stderr = np.sqrt(((b - ratio * a) ** 2).sum(axis=0) / (79 * 80)) / a.mean(axis=0)
+    np.testing.assert_allclose(pair.stderr, stderr, rtol=1e-9)
+    leave_one_out = [
+        np.delete(b, k, axis=0).sum(axis=0) / np.delete(a, k, axis=0).sum(axis=0) for k in range(80)
+    ]
+    jackknife = np.sqrt(79 / 80 * ((leave_one_out - np.mean(leave_one_out, axis=0)) ** 2).sum(axis=0))
+    np.testing.assert_allclose(pair.stderr, jackknife, rtol=0.05)
+
+
 def test_moments_of_another_version(base, monkeypatch):
     """Cells priced otherwise are other cells: their moments must not be taken for these."""
     monkeypatch.setattr("mcgw.sampling.spacing._CELL", 4000.0)

@@ -190,6 +190,69 @@ def test_negative_moduli_as_the_scene_wants_them(scene, negative, monkeypatch):
     assert below > 3
 
 
+def test_the_branch_below_the_margin_is_entered(scene, monkeypatch):
+    """Surfaces whose load is reached only below all that was drawn at once: drawn whole, and solved.
+
+    Six standard deviations leave none, one leaves a sixth. Each against a bisection over all its heights.
+    """
+    from mcgw import solution
+
+    few = replace(scene, n_asperities=3, grading=analytic.Homogeneous(), n_surfaces=200)
+    monkeypatch.setattr(solution, "_MARGIN", 0.5)
+    drawn_whole, listed, starts = [], solution.heights, []
+
+    def spy(asked, number, *, untouched=False):
+        if untouched:
+            drawn_whole.append(number)
+        return listed(asked, number, untouched=untouched)
+
+    def newton(s, modulus, exponent, target, start):
+        starts.append(start)
+        return separation_on(s, modulus, exponent, target, start)
+
+    monkeypatch.setattr(solution, "heights", spy)
+    monkeypatch.setattr(solution, "separation_on", newton)
+    (found,) = solve(few, "load", [2.0])
+    assert 0 < len(drawn_whole) < 200
+    assert len(set(drawn_whole)) == len(drawn_whole)
+    assert min(starts) < max(starts) - 0.4  # the search for a start went down in steps
+    asked = replace(few, sampler="tail", separations=(max(starts),), quantities=tuple(analytic.QUANTITIES))
+    scale = analytic.QUANTITIES["load"].scale(few.surface)
+    for number in (*drawn_whole[:5], *(k for k in range(5) if k not in drawn_whole)):
+        s = listed(asked, number, untouched=True)
+        low, high = -50.0, float(s.max())
+        for _ in range(100):
+            middle = (low + high) / 2
+            above = scale * (np.maximum(s - middle, 0) ** 1.5).sum() > 2.0
+            low, high = (middle, high) if above else (low, middle)
+        assert found.surfaces["separation"][number] == pytest.approx(low, rel=1e-9, abs=1e-9)
+
+
+def test_surfaces_within_the_margin_are_drawn_once(scene, monkeypatch):
+    from mcgw import solution
+
+    listed, whole = solution.heights, []
+
+    def spy(asked, number, *, untouched=False):
+        whole.append(untouched)
+        return listed(asked, number, untouched=untouched)
+
+    monkeypatch.setattr(solution, "heights", spy)
+    solve(replace(scene, n_surfaces=40), "load", [900.0])
+    assert whole == [False] * 40
+
+
+@pytest.mark.parametrize("level", [0.5, 0.95, 0.99])
+def test_intervals_are_students(solved, level):
+    from scipy.stats import t as student
+
+    for name, x in solved[1].surfaces.items():
+        half = student.ppf((1 + level) / 2, x.size - 1) * x.std(ddof=1) / np.sqrt(x.size)
+        assert solved[1].interval(name, level) == (
+            pytest.approx(x.mean() - half), pytest.approx(x.mean() + half)
+        )  # fmt: skip
+
+
 def test_units():
     assert parse("0.5 GPa", "Pa") == 0.5e9
     assert parse("3", "N") == 3

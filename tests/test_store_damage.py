@@ -266,8 +266,8 @@ def test_nobody_works_on_a_folder_that_was_just_removed(scene, tmp_path, way, mo
     asked = ended_while_locking(monkeypatch, parts_of(path))
     try:
         work()
-    except (RunError, StoreError):
-        pass
+    except (RunError, StoreError) as error:
+        assert "its run has just ended; repeat the command" in str(error)  # noqa: PT017
     else:
         assert not asked, "it worked on in a folder that is no longer the run's"
         pytest.skip("this lock is not fcntl's")

@@ -1,0 +1,170 @@
+"""Notes, cautions and warnings: each on one scene where it must be given, and on its neighbour where not."""
+
+import dataclasses
+import re
+
+import exact
+import numpy as np
+import pytest
+
+import analytic
+import mcgw
+from mcgw.doubts import doubts
+from mcgw.stop_report import after, before
+from mcgw.validity import notes
+
+
+def cautions(make_scene, **changes):
+    return doubts(mcgw.simulate(make_scene(n_surfaces=2, **changes)))
+
+
+@pytest.fixture
+def shallow(make_scene):
+    """Summits so blunt that nothing is steep."""
+    return dataclasses.replace(make_scene().surface, radius=1e-3, sigma=1e-6)
+
+
+def about(lines, words):
+    return [line for line in lines if words in line]
+
+
+def test_a_calm_scene_has_one_caution_and_no_note(make_scene, shallow):
+    scene = make_scene(separations=(2.0,), n_asperities=30_000, surface=shallow)
+    assert (
+        len(
+            cautions(make_scene, **{k: getattr(scene, k) for k in ("separations", "n_asperities", "surface")})
+        )
+        == 1
+    )
+    assert notes(scene) == []
+
+
+@pytest.mark.parametrize(("h", "given"), [(0.0, False), (0.05, False), (-0.05, True), (-2.0, True)])
+def test_more_than_half_of_all_summits(make_scene, h, given):
+    assert bool(about(cautions(make_scene, separations=(h, 1.0), negative="clip"), "more than half")) == given
+
+
+@pytest.mark.parametrize(("h", "given"), [(-0.25, False), (-0.35, True)])
+def test_more_than_half_of_exponential_heights(make_scene, h, given):
+    """Their median is ln 2 - 1 = -0.307."""
+    told = cautions(make_scene, separations=(h, 1.0), heights=analytic.ExponentialHeights())
+    assert bool(about(told, "more than half")) == given
+
+
+@pytest.mark.parametrize("heights", [analytic.Gaussian(), analytic.ExponentialHeights()])
+def test_a_crowd_is_said_up_to_the_last_separation_where_it_is_one(make_scene, shallow, heights):
+    """5 % of the nominal area, by quadrature at each of the separations."""
+    surface = dataclasses.replace(shallow, eta=1e8, radius=5e-4)
+    h = (0.0, 0.25, 0.5, 0.75, 1.0, 1.5, 2.0)
+    scene = make_scene(surface=surface, separations=h, n_asperities=10_000, heights=heights)
+    share = exact.mean(scene, "area") / surface.nominal_area
+    assert share[0] > 0.05 > share[-1]
+    (line,) = about(doubts(mcgw.simulate(dataclasses.replace(scene, n_surfaces=2))), "nominal area touches")
+    assert f"Up to d/σ = {max(x for x, part in zip(h, share, strict=True) if part > 0.05):.3g} " in line
+    sparse = dataclasses.replace(scene, n_asperities=500, n_surfaces=2)
+    assert not about(doubts(mcgw.simulate(sparse)), "nominal area touches")
+
+
+@pytest.mark.parametrize("heights", [analytic.Gaussian(), analytic.ExponentialHeights()])
+def test_few_contacts_from_the_first_separation_where_they_are(make_scene, heights):
+    h = (3.5, 1.0, 2.0, 3.0, 2.5)
+    scene = make_scene(separations=h, n_asperities=1000, heights=heights, n_surfaces=2)
+    expected = 1000 * exact.share_above(scene, np.array(h))
+    (line,) = about(doubts(mcgw.simulate(scene)), "fewer than 30 contacts")
+    assert f"From d/σ = {min(x for x, n in zip(h, expected, strict=True) if n < 30):.3g} " in line
+    many = dataclasses.replace(scene, separations=(0.0, 0.5))
+    assert not about(doubts(mcgw.simulate(many)), "fewer than 30")
+
+
+def test_steep_contacts(make_scene, shallow):
+    """sqrt(delta/R) of the highest of 3000 summits, at h = 0: 3.4 sigma."""
+    for ratio, given in ((0.25, False), (0.35, True)):
+        radius = 3.403 * 1e-6 / ratio**2
+        surface = dataclasses.replace(shallow, radius=radius)
+        told = about(cautions(make_scene, surface=surface, separations=(0.0,)), "times their radius")
+        assert bool(told) == given
+        if given:
+            assert f"contacts of {ratio:.2f} times" in told[0]
+            assert "(s = 3.4)" in told[0]
+
+
+def test_another_number_of_asperities_than_the_area_has(make_scene):
+    (line,) = about(cautions(make_scene, n_asperities=3000), "η Aₙ")
+    assert "3000 asperities, not η Aₙ = 30000: loads belong to 0.1 of the nominal area" in line
+    assert not about(cautions(make_scene, n_asperities=30_000), "η Aₙ")
+
+
+@pytest.mark.parametrize(("negative", "word"), [("clip", "set to zero"), ("allow", "left negative")])
+def test_a_negative_modulus(make_scene, negative, word):
+    """gamma = 2 is negative below -ln 2 = -0.693."""
+    told = cautions(make_scene, separations=(-0.8,), negative=negative)
+    assert len(about(told, word)) == 1
+    assert not about(cautions(make_scene, separations=(-0.6,), negative=negative), "modulus is negative")
+
+
+@pytest.mark.parametrize("heights", [analytic.Gaussian(), analytic.ExponentialHeights()])
+@pytest.mark.parametrize("lowest", [0.0, 1.0])
+def test_a_note_where_contacts_are_deeper_than_the_radius(make_scene, heights, lowest):
+    """Given from a share of 1e-3 of the contacts on, which it names; at R <= sigma always."""
+    for depth in (1.0, 2.0, 2.5, 3.0, 4.0, 8.0, 9.0):
+        surface = dataclasses.replace(make_scene().surface, radius=depth * 1.37e-6)
+        scene = make_scene(surface=surface, separations=(lowest + 1, lowest), heights=heights)
+        share = exact.share_above(scene, lowest + depth) / exact.share_above(scene, lowest)
+        told = notes(scene)
+        assert len(told) == (share > 1e-3 or depth <= 1), depth
+        if told:
+            assert (
+                f"surface.radius = {surface.radius:g} m: at d/sigma = {lowest:g} a share of {share:.2g} "
+                in told[0]
+            )
+
+
+def test_the_command_says_the_notes_on_stderr(make_scene, tmp_path, capsys):
+    from mcgw.cli import main
+
+    surface = dataclasses.replace(make_scene().surface, radius=2e-6)
+    for name, scene in (("deep", make_scene(surface=surface)), ("plain", make_scene())):
+        (tmp_path / f"{name}.toml").write_text(mcgw.scene_text(scene))
+        assert main(["run", str(tmp_path / f"{name}.toml"), "-o", str(tmp_path / f"{name}.h5")]) == 0
+        err = capsys.readouterr().err
+        assert [line for line in err.splitlines() if "note" in line] == [
+            f"mcgw: note: {x}" for x in notes(scene)
+        ]
+        assert bool(err) == (name == "deep")
+
+
+def test_what_a_rule_will_not_reach_is_said_before(make_scene):
+    from mcgw.forecast import forecast
+
+    scene = make_scene(rel_err=0.01, n_surfaces=1000, separations=(0.0, 3.0), quantities=("load",))
+    found = forecast(scene)
+    needed = (1.959963984540054 / 0.01 * exact.std(scene, "load") / exact.mean(scene, "load")) ** 2
+    np.testing.assert_allclose(found.needed["load"], needed, rtol=1e-6)
+    assert found.out_of_reach == (("load", 3.0),)
+    line = before(found, 0.25)
+    assert line.startswith(
+        f"about {found.surfaces:.2g} surfaces, {found.surfaces * 0.25:.2g} s; 1 means need more"
+    )
+    assert line.endswith(f"such as load at d/sigma = 3: {needed[1]:.2g}")
+    easy = dataclasses.replace(scene, n_surfaces=10**9)
+    assert ";" not in before(forecast(easy), 0.25)
+
+
+def test_what_was_not_reached_is_said_after(make_scene):
+    ensemble = mcgw.simulate(
+        make_scene(n_surfaces=100, separations=(0.0, 3.0, 9.0), quantities=("load", "area"))
+    )
+    lines = after(ensemble, 0.02)
+    silent = [line for line in lines if "no contact" in line]
+    assert len(silent) == 1
+    limit = -np.log(0.05) / 100
+    assert silent[0].startswith(f"d/sigma = 9: no contact in 100 surfaces, mean below {limit:.3g} contacts")
+    assert f"{limit / 3000:.3g} an asperity" in silent[0]
+    known = re.findall(r"(\w+) at d/sigma = (\S+) is known to (\S+) of itself", "\n".join(lines))
+    assert [(name, h) for name, h, _ in known] == [("load", "3"), ("area", "3")]
+    for name, _, width in known:
+        low, high = ensemble.interval(name)
+        mean = ensemble.mean(name)[1]
+        assert float(width) == pytest.approx((high[1] - mean) / mean, rel=0.06)
+        assert low[1] < mean
+    assert len(after(ensemble, 1.0)) == 1

@@ -1,0 +1,267 @@
+"""Every check of the convergence test, each with a flaw that it alone is made for; and its exit codes."""
+
+import operator
+import re
+from dataclasses import replace
+from functools import cache, reduce
+
+import exact
+import numpy as np
+import pytest
+from scipy.stats import binom, chi2, norm
+
+import analytic
+import mcgw
+from mcgw import converge as module
+from mcgw.checks import coverage, variances
+from mcgw.cli import main
+from mcgw.compare import FALSE_ALARM
+from mcgw.converge import Convergence, converge
+
+H = (0.0, 1.0, 2.0)
+CHECKS = [
+    "means",
+    "number of contacts",
+    "repeated surfaces",
+    "distribution of z-scores",
+    "coverage of the intervals",
+    "variance",
+    "covariance across separations",
+    "skewness",
+    "independence of surfaces",
+    "slope of the error in M",
+    "slope of the error in N",
+]
+
+
+@pytest.fixture(scope="module")
+def scene():
+    """24 x 300 surfaces: variances are known to 1.7 %; a surface has 114 contacts at h = 2."""
+    from conftest import SURFACE
+
+    return mcgw.Scene(
+        surface=SURFACE,
+        separations=H,
+        grading=analytic.Exponential(2.0),
+        n_asperities=5000,
+        n_surfaces=300,
+        seed=8,
+    )
+
+
+def right(scene):
+    drawn = mcgw.simulate(scene)
+    return {name: drawn.values(name).astype(float) for name in scene.quantities}
+
+
+@cache
+def mean_of(scene, name):
+    return exact.mean(scene, name)
+
+
+def mean(scene, name):
+    """Exact mean, computed once for all seeds."""
+    return mean_of(replace(scene, seed=0, quantities=("load",)), name)
+
+
+@cache
+def root_of(scene):
+    columns = [(name, h) for name in scene.quantities for h in scene.separations]
+    size, axes = np.linalg.eigh(exact.covariance(scene, columns))
+    return axes * np.sqrt(np.maximum(size, 0))
+
+
+def scaled_about_the_mean(factor):
+    def draw(scene):
+        return {
+            name: mean(scene, name) + factor * (x - mean(scene, name)) for name, x in right(scene).items()
+        }
+
+    return draw
+
+
+def of_other_asperities(scene):
+    """Each separation has surfaces of its own: the same law for each, no covariance between them."""
+    columns = [right(replace(scene, seed=scene.seed + 10**9 * k)) for k in range(len(scene.separations))]
+    return {
+        name: np.stack([part[name][:, k] for k, part in enumerate(columns)], axis=1)
+        for name in scene.quantities
+    }
+
+
+def mirrored(scene):
+    """Means and covariances as they should be, the sign of every skewness turned."""
+    return {name: 2 * mean(scene, name) - x for name, x in right(scene).items()}
+
+
+def shifted_together(scene):
+    """All surfaces of a seed off by the same, as large as one standard error of their mean."""
+    sums, n = right(scene), len(scene.separations)
+    root = root_of(replace(scene, seed=0))
+    shift = root @ np.random.default_rng(scene.seed).normal(size=len(root)) / np.sqrt(scene.n_surfaces)
+    return {name: x + shift[k * n : (k + 1) * n] for k, (name, x) in enumerate(sums.items())}
+
+
+def in_lasting_groups(scene):
+    """Sixteen surfaces in a row share half of their variance: their mean is known less well."""
+    own, shared = right(scene), right(replace(scene, seed=scene.seed + 10**9))
+    found = {}
+    for name, x in own.items():
+        centre = mean(scene, name)
+        common = np.repeat(shared[name], 16, axis=0)[: len(x)]
+        found[name] = centre + ((x - centre) + (common - centre)) / np.sqrt(2)
+    return found
+
+
+def more_alike_if_small(scene):
+    """Fluctuations of a surface as N^(-0.35): right at N = 5000."""
+    return scaled_about_the_mean((scene.n_asperities / 5000) ** 0.15)(scene)
+
+
+def one_contact_more(scene):
+    return {name: x + (name == "contacts") for name, x in right(scene).items()}
+
+
+def one_surface_twice(scene):
+    sums = right(scene)
+    return {name: np.concatenate([x[:-1], x[:1]]) for name, x in sums.items()}
+
+
+def loads_off(scene):
+    sums = right(scene)
+    return sums | {"load": 1.002 * sums["load"]}
+
+
+FLAWS = [
+    (loads_off, ["means"]),
+    (one_contact_more, ["number of contacts"]),
+    (one_surface_twice, ["repeated surfaces"]),
+    (shifted_together, ["distribution of z-scores", "coverage of the intervals"]),
+    (scaled_about_the_mean(np.sqrt(0.9)), ["variance"]),
+    (of_other_asperities, ["covariance across separations"]),
+    (mirrored, ["skewness"]),
+    (in_lasting_groups, ["independence of surfaces", "slope of the error in M"]),
+    (more_alike_if_small, ["slope of the error in N"]),
+]
+
+
+def test_the_right_sampler_passes_every_check(scene):
+    found = converge(scene)
+    assert found.passed
+    assert [check.name for check in found.checks] == CHECKS
+    assert min(check.p for check in found.checks) > FALSE_ALARM
+    assert reduce(operator.iadd, (checks for _, checks in FLAWS), []) == CHECKS
+
+
+@pytest.mark.parametrize(("flaw", "checks"), FLAWS, ids=[checks[-1] for _, checks in FLAWS])
+def test_each_check_sees_its_flaw(scene, flaw, checks):
+    found = converge(scene, flaw)
+    p = {c.name: c.p for c in found.checks}
+    assert max(p[check] for check in checks) < FALSE_ALARM / 100
+    assert not found.passed
+
+
+@pytest.mark.parametrize("factor", [0.9, 1.1])
+def test_a_variance_a_tenth_off_fails(scene, factor):
+    found = converge(scene, scaled_about_the_mean(np.sqrt(factor)))
+    assert not found.passed
+    (check,) = (c for c in found.checks if c.name == "variance")
+    assert check.p < FALSE_ALARM / 100
+    assert float(re.search(r"= ([\d.]+) at", check.seen)[1]) == pytest.approx(factor, abs=0.06)
+
+
+class Law:
+    """Of Gaussian axes."""
+
+    def __init__(self, axes):
+        self.kurtosis = np.zeros(axes)
+
+
+@pytest.mark.parametrize("factor", [0.9, 0.98, 1.0, 1.03, 1.1])
+def test_p_of_a_variance_is_the_chi_squares(factor):
+    y = np.random.default_rng(1).normal(size=(400, 1)) * np.sqrt(factor)
+    total = float((y**2).sum())
+    exact_p = 2 * min(chi2.cdf(total, 400), chi2.sf(total, 400))
+    assert variances(Law(1), y).p == pytest.approx(min(exact_p, 1.0), rel=1e-12)
+    assert variances(Law(3), np.tile(y, 3)).p == pytest.approx(min(3 * exact_p, 1.0), rel=1e-12)
+
+
+def test_coverage_is_students_and_its_p_the_binomials():
+    """40 seeds of 5 surfaces: with the normal quantile in place of Student's 0.878 would be covered."""
+    groups = np.random.default_rng(2).normal(size=(4000, 5, 1))
+    found = coverage(groups)
+    covered, tried = map(int, re.match(r"(\d+) of (\d+)", found.seen).groups())
+    assert tried == 4000
+    assert abs(covered - 3800) < 5 * np.sqrt(4000 * 0.95 * 0.05)
+    assert found.p == pytest.approx(
+        min(1.0, 2 * min(binom.cdf(covered, 4000, 0.95), binom.sf(covered - 1, 4000, 0.95))), rel=1e-12
+    )
+    assert coverage(groups + 0.5).p < 1e-6
+
+
+def test_the_verdict_is_the_worst_check_times_their_number(scene):
+    def of(*p):
+        return Convergence(scene, tuple(module.Check("c", "", x) for x in p), (), np.empty(0))
+
+    assert of(0.5, 0.004, 0.9).p == pytest.approx(0.012)
+    assert of(0.5, 0.4).p == pytest.approx(0.8)
+    assert of(0.9).p == 0.9
+    assert of(0.5, 0.0004, 0.9).passed
+    assert not of(0.5, 0.0003, 0.9).passed
+    assert not of(*[0.5] * 10, 0.00009).passed
+
+
+def test_a_slope_is_a_least_squares_fit_and_its_p_two_sided():
+    rng = np.random.default_rng(4)
+    sizes = (1.0, 4.0, 16.0, 64.0)
+    squares = [rng.normal(size=2000) ** 2 / n for n in sizes]
+    found = module.slope("M", sizes, squares, [0.0] * 4)
+    plain = np.polyfit(np.log(sizes), [np.log(x.mean()) / 2 for x in squares], 1)[0]
+    assert found.value == pytest.approx(plain, abs=1e-3)  # weights and biases are equal here
+    assert abs(found.value + 0.5) < 5 * found.uncertainty
+    z = (found.value + 0.5) / found.uncertainty
+    assert found.check.p == pytest.approx(2 * norm.sf(abs(z)), rel=1e-9)
+    np.testing.assert_allclose(found.errors, [np.sqrt(x.mean()) for x in squares], rtol=1e-3)
+
+
+@pytest.fixture
+def scene_file(scene, tmp_path):
+    path = tmp_path / "x.toml"
+    path.write_text(mcgw.scene_text(replace(scene, n_surfaces=100)))
+    return path
+
+
+def test_the_command_ends_with_0_if_all_is_right(scene_file, tmp_path, capsys):
+    assert main(["converge", str(scene_file), "-o", str(tmp_path)]) == 0
+    out = capsys.readouterr().out
+    assert "convergence passed: p = " in out
+    assert "FAILED" not in out
+
+
+def test_the_command_ends_with_1_if_the_sampler_is_wrong(scene_file, tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr(module, "_own", loads_off)
+    assert main(["converge", str(scene_file), "-o", str(tmp_path)]) == 1
+    out = capsys.readouterr().out
+    assert "convergence FAILED: p = " in out
+    assert (tmp_path / "x-converge.png").exists()
+
+
+def test_the_command_ends_with_1_if_the_theory_is_wrong(scene_file, tmp_path, capsys, monkeypatch):
+    """The simulator as it is, held to a stiffer modulus."""
+    own = module._own
+    softer = replace(mcgw.load_scene(scene_file), grading=analytic.Exponential(1.98))
+    monkeypatch.setattr(module, "_own", lambda scene: own(replace(scene, grading=softer.grading)))
+    assert main(["converge", str(scene_file), "-o", str(tmp_path)]) == 1
+
+
+def test_what_the_command_prints_is_what_was_found(scene_file, tmp_path, capsys):
+    assert main(["converge", str(scene_file), "-o", str(tmp_path)]) == 0
+    out = capsys.readouterr().out.splitlines()
+    found = converge(mcgw.load_scene(scene_file))
+    assert out[0] == "24 ensembles of 100 surfaces of 5000 asperities"
+    shown = [re.fullmatch(r"  (.+?) +p = (\S+) +(.*)", line).groups() for line in out[1:-2]]
+    assert [(n, seen) for n, _, seen in shown] == [(c.name, c.seen) for c in found.checks]
+    for (_, p, _), check in zip(shown, found.checks, strict=True):
+        assert float(p) == pytest.approx(check.p, rel=5e-3)
+    assert out[-2] == f"convergence passed: p = {found.p:.3g} over all (false alarms: 1 in 1000)"
+    assert out[-1] == f"{tmp_path / 'x-converge.png'}: figure"

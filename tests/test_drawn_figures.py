@@ -1,0 +1,370 @@
+"""What is drawn is what was computed: lines, error bars, labels and legends, read from the axes."""
+
+import dataclasses
+import math
+
+import exact
+import numpy as np
+import pytest
+from matplotlib.collections import LineCollection, PathCollection
+from matplotlib.figure import Figure
+from scipy.stats import norm
+
+import analytic
+import mcgw
+from mcgw.checks import Check, Slope
+from mcgw.compare import Comparison, Curve, Verdict, compare
+from mcgw.converge import Convergence
+from mcgw.figures.data import FigureData, Panel, Points, Series
+from mcgw.figures.drawing import draw
+from mcgw.plots import quantity_figure, save_comparison
+from mcgw.plots_converge import save_convergence
+from mcgw.plots_tradeoff import save_tradeoff
+from mcgw.report_html import _spread
+
+TITLES = {
+    "load": "Load $P$ (N)",
+    "area": "Real area $A$ (m²)",
+    "stiffness": "Stiffness $-dP/dd$ (N/m)",
+    "contacts": "Contacts",
+    "conductance": r"Conductance $C\rho$ (m)",
+}
+QUANTITIES = tuple(TITLES)
+H = (1.0, 0.0, 2.0)
+
+
+@pytest.fixture
+def kept(monkeypatch):
+    """Figures as they are when they are saved."""
+    figures = []
+
+    def keep(self, path, **_):
+        path.touch()
+        figures.append(self)
+
+    monkeypatch.setattr(Figure, "savefig", keep)
+    return figures
+
+
+@pytest.fixture(scope="module")
+def comparison():
+    from conftest import SURFACE
+
+    scene = mcgw.Scene(
+        surface=SURFACE,
+        title="A title",
+        separations=H,
+        grading=analytic.Exponential(2.0),
+        quantities=QUANTITIES,
+        n_asperities=3000,
+        n_surfaces=60,
+        seed=4,
+    )
+    return compare(mcgw.simulate(scene))
+
+
+def bars_of(axis):
+    """x, low and high ends of vertical error bars."""
+    found = []
+    for lines in (c for c in axis.collections if isinstance(c, LineCollection)):
+        for (x0, y0), (x1, y1) in lines.get_segments():
+            if x0 == x1:
+                found.append((x0, min(y0, y1), max(y0, y1)))
+    return np.array(found)
+
+
+def markers_of(axis):
+    """Lines of markers alone."""
+    return [line for line in axis.get_lines() if line.get_marker() in list("os^Dv") and len(line.get_xdata())]
+
+
+def check_curve(axis, curve, title):
+    """Theory in the order of the separations, means and their intervals where they are."""
+    h, order = np.array(H), np.argsort(H)
+    assert axis.get_title() + axis.get_title(loc="left") == title
+    assert axis.get_yscale() == "log"
+    (line,) = (x for x in axis.get_lines() if x.get_label() == "theory")
+    np.testing.assert_array_equal(line.get_xdata(), h[order])
+    np.testing.assert_array_equal(line.get_ydata(), curve.theory[order])
+    (points,) = markers_of(axis)
+    np.testing.assert_array_equal(points.get_xdata(), h)
+    np.testing.assert_array_equal(points.get_ydata(), curve.mean)
+    bars = bars_of(axis)
+    np.testing.assert_array_equal(bars[:, 0], h)
+    np.testing.assert_allclose(bars[:, 1], curve.low, rtol=1e-12)
+    np.testing.assert_allclose(bars[:, 2], curve.high, rtol=1e-12)
+
+
+def check_residual(axis, curve):
+    (points,) = markers_of(axis)
+    np.testing.assert_array_equal(points.get_xdata(), H)
+    np.testing.assert_array_equal(points.get_ydata(), curve.residual)
+    low, high = axis.get_ylim()
+    assert low == -high <= -4
+    assert np.all(np.abs(curve.residual) < high)
+    (band,) = axis.patches
+    assert (band.get_y(), band.get_height()) == (-2, 4)
+
+
+def test_comparison(comparison, kept, tmp_path):
+    save_comparison(comparison, tmp_path / "x.png")
+    (figure,) = kept
+    assert len(figure.axes) == 2 * len(QUANTITIES)
+    above, below = figure.axes[: len(QUANTITIES)], figure.axes[len(QUANTITIES) :]
+    for k, name in enumerate(QUANTITIES):
+        check_curve(above[k], comparison.curves[name], TITLES[name])
+        check_residual(below[k], comparison.curves[name])
+    assert below[0].get_ylabel() == "residual\n(standard errors)"
+    legend = [text.get_text() for text in above[0].get_legend().get_texts()]
+    assert legend == ["theory", "Monte Carlo, 95 %"]
+    verdict = comparison.verdict
+    assert figure.get_suptitle() == (
+        f"A title\nMonte Carlo and theory agree: χ² = {verdict.chi_square:.1f} for {verdict.degrees} degrees "
+        f"of freedom, p = {verdict.p:.3g}"
+    )
+    assert figure.get_supxlabel() == (
+        "separation $d/\\sigma$\n60 surfaces of 3000 asperities, exponential grading, γ = 2; "
+        f"sampler {comparison.ensemble.sampler}, seed 4"
+    )
+
+
+def test_comparison_that_fails_says_so(comparison, kept, tmp_path):
+    wrong = dataclasses.replace(comparison, verdict=Verdict(99.0, 15, 1e-9))
+    save_comparison(wrong, tmp_path / "x.png")
+    assert "theory DISAGREE: χ² = 99.0 for 15" in kept[0].get_suptitle()
+
+
+@pytest.mark.parametrize("name", QUANTITIES)
+def test_one_quantity(comparison, name):
+    figure = quantity_figure(comparison, name)
+    above, below = figure.axes
+    check_curve(above, comparison.curves[name], TITLES[name])
+    check_residual(below, comparison.curves[name])
+    assert (below.get_xlabel(), below.get_ylabel()) == ("separation d/σ", "residual\n(std. errors)")
+    assert [t.get_text() for t in above.get_legend().get_texts()] == ["theory", "Monte Carlo, 95 %"]
+
+
+def test_a_large_residual_stays_in_sight(comparison):
+    curve = comparison.curves["load"]
+    shift = 20 * curve.stderr
+    off = Curve(curve.mean + shift, curve.low + shift, curve.high + shift, curve.theory, curve.stderr)
+    wrong = Comparison(comparison.ensemble, comparison.curves | {"load": off}, comparison.verdict)
+    low, high = quantity_figure(wrong, "load").axes[1].get_ylim()
+    assert low < off.residual.min() < off.residual.max() < high
+
+
+def test_lopsided_intervals_are_drawn_lopsided(comparison):
+    """Longer upwards than downwards, and the other way round: each end where it belongs."""
+    curve = comparison.curves["load"]
+    low, high = curve.mean * [0.9, 0.7, 0.99], curve.mean * [1.3, 1.1, 1.5]
+    lopsided = Curve(curve.mean, low, high, curve.theory, curve.stderr)
+    drawn = Comparison(comparison.ensemble, comparison.curves | {"load": lopsided}, comparison.verdict)
+    check_curve(quantity_figure(drawn, "load").axes[0], lopsided, TITLES["load"])
+
+
+def test_spread_of_the_report_is_std_over_mean(comparison):
+    ensemble = comparison.ensemble
+    data = _spread(comparison)
+    (panel,) = data.panels
+    assert (panel.xlabel, panel.ylabel, panel.scales) == (
+        "separation d/σ", "std / mean", ("linear", "log")
+    )  # fmt: skip
+    assert [series.label for series in panel.series] == list(QUANTITIES)
+    for series, name in zip(panel.series, QUANTITIES, strict=True):
+        values = ensemble.values(name).astype(float)
+        np.testing.assert_array_equal(series.points.x, H)
+        np.testing.assert_allclose(
+            series.points.mean, values.std(axis=0, ddof=1) / values.mean(axis=0), rtol=1e-10
+        )
+        spread = exact.std(ensemble.scene, name) / exact.mean(ensemble.scene, name)
+        np.testing.assert_allclose(series.points.exact, spread, rtol=1e-7)
+        np.testing.assert_array_equal(series.x, np.sort(H))
+        np.testing.assert_allclose(series.theory, spread[np.argsort(H)], rtol=1e-7)
+
+
+X = np.array([1.0, 2.0, 4.0])
+SERIES = (
+    Series("line alone", X, X**2),
+    Series("with points", X, 3 * X, Points(X + 0.5, 3 * X + 1, X / 10, 3 * X + 2)),
+    Series("γ = 1", X, 5 * X, Points(X, 5 * X, X / 3, 5 * X)),
+)
+
+
+@pytest.mark.parametrize("scale", ["linear", "log"])
+def test_panels_are_drawn_as_they_are(scale):
+    panel = Panel("the panel", "x (m)", "y (N)", SERIES, ("linear", scale), level=2.5)
+    figure = draw(FigureData("name", "The title", "The caption.", (panel, panel)))
+    assert (figure.get_suptitle(), figure.get_supxlabel()) == ("The title", "The caption.")
+    used = [axis for axis in figure.axes if axis.get_title(loc="left")]
+    assert len(used) == 2
+    for axis in used:
+        assert (axis.get_xlabel(), axis.get_ylabel()) == ("x (m)", "y (N)")
+        assert axis.get_title(loc="left") == "the panel"
+        assert (axis.get_xscale(), axis.get_yscale()) == ("linear", scale)
+        assert [t.get_text() for t in axis.get_legend().get_texts()] == [s.label for s in SERIES]
+        lines = [x for x in axis.get_lines() if len(x.get_xdata()) == 3 and x.get_linestyle() != "None"]
+        for line, series in zip(lines, SERIES, strict=True):
+            np.testing.assert_array_equal(line.get_xydata(), np.stack([series.x, series.theory], axis=1))
+        assert any(np.all(np.asarray(x.get_ydata()) == 2.5) for x in axis.get_lines())
+        shown = [s.points for s in SERIES if s.points]
+        for line, points in zip(markers_of(axis), shown, strict=True):
+            np.testing.assert_array_equal(line.get_xydata(), np.stack([points.x, points.mean], axis=1))
+        bars = bars_of(axis)
+        low = np.concatenate([p.mean - np.minimum(1.96 * p.stderr, reach(p, scale)) for p in shown])
+        high = np.concatenate([p.mean + 1.96 * p.stderr for p in shown])
+        np.testing.assert_allclose(bars[:, 0], np.concatenate([p.x for p in shown]))
+        np.testing.assert_allclose(bars[:, 1], low, rtol=1e-12)
+        np.testing.assert_allclose(bars[:, 2], high, rtol=1e-12)
+
+
+def reach(points, scale):
+    """On a logarithmic axis a bar ends above zero."""
+    return 0.95 * points.mean if scale == "log" else np.inf
+
+
+def test_legends_name_the_line_that_is_drawn_so():
+    figure = draw(FigureData("name", "", "", (Panel("p", "x", "y", SERIES),)))
+    (axis,) = figure.axes
+    drawn = [x for x in axis.get_lines() if len(x.get_xdata()) == 3 and x.get_linestyle() != "None"]
+    for entry, line in zip(axis.get_legend().get_lines(), drawn, strict=True):
+        assert entry.get_color() == line.get_color()
+        assert entry.get_linestyle() == line.get_linestyle()
+    assert drawn[2].get_color() == "#000000"  # homogeneous, in every figure alike
+
+
+@pytest.mark.parametrize("side", ["below", "above"])
+def test_the_shaded_side(side):
+    series = Series("edge", X, X, None, side)
+    (axis,) = draw(FigureData("n", "", "", (Panel("p", "x", "y", (series,), ylim=(-3.0, 9.0)),))).axes
+    (patch,) = axis.collections
+    y = patch.get_paths()[0].vertices[:, 1]
+    assert (y.min(), y.max()) == ((-3.0, 4.0) if side == "below" else (1.0, 9.0))
+    assert axis.get_ylim() == (-3.0, 9.0)
+
+
+def slope(against, value):
+    sizes = np.array([1.0, 4.0, 16.0])
+    return Slope(
+        against, sizes, 0.3 / np.sqrt(sizes) * [1, 1.1, 0.9], np.array([0.1, 0.2, 0.05]), value, 0.02
+    )
+
+
+def test_convergence(make_scene, kept, tmp_path):
+    checks = (Check("first", "seen so", 0.5), Check("second", "seen else", 1e-5), Check("third", "x", 0.0))
+    scores = np.random.default_rng(1).normal(size=400)
+    found = Convergence(make_scene(title="T"), checks, (slope("M", -0.49), slope("N", -0.55)), scores)
+    save_convergence(found, tmp_path / "x.png")
+    (figure,) = kept
+    m, n, z, bottom = figure.axes
+    for axis, curve, x, y in (
+        (m, found.slopes[0], "surfaces $M$", "rms error (standard deviations)"),
+        (n, found.slopes[1], "asperities $N$", "rms relative error"),
+    ):
+        assert (axis.get_xlabel(), axis.get_ylabel()) == (x, y)
+        assert axis.get_title() == f"slope {curve.value:.4f} ± 0.0392"
+        (points,) = markers_of(axis)
+        np.testing.assert_array_equal(points.get_xydata(), np.stack([curve.sizes, curve.errors], axis=1))
+        bars = bars_of(axis)
+        np.testing.assert_allclose(bars[:, 2] - curve.errors, 1.96 * curve.stderr * curve.errors, rtol=1e-9)
+        fit = axis.get_lines()[0].get_ydata()
+        np.testing.assert_allclose(fit * np.sqrt(curve.sizes), fit[0], rtol=1e-12)
+        middle = np.exp(np.mean(np.log(curve.errors) - np.log(fit)))
+        assert middle == pytest.approx(1, rel=1e-12)
+    heights = np.array([patch.get_height() for patch in z.patches])
+    expected = np.histogram(scores, np.linspace(-4, 4, 25), density=True)[0]
+    np.testing.assert_allclose(heights, expected)
+    x, y = z.get_lines()[0].get_data()
+    np.testing.assert_allclose(y, norm.pdf(x))
+    (dots,) = (c for c in bottom.collections if isinstance(c, PathCollection))
+    np.testing.assert_allclose(dots.get_offsets()[:, 0], [0.5, 1e-5, 1e-12])
+    labels = {
+        label.get_text(): y for label, y in zip(bottom.get_yticklabels(), bottom.get_yticks(), strict=True)
+    }
+    for check, row in zip(checks, dots.get_offsets()[:, 1], strict=True):
+        assert labels[f"{check.name}: {check.seen}"] == row
+    colours = [tuple(c) for c in dots.get_facecolors()]
+    assert colours[0] != colours[1] == colours[2]  # the second and third fail
+    assert "T\nStatistical convergence FAILED: p = 0 over 3 checks" in figure.get_suptitle()
+
+
+def test_convergence_without_slopes(make_scene, kept, tmp_path):
+    found = Convergence(make_scene(), (Check("means", "x", 0.3),), (), np.empty(0))
+    save_convergence(found, tmp_path / "x.png")
+    said = [text.get_text() for axis in kept[0].axes for text in axis.texts]
+    assert sorted(said) == [
+        "slope in M: too few contacts", "slope in N: too few contacts", "z-scores: too few contacts"
+    ]  # fmt: skip
+    assert "passed: p = 0.3 over 1 checks" in kept[0].get_suptitle()
+
+
+def test_tradeoff(make_scene, kept, tmp_path):
+    from mcgw.methods import Method
+    from mcgw.tradeoff import Point, Tradeoff
+
+    def none(size, seed):
+        return np.zeros(2)
+
+    methods = (
+        Method("tail", "surfaces", (1.0, 4.0), -0.5, none),
+        Method("strata", "strata", (1.0,), -1.5, none),
+        Method("theory", "points", (64.0,), None, none),
+    )
+    points = (
+        Point("tail", "surfaces", 1.0, np.array([0.2, 0.4]), 0.25, 1e-3, 9.0, 0.0, 4),
+        Point("tail", "surfaces", 4.0, np.array([0.1, 0.2]), 0.125, 4e-3, 9.0, 0.0, 4),
+        Point("strata", "strata", 1.0, np.array([0.01, 0.03]), 0.5, 2e-3, 9.0, 0.0, 4),
+        Point("theory", "points", 64.0, np.array([0.0, 1e-15]), 0.0, 5e-3, 9.0, 0.0, 1),
+    )
+    scene = make_scene(title="T", quantities=("area", "load"))
+    save_tradeoff(Tradeoff(scene, (0.0, 2.0), points, methods, (), 1.0), tmp_path / "x.png")
+    (figure,) = kept
+    assert figure.get_suptitle() == "T"
+    assert figure.axes[0].get_ylabel() == "rms relative error of the mean area"
+    labels = [text.get_text() for text in figure.legends[0].get_texts()]
+    assert labels == ["tail, size$^{-1/2}$", "strata, size$^{-3/2}$", "theory"]
+    for k, (axis, h) in enumerate(zip(figure.axes, (0, 2), strict=True)):
+        assert (axis.get_title(), axis.get_xlabel()) == (f"$d/\\sigma$ = {h}", "CPU time (s)")
+        assert (axis.get_xscale(), axis.get_yscale()) == ("log", "log")
+        for line, method in zip(markers_of(axis), methods, strict=True):
+            own = [p for p in points if p.method == method.name]
+            np.testing.assert_array_equal(line.get_xdata(), [p.cpu for p in own])
+            np.testing.assert_array_equal(line.get_ydata(), [max(p.rms[k], 1e-16) for p in own])
+        bars = bars_of(axis)
+        own = points[:2]
+        np.testing.assert_allclose(bars[:2, 2], [p.rms[k] * (1 + p.rms_stderr) for p in own])
+
+
+def test_contact_map(make_scene, kept, tmp_path):
+    """Spots to scale at their places in micrometres, coloured by their loads in millinewtons."""
+    from mcgw.maps.asperities import Asperities
+    from mcgw.maps.spots import save_contact_map, spots_at
+
+    scene = make_scene(grading=analytic.Exponential(2.0))
+    sigma, radius = scene.surface.sigma, scene.surface.radius
+    x, y = np.array([10e-6, 30e-6, 45e-6]), np.array([15e-6, 20e-6, 5e-6])
+    field = Asperities(x, y, sigma * np.array([2.0, 1.5, 0.5]), radius, (60e-6, 40e-6))
+    spots = spots_at(scene, field, 1.0)
+    delta = sigma * np.array([1.0, 0.5])
+    modulus = 2 - np.exp(-np.array([2.0, 1.5]))
+    load = 4 / 3 * scene.surface.E_star * modulus * math.sqrt(radius) * delta**1.5
+    np.testing.assert_allclose(spots.load, load, rtol=1e-12)
+    for colour, values, label in (
+        ("load", 1e3 * load, "load of a spot (mN)"),
+        ("modulus", modulus, "$E^*(s)/E^*$"),
+    ):
+        kept.clear()
+        save_contact_map(field, spots, tmp_path / "x.png", colour=colour)
+        (figure,) = kept
+        axis, *bars = figure.axes
+        (circles,) = axis.collections
+        np.testing.assert_allclose(circles.get_offsets(), 1e6 * np.column_stack([x[:2], y[:2]]))
+        np.testing.assert_allclose(circles.get_array(), values, rtol=1e-12)
+        widths = circles.get_widths() if hasattr(circles, "get_widths") else 2 * circles._widths
+        np.testing.assert_allclose(widths, 2e6 * np.sqrt(radius * delta), rtol=1e-12)
+        assert (axis.get_xlabel(), axis.get_ylabel()) == ("x (µm)", "y (µm)")
+        assert {bar.get_ylabel() for bar in bars} == {label, "height (µm)"}
+        assert axis.get_title() == "2 contacts at $d/\\sigma$ = 1"
+        (image,) = axis.get_images()
+        assert image.get_extent() == pytest.approx([0, 60, 0, 40])
+        assert np.max(image.get_array()) == pytest.approx(1e6 * sigma * 2, rel=1e-2)
+        assert image.origin == "lower"

@@ -1,0 +1,424 @@
+"""Every printed table and every CSV, read as a reader would, against numbers made here."""
+
+import csv
+import dataclasses
+import math
+import re
+
+import exact
+import numpy as np
+import pytest
+from scipy.stats import t as student
+
+import analytic
+import mcgw
+from mcgw.cli import main
+from mcgw.ensemble import Arrays
+from mcgw.running import run
+from mcgw.store import ensembles, probe
+
+QUANTITIES = ("conductance", "load", "contacts", "area", "stiffness")  # in no usual order
+H = (0.5, 0.0, 2.0, 1.0)
+LONG = {
+    "load": "normal load (N)",
+    "area": "real contact area (m^2)",
+    "stiffness": "normal stiffness -dP/dd (N/m)",
+    "contacts": "number of contacts (1)",
+    "conductance": "contact conductance of the spots, times the resistivity rho (m)",
+}
+TITLES = {name: LONG[name].rpartition(" (")[0] for name in LONG}
+
+
+@pytest.fixture(scope="module", autouse=True)
+def _looked_at_here():
+    """Files are looked at in this process: a child for each takes most of the time, on a busy machine all."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(ensembles, "examine", lambda path: probe.describe(str(path)))
+        yield
+
+
+@pytest.fixture(scope="module")
+def file(tmp_path_factory):
+    from conftest import SURFACE
+
+    scene = mcgw.Scene(
+        surface=SURFACE,
+        separations=H,
+        grading=analytic.Exponential(2.0),
+        quantities=QUANTITIES,
+        n_asperities=3000,
+        n_surfaces=150,
+        seed=2,
+        keep="moments",
+    )
+    path = tmp_path_factory.mktemp("shown") / "e.h5"
+    run(scene, path)
+    return path
+
+
+@pytest.fixture(scope="module")
+def scene(file):
+    return mcgw.open_ensemble(file).scene
+
+
+class Told(dict):
+    """Columns of a quantity as they ought to be, each an array over the separations."""
+
+
+@pytest.fixture(scope="module")
+def told(file, scene):
+    """By NumPy from the values, by quadrature from the scene."""
+    found = {}
+    for name in QUANTITIES:
+        x = mcgw.open_ensemble(file).values(name).astype(float)
+        m = len(x)
+        mean, std = x.mean(axis=0), x.std(axis=0, ddof=1)
+        theory, spread = exact.mean(scene, name), exact.std(scene, name)
+        found[name] = {
+            "d/sigma": np.array(H),
+            "separation": np.array(H),
+            "mean": mean,
+            "Monte Carlo": mean,
+            "std": std,
+            "stderr": std / math.sqrt(m),
+            "theory": theory,
+            "residual": (mean - theory) / (spread / math.sqrt(m)),
+            "half": student.ppf(0.975, m - 1) * std / math.sqrt(m),
+        }
+    return found
+
+
+def test_columns_are_told_apart(told):
+    """The companion: no column of a quantity, and no row of it, equals another within what is compared."""
+    for name in QUANTITIES:
+        for key in ("mean", "std", "stderr", "theory", "residual"):
+            values = told[name][key]
+            apart = np.abs(values[:, None] - values)[~np.eye(len(values), dtype=bool)]
+            assert apart.min() > 1e-3 * np.abs(values).max(), (name, key)
+        assert np.all(np.abs(told[name]["mean"] / told[name]["theory"] - 1) > 1e-5)
+
+
+def out_of(words, capsys, code=0):
+    assert main([str(w) for w in words]) == code
+    return capsys.readouterr().out
+
+
+def tables(text):
+    """{title: {column: values}} of blocks: a title, a line of names, rows of numbers, all indented."""
+    found, title = {}, ""
+    for line in text.splitlines():
+        if line and not line.startswith(" "):
+            title = line
+        elif title and "d/sigma" in line and title not in found:
+            found[title] = (re.split(r" {2,}| (?=stderr|std|theory|residual)", line.strip()), [])
+        elif title in found and re.match(r"  +-?\d", line):
+            numbers = line.replace(" ... ", "...").split()
+            found[title][1].append(numbers)
+    return found
+
+
+def test_show(file, scene, told, capsys):
+    out = out_of(["show", file], capsys)
+    assert f"  surfaces      150 of {scene.n_asperities} asperities (fixed)" in out
+    assert "  separations   4 from 0 to 2 (d/sigma)" in out
+    assert "seed 2" in out
+    assert "  complete      yes" in out
+    found = tables(out)
+    assert list(found)[-5:] == [LONG[name] for name in QUANTITIES]
+    for name in QUANTITIES:
+        header, rows = found[LONG[name]]
+        assert header == ["d/sigma", "mean", "std", "stderr"]
+        for k, column in enumerate(header):
+            shown = [float(row[k]) for row in rows]
+            np.testing.assert_allclose(shown, told[name][column], rtol=6e-3 if k > 1 else 6e-6)
+
+
+def test_compare(file, told, tmp_path, capsys):
+    out = out_of(["compare", file, "-o", tmp_path / "c.png"], capsys)
+    found = tables(out)
+    assert list(found) == [LONG[name] for name in QUANTITIES]
+    for name in QUANTITIES:
+        header, rows = found[LONG[name]]
+        assert [x for x in header if x] == ["d/sigma", "Monte Carlo", "95 % interval", "theory", "residual"]
+        expected = told[name]
+        for k, row in enumerate(rows):
+            h, mean, interval, theory, residual = row
+            assert float(h) == H[k]
+            assert float(mean) == pytest.approx(expected["mean"][k], rel=6e-6)
+            assert float(theory) == pytest.approx(expected["theory"][k], rel=6e-6)
+            assert float(residual) == pytest.approx(expected["residual"][k], abs=6e-3)
+            low, high = map(float, interval.split("..."))
+            assert low < float(mean) < high
+            assert (high - low) / 2 == pytest.approx(expected["half"][k], rel=0.15)  # of Student's
+        assert len(rows) == len(H)
+
+
+def test_compare_ends_with_1_and_says_so_where_they_disagree(file, tmp_path, capsys, monkeypatch):
+    """The same file, its loads read 5 % larger."""
+    opened = mcgw.open_ensemble(file)
+    arrays = {name: opened.values(name) * (1.05 if name == "load" else 1) for name in QUANTITIES}
+    wrong = dataclasses.replace(opened, sums=Arrays(arrays))
+    assert "theory agree" in out_of(["compare", file, "-o", tmp_path / "c.png"], capsys)
+    monkeypatch.setattr(ensembles, "open_ensemble", lambda path: wrong)
+    assert "theory DISAGREE" in out_of(["compare", file, "-o", tmp_path / "c.png"], capsys, code=1)
+
+
+def rows_of(path):
+    with open(path, encoding="utf-8", newline="") as opened:
+        return list(csv.DictReader(opened))
+
+
+def check_csv(path, told, exactly, columns):
+    """Every row of every quantity: its name, its unit and each column."""
+    rows = rows_of(path)
+    assert list(rows[0]) == ["quantity", "unit", "separation", *columns]
+    assert [(r["quantity"], float(r["separation"])) for r in rows] == [(n, h) for n in QUANTITIES for h in H]
+    for row in rows:
+        name, k = row["quantity"], H.index(float(row["separation"]))
+        assert row["unit"] == exact.UNITS[name]
+        for column in set(columns) & set(exactly):
+            assert float(row[column]) == pytest.approx(told[name][column][k], rel=1e-7, abs=1e-6), row
+    return rows
+
+
+def test_csv_of_show(file, told, tmp_path, capsys):
+    out_of(["show", file, "--csv", tmp_path / "s.csv"], capsys)
+    check_csv(tmp_path / "s.csv", told, ("mean", "std", "stderr"), ["mean", "std", "stderr"])
+
+
+def test_csv_of_compare(file, told, tmp_path, capsys):
+    path = tmp_path / "c.csv"
+    out_of(["compare", file, "-o", tmp_path / "c.png", "--csv", path], capsys)
+    columns = ["mean", "low_95", "high_95", "std", "theory", "residual"]
+    for row in check_csv(path, told, ("mean", "std", "theory", "residual"), columns):
+        half = told[row["quantity"]]["half"][H.index(float(row["separation"]))]
+        assert float(row["low_95"]) < float(row["mean"]) < float(row["high_95"])
+        assert float(row["high_95"]) - float(row["low_95"]) == pytest.approx(2 * half, rel=0.15)
+
+
+def test_units_are_those_of_the_numbers(file, told):
+    """An area in m^2, not mm^2: one asperity at unit approach, by Hertz, times what is expected."""
+    for name in ("load", "area", "stiffness", "conductance"):
+        assert told[name]["mean"][1] == pytest.approx(told[name]["theory"][1], rel=0.05)
+    area = told["area"]["mean"][1]
+    assert area == pytest.approx(math.pi * 13e-6 * 1.37e-6 * 3000 * 0.39894, rel=0.05)
+
+
+@pytest.fixture(scope="module")
+def ratios(file, scene):
+    """Mean ratios over the same surfaces and their errors, written out: the delta method."""
+    old = mcgw.open_ensemble(file)
+    new = mcgw.simulate(dataclasses.replace(scene, grading=analytic.Exponential(0.5), keep="sums"))
+    found = {}
+    for name in ("load", "stiffness"):
+        b, a = new.values(name), old.values(name)
+        ratio = b.mean(axis=0) / a.mean(axis=0)
+        rest = (b - ratio * a).std(axis=0, ddof=1)
+        apart = np.sqrt(b.var(axis=0, ddof=1) + ratio**2 * a.var(axis=0, ddof=1))
+        found[name] = {
+            "ratio": ratio,
+            "stderr": rest / math.sqrt(len(a)) / a.mean(axis=0),
+            "theory": exact.mean(new.scene, name) / exact.mean(scene, name),
+            "variance_gain": (apart / rest) ** 2,
+        }
+    return found
+
+
+def test_regrade(file, ratios, tmp_path, capsys):
+    words = ["--gamma", "0.5", "-o", tmp_path / "n.h5", "--csv", tmp_path / "n.csv"]
+    out = out_of(["regrade", file, *words], capsys)
+    found = tables(out)
+    assert list(found)[:2] == [f"{TITLES[name]}, new over old" for name in ("load", "stiffness")]
+    for name, expected in ratios.items():
+        _, rows = found[f"{TITLES[name]}, new over old"]
+        shown = np.array(rows, dtype=float)
+        np.testing.assert_array_equal(shown[:, 0], H)
+        np.testing.assert_allclose(shown[:, 1], expected["ratio"], atol=6e-7)
+        np.testing.assert_allclose(shown[:, 2], expected["stderr"], rtol=0.06)
+        np.testing.assert_allclose(shown[:, 3], expected["theory"], atol=6e-7)
+        np.testing.assert_allclose(shown[:, 4], expected["variance_gain"], rtol=6e-3)
+    rows = rows_of(tmp_path / "n.csv")
+    assert [(r["quantity"], float(r["separation"])) for r in rows] == [(n, h) for n in ratios for h in H]
+    for row in rows:
+        k = H.index(float(row["separation"]))
+        for column in ("ratio", "stderr", "theory", "variance_gain"):
+            assert float(row[column]) == pytest.approx(ratios[row["quantity"]][column][k], rel=1e-7)
+    assert f"{tmp_path / 'n.h5'}: 150 surfaces, the same as in {file}" in out
+
+
+@pytest.mark.parametrize(
+    ("words", "given", "pressure", "title"),
+    [
+        (["--pressure", "1MPa"], ("load", 100.0), 1e6, "Load 100 N = pressure 1 MPa on the nominal area"),
+        (["--load", "0.2kN"], ("load", 200.0), 2e6, "Load 200 N = pressure 2 MPa on the nominal area"),
+        (
+            ["--area-fraction", "0.01%"],
+            ("area", 1e-8),
+            math.nan,
+            "Real area 1e-08 m^2 = 0.0100% of the nominal area",
+        ),
+    ],
+)
+def test_solve(scene, words, given, pressure, title, tmp_path, capsys):
+    """Theory by quadrature at the separation it names; surfaces by a plain search over their heights."""
+    few = dataclasses.replace(scene, n_surfaces=25, keep="sums", sampler="tail")
+    (tmp_path / "s.toml").write_text(mcgw.scene_text(few))
+    out = out_of(["solve", tmp_path / "s.toml", *words, "--csv", tmp_path / "s.csv"], capsys)
+    lines = out.splitlines()
+    assert lines[0] == title
+    assert lines[1].split() == ["theory", "mean", "95", "%", "interval", "of", "the", "mean", "std"]
+    rows = {row["quantity"]: row for row in rows_of(tmp_path / "s.csv")}
+    assert list(rows) == ["separation", *analytic.QUANTITIES]
+    h = float(rows["separation"]["theory"])
+    units = {"separation": "1", **exact.UNITS}
+    for name, row in rows.items():
+        assert row["unit"] == units[name]
+        assert float(row["load_or_area_SI"]) == pytest.approx(given[1])
+        assert float(row["pressure_Pa"]) == pytest.approx(pressure, nan_ok=True)
+        if name != "separation":
+            assert float(row["theory"]) == pytest.approx(exact.mean(few, name, [h])[0], rel=1e-8)
+        half = (float(row["high_95"]) - float(row["low_95"])) / 2
+        assert float(row["low_95"]) + half == pytest.approx(float(row["mean"]), rel=1e-9)
+        assert half == pytest.approx(
+            student.ppf(0.975, 24) * float(row["std"]) / 5, rel=1e-9, abs=1e-14 * float(row["mean"])
+        )
+    assert exact.mean(few, given[0], [h])[0] == pytest.approx(given[1], rel=1e-8)
+    labels = {
+        "separation d/sigma": "separation",
+        "conductance x rho (m)": "conductance",
+        **{f"{n} ({exact.UNITS[n]})" if n != "contacts" else n: n for n in exact.UNITS if n != "conductance"},
+    }
+    shown = {}
+    for line in lines[2:]:
+        if match := re.match(r"  (\S.*?) {2,}(\S+) +(\S+) +(\S+) \.\.\. (\S+) +(\S+)$", line):
+            shown[labels[match[1]]] = [float(x) for x in match.groups()[1:]]
+    assert set(shown) == set(rows) - {given[0]}
+    for name, numbers in shown.items():
+        wanted = [float(rows[name][key]) for key in ("theory", "mean", "low_95", "high_95", "std")]
+        np.testing.assert_allclose(numbers[:-1], wanted[:-1], rtol=6e-6)
+        assert numbers[-1] == pytest.approx(wanted[-1], rel=6e-3)
+    assert "std: over 25 surfaces of 3000 asperities" in lines[-2]
+    assert ("Few contacts" in out) == (float(rows["contacts"]["theory"]) < 30)
+    assert_solved_by_hand(few, given, rows)
+
+
+def assert_solved_by_hand(scene, given, rows):
+    """Mean separation and spread over surfaces, by bisection on each one's own heights."""
+    name, value = given
+    found = []
+    for number in range(25):
+        s = mcgw.heights(dataclasses.replace(scene, separations=(0.0,)), number)
+        low, high = 0.0, float(s.max())
+        for _ in range(60):
+            middle = (low + high) / 2
+            more = exact.term(scene, name, s, middle).sum() > value
+            low, high = (middle, high) if more else (low, middle)
+        found.append(low)
+    # other heights than the command draws, above another separation: the law is the same, |z| < 5
+    stderr = math.sqrt(2) * np.std(found, ddof=1) / 5
+    assert float(rows["separation"]["mean"]) == pytest.approx(np.mean(found), abs=5 * stderr)
+    # an F of 24 and 24 degrees of freedom lies beyond 6.25 once in 1e5
+    assert 0.4 < float(rows["separation"]["std"]) / np.std(found, ddof=1) < 2.5
+
+
+def test_few_contacts_are_said(scene, tmp_path, capsys):
+    (tmp_path / "s.toml").write_text(mcgw.scene_text(dataclasses.replace(scene, keep="sums")))
+    out = out_of(["solve", tmp_path / "s.toml", "--load", "0.1N", "--surfaces", "20"], capsys)
+    assert "Few contacts" in out
+
+
+@pytest.fixture(scope="module")
+def study(scene):
+    from mcgw.methods import methods_for
+    from mcgw.tradeoff import Advice, Point, Tradeoff
+
+    small = dataclasses.replace(scene, keep="sums", quantities=("load", "area"))
+    points = (
+        Point("direct", "surfaces", 4.0, np.array([0.11, 0.22]), 0.25, 0.5, 0.125, 4096.0, 8),
+        Point("tail", "surfaces", 16.0, np.array([0.033, 0.044]), 0.125, 2.0, 1.0, 8192.0, 6),
+    )
+    advice = (Advice(0.01, dataclasses.replace(small, sampler="tail", n_surfaces=77), 3.5),)
+    methods = tuple(m for m in methods_for(small, (1, 2)) if m.name in ("direct", "tail"))
+    return Tradeoff(small, (0.0, 2.0), points, methods, advice, 12.4)
+
+
+def test_tradeoff(study, tmp_path, capsys, monkeypatch):
+    (tmp_path / "s.toml").write_text(mcgw.scene_text(study.scene))
+    monkeypatch.setattr("mcgw.tradeoff.tradeoff", lambda scene, *, seconds, progress: study)
+    out = out_of(["tradeoff", tmp_path / "s.toml", "-o", tmp_path], capsys).splitlines()
+    assert out[0] == "relative error of the mean load at d/sigma = 0, 2"
+    for line, point in zip(out[1:3], study.points, strict=True):
+        words = line.split()
+        assert (words[0], float(words[1]), words[2]) == (point.method, point.size, point.unit)
+        assert [float(x) for x in words[3:5]] == point.rms.tolist()
+        spread, cpu = line.rpartition("+-")[2].replace("%", " ").split()[:2]
+        assert float(spread) == pytest.approx(100 * point.rms_stderr, abs=0.6)
+        assert float(cpu) == point.cpu
+    assert 'sampler = "tail", n_surfaces = 77, 3.5 s of CPU' in out[5]
+    assert out[5].strip().startswith("0.01: ")
+    assert out[-1] == "study: 12 s"
+    rows = rows_of(tmp_path / "s-tradeoff.csv")
+    assert len(rows) == 2
+    for row, p in zip(rows, study.points, strict=True):
+        assert (row["method"], float(row["size"]), row["size_counts"]) == (p.method, p.size, p.unit)
+        assert [float(row[f"rms_relative_error_at_h_{h}"]) for h in (0, 2)] == p.rms.tolist()
+        ends = ("rms_uncertainty", "cpu_s", "wall_s", "peak_growth_bytes", "seeds")
+        assert [float(row[key]) for key in ends] == [p.rms_stderr, p.cpu, p.wall, p.peak, p.seeds]
+
+
+def test_points_of_a_study_are_the_runs(scene):
+    """Rms over the seeds, medians of the times, and an uncertainty where something is random."""
+    from mcgw.tradeoff import _Task
+
+    errors = iter([np.array([0.1, -0.2]), np.array([-0.3, 0.4])])
+    method = dataclasses.make_dataclass("M", ["name", "unit", "errors"])(
+        "m", "u", lambda size, seed: next(errors)
+    )
+    task = _Task(method, 5.0, 9.0, 1)
+    task.run(1)
+    task.run(2)
+    point = task.point()
+    np.testing.assert_allclose(point.rms, np.sqrt([(0.01 + 0.09) / 2, (0.04 + 0.16) / 2]))
+    assert (point.size, point.peak, point.seeds) == (5.0, 9.0, 2)
+    assert point.rms_stderr == pytest.approx(1 / math.sqrt(4))
+
+
+def test_advice_is_from_the_exact_spread(scene):
+    from mcgw.tradeoff import Point, _advice
+
+    plain = dataclasses.replace(scene, keep="sums", quantities=("load", "area"))
+    points = [
+        Point("direct", "surfaces", 1.0, np.array([1.0]), 0.0, 1.0, 1.0, 0.0, 2),
+        Point("direct", "surfaces", 11.0, np.array([1.0]), 0.0, 6.0, 1.0, 0.0, 2),
+        Point("tail", "surfaces", 1.0, np.array([1.0]), 0.0, 0.5, 1.0, 0.0, 2),
+        Point("tail", "surfaces", 11.0, np.array([1.0]), 0.0, 2.5, 1.0, 0.0, 2),
+        Point("stratified", "strata", 1.0, np.array([1.0]), 0.0, 0.0, 0.0, 0.0, 2),
+    ]
+    found = _advice(plain, 2, points, 1e-3)
+    spread = exact.std(plain, "load")[2] / exact.mean(plain, "load")[2]
+    needed = math.ceil((spread / 1e-3) ** 2)
+    assert (found.scene.sampler, found.scene.n_surfaces) == ("tail", needed)
+    assert found.cpu == pytest.approx(2.5 + 0.2 * (needed - 11), rel=1e-9)
+
+
+def test_run_says_how_many_and_what_is_not_known(scene, tmp_path, capsys):
+    asked = dataclasses.replace(scene, keep="sums", rel_err=1e-3, n_surfaces=70, separations=(0.0, 9.0))
+    (tmp_path / "s.toml").write_text(mcgw.scene_text(asked))
+    out = out_of(["run", tmp_path / "s.toml", "-o", tmp_path / "e.h5"], capsys)
+    ensemble = mcgw.open_ensemble(tmp_path / "e.h5")
+    assert ensemble.n_surfaces == 70
+    assert f"{tmp_path / 'e.h5'}: 70 surfaces of 3000 asperities, seed 2" in out
+    limit = -math.log(0.05) / 70
+    assert f"d/sigma = 9: no contact in 70 surfaces, mean below {limit:.3g} contacts a surface" in out
+    x = ensemble.load[:, 0]
+    width = student.ppf(0.975, 69) * x.std(ddof=1) / math.sqrt(70) / x.mean()
+    (said,) = re.findall(r"load at d/sigma = 0 is known to (\S+) of itself, not to 0.001", out)
+    assert float(said) == pytest.approx(width, rel=0.15)
+
+
+def test_a_rule_that_is_kept_has_nothing_to_say(scene, tmp_path, capsys):
+    asked = dataclasses.replace(scene, keep="sums", rel_err=0.1, n_surfaces=5000, separations=(0.0,))
+    (tmp_path / "s.toml").write_text(mcgw.scene_text(asked))
+    out = out_of(["run", tmp_path / "s.toml", "-o", tmp_path / "e.h5"], capsys)
+    assert "is known to" not in out
+    assert "no contact" not in out
