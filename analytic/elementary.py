@@ -22,6 +22,8 @@ _LOG2_HIGH, _LOG2_LOW = 0.693147180369123816490, 1.90821492927058770002e-10  # t
 _TAYLOR = [1.0]
 for _k in range(1, 14):
     _TAYLOR.append(_TAYLOR[-1] / _k)
+_BACKWARDS, _PER_LOG2 = _TAYLOR[::-1], 1 / (_LOG2_HIGH + _LOG2_LOW)
+_PLAIN = 700.0  # up to here neither exp nor its steps overflow or lose a digit
 _SMALLEST, _LARGEST = -745.2, 709.79  # beyond, exp is 0 or infinite
 _HALF = np.sqrt(0.5)
 
@@ -44,8 +46,9 @@ def _in_pieces(function: Callable[[Array], Array]) -> Callable[[Any], Array]:
 
 def _polynomial(coefficients: list[float], x: Array) -> Array:
     """Horner's scheme, the highest power first."""
-    value = np.full_like(x, coefficients[0])
-    for c in coefficients[1:]:
+    value = x * coefficients[0]
+    value += coefficients[1]
+    for c in coefficients[2:]:
         value *= x
         value += c
     return value
@@ -70,13 +73,16 @@ def exp(x: Array) -> Array:
     ndarray
         In their shape.
     """
+    if x.size and np.abs(x).max() < _PLAIN:
+        k = np.rint(x * _PER_LOG2)
+        return _polynomial(_BACKWARDS, (x - k * _LOG2_HIGH) - k * _LOG2_LOW) * _power_of_two(k)
     with np.errstate(over="ignore", under="ignore"):
         inside = np.clip(x, _SMALLEST, _LARGEST)
         inside[np.isnan(x)] = 0.0
-        k = np.rint(inside * (1 / (_LOG2_HIGH + _LOG2_LOW)))
+        k = np.rint(inside * _PER_LOG2)
         r = (inside - k * _LOG2_HIGH) - k * _LOG2_LOW
         half = np.floor(k / 2)  # in two steps, the first of which is exact
-        value = _polynomial(_TAYLOR[::-1], r) * _power_of_two(half) * _power_of_two(k - half)
+        value = _polynomial(_BACKWARDS, r) * _power_of_two(half) * _power_of_two(k - half)
     value[x < _SMALLEST] = 0.0
     value[x > _LARGEST] = np.inf
     value[np.isnan(x)] = np.nan
@@ -134,7 +140,8 @@ def exp_minus_half_square(h: Any) -> Array:
     """exp(-h^2/2) to full relative accuracy: the square is split so that its rounding drops out."""
     h = np.asarray(h, dtype=np.float64)
     a = np.round(16 * h) / 16
-    return np.asarray(exp(-a * a / 2) * exp(-(h - a) * (h + a) / 2))
+    coarse, fine = exp(np.stack([a * a, (h - a) * (h + a)]) * -0.5)
+    return np.asarray(coarse * fine)
 
 
 def ndtr(x: Any) -> Array:

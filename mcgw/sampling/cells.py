@@ -30,6 +30,7 @@ __all__ = ["NODES", "TO_COEFFICIENTS", "Mesh", "height_noise", "mesh_of", "no_ce
 Array = NDArray[np.float64]
 
 _ROUNDING = 1e-9  # of the width of a cell
+_CONVERGED = 1e-9  # a step of Newton whose square is nothing
 _SHORT, _MOST_HALVINGS = 13, 60  # terms for a grading on a cell, and how often it is cut to get there
 _FAR, _NARROWER = 2.0, 0.75  # spans from a root of the laws of contact, and what is left of one nearer by
 _CLOSEST = 2.0**-40  # of a cell to an end of the support that is a broken power
@@ -207,5 +208,8 @@ def _stretch(law: HeightLaw, a: Array, width: Array, mass: Array) -> Array:
     u = (1 + NODES) / 2
     t = width[:, None] * u
     for _ in range(8):  # the mass is nearly linear in t: quadratic convergence from the first step
-        t = t - (_mass(law, a, t) - u * mass[:, None]) / exp(law.log_ratio(a[:, None], t))
+        step = (_mass(law, a, t) - u * mass[:, None]) / exp(law.log_ratio(a[:, None], t))
+        t = t - step
+        if np.all(np.abs(step) < _CONVERGED * t):
+            break
     return product(TO_COEFFICIENTS, (t / u).T)

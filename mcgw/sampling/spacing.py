@@ -72,9 +72,10 @@ def _ladders(fewest: int) -> Array:
 def _prices(law: HeightLaw, n: int, low: float, gap: float, upper: Array, distance: Array) -> Array:
     """What the asperities of a surface cost for each choice of cells."""
     width = np.diff(upper, axis=1, prepend=0.0)
-    start, used = low + gap * (upper - width), width > 0
-    above = law.above(start)
-    expected = n * np.where(used, above - law.above(low + gap * upper), 0.0)
+    edges, used = low + gap * np.insert(upper, 0, 0.0, axis=1), width > 0
+    beyond = law.above(edges)
+    start, above = edges[:, :-1], beyond[:, :-1]
+    expected = n * np.where(used, above - beyond[:, 1:], 0.0)
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         bend = np.nan_to_num(np.abs(law.log_ratio(start, gap * width)), nan=np.inf)
         # Of a surface's sum, rather than of the law, where so many touch that it is sure to be large.
