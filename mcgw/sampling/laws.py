@@ -109,7 +109,8 @@ class Laws:
         share = (np.arange(16) + 0.5) / 16
         h, law = np.unique(self.h, return_inverse=True)
         touching = scene.heights.above(h)
-        approach = np.array([np.maximum(scene.heights.from_above(share, x) - x, 0.0) for x in h])[law]
+        rank = np.maximum(touching[:, None] * share, np.finfo(float).tiny)
+        approach = np.maximum(scene.heights.from_above(rank, -np.inf) - h[:, None], 0.0)[law]
         graded = np.where(self.modulus[:, None], self.grading(approach + self.h[:, None]), 1.0)
         mean = np.mean(graded * _power(approach, self.exponent[:, None]), axis=1)
         contacts = scene.n_asperities * touching[law]
