@@ -9,11 +9,12 @@ from functools import partial
 from itertools import pairwise
 
 import numpy as np
-from numpy.polynomial.legendre import leggauss
 from numpy.typing import NDArray
 from scipy.integrate import quad
 
 import analytic
+from mcgw.errors import RunError
+from mcgw.reference import quantiles, reference
 from mcgw.sampling.asperities import heights
 from mcgw.sampling.cells import mesh_of
 from mcgw.sampling.hertz import hertz_sums
@@ -27,7 +28,17 @@ __all__ = ["Method", "methods_for", "reference"]
 Array = NDArray[np.float64]
 
 _MOST_DRAWS = 1e7  # asperities of one surface, beyond which a sampler is not even tried
-_REACH = 13.0  # above max(h, 0): the density falls by e-37
+_PIECES = (
+    0.0,
+    1.0,
+    3.0,
+    7.0,
+    14.0,
+    24.0,
+    40.0,
+    80.0,
+)  # -log of the shares of higher heights where quad's end
+_AGREE = 1e-10  # of theory and its reference
 
 
 @dataclass(frozen=True)
@@ -59,8 +70,18 @@ class Method:
 
 
 def methods_for(scene: Scene, chosen: tuple[int, ...]) -> tuple[Method, ...]:
-    """All ways to the first quantity of a scene at the separations number `chosen`."""
-    exact = reference(scene, chosen)
+    """All ways to the first quantity of a scene at the separations number `chosen`.
+
+    Raises
+    ------
+    ValueError
+        If the heights are measured ones, of which there is no ensemble, or if the mean is 0.
+    RunError
+        If theory and its reference, an integral by another rule, differ by more than 1e-10.
+    """
+    if isinstance(scene.heights, analytic.MeasuredHeights):
+        raise ValueError("heights: measured ones are added up exactly; say resample = true to trade off")
+    exact = _checked(scene, chosen)
     surfaces = tuple(4.0**k for k in range(12))
     n = float(scene.n_asperities)
     touching = scene.touching
@@ -78,6 +99,22 @@ def methods_for(scene: Scene, chosen: tuple[int, ...]) -> tuple[Method, ...]:
     by_moments = _ByMoments.of(scene, chosen)
     found.append(Method("order of moments (same asperities)", "1/accuracy", orders, None, by_moments))
     return (*found, *_quadratures(scene, chosen, exact))
+
+
+def _checked(scene: Scene, chosen: tuple[int, ...]) -> Array:
+    """The reference, once theory agrees with it."""
+    exact, name = reference(scene, chosen), scene.quantities[0]
+    theory = scene.theory.mean(name, [scene.separations[k] for k in chosen])
+    for k, ours, other in zip(chosen, theory, exact, strict=True):
+        where = f"mean {name} at d/sigma = {scene.separations[k]:g}"
+        if not other:
+            raise ValueError(f"{where} is 0: a relative error needs a mean that is not; change separations")
+        if not abs(ours / other - 1) <= _AGREE:
+            raise RunError(
+                f"{where}: theory gives {ours:.15g} and its reference {other:.15g}, which differ by more "
+                f"than {_AGREE:g}; no error is measured against either"
+            )
+    return exact
 
 
 def _mean(scene: Scene, chosen: tuple[int, ...], sampler: Sampler) -> Array:
@@ -134,28 +171,26 @@ class _ByMoments:
             return np.asarray(value[pick] / plain[pick] - 1)
 
 
-def reference(scene: Scene, chosen: tuple[int, ...]) -> Array:
-    """Exact mean, by a composite rule of its own: 64 panels of 40 points in the root of the approach."""
-    q = analytic.QUANTITIES[scene.quantities[0]]
-    x, w = leggauss(40)
-    values = []
-    for k in chosen:
-        h = scene.separations[k]
-        cuts = [c for c in analytic.resolved_breaks(scene.modulus, h, h + _REACH) if c > h]
-        marks = np.sqrt(np.array([0.0, *[c - h for c in cuts], max(-h, 0.0) + _REACH]))
-        edges = np.unique(np.concatenate([np.linspace(a, b, 65) for a, b in pairwise(marks)]))
-        half = np.diff(edges)[:, None] / 2
-        v = edges[:-1, None] + half * (1 + x)
-        values.append(float(np.sum(half * w * _integrand(scene, q, h, v))))
-    return scene.n_asperities * q.scale(scene.surface) * np.array(values)
-
-
 def _integrand(scene: Scene, q: analytic.Quantity, h: float, v: Array | float) -> Array:
     """Of F*_n in v, with s = h + v^2."""
     v = np.asarray(v)
     s = h + v * v
     e = scene.modulus(s) if q.modulus else np.ones_like(s)
     return np.asarray(2 * v ** (2 * q.exponent + 1) * e * scene.heights.density(s))
+
+
+def _by_quad(scene: Scene, q: analytic.Quantity, h: float, accuracy: float) -> float:
+    """F*_n by SciPy's adaptive rule, from break to break and to the law's own tail."""
+    ends = quantiles(scene, h, np.array(_PIECES))
+    breaks = [b for b in (*scene.heights.breaks, *scene.modulus.breaks) if ends[0] < b < ends[-1]]
+    ends = np.sqrt(np.unique([*ends, *breaks]) - h)
+
+    def integrand(v: float) -> float:
+        return float(_integrand(scene, q, h, v))
+
+    # with full output it does not warn: how far off it is stands in the table
+    rules = (quad(integrand, *e, epsabs=0, epsrel=accuracy, full_output=1) for e in pairwise(ends.tolist()))
+    return float(sum(found[0] for found in rules))
 
 
 def _quadratures(scene: Scene, chosen: tuple[int, ...], exact: Array) -> list[Method]:
@@ -168,11 +203,7 @@ def _quadratures(scene: Scene, chosen: tuple[int, ...], exact: Array) -> list[Me
         return scene.theory.mean(q.name, h) / exact - 1
 
     def scipys(size: float, _seed: int) -> Array:
-        rows = []
-        for x in h.tolist():
-            top = np.sqrt(max(-x, 0.0) + _REACH)
-            row = quad(lambda v, x=x: float(_integrand(scene, q, x, v)), 0, top, epsabs=0, epsrel=1 / size)
-            rows.append(row[0])
+        rows = [_by_quad(scene, q, x, 1 / size) for x in h.tolist()]
         return np.asarray(factor * np.array(rows) / exact - 1)
 
     def papers(size: float, _seed: int) -> Array:

@@ -91,6 +91,7 @@ ORDER = (
     "checks",
     "compare",
     "converge",
+    "reference",
     "methods",
     "tradeoff",
     "csv_table",
