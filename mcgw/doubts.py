@@ -9,7 +9,7 @@ __all__ = ["doubts"]
 
 _CROWDED = 0.05  # real over nominal area from which neighbouring asperities feel each other
 _STEEP = 0.3  # contact radius over summit radius from which a paraboloid is no sphere and strain is large
-_FEW = 30.0  # contacts a surface, below which intervals by Student's t are lopsided
+_FEW = 30.0  # contacts a surface, below which single surfaces are far from Gaussian
 
 
 def doubts(ensemble: Ensemble) -> list[str]:
@@ -51,7 +51,8 @@ def doubts(ensemble: Ensemble) -> list[str]:
     if few.size:
         found.append(
             f"From d/σ = {few.min():.3g} fewer than {_FEW:.0f} contacts are expected on a surface: "
-            "single surfaces are far from Gaussian, and intervals of few surfaces are lopsided."
+            "single surfaces are far from Gaussian, and intervals of few surfaces are lopsided; below ten "
+            "in the whole ensemble there are none."
         )
     if abs(share - 1) > 0.01:
         found.append(

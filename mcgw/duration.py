@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from mcgw.forecast import seconds_per_surface
 from mcgw.sampling.samplers import Cells, Sampler
 from mcgw.scene import Scene
+from mcgw.simulation import seconds_per_surface
 
 __all__ = ["draws_per_surface", "in_words", "seconds_for"]
 

@@ -6,9 +6,9 @@ from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.stats import t as student
 
-from analytic import QUANTITIES
+from analytic import QUANTITIES, MeasuredHeights
+from mcgw.intervals import CONFIDENCE, count_interval, mean_interval, spread_of
 from mcgw.scene import Scene
 
 __all__ = ["Arrays", "Ensemble", "Sums"]
@@ -16,6 +16,7 @@ __all__ = ["Arrays", "Ensemble", "Sums"]
 Array = NDArray[np.float64]
 
 _ROWS = 8192  # surfaces at a time, for ensembles larger than the memory
+_LOW = 2**32 - 1  # the lower half of an integer: sums of halves do not overflow
 
 
 class Sums(Protocol):
@@ -121,26 +122,54 @@ class Ensemble:
         """Standard error of the mean, nan for one surface."""
         return np.asarray(self.std(quantity) / np.sqrt(self.n_surfaces))
 
-    def interval(self, quantity: str, level: float = 0.95) -> tuple[Array, Array]:
-        """Confidence interval of the mean, by Student's t.
+    def interval(self, quantity: str, level: float = CONFIDENCE) -> tuple[Array, Array]:
+        """Confidence interval of the mean, from the exact spread and skewness of the scene's own law.
+
+        For any number of surfaces, one too. That of `contacts` is exact (Clopper-Pearson, or Garwood for
+        a Poisson number of asperities). Measured heights as they are leave nothing open: both ends are
+        the value.
 
         Parameters
         ----------
         quantity : str
             Its name.
         level : float, optional
-            Probability that the interval covers the mean of all surfaces, where that of so many
-            surfaces is Gaussian.
+            Probability that the interval covers the mean of all surfaces.
 
         Returns
         -------
         (ndarray, ndarray)
-            Lower and upper ends, shape (separations,).
+            Lower and upper ends, shape (separations,); nan where the whole ensemble has fewer than ten
+            effective contacts (`mcgw.intervals.Spread`).
+
+        Raises
+        ------
+        KeyError
+            If the ensemble does not hold this quantity.
+        ValueError
+            If the surfaces are stratified: how far their mean is off is not known.
         """
-        mean, std = self._moments(quantity)
-        m = self.n_surfaces
-        half = float(student.ppf((1 + level) / 2, max(m - 1, 1))) * std / np.sqrt(m)
-        return mean - half, mean + half
+        self._check(quantity)
+        scene, m = self.scene, self.n_surfaces
+        if self.sampler == "stratified":
+            raise ValueError("stratified surfaces have no interval: their fluctuations are not those of any")
+        if isinstance(scene.heights, MeasuredHeights):
+            return self.mean(quantity), self.mean(quantity)
+        if quantity == "contacts":
+            ends = count_interval(
+                self._contacts(), float(scene.n_asperities) * m, poisson=scene.count == "poisson", level=level
+            )
+            return ends[0] / m, ends[1] / m
+        return mean_interval(self.mean(quantity), spread_of(scene, quantity), m, level)
+
+    def _contacts(self) -> Array:
+        """Number of contacts of all surfaces: exact but for its rounding to double precision."""
+        total = [0] * len(self.scene.separations)
+        for start in range(0, self.n_surfaces, _ROWS):
+            rows = self.sums.read("contacts", start, min(start + _ROWS, self.n_surfaces)).astype(np.int64)
+            halves = zip((rows >> 32).sum(axis=0).tolist(), (rows & _LOW).sum(axis=0).tolist(), strict=True)
+            total = [so_far + (high << 32) + low for so_far, (high, low) in zip(total, halves, strict=True)]
+        return np.array([float(x) for x in total])
 
     def _check(self, quantity: str) -> None:
         if quantity not in self.scene.quantities:

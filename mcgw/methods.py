@@ -120,7 +120,7 @@ def _checked(scene: Scene, chosen: tuple[int, ...]) -> Array:
 def _mean(scene: Scene, chosen: tuple[int, ...], sampler: Sampler) -> Array:
     name = scene.quantities[0]
     total = np.zeros(len(chosen))
-    for _, block in blocks(scene, sampler):
+    for block in blocks(scene, sampler):
         total += block.sums[name][:, list(chosen)].sum(axis=0)
     return total / scene.n_surfaces
 

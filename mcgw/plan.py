@@ -22,7 +22,7 @@ class Plan:
     sampler : str
         The one that ``auto`` stands for, too.
     surfaces : int
-        How many will be drawn; with `rel_err` as forecast.
+        How many will be drawn; with `rel_err` from the exact law.
     asperities : float
         On a surface.
     touching : float

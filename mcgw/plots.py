@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 from analytic import Exponential, Grading, Homogeneous
 from mcgw.compare import Comparison, Curve
 from mcgw.formats.pictures import save_figure
+from mcgw.intervals import TOO_FEW
 from mcgw.scene import Scene
 from mcgw.terminal import one_line
 
@@ -120,21 +121,15 @@ def quantity_figure(comparison: Comparison, name: str) -> Figure:
 def _draw_curve(axis: Any, h: np.ndarray, curve: Curve) -> None:
     order = np.argsort(h, kind="stable")
     axis.plot(h[order], curve.theory[order], label="theory", zorder=2)
-    positive = curve.mean > 0
-    errors = np.array([curve.mean - curve.low, curve.high - curve.mean])[:, positive]
-    axis.errorbar(
-        h[positive],
-        curve.mean[positive],
-        np.nan_to_num(np.minimum(errors, [curve.mean[positive] * 0.999, np.inf * curve.mean[positive]])),
-        fmt="o",
-        ms=3,
-        mfc="none",
-        color="C1",
-        lw=1,
-        label="Monte Carlo, 95 %",
-        zorder=3,
-    )
-    if np.any(positive) or np.any(curve.theory > 0):
+    seen, known = curve.mean > 0, np.isfinite(curve.low)
+    for shown, marker, label in ((seen & known, "o", "Monte Carlo, 95 %"), (seen & ~known, "x", TOO_FEW)):
+        mean, low, high = (x[shown] for x in (curve.mean, curve.low, curve.high))
+        bars = np.nan_to_num([np.minimum(mean - low, 0.999 * mean), high - mean])
+        if shown.any() or marker == "o":
+            axis.errorbar(
+                h[shown], mean, bars, fmt=marker, ms=3, mfc="none", color="C1", lw=1, label=label, zorder=3
+            )
+    if np.any(seen) or np.any(curve.theory > 0):
         axis.set_yscale("log")
 
 

@@ -16,6 +16,7 @@ from mcgw.doubts import doubts
 from mcgw.ensemble import Ensemble
 from mcgw.figures.data import FigureData, Panel, Points, Series
 from mcgw.figures.drawing import draw
+from mcgw.intervals import TOO_FEW
 from mcgw.plots import STYLE, grading_label, quantity_figure
 from mcgw.report_text import verdict_line
 from mcgw.terminal import one_line, plain_text
@@ -69,7 +70,8 @@ _PAGE = Template("""<!DOCTYPE html>
 standard errors of the mean; the grey band is ±2.</p>
 <div class="grid">$figures</div>
 <h2>Tables</h2>
-<p>In brackets: half of the 95 % interval of the mean, in its last digits; residual in standard errors.</p>
+<p>In brackets: half of the 95 % interval of the mean, in its last digits;
+residual in standard errors.</p>
 <div class="grid">$tables</div>
 <h2>The surface</h2>
 <table class="facts">$facts</table>
@@ -239,8 +241,9 @@ def _table(comparison: Comparison, name: str) -> str:
     rows = []
     for k in np.unique(np.linspace(0, len(h) - 1, min(_MOST_ROWS, len(h))).round().astype(int)):
         half = (curve.high[k] - curve.low[k]) / 2
+        few = f", {TOO_FEW}" if np.isnan(half) else ""
         rows.append(
-            f"<tr><td>{h[k]:g}</td><td>{_with_error(curve.mean[k], half)}</td>"
+            f"<tr><td>{h[k]:g}</td><td>{_with_error(curve.mean[k], half)}{few}</td>"
             f"<td>{_number(curve.theory[k], 5)}</td><td>{curve.residual[k]:+.1f}</td></tr>"
         )
     title = f"{q.name.capitalize()} ({q.unit})" if q.unit != "1" else q.name.capitalize()

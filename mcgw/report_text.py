@@ -9,6 +9,7 @@ from analytic import QUANTITIES
 from mcgw.compare import FALSE_ALARM, Comparison, Verdict
 from mcgw.csv_table import Row
 from mcgw.ensemble import Ensemble
+from mcgw.intervals import interval_text
 from mcgw.regrade import Paired, paired_ratio
 from mcgw.terminal import one_line
 
@@ -85,7 +86,7 @@ def comparison_table(comparison: Comparison) -> str:
             f"  {'d/sigma':>8} {'Monte Carlo':>13} {'95 % interval':>27} {'theory':>13} {'residual':>9}",
         ]
         for k in _rows(h):
-            interval = f"{curve.low[k]:.6g} ... {curve.high[k]:.6g}"
+            interval = interval_text(curve.low[k], curve.high[k])
             lines.append(
                 f"  {h[k]:8.3f} {curve.mean[k]:13.6g} {interval:>27} {curve.theory[k]:13.6g} "
                 f"{curve.residual[k]:+9.2f}"
@@ -94,7 +95,7 @@ def comparison_table(comparison: Comparison) -> str:
 
 
 def comparison_rows(comparison: Comparison) -> Iterator[Row]:
-    """Every separation, as rows under `COMPARISON_HEADER`."""
+    """Every separation, as rows under `COMPARISON_HEADER`; an interval of too few contacts is nan."""
     ensemble = comparison.ensemble
     for name, c in comparison.curves.items():
         columns = (ensemble.separations, c.mean, c.low, c.high, ensemble.std(name), c.theory, c.residual)

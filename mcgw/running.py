@@ -1,16 +1,17 @@
-"""From a scene to its file: begin, go on, extend."""
+"""From a scene to its file: begin, go on, extend, until its rule is met."""
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
-from time import perf_counter
+from time import monotonic, perf_counter
 from typing import Any
 
 from mcgw.driver import Signals, drive, heed_signals
 from mcgw.engines import Engine, Threads
 from mcgw.ensemble import Arrays, Ensemble
 from mcgw.errors import RunError, StoreError
+from mcgw.forecast import checkpoints, without_rule
 from mcgw.formats.files import check_output
 from mcgw.joining import merge_once, missing_of
 from mcgw.room import check_room
@@ -80,7 +81,7 @@ def run(
     Parameters
     ----------
     scene : Scene
-        What is asked; `n_surfaces` is the total.
+        What is asked; `n_surfaces` is the total, or with `rel_err` or `max_seconds` the most.
     path : str or Path
         The file; it appears when it is complete. Until then, blocks lie in ``FILE.parts/``.
     threads : int, optional
@@ -93,7 +94,8 @@ def run(
     Returns
     -------
     Ensemble
-        That reads from the file.
+        That reads from the file. Where `rel_err` or `max_seconds` decided how many surfaces, its scene says
+        their number instead. What a file holds already is never too much.
 
     Raises
     ------
@@ -103,13 +105,44 @@ def run(
         If the run could not be finished; what is done is kept.
     """
     path = Path(path)
+    started = monotonic()
+    for stage in _stages(scene, path):
+        ensemble = _run(stage, path, threads, engine, progress or _silent)
+        if scene.max_seconds is not None and monotonic() - started > scene.max_seconds:
+            break
+    return ensemble
+
+
+def _stages(scene: Scene, path: Path) -> Iterator[Scene]:
+    """The scene with a number of surfaces in place of its rules; with `max_seconds`, ever more of them."""
+    if scene.rel_err is None and scene.max_seconds is None:
+        yield scene
+        return
+    held = min(open_ensemble(path).n_surfaces, scene.n_surfaces) if path.is_file() else 0
+    fixed = without_rule(scene)
+    last = max(fixed.n_surfaces, held)
+    if scene.max_seconds is not None:
+        if held:
+            yield replace(fixed, n_surfaces=held)
+        for n in checkpoints(last):
+            if held < n < last and n >= 2 * held:
+                yield replace(fixed, n_surfaces=n)
+                held = n
+    if held < last or scene.max_seconds is None:
+        yield replace(fixed, n_surfaces=last)
+
+
+def _run(
+    scene: Scene, path: Path, threads: int | None, engine: Engine | None, progress: Progress
+) -> Ensemble:
+    """Draw what is missing of a scene of a given number of surfaces."""
     sampler, size, done = _prepare(scene, path, threads)
     if done == scene.n_surfaces:
         tidy(path)
-        (progress or _silent)(done)
+        progress(done)
         return open_ensemble(path)
     with heed_signals() as signals, _engine_or_threads(engine) as drawing:
-        session = _Session(drawing, threads if engine is None else 1, progress or _silent, signals)
+        session = _Session(drawing, threads if engine is None else 1, progress, signals)
         with locked(parts_of(path)):
             drop_leftovers(path)
             begun = (parts_of(path) / "run.toml").exists()
@@ -154,6 +187,11 @@ def run_part(
         As `run`.
     """
     path = Path(path)
+    if scene.max_seconds is not None:
+        raise ValueError(
+            "ensemble.max_seconds: jobs that share a run end at different times; give n_surfaces"
+        )
+    scene = without_rule(scene) if scene.rel_err is not None else scene
     sampler, size, done = _prepare(scene, path, threads)
     if done == scene.n_surfaces:
         return 0

@@ -79,7 +79,8 @@ class Scene:
     keep : {"sums", "moments"}, optional
         Whether the file also keeps the moments, from which `mcgw regrade` starts.
     rel_err : float, optional
-        Stop when the 95 % interval of every mean reaches no farther than this share of it, 0 to 0.1.
+        Draw so many surfaces that the 95 % interval of every mean reaches no farther than this share of
+        it, 0 to 0.1: as many as the exact law of a finite surface says.
     max_seconds : float, optional
         Stop after the block that is being drawn then.
 

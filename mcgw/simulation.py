@@ -3,21 +3,30 @@
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
-from time import monotonic
+from time import monotonic, perf_counter
 from typing import Any
 
 import numba
 import numpy as np
 
 from mcgw.ensemble import Arrays, Ensemble
+from mcgw.forecast import without_rule
 from mcgw.room import check_memory
 from mcgw.sampling.counts import GROUP
 from mcgw.sampling.in_threads import in_threads, pieces
 from mcgw.sampling.samplers import Block, Cells, Sampler, sampler_of
 from mcgw.scene import Scene
-from mcgw.stopping import Running, checkpoints, decide
 
-__all__ = ["at_a_time", "block_size", "blocks", "drawn_blocks", "kept", "simulate", "use_threads"]
+__all__ = [
+    "at_a_time",
+    "block_size",
+    "blocks",
+    "drawn_blocks",
+    "kept",
+    "seconds_per_surface",
+    "simulate",
+    "use_threads",
+]
 
 _WORDS = 4_000_000  # numbers of a block that stay in the outer cache
 _MOST_WORDS = 20_000_000  # numbers a block may hold
@@ -41,48 +50,38 @@ def simulate(
     Returns
     -------
     Ensemble
-        With arrays of shape (surfaces, separations). If a stop rule ended it, its scene says how many
-        were drawn in place of the rule: run again, it gives the same.
+        With arrays of shape (surfaces, separations). Where `rel_err` or `max_seconds` decided how many
+        surfaces, its scene says their number instead: run again, it gives the same.
 
     Raises
     ------
     ValueError
         If `threads` is not positive, or the memory is too small (with the size).
     """
+    until = None if scene.max_seconds is None else monotonic() + scene.max_seconds
+    if scene.rel_err is not None or scene.max_seconds is not None:
+        scene = without_rule(scene)
     sampler = sampler_of(scene)
-    if scene.rel_err is None:
+    if until is None:
         _check_memory(scene, scene.n_surfaces)
     parts, drawn = [], 0
     with use_threads(threads):
-        for drawn, block in blocks(scene, sampler):
+        for block in blocks(scene, sampler):
             parts.append(kept(scene, block))
             n = len(parts[-1][scene.quantities[0]])
-            _check_memory(scene, n)  # a stop rule does not know beforehand
+            _check_memory(scene, n)  # how many there is time for is not known beforehand
             drawn += n
             if progress:
                 progress(n)
+            if until is not None and monotonic() > until:
+                break
     arrays = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
-    if scene.rel_err is not None or scene.max_seconds is not None:
-        scene = replace(scene, n_surfaces=drawn, rel_err=None, max_seconds=None)
-    return Ensemble(scene, sampler.name, Arrays(arrays))
+    return Ensemble(replace(scene, n_surfaces=drawn), sampler.name, Arrays(arrays))
 
 
-def blocks(scene: Scene, sampler: Sampler) -> Iterator[tuple[int, Block]]:
-    """First surface and results of each block, in order, until the scene's stop rule ends it."""
-    size, started = block_size(scene, sampler), monotonic()
-    running = Running.empty(len(scene.quantities) * len(scene.separations))
-    stops = [scene.n_surfaces] if scene.rel_err is None else checkpoints(scene.n_surfaces)
-    first = 0
-    for stop in stops:
-        for block in drawn_blocks(sampler, first, stop, size):
-            yield first, block
-            first += len(block.sums[scene.quantities[0]])
-            if scene.rel_err is not None:
-                running = running.add(scene, block.sums)
-            if scene.max_seconds is not None and monotonic() - started > scene.max_seconds:
-                return
-        if scene.rel_err is not None and not decide(scene, running).go_on:
-            return
+def blocks(scene: Scene, sampler: Sampler) -> Iterator[Block]:
+    """Results of all surfaces of a scene, block by block, in order."""
+    yield from drawn_blocks(sampler, 0, scene.n_surfaces, block_size(scene, sampler))
 
 
 def drawn_blocks(sampler: Sampler, first: int, stop: int, size: int) -> Iterator[Block]:
@@ -138,6 +137,19 @@ def block_size(scene: Scene, sampler: Sampler) -> int:
     most = int(min(_MOST_WORDS / words, _DRAWS / (draws + 1), 30 * GROUP))
     size = min(most, max(_WORDS // words, GROUP))
     return (size // GROUP // 4 * 4 + 2) * GROUP if size > GROUP else max(size, 1)
+
+
+def seconds_per_surface(scene: Scene, sampler: Sampler, *, rounds: int = 3) -> float:
+    """Median wall time of drawing one surface in a block, after a warm-up."""
+    size = min(block_size(scene, sampler), 256)
+    n = at_a_time(size)
+    list(drawn_blocks(sampler, 0, n, size))
+    times = []
+    for _ in range(rounds):
+        start = perf_counter()
+        list(drawn_blocks(sampler, 0, n, size))
+        times.append(perf_counter() - start)
+    return float(np.median(times)) / n
 
 
 @contextmanager

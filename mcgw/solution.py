@@ -9,6 +9,7 @@ from scipy.optimize import brentq
 from scipy.stats import t as student
 
 from analytic import QUANTITIES, Quantity
+from mcgw.intervals import FEWEST
 from mcgw.sampling.asperities import heights
 from mcgw.scene import Scene
 
@@ -51,8 +52,10 @@ class Solution:
     surfaces: dict[str, Array]
 
     def interval(self, name: str, level: float = 0.95) -> tuple[float, float]:
-        """Confidence interval of the mean over surfaces, by Student's t."""
+        """Confidence interval of the mean over surfaces, by Student's t; nan for too few contacts of all."""
         x = self.surfaces[name]
+        if len(x) * self.theory["contacts"] < FEWEST:
+            return float("nan"), float("nan")
         half = student.ppf((1 + level) / 2, len(x) - 1) * x.std(ddof=1) / np.sqrt(len(x))
         return float(x.mean() - half), float(x.mean() + half)
 

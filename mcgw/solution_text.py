@@ -6,6 +6,7 @@ import numpy as np
 
 from analytic import QUANTITIES
 from mcgw.csv_table import Row
+from mcgw.intervals import interval_text
 from mcgw.scene import Scene
 from mcgw.solution import Solution
 
@@ -36,7 +37,7 @@ def solution_table(scene: Scene, solutions: Sequence[Solution]) -> str:
             low, high = solution.interval(name)
             lines.append(
                 f"  {label + (f' ({unit})' if unit != '1' else ''):22} {solution.theory[name]:12.6g} "
-                f"{x.mean():12.6g} {f'{low:.6g} ... {high:.6g}':>29} {x.std(ddof=1):10.3g}"
+                f"{x.mean():12.6g} {interval_text(low, high):>29} {x.std(ddof=1):10.3g}"
             )
         lines.append("")
     few = [x for x in solutions if x.theory["contacts"] < 30]
@@ -52,7 +53,7 @@ def solution_table(scene: Scene, solutions: Sequence[Solution]) -> str:
 
 
 def solution_rows(scene: Scene, solutions: Sequence[Solution]) -> Iterator[Row]:
-    """Rows under `SOLUTION_HEADER`."""
+    """Rows under `SOLUTION_HEADER`; an interval of too few contacts is nan."""
     for solution in solutions:
         pressure = solution.value / scene.surface.nominal_area if solution.given == "load" else np.nan
         for name, (_, unit) in _NAMES.items():

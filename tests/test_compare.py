@@ -93,23 +93,12 @@ def test_no_contact_at_all(make_scene, tmp_path):
 
 def test_one_surface(make_scene):
     comparison = compare(mcgw.simulate(make_scene(n_surfaces=1)))
-    assert np.isnan(comparison.curves["load"].low).all()
+    curve = comparison.curves["load"]
+    assert 0 < curve.low[0] < curve.mean[0] < curve.high[0]
+    assert np.isnan(curve.low[-1])  # h = 4: too few contacts
     assert np.isfinite(comparison.verdict.p)
 
 
 def test_stratified_is_no_ensemble(make_scene):
     with pytest.raises(ValueError, match="takes another sampler"):
         compare(mcgw.simulate(make_scene(sampler="stratified")))
-
-
-def test_coverage_of_the_intervals(make_scene):
-    """600 ensembles: the 95 % interval of the load at h = 0 covers the mean 570 +- 27 times (5 sigma)."""
-    covered = 0
-    for seed in range(600):
-        ensemble = mcgw.simulate(
-            make_scene(separations=(0.0,), quantities=("load",), n_surfaces=20, seed=seed)
-        )
-        low, high = ensemble.interval("load")
-        exact = float(analytic.load(ensemble.scene.surface, 0.0, ensemble.scene.grading)) / 10
-        covered += bool(low[0] <= exact <= high[0])
-    assert abs(covered - 570) < 27

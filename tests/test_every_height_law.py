@@ -201,7 +201,8 @@ def test_a_stop_rule_does_not_wait_for_what_never_touches(name, make_scene):
     )
     expected = forecast(scene)
     assert {x for _, x in expected.out_of_reach} == set(h[3:])
-    ensemble = mcgw.simulate(scene)
+    with pytest.warns(UserWarning, match="more surfaces than max_surfaces allows"):
+        ensemble = mcgw.simulate(scene)
     assert np.all(ensemble.load[:, 3:] == 0)
     with pytest.raises(ValueError, match=r"no height reaches d/sigma = .*: nothing touches"):
         converge(replace(scene, separations=h[3:], rel_err=None), seeds=2)

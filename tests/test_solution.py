@@ -10,6 +10,7 @@ import analytic
 import mcgw
 from mcgw.cli import main
 from mcgw.solution import separation_on, solve
+from mcgw.solution_text import solution_table
 from mcgw.units import parse
 
 LOADS = (3.0, 100.0, 900.0)
@@ -286,3 +287,13 @@ def test_what_cannot_be_solved(scene):
         solve(replace(scene, n_asperities=2**50), "load", [1e9])
     with pytest.raises(ValueError, match="not reached"):
         solve(scene, "load", [1e12])
+
+
+def test_a_solution_of_too_few_contacts_has_no_interval(make_scene):
+    scene = make_scene(n_surfaces=3, separations=(0.0,))
+    light, heavy = solve(scene, "load", [float(x) for x in scene.theory.mean("load", [3.4, 2.0])])
+    assert 3 * light.theory["contacts"] < 10 < 3 * heavy.theory["contacts"]
+    assert np.isnan(light.interval("area")).all()
+    assert heavy.interval("area")[0] < heavy.surfaces["area"].mean() < heavy.interval("area")[1]
+    blocks = solution_table(scene, [light, heavy]).split("\n\n")
+    assert [block.count("too few contacts") for block in blocks[:2]] == [5, 0]

@@ -1,11 +1,13 @@
 """``mcgw run``: draw an ensemble into a file."""
 
 import argparse
+import warnings
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from mcgw.engines import Engine
+    from mcgw.forecast import Forecast
     from mcgw.running import Part
     from mcgw.scene import Scene
 
@@ -37,7 +39,14 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def execute(args: argparse.Namespace) -> int:
     """Run and say where the file is."""
+    with warnings.catch_warnings():  # of a limit too low: said here as a note, or by the forecast
+        warnings.filterwarnings("ignore", ".* max_surfaces allows")
+        return _execute(args)
+
+
+def _execute(args: argparse.Namespace) -> int:
     from mcgw.commands.notes import tell_notes
+    from mcgw.forecast import forecast
     from mcgw.outputs import HDF5, Output, check_outputs
     from mcgw.running import run, run_part
     from mcgw.scene_file import files_of, load_scene
@@ -47,17 +56,20 @@ def execute(args: argparse.Namespace) -> int:
     part = _part(args.shard)
     scene = load_scene(args.scene, seed=lambda: recorded_seed(path))
     check_outputs([Output(path, HDF5, grows=True)], inputs=files_of(args.scene))
-    tell_notes(scene, *_of_threads(args.threads), *_of_time(scene))
-    if scene.rel_err is not None or scene.max_seconds is not None:
-        return _until_known(scene, path, args)
-    bar = _Bar(scene.n_surfaces)
+    expected = forecast(scene)
+    short = [expected.shortfall] if part and expected.shortfall else []
+    tell_notes(scene, *_of_threads(args.threads), *_of_time(scene), *short)
     if part:
+        bar = _Bar(expected.surfaces)
         left = run_part(scene, path, part, threads=args.threads, progress=bar.show)
         bar.close()
         then = f"{left} surfaces are still missing" if left else f"all are there: mcgw merge {path}"
         print(f"{path}.parts: share {args.shard} is done; {then}")
         return 0
-    engine = _engine(args)
+    ruled = scene.rel_err is not None or scene.max_seconds is not None
+    if ruled:
+        _tell_forecast(scene, expected)
+    bar, engine = _Bar(expected.surfaces), _engine(args)
     try:
         ensemble = run(scene, path, threads=args.threads, engine=engine, progress=bar.show)
     finally:
@@ -65,31 +77,21 @@ def execute(args: argparse.Namespace) -> int:
         if engine:
             engine.close()
     print(f"{path}: {ensemble.n_surfaces} surfaces of {scene.n_asperities:g} asperities, seed {scene.seed}")
+    if ruled:
+        from mcgw.stop_report import after
+
+        for line in after(ensemble, scene.rel_err or 1.0):
+            print(line)
     return 0
 
 
-def _until_known(scene: "Scene", path: Path, args: argparse.Namespace) -> int:
-    """Draw until the stop rule is content, and say how well every mean is known."""
-    from mcgw.forecast import forecast, seconds_per_surface
+def _tell_forecast(scene: "Scene", expected: "Forecast") -> None:
+    """Say what the rule will take."""
     from mcgw.sampling.samplers import sampler_of
-    from mcgw.stop_report import after, before
-    from mcgw.until_known import run_until_known
+    from mcgw.simulation import seconds_per_surface
+    from mcgw.stop_report import before
 
-    if args.shard:
-        raise ValueError("--shard: the jobs of an array cannot share a stop rule; give n_surfaces")
-    expected = forecast(scene)
     print(f"forecast: {before(expected, seconds_per_surface(scene, sampler_of(scene)))}")
-    bar, engine = _Bar(expected.surfaces), _engine(args)
-    try:
-        ensemble = run_until_known(scene, path, threads=args.threads, engine=engine, progress=bar.show)
-    finally:
-        bar.close()
-        if engine:
-            engine.close()
-    print(f"{path}: {ensemble.n_surfaces} surfaces of {scene.n_asperities:g} asperities, seed {scene.seed}")
-    for line in after(ensemble, scene.rel_err or 1.0):
-        print(line)
-    return 0
 
 
 def _of_threads(threads: int | None) -> list[str]:

@@ -1,0 +1,238 @@
+"""Intervals: they cover as often as they say, with one contact or millions, or are not given.
+
+Gate of coverage: of 4000 intervals that cover with probability 0.95, fewer than 0.93 do once in 6e7.
+"""
+
+import numpy as np
+import pytest
+from conftest import SURFACE
+from scipy.special import gammaincinv
+from scipy.stats import binom, poisson
+from scipy.stats import t as student
+
+import mcgw
+from analytic import Exponential, ExponentialHeights, Gaussian, MeasuredHeights, Weibull
+from mcgw.compare import compare
+from mcgw.ensemble import Arrays, Ensemble
+from mcgw.forecast import forecast
+from mcgw.intervals import FEWEST, TOO_FEW, Spread, count_interval, spread_of
+from mcgw.plots import quantity_figure
+from mcgw.report_html import _table
+from mcgw.report_text import COMPARISON_HEADER, comparison_rows, comparison_table
+from mcgw.scene import Scene
+
+SEEDS = 4000
+LAWS = {"gaussian": Gaussian(), "exponential": ExponentialHeights(), "weibull": Weibull(3.6)}
+CONTACTS = (0.01, 0.03, 0.1, 0.3, 1.0, 3.8, 10.0, 30.0, 100.0, 300.0, 1000.0)
+
+
+def cut(expected, surfaces, law, count, gamma, seed=7):
+    """One ensemble, long enough to be cut into 4000 of so many contacts each."""
+    n = 2000
+    h = float(law.from_above(np.array(expected / (surfaces * n)), -np.inf))
+    scene = Scene(
+        surface=SURFACE, separations=(h,), grading=Exponential(gamma), heights=law, n_asperities=n,
+        count=count, n_surfaces=SEEDS * surfaces, seed=seed, sampler="cells",
+    )  # fmt: skip
+    return mcgw.simulate(scene)
+
+
+def intervals(ensemble, surfaces):
+    """Intervals and means of the parts, by quantity: each part as a separation of its own, so in one go."""
+    scene = ensemble.scene
+    found = {}
+    for name in scene.quantities:
+        parts = ensemble.values(name).reshape(SEEDS, surfaces).T
+        wide = Scene(**{**vars(scene), "n_surfaces": surfaces, "separations": scene.separations * SEEDS})
+        found[name] = (parts, Ensemble(wide, "cells", Arrays({name: parts})).interval(name))
+    return found
+
+
+def coverage(ensemble, surfaces):
+    """Share of the intervals given that cover, by quantity; 1 where none is given."""
+    theory, h = ensemble.scene.theory, ensemble.scene.separations
+    shares = {}
+    for name, (_, (low, high)) in intervals(ensemble, surfaces).items():
+        exact, given = float(theory.mean(name, h)[0]), ~np.isnan(low)
+        assert given.all() or not given.any()
+        assert name != "contacts" or given.all()
+        assert not (low < 0).any()
+        shares[name] = np.mean(((low <= exact) & (exact <= high))[given]) if given.any() else 1.0
+    return shares
+
+
+@pytest.mark.parametrize("count", ["fixed", "poisson"])
+@pytest.mark.parametrize(
+    ("expected", "surfaces", "law", "gamma"),
+    [
+        (0.03, 10, "gaussian", 1.0),
+        (3.8, 2, "exponential", 2.0),
+        (15.0, 2, "gaussian", 2.0),
+        (30.0, 10, "weibull", 0.2),
+        (60.0, 2, "exponential", 0.2),
+    ],
+)
+def test_intervals_cover(expected, surfaces, law, gamma, count):
+    assert min(coverage(cut(expected, surfaces, LAWS[law], count, gamma), surfaces).values()) >= 0.93
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("count", ["fixed", "poisson"])
+@pytest.mark.parametrize("gamma", [0.2, 1.0, 2.0])
+@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize("surfaces", [2, 10, 100])
+def test_intervals_cover_at_any_number_of_contacts(surfaces, law, gamma, count):
+    for number, expected in enumerate(CONTACTS):
+        found = coverage(cut(expected, surfaces, LAWS[law], count, gamma, number), surfaces)
+        assert min(found.values()) >= 0.93, expected
+
+
+@pytest.mark.parametrize(("expected", "most"), [(0.03, 0.05), (3.8, 0.93)])
+def test_students_interval_does_not_cover_few_contacts(expected, most):
+    """The companion: the same gate throws out the interval of one variance from few surfaces."""
+    ensemble = cut(expected, 10, LAWS["gaussian"], "fixed", 1.0)
+    x = ensemble.load.reshape(SEEDS, 10)
+    half = student.ppf(0.975, 9) * x.std(axis=1, ddof=1) / np.sqrt(10)
+    exact = float(ensemble.scene.theory.mean("load", ensemble.separations)[0])
+    assert np.mean(np.abs(x.mean(axis=1) - exact) <= half) < most
+
+
+def test_many_contacts_have_the_gaussian_interval(make_scene):
+    """1e15 asperities: mean -+ 1.96 exact standard errors but for the skewness, 2e-6 of them."""
+    scene = make_scene(n_asperities=10**15, n_surfaces=4, sampler="aggregate", separations=(0.0, 2.0))
+    ensemble = mcgw.simulate(scene)
+    exact = np.sqrt(np.diag(scene.theory.covariance(scene.quantities, scene.separations).reshape(8, 8)) / 4)
+    for name, stderr in zip(scene.quantities, exact.reshape(4, 2), strict=True):
+        low, high = ensemble.interval(name)
+        mean = ensemble.mean(name)
+        assert high - mean == pytest.approx(1.959963984540054 * stderr, rel=3e-5)
+        assert mean - low == pytest.approx(1.959963984540054 * stderr, rel=3e-5)
+        low, high = ensemble.interval(name, 0.5)
+        assert (high - low) / 2 == pytest.approx(0.6744897501960817 * stderr, rel=3e-5)
+
+
+@pytest.mark.parametrize("count", ["fixed", "poisson"])
+def test_interval_is_a_shifted_gamma_law_turned_round(make_scene, count):
+    """Word by word: quantiles of gamma of shape 4/skewness^2, of unit variance, about the exact mean."""
+    scene = make_scene(count=count, n_asperities=200, n_surfaces=5, separations=(0.5, 1.0, 1.0, 0.0))
+    ensemble = mcgw.simulate(scene)
+    exact = scene.theory.cumulants("load", scene.separations)
+    shape = 4 / (exact.skewness / np.sqrt(5)) ** 2
+    low, high = (
+        1 + (gammaincinv(shape, p) - shape) / np.sqrt(shape) * np.sqrt(exact.variance / 5) / exact.mean
+        for p in (0.025, 0.975)
+    )
+    np.testing.assert_allclose(ensemble.interval("load"), ensemble.mean("load") / [high, low], rtol=1e-9)
+
+
+def test_skewness_to_the_left(make_scene):
+    """Where almost all asperities touch, few that do not make the stiffness skew to the left."""
+    scene = make_scene(separations=(-2.5,), grading=Exponential(1.0), n_asperities=100)
+    spread, exact = spread_of(scene, "stiffness"), scene.theory.cumulants("stiffness", [-2.5])
+    assert exact.skewness[0] < 0
+    assert spread.skewness[0] == pytest.approx(exact.skewness[0], rel=1e-9)
+
+
+@pytest.mark.parametrize("k", [0, 1, 7, 500, 999, 1000])
+@pytest.mark.parametrize("level", [0.5, 0.95])
+def test_count_interval_by_definition(k, level):
+    """Each end is where so few, or so many, contacts have half of what the level leaves."""
+    tail = (1 - level) / 2
+    low, high = count_interval(np.array([k]), 1000.0, poisson=False, level=level)
+    assert binom.sf(k - 1, 1000, low[0] / 1000) == pytest.approx(tail if k else 1.0)
+    assert binom.cdf(k, 1000, high[0] / 1000) == pytest.approx(tail if k < 1000 else 1.0)
+    low, high = count_interval(np.array([k]), 1000.0, poisson=True, level=level)
+    assert poisson.sf(k - 1, low[0]) == pytest.approx(tail if k else 1.0)
+    assert poisson.cdf(k, high[0]) == pytest.approx(tail)
+
+
+@pytest.mark.parametrize("k", [1.0, 1e3, 1e9, 1e12])
+def test_count_interval_of_few_of_very_many_is_garwoods(k):
+    """Of 1e18 asperities: SciPy's own inverse of the beta law fails there."""
+    few, of_all = (count_interval(np.array([k]), 1e18, poisson=law) for law in (True, False))
+    np.testing.assert_allclose(of_all, few, rtol=1e-9)
+
+
+def test_contacts_are_counted_exactly(make_scene):
+    contacts = np.array([[2**53 - 1], [2**53], [3]])
+    scene = make_scene(separations=(0.0,), quantities=("contacts",), n_surfaces=3, n_asperities=2**53)
+    ensemble = Ensemble(scene, "cells", Arrays({"contacts": np.repeat(contacts, 3000, axis=0)}))
+    assert ensemble._contacts()[0] == float(3000 * (2**54 + 2))
+
+
+def test_spread_of_many_separations_is_that_of_each(make_scene):
+    """Unsorted, repeated, more than share a rule; and where the density underflows there is nothing."""
+    h = (*np.linspace(3, -1, 40), 2.0, 2.0, 38.0)
+    scene = make_scene(separations=h, grading=Exponential(1.0))
+    spread, exact = spread_of(scene, "load"), scene.theory.cumulants("load", h[:-1])
+    np.testing.assert_allclose(spread.relative[:-1], np.sqrt(exact.variance) / exact.mean, rtol=1e-10)
+    np.testing.assert_allclose(spread.skewness[:-1], exact.skewness, rtol=1e-10)
+    assert spread.relative[-1] == np.inf
+    assert np.isnan(spread.reach(10**6)[-1])
+
+
+@pytest.mark.parametrize("share", [0.05, 0.3, 1.0])
+def test_a_few_equal_terms_are_covered(share):
+    """A share of the mean from a Poisson number of equal terms, the rest steady: exact sums over that law."""
+    number, given = np.arange(400), 0
+    for expected in np.arange(0.2, 100.0, 0.05):
+        one = np.array([1 / np.sqrt(expected)])
+        low, high = Spread(share * one, one).ratio(1)
+        if not np.isnan(low[0]):
+            seen = 1 - share + share * number / expected
+            inside = (low <= seen) & (seen <= high)
+            assert poisson.pmf(number, expected)[inside].sum() >= 0.93, expected
+            given += 1
+    assert given > 1500
+
+
+@pytest.mark.parametrize("contacts", [0.01, 0.5, 3.0])
+def test_where_hardly_any_asperity_does_not_touch(make_scene, contacts):
+    """The number of contacts is N but for a rare one: too skew for a gamma law, within Chebyshev's bound."""
+    h = -float(Gaussian().from_above(np.array(contacts / 1000), -np.inf))
+    scene = make_scene(separations=(h,), grading=Exponential(1.0), n_asperities=1000, n_surfaces=1)
+    spread = spread_of(scene, "contacts")
+    low, high = spread.ratio(1)
+    missing = np.random.default_rng(1).binomial(1000, contacts / 1000, SEEDS)
+    share = (1000 - missing) / (1000 - contacts)
+    assert np.mean((low <= share) & (share <= high)) >= 0.93
+    assert forecast(make_scene(**vars(scene) | {"rel_err": 0.1, "n_surfaces": 10**6})).surfaces == 64
+
+
+def test_one_surface_has_an_interval(make_scene):
+    ensemble = mcgw.simulate(make_scene(n_surfaces=1, separations=(0.0,)))
+    for name in ensemble.scene.quantities:
+        low, high = ensemble.interval(name)
+        assert 0 < low < ensemble.mean(name) < high
+
+
+def test_nothing_drawn_leaves_nothing_open(make_scene):
+    heights = MeasuredHeights(np.random.default_rng(1).standard_normal(3000))
+    ensemble = mcgw.simulate(make_scene(n_surfaces=1, heights=heights, sampler="direct"))
+    np.testing.assert_array_equal(ensemble.interval("load"), [ensemble.mean("load")] * 2)
+
+
+def test_stratified_surfaces_have_none(make_scene):
+    with pytest.raises(ValueError, match="stratified surfaces have no interval"):
+        mcgw.simulate(make_scene(sampler="stratified")).interval("load")
+
+
+def test_too_few_is_said_wherever_intervals_are(make_scene):
+    """h = 4 and 8: one contact in 190 surfaces, and none."""
+    h = (0.0, 4.0, 8.0)
+    comparison = compare(mcgw.simulate(make_scene(n_surfaces=20, separations=h, seed=3)))
+    effective = spread_of(comparison.ensemble.scene, "load").effective(20)
+    assert (effective < FEWEST).tolist() == [False, True, True]
+    lines = comparison_table(comparison).splitlines()
+    words = [TOO_FEW in line for line in lines if line.split()[0] in ("0.000", "4.000", "8.000")]
+    assert words == 3 * [False, True, True] + 3 * [False]
+    rows = [dict(zip(COMPARISON_HEADER, row, strict=True)) for row in comparison_rows(comparison)]
+    assert [bool(np.isnan(row["low_95"])) for row in rows] == words
+    assert [bool(np.isnan(row["high_95"])) for row in rows] == words
+    assert _table(comparison, "load").count(TOO_FEW) == 2
+    assert TOO_FEW not in _table(comparison, "contacts")
+    assert comparison.curves["load"].mean[1] > 0  # so that the figure has something to mark
+    shown = [text.get_text() for text in quantity_figure(comparison, "load").axes[0].get_legend().get_texts()]
+    assert shown == ["theory", "Monte Carlo, 95 %", TOO_FEW]
+    shown = quantity_figure(comparison, "contacts").axes[0].get_legend().get_texts()
+    assert [text.get_text() for text in shown] == ["theory", "Monte Carlo, 95 %"]
