@@ -165,19 +165,19 @@ def ndtr(x: Any) -> Array:
 
 # M. J. Wichura, "Algorithm AS 241: the percentage points of the normal distribution", Appl. Statist. 37
 # (1988) 477: numerators and denominators, the highest power first, in the middle, near it, and far out.
-_MIDDLE = (
+MIDDLE = (
     [2509.0809287301226727, 33430.575583588128105, 67265.770927008700853, 45921.953931549871457,
      13731.693765509461125, 1971.5909503065514427, 133.14166789178437745, 3.387132872796366608],
     [5226.495278852545925, 28729.085735721942674, 39307.89580009271061, 21213.794301586595867,
      5394.1960214247511077, 687.1870074920579083, 42.313330701600911252, 1.0],
 )  # fmt: skip
-_NEAR = (
+NEAR = (
     [7.7454501427834140764e-4, 0.0227238449892691845833, 0.24178072517745061177, 1.27045825245236838258,
      3.64784832476320460504, 5.7694972214606914055, 4.6303378461565452959, 1.42343711074968357734],
     [1.05075007164441684324e-9, 5.475938084995344946e-4, 0.0151986665636164571966, 0.14810397642748007459,
      0.68976733498510000455, 1.6763848301838038494, 2.05319162663775882187, 1.0],
 )  # fmt: skip
-_OUT = (
+OUT = (
     [2.01033439929228813265e-7, 2.71155556874348757815e-5, 0.0012426609473880784386, 0.026532189526576123093,
      0.29656057182850489123, 1.7848265399172913358, 5.4637849111641143699, 6.6579046435011037772],
     [2.04426310338993978564e-15, 1.4215117583164458887e-7, 1.8463183175100546818e-5,
@@ -204,12 +204,12 @@ def ndtri(p: Array) -> Array:
         In their shape; infinite at 0 and 1.
     """
     q = p - 0.5
-    value = q * _ratio(_MIDDLE, 0.180625 - q * q)
+    value = q * _ratio(MIDDLE, 0.180625 - q * q)
     outer = np.flatnonzero(np.abs(q) > 0.425)
     if outer.size:
         tail = np.minimum(p[outer], 1 - p[outer])
         root = np.sqrt(-log(tail))
         with np.errstate(invalid="ignore"):
-            size = np.where(root <= 5, _ratio(_NEAR, root - 1.6), _ratio(_OUT, root - 5))
+            size = np.where(root <= 5, _ratio(NEAR, root - 1.6), _ratio(OUT, root - 5))
         value[outer] = np.copysign(np.where(tail > 0, size, np.inf), q[outer])
     return value

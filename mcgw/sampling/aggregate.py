@@ -20,8 +20,8 @@ import numpy as np
 from numpy.polynomial import chebyshev
 from numpy.typing import NDArray
 
-from analytic.elementary import ndtri
 from mcgw.compiling import njit
+from mcgw.sampling.exp_log import make_normal
 from mcgw.sampling.moments import Layout
 from mcgw.sampling.philox import MOMENTS, centred
 from mcgw.sampling.rules import gauss_legendre, product, triangle
@@ -158,6 +158,6 @@ def add_gaussian_moments(
         roots[start : start + root.shape[0], : root.shape[1]] = root
     words = np.repeat(varying.starts[crowded] - starts[:-1, 1], widths[:, 1]) + np.arange(starts[-1, 1])
     z = _words(np.uint64(seed), first, words, counts.shape[1])
-    z = ndtri((1 + z) / 2)
+    make_normal(z)
     means = np.concatenate([mean for mean, _ in laws])
     _mix(moments, counts[crowded], layout.starts[crowded], starts, means, roots, z)

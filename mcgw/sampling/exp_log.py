@@ -1,4 +1,4 @@
-"""Exponential and logarithm of single numbers for compiled loops, in plain arithmetic.
+"""Exponential, logarithm and normal numbers for compiled loops, in plain arithmetic.
 
 The C library has several versions of each and takes the one that suits the processor; a number that is
 drawn may not hang on which. Those for arrays are in `analytic.elementary`.
@@ -9,12 +9,14 @@ from typing import Any
 
 import numpy as np
 
+from analytic.elementary import MIDDLE, NEAR, OUT
 from mcgw.compiling import njit
 
-__all__ = ["exp_minus", "log", "log_one_minus"]
+__all__ = ["exp_minus", "log", "log_one_minus", "make_normal"]
 
 _LOG2_HIGH, _LOG2_LOW = 0.693147180369123816490, 1.90821492927058770002e-10  # the first has 33 bits
 _HALF = math.sqrt(0.5)
+_MIDDLE, _NEAR, _OUT = (np.array(table) for table in (MIDDLE, NEAR, OUT))  # compiled as constants
 
 
 @njit(nogil=True, cache=True, error_model="numpy")
@@ -48,3 +50,36 @@ def log_one_minus(p: Any) -> Any:
     """``log(1 - p)`` for p < 1, accurate for small `p`: the error of ``1 - p`` drops out (W. Kahan)."""
     q = 1.0 - p
     return -p if q == 1.0 else log(q) * (p / (1.0 - q))
+
+
+@njit(inline="always")
+def _ratio(table: Any, x: Any) -> Any:
+    """Two polynomials of degree 7, the highest power first."""
+    above, below = table[0, 0], table[1, 0]
+    for j in range(1, 8):
+        above = above * x + table[0, j]
+        below = below * x + table[1, j]
+    return above / below
+
+
+@njit(nogil=True, cache=True, error_model="numpy")
+def make_normal(x: Any) -> None:
+    """Turn uniforms between -1 and 1 into standard normal numbers, in place: `analytic.elementary.ndtri`.
+
+    Parameters
+    ----------
+    x : ndarray
+        Shape (n, m).
+    """
+    middle = np.empty(x.shape[1])
+    for row in x:
+        for i in range(row.size):  # right for most, and the same steps for all: four at a time
+            q = 0.5 * row[i]
+            middle[i] = q * _ratio(_MIDDLE, 0.180625 - q * q)
+        for i in range(row.size):
+            q = 0.5 * row[i]
+            if abs(q) > 0.425:
+                r = np.sqrt(-log(0.5 - abs(q)))
+                far = _ratio(_NEAR, r - 1.6) if r <= 5.0 else _ratio(_OUT, r - 5.0)
+                middle[i] = math.copysign(far, q)
+        row[:] = middle
