@@ -26,7 +26,7 @@ class Curve:
     Parameters
     ----------
     mean, low, high : ndarray
-        Monte-Carlo mean and its 95 % interval.
+        Monte-Carlo mean and its 95 % interval, nan where there are too few contacts for one.
     theory, stderr : ndarray
         Exact mean, and the exact standard error of the Monte-Carlo mean.
     """

@@ -72,8 +72,7 @@ def test_1e15_asperities(make_scene):
 
 
 def test_no_asperities_and_too_many(make_scene):
-    assert make_scene(n_asperities=0).n_asperities == 30_000  # left out: eta A_n
-    for n in (-1, 2**53 + 1, 10**30):
+    for n in (0, -1, 2**53 + 1, 10**30):
         with pytest.raises(SceneError, match="must lie between 1 and 2\\^53"):
             make_scene(n_asperities=n)
 
