@@ -138,8 +138,9 @@ def test_what_a_rule_will_not_reach_is_said_before(make_scene):
 
     scene = make_scene(rel_err=0.01, n_surfaces=1000, separations=(0.0, 3.0), quantities=("load",))
     found = forecast(scene)
-    needed = (1.959963984540054 / 0.01 * exact.std(scene, "load") / exact.mean(scene, "load")) ** 2
-    np.testing.assert_allclose(found.needed["load"], needed, rtol=1e-6)
+    needed = found.needed["load"]
+    plain = (1.959963984540054 / 0.01 * exact.std(scene, "load") / exact.mean(scene, "load")) ** 2
+    assert np.all((plain < needed) & (needed < 1.01**2 * plain))  # an end 1 % away, of either of the two
     assert found.out_of_reach == (("load", 3.0),)
     line = before(found, 0.25)
     assert line.startswith(

@@ -602,7 +602,10 @@ def test_tradeoff_takes_its_folder_and_its_time(call, monkeypatch):
     refused = call(["tradeoff", "@s.toml", "-o", "there", "--seconds", "7.5"])
     assert refused.files
     monkeypatch.setattr(tradeoff, "tradeoff", study)
-    assert "seconds = -1: give" in call(["tradeoff", "@s.toml", "--seconds", "-1", "-o", "x"]).err
+    assert (
+        "--seconds = '-1': give a number > 0"
+        in call(["tradeoff", "@s.toml", "--seconds", "-1", "-o", "x"]).err
+    )
 
 
 def few_methods(methods_for):

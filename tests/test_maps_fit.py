@@ -271,10 +271,10 @@ def test_measured_heights_are_those_of_the_field(sparse, tmp_path):
     ("arguments", "told"),
     [
         (["--cutoff", "5"], "leaves nothing"),
-        (["--cutoff", "wide"], "is no length"),
+        (["--cutoff", "wide"], "--cutoff = 'wide': give a number > 0 with its unit"),
         (["--cutoff", "none", "--parts", "1"], "--parts"),
         (["--cutoff", "none", "--heights", "measured", "--use", "caps"], "measured heights"),
-        (["--cutoff", "none", "--E-star", "-1"], "E_star"),
+        (["--cutoff", "none", "--E-star", "-1"], "--E-star = '-1': give a number > 0"),
     ],
 )
 def test_mistakes_are_told_in_one_line_and_nothing_is_written(arguments, told, sparse, tmp_path, capsys):

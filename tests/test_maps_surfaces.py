@@ -184,7 +184,7 @@ def test_the_contact_map_is_drawn(name, tmp_path, capsys):
         (["SCENE", "-o", "map.sdf", "--surface", "1000000"], "surfaces 0 to"),
         (["SCENE", "-o", "map.sdf", "--shape", "1x"], "--shape"),
         (["SCENE", "-o", "map.sdf", "--shape", "99999"], "more than the"),
-        (["SCENE", "-o", "map.sdf", "--width", "far"], "is no length"),
+        (["SCENE", "-o", "map.sdf", "--width", "far"], "--width = 'far': give a number > 0 with its unit"),
         (["-o", "map.sdf"], "SCENE"),
         (["-o", "map.sdf", "--from-spectrum", "rms=1um,long=1um,short=9um", "--pixel", "1um"], "below long"),
         (["-o", "map.sdf", "--from-spectrum", "m0=1,m2=1,m4=1", "--pixel", "1um"], "above 1.5"),

@@ -78,8 +78,9 @@ def test_forecast(scene):
         spread = exact.std(scene, name) / exact.mean(scene, name)
         np.testing.assert_allclose(relative_spread(scene, name), spread, rtol=1e-7)
     found = forecast(dataclasses.replace(scene, rel_err=0.01, n_surfaces=10**6))
-    needed = (1.959963984540054 / 0.01) ** 2 * (exact.std(scene, "load") / exact.mean(scene, "load")) ** 2
-    np.testing.assert_allclose(found.needed["load"], needed, rtol=1e-7)
+    plain = (1.959963984540054 / 0.01 * exact.std(scene, "load") / exact.mean(scene, "load")) ** 2
+    needed = found.needed["load"]
+    assert np.all((plain < needed) & (needed < 1.01**2 * plain))  # an end 1 % away, of either of the two
     most = max(float(n.max()) for n in found.needed.values())
     assert most <= found.surfaces <= 1.07 * most + 64
 

@@ -57,8 +57,8 @@ def flip(path, place):
 def changed_in_place(path):
     """A number in the data; HDF5 opens the file as if nothing were."""
     with h5py.File(path, "r") as file:
-        place = file["separation"].id.get_offset()
-    flip(path, place + 3)  # a low digit of the first separation
+        place = file["separation"].id.get_chunk_info(0).byte_offset
+    flip(path, place + 3)
 
 
 def a_changed_load(path):
@@ -106,9 +106,8 @@ def as_typed(scene, path):
 
 
 def by_rule(scene, path):
-    from mcgw.until_known import run_until_known
-
-    run_until_known(replace(scene, rel_err=1e-4), path)
+    with pytest.warns(UserWarning, match="need more surfaces"):
+        run(replace(scene, rel_err=1e-4), path)
 
 
 @pytest.mark.parametrize("damaged", DAMAGES, indirect=True)
