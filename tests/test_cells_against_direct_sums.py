@@ -20,6 +20,7 @@ GRADINGS = {
     "untold step": analytic.Custom(lambda s: np.where(s > 0.777, 2.0, 0.5)),
     "steep": analytic.Custom(lambda s: 1.5 + np.tanh(1e3 * (s - 0.5))),
     "steeper": analytic.Custom(lambda s: 1.5 + np.tanh(1e6 * (s - 0.5))),
+    "exp(12 s)": analytic.Custom(lambda s: np.exp(12 * s)),
 }
 MANY = 20  # surfaces: what goes wrong in rare cells does not show in each
 RANDOM = np.random.default_rng(3)
