@@ -326,6 +326,7 @@ def test_workers_end_with_the_driver(tmp_path):
     driver.stdout.close()
 
 
+@pytest.mark.slow
 def test_random_kills_of_everything(tmp_path):
     """A short one of `runs/reliability/kills.py`."""
     script = HERE.parent / "runs" / "reliability" / "kills.py"

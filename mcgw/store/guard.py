@@ -16,7 +16,7 @@ __all__ = ["examine", "examine_all"]
 
 _MEMORY = 2**31  # address space of the child; HDF5 and NumPy take a tenth of it
 _AT_ONCE = 500
-_SECONDS, _BYTES_A_SECOND = 4.0, 50e6
+_SECONDS, _BYTES_A_SECOND = 20.0, 50e6  # a busy machine takes seconds to start a process
 
 
 def examine(path: Path) -> dict[str, Any]:
