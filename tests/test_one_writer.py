@@ -257,9 +257,16 @@ BUSY = {
 }
 
 
+def lives(pid):
+    try:
+        return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] not in "ZX"
+    except OSError:
+        return False
+
+
 def gone(pid, seconds=30):
     until = time.monotonic() + seconds
-    while Path(f"/proc/{pid}").exists():
+    while lives(pid):
         if time.monotonic() > until:
             os.kill(pid, signal.SIGKILL)
             return False

@@ -6,7 +6,8 @@ that were committed and are gone (lost), files with another digest than the undi
 anything beside them (left), children that outlived their parent, and commands that did not go on (stuck). All
 but the kills should be 0.
 
-The surfaces are made up: what is tried here is the store. Merging is done by a process of its own, as always.
+The surfaces are made up: what is tried here is the store. Merging is done by a process of its own, as always;
+in nine trials of ten it is forked, with the same pipe to its parent, which saves the start of a Python.
 """
 
 import json
@@ -27,14 +28,16 @@ import harness
 
 from mcgw import joining, running
 from mcgw.errors import RunError, StoreError
-from mcgw.store import ensembles, lock
+from mcgw.lifeline import end_with
+from mcgw.store import ensembles, lock, merge
+from mcgw.store.child import ChildError
 from mcgw.store.rundir import Run, parts_of
 
 BLOCKS = 12
 WANTED = harness.scene_of(BLOCKS)
 ONE = replace(WANTED, n_surfaces=harness.ROWS)
 HALF = replace(WANTED, n_surfaces=harness.ROWS * BLOCKS // 2 + 3)
-_MERGE = joining._merge_in_child
+_STARTED = joining._merge_in_child
 _DYING = 30.0  # seconds that a child has to follow its parent: a machine may be busy
 
 
@@ -57,6 +60,26 @@ KINDS = {
     "jobs": ([], [job(1), job(2), joining.merge]),
     "merge": ([job(1), job(2)], [joining.merge]),
 }
+
+
+def merged_by_fork(folder, path, temporary):
+    """Merge in a child that ends with its parent."""
+    pipe, ours = os.pipe()
+    pid = os.fork()
+    if not pid:
+        code = 1
+        try:
+            os.close(ours)
+            end_with(pipe)
+            merge.merge_into(folder, path, temporary)
+            code = 0
+        finally:
+            os._exit(code)
+    os.close(pipe)
+    code = os.waitstatus_to_exitcode(os.waitpid(pid, 0)[1])
+    os.close(ours)
+    if code:
+        raise ChildError(f"exit code {code}", "")
 
 
 def forked(action, file):
@@ -87,12 +110,20 @@ def children(pid):
         return []
 
 
+def lives(pid):
+    """Whether a process is there and not only waits to be counted out."""
+    try:
+        return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] not in "ZX"
+    except OSError:
+        return False
+
+
 def outlived(pids):
     """How many processes are still there after a while; these are then killed."""
     until = time.monotonic() + _DYING
     alive = list(pids)
     while alive and time.monotonic() < until:
-        alive = [pid for pid in alive if Path(f"/proc/{pid}").exists()]
+        alive = [pid for pid in alive if lives(pid)]
         time.sleep(0.005)
     for pid in alive:
         with suppress(ProcessLookupError):
@@ -131,21 +162,25 @@ def trial(kind, folder, dice, count, expected):
     folder.mkdir()
     file = folder / "e.h5"
     before, steps = KINDS[kind]
+    merging = dice.choices(list(expected), weights=[9, 1])[0]
+    joining._merge_in_child = merging
+    span, right = expected[merging]
     for action in before:
         count["stuck"] += done(action, file) != 0
     for action in steps:
         while dice.random() < 0.7:
-            after, wait = dice.uniform(0, expected["seconds"]), dice.random() < 0.5
+            after, wait = dice.uniform(0, span), dice.random() < 0.5
             if struck(action, file, after, count, wait=wait):
                 count[kind] += 1
         count["stuck"] += done(action, file) != 0  # the same command, repeated at once
     problem, digest = ensembles.verify(file) if file.exists() else ("none", "")
-    count["wrong"] += bool(problem) or digest != expected["digest"]
+    count["wrong"] += bool(problem) or digest != right
     count["left"] += [path.name for path in folder.iterdir()] != ["e.h5"]
 
 
-def undisturbed(kind, folder):
-    """Digest of a kind, and the time of its last step."""
+def undisturbed(kind, merging, folder):
+    """Time of the last step of a kind, and its digest."""
+    joining._merge_in_child = merging
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
     file = folder / "e.h5"
@@ -154,17 +189,17 @@ def undisturbed(kind, folder):
         assert done(action, file) == 0
     begin = time.perf_counter()
     assert done(steps[-1], file) == 0
-    return {"seconds": 1.1 * (time.perf_counter() - begin), "digest": ensembles.verify(file)[1]}
+    return 1.1 * (time.perf_counter() - begin), ensembles.verify(file)[1]
 
 
 def main(kills, seed, folder):
     """As many kills, spread over all kinds alike."""
     harness.prepare()
-    joining._merge_in_child = _MERGE  # a real child
     lock.PATIENCE = 1.0
     dice = random.Random(seed)
     count = {"lost": 0, "wrong": 0, "left": 0, "outlived": 0, "stuck": 0, **dict.fromkeys(KINDS, 0)}
-    expected = {kind: undisturbed(kind, folder / "whole") for kind in KINDS}
+    ways = (merged_by_fork, _STARTED)
+    expected = {kind: {way: undisturbed(kind, way, folder / "whole") for way in ways} for kind in KINDS}
     while sum(count[kind] for kind in KINDS) < kills:
         least = min(KINDS, key=lambda kind: count[kind])
         trial(least, folder / "trial", dice, count, expected[least])
