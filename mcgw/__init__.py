@@ -24,13 +24,13 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from mcgw.ensemble import Ensemble
+    from mcgw.ensemble.ensemble import Ensemble
+    from mcgw.ensemble.simulation import simulate
     from mcgw.sampling.asperities import heights
-    from mcgw.scene import Scene, SceneError
-    from mcgw.scene_file import load_scene, scene_from, scene_text
-    from mcgw.simulation import simulate
+    from mcgw.scene.scene import Scene, SceneError
+    from mcgw.scene.scene_file import load_scene, scene_from, scene_text
+    from mcgw.scene.surface import Surface
     from mcgw.store.ensembles import open_ensemble
-    from mcgw.surface import Surface
 
 __all__ = [
     "Ensemble",
@@ -51,16 +51,16 @@ os.environ.setdefault("OMP_WAIT_POLICY", "passive")
 
 # Imported when asked for: compiling and file formats cost a second that `mcgw --help` need not wait.
 _HOME = {
-    "Ensemble": "ensemble",
-    "Scene": "scene",
-    "SceneError": "scene",
-    "Surface": "surface",
+    "Ensemble": "ensemble.ensemble",
+    "Scene": "scene.scene",
+    "SceneError": "scene.scene",
+    "Surface": "scene.surface",
     "heights": "sampling.asperities",
-    "load_scene": "scene_file",
+    "load_scene": "scene.scene_file",
     "open_ensemble": "store.ensembles",
-    "scene_from": "scene_file",
-    "scene_text": "scene_file",
-    "simulate": "simulation",
+    "scene_from": "scene.scene_file",
+    "scene_text": "scene.scene_file",
+    "simulate": "ensemble.simulation",
 }
 
 

@@ -9,7 +9,7 @@ from importlib.metadata import PackageNotFoundError, version
 from typing import Any
 
 from mcgw.errors import RunError
-from mcgw.terminal import drop_output, one_line, plain_output
+from mcgw.machine.terminal import drop_output, one_line, plain_output
 
 COMMANDS = (
     "init",

@@ -24,9 +24,9 @@ from scipy import fft
 from scipy.optimize import root
 
 import mcgw
+from mcgw.figures.style import STYLE
 from mcgw.maps.asperities import Asperities, asperities_of
 from mcgw.maps.envelope import envelope
-from mcgw.plots import STYLE
 
 HERE = Path(__file__).parent
 POINTS = 2048

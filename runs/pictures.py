@@ -13,7 +13,7 @@ import mcgw
 from mcgw.figures.drawing import draw
 from mcgw.figures.further import further_figures
 from mcgw.figures.samples import Samples
-from mcgw.plots import STYLE
+from mcgw.figures.style import STYLE
 from mcgw.sampling.cells import mesh_of
 
 HERE = Path(__file__).parent

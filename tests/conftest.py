@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 import analytic
-from mcgw.scene import Scene
+from mcgw.scene.scene import Scene
 
 SURFACE = analytic.Surface(sigma=1.37e-6, radius=13e-6, eta=3.0e8, nominal_area=1e-4, E_star=78.6e9)
 

@@ -1,14 +1,14 @@
 """A seal for a file that a test has changed: what a stranger could do as well."""
 
-from mcgw.store import probe
-from mcgw.store.seal import seal_of
+from mcgw.store import structure
+from mcgw.store.trailer import seal_of
 
 
 def seal_again(path):
     """Append a seal that fits what stands there; HDF5 has taken the old one away."""
     try:
-        head = probe.describe(str(path))["head"]
-    except (probe.RefusedError, OSError, RuntimeError, ValueError, KeyError, TypeError):
+        head = structure.describe(str(path))["head"]
+    except (structure.RefusedError, OSError, RuntimeError, ValueError, KeyError, TypeError):
         head = ""
     body = path.read_bytes()
     path.write_bytes(body + seal_of(body, head=head))

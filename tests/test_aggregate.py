@@ -10,10 +10,10 @@ from scipy.stats import kurtosis, skew
 
 import analytic
 import mcgw
-from mcgw.ensemble import Arrays, Ensemble
+from mcgw.ensemble.ensemble import Arrays, Ensemble
 from mcgw.sampling import samplers
 from mcgw.sampling.aggregate import Crowds, _law_of_moments, _partly
-from mcgw.sampling.response import layout_of
+from mcgw.sampling.response.response import layout_of
 
 GATE = 5.0
 

@@ -4,6 +4,7 @@ import ast
 import os
 import subprocess
 import sys
+from graphlib import TopologicalSorter
 from pathlib import Path
 
 import pytest
@@ -11,133 +12,70 @@ import pytest
 import mcgw
 from mcgw import sampling
 
-# Each file imports only from files before it. Commands come last and are not imported by anything.
-ORDER = (
+# Packages are layers: each imports only from those before it, and within one nothing goes round in a circle.
+LAYERS = (
     "errors",
-    "units",
-    "compiling",
-    "terminal",
-    "plain_file",
-    "toml_text",
-    "lifeline",
-    "formats.files",
-    "formats.pictures",
-    "store.disk",
-    "store.lock",
-    "store.seal",
-    "outputs",
-    "store.child",
-    "store.head",
-    "store.probe",
-    "store.guard",
-    "store.provenance",
-    "sampling.philox",
-    "surface",
+    "machine",
+    "formats",
     "scene",
-    "section",
-    "npy_file",
-    "heights_section",
-    "scene_file",
-    "room",
-    "sampling.spacing",
-    "sampling.aligned",
-    "sampling.in_threads",
-    "sampling.hertz",
-    "store.arithmetic",
-    "sampling.lanes",
-    "sampling.rules",
-    "sampling.cells",
-    "sampling.tree",
-    "sampling.uniform_sums",
-    "sampling.moments",
-    "sampling.laws",
-    "sampling.tiles",
-    "sampling.assembly",
-    "sampling.response",
-    "sampling.exp_log",
-    "sampling.binomial_ratio",
-    "sampling.binomial",
-    "sampling.halving",
-    "sampling.counts",
-    "sampling.extras",
-    "sampling.aggregate",
-    "sampling.samplers",
-    "sampling.asperities",
-    "intervals",
+    "sampling",
     "ensemble",
-    "forecast",
-    "simulation",
-    "duration",
-    "plan",
-    "regrade",
-    "store.shards",
-    "store.layout",
-    "store.rundir",
-    "plausible",
-    "validity",
-    "store.merge",
-    "work",
-    "engines",
-    "dask_engine",
-    "driver",
-    "store.sums",
-    "store.ensembles",
-    "store.leftovers",
-    "joining",
-    "running",
-    "stop_report",
-    "principal",
-    "checks",
-    "compare",
-    "converge",
-    "reference",
-    "methods",
-    "tradeoff",
-    "csv_table",
-    "solution",
-    "solution_text",
-    "figures.data",
-    "figures.samples",
-    "figures.paper",
-    "figures.equal_load",
-    "figures.finite",
-    "figures.summits",
-    "figures.further",
-    "doubts",
-    "plots",
-    "plots_converge",
-    "plots_tradeoff",
-    "figures.drawing",
-    "report_text",
-    "report_html",
+    "store",
+    "jobs",
+    "statistics",
+    "maps",
+    "figures",
+    "reports",
+    "commands",
     "cli",
 )
 ROOT = Path(mcgw.__file__).parent
 
 
-def imports(path):
-    """Modules of this package that a file imports at its top level."""
-    tree = ast.parse(path.read_text())
-    names = [node.module for node in tree.body if isinstance(node, ast.ImportFrom) and node.module]
-    return [name.removeprefix("mcgw.") for name in names if name.startswith("mcgw.")]
+def imports(tree):
+    """Modules of this package that a file imports, wherever in it that is."""
+    for node in ast.walk(tree):
+        match node:
+            case ast.ImportFrom(module=str(module)) if module.startswith("mcgw."):
+                yield module.removeprefix("mcgw.")
+            case ast.Import(names=names):
+                yield from (x.name.removeprefix("mcgw.") for x in names if x.name.startswith("mcgw."))
 
 
-def parts():
-    """All files that stand in one order, by the names of their modules."""
-    files = [
-        path
-        for folder in (".", "figures", "formats", "sampling", "store")
-        for path in (ROOT / folder).glob("*.py")
-    ]
-    named = {".".join(path.relative_to(ROOT).with_suffix("").parts): path for path in files}
-    return {name: path for name, path in named.items() if not path.stem.startswith("_")}
+def sources():
+    for path in sorted(ROOT.rglob("*.py")):
+        yield path.relative_to(ROOT).as_posix(), ast.parse(path.read_text())
 
 
-def test_imports_point_one_way():
-    assert parts().keys() == set(ORDER)
-    for this, path in parts().items():
-        for name in imports(path):
-            assert ORDER.index(name) < ORDER.index(this), f"{this} imports {name}"
+def inside():
+    """All that lies in a layer: name of the module, and its tree."""
+    for name, tree in sources():
+        if name not in ("__init__.py", "__main__.py"):
+            yield name.removesuffix(".py").removesuffix("/__init__").replace("/", "."), tree
+
+
+def test_packages_are_layers():
+    assert {name.partition(".")[0] for name, _ in inside()} == set(LAYERS)
+    for this, tree in inside():
+        for name in imports(tree):
+            above, below = (LAYERS.index(x.partition(".")[0]) for x in (this, name))
+            assert below <= above, f"{this} imports {name}"
+
+
+def test_no_imports_go_round_in_a_circle():
+    graph = {this: set(imports(tree)) for this, tree in inside()}
+    TopologicalSorter(graph).prepare()
+
+
+def test_the_response_knows_no_randomness():
+    random = {"binomial", "counts", "halving", "moments", "philox", "samplers", "uniform_sums", "aggregate"}
+    for this, tree in inside():
+        if this.startswith("sampling.response"):
+            assert not {f"sampling.{name}" for name in random} & set(imports(tree)), this
+
+
+def test_the_root_has_only_the_door():
+    assert {path.name for path in ROOT.glob("*.py")} == {"__init__.py", "__main__.py", "cli.py", "errors.py"}
 
 
 SHARED = {
@@ -148,15 +86,10 @@ SHARED = {
 GAUSSIAN_FIGURES = {"figures/paper.py", "figures/equal_load.py", "figures/summits.py"}  # those of the paper
 
 
-def sources():
-    for path in sorted(ROOT.rglob("*.py")):
-        yield path.relative_to(ROOT).as_posix(), ast.parse(path.read_text())
-
-
 def test_the_simulator_takes_no_integral_from_theory():
     """It shares the surface and its laws with the theory; what a scene's theory says it never asks."""
-    besides = {"scene.py": {"Model"}, "compare.py": {"Fluctuations"}}
-    whole = GAUSSIAN_FIGURES | {"methods.py"}  # the quadratures that tradeoff measures
+    besides = {"scene/scene.py": {"Model"}, "statistics/comparison.py": {"Fluctuations"}}
+    whole = GAUSSIAN_FIGURES | {"statistics/methods.py"}  # the quadratures that tradeoff measures
     for name, tree in sources():
         for node in ast.walk(tree):
             if isinstance(node, ast.ImportFrom) and node.module == "analytic":
@@ -192,6 +125,14 @@ def test_nothing_heavy_is_imported_early(code):
     assert found.stdout.strip() == ""
 
 
+@pytest.mark.parametrize("command", ["surface", "fit"])
+def test_help_needs_not_even_numpy(command):
+    code = f"import mcgw.commands.{command}"
+    probe = f"{code}\nimport sys\nprint('numpy' in sys.modules)"
+    found = subprocess.run([sys.executable, "-c", probe], capture_output=True, text=True, check=True)
+    assert found.stdout.strip() == "False"
+
+
 def test_kernels_older_than_a_file_are_compiled_anew(tmp_path):
     """A kernel holds the functions it calls from other files, which numba does not look at."""
     source, kernel = tmp_path / "a.py", tmp_path / "__pycache__" / "b.nbi"
@@ -207,15 +148,14 @@ def test_kernels_older_than_a_file_are_compiled_anew(tmp_path):
 
 def test_compiled_functions_lie_where_old_kernels_are_looked_for():
     """Those of one package only call each other: a folder is all that has to be watched."""
-    for name, path in parts().items():
-        if "@njit" in path.read_text():
-            assert name.startswith("sampling."), name
-    for path in (ROOT / "maps").glob("*.py"):
-        if "njit" in path.read_text():
-            assert not any(name.startswith("sampling") for name in imports(path)), path.name
+    for name, tree in inside():
+        if any(isinstance(node, ast.Name) and node.id == "njit" for node in ast.walk(tree)):
+            assert name.startswith(("sampling.", "maps.")), name
+            if name.startswith("maps."):
+                assert not any(other.startswith("sampling") for other in imports(tree)), name
 
 
 def test_no_loop_of_the_sampler_has_threads_of_its_own():
     """It is called from several threads, which not every kind of numba's own threads allows."""
-    for path in (ROOT / "sampling").glob("*.py"):
+    for path in (ROOT / "sampling").rglob("*.py"):
         assert "prange" not in path.read_text(), path.name

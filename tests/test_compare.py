@@ -8,9 +8,9 @@ from oracles import ensemble_arrays
 
 import analytic
 import mcgw
-from mcgw.compare import FALSE_ALARM, compare, verdict
-from mcgw.ensemble import Arrays, Ensemble
-from mcgw.plots import save_comparison
+from mcgw.ensemble.ensemble import Arrays, Ensemble
+from mcgw.figures.comparison import save_comparison
+from mcgw.statistics.comparison import FALSE_ALARM, compare, verdict
 
 
 @pytest.mark.slow

@@ -10,9 +10,9 @@ from scipy.special import ndtri
 
 import analytic
 import mcgw
-from mcgw.compare import FALSE_ALARM
-from mcgw.converge import converge
-from mcgw.plots_converge import save_convergence
+from mcgw.figures.convergence import save_convergence
+from mcgw.statistics.comparison import FALSE_ALARM
+from mcgw.statistics.convergence import converge
 
 H = (0.0, 1.0, 2.0, 3.0, 4.0)
 

@@ -3,7 +3,7 @@
 import pytest
 
 import analytic
-from mcgw.converge import converge
+from mcgw.statistics.convergence import converge
 
 
 @pytest.mark.slow

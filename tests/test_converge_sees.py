@@ -12,11 +12,11 @@ from scipy.stats import binom, chi2, norm
 
 import analytic
 import mcgw
-from mcgw import converge as module
-from mcgw.checks import coverage, variances
 from mcgw.cli import main
-from mcgw.compare import FALSE_ALARM
-from mcgw.converge import Convergence, converge
+from mcgw.statistics import convergence
+from mcgw.statistics.checks import coverage, variances
+from mcgw.statistics.comparison import FALSE_ALARM
+from mcgw.statistics.convergence import Convergence, converge
 
 H = (0.0, 1.0, 2.0)
 CHECKS = [
@@ -201,7 +201,7 @@ def test_coverage_is_students_and_its_p_the_binomials():
 
 def test_the_verdict_is_the_worst_check_times_their_number(scene):
     def of(*p):
-        return Convergence(scene, tuple(module.Check("c", "", x) for x in p), (), np.empty(0))
+        return Convergence(scene, tuple(convergence.Check("c", "", x) for x in p), (), np.empty(0))
 
     assert of(0.5, 0.004, 0.9).p == pytest.approx(0.012)
     assert of(0.5, 0.4).p == pytest.approx(0.8)
@@ -215,7 +215,7 @@ def test_a_slope_is_a_least_squares_fit_and_its_p_two_sided():
     rng = np.random.default_rng(4)
     sizes = (1.0, 4.0, 16.0, 64.0)
     squares = [rng.normal(size=2000) ** 2 / n for n in sizes]
-    found = module.slope("M", sizes, squares, [0.0] * 4)
+    found = convergence.slope("M", sizes, squares, [0.0] * 4)
     plain = np.polyfit(np.log(sizes), [np.log(x.mean()) / 2 for x in squares], 1)[0]
     assert found.value == pytest.approx(plain, abs=1e-3)  # weights and biases are equal here
     assert abs(found.value + 0.5) < 5 * found.uncertainty
@@ -239,7 +239,7 @@ def test_the_command_ends_with_0_if_all_is_right(scene_file, tmp_path, capsys):
 
 
 def test_the_command_ends_with_1_if_the_sampler_is_wrong(scene_file, tmp_path, capsys, monkeypatch):
-    monkeypatch.setattr(module, "_own", loads_off)
+    monkeypatch.setattr(convergence, "_own", loads_off)
     assert main(["converge", str(scene_file), "-o", str(tmp_path)]) == 1
     out = capsys.readouterr().out
     assert "convergence FAILED: p = " in out
@@ -248,9 +248,9 @@ def test_the_command_ends_with_1_if_the_sampler_is_wrong(scene_file, tmp_path, c
 
 def test_the_command_ends_with_1_if_the_theory_is_wrong(scene_file, tmp_path, capsys, monkeypatch):
     """The simulator as it is, held to a stiffer modulus."""
-    own = module._own
+    own = convergence._own
     softer = replace(mcgw.load_scene(scene_file), grading=analytic.Exponential(1.98))
-    monkeypatch.setattr(module, "_own", lambda scene: own(replace(scene, grading=softer.grading)))
+    monkeypatch.setattr(convergence, "_own", lambda scene: own(replace(scene, grading=softer.grading)))
     assert main(["converge", str(scene_file), "-o", str(tmp_path)]) == 1
 
 

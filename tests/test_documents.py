@@ -11,7 +11,7 @@ import pytest
 
 import mcgw
 from mcgw.cli import COMMANDS, main
-from mcgw.running import run
+from mcgw.jobs.running import run
 
 ROOT = Path(__file__).parent.parent
 PAGES = ("README.md", "runs/README.md", "runs/ERRATA.md", "runs/TUTORIAL.md")
@@ -73,7 +73,7 @@ def test_python_of_the_readme_runs(monkeypatch):
 def test_table_of_the_tutorial_is_a_grading(tmp_path):
     (table,) = blocks("runs/TUTORIAL.md", "csv")
     (tmp_path / "indents.csv").write_text(table)
-    scene = (ROOT / "mcgw" / "presets" / "nanoindentation.toml").read_text()
+    scene = (ROOT / "mcgw" / "scene" / "presets" / "nanoindentation.toml").read_text()
     scene = re.sub(r"^(s|ratio) +=.*\n", "", scene, flags=re.MULTILINE).replace(
         '# file = "ind', 'file = "ind'
     )

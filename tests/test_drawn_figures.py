@@ -12,15 +12,15 @@ from scipy.stats import norm
 
 import analytic
 import mcgw
-from mcgw.checks import Check, Slope
-from mcgw.compare import Comparison, Curve, Verdict, compare
-from mcgw.converge import Convergence
+from mcgw.figures.comparison import quantity_figure, save_comparison
+from mcgw.figures.convergence import save_convergence
 from mcgw.figures.data import FigureData, Panel, Points, Series
 from mcgw.figures.drawing import draw
-from mcgw.plots import quantity_figure, save_comparison
-from mcgw.plots_converge import save_convergence
-from mcgw.plots_tradeoff import save_tradeoff
-from mcgw.report_html import _spread
+from mcgw.figures.tradeoff import save_tradeoff
+from mcgw.reports.html import _spread
+from mcgw.statistics.checks import Check, Slope
+from mcgw.statistics.comparison import Comparison, Curve, Verdict, compare
+from mcgw.statistics.convergence import Convergence
 
 TITLES = {
     "load": "Load $P$ (N)",
@@ -298,8 +298,8 @@ def test_convergence_without_slopes(make_scene, kept, tmp_path):
 
 
 def test_tradeoff(make_scene, kept, tmp_path):
-    from mcgw.methods import Method
-    from mcgw.tradeoff import Point, Tradeoff
+    from mcgw.statistics.methods import Method
+    from mcgw.statistics.tradeoff import Point, Tradeoff
 
     def none(size, seed):
         return np.zeros(2)
@@ -336,8 +336,8 @@ def test_tradeoff(make_scene, kept, tmp_path):
 
 def test_contact_map(make_scene, kept, tmp_path):
     """Spots to scale at their places in micrometres, coloured by their loads in millinewtons."""
+    from mcgw.figures.contact_map import save_contact_map, spots_at
     from mcgw.maps.asperities import Asperities
-    from mcgw.maps.spots import save_contact_map, spots_at
 
     scene = make_scene(grading=analytic.Exponential(2.0))
     sigma, radius = scene.surface.sigma, scene.surface.radius

@@ -9,11 +9,12 @@ from scipy.stats import binom, chi2
 from test_binomial import draw
 
 from mcgw.sampling import counts
-from mcgw.sampling.moments import _PIECE, Layout, _add_compensated, cell_moments
+from mcgw.sampling.layout import Layout
+from mcgw.sampling.moments import _PIECE, _add_compensated, cell_moments
 from mcgw.sampling.philox import CELLS, uniforms
 from mcgw.sampling.samplers import sampler_of
 from mcgw.sampling.uniform_sums import PLAIN, ROOTED, WORDS, sum_uniforms
-from mcgw.scene import SAMPLERS
+from mcgw.scene.scene import SAMPLERS
 
 FALSE_ALARM = 1e-6  # of each chi-square test; the seeds are fixed
 MANY = 2**20

@@ -10,14 +10,14 @@ from pathlib import Path
 
 import pytest
 
-from mcgw import running
-from mcgw.dask_engine import Dask, check_address
-from mcgw.driver import Signals, drive
-from mcgw.engines import Processes, Threads
 from mcgw.errors import RunError
-from mcgw.running import run
+from mcgw.jobs import running
+from mcgw.jobs.dask_engine import Dask, check_address
+from mcgw.jobs.driver import Signals, drive
+from mcgw.jobs.engines import Processes, Threads
+from mcgw.jobs.running import run
 from mcgw.store import ensembles
-from mcgw.store.rundir import parts_of
+from mcgw.store.run_folder import parts_of
 from mcgw.store.shards import Span
 
 SIZE, SURFACES = 8, 72

@@ -12,13 +12,12 @@ import pytest
 
 import analytic
 import mcgw
-from mcgw import joining
 from mcgw.cli import _parser, main
+from mcgw.figures.contact_map import EllipseCollection
+from mcgw.jobs import merging
+from mcgw.jobs.running import run
 from mcgw.maps.files import read_map
-from mcgw.maps.spots import EllipseCollection
-from mcgw.running import run
-from mcgw.store import ensembles, probe
-from mcgw.store import merge as merging
+from mcgw.store import ensembles, merged_file, structure
 from mcgw.store.ensembles import read_attributes
 
 SCENE = """
@@ -50,7 +49,7 @@ class Said:
 def _looked_at_here():
     """Files are looked at in this process: a child for each takes most of the time, on a busy machine all."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(ensembles, "examine", lambda path: probe.describe(str(path)))
+        patch.setattr(ensembles, "examine", lambda path: structure.describe(str(path)))
         yield
 
 
@@ -71,7 +70,7 @@ def material(tmp_path_factory):
 
 @pytest.fixture(autouse=True)
 def _merged_here(monkeypatch):
-    monkeypatch.setattr(joining, "_merge_in_child", lambda *places: merging.merge_into(*places[:3]))
+    monkeypatch.setattr(merging, "_merge_in_child", lambda *places: merged_file.merge_into(*places[:3]))
 
 
 @pytest.fixture
@@ -485,11 +484,11 @@ class Recorder:
 @pytest.mark.parametrize(
     ("words", "where", "made"),
     [
-        (["--processes", "3"], "mcgw.engines.Processes", ((3,), {})),
-        (["--workers", "2"], "mcgw.dask_engine.Dask", ((None,), {"workers": 2, "insecure": False})),
+        (["--processes", "3"], "mcgw.jobs.engines.Processes", ((3,), {})),
+        (["--workers", "2"], "mcgw.jobs.dask_engine.Dask", ((None,), {"workers": 2, "insecure": False})),
         (
             ["--scheduler", "tcp://h:1", "--insecure"],
-            "mcgw.dask_engine.Dask",
+            "mcgw.jobs.dask_engine.Dask",
             (("tcp://h:1",), {"workers": 1, "insecure": True}),
         ),
     ],
@@ -584,7 +583,7 @@ def test_converge_takes_its_folder(call, material):
 
 
 def test_tradeoff_takes_its_folder_and_its_time(call, monkeypatch):
-    from mcgw import tradeoff
+    from mcgw.statistics import tradeoff
 
     seen = []
     study = tradeoff.tradeoff
@@ -646,7 +645,7 @@ def test_figures_take_folder_scene_and_csv(call, monkeypatch):
 
 def test_colours_tell_what_was_asked(call, monkeypatch):
     """The numbers that are coloured: loads in mN, or moduli."""
-    from mcgw.maps import spots
+    from mcgw.figures import contact_map
 
     seen = []
 
@@ -654,7 +653,7 @@ def test_colours_tell_what_was_asked(call, monkeypatch):
         seen.append(np.array(array))
         return EllipseCollection(*arguments, array=array, **options)
 
-    monkeypatch.setattr(spots, "EllipseCollection", spy)
+    monkeypatch.setattr(contact_map, "EllipseCollection", spy)
     for words in ([], ["--colour", "modulus"], ["--colour", "load"]):
         assert call(["surface", "@s.toml", "--at", "1", "-o", "m.png", *words]).code == 0
     scene = mcgw.scene_from(SCENE)

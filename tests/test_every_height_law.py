@@ -12,7 +12,7 @@ import pytest
 import scipy.stats
 
 import mcgw
-import mcgw.report_html
+import mcgw.reports.html
 from analytic import (
     QUANTITIES,
     Exponential,
@@ -23,14 +23,12 @@ from analytic import (
     ScipyHeights,
     Weibull,
 )
-from mcgw.compare import compare
-from mcgw.converge import converge
-from mcgw.doubts import doubts
-from mcgw.ensemble import Arrays, Ensemble
-from mcgw.forecast import forecast
-from mcgw.report_html import report_html
-from mcgw.report_text import comparison_table, summary, verdict_line
-from mcgw.validity import notes
+from mcgw.ensemble.forecast import forecast
+from mcgw.reports.html import report_html
+from mcgw.reports.text import comparison_table, summary, verdict_line
+from mcgw.scene.cautions import cautions
+from mcgw.statistics.comparison import compare
+from mcgw.statistics.convergence import converge
 
 SAMPLE = np.random.default_rng(1).weibull(1.6, size=300)
 LAWS = {
@@ -72,8 +70,8 @@ def ensemble_of(make_scene):
 @pytest.fixture
 def no_figures(monkeypatch):
     """A report without its drawings, which take a second each."""
-    monkeypatch.setattr(mcgw.report_html, "quantity_figure", lambda *_: None)
-    monkeypatch.setattr(mcgw.report_html, "_svg", lambda *_: "")
+    monkeypatch.setattr(mcgw.reports.html, "quantity_figure", lambda *_: None)
+    monkeypatch.setattr(mcgw.reports.html, "_svg", lambda *_: "")
 
 
 def literal(scene, quantity, h):
@@ -118,24 +116,23 @@ def test_what_is_printed_is_the_theory_of_that_law(name, ensemble_of, no_figures
 
 
 @every_law
-def test_doubts_know_the_law(name, make_scene):
+def test_cautions_know_the_law(name, make_scene):
     """Half of all summits, few contacts, and the highest summit: each by the law's own shares."""
     h = tuple(np.linspace(-0.6, 1.4, 21))
     own = {"n_surfaces": 1, "sampler": "direct"} if name == "measured" else {}
     scene = make_scene(
         heights=LAWS[name], separations=h, n_asperities=SAMPLE.size, grading=Exponential(0.5), **own
     )
-    text = "\n".join(doubts(Ensemble(scene, "direct", Arrays({}))))
+    text = "\n".join(cautions(scene))
     contacts = np.array([literal(scene, "contacts", x) for x in h])
     half = [x for x, n in zip(h, contacts, strict=True) if n > scene.n_asperities / 2]
-    told = re.search(r"Up to d/σ = (\S+) more than half", text)
+    told = re.search(r"up to d/sigma = (\S+) more than half", text)
     assert (told is not None) == bool(half)
     assert not half or float(told[1]) == pytest.approx(max(half), rel=1e-2)
     few = [x for x, n in zip(h, contacts, strict=True) if n < 30]
-    told = re.search(r"From d/σ = (\S+) fewer than 30 contacts", text)
+    told = re.search(r"from d/sigma = (\S+) fewer than 30 contacts", text)
     assert (told is not None) == bool(few)
     assert not few or float(told[1]) == pytest.approx(min(few), rel=1e-2)
-    assert notes(scene) == []
 
 
 def test_negative_moduli_are_looked_for_as_far_as_the_law_reaches(make_scene):
@@ -143,7 +140,7 @@ def test_negative_moduli_are_looked_for_as_far_as_the_law_reaches(make_scene):
     falling = Exponential(-1e-5)  # negative above ln(1 + 1e5) = 11.5
     for name, expected in (("exponential", True), ("gaussian", False), ("uniform", False)):
         scene = make_scene(heights=LAWS[name], separations=(1.0,), grading=falling, negative="clip")
-        text = "\n".join(doubts(Ensemble(scene, "direct", Arrays({}))))
+        text = "\n".join(cautions(scene))
         assert ("modulus is negative" in text) == expected, name
 
 
@@ -177,7 +174,7 @@ def test_everything_takes_separations_around_the_support(name, sampler, ensemble
         comparison = compare(e)
         assert comparison.verdict.agrees
         report_html(e, ATTRIBUTES)
-        doubts(e)
+        cautions(e.scene)
         summary(e, ATTRIBUTES)
         verdict_line(comparison.verdict)
         for quantity, curve in comparison.curves.items():

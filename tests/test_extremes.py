@@ -15,9 +15,10 @@ from scipy.special import log_ndtr
 import analytic
 import mcgw
 from mcgw.sampling.counts import counts_of
-from mcgw.sampling.moments import Layout, _add_compensated, cell_moments
+from mcgw.sampling.layout import Layout
+from mcgw.sampling.moments import _add_compensated, cell_moments
 from mcgw.sampling.samplers import sampler_of
-from mcgw.scene import Scene, SceneError
+from mcgw.scene.scene import Scene, SceneError
 
 GAMMA_STAR = math.exp(0.5) / (math.exp(0.5) - 1)
 

@@ -5,8 +5,8 @@ import threading
 import pytest
 from numba import get_num_threads
 
-from mcgw.sampling.in_threads import in_threads, pieces
-from mcgw.simulation import use_threads
+from mcgw.ensemble.simulation import use_threads
+from mcgw.machine.in_threads import in_threads, pieces
 
 
 @pytest.mark.parametrize("threads", [1, 2])

@@ -15,10 +15,10 @@ from sealing import seal_again
 import analytic
 import mcgw
 from mcgw.errors import StoreError
-from mcgw.running import run
-from mcgw.scene import Scene
-from mcgw.store import ensembles, guard
-from mcgw.store.child import ChildError, run_child
+from mcgw.jobs.running import run
+from mcgw.machine.child_process import ChildError, run_child
+from mcgw.scene.scene import Scene
+from mcgw.store import ensembles, untrusted
 
 TESTS = Path(__file__).parent
 SECRET = "key = correct horse battery staple"
@@ -224,7 +224,7 @@ def test_a_child_that_crashes_hangs_or_is_greedy_is_an_error(path, monkeypatch, 
     (tmp_path / "crash.py").write_text("import os\nos.abort()\n")
     (tmp_path / "hang.py").write_text("import time\ntime.sleep(60)\n")
     (tmp_path / "greedy.py").write_text(
-        "from mcgw.store.child import limit_memory\nlimit_memory(2**28)\nx = bytearray(2**30)\n"
+        "from mcgw.machine.child_process import limit_memory\nlimit_memory(2**28)\nx = bytearray(2**30)\n"
     )
     monkeypatch.setenv("PYTHONPATH", str(tmp_path))
     with pytest.raises(ChildError, match="crashed with SIGABRT"):
@@ -241,16 +241,16 @@ def test_what_the_child_suffers_is_told_in_one_line(path, monkeypatch):
     def crash(*arguments, seconds=None):
         raise ChildError("crashed with SIGSEGV", "")
 
-    monkeypatch.setattr(guard, "run_child", crash)
-    guard._examined.cache_clear()
+    monkeypatch.setattr(untrusted, "run_child", crash)
+    untrusted._examined.cache_clear()
     with pytest.raises(StoreError, match="damaged or hostile; reading it crashed with SIGSEGV"):
-        guard.examine(path)
+        untrusted.examine(path)
 
 
 def test_a_file_is_looked_at_once_until_it_changes(path, monkeypatch):
     mcgw.open_ensemble(path)
     calls = []
-    monkeypatch.setattr(guard, "run_child", lambda *a, **k: calls.append(a) or run_child(*a, **k))
+    monkeypatch.setattr(untrusted, "run_child", lambda *a, **k: calls.append(a) or run_child(*a, **k))
     mcgw.open_ensemble(path)
     assert not calls
     os.utime(path)

@@ -12,13 +12,14 @@ import pytest
 
 import analytic
 import mcgw
-from mcgw import running
 from mcgw.errors import StoreError
 from mcgw.formats.files import check_output
-from mcgw.room import check_room, memory_available
-from mcgw.running import run
-from mcgw.scene import SceneError
-from mcgw.validity import notes
+from mcgw.jobs import running
+from mcgw.jobs.disk_space import check_space
+from mcgw.jobs.running import run
+from mcgw.machine.memory import memory_available
+from mcgw.scene.cautions import notes
+from mcgw.scene.scene import SceneError
 
 GOOD = """
 title = "table"
@@ -182,7 +183,7 @@ def row_21_more_asperities_than_memory(make, tmp_path):
     with pytest.raises(ValueError, match=r"the heights of one surface needs .* GiB of memory and .* GiB are"):
         mcgw.heights(replace(scene, sampler="cells"), 0, untouched=True)
     with pytest.raises(StoreError, match=r"a block of 4 surfaces needs .* GiB of memory"):
-        check_room(scene, tmp_path / "e.h5", rows=4, columns=memory_available())
+        check_space(scene, tmp_path / "e.h5", rows=4, columns=memory_available())
 
 
 def row_22_more_than_the_disk(make, tmp_path):

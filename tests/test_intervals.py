@@ -12,14 +12,14 @@ from scipy.stats import t as student
 
 import mcgw
 from analytic import Exponential, ExponentialHeights, Gaussian, MeasuredHeights, Weibull
-from mcgw.compare import compare
-from mcgw.ensemble import Arrays, Ensemble
-from mcgw.forecast import forecast
-from mcgw.intervals import FEWEST, TOO_FEW, Spread, count_interval, spread_of
-from mcgw.plots import quantity_figure
-from mcgw.report_html import _table
-from mcgw.report_text import COMPARISON_HEADER, comparison_rows, comparison_table
-from mcgw.scene import Scene
+from mcgw.ensemble.ensemble import Arrays, Ensemble
+from mcgw.ensemble.forecast import forecast
+from mcgw.ensemble.intervals import FEWEST, TOO_FEW, Spread, count_interval, spread_of
+from mcgw.figures.comparison import quantity_figure
+from mcgw.reports.html import _table
+from mcgw.reports.text import COMPARISON_HEADER, comparison_rows, comparison_table
+from mcgw.scene.scene import Scene
+from mcgw.statistics.comparison import compare
 
 SEEDS = 4000
 LAWS = {"gaussian": Gaussian(), "exponential": ExponentialHeights(), "weibull": Weibull(3.6)}

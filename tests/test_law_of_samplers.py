@@ -22,7 +22,7 @@ def ensembles():
     """One ensemble a sampler, fixed and Poisson."""
     from conftest import SURFACE
 
-    from mcgw.scene import Scene
+    from mcgw.scene.scene import Scene
 
     made = {}
     for count in ("fixed", "poisson"):
@@ -96,7 +96,7 @@ def test_a_poisson_number_for_a_fixed_one_fails(ensembles):
 )
 def test_a_wrong_law_fails(ensembles, flaw, where):
     """Exponent 1.4 for 3/2, normals biased by 0.01, a tail cut at 2.5 sigma."""
-    from mcgw.ensemble import Arrays, Ensemble
+    from mcgw.ensemble.ensemble import Arrays, Ensemble
 
     scene = ensembles["direct", "fixed"].scene
     right = Ensemble(scene, "direct", Arrays(ensemble_arrays(scene, 5)))

@@ -11,10 +11,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from mcgw.formats.units import METRES
 from mcgw.maps.files import read_map, write_map
 from mcgw.maps.sdf import read_sdf
 from mcgw.maps.topography import Topography
-from mcgw.units import METRES
 
 NAMES = ["map.sdf", "map.ascii.sdf", "map.x3p", "map.npy", "map.h5"]
 every_format = pytest.mark.parametrize("name", NAMES)

@@ -10,7 +10,7 @@ import mcgw
 from analytic import MeasuredHeights
 from mcgw.cli import main
 from mcgw.maps.asperities import Asperities
-from mcgw.maps.doubts import doubts
+from mcgw.maps.cautions import doubts
 from mcgw.maps.envelope import envelope, hidden_summits
 from mcgw.maps.files import write_map
 from mcgw.maps.fit import fit_map

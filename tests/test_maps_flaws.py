@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import mcgw.maps.fit as fit_module
-from mcgw.maps.doubts import doubts
+from mcgw.maps.cautions import doubts
 from mcgw.maps.fit import fit_map
 from mcgw.maps.flaws import _waves, flaws
 from mcgw.maps.levels import form_left, step_of

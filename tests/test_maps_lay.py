@@ -5,7 +5,7 @@ import re
 import numpy as np
 import pytest
 
-from mcgw.maps.doubts import doubts
+from mcgw.maps.cautions import doubts
 from mcgw.maps.fit import fit_map
 from mcgw.maps.form import smooth
 from mcgw.maps.topography import Topography

@@ -12,7 +12,7 @@ import mcgw.maps.fit as fit_module
 from mcgw.maps.fit import Estimate, fit_map
 from mcgw.maps.nayak import SpectralMoments
 from mcgw.maps.spectrum import Spectrum, gaussian_map, moments_on_grid
-from mcgw.maps.tally import _apex, tally_of
+from mcgw.maps.summit_sums import _apex, tally_of
 from mcgw.maps.topography import Topography
 
 PARAMETERS = ("eta", "radius", "sigma")

@@ -14,12 +14,12 @@ from hypothesis import strategies as st
 import analytic
 import mcgw
 from mcgw.cli import main
+from mcgw.figures.contact_map import spots_at
 from mcgw.maps.asperities import Asperities, asperities_of
 from mcgw.maps.envelope import envelope, hidden_summits
 from mcgw.maps.files import read_map
-from mcgw.maps.hiding import unhidden, visible
-from mcgw.maps.spots import spots_at
-from mcgw.scene_file import scene_text
+from mcgw.maps.hidden import unhidden, visible
+from mcgw.scene.scene_file import scene_text
 
 RUNS = Path(__file__).parents[1] / "runs"
 

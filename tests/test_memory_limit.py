@@ -10,7 +10,7 @@ import pytest
 from sealing import seal_again
 
 import mcgw
-from mcgw.running import run
+from mcgw.jobs.running import run
 
 resource = pytest.importorskip("resource")
 
@@ -54,7 +54,7 @@ LOOK = """
 import sys
 from pathlib import Path
 from mcgw.errors import StoreError
-from mcgw.store.guard import examine, examine_all
+from mcgw.store.untrusted import examine, examine_all
 for look in (examine, lambda path: examine_all([path])):
     try:
         look(Path(sys.argv[1]))
@@ -92,5 +92,5 @@ def test_a_hostile_file_is_named_as_such(file):
 
 
 def test_what_may_be_taken_heeds_the_limit():
-    code = "from mcgw.room import memory_available; print(memory_available())"
+    code = "from mcgw.machine.memory import memory_available; print(memory_available())"
     assert int(limited(1024, "-c", code).stdout) < 1024 * MIB

@@ -14,19 +14,18 @@ from pathlib import Path
 import pytest
 
 import mcgw
-from mcgw import joining, running
 from mcgw.cli import main
 from mcgw.errors import RunError, StoreError
 from mcgw.formats.files import state_of
-from mcgw.joining import merge
-from mcgw.running import Part, run, run_part
-from mcgw.store import ensembles, lock, probe
-from mcgw.store import merge as merging
-from mcgw.store.child import ChildError, run_child
+from mcgw.jobs import merging, running
+from mcgw.jobs.merging import merge
+from mcgw.jobs.running import Part, run, run_part
+from mcgw.machine.child_process import ChildError, run_child
+from mcgw.store import ensembles, lock, merged_file, structure
 from mcgw.store.ensembles import save
 from mcgw.store.leftovers import tidy
 from mcgw.store.lock import LockedError, locked
-from mcgw.store.rundir import Run, parts_of
+from mcgw.store.run_folder import Run, parts_of
 
 HERE = Path(__file__).parent
 SIZE = 16
@@ -35,8 +34,8 @@ SIZE = 16
 @pytest.fixture(autouse=True)
 def _in_this_process(monkeypatch):
     """Merge and look here: children take most of the time."""
-    monkeypatch.setattr(joining, "_merge_in_child", lambda *words: merging.merge_into(*words))
-    monkeypatch.setattr(ensembles, "examine", lambda path: probe.describe(str(path)))
+    monkeypatch.setattr(merging, "_merge_in_child", lambda *words: merged_file.merge_into(*words))
+    monkeypatch.setattr(ensembles, "examine", lambda path: structure.describe(str(path)))
     monkeypatch.setattr(running, "shard_size", lambda scene, sampler: SIZE)
     monkeypatch.setattr(lock, "PATIENCE", 0.0)
 
@@ -164,14 +163,14 @@ def test_drawn_surfaces_are_kept_when_fewer_are_asked_for(scene, path):
 
 def test_a_file_that_changes_while_it_is_extended_is_left_alone(scene, path, monkeypatch):
     run(scene, path)
-    merged = joining._merge_in_child
+    merged = merging._merge_in_child
 
     def replaced(*words):
         merged(*words)
         path.unlink()
         path.write_bytes(b"precious")
 
-    monkeypatch.setattr(joining, "_merge_in_child", replaced)
+    monkeypatch.setattr(merging, "_merge_in_child", replaced)
     with pytest.raises(RunError, match="another file has taken this name meanwhile"):
         run(replace(scene, n_surfaces=3 * SIZE), path)
     assert path.read_bytes() == b"precious"
@@ -237,7 +236,7 @@ def test_merge_of_nothing_is_one_line(path, capsys):
 
 CHILD = """
 import os, sys
-from mcgw.store.child import run_child
+from mcgw.machine.child_process import run_child
 import threading, time
 threading.Thread(target=run_child, args=("{module}",), daemon=True).start()
 while True:
@@ -306,7 +305,7 @@ def test_a_child_lives_while_its_parent_does(tmp_path, monkeypatch):
 
 POOL = """
 import sys, time
-from mcgw.engines import Processes
+from mcgw.jobs.engines import Processes
 if __name__ == "__main__":
     engine = Processes(2)
     answers = [engine.submit(time.sleep, 100) for _ in range(2)]

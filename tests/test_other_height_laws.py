@@ -10,13 +10,13 @@ from oracles import POWERS, factor
 
 import analytic
 import mcgw
-from mcgw.compare import compare
-from mcgw.converge import converge
-from mcgw.forecast import forecast, relative_spread
-from mcgw.plan import plan_of
-from mcgw.report_html import report_html
-from mcgw.solution import solve
-from mcgw.validity import notes
+from mcgw.ensemble.forecast import forecast, relative_spread
+from mcgw.ensemble.solution import solve
+from mcgw.reports.html import report_html
+from mcgw.reports.plan import plan_of
+from mcgw.scene.cautions import notes
+from mcgw.statistics.comparison import compare
+from mcgw.statistics.convergence import converge
 
 QUANTITIES = tuple(analytic.QUANTITIES)
 LAWS = {"exponential": analytic.ExponentialHeights(), "weibull": analytic.Weibull(1.564)}

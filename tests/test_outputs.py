@@ -10,25 +10,25 @@ import pytest
 from overwrites import CASES, attempt, contents, prepare, ways
 
 import mcgw
-from mcgw import outputs
 from mcgw.cli import main
+from mcgw.commands import outputs
+from mcgw.commands.outputs import CSV, Output, check_outputs
 from mcgw.errors import StoreError
 from mcgw.formats.files import rename_over, state_of, write_whole
-from mcgw.outputs import CSV, Output, check_outputs
-from mcgw.store import ensembles, guard, probe
+from mcgw.store import ensembles, structure, untrusted
 
 
 @pytest.fixture(autouse=True)
 def _look_here(monkeypatch):
     """Look at files in this process: children take most of the time."""
-    monkeypatch.setattr(ensembles, "examine", lambda path: probe.describe(str(path)))
+    monkeypatch.setattr(ensembles, "examine", lambda path: structure.describe(str(path)))
 
 
 @pytest.fixture(scope="module")
 def inputs(tmp_path_factory):
     folder = tmp_path_factory.mktemp("inputs")
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(ensembles, "examine", lambda path: probe.describe(str(path)))
+        patch.setattr(ensembles, "examine", lambda path: structure.describe(str(path)))
         patch.chdir(folder)
         prepare(folder)
     return folder
@@ -267,9 +267,9 @@ def test_without_hard_links_a_taken_name_is_refused_as_well(tmp_path, monkeypatc
 
 
 def test_a_file_that_appears_while_a_run_draws_is_left_alone(make_scene, tmp_path, monkeypatch):
-    from mcgw import running
+    from mcgw.jobs import running
 
-    monkeypatch.setattr(ensembles, "examine", guard.examine)
+    monkeypatch.setattr(ensembles, "examine", untrusted.examine)
     path, drawn = tmp_path / "e.h5", running.draw
 
     def slowly(*arguments):
@@ -299,7 +299,7 @@ def test_leftovers_of_the_dead_go_with_the_next_output(here):
 
 
 def test_save_in_python_keeps_what_is_there(make_scene, tmp_path, monkeypatch):
-    monkeypatch.setattr(ensembles, "examine", guard.examine)
+    monkeypatch.setattr(ensembles, "examine", untrusted.examine)
     one, other = (mcgw.simulate(make_scene(n_surfaces=4, seed=seed)) for seed in (1, 2))
     ensembles.save(one, tmp_path / "e.h5")
     with pytest.raises(StoreError, match=r"ensemble\.seed is 1 there and 2 here"):

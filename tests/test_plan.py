@@ -5,7 +5,7 @@ import pytest
 
 import analytic
 from mcgw.cli import main
-from mcgw.plan import plan_of, plan_text
+from mcgw.reports.plan import plan_of, plan_text
 from mcgw.sampling.samplers import sampler_of
 
 

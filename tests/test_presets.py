@@ -8,9 +8,9 @@ import pytest
 import mcgw
 from mcgw.cli import main
 from mcgw.commands.init import PRESETS
-from mcgw.compare import compare
+from mcgw.statistics.comparison import compare
 
-HERE = Path(mcgw.__file__).parent / "presets"
+HERE = Path(mcgw.__file__).parent / "scene" / "presets"
 
 
 def test_every_preset_is_offered():

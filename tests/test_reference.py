@@ -11,8 +11,8 @@ from conftest import SURFACE
 import analytic
 from analytic import ExponentialHeights, Gaussian, HeightTable, MeasuredHeights, ScipyHeights, Weibull
 from mcgw.errors import RunError
-from mcgw.methods import methods_for, reference
-from mcgw.scene import Scene
+from mcgw.scene.scene import Scene
+from mcgw.statistics.methods import methods_for, reference
 
 SAMPLE = np.random.default_rng(1).weibull(1.6, size=3000)
 LAWS = {

@@ -7,8 +7,8 @@ import pytest
 
 import analytic
 import mcgw
-from mcgw.regrade import paired_ratio, regrade
-from mcgw.running import run
+from mcgw.ensemble.regrading import paired_ratio, regrade
+from mcgw.jobs.running import run
 from mcgw.store.ensembles import save
 
 H = tuple(np.linspace(0, 4, 21))
@@ -18,7 +18,7 @@ H = tuple(np.linspace(0, 4, 21))
 def base():
     from conftest import SURFACE
 
-    from mcgw.scene import Scene
+    from mcgw.scene.scene import Scene
 
     scene = Scene(
         surface=SURFACE, separations=H, n_surfaces=4000, n_asperities=30_000, seed=4, keep="moments"

@@ -13,9 +13,9 @@ import pytest
 import analytic
 import mcgw
 from mcgw.cli import main
-from mcgw.doubts import doubts
-from mcgw.report_html import _number, _with_error, report_html
-from mcgw.running import run
+from mcgw.jobs.running import run
+from mcgw.reports.cautions import doubts
+from mcgw.reports.html import _number, _with_error, report_html
 from mcgw.store.ensembles import read_attributes
 
 QUICK = Path(__file__).parent.parent / "runs" / "quick.toml"

@@ -13,7 +13,7 @@ import scipy.stats
 
 import analytic
 import mcgw
-from mcgw.terminal import one_line
+from mcgw.machine.terminal import one_line
 
 ROOT = Path(__file__).parent.parent
 SCENE = (ROOT / "runs" / "quick.toml").read_text()
@@ -110,7 +110,7 @@ def full(self, name, mode="wb"):
 caching.IndexDataCacheFile._open_for_write = full
 """
 LOOP = """
-from mcgw.compiling import njit
+from mcgw.machine.compiling import njit
 
 @njit(cache=True)
 def twice(x):

@@ -5,9 +5,10 @@ import pytest
 
 import analytic
 import mcgw
-from mcgw.sampling.moments import Layout, cell_moments
+from mcgw.sampling.layout import Layout
+from mcgw.sampling.moments import cell_moments
 from mcgw.sampling.samplers import sampler_of
-from mcgw.scene import SAMPLERS
+from mcgw.scene.scene import SAMPLERS
 
 
 @pytest.mark.parametrize("sampler", SAMPLERS[1:])

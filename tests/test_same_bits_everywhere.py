@@ -14,11 +14,11 @@ from numpy._core import _multiarray_umath as umath
 
 import analytic
 from mcgw.errors import RunError, StoreError
-from mcgw.running import Part, run, run_part
+from mcgw.jobs.blocks import commit_block
+from mcgw.jobs.running import Part, run, run_part
 from mcgw.sampling.samplers import sampler_of
-from mcgw.scene import SAMPLERS, Scene
+from mcgw.scene.scene import SAMPLERS, Scene
 from mcgw.store import arithmetic
-from mcgw.work import commit_block
 
 GRADINGS = {
     "homogeneous": analytic.Homogeneous(),
@@ -111,7 +111,7 @@ def test_the_compiler_neither_fuses_nor_reorders():
     """Where sums are written out, no kernel may ask for the fast arithmetic that depends on the processor."""
     import mcgw.sampling
 
-    for path in Path(mcgw.sampling.__file__).parent.glob("*.py"):
+    for path in Path(mcgw.sampling.__file__).parent.rglob("*.py"):
         for word in ("fastmath", "reassoc", "contract", "import leggauss", "linalg", " @ "):
             code = path.read_text().replace("self.response @", "")
             lines = [line for line in code.splitlines() if word in line]
@@ -147,7 +147,7 @@ def test_a_run_goes_on_where_it_was_drawn(make_scene, tmp_path, monkeypatch, hei
     more = make_scene(heights=heights, sampler="tail", n_surfaces=8)
     whole, begun = tmp_path / "whole.h5", tmp_path / "begun.h5"
     run(scene, whole)
-    monkeypatch.setattr("mcgw.running.shard_size", lambda *_: 4)
+    monkeypatch.setattr("mcgw.jobs.running.shard_size", lambda *_: 4)
     run_part(more, begun, Part(1, 2))
     monkeypatch.setattr(arithmetic, "kind_of_processor", lambda: "00000000")
     going_on = [

@@ -8,7 +8,7 @@ import pytest
 
 import analytic
 import mcgw
-from mcgw.scene import Scene, SceneError
+from mcgw.scene.scene import Scene, SceneError
 
 GOOD = """
 [surface]

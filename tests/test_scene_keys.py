@@ -8,10 +8,10 @@ import pytest
 
 import analytic
 import mcgw
-from mcgw.plausible import RANGES, unit_doubts
-from mcgw.scene import LeftOut, Scene, SceneError
-from mcgw.section import Section
-from mcgw.surface import SURFACE_UNITS
+from mcgw.scene.plausible import RANGES, unit_doubts
+from mcgw.scene.scene import LeftOut, Scene, SceneError
+from mcgw.scene.section import Section
+from mcgw.scene.surface import SURFACE_UNITS
 
 GOOD = {
     "": {"title": "'x'"},
@@ -263,7 +263,7 @@ def test_the_most_surfaces_of_a_stop_rule_are_not_those_without_it():
 
 def test_a_run_goes_on_whoever_gave_the_numbers(tmp_path):
     scene = Scene(surface=SURFACE, separations=(1.0,), n_surfaces=5, seed=LeftOut(7))
-    from mcgw.running import run
+    from mcgw.jobs.running import run
 
     first = run(scene, tmp_path / "e.h5")
     load = first.load.tobytes()

@@ -9,14 +9,14 @@ import pytest
 
 import mcgw
 from mcgw.cli import main
-from mcgw.converge import converge
+from mcgw.ensemble.regrading import regrade
 from mcgw.errors import StoreError
 from mcgw.figures.samples import Samples
-from mcgw.regrade import regrade
-from mcgw.running import run
+from mcgw.jobs.running import run
 from mcgw.sampling.asperities import heights
 from mcgw.sampling.samplers import sampler_of
-from mcgw.scene import SAMPLERS, SceneError
+from mcgw.scene.scene import SAMPLERS, SceneError
+from mcgw.statistics.convergence import converge
 from mcgw.store import ensembles
 
 SMALL, LARGE = 1, [2**63 - 1, 2**63, 2**64 - 1]

@@ -13,9 +13,9 @@ from scipy.stats import t as student
 import analytic
 import mcgw
 from mcgw.cli import main
-from mcgw.ensemble import Arrays
-from mcgw.running import run
-from mcgw.store import ensembles, probe
+from mcgw.ensemble.ensemble import Arrays
+from mcgw.jobs.running import run
+from mcgw.store import ensembles, structure
 
 QUANTITIES = ("conductance", "load", "contacts", "area", "stiffness")  # in no usual order
 H = (0.5, 0.0, 2.0, 1.0)
@@ -33,7 +33,7 @@ TITLES = {name: LONG[name].rpartition(" (")[0] for name in LONG}
 def _looked_at_here():
     """Files are looked at in this process: a child for each takes most of the time, on a busy machine all."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(ensembles, "examine", lambda path: probe.describe(str(path)))
+        patch.setattr(ensembles, "examine", lambda path: structure.describe(str(path)))
         yield
 
 
@@ -329,8 +329,8 @@ def test_few_contacts_are_said(scene, tmp_path, capsys):
 
 @pytest.fixture(scope="module")
 def study(scene):
-    from mcgw.methods import methods_for
-    from mcgw.tradeoff import Advice, Point, Tradeoff
+    from mcgw.statistics.methods import methods_for
+    from mcgw.statistics.tradeoff import Advice, Point, Tradeoff
 
     small = dataclasses.replace(scene, keep="sums", quantities=("load", "area"))
     points = (
@@ -344,7 +344,7 @@ def study(scene):
 
 def test_tradeoff(study, tmp_path, capsys, monkeypatch):
     (tmp_path / "s.toml").write_text(mcgw.scene_text(study.scene))
-    monkeypatch.setattr("mcgw.tradeoff.tradeoff", lambda scene, *, seconds, progress: study)
+    monkeypatch.setattr("mcgw.statistics.tradeoff.tradeoff", lambda scene, *, seconds, progress: study)
     out = out_of(["tradeoff", tmp_path / "s.toml", "-o", tmp_path], capsys).splitlines()
     assert out[0] == "relative error of the mean load at d/sigma = 0, 2"
     for line, point in zip(out[1:3], study.points, strict=True):
@@ -368,7 +368,7 @@ def test_tradeoff(study, tmp_path, capsys, monkeypatch):
 
 def test_points_of_a_study_are_the_runs(scene):
     """Rms over the seeds, medians of the times, and an uncertainty where something is random."""
-    from mcgw.tradeoff import _Task
+    from mcgw.statistics.tradeoff import _Task
 
     errors = iter([np.array([0.1, -0.2]), np.array([-0.3, 0.4])])
     method = dataclasses.make_dataclass("M", ["name", "unit", "errors"])(
@@ -384,7 +384,7 @@ def test_points_of_a_study_are_the_runs(scene):
 
 
 def test_advice_is_from_the_exact_spread(scene):
-    from mcgw.tradeoff import Point, _advice
+    from mcgw.statistics.tradeoff import Point, _advice
 
     plain = dataclasses.replace(scene, keep="sums", quantities=("load", "area"))
     points = [

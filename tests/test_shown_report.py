@@ -10,9 +10,9 @@ import pytest
 
 import analytic
 import mcgw
-from mcgw.compare import compare
-from mcgw.doubts import doubts
-from mcgw.report_html import report_html
+from mcgw.reports.cautions import doubts
+from mcgw.reports.html import report_html
+from mcgw.statistics.comparison import compare
 
 QUANTITIES = ("area", "contacts", "load", "conductance", "stiffness")
 H = (0.5, 0.0, 2.0, 1.0)

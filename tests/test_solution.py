@@ -9,9 +9,9 @@ import pytest
 import analytic
 import mcgw
 from mcgw.cli import main
-from mcgw.solution import separation_on, solve
-from mcgw.solution_text import solution_table
-from mcgw.units import parse
+from mcgw.ensemble.solution import separation_on, solve
+from mcgw.formats.units import parse
+from mcgw.reports.solution import solution_table
 
 LOADS = (3.0, 100.0, 900.0)
 
@@ -20,7 +20,7 @@ LOADS = (3.0, 100.0, 900.0)
 def scene():
     from conftest import SURFACE
 
-    from mcgw.scene import Scene
+    from mcgw.scene.scene import Scene
 
     return Scene(
         surface=SURFACE,
@@ -108,7 +108,7 @@ def test_surfaces_below_the_margin_are_solved_too(scene, monkeypatch):
     """Two asperities: their separation spreads far beyond what linear theory expects."""
     few = replace(scene, n_asperities=2, grading=analytic.Exponential(0.5), n_surfaces=200)
     below = entered(monkeypatch, "_anywhere")
-    monkeypatch.setattr("mcgw.solution._MARGIN", 1.0)
+    monkeypatch.setattr("mcgw.ensemble.solution._MARGIN", 1.0)
     (solution,) = solve(few, "load", [0.5])
     np.testing.assert_allclose(solution.surfaces["load"], 0.5, rtol=1e-10)
     start = below[0][-1]
@@ -117,14 +117,14 @@ def test_surfaces_below_the_margin_are_solved_too(scene, monkeypatch):
 
 
 def entered(monkeypatch, name):
-    """Calls of a function of `mcgw.solution` from now on."""
-    calls, function = [], getattr(mcgw.solution, name)
+    """Calls of a function of `mcgw.ensemble.solution` from now on."""
+    calls, function = [], getattr(mcgw.ensemble.solution, name)
 
     def counted(*args, **options):
         calls.append(args)
         return function(*args, **options)
 
-    monkeypatch.setattr(mcgw.solution, name, counted)
+    monkeypatch.setattr(mcgw.ensemble.solution, name, counted)
     return calls
 
 
@@ -196,7 +196,7 @@ def test_the_branch_below_the_margin_is_entered(scene, monkeypatch):
 
     Six standard deviations leave none, one leaves a sixth. Each against a bisection over all its heights.
     """
-    from mcgw import solution
+    from mcgw.ensemble import solution
 
     few = replace(scene, n_asperities=3, grading=analytic.Homogeneous(), n_surfaces=200)
     monkeypatch.setattr(solution, "_MARGIN", 0.5)
@@ -230,7 +230,7 @@ def test_the_branch_below_the_margin_is_entered(scene, monkeypatch):
 
 
 def test_surfaces_within_the_margin_are_drawn_once(scene, monkeypatch):
-    from mcgw import solution
+    from mcgw.ensemble import solution
 
     listed, whole = solution.heights, []
 

@@ -9,15 +9,15 @@ import pytest
 import analytic
 import mcgw
 from mcgw.cli import main
-from mcgw.engines import Processes
+from mcgw.ensemble.forecast import checkpoints, forecast
+from mcgw.ensemble.intervals import mean_interval, spread_of
+from mcgw.ensemble.simulation import simulate
 from mcgw.errors import StoreError
-from mcgw.forecast import checkpoints, forecast
-from mcgw.intervals import mean_interval, spread_of
-from mcgw.joining import merge
-from mcgw.running import Part, run, run_part
-from mcgw.scene import SceneError
-from mcgw.simulation import simulate
-from mcgw.stop_report import after, before, upper_contacts
+from mcgw.jobs.engines import Processes
+from mcgw.jobs.merging import merge
+from mcgw.jobs.running import Part, run, run_part
+from mcgw.reports.stop_rule import after, before, upper_contacts
+from mcgw.scene.scene import SceneError
 from mcgw.store.ensembles import read_attributes
 
 SEEDS = 4000
@@ -148,10 +148,10 @@ def test_whoever_draws_it_is_one_ensemble(make_scene, tmp_path, monkeypatch, cap
     (tmp_path / "scene.toml").write_text(mcgw.scene_text(scene))
     assert main(["run", str(tmp_path / "scene.toml"), "-o", str(tmp_path / "f.h5")]) == 0
     assert f"{n} surfaces" in capsys.readouterr().out
-    monkeypatch.setattr("mcgw.simulation.block_size", lambda *_: 37)
+    monkeypatch.setattr("mcgw.ensemble.simulation.block_size", lambda *_: 37)
     again = simulate(scene, threads=2)
-    monkeypatch.setattr("mcgw.work.block_size", lambda *_: 37)
-    monkeypatch.setattr("mcgw.work._BYTES", 1)
+    monkeypatch.setattr("mcgw.jobs.blocks.block_size", lambda *_: 37)
+    monkeypatch.setattr("mcgw.jobs.blocks._BYTES", 1)
     assert [run_part(scene, tmp_path / "g.h5", Part(k, 2)) > 0 for k in (1, 2)] == [True, False]
     merge(tmp_path / "g.h5")
     np.testing.assert_array_equal(first.load, again.load)

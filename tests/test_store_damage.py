@@ -9,16 +9,15 @@ import numpy as np
 import pytest
 
 import mcgw
-from mcgw import joining, running
 from mcgw.cli import main
 from mcgw.errors import RunError, StoreError
-from mcgw.joining import merge
-from mcgw.running import Part, run, run_part
-from mcgw.store import ensembles, probe, shards
-from mcgw.store import merge as merging
-from mcgw.store.child import ChildError
-from mcgw.store.rundir import Run, parts_of
-from mcgw.store.seal import SEAL_BYTES, check_seal, read_sealed, seal_of
+from mcgw.jobs import merging, running
+from mcgw.jobs.merging import merge
+from mcgw.jobs.running import Part, run, run_part
+from mcgw.machine.child_process import ChildError
+from mcgw.store import ensembles, merged_file, shards, structure
+from mcgw.store.run_folder import Run, parts_of
+from mcgw.store.trailer import SEAL_BYTES, check_seal, read_sealed, seal_of
 
 SIZE, SURFACES = 16, 100
 
@@ -27,20 +26,20 @@ SIZE, SURFACES = 16, 100
 def _small_blocks_in_this_process(monkeypatch):
     """Seven blocks, merged and looked at here: children take most of the time."""
     monkeypatch.setattr(running, "shard_size", lambda scene, sampler: SIZE)
-    monkeypatch.setattr(joining, "_merge_in_child", merged_here)
+    monkeypatch.setattr(merging, "_merge_in_child", merged_here)
     monkeypatch.setattr(ensembles, "examine", examined_here)
 
 
 def examined_here(path):
     try:
-        return probe.describe(str(path))
+        return structure.describe(str(path))
     except OSError as error:
         raise StoreError(f"{path}: {error}") from None
 
 
 def merged_here(folder, path, temporary, *rest):
     try:
-        merging.merge_into(folder, path, temporary)
+        merged_file.merge_into(folder, path, temporary)
     except StoreError as error:
         raise ChildError("exit code 3", str(error)) from None
 
@@ -214,25 +213,25 @@ def test_what_was_written_is_read_again_before_it_is_sealed(scene, tmp_path, mon
 
     monkeypatch.setattr(layout, "_put", slip)
     with pytest.raises(OSError, match="reads otherwise than written"):
-        merging.merge_into(parts_of(path), path, tmp_path / "x.tmp")
+        merged_file.merge_into(parts_of(path), path, tmp_path / "x.tmp")
     monkeypatch.setattr(layout, "_put", put)
-    merging.merge_into(parts_of(path), path, tmp_path / "y.tmp")
+    merged_file.merge_into(parts_of(path), path, tmp_path / "y.tmp")
     assert ensembles.verify(tmp_path / "y.tmp")[0] == ""
 
 
 def test_a_digest_that_is_written_wrong_is_seen(scene, tmp_path, monkeypatch):
     path = tmp_path / "e.h5"
     begun(scene, path)
-    build = merging.build
+    build = merged_file.build
 
     def forged(file, *arguments, **options):
         digest = build(file, *arguments, **options)
         file.attrs["digest"] = "0" * 64
         return digest
 
-    monkeypatch.setattr(merging, "build", forged)
+    monkeypatch.setattr(merge, "build", forged)
     with pytest.raises(OSError, match="reads otherwise than written"):
-        merging.merge_into(parts_of(path), path, tmp_path / "x.tmp")
+        merged_file.merge_into(parts_of(path), path, tmp_path / "x.tmp")
 
 
 @pytest.mark.parametrize("gone", [0, 3, 6])
@@ -240,7 +239,7 @@ def test_a_shard_that_is_gone_is_missing(scene, tmp_path, gone):
     path = tmp_path / "e.h5"
     begun(scene, path, jobs=2)[gone].unlink()
     with pytest.raises(StoreError):
-        merging.merge_into(parts_of(path), path, tmp_path / "x.tmp")
+        merged_file.merge_into(parts_of(path), path, tmp_path / "x.tmp")
     with pytest.raises(RunError, match=f"surfaces are missing, from {16 * gone} on"):
         merge(path)
     assert not path.exists()

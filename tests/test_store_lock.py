@@ -10,11 +10,11 @@ from pathlib import Path
 import pytest
 
 import mcgw
-from mcgw import running
 from mcgw.errors import StoreError
-from mcgw.running import run
+from mcgw.jobs import running
+from mcgw.jobs.running import run
 from mcgw.store.lock import LOCK_FILES, locked
-from mcgw.store.rundir import parts_of
+from mcgw.store.run_folder import parts_of
 
 ROOT = Path(mcgw.__file__).parents[1]
 ENV = os.environ | {"PYTHONPATH": str(ROOT)}
@@ -139,11 +139,12 @@ DOOR = """
 import sys, importlib, pkgutil
 from pathlib import Path
 import mcgw, numpy
-from mcgw import cli, running
+from mcgw import cli
+from mcgw.jobs import running
 from mcgw.errors import StoreError
 from mcgw.store.lock import locked
 for found in pkgutil.walk_packages(mcgw.__path__, "mcgw."):
-    if found.name not in ("mcgw.__main__", "mcgw.dask_engine"):
+    if found.name not in ("mcgw.__main__", "mcgw.jobs.dask_engine"):
         importlib.import_module(found.name)
 scene = mcgw.load_scene(sys.argv[1])
 loads = mcgw.simulate(scene).load

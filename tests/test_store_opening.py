@@ -13,12 +13,12 @@ import pytest
 from sealing import seal_again
 
 import mcgw
-from mcgw import running
 from mcgw.errors import StoreError
-from mcgw.running import Part, run, run_part
-from mcgw.store import ensembles, layout, probe, rundir
-from mcgw.store.rundir import Run, parts_of
-from mcgw.store.seal import seal_of
+from mcgw.jobs import running
+from mcgw.jobs.running import Part, run, run_part
+from mcgw.store import ensembles, layout, run_folder, structure
+from mcgw.store.run_folder import Run, parts_of
+from mcgw.store.trailer import seal_of
 
 CRASH = Path(__file__).parent / "crash"
 
@@ -55,7 +55,7 @@ def scene(make_scene):
 @pytest.fixture
 def file(scene, tmp_path, monkeypatch):
     """A finished file; looked at in this process, a child takes a second."""
-    monkeypatch.setattr(ensembles, "examine", lambda path: probe.describe(str(path)))
+    monkeypatch.setattr(ensembles, "examine", lambda path: structure.describe(str(path)))
     run(scene, tmp_path / "e.h5")
     return tmp_path / "e.h5"
 
@@ -104,7 +104,7 @@ def test_a_new_file_without_the_checksum_is_refused(file):
 )
 def test_whatever_is_small_is_checked(file, change):
     """The seal fits the bytes, only the checksum of the head is the old one."""
-    head = probe.describe(str(file))["head"]
+    head = structure.describe(str(file))["head"]
     with h5py.File(file, "r+") as data:
         change(data)
     body = file.read_bytes()
@@ -115,7 +115,7 @@ def test_whatever_is_small_is_checked(file, change):
 
 def test_the_checksum_is_of_contents_alone(file):
     """Rewritten by another layout and sealed again it is the same."""
-    head = probe.describe(str(file))["head"]
+    head = structure.describe(str(file))["head"]
     with h5py.File(file, "r+") as data:
         values, units = data["load"][()], dict(data["load"].attrs)
         del data["load"]
@@ -123,7 +123,7 @@ def test_the_checksum_is_of_contents_alone(file):
         data["load"].attrs.update({key: units[key] for key in ("long_name", "units")})
         for axis, name in enumerate(("surface", "separation")):
             data["load"].dims[axis].attach_scale(data[name])
-    assert probe.describe(str(file))["head"] == head
+    assert structure.describe(str(file))["head"] == head
 
 
 @pytest.mark.parametrize(("name", "value"), [("separation", 1.5), ("surface", 7)])
@@ -184,7 +184,7 @@ def test_runs_of_format_1_0_go_on(begun, scene, monkeypatch):
     old = text[: text.index("sha256")].replace("    1,\n    1,\n", "    1,\n    0,\n")
     assert old.count("    0,\n") == 1
     file.write_text(old)
-    monkeypatch.setattr(ensembles, "examine", lambda path: probe.describe(str(path)))
+    monkeypatch.setattr(ensembles, "examine", lambda path: structure.describe(str(path)))
     assert run(scene, begun.with_suffix("")).n_surfaces == 20
     assert not begun.exists()
 
@@ -193,5 +193,5 @@ def test_the_checksum_of_a_run_is_of_its_text(begun):
     """Computed here anew, by what the format says: the last line is of all before it."""
     text = (begun / "run.toml").read_bytes()
     *lines, last = text.splitlines(keepends=True)
-    expected = rundir.hashlib.sha256(b"".join(lines)).hexdigest()
+    expected = run_folder.hashlib.sha256(b"".join(lines)).hexdigest()
     assert last == f'sha256 = "{expected}"\n'.encode()

@@ -10,10 +10,10 @@ from hypothesis import strategies as st
 import analytic
 import mcgw
 from mcgw.sampling.samplers import sampler_of
-from mcgw.scene import SAMPLERS, Scene
-from mcgw.store.rundir import missing
-from mcgw.store.seal import Seal
+from mcgw.scene.scene import SAMPLERS, Scene
+from mcgw.store.run_folder import missing
 from mcgw.store.shards import Span
+from mcgw.store.trailer import Seal
 
 settings.register_profile("fixed", derandomize=True, deadline=None, max_examples=40)
 settings.load_profile("fixed")

@@ -13,9 +13,9 @@ import pytest
 import analytic
 import mcgw
 from mcgw.errors import StoreError
-from mcgw.running import run
+from mcgw.jobs.running import run
 from mcgw.sampling.samplers import sampler_of
-from mcgw.scene import SAMPLERS, Scene
+from mcgw.scene.scene import SAMPLERS, Scene
 from mcgw.store import ensembles
 
 GOLDEN = Path(__file__).parent / "golden_samplers.json"
@@ -118,7 +118,7 @@ def test_digests_of_two_processes_are_equal(make_scene, tmp_path):
 
 MEMORY = """
 import resource, sys
-from mcgw import running
+from mcgw.jobs import running
 running.shard_size = lambda scene, sampler: 256
 import mcgw
 scene = mcgw.scene_from(open(sys.argv[1]).read())

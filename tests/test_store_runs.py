@@ -17,15 +17,14 @@ import pytest
 from sealing import seal_again
 
 import mcgw
-from mcgw import joining, running, work
 from mcgw.errors import RunError, StoppedError, StoreError
-from mcgw.joining import merge
-from mcgw.running import Part, run, run_part
-from mcgw.store import ensembles, probe
-from mcgw.store import merge as merging
-from mcgw.store.child import ChildError
+from mcgw.jobs import blocks, merging, running
+from mcgw.jobs.merging import merge
+from mcgw.jobs.running import Part, run, run_part
+from mcgw.machine.child_process import ChildError
+from mcgw.store import ensembles, merged_file, structure
 from mcgw.store.lock import LockedError, locked
-from mcgw.store.rundir import missing, parts_of
+from mcgw.store.run_folder import missing, parts_of
 from mcgw.store.shards import Span
 
 SIZE, SURFACES = 16, 100
@@ -45,13 +44,13 @@ def small_blocks(monkeypatch):
 @pytest.fixture(autouse=True)
 def _in_this_process(request, monkeypatch):
     """Merge and look here: children take most of the time. Tests of the command line have them."""
-    monkeypatch.setattr(joining, "_merge_in_child", merged_here)
-    monkeypatch.setattr(ensembles, "examine", lambda path: probe.describe(str(path)))
+    monkeypatch.setattr(merging, "_merge_in_child", merged_here)
+    monkeypatch.setattr(ensembles, "examine", lambda path: structure.describe(str(path)))
 
 
 def merged_here(folder, path, temporary):
     try:
-        merging.merge_into(folder, path, temporary)
+        merged_file.merge_into(folder, path, temporary)
     except StoreError as error:
         raise ChildError("exit code 3", str(error)) from None
 
@@ -198,15 +197,15 @@ def test_damage_is_put_aside_and_drawn_again(small_blocks, scene, tmp_path, expe
 
 
 def test_damage_found_while_merging_is_mended(small_blocks, scene, tmp_path, expected, monkeypatch):
-    path, merged = tmp_path / "e.h5", joining._merge_in_child
+    path, merged = tmp_path / "e.h5", merging._merge_in_child
 
     def damage_first(folder, *rest):
-        monkeypatch.setattr(joining, "_merge_in_child", merged)
+        monkeypatch.setattr(merging, "_merge_in_child", merged)
         shard = min(folder.glob("shards/*.h5"))
         shard.write_bytes(shard.read_bytes()[:-1])
         merged(folder, *rest)
 
-    monkeypatch.setattr(joining, "_merge_in_child", damage_first)
+    monkeypatch.setattr(merging, "_merge_in_child", damage_first)
     run(scene, path)
     assert digest(path) == expected
 
@@ -295,7 +294,7 @@ def test_room_is_asked_for_what_is_not_there_yet(small_blocks, scene, tmp_path, 
     halted(scene, path, 64)
     half = 8 * SURFACES * len(scene.separations) * len(scene.quantities)
     free = shutil.disk_usage(tmp_path)._replace(free=2 * half - 1)
-    monkeypatch.setattr("mcgw.room.shutil.disk_usage", lambda folder: free)
+    monkeypatch.setattr("mcgw.jobs.disk_space.shutil.disk_usage", lambda folder: free)
     with pytest.raises(StoreError, match="make room"):
         run(scene, tmp_path / "other.h5")
     run(scene, path)
@@ -309,13 +308,14 @@ def test_gaps_are_cut_at_multiples_of_a_block():
 
 DRIVER = """
 import sys, time
-from mcgw import running, work
+from mcgw.jobs import running
+from mcgw.jobs import blocks
 running.shard_size = lambda scene, sampler: 16
-drawn = work.draw
+drawn = blocks.draw
 def slowly(*arguments):
     time.sleep(0.05)
     return drawn(*arguments)
-work.draw = slowly
+blocks.draw = slowly
 from mcgw.cli import main
 sys.exit(main(sys.argv[1:]))
 """
@@ -417,14 +417,14 @@ def test_many_random_kills(tmp_path):
 
 
 def test_a_stopped_run_says_so_in_python(small_blocks, scene, tmp_path, monkeypatch):
-    drawn = work.draw
+    drawn = blocks.draw
 
     def signalled(*arguments):
-        monkeypatch.setattr(work, "draw", drawn)
+        monkeypatch.setattr(blocks, "draw", drawn)
         os.kill(os.getpid(), signal.SIGINT)
         return drawn(*arguments)
 
-    monkeypatch.setattr(work, "draw", signalled)
+    monkeypatch.setattr(blocks, "draw", signalled)
     with pytest.raises(StoppedError) as caught:
         run(scene, tmp_path / "e.h5")
     assert caught.value.code == 130

@@ -8,8 +8,8 @@ import pytest
 
 from mcgw.errors import StoreError
 from mcgw.formats.files import write_whole
-from mcgw.store.seal import SEAL_BYTES, Seal, check_seal, read_sealed, seal_of
 from mcgw.store.shards import Span, commit_shard, content_digest, open_shard, pack
+from mcgw.store.trailer import SEAL_BYTES, Seal, check_seal, read_sealed, seal_of
 
 RUN, SPAN = "a" * 64, Span(40, 5)
 FLIPS, TRUNCATIONS = 600, 300

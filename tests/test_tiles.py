@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from mcgw.sampling.aligned import aligned
-from mcgw.sampling.tiles import FOUR, Tiles, in_fours
+from mcgw.machine.aligned import aligned
+from mcgw.sampling.response.product import FOUR, Tiles, in_fours
 
 
 def random_blocks(rng, given, computed):

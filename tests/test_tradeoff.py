@@ -8,16 +8,16 @@ import pytest
 
 import analytic
 import mcgw
-from mcgw.methods import _ByMoments, reference
-from mcgw.plots_tradeoff import save_tradeoff
-from mcgw.tradeoff import tradeoff, write_csv
+from mcgw.figures.tradeoff import save_tradeoff
+from mcgw.statistics.methods import _ByMoments, reference
+from mcgw.statistics.tradeoff import tradeoff, write_csv
 
 
 @pytest.fixture(scope="module")
 def scene():
     from conftest import SURFACE
 
-    from mcgw.scene import Scene
+    from mcgw.scene.scene import Scene
 
     return Scene(surface=SURFACE, separations=(0.0, 1.0, 2.0), grading=analytic.Exponential(2.0), seed=1)
 

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from numpy.polynomial.chebyshev import chebvander
 
-from mcgw.sampling.moments import Layout, cell_moments
+from mcgw.sampling.layout import Layout
+from mcgw.sampling.moments import cell_moments
 from mcgw.sampling.philox import CELLS, uniforms
 
 ORDERS = np.array(list(product(range(1, 22), range(22))))

@@ -8,7 +8,7 @@ import pytest
 import analytic
 import mcgw
 from mcgw.cli import COMMANDS
-from mcgw.units import _FACTORS, EXAMPLES, METRES, parse
+from mcgw.formats.units import _FACTORS, EXAMPLES, METRES, parse
 
 # One of each, in SI. Written out: a table that was computed would repeat the mistakes of the other.
 LITERAL = {

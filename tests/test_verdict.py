@@ -10,8 +10,8 @@ from scipy.stats import chi2
 
 import analytic
 import mcgw
-from mcgw.compare import FALSE_ALARM, Verdict, compare, verdict
-from mcgw.ensemble import Arrays
+from mcgw.ensemble.ensemble import Arrays
+from mcgw.statistics.comparison import FALSE_ALARM, Verdict, compare, verdict
 
 QUANTITIES = tuple(analytic.QUANTITIES)
 H = (2.0, 0.0, 1.0)  # in no order: a verdict that sorts one of two lists would show

@@ -19,11 +19,11 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 def execute(args: argparse.Namespace) -> int:
     """Print table and verdict, save the figure."""
     from mcgw.commands.notes import tell_notes
-    from mcgw.compare import compare
-    from mcgw.csv_table import write_csv
-    from mcgw.outputs import CSV, Output, check_outputs, figure_format
-    from mcgw.plots import save_comparison
-    from mcgw.report_text import COMPARISON_HEADER, comparison_rows, comparison_table, verdict_line
+    from mcgw.commands.outputs import CSV, Output, check_outputs, figure_format
+    from mcgw.figures.comparison import save_comparison
+    from mcgw.formats.csv_table import write_csv
+    from mcgw.reports.text import COMPARISON_HEADER, comparison_rows, comparison_table, verdict_line
+    from mcgw.statistics.comparison import compare
     from mcgw.store.ensembles import open_ensemble
 
     path = args.output or args.file.with_suffix(".png")

@@ -22,11 +22,11 @@ def execute(args: argparse.Namespace) -> int:
     from tqdm import tqdm
 
     from mcgw.commands.notes import tell_notes
-    from mcgw.compare import FALSE_ALARM
-    from mcgw.converge import SEEDS, converge
-    from mcgw.outputs import Output, check_outputs, figure_format
-    from mcgw.plots_converge import save_convergence
-    from mcgw.scene_file import files_of, load_scene
+    from mcgw.commands.outputs import Output, check_outputs, figure_format
+    from mcgw.figures.convergence import save_convergence
+    from mcgw.scene.scene_file import files_of, load_scene
+    from mcgw.statistics.comparison import FALSE_ALARM
+    from mcgw.statistics.convergence import SEEDS, converge
 
     scene = load_scene(args.scene)
     tell_notes(scene)

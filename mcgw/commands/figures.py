@@ -20,19 +20,19 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def execute(args: argparse.Namespace) -> int:
     """Write PNG and SVG of each figure and say where they are."""
+    from mcgw.commands.outputs import CSV, Output, check_outputs, figure_format
     from mcgw.figures.drawing import figure_files, save_figures
     from mcgw.figures.further import FURTHER, further_figures
     from mcgw.figures.paper import PAPER, paper_figures
     from mcgw.figures.samples import Samples
-    from mcgw.outputs import CSV, Output, check_outputs, figure_format
-    from mcgw.scene_file import files_of, load_scene, scene_from
+    from mcgw.scene.scene_file import files_of, load_scene, scene_from
 
     if args.scene:
         scene = load_scene(args.scene)
     else:
         from importlib.resources import files
 
-        scene = scene_from((files("mcgw") / "presets" / "demo.toml").read_text(encoding="utf-8"))
+        scene = scene_from((files("mcgw.scene") / "presets" / "demo.toml").read_text(encoding="utf-8"))
     if scene.n_asperities > 1_000_000:
         raise ValueError(
             f"ensemble.n_asperities = {scene.n_asperities}: figures list heights one by one; give at most 1e6"

@@ -43,12 +43,12 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def execute(args: argparse.Namespace) -> int:
     """Print the estimates side by side with warnings, write the scene, and say where it is."""
-    from mcgw.maps.doubts import doubts
+    from mcgw.commands.outputs import NPY, TOML, Output, check_outputs
+    from mcgw.formats.units import parse
+    from mcgw.maps.cautions import doubts
     from mcgw.maps.files import files_of_map, read_map
     from mcgw.maps.fit import fit_map
     from mcgw.maps.fitted_scene import fitted_scene, heights_beside, write_scene
-    from mcgw.outputs import NPY, TOML, Output, check_outputs
-    from mcgw.units import parse
 
     if args.parts < 2:
         raise ValueError(f"--parts {args.parts}: give 2 or more, to have sub-areas to compare")

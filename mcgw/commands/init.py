@@ -34,10 +34,10 @@ def execute(args: argparse.Namespace) -> int:
     """Write the scene, never over another file."""
     from importlib.resources import files
 
+    from mcgw.commands.outputs import TOML, Output, check_outputs
     from mcgw.formats.files import write_whole
-    from mcgw.outputs import TOML, Output, check_outputs
 
-    text = (files("mcgw") / "presets" / f"{args.preset}.toml").read_bytes()
+    text = (files("mcgw.scene") / "presets" / f"{args.preset}.toml").read_bytes()
     path = args.output or Path(f"{args.preset}.toml")
     check_outputs([Output(path, TOML)])
     try:

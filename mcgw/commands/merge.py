@@ -19,9 +19,9 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def execute(args: argparse.Namespace) -> int:
     """Merge and say where the file is."""
+    from mcgw.commands.outputs import HDF5, Output, check_outputs
     from mcgw.formats.files import state_of
-    from mcgw.joining import merge
-    from mcgw.outputs import HDF5, Output, check_outputs
+    from mcgw.jobs.merging import merge
 
     path = args.file or args.output
     if path is None:

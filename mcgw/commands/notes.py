@@ -2,13 +2,13 @@
 
 import sys
 
-from mcgw.scene import Scene
-from mcgw.validity import notes
+from mcgw.scene.cautions import cautions
+from mcgw.scene.scene import Scene
 
 __all__ = ["tell_notes"]
 
 
 def tell_notes(scene: Scene, *more: str) -> None:
     """Say where the model is strained, which units look wrong, and what else there is to say."""
-    for line in (*notes(scene), *more):
+    for line in (*cautions(scene), *more):
         print(f"mcgw: note: {line}", file=sys.stderr)

@@ -26,11 +26,11 @@ def execute(args: argparse.Namespace) -> int:
     from dataclasses import replace
 
     from analytic import Exponential, Grading
-    from mcgw.csv_table import write_csv
-    from mcgw.outputs import CSV, HDF5, Output, check_outputs
-    from mcgw.regrade import regrade
-    from mcgw.report_text import RATIO_HEADER, ratio_rows, ratio_table
-    from mcgw.scene_file import read_grading
+    from mcgw.commands.outputs import CSV, HDF5, Output, check_outputs
+    from mcgw.ensemble.regrading import regrade
+    from mcgw.formats.csv_table import write_csv
+    from mcgw.reports.text import RATIO_HEADER, ratio_rows, ratio_table
+    from mcgw.scene.scene_file import read_grading
     from mcgw.store.ensembles import finished, open_ensemble, save
 
     old = open_ensemble(args.file)

@@ -16,9 +16,9 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 def execute(args: argparse.Namespace) -> int:
     """Write the page and say where it is."""
     from mcgw.commands.notes import tell_notes
+    from mcgw.commands.outputs import HTML, Output, check_outputs
     from mcgw.formats.files import write_whole
-    from mcgw.outputs import HTML, Output, check_outputs
-    from mcgw.report_html import report_html
+    from mcgw.reports.html import report_html
     from mcgw.store.ensembles import open_ensemble, read_attributes
 
     path = args.output or args.file.with_suffix(".html")

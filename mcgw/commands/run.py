@@ -6,10 +6,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from mcgw.engines import Engine
-    from mcgw.forecast import Forecast
-    from mcgw.running import Part
-    from mcgw.scene import Scene
+    from mcgw.ensemble.forecast import Forecast
+    from mcgw.jobs.engines import Engine
+    from mcgw.jobs.running import Part
+    from mcgw.scene.scene import Scene
 
 HELP = "simulate a scene: draw its surfaces and store load, area, ... in HDF5; goes on where it stopped"
 EXAMPLE = "mcgw run runs/demo.toml -o demo.h5"
@@ -46,10 +46,10 @@ def execute(args: argparse.Namespace) -> int:
 
 def _execute(args: argparse.Namespace) -> int:
     from mcgw.commands.notes import tell_notes
-    from mcgw.forecast import forecast
-    from mcgw.outputs import HDF5, Output, check_outputs
-    from mcgw.running import run, run_part
-    from mcgw.scene_file import files_of, load_scene
+    from mcgw.commands.outputs import HDF5, Output, check_outputs
+    from mcgw.ensemble.forecast import forecast
+    from mcgw.jobs.running import run, run_part
+    from mcgw.scene.scene_file import files_of, load_scene
     from mcgw.store.ensembles import recorded_seed
 
     path = args.output or args.scene.parent / "out" / f"{args.scene.stem}.h5"
@@ -78,7 +78,7 @@ def _execute(args: argparse.Namespace) -> int:
             engine.close()
     print(f"{path}: {ensemble.n_surfaces} surfaces of {scene.n_asperities:g} asperities, seed {scene.seed}")
     if ruled:
-        from mcgw.stop_report import after
+        from mcgw.reports.stop_rule import after
 
         for line in after(ensemble, scene.rel_err or 1.0):
             print(line)
@@ -87,9 +87,9 @@ def _execute(args: argparse.Namespace) -> int:
 
 def _tell_forecast(scene: "Scene", expected: "Forecast") -> None:
     """Say what the rule will take."""
+    from mcgw.ensemble.simulation import seconds_per_surface
+    from mcgw.reports.stop_rule import before
     from mcgw.sampling.samplers import sampler_of
-    from mcgw.simulation import seconds_per_surface
-    from mcgw.stop_report import before
 
     print(f"forecast: {before(expected, seconds_per_surface(scene, sampler_of(scene)))}")
 
@@ -104,7 +104,7 @@ def _of_threads(threads: int | None) -> list[str]:
 
 def _of_time(scene: "Scene") -> list[str]:
     """How long it will take, where that is more than a minute."""
-    from mcgw.duration import draws_per_surface, in_words, seconds_for
+    from mcgw.jobs.duration import draws_per_surface, in_words, seconds_for
     from mcgw.sampling.samplers import sampler_of
 
     if scene.rel_err is not None or scene.max_seconds is not None:
@@ -122,11 +122,11 @@ def _of_time(scene: "Scene") -> list[str]:
 
 def _engine(args: argparse.Namespace) -> "Engine | None":
     if args.processes is not None:
-        from mcgw.engines import Processes
+        from mcgw.jobs.engines import Processes
 
         return Processes(args.processes)
     if args.workers is not None or args.scheduler is not None:
-        from mcgw.dask_engine import Dask
+        from mcgw.jobs.dask_engine import Dask
 
         return Dask(
             args.scheduler, workers=1 if args.workers is None else args.workers, insecure=args.insecure
@@ -135,7 +135,7 @@ def _engine(args: argparse.Namespace) -> "Engine | None":
 
 
 def _part(given: str | None) -> "Part | None":
-    from mcgw.running import Part
+    from mcgw.jobs.running import Part
 
     if given is None:
         return None

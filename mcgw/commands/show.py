@@ -25,15 +25,15 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 def execute(args: argparse.Namespace) -> int:
     """Print to standard output; with --csv, write the table there."""
     from mcgw.commands.notes import tell_notes
-    from mcgw.outputs import CSV, Output, check_outputs
+    from mcgw.commands.outputs import CSV, Output, check_outputs
     from mcgw.store.ensembles import open_ensemble, read_attributes, verify
     from mcgw.store.leftovers import tidy
 
     if args.csv and (args.scene or args.digest or args.plan or args.verify):
         raise ValueError(f"--csv {args.csv}: writes the table of the summary; leave out the other option")
     if args.plan:
-        from mcgw.plan import plan_of, plan_text
-        from mcgw.scene_file import load_scene
+        from mcgw.reports.plan import plan_of, plan_text
+        from mcgw.scene.scene_file import load_scene
 
         scene = load_scene(args.file)
         tell_notes(scene)
@@ -50,8 +50,8 @@ def execute(args: argparse.Namespace) -> int:
     elif args.digest:
         print(attributes["digest"])
     else:
-        from mcgw.csv_table import write_csv
-        from mcgw.report_text import SUMMARY_HEADER, summary, summary_rows
+        from mcgw.formats.csv_table import write_csv
+        from mcgw.reports.text import SUMMARY_HEADER, summary, summary_rows
 
         ensemble = open_ensemble(args.file)
         tell_notes(ensemble.scene)

@@ -25,12 +25,12 @@ def execute(args: argparse.Namespace) -> int:
     from dataclasses import replace
 
     from mcgw.commands.notes import tell_notes
-    from mcgw.csv_table import write_csv
-    from mcgw.outputs import CSV, Output, check_outputs
-    from mcgw.scene_file import files_of, load_scene
-    from mcgw.solution import solve
-    from mcgw.solution_text import SOLUTION_HEADER, solution_rows, solution_table
-    from mcgw.units import parse
+    from mcgw.commands.outputs import CSV, Output, check_outputs
+    from mcgw.ensemble.solution import solve
+    from mcgw.formats.csv_table import write_csv
+    from mcgw.formats.units import parse
+    from mcgw.reports.solution import SOLUTION_HEADER, solution_rows, solution_table
+    from mcgw.scene.scene_file import files_of, load_scene
 
     scene = load_scene(args.scene)
     check_outputs([Output(args.csv, CSV, "--csv")] if args.csv else [], inputs=files_of(args.scene))

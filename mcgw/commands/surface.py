@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from mcgw.maps.asperities import Asperities
     from mcgw.maps.topography import Topography
-    from mcgw.scene import Scene
+    from mcgw.scene.scene import Scene
 
 HELP = "write one surface of an ensemble, or a Gaussian map, as a height map"
 EXAMPLE = "mcgw surface runs/demo.toml --surface 3 -o map.sdf"
@@ -52,9 +52,9 @@ def execute(args: argparse.Namespace) -> int:
 
 
 def _check_output(args: argparse.Namespace) -> None:
+    from mcgw.commands.outputs import JSON, Format, Output, check_outputs, figure_format
     from mcgw.maps.files import WRITTEN, files_of_map
-    from mcgw.outputs import JSON, Format, Output, check_outputs, figure_format
-    from mcgw.scene_file import files_of
+    from mcgw.scene.scene_file import files_of
 
     inputs = files_of(args.scene) if args.scene else []
     if args.at is not None:
@@ -75,12 +75,12 @@ def _shape(text: str) -> tuple[int, int | None]:
 
 def _asperities(args: argparse.Namespace) -> int:
     from mcgw.commands.notes import tell_notes
+    from mcgw.figures.contact_map import save_contact_map, spots_at
+    from mcgw.formats.units import parse
     from mcgw.maps.asperities import asperities_of
     from mcgw.maps.envelope import envelope
     from mcgw.maps.files import write_map
-    from mcgw.maps.spots import save_contact_map, spots_at
-    from mcgw.scene_file import load_scene, scene_text
-    from mcgw.units import parse
+    from mcgw.scene.scene_file import load_scene, scene_text
 
     scene = load_scene(args.scene)
     tell_notes(scene)
@@ -105,7 +105,7 @@ def _asperities(args: argparse.Namespace) -> int:
 def _account(scene: "Scene", field: "Asperities", topography: "Topography") -> str:
     """How well the map shows independent asperities."""
     from mcgw.maps.envelope import hidden_summits
-    from mcgw.maps.hiding import CROWDED
+    from mcgw.maps.hidden import CROWDED
 
     hidden = hidden_summits(field, periodic=topography.periodic)
     touching = field.z > scene.lowest * scene.surface.sigma
@@ -131,9 +131,9 @@ def _account(scene: "Scene", field: "Asperities", topography: "Topography") -> s
 def _spectrum(args: argparse.Namespace) -> int:
     import numpy as np
 
+    from mcgw.formats.units import parse
     from mcgw.maps.files import write_map
     from mcgw.maps.spectrum import gaussian_map, moments_on_grid, spectrum_from
-    from mcgw.units import parse
 
     if args.at is not None or args.scene is not None:
         raise ValueError("--from-spectrum: draws a map without asperities; leave out SCENE and --at")

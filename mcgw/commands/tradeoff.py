@@ -21,11 +21,11 @@ def execute(args: argparse.Namespace) -> int:
     from tqdm import tqdm
 
     from mcgw.commands.notes import tell_notes
-    from mcgw.outputs import CSV, Output, check_outputs, figure_format
-    from mcgw.plots_tradeoff import save_tradeoff
-    from mcgw.scene_file import files_of, load_scene
-    from mcgw.tradeoff import tradeoff, write_csv
-    from mcgw.units import parse
+    from mcgw.commands.outputs import CSV, Output, check_outputs, figure_format
+    from mcgw.figures.tradeoff import save_tradeoff
+    from mcgw.formats.units import parse
+    from mcgw.scene.scene_file import files_of, load_scene
+    from mcgw.statistics.tradeoff import tradeoff, write_csv
 
     seconds = parse(args.seconds, "s", "--seconds")
     scene = load_scene(args.scene)

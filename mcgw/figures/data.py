@@ -7,7 +7,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from mcgw.csv_table import Row
+from mcgw.formats.csv_table import Row
 
 __all__ = [
     "FIGURE_HEADER",

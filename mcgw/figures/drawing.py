@@ -10,10 +10,10 @@ import numpy as np
 from cycler import cycler
 from matplotlib.figure import Figure
 
-from mcgw.csv_table import write_csv
 from mcgw.figures.data import FIGURE_HEADER, FigureData, Panel, Points, Series, figure_rows
+from mcgw.figures.style import STYLE
+from mcgw.formats.csv_table import write_csv
 from mcgw.formats.pictures import save_figure
-from mcgw.plots import STYLE
 
 __all__ = ["draw", "figure_files", "save_figures"]
 

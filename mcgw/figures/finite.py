@@ -7,9 +7,9 @@ from numpy.typing import NDArray
 from scipy.special import ndtr
 
 from analytic import QUANTITIES
+from mcgw.ensemble.simulation import simulate
 from mcgw.figures.data import SEPARATION, FigureData, Panel, Points, Series
 from mcgw.figures.samples import Samples
-from mcgw.simulation import simulate
 
 __all__ = ["distribution", "fluctuations", "law_of_load"]
 

@@ -8,9 +8,9 @@ from numpy.typing import NDArray
 
 import analytic
 from analytic import QUANTITIES, Exponential
+from mcgw.ensemble.regrading import paired_ratio
 from mcgw.figures.data import GAMMA, SEPARATION, FigureData, Panel, Points, Series, ratio_of_sums
 from mcgw.figures.samples import Samples
-from mcgw.regrade import paired_ratio
 
 __all__ = ["NEGATIVE", "PAPER", "POSITIVE", "paper_figures"]
 

@@ -7,11 +7,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analytic import QUANTITIES, Exponential, Surface
-from mcgw.ensemble import Ensemble
-from mcgw.regrade import regrade
+from mcgw.ensemble.ensemble import Ensemble
+from mcgw.ensemble.regrading import regrade
+from mcgw.ensemble.simulation import simulate
 from mcgw.sampling.asperities import heights
-from mcgw.scene import Scene
-from mcgw.simulation import simulate
+from mcgw.scene.scene import Scene
 
 __all__ = ["Samples"]
 

@@ -8,10 +8,10 @@ import h5py
 import numpy as np
 
 from mcgw.formats.files import whole_file
+from mcgw.formats.npy_file import open_npy
 from mcgw.maps.asperities import Asperities
 from mcgw.maps.height_unit import height_unit
 from mcgw.maps.topography import Topography, checked_shape
-from mcgw.npy_file import open_npy
 
 __all__ = ["read_h5", "read_npy", "sidecar_of", "write_h5", "write_npy"]
 

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from mcgw.sampling.asperities import heights
 from mcgw.sampling.philox import POSITIONS, uniforms
-from mcgw.scene import Scene
+from mcgw.scene.scene import Scene
 
 __all__ = ["Asperities", "asperities_of"]
 

@@ -13,7 +13,7 @@ import numpy as np
 from numba import prange
 from numpy.typing import NDArray
 
-from mcgw.compiling import njit
+from mcgw.machine.compiling import njit
 from mcgw.maps.asperities import Asperities
 from mcgw.maps.topography import Topography, checked_shape
 

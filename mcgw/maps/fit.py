@@ -9,11 +9,11 @@ from numpy.typing import NDArray
 from scipy.special import ndtr, stdtrit
 
 from mcgw.maps.form import Form, smooth, without_form
-from mcgw.maps.hiding import Visible, unhidden, visible
+from mcgw.maps.hidden import Visible, unhidden, visible
 from mcgw.maps.levels import form_left
 from mcgw.maps.leverage import Alone, alone_of
 from mcgw.maps.nayak import SpectralMoments
-from mcgw.maps.tally import SUMS, Tally, tally_of
+from mcgw.maps.summit_sums import SUMS, Tally, tally_of
 from mcgw.maps.topography import Topography
 from mcgw.maps.waves import Waves, waves_of
 
@@ -71,7 +71,7 @@ class Fit:
     visible : Visible or None
         What a map shows of a field of independent caps like this one.
     mean_squares : dict of str to float
-        Of slopes and second derivatives, by the names of `mcgw.maps.tally.SUMS`.
+        Of slopes and second derivatives, by the names of `mcgw.maps.summit_sums.SUMS`.
     form : {"none", "plane", "quadratic"}
         What was taken off.
     waves : Waves
@@ -114,7 +114,7 @@ def fit_map(topography: Topography, *, cutoff: float | None, form: Form = "plane
     Returns
     -------
     Fit
-        By all methods; `mcgw.maps.doubts.doubts` says why not to trust it.
+        By all methods; `mcgw.maps.cautions.doubts` says why not to trust it.
 
     Raises
     ------
@@ -216,7 +216,7 @@ def _estimate(tally: Tally, statistic: Callable[[Tally], NDArray[np.float64]]) -
 
 
 def mean_squares(tally: Tally) -> dict[str, float]:
-    """Means over the map, by the names of `mcgw.maps.tally.SUMS`."""
+    """Means over the map, by the names of `mcgw.maps.summit_sums.SUMS`."""
     sums = tally.sums.sum(axis=1)
     return dict(zip(SUMS[1:], (sums[1:] / sums[0]).tolist(), strict=True))
 

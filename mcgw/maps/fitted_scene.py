@@ -9,8 +9,8 @@ import numpy as np
 from analytic import Gaussian, HeightLaw, HeightTable, MeasuredHeights, Surface
 from mcgw.formats.files import whole_file
 from mcgw.maps.fit import Fit
-from mcgw.scene import Scene
-from mcgw.scene_file import scene_text
+from mcgw.scene.scene import Scene
+from mcgw.scene.scene_file import scene_text
 
 __all__ = ["fitted_scene", "heights_beside", "write_scene"]
 

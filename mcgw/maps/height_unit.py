@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from mcgw.units import METRES
+from mcgw.formats.units import METRES
 
 __all__ = ["height_unit", "metres_in"]
 

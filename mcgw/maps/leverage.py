@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mcgw.maps.tally import SUMS, Tally
+from mcgw.maps.summit_sums import SUMS, Tally
 
 __all__ = ["Alone", "alone_of"]
 

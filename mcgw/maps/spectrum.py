@@ -8,9 +8,9 @@ from numpy.typing import NDArray
 from scipy import fft
 from scipy.optimize import brentq
 
+from mcgw.formats.units import parse
 from mcgw.maps.nayak import SpectralMoments
 from mcgw.maps.topography import Topography, checked_shape
-from mcgw.units import parse
 
 __all__ = ["Spectrum", "gaussian_map", "moments_on_grid", "spectrum_from"]
 

@@ -23,8 +23,8 @@ def _forget_old_kernels(folder: Path) -> None:
     an update of one file the others would go on with the old one, and draw what no version draws.
     """
     with suppress(OSError):  # a folder that cannot be written to has no kernels in it
-        newest = max((path.stat().st_mtime for path in folder.glob("*.py")), default=0.0)
-        for index in folder.glob("__pycache__/*.nbi"):
+        newest = max((path.stat().st_mtime for path in folder.rglob("*.py")), default=0.0)
+        for index in folder.rglob("__pycache__/*.nbi"):
             if index.stat().st_mtime < newest:
                 index.unlink()
 

@@ -20,9 +20,9 @@ import numpy as np
 from numpy.polynomial import chebyshev
 from numpy.typing import NDArray
 
-from mcgw.compiling import njit
+from mcgw.machine.compiling import njit
 from mcgw.sampling.exp_log import make_normal
-from mcgw.sampling.moments import Layout
+from mcgw.sampling.layout import Layout
 from mcgw.sampling.philox import MOMENTS, centred
 from mcgw.sampling.rules import gauss_legendre, product, triangle
 

@@ -3,12 +3,12 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from mcgw.room import check_memory
+from mcgw.machine.memory import check_memory
 from mcgw.sampling.counts import counts_of, generator
-from mcgw.sampling.extras import extra_heights
+from mcgw.sampling.outside import extra_heights
 from mcgw.sampling.philox import CELLS, REST, uniforms
 from mcgw.sampling.samplers import Cells, sampler_of
-from mcgw.scene import Scene
+from mcgw.scene.scene import Scene
 
 __all__ = ["heights"]
 

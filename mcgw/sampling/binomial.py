@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numba import uint64
 
-from mcgw.compiling import njit
+from mcgw.machine.compiling import njit
 from mcgw.sampling.binomial_ratio import below_ratio, ratio_over_mode
 from mcgw.sampling.exp_log import exp_minus, log_one_minus
 from mcgw.sampling.philox import COUNTS, two_wide

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from mcgw.compiling import njit
+from mcgw.machine.compiling import njit
 from mcgw.sampling.exp_log import log
 
 __all__ = ["below_ratio", "ratio_over_mode"]

@@ -23,7 +23,7 @@ from analytic import Grading, HeightLaw, resolved_breaks
 from analytic.elementary import exp
 from mcgw.sampling.rules import chebyshev_points, chebyshev_transform, gauss_legendre, product
 from mcgw.sampling.spacing import cuts
-from mcgw.scene import Scene
+from mcgw.scene.scene import Scene
 
 __all__ = ["NODES", "TO_COEFFICIENTS", "Mesh", "height_noise", "mesh_of", "no_cells"]
 

@@ -10,10 +10,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from mcgw.compiling import njit
+from mcgw.machine.compiling import njit
 from mcgw.sampling.cells import Mesh
 from mcgw.sampling.halving import halvings_of, share_out
-from mcgw.scene import Scene
+from mcgw.scene.scene import Scene
 
 __all__ = ["GROUP", "Counts", "contacts_above", "counts_of", "generator", "strata_of"]
 

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from analytic.elementary import MIDDLE, NEAR, OUT
-from mcgw.compiling import njit
+from mcgw.machine.compiling import njit
 
 __all__ = ["exp_minus", "log", "log_one_minus", "make_normal"]
 

@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analytic import QUANTITIES
-from mcgw.compiling import njit
-from mcgw.scene import Scene
+from mcgw.machine.compiling import njit
+from mcgw.scene.scene import Scene
 
 __all__ = ["hertz_sums"]
 

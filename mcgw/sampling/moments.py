@@ -5,10 +5,9 @@ Of the n uniforms u of a cell, with x = 2u - 1, the sums over the asperities
     T_j = sum T_j(x),  j < plain        R_j = sum sqrt(u) T_j(x),  j < rooted
 
 of Chebyshev polynomials determine every smooth law of the height, and every smooth law times the
-root of the distance from the cell's start (`mcgw.sampling.response`).
+root of the distance from the cell's start (`mcgw.sampling.response.response`).
 """
 
-from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
 
@@ -16,13 +15,14 @@ import numpy as np
 from numba import get_num_threads
 from numpy.typing import NDArray
 
-from mcgw.compiling import njit
-from mcgw.sampling.aligned import aligned
-from mcgw.sampling.in_threads import in_threads
+from mcgw.machine.aligned import aligned
+from mcgw.machine.compiling import njit
+from mcgw.machine.in_threads import in_threads
+from mcgw.sampling.layout import Layout
 from mcgw.sampling.spacing import price
 from mcgw.sampling.uniform_sums import PLAIN, ROOTED, WORDS, sum_uniforms, unfold
 
-__all__ = ["Layout", "cell_moments"]
+__all__ = ["cell_moments"]
 
 _START = 80.0  # asperities that take as long to draw as a cell takes to begin
 _ALONE = 1e6  # asperities' work that a thread does before another one has begun
@@ -110,30 +110,6 @@ def _sum_cells(
             moments[:, some],
         )
         at += stop - surface
-
-
-@dataclass(frozen=True)
-class Layout:
-    """Which moments a surface keeps.
-
-    Parameters
-    ----------
-    plain, rooted : ndarray of int
-        How many T_j and R_j each cell has.
-    """
-
-    plain: NDArray[np.int64]
-    rooted: NDArray[np.int64]
-
-    @property
-    def sizes(self) -> NDArray[np.int64]:
-        """Moments of each cell."""
-        return self.plain + self.rooted
-
-    @property
-    def starts(self) -> NDArray[np.int64]:
-        """First row of each cell, and the number of all rows."""
-        return np.concatenate([[0], np.cumsum(self.sizes)])
 
 
 def cell_moments(

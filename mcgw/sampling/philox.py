@@ -24,7 +24,7 @@ import numpy as np
 from numba import uint32, uint64
 from numpy.typing import NDArray
 
-from mcgw.compiling import njit
+from mcgw.machine.compiling import njit
 
 __all__ = [
     "CELLS",

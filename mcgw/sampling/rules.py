@@ -11,7 +11,7 @@ import numpy as np
 from numpy.polynomial import chebyshev
 from numpy.typing import NDArray
 
-from mcgw.compiling import njit
+from mcgw.machine.compiling import njit
 from mcgw.sampling.lanes import fused
 
 __all__ = ["chebyshev_points", "chebyshev_transform", "gauss_legendre", "product", "triangle"]

@@ -16,15 +16,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analytic import QUANTITIES, Exponential
-from mcgw.room import keep_freed_memory
+from mcgw.machine.memory import keep_freed_memory
 from mcgw.sampling.aggregate import CROWDED, VARYING, Crowds, add_gaussian_moments
 from mcgw.sampling.cells import Mesh, mesh_of, no_cells
 from mcgw.sampling.counts import Counts, contacts_above, counts_of, generator, strata_of
-from mcgw.sampling.extras import extra_heights
 from mcgw.sampling.hertz import hertz_sums
-from mcgw.sampling.moments import Layout, cell_moments
-from mcgw.sampling.response import Response, layout_of, response_of
-from mcgw.scene import Scene
+from mcgw.sampling.layout import Layout
+from mcgw.sampling.moments import cell_moments
+from mcgw.sampling.outside import extra_heights
+from mcgw.sampling.response.response import Response, layout_of, response_of
+from mcgw.scene.scene import Scene
 
 __all__ = ["Block", "Cells", "Direct", "Sampler", "aggregate_of", "response_to", "sampler_of"]
 
@@ -62,7 +63,7 @@ class Sampler(Protocol):
 
     @property
     def name(self) -> str:
-        """One of `mcgw.scene.SAMPLERS`, never "auto"."""
+        """One of `mcgw.scene.scene.SAMPLERS`, never "auto"."""
         ...
 
     def block(self, first: int, n: int) -> Block:

@@ -12,7 +12,7 @@ holds some uniforms x = 2u - 1 at a time, their roots, ones, and the sums.
 
 from typing import Any
 
-from mcgw.compiling import njit
+from mcgw.machine.compiling import njit
 from mcgw.sampling.lanes import LANES, alike, fused, load, roots, store, total
 from mcgw.sampling.philox import CELLS, centred
 

@@ -13,7 +13,7 @@ A file appears whole or not at all. Its schema (``filetype = "mcgw-ensemble"``, 
     /contacts             int64   (surfaces, separations) 1   (float64 expectation if stratified)
     /conductance          float64 (surfaces, separations) m   (times 1/rho)
 
-and, if the scene says ``keep = "moments"``, what `mcgw.regrade` starts from::
+and, if the scene says ``keep = "moments"``, what `mcgw.ensemble.regrading` starts from::
 
     /drawn/moments        float64 (surfaces, moments)     sums of Chebyshev polynomials, cell by cell
     /drawn/cells          float64 (surfaces, cells)       asperities in each cell

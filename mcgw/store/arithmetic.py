@@ -23,7 +23,7 @@ from analytic import (
     MeasuredHeights,
     Table,
 )
-from mcgw.scene import Scene
+from mcgw.scene.scene import Scene
 from mcgw.store.provenance import versions
 
 __all__ = ["KIND", "depends_on_processor", "drawn_with", "kind_of_processor"]

@@ -7,20 +7,20 @@ from typing import Any
 import h5py
 import numpy as np
 
-from mcgw.ensemble import Ensemble
+from mcgw.ensemble.ensemble import Ensemble
 from mcgw.errors import RunError, StoreError
 from mcgw.formats.files import check_output, state_of, write_whole
-from mcgw.scene import Scene
-from mcgw.scene_file import scene_from, scene_text
+from mcgw.scene.scene import Scene
+from mcgw.scene.scene_file import scene_from, scene_text
 from mcgw.store.arithmetic import drawn_with
-from mcgw.store.guard import examine, examine_all
 from mcgw.store.head import MOST_SCALE
 from mcgw.store.layout import FILETYPE, FORMAT, build, seal_notes, values_digest
 from mcgw.store.lock import locked
-from mcgw.store.rundir import Run, difference, identity_of, parts_of
-from mcgw.store.seal import check_seal, read_seal, seal_of
+from mcgw.store.run_folder import Run, difference, identity_of, parts_of
 from mcgw.store.shards import DRAWN, Span, in_memory
-from mcgw.store.sums import FileSums, ShardSums
+from mcgw.store.stored import FileSums, ShardSums
+from mcgw.store.trailer import check_seal, read_seal, seal_of
+from mcgw.store.untrusted import examine, examine_all
 
 __all__ = [
     "StoreError",
@@ -40,7 +40,7 @@ def open_ensemble(path: str | Path) -> Ensemble:
     Parameters
     ----------
     path : str or Path
-        Written by `mcgw.running.run`. It may come from a stranger: a child process looks at it first.
+        Written by `mcgw.jobs.running.run`. It may come from a stranger: a child process looks at it first.
 
     Returns
     -------

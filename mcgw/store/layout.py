@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from analytic import QUANTITIES
 from mcgw.errors import StoreError
-from mcgw.scene import Scene
-from mcgw.scene_file import scene_text
+from mcgw.scene.scene import Scene
+from mcgw.scene.scene_file import scene_text
 from mcgw.store.head import head_digest
 from mcgw.store.provenance import now, provenance
 from mcgw.store.shards import DRAWN, RAGGED, Arrays, Span

@@ -5,10 +5,10 @@ from pathlib import Path
 
 from mcgw.errors import StoreError
 from mcgw.formats.files import remove_stale
-from mcgw.scene_file import scene_from
+from mcgw.scene.scene_file import scene_from
 from mcgw.store.ensembles import read_attributes
 from mcgw.store.lock import locked
-from mcgw.store.rundir import Run, parts_of, remove_run
+from mcgw.store.run_folder import Run, parts_of, remove_run
 
 __all__ = ["drop_leftovers", "tidy"]
 

@@ -18,7 +18,7 @@ from filelock import ReadWriteLock, Timeout
 
 from mcgw.errors import StoreError
 from mcgw.formats.files import write_whole
-from mcgw.plain_file import read_text
+from mcgw.formats.plain_file import read_text
 
 __all__ = ["LOCK_FILES", "LockedError", "locked", "refuse_link"]
 

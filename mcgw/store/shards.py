@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from mcgw.errors import StoreError
 from mcgw.formats.files import write_whole
-from mcgw.store.seal import Seal, read_sealed, seal_of
+from mcgw.store.trailer import Seal, read_sealed, seal_of
 
 __all__ = [
     "DRAWN",
@@ -200,7 +200,7 @@ def _described(path: Path, seal: Seal) -> tuple[Shard, str]:
 
 def _unpack(body: bytes, path: Path) -> Arrays:
     """Arrays of an HDF5 file in memory that must be as `pack` makes it."""
-    from mcgw.store.probe import RefusedError, check_plain
+    from mcgw.store.structure import RefusedError, check_plain
 
     try:
         with h5py.File(h5py.h5f.open_file_image(body), "r") as file:

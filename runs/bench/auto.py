@@ -9,9 +9,9 @@ from dataclasses import replace
 import numpy as np
 from samplers import S1
 
+from mcgw.ensemble.simulation import at_a_time, block_size, drawn_blocks
 from mcgw.sampling.samplers import sampler_of
-from mcgw.scene import Scene
-from mcgw.simulation import at_a_time, block_size, drawn_blocks
+from mcgw.scene.scene import Scene
 
 
 def microseconds(scene: Scene) -> float:

@@ -14,7 +14,7 @@ import numpy as np
 import analytic
 from mcgw.maps.asperities import Asperities, asperities_of
 from mcgw.maps.envelope import envelope
-from mcgw.scene import Scene
+from mcgw.scene.scene import Scene
 
 
 def field_of(number: int) -> Asperities:

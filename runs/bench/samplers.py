@@ -14,10 +14,10 @@ import numpy as np
 from numba import njit, prange
 
 import analytic
+from mcgw.ensemble.simulation import at_a_time, block_size, drawn_blocks
 from mcgw.sampling.philox import centred
 from mcgw.sampling.samplers import sampler_of
-from mcgw.scene import Scene
-from mcgw.simulation import at_a_time, block_size, drawn_blocks
+from mcgw.scene.scene import Scene
 
 SURFACE = analytic.Surface(sigma=1.37e-6, radius=13e-6, eta=3.0e8, nominal_area=1e-4, E_star=78.6e9)
 S1 = Scene(

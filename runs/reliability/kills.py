@@ -26,18 +26,18 @@ sys.path.insert(0, str(Path(__file__).parents[2] / "tests" / "crash"))
 
 import harness
 
-from mcgw import joining, running
 from mcgw.errors import RunError, StoreError
-from mcgw.lifeline import end_with
-from mcgw.store import ensembles, lock, merge
-from mcgw.store.child import ChildError
-from mcgw.store.rundir import Run, parts_of
+from mcgw.jobs import merging, running
+from mcgw.machine.child_process import ChildError
+from mcgw.machine.lifeline import end_with
+from mcgw.store import ensembles, lock, merged_file
+from mcgw.store.run_folder import Run, parts_of
 
 BLOCKS = 12
 WANTED = harness.scene_of(BLOCKS)
 ONE = replace(WANTED, n_surfaces=harness.ROWS)
 HALF = replace(WANTED, n_surfaces=harness.ROWS * BLOCKS // 2 + 3)
-_STARTED = joining._merge_in_child
+_STARTED = merging._merge_in_child
 _DYING = 30.0  # seconds that a child has to follow its parent: a machine may be busy
 
 
@@ -57,8 +57,8 @@ KINDS = {
     "blocks": ([], [run(WANTED)]),
     "extension": ([run(HALF)], [run(WANTED)]),
     "one block grows": ([run(replace(ONE, n_surfaces=3))], [run(ONE)]),
-    "jobs": ([], [job(1), job(2), joining.merge]),
-    "merge": ([job(1), job(2)], [joining.merge]),
+    "jobs": ([], [job(1), job(2), merging.merge]),
+    "merge": ([job(1), job(2)], [merging.merge]),
 }
 
 
@@ -71,7 +71,7 @@ def merged_by_fork(folder, path, temporary):
         try:
             os.close(ours)
             end_with(pipe)
-            merge.merge_into(folder, path, temporary)
+            merged_file.merge_into(folder, path, temporary)
             code = 0
         finally:
             os._exit(code)
@@ -163,7 +163,7 @@ def trial(kind, folder, dice, count, expected):
     file = folder / "e.h5"
     before, steps = KINDS[kind]
     merging = dice.choices(list(expected), weights=[9, 1])[0]
-    joining._merge_in_child = merging
+    merging._merge_in_child = merging
     span, right = expected[merging]
     for action in before:
         count["stuck"] += done(action, file) != 0
@@ -180,7 +180,7 @@ def trial(kind, folder, dice, count, expected):
 
 def undisturbed(kind, merging, folder):
     """Time of the last step of a kind, and its digest."""
-    joining._merge_in_child = merging
+    merging._merge_in_child = merging
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
     file = folder / "e.h5"

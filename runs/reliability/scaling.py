@@ -15,9 +15,9 @@ from pathlib import Path
 import h5py
 import numpy as np
 
-from mcgw.dask_engine import Dask
-from mcgw.driver import Signals, drive
-from mcgw.engines import Processes, Threads
+from mcgw.jobs.dask_engine import Dask
+from mcgw.jobs.driver import Signals, drive
+from mcgw.jobs.engines import Processes, Threads
 from mcgw.store.shards import Span, commit_shard
 
 SECONDS, ROWS, COLUMNS = 1.0, 1024, 128

@@ -14,11 +14,11 @@ import h5py
 import numpy as np
 from harness import ROWS, forked, prepare, scene_of
 
-from mcgw import running
 from mcgw.errors import StoreError
-from mcgw.running import Part, run, run_part
-from mcgw.store import ensembles, layout, merge, probe
-from mcgw.store.rundir import parts_of
+from mcgw.jobs import running
+from mcgw.jobs.running import Part, run, run_part
+from mcgw.store import ensembles, layout, merged_file, structure
+from mcgw.store.run_folder import parts_of
 
 BLOCKS = 5
 
@@ -79,7 +79,7 @@ def seen(file, whole):
         sys.stderr = open(os.devnull, "w")  # noqa: SIM115
         try:
             return int(ensembles.open_ensemble(file).n_surfaces < whole)
-        except (StoreError, probe.RefusedError, OSError, RuntimeError, ValueError, KeyError, TypeError):
+        except (StoreError, structure.RefusedError, OSError, RuntimeError, ValueError, KeyError, TypeError):
             return 1
 
     return forked(look) != 0
@@ -89,7 +89,7 @@ def main(folder, flips, *, old=False):
     prepare()
     if old:
         layout.FORMAT = (1, 0)
-        for module in (ensembles, merge):
+        for module in (ensembles, merged_file):
             module.seal_notes = lambda file: {}
     folder.mkdir(parents=True)
     dice, (one, merged, begun) = random.Random(1), made(folder)

@@ -17,12 +17,12 @@ from pathlib import Path
 import numpy as np
 
 import analytic
-from mcgw import joining, running, work
 from mcgw.errors import RunError, StoreError
-from mcgw.scene import Scene
-from mcgw.store import ensembles, lock, merge, probe, shards
-from mcgw.store.child import ChildError
-from mcgw.store.rundir import Run, parts_of
+from mcgw.jobs import blocks, merging, running
+from mcgw.machine.child_process import ChildError
+from mcgw.scene.scene import Scene
+from mcgw.store import ensembles, lock, merged_file, shards, structure
+from mcgw.store.run_folder import Run, parts_of
 
 MODES = {"kill": 1, "torn": 2, "ENOSPC": 3, "EIO": 4}
 ROWS = 8
@@ -48,7 +48,7 @@ def made_up(scene, sampler, span, threads):
 def merged_here(folder, path, temporary):
     """In this process, which is expendable as it is; a fork saves the start of a Python."""
     try:
-        merge.merge_into(folder, path, temporary)
+        merged_file.merge_into(folder, path, temporary)
     except StoreError as error:
         raise ChildError("exit code 3", str(error)) from None
     except (OSError, RuntimeError) as error:
@@ -56,12 +56,12 @@ def merged_here(folder, path, temporary):
 
 
 def prepare():
-    work.draw = made_up
+    blocks.draw = made_up
     lock.PATIENCE = 0.0  # a second driver is refused at once
     running.shard_size = lambda scene, sampler: ROWS
     running.columns = lambda scene, sampler: 6
-    joining._merge_in_child = merged_here
-    ensembles.examine = lambda path: probe.describe(str(path))
+    merging._merge_in_child = merged_here
+    ensembles.examine = lambda path: structure.describe(str(path))
     if "MCGW_IN_PLACE" in os.environ:  # the wrong way, which the harness must notice
         shards.write_whole = written_in_place
 

@@ -15,7 +15,7 @@ from pathlib import Path
 from harness import ROWS, attempt, forked, prepare, scene_of
 
 from mcgw.store import ensembles
-from mcgw.store.rundir import Run, parts_of
+from mcgw.store.run_folder import Run, parts_of
 
 BLOCKS = 120
 

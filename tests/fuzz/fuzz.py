@@ -16,9 +16,9 @@ from pathlib import Path
 
 import mcgw
 from mcgw.errors import StoreError
-from mcgw.running import run
-from mcgw.scene import SceneError
-from mcgw.store import ensembles, probe
+from mcgw.jobs.running import run
+from mcgw.scene.scene import SceneError
+from mcgw.store import ensembles, structure
 
 MEMORY, SECONDS = 2**31, 4
 SCENE = """title = "fuzz"
@@ -197,14 +197,14 @@ def files(count, seed):
 
 def look(path):
     try:
-        probe.describe(str(path))
-    except (probe.RefusedError, MemoryError, OSError, RuntimeError, ValueError, KeyError, TypeError):
+        structure.describe(str(path))
+    except (structure.RefusedError, MemoryError, OSError, RuntimeError, ValueError, KeyError, TypeError):
         return 2
     return 0
 
 
 def use(path):
-    ensembles.examine = lambda path: json.loads(json.dumps(probe.describe(str(path))))
+    ensembles.examine = lambda path: json.loads(json.dumps(structure.describe(str(path))))
     try:
         ensemble = ensembles.open_ensemble(path)
         for name in ensemble.scene.quantities:

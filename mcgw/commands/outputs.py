@@ -1,0 +1,146 @@
+"""What a command may write: asked of all its outputs together, before anything is computed."""
+
+import os
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+
+from mcgw.errors import StoreError
+from mcgw.formats.files import check_output
+from mcgw.store.disk import parts_of
+from mcgw.store.lock import LOCK_FILES
+from mcgw.store.trailer import SEAL_BYTES, SEAL_MAGIC
+
+__all__ = [
+    "CSV",
+    "HDF5",
+    "HTML",
+    "JSON",
+    "NPY",
+    "TOML",
+    "Format",
+    "Output",
+    "check_outputs",
+    "figure_format",
+]
+
+_SIGNATURE = b"\x89HDF\r\n\x1a\n"
+
+
+@dataclass(frozen=True)
+class Format:
+    """What a command writes, and what the name of such a file ends in, in small letters."""
+
+    what: str
+    endings: tuple[str, ...]
+
+
+CSV = Format("a table", (".csv", ".txt"))
+HDF5 = Format("an ensemble", (".h5", ".hdf5"))
+HTML = Format("a web page", (".html", ".htm"))
+JSON = Format("the size of a pixel", (".json",))
+NPY = Format("heights", (".npy",))
+TOML = Format("a scene", (".toml",))
+
+
+def figure_format() -> Format:
+    """All that matplotlib writes."""
+    from mcgw.formats.pictures import figure_endings
+
+    return Format("a figure", figure_endings())
+
+
+@dataclass(frozen=True)
+class Output:
+    """A file that a command is about to write.
+
+    Parameters
+    ----------
+    path : Path
+        Where.
+    format : Format
+        What.
+    option : str, optional
+        How its name was given.
+    grows : bool, optional
+        Whether the command makes ensembles, whose own rules say which one may be replaced.
+    """
+
+    path: Path
+    format: Format
+    option: str = "-o"
+    grows: bool = False
+
+    def refuse(self, why: str) -> StoreError:
+        """The error of this output."""
+        return StoreError(f"{self.option} {self.path}: {why}; choose another {self.option}")
+
+
+def check_outputs(outputs: Iterable[Output], *, inputs: Iterable[Path] = ()) -> None:
+    """Refuse what would destroy something or cannot be written; make the folders.
+
+    Parameters
+    ----------
+    outputs : iterable of Output
+        All that the command writes.
+    inputs : iterable of Path
+        All that it reads; with each, the folder of the run that makes it.
+
+    Raises
+    ------
+    StoreError
+        If an output is an input or another output under any name, replaces an ensemble, has an ending
+        that does not fit, or if there is no place for it.
+    """
+    outputs, inputs = list(outputs), list(inputs)
+    for i, output in enumerate(outputs):
+        for path in inputs:
+            if same_file(output.path, path):
+                raise output.refuse(f"is an input ({path})")
+        _refuse_run(output, inputs)
+        for other in outputs[:i]:
+            if same_file(output.path, other.path):
+                raise output.refuse(f"is what {other.option} writes too")
+        if not output.path.name.lower().endswith(output.format.endings):
+            known = ", ".join(output.format.endings)
+            raise output.refuse(f"{output.format.what} is written there, whose name ends in {known}")
+        _refuse_ensemble(output)
+    for output in outputs:
+        check_output(output.path)
+
+
+def same_file(one: Path, other: Path) -> bool:
+    """Whether two names are those of one file: by spelling, symbolic or hard link."""
+    try:
+        return os.path.samefile(one, other)
+    except OSError:  # one of them does not exist
+        return os.path.realpath(one) == os.path.realpath(other)
+
+
+def _refuse_run(output: Output, inputs: list[Path]) -> None:
+    """Nothing may be put in the folder of a run, or in its place."""
+    place = Path(os.path.realpath(output.path))
+    for path in inputs:
+        if place.is_relative_to(os.path.realpath(parts_of(path))):
+            raise output.refuse(f"{parts_of(path)} is the folder of the run that makes {path}")
+    for folder in (place, *place.parents):
+        if folder.suffix == ".parts" and any((folder / name).exists() for name in LOCK_FILES):
+            raise output.refuse(f"{folder} is the folder of a run")
+
+
+def _refuse_ensemble(output: Output) -> None:
+    """An ensemble is only replaced by a command that makes ensembles."""
+    if output.grows:
+        return
+    if parts_of(output.path).exists():
+        raise output.refuse(f"a run that makes this file is not finished ({parts_of(output.path)})")
+    if not output.path.is_file():
+        return
+    with open(output.path, "rb") as file:
+        start = file.read(len(_SIGNATURE))
+        file.seek(max(output.path.stat().st_size - SEAL_BYTES, 0))
+        sealed = file.read(len(SEAL_MAGIC)) == SEAL_MAGIC
+    if sealed:
+        raise output.refuse("is an ensemble of mcgw, which this would replace")
+    if start == _SIGNATURE and not set(HDF5.endings) & set(output.format.endings):
+        raise output.refuse("is an HDF5 file, which this would replace")

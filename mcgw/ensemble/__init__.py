@@ -1,0 +1,1 @@
+"""Ensembles in memory: drawn, summed up, extended to other gradings and to given loads."""

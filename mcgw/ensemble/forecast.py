@@ -1,0 +1,129 @@
+"""How many surfaces a scene takes: known before any is drawn, from the exact law of a finite surface.
+
+An interval of a mean reaches the same share of the mean in every ensemble of a scene
+(`mcgw.ensemble.intervals`). So the stop rule `rel_err` needs no look at what was drawn, and cannot stop by
+chance before rare, stiff summits have come: the number of surfaces is a function of the scene alone.
+"""
+
+import warnings
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mcgw.ensemble.intervals import MANY, Spread, chebyshev, spread_of
+from mcgw.sampling.counts import GROUP
+from mcgw.scene.scene import Scene
+
+__all__ = ["Forecast", "checkpoints", "forecast", "relative_spread", "without_rule"]
+
+Array = NDArray[np.float64]
+
+_STEP = 16  # numbers of surfaces lie 1/16 apart
+_ROUNDS = 8  # each leaves a share of the skewness over the square root of the contacts, at most 0.1
+
+
+@dataclass(frozen=True)
+class Forecast:
+    """What `rel_err` needs.
+
+    Parameters
+    ----------
+    needed : dict of str to ndarray
+        Surfaces that each mean needs, shape (separations,); infinite where nothing ever touches.
+    surfaces : int
+        Surfaces that will be drawn, at most the limit.
+    out_of_reach : tuple of (str, float)
+        Quantities and separations that need more than the limit.
+    """
+
+    needed: dict[str, Array]
+    surfaces: int
+    out_of_reach: tuple[tuple[str, float], ...]
+
+    @property
+    def shortfall(self) -> str:
+        """What will not be known as well as asked, in words; empty if all will."""
+        if not self.out_of_reach:
+            return ""
+        name, h = self.out_of_reach[-1]
+        return (
+            f"{len(self.out_of_reach)} means need more surfaces than max_surfaces allows, "
+            f"such as {name} at d/sigma = {h:g}: {max(self.needed[name]):.2g}"
+        )
+
+
+def relative_spread(scene: Scene, quantity: str) -> Array:
+    """Exact standard deviation over surfaces relative to the mean, shape (separations,)."""
+    return spread_of(scene, quantity).relative
+
+
+def forecast(scene: Scene) -> Forecast:
+    """Number of surfaces of a scene.
+
+    With `rel_err` it is the smallest of `checkpoints` with which the 95 % interval of every mean reaches no
+    farther than that share of it, but at most `n_surfaces`. A mean that would not be known to a factor of two
+    with that many is not waited for.
+
+    Parameters
+    ----------
+    scene : Scene
+        With `rel_err`, or without: then it is `n_surfaces`.
+
+    Returns
+    -------
+    Forecast
+        A function of the scene alone.
+    """
+    if scene.rel_err is None:
+        return Forecast({}, scene.n_surfaces, ())
+    limit, spreads = scene.n_surfaces, {name: spread_of(scene, name) for name in scene.quantities}
+    needed = {name: _needed(spread, scene.rel_err) for name, spread in spreads.items()}
+    waited = [needed[name][spread.relative**2 <= limit] for name, spread in spreads.items()]
+    most = max(float(n.max(initial=0.0)) for n in waited)
+    surfaces = next((n for n in checkpoints(limit) if n >= most), limit)
+    beyond = tuple(
+        (name, h)
+        for name, values in needed.items()
+        for h, n in zip(scene.separations, values, strict=True)
+        if n > limit
+    )
+    return Forecast(needed, surfaces, beyond)
+
+
+def _needed(spread: Spread, wanted: float) -> Array:
+    """Surfaces with which the interval reaches no farther than a share of the mean, neither end."""
+    with np.errstate(divide="ignore"):
+        enough = np.maximum(MANY * (1 + 1e-12) / spread.effective(1), 1.0)
+    n = np.maximum(enough, (spread.relative / wanted) ** 2)
+    reached = np.isfinite(n)
+    for _ in range(_ROUNDS):
+        low, high = spread.ratio(np.where(reached, n, 1.0))
+        # where an end is to lie, over where it lies: the distance from 1 falls with the root of n
+        more = np.maximum((1 - low) / (1 - 1 / (1 + wanted)), (high - 1) / (1 / (1 - wanted) - 1))
+        n = np.where(reached, np.maximum(enough, n * more**2), n)
+    return np.minimum(n, (spread.relative * chebyshev() * (1 + wanted) / wanted) ** 2)
+
+
+def checkpoints(limit: int) -> Iterator[int]:
+    """Numbers of surfaces an ensemble may have: multiples of 64, the last one is `limit`."""
+    n = GROUP
+    while n < limit:
+        yield n
+        n += max(n // (_STEP * GROUP), 1) * GROUP
+    yield limit
+
+
+def without_rule(scene: Scene) -> Scene:
+    """The scene with its number of surfaces in place of the rules that decide it.
+
+    Warns
+    -----
+    UserWarning
+        If `n_surfaces` is too small for `rel_err`.
+    """
+    expected = forecast(scene)
+    if expected.shortfall:
+        warnings.warn(expected.shortfall, stacklevel=3)
+    return replace(scene, n_surfaces=expected.surfaces, rel_err=None, max_seconds=None)

@@ -1,0 +1,182 @@
+"""Confidence intervals of means over surfaces, from the exact law of the scene.
+
+What fluctuates from ensemble to ensemble is a sum over independent asperities, whose relative spread and
+skewness theory gives. So the ratio of a mean to its exact value follows, closely, a gamma law of that
+spread and skewness, shifted (Pearson's type III); over many contacts, the Gaussian law. Its quantiles
+turned round are the interval: it needs no second surface, and it ends where values can. The number of
+contacts is binomial or Poisson, and its interval exact (Clopper and Pearson 1934, Garwood 1936).
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.special import betainc, betaincc, gammainccinv, gammaincinv
+from scipy.stats import pearson3
+
+from mcgw.scene.scene import Scene
+
+__all__ = [
+    "CONFIDENCE",
+    "FEWEST",
+    "MANY",
+    "TOO_FEW",
+    "Spread",
+    "chebyshev",
+    "count_interval",
+    "interval_text",
+    "mean_interval",
+    "spread_of",
+]
+
+Array = NDArray[np.float64]
+
+CONFIDENCE = 0.95
+FEWEST = 10.0  # effective contacts in the whole ensemble, below which there is no interval
+MANY = 30.0  # below it a sum of nearly equal terms is still discrete: half of the tails is left for that
+TOO_FEW = "too few contacts"
+_HALVINGS = 60
+_AT_A_TIME = 32  # separations that share a rule of heights, whose size is the square of their number
+_NOTHING = 1e-280  # a mean below it has lost its variance to underflow
+
+
+@dataclass(frozen=True)
+class Spread:
+    """How one surface differs from the mean one, arrays of shape (separations,).
+
+    Parameters
+    ----------
+    relative : ndarray
+        Standard deviation over the mean; infinite where the mean is 0.
+    skewness : ndarray
+        Of the ratio to the mean; 0 where nothing fluctuates.
+    """
+
+    relative: Array
+    skewness: Array
+
+    def effective(self, n_surfaces: float | Array) -> Array:
+        """Effective number of contacts in so many surfaces: that of equal contacts as uncertain, or as skew.
+
+        The smaller of the shapes of two gamma laws: the one of this relative spread, and the one of this
+        skewness.
+        """
+        with np.errstate(divide="ignore"):
+            return np.asarray(n_surfaces * np.minimum(self.relative**-2.0, 4 * self.skewness**-2.0))
+
+    def ratio(self, n_surfaces: float | Array, level: float = CONFIDENCE) -> tuple[Array, Array]:
+        """Range of the mean of so many surfaces over the exact mean; nan where there are too few contacts.
+
+        Where only the skewness is too large, as that of a number of contacts which hardly ever fails to be
+        that of all asperities, the range is Chebyshev's, if that is below a half: it holds for any law.
+        """
+        contacts, error = self.effective(n_surfaces), self.relative / np.sqrt(n_surfaces)
+        usual, tail = contacts >= FEWEST, (1 - level) / np.where(contacts < MANY, 4, 2)
+        skewness = np.where(usual, self.skewness, 0.0) / np.sqrt(n_surfaces)
+        low, high = pearson3.ppf(tail, skewness), pearson3.ppf(1 - tail, skewness)
+        most = chebyshev(level)
+        error = np.where(usual | (most * error < 0.5), error, np.nan)
+        return 1 + error * np.where(usual, low, -most), 1 + error * np.where(usual, high, most)
+
+    def reach(self, n_surfaces: float | Array, level: float = CONFIDENCE) -> Array:
+        """How far the interval of the mean reaches, over the mean; nan where there are too few contacts."""
+        low, high = self.ratio(n_surfaces, level)
+        return np.asarray(np.maximum(1 / low - 1, 1 - 1 / high))
+
+
+def chebyshev(level: float = CONFIDENCE) -> float:
+    """Standard deviations within which any law has at least this share."""
+    return float(1 / np.sqrt(1 - level))
+
+
+def spread_of(scene: Scene, quantity: str) -> Spread:
+    """Exact spread of a quantity over the surfaces of a scene, at its separations."""
+    h, back = np.unique(scene.separations, return_inverse=True)
+    parts = [_moments(scene, quantity, few) for few in np.array_split(h, -(-h.size // _AT_A_TIME))]
+    mean, variance, third = np.concatenate(parts, axis=1)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        relative = np.sqrt(variance) / np.sqrt(scene.n_asperities) / np.abs(mean)
+        skewness = np.sign(mean) * third / variance / np.sqrt(variance) / np.sqrt(scene.n_asperities)
+    relative = np.where(np.abs(mean) < _NOTHING, np.inf, relative)
+    return Spread(relative[back], np.where(variance > 0, skewness, 0.0)[back])
+
+
+def _moments(scene: Scene, quantity: str, h: Array) -> Array:
+    """Mean, and second and third moment of the random part, of what one asperity contributes."""
+    one = scene.theory.fluctuations([quantity], h)
+    return np.array([one.mean, one.moment(2), one.moment(3)])
+
+
+def mean_interval(
+    mean: Array, spread: Spread, n_surfaces: int, level: float = CONFIDENCE
+) -> tuple[Array, Array]:
+    """Confidence interval of the exact mean, of the sign of the mean seen; nan where contacts are too few.
+
+    Parameters
+    ----------
+    mean : ndarray
+        Mean over the surfaces, shape (separations,).
+    spread : Spread
+        Of one surface.
+    n_surfaces : int
+        How many.
+    level : float, optional
+        Probability that it covers.
+
+    Returns
+    -------
+    (ndarray, ndarray)
+        Lower and upper ends.
+    """
+    low, high = spread.ratio(n_surfaces, level)
+    ends = mean / high, mean / low
+    return np.minimum(*ends), np.maximum(*ends)
+
+
+def count_interval(
+    contacts: Array, asperities: float, *, poisson: bool, level: float = CONFIDENCE
+) -> tuple[Array, Array]:
+    """Exact confidence interval of an expected number of contacts.
+
+    Parameters
+    ----------
+    contacts : ndarray
+        How many there were.
+    asperities : float
+        Of how many, in the mean if that number is `poisson`.
+    poisson : bool
+        Whether it is a Poisson number (Garwood's interval; else that of Clopper and Pearson).
+    level : float, optional
+        Probability, at least, that it covers.
+
+    Returns
+    -------
+    (ndarray, ndarray)
+        Lower and upper ends.
+    """
+    tail, k = (1 - level) / 2, np.asarray(contacts, dtype=np.float64)
+    low = np.where(k > 0, gammaincinv(np.maximum(k, 1.0), tail), 0.0)
+    high = gammainccinv(k + 1, tail)
+    if poisson:
+        return low, np.asarray(high)
+    n = asperities
+    # SciPy's inverse of the beta law fails beyond 1e9 asperities, its law does not.
+    inside, rest = np.maximum(k, 1.0), np.maximum(n - k, 1.0)
+    below = _root(lambda p: betainc(inside, n - inside + 1, p) > tail, np.zeros_like(k), k / n)
+    above = _root(lambda p: betaincc(k + 1, rest, p) < tail, k / n, np.minimum(high / n, 1.0))
+    return np.where(k > 0, n * below, 0.0), np.where(k < n, n * above, n)
+
+
+def _root(passed: Callable[[Array], NDArray[np.bool_]], low: Array, high: Array) -> Array:
+    """Where a condition begins to hold between two ends, by halving."""
+    for _ in range(_HALVINGS):
+        middle = (low + high) / 2
+        beyond = passed(middle)
+        low, high = np.where(beyond, low, middle), np.where(beyond, middle, high)
+    return np.asarray((low + high) / 2)
+
+
+def interval_text(low: float, high: float) -> str:
+    """An interval for a table, or that there is none."""
+    return TOO_FEW if np.isnan(low) else f"{low:.6g} ... {high:.6g}"

@@ -1,0 +1,165 @@
+"""From a scene to an ensemble, block by block of surfaces."""
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import replace
+from time import monotonic, perf_counter
+from typing import Any
+
+import numba
+import numpy as np
+
+from mcgw.ensemble.ensemble import Arrays, Ensemble
+from mcgw.ensemble.forecast import without_rule
+from mcgw.machine.in_threads import in_threads, pieces
+from mcgw.machine.memory import check_memory
+from mcgw.sampling.counts import GROUP
+from mcgw.sampling.samplers import Block, Cells, Sampler, sampler_of
+from mcgw.scene.scene import Scene
+
+__all__ = [
+    "at_a_time",
+    "block_size",
+    "blocks",
+    "drawn_blocks",
+    "kept",
+    "seconds_per_surface",
+    "simulate",
+    "use_threads",
+]
+
+_WORDS = 4_000_000  # numbers of a block that stay in the outer cache
+_MOST_WORDS = 20_000_000  # numbers a block may hold
+_DRAWS = 1.5e8  # asperities a block may draw, so that a bar moves every second
+
+
+def simulate(
+    scene: Scene, *, threads: int | None = None, progress: Callable[[int], Any] | None = None
+) -> Ensemble:
+    """Draw the ensemble of a scene in memory.
+
+    Parameters
+    ----------
+    scene : Scene
+        What is asked.
+    threads : int, optional
+        Left out: all there are. The result is the same, bit by bit, for any number.
+    progress : callable, optional
+        Called with the number of surfaces after each block.
+
+    Returns
+    -------
+    Ensemble
+        With arrays of shape (surfaces, separations). Where `rel_err` or `max_seconds` decided how many
+        surfaces, its scene says their number instead: run again, it gives the same.
+
+    Raises
+    ------
+    ValueError
+        If `threads` is not positive, or the memory is too small (with the size).
+    """
+    until = None if scene.max_seconds is None else monotonic() + scene.max_seconds
+    if scene.rel_err is not None or scene.max_seconds is not None:
+        scene = without_rule(scene)
+    sampler = sampler_of(scene)
+    if until is None:
+        _check_memory(scene, scene.n_surfaces)
+    parts, drawn = [], 0
+    with use_threads(threads):
+        for block in blocks(scene, sampler):
+            parts.append(kept(scene, block))
+            n = len(parts[-1][scene.quantities[0]])
+            _check_memory(scene, n)  # how many there is time for is not known beforehand
+            drawn += n
+            if progress:
+                progress(n)
+            if until is not None and monotonic() > until:
+                break
+    arrays = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
+    return Ensemble(replace(scene, n_surfaces=drawn), sampler.name, Arrays(arrays))
+
+
+def blocks(scene: Scene, sampler: Sampler) -> Iterator[Block]:
+    """Results of all surfaces of a scene, block by block, in order."""
+    yield from drawn_blocks(sampler, 0, scene.n_surfaces, block_size(scene, sampler))
+
+
+def drawn_blocks(sampler: Sampler, first: int, stop: int, size: int) -> Iterator[Block]:
+    """Results of surfaces `first` ... `stop - 1`, in order, in blocks of at most `size`.
+
+    Each thread draws blocks of its own. To share the work within a block, and wake the others for each
+    step of it, takes longer; that is left to a few, huge surfaces.
+    """
+
+    def block(ends: tuple[int, int]) -> Block:
+        return sampler.block(start + ends[0], ends[1] - ends[0])
+
+    step = at_a_time(size)
+    for start in range(first, stop, step):
+        n = min(step, stop - start)
+        yield from in_threads(block, pieces(n, GROUP if n >= GROUP * numba.get_num_threads() else 1))
+
+
+def at_a_time(size: int) -> int:
+    """Surfaces drawn side by side: a block for each thread, but one surface if that is a block."""
+    return size * numba.get_num_threads() if size > 1 else 1  # it may fill the memory
+
+
+def _check_memory(scene: Scene, n_surfaces: int) -> None:
+    quantities, separations = len(scene.quantities), len(scene.separations)
+    what = f"ensemble.n_surfaces = {n_surfaces}: {quantities} quantities at {separations} separations"
+    check_memory(what, 2 * 8 * n_surfaces * separations * quantities)  # the blocks, and all of them joined
+
+
+def kept(scene: Scene, block: Block) -> dict[str, Any]:
+    """What of a block is kept: its sums, and its moments if the scene says so."""
+    arrays: dict[str, Any] = dict(block.sums)
+    if "contacts" in arrays and scene.sampler != "stratified":
+        arrays["contacts"] = np.rint(arrays["contacts"]).astype(np.int64)
+    if scene.keep == "moments":
+        arrays |= {"moments": block.moments, "cells": block.counts, "extras": block.extras}
+    return arrays
+
+
+def block_size(scene: Scene, sampler: Sampler) -> int:
+    """Surfaces a block: bounded by memory and time, twice an odd number of groups of counts if it can be.
+
+    With a multiple of eight the rows of the moments would share their places in the innermost cache. A
+    group is what the product takes at a time, whether it is full or not.
+    """
+    touching = scene.touching
+    words = len(scene.separations) * len(scene.quantities)
+    if isinstance(sampler, Cells):
+        words += int(sampler.response.layout.starts[-1]) + 2 * sampler.mesh.size
+    draws = {"direct": float(scene.n_asperities), "aggregate": 1e4}.get(sampler.name, touching)
+    if sampler.name == "tail":
+        words += 12 * int(min(touching, 1e12))
+    most = int(min(_MOST_WORDS / words, _DRAWS / (draws + 1), 30 * GROUP))
+    size = min(most, max(_WORDS // words, GROUP))
+    return (size // GROUP // 4 * 4 + 2) * GROUP if size > GROUP else max(size, 1)
+
+
+def seconds_per_surface(scene: Scene, sampler: Sampler, *, rounds: int = 3) -> float:
+    """Median wall time of drawing one surface in a block, after a warm-up."""
+    size = min(block_size(scene, sampler), 256)
+    n = at_a_time(size)
+    list(drawn_blocks(sampler, 0, n, size))
+    times = []
+    for _ in range(rounds):
+        start = perf_counter()
+        list(drawn_blocks(sampler, 0, n, size))
+        times.append(perf_counter() - start)
+    return float(np.median(times)) / n
+
+
+@contextmanager
+def use_threads(threads: int | None) -> Iterator[None]:
+    """Let the loops use so many threads, at most as many as there are."""
+    if threads is not None and threads < 1:
+        raise ValueError(f"threads = {threads}: give a whole number >= 1")
+    before = numba.get_num_threads()
+    numba.set_num_threads(min(threads or before, before))
+    try:
+        yield
+    finally:
+        numba.set_num_threads(before)

@@ -1,0 +1,248 @@
+"""The separation at a given load or real area: by theory, and on every surface for itself."""
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import brentq
+from scipy.stats import t as student
+
+from analytic import QUANTITIES, Quantity
+from mcgw.ensemble.intervals import FEWEST
+from mcgw.sampling.asperities import heights
+from mcgw.scene.scene import Scene
+
+__all__ = ["Solution", "separation_on", "solve"]
+
+Array = NDArray[np.float64]
+
+_MARGIN = 6.0  # standard deviations of a surface's separation that are drawn at once
+_MOST_HEIGHTS = 3e9
+_STEP = 0.5  # by which the search for a start goes down, where the margin was not enough
+_ENOUGH = 1e-14  # relative excess of load where Newton's steps are rounding errors
+_FINE = 1 / 64  # step of the search where a negative modulus makes the sum rise and fall
+_LOWEST = -40.0  # separation where that search ends
+_NOTHING = 1e-16  # share of the heights below all that are drawn
+_NEGATIVE = (
+    "{} = {:g} {}: {} does not reach it without asperities of negative modulus, at s = {:.4g}; give less, "
+    'or say negative = "clip" or "allow" under [grading]'
+)
+
+
+@dataclass(frozen=True)
+class Solution:
+    """What holds at one given load or area.
+
+    Parameters
+    ----------
+    given : str
+        Which quantity was given: "load" or "area".
+    value : float
+        Its value, N or m^2.
+    theory : dict of str to float
+        "separation" (d/sigma) and every quantity (SI) of the mean surface.
+    surfaces : dict of str to ndarray
+        The same on every surface at its own separation, shape (surfaces,).
+    """
+
+    given: str
+    value: float
+    theory: dict[str, float]
+    surfaces: dict[str, Array]
+
+    def interval(self, name: str, level: float = 0.95) -> tuple[float, float]:
+        """Confidence interval of the mean over surfaces, by Student's t; nan for too few contacts of all."""
+        x = self.surfaces[name]
+        if len(x) * self.theory["contacts"] < FEWEST:
+            return float("nan"), float("nan")
+        half = student.ppf((1 + level) / 2, len(x) - 1) * x.std(ddof=1) / np.sqrt(len(x))
+        return float(x.mean() - half), float(x.mean() + half)
+
+
+def solve(scene: Scene, given: str, values: Sequence[float]) -> list[Solution]:
+    """Find the separation at which each surface has a given load or real area.
+
+    The asperities of a surface are drawn one by one (sampler ``tail``), once for all values; so this
+    serves any separation, and the mean differs from theory by what the finite number of asperities
+    does to it, of order 1/N.
+
+    Parameters
+    ----------
+    scene : Scene
+        Its surface, grading, number of surfaces and asperities, and seed are used.
+    given : {"load", "area"}
+        What is known of every surface.
+    values : sequence of float
+        Its values, N or m^2.
+
+    Returns
+    -------
+    list of Solution
+        One for each value.
+
+    Raises
+    ------
+    ValueError
+        If a value is not reached, or only with contacts of negative modulus where the scene does not allow
+        them, if there are too many asperities to draw, or if a surface has none.
+    """
+    if scene.n_surfaces < 2:
+        raise ValueError(f"n_surfaces = {scene.n_surfaces}: an interval takes at least 2 surfaces")
+    q = QUANTITIES[given]
+    theory = [_theory(scene, q, value) for value in values]
+    drawn = _drawn(scene, q, [at["separation"] for at in theory])
+    if drawn.touching * drawn.n_surfaces > _MOST_HEIGHTS:
+        raise ValueError(
+            f"{drawn.n_surfaces} surfaces with {drawn.touching:.3g} contacts each are too many to solve "
+            f"singly; give fewer than {_MOST_HEIGHTS / drawn.touching:.0f} surfaces"
+        )
+    rows = [_surface(scene, drawn, number, q, values) for number in range(drawn.n_surfaces)]
+    return [
+        Solution(given, float(value), at, {name: np.array([row[k][name] for row in rows]) for name in at})
+        for k, (value, at) in enumerate(zip(values, theory, strict=True))
+    ]
+
+
+def _theory(scene: Scene, q: Quantity, value: float) -> dict[str, float]:
+    """Separation and all quantities of the mean surface."""
+    h = float(scene.theory.separation_at(q.name, value))
+    if scene.negative == "error" and (where := scene.negative_above(h)) is not None:
+        raise ValueError(_NEGATIVE.format(q.name, value, q.unit, "the mean surface", where))
+    return {"separation": h, **{name: float(scene.theory.mean(name, h)) for name in QUANTITIES}}
+
+
+def _drawn(scene: Scene, q: Quantity, separations: Sequence[float]) -> Scene:
+    """The scene whose contacts are drawn: those that nearly every surface has at its own solution.
+
+    That is some standard deviations, to first order, below the solution of the mean surface, or all
+    heights. What the modulus is there does not matter yet.
+    """
+    bottom = float(scene.heights.from_below(np.array(_NOTHING), np.inf))
+    starts = []
+    for h in separations:
+        spread = float(scene.theory.std(q.name, h) / scene.theory.slope(q.name, h))
+        starts.append(max(h - _MARGIN * spread, min(h, bottom)))
+    return replace(
+        scene,
+        sampler="tail",
+        keep="sums",
+        separations=(min(starts),),
+        quantities=tuple(QUANTITIES),
+        negative="clip" if scene.negative == "clip" else "allow",
+    )
+
+
+def _surface(
+    scene: Scene, drawn: Scene, number: int, q: Quantity, values: Sequence[float]
+) -> list[dict[str, float]]:
+    """All quantities of one surface at each value."""
+    touching = _sorted(heights(drawn, number))
+    whole: Array | None = None
+    rows = []
+    for value in values:
+        target = value / q.scale(scene.surface)
+        s = touching
+        h = _above(scene, q, s, target, drawn.lowest)
+        if h is None:  # rare: it lies below what was drawn
+            whole = _sorted(heights(drawn, number, untouched=True)) if whole is None else whole
+            s = whole
+            if not s.size:
+                raise ValueError(f"surface {number} has not one asperity; give more n_asperities")
+            h = _anywhere(scene, q, s, target, drawn.lowest)
+        negative = s[scene.modulus(s) < 0]
+        if h is None or (scene.negative == "error" and np.any(negative > h)):
+            raise ValueError(_NEGATIVE.format(q.name, value, q.unit, f"surface {number}", negative.max()))
+        rows.append({"separation": h, **dict(_sums(scene, s, h))})
+    return rows
+
+
+def _above(scene: Scene, q: Quantity, s: Array, target: float, start: float) -> float | None:
+    """The solution among separations from `start` on at which no modulus is negative, or None.
+
+    `s` are all heights above `start`, in falling order. Above the highest one of negative modulus the
+    sum falls with the separation: so there is no larger solution.
+    """
+    modulus = _weights(scene, q, s)
+    start = float(s[modulus < 0].max(initial=start))
+    if _power_sum(q, s, modulus, start) < target:
+        return None
+    return separation_on(s, modulus, q.exponent, target, start)
+
+
+def _anywhere(scene: Scene, q: Quantity, s: Array, target: float, start: float) -> float | None:
+    """The largest solution on all heights of a surface, in falling order; None if there is none."""
+    modulus = _weights(scene, q, s)
+    negative = s[modulus < 0]
+    if negative.size:
+        found = _above(scene, q, s, target, -np.inf)
+        if found is not None or scene.negative == "error":
+            return found
+        return _crossing(lambda h: _power_sum(q, s, modulus, h) - target, float(negative.max()))
+    while _power_sum(q, s, modulus, start) < target:
+        start -= _STEP
+    return separation_on(s, modulus, q.exponent, target, start)
+
+
+def _crossing(excess: Callable[[float], float], high: float) -> float | None:
+    """Largest root below `high`, where the function is negative; None down to the end of theory's range."""
+    for low in np.arange(high - _FINE, _LOWEST, -_FINE).tolist():
+        if excess(low) >= 0:
+            return float(brentq(excess, low, low + _FINE, xtol=1e-15, rtol=1e-14))
+    return None
+
+
+def _sorted(s: Array) -> Array:
+    return np.sort(s)[::-1]
+
+
+def _weights(scene: Scene, q: Quantity, s: Array) -> Array:
+    return scene.modulus(s) if q.modulus else np.ones_like(s)
+
+
+def _power_sum(q: Quantity, s: Array, modulus: Array, h: float) -> float:
+    touching = s > h
+    return float(np.sum(modulus[touching] * (s[touching] - h) ** q.exponent))
+
+
+def _sums(scene: Scene, s: Array, h: float) -> Iterator[tuple[str, float]]:
+    """All quantities of asperities of heights `s` at one separation, SI."""
+    s = s[s > h]
+    modulus = scene.modulus(s)
+    for name, q in QUANTITIES.items():
+        weights = modulus if q.modulus else 1.0
+        yield name, q.scale(scene.surface) * float(np.sum(weights * (s - h) ** q.exponent))
+
+
+def separation_on(heights: Array, modulus: Array, exponent: float, target: float, start: float) -> float:
+    """Separation h at which ``sum modulus (s - h)_+^exponent`` over given heights is `target`.
+
+    The root of order `exponent` of that sum is a norm of the approaches, so convex and decreasing
+    in h: Newton's steps on it run up to the solution from below and never pass it.
+
+    Parameters
+    ----------
+    heights, modulus : ndarray
+        Reduced heights in falling order, and E*(s)/E* >= 0 of each; shape (n,).
+    exponent : float
+        At least 1.
+    target : float
+        Positive.
+    start : float
+        A separation where the sum is at least `target`.
+
+    Returns
+    -------
+    float
+        Reduced separation.
+    """
+    rising, h = -heights, start  # as searchsorted wants it
+    while True:
+        n = int(np.searchsorted(rising, -h))
+        d = heights[:n] - h
+        forces = modulus[:n] * d ** (exponent - 1)
+        total = float(forces @ d)
+        step = total / float(forces.sum()) * (1 - (target / total) ** (1 / exponent))
+        if total <= target * (1 + _ENOUGH) or h + step <= h:
+            return h
+        h += step

@@ -1,0 +1,173 @@
+"""The contact map: spots to scale on the height map, coloured by what they carry."""
+
+import math
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+from matplotlib.collections import EllipseCollection
+from matplotlib.colors import LogNorm, Normalize
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from mcgw.formats.pictures import save_figure
+from mcgw.maps.asperities import Asperities
+from mcgw.maps.envelope import envelope
+from mcgw.maps.topography import Topography
+from mcgw.scene.scene import Scene
+
+__all__ = ["Spots", "save_contact_map", "spots_at"]
+
+Array = NDArray[np.float64]
+Colour = Literal["load", "modulus"]
+
+_INCHES = 6.0
+_DPI = 160
+_VISIBLE = 1.8  # pixels of the figure that the median spot's radius shall have
+_POINTS = 800  # of the height map along each side
+
+
+@dataclass(frozen=True)
+class Spots:
+    """Contacts under a rigid plane.
+
+    Parameters
+    ----------
+    x, y, radius : ndarray
+        Centre and radius ``sqrt(R delta)``, m.
+    load : ndarray
+        ``(4/3) E*(s) sqrt(R) delta^(3/2)``, N.
+    modulus : ndarray
+        E*(s)/E*.
+    separation : float
+        Of the plane, in sigma.
+    """
+
+    x: Array
+    y: Array
+    radius: Array
+    load: Array
+    modulus: Array
+    separation: float
+
+
+def spots_at(scene: Scene, field: Asperities, separation: float) -> Spots:
+    """Contacts of a surface at a separation.
+
+    Parameters
+    ----------
+    scene : Scene
+        Its surface and grading are used.
+    field : Asperities
+        One of its surfaces.
+    separation : float
+        d/sigma; not below the scene's lowest where the modulus would be negative.
+
+    Returns
+    -------
+    Spots
+        Of every asperity above the plane.
+    """
+    surface = scene.surface
+    touching = field.z > separation * surface.sigma
+    delta = field.z[touching] - separation * surface.sigma
+    modulus = scene.modulus(field.z[touching] / surface.sigma)
+    load = 4 / 3 * surface.E_star * modulus * math.sqrt(surface.radius) * delta * np.sqrt(delta)
+    radius = np.sqrt(surface.radius * delta)
+    return Spots(field.x[touching], field.y[touching], radius, load, modulus, separation)
+
+
+def _window(spots: Spots, size: tuple[float, float]) -> tuple[float, float, float, float]:
+    """Left, right, bottom, top: all of the map, or where spots are large enough to be seen."""
+    width, height = size
+    if not spots.radius.size:
+        return 0.0, width, 0.0, height
+    side = np.median(spots.radius) / _VISIBLE * _INCHES * _DPI
+    if side >= max(size):
+        return 0.0, width, 0.0, height
+    left, bottom = max(width - side, 0) / 2, max(height - side, 0) / 2
+    return left, min(left + side, width), bottom, min(bottom + side, height)
+
+
+def save_contact_map(
+    field: Asperities, spots: Spots, path: Path, *, colour: Colour = "load", periodic: bool = False
+) -> None:
+    """Draw the contact spots on the map.
+
+    Where they would be too small to be seen, the figure shows a window in the middle, and says so.
+
+    Parameters
+    ----------
+    field : Asperities
+        The whole surface.
+    spots : Spots
+        On it.
+    path : Path
+        Ending in .png, .svg or .pdf.
+    colour : {"load", "modulus"}, optional
+        What the colour tells.
+    periodic : bool, optional
+        Whether caps reach across the edges.
+
+    Raises
+    ------
+    ValueError
+        If nothing touches.
+    OSError
+        If the file cannot be written.
+    """
+    if not spots.radius.size:
+        raise ValueError(f"separation = {spots.separation:g}: nothing touches; give a smaller one")
+    window = _window(spots, field.size)
+    topography = envelope(field, (_POINTS, _POINTS), periodic=periodic, window=window)
+    figure = Figure(figsize=(_INCHES + 2.2, _INCHES + 0.6), layout="constrained")
+    axes = figure.add_subplot()
+    _draw_heights(figure, axes, topography, window)
+    inside = _inside(spots, window)
+    values, norm, label, scale = _values(spots, inside, colour)
+    diameters = 2e6 * spots.radius[inside]
+    collection = EllipseCollection(
+        diameters, diameters, np.zeros(diameters.size), units="xy",
+        offsets=1e6 * np.column_stack([spots.x[inside], spots.y[inside]]), offset_transform=axes.transData,
+        array=values * scale, norm=norm, cmap="plasma", linewidths=0.3, edgecolors="black",
+    )  # fmt: skip
+    axes.add_collection(collection)
+    figure.colorbar(collection, ax=axes, label=label, shrink=0.85, pad=0.02)
+    whole = inside.all() and window[1] - window[0] >= field.size[0]
+    seen = "" if whole else f", {np.count_nonzero(inside)} in this window of the map"
+    axes.set_title(f"{spots.radius.size} contacts at $d/\\sigma$ = {spots.separation:g}{seen}", fontsize=10)
+    save_figure(figure, path, dpi=_DPI)
+
+
+def _inside(spots: Spots, window: tuple[float, float, float, float]) -> NDArray[np.bool_]:
+    left, right, bottom, top = window
+    r = spots.radius
+    return np.asarray(
+        (spots.x + r > left) & (spots.x - r < right) & (spots.y + r > bottom) & (spots.y - r < top)
+    )
+
+
+def _values(spots: Spots, inside: NDArray[np.bool_], colour: Colour) -> tuple[Array, Normalize, str, float]:
+    """Numbers, scale of colours, label, factor of the unit."""
+    if colour == "modulus":
+        low, high = float(spots.modulus.min()), float(spots.modulus.max())
+        return spots.modulus[inside], Normalize(low, high if high > low else low + 1), "$E^*(s)/E^*$", 1.0
+    positive = spots.load[spots.load > 0]
+    top = 1e3 * float(positive.max()) if positive.size else 1.0
+    return np.maximum(spots.load[inside], 1e-6 * top), LogNorm(1e-3 * top, top), "load of a spot (mN)", 1e3
+
+
+def _draw_heights(
+    figure: Figure, axes: Any, topography: Topography, window: tuple[float, float, float, float]
+) -> None:
+    """The height map in grey."""
+    extent = tuple(1e6 * edge for edge in window)
+    z = 1e6 * topography.heights
+    image = axes.imshow(
+        z, cmap="gray", origin="lower", interpolation="nearest", extent=extent,
+        vmin=np.percentile(z, 5), vmax=z.max(),
+    )  # fmt: skip
+    axes.set(xlabel="x (µm)", ylabel="y (µm)", xlim=extent[:2], ylim=extent[2:])
+    axes.set_aspect("equal")
+    figure.colorbar(image, ax=axes, label="height (µm)", shrink=0.85, pad=0.02)

@@ -1,0 +1,41 @@
+"""What all figures share: their look, titles and labels."""
+
+from typing import Any
+
+from cycler import cycler
+
+from analytic import Exponential, Grading, Homogeneous
+from mcgw.machine.terminal import one_line
+from mcgw.scene.scene import Scene
+
+__all__ = ["STYLE", "grading_label", "shown_title"]
+
+# One style for all figures: colours of Okabe and Ito, told apart by colour-blind readers and in grey.
+STYLE: Any = {
+    "font.size": 9,
+    "axes.titlesize": 10,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.prop_cycle": cycler(color=["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9"]),
+    "axes.grid": True,
+    "grid.color": "0.9",
+    "legend.frameon": False,
+    "lines.linewidth": 1.4,
+    "savefig.dpi": 160,
+    "svg.fonttype": "none",
+}
+
+
+def shown_title(scene: Scene, otherwise: str) -> str:
+    """Title of a scene as one line of plain text: no escape sequences, no mathematics between dollars."""
+    return one_line(scene.title).replace("$", r"\$") or otherwise
+
+
+def grading_label(grading: Grading) -> str:
+    """A few words for a caption."""
+    match grading:
+        case Homogeneous():
+            return "homogeneous"
+        case Exponential():
+            return f"exponential grading, γ = {grading.gamma:g}"
+    return f"{type(grading).__name__.lower()} grading"

@@ -1,0 +1,64 @@
+"""How long a run will take, in a moment and in words."""
+
+import numpy as np
+
+from mcgw.ensemble.simulation import seconds_per_surface
+from mcgw.sampling.samplers import Cells, Sampler
+from mcgw.scene.scene import Scene
+
+__all__ = ["draws_per_surface", "in_words", "seconds_for"]
+
+_PER_DRAW, _PER_SUM, _PER_DIRECT = 2e-9, 4e-9, 2e-8  # rough seconds: an asperity, a result, one by NumPy
+_TRIED = 0.05  # rough seconds of a surface up to which a block is drawn to see
+
+
+def draws_per_surface(scene: Scene, sampler: Sampler) -> float:
+    """Numbers expected to be drawn for a surface, one an asperity."""
+    drawn = float(scene.n_asperities)
+    if isinstance(sampler, Cells):
+        drawn *= float(scene.heights.above(np.array(scene.lowest)))
+        moments = int(sampler.response.layout.sizes.sum())
+        drawn = drawn if moments or sampler.name == "tail" or not sampler.mesh.size else 0.0
+        drawn = min(drawn, float(moments)) if sampler.name == "aggregate" else drawn
+    return drawn
+
+
+def seconds_for(scene: Scene, sampler: Sampler, surfaces: int, *, at_least: float = 0.0) -> float:
+    """Expected wall time of drawing some surfaces on this machine.
+
+    Parameters
+    ----------
+    scene : Scene
+        What is asked.
+    sampler : Sampler
+        Its sampler.
+    surfaces : int
+        How many.
+    at_least : float, optional
+        Where a rough guess lies below it, that is returned; no block is drawn.
+
+    Returns
+    -------
+    float
+        Seconds, from a block drawn on trial where a surface takes little.
+    """
+    each = _PER_DRAW if isinstance(sampler, Cells) else _PER_DIRECT
+    columns = len(scene.separations) * len(scene.quantities)
+    rough = draws_per_surface(scene, sampler) * each + columns * _PER_SUM
+    if rough * surfaces < at_least or rough > _TRIED:
+        return rough * surfaces
+    return surfaces * seconds_per_surface(scene, sampler)
+
+
+def in_words(seconds: float) -> str:
+    """A time as people say it.
+
+    Examples
+    --------
+    >>> in_words(200), in_words(90_000), in_words(1e9)
+    ('3.3 min', '25 h', '32 years')
+    """
+    for size, name in ((3.15576e7, "years"), (86_400 * 3, "days"), (3600.0, "h"), (60.0, "min")):
+        if seconds >= size:
+            return f"{seconds / (86_400 if name == 'days' else size):.2g} {name}"
+    return f"{seconds:.2g} s"

@@ -1,0 +1,143 @@
+"""Engines: where blocks are drawn. One seam: submit a call, get a future of its answer.
+
+A worker may die at any time and a block may be drawn twice: tasks are idempotent, and what counts is
+what lies on the disk.
+"""
+
+import multiprocessing
+import signal
+import threading
+from collections.abc import Callable
+from concurrent.futures import Future, ProcessPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
+from queue import SimpleQueue
+from typing import Any, Protocol
+
+from mcgw.machine.lifeline import end_with
+
+__all__ = ["Engine", "EngineLostError", "Processes", "Threads", "WorkerDiedError"]
+
+
+class WorkerDiedError(Exception):
+    """The worker that had a block died; the block may be tried again."""
+
+
+class EngineLostError(Exception):
+    """There is nobody left to give work to."""
+
+
+class Engine(Protocol):
+    """Draws blocks."""
+
+    @property
+    def width(self) -> int:
+        """How many blocks to have in hand."""
+        ...
+
+    def submit(self, task: Callable[..., Any], *arguments: Any) -> "Future[Any]":
+        """Begin a task; its future fails as the task, with `WorkerDiedError` or with `EngineLostError`."""
+        ...
+
+    def close(self) -> None:
+        """Drop what is not done and end the workers."""
+        ...
+
+
+class Threads:
+    """All threads of this process on one block after the other.
+
+    The caller's thread stays free, so that signals are heeded while a block is drawn.
+    """
+
+    width = 2  # the next one waits while one is drawn
+
+    def __init__(self) -> None:
+        self._queue: SimpleQueue[Any] = SimpleQueue()
+        # A daemon: a block that takes hours does not keep an interrupted program alive.
+        threading.Thread(target=self._work, daemon=True, name="mcgw-blocks").start()
+
+    def submit(self, task: Callable[..., Any], *arguments: Any) -> "Future[Any]":
+        """Queue a task."""
+        future: Future[Any] = Future()
+        self._queue.put((future, task, arguments))
+        return future
+
+    def close(self) -> None:
+        """Let the running task be the last."""
+        while not self._queue.empty():
+            self._queue.get()
+        self._queue.put(None)
+
+    def _work(self) -> None:
+        while (item := self._queue.get()) is not None:
+            future, task, arguments = item
+            try:
+                future.set_result(task(*arguments))
+            except BaseException as error:
+                future.set_exception(error)
+
+
+class Processes:
+    """Worker processes on this machine, one thread each.
+
+    Parameters
+    ----------
+    n : int
+        How many.
+
+    Raises
+    ------
+    ValueError
+        If `n` is not positive.
+    """
+
+    def __init__(self, n: int) -> None:
+        if n < 1:
+            raise ValueError(f"processes = {n}: give a whole number >= 1")
+        self.width = n + 1
+        self._n = n
+        self._pool = self._new_pool()
+
+    def _new_pool(self) -> ProcessPoolExecutor:
+        # Spawned, not forked: a fork would inherit locks of threads that it does not have.
+        context = multiprocessing.get_context("spawn")
+        return ProcessPoolExecutor(self._n, mp_context=context, initializer=_begin_worker)
+
+    def submit(self, task: Callable[..., Any], *arguments: Any) -> "Future[Any]":
+        """Give a task to the next free process; a broken pool is replaced."""
+        try:
+            inner = self._pool.submit(task, *arguments)
+        except BrokenProcessPool:
+            self._pool.shutdown(wait=False, cancel_futures=True)
+            self._pool = self._new_pool()
+            inner = self._pool.submit(task, *arguments)
+        outer: Future[Any] = Future()
+        inner.add_done_callback(lambda done: pass_on(done, outer, BrokenProcessPool, ()))
+        return outer
+
+    def close(self) -> None:
+        """Kill the workers: a shard is there or not, never half."""
+        workers = list((self._pool._processes or {}).values())
+        self._pool.shutdown(wait=False, cancel_futures=True)
+        for worker in workers:
+            worker.kill()
+
+
+def _begin_worker() -> None:
+    """Ctrl-C is for the driver; and end with it, however it dies."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    parent = multiprocessing.parent_process()
+    if parent is not None:
+        end_with(parent.sentinel, parent.join)
+
+
+def pass_on(done: Any, outer: "Future[Any]", died: Any, lost: Any) -> None:
+    """Give a future the outcome of another, with the errors of an engine in our words."""
+    try:
+        outer.set_result(done.result())
+    except died as error:
+        outer.set_exception(WorkerDiedError(str(error)))
+    except lost as error:
+        outer.set_exception(EngineLostError(type(error).__name__))
+    except BaseException as error:
+        outer.set_exception(error)

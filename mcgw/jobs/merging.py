@@ -1,0 +1,96 @@
+"""From the blocks of a run to its file."""
+
+from collections.abc import Iterable
+from contextlib import suppress
+from pathlib import Path
+
+from mcgw.ensemble.ensemble import Ensemble
+from mcgw.errors import RunError, StoreError
+from mcgw.formats.files import rename_over, state_of, sync, temporary_beside
+from mcgw.jobs.driver import Signals, heed_signals
+from mcgw.machine.child_process import ChildError, run_child
+from mcgw.store.ensembles import finished, open_ensemble
+from mcgw.store.leftovers import tidy
+from mcgw.store.lock import locked
+from mcgw.store.run_folder import Run, missing, parts_of
+from mcgw.store.shards import Shard, Span
+
+__all__ = ["merge", "merge_once", "missing_of"]
+
+
+def merge(path: str | Path) -> Ensemble:
+    """Make the file of a run whose blocks are all there.
+
+    Parameters
+    ----------
+    path : str or Path
+        The file to be.
+
+    Returns
+    -------
+    Ensemble
+        That reads from it.
+
+    Raises
+    ------
+    StoreError
+        If there is no such run.
+    RunError
+        If blocks are missing, or the disk does not take the file.
+    """
+    path = Path(path)
+    tidy(path)
+    if not parts_of(path).exists():
+        if path.exists():
+            return open_ensemble(path)
+        raise StoreError(f"{path}: neither this file nor blocks of it ({parts_of(path)}) are there")
+    with heed_signals() as signals, locked(parts_of(path)):
+        started = Run.open(parts_of(path))
+        done = finished(path, started.scene, started.sampler)
+        gaps = missing_of(started, done, started.sweep())
+        if gaps:
+            raise RunError(
+                f"{path}: {sum(span.n for span in gaps)} of {started.scene.n_surfaces} surfaces are missing, "
+                f"from {gaps[0].first} on; run the jobs that make them again"
+            )
+        if not merge_once(started, path, signals):
+            raise RunError(f"{started.folder}: a shard is damaged; run the jobs again, which draw it anew")
+    return open_ensemble(path)
+
+
+def missing_of(started: Run, done: int, shards: Iterable[Shard]) -> list[Span]:
+    """Blocks of a run that neither its file, of `done` surfaces, nor one of its shards holds."""
+    held = [*([Span(0, done)] if done else []), *(shard.span for shard in shards)]
+    return missing(started.scene.n_surfaces, started.size, held)
+
+
+def merge_once(started: Run, path: Path, signals: Signals) -> bool:
+    """Make the file and remove the shards; False if a shard turned out damaged. Only with the lock."""
+    temporary, before = temporary_beside(started.folder / path.name), state_of(path)
+    finished(path, started.scene, started.sampler)
+    try:
+        _merge_in_child(started.folder, path, temporary)
+        rename_over(temporary, path, before)
+        sync(path.parent)
+    except FileExistsError as error:
+        raise RunError(
+            f"{path}: {error.strerror}; it is left as it is. All blocks are kept in {started.folder}: move "
+            "that file away, the same command goes on"
+        ) from None
+    except ChildError as error:
+        signals.check(f"all blocks are kept in {started.folder}; the same command merges them")
+        if error.how == "exit code 3":
+            return False
+        raise RunError(
+            f"{path}: cannot be merged ({error}); is the disk full? All blocks are kept in "
+            f"{started.folder}, the same command goes on"
+        ) from None
+    finally:
+        with suppress(OSError):
+            temporary.unlink()
+    started.remove()
+    return True
+
+
+def _merge_in_child(folder: Path, path: Path, temporary: Path) -> None:
+    run_child("mcgw.store.merged_file", str(folder), str(path), str(temporary))

@@ -1,0 +1,71 @@
+"""How much memory there is: asked before anything is computed. And how what a block frees is kept."""
+
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+
+from mcgw.errors import StoreError
+from mcgw.machine.child_process import memory_limit
+
+__all__ = ["check_memory", "gibibytes", "keep_freed_memory", "memory_available"]
+
+_MOST = 2**63 - 1
+_LARGE = 31 * 2**20  # bytes; at 32 MiB the GNU C library learns no more
+
+
+def check_memory(what: str, size: int) -> None:
+    """Refuse what needs more memory than there is.
+
+    Raises
+    ------
+    StoreError
+        With both numbers.
+    """
+    memory = memory_available()
+    if size > memory:
+        raise StoreError(
+            f"{what} needs {gibibytes(size)} of memory and {gibibytes(memory)} are available; "
+            "ask for less at a time"
+        )
+
+
+def memory_available() -> int:
+    """Bytes that this process may still take: of the machine, of its control group, and by `ulimit -v`."""
+    limits = [_number(line.split()[1]) * 1024 for line in _lines("/proc/meminfo") if "MemAvailable" in line]
+    used = [_number(line) for line in _lines("/sys/fs/cgroup/memory.current")]
+    most = [_number(line) for line in _lines("/sys/fs/cgroup/memory.max") if line.strip() != "max"]
+    if used and most:
+        limits.append(max(most[0] - used[0], 0))
+    if (limit := memory_limit()) is not None:
+        taken = [_number(line.split()[1]) * 1024 for line in _lines("/proc/self/status") if "VmSize" in line]
+        limits.append(max(limit - sum(taken), 0))
+    return min(limits, default=_MOST)
+
+
+def _lines(path: str) -> list[str]:
+    try:
+        return Path(path).read_text().splitlines()
+    except OSError:
+        return []
+
+
+def _number(text: str) -> int:
+    return int(text) if text.strip().isdecimal() else _MOST
+
+
+def gibibytes(size: int) -> str:
+    """A number of bytes for people."""
+    return f"{size / 2**30:.4g} GiB"
+
+
+@cache
+def keep_freed_memory() -> None:
+    """Let the C library keep for the next block what a block has freed.
+
+    To ask the system for it again takes microseconds a page, up to a third of the time of a block. The
+    GNU library keeps pieces as large as any it has been given back (its dynamic threshold): one is
+    enough, which nobody has touched.
+    """
+    piece = np.empty(_LARGE, dtype=np.uint8)
+    del piece

@@ -1,0 +1,94 @@
+"""Why a fit may not be trusted: the map, the pixel, the shape of the heights, the crowd of summits."""
+
+from mcgw.maps.fit import Fit
+from mcgw.maps.flaws import flaws
+from mcgw.maps.hidden import CROWDED, visible
+from mcgw.maps.topography import Topography
+
+__all__ = ["doubts"]
+
+_PIXELS = 10.0  # a cutoff wavelength should have
+_RESOLVED = 0.8  # of m4 over two pixels to that over one, at about ten pixels a wavelength
+_LOST = 0.1  # of the summits
+_SKEW, _ALPHA, _FEW, _STREAKY = 0.3, 1.5, 100, 1.5
+
+
+def doubts(fit: Fit, topography: Topography, cutoff: float | None) -> list[str]:
+    """Warnings about a fit, each in one line that says what to do.
+
+    Parameters
+    ----------
+    fit : Fit
+        Of this map.
+    topography : Topography
+        The map as measured.
+    cutoff : float or None
+        As given to `fit_map`, m.
+
+    Returns
+    -------
+    list of str
+        Empty if nothing speaks against it.
+    """
+    return [
+        *flaws(fit, topography),
+        *_of_the_pixel(fit, max(topography.pixel), cutoff),
+        *_of_the_heights(fit),
+        *_of_the_summits(fit),
+    ]
+
+
+def _of_the_pixel(fit: Fit, pixel: float, cutoff: float | None) -> list[str]:
+    if cutoff is not None and cutoff < _PIXELS * pixel:
+        return [
+            f"cutoff: {cutoff / pixel:.3g} pixels a wavelength; below {_PIXELS:g} the pixel sets eta and R, "
+            "not the specimen; give a longer cutoff or finer pixels"
+        ]
+    kept = fit.mean_squares["bend_2"] / fit.mean_squares["bend_1"]
+    if kept < _RESOLVED:
+        return [
+            f"pixel: the mean square curvature falls to {kept:.2g} of itself from one pixel to two; the "
+            f"pixel sets m4, not the specimen; give a cutoff of {_PIXELS:g} pixels or more"
+        ]
+    return []
+
+
+def _of_the_heights(fit: Fit) -> list[str]:
+    warnings = []
+    skewness, error = fit.skewness
+    if abs(skewness) > max(_SKEW, 3 * error):
+        warnings.append(
+            f"skewness: {skewness:.2f} of the heights; spectral moments tell of summits for Gaussian heights "
+            "only; count them, and keep their heights (--heights table)"
+        )
+    if fit.alpha[0] < _ALPHA:
+        warnings.append(f"alpha: {fit.alpha[0]:.3g} is below 1.5, which no isotropic Gaussian surface has")
+    ratio = fit.mean_squares["slope_x"] / fit.mean_squares["slope_y"]
+    if not 1 / _STREAKY < ratio < _STREAKY:
+        warnings.append(
+            f"lay: mean square slopes along x and y have the ratio {ratio:.3g}; it is not isotropic"
+        )
+    return warnings
+
+
+def _of_the_summits(fit: Fit) -> list[str]:
+    warnings = []
+    if fit.summits.size < _FEW:
+        warnings.append(f"summits: only {fit.summits.size} were found; give a larger map or a shorter cutoff")
+    if fit.visible is None:
+        warnings.append("overlap: the summits are too many to be independent caps of that radius and spread")
+        return warnings
+    overlap = fit.estimates["caps"].overlap
+    sharp = visible(overlap).share
+    lost = sharp - fit.visible.share
+    if lost > _LOST:
+        warnings.append(
+            f"blur: {100 * lost:.0f} % of caps like these are lost where a valley is nearer than a pixel "
+            "or a third of a cutoff; give finer pixels, and a shorter cutoff"
+        )
+    if overlap > CROWDED:
+        warnings.append(
+            f"overlap: eta R sigma = {overlap:.2g}; of caps like these {100 * (1 - sharp):.0f} % hide under "
+            "others, so asperities do not act one by one"
+        )
+    return warnings

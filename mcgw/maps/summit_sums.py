@@ -1,0 +1,177 @@
+"""One pass over a map: sums of squares of its derivatives, and its summits, sub-area by sub-area."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mcgw.machine.compiling import njit
+from mcgw.maps.topography import Topography
+
+__all__ = ["SUMS", "Tally", "tally_of"]
+
+Array = NDArray[np.float64]
+
+# Rows of the sums: points, powers of height, squared slopes, squared second derivatives, and the
+# latter by plain differences over one pixel and over two, which tell whether the pixel resolves them.
+SUMS = ("points", "z", "z2", "z3", "slope_x", "slope_y", "bend", "bend_1", "bend_2")
+_EDGE = 4  # pixels that the stencils reach
+
+
+@dataclass(frozen=True)
+class Tally:
+    """What a map's estimates are made of.
+
+    Parameters
+    ----------
+    sums : ndarray
+        Shape (sums, sub-areas), in the order of `SUMS`; m, m^2, ...
+    heights, curvatures : ndarray
+        Of the summits: m above the map's zero, and mean curvature, 1/m.
+    places : ndarray
+        Of the summits, shape (2, summits): x and y from 0 to 1 across the map.
+    part : ndarray of int
+        Sub-area of each summit.
+    pixel_area : float
+        m^2.
+    """
+
+    sums: Array
+    heights: Array
+    curvatures: Array
+    places: Array
+    part: NDArray[np.int64]
+    pixel_area: float
+
+    @property
+    def parts(self) -> int:
+        """Number of sub-areas."""
+        return int(self.sums.shape[1])
+
+    def without(self, part: int) -> "Tally":
+        """All but one sub-area."""
+        kept = self.part != part
+        return Tally(
+            np.delete(self.sums, part, axis=1),
+            self.heights[kept],
+            self.curvatures[kept],
+            self.places[:, kept],
+            self.part[kept],
+            self.pixel_area,
+        )
+
+    @property
+    def area(self) -> float:
+        """m^2."""
+        return float(self.sums[0].sum()) * self.pixel_area
+
+
+@njit(nogil=True, cache=True)
+def _is_summit(z: Any, j: Any, i: Any) -> Any:
+    """Whether a point is higher than its eight neighbours; of equal ones the last counts."""
+    here = z[j, i]
+    for dj in range(-1, 2):
+        for di in range(-1, 2):
+            other = z[j + dj, i + di]
+            later = dj > 0 or (dj == 0 and di > 0)
+            if other > here or (later and other == here):
+                return False
+    return True
+
+
+@njit(nogil=True, cache=True)
+def _rise(g: Any, c: Any) -> Any:
+    """Highest value of ``g t + c t^2/2`` for t from -1/2 to 1/2."""
+    if c < 0 and abs(g) < -c / 2:
+        return -g * g / (2 * c)
+    return abs(g) / 2 + c / 8
+
+
+@njit(nogil=True, cache=True)
+def _apex(z: Any, j: Any, i: Any) -> Any:
+    """Highest point, within the summit's own pixel, of the paraboloid through it and its neighbours."""
+    gx, gy = (z[j, i + 1] - z[j, i - 1]) / 2, (z[j + 1, i] - z[j - 1, i]) / 2
+    xx, yy = z[j, i + 1] - 2 * z[j, i] + z[j, i - 1], z[j + 1, i] - 2 * z[j, i] + z[j - 1, i]
+    xy = (z[j + 1, i + 1] - z[j + 1, i - 1] - z[j - 1, i + 1] + z[j - 1, i - 1]) / 4
+    best = 0.0
+    for side in (-0.5, 0.5):
+        best = max(best, gx * side + xx / 8 + _rise(gy + xy * side, yy))
+        best = max(best, gy * side + yy / 8 + _rise(gx + xy * side, xx))
+    det = xx * yy - xy * xy
+    x, y = gy * xy - gx * yy, gx * xy - gy * xx  # of the vertex, times det
+    if det > 0 and 2 * max(abs(x), abs(y)) < det:
+        x, y = x / det, y / det
+        best = max(best, gx * x + gy * y + (xx * x * x + yy * y * y) / 2 + xy * x * y)
+    return z[j, i] + best
+
+
+@njit(nogil=True, cache=True)
+def _pass(z: Any, dx: Any, dy: Any, across: Any, sums: Any, summits: Any, part_of: Any) -> Any:
+    """Fill `sums`; write height, curvature, place and sub-area of each summit; give their number."""
+    rows, columns = z.shape[0] - 8, z.shape[1] - 8
+    found = 0
+    for j in range(rows):
+        for i in range(columns):
+            b, a = j + 4, i + 4
+            c = z[b, a]
+            x1, x2, y1, y2 = z[b, a + 1], z[b, a + 2], z[b + 1, a], z[b + 2, a]
+            w1, w2, v1, v2 = z[b, a - 1], z[b, a - 2], z[b - 1, a], z[b - 2, a]
+            sx = (8 * (x1 - w1) - (x2 - w2)) / (12 * dx)
+            sy = (8 * (y1 - v1) - (y2 - v2)) / (12 * dy)
+            xx = (16 * (x1 + w1) - (x2 + w2) - 30 * c) / (12 * dx * dx)
+            yy = (16 * (y1 + v1) - (y2 + v2) - 30 * c) / (12 * dy * dy)
+            xx1, yy1 = (x1 + w1 - 2 * c) / (dx * dx), (y1 + v1 - 2 * c) / (dy * dy)
+            xx2, yy2 = (x2 + w2 - 2 * c) / (4 * dx * dx), (y2 + v2 - 2 * c) / (4 * dy * dy)
+            k = (j * across // rows) * across + i * across // columns
+            sums[0, k] += 1
+            sums[1, k] += c
+            sums[2, k] += c * c
+            sums[3, k] += c * c * c
+            sums[4, k] += sx * sx
+            sums[5, k] += sy * sy
+            sums[6, k] += (xx * xx + yy * yy) / 2
+            sums[7, k] += (xx1 * xx1 + yy1 * yy1) / 2
+            sums[8, k] += (xx2 * xx2 + yy2 * yy2) / 2
+            if _is_summit(z, b, a):
+                summits[0, found] = _apex(z, b, a)
+                summits[1, found] = -(xx + yy) / 2
+                summits[2, found], summits[3, found] = (i + 0.5) / columns, (j + 0.5) / rows
+                part_of[found] = k
+                found += 1
+    return found
+
+
+def tally_of(topography: Topography, *, across: int = 4) -> Tally:
+    """Go over a map once.
+
+    Parameters
+    ----------
+    topography : Topography
+        Without missing points.
+    across : int, optional
+        Sub-areas along each axis.
+
+    Returns
+    -------
+    Tally
+        Of all points (of a map that is not periodic: without four at each edge).
+
+    Raises
+    ------
+    ValueError
+        If the map is smaller than the sub-areas need.
+    """
+    z = topography.heights - topography.heights.mean()
+    z = np.pad(z, _EDGE, mode="wrap") if topography.periodic else z
+    rows, columns = (n - 2 * _EDGE for n in z.shape)
+    if min(rows, columns) < 4 * across:
+        raise ValueError(
+            f"{max(columns, 0)} x {max(rows, 0)} points are left: too few for {across} x {across} sub-areas"
+        )
+    sums = np.zeros((len(SUMS), across * across))
+    summits, part = np.empty((4, rows * columns // 2 + 1)), np.empty(rows * columns // 2 + 1, dtype=np.int64)
+    found = _pass(z, *topography.pixel, across, sums, summits, part)
+    dx, dy = topography.pixel
+    summits = summits[:, :found].copy()
+    return Tally(sums, summits[0], summits[1], summits[2:], part[:found].copy(), dx * dy)

@@ -1,0 +1,45 @@
+"""What a stop rule promises before a run, and what it has to say after one."""
+
+import numpy as np
+
+from mcgw.ensemble.ensemble import Ensemble
+from mcgw.ensemble.forecast import Forecast
+from mcgw.ensemble.intervals import CONFIDENCE, TOO_FEW, spread_of
+
+__all__ = ["after", "before", "upper_contacts"]
+
+
+def before(forecast: Forecast, seconds_each: float) -> str:
+    """One line: how many surfaces, how long, and what that will not reach."""
+    line = f"about {forecast.surfaces:.2g} surfaces, {forecast.surfaces * seconds_each:.2g} s"
+    return f"{line}; {forecast.shortfall}" if forecast.shortfall else line
+
+
+def after(ensemble: Ensemble, rel_err: float) -> list[str]:
+    """One line for each separation without a contact and each mean known less well than asked."""
+    m, n = ensemble.n_surfaces, ensemble.scene.n_asperities
+    silent = np.all([ensemble.mean(name) == 0 for name in ensemble.scene.quantities], axis=0)
+    limit = upper_contacts(m)
+    lines = [
+        f"d/sigma = {h:g}: no contact in {m} surfaces, mean below {limit:.3g} contacts a surface, "
+        f"{limit / n:.3g} an asperity ({CONFIDENCE:.0%} confidence)"
+        for h in np.unique(ensemble.separations[silent])
+    ]
+    if ensemble.sampler == "stratified":
+        return lines
+    for name in ensemble.scene.quantities:
+        reach = spread_of(ensemble.scene, name).reach(m)
+        for h, w in zip(ensemble.separations[~silent], reach[~silent], strict=True):
+            if not w <= rel_err * (1 + 1e-9):
+                known = TOO_FEW if np.isnan(w) else f"is known to {w:.2g} of itself, not to {rel_err:g}"
+                lines.append(f"{name} at d/sigma = {h:g}{': ' if np.isnan(w) else ' '}{known}")
+    return lines
+
+
+def upper_contacts(n: int) -> float:
+    """Upper limit (95 %) of the mean number of contacts a surface, if `n` surfaces had none: 3.0/n.
+
+    Exact for a Poisson number of contacts, ``exp(-n limit) = 0.05``; for a fixed number of asperities it
+    is the safe side by a share 1.5/(n N).
+    """
+    return float(-np.log(1 - CONFIDENCE) / n)

@@ -1,0 +1,152 @@
+"""Ensembles and comparisons as plain text."""
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from analytic import QUANTITIES
+from mcgw.ensemble.ensemble import Ensemble
+from mcgw.ensemble.intervals import interval_text
+from mcgw.ensemble.regrading import Paired, paired_ratio
+from mcgw.formats.csv_table import Row
+from mcgw.machine.terminal import one_line
+from mcgw.statistics.comparison import FALSE_ALARM, Comparison, Verdict
+
+__all__ = [
+    "COMPARISON_HEADER",
+    "RATIO_HEADER",
+    "SUMMARY_HEADER",
+    "comparison_rows",
+    "comparison_table",
+    "ratio_rows",
+    "ratio_table",
+    "summary",
+    "summary_rows",
+    "verdict_line",
+]
+
+COMPARISON_HEADER = (
+    "quantity",
+    "unit",
+    "separation",
+    "mean",
+    "low_95",
+    "high_95",
+    "std",
+    "theory",
+    "residual",
+)
+SUMMARY_HEADER = ("quantity", "unit", "separation", "mean", "std", "stderr")
+RATIO_HEADER = ("quantity", "separation", "ratio", "stderr", "theory", "variance_gain")
+_MOST_ROWS = 9
+
+
+def _rows(h: np.ndarray) -> np.ndarray:
+    """Some of many separations, with the first and the last."""
+    return np.unique(np.linspace(0, len(h) - 1, min(_MOST_ROWS, len(h))).round().astype(int))
+
+
+def summary(ensemble: Ensemble, attributes: dict[str, Any]) -> str:
+    """What a file holds: provenance and a table of means."""
+    scene = ensemble.scene
+    lines = [
+        one_line(scene.title) or "ensemble",
+        f"  surfaces      {ensemble.n_surfaces} of {scene.n_asperities} asperities ({scene.count})",
+        f"  separations   {len(scene.separations)} from {min(scene.separations):g} to "
+        f"{max(scene.separations):g} (d/sigma)",
+        f"  grading       {scene.grading}",
+        f"  sampler       {ensemble.sampler}, seed {scene.seed}",
+        f"  complete      {'yes' if attributes['complete'] else 'no'}",
+        f"  digest        {attributes['digest']}",
+        f"  made          {attributes['date']} in {attributes['wall_seconds']:.2f} s on {attributes['cpu']}",
+        f"  with          {attributes['versions']}; commit {attributes['commit']}",
+    ]
+    for name in scene.quantities:
+        mean, std, stderr = ensemble.mean(name), ensemble.std(name), ensemble.stderr(name)
+        q = QUANTITIES[name]
+        lines += [
+            "",
+            f"{q.long_name} ({q.unit})",
+            f"  {'d/sigma':>8} {'mean':>13} {'std':>11} {'stderr':>11}",
+        ]
+        for k in _rows(ensemble.separations):
+            lines.append(f"  {scene.separations[k]:8.3f} {mean[k]:13.6g} {std[k]:11.3g} {stderr[k]:11.3g}")
+    return "\n".join(lines)
+
+
+def comparison_table(comparison: Comparison) -> str:
+    """Monte Carlo beside theory at some separations."""
+    h = comparison.ensemble.separations
+    lines = []
+    for name, curve in comparison.curves.items():
+        q = QUANTITIES[name]
+        lines += [
+            f"{q.long_name} ({q.unit})",
+            f"  {'d/sigma':>8} {'Monte Carlo':>13} {'95 % interval':>27} {'theory':>13} {'residual':>9}",
+        ]
+        for k in _rows(h):
+            interval = interval_text(curve.low[k], curve.high[k])
+            lines.append(
+                f"  {h[k]:8.3f} {curve.mean[k]:13.6g} {interval:>27} {curve.theory[k]:13.6g} "
+                f"{curve.residual[k]:+9.2f}"
+            )
+    return "\n".join(lines)
+
+
+def comparison_rows(comparison: Comparison) -> Iterator[Row]:
+    """Every separation, as rows under `COMPARISON_HEADER`; an interval of too few contacts is nan."""
+    ensemble = comparison.ensemble
+    for name, c in comparison.curves.items():
+        columns = (ensemble.separations, c.mean, c.low, c.high, ensemble.std(name), c.theory, c.residual)
+        for row in zip(*columns, strict=True):
+            yield name, QUANTITIES[name].unit, *row
+
+
+def summary_rows(ensemble: Ensemble) -> Iterator[Row]:
+    """Every separation, as rows under `SUMMARY_HEADER`."""
+    for name in ensemble.scene.quantities:
+        columns = (ensemble.separations, ensemble.mean(name), ensemble.std(name), ensemble.stderr(name))
+        for row in zip(*columns, strict=True):
+            yield name, QUANTITIES[name].unit, *row
+
+
+def _ratios(new: Ensemble, old: Ensemble) -> Iterator[tuple[str, Paired, np.ndarray]]:
+    """Name, ratio by Monte Carlo and by theory of each quantity that the modulus enters."""
+    for name in new.scene.quantities:
+        if QUANTITIES[name].modulus:
+            exact, before = (e.scene.theory.mean(name, e.separations) for e in (new, old))
+            with np.errstate(invalid="ignore", divide="ignore"):
+                yield name, paired_ratio(new, old, name), exact / before
+
+
+def ratio_rows(new: Ensemble, old: Ensemble) -> Iterator[Row]:
+    """Every separation, as rows under `RATIO_HEADER`."""
+    for name, pair, exact in _ratios(new, old):
+        for row in zip(new.separations, pair.ratio, pair.stderr, exact, pair.gain, strict=True):
+            yield name, *row
+
+
+def ratio_table(new: Ensemble, old: Ensemble) -> str:
+    """Ratios of means over the same surfaces, beside theory: Eqs. (12) and (15)."""
+    lines = []
+    for name, pair, exact in _ratios(new, old):
+        lines += [
+            f"{QUANTITIES[name].long_name}, new over old",
+            f"  {'d/sigma':>8} {'ratio':>10} {'stderr':>9} {'theory':>10}   variance, independent/paired",
+        ]
+        for k in _rows(new.separations):
+            lines.append(
+                f"  {new.scene.separations[k]:8.3f} {pair.ratio[k]:10.6f} {pair.stderr[k]:9.1e} "
+                f"{exact[k]:10.6f}   {pair.gain[k]:.3g}"
+            )
+    return "\n".join(lines)
+
+
+def verdict_line(verdict: Verdict) -> str:
+    """One line: do they agree, and how sure is that."""
+    word = "agree" if verdict.agrees else "DISAGREE"
+    return (
+        f"Monte Carlo and theory {word}: chi-square {verdict.chi_square:.1f} for {verdict.degrees} "
+        f"degrees of freedom, p = {verdict.p:.3g} (false alarms: 1 in {1 / FALSE_ALARM:.0f})"
+    )

@@ -1,0 +1,32 @@
+"""Which moments of each cell a surface keeps."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["Layout"]
+
+
+@dataclass(frozen=True)
+class Layout:
+    """Which moments a surface keeps.
+
+    Parameters
+    ----------
+    plain, rooted : ndarray of int
+        How many T_j and R_j each cell has.
+    """
+
+    plain: NDArray[np.int64]
+    rooted: NDArray[np.int64]
+
+    @property
+    def sizes(self) -> NDArray[np.int64]:
+        """Moments of each cell."""
+        return self.plain + self.rooted
+
+    @property
+    def starts(self) -> NDArray[np.int64]:
+        """First row of each cell, and the number of all rows."""
+        return np.concatenate([[0], np.cumsum(self.sizes)])

@@ -1,0 +1,83 @@
+"""Asperities drawn one by one: those outside all cells, and all of them for the sampler ``tail``."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mcgw.machine.compiling import njit
+from mcgw.machine.memory import check_memory
+from mcgw.sampling.cells import Mesh
+from mcgw.sampling.counts import Counts
+from mcgw.sampling.philox import EXTRAS, centred
+from mcgw.scene.scene import Scene
+
+__all__ = ["extra_heights"]
+
+Array = NDArray[np.float64]
+
+_HIGH, _LOW = 0, 1  # streams
+_MANY, _BYTES = 10**7, 100  # heights that are worth asking whether there is room; bytes of one
+
+
+def extra_heights(scene: Scene, mesh: Mesh, first: int, counts: Counts) -> Array:
+    """Contacting heights outside the cells, for a block of surfaces.
+
+    Parameters
+    ----------
+    scene : Scene
+        Its height law, seed and lowest separation are used.
+    mesh : Mesh
+        The scene's.
+    first : int
+        Number of the block's first surface.
+    counts : Counts
+        How many lie below and above the cells.
+
+    Returns
+    -------
+    ndarray
+        Rows (number of the surface, reduced height, weight), surface by surface, low ones first.
+    """
+    law = scene.heights
+    number = int(counts.high_extras.sum() + counts.low_extras.sum())
+    if number > _MANY:
+        check_memory(f"ensemble.sampler: to list {number:.4g} heights one by one", _BYTES * number)
+    edge = float(mesh.edges[-1]) if mesh.size else scene.lowest
+    heights = law.from_above(_wide_uniforms(scene.seed, first, _HIGH, counts.high_extras), edge)
+    rows = _rows(first, counts.high_extras, heights, counts.weights[-1])
+    if not counts.low_extras.any():
+        return rows
+    bottom = float(mesh.edges[0])
+    least = float(law.below(np.array(scene.lowest)) / law.below(np.array(bottom)))
+    share = least + (1 - least) * _wide_uniforms(scene.seed, first, _LOW, counts.low_extras)
+    low = _rows(first, counts.low_extras, law.from_below(share, bottom), counts.weights[0])
+    rows = np.concatenate([low, rows])
+    return np.asarray(rows[np.argsort(rows[:, 0], kind="stable")])
+
+
+def _rows(first: int, numbers: NDArray[np.int64], heights: Array, weight: float) -> Array:
+    surfaces = np.repeat(first + np.arange(len(numbers)), numbers)
+    return np.column_stack([surfaces, heights, np.full(len(heights), weight)])
+
+
+def _wide_uniforms(seed: int, first: int, stream: int, numbers: NDArray[np.int64]) -> Array:
+    """Uniforms of 64 bits: those of 32 would cut the tail of 1e10 asperities."""
+    u = (1 + _centred_pairs(np.uint64(seed), first, stream, numbers)) / 2
+    return np.asarray((u[::2] - 0.5 / 2**32) + u[1::2] / 2**32)
+
+
+@njit(nogil=True, cache=True)
+def _centred_pairs(seed: Any, first: Any, stream: Any, numbers: Any) -> Any:
+    """Two for each number wanted, surface by surface."""
+    pairs = np.empty(2 * numbers.sum())
+    room = np.empty(2 * numbers.max() + 64)
+    at = 0
+    for i in range(numbers.size):
+        n = 2 * numbers[i]
+        if n:
+            centred(room, seed, EXTRAS, first + i, stream, 0, n)
+            for k in range(n):  # in one step it takes 2 s to compile: the text of its errors
+                pairs[at + k] = room[k]
+            at += n
+    return pairs

@@ -1,0 +1,209 @@
+"""A sparse product in tiles: rows that are combinations of given rows, and of each other.
+
+Rows go in groups of four, and a group has a place in a table only from when it is fetched or computed to
+when it is last needed. The given rows are the moments of cells from the lowest height to the highest, and a
+computed row needs those of a range of heights: so groups are computed in one sweep from the highest cell
+down, and the table is small enough to stay in the cache.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from heapq import heappop, heappush
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mcgw.machine.aligned import aligned
+from mcgw.machine.compiling import njit
+from mcgw.machine.in_threads import in_threads, pieces
+from mcgw.sampling.lanes import fused
+
+__all__ = ["FOUR", "Blocks", "Tiles", "in_fours"]
+
+Array = NDArray[np.float64]
+Ints = NDArray[np.int64]
+Blocks = tuple[Ints, Ints, Array]  # rows, first columns, values of shape (blocks, 4)
+
+FOUR = 4  # rows and columns of a tile
+_WIDTH = 64  # surfaces at a time
+
+
+def in_fours(rows: Any) -> Any:
+    """Rounded up."""
+    return (rows + FOUR - 1) // FOUR * FOUR
+
+
+@dataclass(frozen=True)
+class Tiles:
+    """Steps, each of which fetches some groups of given rows and computes one group.
+
+    Parameters
+    ----------
+    fetches : ndarray of int
+        Given row of each row of each group that is fetched, -1 for zeros; shape (fetches, 4).
+    fetch_ends, tile_ends : ndarray of int
+        How many groups are fetched, and tiles used, up to each step and with it.
+    fetched, used, computed : ndarray of int
+        Place in the table of each group that is fetched, each tile's column, each step's result.
+    values : ndarray
+        Shape (tiles, 4, 4).
+    answers : ndarray of int
+        Which answer each computed row is, -1 for none; shape (steps, 4).
+    """
+
+    fetches: Ints
+    fetch_ends: Ints
+    fetched: Ints
+    tile_ends: Ints
+    used: NDArray[np.uint64]
+    values: Array
+    computed: Ints
+    answers: Ints
+
+    @classmethod
+    def of(cls, blocks: Sequence[Blocks], given: Ints, answers: Ints) -> "Tiles":
+        """Gather blocks of single rows, each of which needs given rows and rows of earlier groups.
+
+        Parameters
+        ----------
+        blocks : sequence of Blocks
+            Their rows and columns count the rows of `given`, then those of `answers`.
+        given : ndarray of int
+            The given row that each one is, -1 for zeros; shape (groups, 4).
+        answers : ndarray of int
+            Which answer each computed row is, -1 for none; shape (groups, 4).
+
+        Returns
+        -------
+        Tiles
+            In the order of the sweep.
+        """
+        row, column, value = (np.concatenate(part) for part in zip(*(_NOTHING, *blocks), strict=True))
+        group, place = np.divmod(row, FOUR)
+        (group, source), tile = np.unique(np.stack([group, column // FOUR]), axis=1, return_inverse=True)
+        values = np.zeros((len(group), FOUR, FOUR))
+        values[tile, place] = value
+        order = _sweep_down(group, source, len(given), len(answers))
+        steps = np.full(len(given) + len(answers), len(order))  # when a group comes into the table
+        steps[len(given) + order] = np.arange(len(order))
+        step = steps[group]
+        np.minimum.at(steps, source, step)  # of the given ones when first needed: others are there before
+        last = steps.copy()
+        np.maximum.at(last, source, step)
+        places = FOUR * _places(steps, last)
+        asked = np.flatnonzero(steps[: len(given)] < len(order))
+        fetches = asked[np.argsort(steps[asked], kind="stable")]
+        turn = np.argsort(step, kind="stable")
+        return cls(
+            fetches=given[fetches],
+            fetch_ends=np.cumsum(np.bincount(steps[fetches], minlength=len(order))),
+            fetched=places[fetches],
+            tile_ends=np.cumsum(np.bincount(step, minlength=len(order))),
+            used=places[source[turn]].astype(np.uint64),
+            values=values[turn],
+            computed=places[len(given) + order],
+            answers=answers[order],
+        )
+
+    def apply(self, given: Array, shape: tuple[int, int]) -> Array:
+        """Answers.
+
+        Parameters
+        ----------
+        given : ndarray
+            Shape (rows, surfaces).
+        shape : (int, int)
+            Of the answers of one surface.
+
+        Returns
+        -------
+        ndarray
+            Shape (shape[0], surfaces, shape[1]).
+        """
+        fetching = self.fetches, self.fetch_ends, self.fetched
+        program = *fetching, self.tile_ends, self.used, self.values, self.computed, self.answers
+        rows = int(max(self.fetched.max(initial=0), self.computed.max(initial=0))) + FOUR
+        result = np.empty((shape[0], given.shape[1], shape[1]))
+
+        def share(ends: tuple[int, int]) -> None:
+            table, sums = aligned(rows * _WIDTH), aligned(FOUR * _WIDTH)
+            for first in range(*ends, _WIDTH):
+                _sweep(program, table, sums, given, first, min(_WIDTH, ends[1] - first), result)
+
+        in_threads(share, pieces(given.shape[1], _WIDTH))
+        return result
+
+
+_NOTHING: Blocks = (np.empty(0, np.int64), np.empty(0, np.int64), np.empty((0, FOUR)))
+
+
+def _sweep_down(group: Ints, source: Ints, given: int, computed: int) -> Ints:
+    """Computed groups in the order of the lowest given group that each needs, by way of the others too."""
+    lowest = np.concatenate([np.arange(given), np.full(computed, given)])
+    while True:  # as often as the tree has levels
+        reached = lowest.copy()
+        np.minimum.at(reached, group, lowest[source])
+        if np.array_equal(reached, lowest):
+            return np.lexsort((np.arange(computed), -lowest[given:]))
+        lowest = reached
+
+
+def _places(first: Ints, last: Ints) -> Ints:
+    """Places, as few as can be, for what is there from one step to another."""
+    places = np.empty_like(first)
+    taken: list[tuple[int, int]] = []
+    free: list[int] = []
+    for item in np.argsort(first, kind="stable").tolist():
+        while taken and taken[0][0] < first[item]:
+            free.append(heappop(taken)[1])
+        places[item] = free.pop() if free else len(taken)
+        heappush(taken, (int(last[item]), int(places[item])))
+    return places
+
+
+@njit(nogil=True, cache=True)
+def _sweep(program: Any, table: Any, sums: Any, given: Any, first: Any, n: Any, result: Any) -> None:
+    """Take all steps for `n` surfaces from `first` on; the sum over a row has one order, in any block.
+
+    Unsigned places in the table, for a signed one may count from its end.
+    """
+    fetches, fetch_ends, fetched, tile_ends, used, values, computed, answers = program
+    width = np.uint64(_WIDTH)
+    separations = result.shape[2]
+    fetch = tile = 0
+    for step in range(computed.size):
+        while fetch < fetch_ends[step]:
+            for r in range(FOUR):
+                row, at = fetches[fetch, r], np.uint64(fetched[fetch] + r) * width
+                filled = n if row >= 0 else 0
+                for k in range(filled):
+                    table[at + np.uint64(k)] = given[np.uint64(row), np.uint64(first + k)]
+                for k in range(filled, _WIDTH):
+                    table[at + np.uint64(k)] = 0.0
+            fetch += 1
+        sums[:] = 0.0
+        while tile < tile_ends[step]:
+            ka = used[tile] * width
+            kb, kc, kd = ka + width, ka + np.uint64(2) * width, ka + np.uint64(3) * width
+            a0, b0, c0, d0 = values[tile, 0, 0], values[tile, 0, 1], values[tile, 0, 2], values[tile, 0, 3]
+            a1, b1, c1, d1 = values[tile, 1, 0], values[tile, 1, 1], values[tile, 1, 2], values[tile, 1, 3]
+            a2, b2, c2, d2 = values[tile, 2, 0], values[tile, 2, 1], values[tile, 2, 2], values[tile, 2, 3]
+            a3, b3, c3, d3 = values[tile, 3, 0], values[tile, 3, 1], values[tile, 3, 2], values[tile, 3, 3]
+            for k in range(_WIDTH):
+                i = np.uint64(k)
+                w, x, y, z = table[ka + i], table[kb + i], table[kc + i], table[kd + i]
+                sums[i] += fused(a0, w, b0 * x) + fused(c0, y, d0 * z)
+                sums[i + width] += fused(a1, w, b1 * x) + fused(c1, y, d1 * z)
+                sums[i + np.uint64(2) * width] += fused(a2, w, b2 * x) + fused(c2, y, d2 * z)
+                sums[i + np.uint64(3) * width] += fused(a3, w, b3 * x) + fused(c3, y, d3 * z)
+            tile += 1
+        at = np.uint64(computed[step]) * width
+        for k in range(FOUR * _WIDTH):
+            table[at + np.uint64(k)] = sums[np.uint64(k)]
+        for r in range(FOUR):
+            answer = answers[step, r]
+            if answer >= 0:
+                q, separation = answer // separations, answer % separations
+                for k in range(n):
+                    result[q, first + k, separation] = sums[r * _WIDTH + k]

@@ -1,0 +1,1 @@
+"""What is asked: a scene, its TOML file, and the cautions it deserves."""

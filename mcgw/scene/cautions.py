@@ -1,0 +1,110 @@
+"""Where a scene asks the model beyond what it assumes: said, not forbidden. One list, for every command."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from mcgw.scene.plausible import unit_doubts
+from mcgw.scene.scene import Scene
+
+__all__ = ["cautions"]
+
+_DEEP = 1e-3  # share of the contacts compressed by more than their radius
+_CROWDED = 0.05  # real over nominal area from which neighbouring asperities feel each other
+_STEEP = 0.3  # contact radius over summit radius from which a paraboloid is no sphere and strain is large
+_FEW = 30.0  # contacts a surface, below which single surfaces are far from Gaussian
+
+
+def cautions(scene: Scene) -> list[str]:
+    """What a reader should know before trusting the numbers.
+
+    Parameters
+    ----------
+    scene : Scene
+        What is asked; what was drawn by chance does not matter.
+
+    Returns
+    -------
+    list of str
+        One line each; empty where the model has no known trouble.
+    """
+    found = [_crowd, _half, _depth, _slope, _few_contacts, _other_number, _negative_modulus]
+    return [*unit_doubts(scene), *(line for caution in found for line in caution(scene))]
+
+
+def _crowd(scene: Scene) -> Iterator[str]:
+    """The area only falls with the separation: halving finds where it is small enough."""
+
+    def crowded(h: float) -> bool:
+        return float(scene.theory.mean("area", h)) > _CROWDED * scene.surface.nominal_area
+
+    separations = np.unique(scene.separations)
+    low, high = -1, len(separations)  # crowded, and not
+    while high - low > 1:
+        middle = 0 if low < 0 else (low + high) // 2  # most scenes are sparse throughout
+        low, high = (middle, high) if crowded(separations[middle]) else (low, middle)
+    if low >= 0:
+        yield (
+            f"up to d/sigma = {separations[low]:.3g} more than {_CROWDED:.0%} of the nominal area touches: "
+            "asperities are no longer independent, and the load at that separation is overestimated"
+        )
+
+
+def _half(scene: Scene) -> Iterator[str]:
+    h = np.array(scene.separations)
+    most = h[scene.heights.above(h) > 0.5]
+    if most.size:
+        yield (
+            f"up to d/sigma = {most.max():.3g} more than half of all summits touch; the model does not merge "
+            "contacts"
+        )
+
+
+def _depth(scene: Scene) -> Iterator[str]:
+    surface, lowest = scene.surface, scene.lowest
+    touching, deep = (
+        float(scene.heights.above(np.array(h))) for h in (lowest, lowest + surface.radius / surface.sigma)
+    )
+    share = deep / touching if touching > 0 else 0.0
+    if share > _DEEP or surface.sigma >= surface.radius:
+        yield (
+            f"surface.radius = {surface.radius:g} m: at d/sigma = {lowest:g} a share of {share:.2g} "
+            "of the contacts is compressed by more than the radius, where Hertz does not hold"
+        )
+
+
+def _slope(scene: Scene) -> Iterator[str]:
+    top = float(scene.heights.from_above(np.array(1 / scene.n_asperities), -40.0))
+    steepest = float(np.sqrt(max(top - scene.lowest, 0.0) * scene.surface.sigma / scene.surface.radius))
+    if steepest > _STEEP:
+        yield (
+            f"the highest summits (s = {top:.1f}) have contacts of {steepest:.2f} times their radius at "
+            "the lowest separation, more than Hertz's parabolic contact bears; metals yield far earlier"
+        )
+
+
+def _few_contacts(scene: Scene) -> Iterator[str]:
+    h = np.array(scene.separations)
+    few = h[scene.n_asperities * scene.heights.above(h) < _FEW]
+    if few.size:
+        yield (
+            f"from d/sigma = {few.min():.3g} fewer than {_FEW:.0f} contacts are expected on a surface: "
+            "single surfaces are far from Gaussian, and intervals of few surfaces are lopsided; below ten "
+            "in the whole ensemble there are none"
+        )
+
+
+def _other_number(scene: Scene) -> Iterator[str]:
+    expected = scene.surface.n_asperities
+    share = scene.n_asperities / expected
+    if abs(share - 1) > 0.01:
+        yield (
+            f"a surface has {scene.n_asperities:g} asperities, not eta * nominal_area = {expected:g}: loads "
+            f"belong to {share:.3g} of the nominal area"
+        )
+
+
+def _negative_modulus(scene: Scene) -> Iterator[str]:
+    if scene.negative != "error" and scene.negative_above(scene.lowest) is not None:
+        word = "set to zero" if scene.negative == "clip" else "left negative"
+        yield f"the modulus is negative at heights that touch, and {word}: a fit taken beyond its range"

@@ -1,0 +1,158 @@
+"""The table [heights] of a scene: which law, and what it needs."""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import scipy.stats
+from numpy.typing import NDArray
+
+from analytic import (
+    ExponentialHeights,
+    Gaussian,
+    HeightLaw,
+    HeightTable,
+    MeasuredHeights,
+    ScipyHeights,
+    Weibull,
+)
+from mcgw.formats.npy_file import open_npy
+from mcgw.formats.plain_file import read_text
+from mcgw.scene.section import Section
+
+__all__ = ["LAWS", "heights_law", "heights_table", "read_heights"]
+
+LAWS = ("gaussian", "exponential", "weibull", "table", "scipy")
+_MOST_BYTES = 2**28
+
+
+def heights_law(section: Section, folder: Path) -> HeightLaw:
+    """Read the law of heights.
+
+    Parameters
+    ----------
+    section : Section
+        The table; mistakes are noted in it.
+    folder : Path
+        Where a file of heights lies.
+
+    Returns
+    -------
+    HeightLaw
+        Gaussian where something is wrong or left out.
+    """
+    law = section.choice("law", "gaussian", LAWS)
+    if law == "exponential":
+        return ExponentialHeights()
+    if law == "weibull":
+        return _weibull(section)
+    if law == "table":
+        return _table(section, folder)
+    if law == "scipy":
+        return _scipy(section)
+    return Gaussian()
+
+
+def _weibull(section: Section) -> HeightLaw:
+    shape = section.number("shape")
+    try:
+        return Weibull(shape)
+    except ValueError:
+        if np.isfinite(shape):
+            section.fail("shape", shape, "give a number from 1 to 100 (3.6 has no skewness)")
+        return Gaussian()
+
+
+def _table(section: Section, folder: Path) -> HeightLaw:
+    """Heights in the scene or in a file, to be resampled or added up; or points of their law."""
+    keys = ("file", "heights", "s", "share", "resample")
+    file, heights, s, share, resample = (section.take(key) for key in keys)
+    key = "file" if file is not None else "heights" if heights is not None else "s"
+    if resample not in (None, True, False):
+        section.fail("resample", resample, "say true or false")
+    try:
+        if key == "s":
+            return HeightTable(s or (), share or ())
+        sample = read_heights(folder / str(file)) if heights is None else heights
+        return HeightTable.of(sample) if resample is not False else MeasuredHeights(sample)
+    except (TypeError, ValueError) as error:
+        advice = "give heights (a list), a file of them, or points s and share"
+        section.fail(key, {"file": file, "heights": heights, "s": s}[key], f"{advice}; {error}")
+        return Gaussian()
+
+
+def read_heights(path: Path) -> NDArray[np.float64]:
+    """Heights from a file, in any unit.
+
+    Parameters
+    ----------
+    path : Path
+        ``.npy``, or text with one height a line; lines that begin with # are left out.
+
+    Returns
+    -------
+    ndarray
+        Shape (heights,).
+
+    Raises
+    ------
+    ValueError
+        If it cannot be read, is longer than 256 MB, or does not hold numbers; nothing of what stands
+        there is quoted.
+    """
+    if path.suffix == ".npy":
+        array = open_npy(path)
+        if array.nbytes > _MOST_BYTES:
+            raise ValueError(f"{path}: longer than {_MOST_BYTES} bytes; give a part of these heights")
+        return np.asarray(array, dtype=np.float64).ravel()
+    lines = read_text(path, _MOST_BYTES).splitlines()
+    try:
+        return np.loadtxt(lines, dtype=np.float64, delimiter=",", ndmin=1).ravel()
+    except ValueError:
+        raise ValueError(
+            f"{path}: give one height a line, or equally many on each, parted by commas"
+        ) from None
+
+
+def _scipy(section: Section) -> HeightLaw:
+    before, name, shapes = len(section.problems), section.text("name", "norm"), section.take("shapes")
+    if len(section.problems) > before:
+        return Gaussian()
+    shapes = {} if shapes is None else shapes
+    distribution = getattr(scipy.stats, name, None)
+    if not isinstance(distribution, scipy.stats.rv_continuous):
+        section.fail("name", name, 'give a continuous distribution of scipy.stats, as "gamma"')
+        return Gaussian()
+    try:
+        return ScipyHeights(distribution(**{key: float(value) for key, value in dict(shapes).items()}))
+    except (TypeError, ValueError) as error:
+        wanted = distribution.shapes or "none"
+        section.fail("shapes", shapes, f"give its shapes ({wanted}), as {{a = 4.0}}; {error}")
+        return Gaussian()
+
+
+def heights_table(law: HeightLaw, file: str | None = None) -> dict[str, Any]:
+    """The table [heights] of a law, read again the same; measured heights by the name of their file."""
+    match law:
+        case Gaussian():
+            return {"law": "gaussian"}
+        case ExponentialHeights():
+            return {"law": "exponential"}
+        case Weibull():
+            return {"law": "weibull", "shape": float(law.shape)}
+        case HeightTable():
+            return {"law": "table", "s": list(law.s), "share": list(law.share)}
+        case MeasuredHeights():
+            held = {"heights": list(law.heights)} if file is None else {"file": file}
+            return {"law": "table", **held, "resample": False}
+        case ScipyHeights():
+            return {"law": "scipy", "name": law.distribution.dist.name, "shapes": _shapes(law.distribution)}
+    return {"law": f"python: {law!r}"}
+
+
+def _shapes(frozen: Any) -> dict[str, float]:
+    """Shape parameters by name; location and scale drop out."""
+    names = [name.strip() for name in (frozen.dist.shapes or "").split(",") if name.strip()]
+    given: Mapping[str, Any] = {**dict(zip(names, frozen.args, strict=False)), **frozen.kwds}
+    return {name: float(given[name]) for name in names if name in given}

@@ -1,0 +1,331 @@
+"""What is asked: surface, grading, contact and ensemble, checked before anything is computed."""
+
+import dataclasses
+import math
+from dataclasses import dataclass, field
+from typing import Any, Literal
+
+import numpy as np
+
+from analytic import (
+    QUANTITIES,
+    Clipped,
+    Exponential,
+    Gaussian,
+    Grading,
+    HeightLaw,
+    Homogeneous,
+    MeasuredHeights,
+    Model,
+    Surface,
+    Table,
+    first_negative,
+)
+from mcgw.formats.units import quantity
+from mcgw.scene.surface import SURFACE_UNITS
+
+__all__ = ["SAMPLERS", "LeftOut", "Scene", "SceneError"]
+
+_LEAST = 1e-100  # next to it, powers of a distance are beyond double precision
+SAMPLERS = ("auto", "direct", "tail", "cells", "aggregate", "stratified")
+MOST_ASPERITIES = 2**53  # counts are exact in double precision up to here
+_SURFACES, _MOST_SURFACES = 1000, 10**9  # where n_surfaces is left out; where rel_err is to decide
+_BEYOND = 1e-16  # share of the heights that lie above what is checked for negative moduli
+
+
+class SceneError(ValueError):
+    """A scene that cannot be run; `problems` has one line for each mistake."""
+
+    def __init__(self, problems: list[str]) -> None:
+        self.problems = problems
+        super().__init__("\n".join(problems))
+
+
+class LeftOut(int):
+    """A whole number that nobody gave: it equals any other, but is found anew when the scene changes."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Scene:
+    """Everything that determines an ensemble.
+
+    Parameters
+    ----------
+    surface : Surface
+        Parameters in SI units.
+    separations : tuple of float
+        Reduced separations d/sigma, in any order, repeated or not.
+    title : str, optional
+        For people.
+    grading : Grading, optional
+        E*(s)/E*; left out: homogeneous.
+    negative : {"error", "clip", "allow"}, optional
+        What to do where the grading makes the modulus of a contacting asperity negative.
+    heights : HeightLaw, optional
+        Law of the reduced heights; left out: Gaussian.
+    quantities : tuple of str, optional
+        Which sums to compute: names of `analytic.QUANTITIES`.
+    n_surfaces : int, optional
+        Number of surfaces M, left out: 1000; with `rel_err` the most that may be drawn, left out: 1e9.
+    n_asperities : int, optional
+        Asperities on each (their mean number if `count` is "poisson"); left out: eta A_n, rounded, of
+        whatever surface the scene has, so that N follows if the surface is replaced.
+    count : {"fixed", "poisson"}, optional
+        Law of their number.
+    seed : int, optional
+        0 to 2^64 - 1. Left out: drawn by `mcgw.load_scene`; here 0.
+    sampler : str, optional
+        One of `SAMPLERS`.
+    keep : {"sums", "moments"}, optional
+        Whether the file also keeps the moments, from which `mcgw regrade` starts.
+    rel_err : float, optional
+        Draw so many surfaces that the 95 % interval of every mean reaches no farther than this share of
+        it, 0 to 0.1: as many as the exact law of a finite surface says.
+    max_seconds : float, optional
+        Stop after the block that is being drawn then.
+
+    Raises
+    ------
+    SceneError
+        With one line for each mistake.
+    """
+
+    surface: Surface
+    separations: tuple[float, ...]
+    title: str = ""
+    grading: Grading = field(default_factory=Homogeneous)
+    negative: Literal["error", "clip", "allow"] = "error"
+    heights: HeightLaw = field(default_factory=Gaussian)
+    quantities: tuple[str, ...] = ("load", "area", "stiffness", "contacts")
+    n_surfaces: int = LeftOut()
+    n_asperities: int = LeftOut()
+    count: Literal["fixed", "poisson"] = "fixed"
+    seed: int = 0
+    sampler: str = "auto"
+    keep: Literal["sums", "moments"] = "sums"
+    rel_err: float | None = None
+    max_seconds: float | None = None
+
+    def __post_init__(self) -> None:
+        self._fill("n_asperities", round(min(self.surface.n_asperities, 2.0**62)))
+        self._fill("n_surfaces", _SURFACES if self.rel_err is None else _MOST_SURFACES)
+        object.__setattr__(self, "separations", tuple(float(h) + 0.0 for h in self.separations))
+        problems = [*self._wrong_values(), *self._wrong_scales(), *self._wrong_measured()]
+        problems = problems or self._wrong_modulus() or self._wrong_grading()
+        if problems:
+            raise SceneError(problems)
+
+    def _fill(self, key: str, value: int) -> None:
+        """Give what was left out, now or in the scene that this one was made of, its value."""
+        if isinstance(getattr(self, key), LeftOut):
+            object.__setattr__(self, key, LeftOut(value))
+
+    @property
+    def left_out(self) -> tuple[str, ...]:
+        """Which of the numbers that depend on something else nobody gave: n_asperities, seed."""
+        return tuple(key for key in ("n_asperities", "seed") if isinstance(getattr(self, key), LeftOut))
+
+    def replace(self, **changes: Any) -> "Scene":
+        """The scene with other values; what was left out follows.
+
+        Parameters
+        ----------
+        **changes
+            Fields of the scene or of its surface; those of the surface, and `max_seconds`, may be texts
+            with units.
+
+        Returns
+        -------
+        Scene
+            Checked anew.
+
+        Raises
+        ------
+        TypeError
+            If there is no such field.
+        SceneError, ValueError
+            If a value is wrong.
+
+        Examples
+        --------
+        >>> from mcgw import Surface
+        >>> surface = Surface("1 um", "10 um", "300/mm^2", "1 cm^2", "80 GPa")
+        >>> scene = Scene(surface=surface, separations=(1.0,))
+        >>> scene.n_asperities, scene.replace(nominal_area="10 cm^2").n_asperities
+        (30000, 300000)
+        """
+        of_surface = {key: changes.pop(key) for key in SURFACE_UNITS if key in changes}
+        if of_surface:
+            values = {key: quantity(value, SURFACE_UNITS[key], key) for key, value in of_surface.items()}
+            surface = changes.get("surface", self.surface)
+            changes["surface"] = dataclasses.replace(surface, **values)
+        if isinstance(changes.get("max_seconds"), str):
+            changes["max_seconds"] = quantity(changes["max_seconds"], "s", "max_seconds")
+        return dataclasses.replace(self, **changes)
+
+    @property
+    def modulus(self) -> Grading:
+        """The grading as used: clipped if the scene says so."""
+        return Clipped.of(self.grading) if self.negative == "clip" else self.grading
+
+    @property
+    def theory(self) -> Model:
+        """The exact model of this very scene: its modulus, height law, number of asperities and count."""
+        return Model(
+            self.surface,
+            grading=self.modulus,
+            heights=self.heights,
+            n_asperities=float(self.n_asperities),
+            count=self.count,
+        )
+
+    @property
+    def lowest(self) -> float:
+        """The lowest separation: what lies below it never touches."""
+        return min(self.separations)
+
+    @property
+    def touching(self) -> float:
+        """Asperities of a surface that are expected above the lowest separation."""
+        return self.n_asperities * float(self.heights.above(np.array(self.lowest)))
+
+    def negative_above(self, h: float) -> float | None:
+        """First height that touches at `h` where the grading is negative, clipped or not; or None."""
+        bottom, end = self.heights.support
+        high = min(max(self._highest(), h + 1), end)
+        start = max(h, float(self.heights.from_below(np.array(_BEYOND), math.inf)) - 1, bottom)
+        return first_negative(self.grading, start, high) if start < high else None
+
+    def _wrong_values(self) -> list[str]:
+        problems = []
+        if not self.separations:
+            problems.append("contact.separations = []: give at least one separation d/sigma")
+        if not all(math.isfinite(h) for h in self.separations):
+            problems.append("contact.separations: every separation must be finite")
+        tiny = [h for h in self.separations if 0 < abs(h) < _LEAST]
+        if tiny:
+            problems.append(
+                f"contact.separations: {tiny[0]:g} is too close to 0; give 0, or at least {_LEAST:g}"
+            )
+        if not self.quantities:
+            problems.append(f"contact.quantities = []: give one or more of {', '.join(QUANTITIES)}")
+        if len(set(self.quantities)) < len(self.quantities):
+            problems.append(f"contact.quantities = {list(self.quantities)}: name each quantity once")
+        if self.n_surfaces < 1:
+            problems.append(f"ensemble.n_surfaces = {self.n_surfaces}: give a whole number >= 1")
+        if not 1 <= self.n_asperities <= MOST_ASPERITIES:
+            problems.append(
+                f"ensemble.n_asperities = {self.n_asperities}: must lie between 1 and 2^53; "
+                "change it, or surface.eta and surface.nominal_area"
+            )
+        if self.rel_err is not None and not 0 < self.rel_err <= 0.1:
+            problems.append(
+                f"ensemble.rel_err = {self.rel_err}: give a number > 0 and at most 0.1, beyond which so few "
+                "contacts would do that an interval means nothing"
+            )
+        if self.max_seconds is not None and not 0 < self.max_seconds < math.inf:
+            problems.append(f"ensemble.max_seconds = {self.max_seconds}: give a number of seconds > 0")
+        if self.sampler == "stratified" and self.rel_err is not None:
+            problems.append(
+                'ensemble.rel_err: sampler = "stratified" has no variance to stop by; take another'
+            )
+        if not 0 <= self.seed < 2**64:
+            problems.append(f"ensemble.seed = {self.seed}: give a whole number from 0 to 2^64 - 1")
+        for name, value, known in (
+            *(("contact.quantities", q, tuple(QUANTITIES)) for q in self.quantities),
+            ("ensemble.sampler", self.sampler, SAMPLERS),
+            ("ensemble.count", self.count, ("fixed", "poisson")),
+            ("ensemble.keep", self.keep, ("sums", "moments")),
+            ("grading.negative", self.negative, ("error", "clip", "allow")),
+        ):
+            if value not in known:
+                problems.append(f"{name}: {value!r} is not one of {', '.join(known)}")
+        if self.keep == "moments" and self.sampler not in ("auto", "cells", "aggregate"):
+            problems.append(f'ensemble.keep = "moments": sampler = "{self.sampler}" has none; take "cells"')
+        return problems
+
+    def _wrong_scales(self) -> list[str]:
+        """Products of parameters that leave the range of double precision."""
+        problems = []
+        for name in self.quantities:
+            if name not in QUANTITIES:
+                continue
+            with np.errstate(all="ignore"):
+                try:
+                    one = QUANTITIES[name].scale(self.surface)
+                except OverflowError:
+                    one = math.inf
+                ends = (one * 1e-12, one * float(self.n_asperities) * 1e4)
+            if not (np.finfo(float).tiny < ends[0] and ends[1] < np.finfo(float).max):
+                problems.append(
+                    f"surface: the {name} of an asperity would be {one:.3g} {QUANTITIES[name].unit}, "
+                    "beyond double precision; check sigma, radius and E_star"
+                )
+        return problems
+
+    def _wrong_grading(self) -> list[str]:
+        """Sums that the grading makes larger than double precision holds."""
+        ends = np.array(sorted({self.lowest, self._highest(), *self.separations}))
+        with np.errstate(all="ignore"):
+            try:
+                steepest = float(np.max(np.abs(self.modulus(ends))))
+            except ValueError:
+                return []  # `_wrong_modulus` says why
+            stiff = [QUANTITIES[name] for name in self.quantities if QUANTITIES[name].modulus]
+            sums = [q.scale(self.surface) * steepest * float(self.n_asperities) * 1e4 for q in stiff]
+        if all(value < np.finfo(float).max for value in sums):
+            return []
+        key = (
+            f"grading.gamma = {self.grading.gamma:g}" if isinstance(self.grading, Exponential) else "grading"
+        )
+        return [f"{key}: E*(s)/E* reaches {steepest:.3g}, and sums leave double precision; give a modest one"]
+
+    def _highest(self) -> float:
+        """Height that hardly an asperity exceeds, above every separation."""
+        top = float(self.heights.from_above(np.array(_BEYOND), -math.inf))
+        return min(max(top, max(self.separations) + 1), self.heights.support[1])
+
+    def _wrong_measured(self) -> list[str]:
+        """Measured heights are one surface, added up and not drawn."""
+        if not isinstance(self.heights, MeasuredHeights):
+            return []
+        problems = []
+        number = len(self.heights.heights)
+        if self.n_asperities != number:
+            problems.append(
+                f"ensemble.n_asperities = {self.n_asperities}: {number} heights are measured; give that "
+                "number, or heights.resample = true"
+            )
+        for key, value, wanted in (
+            ("n_surfaces", self.n_surfaces, (1,)),
+            ("count", self.count, ("fixed",)),
+            ("sampler", self.sampler, ("direct",)),
+        ):
+            if value not in wanted:
+                problems.append(
+                    f"ensemble.{key} = {value!r}: measured heights as they are need {wanted[0]!r}; "
+                    "or say resample = true under [heights]"
+                )
+        return problems
+
+    def _wrong_modulus(self) -> list[str]:
+        """Negative moduli among the heights that touch."""
+        if self.negative != "error":
+            return []
+        try:
+            where = self.negative_above(self.lowest)
+        except ValueError as error:
+            return [str(error)]
+        if where is None:
+            return []
+        if isinstance(self.grading, Exponential):
+            key = f"grading.gamma = {self.grading.gamma:g}"
+            where = self.grading.zero if self.grading.gamma < 0 else where
+        elif isinstance(self.grading, Table):
+            key = "grading.table"
+        else:
+            key = "grading"
+        return [
+            f"{key}: E*(s) is negative from s = {where:.4g}, which touches at h = {self.lowest:g}; raise the "
+            'separations, or say negative = "clip" or "allow" under [grading]'
+        ]

@@ -1,0 +1,1 @@
+"""Where Monte Carlo meets theory: comparison, convergence, error against time."""

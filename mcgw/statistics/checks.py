@@ -1,0 +1,177 @@
+"""Single checks of statistical convergence: each gives the probability of what is seen, if the law is right.
+
+They take surfaces along the principal axes: independent, of mean 0 and variance 1, nearly Gaussian.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.special import polygamma, psi
+from scipy.stats import binom, chi2, kstest, norm
+from scipy.stats import t as student
+
+from mcgw.statistics.principal_components import Principal
+
+__all__ = [
+    "Check",
+    "Slope",
+    "covariances",
+    "coverage",
+    "independence",
+    "scores",
+    "skewness",
+    "slope",
+    "variances",
+]
+
+Array = NDArray[np.float64]
+
+_LAGS = (1, 2, 4, 8, 16, 32, 64)
+
+
+@dataclass(frozen=True)
+class Check:
+    """One check.
+
+    Parameters
+    ----------
+    name, seen : str
+        What is checked, and what was seen.
+    p : float
+        Probability of that, or worse, by chance.
+    """
+
+    name: str
+    seen: str
+    p: float
+
+
+@dataclass(frozen=True)
+class Slope:
+    """A power law of the error.
+
+    Parameters
+    ----------
+    against : str
+        What is varied.
+    sizes, errors, stderr : ndarray
+        How much there is of it; relative error there, and the relative uncertainty of that.
+    value, uncertainty : float
+        Exponent and its standard error.
+    """
+
+    against: str
+    sizes: Array
+    errors: Array
+    stderr: Array
+    value: float
+    uncertainty: float
+
+    @property
+    def check(self) -> Check:
+        """Whether the exponent is -1/2."""
+        z = (self.value + 0.5) / self.uncertainty
+        half = 1.96 * self.uncertainty
+        seen = f"{self.value:.4f} +- {half:.4f} (95 %), expected -0.5"
+        return Check(f"slope of the error in {self.against}", seen, float(2 * norm.sf(abs(z))))
+
+
+def slope(against: str, sizes: Sequence[float], squares: Sequence[Array], excess: Sequence[float]) -> Slope:
+    """Exponent of the root mean square error, each size with its own independent errors.
+
+    Parameters
+    ----------
+    against : str
+        What is varied.
+    sizes : sequence of float
+        How much there is of it.
+    squares : sequence of ndarray
+        Squared errors at each size.
+    excess : sequence of float
+        Excess kurtosis of an error at each size.
+
+    Returns
+    -------
+    Slope
+        By weighted least squares on logarithms, whose mean and variance are those of a chi-square.
+    """
+    degrees = np.array([x.size / (1 + k / 2) for x, k in zip(squares, excess, strict=True)])
+    bias = psi(degrees / 2) - np.log(degrees / 2)
+    y = (np.log([x.mean() for x in squares]) - bias) / 2
+    weight = 4 / polygamma(1, degrees / 2)
+    x = np.log(np.asarray(sizes, dtype=np.float64))
+    centre = x - (weight @ x) / weight.sum()
+    spread = weight @ centre**2
+    return Slope(
+        against,
+        np.asarray(sizes, dtype=np.float64),
+        np.exp(y),
+        1 / np.sqrt(weight),
+        float(weight @ (centre * y) / spread),
+        float(1 / np.sqrt(spread)),
+    )
+
+
+def variances(law: Principal, y: Array) -> Check:
+    """Variance along each axis: a scaled chi-square with the exact kurtosis."""
+    degrees = len(y) * 2 / (2 + law.kurtosis)
+    ratio = (y**2).mean(axis=0)
+    p = 2 * np.minimum(chi2.cdf(degrees * ratio, degrees), chi2.sf(degrees * ratio, degrees))
+    worst = int(np.argmin(p))
+    seen = f"measured/exact = {ratio[worst]:.4f} at worst of {len(p)} axes"
+    return Check("variance", seen, min(1.0, len(p) * float(p[worst])))
+
+
+def covariances(y: Array) -> Check:
+    """All products of two axes at once: zero in the mean, with unit variance but for O(1/N)."""
+    d = y.shape[1]
+    pairs = np.triu_indices(d, 1)
+    spread = np.sqrt(((y**2).T @ (y**2) / len(y))[pairs])  # measured: 1 + the joint fourth cumulant
+    z = (y.T @ y / np.sqrt(len(y)))[pairs] / spread
+    seen = f"chi-square {z @ z:.1f} for {z.size} pairs of quantities and separations"
+    return Check("covariance across separations", seen, float(chi2.sf(z @ z, z.size)) if z.size else 1.0)
+
+
+def skewness(law: Principal, y: Array) -> Check:
+    """Third cumulant along each axis, by the Hermite polynomial whose mean it is."""
+    values = y**3 - 3 * y
+    z = (values.mean(axis=0) - law.skewness) / (values.std(axis=0) / np.sqrt(len(y)))
+    worst = int(np.argmax(np.abs(z)))
+    seen = f"z = {z[worst]:+.2f} at worst of {z.size} axes, exact skewness {law.skewness[worst]:.3f}"
+    return Check("skewness", seen, min(1.0, z.size * float(2 * norm.sf(abs(z[worst])))))
+
+
+def coverage(groups: Array, level: float = 0.95) -> Check:
+    """How many Student intervals cover the mean: `groups` has shape (seeds, surfaces, axes)."""
+    m = groups.shape[1]
+    half = student.ppf((1 + level) / 2, m - 1) * groups.std(axis=1, ddof=1) / np.sqrt(m)
+    covered, tried = int((np.abs(groups.mean(axis=1)) <= half).sum()), half.size
+    p = 2 * min(binom.cdf(covered, tried, level), binom.sf(covered - 1, tried, level))
+    seen = f"{covered} of {tried} intervals of {level:.0%} ({covered / tried:.1%})"
+    return Check("coverage of the intervals", seen, min(1.0, float(p)))
+
+
+def scores(groups: Array) -> tuple[Check, Array]:
+    """Means of the seeds in exact standard errors: standard normal numbers."""
+    z = (groups.mean(axis=1) * np.sqrt(groups.shape[1])).ravel()
+    test = kstest(z, "norm")
+    return Check(
+        "distribution of z-scores", f"{z.size} of them, KS distance {test.statistic:.3f}", float(test.pvalue)
+    ), z
+
+
+def independence(groups: Array) -> Check:
+    """Products of each surface with later ones, over lags of 1 to 64 surfaces and all axes."""
+    seeds, m, d = groups.shape
+    z = []
+    for lag in (k for k in _LAGS if k < m):
+        products = groups[:, lag:] * groups[:, :-lag]
+        z.append(products.sum(axis=(0, 1)) / np.sqrt(seeds * (m - lag)))
+    total = float(np.sum(np.square(z)))
+    return Check(
+        "independence of surfaces",
+        f"chi-square {total:.1f} for {len(z) * d} lags and axes",
+        float(chi2.sf(total, len(z) * d)),
+    )

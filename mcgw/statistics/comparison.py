@@ -1,0 +1,164 @@
+"""Monte Carlo against theory: where both meet."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.stats import chi2
+
+from analytic import QUANTITIES, Fluctuations
+from mcgw.ensemble.ensemble import Ensemble
+
+__all__ = ["FALSE_ALARM", "Comparison", "Curve", "Verdict", "compare", "verdict"]
+
+Array = NDArray[np.float64]
+
+FALSE_ALARM = 1e-3
+_MOST_SEPARATIONS = 48
+_SKEW, _KURTOSIS = 0.1, 0.1  # so nearly Gaussian must a combination of means be to count
+_INDEPENDENT = 1e-9  # variance of a combination that is no rounding error
+
+
+@dataclass(frozen=True)
+class Curve:
+    """One quantity over the separations, all arrays of shape (separations,) in SI units.
+
+    Parameters
+    ----------
+    mean, low, high : ndarray
+        Monte-Carlo mean and its 95 % interval, nan where there are too few contacts for one.
+    theory, stderr : ndarray
+        Exact mean, and the exact standard error of the Monte-Carlo mean.
+    """
+
+    mean: Array
+    low: Array
+    high: Array
+    theory: Array
+    stderr: Array
+
+    @property
+    def residual(self) -> Array:
+        """(mean - theory)/stderr; 0 where neither fluctuates."""
+        difference = self.mean - self.theory
+        return np.divide(difference, self.stderr, out=np.zeros_like(difference), where=self.stderr > 0)
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """A chi-square test of all means at once.
+
+    Parameters
+    ----------
+    chi_square : float
+        Sum of squares of independent standard normal numbers if theory holds.
+    degrees : int
+        How many: independent combinations of the means that are Gaussian to within 0.1 in skewness
+        and excess kurtosis.
+    p : float
+        Probability of so large a chi-square by chance.
+    """
+
+    chi_square: float
+    degrees: int
+    p: float
+
+    @property
+    def agrees(self) -> bool:
+        """False in one of `1/FALSE_ALARM` ensembles that follow the theory."""
+        return self.p > FALSE_ALARM
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """A comparison of an ensemble with theory.
+
+    Parameters
+    ----------
+    ensemble : Ensemble
+        What was compared.
+    curves : dict of str to Curve
+        By quantity.
+    verdict : Verdict
+        Over all quantities and separations.
+    """
+
+    ensemble: Ensemble
+    curves: dict[str, Curve]
+    verdict: Verdict
+
+
+def compare(ensemble: Ensemble) -> Comparison:
+    """Compare the means of an ensemble with theory.
+
+    Parameters
+    ----------
+    ensemble : Ensemble
+        Of independent surfaces.
+
+    Returns
+    -------
+    Comparison
+        Curves and verdict.
+
+    Raises
+    ------
+    ValueError
+        If the surfaces are stratified: their fluctuations are not those of an ensemble.
+    """
+    if ensemble.sampler == "stratified":
+        raise ValueError("a stratified file holds means, not an ensemble; compare takes another sampler")
+    scene = ensemble.scene
+    curves = {}
+    for name in scene.quantities:
+        variance = scene.theory.cumulants(name, scene.separations).variance
+        low, high = ensemble.interval(name)
+        stderr = np.sqrt(variance / ensemble.n_surfaces)
+        curves[name] = Curve(
+            ensemble.mean(name), low, high, scene.theory.mean(name, scene.separations), stderr
+        )
+    return Comparison(ensemble, curves, verdict(ensemble))
+
+
+def verdict(ensemble: Ensemble) -> Verdict:
+    """Test all means at once, with their exact covariance.
+
+    The means are turned to the principal axes of their exact correlation. Of these, those count
+    along which the mean of all asperities is Gaussian, which its exact skewness and kurtosis tell:
+    so the false-alarm rate is the stated one also where few asperities touch.
+    """
+    scene = ensemble.scene
+    h = _chosen(np.unique(scene.separations))
+    parts = scene.theory.fluctuations(scene.quantities, h)
+    index = [scene.separations.index(x) for x in h]
+    means = [ensemble.mean(q)[index] / QUANTITIES[q].scale(scene.surface) for q in scene.quantities]
+    difference = np.concatenate(means) - scene.n_asperities * parts.mean
+    asperities = float(scene.n_asperities) * ensemble.n_surfaces
+
+    variance = parts.moment(2)
+    varies = np.flatnonzero(variance > 0)
+    unit = np.sqrt(variance[varies])
+    parts = parts.take(varies, unit)
+    z = difference[varies] / unit * np.sqrt(ensemble.n_surfaces / scene.n_asperities)
+    usable = _gaussian(parts, asperities)
+    parts, z = parts.take(usable), z[usable]
+    axes = parts.whitening(_INDEPENDENT)
+    axes = axes[:, _gaussian(parts.turned(axes), asperities)]
+    chi_square = float(np.sum((z @ axes) ** 2))
+    degrees = axes.shape[1]
+    return Verdict(chi_square, degrees, float(chi2.sf(chi_square, degrees)) if degrees else 1.0)
+
+
+def _gaussian(parts: Fluctuations, asperities: float) -> NDArray[np.bool_]:
+    """Which terms (columns of unit variance) have a nearly Gaussian mean over so many asperities."""
+    with np.errstate(over="ignore", invalid="ignore"):  # where nothing ever touches
+        third, fourth = parts.moment(3), parts.moment(4)
+    skew = np.abs(third) / np.sqrt(asperities)
+    return np.asarray((skew < _SKEW) & (fourth / asperities < _KURTOSIS))
+
+
+def _chosen(separations: Array) -> Array:
+    """Some of many separations, evenly, with the first and the last."""
+    n = len(separations)
+    chosen = np.unique(np.linspace(0, n - 1, min(n, _MOST_SEPARATIONS)).round().astype(int))
+    return np.asarray(separations[chosen])

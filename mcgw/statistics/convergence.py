@@ -1,0 +1,227 @@
+"""The statistical convergence test, for this simulator and for anybody's sampler or law of contact."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.stats import binom, poisson
+
+from mcgw.ensemble.ensemble import Arrays, Ensemble
+from mcgw.ensemble.simulation import simulate
+from mcgw.scene.scene import Scene
+from mcgw.statistics.checks import (
+    Check,
+    Slope,
+    covariances,
+    coverage,
+    independence,
+    scores,
+    skewness,
+    slope,
+    variances,
+)
+from mcgw.statistics.comparison import FALSE_ALARM, verdict
+from mcgw.statistics.principal_components import Principal
+
+__all__ = ["SEEDS", "Convergence", "Draw", "converge"]
+
+Array = NDArray[np.float64]
+Sums = Mapping[str, NDArray[Any]]
+Draw = Callable[[Scene], Sums]
+
+SEEDS = 24
+_FEWEST, _MOST = 64, 1000  # surfaces a seed
+_MOST_SEPARATIONS = 12
+_FEWEST_ERRORS = 24  # to take a root mean square of
+_SIZES_OF_N = (64, 16, 4, 1)  # divisors of the scene's number of asperities
+
+
+@dataclass(frozen=True)
+class Convergence:
+    """What the test found.
+
+    Parameters
+    ----------
+    scene : Scene
+        As tested: some of the separations, surfaces of one seed.
+    checks : tuple of Check
+        All of them.
+    slopes : tuple of Slope
+        Of the error, in M and in N.
+    scores : ndarray
+        Means of all seeds along all axes, in standard errors.
+    """
+
+    scene: Scene
+    checks: tuple[Check, ...]
+    slopes: tuple[Slope, ...]
+    scores: Array
+
+    @property
+    def p(self) -> float:
+        """Probability that the worst of all checks is so bad by chance (Bonferroni)."""
+        return min(1.0, len(self.checks) * min(check.p for check in self.checks))
+
+    @property
+    def passed(self) -> bool:
+        """False for at most one in `1/FALSE_ALARM` right samplers."""
+        return self.p > FALSE_ALARM
+
+
+def converge(
+    scene: Scene,
+    draw: Draw | None = None,
+    *,
+    seeds: int = SEEDS,
+    progress: Callable[[int], Any] | None = None,
+) -> Convergence:
+    """Hold a sampler to the exact law of a scene.
+
+    Parameters
+    ----------
+    scene : Scene
+        What is asked; 64 to 1000 surfaces a seed and at most 12 of its separations are taken.
+    draw : callable, optional
+        Takes a scene (whose seed, number of surfaces and of asperities vary) and returns each quantity in
+        SI units, shape (surfaces, separations); left out: this simulator.
+    seeds : int, optional
+        How many ensembles.
+    progress : callable, optional
+        Called with 1 after each ensemble.
+
+    Returns
+    -------
+    Convergence
+        Checks, slopes and the verdict.
+
+    Raises
+    ------
+    ValueError
+        If the sampler is ``stratified``, which draws no ensemble, or nothing touches.
+    """
+    if scene.sampler == "stratified":
+        raise ValueError('sampler = "stratified" draws means, not an ensemble; converge takes another one')
+    if not scene.touching:
+        raise ValueError(
+            f"contact.separations: no height reaches d/sigma = {scene.lowest:g}: nothing touches, and "
+            "there is nothing to test; give lower ones"
+        )
+    draw = draw or _own
+    scene = _tested(scene)
+    parts = []
+    for k in range(seeds):
+        parts.append(draw(replace(scene, seed=(scene.seed + k) % 2**64)))
+        if progress:
+            progress(1)
+    sums = {name: np.concatenate([part[name] for part in parts]) for name in scene.quantities}
+    law = Principal.of(scene)
+    y = law.turn(sums)
+    whole = replace(scene, n_surfaces=len(y))
+    means = verdict(Ensemble(whole, "drawn", Arrays(sums)))
+    checks = [
+        Check("means", f"chi-square {means.chi_square:.1f} for {means.degrees} combinations", means.p),
+        *_contacts(whole, sums),
+        *_repeats(scene, sums),
+    ]
+    slopes: list[Slope] = []
+    z = np.empty(0)
+    if y.shape[1]:
+        groups = y.reshape(seeds, scene.n_surfaces, -1)
+        score, z = scores(groups)
+        checks += [
+            score,
+            coverage(groups),
+            variances(law, y),
+            covariances(y),
+            skewness(law, y),
+            independence(groups),
+        ]
+        slopes = [_slope_in_surfaces(law, y, scene.n_surfaces), *_slope_in_asperities(scene, draw)]
+        checks += [found.check for found in slopes]
+    return Convergence(scene, tuple(checks), tuple(slopes), z)
+
+
+def _own(scene: Scene) -> Sums:
+    ensemble = simulate(scene)
+    return {name: ensemble.values(name) for name in scene.quantities}
+
+
+def _tested(scene: Scene) -> Scene:
+    """The scene with few separations, in their order, and a number of surfaces that a test can take."""
+    h = np.unique(scene.separations)
+    chosen = h[np.unique(np.linspace(0, len(h) - 1, min(len(h), _MOST_SEPARATIONS)).round().astype(int))]
+    m = min(max(scene.n_surfaces, _FEWEST), _MOST)
+    return replace(
+        scene, separations=tuple(chosen.tolist()), n_surfaces=m, rel_err=None, max_seconds=None, keep="sums"
+    )
+
+
+def _contacts(scene: Scene, sums: Sums) -> list[Check]:
+    """Number of contacts of all surfaces together: binomial or Poisson, exact however few they are."""
+    if "contacts" not in scene.quantities:
+        return []
+    total = np.rint(np.asarray(sums["contacts"], dtype=np.float64).sum(axis=0))
+    share = scene.heights.above(np.array(scene.separations))
+    tried = float(scene.n_surfaces) * scene.n_asperities
+    law = binom(tried, share) if scene.count == "fixed" else poisson(tried * share)
+    p = np.minimum(2 * np.minimum(law.cdf(total), law.sf(total - 1)), 1.0)
+    worst = int(np.argmin(p))
+    seen = (
+        f"{total[worst]:.0f} at d/sigma = {scene.separations[worst]:g}, {tried * share[worst]:.1f} expected"
+    )
+    return [Check("number of contacts", seen, min(1.0, p.size * float(p[worst])))]
+
+
+def _repeats(scene: Scene, sums: Sums) -> list[Check]:
+    """Surfaces that give the same number to the last bit, which independent ones never do."""
+    name = next((name for name in scene.quantities if name != "contacts"), None)
+    lowest = int(np.argmin(scene.separations))
+    if name is None or scene.touching < 100:
+        return []
+    values = sums[name][:, lowest]
+    again = len(values) - len(np.unique(values))
+    # Two Gaussian numbers share their last bit with probability spacing/(2 sqrt(pi) std); their last ten
+    # times as often, which leaves room for rounding.
+    spread = max(float(values.std()), float(np.spacing(np.abs(values).max())))
+    expected = 10 * float(np.spacing(np.abs(values).max())) / spread * len(values) ** 2 / 2
+    return [Check("repeated surfaces", f"{again} of {len(values)}", float(poisson.sf(again - 1, expected)))]
+
+
+def _slope_in_surfaces(law: Principal, y: Array, most: int) -> Slope:
+    """Error of means of 1, 4, 16, ... surfaces, each size from surfaces of its own."""
+    sizes = [m for m in 4 ** np.arange(8) if m <= most // 4]
+    squares, used = [], []
+    for m, part in zip(sizes, np.array_split(y, len(sizes)), strict=True):
+        means = part[: len(part) // m * m].reshape(-1, m, y.shape[1]).mean(axis=1)
+        if means.size >= _FEWEST_ERRORS:
+            squares.append(np.asarray(means**2))
+            used.append(float(m))
+    kurtosis = float(law.kurtosis.mean())
+    return slope("M", used, squares, [kurtosis / m for m in used])
+
+
+def _slope_in_asperities(scene: Scene, draw: Draw) -> list[Slope]:
+    """Relative error of one surface of N/64, N/16, N/4, N asperities, at the lowest separation."""
+    squares, sizes, excess = [], [], []
+    lowest = (scene.lowest,)
+    name = scene.quantities[0]
+    for divisor in _SIZES_OF_N:
+        n = scene.n_asperities // divisor
+        if n < 1:
+            continue
+        small = replace(
+            scene,
+            n_asperities=n,
+            separations=lowest,
+            quantities=(name,),
+            seed=(scene.seed + 10**6 + divisor) % 2**64,
+        )
+        law = Principal.of(small)
+        if law.axes.size:
+            y = law.turn(draw(small))[:, 0]
+            sizes.append(float(n))
+            squares.append(np.asarray((y * law.std[0] / law.mean[0]) ** 2))
+            excess.append(float(law.kurtosis[0]))
+    return [slope("N", sizes, squares, excess)] if len(sizes) > 1 else []

@@ -1,0 +1,221 @@
+"""Ways to one number, each with a size that buys accuracy: what `mcgw.statistics.tradeoff` measures.
+
+Every one gives the relative error of the first quantity of a scene, at some of its separations.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import partial
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.integrate import quad
+
+import analytic
+from mcgw.ensemble.simulation import blocks
+from mcgw.errors import RunError
+from mcgw.sampling.asperities import heights
+from mcgw.sampling.cells import mesh_of
+from mcgw.sampling.hertz import hertz_sums
+from mcgw.sampling.response.response import response_of
+from mcgw.sampling.samplers import Cells, Sampler, aggregate_of, sampler_of
+from mcgw.scene.scene import Scene
+from mcgw.statistics.reference import quantiles, reference
+
+__all__ = ["Method", "methods_for", "reference"]
+
+Array = NDArray[np.float64]
+
+_MOST_DRAWS = 1e7  # asperities of one surface, beyond which a sampler is not even tried
+_PIECES = (
+    0.0,
+    1.0,
+    3.0,
+    7.0,
+    14.0,
+    24.0,
+    40.0,
+    80.0,
+)  # -log of the shares of higher heights where quad's end
+_AGREE = 1e-10  # of theory and its reference
+
+
+@dataclass(frozen=True)
+class Method:
+    """One way to a number.
+
+    Parameters
+    ----------
+    name : str
+        For the table.
+    unit : str
+        What the size counts.
+    sizes : tuple of float
+        In increasing order of cost.
+    slope : float or None
+        Expected exponent of the error in the size; None: exponential, or none.
+    errors : callable
+        Size and seed to relative errors, shape (separations,).
+    sampler : str
+        Which sampler makes an exact ensemble this way; "" for none.
+    """
+
+    name: str
+    unit: str
+    sizes: tuple[float, ...]
+    slope: float | None
+    errors: Callable[[float, int], Array]
+    sampler: str = ""
+
+
+def methods_for(scene: Scene, chosen: tuple[int, ...]) -> tuple[Method, ...]:
+    """All ways to the first quantity of a scene at the separations number `chosen`.
+
+    Raises
+    ------
+    ValueError
+        If the heights are measured ones, of which there is no ensemble, or if the mean is 0.
+    RunError
+        If theory and its reference, an integral by another rule, differ by more than 1e-10.
+    """
+    if isinstance(scene.heights, analytic.MeasuredHeights):
+        raise ValueError("heights: measured ones are added up exactly; say resample = true to trade off")
+    exact = _checked(scene, chosen)
+    surfaces = tuple(4.0**k for k in range(12))
+    n = float(scene.n_asperities)
+    touching = scene.touching
+    found = [
+        Method(name, "surfaces", surfaces, -0.5, partial(_by_sampler, scene, chosen, exact, name), name)
+        for name, draws in (("direct", n), ("tail", touching), ("cells", touching / 100))
+        if draws < _MOST_DRAWS
+    ]
+    for crowd in (1, 16, 256, 4096):
+        errors = partial(_by_aggregate, scene, chosen, exact, crowd)
+        found.append(Method(f"aggregate, crowds from {crowd}", "surfaces", surfaces, -0.5, errors))
+    strata = tuple(float(10**3 * 4**k) for k in range(10))
+    found.append(Method("stratified", "strata", strata, -1.5, partial(_by_strata, scene, chosen, exact)))
+    orders = tuple(10.0**k for k in range(1, 14, 2))
+    by_moments = _ByMoments.of(scene, chosen)
+    found.append(Method("order of moments (same asperities)", "1/accuracy", orders, None, by_moments))
+    return (*found, *_quadratures(scene, chosen, exact))
+
+
+def _checked(scene: Scene, chosen: tuple[int, ...]) -> Array:
+    """The reference, once theory agrees with it."""
+    exact, name = reference(scene, chosen), scene.quantities[0]
+    theory = scene.theory.mean(name, [scene.separations[k] for k in chosen])
+    for k, ours, other in zip(chosen, theory, exact, strict=True):
+        where = f"mean {name} at d/sigma = {scene.separations[k]:g}"
+        if not other:
+            raise ValueError(f"{where} is 0: a relative error needs a mean that is not; change separations")
+        if not abs(ours / other - 1) <= _AGREE:
+            raise RunError(
+                f"{where}: theory gives {ours:.15g} and its reference {other:.15g}, which differ by more "
+                f"than {_AGREE:g}; no error is measured against either"
+            )
+    return exact
+
+
+def _mean(scene: Scene, chosen: tuple[int, ...], sampler: Sampler) -> Array:
+    name = scene.quantities[0]
+    total = np.zeros(len(chosen))
+    for block in blocks(scene, sampler):
+        total += block.sums[name][:, list(chosen)].sum(axis=0)
+    return total / scene.n_surfaces
+
+
+def _by_sampler(
+    scene: Scene, chosen: tuple[int, ...], exact: Array, name: str, size: float, seed: int
+) -> Array:
+    asked = replace(scene, sampler=name, n_surfaces=int(size), seed=seed, keep="sums")
+    return _mean(asked, chosen, sampler_of(asked)) / exact - 1
+
+
+def _by_aggregate(
+    scene: Scene, chosen: tuple[int, ...], exact: Array, crowd: int, size: float, seed: int
+) -> Array:
+    asked = replace(scene, sampler="aggregate", n_surfaces=int(size), seed=seed, keep="sums")
+    return _mean(asked, chosen, aggregate_of(asked, crowd)) / exact - 1
+
+
+def _by_strata(scene: Scene, chosen: tuple[int, ...], exact: Array, size: float, seed: int) -> Array:
+    asked = replace(scene, sampler="stratified", n_surfaces=1, n_asperities=int(size), seed=seed, keep="sums")
+    return _mean(asked, chosen, sampler_of(asked)) / (exact / scene.n_asperities * int(size)) - 1
+
+
+@dataclass(frozen=True)
+class _ByMoments:
+    """Moments cut at an accuracy, against a plain sum over the same asperities of one surface."""
+
+    scene: Scene
+    chosen: tuple[int, ...]
+    plain: Array
+
+    @classmethod
+    def of(cls, scene: Scene, chosen: tuple[int, ...]) -> "_ByMoments":
+        n = min(scene.n_asperities, 10**5)
+        name = scene.quantities[0]
+        scene = replace(scene, sampler="cells", n_asperities=n, quantities=(name,), n_surfaces=1, keep="sums")
+        s = heights(scene, 0)
+        return cls(scene, chosen, hertz_sums(scene, np.array([s.size]), s, np.ones(s.size))[name][0])
+
+    def __call__(self, size: float, _seed: int) -> Array:
+        scene, name = self.scene, self.scene.quantities[0]
+        mesh = mesh_of(scene)
+        summed = (name,) if analytic.QUANTITIES[name].exponent > 0 else ()
+        sampler = Cells(scene, mesh, response_of(scene, mesh, summed, accuracy=1 / size), "cells")
+        value, plain = sampler.block(0, 1).sums[name][0], self.plain
+        pick = list(self.chosen)
+        with np.errstate(divide="ignore", invalid="ignore"):  # no contact there: no relative error
+            return np.asarray(value[pick] / plain[pick] - 1)
+
+
+def _integrand(scene: Scene, q: analytic.Quantity, h: float, v: Array | float) -> Array:
+    """Of F*_n in v, with s = h + v^2."""
+    v = np.asarray(v)
+    s = h + v * v
+    e = scene.modulus(s) if q.modulus else np.ones_like(s)
+    return np.asarray(2 * v ** (2 * q.exponent + 1) * e * scene.heights.density(s))
+
+
+def _by_quad(scene: Scene, q: analytic.Quantity, h: float, accuracy: float) -> float:
+    """F*_n by SciPy's adaptive rule, from break to break and to the law's own tail."""
+    ends = quantiles(scene, h, np.array(_PIECES))
+    breaks = [b for b in (*scene.heights.breaks, *scene.modulus.breaks) if ends[0] < b < ends[-1]]
+    ends = np.sqrt(np.unique([*ends, *breaks]) - h)
+
+    def integrand(v: float) -> float:
+        return float(_integrand(scene, q, h, v))
+
+    # with full output it does not warn: how far off it is stands in the table
+    rules = (quad(integrand, *e, epsabs=0, epsrel=accuracy, full_output=1) for e in pairwise(ends.tolist()))
+    return float(sum(found[0] for found in rules))
+
+
+def _quadratures(scene: Scene, chosen: tuple[int, ...], exact: Array) -> list[Method]:
+    q = analytic.QUANTITIES[scene.quantities[0]]
+    h = np.array(scene.separations)[list(chosen)]
+    factor = scene.n_asperities * q.scale(scene.surface)
+    grading = scene.modulus if q.modulus else None
+
+    def ours(_size: float, _seed: int) -> Array:
+        return scene.theory.mean(q.name, h) / exact - 1
+
+    def scipys(size: float, _seed: int) -> Array:
+        rows = [_by_quad(scene, q, x, 1 / size) for x in h.tolist()]
+        return np.asarray(factor * np.array(rows) / exact - 1)
+
+    def papers(size: float, _seed: int) -> Array:
+        gamma = grading.gamma if isinstance(grading, analytic.Exponential) else 1.0
+        return factor * analytic.fn_paper(q.exponent, h, gamma, int(size)) / exact - 1
+
+    found = [
+        Method("theory: analytic.fn", "64 points", (64.0,), None, ours),
+        Method("scipy.integrate.quad", "1/epsrel", (1e2, 1e6, 1e10), None, scipys),
+    ]
+    gaussian = isinstance(scene.heights, analytic.Gaussian)
+    if gaussian and (grading is None or isinstance(grading, analytic.Exponential | analytic.Homogeneous)):
+        sizes = tuple(2.0**k for k in range(2, 9))
+        found.append(Method("paper's Gauss rule, Eq. (9)", "points", sizes, None, papers))
+    return found

@@ -1,0 +1,78 @@
+"""Independent combinations of everything that is asked: the principal axes of its exact correlation.
+
+Sums of one surface at several separations share their asperities. Turned to these axes they are
+uncorrelated, of mean 0 and variance 1, with known third and fourth cumulants: a test needs no more.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from analytic import QUANTITIES
+from mcgw.scene.scene import Scene
+
+__all__ = ["Principal"]
+
+Array = NDArray[np.float64]
+
+_TOUCHING = 100  # asperities expected in contact, so that a single surface is nearly Gaussian
+_INDEPENDENT = 1e-6  # variance of a combination that is more than a difference of nearly equal columns
+_MOST_KURTOSIS = 0.5  # of a combination over surfaces
+
+
+@dataclass(frozen=True)
+class Principal:
+    """Axes and the exact law along them.
+
+    Parameters
+    ----------
+    columns : tuple of (str, int)
+        Quantity and number of the separation of what is combined.
+    mean, std : ndarray
+        Exact, of each column.
+    axes : ndarray
+        Shape (columns, axes).
+    skewness, kurtosis : ndarray
+        Exact third and fourth cumulant along each axis.
+    """
+
+    columns: tuple[tuple[str, int], ...]
+    mean: Array
+    std: Array
+    axes: Array
+    skewness: Array
+    kurtosis: Array
+
+    @classmethod
+    def of(cls, scene: Scene) -> "Principal":
+        """The axes of a scene: of those separations where single surfaces are nearly Gaussian."""
+        n, h = scene.n_asperities, np.array(scene.separations)
+        parts = scene.theory.fluctuations(scene.quantities, h)
+        variance, share = parts.moment(2), scene.heights.above(h)
+        touching = n * np.minimum(share, 1 - share + (scene.count == "poisson"))
+        chosen = np.flatnonzero(np.tile(touching > _TOUCHING, len(scene.quantities)) & (variance > 0))
+        unit = np.sqrt(variance[chosen])
+        axes = parts.take(chosen, unit).whitening(_INDEPENDENT)
+        along = parts.take(chosen, unit).turned(axes)
+        third, fourth = along.moment(3), along.moment(4) - 3 * (scene.count == "fixed")
+        good = np.abs(fourth) / n < _MOST_KURTOSIS
+        columns = tuple((scene.quantities[c // len(h)], c % len(h)) for c in chosen.tolist())
+        scale = np.array([QUANTITIES[name].scale(scene.surface) for name, _ in columns])
+        return cls(
+            columns,
+            n * scale * parts.mean[chosen],
+            np.sqrt(n) * scale * unit,
+            axes[:, good],
+            third[good] / np.sqrt(n),
+            fourth[good] / n,
+        )
+
+    def turn(self, sums: Mapping[str, NDArray[Any]]) -> Array:
+        """Every surface along the axes, shape (surfaces, axes)."""
+        if not self.columns:
+            return np.empty((len(next(iter(sums.values()))), 0))
+        values = np.stack([sums[name][:, k] for name, k in self.columns], axis=1).astype(np.float64)
+        return np.asarray((values - self.mean) / self.std @ self.axes)

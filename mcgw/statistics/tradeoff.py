@@ -1,0 +1,267 @@
+"""Error against time and memory for one scene on this machine: a work-precision study in bounded time."""
+
+import csv
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from time import monotonic, perf_counter, process_time
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mcgw.ensemble.forecast import relative_spread
+from mcgw.formats.files import whole_file
+from mcgw.scene.scene import Scene
+from mcgw.statistics.methods import Method, methods_for
+
+__all__ = ["Advice", "Point", "Tradeoff", "tradeoff", "write_csv"]
+
+Array = NDArray[np.float64]
+
+SECONDS = 60.0
+TARGETS = (1e-1, 1e-2, 1e-3, 1e-4)
+_MOST_ROUNDS, _ROUNDS = 24, 6
+_FEWEST_SIZES = 3
+_SHORTEST = 2e-3  # what is faster is repeated until it takes this long
+
+
+@dataclass(frozen=True)
+class Point:
+    """One method at one size.
+
+    Parameters
+    ----------
+    method, unit : str
+        What, and what its size counts.
+    size : float
+        How much of it.
+    rms : ndarray
+        Root mean square relative error over the seeds, shape (separations,).
+    rms_stderr : float
+        Relative uncertainty of `rms`; 0 where nothing is random.
+    cpu, wall : float
+        Median seconds: of all cores together, and by the clock.
+    peak : float
+        Bytes of memory on top of what there was; nan where the system does not tell.
+    seeds : int
+        How many runs.
+    """
+
+    method: str
+    unit: str
+    size: float
+    rms: Array
+    rms_stderr: float
+    cpu: float
+    wall: float
+    peak: float
+    seeds: int
+
+
+@dataclass(frozen=True)
+class Advice:
+    """What to run for a mean of a given relative error (one standard error).
+
+    Parameters
+    ----------
+    target : float
+        The error.
+    scene : Scene
+        The one to run: its sampler and number of surfaces are the advice.
+    cpu : float
+        Seconds it takes, of all cores together.
+    """
+
+    target: float
+    scene: Scene
+    cpu: float
+
+
+@dataclass(frozen=True)
+class Tradeoff:
+    """What the study found.
+
+    Parameters
+    ----------
+    scene : Scene
+        As studied.
+    separations : tuple of float
+        Where errors were taken, of the scene's first quantity.
+    points : tuple of Point
+        Every method at every size.
+    methods : tuple of Method
+        All of them.
+    advice : tuple of Advice
+        For each target, at the last of the separations.
+    seconds : float
+        How long the study took.
+    """
+
+    scene: Scene
+    separations: tuple[float, ...]
+    points: tuple[Point, ...]
+    methods: tuple[Method, ...]
+    advice: tuple[Advice, ...]
+    seconds: float
+
+    def of(self, method: str) -> list[Point]:
+        """Points of one method, by size."""
+        return [point for point in self.points if point.method == method]
+
+
+class _Task:
+    """A method at a size, and what its runs gave."""
+
+    def __init__(self, method: Method, size: float, peak: float, repeat: int) -> None:
+        self.method, self.size, self.peak, self.repeat = method, size, peak, repeat
+        self.errors: list[Array] = []
+        self.cpu: list[float] = []
+        self.wall: list[float] = []
+
+    def run(self, seed: int) -> None:
+        cpu, wall = process_time(), perf_counter()
+        for _ in range(self.repeat):
+            errors = self.method.errors(self.size, seed)
+        self.cpu.append((process_time() - cpu) / self.repeat)
+        self.wall.append((perf_counter() - wall) / self.repeat)
+        self.errors.append(errors)
+
+    def point(self) -> Point:
+        random = float(np.ptp(np.array(self.errors), axis=0).max()) > 0
+        rms = np.sqrt(np.mean(np.square(self.errors), axis=0))
+        spread = 1 / np.sqrt(2 * len(self.errors)) if random else 0.0
+        cpu, wall = float(np.median(self.cpu)), float(np.median(self.wall))
+        n = len(self.errors)
+        return Point(self.method.name, self.method.unit, self.size, rms, spread, cpu, wall, self.peak, n)
+
+
+def tradeoff(
+    scene: Scene, *, seconds: float = SECONDS, progress: Callable[[float], Any] | None = None
+) -> Tradeoff:
+    """Measure every way to the first quantity of a scene.
+
+    Everything is warmed up, then all methods and sizes run in turn, with a new seed each round, until
+    the time is used up; medians over the rounds are given.
+
+    Parameters
+    ----------
+    scene : Scene
+        What is asked.
+    seconds : float, optional
+        Bound of the whole study; it is kept to within the last run.
+    progress : callable, optional
+        Called with the share of the time used, 0 to 1.
+
+    Returns
+    -------
+    Tradeoff
+        Points and advice.
+
+    Raises
+    ------
+    ValueError
+        If `seconds` is not positive.
+    """
+    if not seconds > 0:
+        raise ValueError(f"seconds = {seconds:g}: give a number > 0")
+    started = monotonic()
+    scene = replace(scene, rel_err=None, max_seconds=None)
+    chosen = _chosen(scene)
+    methods = methods_for(scene, chosen)
+    tasks: list[_Task] = []
+    for method in methods:
+        tasks += _sized(method, seconds / (2 * _ROUNDS * len(methods)), scene.seed)
+        if progress:
+            progress(min((monotonic() - started) / seconds, 1.0))
+    for number in range(1, _MOST_ROUNDS + 1):
+        for task in tasks:
+            if monotonic() - started < seconds or not task.errors:
+                task.run((scene.seed + 7919 * number + 104729) % 2**64)
+        if progress:
+            progress(min((monotonic() - started) / seconds, 1.0))
+    points = tuple(task.point() for task in tasks)
+    advice = tuple(a for t in TARGETS if (a := _advice(scene, chosen[-1], points, t)))
+    h = tuple(scene.separations[k] for k in chosen)
+    return Tradeoff(scene, h, points, methods, advice, monotonic() - started)
+
+
+def _chosen(scene: Scene) -> tuple[int, ...]:
+    """The lowest, a middle and the highest separation that something reaches in 1e9 asperities."""
+    order = np.argsort(scene.separations, kind="stable")
+    share = scene.heights.above(np.array(scene.separations))[order]
+    reached = order[share > 1e-9] if (share > 1e-9).any() else order[:1]
+    return tuple(int(k) for k in dict.fromkeys(reached[[0, len(reached) // 2, -1]]))
+
+
+def _sized(method: Method, longest: float, seed: int) -> list[_Task]:
+    """Sizes that take no longer than they may, each run once to warm up and to see its memory."""
+    tasks: list[_Task] = []
+    before = 0.0
+    for size in method.sizes:
+        if len(tasks) >= _FEWEST_SIZES and before > longest:
+            break
+        method.errors(size, seed)
+        start = perf_counter()
+        peak = _peak(lambda size=size: method.errors(size, seed))  # type: ignore[misc]
+        before = perf_counter() - start
+        tasks.append(_Task(method, size, peak, max(1, min(100, int(_SHORTEST / before)))))
+    return tasks
+
+
+def _peak(call: Callable[[], Any]) -> float:
+    """Bytes of memory that a call takes at most on top of what there was (Linux; else nan)."""
+    try:
+        Path("/proc/self/clear_refs").write_text("5")  # forget the highest level so far
+        before = _status("VmHWM")
+    except OSError:
+        call()
+        return float("nan")
+    call()
+    return float(_status("VmHWM") - before)
+
+
+def _status(key: str) -> int:
+    lines = Path("/proc/self/status").read_text().splitlines()
+    return next(int(line.split()[1]) * 1024 for line in lines if line.startswith(key))
+
+
+def _advice(scene: Scene, k: int, points: Sequence[Point], target: float) -> Advice | None:
+    """The fastest exact sampler for this error, with its cost extended in the number of surfaces."""
+    spread = float(
+        relative_spread(replace(scene, separations=(scene.separations[k],)), scene.quantities[0])[0]
+    )
+    needed = max(int(np.ceil((spread / target) ** 2)), 1)
+    best: tuple[float, str] | None = None
+    for name in ("direct", "tail", "cells"):
+        own = [point for point in points if point.method == name]
+        if not own:
+            continue
+        first, last = own[0], own[-1]
+        each = max(last.cpu - first.cpu, 0.0) / max(last.size - first.size, 1.0)
+        inside = float(np.interp(needed, [p.size for p in own], [p.cpu for p in own]))
+        cost = inside if needed <= last.size else last.cpu + each * (needed - last.size)
+        if best is None or cost < best[0]:
+            best = (cost, name)
+    if best is None or needed > 10**12:
+        return None
+    return Advice(target, replace(scene, sampler=best[1], n_surfaces=needed), best[0])
+
+
+def write_csv(found: Tradeoff, path: str | Path) -> None:
+    """Write every point as a row.
+
+    Parameters
+    ----------
+    found : Tradeoff
+        From `tradeoff`.
+    path : str or Path
+        The file.
+    """
+    columns = [f"rms_relative_error_at_h_{h:g}" for h in found.separations]
+    with whole_file(Path(path)) as unfinished, open(unfinished, "w", newline="") as file:
+        table = csv.writer(file)
+        ends = ["rms_uncertainty", "cpu_s", "wall_s", "peak_growth_bytes", "seeds"]
+        table.writerow(["method", "size", "size_counts", *columns, *ends])
+        for p in found.points:
+            table.writerow([p.method, p.size, p.unit, *p.rms, p.rms_stderr, p.cpu, p.wall, p.peak, p.seeds])

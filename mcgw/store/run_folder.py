@@ -1,0 +1,262 @@
+"""The folder of a run, beside its file: ``demo.h5.parts/``.
+
+::
+
+    run.toml    the frozen scene, its identity, the versions that draw, the size of a block;
+                last, the SHA-256 of all that stands before
+    lock.db     held by whoever writes the file, freed by the system when it dies (`lock`)
+    holder      who that is
+    shards/     block-0000000000042.h5: the surfaces from number 42 on
+
+The set of valid shards is the only record of progress.
+"""
+
+import hashlib
+import os
+import shutil
+from collections.abc import Iterable, Iterator
+from contextlib import suppress
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import tomli_w
+
+from mcgw.errors import RunError, StoreError
+from mcgw.formats.files import Expected, sync, write_whole
+from mcgw.formats.toml_text import loads
+from mcgw.scene.scene import Scene, SceneError
+from mcgw.scene.scene_file import scene_from, scene_text
+from mcgw.store.arithmetic import KIND, drawn_with
+from mcgw.store.disk import parts_of
+from mcgw.store.lock import refuse_link
+from mcgw.store.provenance import now
+from mcgw.store.shards import Shard, Span, open_shard
+
+__all__ = ["Run", "difference", "identity_of", "missing", "parts_of", "remove_run"]
+
+_FILETYPE, _FORMAT = "mcgw-run", [1, 1]
+_CHECKSUM = 'sha256 = "'
+_MOST_BYTES = 2**23
+
+
+def frozen_text(scene: Scene) -> str:
+    """What of a scene must stay the same while its ensemble grows: the values, whoever gave them."""
+    return scene_text(replace(scene, n_surfaces=1), left_out=False)
+
+
+def identity_of(scene: Scene, sampler: str) -> str:
+    """SHA-256 of all that the numbers of a surface depend on: frozen scene, sampler, what draws."""
+    parts = (frozen_text(scene), sampler, drawn_with(scene, sampler))
+    return hashlib.sha256("\0".join(parts).encode()).hexdigest()
+
+
+def difference(scene: Scene, made_with: str, wanted: Scene, sampler: str) -> str:
+    """What keeps two runs from being one, in words."""
+    there, here = (dict(_flat(loads(frozen_text(s)))) for s in (scene, wanted))
+    for key, value in here.items():
+        if there.get(key) != value:
+            return f"{key} is {_short(there.get(key))} there and {_short(value)} here"
+    for key, value in there.items():
+        if key not in here:
+            return f"{key} is {_short(value)} there and not given here"
+    this = drawn_with(wanted, sampler)
+    if made_with.partition(KIND)[0] == this.partition(KIND)[0] and made_with != this:
+        return "it was drawn on another kind of processor, which rounds exponentials and logarithms otherwise"
+    return f"it was drawn with {made_with}, this is {this}"
+
+
+def _flat(table: dict[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
+    for key, value in table.items():
+        if isinstance(value, dict):
+            yield from _flat(value, f"{prefix}{key}.")
+        else:
+            yield prefix + key, value
+
+
+def _short(value: Any) -> str:
+    shown = repr(value)
+    return shown if len(shown) <= 60 else shown[:57] + "..."
+
+
+@dataclass(frozen=True)
+class Run:
+    """An open run.
+
+    Parameters
+    ----------
+    folder : Path
+        Where it lies.
+    scene : Scene
+        Frozen, but for the number of surfaces.
+    sampler : str
+        Never "auto".
+    size : int
+        Surfaces a block.
+    identity : str
+        See `identity_of`.
+    drawn_with : str
+        Versions that draw, and the kind of processor where it counts.
+    date : str
+        When it began.
+    """
+
+    folder: Path
+    scene: Scene
+    sampler: str
+    size: int
+    identity: str
+    drawn_with: str
+    date: str
+
+    @property
+    def shards_folder(self) -> Path:
+        """Where the shards lie."""
+        return self.folder / "shards"
+
+    @classmethod
+    def begin(cls, folder: Path, scene: Scene, sampler: str, size: int) -> "Run":
+        """Begin a run, or go on with the one that is there. Only with the lock.
+
+        Raises
+        ------
+        StoreError
+            If it belongs to another scene, seed or version, or is no folder of a run.
+        """
+        refuse_link(folder)
+        (folder / "shards").mkdir(parents=True, exist_ok=True)
+        sync(folder.parent)
+        with suppress(FileExistsError):
+            new = cls(
+                folder, scene, sampler, size, identity_of(scene, sampler), drawn_with(scene, sampler), now()
+            )
+            new._write(expected=None)
+            return new
+        old = cls.open(folder)
+        if old.identity != identity_of(scene, sampler):
+            raise StoreError(
+                f"{folder}: holds a different run: {difference(old.scene, old.drawn_with, scene, sampler)}; "
+                "choose another -o, or remove it"
+            )
+        return replace(old, scene=scene)
+
+    def _write(self, *, expected: Expected) -> None:
+        document = {
+            "filetype": _FILETYPE,
+            "format": _FORMAT,
+            "identity": self.identity,
+            "sampler": self.sampler,
+            "block": self.size,
+            "versions": self.drawn_with,
+            "date": self.date,
+            "scene": scene_text(self.scene),
+        }
+        text = tomli_w.dumps(document, multiline_strings=True).encode()
+        checksum = f'{_CHECKSUM}{hashlib.sha256(text).hexdigest()}"\n'
+        write_whole(self.folder / "run.toml", (text, checksum.encode()), expected=expected)
+
+    def freeze(self) -> None:
+        """Record how many surfaces are wanted now."""
+        if Run.open(self.folder).scene != self.scene:
+            self._write(expected="anything")
+
+    @classmethod
+    def open(cls, folder: Path) -> "Run":
+        """Read what a run is.
+
+        Raises
+        ------
+        StoreError
+            If there is none, or it cannot be read.
+        """
+        refuse_link(folder)
+        file = folder / "run.toml"
+        try:
+            fd = os.open(file, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK)
+            with os.fdopen(fd, "rb") as opened:
+                said = _unchanged(opened.read(_MOST_BYTES))
+            if said["filetype"] != _FILETYPE or said["format"][0] != _FORMAT[0]:
+                raise StoreError(f"{file}: is no run of format {_FORMAT[0]}.x, but {said['format']}")
+            scene = scene_from(said["scene"])
+            known = [str(said[key]) for key in ("identity", "versions", "date")]
+            return cls(folder, scene, str(said["sampler"]), int(said["block"]), *known)
+        except OSError as error:
+            raise StoreError(f"{file}: {error.strerror}") from None
+        except (SceneError, KeyError, TypeError, ValueError) as error:
+            if isinstance(error, StoreError):
+                raise
+            what = "checksum mismatch" if isinstance(error, _ChangedError) else "it cannot be read"
+            raise StoreError(f"{file}: damaged ({what}); remove {folder} to start again") from None
+
+    def shards(self) -> list[Shard]:
+        """Valid shards in order, each checked bit by bit."""
+        return [shard for shard, _ in self._looked_at() if shard]
+
+    def sweep(self) -> list[Shard]:
+        """As `shards`; whatever else lies there is put aside. Only with the lock."""
+        for left in (*self.folder.glob(".*.tmp"), *self.shards_folder.glob(".*.tmp")):
+            left.unlink(missing_ok=True)
+        valid = []
+        for shard, path in self._looked_at():
+            if shard:
+                valid.append(shard)
+            else:
+                path.rename(path.with_name(f"{path.name}.bad"))
+        return valid
+
+    def _looked_at(self) -> Iterator[tuple[Shard | None, Path]]:
+        if not self.shards_folder.is_dir():
+            raise RunError(f"{self.folder}: is gone, or not complete; run the command again")
+        for path in sorted(self.shards_folder.glob("block-*.h5")):
+            try:
+                yield (None if path.is_symlink() else open_shard(path, self.identity)), path
+            except StoreError:
+                yield None, path
+
+    def held(self, span: Span) -> Shard | None:
+        """The valid shard of a block, if there is one."""
+        path = self.shards_folder / span.file_name
+        if path.is_symlink() or not path.is_file():
+            return None
+        try:
+            shard = open_shard(path, self.identity)
+        except StoreError:
+            return None
+        return shard if shard.span == span else None
+
+    def remove(self) -> None:
+        """Remove all but the lock, what identifies the run last. Only with the lock."""
+        remove_run(self.folder)
+
+
+def remove_run(folder: Path) -> None:
+    """Remove a run, readable or not; its lock stays, and with it the folder. Only with the lock."""
+    shutil.rmtree(folder / "shards", ignore_errors=True)  # a worker that lost its driver may add to it
+    for left in (*folder.glob(".*.tmp"), folder / "run.toml"):
+        left.unlink(missing_ok=True)
+
+
+def missing(n_surfaces: int, size: int, held: Iterable[Span]) -> list[Span]:
+    """Blocks that fill what is not held, cut where a multiple of `size` lies."""
+    gaps, stop = [], 0
+    for span in (*sorted(held), Span(n_surfaces, 1)):
+        while stop < min(span.first, n_surfaces):
+            end = min(span.first, n_surfaces, (stop // size + 1) * size)
+            gaps.append(Span(stop, end - stop))
+            stop = end
+        stop = max(stop, span.stop)
+    return gaps
+
+
+class _ChangedError(ValueError):
+    """The checksum does not hold."""
+
+
+def _unchanged(data: bytes) -> dict[str, Any]:
+    """What a run.toml says, if its checksum holds; those of format 1.0 have none."""
+    said = loads(data.decode())
+    text = data.rpartition(_CHECKSUM.encode())[0]
+    expected = hashlib.sha256(text).hexdigest() if said["format"] != [1, 0] or "sha256" in said else None
+    if said.get("sha256") != expected:
+        raise _ChangedError
+    return said

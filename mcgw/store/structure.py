@@ -1,0 +1,189 @@
+"""What an HDF5 file from elsewhere must be before it is read: plain datasets at the root or in one group.
+
+HDF5 follows external links, external storage and virtual datasets to any file of the machine, and a
+crafted file can crash the library, so this runs as a script in a process of its own
+(`mcgw.store.untrusted`)::
+
+    python -m mcgw.store.structure FILE ... --memory BYTES
+
+It prints one line of JSON a file: its attributes and datasets, or why it is refused; "sure" if that is not
+for a want of memory.
+"""
+
+import json
+import math
+import sys
+from pathlib import Path
+from typing import Any
+
+import h5py
+import numpy as np
+
+from mcgw.store.head import head_digest
+
+__all__ = ["RefusedError", "check_plain", "describe"]
+
+GROUP = "drawn"
+_FILTERS = {
+    h5py.h5z.FILTER_DEFLATE,
+    h5py.h5z.FILTER_SHUFFLE,
+    h5py.h5z.FILTER_FLETCHER32,
+    h5py.h5z.FILTER_LZF,
+}
+_MOST_ATTRIBUTES, _MOST_TEXT = 64, 2**22
+_READ_ALL = 2**26  # stored bytes up to which all is read here first
+_MOST_EXPANSION = 1100  # deflate cannot shrink more
+_MOST_CHUNK = 2**28
+
+
+class RefusedError(Exception):
+    """The file is not as it must be."""
+
+
+def check_plain(file: h5py.File, *, most: int = 64) -> list[str]:
+    """Paths of the datasets, each plain.
+
+    Parameters
+    ----------
+    file : h5py.File
+        Open for reading.
+    most : int, optional
+        Datasets there may be.
+
+    Returns
+    -------
+    list of str
+        In order of name.
+
+    Raises
+    ------
+    RefusedError
+        If there is a link that is not hard, a group but `GROUP`, a type other than float64 or int64,
+        data stored elsewhere, an unknown filter, or more data declared than stored.
+    """
+    paths = [name for name in _hard(file, "", most) if name != GROUP]
+    if GROUP in file:
+        if not isinstance(file[GROUP], h5py.Group):
+            raise RefusedError(f"{GROUP}: not a group")
+        paths += _hard(file[GROUP], f"{GROUP}/", most)
+    for path in paths:
+        _check_dataset(path, h5py.h5o.open(file.id, path.encode()))
+    return paths
+
+
+def _hard(group: h5py.Group, prefix: str, most: int) -> list[str]:
+    """Members of a group, all of them in this file."""
+    if len(group) > most:
+        raise RefusedError(f"{len(group)} datasets; at most {most} are allowed")
+    for name in group:
+        if not isinstance(group.get(name, getlink=True), h5py.HardLink):
+            raise RefusedError(f"{prefix}{name}: a link to another place")
+    return [prefix + name for name in sorted(group)]
+
+
+def _check_dataset(name: str, item: Any) -> None:
+    if not isinstance(item, h5py.h5d.DatasetID):
+        raise RefusedError(f"{name}: not a dataset")
+    dtype, plist, shape = item.dtype, item.get_create_plist(), item.shape
+    if dtype.kind not in "fi" or dtype.itemsize != 8:
+        raise RefusedError(f"{name}: type {dtype}, not 64-bit numbers")
+    if item.get_space().get_simple_extent_type() != h5py.h5s.SIMPLE or not 1 <= len(shape) <= 2:
+        raise RefusedError(f"{name}: not a table of one or two axes")
+    if plist.get_external_count() or plist.get_layout() not in (h5py.h5d.CONTIGUOUS, h5py.h5d.CHUNKED):
+        raise RefusedError(f"{name}: its data lie elsewhere")
+    filters = {plist.get_filter(i)[0] for i in range(plist.get_nfilters())}
+    if not filters <= _FILTERS:
+        raise RefusedError(f"{name}: unknown filter {sorted(filters - _FILTERS)}")
+    _check_storage(name, item, plist)
+
+
+def _check_storage(name: str, item: Any, plist: Any) -> None:
+    """Every value declared must be stored, chunk by chunk."""
+    declared, stored = math.prod(item.shape) * 8, item.get_storage_size()
+    if plist.get_layout() == h5py.h5d.CONTIGUOUS:
+        if stored != declared:
+            raise RefusedError(f"{name}: {declared} bytes declared, {stored} stored")
+        return
+    chunk = item.get_create_plist().get_chunk()
+    if math.prod(chunk) * 8 > _MOST_CHUNK:
+        raise RefusedError(f"{name}: chunks of {math.prod(chunk) * 8} bytes")
+    wanted = math.prod(-(-s // c) for s, c in zip(item.shape, chunk, strict=True))
+    if wanted != item.get_num_chunks():
+        raise RefusedError(f"{name}: {wanted} chunks declared, {item.get_num_chunks()} stored")
+    if declared > stored * _MOST_EXPANSION + 2**20:
+        raise RefusedError(f"{name}: {declared} bytes declared, {stored} stored")
+
+
+def describe(path: str) -> dict[str, Any]:
+    """Attributes and datasets of a file, all checked; if it is small, every number is read once.
+
+    Parameters
+    ----------
+    path : str
+        An HDF5 file.
+
+    Returns
+    -------
+    dict
+        ``{"attributes": {...}, "datasets": {name: [type, shape]}, "head": digest}``.
+
+    Raises
+    ------
+    RefusedError
+        If it is not plain.
+    OSError
+        If HDF5 cannot read it.
+    """
+    with h5py.File(path, "r") as file:
+        names = check_plain(file)
+        if len(file.attrs) > _MOST_ATTRIBUTES:
+            raise RefusedError(f"{len(file.attrs)} attributes")
+        attributes = {name: _plain_value(name, file.attrs) for name in file.attrs}
+        if Path(path).stat().st_size <= _READ_ALL:
+            for name in names:
+                _read(file[name])
+        found = {name: [file[name].dtype.str, list(file[name].shape)] for name in names}
+        return {"attributes": attributes, "datasets": found, "head": head_digest(file, names)}
+
+
+def _plain_value(name: str, attributes: Any) -> Any:
+    """An attribute as text, number, or list of numbers."""
+    identity = attributes.get_id(name)
+    if identity.get_storage_size() > _MOST_TEXT or math.prod(identity.shape or (1,)) > 64:
+        raise RefusedError(f"attribute {name}: too large")
+    value = attributes[name]
+    if isinstance(value, str):
+        if len(value) > _MOST_TEXT:
+            raise RefusedError(f"attribute {name}: too large")
+        return value
+    if isinstance(value, np.ndarray | np.generic) and value.dtype.kind in "iufb":
+        return value.tolist()
+    raise RefusedError(f"attribute {name}: neither text nor number")
+
+
+def _read(data: h5py.Dataset) -> None:
+    width = 8 * math.prod(data.shape[1:]) or 8
+    step = max(2**24 // width, 1)
+    for start in range(0, data.shape[0], step):
+        data[start : start + step]
+
+
+def _main(paths: list[str], memory: int) -> None:
+    from mcgw.machine.child_process import limit_memory
+
+    memory = limit_memory(memory)
+    for path in paths:
+        try:
+            answer = describe(path)
+        except MemoryError:
+            answer = {"refused": f"needs more than {memory} bytes of memory"}
+        except RefusedError as error:
+            answer = {"refused": str(error), "sure": True}
+        except Exception:  # HDF5 reports damage as any of a dozen exceptions
+            answer = {"refused": "not an HDF5 file, or a damaged one"}
+        sys.stdout.write(json.dumps(answer) + "\n")
+
+
+if __name__ == "__main__":
+    *_paths, _, _memory = sys.argv[1:]
+    _main(_paths, int(_memory))
