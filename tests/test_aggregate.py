@@ -12,7 +12,8 @@ import analytic
 import mcgw
 from mcgw.ensemble.ensemble import Arrays, Ensemble
 from mcgw.sampling import samplers
-from mcgw.sampling.aggregate import Crowds, _law_of_moments, _partly
+from mcgw.sampling.aggregate import _law_of_moments, _partly
+from mcgw.sampling.drawing import Crowds
 from mcgw.sampling.response.response import layout_of
 
 GATE = 5.0
@@ -112,7 +113,7 @@ def variance(sampler):
     total = 0.0
     for cell, start in enumerate(layout.starts[:-1]):
         orders = (
-            x[cell] for x in (layout.plain, layout.rooted, *dataclasses.astuple(sampler.crowds.varying))
+            x[cell] for x in (layout.plain, layout.rooted, *dataclasses.astuple(sampler.drawing.varying))
         )
         mean, root = _partly(*(int(n) for n in orders))
         rows = response[:, start : start + len(mean)]
@@ -161,7 +162,7 @@ def test_with_fewer_moments_the_variance_would_show(make_scene):
     scene = make_scene(n_asperities=10**9, sampler="aggregate", count="poisson")
     sampler = samplers.sampler_of(scene)
     few = layout_of(scene, sampler.mesh, ("load", "area", "stiffness"), accuracy=1e-2)
-    blunt = dataclasses.replace(sampler, crowds=Crowds(few, 256))
+    blunt = dataclasses.replace(sampler, drawing=Crowds(few, 256))
     assert np.abs(variance(blunt) / variance(sampler) - 1).max() > 1e-4
 
 

@@ -11,6 +11,7 @@ import pytest
 
 import mcgw
 from mcgw import sampling
+from mcgw.scene.samplers import SAMPLERS
 
 # Packages are layers: each imports only from those before it, and within one nothing goes round in a circle.
 LAYERS = (
@@ -72,6 +73,25 @@ def test_the_response_knows_no_randomness():
     for this, tree in inside():
         if this.startswith("sampling.response"):
             assert not {f"sampling.{name}" for name in random} & set(imports(tree)), this
+
+
+def test_nobody_outside_asks_which_sampler_it_is():
+    """What differs between them they tell themselves, or their `Promise` does."""
+    names = set(SAMPLERS) - {"auto", "cells"}  # there is a dataset called cells
+    for this, tree in inside():
+        if this.startswith(("sampling.", "scene.samplers")):
+            continue
+        compared = [x for node in ast.walk(tree) if isinstance(node, ast.Compare) for x in ast.walk(node)]
+        assert not {x.value for x in compared if isinstance(x, ast.Constant)} & names, this
+        assert not {"Cells", "Counted", "Direct"} & {x.id for x in asked_for(tree)}, this
+
+
+def asked_for(tree):
+    """Names in all calls of `isinstance`."""
+    for node in ast.walk(tree):
+        match node:
+            case ast.Call(func=ast.Name(id="isinstance")):
+                yield from (x for x in ast.walk(node) if isinstance(x, ast.Name))
 
 
 def test_the_root_has_only_the_door():

@@ -14,7 +14,7 @@ from mcgw.sampling.moments import _PIECE, _add_compensated, cell_moments
 from mcgw.sampling.philox import CELLS, uniforms
 from mcgw.sampling.samplers import sampler_of
 from mcgw.sampling.uniform_sums import PLAIN, ROOTED, WORDS, sum_uniforms
-from mcgw.scene.scene import SAMPLERS
+from mcgw.scene.samplers import SAMPLERS
 
 FALSE_ALARM = 1e-6  # of each chi-square test; the seeds are fixed
 MANY = 2**20

@@ -58,7 +58,7 @@ def test_a_millionth_with_fewer_than_1e5_draws(make_scene, separations):
         )
         exact = float(analytic.load(scene.surface, 0.0, scene.grading)) / scene.surface.n_asperities
         errors.append(float(mcgw.simulate(scene).mean("load")[0]) / (exact * scene.n_asperities) - 1)
-    strata = strata_of(scene, sampler_of(scene).mesh, 1)
+    strata = strata_of(scene, sampler_of(scene).mesh, 0, 1)
     assert strata.cells.sum() + strata.low_extras.sum() + strata.high_extras.sum() < 1e5
     assert np.abs(errors).max() < 1e-6
 

@@ -511,16 +511,16 @@ def test_engines_are_those_asked_for(call, monkeypatch, scene, words, where, mad
 def test_threads_are_so_many_while_it_draws(call, monkeypatch):
     import numba
 
-    from mcgw.sampling import samplers
+    from mcgw.sampling import counted
 
     seen = []
-    block = samplers.Cells.block
+    block = counted.Counted.block
 
     def spy(self, first, n):
         seen.append(numba.get_num_threads())
         return block(self, first, n)
 
-    monkeypatch.setattr(samplers.Cells, "block", spy)
+    monkeypatch.setattr(counted.Counted, "block", spy)
     before = numba.get_num_threads()
     assert call(["run", "@s.toml", "-o", "a.h5", "--threads", "1"]).code == 0
     assert seen[-1] == 1

@@ -8,7 +8,7 @@ import mcgw
 from mcgw.sampling.layout import Layout
 from mcgw.sampling.moments import cell_moments
 from mcgw.sampling.samplers import sampler_of
-from mcgw.scene.scene import SAMPLERS
+from mcgw.scene.samplers import SAMPLERS
 
 
 @pytest.mark.parametrize("sampler", SAMPLERS[1:])

@@ -17,7 +17,8 @@ from mcgw.errors import RunError, StoreError
 from mcgw.jobs.blocks import commit_block
 from mcgw.jobs.running import Part, run, run_part
 from mcgw.sampling.samplers import sampler_of
-from mcgw.scene.scene import SAMPLERS, Scene
+from mcgw.scene.samplers import SAMPLERS
+from mcgw.scene.scene import Scene
 from mcgw.store import arithmetic
 
 GRADINGS = {

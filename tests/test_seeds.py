@@ -15,7 +15,8 @@ from mcgw.figures.samples import Samples
 from mcgw.jobs.running import run
 from mcgw.sampling.asperities import heights
 from mcgw.sampling.samplers import sampler_of
-from mcgw.scene.scene import SAMPLERS, SceneError
+from mcgw.scene.samplers import SAMPLERS
+from mcgw.scene.scene import SceneError
 from mcgw.statistics.convergence import converge
 from mcgw.store import ensembles
 

@@ -10,7 +10,8 @@ from hypothesis import strategies as st
 import analytic
 import mcgw
 from mcgw.sampling.samplers import sampler_of
-from mcgw.scene.scene import SAMPLERS, Scene
+from mcgw.scene.samplers import SAMPLERS
+from mcgw.scene.scene import Scene
 from mcgw.store.run_folder import missing
 from mcgw.store.shards import Span
 from mcgw.store.trailer import Seal

@@ -15,7 +15,8 @@ import mcgw
 from mcgw.errors import StoreError
 from mcgw.jobs.running import run
 from mcgw.sampling.samplers import sampler_of
-from mcgw.scene.scene import SAMPLERS, Scene
+from mcgw.scene.samplers import SAMPLERS
+from mcgw.scene.scene import Scene
 from mcgw.store import ensembles
 
 GOLDEN = Path(__file__).parent / "golden_samplers.json"

@@ -104,7 +104,7 @@ def _of_threads(threads: int | None) -> list[str]:
 
 def _of_time(scene: "Scene") -> list[str]:
     """How long it will take, where that is more than a minute."""
-    from mcgw.jobs.duration import draws_per_surface, in_words, seconds_for
+    from mcgw.jobs.duration import in_words, seconds_for
     from mcgw.sampling.samplers import sampler_of
 
     if scene.rel_err is not None or scene.max_seconds is not None:
@@ -113,7 +113,7 @@ def _of_time(scene: "Scene") -> list[str]:
     seconds = seconds_for(scene, sampler, m, at_least=_LONG / 4)
     if seconds < _LONG:
         return []
-    drawn = draws_per_surface(scene, sampler) * m
+    drawn = sampler.draws * m
     return [
         f"{m:g} surfaces of {scene.n_asperities:g} asperities: about {in_words(seconds)} on this machine "
         f"({drawn:.2g} draws); Ctrl-C keeps what is done, mcgw show --plan tells more"

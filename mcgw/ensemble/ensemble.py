@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from analytic import QUANTITIES, MeasuredHeights
 from mcgw.ensemble.intervals import CONFIDENCE, count_interval, mean_interval, spread_of
+from mcgw.scene.samplers import promise_of
 from mcgw.scene.scene import Scene
 
 __all__ = ["Arrays", "Ensemble", "Sums"]
@@ -151,7 +152,7 @@ class Ensemble:
         """
         self._check(quantity)
         scene, m = self.scene, self.n_surfaces
-        if self.sampler == "stratified":
+        if not promise_of(self.sampler).real_surfaces:
             raise ValueError("stratified surfaces have no interval: their fluctuations are not those of any")
         if isinstance(scene.heights, MeasuredHeights):
             return self.mean(quantity), self.mean(quantity)

@@ -9,7 +9,9 @@ from numpy.typing import NDArray
 from analytic import Grading
 from mcgw.ensemble.ensemble import Arrays, Ensemble
 from mcgw.ensemble.simulation import kept
-from mcgw.sampling.samplers import Block, Cells, response_to, sampler_of
+from mcgw.sampling.block import Block
+from mcgw.sampling.counted import Counted
+from mcgw.sampling.samplers import regraded
 
 __all__ = ["Paired", "paired_ratio", "regrade"]
 
@@ -61,14 +63,10 @@ def regrade(
         separations=tuple(separations or old.separations),
         n_surfaces=ensemble.n_surfaces,
     )
-    drawn = sampler_of(old)
-    if not isinstance(drawn, Cells):
-        raise ValueError(f'sampler = "{drawn.name}" has no cells')
-    mesh = drawn.mesh
-    _check_cells(drawn, ensemble)
-    _check_edges("separation", scene.separations, mesh.edges)
-    _check_edges("break of the grading", scene.modulus.breaks, mesh.edges)
-    cells = Cells(scene, mesh, response_to(scene, mesh, drawn.response.layout), drawn.name)
+    cells = regraded(scene, old)
+    _check_cells(cells, ensemble)
+    _check_edges("separation", scene.separations, cells.mesh.edges)
+    _check_edges("break of the grading", scene.modulus.breaks, cells.mesh.edges)
     extras = ensemble.sums.read("extras", 0, None)
     parts = []
     for first in range(0, ensemble.n_surfaces, _ROWS):
@@ -82,10 +80,10 @@ def regrade(
     return Ensemble(scene, ensemble.sampler, Arrays(arrays))
 
 
-def _check_cells(drawn: Cells, ensemble: Ensemble) -> None:
+def _check_cells(drawn: Counted, ensemble: Ensemble) -> None:
     """The moments must be of the cells that this version makes."""
     found = tuple(ensemble.sums.read(name, 0, 1).shape[1] for name in ("cells", "moments"))
-    if found != (drawn.mesh.size, drawn.response.layout.starts[-1]):
+    if found != (drawn.cells, drawn.moments):
         raise ValueError(
             "the moments kept are of other cells, as another version of mcgw makes them; "
             "regrade with that version, or simulate the scene anew"

@@ -13,8 +13,10 @@ from mcgw.ensemble.ensemble import Arrays, Ensemble
 from mcgw.ensemble.forecast import without_rule
 from mcgw.machine.in_threads import in_threads, pieces
 from mcgw.machine.memory import check_memory
+from mcgw.sampling.block import Block, Sampler
 from mcgw.sampling.counts import GROUP
-from mcgw.sampling.samplers import Block, Cells, Sampler, sampler_of
+from mcgw.sampling.samplers import sampler_of
+from mcgw.scene.samplers import promise_of
 from mcgw.scene.scene import Scene
 
 __all__ = [
@@ -114,7 +116,7 @@ def _check_memory(scene: Scene, n_surfaces: int) -> None:
 def kept(scene: Scene, block: Block) -> dict[str, Any]:
     """What of a block is kept: its sums, and its moments if the scene says so."""
     arrays: dict[str, Any] = dict(block.sums)
-    if "contacts" in arrays and scene.sampler != "stratified":
+    if "contacts" in arrays and promise_of(scene.sampler).real_surfaces:
         arrays["contacts"] = np.rint(arrays["contacts"]).astype(np.int64)
     if scene.keep == "moments":
         arrays |= {"moments": block.moments, "cells": block.counts, "extras": block.extras}
@@ -127,14 +129,8 @@ def block_size(scene: Scene, sampler: Sampler) -> int:
     With a multiple of eight the rows of the moments would share their places in the innermost cache. A
     group is what the product takes at a time, whether it is full or not.
     """
-    touching = scene.touching
-    words = len(scene.separations) * len(scene.quantities)
-    if isinstance(sampler, Cells):
-        words += int(sampler.response.layout.starts[-1]) + 2 * sampler.mesh.size
-    draws = {"direct": float(scene.n_asperities), "aggregate": 1e4}.get(sampler.name, touching)
-    if sampler.name == "tail":
-        words += 12 * int(min(touching, 1e12))
-    most = int(min(_MOST_WORDS / words, _DRAWS / (draws + 1), 30 * GROUP))
+    words = len(scene.separations) * len(scene.quantities) + sampler.words
+    most = int(min(_MOST_WORDS / words, _DRAWS / (sampler.draws + 1), 30 * GROUP))
     size = min(most, max(_WORDS // words, GROUP))
     return (size // GROUP // 4 * 4 + 2) * GROUP if size > GROUP else max(size, 1)
 

@@ -7,7 +7,8 @@ import numpy as np
 
 from mcgw.ensemble.simulation import block_size, drawn_blocks, kept, use_threads
 from mcgw.errors import RunError
-from mcgw.sampling.samplers import Cells, Sampler, sampler_of
+from mcgw.sampling.block import Sampler
+from mcgw.sampling.samplers import sampler_of
 from mcgw.scene.scene import Scene
 from mcgw.store.run_folder import Run, difference, identity_of
 from mcgw.store.shards import Arrays, Span, commit_shard
@@ -22,17 +23,15 @@ _DRAWS = 4e8  # asperities a shard: a second or so
 def shard_size(scene: Scene, sampler: Sampler) -> int:
     """Surfaces a shard: a function of the scene alone, however many there are of them."""
     size, row = block_size(scene, sampler), 8 * columns(scene, sampler)
-    touching = scene.touching
-    draws = scene.n_asperities if sampler.name == "direct" else touching
-    return size * int(max(min(_BYTES / (size * row), _DRAWS / (size * (draws + 1))), 1))
+    return size * int(max(min(_BYTES / (size * row), _DRAWS / (size * (sampler.draws + 1))), 1))
 
 
 def columns(scene: Scene, sampler: Sampler) -> int:
     """Numbers kept of a surface."""
     sums = len(scene.separations) * len(scene.quantities)
-    if scene.keep == "sums" or not isinstance(sampler, Cells):
+    if scene.keep == "sums":
         return sums
-    return sums + int(sampler.response.layout.starts[-1]) + sampler.mesh.size + _OF_AN_EXTRA
+    return sums + sampler.moments + sampler.cells + _OF_AN_EXTRA
 
 
 def draw(scene: Scene, sampler: Sampler, span: Span, threads: int | None) -> Arrays:

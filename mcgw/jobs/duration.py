@@ -1,26 +1,13 @@
 """How long a run will take, in a moment and in words."""
 
-import numpy as np
-
 from mcgw.ensemble.simulation import seconds_per_surface
-from mcgw.sampling.samplers import Cells, Sampler
+from mcgw.sampling.block import Sampler
 from mcgw.scene.scene import Scene
 
-__all__ = ["draws_per_surface", "in_words", "seconds_for"]
+__all__ = ["in_words", "seconds_for"]
 
-_PER_DRAW, _PER_SUM, _PER_DIRECT = 2e-9, 4e-9, 2e-8  # rough seconds: an asperity, a result, one by NumPy
+_PER_SUM = 4e-9  # rough seconds of a result
 _TRIED = 0.05  # rough seconds of a surface up to which a block is drawn to see
-
-
-def draws_per_surface(scene: Scene, sampler: Sampler) -> float:
-    """Numbers expected to be drawn for a surface, one an asperity."""
-    drawn = float(scene.n_asperities)
-    if isinstance(sampler, Cells):
-        drawn *= float(scene.heights.above(np.array(scene.lowest)))
-        moments = int(sampler.response.layout.sizes.sum())
-        drawn = drawn if moments or sampler.name == "tail" or not sampler.mesh.size else 0.0
-        drawn = min(drawn, float(moments)) if sampler.name == "aggregate" else drawn
-    return drawn
 
 
 def seconds_for(scene: Scene, sampler: Sampler, surfaces: int, *, at_least: float = 0.0) -> float:
@@ -42,9 +29,8 @@ def seconds_for(scene: Scene, sampler: Sampler, surfaces: int, *, at_least: floa
     float
         Seconds, from a block drawn on trial where a surface takes little.
     """
-    each = _PER_DRAW if isinstance(sampler, Cells) else _PER_DIRECT
     columns = len(scene.separations) * len(scene.quantities)
-    rough = draws_per_surface(scene, sampler) * each + columns * _PER_SUM
+    rough = sampler.draws * sampler.seconds_per_draw + columns * _PER_SUM
     if rough * surfaces < at_least or rough > _TRIED:
         return rough * surfaces
     return surfaces * seconds_per_surface(scene, sampler)

@@ -5,9 +5,10 @@ from dataclasses import dataclass
 from analytic import QUANTITIES
 from mcgw.ensemble.forecast import forecast
 from mcgw.ensemble.simulation import use_threads
-from mcgw.jobs.duration import draws_per_surface, in_words, seconds_for
+from mcgw.jobs.duration import in_words, seconds_for
 from mcgw.machine.terminal import one_line
-from mcgw.sampling.samplers import Cells, sampler_of
+from mcgw.sampling.samplers import sampler_of
+from mcgw.scene.samplers import promise_of
 from mcgw.scene.scene import Scene
 
 __all__ = ["Plan", "plan_of", "plan_text"]
@@ -64,13 +65,8 @@ def plan_of(scene: Scene, *, threads: int | None = None) -> Plan:
         Nothing of the trial block is kept.
     """
     sampler = sampler_of(scene)
-    touching = scene.touching
-    cells = moments = 0
-    if isinstance(sampler, Cells):
-        layout = sampler.response.layout
-        cells, moments = sampler.mesh.size, int(layout.sizes.sum())
     columns = len(scene.separations) * len(scene.quantities)
-    columns += (moments + cells) * (scene.keep == "moments")
+    columns += (sampler.moments + sampler.cells) * (scene.keep == "moments")
     surfaces = forecast(scene).surfaces
     with use_threads(threads):
         seconds = seconds_for(scene, sampler, surfaces)
@@ -78,10 +74,10 @@ def plan_of(scene: Scene, *, threads: int | None = None) -> Plan:
         sampler.name,
         surfaces,
         float(scene.n_asperities),
-        touching,
-        draws_per_surface(scene, sampler),
-        cells,
-        moments,
+        scene.touching,
+        sampler.draws,
+        sampler.cells,
+        sampler.moments,
         8 * columns * surfaces,
         seconds,
     )
@@ -89,7 +85,6 @@ def plan_of(scene: Scene, *, threads: int | None = None) -> Plan:
 
 def plan_text(scene: Scene, plan: Plan) -> str:
     """The plan in words, with what is not done and why."""
-    spared = plan.asperities - plan.touching
     lines = [
         one_line(scene.title) or "scene",
         f"  surfaces      {plan.surfaces} of {scene.n_asperities} asperities ({scene.count})",
@@ -102,10 +97,8 @@ def plan_text(scene: Scene, plan: Plan) -> str:
         f"  time          about {in_words(plan.seconds)} on this machine",
         "not done:",
     ]
-    if plan.sampler != "direct":
-        lines.append(f"  {spared:.4g} asperities of a surface lie below every separation and are not drawn")
-    if plan.sampler == "aggregate":
-        lines.append("  asperities of crowded cells are not drawn: their moments are, as Gaussian numbers")
+    spared = plan.asperities - plan.touching
+    lines += [f"  {line.format(spared=spared)}" for line in promise_of(plan.sampler).not_done]
     if plan.cells and not plan.moments:
         lines.append("  no height is drawn: contacts follow from the numbers in the cells")
     left_out = [name for name in QUANTITIES if name not in scene.quantities]

@@ -5,6 +5,7 @@ import numpy as np
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.forecast import Forecast
 from mcgw.ensemble.intervals import CONFIDENCE, TOO_FEW, spread_of
+from mcgw.scene.samplers import promise_of
 
 __all__ = ["after", "before", "upper_contacts"]
 
@@ -25,7 +26,7 @@ def after(ensemble: Ensemble, rel_err: float) -> list[str]:
         f"{limit / n:.3g} an asperity ({CONFIDENCE:.0%} confidence)"
         for h in np.unique(ensemble.separations[silent])
     ]
-    if ensemble.sampler == "stratified":
+    if not promise_of(ensemble.sampler).real_surfaces:
         return lines
     for name in ensemble.scene.quantities:
         reach = spread_of(ensemble.scene, name).reach(m)

@@ -12,7 +12,6 @@ Half of the moments are there for the last digits of the means. Where only sums 
 add less than a millionth of the variance stay at their means.
 """
 
-from dataclasses import dataclass
 from functools import cache
 from typing import Any
 
@@ -26,29 +25,13 @@ from mcgw.sampling.layout import Layout
 from mcgw.sampling.philox import MOMENTS, centred
 from mcgw.sampling.rules import gauss_legendre, product, triangle
 
-__all__ = ["CROWDED", "VARYING", "Crowds", "add_gaussian_moments"]
+__all__ = ["CROWDED", "VARYING", "add_gaussian_moments"]
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 CROWDED = 256  # asperities in a cell, from which its moments count as Gaussian
 VARYING = 1e-6  # accuracy of the laws up to which moments vary, if only sums are kept
-
-
-@dataclass(frozen=True)
-class Crowds:
-    """How crowded cells are drawn.
-
-    Parameters
-    ----------
-    varying : Layout
-        Moments that vary; the others stay at their means.
-    threshold : int
-        Asperities in a cell, from which its moments count as Gaussian.
-    """
-
-    varying: Layout
-    threshold: int
 
 
 @cache

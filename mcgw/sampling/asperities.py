@@ -4,10 +4,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mcgw.machine.memory import check_memory
+from mcgw.sampling.counted import Counted
 from mcgw.sampling.counts import counts_of, generator
 from mcgw.sampling.outside import extra_heights
 from mcgw.sampling.philox import CELLS, REST, uniforms
-from mcgw.sampling.samplers import Cells, sampler_of
+from mcgw.sampling.samplers import sampler_of
+from mcgw.scene.samplers import promise_of
 from mcgw.scene.scene import Scene
 
 __all__ = ["heights"]
@@ -37,7 +39,7 @@ def heights(scene: Scene, surface: int, *, untouched: bool = False) -> NDArray[n
         If the sampler does not draw asperities one by one.
     """
     sampler = sampler_of(scene)
-    if not isinstance(sampler, Cells) or sampler.name not in ("cells", "tail"):
+    if not isinstance(sampler, Counted) or not promise_of(sampler.name).one_by_one:
         raise ValueError(f'sampler = "{sampler.name}" keeps no heights; "cells" and "tail" do')
     mesh = sampler.mesh
     counts = counts_of(scene, mesh, surface, 1)

@@ -67,7 +67,7 @@ def counts_of(scene: Scene, mesh: Mesh, first: int, n: int) -> Counts:
     return Counts(np.ascontiguousarray(drawn[1:-1]), drawn[0], drawn[-1], weights)
 
 
-def strata_of(scene: Scene, mesh: Mesh, n: int) -> Counts:
+def strata_of(scene: Scene, mesh: Mesh, first: int, n: int) -> Counts:  # noqa: ARG001 - all are alike
     """Number of strata in each cell: the expected number of asperities, and enough in the tail.
 
     The last of N equal strata has no upper end, and its asperity alone makes an error of order 1/N.
@@ -79,8 +79,8 @@ def strata_of(scene: Scene, mesh: Mesh, n: int) -> Counts:
         Its number of asperities is used.
     mesh : Mesh
         The scene's.
-    n : int
-        Number of surfaces, all alike.
+    first, n : int
+        Which surfaces; all are alike.
 
     Returns
     -------

@@ -22,12 +22,12 @@ from analytic import (
     first_negative,
 )
 from mcgw.formats.units import quantity
+from mcgw.scene.samplers import SAMPLERS, promise_of
 from mcgw.scene.surface import SURFACE_UNITS
 
-__all__ = ["SAMPLERS", "LeftOut", "Scene", "SceneError"]
+__all__ = ["LeftOut", "Scene", "SceneError"]
 
 _LEAST = 1e-100  # next to it, powers of a distance are beyond double precision
-SAMPLERS = ("auto", "direct", "tail", "cells", "aggregate", "stratified")
 MOST_ASPERITIES = 2**53  # counts are exact in double precision up to here
 _SURFACES, _MOST_SURFACES = 1000, 10**9  # where n_surfaces is left out; where rel_err is to decide
 _BEYOND = 1e-16  # share of the heights that lie above what is checked for negative moduli
@@ -225,7 +225,7 @@ class Scene:
             )
         if self.max_seconds is not None and not 0 < self.max_seconds < math.inf:
             problems.append(f"ensemble.max_seconds = {self.max_seconds}: give a number of seconds > 0")
-        if self.sampler == "stratified" and self.rel_err is not None:
+        if not promise_of(self.sampler).real_surfaces and self.rel_err is not None:
             problems.append(
                 'ensemble.rel_err: sampler = "stratified" has no variance to stop by; take another'
             )
@@ -240,7 +240,7 @@ class Scene:
         ):
             if value not in known:
                 problems.append(f"{name}: {value!r} is not one of {', '.join(known)}")
-        if self.keep == "moments" and self.sampler not in ("auto", "cells", "aggregate"):
+        if self.keep == "moments" and not promise_of(self.sampler).keeps_moments:
             problems.append(f'ensemble.keep = "moments": sampler = "{self.sampler}" has none; take "cells"')
         return problems
 

@@ -14,7 +14,8 @@ from mcgw.formats.plain_file import read_bytes, read_text
 from mcgw.formats.toml_text import loads
 from mcgw.formats.units import quantity
 from mcgw.scene.heights_section import heights_law, heights_table
-from mcgw.scene.scene import SAMPLERS, LeftOut, Scene, SceneError
+from mcgw.scene.samplers import SAMPLERS
+from mcgw.scene.scene import LeftOut, Scene, SceneError
 from mcgw.scene.section import Section
 from mcgw.scene.surface import SURFACE_UNITS
 

@@ -8,6 +8,7 @@ from scipy.stats import chi2
 
 from analytic import QUANTITIES, Fluctuations
 from mcgw.ensemble.ensemble import Ensemble
+from mcgw.scene.samplers import promise_of
 
 __all__ = ["FALSE_ALARM", "Comparison", "Curve", "Verdict", "compare", "verdict"]
 
@@ -106,7 +107,7 @@ def compare(ensemble: Ensemble) -> Comparison:
     ValueError
         If the surfaces are stratified: their fluctuations are not those of an ensemble.
     """
-    if ensemble.sampler == "stratified":
+    if not promise_of(ensemble.sampler).real_surfaces:
         raise ValueError("a stratified file holds means, not an ensemble; compare takes another sampler")
     scene = ensemble.scene
     curves = {}

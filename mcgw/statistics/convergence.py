@@ -10,6 +10,7 @@ from scipy.stats import binom, poisson
 
 from mcgw.ensemble.ensemble import Arrays, Ensemble
 from mcgw.ensemble.simulation import simulate
+from mcgw.scene.samplers import promise_of
 from mcgw.scene.scene import Scene
 from mcgw.statistics.checks import (
     Check,
@@ -101,7 +102,7 @@ def converge(
     ValueError
         If the sampler is ``stratified``, which draws no ensemble, or nothing touches.
     """
-    if scene.sampler == "stratified":
+    if not promise_of(scene.sampler).real_surfaces:
         raise ValueError('sampler = "stratified" draws means, not an ensemble; converge takes another one')
     if not scene.touching:
         raise ValueError(

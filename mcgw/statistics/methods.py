@@ -17,9 +17,10 @@ from mcgw.ensemble.simulation import blocks
 from mcgw.errors import RunError
 from mcgw.sampling.asperities import heights
 from mcgw.sampling.cells import mesh_of
+from mcgw.sampling.counted import Counted
 from mcgw.sampling.hertz import hertz_sums
 from mcgw.sampling.response.response import response_of
-from mcgw.sampling.samplers import Cells, Sampler, aggregate_of, sampler_of
+from mcgw.sampling.samplers import Sampler, aggregate_of, sampler_of
 from mcgw.scene.scene import Scene
 from mcgw.statistics.reference import quantiles, reference
 
@@ -164,7 +165,7 @@ class _ByMoments:
         scene, name = self.scene, self.scene.quantities[0]
         mesh = mesh_of(scene)
         summed = (name,) if analytic.QUANTITIES[name].exponent > 0 else ()
-        sampler = Cells(scene, mesh, response_of(scene, mesh, summed, accuracy=1 / size), "cells")
+        sampler = Counted("cells", scene, mesh, response_of(scene, mesh, summed, accuracy=1 / size))
         value, plain = sampler.block(0, 1).sums[name][0], self.plain
         pick = list(self.chosen)
         with np.errstate(divide="ignore", invalid="ignore"):  # no contact there: no relative error

@@ -23,6 +23,7 @@ from analytic import (
     MeasuredHeights,
     Table,
 )
+from mcgw.scene.samplers import promise_of
 from mcgw.scene.scene import Scene
 from mcgw.store.provenance import versions
 
@@ -41,7 +42,8 @@ def depends_on_processor(scene: Scene, sampler: str) -> bool:
     if isinstance(modulus, Clipped) and isinstance(modulus.grading, Exponential):
         modulus = modulus.grading
     own = isinstance(scene.heights, _HEIGHTS) and isinstance(modulus, _GRADINGS)
-    return not own or (sampler == "direct" and not isinstance(scene.heights, MeasuredHeights))
+    drawn_alike = promise_of(sampler).same_on_all_processors or isinstance(scene.heights, MeasuredHeights)
+    return not (own and drawn_alike)
 
 
 @cache

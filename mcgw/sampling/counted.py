@@ -1,0 +1,123 @@
+"""Samplers that count before they draw: the numbers in the cells, their moments, and the product."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mcgw.sampling.block import Block
+from mcgw.sampling.cells import Mesh
+from mcgw.sampling.counts import Counts, contacts_above, counts_of
+from mcgw.sampling.drawing import Drawing, OneByOne
+from mcgw.sampling.hertz import hertz_sums
+from mcgw.sampling.outside import extra_heights
+from mcgw.sampling.response.response import Response
+from mcgw.scene.scene import Scene
+
+__all__ = ["Counted"]
+
+Array = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+_WORDS = 12  # numbers in memory for an asperity drawn by itself
+
+
+@dataclass(frozen=True)
+class Counted:
+    """A sampler put together of a mesh, a response, a way to count and a way to draw.
+
+    Parameters
+    ----------
+    name : str
+        What a scene calls it.
+    scene : Scene
+        What is asked.
+    mesh : Mesh
+        Its cells; with none, every asperity is drawn by itself.
+    response : Response
+        Physics on this mesh.
+    counting : callable, optional
+        Numbers of asperities of surfaces `first` ... `first + n - 1`: ``counting(scene, mesh, first, n)``.
+    drawing : Drawing, optional
+        How the moments of the cells are drawn.
+    """
+
+    name: str
+    scene: Scene
+    mesh: Mesh
+    response: Response
+    counting: Callable[[Scene, Mesh, int, int], Counts] = counts_of
+    drawing: Drawing = OneByOne()  # noqa: RUF009 - it has no state
+    seconds_per_draw: float = 2e-9
+
+    @property
+    def cells(self) -> int:
+        """Number of its cells."""
+        return self.mesh.size
+
+    @property
+    def moments(self) -> int:
+        """Moments of a surface."""
+        return int(self.response.layout.starts[-1])
+
+    @property
+    def words(self) -> int:
+        """Numbers in memory for a surface, besides its results."""
+        return self.moments + 2 * self.cells + _WORDS * int(min(self._outside, 1e12))
+
+    @property
+    def draws(self) -> float:
+        """Numbers that are expected to be drawn for a surface."""
+        inside = self.scene.n_asperities * float(self.mesh.probability.sum())
+        return self._outside + self.drawing.draws(inside, self.response.layout)
+
+    @property
+    def _outside(self) -> float:
+        """Asperities that are expected to be drawn by themselves."""
+        return self.scene.n_asperities * (self.mesh.low_extras + self.mesh.high_extras)
+
+    def block(self, first: int, n: int) -> Block:
+        """Results of surfaces `first` ... `first + n - 1`."""
+        counts = self.counting(self.scene, self.mesh, first, n)
+        moments = self.drawing.moments(self.scene.seed, first, counts, self.response.layout)
+        extras = extra_heights(self.scene, self.mesh, first, counts)
+        numbers = counts.cells * counts.weights[1:-1, None]
+        return Block(self.sums(first, moments, numbers, extras), moments.T, numbers.T, extras)
+
+    def sums(self, first: int, moments: Array, counts: Array, extras: Array) -> dict[str, Array]:
+        """Quantities of surfaces `first` ... from what was drawn.
+
+        Parameters
+        ----------
+        first : int
+            Number of the first surface.
+        moments, counts : ndarray
+            Shape (moments, surfaces) and (cells, surfaces).
+        extras : ndarray
+            Rows (surface, height, weight).
+
+        Returns
+        -------
+        dict of str to ndarray
+            Each quantity in SI units, shape (surfaces, separations).
+        """
+        scene = self.scene
+        once, column = np.unique(scene.separations, return_inverse=True)
+        columns = slice(None) if np.array_equal(once, scene.separations) else column
+        answers = iter(self.response @ moments)
+        sums = {}
+        for name in scene.quantities:
+            sums[name] = (
+                contacts_above(counts, self._places()) if name == "contacts" else next(answers)[:, columns]
+            )
+        where, numbers = np.unique(extras[:, 0].astype(np.int64) - first, return_counts=True)
+        heights, weights = np.ascontiguousarray(extras[:, 1:].T)
+        with np.errstate(over="ignore"):  # as in the product: what is too large is infinite
+            for name, values in hertz_sums(scene, numbers, heights, weights).items():
+                sums[name][where] += values
+        return sums
+
+    def _places(self) -> Ints:
+        """First cell above each separation."""
+        return np.searchsorted(self.mesh.edges[:-1], self.scene.separations)

@@ -1,0 +1,59 @@
+"""All heights, by NumPy's generator, and plain loops: the witness against the other samplers."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mcgw.sampling.block import Block
+from mcgw.sampling.counts import generator
+from mcgw.sampling.hertz import hertz_sums
+from mcgw.scene.scene import Scene
+
+__all__ = ["Direct"]
+
+Array = NDArray[np.float64]
+
+_PURPOSE = 1  # of NumPy's generator; the counts have 0
+_PIECE = 2**20  # heights at a time
+
+
+@dataclass(frozen=True)
+class Direct:
+    """Draws every asperity of every surface.
+
+    Parameters
+    ----------
+    scene : Scene
+        What is asked.
+    """
+
+    scene: Scene
+    name: str = "direct"
+    cells: int = 0
+    moments: int = 0
+    words: int = 0
+    seconds_per_draw: float = 2e-8
+
+    @property
+    def draws(self) -> float:
+        """Numbers drawn for a surface."""
+        return float(self.scene.n_asperities)
+
+    def block(self, first: int, n: int) -> Block:
+        """Results of surfaces `first` ... `first + n - 1`."""
+        rows = [self._surface(number) for number in range(first, first + n)]
+        return Block({name: np.concatenate([row[name] for row in rows]) for name in rows[0]})
+
+    def _surface(self, number: int) -> dict[str, Array]:
+        scene = self.scene
+        rng = generator(scene.seed, _PURPOSE, number)
+        left = scene.n_asperities if scene.count == "fixed" else int(rng.poisson(scene.n_asperities))
+        total = hertz_sums(scene, np.array([0]), np.empty(0), np.empty(0))
+        while left:
+            now = min(left, _PIECE)
+            heights = scene.heights.sample(rng, now)
+            left -= now
+            for name, value in hertz_sums(scene, np.array([now]), heights, np.ones(now)).items():
+                total[name] += value
+        return total

@@ -1,0 +1,88 @@
+"""From the numbers of asperities in the cells to their moments: three ways.
+
+``OneByOne``   a uniform for each asperity
+``InStrata``   a uniform in each of as many equal strata of the cell, with the weight it stands for
+``Crowds``     for cells with few asperities as `OneByOne`, else one Gaussian number a moment
+"""
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mcgw.sampling.aggregate import add_gaussian_moments
+from mcgw.sampling.counts import Counts
+from mcgw.sampling.layout import Layout
+from mcgw.sampling.moments import cell_moments
+
+__all__ = ["Crowds", "Drawing", "InStrata", "OneByOne"]
+
+Array = NDArray[np.float64]
+
+
+class Drawing(Protocol):
+    """A way to draw the moments of the cells."""
+
+    def moments(self, seed: int, first: int, counts: Counts, layout: Layout) -> Array:
+        """Moments of surfaces `first` ..., shape (moments, surfaces)."""
+        ...
+
+    def draws(self, asperities: float, layout: Layout) -> float:
+        """Numbers drawn for so many asperities in the cells of a surface."""
+        ...
+
+
+@dataclass(frozen=True)
+class OneByOne:
+    """A uniform for each asperity."""
+
+    def moments(self, seed: int, first: int, counts: Counts, layout: Layout) -> Array:
+        """Sums over the uniforms of each cell."""
+        return cell_moments(seed, first, counts.cells, layout)
+
+    def draws(self, asperities: float, layout: Layout) -> float:
+        """All of them, unless nobody asks for a moment."""
+        return asperities if layout.sizes.any() else 0.0
+
+
+@dataclass(frozen=True)
+class InStrata:
+    """A uniform in each of as many equal strata of the cell."""
+
+    def moments(self, seed: int, first: int, counts: Counts, layout: Layout) -> Array:
+        """Sums over the uniforms of each cell, with the weight that each of them stands for."""
+        moments = cell_moments(seed, first, counts.cells, layout, stratified=True)
+        moments *= np.repeat(counts.weights[1:-1], layout.sizes)[:, None]
+        return moments
+
+    def draws(self, asperities: float, layout: Layout) -> float:
+        """About as many as asperities, unless nobody asks for a moment."""
+        return asperities if layout.sizes.any() else 0.0
+
+
+@dataclass(frozen=True)
+class Crowds:
+    """Crowded cells by the Gaussian limit of their moments (`mcgw.sampling.aggregate`).
+
+    Parameters
+    ----------
+    varying : Layout
+        Moments that vary; the others stay at their means.
+    threshold : int
+        Asperities in a cell, from which its moments count as Gaussian.
+    """
+
+    varying: Layout
+    threshold: int
+
+    def moments(self, seed: int, first: int, counts: Counts, layout: Layout) -> Array:
+        """Of crowded cells as Gaussian numbers, of the others asperity by asperity."""
+        crowded = np.where(counts.cells >= self.threshold, counts.cells, 0)
+        moments = cell_moments(seed, first, counts.cells - crowded, layout)
+        add_gaussian_moments(seed, first, crowded, layout, self.varying, moments)
+        return moments
+
+    def draws(self, asperities: float, layout: Layout) -> float:
+        """One a moment where that is less."""
+        return min(asperities, float(layout.sizes.sum()))

@@ -1,0 +1,49 @@
+"""The samplers that a scene can ask for by name, and what each of them promises."""
+
+from dataclasses import dataclass
+
+__all__ = ["SAMPLERS", "Promise", "promise_of"]
+
+
+@dataclass(frozen=True)
+class Promise:
+    """What others may rely on, whichever sampler it is.
+
+    Parameters
+    ----------
+    real_surfaces : bool, optional
+        Each surface could exist: it has whole numbers of contacts and fluctuates as others do. Otherwise
+        only means are of use.
+    same_on_all_processors : bool, optional
+        Its numbers are made of sums, products, quotients and roots, which every processor rounds alike.
+    one_by_one : bool, optional
+        The heights are those of single asperities, which `mcgw.heights` can tell.
+    keeps_moments : bool, optional
+        Its surfaces can be given another grading afterwards.
+    not_done : tuple of str, optional
+        What it spares, for people; ``{spared}`` stands for the asperities that do not touch.
+    """
+
+    real_surfaces: bool = True
+    same_on_all_processors: bool = True
+    one_by_one: bool = True
+    keeps_moments: bool = True
+    not_done: tuple[str, ...] = ()
+
+
+_UNTOUCHED = "{spared:.4g} asperities of a surface lie below every separation and are not drawn"
+_CROWDED = "asperities of crowded cells are not drawn: their moments are, as Gaussian numbers"
+
+_PROMISES = {
+    "direct": Promise(same_on_all_processors=False, one_by_one=False, keeps_moments=False),
+    "tail": Promise(keeps_moments=False, not_done=(_UNTOUCHED,)),
+    "cells": Promise(not_done=(_UNTOUCHED,)),
+    "aggregate": Promise(one_by_one=False, not_done=(_UNTOUCHED, _CROWDED)),
+    "stratified": Promise(real_surfaces=False, one_by_one=False, keeps_moments=False, not_done=(_UNTOUCHED,)),
+}
+SAMPLERS = ("auto", *_PROMISES)
+
+
+def promise_of(sampler: str) -> Promise:
+    """What a sampler promises; ``auto`` takes one that promises all."""
+    return _PROMISES.get(sampler, Promise())
