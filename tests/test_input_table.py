@@ -18,7 +18,7 @@ from mcgw.jobs import running
 from mcgw.jobs.disk_space import check_space
 from mcgw.jobs.running import run
 from mcgw.machine.memory import memory_available
-from mcgw.scene.cautions import notes
+from mcgw.scene.cautions import cautions
 from mcgw.scene.scene import SceneError
 
 GOOD = """
@@ -205,9 +205,9 @@ def row_24_units(make):
 
 def row_26_beyond_hertz(make):
     surface = analytic.Surface(sigma=2e-5, radius=1e-5, eta=1e8, nominal_area=1e-6, E_star=1e9)
-    (line,) = notes(make(surface=surface, n_surfaces=2))
-    assert line.startswith("surface.radius = 1e-05 m: at d/sigma = 0 a share of 0.62 of the contacts")
-    assert notes(make()) == []
+    start = "surface.radius = 1e-05 m: at d/sigma = 0 a share of 0.62 of the contacts"
+    assert any(line.startswith(start) for line in cautions(make(surface=surface, n_surfaces=2)))
+    assert not any("compressed by more" in line for line in cautions(make()))
 
 
 def row_28_grading_that_is_not_finite(make):

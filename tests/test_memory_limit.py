@@ -7,9 +7,11 @@ from pathlib import Path
 
 import h5py
 import pytest
+from said import without_notes
 from sealing import seal_again
 
 import mcgw
+from mcgw.errors import StoreError
 from mcgw.jobs.running import run
 
 resource = pytest.importorskip("resource")
@@ -47,28 +49,26 @@ def test_commands_work_where_the_memory_suffices(tmp_path):
         ["show", path, "--verify"],
     ):
         done = limited(1024, "-m", "mcgw", *words)
-        assert (done.returncode, done.stderr) == (0, "")
+        assert (done.returncode, without_notes(done.stderr)) == (0, "")
 
 
 LOOK = """
 import sys
 from pathlib import Path
 from mcgw.errors import StoreError
-from mcgw.store.untrusted import examine, examine_all
-for look in (examine, lambda path: examine_all([path])):
-    try:
-        look(Path(sys.argv[1]))
-    except StoreError as error:
-        print(error)
+from mcgw.store import untrusted
+path = Path(sys.argv[1])
+try:
+    untrusted._examined_by_child(path, path, 0)
+except StoreError as error:
+    print(error)
 """
 
 
 def test_too_little_memory_is_not_blamed_on_the_file(file):
-    found = limited(TIGHT, "-c", LOOK, file).stdout.splitlines()
-    assert len(found) == 2
-    for line in found:
-        assert line.startswith(f"{file}: cannot be looked at with the memory this process may have")
-        assert f"(ulimit -v {TIGHT * 1024})" in line
+    (line,) = limited(TIGHT, "-c", LOOK, file).stdout.splitlines()
+    assert line.startswith(f"{file}: cannot be looked at with the memory this process may have")
+    assert f"(ulimit -v {TIGHT * 1024})" in line
     assert limited(1024, "-c", LOOK, file).stdout == ""
 
 
@@ -76,9 +76,8 @@ def test_a_damaged_file_is_blamed_all_the_same(file):
     data = bytearray(file.read_bytes())
     data[len(data) // 2] ^= 1
     file.write_bytes(data)
-    found = limited(TIGHT, "-c", LOOK, file).stdout.splitlines()
-    assert len(found) == 2
-    assert all("damaged or hostile" in line for line in found)
+    (line,) = limited(TIGHT, "-c", LOOK, file).stdout.splitlines()
+    assert "damaged or hostile" in line
 
 
 def test_a_hostile_file_is_named_as_such(file):
@@ -86,9 +85,10 @@ def test_a_hostile_file_is_named_as_such(file):
         del data["load"]
         data["load"] = h5py.SoftLink("/area")
     seal_again(file)
-    found = limited(1024, "-c", LOOK, file).stdout.splitlines()
-    assert len(found) == 2
-    assert all("refused: load: a link to another place" in line for line in found)
+    (line,) = limited(1024, "-c", LOOK, file).stdout.splitlines()
+    assert "refused: load: a link to another place" in line
+    with pytest.raises(StoreError, match="refused: load: a link to another place"):
+        mcgw.open_ensemble(file)
 
 
 def test_what_may_be_taken_heeds_the_limit():

@@ -18,7 +18,7 @@ def test_every_preset_is_offered():
 
 
 def test_demo_is_the_one_of_the_readme():
-    assert (HERE / "demo.toml").read_text() == (HERE.parent.parent / "runs" / "demo.toml").read_text()
+    assert (HERE / "demo.toml").read_text() == (HERE.parents[2] / "runs" / "demo.toml").read_text()
 
 
 @pytest.mark.parametrize("name", PRESETS)

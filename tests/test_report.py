@@ -14,7 +14,6 @@ import analytic
 import mcgw
 from mcgw.cli import main
 from mcgw.jobs.running import run
-from mcgw.reports.cautions import doubts
 from mcgw.reports.html import _number, _with_error, report_html
 from mcgw.store.ensembles import read_attributes
 
@@ -105,22 +104,6 @@ def test_numbers_as_people_write_them():
     assert _with_error(6361.2, 6.3) == "6361.2(6.3)"
     assert _with_error(0.1494, 0.017) == "0.149(17)"
     assert _with_error(0.0, 0.0) == "0"
-
-
-def test_doubts(make_scene):
-    surface = make_scene().surface
-
-    def of(**changes):
-        return " ".join(doubts(mcgw.simulate(make_scene(n_surfaces=2, **changes))))
-
-    calm = of(separations=(2.0,), n_asperities=30_000, surface=replace(surface, radius=1e-3, sigma=1e-6))
-    assert calm.startswith("Every contact is elastic")
-    assert "fewer than 30 contacts" in of(separations=(4.0,))
-    assert "0.1 of the nominal area" in of()
-    assert "times their radius" in of()
-    assert "not merge" in of(separations=(-0.5,))
-    assert "of the nominal area touches" in of(surface=replace(surface, eta=2e10), n_asperities=2_000_000)
-    assert "set to zero" in of(separations=(-1.0,), negative="clip")
 
 
 @pytest.mark.slow

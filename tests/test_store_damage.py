@@ -229,7 +229,7 @@ def test_a_digest_that_is_written_wrong_is_seen(scene, tmp_path, monkeypatch):
         file.attrs["digest"] = "0" * 64
         return digest
 
-    monkeypatch.setattr(merge, "build", forged)
+    monkeypatch.setattr(merged_file, "build", forged)
     with pytest.raises(OSError, match="reads otherwise than written"):
         merged_file.merge_into(parts_of(path), path, tmp_path / "x.tmp")
 

@@ -28,9 +28,9 @@ def execute(args: argparse.Namespace) -> int:
 
     path = args.output or args.file.with_suffix(".png")
     ensemble = open_ensemble(args.file)
-    tell_notes(ensemble.scene)
     table = [Output(args.csv, CSV, "--csv")] if args.csv else []
     check_outputs([Output(path, figure_format()), *table], inputs=[args.file])
+    tell_notes(ensemble.scene)
     comparison = compare(ensemble)
     save_comparison(comparison, path)
     print(comparison_table(comparison))

@@ -29,10 +29,10 @@ def execute(args: argparse.Namespace) -> int:
     from mcgw.statistics.convergence import SEEDS, converge
 
     scene = load_scene(args.scene)
-    tell_notes(scene)
     folder = args.output or args.scene.parent / "out"
     path = folder / f"{args.scene.stem}-converge.png"
     check_outputs([Output(path, figure_format())], inputs=files_of(args.scene))
+    tell_notes(scene)
     with tqdm(total=SEEDS, unit=" ensembles", disable=None, leave=False) as bar:
         found = converge(scene, progress=bar.update)
     save_convergence(found, path)

@@ -23,8 +23,8 @@ def execute(args: argparse.Namespace) -> int:
 
     path = args.output or args.file.with_suffix(".html")
     ensemble = open_ensemble(args.file)
-    tell_notes(ensemble.scene)
     check_outputs([Output(path, HTML)], inputs=[args.file])
+    tell_notes(ensemble.scene)
     page = report_html(ensemble, read_attributes(args.file))
     write_whole(path, [page.encode()])
     print(f"{path}: report, {len(page.encode()) / 1e6:.2f} MB; open it in a browser")

@@ -54,8 +54,8 @@ def execute(args: argparse.Namespace) -> int:
         from mcgw.reports.text import SUMMARY_HEADER, summary, summary_rows
 
         ensemble = open_ensemble(args.file)
-        tell_notes(ensemble.scene)
         check_outputs([Output(args.csv, CSV, "--csv")] if args.csv else [], inputs=[args.file])
+        tell_notes(ensemble.scene)
         print(summary(ensemble, attributes))
         if args.csv:
             write_csv(args.csv, SUMMARY_HEADER, summary_rows(ensemble))

@@ -83,9 +83,9 @@ def _asperities(args: argparse.Namespace) -> int:
     from mcgw.scene.scene_file import load_scene, scene_text
 
     scene = load_scene(args.scene)
-    tell_notes(scene)
     width = None if args.width is None else parse(args.width, "m", "--width")
     _check_output(args)
+    tell_notes(scene)
     field = asperities_of(scene, args.surface, width=width)
     if args.at is not None:
         spots = spots_at(scene, field, args.at)

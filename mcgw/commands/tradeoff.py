@@ -29,10 +29,10 @@ def execute(args: argparse.Namespace) -> int:
 
     seconds = parse(args.seconds, "s", "--seconds")
     scene = load_scene(args.scene)
-    tell_notes(scene)
     folder = args.output or args.scene.parent / "out"
     table, figure = (folder / f"{args.scene.stem}-tradeoff.{end}" for end in ("csv", "png"))
     check_outputs([Output(table, CSV), Output(figure, figure_format())], inputs=files_of(args.scene))
+    tell_notes(scene)
     with tqdm(total=100, unit="%", disable=None, leave=False) as bar:
         found = tradeoff(scene, seconds=seconds, progress=lambda share: bar.update(100 * share - bar.n))
     write_csv(found, table)

@@ -20,7 +20,7 @@ from mcgw.store.run_folder import Run, difference, identity_of, parts_of
 from mcgw.store.shards import DRAWN, Span, in_memory
 from mcgw.store.stored import FileSums, ShardSums
 from mcgw.store.trailer import check_seal, read_seal, seal_of
-from mcgw.store.untrusted import examine, examine_all
+from mcgw.store.untrusted import examine
 
 __all__ = [
     "StoreError",
@@ -40,7 +40,7 @@ def open_ensemble(path: str | Path) -> Ensemble:
     Parameters
     ----------
     path : str or Path
-        Written by `mcgw.jobs.running.run`. It may come from a stranger: a child process looks at it first.
+        Written by `mcgw.jobs.running.run`, or by a stranger.
 
     Returns
     -------
@@ -58,7 +58,6 @@ def open_ensemble(path: str | Path) -> Ensemble:
         shards = tuple(run.shards())
         if not shards:
             raise StoreError(f"{path}: no block of its run is finished yet")
-        examine_all([shard.path for shard in shards])
         return Ensemble(run.scene, run.sampler, ShardSums(shards))
     attributes, scene = _described(path)
     return Ensemble(scene, str(attributes["sampler"]), FileSums(path))

@@ -4,10 +4,10 @@ HDF5 follows external links, external storage and virtual datasets to any file o
 crafted file can crash the library, so this runs as a script in a process of its own
 (`mcgw.store.untrusted`)::
 
-    python -m mcgw.store.structure FILE ... --memory BYTES
+    python -m mcgw.store.structure FILE --memory BYTES
 
-It prints one line of JSON a file: its attributes and datasets, or why it is refused; "sure" if that is not
-for a want of memory.
+It prints a line of JSON: the attributes and datasets, or why the file is refused; "sure" if that is not for a
+want of memory.
 """
 
 import json
@@ -114,13 +114,15 @@ def _check_storage(name: str, item: Any, plist: Any) -> None:
         raise RefusedError(f"{name}: {declared} bytes declared, {stored} stored")
 
 
-def describe(path: str) -> dict[str, Any]:
-    """Attributes and datasets of a file, all checked; if it is small, every number is read once.
+def describe(path: str, *, read: bool = True) -> dict[str, Any]:
+    """Attributes and datasets of a file, all checked.
 
     Parameters
     ----------
     path : str
         An HDF5 file.
+    read : bool, optional
+        Read every number once, if the file is small: HDF5 may fail on any of them.
 
     Returns
     -------
@@ -139,7 +141,7 @@ def describe(path: str) -> dict[str, Any]:
         if len(file.attrs) > _MOST_ATTRIBUTES:
             raise RefusedError(f"{len(file.attrs)} attributes")
         attributes = {name: _plain_value(name, file.attrs) for name in file.attrs}
-        if Path(path).stat().st_size <= _READ_ALL:
+        if read and Path(path).stat().st_size <= _READ_ALL:
             for name in names:
                 _read(file[name])
         found = {name: [file[name].dtype.str, list(file[name].shape)] for name in names}
@@ -168,22 +170,21 @@ def _read(data: h5py.Dataset) -> None:
         data[start : start + step]
 
 
-def _main(paths: list[str], memory: int) -> None:
+def _main(path: str, memory: int) -> None:
     from mcgw.machine.child_process import limit_memory
 
     memory = limit_memory(memory)
-    for path in paths:
-        try:
-            answer = describe(path)
-        except MemoryError:
-            answer = {"refused": f"needs more than {memory} bytes of memory"}
-        except RefusedError as error:
-            answer = {"refused": str(error), "sure": True}
-        except Exception:  # HDF5 reports damage as any of a dozen exceptions
-            answer = {"refused": "not an HDF5 file, or a damaged one"}
-        sys.stdout.write(json.dumps(answer) + "\n")
+    try:
+        answer = describe(path)
+    except MemoryError:
+        answer = {"refused": f"needs more than {memory} bytes of memory"}
+    except RefusedError as error:
+        answer = {"refused": str(error), "sure": True}
+    except Exception:  # HDF5 reports damage as any of a dozen exceptions
+        answer = {"refused": "not an HDF5 file, or a damaged one"}
+    sys.stdout.write(json.dumps(answer) + "\n")
 
 
 if __name__ == "__main__":
-    *_paths, _, _memory = sys.argv[1:]
-    _main(_paths, int(_memory))
+    _path, _, _memory = sys.argv[1:]
+    _main(_path, int(_memory))
