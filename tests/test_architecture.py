@@ -145,6 +145,20 @@ def test_nothing_heavy_is_imported_early(code):
     assert found.stdout.strip() == ""
 
 
+def test_run_and_show_need_no_scipy_stats(tmp_path):
+    """Its import takes as long as all else that they do."""
+    scene = ROOT.parent / "runs" / "quick.toml"
+    for words in (
+        ["run", scene, "-o", tmp_path / "q.h5"],
+        ["show", tmp_path / "q.h5"],
+        ["show", "--plan", scene],
+    ):
+        code = f"import sys, mcgw.cli\nmcgw.cli.main({list(map(str, words))})\n"
+        code += "print('scipy.stats' in sys.modules)"
+        done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+        assert done.stdout.splitlines()[-1] == "False"
+
+
 @pytest.mark.parametrize("command", ["surface", "fit"])
 def test_help_needs_not_even_numpy(command):
     code = f"import mcgw.commands.{command}"

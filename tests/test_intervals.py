@@ -7,14 +7,14 @@ import numpy as np
 import pytest
 from conftest import SURFACE
 from scipy.special import gammaincinv
-from scipy.stats import binom, poisson
+from scipy.stats import binom, norm, pearson3, poisson
 from scipy.stats import t as student
 
 import mcgw
 from analytic import Exponential, ExponentialHeights, Gaussian, MeasuredHeights, Weibull
 from mcgw.ensemble.ensemble import Arrays, Ensemble
 from mcgw.ensemble.forecast import forecast
-from mcgw.ensemble.intervals import FEWEST, TOO_FEW, Spread, count_interval, spread_of
+from mcgw.ensemble.intervals import FEWEST, TOO_FEW, Spread, count_interval, pearson3_quantile, spread_of
 from mcgw.figures.comparison import quantity_figure
 from mcgw.reports.html import _table
 from mcgw.reports.text import COMPARISON_HEADER, comparison_rows, comparison_table
@@ -236,3 +236,12 @@ def test_too_few_is_said_wherever_intervals_are(make_scene):
     assert shown == ["theory", "Monte Carlo, 95 %", TOO_FEW]
     shown = quantity_figure(comparison, "contacts").axes[0].get_legend().get_texts()
     assert [text.get_text() for text in shown] == ["theory", "Monte Carlo, 95 %"]
+
+
+@pytest.mark.parametrize("share", [1e-4, 0.0125, 0.025, 0.3, 0.5, 0.975])
+def test_quantiles_are_those_of_scipy(share):
+    skewness = np.array([-3.0, -0.5, -1e-3, -2e-5, 0.0, 2e-5, 1e-3, 0.5, 3.0])
+    expected = pearson3.ppf(share, skewness)
+    np.testing.assert_allclose(pearson3_quantile(share, skewness), expected, rtol=1e-9, atol=1e-9)
+    one = pearson3_quantile(share, np.array([1e-6]))
+    assert abs(one[0] - norm.ppf(share)) < 1e-5

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq
-from scipy.stats import t as student
+from scipy.special import stdtrit
 
 from analytic import QUANTITIES, Quantity
 from mcgw.ensemble.intervals import FEWEST
@@ -56,7 +56,7 @@ class Solution:
         x = self.surfaces[name]
         if len(x) * self.theory["contacts"] < FEWEST:
             return float("nan"), float("nan")
-        half = student.ppf((1 + level) / 2, len(x) - 1) * x.std(ddof=1) / np.sqrt(len(x))
+        half = stdtrit(len(x) - 1, (1 + level) / 2) * x.std(ddof=1) / np.sqrt(len(x))
         return float(x.mean() - half), float(x.mean() + half)
 
 

@@ -6,7 +6,6 @@ from typing import Any
 import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
-from scipy.stats import norm
 
 from mcgw.figures.style import STYLE, shown_title
 from mcgw.formats.pictures import save_figure
@@ -75,7 +74,7 @@ def _draw_scores(axis: Any, z: np.ndarray) -> None:
     edges = np.linspace(-4, 4, 25)
     axis.hist(np.clip(z, -4, 4), edges, density=True, color="C5", label=f"{z.size} means")
     x = np.linspace(-4, 4, 201)
-    axis.plot(x, norm.pdf(x), color="C0", label="standard normal")
+    axis.plot(x, np.exp(-(x**2) / 2) / np.sqrt(2 * np.pi), color="C0", label="standard normal")
     axis.set_ylim(0, 0.58)
     axis.set_xlabel("error of a mean (exact standard errors)")
     axis.set_title("z-scores")

@@ -5,7 +5,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import scipy.stats
 from numpy.typing import NDArray
 
 from analytic import (
@@ -120,6 +119,8 @@ def _scipy(section: Section) -> HeightLaw:
     if len(section.problems) > before:
         return Gaussian()
     shapes = {} if shapes is None else shapes
+    import scipy.stats  # takes half a second, which other scenes need not wait
+
     distribution = getattr(scipy.stats, name, None)
     if not isinstance(distribution, scipy.stats.rv_continuous):
         section.fail("name", name, 'give a continuous distribution of scipy.stats, as "gamma"')

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.stats import chi2
+from scipy.special import chdtrc
 
 from analytic import QUANTITIES, Fluctuations
 from mcgw.ensemble.ensemble import Ensemble
@@ -147,7 +147,7 @@ def verdict(ensemble: Ensemble) -> Verdict:
     axes = axes[:, _gaussian(parts.turned(axes), asperities)]
     chi_square = float(np.sum((z @ axes) ** 2))
     degrees = axes.shape[1]
-    return Verdict(chi_square, degrees, float(chi2.sf(chi_square, degrees)) if degrees else 1.0)
+    return Verdict(chi_square, degrees, float(chdtrc(degrees, chi_square)) if degrees else 1.0)
 
 
 def _gaussian(parts: Fluctuations, asperities: float) -> NDArray[np.bool_]:
