@@ -11,10 +11,10 @@ from pathlib import Path
 import pytest
 
 from mcgw.errors import RunError
-from mcgw.jobs import running
 from mcgw.jobs.dask_engine import Dask, check_address
 from mcgw.jobs.driver import Signals, drive
 from mcgw.jobs.engines import Processes, Threads
+from mcgw.jobs.job import Job
 from mcgw.jobs.running import run
 from mcgw.store import ensembles
 from mcgw.store.run_folder import parts_of
@@ -27,7 +27,7 @@ SPANS = [Span(8 * i, 8) for i in range(6)]
 
 @pytest.fixture(autouse=True)
 def _small_blocks(monkeypatch):
-    monkeypatch.setattr(running, "shard_size", lambda scene, sampler: SIZE)
+    monkeypatch.setattr(Job, "rows", SIZE)
     # Spawned workers import this package from here.
     monkeypatch.setenv("PYTHONPATH", str(HERE.parent))
 

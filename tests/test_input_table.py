@@ -14,8 +14,8 @@ import analytic
 import mcgw
 from mcgw.errors import StoreError
 from mcgw.formats.files import check_output
-from mcgw.jobs import running
 from mcgw.jobs.disk_space import check_space
+from mcgw.jobs.job import Job
 from mcgw.jobs.running import run
 from mcgw.machine.memory import memory_available
 from mcgw.scene.cautions import cautions
@@ -309,7 +309,7 @@ def row_55_threads(make, tmp_path):
 def row_56_block_sizes(make, tmp_path, monkeypatch):
     scene, found = make(n_surfaces=23, sampler="tail", separations=(2.0, 3.0)), set()
     for size in (7, 23, 1000):
-        monkeypatch.setattr(running, "shard_size", lambda scene, sampler, n=size: n)
+        monkeypatch.setattr(Job, "rows", size)
         run(scene, tmp_path / f"{size}.h5")
         with h5py.File(tmp_path / f"{size}.h5") as file:
             found.add(file.attrs["digest"])

@@ -17,7 +17,8 @@ import mcgw
 from mcgw.cli import main
 from mcgw.errors import RunError, StoreError
 from mcgw.formats.files import state_of
-from mcgw.jobs import merging, running
+from mcgw.jobs import merging
+from mcgw.jobs.job import Job
 from mcgw.jobs.merging import merge
 from mcgw.jobs.running import Part, run, run_part
 from mcgw.machine.child_process import ChildError, run_child
@@ -25,7 +26,7 @@ from mcgw.store import ensembles, lock, merged_file, structure
 from mcgw.store.ensembles import save
 from mcgw.store.leftovers import tidy
 from mcgw.store.lock import LockedError, locked
-from mcgw.store.run_folder import Run, parts_of
+from mcgw.store.run_folder import RunFolder, parts_of
 
 HERE = Path(__file__).parent
 SIZE = 16
@@ -36,7 +37,7 @@ def _in_this_process(monkeypatch):
     """Merge and look here: children take most of the time."""
     monkeypatch.setattr(merging, "_merge_in_child", lambda *words: merged_file.merge_into(*words))
     monkeypatch.setattr(ensembles, "examine", lambda path: structure.describe(str(path)))
-    monkeypatch.setattr(running, "shard_size", lambda scene, sampler: SIZE)
+    monkeypatch.setattr(Job, "rows", SIZE)
     monkeypatch.setattr(lock, "PATIENCE", 0.0)
 
 
@@ -68,14 +69,14 @@ def drawing(monkeypatch):
             self.pool.shutdown()
             return answer
 
-    held, drawn = Drawing(), running.draw
+    held, drawn = Drawing(), Job.draw
 
     def slowly(*arguments):
         held.begun.set()
         assert held.go_on.wait(30)
         return drawn(*arguments)
 
-    monkeypatch.setattr(running, "draw", slowly)
+    monkeypatch.setattr(Job, "draw", slowly)
     return held
 
 
@@ -188,7 +189,7 @@ def leave_behind(path, scene, *, shards):
     (folder / "shards" / "block-0000000000016.h5").write_bytes(b"of a worker whose driver is gone")
     if shards:
         (folder / "shards" / "block-0000000000016.h5").unlink()
-        Run.begin(folder, scene, "tail", SIZE)
+        RunFolder.begin(folder, scene, "tail", SIZE)
         (folder / "shards" / "block-0000000000000.h5").write_bytes(b"whole")
 
 
@@ -217,9 +218,9 @@ def test_leftovers_of_a_run_of_one_block_do_not_stand_in_the_way_of_another(scen
 def test_an_empty_run_of_another_scene_gives_way(scene, path):
     folder = parts_of(path)
     with locked(folder):
-        Run.begin(folder, scene, "tail", SIZE)
+        RunFolder.begin(folder, scene, "tail", SIZE)
     run_part(replace(scene, seed=2, n_surfaces=3 * SIZE), path, Part(1, 2))
-    assert Run.open(folder).scene.seed == 2
+    assert RunFolder.open(folder).scene.seed == 2
 
 
 def test_show_of_a_run_without_a_block_says_so(scene, path, capsys):

@@ -11,12 +11,13 @@ import pytest
 import mcgw
 from mcgw.cli import main
 from mcgw.errors import RunError, StoreError
-from mcgw.jobs import merging, running
+from mcgw.jobs import merging
+from mcgw.jobs.job import Job
 from mcgw.jobs.merging import merge
 from mcgw.jobs.running import Part, run, run_part
 from mcgw.machine.child_process import ChildError
 from mcgw.store import ensembles, merged_file, shards, structure
-from mcgw.store.run_folder import Run, parts_of
+from mcgw.store.run_folder import RunFolder, parts_of
 from mcgw.store.trailer import SEAL_BYTES, check_seal, read_sealed, seal_of
 
 SIZE, SURFACES = 16, 100
@@ -25,7 +26,7 @@ SIZE, SURFACES = 16, 100
 @pytest.fixture(autouse=True)
 def _small_blocks_in_this_process(monkeypatch):
     """Seven blocks, merged and looked at here: children take most of the time."""
-    monkeypatch.setattr(running, "shard_size", lambda scene, sampler: SIZE)
+    monkeypatch.setattr(Job, "rows", SIZE)
     monkeypatch.setattr(merging, "_merge_in_child", merged_here)
     monkeypatch.setattr(ensembles, "examine", examined_here)
 
@@ -175,7 +176,7 @@ def another_number(arrays):
 def test_contents_that_are_others_than_the_digest_says_are_refused(scene, tmp_path):
     path = tmp_path / "e.h5"
     reseal(begun(scene, path)[2], another_number)
-    run_here = Run.open(parts_of(path))
+    run_here = RunFolder.open(parts_of(path))
     with pytest.raises(StoreError, match=r"block-0000000000032.*contents are others"):
         [shard.arrays() for shard in run_here.shards()]
 
@@ -300,7 +301,7 @@ def test_a_shard_of_other_surfaces_than_its_block_is_drawn_again(scene, tmp_path
     """Eight surfaces where the block has sixteen, in order otherwise: not what is held."""
     path = tmp_path / "e.h5"
     third = begun(scene, path)[2]
-    there = Run.open(parts_of(path))
+    there = RunFolder.open(parts_of(path))
     assert there.held(shards.Span(32, 16)).span == shards.Span(32, 16)
     arrays = {name: x[:8] for name, x in shards.open_shard(third, there.identity).arrays().items()}
     shards.commit_shard(third, there.identity, shards.Span(32, 8), arrays, 0.0)
@@ -313,12 +314,12 @@ def test_a_shard_of_other_surfaces_than_its_block_is_drawn_again(scene, tmp_path
 def test_seconds_of_all_blocks_and_of_the_file_before_add_up(scene, larger, tmp_path):
     path = tmp_path / "e.h5"
     begun(scene, path)
-    each = [shard.seconds for shard in Run.open(parts_of(path)).shards()]
+    each = [shard.seconds for shard in RunFolder.open(parts_of(path)).shards()]
     merge(path)
     first = ensembles.read_attributes(path)["wall_seconds"]
     assert first == pytest.approx(sum(each), rel=1e-12)
     assert run_part(larger, path, Part(1, 1)) == 0
-    more = [shard.seconds for shard in Run.open(parts_of(path)).shards()]
+    more = [shard.seconds for shard in RunFolder.open(parts_of(path)).shards()]
     merge(path)
     assert ensembles.read_attributes(path)["wall_seconds"] == pytest.approx(first + sum(more), rel=1e-12)
     assert sum(more) > 0

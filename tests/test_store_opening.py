@@ -14,10 +14,10 @@ from sealing import seal_again
 
 import mcgw
 from mcgw.errors import StoreError
-from mcgw.jobs import running
+from mcgw.jobs.job import Job
 from mcgw.jobs.running import Part, run, run_part
 from mcgw.store import ensembles, layout, run_folder, structure
-from mcgw.store.run_folder import Run, parts_of
+from mcgw.store.run_folder import RunFolder, parts_of
 from mcgw.store.trailer import seal_of
 
 CRASH = Path(__file__).parent / "crash"
@@ -161,7 +161,7 @@ def test_a_changed_number_is_an_error_when_it_is_read(file):
 @pytest.fixture
 def begun(scene, tmp_path, monkeypatch):
     """A run of which half is done."""
-    monkeypatch.setattr(running, "shard_size", lambda scene, sampler: 5)
+    monkeypatch.setattr(Job, "rows", 5)
     run_part(scene, tmp_path / "b.h5", Part(1, 2))
     return parts_of(tmp_path / "b.h5")
 
@@ -172,10 +172,10 @@ def test_another_scene_in_a_run_is_noticed(begun):
     assert "sigma = 1.37e-06" in good
     file.write_text(good.replace("sigma = 1.37e-06", "sigma = 1.37e-05"))
     with pytest.raises(StoreError, match=r"run\.toml: damaged \(checksum mismatch\)"):
-        Run.open(begun)
+        RunFolder.open(begun)
     file.write_text(good[: good.index("sha256")])
     with pytest.raises(StoreError, match=r"run\.toml: damaged"):
-        Run.open(begun)
+        RunFolder.open(begun)
 
 
 def test_runs_of_format_1_0_go_on(begun, scene, monkeypatch):

@@ -120,7 +120,8 @@ def test_digests_of_two_processes_are_equal(make_scene, tmp_path):
 MEMORY = """
 import resource, sys
 from mcgw.jobs import running
-running.shard_size = lambda scene, sampler: 256
+from mcgw.jobs.job import Job
+Job.rows = 256
 import mcgw
 scene = mcgw.scene_from(open(sys.argv[1]).read())
 running.run(scene, sys.argv[2])

@@ -1,6 +1,5 @@
 """From the blocks of a run to its file."""
 
-from collections.abc import Iterable
 from contextlib import suppress
 from pathlib import Path
 
@@ -12,10 +11,9 @@ from mcgw.machine.child_process import ChildError, run_child
 from mcgw.store.ensembles import finished, open_ensemble
 from mcgw.store.leftovers import tidy
 from mcgw.store.lock import locked
-from mcgw.store.run_folder import Run, missing, parts_of
-from mcgw.store.shards import Shard, Span
+from mcgw.store.run_folder import RunFolder, parts_of
 
-__all__ = ["merge", "merge_once", "missing_of"]
+__all__ = ["merge", "merge_once"]
 
 
 def merge(path: str | Path) -> Ensemble:
@@ -45,9 +43,8 @@ def merge(path: str | Path) -> Ensemble:
             return open_ensemble(path)
         raise StoreError(f"{path}: neither this file nor blocks of it ({parts_of(path)}) are there")
     with heed_signals() as signals, locked(parts_of(path)):
-        started = Run.open(parts_of(path))
-        done = finished(path, started.scene, started.sampler)
-        gaps = missing_of(started, done, started.sweep())
+        started = RunFolder.open(parts_of(path))
+        gaps = started.missing(finished(path, started.scene, started.sampler), started.sweep())
         if gaps:
             raise RunError(
                 f"{path}: {sum(span.n for span in gaps)} of {started.scene.n_surfaces} surfaces are missing, "
@@ -58,13 +55,7 @@ def merge(path: str | Path) -> Ensemble:
     return open_ensemble(path)
 
 
-def missing_of(started: Run, done: int, shards: Iterable[Shard]) -> list[Span]:
-    """Blocks of a run that neither its file, of `done` surfaces, nor one of its shards holds."""
-    held = [*([Span(0, done)] if done else []), *(shard.span for shard in shards)]
-    return missing(started.scene.n_surfaces, started.size, held)
-
-
-def merge_once(started: Run, path: Path, signals: Signals) -> bool:
+def merge_once(started: RunFolder, path: Path, signals: Signals) -> bool:
     """Make the file and remove the shards; False if a shard turned out damaged. Only with the lock."""
     temporary, before = temporary_beside(started.folder / path.name), state_of(path)
     finished(path, started.scene, started.sampler)

@@ -1,7 +1,7 @@
 """From a scene to its file: begin, go on, extend, until its rule is met."""
 
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import closing, contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
 from time import monotonic, perf_counter
@@ -10,19 +10,16 @@ from typing import Any
 from mcgw.ensemble.ensemble import Arrays, Ensemble
 from mcgw.ensemble.forecast import checkpoints, without_rule
 from mcgw.errors import RunError, StoreError
-from mcgw.formats.files import check_output
-from mcgw.jobs.blocks import columns, commit_block, draw, shard_size
-from mcgw.jobs.disk_space import check_space
+from mcgw.jobs.blocks import commit_block
 from mcgw.jobs.driver import Signals, drive, heed_signals
 from mcgw.jobs.engines import Engine, Threads
-from mcgw.jobs.merging import merge_once, missing_of
-from mcgw.sampling.samplers import Sampler, sampler_of
+from mcgw.jobs.job import Job
+from mcgw.jobs.merging import merge_once
 from mcgw.scene.scene import Scene
-from mcgw.scene.scene_file import scene_from, scene_text
-from mcgw.store.ensembles import finished, open_ensemble, write_ensemble
+from mcgw.store.ensembles import open_ensemble, write_ensemble
 from mcgw.store.leftovers import drop_leftovers, tidy
 from mcgw.store.lock import locked
-from mcgw.store.run_folder import Run, parts_of
+from mcgw.store.run_folder import RunFolder
 from mcgw.store.shards import Shard, Span
 
 __all__ = ["Part", "run", "run_part"]
@@ -56,16 +53,6 @@ class Part:
     def mine(self, span: Span, size: int) -> bool:
         """Whether a block is this job's."""
         return span.first // size % self.of == self.number - 1
-
-
-@dataclass(frozen=True)
-class _Session:
-    """How blocks are drawn this time."""
-
-    engine: Engine
-    threads: int | None
-    progress: Progress
-    signals: Signals
 
 
 def run(
@@ -104,10 +91,10 @@ def run(
     RunError
         If the run could not be finished; what is done is kept.
     """
-    path = Path(path)
+    path, by = Path(path), _By(engine, threads, progress or _silent)
     started = monotonic()
     for stage in _stages(scene, path):
-        ensemble = _run(stage, path, threads, engine, progress or _silent)
+        ensemble = _run(Job.of(stage, path), by)
         if scene.max_seconds is not None and monotonic() - started > scene.max_seconds:
             break
     return ensemble
@@ -132,25 +119,53 @@ def _stages(scene: Scene, path: Path) -> Iterator[Scene]:
         yield replace(fixed, n_surfaces=last)
 
 
-def _run(
-    scene: Scene, path: Path, threads: int | None, engine: Engine | None, progress: Progress
-) -> Ensemble:
-    """Draw what is missing of a scene of a given number of surfaces."""
-    sampler, size, done = _prepare(scene, path, threads)
-    if done == scene.n_surfaces:
-        tidy(path)
-        progress(done)
-        return open_ensemble(path)
-    with heed_signals() as signals, _engine_or_threads(engine) as drawing:
-        session = _Session(drawing, threads if engine is None else 1, progress, signals)
-        with locked(parts_of(path)):
-            drop_leftovers(path)
-            begun = (parts_of(path) / "run.toml").exists()
-            if engine is None and scene.n_surfaces <= size and not begun:
-                _at_once(scene, sampler, path, session)
-            else:
-                _in_blocks(scene, sampler, path, size, session)
-    return open_ensemble(path)
+@dataclass(frozen=True)
+class _By:
+    """Who draws this time, and who hears of it."""
+
+    engine: Engine | None
+    threads: int | None
+    progress: Progress
+
+    def __post_init__(self) -> None:
+        if self.threads is not None and self.threads < 1:
+            raise ValueError(f"threads = {self.threads}: give a whole number >= 1")
+
+    @contextmanager
+    def at_work(self) -> Iterator["_Session"]:
+        """The engine given, left open; or threads of this process."""
+        with heed_signals() as signals:
+            if self.engine is not None:
+                yield _Session(self.engine, 1, self.progress, signals)
+                return
+            with closing(Threads()) as own:
+                yield _Session(own, self.threads, self.progress, signals)
+
+
+@dataclass(frozen=True)
+class _Session:
+    """Blocks are given to an engine until a signal comes."""
+
+    engine: Engine
+    threads: int | None
+    progress: Progress
+    signals: Signals
+
+
+def _run(job: Job, by: _By) -> Ensemble:
+    """Draw what is missing of a job."""
+    if job.done() == job.scene.n_surfaces:
+        tidy(job.path)
+        by.progress(job.scene.n_surfaces)
+        return open_ensemble(job.path)
+    with by.at_work() as session, locked(job.folder):
+        drop_leftovers(job.path)
+        begun = (job.folder / "run.toml").exists()
+        if by.engine is None and job.scene.n_surfaces <= job.rows and not begun:
+            _at_once(job, session)
+        else:
+            _in_blocks(job, session)
+    return open_ensemble(job.path)
 
 
 def run_part(
@@ -161,7 +176,7 @@ def run_part(
     threads: int | None = None,
     progress: Progress | None = None,
 ) -> int:
-    """Draw one job's share of the blocks; `mcgw.jobs.merging.merge` makes the file once all are there.
+    """Draw one job's share of the blocks; `mcgw.merge` makes the file once all are there.
 
     Parameters
     ----------
@@ -186,111 +201,68 @@ def run_part(
     StoreError, RunError
         As `run`.
     """
-    path = Path(path)
     if scene.max_seconds is not None:
         raise ValueError(
             "ensemble.max_seconds: jobs that share a run end at different times; give n_surfaces"
         )
-    scene = without_rule(scene) if scene.rel_err is not None else scene
-    sampler, size, done = _prepare(scene, path, threads)
-    if done == scene.n_surfaces:
+    by = _By(None, threads, progress or _silent)
+    job = Job.of(without_rule(scene) if scene.rel_err is not None else scene, Path(path))
+    if job.done() == job.scene.n_surfaces:
         return 0
-    tidy(path)
-    with (
-        heed_signals() as signals,
-        locked(parts_of(path), shared=True),
-        _engine_or_threads(None) as drawing,
-    ):
-        done = finished(path, scene, sampler.name)  # again: the last of the jobs may have been merged
-        started = Run.begin(parts_of(path), scene, sampler.name, size)
-        gaps = missing_of(started, done, started.shards())
-        _draw_missing(started, gaps, _Session(drawing, threads, progress or _silent, signals), part)
-        return sum(span.n for span in missing_of(started, done, started.shards()))
-
-
-def _prepare(scene: Scene, path: Path, threads: int | None) -> tuple[Sampler, int, int]:
-    """Sampler, surfaces a block, and surfaces already in the file; everything checked."""
-    if threads is not None and threads < 1:
-        raise ValueError(f"threads = {threads}: give a whole number >= 1")
-    try:
-        as_read = scene_from(scene_text(scene))
-    except ValueError:
-        as_read = None
-    if as_read != scene:
-        raise StoreError(f"{path}: this scene cannot be written to a file; give its grading as a table")
-    sampler = sampler_of(scene)
-    check_output(path)
-    done = finished(path, scene, sampler.name)
-    size = shard_size(scene, sampler)
-    check_space(scene, path, rows=size, columns=columns(scene, sampler), held=_bytes_of(path))
-    return sampler, size, done
-
-
-def _bytes_of(path: Path) -> int:
-    """What lies there already: the file, and shards of a run."""
-    files = [path, *parts_of(path).glob("shards/block-*.h5")]
-    return sum(file.stat().st_size for file in files if file.is_file())
+    tidy(job.path)
+    with by.at_work() as session, locked(job.folder, shared=True):
+        done = job.done()  # again: the last of the jobs may have been merged
+        started = job.begin()
+        _draw_missing(started, started.missing(done, started.shards()), session, part)
+        return sum(span.n for span in started.missing(done, started.shards()))
 
 
 def _silent(done: int) -> None:
     """Tell nobody."""
 
 
-@contextmanager
-def _engine_or_threads(engine: Engine | None) -> Iterator[Engine]:
-    """The engine given, left open; or our own threads."""
-    if engine is not None:
-        yield engine
-        return
-    own = Threads()
-    try:
-        yield own
-    finally:
-        own.close()
-
-
-def _at_once(scene: Scene, sampler: Sampler, path: Path, session: _Session) -> None:
+def _at_once(job: Job, session: _Session) -> None:
     """The whole ensemble as one block, and its file in one step. Only with the lock."""
-    if finished(path, scene, sampler.name) == scene.n_surfaces:  # another process was quicker
+    if job.done() == job.scene.n_surfaces:  # another process was quicker
         return
     answers: list[Any] = []
     started = perf_counter()
     session.progress(0)
     drive(
         session.engine,
-        [Span(0, scene.n_surfaces)],
-        draw,
-        lambda span: (scene, sampler, span, session.threads),
+        [Span(0, job.scene.n_surfaces)],
+        job.draw,
+        lambda span: (span, session.threads),
         lambda _, arrays: answers.append(arrays),
         session.signals,
     )
     session.signals.check("nothing was kept, the run is one block; the same command starts it again")
-    ensemble = Ensemble(scene, sampler.name, Arrays(answers[0]))
-    write_ensemble(ensemble, path, wall_seconds=perf_counter() - started)
-    session.progress(scene.n_surfaces)
+    ensemble = Ensemble(job.scene, job.sampler.name, Arrays(answers[0]))
+    write_ensemble(ensemble, job.path, wall_seconds=perf_counter() - started)
+    session.progress(job.scene.n_surfaces)
 
 
-def _in_blocks(scene: Scene, sampler: Sampler, path: Path, size: int, session: _Session) -> None:
+def _in_blocks(job: Job, session: _Session) -> None:
     """Shards until none is missing, then the file. Only with the lock."""
     try:
-        started = Run.begin(parts_of(path), scene, sampler.name, size)
+        started = job.begin()
         started.freeze()
         for _ in range(_ROUNDS):
             shards = started.sweep()
-            done = finished(path, scene, sampler.name)
+            done = job.done()
             _refuse_more(started, shards)
-            _draw_missing(started, missing_of(started, done, shards), session)
-            if merge_once(started, path, session.signals):
+            _draw_missing(started, started.missing(done, shards), session)
+            if merge_once(started, job.path, session.signals):
                 return
     except OSError as error:
         raise RunError(
-            f"{error.filename or path}: {error.strerror or error}; finished blocks are kept in "
-            f"{parts_of(path)}, the same command goes on once that is mended"
+            f"{error.filename or job.path}: {error.strerror or error}; finished blocks are kept in "
+            f"{job.folder}, the same command goes on once that is mended"
         ) from None
-    raise RunError(f"{parts_of(path)}: shards are damaged again and again; is the disk failing?")
+    raise RunError(f"{job.folder}: shards are damaged again and again; is the disk failing?")
 
 
-def _refuse_more(started: Run, shards: list[Shard]) -> None:
+def _refuse_more(started: RunFolder, shards: list[Shard]) -> None:
     """Blocks beyond what is asked are not thrown away."""
     n, wanted = max((shard.span.stop for shard in shards), default=0), started.scene.n_surfaces
     if n > wanted:
@@ -300,7 +272,7 @@ def _refuse_more(started: Run, shards: list[Shard]) -> None:
         )
 
 
-def _draw_missing(started: Run, spans: list[Span], session: _Session, part: Part | None = None) -> None:
+def _draw_missing(started: RunFolder, spans: list[Span], session: _Session, part: Part | None = None) -> None:
     """Commit every block that is missing, or of these a job's share."""
     count = started.scene.n_surfaces - sum(span.n for span in spans)
     if part:

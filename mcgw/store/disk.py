@@ -4,12 +4,17 @@ import os
 from pathlib import Path
 from typing import Any
 
-__all__ = ["SteadyFile", "parts_of"]
+__all__ = ["SteadyFile", "file_of", "parts_of"]
 
 
 def parts_of(path: Path) -> Path:
     """Folder of the run that makes a file."""
     return path.with_name(f"{path.name}.parts")
+
+
+def file_of(folder: Path) -> Path:
+    """File that a run in this folder makes."""
+    return folder.with_name(folder.name.removesuffix(".parts"))
 
 
 class SteadyFile:

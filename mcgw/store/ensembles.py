@@ -16,7 +16,7 @@ from mcgw.store.arithmetic import drawn_with
 from mcgw.store.head import MOST_SCALE
 from mcgw.store.layout import FILETYPE, FORMAT, build, seal_notes, values_digest
 from mcgw.store.lock import locked
-from mcgw.store.run_folder import Run, difference, identity_of, parts_of
+from mcgw.store.run_folder import RunFolder, difference, identity_of, parts_of
 from mcgw.store.shards import DRAWN, Span, in_memory
 from mcgw.store.stored import FileSums, ShardSums
 from mcgw.store.trailer import check_seal, read_seal, seal_of
@@ -86,11 +86,11 @@ def read_attributes(path: Path) -> dict[str, Any]:
     }
 
 
-def _run_of(path: Path) -> Run:
+def _run_of(path: Path) -> RunFolder:
     """The run that makes a file; one that is a single block says nothing of itself."""
     if not (parts_of(path) / "run.toml").exists():
         raise StoreError(f"{path}: no block of its run is finished yet")
-    return Run.open(parts_of(path))
+    return RunFolder.open(parts_of(path))
 
 
 def _described(path: Path) -> tuple[dict[str, Any], Scene]:
@@ -170,7 +170,7 @@ def recorded_seed(path: Path) -> int | None:
     """Seed of the ensemble or run that is at a place, for scenes that give none."""
     if path.is_file():
         return _described(path)[1].seed
-    return Run.open(parts_of(path)).scene.seed if (parts_of(path) / "run.toml").is_file() else None
+    return RunFolder.open(parts_of(path)).scene.seed if (parts_of(path) / "run.toml").is_file() else None
 
 
 def finished(path: Path, scene: Scene, sampler: str) -> int:

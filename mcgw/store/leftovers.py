@@ -8,7 +8,7 @@ from mcgw.formats.files import remove_stale
 from mcgw.scene.scene_file import scene_from
 from mcgw.store.ensembles import read_attributes
 from mcgw.store.lock import locked
-from mcgw.store.run_folder import Run, parts_of, remove_run
+from mcgw.store.run_folder import RunFolder, parts_of, remove_run
 
 __all__ = ["drop_leftovers", "tidy"]
 
@@ -42,7 +42,7 @@ def _of_use(path: Path) -> bool:
     if not shards or not path.exists():
         return bool(shards)
     try:
-        run, attributes = Run.open(folder), read_attributes(path)
+        run, attributes = RunFolder.open(folder), read_attributes(path)
         same = attributes.get("run") == run.identity
         held = scene_from(attributes["scene"]).n_surfaces if same else 0
     except StoreError:

@@ -15,7 +15,7 @@ import h5py
 from mcgw.errors import StoreError
 from mcgw.store.disk import SteadyFile
 from mcgw.store.layout import build, file_pieces, seal_notes, values_digest
-from mcgw.store.run_folder import Run
+from mcgw.store.run_folder import RunFolder
 from mcgw.store.shards import LIBVER, Arrays, Shard, Span
 from mcgw.store.trailer import Seal, sha256_of
 
@@ -44,7 +44,7 @@ def merge_into(folder: Path, target: Path, temporary: Path) -> None:
     OSError
         If the disk does not take it.
     """
-    run = Run.open(folder)
+    run = RunFolder.open(folder)
     shards = run.shards()
     seconds = sum(shard.seconds for shard in shards) + _seconds_of(target)
     with closing(SteadyFile(temporary)) as raw:

@@ -33,7 +33,7 @@ from mcgw.store.lock import refuse_link
 from mcgw.store.provenance import now
 from mcgw.store.shards import Shard, Span, open_shard
 
-__all__ = ["Run", "difference", "identity_of", "missing", "parts_of", "remove_run"]
+__all__ = ["RunFolder", "difference", "identity_of", "missing", "parts_of", "remove_run"]
 
 _FILETYPE, _FORMAT = "mcgw-run", [1, 1]
 _CHECKSUM = 'sha256 = "'
@@ -80,8 +80,8 @@ def _short(value: Any) -> str:
 
 
 @dataclass(frozen=True)
-class Run:
-    """An open run.
+class RunFolder:
+    """The folder of a run, open.
 
     Parameters
     ----------
@@ -115,7 +115,7 @@ class Run:
         return self.folder / "shards"
 
     @classmethod
-    def begin(cls, folder: Path, scene: Scene, sampler: str, size: int) -> "Run":
+    def begin(cls, folder: Path, scene: Scene, sampler: str, size: int) -> "RunFolder":
         """Begin a run, or go on with the one that is there. Only with the lock.
 
         Raises
@@ -157,11 +157,11 @@ class Run:
 
     def freeze(self) -> None:
         """Record how many surfaces are wanted now."""
-        if Run.open(self.folder).scene != self.scene:
+        if RunFolder.open(self.folder).scene != self.scene:
             self._write(expected="anything")
 
     @classmethod
-    def open(cls, folder: Path) -> "Run":
+    def open(cls, folder: Path) -> "RunFolder":
         """Read what a run is.
 
         Raises
@@ -223,6 +223,11 @@ class Run:
         except StoreError:
             return None
         return shard if shard.span == span else None
+
+    def missing(self, done: int, shards: Iterable[Shard]) -> list[Span]:
+        """Blocks that neither the file, of `done` surfaces, nor one of the shards holds."""
+        held = [*([Span(0, done)] if done else []), *(shard.span for shard in shards)]
+        return missing(self.scene.n_surfaces, self.size, held)
 
     def remove(self) -> None:
         """Remove all but the lock, what identifies the run last. Only with the lock."""

@@ -31,7 +31,7 @@ from mcgw.jobs import merging, running
 from mcgw.machine.child_process import ChildError
 from mcgw.machine.lifeline import end_with
 from mcgw.store import ensembles, lock, merged_file
-from mcgw.store.run_folder import Run, parts_of
+from mcgw.store.run_folder import RunFolder, parts_of
 
 BLOCKS = 12
 WANTED = harness.scene_of(BLOCKS)
@@ -137,7 +137,7 @@ def committed(file):
     if file.exists():
         held.update(range(ensembles.open_ensemble(file).n_surfaces))
     if (parts_of(file) / "run.toml").is_file():
-        for shard in Run.open(parts_of(file)).shards():
+        for shard in RunFolder.open(parts_of(file)).shards():
             held.update(range(shard.span.first, shard.span.stop))
     return held
 

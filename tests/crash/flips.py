@@ -15,7 +15,7 @@ import numpy as np
 from harness import ROWS, forked, prepare, scene_of
 
 from mcgw.errors import StoreError
-from mcgw.jobs import running
+from mcgw.jobs.job import Job
 from mcgw.jobs.running import Part, run, run_part
 from mcgw.store import ensembles, layout, merged_file, structure
 from mcgw.store.run_folder import parts_of
@@ -26,9 +26,9 @@ BLOCKS = 5
 def made(folder):
     """A file of one block, one that was merged, and a run in progress."""
     scene, files = scene_of(BLOCKS), [folder / f"{name}.h5" for name in ("one-block", "merged", "begun")]
-    in_blocks, running.shard_size = running.shard_size, lambda scene, sampler: BLOCKS * ROWS
+    in_blocks, Job.rows = Job.rows, BLOCKS * ROWS
     run(scene, files[0])
-    running.shard_size = in_blocks
+    Job.rows = in_blocks
     run(scene, files[1])
     run_part(scene, files[2], Part(1, 2))
     return files

@@ -18,11 +18,12 @@ import numpy as np
 
 import analytic
 from mcgw.errors import RunError, StoreError
-from mcgw.jobs import blocks, merging, running
+from mcgw.jobs import merging, running
+from mcgw.jobs.job import Job
 from mcgw.machine.child_process import ChildError
 from mcgw.scene.scene import Scene
 from mcgw.store import ensembles, lock, merged_file, shards, structure
-from mcgw.store.run_folder import Run, parts_of
+from mcgw.store.run_folder import RunFolder, parts_of
 
 MODES = {"kill": 1, "torn": 2, "ENOSPC": 3, "EIO": 4}
 ROWS = 8
@@ -40,7 +41,7 @@ def scene_of(blocks):
     )
 
 
-def made_up(scene, sampler, span, threads):
+def made_up(job, span, threads):
     i = np.arange(span.first, span.stop)[:, None] + np.arange(3) / 3
     return {"load": np.sqrt(i + 2), "contacts": np.floor(i**2).astype(np.int64)}
 
@@ -56,10 +57,10 @@ def merged_here(folder, path, temporary):
 
 
 def prepare():
-    blocks.draw = made_up
+    Job.draw = made_up
     lock.PATIENCE = 0.0  # a second driver is refused at once
-    running.shard_size = lambda scene, sampler: ROWS
-    running.columns = lambda scene, sampler: 6
+    Job.rows = ROWS
+    Job.columns = 6
     merging._merge_in_child = merged_here
     ensembles.examine = lambda path: structure.describe(str(path))
     if "MCGW_IN_PLACE" in os.environ:  # the wrong way, which the harness must notice
@@ -127,14 +128,14 @@ def found(scene, file, acked, digest):
         return [] if not problem and now == digest else [f"final file: {problem or now}"]
     if not (parts_of(file) / "run.toml").exists():
         return ["lost everything"] if acked else []
-    run, wrong = Run.open(parts_of(file)), []
+    run, wrong = RunFolder.open(parts_of(file)), []
     valid = run.shards()
     if sum(shard.span.n for shard in valid) < acked:
         wrong.append(f"{acked} surfaces were committed, {sum(s.span.n for s in valid)} are there")
     if len(valid) != len(list(run.shards_folder.glob("block-*.h5"))):
         wrong.append("a shard is there and not whole")
     for shard in valid:
-        for name, values in made_up(scene, None, shard.span, 1).items():
+        for name, values in made_up(None, shard.span, 1).items():
             if not np.array_equal(shard.arrays()[name], values):
                 wrong.append(f"{shard.span}: {name} is wrong")
     return wrong

@@ -15,7 +15,7 @@ from pathlib import Path
 from harness import ROWS, attempt, forked, prepare, scene_of
 
 from mcgw.store import ensembles
-from mcgw.store.run_folder import Run, parts_of
+from mcgw.store.run_folder import RunFolder, parts_of
 
 BLOCKS = 120
 
@@ -32,7 +32,7 @@ def begun(scene, file):
 def committed(file):
     if not (parts_of(file) / "run.toml").is_file():
         return set()
-    return {shard.span.first for shard in Run.open(parts_of(file)).shards()}
+    return {shard.span.first for shard in RunFolder.open(parts_of(file)).shards()}
 
 
 def main(folder, kills):

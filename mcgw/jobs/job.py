@@ -1,0 +1,129 @@
+"""A scene on its way into a file: asked by whoever runs it, draws a part of it, or merges it."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+
+from mcgw.ensemble.simulation import block_size, drawn_blocks, kept, use_threads
+from mcgw.errors import StoreError
+from mcgw.formats.files import check_output
+from mcgw.jobs.disk_space import check_space
+from mcgw.sampling.samplers import Sampler, sampler_of
+from mcgw.scene.scene import Scene
+from mcgw.scene.scene_file import scene_from, scene_text
+from mcgw.store.ensembles import finished
+from mcgw.store.run_folder import RunFolder, parts_of
+from mcgw.store.shards import Arrays, Span
+
+__all__ = ["Job"]
+
+_BYTES = 2**23  # of a shard: large enough that its flushing costs little
+_DRAWS = 4e8  # numbers drawn for a shard: a second or so
+_OF_AN_EXTRA = 3  # numbers kept of an asperity outside the cells: surface, height, weight
+
+
+@dataclass(frozen=True)
+class Job:
+    """What is drawn, by what, in which pieces, and where it goes.
+
+    Parameters
+    ----------
+    scene : Scene
+        With a number of surfaces, not a rule for it.
+    sampler : Sampler
+        The scene's.
+    path : Path
+        The file to be. Until it is there, blocks lie in `folder`.
+    """
+
+    scene: Scene
+    sampler: Sampler
+    path: Path
+
+    @classmethod
+    def of(cls, scene: Scene, path: Path) -> "Job":
+        """Prepare a job, everything checked.
+
+        Raises
+        ------
+        StoreError
+            If the scene cannot be told by a file, the place belongs to something else, or the memory or the
+            disk does not suffice.
+        """
+        _check_storable(scene, path)
+        job = cls(scene, sampler_of(scene), path)
+        check_output(path)
+        job.done()
+        check_space(scene, path, rows=job.rows, columns=job.columns, held=job._bytes())
+        return job
+
+    @property
+    def folder(self) -> Path:
+        """Where its blocks lie while it runs."""
+        return parts_of(self.path)
+
+    @cached_property
+    def rows(self) -> int:
+        """Surfaces a block: a function of the scene alone, however many of them are asked."""
+        size, row = block_size(self.scene, self.sampler), 8 * self.columns
+        fitting = min(_BYTES / (size * row), _DRAWS / (size * (self.sampler.draws + 1)))
+        return size * int(max(fitting, 1))
+
+    @property
+    def columns(self) -> int:
+        """Numbers kept of a surface."""
+        sums = len(self.scene.separations) * len(self.scene.quantities)
+        if self.scene.keep == "sums":
+            return sums
+        return sums + self.sampler.moments + self.sampler.cells + _OF_AN_EXTRA
+
+    def done(self) -> int:
+        """Surfaces that its file holds.
+
+        Raises
+        ------
+        StoreError
+            If the file is another's, damaged, or holds more than is asked.
+        """
+        return finished(self.path, self.scene, self.sampler.name)
+
+    def begin(self) -> RunFolder:
+        """The folder of its blocks, new or as it is. Only with the lock."""
+        return RunFolder.begin(self.folder, self.scene, self.sampler.name, self.rows)
+
+    def draw(self, span: Span, threads: int | None) -> Arrays:
+        """Results of some surfaces, in pieces that fit the memory.
+
+        Parameters
+        ----------
+        span : Span
+            Which surfaces.
+        threads : int or None
+            How many to use; the result does not depend on it.
+
+        Returns
+        -------
+        dict of str to ndarray
+            What is kept of them.
+        """
+        size = block_size(self.scene, self.sampler)
+        with use_threads(threads):
+            blocks = drawn_blocks(self.sampler, span.first, span.stop, size)
+            parts = [kept(self.scene, block) for block in blocks]
+        return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
+
+    def _bytes(self) -> int:
+        """What lies there already: the file, and shards of a run."""
+        files = [self.path, *self.folder.glob("shards/block-*.h5")]
+        return sum(file.stat().st_size for file in files if file.is_file())
+
+
+def _check_storable(scene: Scene, path: Path) -> None:
+    try:
+        as_read = scene_from(scene_text(scene))
+    except ValueError:
+        as_read = None
+    if as_read != scene:
+        raise StoreError(f"{path}: this scene cannot be written to a file; give its grading as a table")
