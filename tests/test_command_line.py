@@ -9,8 +9,8 @@ import h5py
 import numpy as np
 import pytest
 import xarray
+from new_trailer import trailer_again
 from said import without_notes
-from sealing import seal_again
 
 import mcgw
 
@@ -92,7 +92,7 @@ def test_compare_fails_where_they_differ(file, tmp_path):
     wrong.write_bytes(file.read_bytes())
     with h5py.File(wrong, "r+") as data:
         data["load"][...] *= 1.05
-    seal_again(wrong)
+    trailer_again(wrong)
     done = call("compare", wrong, "-o", tmp_path / "wrong.png")
     assert done.returncode == 1
     assert "DISAGREE" in done.stdout

@@ -10,7 +10,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
-from sealing import seal_again
+from new_trailer import trailer_again
 
 import analytic
 import mcgw
@@ -19,7 +19,7 @@ from mcgw.jobs.running import run
 from mcgw.machine.child_process import ChildError, run_child
 from mcgw.scene.scene import Scene
 from mcgw.store import ensembles, structure, untrusted
-from mcgw.store.trailer import SEAL_BYTES
+from mcgw.store.trailer import TRAILER_BYTES
 
 TESTS = Path(__file__).parent
 SECRET = "key = correct horse battery staple"
@@ -185,7 +185,7 @@ def test_hostile_files_are_refused(change, path):
         other["load"] = np.ones((20, 2))
     with h5py.File(path, "r+") as data:
         change(data, path.parent)
-    seal_again(path)
+    trailer_again(path)
     with pytest.raises(StoreError, match=HOSTILE[change]) as caught:
         mcgw.open_ensemble(path)
     assert str(caught.value).startswith(str(path))
@@ -198,7 +198,7 @@ def test_big_endian_numbers_are_read(path):
     with h5py.File(path, "r+") as data:
         del data["load"]
         data["load"] = before.astype(">f8")
-    seal_again(path)
+    trailer_again(path)
     np.testing.assert_array_equal(mcgw.open_ensemble(path).load, before)
 
 
@@ -246,7 +246,7 @@ def test_what_the_child_suffers_is_told_in_one_line(path, monkeypatch):
     copy = path.with_name("copy.h5")
     copy.write_bytes(path.read_bytes())
     assert untrusted.examine(copy) == untrusted.examine(path)  # as it was written: no child is asked
-    copy.write_bytes(path.read_bytes()[:-SEAL_BYTES])
+    copy.write_bytes(path.read_bytes()[:-TRAILER_BYTES])
     with pytest.raises(StoreError, match="damaged or hostile; reading it crashed with SIGSEGV"):
         untrusted.examine(copy)
 

@@ -10,7 +10,7 @@ import mcgw
 from analytic import MeasuredHeights
 from mcgw.cli import main
 from mcgw.maps.asperities import Asperities
-from mcgw.maps.cautions import doubts
+from mcgw.maps.cautions import cautions
 from mcgw.maps.envelope import envelope, hidden_summits
 from mcgw.maps.files import write_map
 from mcgw.maps.fit import fit_map
@@ -41,7 +41,7 @@ def caps(overlap, *, number=2500, pixels=1536, seed=2, per_gap=30):
 
 
 def texts(fit, topography, cutoff):
-    return [line.partition(":")[0] for line in doubts(fit, topography, cutoff)]
+    return [line.partition(":")[0] for line in cautions(fit, topography, cutoff)]
 
 
 def test_moments_of_a_spectrum_against_quadrature_and_a_periodogram():

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import mcgw.maps.fit as fit_module
-from mcgw.maps.cautions import doubts
+from mcgw.maps.cautions import cautions
 from mcgw.maps.fit import fit_map
 from mcgw.maps.flaws import _waves, flaws
 from mcgw.maps.levels import form_left, step_of
@@ -42,7 +42,7 @@ def topography(z):
 def lines(z, **keywords):
     """Warnings by their first word."""
     fit = fit_map(topography(z), **{"cutoff": None, **keywords})
-    found = doubts(fit, topography(z), keywords.get("cutoff"))
+    found = cautions(fit, topography(z), keywords.get("cutoff"))
     return {line.partition(":")[0]: line for line in found}
 
 

@@ -12,7 +12,7 @@ import mcgw.maps.fit as fit_module
 from mcgw.maps.fit import Estimate, fit_map
 from mcgw.maps.nayak import SpectralMoments
 from mcgw.maps.spectrum import Spectrum, gaussian_map, moments_on_grid
-from mcgw.maps.summit_sums import _apex, tally_of
+from mcgw.maps.summit_sums import _apex, summit_sums_of
 from mcgw.maps.topography import Topography
 
 PARAMETERS = ("eta", "radius", "sigma")
@@ -48,14 +48,14 @@ def test_apexes_of_a_smooth_map_are_its_own():
     """Against the same waves summed on a grid sixteen times as fine, pixels not square."""
     pixel, n, finer = (1e-6, 1.3e-6), (96, 128), 16
     topography = gaussian_map(Spectrum(1e-6, 30e-6, 12e-6), n, pixel, np.random.default_rng(2))
-    tally = tally_of(topography)
+    counted = summit_sums_of(topography)
     wide = np.zeros((n[0] * finer, n[1] * finer // 2 + 1), dtype=complex)
     waves = fft.rfft2(topography.heights)
     half = n[0] // 2
     wide[:half, : waves.shape[1]], wide[-half:, : waves.shape[1]] = waves[:half], waves[half:]
     fine = fft.irfft2(wide, s=(n[0] * finer, n[1] * finer)) * finer**2
     assert fine[::finer, ::finer] == pytest.approx(topography.heights, abs=1e-12)
-    i, j = (np.rint(tally.places[axis] * n[1 - axis] - 0.5).astype(int) for axis in (0, 1))
+    i, j = (np.rint(counted.places[axis] * n[1 - axis] - 0.5).astype(int) for axis in (0, 1))
     assert i.size > 50
     around = np.arange(-finer, finer + 1)
     truth = np.array(
@@ -64,8 +64,8 @@ def test_apexes_of_a_smooth_map_are_its_own():
     )  # fmt: skip
     lift = (truth - topography.heights[j, i]).mean()
     # twelve pixels a wave: what the fourth order takes from the second is a twentieth
-    assert abs((tally.heights - truth).mean()) < 0.1 * lift
-    assert np.abs(tally.heights - truth).max() < 0.1 * topography.heights.std()
+    assert abs((counted.heights - truth).mean()) < 0.1 * lift
+    assert np.abs(counted.heights - truth).max() < 0.1 * topography.heights.std()
 
 
 def test_no_summit_rises_above_the_map():

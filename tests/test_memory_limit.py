@@ -7,8 +7,8 @@ from pathlib import Path
 
 import h5py
 import pytest
+from new_trailer import trailer_again
 from said import without_notes
-from sealing import seal_again
 
 import mcgw
 from mcgw.errors import StoreError
@@ -84,7 +84,7 @@ def test_a_hostile_file_is_named_as_such(file):
     with h5py.File(file, "r+") as data:
         del data["load"]
         data["load"] = h5py.SoftLink("/area")
-    seal_again(file)
+    trailer_again(file)
     (line,) = limited(1024, "-c", LOOK, file).stdout.splitlines()
     assert "refused: load: a link to another place" in line
     with pytest.raises(StoreError, match="refused: load: a link to another place"):

@@ -8,7 +8,7 @@ import pytest
 
 import analytic
 import mcgw
-from mcgw.scene.plausible import RANGES, unit_doubts
+from mcgw.scene.plausible import RANGES, perhaps_other_units
 from mcgw.scene.scene import LeftOut, Scene, SceneError
 from mcgw.scene.section import Section
 from mcgw.scene.surface import SURFACE_UNITS
@@ -310,11 +310,11 @@ DOUBTED = {
 def test_a_value_in_another_unit_is_asked_about_in_one_line(key):
     value, asked = DOUBTED[key]
     scene = Scene(surface=replace(SURFACE, **{key: value}), separations=(1.0,), n_asperities=100)
-    (line,) = unit_doubts(scene)
+    (line,) = perhaps_other_units(scene)
     assert line.startswith(asked)
     assert len(line) < 150
     tiny = Scene(surface=replace(SURFACE, **{key: RANGES[key].low / 2}), separations=(1.0,), n_asperities=100)
-    (line,) = unit_doubts(tiny)
+    (line,) = perhaps_other_units(tiny)
     assert line.startswith(f"surface.{key} = ")
 
 
@@ -324,10 +324,10 @@ def test_every_key_of_the_surface_has_a_range():
 
 def test_separations_in_metres_are_asked_about():
     scene = Scene(surface=SURFACE, separations=(0.0, 1e-6, 2e-6))
-    (line,) = unit_doubts(scene)
+    (line,) = perhaps_other_units(scene)
     assert "did you mean 2e-06 m = 2 sigma?" in line
-    assert unit_doubts(replace(scene, separations=(0.0,))) == []
-    assert unit_doubts(replace(scene, separations=(1e-6, 1.0))) == []
+    assert perhaps_other_units(replace(scene, separations=(0.0,))) == []
+    assert perhaps_other_units(replace(scene, separations=(1e-6, 1.0))) == []
 
 
 @pytest.mark.parametrize(
@@ -335,4 +335,4 @@ def test_separations_in_metres_are_asked_about():
 )
 def test_no_scene_of_ours_is_doubted(path):
     if "[surface]" in path.read_text():
-        assert unit_doubts(mcgw.load_scene(path)) == []
+        assert perhaps_other_units(mcgw.load_scene(path)) == []

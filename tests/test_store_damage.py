@@ -18,7 +18,7 @@ from mcgw.jobs.running import Part, run, run_part
 from mcgw.machine.child_process import ChildError
 from mcgw.store import ensembles, merged_file, shards, structure
 from mcgw.store.run_folder import RunFolder, parts_of
-from mcgw.store.trailer import SEAL_BYTES, check_seal, read_sealed, seal_of
+from mcgw.store.trailer import TRAILER_BYTES, check_trailer, read_checked, trailer_of
 
 SIZE, SURFACES = 16, 100
 
@@ -74,15 +74,15 @@ def a_changed_load(path):
         file["load"][3, 1] *= 1 + 1e-12
 
 
-def without_its_seal(path):
-    path.write_bytes(path.read_bytes()[:-SEAL_BYTES])
+def without_its_trailer(path):
+    path.write_bytes(path.read_bytes()[:-TRAILER_BYTES])
 
 
-def with_another_seal(path):
+def with_another_trailer(path):
     flip(path, len(path.read_bytes()) - 40)
 
 
-DAMAGES = [changed_in_place, a_changed_load, without_its_seal, with_another_seal]
+DAMAGES = [changed_in_place, a_changed_load, without_its_trailer, with_another_trailer]
 every_damage = pytest.mark.parametrize("damage", DAMAGES)
 
 
@@ -125,7 +125,7 @@ def test_a_damaged_file_is_not_extended_nor_sealed_anew(damaged, larger, way):
     assert damaged.read_bytes() == before
     assert not parts_of(damaged).exists() or not list(parts_of(damaged).glob("shards/*.h5"))
     with pytest.raises(StoreError):
-        check_seal(damaged)
+        check_trailer(damaged)
 
 
 @every_damage
@@ -160,13 +160,13 @@ def begun(scene, path, jobs=1):
     return sorted(parts_of(path).glob("shards/block-*.h5"))
 
 
-def reseal(path, change):
-    """Other numbers under a good seal: only the digest of the contents is as before."""
-    seal, body = read_sealed(path)
+def make_trailer_anew(path, change):
+    """Other numbers under a good trailer: only the digest of the contents is as before."""
+    trailer, body = read_checked(path)
     arrays = shards._unpack(body, path)
     change(arrays)
     body = shards.pack(arrays)
-    path.write_bytes(body + seal_of(body, **seal.notes))
+    path.write_bytes(body + trailer_of(body, **trailer.notes))
 
 
 def another_number(arrays):
@@ -175,7 +175,7 @@ def another_number(arrays):
 
 def test_contents_that_are_others_than_the_digest_says_are_refused(scene, tmp_path):
     path = tmp_path / "e.h5"
-    reseal(begun(scene, path)[2], another_number)
+    make_trailer_anew(begun(scene, path)[2], another_number)
     run_here = RunFolder.open(parts_of(path))
     with pytest.raises(StoreError, match=r"block-0000000000032.*contents are others"):
         [shard.arrays() for shard in run_here.shards()]
@@ -184,7 +184,7 @@ def test_contents_that_are_others_than_the_digest_says_are_refused(scene, tmp_pa
 @pytest.mark.parametrize("way", ["merge", "run", "merge as typed", "run as typed", "read"])
 def test_a_shard_of_other_contents_never_becomes_a_file(scene, tmp_path, way, capsys):
     path = tmp_path / "e.h5"
-    reseal(begun(scene, path)[2], another_number)
+    make_trailer_anew(begun(scene, path)[2], another_number)
     if way == "read":
         with pytest.raises(StoreError, match="contents are others"):
             _ = mcgw.open_ensemble(path).load
@@ -247,7 +247,7 @@ def test_a_shard_that_is_gone_is_missing(scene, tmp_path, gone):
 
 
 def test_shards_of_another_run_are_not_taken(scene, tmp_path):
-    """The same place and numbers of another seed, seal and digest in order."""
+    """The same place and numbers of another seed, trailer and digest in order."""
     a, b = tmp_path / "a.h5", tmp_path / "b.h5"
     ours, theirs = begun(scene, a), begun(replace(scene, seed=99), b)
     shutil.copy(theirs[1], ours[1])

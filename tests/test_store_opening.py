@@ -10,7 +10,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
-from sealing import seal_again
+from new_trailer import trailer_again
 
 import mcgw
 from mcgw.errors import StoreError
@@ -18,7 +18,7 @@ from mcgw.jobs.job import Job
 from mcgw.jobs.running import Part, run, run_part
 from mcgw.store import ensembles, layout, run_folder, structure
 from mcgw.store.run_folder import RunFolder, parts_of
-from mcgw.store.trailer import seal_of
+from mcgw.store.trailer import trailer_of
 
 CRASH = Path(__file__).parent / "crash"
 
@@ -65,7 +65,7 @@ def old_file(scene, file, monkeypatch):
     """The same as version 0.2 wrote it."""
     file.unlink()
     monkeypatch.setattr(layout, "FORMAT", (1, 0))
-    monkeypatch.setattr(ensembles, "seal_notes", lambda opened: {})
+    monkeypatch.setattr(ensembles, "trailer_notes", lambda opened: {})
     run(scene, file)
     return file
 
@@ -82,7 +82,7 @@ def test_a_new_file_without_the_checksum_is_refused(file):
     with h5py.File(file, "r+") as data:
         data.attrs["seed"] = np.uint64(5)
     body = file.read_bytes()
-    file.write_bytes(body + seal_of(body))
+    file.write_bytes(body + trailer_of(body))
     with pytest.raises(StoreError, match="checksum mismatch of its scene, attributes or scales"):
         mcgw.open_ensemble(file)
 
@@ -103,12 +103,12 @@ def test_a_new_file_without_the_checksum_is_refused(file):
     ],
 )
 def test_whatever_is_small_is_checked(file, change):
-    """The seal fits the bytes, only the checksum of the head is the old one."""
+    """The trailer fits the bytes, only the checksum of the head is the old one."""
     head = structure.describe(str(file))["head"]
     with h5py.File(file, "r+") as data:
         change(data)
     body = file.read_bytes()
-    file.write_bytes(body + seal_of(body, head=head))
+    file.write_bytes(body + trailer_of(body, head=head))
     with pytest.raises(StoreError, match="checksum mismatch of its scene, attributes or scales"):
         mcgw.open_ensemble(file)
 
@@ -131,16 +131,16 @@ def test_scales_must_be_those_of_the_scene(old_file, name, value):
     """Also where no checksum guards them, and where somebody sealed the file anew."""
     with h5py.File(old_file, "r+") as data:
         data[name][1] = value
-    seal_again(old_file)
+    trailer_again(old_file)
     with pytest.raises(StoreError, match=f"{name} does not hold the values that its scene declares"):
         mcgw.open_ensemble(old_file)
 
 
-def test_a_file_without_a_seal_is_refused_in_one_line(file):
+def test_a_file_without_a_trailer_is_refused_in_one_line(file):
     data = file.read_bytes()
     for changed in (data[:-512], data + b"\0"):
         file.write_bytes(changed)
-        with pytest.raises(StoreError, match="no seal at its end, so it was cut off or changed") as caught:
+        with pytest.raises(StoreError, match="no trailer at its end, so it was cut off or changed") as caught:
             mcgw.open_ensemble(file)
         assert "\n" not in str(caught.value)
 

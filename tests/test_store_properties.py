@@ -14,7 +14,7 @@ from mcgw.scene.samplers import SAMPLERS
 from mcgw.scene.scene import Scene
 from mcgw.store.run_folder import missing
 from mcgw.store.shards import Span
-from mcgw.store.trailer import Seal
+from mcgw.store.trailer import Trailer
 
 settings.register_profile("fixed", derandomize=True, deadline=None, max_examples=40)
 settings.load_profile("fixed")
@@ -118,16 +118,16 @@ def test_gaps_and_what_is_held_make_the_whole(n, size, cuts):
 
 
 @given(st.binary(max_size=600))
-def test_no_bytes_are_taken_for_a_seal(data):
+def test_no_bytes_are_taken_for_a_trailer(data):
     try:
-        Seal.from_bytes(data)
+        Trailer.from_bytes(data)
     except mcgw.store.ensembles.StoreError:
         return
     raise AssertionError(data)
 
 
 @given(st.integers(0, 8 * 512 - 1))
-def test_a_changed_seal_is_none(bit):
-    data = bytearray(Seal(7, "e" * 64, {"first": 3}).to_bytes())
+def test_a_changed_trailer_is_none(bit):
+    data = bytearray(Trailer(7, "e" * 64, {"first": 3}).to_bytes())
     data[bit // 8] ^= 1 << bit % 8
-    test_no_bytes_are_taken_for_a_seal.hypothesis.inner_test(bytes(data))
+    test_no_bytes_are_taken_for_a_trailer.hypothesis.inner_test(bytes(data))

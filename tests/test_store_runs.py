@@ -14,8 +14,8 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
+from new_trailer import trailer_again
 from said import without_notes
-from sealing import seal_again
 
 import mcgw
 from mcgw.errors import RunError, StoppedError, StoreError
@@ -261,7 +261,7 @@ def test_planted_links_are_not_followed(small_blocks, scene, tmp_path):
 
 
 def test_every_bit_of_the_file_counts(small_blocks, scene, tmp_path):
-    """600 flips and 300 truncations; the seal alone must see each, before HDF5 is asked."""
+    """600 flips and 300 truncations; the trailer alone must see each, before HDF5 is asked."""
     path = tmp_path / "e.h5"
     run(scene, path)
     data, rng = path.read_bytes(), np.random.default_rng(3)
@@ -271,23 +271,23 @@ def test_every_bit_of_the_file_counts(small_blocks, scene, tmp_path):
         changed[bit // 8] ^= 1 << bit % 8
         copy.write_bytes(changed)
         with pytest.raises(StoreError):
-            ensembles.check_seal(copy)
+            ensembles.check_trailer(copy)
     for length in rng.choice(len(data), 300, replace=False):
         copy.write_bytes(data[:length])
         with pytest.raises(StoreError):
-            ensembles.check_seal(copy)
+            ensembles.check_trailer(copy)
     copy.write_bytes(data)
     assert ensembles.verify(copy)[0] == ""
     copy.write_bytes(changed)
     assert ensembles.verify(copy)[0].startswith("damaged")
 
 
-def test_changed_data_with_a_good_seal_are_noticed(scene, tmp_path):
+def test_changed_data_with_a_good_trailer_are_noticed(scene, tmp_path):
     path = tmp_path / "e.h5"
     run(scene, path)
     with h5py.File(path, "r+") as file:
         file["load"][3, 1] *= 1 + 1e-15
-    seal_again(path)
+    trailer_again(path)
     assert ensembles.verify(path)[0] == "its data have another digest than it says"
 
 

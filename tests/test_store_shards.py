@@ -1,4 +1,4 @@
-"""Shards and seals: every changed bit and every lost byte is noticed."""
+"""Shards and trailers: every changed bit and every lost byte is noticed."""
 
 import os
 
@@ -9,7 +9,7 @@ import pytest
 from mcgw.errors import StoreError
 from mcgw.formats.files import write_whole
 from mcgw.store.shards import Span, commit_shard, content_digest, open_shard, pack
-from mcgw.store.trailer import SEAL_BYTES, Seal, check_seal, read_sealed, seal_of
+from mcgw.store.trailer import TRAILER_BYTES, Trailer, check_trailer, read_checked, trailer_of
 
 RUN, SPAN = "a" * 64, Span(40, 5)
 FLIPS, TRUNCATIONS = 600, 300
@@ -51,7 +51,7 @@ def test_every_flipped_bit_is_noticed(shard):
 def test_every_truncation_is_noticed(shard):
     data = shard.path.read_bytes()
     rng = np.random.default_rng(2)
-    for length in [0, 1, SEAL_BYTES, len(data) - 1, *rng.choice(len(data), TRUNCATIONS, replace=False)]:
+    for length in [0, 1, TRAILER_BYTES, len(data) - 1, *rng.choice(len(data), TRUNCATIONS, replace=False)]:
         shard.path.write_bytes(data[:length])
         with pytest.raises(StoreError):
             open_shard(shard.path, RUN)
@@ -94,7 +94,7 @@ def test_a_sealed_file_that_is_no_shard_is_refused(tmp_path):
         file["load"] = h5py.ExternalLink("/etc/hostname", "/x")
     body = path.read_bytes()
     notes = {"run": RUN, "first": 40, "n": 5, "content": "0", "seconds": 0.0}
-    path.write_bytes(body + seal_of(body, **notes))
+    path.write_bytes(body + trailer_of(body, **notes))
     with pytest.raises(StoreError, match="a link to another place"):
         open_shard(path, RUN).arrays()
 
@@ -107,9 +107,9 @@ def test_the_digest_is_of_contents_alone():
     assert pack(arrays()) == pack(arrays())
 
 
-def test_a_seal_reads_as_written():
-    seal = Seal(12, "f" * 64, {"run": RUN, "first": 2**60})
-    assert Seal.from_bytes(seal.to_bytes()) == seal
+def test_a_trailer_reads_as_written():
+    trailer = Trailer(12, "f" * 64, {"run": RUN, "first": 2**60})
+    assert Trailer.from_bytes(trailer.to_bytes()) == trailer
 
 
 def test_a_file_appears_whole_or_not_at_all(tmp_path, monkeypatch):
@@ -138,5 +138,5 @@ def test_a_planted_link_is_replaced_not_followed(tmp_path):
 
 def test_large_files_are_checked_in_pieces(tmp_path):
     path, body = tmp_path / "a", bytes(range(256)) * 40_000
-    path.write_bytes(body + seal_of(body))
-    assert check_seal(path).length == read_sealed(path)[0].length == len(body)
+    path.write_bytes(body + trailer_of(body))
+    assert check_trailer(path).length == read_checked(path)[0].length == len(body)

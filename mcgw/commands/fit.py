@@ -45,7 +45,7 @@ def execute(args: argparse.Namespace) -> int:
     """Print the estimates side by side with warnings, write the scene, and say where it is."""
     from mcgw.commands.outputs import NPY, TOML, Output, check_outputs
     from mcgw.formats.units import parse
-    from mcgw.maps.cautions import doubts
+    from mcgw.maps.cautions import cautions
     from mcgw.maps.files import files_of_map, read_map
     from mcgw.maps.fit import fit_map
     from mcgw.maps.fitted_scene import fitted_scene, heights_beside, write_scene
@@ -63,7 +63,7 @@ def execute(args: argparse.Namespace) -> int:
     head = f"{args.map.name}: form taken off: {args.form}; cutoff: {filtered}"
     if topography.assumed_unit:
         head += f"; heights taken in {topography.assumed_unit}, since the file tells no unit"
-    text = [head, *_table(fit), *(f"warning: {line}" for line in doubts(fit, topography, cutoff))]
+    text = [head, *_table(fit), *(f"warning: {line}" for line in cautions(fit, topography, cutoff))]
     print("\n".join(text))
     scene = fitted_scene(fit, use=args.use, heights=args.heights, E_star=E_star, title=f"Fitted to {head}")
     for path in write_scene(scene, args.output, fit if args.heights == "measured" else None, text):

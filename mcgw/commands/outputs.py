@@ -9,7 +9,7 @@ from mcgw.errors import StoreError
 from mcgw.formats.files import check_output
 from mcgw.store.disk import parts_of
 from mcgw.store.lock import LOCK_FILES
-from mcgw.store.trailer import SEAL_BYTES, SEAL_MAGIC
+from mcgw.store.trailer import TRAILER_BYTES, TRAILER_MAGIC
 
 __all__ = [
     "CSV",
@@ -138,9 +138,9 @@ def _refuse_ensemble(output: Output) -> None:
         return
     with open(output.path, "rb") as file:
         start = file.read(len(_SIGNATURE))
-        file.seek(max(output.path.stat().st_size - SEAL_BYTES, 0))
-        sealed = file.read(len(SEAL_MAGIC)) == SEAL_MAGIC
-    if sealed:
+        file.seek(max(output.path.stat().st_size - TRAILER_BYTES, 0))
+        ours = file.read(len(TRAILER_MAGIC)) == TRAILER_MAGIC
+    if ours:
         raise output.refuse("is an ensemble of mcgw, which this would replace")
     if start == _SIGNATURE and not set(HDF5.endings) & set(output.format.endings):
         raise output.refuse("is an HDF5 file, which this would replace")

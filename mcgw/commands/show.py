@@ -19,7 +19,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--csv", type=Path, metavar="CSV", help="also write the table of all separations there"
     )
-    what.add_argument("--verify", action="store_true", help="check every bit by seal and digest")
+    what.add_argument("--verify", action="store_true", help="check every bit by trailer and digest")
 
 
 def execute(args: argparse.Namespace) -> int:

@@ -5,7 +5,7 @@ from mcgw.maps.flaws import flaws
 from mcgw.maps.hidden import CROWDED, visible
 from mcgw.maps.topography import Topography
 
-__all__ = ["doubts"]
+__all__ = ["cautions"]
 
 _PIXELS = 10.0  # a cutoff wavelength should have
 _RESOLVED = 0.8  # of m4 over two pixels to that over one, at about ten pixels a wavelength
@@ -13,7 +13,7 @@ _LOST = 0.1  # of the summits
 _SKEW, _ALPHA, _FEW, _STREAKY = 0.3, 1.5, 100, 1.5
 
 
-def doubts(fit: Fit, topography: Topography, cutoff: float | None) -> list[str]:
+def cautions(fit: Fit, topography: Topography, cutoff: float | None) -> list[str]:
     """Warnings about a fit, each in one line that says what to do.
 
     Parameters

@@ -13,7 +13,7 @@ from mcgw.maps.hidden import Visible, unhidden, visible
 from mcgw.maps.levels import form_left
 from mcgw.maps.leverage import Alone, alone_of
 from mcgw.maps.nayak import SpectralMoments
-from mcgw.maps.summit_sums import SUMS, Tally, tally_of
+from mcgw.maps.summit_sums import SUMS, SummitSums, summit_sums_of
 from mcgw.maps.topography import Topography
 from mcgw.maps.waves import Waves, waves_of
 
@@ -114,7 +114,7 @@ def fit_map(topography: Topography, *, cutoff: float | None, form: Form = "plane
     Returns
     -------
     Fit
-        By all methods; `mcgw.maps.cautions.doubts` says why not to trust it.
+        By all methods; `mcgw.maps.cautions.cautions` says why not to trust it.
 
     Raises
     ------
@@ -128,16 +128,16 @@ def fit_map(topography: Topography, *, cutoff: float | None, form: Form = "plane
         raise ValueError("the map is flat: there is no roughness to fit")
     plain = without_form(topography, form)
     used = plain if cutoff is None else smooth(plain, cutoff)
-    tally = _without_summit_form(tally_of(used, across=across), form)
-    if tally.heights.size < 4 * tally.parts:
+    counted = _without_summit_form(summit_sums_of(used, across=across), form)
+    if counted.heights.size < 4 * counted.parts:
         form_too = ", or --form quadratic" if form_left(topography, form) else ""
         raise ValueError(
-            f"{tally.heights.size} summits are too few for {tally.parts} sub-areas; "
+            f"{counted.heights.size} summits are too few for {counted.parts} sub-areas; "
             f"give a larger map, a shorter cutoff, or fewer sub-areas{form_too}"
         )
-    estimates = {"moments": _estimate(tally, _by_moments), "summits": _estimate(tally, _by_summits)}
+    estimates = {"moments": _estimate(counted, _by_moments), "summits": _estimate(counted, _by_summits)}
     blur = math.hypot(max(used.pixel), _BLUR * (cutoff or 0.0))
-    caps = _caps(tally, blur)
+    caps = _caps(counted, blur)
     peak_to_valley = float(np.ptp(used.heights))
     if caps is not None and caps.sigma[0] > peak_to_valley:
         caps = None  # so many would have to hide that those seen no longer tell
@@ -148,17 +148,17 @@ def fit_map(topography: Topography, *, cutoff: float | None, form: Form = "plane
     _check_sigma(estimates, peak_to_valley)
     return Fit(
         estimates,
-        _moments(tally),
-        _at_least(_jackknife(tally, lambda t: np.array([_moments(t).alpha]))[0], waves.alpha),
-        _jackknife(tally, lambda t: np.array([_skewness(t)]))[0],
-        tally.heights - tally.heights.mean(),
-        float(tally.heights.mean()) - mean_squares(tally)["z"],
-        tally.area,
+        _moments(counted),
+        _at_least(_jackknife(counted, lambda t: np.array([_moments(t).alpha]))[0], waves.alpha),
+        _jackknife(counted, lambda t: np.array([_skewness(t)]))[0],
+        counted.heights - counted.heights.mean(),
+        float(counted.heights.mean()) - mean_squares(counted)["z"],
+        counted.area,
         None if caps is None else visible(caps.overlap, blur / math.sqrt(2 * caps.radius[0] * caps.sigma[0])),
-        mean_squares(tally),
+        mean_squares(counted),
         form,
         waves,
-        alone_of(tally),
+        alone_of(counted),
     )
 
 
@@ -187,76 +187,78 @@ def _check_sigma(estimates: dict[str, Estimate], peak_to_valley: float) -> None:
             )
 
 
-def _without_summit_form(tally: Tally, form: Form) -> Tally:
+def _without_summit_form(counted: SummitSums, form: Form) -> SummitSums:
     """Summit heights about their own plane: deep valleys tilt that of the whole map."""
     if form == "none":
-        return tally
-    x, y = 2 * tally.places - 1
+        return counted
+    x, y = 2 * counted.places - 1
     columns = [np.ones_like(x), x, y, *((x * x, x * y, y * y) if form == "quadratic" else ())]
     basis = np.column_stack(columns)
-    found = np.linalg.lstsq(basis, tally.heights, rcond=None)[0]
-    return replace(tally, heights=tally.heights - basis[:, 1:] @ found[1:])
+    found = np.linalg.lstsq(basis, counted.heights, rcond=None)[0]
+    return replace(counted, heights=counted.heights - basis[:, 1:] @ found[1:])
 
 
-def _jackknife(tally: Tally, statistic: Callable[[Tally], NDArray[np.float64]]) -> list[tuple[float, float]]:
+def _jackknife(
+    counted: SummitSums, statistic: Callable[[SummitSums], NDArray[np.float64]]
+) -> list[tuple[float, float]]:
     """Values, and errors by leaving out one sub-area after the other.
 
     They are standard errors widened as Student's t asks for so few sub-areas: two of them hold 95 %.
     """
-    values = statistic(tally)
-    without = np.array([statistic(tally.without(part)) for part in range(tally.parts)])
-    n = tally.parts
+    values = statistic(counted)
+    without = np.array([statistic(counted.without(part)) for part in range(counted.parts)])
+    n = counted.parts
     errors = np.sqrt((n - 1) / n * ((without - without.mean(axis=0)) ** 2).sum(axis=0))
     errors *= stdtrit(n - 1, ndtr(2.0)) / 2
     return list(zip(values.tolist(), errors.tolist(), strict=True))
 
 
-def _estimate(tally: Tally, statistic: Callable[[Tally], NDArray[np.float64]]) -> Estimate:
-    return Estimate(*_jackknife(tally, statistic))
+def _estimate(counted: SummitSums, statistic: Callable[[SummitSums], NDArray[np.float64]]) -> Estimate:
+    return Estimate(*_jackknife(counted, statistic))
 
 
-def mean_squares(tally: Tally) -> dict[str, float]:
+def mean_squares(counted: SummitSums) -> dict[str, float]:
     """Means over the map, by the names of `mcgw.maps.summit_sums.SUMS`."""
-    sums = tally.sums.sum(axis=1)
+    sums = counted.sums.sum(axis=1)
     return dict(zip(SUMS[1:], (sums[1:] / sums[0]).tolist(), strict=True))
 
 
-def _moments(tally: Tally) -> SpectralMoments:
-    m = mean_squares(tally)
+def _moments(counted: SummitSums) -> SpectralMoments:
+    m = mean_squares(counted)
     return SpectralMoments(m["z2"] - m["z"] ** 2, (m["slope_x"] + m["slope_y"]) / 2, m["bend"])
 
 
-def _skewness(tally: Tally) -> float:
-    z, z2, z3 = (mean_squares(tally)[key] for key in ("z", "z2", "z3"))
+def _skewness(counted: SummitSums) -> float:
+    z, z2, z3 = (mean_squares(counted)[key] for key in ("z", "z2", "z3"))
     return float((z3 - 3 * z * z2 + 2 * z**3) / (z2 - z * z) ** 1.5)
 
 
-def _by_moments(tally: Tally) -> NDArray[np.float64]:
-    m = _moments(tally)
+def _by_moments(counted: SummitSums) -> NDArray[np.float64]:
+    m = _moments(counted)
     return np.array([m.eta, m.radius, m.sigma])
 
 
-def _by_summits(tally: Tally) -> NDArray[np.float64]:
-    n = tally.heights.size
-    return np.array([n / tally.area, 1 / tally.curvatures.mean(), tally.heights.std(ddof=1)])
+def _by_summits(counted: SummitSums) -> NDArray[np.float64]:
+    n = counted.heights.size
+    return np.array([n / counted.area, 1 / counted.curvatures.mean(), counted.heights.std(ddof=1)])
 
 
-def _by_caps(tally: Tally, blur: float) -> NDArray[np.float64]:
+def _by_caps(counted: SummitSums, blur: float) -> NDArray[np.float64]:
     """All caps have one radius, so the median tells it: a few summits next to a valley do not."""
-    median = np.median(tally.curvatures)
-    caps = tally.heights[tally.curvatures > _FLAT * median]  # the others are ripples in the valleys
-    found = unhidden(caps.size / tally.area, float(1 / median), float(caps.std(ddof=1)), blur)
+    median = np.median(counted.curvatures)
+    caps = counted.heights[counted.curvatures > _FLAT * median]  # the others are ripples in the valleys
+    found = unhidden(caps.size / counted.area, float(1 / median), float(caps.std(ddof=1)), blur)
     return np.full(3, np.nan) if found is None else np.array([found[0], 1 / median, found[1]])
 
 
-def _caps(tally: Tally, blur: float) -> Estimate | None:
+def _caps(counted: SummitSums, blur: float) -> Estimate | None:
     """With what the corrections may be wrong by in the standard errors."""
-    estimate = _estimate(tally, lambda t: _by_caps(t, blur))
-    sharp = _by_caps(tally, 0.0)
+    estimate = _estimate(counted, lambda t: _by_caps(t, blur))
+    sharp = _by_caps(counted, 0.0)
     values = np.array([estimate.eta, estimate.radius, estimate.sigma])
     if not (np.all(np.isfinite(values)) and np.all(np.isfinite(sharp))):
         return None
     doubt = _DOUBT * np.abs(values[:, 0] - sharp)
-    doubt[1] = abs(1 / float(tally.curvatures.mean()) - values[1, 0])
+    doubt[1] = abs(1 / float(counted.curvatures.mean()) - values[1, 0])
     errors = np.hypot(values[:, 1], doubt)
     return Estimate(*((float(v), float(e)) for v, e in zip(values[:, 0], errors, strict=True)))

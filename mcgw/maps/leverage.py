@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mcgw.maps.summit_sums import SUMS, Tally
+from mcgw.maps.summit_sums import SUMS, SummitSums
 
 __all__ = ["Alone", "alone_of"]
 
@@ -34,9 +34,9 @@ class Alone:
     across: int
 
 
-def alone_of(tally: Tally) -> Alone | None:
+def alone_of(counted: SummitSums) -> Alone | None:
     """The sub-area that most of a mean square stands on, if there is one; m4 before m2 before m0."""
-    sums = dict(zip(SUMS, tally.sums, strict=True))
+    sums = dict(zip(SUMS, counted.sums, strict=True))
     points = sums["points"]
     mean = sums["z"].sum() / points.sum()
     squares = {
@@ -44,7 +44,7 @@ def alone_of(tally: Tally) -> Alone | None:
         "m2": sums["slope_x"] + sums["slope_y"],
         "m0": sums["z2"] - 2 * mean * sums["z"] + mean**2 * points,
     }
-    across = round(tally.parts**0.5)
+    across = round(counted.parts**0.5)
     for moment, square in squares.items():
         part = int(np.argmax(square))
         rest = (square.sum() - square[part]) / (points.sum() - points[part])

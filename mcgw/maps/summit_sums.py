@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from mcgw.machine.compiling import njit
 from mcgw.maps.topography import Topography
 
-__all__ = ["SUMS", "Tally", "tally_of"]
+__all__ = ["SUMS", "SummitSums", "summit_sums_of"]
 
 Array = NDArray[np.float64]
 
@@ -20,7 +20,7 @@ _EDGE = 4  # pixels that the stencils reach
 
 
 @dataclass(frozen=True)
-class Tally:
+class SummitSums:
     """What a map's estimates are made of.
 
     Parameters
@@ -49,10 +49,10 @@ class Tally:
         """Number of sub-areas."""
         return int(self.sums.shape[1])
 
-    def without(self, part: int) -> "Tally":
+    def without(self, part: int) -> "SummitSums":
         """All but one sub-area."""
         kept = self.part != part
-        return Tally(
+        return SummitSums(
             np.delete(self.sums, part, axis=1),
             self.heights[kept],
             self.curvatures[kept],
@@ -142,7 +142,7 @@ def _pass(z: Any, dx: Any, dy: Any, across: Any, sums: Any, summits: Any, part_o
     return found
 
 
-def tally_of(topography: Topography, *, across: int = 4) -> Tally:
+def summit_sums_of(topography: Topography, *, across: int = 4) -> SummitSums:
     """Go over a map once.
 
     Parameters
@@ -154,7 +154,7 @@ def tally_of(topography: Topography, *, across: int = 4) -> Tally:
 
     Returns
     -------
-    Tally
+    SummitSums
         Of all points (of a map that is not periodic: without four at each edge).
 
     Raises
@@ -174,4 +174,4 @@ def tally_of(topography: Topography, *, across: int = 4) -> Tally:
     found = _pass(z, *topography.pixel, across, sums, summits, part)
     dx, dy = topography.pixel
     summits = summits[:, :found].copy()
-    return Tally(sums, summits[0], summits[1], summits[2:], part[:found].copy(), dx * dy)
+    return SummitSums(sums, summits[0], summits[1], summits[2:], part[:found].copy(), dx * dy)

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from mcgw.scene.plausible import unit_doubts
+from mcgw.scene.plausible import perhaps_other_units
 from mcgw.scene.scene import Scene
 
 __all__ = ["cautions"]
@@ -29,7 +29,7 @@ def cautions(scene: Scene) -> list[str]:
         One line each; empty where the model has no known trouble.
     """
     found = [_crowd, _half, _depth, _slope, _few_contacts, _other_number, _negative_modulus]
-    return [*unit_doubts(scene), *(line for caution in found for line in caution(scene))]
+    return [*perhaps_other_units(scene), *(line for caution in found for line in caution(scene))]
 
 
 def _crowd(scene: Scene) -> Iterator[str]:

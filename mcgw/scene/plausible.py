@@ -6,7 +6,7 @@ from mcgw.formats.units import parse
 from mcgw.scene.scene import Scene
 from mcgw.scene.surface import SURFACE_UNITS
 
-__all__ = ["RANGES", "unit_doubts"]
+__all__ = ["RANGES", "perhaps_other_units"]
 
 
 @dataclass(frozen=True)
@@ -45,7 +45,7 @@ RANGES = {
 _HARDLY_APART = 1e-3  # d/sigma: separations that all lie so close to 0 are lengths
 
 
-def unit_doubts(scene: Scene) -> list[str]:
+def perhaps_other_units(scene: Scene) -> list[str]:
     """Values that are perhaps given in another unit, each with what was perhaps meant.
 
     Parameters

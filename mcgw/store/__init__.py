@@ -22,7 +22,7 @@ and, if the scene says ``keep = "moments"``, what `mcgw.ensemble.regrading` star
 Every dataset has the attributes `units` and `long_name`; only quantities that the scene asks for are
 there. Chunked, shuffled, compressed with gzip, each chunk with a checksum (Fletcher). `digest` is over
 scene and data, `run` over what the numbers of a surface depend on (scene but for the number of surfaces,
-sampler, and the versions in `draws`). After the HDF5 data stand 512 bytes, the seal (`seal`), with the
+sampler, and the versions in `draws`). After the HDF5 data stand 512 bytes, the trailer (`trailer`), with the
 digest of the file's bytes and that of its head (`head`: attributes, types, shapes, scales). That of the
 head is checked on every opening, that of all bytes by ``mcgw show --verify``; files of format 1.0 have
 none of the head.

@@ -80,7 +80,7 @@ class SteadyFile:
     def flush(self) -> None:
         """Nothing is held back."""
 
-    def seal(self, data: bytes) -> None:
+    def trailer(self, data: bytes) -> None:
         """Append the last bytes and flush to the disk.
 
         Raises

@@ -14,12 +14,12 @@ from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_from, scene_text
 from mcgw.store.arithmetic import drawn_with
 from mcgw.store.head import MOST_SCALE
-from mcgw.store.layout import FILETYPE, FORMAT, build, seal_notes, values_digest
+from mcgw.store.layout import FILETYPE, FORMAT, build, trailer_notes, values_digest
 from mcgw.store.lock import locked
 from mcgw.store.run_folder import RunFolder, difference, identity_of, parts_of
 from mcgw.store.shards import DRAWN, Span, in_memory
 from mcgw.store.stored import FileSums, ShardSums
-from mcgw.store.trailer import check_seal, read_seal, seal_of
+from mcgw.store.trailer import check_trailer, read_trailer, trailer_of
 from mcgw.store.untrusted import examine
 
 __all__ = [
@@ -103,7 +103,7 @@ def _described(path: Path) -> tuple[dict[str, Any], Scene]:
         major, minor = (int(part) for part in attributes["format"])
         if major != FORMAT[0]:
             raise StoreError(f"{path}: format {major}.{minor}; this version reads {FORMAT[0]}.x")
-        head = read_seal(path).notes.get("head")
+        head = read_trailer(path).notes.get("head")
         if head != answer["head"] and (head or minor):  # files of format 1.0 have none
             raise StoreError(f"{path}: damaged (checksum mismatch of its scene, attributes or scales)")
         scene = scene_from(str(attributes["scene"]))
@@ -150,7 +150,7 @@ def verify(path: Path) -> tuple[str, str]:
     """
     problem = ""
     try:
-        check_seal(path)
+        check_trailer(path)
     except StoreError as error:
         problem = str(error).removeprefix(f"{path}: ")
     try:
@@ -193,7 +193,7 @@ def finished(path: Path, scene: Scene, sampler: str) -> int:
             f"{scene.n_surfaces}; ask for as many or more, or choose another -o"
         )
     if there.n_surfaces < scene.n_surfaces:
-        check_seal(path)  # it is about to be copied
+        check_trailer(path)  # it is about to be copied
     return there.n_surfaces
 
 
@@ -260,9 +260,9 @@ def write_ensemble(ensemble: Ensemble, path: Path, *, wall_seconds: float) -> No
         )
     )
     with h5py.File(io.BytesIO(body), "r") as file:
-        notes = seal_notes(file)
+        notes = trailer_notes(file)
     try:
-        write_whole(path, (body, seal_of(body, **notes)), expected=before)
+        write_whole(path, (body, trailer_of(body, **notes)), expected=before)
     except FileExistsError as error:
         raise StoreError(f"{path}: {error.strerror}; it is left as it is, choose another -o") from None
     except OSError as error:

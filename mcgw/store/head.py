@@ -1,6 +1,6 @@
 """The head of an HDF5 file: its attributes, the types and shapes of its tables, and its scales.
 
-They are small and decide what the numbers mean. Their digest stands in the seal of an ensemble file and
+They are small and decide what the numbers mean. Their digest stands in the trailer of an ensemble file and
 is computed again whenever the file is opened; what is large has checksums of its own, chunk by chunk.
 """
 

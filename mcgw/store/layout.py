@@ -16,7 +16,7 @@ from mcgw.store.head import head_digest
 from mcgw.store.provenance import now, provenance
 from mcgw.store.shards import DRAWN, RAGGED, Arrays, Span
 
-__all__ = ["FILETYPE", "FORMAT", "build", "file_pieces", "seal_notes", "values_digest", "where"]
+__all__ = ["FILETYPE", "FORMAT", "build", "file_pieces", "trailer_notes", "values_digest", "where"]
 
 FILETYPE, FORMAT = "mcgw-ensemble", (1, 1)
 
@@ -120,8 +120,8 @@ class _Digest:
         return hashlib.sha256("\n".join([self._scene, *lines]).encode()).hexdigest()
 
 
-def seal_notes(file: h5py.File) -> dict[str, str]:
-    """What the seal of an ensemble file says besides its length and digest."""
+def trailer_notes(file: h5py.File) -> dict[str, str]:
+    """What the trailer of an ensemble file says besides its length and digest."""
     names = ["surface", "separation", *(where(name) for name in tables(file))]
     return {"head": head_digest(file, names)}
 

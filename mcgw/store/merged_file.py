@@ -1,8 +1,8 @@
 """From shards to the file, in a process of its own: the HDF5 library may crash on a full disk.
 
 Run as a script: ``python -m mcgw.store.merged_file FOLDER TARGET TEMPORARY``. The file is written under the
-temporary name, read back, compared with the digest of the shards, sealed and flushed; the caller gives
-it its name. Exit code 3: a shard is damaged.
+temporary name, read back, compared with the digest of the shards, given its trailer and flushed; the
+caller gives it its name. Exit code 3: a shard is damaged.
 """
 
 import sys
@@ -14,10 +14,10 @@ import h5py
 
 from mcgw.errors import StoreError
 from mcgw.store.disk import SteadyFile
-from mcgw.store.layout import build, file_pieces, seal_notes, values_digest
+from mcgw.store.layout import build, file_pieces, trailer_notes, values_digest
 from mcgw.store.run_folder import RunFolder
 from mcgw.store.shards import LIBVER, Arrays, Shard, Span
-from mcgw.store.trailer import Seal, sha256_of
+from mcgw.store.trailer import Trailer, sha256_of
 
 __all__ = ["DAMAGED", "merge_into"]
 
@@ -62,9 +62,9 @@ def merge_into(folder: Path, target: Path, temporary: Path) -> None:
         with h5py.File(temporary, "r") as file:
             if file.attrs["digest"] != digest or values_digest(file, run.scene) != digest:
                 raise OSError(f"{temporary}: reads otherwise than written")
-            notes = seal_notes(file)
+            notes = trailer_notes(file)
         length = temporary.stat().st_size
-        raw.seal(Seal(length, sha256_of(temporary, length), notes).to_bytes())
+        raw.trailer(Trailer(length, sha256_of(temporary, length), notes).to_bytes())
 
 
 def _checked(raw: SteadyFile, pieces: Iterator[tuple[Span, Arrays]]) -> Iterator[tuple[Span, Arrays]]:

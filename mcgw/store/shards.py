@@ -1,7 +1,7 @@
-"""A shard: the results of some consecutive surfaces as one sealed HDF5 file.
+"""A shard: the results of some consecutive surfaces as one HDF5 file with a trailer.
 
 The file is made in memory and written by plain system calls: the HDF5 library never touches the disk
-while a block is committed, so that a full disk is an error like any other. The seal carries the
+while a block is committed, so that a full disk is an error like any other. The trailer carries the
 identity of the run, the numbers of the surfaces and a digest of the contents (names, types, shapes,
 values), which does not depend on how HDF5 laid out the file.
 """
@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from mcgw.errors import StoreError
 from mcgw.formats.files import write_whole
-from mcgw.store.trailer import Seal, read_sealed, seal_of
+from mcgw.store.trailer import Trailer, read_checked, trailer_of
 
 __all__ = [
     "DRAWN",
@@ -66,7 +66,7 @@ class Span:
 
 @dataclass(frozen=True)
 class Shard:
-    """A shard whose seal was checked.
+    """A shard whose trailer was checked.
 
     Parameters
     ----------
@@ -93,7 +93,7 @@ class Shard:
         StoreError
             If it was damaged or replaced since.
         """
-        _, body = read_sealed(self.path)
+        _, body = read_checked(self.path)
         arrays = _unpack(body, self.path)
         if content_digest(arrays) != self.digest:
             raise StoreError(f"{self.path}: damaged (its contents are others)")
@@ -155,7 +155,7 @@ def commit_shard(path: Path, run: str, span: Span, arrays: Arrays, seconds: floa
     _check_rows(shard, arrays)
     body = pack(arrays)
     notes = {"run": run, "first": span.first, "n": span.n, "content": shard.digest, "seconds": seconds}
-    write_whole(path, (body, seal_of(body, **notes)))
+    write_whole(path, (body, trailer_of(body, **notes)))
     return shard
 
 
@@ -167,7 +167,7 @@ def open_shard(path: Path, run: str) -> Shard:
     StoreError
         If it is not there, damaged, or belongs elsewhere.
     """
-    shard, identity = _described(path, read_sealed(path)[0])
+    shard, identity = _described(path, read_checked(path)[0])
     if identity != run:
         raise StoreError(f"{path}: belongs to another run")
     if path.name != shard.span.file_name:
@@ -185,9 +185,9 @@ def content_digest(arrays: Arrays) -> str:
     return sha.hexdigest()
 
 
-def _described(path: Path, seal: Seal) -> tuple[Shard, str]:
+def _described(path: Path, trailer: Trailer) -> tuple[Shard, str]:
     try:
-        notes = seal.notes
+        notes = trailer.notes
         span = Span(int(notes["first"]), int(notes["n"]))
         shard = Shard(path, span, str(notes["content"]), float(notes["seconds"]))
         identity = str(notes["run"])

@@ -1,9 +1,9 @@
-"""A seal: the last 512 bytes of a file, which tell whether it is whole and unchanged.
+"""A trailer: the last 512 bytes of a file, which tell whether it is whole and unchanged.
 
-It stands at the end, so that a sealed HDF5 file begins as any other and every HDF5 reader opens it; a
-file without its seal was never finished. Layout: 8 bytes magic, JSON padded with spaces (472 bytes),
+It stands at the end, so that an HDF5 file with one begins as any other and every HDF5 reader opens it; a
+file without its trailer was never finished. Layout: 8 bytes magic, JSON padded with spaces (472 bytes),
 SHA-256 of these 480 bytes (32 bytes). The JSON holds the length and the SHA-256 of all that stands
-before the seal, and what the writer wants known without opening the file.
+before the trailer, and what the writer wants known without opening the file.
 """
 
 import hashlib
@@ -17,30 +17,30 @@ from mcgw.errors import StoreError
 from mcgw.formats.plain_file import open_regular
 
 __all__ = [
-    "SEAL_BYTES",
-    "SEAL_MAGIC",
-    "Seal",
-    "check_seal",
-    "read_seal",
-    "read_sealed",
-    "seal_of",
+    "TRAILER_BYTES",
+    "TRAILER_MAGIC",
+    "Trailer",
+    "check_trailer",
+    "read_checked",
+    "read_trailer",
     "sha256_of",
+    "trailer_of",
 ]
 
-SEAL_BYTES = 512
-SEAL_MAGIC = b"MCGWSEAL"
-_HEAD = SEAL_BYTES - hashlib.sha256().digest_size
+TRAILER_BYTES = 512
+TRAILER_MAGIC = b"MCGWSEAL"
+_HEAD = TRAILER_BYTES - hashlib.sha256().digest_size
 _PIECE = 2**22
 
 
 @dataclass(frozen=True)
-class Seal:
-    """What a seal says.
+class Trailer:
+    """What a trailer says.
 
     Parameters
     ----------
     length : int
-        Bytes before the seal.
+        Bytes before the trailer.
     sha256 : str
         Digest of these bytes.
     notes : dict
@@ -54,41 +54,41 @@ class Seal:
     def to_bytes(self) -> bytes:
         """The 512 bytes."""
         text = json.dumps({"length": self.length, "sha256": self.sha256, "notes": self.notes})
-        head = (SEAL_MAGIC + text.encode()).ljust(_HEAD)
+        head = (TRAILER_MAGIC + text.encode()).ljust(_HEAD)
         if len(head) > _HEAD:
-            raise ValueError(f"seal: {len(head)} bytes of notes, more than {_HEAD}")
+            raise ValueError(f"trailer: {len(head)} bytes of notes, more than {_HEAD}")
         return head + hashlib.sha256(head).digest()
 
     @classmethod
-    def from_bytes(cls, data: bytes) -> "Seal":
+    def from_bytes(cls, data: bytes) -> "Trailer":
         """Read it.
 
         Raises
         ------
         StoreError
-            If it is no seal, or a damaged one.
+            If it is no trailer, or a damaged one.
         """
         head, digest = data[:_HEAD], data[_HEAD:]
         if (
-            len(data) != SEAL_BYTES
-            or not head.startswith(SEAL_MAGIC)
+            len(data) != TRAILER_BYTES
+            or not head.startswith(TRAILER_MAGIC)
             or hashlib.sha256(head).digest() != digest
         ):
-            raise StoreError("not a whole file of mcgw: no seal at its end, so it was cut off or changed")
+            raise StoreError("not a whole file of mcgw: no trailer at its end, so it was cut off or changed")
         try:
-            said = json.loads(head[len(SEAL_MAGIC) :])
+            said = json.loads(head[len(TRAILER_MAGIC) :])
             return cls(int(said["length"]), str(said["sha256"]), dict(said["notes"]))
         except (ValueError, KeyError, TypeError):
-            raise StoreError("its seal cannot be read") from None
+            raise StoreError("its trailer cannot be read") from None
 
 
-def seal_of(body: bytes, **notes: Any) -> bytes:
-    """Seal for a body in memory."""
-    return Seal(len(body), hashlib.sha256(body).hexdigest(), notes).to_bytes()
+def trailer_of(body: bytes, **notes: Any) -> bytes:
+    """Trailer for a body in memory."""
+    return Trailer(len(body), hashlib.sha256(body).hexdigest(), notes).to_bytes()
 
 
-def read_sealed(path: Path) -> tuple[Seal, bytes]:
-    """Seal and body of a small file, checked bit by bit.
+def read_checked(path: Path) -> tuple[Trailer, bytes]:
+    """Trailer and body of a small file, checked bit by bit.
 
     Raises
     ------
@@ -97,15 +97,15 @@ def read_sealed(path: Path) -> tuple[Seal, bytes]:
     """
     with os.fdopen(open_regular(path), "rb") as file:
         data = file.read()
-    seal = _seal(path, data[-SEAL_BYTES:], len(data))
-    body = data[:-SEAL_BYTES]
-    if hashlib.sha256(body).hexdigest() != seal.sha256:
+    trailer = _trailer(path, data[-TRAILER_BYTES:], len(data))
+    body = data[:-TRAILER_BYTES]
+    if hashlib.sha256(body).hexdigest() != trailer.sha256:
         raise StoreError(f"{path}: damaged (checksum mismatch)")
-    return seal, body
+    return trailer, body
 
 
-def read_seal(path: Path) -> Seal:
-    """Seal of a file whose length is right; the body is not looked at.
+def read_trailer(path: Path) -> Trailer:
+    """Trailer of a file whose length is right; the body is not looked at.
 
     Raises
     ------
@@ -114,22 +114,22 @@ def read_seal(path: Path) -> Seal:
     """
     with os.fdopen(open_regular(path), "rb") as file:
         size = file.seek(0, os.SEEK_END)
-        file.seek(max(size - SEAL_BYTES, 0))
-        return _seal(path, file.read(SEAL_BYTES), size)
+        file.seek(max(size - TRAILER_BYTES, 0))
+        return _trailer(path, file.read(TRAILER_BYTES), size)
 
 
-def check_seal(path: Path) -> Seal:
-    """Seal of a file of any size, checked bit by bit.
+def check_trailer(path: Path) -> Trailer:
+    """Trailer of a file of any size, checked bit by bit.
 
     Raises
     ------
     StoreError
         If it is not there, not whole, or damaged.
     """
-    seal = read_seal(path)
-    if sha256_of(path, seal.length) != seal.sha256:
+    trailer = read_trailer(path)
+    if sha256_of(path, trailer.length) != trailer.sha256:
         raise StoreError(f"{path}: damaged (checksum mismatch)")
-    return seal
+    return trailer
 
 
 def sha256_of(path: Path, length: int) -> str:
@@ -142,11 +142,11 @@ def sha256_of(path: Path, length: int) -> str:
     return sha.hexdigest()
 
 
-def _seal(path: Path, data: bytes, size: int) -> Seal:
+def _trailer(path: Path, data: bytes, size: int) -> Trailer:
     try:
-        seal = Seal.from_bytes(data)
+        trailer = Trailer.from_bytes(data)
     except StoreError as error:
         raise StoreError(f"{path}: {error}") from None
-    if seal.length != size - SEAL_BYTES:
-        raise StoreError(f"{path}: damaged ({size} bytes long, not {seal.length + SEAL_BYTES})")
-    return seal
+    if trailer.length != size - TRAILER_BYTES:
+        raise StoreError(f"{path}: damaged ({size} bytes long, not {trailer.length + TRAILER_BYTES})")
+    return trailer

@@ -16,7 +16,7 @@ from typing import Any
 from mcgw.errors import StoreError
 from mcgw.formats.plain_file import open_regular
 from mcgw.machine.child_process import ChildError, memory_limit, run_child
-from mcgw.store.trailer import check_seal, read_seal
+from mcgw.store.trailer import check_trailer, read_trailer
 
 __all__ = ["examine"]
 
@@ -66,7 +66,7 @@ def _examined(path: Path, shown: Path, state: tuple[int, int, int]) -> dict[str,
 def _is_as_written(path: Path, size: int) -> bool:
     """Whether the trailer holds; of a large file the head alone is compared with it, when it is opened."""
     try:
-        (check_seal if size <= _SMALL else read_seal)(path)
+        (check_trailer if size <= _SMALL else read_trailer)(path)
     except StoreError:
         return False
     return True
@@ -95,7 +95,7 @@ def _blame_memory(path: Path, shown: Path) -> None:
     if limit is None or limit >= _MEMORY:
         return
     try:
-        check_seal(path)
+        check_trailer(path)
     except StoreError:
         return
     raise StoreError(

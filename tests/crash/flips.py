@@ -90,7 +90,7 @@ def main(folder, flips, *, old=False):
     if old:
         layout.FORMAT = (1, 0)
         for module in (ensembles, merged_file):
-            module.seal_notes = lambda file: {}
+            module.trailer_notes = lambda file: {}
     folder.mkdir(parents=True)
     dice, (one, merged, begun) = random.Random(1), made(folder)
     places = places_of(one) | places_of(merged)
@@ -98,7 +98,7 @@ def main(folder, flips, *, old=False):
     for path in (parts_of(begun) / "run.toml", *shards):
         places[path.name] = (path, range(path.stat().st_size))
     held = {begun: ensembles.open_ensemble(begun).n_surfaces}
-    tally = {kind: {"flips": 0, "seen": 0, "unseen": []} for kind in places}
+    counted = {kind: {"flips": 0, "seen": 0, "unseen": []} for kind in places}
     for i in range(flips):
         kind = list(places)[i % len(places)]
         path, offsets = places[kind]
@@ -107,14 +107,14 @@ def main(folder, flips, *, old=False):
         at = dice.choice(offsets)
         data[at] ^= 1 << dice.randrange(8)
         path.write_bytes(data)
-        tally[kind]["flips"] += 1
+        counted[kind]["flips"] += 1
         if seen(opened, held.get(opened, 0)):
-            tally[kind]["seen"] += 1
+            counted[kind]["seen"] += 1
         else:
-            tally[kind]["unseen"].append(at)
+            counted[kind]["unseen"].append(at)
         path.write_bytes(good)
-    unseen = sum(len(found["unseen"]) for found in tally.values())
-    sys.stdout.write(json.dumps({"flips": flips, "unseen": unseen, "where": tally}) + "\n")
+    unseen = sum(len(found["unseen"]) for found in counted.values())
+    sys.stdout.write(json.dumps({"flips": flips, "unseen": unseen, "where": counted}) + "\n")
 
 
 if __name__ == "__main__":
