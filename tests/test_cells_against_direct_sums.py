@@ -93,6 +93,17 @@ def test_separations(make_scene, separations, n_asperities):
     )
 
 
+@pytest.mark.parametrize("grading", GRADINGS.values(), ids=GRADINGS.keys())
+@pytest.mark.parametrize("separations", [(1.0,), (0.0, 0.3, 0.31, 2.0), tuple(np.linspace(0, 4, 17))])
+def test_the_sparse_product_is_that_of_the_matrix(make_scene, grading, separations):
+    scene = make_scene(grading=grading, separations=separations, n_asperities=30_000, negative="allow")
+    response = sampler_of(scene).response
+    moments = np.random.default_rng(1).normal(size=(response.layout.starts[-1], 70))
+    plain = np.einsum("qhm,mi->qih", response.matrix(), moments)
+    size = np.einsum("qhm,mi->qih", np.abs(response.matrix()), np.abs(moments))
+    assert np.all(np.abs(response @ moments - plain) <= 1e-14 * size)
+
+
 def test_from_minus_40(make_scene):
     scene = make_scene(separations=(-40.0, -9.0, 0.0, 4.0), grading=analytic.Homogeneous(), sampler="cells")
     assert worst(scene, 0) < 1e-12

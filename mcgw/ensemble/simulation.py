@@ -124,10 +124,10 @@ def kept(scene: Scene, block: Block) -> dict[str, Any]:
 
 
 def block_size(scene: Scene, sampler: Sampler) -> int:
-    """Surfaces a block: bounded by memory and time, twice an odd number of groups of counts if it can be.
+    """Surfaces a block: bounded by memory and time, twice an odd number of `counts.GROUP` if it can be.
 
-    With a multiple of eight the rows of the moments would share their places in the innermost cache. A
-    group is what the product takes at a time, whether it is full or not.
+    Whole groups, so that no generator of the counts is made for two blocks; an odd number of pairs, since
+    with a multiple of eight the rows of the moments would share their places in the innermost cache.
     """
     words = len(scene.separations) * len(scene.quantities) + sampler.words
     most = int(min(_MOST_WORDS / words, _DRAWS / (sampler.draws + 1), 30 * GROUP))

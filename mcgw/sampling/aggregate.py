@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 from mcgw.machine.compiling import njit
 from mcgw.sampling.exp_log import make_normal
 from mcgw.sampling.layout import Layout
-from mcgw.sampling.philox import MOMENTS, centred
+from mcgw.sampling.philox import MOMENTS, centred, made_for
 from mcgw.sampling.rules import gauss_legendre, product, triangle
 
 __all__ = ["CROWDED", "VARYING", "add_gaussian_moments"]
@@ -80,7 +80,7 @@ def _words(seed: Any, first_surface: Any, words: Any, surfaces: Any) -> Any:
     last = words[-1] + 1 if words.size else 0
     for first in range(0, surfaces, 8):  # as many as share a line of the cache
         n = min(8, surfaces - first)
-        x = np.empty((n, (last + 63) // 64 * 64))
+        x = np.empty((n, made_for(last)))
         for i in range(n):
             centred(x[i], seed, MOMENTS, first_surface + first + i, 0, 0, last)
         for j in range(words.size):

@@ -4,6 +4,16 @@ Transformed rejection with a squeeze: BTRS of W. Hörmann, "The generation of bi
 J. Stat. Comput. Simul. 46 (1993) 101. Two attempts in three need a comparison, the others the ratio of two
 probabilities. Below a mean of 28 the distribution is inverted. All this runs over the vector unit, for the
 surfaces that are still without a number; only a few far from the mean are gone through one by one.
+
+A thread's workspace is one array of six parts, 64 words each, one for each of 64 surfaces::
+
+    part        while numbers are proposed and rejected        while the distribution is inverted
+    (first)     result                                         result
+    TRIALS      numbers of trials                              numbers of trials
+    _SURFACE    surface that is pending
+    _PENDING    its number of trials
+    _PROPOSED   the number proposed                            _LEFT: of the uniform
+    _WEIGHT     what its probability is compared with          _PROBABILITY: of the result so far
 """
 
 from typing import Any
@@ -18,9 +28,9 @@ from mcgw.sampling.philox import COUNTS, two_wide
 
 __all__ = ["SURFACES", "TRIALS", "WORDS", "binomials"]
 
-SURFACES = 64  # at a time
-TRIALS, _SURFACE, _PENDING, _PROPOSED, _WEIGHT, WORDS = 64, 128, 192, 256, 320, 384  # where the rest begins
-_LEFT, _PROBABILITY = _PROPOSED, _WEIGHT  # when the distribution is inverted
+SURFACES = 64  # at a time, whoever asks for more of them
+TRIALS, _SURFACE, _PENDING, _PROPOSED, _WEIGHT, WORDS = (SURFACES * part for part in range(1, 7))
+_LEFT, _PROBABILITY = _PROPOSED, _WEIGHT
 _VECTOR = 8  # numbers that the vector unit takes at a time
 
 _SMALL = 28.0  # mean, below which inversion is as fast; the rejection is proven from 10 on

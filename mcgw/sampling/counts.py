@@ -20,7 +20,7 @@ __all__ = ["GROUP", "Counts", "contacts_above", "counts_of", "generator", "strat
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
-GROUP = 64  # surfaces that share a NumPy generator, which takes longer to make than to use
+GROUP = 64  # surfaces whose total numbers come from one generator of NumPy, which takes longer to make
 _RARE = 1e-8  # below, binomial and Poisson differ less than 1 - p is rounded
 
 

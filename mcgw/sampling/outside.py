@@ -9,7 +9,7 @@ from mcgw.machine.compiling import njit
 from mcgw.machine.memory import check_memory
 from mcgw.sampling.cells import Mesh
 from mcgw.sampling.counts import Counts
-from mcgw.sampling.philox import EXTRAS, centred
+from mcgw.sampling.philox import EXTRAS, centred, made_for
 from mcgw.scene.scene import Scene
 
 __all__ = ["extra_heights"]
@@ -71,13 +71,13 @@ def _wide_uniforms(seed: int, first: int, stream: int, numbers: NDArray[np.int64
 def _centred_pairs(seed: Any, first: Any, stream: Any, numbers: Any) -> Any:
     """Two for each number wanted, surface by surface."""
     pairs = np.empty(2 * numbers.sum())
-    room = np.empty(2 * numbers.max() + 64)
+    words = np.empty(made_for(2 * numbers.max()))
     at = 0
     for i in range(numbers.size):
         n = 2 * numbers[i]
         if n:
-            centred(room, seed, EXTRAS, first + i, stream, 0, n)
+            centred(words, seed, EXTRAS, first + i, stream, 0, n)
             for k in range(n):  # in one step it takes 2 s to compile: the text of its errors
-                pairs[at + k] = room[k]
+                pairs[at + k] = words[k]
             at += n
     return pairs

@@ -27,6 +27,7 @@ from numpy.typing import NDArray
 from mcgw.machine.compiling import njit
 
 __all__ = [
+    "AT_ONCE",
     "CELLS",
     "COUNTS",
     "EXTRAS",
@@ -35,10 +36,13 @@ __all__ = [
     "REST",
     "TAIL",
     "centred",
+    "made_for",
     "philox",
     "two_wide",
     "uniforms",
 ]
+
+AT_ONCE = 64  # words that are made together
 
 # Purposes: streams of the same surface that must not overlap.
 CELLS, TAIL, EXTRAS, MOMENTS, REST, POSITIONS, COUNTS = range(7)
@@ -83,18 +87,24 @@ def two_wide(seed: Any, purpose: Any, surface: Any, cell: Any, block: Any) -> An
     )
 
 
+@njit(nogil=True, cache=True, inline="always")
+def made_for(n: Any) -> Any:
+    """How many words are written where `n` are asked for: whole groups."""
+    return (n + AT_ONCE - 1) // AT_ONCE * AT_ONCE
+
+
 @njit(nogil=True, cache=True)
 def centred(out: Any, seed: Any, purpose: Any, surface: Any, cell: Any, first: Any, n: Any) -> None:
-    """Uniforms `first` ... of a stream as x = 2u - 1 into ``out``, `first` a multiple of 64.
+    """Uniforms `first` ... of a stream as x = 2u - 1 into ``out``, `first` a multiple of AT_ONCE.
 
-    Whole groups of 64 are written: `out` must have room for them.
+    `out` must have room for `made_for(n)` of them.
     """
     seed, surface = uint64(seed), uint64(surface)
     c2, c3, k0, k1 = _stream(seed, purpose, surface)
-    for group in range((n + 63) // 64):
+    for group in range(made_for(n) // AT_ONCE):
         block = uint64(first // 4 + 16 * group)
         c0, c1 = block & _LOW, uint64(cell) | ((block >> _32) << uint64(20))
-        at = 64 * group
+        at = AT_ONCE * group
         for i in range(16):
             w0, w1, w2, w3 = philox(c0 + uint64(i), c1, c2, c3, k0, k1)
             out[at + i] = _to_centred(w0)
@@ -122,6 +132,6 @@ def uniforms(seed: int, purpose: int, surface: int, cell: int, n: int) -> NDArra
     ndarray
         Shape (n,); never 0 or 1.
     """
-    x = np.empty(-(-n // 64) * 64)
+    x = np.empty(made_for(n))
     centred(x, np.uint64(seed), purpose, surface, cell, 0, n)
     return (1 + x[:n]) / 2

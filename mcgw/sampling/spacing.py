@@ -24,7 +24,9 @@ _DIGITS = 11.4  # that the moments must give, of a law or of the sum of a surfac
 _GROWTHS = (2.0, 1.8, 1.6, 1.5, 1.45, 1.4, 1.3, 1.2)  # with 2 each cell is as wide as it may be
 _MORE = 8  # cells than the fewest possible
 
-# Prices, in asperities that give ten moments.
+# Prices, in asperities that give ten moments; found when the loops took eight numbers at a time. They
+# take four now, and `runs/bench/prices.py` finds cells cheaper and many moments dearer, by up to a half.
+# Other prices would make other cells, and so other draws.
 _CELL, _TWO_MORE, _FIVE_MORE, _ROOT, _FIVE_ROOTS_MORE = 250.0, 0.1, 0.25, 0.3, 0.2
 
 

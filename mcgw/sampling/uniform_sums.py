@@ -6,8 +6,22 @@ The loops know no physics; they have no branch, no exponential and no logarithm,
 at a time (`mcgw.sampling.lanes`).
 
 To begin a cell must cost little. A thread's workspace is one array, since each array that a function is given
-costs as much as ten asperities, and what is called once a cell is compiled into its caller. The workspace
-holds some uniforms x = 2u - 1 at a time, their roots, ones, and the sums.
+costs as much as ten asperities, and what is called once a cell is compiled into its caller::
+
+    from     0              1024 = _ROOT     2048 = _ONE     3072 = PLAIN    3104 = ROOTED    3136 = WORDS
+    there is x = 2u - 1     sqrt(u)          1               sums T_j        sums R_j         (end)
+             of the same 1024 uniforms, in turn              32 of them      32 of them
+
+Which of its loops a cell takes depends on how many sums it needs; each stands for all smaller numbers:
+
+    ================  ========================================================
+    plain T_j         rooted R_j for which there is a loop
+    ================  ========================================================
+    10                0, 4, 6, 11
+    12                0, 6, 11
+    16                0, 6, 11
+    beyond            the loop of 16, and five more T_j or R_j a pass
+    ================  ========================================================
 """
 
 from typing import Any
@@ -19,7 +33,7 @@ from mcgw.sampling.philox import CELLS, centred
 __all__ = ["PLAIN", "ROOTED", "WORDS", "sum_uniforms", "unfold"]
 
 _BUFFER = 1024  # uniforms at a time: they stay in the innermost cache
-_ROOT, _ONE, PLAIN, ROOTED, WORDS = 1024, 2048, 3072, 3104, 3136  # where the rest begins, and its end
+_ROOT, _ONE, PLAIN, ROOTED, WORDS = 1024, 2048, 3072, 3104, 3136  # see above
 
 
 @njit(inline="always")
@@ -186,7 +200,7 @@ def sum_uniforms(
     seed, surface, cell : int
         Whose uniforms.
     start, stop : int
-        Which ones, `start` a multiple of 64.
+        Which ones, `start` a multiple of `philox.AT_ONCE`.
     strata : int
         How many equal strata to spread them over, one in each; 0 for none.
     orders : (int, int)

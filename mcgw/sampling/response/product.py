@@ -26,7 +26,7 @@ Ints = NDArray[np.int64]
 Blocks = tuple[Ints, Ints, Array]  # rows, first columns, values of shape (blocks, 4)
 
 FOUR = 4  # rows and columns of a tile
-_WIDTH = 64  # surfaces at a time
+_WIDTH = 64  # surfaces at a time: what they need of the table stays in the innermost cache
 
 
 def in_fours(rows: Any) -> Any:

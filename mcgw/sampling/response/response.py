@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from mcgw.sampling.cells import NODES, Mesh
 from mcgw.sampling.layout import Layout
 from mcgw.sampling.response.assembly import Entry, tiles_of
+from mcgw.sampling.response.dense import Parts
 from mcgw.sampling.response.product import Tiles
 from mcgw.sampling.response.series import ACCURACY, Laws
 from mcgw.sampling.response.tree import Tree, heights_above, tree_over
@@ -34,21 +35,30 @@ class Response:
 
     Parameters
     ----------
-    layout : Layout
-        The moments that each cell must have.
+    parts : Parts
+        What it is made of.
     tiles : Tiles
         Given the moments of the cells: those of the nodes, and of these the answers.
     shape : (int, int)
         Number of quantities and separations.
     """
 
-    layout: Layout
+    parts: Parts
     tiles: Tiles
     shape: tuple[int, int]
+
+    @property
+    def layout(self) -> Layout:
+        """The moments that each cell must have."""
+        return self.parts.layout
 
     def __matmul__(self, moments: Array) -> Array:
         """Quantities of every surface: moments (rows, surfaces) to (quantities, surfaces, separations)."""
         return self.tiles.apply(moments, self.shape)
+
+    def matrix(self) -> Array:
+        """All of it as numbers, shape (quantities, separations, moments): large, slow and plain to see."""
+        return self.parts.matrix(self.shape[0] * self.shape[1]).reshape(*self.shape, -1)
 
 
 def response_of(
@@ -87,9 +97,9 @@ def response_of(
         If the grading is not resolved on a cell, or not by the moments there are.
     """
     tree, laws = tree_over(mesh), _laws(scene, mesh, quantities, lasting=kept is not None, accuracy=accuracy)
-    entries, plain, rooted = _walk(mesh, tree, laws, kept)
-    tiles = tiles_of(mesh, tree, laws, entries, plain, rooted)
-    return Response(Layout(plain[: mesh.size], rooted), tiles, (len(quantities), laws.separations))
+    parts = Parts(mesh, tree, *_walk(mesh, tree, laws, kept))
+    tiles = tiles_of(mesh, tree, laws, parts.entries, parts.plain, parts.rooted)
+    return Response(parts, tiles, (len(quantities), laws.separations))
 
 
 def layout_of(
@@ -159,10 +169,8 @@ def _walk(mesh: Mesh, tree: Tree, laws: Laws, kept: Layout | None) -> tuple[list
             continue
         if not done.all():
             raise ValueError(f"grading: not resolved near s = {a:.6g}; give its breaks, or a smoother one")
-        # A law is smoother the farther it is, so what the parents need of this cell is no more than
-        # the nearest laws need, down to one row that counts.
-        _, nearest = laws.plain(laws.nearest(a), a, t, e, p)
-        plain[node] = max(needed.max(initial=0), nearest.max(initial=1) if inherited > 1 else inherited)
+        for_parents = _for_parents(laws, a, t, e, p) if inherited > 1 else inherited
+        plain[node] = max(needed.max(initial=0), for_parents)
         at_edge = which[~smooth]
         if at_edge.size:
             c, needed = laws.from_edge(at_edge, a, t, e, p)
@@ -172,6 +180,17 @@ def _walk(mesh: Mesh, tree: Tree, laws: Laws, kept: Layout | None) -> tuple[list
         _check_kept(mesh, kept, Layout(plain[: mesh.size], rooted))
         plain[: mesh.size], rooted = kept.plain, kept.rooted
     return entries, plain, rooted
+
+
+def _for_parents(laws: Laws, a: float, t: Array, e: Array, p: float) -> int:
+    """Moments of a cell that the moments of its parents need at most.
+
+    In the cell's uniform the height bends, so that even the first moments of a parent take many of its. But
+    what parents stand in for are laws from farther below, smoother on this cell than the nearest ones: no
+    more of its moments count than those would need. One of them counts the asperities.
+    """
+    _, nearest = laws.plain(laws.nearest(a), a, t, e, p)
+    return int(nearest.max(initial=1))
 
 
 def _check_kept(mesh: Mesh, kept: Layout, needed: Layout) -> None:

@@ -1,6 +1,7 @@
 """The laws of contact on a cell or a node, as Chebyshev series in its variable."""
 
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -35,6 +36,22 @@ def _power(base: Array, exponent: Array) -> Array:
     for whole in range(int(exponent.max(initial=0))):
         power = np.where(exponent >= whole + 1, power * base, power)
     return power
+
+
+class _Needed(NamedTuple):
+    """How many coefficients of a series count.
+
+    Attributes
+    ----------
+    alone : ndarray of int
+        For this node: so many moments it must have.
+    of_many : ndarray of int
+        In a sum over many nodes, whose errors add up: what lies beyond is zero. The moments in between are
+        used if others need them.
+    """
+
+    alone: Ints
+    of_many: Ints
 
 
 @dataclass(frozen=True)
@@ -141,8 +158,8 @@ class Laws:
         Shape (order, laws) and (laws,). What no sum over many nodes can show is zero.
         """
         c = self._coefficients(which, e, (a - self.h[which]) + t[:, None])
-        needed, seen = self._needed(c, which, a, t, e, probability)
-        c[np.arange(len(c))[:, None] >= seen] = 0.0
+        needed, of_many = self._needed(c, which, a, t, e, probability)
+        c[np.arange(len(c))[:, None] >= of_many] = 0.0
         edge = self.h[which] == a
         if edge.any():
             c[:, edge], needed[edge] = self.from_edge(which[edge], a, t, e, probability)
@@ -155,7 +172,7 @@ class Laws:
         put in, so that the law stays relatively accurate down to u = 0.
         """
         c = self._coefficients(which, e, (t / _U)[:, None])
-        needed, _ = self._needed(c, which, a, t, e, probability)
+        needed = self._needed(c, which, a, t, e, probability).alone
         c[np.arange(len(c))[:, None] >= needed] = 0.0
         for power in range(int(self.exponent[which].max(initial=0))):
             more = self.exponent[which] >= power + 1
@@ -163,13 +180,10 @@ class Laws:
             needed = needed + more
         return c, needed
 
-    def _needed(
-        self, c: Array, which: Ints, a: float, t: Array, e: Array, probability: float
-    ) -> tuple[Ints, Ints]:
+    def _needed(self, c: Array, which: Ints, a: float, t: Array, e: Array, probability: float) -> "_Needed":
         """Number of leading coefficients that describe each law (a column) accurately.
 
         Relative to the largest value on the cell; or, where it is sure, to the whole sum of a surface.
-        Second, the number that a sum over many nodes may show.
         """
         tail = np.cumsum(np.abs(c)[::-1], axis=0)[::-1]
         crowd = self.n_asperities * probability + _SCATTER
@@ -179,8 +193,7 @@ class Laws:
         limits = (
             np.maximum(accuracy * enough, noise) for accuracy in (self.accuracy, self.accuracy / _NODES)
         )
-        needed, seen = (np.asarray((tail > limit).sum(axis=0), dtype=np.int64) for limit in limits)
-        return needed, seen
+        return _Needed(*(np.asarray((tail > limit).sum(axis=0), dtype=np.int64) for limit in limits))
 
     def _coefficients(self, which: Ints, e: Array, base: Array) -> Array:
         graded = np.where(self.modulus[which], e[:, None], 1.0)

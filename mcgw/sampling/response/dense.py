@@ -1,0 +1,70 @@
+"""The same matrix without any art: each node of the tree in turn, by plain products of small matrices.
+
+It is as large as all moments times all answers, and so of use for small scenes: to look at, and to hold the
+sparse product (`mcgw.sampling.response.product`) to.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mcgw.sampling.cells import Mesh
+from mcgw.sampling.layout import Layout
+from mcgw.sampling.response.assembly import Entry
+from mcgw.sampling.response.tree import Tree, transfer
+
+__all__ = ["Parts"]
+
+Array = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class Parts:
+    """What a response is made of.
+
+    Parameters
+    ----------
+    mesh, tree : Mesh, Tree
+        Cells, and the nodes over them.
+    entries : list of Entry
+        What each node gives to the answers.
+    plain, rooted : ndarray of int
+        How many T_j each node has, and how many R_j each cell.
+    """
+
+    mesh: Mesh
+    tree: Tree
+    entries: list[Entry]
+    plain: Ints
+    rooted: Ints
+
+    @property
+    def layout(self) -> Layout:
+        """Moments of the cells."""
+        return Layout(self.plain[: self.mesh.size], self.rooted)
+
+    def matrix(self, answers: int) -> Array:
+        """What each moment of the cells adds to each answer, shape (answers, moments)."""
+        plain, rooted = self._moments_of_nodes()
+        matrix = np.zeros((answers, int(self.layout.starts[-1])))
+        for entry in self.entries:
+            moments = (rooted if entry.rooted else plain)[entry.node]
+            matrix[entry.laws] += entry.coefficients[: len(moments)].T @ moments
+        return matrix
+
+    def _moments_of_nodes(self) -> tuple[list[Array], list[Array]]:
+        """T_j of every node and R_j of every cell, as rows of combinations of the moments of the cells."""
+        itself, starts = np.eye(int(self.layout.starts[-1])), self.layout.starts
+        plain = [itself[a : a + n] for a, n in zip(starts, self.layout.plain, strict=False)]
+        rooted = [
+            itself[b - n : b] for b, n in zip(starts[1:], self.layout.rooted, strict=True)
+        ]  # after the plain ones
+        for node in range(self.mesh.size, self.tree.size):
+            above = np.zeros((self.plain[node], itself.shape[1]))
+            for child in (self.tree.left[node], self.tree.right[node]):
+                of_child = transfer(self.mesh, self.tree, node, child)[: len(above), : len(plain[child])]
+                above += of_child @ plain[child]
+            plain.append(above)
+        return plain, rooted

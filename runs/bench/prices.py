@@ -1,0 +1,44 @@
+"""What a cell costs: the prices by which `mcgw.sampling.spacing` cuts the heights.
+
+Run: ``python runs/bench/prices.py``. Prints, beside the price in use, what is measured here on one core, in
+asperities that give ten moments: medians of nine rounds, all sizes in turn.
+"""
+
+from statistics import median
+from time import perf_counter
+
+import numba
+import numpy as np
+
+from mcgw.sampling import spacing
+from mcgw.sampling.layout import Layout
+from mcgw.sampling.moments import cell_moments
+
+SURFACES, CELLS, MANY = 64, 20, 4000
+ORDERS = [(10, 0), (12, 0), (15, 0), (20, 0), (10, 6), (10, 11), (10, 16)]
+
+
+def seconds(asperities, plain, rooted):
+    """Of drawing one cell of one surface."""
+    layout = Layout(np.full(CELLS, plain), np.full(CELLS, rooted))
+    counts = np.full((CELLS, SURFACES), asperities)
+    start = perf_counter()
+    cell_moments(1, 0, counts, layout)
+    return (perf_counter() - start) / (SURFACES * CELLS)
+
+
+def main():
+    numba.set_num_threads(1)
+    sizes = [(MANY, *orders) for orders in ORDERS] + [(16, 10, 0)]
+    rounds = [[seconds(*size) for size in sizes] for _ in range(10)][1:]
+    *many, few = (median(column) for column in zip(*rounds, strict=True))
+    one = (many[0] - few) / (MANY - 16)
+    print(f"an asperity that gives ten moments: {1e9 * one:.3g} ns")
+    print(f"{'a cell':>24} {spacing._CELL:8.2f} {few / one - 16:8.2f}")
+    for (plain, rooted), time in zip(ORDERS, many, strict=True):
+        known = float(spacing.price(np.array(plain), np.array(rooted)))
+        print(f"{plain:>12} T and {rooted:>2} R {known:8.2f} {(time - few + 16 * one) / one / MANY:8.2f}")
+
+
+if __name__ == "__main__":
+    main()
