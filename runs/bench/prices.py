@@ -28,6 +28,7 @@ def seconds(asperities, plain, rooted):
 
 
 def main():
+    """Measure and print."""
     numba.set_num_threads(1)
     sizes = [(MANY, *orders) for orders in ORDERS] + [(16, 10, 0)]
     rounds = [[seconds(*size) for size in sizes] for _ in range(10)][1:]
