@@ -86,7 +86,7 @@ def test_price_does_not_depend_on_n(make_scene):
     singly = []
     for n in (10**8, 10**12, 2**53):
         sampler = samplers.sampler_of(make_scene(n_asperities=n, sampler="aggregate"))
-        counts = samplers.counts_of(sampler.scene, sampler.mesh, 0, 4).cells
+        counts = sampler.counting(sampler.scene, sampler.mesh, 0, 4).cells
         singly.append(counts[counts < samplers.CROWDED].sum() / 4)
     assert max(singly) < 3000
 
@@ -148,7 +148,7 @@ def test_moments_that_stay_at_their_means_hide_a_millionth_of_the_variance(
         separations=separations, grading=grading, n_asperities=n, sampler="aggregate", count="poisson"
     )
     some, every = (samplers.sampler_of(dataclasses.replace(scene, keep=keep)) for keep in ("sums", "moments"))
-    assert some.crowds.varying.sizes.sum() < 0.6 * every.crowds.varying.sizes.sum()
+    assert some.drawing.varying.sizes.sum() < 0.6 * every.drawing.varying.sizes.sum()
     for q, name in enumerate(x for x in scene.quantities if x != "contacts"):
         exact = analytic.cumulants(
             scene.surface, name, separations, grading, n_asperities=n, count="poisson"
