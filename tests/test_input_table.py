@@ -102,13 +102,18 @@ def test_rows_that_are_refused(row, text, message):
     assert all("\n" not in line and len(line) < 300 for line in caught.value.problems)
 
 
+@pytest.fixture
+def make(make_scene):
+    return make_scene
+
+
 def load_share(scene):
     """Load in units of what one asperity carries at unit approach, a surface and asperity."""
     unit = analytic.QUANTITIES["load"].scale(scene.surface)
     return mcgw.simulate(scene).load / (unit * scene.n_asperities)
 
 
-def row_1_all_touch(make):
+def test_row_1_all_touch(make):
     scene = make(separations=(-40.0,), grading=analytic.Homogeneous(), n_surfaces=50)
     share = load_share(scene)
     error = share.std() / np.sqrt(share.size)
@@ -117,7 +122,7 @@ def row_1_all_touch(make):
     assert (ensemble.contacts == scene.n_asperities).all()
 
 
-def row_2_nothing_touches(make):
+def test_row_2_nothing_touches(make):
     ensemble = mcgw.simulate(make(separations=(38.6, 40.0, 1e3)))
     for name in ensemble.scene.quantities:
         assert not ensemble.values(name).any()
@@ -125,32 +130,32 @@ def row_2_nothing_touches(make):
     assert np.isfinite(analytic.fn(1.5, 40.0, log=True))
 
 
-def row_4_negative_zero(make):
+def test_row_4_negative_zero(make):
     a, b = (mcgw.simulate(make(separations=(h, 1.0), n_surfaces=5)).load for h in (0.0, -0.0))
     assert a.tobytes() == b.tobytes()
 
 
-def row_5_unsorted(make):
+def test_row_5_unsorted(make):
     ensemble = mcgw.simulate(make(separations=(2.0, 0.0, 1.0), n_surfaces=5))
     np.testing.assert_array_equal(ensemble.separations, [2.0, 0.0, 1.0])
     assert (np.argsort(-ensemble.load, axis=1) == [1, 2, 0]).all()
 
 
-def row_6_repeated(make):
+def test_row_6_repeated(make):
     load = mcgw.simulate(make(separations=(1.0, 2.0, 1.0), n_surfaces=5)).load
     np.testing.assert_array_equal(load[:, 0], load[:, 2])
 
 
-def row_8_one_number(make):
+def test_row_8_one_number(make):
     assert mcgw.simulate(mcgw.scene_from(separations("1.0"))).load.shape == (10, 1)
 
 
-def row_12_one_asperity(make):
+def test_row_12_one_asperity(make):
     ensemble = mcgw.simulate(make(n_asperities=1, separations=(0.0, 1.0)))
     assert set(np.unique(ensemble.contacts)) == {0, 1}
 
 
-def row_13_many_asperities(make):
+def test_row_13_many_asperities(make):
     """Far up, where few touch, drawn one by one; with aggregated cells anywhere."""
     for change in ({"separations": (6.5,)}, {"separations": (1.0,), "sampler": "aggregate"}):
         scene = make(n_asperities=10**12, n_surfaces=3, **change)
@@ -159,25 +164,25 @@ def row_13_many_asperities(make):
         assert (np.abs(contacts - expected) < 6 * np.sqrt(expected)).all()
 
 
-def row_15_whole_floats(make):
+def test_row_15_whole_floats(make):
     assert mcgw.scene_from(put("ensemble", "n_asperities = 1e6")).n_asperities == 10**6
 
 
-def row_19_one_surface(make):
+def test_row_19_one_surface(make):
     ensemble = mcgw.simulate(make(n_surfaces=1))
     assert np.isnan(ensemble.std("load")).all()
     assert np.isnan(ensemble.stderr("load")).all()
     assert np.isfinite(ensemble.mean("load")).all()
 
 
-def row_20_beyond_64_bits(make, tmp_path):
+def test_row_20_beyond_64_bits(make, tmp_path):
     scene = make(n_surfaces=10**12, n_asperities=10**8, separations=(6.0,))
     with pytest.raises(StoreError, match=r"n_surfaces \* n_asperities = 1e\+20 is more than 2\^63 - 1"):
         run(scene, tmp_path / "e.h5")
     assert not list(tmp_path.iterdir())
 
 
-def row_21_more_asperities_than_memory(make, tmp_path):
+def test_row_21_more_asperities_than_memory(make, tmp_path):
     scene = make(n_surfaces=4, n_asperities=memory_available() // 8, separations=(4.0,), sampler="aggregate")
     assert run(scene, tmp_path / "e.h5").n_surfaces == 4
     with pytest.raises(ValueError, match=r"the heights of one surface needs .* GiB of memory and .* GiB are"):
@@ -186,14 +191,14 @@ def row_21_more_asperities_than_memory(make, tmp_path):
         check_space(scene, tmp_path / "e.h5", rows=4, columns=memory_available())
 
 
-def row_22_more_than_the_disk(make, tmp_path):
+def test_row_22_more_than_the_disk(make, tmp_path):
     scene = make(n_surfaces=10**12, n_asperities=1000, separations=(3.0,))
     with pytest.raises(StoreError, match=r"needs up to .* GiB more on the disk while made and .* are free"):
         run(scene, tmp_path / "e.h5")
     assert not list(tmp_path.iterdir())
 
 
-def row_24_units(make):
+def test_row_24_units(make):
     """Lengths of 1 nm ... 1 mm: powers of two change no bit of the sums in units of one asperity."""
     base = make(n_surfaces=5)
     s = base.surface
@@ -203,20 +208,20 @@ def row_24_units(make):
         np.testing.assert_array_equal(load_share(base), load_share(other))
 
 
-def row_26_beyond_hertz(make):
+def test_row_26_beyond_hertz(make):
     surface = analytic.Surface(sigma=2e-5, radius=1e-5, eta=1e8, nominal_area=1e-6, E_star=1e9)
     start = "surface.radius = 1e-05 m: at d/sigma = 0 a share of 0.62 of the contacts"
     assert any(line.startswith(start) for line in cautions(make(surface=surface, n_surfaces=2)))
     assert not any("compressed by more" in line for line in cautions(make()))
 
 
-def row_28_grading_that_is_not_finite(make):
+def test_row_28_grading_that_is_not_finite(make):
     bad = analytic.Custom(lambda s: np.where(s > 1, np.nan, 1.0))
     with pytest.raises((SceneError, ValueError), match=r"not finite at s = 1"):
         make(grading=bad)
 
 
-def row_29_grading_that_fails(make):
+def test_row_29_grading_that_fails(make):
     def broken(s):
         raise ValueError("no data above 2 sigma")
 
@@ -224,7 +229,7 @@ def row_29_grading_that_fails(make):
         make(grading=analytic.Custom(broken))
 
 
-def row_30_extreme_gamma(make):
+def test_row_30_extreme_gamma(make):
     for gamma in (1e300, 1e308):  # the sums of stiffness, or all, would be infinite
         with pytest.raises(SceneError, match=r"grading.gamma = 1e\+30\d: .* leave double precision"):
             make(grading=analytic.Exponential(gamma))
@@ -233,23 +238,23 @@ def row_30_extreme_gamma(make):
         assert np.isfinite(ensemble.load).all()
 
 
-def row_31_seed_zero(make):
+def test_row_31_seed_zero(make):
     assert mcgw.scene_from(changed("seed = 5", "seed = 0")).seed == 0
 
 
-def row_36_ways_to_write_numbers(make):
+def test_row_36_ways_to_write_numbers(make):
     text = put("ensemble", "n_asperities = 1_000").replace("seed = 5", "seed = 0x10")
     scene = mcgw.scene_from(text.replace("\n", "\r\n").encode())
     assert (scene.n_asperities, scene.seed) == (1000, 16)
 
 
-def row_38_too_long(make, tmp_path):
+def test_row_38_too_long(make, tmp_path):
     (tmp_path / "long.toml").write_text(GOOD + "#" * 2**20)
     with pytest.raises(SceneError, match="longer than 1048576 bytes"):
         mcgw.load_scene(tmp_path / "long.toml")
 
 
-def row_40_names_that_are_none(make, tmp_path):
+def test_row_40_names_that_are_none(make, tmp_path):
     for name in ("..", "a\0b", "x" * 300, "a\nb"):
         with pytest.raises(StoreError):
             run(make(n_surfaces=2), tmp_path / name)
@@ -258,7 +263,7 @@ def row_40_names_that_are_none(make, tmp_path):
     assert not list(tmp_path.iterdir())
 
 
-def row_41_output_that_is_a_link(make, tmp_path):
+def test_row_41_output_that_is_a_link(make, tmp_path):
     victim = tmp_path / "victim"
     victim.write_bytes(b"precious")
     (tmp_path / "e.h5").symlink_to(victim)
@@ -267,7 +272,7 @@ def row_41_output_that_is_a_link(make, tmp_path):
     assert victim.read_bytes() == b"precious"
 
 
-def row_43_inputs_that_are_no_files(make, tmp_path):
+def test_row_43_inputs_that_are_no_files(make, tmp_path):
     os.mkfifo(tmp_path / "pipe")
     for path in (tmp_path / "pipe", tmp_path, Path("/dev/zero")):
         with pytest.raises(SceneError, match="is no regular file"):
@@ -276,7 +281,7 @@ def row_43_inputs_that_are_no_files(make, tmp_path):
             mcgw.open_ensemble(path)
 
 
-def row_44_folders_that_are_none(make, tmp_path):
+def test_row_44_folders_that_are_none(make, tmp_path):
     (tmp_path / "file").touch()
     with pytest.raises(StoreError, match=r"cannot be written|Not a directory"):
         run(make(n_surfaces=2), tmp_path / "file" / "e.h5")
@@ -289,7 +294,7 @@ def row_44_folders_that_are_none(make, tmp_path):
         run(make(n_surfaces=2), "/proc/e.h5")
 
 
-def row_55_threads(make, tmp_path):
+def test_row_55_threads(make, tmp_path):
     scene = tmp_path / "scene.toml"
     scene.write_text(GOOD)
     env = os.environ | {"PYTHONPATH": str(TESTS.parent)}
@@ -306,7 +311,7 @@ def row_55_threads(make, tmp_path):
     assert "note: --threads 1000: this machine has" in done.stderr
 
 
-def row_56_block_sizes(make, tmp_path, monkeypatch):
+def test_row_56_block_sizes(make, tmp_path, monkeypatch):
     scene, found = make(n_surfaces=23, sampler="tail", separations=(2.0, 3.0)), set()
     for size in (7, 23, 1000):
         monkeypatch.setattr(Job, "rows", size)
@@ -316,7 +321,7 @@ def row_56_block_sizes(make, tmp_path, monkeypatch):
     assert len(found) == 1
 
 
-def row_58_clocks(make, tmp_path, monkeypatch):
+def test_row_58_clocks(make, tmp_path, monkeypatch):
     found = []
     for date in ("1970-01-01T00:00:00+00:00", "2038-01-20T00:00:00+00:00"):
         monkeypatch.setattr("mcgw.store.layout.now", lambda date=date: date)
@@ -326,8 +331,6 @@ def row_58_clocks(make, tmp_path, monkeypatch):
             found.append(file.attrs["digest"])
     assert found[0] == found[1]
 
-
-ROWS = {int(name.split("_")[1]): f for name, f in list(globals().items()) if name.startswith("row_")}
 
 ELSEWHERE = {
     42: ("test_store_shards.py", "test_a_planted_link_is_replaced_not_followed"),
@@ -347,14 +350,8 @@ ELSEWHERE = {
 }
 
 
-@pytest.mark.parametrize("row", sorted(ROWS), ids=lambda row: ROWS[row].__name__)
-def test_row(row, make_scene, tmp_path, monkeypatch):
-    offered = {"make": make_scene, "tmp_path": tmp_path, "monkeypatch": monkeypatch}
-    action = ROWS[row]
-    action(**{name: offered[name] for name in action.__code__.co_varnames[: action.__code__.co_argcount]})
-
-
 def test_no_row_is_left_out():
-    assert {row for row, _, _ in WRONG} | set(ROWS) | set(ELSEWHERE) == set(range(1, 61))
+    here = {int(name.split("_")[2]) for name in globals() if name.startswith("test_row_")}
+    assert {row for row, _, _ in WRONG} | here | set(ELSEWHERE) == set(range(1, 61))
     for file, name in ELSEWHERE.values():
         assert f"def {name}(" in (TESTS / file).read_text()

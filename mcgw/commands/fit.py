@@ -22,22 +22,26 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         "--form",
         choices=("none", "plane", "quadratic"),
         default="plane",
-        help="what is taken off first (plane)",
+        help="what is taken off first; default: plane",
     )
     parser.add_argument("--pixel", metavar="LENGTH", help="size of a pixel, where the file does not tell it")
     parser.add_argument(
-        "--unit", metavar="UNIT", help="of the heights, as um, where the file does not tell it (m)"
+        "--unit", metavar="UNIT", help="of the heights, as um, where the file does not tell it; default: m"
     )
     parser.add_argument(
         "--use", choices=("moments", "summits", "caps"), default="summits",
-        help="which estimate goes into the scene (summits)",
+        help="which estimate goes into the scene; default: summits",
     )  # fmt: skip
     parser.add_argument(
         "--heights", choices=("gaussian", "table", "measured"), default="gaussian",
         help="law of the heights: gaussian, the summits' own resampled, or just as they are (gaussian)",
     )  # fmt: skip
-    parser.add_argument("--E-star", default="100 GPa", metavar="E", help="composite modulus (100 GPa)")
-    parser.add_argument("--parts", type=int, default=4, help="sub-areas along each axis, for errors (4)")
+    parser.add_argument(
+        "--E-star", default="100 GPa", metavar="E", help="composite modulus; default: 100 GPa"
+    )
+    parser.add_argument(
+        "--parts", type=int, default=4, help="sub-areas along each axis, for errors; default: 4"
+    )
     parser.add_argument("-o", "--output", type=Path, required=True, metavar="SCENE", help="TOML file")
 
 

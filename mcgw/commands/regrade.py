@@ -4,7 +4,7 @@ import argparse
 from pathlib import Path
 
 HELP = "give the surfaces of a file another grading, without drawing them again"
-EXAMPLE = 'mcgw regrade demo.h5 --gamma 0.5 -o softer.h5   (simulated with keep = "moments")'
+EXAMPLE = 'mcgw regrade demo.h5 --gamma 0.5 -o softer.h5   # simulated with keep = "moments"'
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:

@@ -17,17 +17,19 @@ EXAMPLE = "mcgw surface runs/demo.toml --surface 3 -o map.sdf"
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of this command."""
     parser.add_argument("scene", type=Path, nargs="?", metavar="SCENE", help="TOML file, SI units")
-    parser.add_argument("--surface", type=int, default=0, metavar="I", help="number of the surface (0)")
     parser.add_argument(
-        "--shape", default="1024", metavar="N", help="columns of the map, or COLUMNSxROWS (1024)"
+        "--surface", type=int, default=0, metavar="I", help="number of the surface; default: 0"
     )
-    parser.add_argument("--width", metavar="LENGTH", help="extent along x, as 5mm (a square)")
+    parser.add_argument(
+        "--shape", default="1024", metavar="N", help="columns of the map, or COLUMNSxROWS; default: 1024"
+    )
+    parser.add_argument("--width", metavar="LENGTH", help="extent along x, as 5mm; default: a square")
     parser.add_argument("--periodic", action="store_true", help="let caps reach across the edges")
     parser.add_argument(
         "--at", type=float, metavar="H", help="draw the contacts at this d/sigma: -o FILE.png"
     )
     parser.add_argument(
-        "--colour", choices=("load", "modulus"), default="load", help="what their colour tells (load)"
+        "--colour", choices=("load", "modulus"), default="load", help="what their colour tells; default: load"
     )
     parser.add_argument(
         "--from-spectrum",
@@ -35,7 +37,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         help="a Gaussian map instead: rms=1um,long=100um,short=5um[,hurst=0.8], or m0=..,m2=..,m4=.. (SI)",
     )
     parser.add_argument("--pixel", metavar="LENGTH", help="of a Gaussian map, as 0.5um")
-    parser.add_argument("--seed", type=int, default=0, help="of a Gaussian map (0)")
+    parser.add_argument("--seed", type=int, default=0, help="of a Gaussian map; default: 0")
     parser.add_argument(
         "-o", "--output", type=Path, required=True, metavar="FILE",
         help="ends in .sdf, .ascii.sdf, .x3p, .npy or .h5; with --at in .png, .svg or .pdf",
