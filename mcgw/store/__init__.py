@@ -27,8 +27,19 @@ digest of the file's bytes and that of its head (`head`: attributes, types, shap
 head is checked on every opening, that of all bytes by ``mcgw show --verify``; files of format 1.0 have
 none of the head.
 
-A run that fits one block is written in one atomic step. Any other grows as shards in ``FILE.parts/``
-(`rundir`), which are merged at the end (`merge`) and then removed. Whoever writes the file, in whatever way,
-holds the lock in that folder (`lock`); what a killed process leaves there is cleared by the next command
-(`leftovers`).
+A run that fits one block is written in one atomic step. Any other grows as shards in ``FILE.parts/``, which
+are merged at the end and then removed. What each mechanism is for:
+
+``layout``       the schema above, written and read back
+``shards``       a killed run loses at most the blocks in hand; a worker elsewhere needs no HDF5 file of ours open
+``run_folder``   a run goes on only with what it was begun with: scene, sampler, versions
+``merged_file``  the file is made beside its place, in a child, for HDF5 may crash on a full disk
+``disk``         that crash: the library never sees an error of the disk
+``trailer``      whether a file is whole and unchanged, without HDF5
+``head``         whether scene, units and scales are as written, on every opening
+``untrusted``    a file of a stranger is looked at by a child first, as `structure` says what it may hold
+``lock``         two processes never write one file; shared by jobs that each make a share
+``leftovers``    what a killed process leaves is cleared by the next command
+``arithmetic``   surfaces of two kinds of processor never mix where their last digits differ
+``provenance``   versions, commit, date and processor, for people
 """
