@@ -34,7 +34,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     )  # fmt: skip
     parser.add_argument(
         "--heights", choices=("gaussian", "table", "measured"), default="gaussian",
-        help="law of the heights: gaussian, the summits' own resampled, or just as they are; default: gaussian",
+        help="gaussian, or the summits' own, resampled or just as they are; default: gaussian",
     )  # fmt: skip
     parser.add_argument(
         "--E-star", default="100 GPa", metavar="E", help="composite modulus; default: 100 GPa"

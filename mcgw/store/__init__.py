@@ -31,7 +31,7 @@ A run that fits one block is written in one atomic step. Any other grows as shar
 are merged at the end and then removed. What each mechanism is for:
 
 ``layout``       the schema above, written and read back
-``shards``       a killed run loses at most the blocks in hand; a worker elsewhere needs no HDF5 file of ours open
+``shards``       a killed run loses at most the blocks in hand; workers elsewhere share no open file
 ``run_folder``   a run goes on only with what it was begun with: scene, sampler, versions
 ``merged_file``  the file is made beside its place, in a child, for HDF5 may crash on a full disk
 ``disk``         that crash: the library never sees an error of the disk
