@@ -51,12 +51,13 @@ from analytic.inversion import ratio_at_equal_load
 from analytic.measured_heights import HeightTable, MeasuredHeights
 from analytic.model import Cumulants, Model
 from analytic.plasticity import mean_modulus, plasticity_index
-from analytic.quantities import QUANTITIES, Quantity
+from analytic.quantities import PER_AREA, QUANTITIES, Quantity, quantity_of
 from analytic.resolution import first_negative, resolved_breaks
 from analytic.surface import Body, Surface, composite_modulus
 from analytic.tables import Table
 
 __all__ = [
+    "PER_AREA",
     "QUANTITIES",
     "Body",
     "Clipped",
@@ -96,6 +97,7 @@ __all__ = [
     "mean",
     "mean_modulus",
     "plasticity_index",
+    "quantity_of",
     "ratio_at_equal_load",
     "resolved_breaks",
     "separation_at",

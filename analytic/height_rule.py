@@ -21,7 +21,7 @@ from analytic.gradings import Grading
 from analytic.heights import GAUSSIAN, Gaussian, HeightLaw
 from analytic.integrals import fn
 from analytic.law_rule import law_rule
-from analytic.quantities import QUANTITIES
+from analytic.quantities import quantity_of
 from analytic.reach import Weight, tame
 from analytic.renamed import takes_heights
 from analytic.resolution import resolved_breaks
@@ -125,7 +125,7 @@ class HeightRule:
         modulus = grading(self.heights)[:, None]
         columns = []
         for name in quantities:
-            q = QUANTITIES[name]
+            q = quantity_of(name)
             power = np.where(approach > 0, np.abs(approach) ** q.exponent, 0.0)
             columns.append(power * modulus**q.modulus)
         return np.concatenate(columns, axis=1)

@@ -11,7 +11,7 @@ from analytic.height_rule import Count, Fluctuations, HeightRule
 from analytic.heights import Gaussian, HeightLaw
 from analytic.integrals import fn
 from analytic.inversion import separations_at
-from analytic.quantities import QUANTITIES, Quantity
+from analytic.quantities import Quantity, quantity_of
 from analytic.surface import Surface
 
 __all__ = ["Cumulants", "Model"]
@@ -41,9 +41,10 @@ class Cumulants:
 class Model:
     """A rough surface with everything that determines its contact.
 
-    Quantities are "load" (N), "area" (m^2), "stiffness" (N/m), "contacts" (1) and "conductance" (times
-    the resistivity, m); separations are reduced, d/sigma from the mean of the summit heights. What a
-    surface has of a quantity is the sum over its asperities, which are independent.
+    Quantities are "load" (N), "area" (m^2), "stiffness" (N/m), "contacts" (1), "conductance" (times the
+    resistivity, m), "pressure" (P/A_n, Pa) and "area_fraction" (A/A_n, 1); separations are reduced,
+    d/sigma from the mean of the summit heights. What a surface has of a quantity is the sum over its
+    asperities, which are independent.
 
     Parameters
     ----------
@@ -111,12 +112,12 @@ class Model:
         KeyError
             If there is no such quantity.
         """
-        q = QUANTITIES[quantity]
+        q = quantity_of(quantity)
         return self._unit(q) * fn(q.exponent, h, self._grading(q), heights=self.heights)
 
     def slope(self, quantity: str, h: ArrayLike) -> Array:
         """How fast the mean of the load or the area falls with the separation, per unit of h."""
-        q = QUANTITIES[quantity]
+        q = quantity_of(quantity)
         return self._unit(q) * q.exponent * fn(q.exponent - 1, h, self._grading(q), heights=self.heights)
 
     def cumulants(self, quantity: str, h: ArrayLike) -> Cumulants:
@@ -124,7 +125,7 @@ class Model:
         h = np.asarray(h, dtype=np.float64)
         rows = [self._one_asperity(quantity, x) for x in h.ravel()]
         k1, k2, k3, k4 = np.array(rows).reshape(*h.shape, 4).transpose(-1, *range(h.ndim))
-        n, scale = self.number, QUANTITIES[quantity].scale(self.surface)
+        n, scale = self.number, quantity_of(quantity).scale(self.surface)
         with np.errstate(divide="ignore", invalid="ignore"):
             return Cumulants(
                 n * scale * k1, n * scale**2 * k2, k3 / k2 / np.sqrt(n * k2), k4 / k2 / (n * k2)
@@ -144,7 +145,7 @@ class Model:
         """
         h = np.asarray(separations, dtype=np.float64)
         matrix = self.fluctuations(quantities, h).products()
-        scale = np.repeat([QUANTITIES[name].scale(self.surface) for name in quantities], h.size)
+        scale = np.repeat([quantity_of(name).scale(self.surface) for name in quantities], h.size)
         return np.asarray(self.number * matrix * np.outer(scale, scale)).reshape(
             2 * (len(quantities), h.size)
         )
@@ -169,7 +170,7 @@ class Model:
         ValueError
             If a value is not positive or not reached between h = -40 and 1000.
         """
-        q = QUANTITIES[quantity]
+        q = quantity_of(quantity)
         target = np.asarray(value, dtype=np.float64)
         if not np.all(np.isfinite(target) & (target > 0)):
             raise ValueError(f"{quantity} = {value!r}: give finite values > 0 {q.unit}")

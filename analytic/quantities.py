@@ -4,7 +4,8 @@ An asperity of reduced height s under a plane at the reduced separation h carrie
 
     scale * (s - h)**exponent * (E*(s)/E*)**modulus        for s > h
 
-(Hertz; Eqs. 1a, 1b of the paper), so the mean over a surface is ``N * scale * F*_exponent(h)``.
+(Hertz; Eqs. 1a, 1b of the paper), so the mean over a surface is ``N * scale * F*_exponent(h)``. Pressure
+and area fraction are load and area per nominal area.
 """
 
 import math
@@ -13,7 +14,7 @@ from dataclasses import dataclass
 
 from analytic.surface import Surface
 
-__all__ = ["QUANTITIES", "Quantity"]
+__all__ = ["PER_AREA", "QUANTITIES", "Quantity", "quantity_of"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,6 +31,8 @@ class Quantity:
         Power of the grading E*(s)/E*: 1 where the modulus counts, else 0.
     scale : callable
         Dimensional factor of one asperity, of the `Surface`.
+    of : str, optional
+        The quantity that this one is per nominal area.
     """
 
     name: str
@@ -38,6 +41,7 @@ class Quantity:
     exponent: float
     modulus: int
     scale: Callable[[Surface], float]
+    of: str = ""
 
 
 def _load(x: Surface) -> float:
@@ -77,3 +81,41 @@ QUANTITIES = {
         ),
     )
 }
+
+PER_AREA = {
+    q.name: q
+    for q in (
+        Quantity(
+            "pressure",
+            "normal load per nominal area",
+            "Pa",
+            1.5,
+            1,
+            lambda x: _load(x) / x.nominal_area,
+            of="load",
+        ),
+        Quantity(
+            "area_fraction",
+            "real contact area per nominal area",
+            "1",
+            1.0,
+            0,
+            lambda x: _area(x) / x.nominal_area,
+            of="area",
+        ),
+    )
+}
+
+
+def quantity_of(name: str) -> Quantity:
+    """A quantity by its name.
+
+    Raises
+    ------
+    KeyError
+        If there is none of this name; the message lists them.
+    """
+    known = {**QUANTITIES, **PER_AREA}
+    if name not in known:
+        raise KeyError(f"{name!r} is no quantity; give one of {', '.join(known)}")
+    return known[name]

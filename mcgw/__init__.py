@@ -1,21 +1,52 @@
 """Monte-Carlo simulator of rough contacts: Greenwood-Williamson surfaces with graded elasticity.
 
+Describe a surface and what is asked of it:
+
+=======================  =========================================================================
+`Surface`                sigma, R, eta, A_n, E*, as numbers (SI) or texts with units
+`Body`                   one of two bodies; `composite_modulus` of both is E*
+`Scene`                  a surface, separations d/sigma, grading, heights, how many surfaces, seed
+`load_scene`             a scene from its TOML file; `scene_from`, `scene_text`: from and to text
+=======================  =========================================================================
+
+Gradings E*(s)/E*, and laws of the heights s = z/sigma:
+
+=======================  =========================================================================
+`Homogeneous`            the same modulus at every height; `Exponential`: Eq. (4) of the paper
+`Table`                  measured moduli; `Custom`: any function of s, as a plain lambda is too
+`Gaussian`               the default; `ExponentialHeights`, `Weibull`
+`HeightTable`            measured heights, resampled; `MeasuredHeights`: just as they are
+`ScipyHeights`           any law of scipy.stats, as a plain frozen law is too
+=======================  =========================================================================
+
+Draw surfaces:
+
+=======================  =========================================================================
+`simulate`               in memory
+`run`                    into a file: goes on, extends, in processes, as one of many jobs; `merge`
+`open_ensemble`          what is in a file; `save`: an ensemble in memory to a file
+`Ensemble`               load, area, ... of every surface; means, errors, intervals, tables
+`heights`                the very heights of one surface
+=======================  =========================================================================
+
+Ask:
+
+=======================  =========================================================================
+`compare`                Monte Carlo against theory; the theory itself: ``scene.theory``
+`regrade`                another grading on the same surfaces; `paired_ratio` of the two
+`solve`                  the separation at a load, pressure or area
+`converge`, `tradeoff`   the statistical convergence test; error against time on this machine
+`fit`, `fitted_scene`    the surface of a measured height map, and a scene of it
+=======================  =========================================================================
+
+What goes wrong is a `SceneError` (a wrong argument or scene: one line for each mistake), a `StoreError`
+(a file) or a `RunError` (a run that could not be finished).
+
 >>> import mcgw
->>> scene = mcgw.scene_from('''
-... [surface]
-... sigma = 1.37e-6
-... radius = 13e-6
-... eta = 3.0e8
-... nominal_area = 1e-4
-... E_star = 78.6e9
-... [contact]
-... separations = [0.0, 2.0]
-... [ensemble]
-... n_surfaces = 50
-... seed = 1
-... ''')
->>> ensemble = mcgw.simulate(scene)
->>> ensemble.load.shape
+>>> surface = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "1 cm^2", "78.6 GPa")
+>>> scene = mcgw.Scene(surface, separations=[0.0, 2.0], grading=mcgw.Exponential(2.0), seed=1)
+>>> ensemble = mcgw.simulate(scene, n_surfaces=50)
+>>> ensemble["load"].shape
 (50, 2)
 """
 
@@ -24,25 +55,76 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from analytic import (
+        Body,
+        Custom,
+        Exponential,
+        ExponentialHeights,
+        Gaussian,
+        HeightTable,
+        Homogeneous,
+        MeasuredHeights,
+        ScipyHeights,
+        Table,
+        Weibull,
+        composite_modulus,
+    )
     from mcgw.ensemble.ensemble import Ensemble
+    from mcgw.ensemble.paired import paired_ratio
+    from mcgw.ensemble.regrading import regrade
     from mcgw.ensemble.simulation import simulate
+    from mcgw.ensemble.solution import solve
+    from mcgw.errors import RunError, StoreError
+    from mcgw.jobs.from_python import run
+    from mcgw.jobs.merging import merge
+    from mcgw.maps.fitted_scene import fitted_scene
+    from mcgw.maps.from_file import fit
     from mcgw.sampling.asperities import heights
-    from mcgw.scene.scene import Scene, SceneError
+    from mcgw.scene.scene import Scene
     from mcgw.scene.scene_file import load_scene, scene_from, scene_text
+    from mcgw.scene.section import SceneError
     from mcgw.scene.surface import Surface
-    from mcgw.store.ensembles import open_ensemble
+    from mcgw.statistics.comparison import compare
+    from mcgw.statistics.convergence import converge
+    from mcgw.statistics.tradeoff import tradeoff
+    from mcgw.store.ensembles import open_ensemble, save
 
 __all__ = [
+    "Body",
+    "Custom",
     "Ensemble",
+    "Exponential",
+    "ExponentialHeights",
+    "Gaussian",
+    "HeightTable",
+    "Homogeneous",
+    "MeasuredHeights",
+    "RunError",
     "Scene",
     "SceneError",
+    "ScipyHeights",
+    "StoreError",
     "Surface",
+    "Table",
+    "Weibull",
+    "compare",
+    "composite_modulus",
+    "converge",
+    "fit",
+    "fitted_scene",
     "heights",
     "load_scene",
+    "merge",
     "open_ensemble",
+    "paired_ratio",
+    "regrade",
+    "run",
+    "save",
     "scene_from",
     "scene_text",
     "simulate",
+    "solve",
+    "tradeoff",
 ]
 
 # Threads that wait for others sleep. By default they spin, and a loop of microseconds takes a hundred
@@ -52,19 +134,37 @@ os.environ.setdefault("OMP_WAIT_POLICY", "passive")
 # Imported when asked for: compiling and file formats cost a second that `mcgw --help` need not wait.
 _HOME = {
     "Ensemble": "ensemble.ensemble",
+    "RunError": "errors",
     "Scene": "scene.scene",
-    "SceneError": "scene.scene",
+    "SceneError": "scene.section",
+    "StoreError": "errors",
     "Surface": "scene.surface",
+    "compare": "statistics.comparison",
+    "converge": "statistics.convergence",
+    "fit": "maps.from_file",
+    "fitted_scene": "maps.fitted_scene",
     "heights": "sampling.asperities",
     "load_scene": "scene.scene_file",
+    "merge": "jobs.merging",
     "open_ensemble": "store.ensembles",
+    "paired_ratio": "ensemble.paired",
+    "regrade": "ensemble.regrading",
+    "run": "jobs.from_python",
+    "save": "store.ensembles",
     "scene_from": "scene.scene_file",
     "scene_text": "scene.scene_file",
     "simulate": "ensemble.simulation",
+    "solve": "ensemble.solution",
+    "tradeoff": "statistics.tradeoff",
 }
 
 
 def __getattr__(name: str) -> Any:
-    if name not in _HOME:
+    if name not in __all__:
         raise AttributeError(f"module 'mcgw' has no attribute {name!r}")
-    return getattr(import_module(f"mcgw.{_HOME[name]}"), name)
+    home = f"mcgw.{_HOME[name]}" if name in _HOME else "analytic"
+    return getattr(import_module(home), name)
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

@@ -11,7 +11,7 @@ from oracles import POWERS, factor
 import analytic
 import mcgw
 from mcgw.ensemble.forecast import forecast, relative_spread
-from mcgw.ensemble.solution import solve
+from mcgw.ensemble.solution import solutions
 from mcgw.reports.html import report_html
 from mcgw.reports.plan import plan_of
 from mcgw.scene.cautions import cautions
@@ -94,7 +94,7 @@ def test_solve(law):
     """Theory by the oracle; the mean over 300 surfaces within 5 standard errors and the 1/N of 3000."""
     scene, given = scene_of(law), "load"
     value = exact.mean(scene, given, [0.7])[0]
-    (found,) = solve(scene, given, [value])
+    (found,) = solutions(scene, given, [value])
     assert found.theory["separation"] == pytest.approx(0.7, rel=1e-9)
     for name in QUANTITIES:
         assert found.theory[name] == pytest.approx(exact.mean(scene, name, [0.7])[0], rel=1e-9)

@@ -7,7 +7,8 @@ import pytest
 
 import analytic
 import mcgw
-from mcgw.ensemble.regrading import paired_ratio, regrade
+from mcgw.ensemble.paired import paired_ratio
+from mcgw.ensemble.regrading import regrade
 from mcgw.jobs.running import run
 from mcgw.store.ensembles import save
 

@@ -9,7 +9,7 @@ import pytest
 import analytic
 import mcgw
 from mcgw.cli import main
-from mcgw.ensemble.solution import separation_on, solve
+from mcgw.ensemble.solution import separation_on, solutions
 from mcgw.formats.units import parse
 from mcgw.reports.solution import solution_table
 
@@ -34,7 +34,7 @@ def scene():
 
 @pytest.fixture(scope="module")
 def solved(scene):
-    return solve(scene, "load", LOADS)
+    return solutions(scene, "load", LOADS)
 
 
 def test_theory_inverts_the_load(scene, solved):
@@ -109,7 +109,7 @@ def test_surfaces_below_the_margin_are_solved_too(scene, monkeypatch):
     few = replace(scene, n_asperities=2, grading=analytic.Exponential(0.5), n_surfaces=200)
     below = entered(monkeypatch, "_anywhere")
     monkeypatch.setattr("mcgw.ensemble.solution._MARGIN", 1.0)
-    (solution,) = solve(few, "load", [0.5])
+    (solution,) = solutions(few, "load", [0.5])
     np.testing.assert_allclose(solution.surfaces["load"], 0.5, rtol=1e-10)
     start = below[0][-1]
     assert 3 < len(below) == np.count_nonzero(solution.surfaces["separation"] < start)
@@ -138,15 +138,15 @@ def test_light_loads_on_stiffer_tips(scene, gamma, monkeypatch):
     loads = [3e2, 3e1, 3.0, 3e-1, 3e-2, 3e-3, 3e-4]
     graded = replace(scene, grading=grading, n_surfaces=20)
     drawn = entered(monkeypatch, "heights")
-    solutions = solve(graded, "load", loads)
+    found = solutions(graded, "load", loads)
     assert drawn[0][0].lowest < grading.zero
     for number in range(20):
         s = mcgw.heights(drawn[0][0], number, untouched=True)
-        for load, solution in zip(loads, solutions, strict=True):
+        for load, solution in zip(loads, found, strict=True):
             h = solution.surfaces["separation"][number]
             assert h > grading.zero
             assert literal_load(graded, s, h) == pytest.approx(load, rel=1e-9)
-    for load, solution in zip(loads, solutions, strict=True):
+    for load, solution in zip(loads, found, strict=True):
         exact = float(analytic.load(scene.surface, solution.theory["separation"], grading))
         assert exact * scene.n_asperities / scene.surface.n_asperities == pytest.approx(load, rel=1e-10)
 
@@ -155,13 +155,13 @@ def test_a_negative_modulus_that_matters_is_told_with_the_load(scene):
     """At 5 kN the mean surface itself reaches negative moduli; of 20 asperities some surfaces do at 14 N."""
     told = r"^load = 5000 N: the mean surface does not reach it without asperities of negative modulus"
     with pytest.raises(ValueError, match=told):
-        solve(scene, "load", [5e3])
+        solutions(scene, "load", [5e3])
     few = replace(scene, n_asperities=20, n_surfaces=100)
     assert float(few.theory.separation_at("load", 14.0)) > few.grading.zero
     with pytest.raises(
         ValueError, match=r"^load = 14 N: surface \d+ does not reach it without .* s = -[\d.]+; give"
     ):
-        solve(few, "load", [14.0])
+        solutions(few, "load", [14.0])
 
 
 def literal_load(scene, heights, h):
@@ -180,7 +180,7 @@ def test_negative_moduli_as_the_scene_wants_them(scene, negative, monkeypatch):
     """Clipped they carry nothing, allowed they pull: the heights are those of the search's own start."""
     drawn = entered(monkeypatch, "heights")
     wanted = replace(scene, negative=negative, n_asperities=20, n_surfaces=100)
-    (solution,) = solve(wanted, "load", [14.0])
+    (solution,) = solutions(wanted, "load", [14.0])
     starts = {args[0].lowest for args in drawn}
     below = 0
     for number, h in enumerate(solution.surfaces["separation"]):
@@ -213,7 +213,7 @@ def test_the_branch_below_the_margin_is_entered(scene, monkeypatch):
 
     monkeypatch.setattr(solution, "heights", spy)
     monkeypatch.setattr(solution, "separation_on", newton)
-    (found,) = solve(few, "load", [2.0])
+    (found,) = solutions(few, "load", [2.0])
     assert 0 < len(drawn_whole) < 200
     assert len(set(drawn_whole)) == len(drawn_whole)
     assert min(starts) < max(starts) - 0.4  # the search for a start went down in steps
@@ -239,7 +239,7 @@ def test_surfaces_within_the_margin_are_drawn_once(scene, monkeypatch):
         return listed(asked, number, untouched=untouched)
 
     monkeypatch.setattr(solution, "heights", spy)
-    solve(replace(scene, n_surfaces=40), "load", [900.0])
+    solutions(replace(scene, n_surfaces=40), "load", [900.0])
     assert whole == [False] * 40
 
 
@@ -282,16 +282,16 @@ def test_command(tmp_path, capsys):
 
 def test_what_cannot_be_solved(scene):
     with pytest.raises(ValueError, match="at least 2 surfaces"):
-        solve(replace(scene, n_surfaces=1), "load", [1.0])
+        solutions(replace(scene, n_surfaces=1), "load", [1.0])
     with pytest.raises(ValueError, match="too many to solve"):
-        solve(replace(scene, n_asperities=2**50), "load", [1e9])
+        solutions(replace(scene, n_asperities=2**50), "load", [1e9])
     with pytest.raises(ValueError, match="not reached"):
-        solve(scene, "load", [1e12])
+        solutions(scene, "load", [1e12])
 
 
 def test_a_solution_of_too_few_contacts_has_no_interval(make_scene):
     scene = make_scene(n_surfaces=3, separations=(0.0,))
-    light, heavy = solve(scene, "load", [float(x) for x in scene.theory.mean("load", [3.4, 2.0])])
+    light, heavy = solutions(scene, "load", [float(x) for x in scene.theory.mean("load", [3.4, 2.0])])
     assert 3 * light.theory["contacts"] < 10 < 3 * heavy.theory["contacts"]
     assert np.isnan(light.interval("area")).all()
     assert heavy.interval("area")[0] < heavy.surfaces["area"].mean() < heavy.interval("area")[1]

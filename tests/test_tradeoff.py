@@ -73,7 +73,7 @@ def test_record_and_figure(found, tmp_path):
 
 
 def test_no_time_is_refused(scene):
-    with pytest.raises(ValueError, match="seconds = 0: give a number > 0"):
+    with pytest.raises(ValueError, match="seconds = 0: give a finite number > 0"):
         tradeoff(scene, seconds=0)
 
 

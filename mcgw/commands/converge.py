@@ -19,11 +19,10 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def execute(args: argparse.Namespace) -> int:
     """Print every check and the verdict, save the figure."""
-    from tqdm import tqdm
-
     from mcgw.commands.notes import tell_notes
     from mcgw.commands.outputs import Output, check_outputs, figure_format
     from mcgw.figures.convergence import save_convergence
+    from mcgw.machine.progress import bar
     from mcgw.scene.scene_file import files_of, load_scene
     from mcgw.statistics.comparison import FALSE_ALARM
     from mcgw.statistics.convergence import SEEDS, converge
@@ -33,8 +32,8 @@ def execute(args: argparse.Namespace) -> int:
     path = folder / f"{args.scene.stem}-converge.png"
     check_outputs([Output(path, figure_format())], inputs=files_of(args.scene))
     tell_notes(scene)
-    with tqdm(total=SEEDS, unit=" ensembles", disable=None, leave=False) as bar:
-        found = converge(scene, progress=bar.update)
+    with bar("ensembles", terminal=True) as show:
+        found = converge(scene, progress=show)
     save_convergence(found, path)
     print(
         f"{SEEDS} ensembles of {found.scene.n_surfaces} surfaces of {found.scene.n_asperities:g} asperities"

@@ -3,12 +3,11 @@
 import argparse
 import warnings
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from mcgw.ensemble.forecast import Forecast
     from mcgw.jobs.engines import Engine
-    from mcgw.jobs.running import Part
     from mcgw.scene.scene import Scene
 
 HELP = "simulate a scene: draw its surfaces and store load, area, ... in HDF5; goes on where it stopped"
@@ -48,32 +47,32 @@ def _execute(args: argparse.Namespace) -> int:
     from mcgw.commands.notes import tell_notes
     from mcgw.commands.outputs import HDF5, Output, check_outputs
     from mcgw.ensemble.forecast import forecast
-    from mcgw.jobs.running import run, run_part
+    from mcgw.jobs.from_python import part_of, run
+    from mcgw.machine.progress import bar
     from mcgw.scene.scene_file import files_of, load_scene
     from mcgw.store.ensembles import recorded_seed
 
     path = args.output or args.scene.parent / "out" / f"{args.scene.stem}.h5"
-    part = _part(args.shard)
+    part = None if args.shard is None else part_of(args.shard)
     scene = load_scene(args.scene, seed=lambda: recorded_seed(path))
     check_outputs([Output(path, HDF5, grows=True)], inputs=files_of(args.scene))
     expected = forecast(scene)
     short = [expected.shortfall] if part and expected.shortfall else []
     tell_notes(scene, *_of_threads(args.threads), *_of_time(scene), *short)
     if part:
-        bar = _Bar(expected.surfaces)
-        left = run_part(scene, path, part, threads=args.threads, progress=bar.show)
-        bar.close()
+        with bar("surfaces", terminal=True) as show:
+            left = run(scene, path, shard=args.shard, threads=args.threads, progress=show)
         then = f"{left} surfaces are still missing" if left else f"all are there: mcgw merge {path}"
         print(f"{path}.parts: share {args.shard} is done; {then}")
         return 0
     ruled = scene.rel_err is not None or scene.max_seconds is not None
     if ruled:
         _tell_forecast(scene, expected)
-    bar, engine = _Bar(expected.surfaces), _engine(args)
+    engine = _engine(args)
     try:
-        ensemble = run(scene, path, threads=args.threads, engine=engine, progress=bar.show)
+        with bar("surfaces", terminal=True) as show:
+            ensemble = run(scene, path, threads=args.threads, engine=engine, progress=show)
     finally:
-        bar.close()
         if engine:
             engine.close()
     print(f"{path}: {ensemble.n_surfaces} surfaces of {scene.n_asperities:g} asperities, seed {scene.seed}")
@@ -132,36 +131,3 @@ def _engine(args: argparse.Namespace) -> "Engine | None":
             args.scheduler, workers=1 if args.workers is None else args.workers, insecure=args.insecure
         )
     return None
-
-
-def _part(given: str | None) -> "Part | None":
-    from mcgw.jobs.running import Part
-
-    if given is None:
-        return None
-    number, _, of = given.partition("/")
-    if not (number.isdecimal() and of.isdecimal()):
-        raise ValueError(f"--shard {given}: give i/n with 1 <= i <= n")
-    return Part(int(number), int(of))
-
-
-class _Bar:
-    """A progress bar whose rate is that of this session: what lay there before counts as given."""
-
-    def __init__(self, total: int) -> None:
-        self._total = total
-        self._bars: list[Any] = []
-
-    def show(self, done: int) -> None:
-        """Move to so many surfaces."""
-        from tqdm import tqdm
-
-        if not self._bars:
-            options = {"unit": " surfaces", "disable": None, "leave": False, "smoothing": 0}
-            self._bars.append(tqdm(total=self._total, initial=done, **options))
-        self._bars[0].update(done - self._bars[0].n)
-
-    def close(self) -> None:
-        """Take it away."""
-        for bar in self._bars:
-            bar.close()

@@ -26,7 +26,7 @@ def execute(args: argparse.Namespace) -> int:
 
     from mcgw.commands.notes import tell_notes
     from mcgw.commands.outputs import CSV, Output, check_outputs
-    from mcgw.ensemble.solution import solve
+    from mcgw.ensemble.solution import solutions
     from mcgw.formats.csv_table import write_csv
     from mcgw.formats.units import parse
     from mcgw.reports.solution import SOLUTION_HEADER, solution_rows, solution_table
@@ -44,9 +44,9 @@ def execute(args: argparse.Namespace) -> int:
         given, values = "load", [parse(p, "Pa", "--pressure") * area for p in args.pressure]
     else:
         given, values = "area", [parse(a, "1", "--area-fraction") * area for a in args.area_fraction]
-    solutions = solve(scene, given, values)
-    print(solution_table(scene, solutions))
+    found = solutions(scene, given, values)
+    print(solution_table(scene, found))
     if args.csv:
-        write_csv(args.csv, SOLUTION_HEADER, solution_rows(scene, solutions))
+        write_csv(args.csv, SOLUTION_HEADER, solution_rows(scene, found))
         print(f"{args.csv}: the table")
     return 0

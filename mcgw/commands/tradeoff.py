@@ -18,12 +18,11 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def execute(args: argparse.Namespace) -> int:
     """Print the table and the advice, save the record and the figure."""
-    from tqdm import tqdm
-
     from mcgw.commands.notes import tell_notes
     from mcgw.commands.outputs import CSV, Output, check_outputs, figure_format
     from mcgw.figures.tradeoff import save_tradeoff
     from mcgw.formats.units import parse
+    from mcgw.machine.progress import bar
     from mcgw.scene.scene_file import files_of, load_scene
     from mcgw.statistics.tradeoff import tradeoff, write_csv
 
@@ -33,8 +32,8 @@ def execute(args: argparse.Namespace) -> int:
     table, figure = (folder / f"{args.scene.stem}-tradeoff.{end}" for end in ("csv", "png"))
     check_outputs([Output(table, CSV), Output(figure, figure_format())], inputs=files_of(args.scene))
     tell_notes(scene)
-    with tqdm(total=100, unit="%", disable=None, leave=False) as bar:
-        found = tradeoff(scene, seconds=seconds, progress=lambda share: bar.update(100 * share - bar.n))
+    with bar("s", terminal=True) as show:
+        found = tradeoff(scene, seconds=seconds, progress=show)
     write_csv(found, table)
     save_tradeoff(found, figure)
     quantity = scene.quantities[0]

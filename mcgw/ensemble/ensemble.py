@@ -2,15 +2,20 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from analytic import QUANTITIES, MeasuredHeights
+from analytic import PER_AREA, MeasuredHeights, quantity_of
 from mcgw.ensemble.intervals import CONFIDENCE, count_interval, mean_interval, spread_of
+from mcgw.ensemble.tables import dataframe, dataset
+from mcgw.formats.sheet import Sheet, Shown
+from mcgw.machine.late import plotted
+from mcgw.scene.law_text import law_text
 from mcgw.scene.samplers import promise_of
 from mcgw.scene.scene import Scene
+from mcgw.scene.scene_file import scene_text
 
 __all__ = ["Arrays", "Ensemble", "Sums"]
 
@@ -18,6 +23,7 @@ Array = NDArray[np.float64]
 
 _ROWS = 8192  # surfaces at a time, for ensembles larger than the memory
 _LOW = 2**32 - 1  # the lower half of an integer: sums of halves do not overflow
+_MOST_SHOWN = 20_000_000  # numbers that are read for a short look; of more, only how many there are
 
 
 class Sums(Protocol):
@@ -47,9 +53,12 @@ class Arrays:
         return len(next(iter(self.arrays.values())))
 
 
-@dataclass(frozen=True)
-class Ensemble:
+@dataclass(frozen=True, repr=False)
+class Ensemble(Shown):
     """The sums of every surface at every separation.
+
+    Quantities are those of the scene, as "load" (N), and with them "pressure" (P/A_n, Pa) and
+    "area_fraction" (A/A_n, 1).
 
     Parameters
     ----------
@@ -59,6 +68,22 @@ class Ensemble:
         What drew it.
     sums : Sums
         Its numbers.
+
+    Examples
+    --------
+    >>> import mcgw
+    >>> surface = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "1 mm^2", "78.6 GPa")
+    >>> e = mcgw.simulate(mcgw.Scene(surface, separations=[0, 1, 2], n_surfaces=100, seed=1))
+    >>> e["load"].shape, e.mean("pressure").shape
+    ((100, 3), (3,))
+    >>> e
+    Ensemble of 100 surfaces of 300 asperities
+      grading  Homogeneous()
+      heights  Gaussian()
+      drawn    by cells, seed 1
+      mean over surfaces +- standard error, at d/sigma =
+                            0                1                 2
+      load (N)    22.8 +- 0.18   4.58 +- 0.077    0.503 +- 0.022
     """
 
     scene: Scene
@@ -83,8 +108,13 @@ class Ensemble:
         KeyError
             If the ensemble does not hold this quantity.
         """
-        self._check(quantity)
-        return self.sums.read(quantity, 0, self.n_surfaces)
+        name, divisor = self._held(quantity)
+        values = self.sums.read(name, 0, self.n_surfaces)
+        return values / divisor if divisor else values
+
+    def __getitem__(self, quantity: str) -> Array:
+        """The same as `values`."""
+        return self.values(quantity)
 
     @property
     def load(self) -> Array:
@@ -110,6 +140,16 @@ class Ensemble:
     def conductance(self) -> Array:
         """Conductance times resistivity, m, shape (surfaces, separations)."""
         return self.values("conductance")
+
+    @property
+    def pressure(self) -> Array:
+        """Load per nominal area P/A_n, Pa, shape (surfaces, separations)."""
+        return self.values("pressure")
+
+    @property
+    def area_fraction(self) -> Array:
+        """Real area per nominal area A/A_n, shape (surfaces, separations)."""
+        return self.values("area_fraction")
 
     def mean(self, quantity: str) -> Array:
         """Mean over the surfaces, shape (separations,)."""
@@ -150,7 +190,10 @@ class Ensemble:
         ValueError
             If the surfaces are stratified: how far their mean is off is not known.
         """
-        self._check(quantity)
+        name, divisor = self._held(quantity)
+        if divisor:
+            low, high = self.interval(name, level)
+            return low / divisor, high / divisor
         scene, m = self.scene, self.n_surfaces
         if not promise_of(self.sampler).real_surfaces:
             raise ValueError("stratified surfaces have no interval: their fluctuations are not those of any")
@@ -172,22 +215,96 @@ class Ensemble:
             total = [so_far + (high << 32) + low for so_far, (high, low) in zip(total, halves, strict=True)]
         return np.array([float(x) for x in total])
 
-    def _check(self, quantity: str) -> None:
-        if quantity not in self.scene.quantities:
-            have = ", ".join(self.scene.quantities)
-            hint = "" if quantity in QUANTITIES else " and is no quantity"
-            raise KeyError(f"{quantity!r} is not in this ensemble{hint}; it has {have}")
+    def to_xarray(self) -> Any:
+        """All values as an `xarray.Dataset` with dimensions (surface, separation), as the file has them.
 
-    def _chunks(self, quantity: str) -> Iterator[Array]:
+        Raises
+        ------
+        ImportError
+            If xarray is not installed.
+        """
+        scene = self.scene
+        about = {"title": scene.title, "scene": scene_text(scene), "sampler": self.sampler}
+        return dataset(self._all(), self.separations, about)
+
+    def to_dataframe(self) -> Any:
+        """All values as a `pandas.DataFrame`: rows (surface, separation), a column for each quantity.
+
+        Raises
+        ------
+        ImportError
+            If pandas is not installed.
+        """
+        return dataframe(self._all(), self.separations)
+
+    def plot(self, ax: Any = None, *, quantity: str | None = None) -> Any:
+        """Draw the mean of a quantity with its interval, and how far surfaces spread.
+
+        Parameters
+        ----------
+        ax : matplotlib Axes, optional
+            Where; default: new axes.
+        quantity : str, optional
+            Default: the scene's first.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+            With labels.
+        """
+        return plotted(self, ax, quantity=quantity or self.scene.quantities[0])
+
+    def sheet(self) -> Sheet:
+        """How it was drawn, and means at the lowest, a middle and the highest separation."""
+        scene, m = self.scene, self.n_surfaces
+        title = f": {scene.title}" if scene.title else ""
+        order = np.argsort(scene.separations, kind="stable")
+        shown = order[np.unique([0, len(order) // 2, len(order) - 1])]
+        facts = [
+            ("grading", law_text(scene.grading)),
+            ("heights", law_text(scene.heights)),
+            ("drawn", f"by {self.sampler}, seed {scene.seed}"),
+        ]
+        head = f"Ensemble of {m} surfaces of {scene.n_asperities} asperities{title}"
+        if m * len(scene.separations) * len(scene.quantities) > _MOST_SHOWN:
+            held = f"{', '.join(scene.quantities)} at {len(scene.separations)} separations"
+            return Sheet(head, [*facts, ("holds", held)])
+        rows = []
+        for name in scene.quantities:
+            mean, error = self.mean(name)[shown], self.stderr(name)[shown]
+            error = error if promise_of(self.sampler).real_surfaces else error + np.nan
+            cells = (_with_error(*pair) for pair in zip(mean, error, strict=True))
+            rows.append([f"{name} ({quantity_of(name).unit})", *cells])
+        at = [f"{scene.separations[k]:g}" for k in shown]
+        return Sheet(head, facts, ["mean +- its standard error at d/sigma =", *at], rows)
+
+    def _all(self) -> dict[str, Array]:
+        return {name: self.values(name) for name in self.scene.quantities}
+
+    def _held(self, quantity: str) -> tuple[str, float]:
+        """The quantity that is held, and the area that this one is per, or 0."""
+        q = PER_AREA.get(quantity)
+        name, divisor = (q.of, self.scene.surface.nominal_area) if q else (quantity, 0.0)
+        if name not in self.scene.quantities:
+            have = ", ".join(self.scene.quantities)
+            raise KeyError(f"{quantity!r} is not in this ensemble; it has {have}")
+        return name, divisor
+
+    def _chunks(self, name: str) -> Iterator[Array]:
         for start in range(0, self.n_surfaces, _ROWS):
-            yield self.sums.read(quantity, start, min(start + _ROWS, self.n_surfaces)).astype(np.float64)
+            yield self.sums.read(name, start, min(start + _ROWS, self.n_surfaces)).astype(np.float64)
 
     def _moments(self, quantity: str) -> tuple[Array, Array]:
         """Mean and standard deviation; shifted by the first row, so nothing cancels."""
-        self._check(quantity)
-        shift = self.sums.read(quantity, 0, 1)[0].astype(np.float64)
+        name, divisor = self._held(quantity)
+        shift = self.sums.read(name, 0, 1)[0].astype(np.float64)
         m = self.n_surfaces
-        mean = sum((chunk - shift).sum(axis=0) for chunk in self._chunks(quantity)) / m + shift
-        squares = sum(((chunk - mean) ** 2).sum(axis=0) for chunk in self._chunks(quantity))
+        mean = sum((chunk - shift).sum(axis=0) for chunk in self._chunks(name)) / m + shift
+        squares = sum(((chunk - mean) ** 2).sum(axis=0) for chunk in self._chunks(name))
         std = np.sqrt(squares / (m - 1)) if m > 1 else np.full(len(mean), np.nan)
-        return np.asarray(mean), np.asarray(std)
+        return np.asarray(mean / (divisor or 1.0)), np.asarray(std / (divisor or 1.0))
+
+
+def _with_error(mean: float, error: float) -> str:
+    """A mean, and its standard error where there is one."""
+    return f"{mean:.5g}" if np.isnan(error) else f"{mean:.5g} +- {error:.1g}"

@@ -1,45 +1,51 @@
 """Another grading, quantity or separation on the same surfaces: one product, nothing drawn again."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
+from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from analytic import Grading
 from mcgw.ensemble.ensemble import Arrays, Ensemble
-from mcgw.ensemble.simulation import kept
+from mcgw.ensemble.simulation import blocks, kept
 from mcgw.sampling.block import Block
 from mcgw.sampling.counted import Counted
-from mcgw.sampling.samplers import regraded
+from mcgw.sampling.samplers import regraded, sampler_of
+from mcgw.scene.scene import Scene
 
-__all__ = ["Paired", "paired_ratio", "regrade"]
+__all__ = ["regrade"]
 
 Array = NDArray[np.float64]
 
 _ROWS = 1024  # surfaces at a time
-_PAIRED = ("surface", "separations", "heights", "n_asperities", "count", "seed")
+_SAME = 1e-9  # relative difference of sums that are only rounded differently
 
 
 def regrade(
     ensemble: Ensemble,
-    grading: Grading,
+    grading: Grading | Callable[[Any], Any],
     *,
     quantities: Sequence[str] | None = None,
-    separations: Sequence[float] | None = None,
+    separations: ArrayLike | None = None,
 ) -> Ensemble:
     """Give the surfaces of an ensemble another grading.
+
+    Nothing is drawn again if the ensemble keeps its moments (``keep = "moments"``). Otherwise the very same
+    surfaces are drawn once more from their seed, which takes as long as simulating them, and checked
+    against what the ensemble holds.
 
     Parameters
     ----------
     ensemble : Ensemble
-        Simulated with ``keep = "moments"``.
-    grading : Grading
-        The new E*(s)/E*, smooth inside the cells of the ensemble.
+        Of the sampler ``cells`` or ``aggregate``.
+    grading : Grading or callable
+        The new E*(s)/E*, as `mcgw.Scene` takes it, smooth inside the cells of the ensemble.
     quantities : sequence of str, optional
-        Any; left out: those of the ensemble.
-    separations : sequence of float, optional
-        Edges of its cells, such as its own separations; left out: these.
+        Any; default: those of the ensemble.
+    separations : array_like, optional
+        Edges of its cells, such as its own separations; default: these.
 
     Returns
     -------
@@ -50,34 +56,63 @@ def regrade(
     Raises
     ------
     ValueError
-        If the moments were not kept, or are those of other cells, or if a separation or break is no edge
-        of the cells.
+        If the sampler has no moments, if the moments are those of other cells, or if a separation or break
+        is no edge of the cells.
+
+    Examples
+    --------
+    >>> import mcgw
+    >>> surface = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "1 mm^2", "78.6 GPa")
+    >>> e = mcgw.simulate(mcgw.Scene(surface, separations=[0, 1, 2], n_surfaces=100, seed=1))
+    >>> stiffer = mcgw.regrade(e, mcgw.Exponential(2.0))
+    >>> bool((stiffer.contacts == e.contacts).all()), bool((stiffer.load > e.load)[:, 1:].all())
+    (True, True)
     """
     old = ensemble.scene
-    if old.keep != "moments":
-        raise ValueError('the file keeps no moments: simulate it with keep = "moments" under [ensemble]')
-    scene = replace(
-        old,
+    scene = old.replace(
         grading=grading,
-        quantities=tuple(quantities or old.quantities),
-        separations=tuple(separations or old.separations),
+        quantities=quantities or old.quantities,
+        separations=old.separations if separations is None else separations,
         n_surfaces=ensemble.n_surfaces,
     )
-    cells = regraded(scene, old)
-    _check_cells(cells, ensemble)
+    again = replace(old, sampler=ensemble.sampler, keep="moments", n_surfaces=ensemble.n_surfaces)
+    cells = regraded(scene, again)
     _check_edges("separation", scene.separations, cells.mesh.edges)
     _check_edges("break of the grading", scene.modulus.breaks, cells.mesh.edges)
-    extras = ensemble.sums.read("extras", 0, None)
-    parts = []
-    for first in range(0, ensemble.n_surfaces, _ROWS):
-        stop = min(first + _ROWS, ensemble.n_surfaces)
-        moments = ensemble.sums.read("moments", first, stop)
-        counts = ensemble.sums.read("cells", first, stop)
-        own = extras[(extras[:, 0] >= first) & (extras[:, 0] < stop)]
+    parts, first = [], 0
+    for moments, counts, own in _read(ensemble, cells) if old.keep == "moments" else _again(ensemble, again):
         sums = cells.sums(first, np.ascontiguousarray(moments.T), np.ascontiguousarray(counts.T), own)
         parts.append(kept(scene, Block(sums, moments, counts, own)))
+        first += len(moments)
     arrays = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
     return Ensemble(scene, ensemble.sampler, Arrays(arrays))
+
+
+def _read(ensemble: Ensemble, drawn: Counted) -> Iterator[tuple[Array, Array, Array]]:
+    """Moments, counts and single asperities of some surfaces at a time, as the ensemble keeps them."""
+    _check_cells(drawn, ensemble)
+    extras = ensemble.sums.read("extras", 0, None)
+    for first in range(0, ensemble.n_surfaces, _ROWS):
+        stop = min(first + _ROWS, ensemble.n_surfaces)
+        own = extras[(extras[:, 0] >= first) & (extras[:, 0] < stop)]
+        yield ensemble.sums.read("moments", first, stop), ensemble.sums.read("cells", first, stop), own
+
+
+def _again(ensemble: Ensemble, scene: Scene) -> Iterator[tuple[Array, Array, Array]]:
+    """The same, drawn once more; refused if they are not the surfaces of the ensemble."""
+    first = 0
+    for block in blocks(scene, sampler_of(scene)):
+        if block.moments is None or block.counts is None or block.extras is None:
+            raise AssertionError("a sampler that keeps moments gives them")
+        for name, values in block.sums.items():
+            held = ensemble.sums.read(name, first, first + len(values))
+            if not np.allclose(values, held, rtol=_SAME, atol=_SAME * float(np.abs(held).mean())):
+                raise ValueError(
+                    f"the surfaces cannot be drawn again: their {name} is another one (another version of "
+                    'mcgw, or a run that is not finished); simulate them with keep = "moments"'
+                )
+        yield block.moments, block.counts, block.extras
+        first += len(block.moments)
 
 
 def _check_cells(drawn: Counted, ensemble: Ensemble) -> None:
@@ -96,56 +131,3 @@ def _check_edges(what: str, wanted: Sequence[float], edges: Array) -> None:
         if (what == "separation" or edges[0] < s < edges[-1]) and s not in edges:
             near = edges[np.argmin(np.abs(edges - s))]
             raise ValueError(f"{what} {s:.6g} is no edge of the cells (the nearest is {near:.6g})")
-
-
-@dataclass(frozen=True)
-class Paired:
-    """Two ensembles of the same surfaces, compared surface by surface; arrays over the separations.
-
-    Parameters
-    ----------
-    ratio, stderr : ndarray
-        Ratio of the means and its standard error.
-    gain : ndarray
-        Variance of the ratio of two independent ensembles of this size over that of the pair.
-    """
-
-    ratio: Array
-    stderr: Array
-    gain: Array
-
-
-def paired_ratio(numerator: Ensemble, denominator: Ensemble, quantity: str) -> Paired:
-    """Ratio of two means over the same surfaces: Eqs. (12) and (15) of the paper by Monte Carlo.
-
-    Parameters
-    ----------
-    numerator, denominator : Ensemble
-        Of the same surfaces, such as from `regrade`.
-    quantity : str
-        One they share.
-
-    Returns
-    -------
-    Paired
-        The error is that of ``b - r a`` over the surfaces (delta method), in which what both share
-        cancels.
-
-    Raises
-    ------
-    ValueError
-        If the two differ in anything but grading and quantities; the line says in what.
-    """
-    differ = [name for name in _PAIRED if getattr(numerator.scene, name) != getattr(denominator.scene, name)]
-    differ += [
-        name for name in ("n_surfaces", "sampler") if getattr(numerator, name) != getattr(denominator, name)
-    ]
-    if differ:
-        raise ValueError(
-            f"a paired ratio takes two ensembles of the same surfaces; these differ in {', '.join(differ)}"
-        )
-    b, a = (e.values(quantity).astype(np.float64) for e in (numerator, denominator))
-    ratio = b.mean(axis=0) / a.mean(axis=0)
-    residual = (b - ratio * a).var(axis=0, ddof=1)
-    apart = b.var(axis=0, ddof=1) + ratio**2 * a.var(axis=0, ddof=1)
-    return Paired(ratio, np.sqrt(residual / len(a)) / a.mean(axis=0), apart / residual)

@@ -1,6 +1,6 @@
 """From a scene to an ensemble, block by block of surfaces."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 from time import monotonic, perf_counter
@@ -13,6 +13,7 @@ from mcgw.ensemble.ensemble import Arrays, Ensemble
 from mcgw.ensemble.forecast import without_rule
 from mcgw.machine.in_threads import in_threads, pieces
 from mcgw.machine.memory import check_memory
+from mcgw.machine.progress import Progress, told
 from mcgw.sampling.block import Block, Sampler
 from mcgw.sampling.counts import GROUP
 from mcgw.sampling.samplers import sampler_of
@@ -36,7 +37,7 @@ _DRAWS = 1.5e8  # asperities a block may draw, so that a bar moves every second
 
 
 def simulate(
-    scene: Scene, *, threads: int | None = None, progress: Callable[[int], Any] | None = None
+    scene: Scene, *, threads: int | None = None, progress: Progress = None, **changes: Any
 ) -> Ensemble:
     """Draw the ensemble of a scene in memory.
 
@@ -45,9 +46,11 @@ def simulate(
     scene : Scene
         What is asked.
     threads : int, optional
-        Left out: all there are. The result is the same, bit by bit, for any number.
-    progress : callable, optional
-        Called with the number of surfaces after each block.
+        Default: all there are. The result is the same, bit by bit, for any number.
+    progress : bool or callable, optional
+        True: a bar; a function: called with (done, total) surfaces after each block.
+    **changes
+        Fields of the scene that have other values: see `mcgw.Scene.replace`.
 
     Returns
     -------
@@ -59,7 +62,18 @@ def simulate(
     ------
     ValueError
         If `threads` is not positive, or the memory is too small (with the size).
+    SceneError, TypeError
+        As from `mcgw.Scene.replace`.
+
+    Examples
+    --------
+    >>> import mcgw
+    >>> surface = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "1 mm^2", "78.6 GPa")
+    >>> scene = mcgw.Scene(surface, separations=[0, 1, 2], seed=1)
+    >>> mcgw.simulate(scene, n_surfaces=20).load.shape
+    (20, 3)
     """
+    scene = scene.replace(**changes)
     until = None if scene.max_seconds is None else monotonic() + scene.max_seconds
     if scene.rel_err is not None or scene.max_seconds is not None:
         scene = without_rule(scene)
@@ -67,14 +81,14 @@ def simulate(
     if until is None:
         _check_memory(scene, scene.n_surfaces)
     parts, drawn = [], 0
-    with use_threads(threads):
+    with use_threads(threads), told(progress, "surfaces") as tell:
+        tell(0, scene.n_surfaces)
         for block in blocks(scene, sampler):
             parts.append(kept(scene, block))
             n = len(parts[-1][scene.quantities[0]])
             _check_memory(scene, n)  # how many there is time for is not known beforehand
             drawn += n
-            if progress:
-                progress(n)
+            tell(drawn, scene.n_surfaces)
             if until is not None and monotonic() > until:
                 break
     arrays = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
@@ -151,8 +165,8 @@ def seconds_per_surface(scene: Scene, sampler: Sampler, *, rounds: int = 3) -> f
 @contextmanager
 def use_threads(threads: int | None) -> Iterator[None]:
     """Let the loops use so many threads, at most as many as there are."""
-    if threads is not None and threads < 1:
-        raise ValueError(f"threads = {threads}: give a whole number >= 1")
+    if threads is not None and not (isinstance(threads, int) and threads >= 1):
+        raise ValueError(f"threads = {threads!r}: give a whole number >= 1")
     before = numba.get_num_threads()
     numba.set_num_threads(min(threads or before, before))
     try:

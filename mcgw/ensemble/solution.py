@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,11 +10,14 @@ from scipy.optimize import brentq
 from scipy.special import stdtrit
 
 from analytic import QUANTITIES, Quantity
-from mcgw.ensemble.intervals import FEWEST
+from mcgw.ensemble.intervals import FEWEST, interval_text
+from mcgw.formats.sheet import Sheet, Shown
+from mcgw.machine.late import plotted
 from mcgw.sampling.asperities import heights
+from mcgw.scene.reading import argument, as_toml
 from mcgw.scene.scene import Scene
 
-__all__ = ["Solution", "separation_on", "solve"]
+__all__ = ["Solution", "separation_on", "solutions", "solve"]
 
 Array = NDArray[np.float64]
 
@@ -28,14 +32,23 @@ _NEGATIVE = (
     "{} = {:g} {}: {} does not reach it without asperities of negative modulus, at s = {:.4g}; give less, "
     'or say negative = "clip" or "allow" under [grading]'
 )
+# What may be given: its unit, the quantity that it is, and whether per nominal area.
+_GIVEN = {
+    "load": ("N", "load", False),
+    "pressure": ("Pa", "load", True),
+    "area": ("m^2", "area", False),
+    "area_fraction": ("1", "area", True),
+}
 
 
-@dataclass(frozen=True)
-class Solution:
+@dataclass(frozen=True, repr=False)
+class Solution(Shown):
     """What holds at one given load or area.
 
     Parameters
     ----------
+    scene : Scene
+        Of which surfaces.
     given : str
         Which quantity was given: "load" or "area".
     value : float
@@ -46,6 +59,7 @@ class Solution:
         The same on every surface at its own separation, shape (surfaces,).
     """
 
+    scene: Scene
     given: str
     value: float
     theory: dict[str, float]
@@ -59,9 +73,83 @@ class Solution:
         half = stdtrit(len(x) - 1, (1 + level) / 2) * x.std(ddof=1) / np.sqrt(len(x))
         return float(x.mean() - half), float(x.mean() + half)
 
+    def plot(self, ax: Any = None) -> Any:
+        """Draw how the separation differs from surface to surface; returns the axes."""
+        return plotted(self, ax)
 
-def solve(scene: Scene, given: str, values: Sequence[float]) -> list[Solution]:
-    """Find the separation at which each surface has a given load or real area.
+    def sheet(self) -> Sheet:
+        """Theory and Monte Carlo side by side."""
+        share = self.value / self.scene.surface.nominal_area
+        if self.given == "load":
+            title = f"At the load {self.value:.6g} N = pressure {share / 1e6:.6g} MPa"
+        else:
+            title = f"At the real area {self.value:.6g} m^2 = {share:.4%} of the nominal area"
+        rows = []
+        for name in ("separation", *(q for q in QUANTITIES if q != self.given)):
+            unit = QUANTITIES[name].unit if name in QUANTITIES else "d/sigma"
+            x, (low, high) = self.surfaces[name], self.interval(name)
+            cells = (f"{self.theory[name]:.6g}", f"{x.mean():.6g}", interval_text(low, high))
+            rows.append([f"{name} ({unit})", *cells, f"{x.std(ddof=1):.3g}"])
+        many = f"{len(self.surfaces['separation'])} surfaces of {self.scene.n_asperities} asperities"
+        return Sheet(title, [("over", many)], ["", "theory", "mean", "95 % interval", "std"], rows)
+
+
+def solve(
+    scene: Scene,
+    *,
+    load: Any = None,
+    pressure: Any = None,
+    area: Any = None,
+    area_fraction: Any = None,
+    **changes: Any,
+) -> "Solution | list[Solution]":
+    """Find the separation at which each surface has a given load, pressure or real area.
+
+    Parameters
+    ----------
+    scene : Scene
+        Its surface, grading, heights, number of surfaces and asperities, and seed are used.
+    load, pressure, area, area_fraction : float, str or sequence of them
+        One of the four: P (N), P/A_n (Pa), A (m^2) or A/A_n; or texts with units, as "1 MPa".
+    **changes
+        Fields of the scene that have other values: see `mcgw.Scene.replace`.
+
+    Returns
+    -------
+    Solution or list of Solution
+        One, or for a sequence one for each of its values.
+
+    Raises
+    ------
+    SceneError, TypeError
+        If a value is no such quantity; and as from `mcgw.Scene.replace`.
+    ValueError
+        If not one of the four is given; and as from `solutions`.
+
+    Examples
+    --------
+    >>> import mcgw
+    >>> surface = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "1 mm^2", "78.6 GPa")
+    >>> scene = mcgw.Scene(surface, separations=0.0, n_surfaces=20, seed=1)
+    >>> found = mcgw.solve(scene, pressure="1 MPa")
+    >>> round(found.theory["separation"], 4), found.surfaces["area"].shape
+    (1.7496, (20,))
+    """
+    asked = {"load": load, "pressure": pressure, "area": area, "area_fraction": area_fraction}
+    known = {key: value for key, value in asked.items() if value is not None}
+    if len(known) != 1:
+        raise ValueError(f"solve: give one of {', '.join(asked)}, not {' and '.join(known) or 'none'}")
+    ((key, value),) = known.items()
+    scene = scene.replace(**changes)
+    unit, given, per_area = _GIVEN[key]
+    plain, factor = as_toml(value), scene.surface.nominal_area if per_area else 1.0
+    values = [factor * argument(key, x, unit) for x in (plain if isinstance(plain, list) else [plain])]
+    found = solutions(scene, given, values)
+    return found if isinstance(plain, list) else found[0]
+
+
+def solutions(scene: Scene, given: str, values: Sequence[float]) -> list[Solution]:
+    """Find the separations at which each surface has given loads or real areas.
 
     The asperities of a surface are drawn one by one (sampler ``tail``), once for all values; so this
     serves any separation, and the mean differs from theory by what the finite number of asperities
@@ -99,7 +187,9 @@ def solve(scene: Scene, given: str, values: Sequence[float]) -> list[Solution]:
         )
     rows = [_surface(scene, drawn, number, q, values) for number in range(drawn.n_surfaces)]
     return [
-        Solution(given, float(value), at, {name: np.array([row[k][name] for row in rows]) for name in at})
+        Solution(
+            scene, given, float(value), at, {name: np.array([row[k][name] for row in rows]) for name in at}
+        )
         for k, (value, at) in enumerate(zip(values, theory, strict=True))
     ]
 

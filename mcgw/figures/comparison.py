@@ -12,9 +12,9 @@ from mcgw.figures.style import STYLE, grading_label, shown_title
 from mcgw.formats.pictures import save_figure
 from mcgw.statistics.comparison import Comparison, Curve
 
-__all__ = ["quantity_figure", "save_comparison"]
+__all__ = ["TITLES", "draw_curve", "quantity_figure", "save_comparison"]
 
-_TITLES = {
+TITLES = {
     "load": "Load $P$ (N)",
     "area": "Real area $A$ (m²)",
     "stiffness": "Stiffness $-dP/dd$ (N/m)",
@@ -39,8 +39,8 @@ def save_comparison(comparison: Comparison, path: str | Path) -> None:
         figure = Figure(figsize=(max(3.1 * columns, 6.2), 5.2), layout="constrained")
         axes = figure.subplots(2, columns, sharex=True, squeeze=False, height_ratios=[3, 1])
         for (name, curve), (above, below) in zip(comparison.curves.items(), axes.T, strict=True):
-            _draw_curve(above, ensemble.separations, curve)
-            above.set_title(_TITLES[name])
+            draw_curve(above, ensemble.separations, curve)
+            above.set_title(TITLES[name])
             _draw_residual(below, ensemble.separations, curve)
         axes[1, 0].set_ylabel("residual\n(standard errors)")
         axes[0, 0].legend(loc="lower left")
@@ -78,15 +78,16 @@ def quantity_figure(comparison: Comparison, name: str) -> Figure:
     with mpl.rc_context(STYLE):
         figure = Figure(figsize=(4.0, 3.9), layout="constrained")
         above, below = figure.subplots(2, 1, sharex=True, height_ratios=[3, 1])
-        _draw_curve(above, h, curve)
+        draw_curve(above, h, curve)
         _draw_residual(below, h, curve)
-        above.set_title(_TITLES[name], loc="left")
+        above.set_title(TITLES[name], loc="left")
         above.legend(loc="lower left")
         below.set(xlabel="separation d/σ", ylabel="residual\n(std. errors)")
     return figure
 
 
-def _draw_curve(axis: Any, h: np.ndarray, curve: Curve) -> None:
+def draw_curve(axis: Any, h: np.ndarray, curve: Curve) -> None:
+    """One quantity: its theory as a line, means with intervals on it."""
     order = np.argsort(h, kind="stable")
     axis.plot(h[order], curve.theory[order], label="theory", zorder=2)
     seen, known = curve.mean > 0, np.isfinite(curve.low)

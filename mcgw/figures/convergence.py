@@ -13,7 +13,7 @@ from mcgw.statistics.checks import Slope
 from mcgw.statistics.comparison import FALSE_ALARM
 from mcgw.statistics.convergence import Convergence
 
-__all__ = ["save_convergence"]
+__all__ = ["draw_checks", "save_convergence"]
 
 _TITLES = {"M": "surfaces $M$", "N": "asperities $N$"}
 
@@ -39,7 +39,7 @@ def save_convergence(found: Convergence, path: str | Path) -> None:
         for name in {"M", "N"} - drawn:
             _say(axes[name], f"slope in {name}: too few contacts")
         _draw_scores(axes["z"], found.scores)
-        _draw_checks(bottom.subplots(), found)
+        draw_checks(bottom.subplots(), found)
         word = "passed" if found.passed else "FAILED"
         figure.suptitle(
             f"{shown_title(found.scene, 'Scene')}\nStatistical convergence {word}: p = {found.p:.3g} over "
@@ -81,7 +81,8 @@ def _draw_scores(axis: Any, z: np.ndarray) -> None:
     axis.legend(loc="upper center", ncols=2, handlelength=1.2, columnspacing=1)
 
 
-def _draw_checks(axis: Any, found: Convergence) -> None:
+def draw_checks(axis: Any, found: Convergence) -> None:
+    """The probability of every check."""
     floor = 1e-12
     names = [check.name for check in found.checks]
     p = np.array([max(check.p, floor) for check in found.checks])

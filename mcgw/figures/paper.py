@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 import analytic
 from analytic import QUANTITIES, Exponential
-from mcgw.ensemble.regrading import paired_ratio
+from mcgw.ensemble.paired import paired_ratio
 from mcgw.figures.data import GAMMA, SEPARATION, FigureData, Panel, Points, Series, ratio_of_sums
 from mcgw.figures.samples import Samples
 

@@ -11,7 +11,7 @@ from mcgw.figures.style import STYLE, shown_title
 from mcgw.formats.pictures import save_figure
 from mcgw.statistics.tradeoff import Tradeoff
 
-__all__ = ["save_tradeoff"]
+__all__ = ["draw_methods", "save_tradeoff"]
 
 _FLOOR = 1e-16
 
@@ -31,7 +31,7 @@ def save_tradeoff(found: Tradeoff, path: str | Path) -> None:
         figure = Figure(figsize=(3.6 * columns + 1, 5.6), layout="constrained")
         axes: Any = figure.subplots(1, columns, sharex=True, sharey=True, squeeze=False)[0]
         for k, (axis, h) in enumerate(zip(axes, found.separations, strict=True)):
-            _draw(axis, found, k)
+            draw_methods(axis, found, k)
             axis.set_title(f"$d/\\sigma$ = {h:g}")
             axis.set_xlabel("CPU time (s)")
         axes[0].set_ylabel(f"rms relative error of the mean {found.scene.quantities[0]}")
@@ -41,7 +41,8 @@ def save_tradeoff(found: Tradeoff, path: str | Path) -> None:
         save_figure(figure, path)
 
 
-def _draw(axis: Any, found: Tradeoff, k: int) -> None:
+def draw_methods(axis: Any, found: Tradeoff, k: int) -> None:
+    """Error against time of every method at one of the separations."""
     for i, method in enumerate(found.methods):
         points = found.of(method.name)
         time = np.array([p.cpu for p in points])

@@ -3,11 +3,14 @@
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.special import ndtr, stdtrit
 
+from mcgw.formats.sheet import Sheet, Shown
+from mcgw.machine.late import plotted
 from mcgw.maps.form import Form, smooth, without_form
 from mcgw.maps.hidden import Visible, unhidden, visible
 from mcgw.maps.levels import form_left
@@ -28,6 +31,7 @@ METHODS = {
 # pixels from a valley, and 0.2 to 0.45 cutoffs: the correction is good to a quarter of itself.
 _BLUR, _DOUBT = 0.3, 0.25
 _FLAT = 0.5  # of the median curvature
+_MOST_CAUTIONS = 4  # in a short look
 
 
 @dataclass(frozen=True)
@@ -50,8 +54,8 @@ class Estimate:
         return self.eta[0] * self.radius[0] * self.sigma[0]
 
 
-@dataclass(frozen=True)
-class Fit:
+@dataclass(frozen=True, repr=False)
+class Fit(Shown):
     """What a map tells.
 
     Parameters
@@ -78,6 +82,8 @@ class Fit:
         Errors that follow from how few waves the map holds.
     alone : Alone or None
         The sub-area that carries the map alone, if one does.
+    cautions : tuple of str, optional
+        Why not to trust it: one line each, found by `mcgw.fit`.
     """
 
     estimates: dict[str, Estimate]
@@ -92,6 +98,24 @@ class Fit:
     form: Form
     waves: Waves
     alone: Alone | None
+    cautions: tuple[str, ...] = ()
+
+    def plot(self, ax: Any = None) -> Any:
+        """Draw the summit heights beside a Gaussian law of their spread; returns the axes."""
+        return plotted(self, ax)
+
+    def sheet(self) -> Sheet:
+        """Estimates by all methods, with standard errors, and the first of the cautions."""
+        rows = [
+            [METHODS[name], *(f"{value:.4g} +- {error:.1g}" for value, error in (e.eta, e.radius, e.sigma))]
+            for name, e in self.estimates.items()
+        ]
+        facts = [("spectrum", f"alpha = {self.alpha[0]:.3g}, skewness {self.skewness[0]:.2f}")]
+        facts += [("caution", line) for line in self.cautions[:_MOST_CAUTIONS]]
+        more = len(self.cautions) - _MOST_CAUTIONS
+        facts += [("", f"and {more} more in .cautions")] if more > 0 else []
+        head = ["", "eta (1/m^2)", "R (m)", "sigma (m)"]
+        return Sheet(f"Fit of {self.summits.size} summits on {self.area:.4g} m^2", facts, head, rows)
 
 
 def fit_map(topography: Topography, *, cutoff: float | None, form: Form = "plane", across: int = 4) -> Fit:

@@ -9,6 +9,7 @@ import numpy as np
 from analytic import Gaussian, HeightLaw, HeightTable, MeasuredHeights, Surface
 from mcgw.formats.files import whole_file
 from mcgw.maps.fit import Fit
+from mcgw.scene.reading import argument
 from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_text
 
@@ -17,7 +18,14 @@ __all__ = ["fitted_scene", "heights_beside", "write_scene"]
 Law = Literal["gaussian", "table", "measured"]
 
 
-def fitted_scene(fit: Fit, *, use: str, heights: Law, E_star: float, title: str) -> Scene:
+def fitted_scene(
+    fit: Fit,
+    *,
+    use: str = "summits",
+    heights: Law = "gaussian",
+    E_star: float | str = "100 GPa",
+    title: str = "",
+) -> Scene:
     """Make a scene of a fit.
 
     Parameters
@@ -28,8 +36,8 @@ def fitted_scene(fit: Fit, *, use: str, heights: Law, E_star: float, title: str)
         Which estimate. With measured heights sigma is that of the heights.
     heights : {"gaussian", "table", "measured"}
         Law of the heights; ``measured`` makes an ensemble of the one surface there is.
-    E_star : float
-        Composite modulus, which no map tells, Pa.
+    E_star : float or str
+        Composite modulus, which no map tells, Pa or as "78.6 GPa".
     title : str
         For people.
 
@@ -42,7 +50,18 @@ def fitted_scene(fit: Fit, *, use: str, heights: Law, E_star: float, title: str)
     ------
     ValueError
         If the fit has no such estimate, or a parameter makes no surface.
+
+    Examples
+    --------
+    >>> import mcgw, tempfile, numpy as np
+    >>> z = np.random.default_rng(1).normal(size=(256, 256)) * 1e-6
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     np.save(f"{folder}/map.npy", z)
+    ...     found = mcgw.fit(f"{folder}/map.npy", cutoff="10 um", pixel="1 um")
+    >>> mcgw.fitted_scene(found, E_star="70 GPa").surface.E_star
+    70000000000.0
     """
+    modulus = argument("E_star", E_star, "Pa")
     if use not in fit.estimates:
         raise ValueError(
             f"use = {use!r}: there is no such estimate of this map; {', '.join(fit.estimates)} are"
@@ -53,7 +72,7 @@ def fitted_scene(fit: Fit, *, use: str, heights: Law, E_star: float, title: str)
     if heights != "gaussian":
         sigma = float(fit.summits.std())
         law = HeightTable.of(fit.summits) if heights == "table" else MeasuredHeights(fit.summits)
-    surface = Surface(sigma, estimate.radius[0], estimate.eta[0], fit.area, E_star)
+    surface = Surface(sigma, estimate.radius[0], estimate.eta[0], fit.area, modulus)
     separations = tuple(np.linspace(0, 3, 31).tolist())
     if heights == "measured":
         if not math.isclose(surface.n_asperities, fit.summits.size, rel_tol=1e-9):

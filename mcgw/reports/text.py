@@ -8,7 +8,7 @@ import numpy as np
 from analytic import QUANTITIES
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.intervals import interval_text
-from mcgw.ensemble.regrading import Paired, paired_ratio
+from mcgw.ensemble.paired import Paired, paired_ratio
 from mcgw.formats.csv_table import Row
 from mcgw.machine.terminal import one_line
 from mcgw.statistics.comparison import FALSE_ALARM, Comparison, Verdict

@@ -20,7 +20,7 @@ from mcgw.formats.npy_file import open_npy
 from mcgw.formats.plain_file import read_text
 from mcgw.scene.section import Section
 
-__all__ = ["LAWS", "heights_law", "heights_table", "read_heights"]
+__all__ = ["LAWS", "heights_law", "heights_table", "read_heights", "shapes_of"]
 
 LAWS = ("gaussian", "exponential", "weibull", "table", "scipy")
 _MOST_BYTES = 2**28
@@ -148,11 +148,11 @@ def heights_table(law: HeightLaw, file: str | None = None) -> dict[str, Any]:
             held = {"heights": list(law.heights)} if file is None else {"file": file}
             return {"law": "table", **held, "resample": False}
         case ScipyHeights():
-            return {"law": "scipy", "name": law.distribution.dist.name, "shapes": _shapes(law.distribution)}
+            return {"law": "scipy", "name": law.distribution.dist.name, "shapes": shapes_of(law.distribution)}
     return {"law": f"python: {law!r}"}
 
 
-def _shapes(frozen: Any) -> dict[str, float]:
+def shapes_of(frozen: Any) -> dict[str, float]:
     """Shape parameters by name; location and scale drop out."""
     names = [name.strip() for name in (frozen.dist.shapes or "").split(",") if name.strip()]
     given: Mapping[str, Any] = {**dict(zip(names, frozen.args, strict=False)), **frozen.kwds}

@@ -2,28 +2,32 @@
 
 import dataclasses
 import math
-from dataclasses import dataclass, field
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from typing import Any, Literal
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from analytic import (
     QUANTITIES,
     Clipped,
+    Custom,
     Exponential,
-    Gaussian,
     Grading,
     HeightLaw,
-    Homogeneous,
     MeasuredHeights,
     Model,
     Surface,
     Table,
     first_negative,
 )
-from mcgw.formats.units import quantity
-from mcgw.scene.samplers import SAMPLERS, promise_of
-from mcgw.scene.surface import SURFACE_UNITS
+from mcgw.formats.sheet import Sheet, Shown, brief
+from mcgw.scene.law_text import law_text
+from mcgw.scene.reading import LeftOut, read_values
+from mcgw.scene.samplers import promise_of
+from mcgw.scene.section import SceneError, nearest
+from mcgw.scene.surface import SURFACE_UNITS, surface_of
 
 __all__ = ["LeftOut", "Scene", "SceneError"]
 
@@ -33,85 +37,116 @@ _SURFACES, _MOST_SURFACES = 1000, 10**9  # where n_surfaces is left out; where r
 _BEYOND = 1e-16  # share of the heights that lie above what is checked for negative moduli
 
 
-class SceneError(ValueError):
-    """A scene that cannot be run; `problems` has one line for each mistake."""
-
-    def __init__(self, problems: list[str]) -> None:
-        self.problems = problems
-        super().__init__("\n".join(problems))
-
-
-class LeftOut(int):
-    """A whole number that nobody gave: it equals any other, but is found anew when the scene changes."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class Scene:
+@dataclass(frozen=True, repr=False)
+class Scene(Shown):
     """Everything that determines an ensemble.
 
     Parameters
     ----------
     surface : Surface
-        Parameters in SI units.
-    separations : tuple of float
-        Reduced separations d/sigma, in any order, repeated or not.
+        Parameters in SI units: `mcgw.Surface`.
+    separations : array_like
+        Reduced separations d/sigma, in any order, repeated or not: an array, a list, or one number.
     title : str, optional
         For people.
-    grading : Grading, optional
-        E*(s)/E*; left out: homogeneous.
+    grading : Grading or callable, optional
+        E*(s)/E*, or any function of an array of heights s, as ``lambda s: 1 + 0.3*np.tanh(s)``; its kinks
+        and jumps are searched for, or told by `mcgw.Custom`. Default: homogeneous.
     negative : {"error", "clip", "allow"}, optional
         What to do where the grading makes the modulus of a contacting asperity negative.
-    heights : HeightLaw, optional
-        Law of the reduced heights; left out: Gaussian.
-    quantities : tuple of str, optional
-        Which sums to compute: names of `analytic.QUANTITIES`.
+    heights : HeightLaw or frozen law of scipy.stats, optional
+        Law of the reduced heights: of a law of scipy the mean and the scale drop out. Default: Gaussian.
+    quantities : sequence of str, optional
+        Which sums to compute: names of `analytic.QUANTITIES`. Default: load, area, stiffness, contacts.
     n_surfaces : int, optional
-        Number of surfaces M, left out: 1000; with `rel_err` the most that may be drawn, left out: 1e9.
+        Number of surfaces M, default: 1000; with `rel_err` the most that may be drawn, default: 1e9.
     n_asperities : int, optional
-        Asperities on each (their mean number if `count` is "poisson"); left out: eta A_n, rounded, of
+        Asperities on each (their mean number if `count` is "poisson"). Default: eta A_n, rounded, of
         whatever surface the scene has, so that N follows if the surface is replaced.
     count : {"fixed", "poisson"}, optional
         Law of their number.
     seed : int, optional
-        0 to 2^64 - 1. Left out: drawn by `mcgw.load_scene`; here 0.
-    sampler : str, optional
-        One of `SAMPLERS`.
+        0 to 2^64 - 1. Default: drawn, and recorded.
+    sampler : {"auto", "direct", "tail", "cells", "aggregate", "stratified"}, optional
+        How surfaces are drawn; "auto" takes the cheapest exact way.
     keep : {"sums", "moments"}, optional
-        Whether the file also keeps the moments, from which `mcgw regrade` starts.
-    rel_err : float, optional
+        Whether the file also keeps the moments, from which `mcgw.regrade` starts.
+    rel_err : float or str, optional
         Draw so many surfaces that the 95 % interval of every mean reaches no farther than this share of
-        it, 0 to 0.1: as many as the exact law of a finite surface says.
-    max_seconds : float, optional
-        Stop after the block that is being drawn then.
+        it, 0 to 0.1 or as "1 %": as many as the exact law of a finite surface says.
+    max_seconds : float or str, optional
+        Stop after the block that is being drawn then; s, or as "2 h".
 
     Raises
     ------
     SceneError
-        With one line for each mistake.
+        With one line for each mistake, as for a scene file.
+
+    Examples
+    --------
+    >>> import mcgw
+    >>> surface = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "1 cm^2", "78.6 GPa")
+    >>> mcgw.Scene(surface, separations=[0, 2, 4], grading=mcgw.Exponential(2.0), seed=1)
+    Scene
+      surface      sigma = 1.37e-06 m, radius = 1.3e-05 m, eta = 3e+08 1/m^2
+                   nominal_area = 0.0001 m^2, E_star = 7.86e+10 Pa
+      grading      Exponential(gamma=2.0)
+      heights      Gaussian()
+      separations  3 from 0 to 4 (d/sigma)
+      quantities   load, area, stiffness, contacts
+      ensemble     1000 surfaces of 30000 asperities (fixed), seed 1, sampler auto
     """
 
     surface: Surface
     separations: tuple[float, ...]
-    title: str = ""
-    grading: Grading = field(default_factory=Homogeneous)
-    negative: Literal["error", "clip", "allow"] = "error"
-    heights: HeightLaw = field(default_factory=Gaussian)
-    quantities: tuple[str, ...] = ("load", "area", "stiffness", "contacts")
-    n_surfaces: int = LeftOut()
-    n_asperities: int = LeftOut()
-    count: Literal["fixed", "poisson"] = "fixed"
-    seed: int = 0
-    sampler: str = "auto"
-    keep: Literal["sums", "moments"] = "sums"
-    rel_err: float | None = None
-    max_seconds: float | None = None
+    title: str
+    grading: Grading
+    negative: Literal["error", "clip", "allow"]
+    heights: HeightLaw
+    quantities: tuple[str, ...]
+    n_surfaces: int
+    n_asperities: int
+    count: Literal["fixed", "poisson"]
+    seed: int
+    sampler: str
+    keep: Literal["sums", "moments"]
+    rel_err: float | None
+    max_seconds: float | None
 
-    def __post_init__(self) -> None:
+    def __init__(
+        self,
+        surface: Surface,
+        *,
+        separations: ArrayLike,
+        title: str = "",
+        grading: Grading | Callable[[Any], Any] | None = None,
+        negative: Literal["error", "clip", "allow"] = "error",
+        heights: Any = None,
+        quantities: Sequence[str] | None = None,
+        n_surfaces: int | None = None,
+        n_asperities: int | None = None,
+        count: Literal["fixed", "poisson"] = "fixed",
+        seed: int | None = None,
+        sampler: str = "auto",
+        keep: Literal["sums", "moments"] = "sums",
+        rel_err: float | str | None = None,
+        max_seconds: float | str | None = None,
+    ) -> None:
+        given = {key: value for key, value in locals().items() if key != "self"}
+        values, problems = read_values(given)
+        if problems:
+            raise SceneError(problems)
+        for key, value in values.items():
+            object.__setattr__(self, key, value)
+        self._check()
+
+    def _check(self) -> None:
+        """Give what was left out its value, and refuse values that do not go together."""
         self._fill("n_asperities", round(min(self.surface.n_asperities, 2.0**62)))
         self._fill("n_surfaces", _SURFACES if self.rel_err is None else _MOST_SURFACES)
-        object.__setattr__(self, "separations", tuple(float(h) + 0.0 for h in self.separations))
+        object.__setattr__(self, "separations", tuple(h + 0.0 for h in self.separations))  # -0.0 is 0.0
         problems = [*self._wrong_values(), *self._wrong_scales(), *self._wrong_measured()]
-        problems = problems or self._wrong_modulus() or self._wrong_grading()
+        problems = problems or self._wrong_function() or self._wrong_modulus() or self._wrong_grading()
         if problems:
             raise SceneError(problems)
 
@@ -131,8 +166,8 @@ class Scene:
         Parameters
         ----------
         **changes
-            Fields of the scene or of its surface; those of the surface, and `max_seconds`, may be texts
-            with units.
+            Fields of the scene or of its surface, each as `Scene` and `mcgw.Surface` take it; None leaves
+            a field out.
 
         Returns
         -------
@@ -143,25 +178,50 @@ class Scene:
         ------
         TypeError
             If there is no such field.
-        SceneError, ValueError
+        SceneError
             If a value is wrong.
 
         Examples
         --------
-        >>> from mcgw import Surface
-        >>> surface = Surface("1 um", "10 um", "300/mm^2", "1 cm^2", "80 GPa")
-        >>> scene = Scene(surface=surface, separations=(1.0,))
+        >>> import mcgw
+        >>> surface = mcgw.Surface("1 um", "10 um", "300/mm^2", "1 cm^2", "80 GPa")
+        >>> scene = mcgw.Scene(surface, separations=1.0)
         >>> scene.n_asperities, scene.replace(nominal_area="10 cm^2").n_asperities
         (30000, 300000)
         """
+        fields = (*(each.name for each in dataclasses.fields(self)), *SURFACE_UNITS)
+        for key in changes:
+            if key not in fields:
+                meant = nearest(key, fields).rstrip() or f"it has {', '.join(fields)}"
+                raise TypeError(f"a scene has no {key!r}; {meant}")
         of_surface = {key: changes.pop(key) for key in SURFACE_UNITS if key in changes}
         if of_surface:
-            values = {key: quantity(value, SURFACE_UNITS[key], key) for key, value in of_surface.items()}
             surface = changes.get("surface", self.surface)
-            changes["surface"] = dataclasses.replace(surface, **values)
-        if isinstance(changes.get("max_seconds"), str):
-            changes["max_seconds"] = quantity(changes["max_seconds"], "s", "max_seconds")
+            changes["surface"] = surface_of(
+                {key: of_surface.get(key, getattr(surface, key)) for key in SURFACE_UNITS}
+            )
         return dataclasses.replace(self, **changes)
+
+    def sheet(self) -> Sheet:
+        """What is shown of it."""
+        x = {key: f"{key} = {getattr(self.surface, key):g} {unit}" for key, unit in SURFACE_UNITS.items()}
+        h, among = self.separations, f"{len(self.separations)} from " if len(self.separations) > 1 else ""
+        ends = " to ".join(f"{end:g}" for end in sorted({min(h), max(h)}))
+        stop = "" if self.rel_err is None else f" until rel_err = {self.rel_err:g}, at most"
+        facts = [
+            ("surface", ", ".join((x["sigma"], x["radius"], x["eta"]))),
+            ("", f"{x['nominal_area']}, {x['E_star']}"),
+            ("grading", law_text(self.grading) + ("" if self.negative == "error" else f", {self.negative}")),
+            ("heights", law_text(self.heights)),
+            ("separations", f"{among}{ends} (d/sigma)"),
+            ("quantities", ", ".join(self.quantities)),
+            (
+                "ensemble",
+                f"{stop} {self.n_surfaces} surfaces of {self.n_asperities} asperities ({self.count}), "
+                f"seed {self.seed}, sampler {self.sampler}".strip(),
+            ),
+        ]
+        return Sheet(f"Scene: {self.title}" if self.title else "Scene", facts)
 
     @property
     def modulus(self) -> Grading:
@@ -200,8 +260,6 @@ class Scene:
         problems = []
         if not self.separations:
             problems.append("contact.separations = []: give at least one separation d/sigma")
-        if not all(math.isfinite(h) for h in self.separations):
-            problems.append("contact.separations: every separation must be finite")
         tiny = [h for h in self.separations if 0 < abs(h) < _LEAST]
         if tiny:
             problems.append(
@@ -209,37 +267,29 @@ class Scene:
             )
         if not self.quantities:
             problems.append(f"contact.quantities = []: give one or more of {', '.join(QUANTITIES)}")
+        problems += [
+            f"contact.quantities: {name!r} is not one of {', '.join(QUANTITIES)}"
+            for name in self.quantities
+            if name not in QUANTITIES
+        ]
         if len(set(self.quantities)) < len(self.quantities):
             problems.append(f"contact.quantities = {list(self.quantities)}: name each quantity once")
-        if self.n_surfaces < 1:
-            problems.append(f"ensemble.n_surfaces = {self.n_surfaces}: give a whole number >= 1")
         if not 1 <= self.n_asperities <= MOST_ASPERITIES:
             problems.append(
                 f"ensemble.n_asperities = {self.n_asperities}: must lie between 1 and 2^53; "
                 "change it, or surface.eta and surface.nominal_area"
             )
-        if self.rel_err is not None and not 0 < self.rel_err <= 0.1:
+        if self.rel_err is not None and self.rel_err > 0.1:
             problems.append(
                 f"ensemble.rel_err = {self.rel_err}: give a number > 0 and at most 0.1, beyond which so few "
                 "contacts would do that an interval means nothing"
             )
-        if self.max_seconds is not None and not 0 < self.max_seconds < math.inf:
-            problems.append(f"ensemble.max_seconds = {self.max_seconds}: give a number of seconds > 0")
         if not promise_of(self.sampler).real_surfaces and self.rel_err is not None:
             problems.append(
                 'ensemble.rel_err: sampler = "stratified" has no variance to stop by; take another'
             )
-        if not 0 <= self.seed < 2**64:
+        if self.seed >= 2**64:
             problems.append(f"ensemble.seed = {self.seed}: give a whole number from 0 to 2^64 - 1")
-        for name, value, known in (
-            *(("contact.quantities", q, tuple(QUANTITIES)) for q in self.quantities),
-            ("ensemble.sampler", self.sampler, SAMPLERS),
-            ("ensemble.count", self.count, ("fixed", "poisson")),
-            ("ensemble.keep", self.keep, ("sums", "moments")),
-            ("grading.negative", self.negative, ("error", "clip", "allow")),
-        ):
-            if value not in known:
-                problems.append(f"{name}: {value!r} is not one of {', '.join(known)}")
         if self.keep == "moments" and not promise_of(self.sampler).keeps_moments:
             problems.append(f'ensemble.keep = "moments": sampler = "{self.sampler}" has none; take "cells"')
         return problems
@@ -279,6 +329,21 @@ class Scene:
             f"grading.gamma = {self.grading.gamma:g}" if isinstance(self.grading, Exponential) else "grading"
         )
         return [f"{key}: E*(s)/E* reaches {steepest:.3g}, and sums leave double precision; give a modest one"]
+
+    def _wrong_function(self) -> list[str]:
+        """A Python function that does not take arrays."""
+        if not isinstance(self.grading, Custom):
+            return []
+        try:
+            with np.errstate(all="ignore"):
+                self.grading.function(np.array([self.lowest, self._highest()]))
+        except Exception as error:  # of any kind: it is the user's own code
+            reason = brief(f"{type(error).__name__}: {error}")
+            return [
+                f"grading: the function fails on an array of heights ({reason}); write it with numpy, or "
+                "give np.vectorize of it"
+            ]
+        return []
 
     def _highest(self) -> float:
         """Height that hardly an asperity exceeds, above every separation."""

@@ -6,24 +6,23 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import tomli_w
 
-from analytic import QUANTITIES, Body, Exponential, Grading, Homogeneous, Surface, Table, composite_modulus
+from analytic import Body, Exponential, Grading, Homogeneous, Surface, Table, composite_modulus
 from mcgw.formats.plain_file import read_bytes, read_text
 from mcgw.formats.toml_text import loads
 from mcgw.formats.units import quantity
 from mcgw.scene.heights_section import heights_law, heights_table
+from mcgw.scene.reading import LeftOut, quantities_of, separations_of
 from mcgw.scene.samplers import SAMPLERS
-from mcgw.scene.scene import LeftOut, Scene, SceneError
-from mcgw.scene.section import Section
+from mcgw.scene.scene import Scene
+from mcgw.scene.section import SceneError, Section
 from mcgw.scene.surface import SURFACE_UNITS
 
 __all__ = ["files_of", "load_scene", "read_grading", "scene_from", "scene_text"]
 
 _MOST_BYTES = 2**20
 _MOST_TABLE = 2**24  # bytes of a grading as CSV
-_MOST_SEPARATIONS = 100_000
 
 
 def load_scene(path: str | Path, *, seed: Callable[[], int | None] | None = None) -> Scene:
@@ -191,42 +190,7 @@ def read_grading(path: Path, surface: Surface) -> Table:
 
 
 def _contact(section: Section) -> dict[str, Any]:
-    quantities = section.take("quantities")
-    if quantities is None:
-        quantities = ["load", "area", "stiffness", "contacts"]
-    if not (isinstance(quantities, list) and all(isinstance(q, str) for q in quantities)):
-        section.fail("quantities", quantities, f"give a list of {', '.join(QUANTITIES)}")
-        quantities = ["load"]
-    return {"separations": _separations(section), "quantities": tuple(quantities)}
-
-
-def _separations(section: Section) -> tuple[float, ...]:
-    """A list, one number, or {start, stop, num}."""
-    given = section.take("separations")
-    advice = "give a list of finite numbers d/sigma, or {start = 0.0, stop = 4.0, num = 41}"
-    if given is None:
-        section.problems.append(f"contact.separations: missing; {advice}")
-        return (0.0,)
-    if isinstance(given, dict):
-        inner = Section("contact.separations", given, section.problems)
-        start = inner.number("start", positive=False)
-        stop = inner.number("stop", positive=False)
-        num = inner.whole("num", least=1)
-        inner.finish()
-        if num is None or math.isnan(start + stop):
-            return (0.0,)
-        if num > _MOST_SEPARATIONS:
-            inner.fail("num", num, f"give at most {_MOST_SEPARATIONS} separations")
-            return (0.0,)
-        return tuple(np.linspace(start, stop, num).tolist())
-    values = given if isinstance(given, list) else [given]
-    if not all(isinstance(h, int | float) and not isinstance(h, bool) and abs(h) <= 1e6 for h in values):
-        section.fail("separations", given, advice)
-        return (0.0,)
-    if len(values) > _MOST_SEPARATIONS:
-        section.fail("separations", given, f"give at most {_MOST_SEPARATIONS} of them, not {len(values)}")
-        return (0.0,)
-    return tuple(float(h) for h in values)
+    return {"quantities": quantities_of(section), "separations": separations_of(section)}
 
 
 def _ensemble(

@@ -8,11 +8,30 @@ from typing import Any
 from mcgw.formats.units import EXAMPLES, parse
 from mcgw.machine.terminal import one_line
 
-__all__ = ["Section"]
+__all__ = ["SceneError", "Section", "nearest"]
 
 _MISSING: Any = object()
 _MOST_WHOLE = 10**30  # so that no message has hundreds of digits
 _MOST_NAMED = 20  # unknown keys of a table: more say nothing new
+
+
+class SceneError(ValueError):
+    r"""A scene that cannot be run; `problems` has one line for each mistake.
+
+    Examples
+    --------
+    >>> import mcgw
+    >>> try:
+    ...     mcgw.Surface("1.37 m^2", "13 um", "300/mm^2", "1 cm^2", -78.6e9)
+    ... except mcgw.SceneError as error:
+    ...     print(*error.problems, sep="\n")
+    surface.sigma = '1.37 m^2': give a finite number > 0 in m, such as 1.37um, 0.2 mm or 5e-6 (m)
+    surface.E_star = -78600000000.0: give a finite number > 0 in Pa, such as 1MPa, 78.6 GPa or 1e6 (Pa)
+    """
+
+    def __init__(self, problems: list[str]) -> None:
+        self.problems = problems
+        super().__init__("\n".join(problems))
 
 
 class Section:
@@ -94,7 +113,7 @@ class Section:
         """Read one of a few words."""
         value = self._take(key, default)
         if value not in known:
-            self.fail(key, value, f"{_nearest(value, known)}choose one of {', '.join(known)}")
+            self.fail(key, value, f"{nearest(value, known)}choose one of {', '.join(known)}")
             return default
         return str(value)
 
@@ -110,8 +129,8 @@ class Section:
         """Note every key that was not read."""
         unknown = [key for key in self.table if key not in self._known]
         for key in unknown[:_MOST_NAMED]:
-            nearest = _nearest(key[:99], self._known) or f"known here: {', '.join(self._known)}"
-            self.problems.append(f"{self._path(key)}: unknown key; {nearest.removesuffix(' ')}")
+            meant = nearest(key[:99], self._known) or f"known here: {', '.join(self._known)}"
+            self.problems.append(f"{self._path(key)}: unknown key; {meant.removesuffix(' ')}")
         if len(unknown) > _MOST_NAMED:
             self.problems.append(f"[{self.name}]: {len(unknown) - _MOST_NAMED} more unknown keys")
 
@@ -135,6 +154,7 @@ def _fits(value: Any) -> bool:
     return not isinstance(value, float) or math.isfinite(value)
 
 
-def _nearest(value: Any, known: Sequence[str]) -> str:
+def nearest(value: Any, known: Sequence[str]) -> str:
+    """A question for the word that was meant, or nothing."""
     close = difflib.get_close_matches(str(value), known, n=1)
     return f"did you mean {close[0]}? " if close else ""

@@ -1,9 +1,14 @@
 """A surface from numbers or from texts with units."""
 
-from analytic import Surface as Plain
-from mcgw.formats.units import quantity
+import math
+from collections.abc import Mapping
+from typing import Any
 
-__all__ = ["SURFACE_UNITS", "Surface"]
+from analytic import Surface as Plain
+from mcgw.scene.reading import as_toml
+from mcgw.scene.section import SceneError, Section
+
+__all__ = ["SURFACE_UNITS", "Surface", "surface_of"]
 
 SURFACE_UNITS = {"sigma": "m", "radius": "m", "eta": "1/m^2", "nominal_area": "m^2", "E_star": "Pa"}
 
@@ -37,13 +42,30 @@ def Surface(  # noqa: N802 - the door to a class of this name
 
     Raises
     ------
-    ValueError
-        If a parameter is no positive finite quantity of that kind.
+    SceneError
+        With one line for each parameter that is no positive finite quantity of that kind, as for
+        ``[surface]`` in a file.
 
     Examples
     --------
-    >>> Surface("1.37 um", "13 um", "300/mm^2", "1 cm^2", "78.6 GPa").nominal_area
+    >>> import mcgw
+    >>> mcgw.Surface("1.37 um", "13 um", "300/mm^2", "1 cm^2", "78.6 GPa").nominal_area
     0.0001
     """
     given = {"sigma": sigma, "radius": radius, "eta": eta, "nominal_area": nominal_area, "E_star": E_star}
-    return Plain(**{key: quantity(given[key], unit, key) for key, unit in SURFACE_UNITS.items()})
+    return surface_of(given)
+
+
+def surface_of(given: Mapping[str, Any]) -> Plain:
+    """The surface of these five parameters, numbers or texts with units.
+
+    Raises
+    ------
+    SceneError
+        With one line for each mistake.
+    """
+    section = Section("surface", {key: as_toml(value) for key, value in given.items()}, [])
+    values = {key: section.number(key, unit=unit) for key, unit in SURFACE_UNITS.items()}
+    if any(map(math.isnan, values.values())):
+        raise SceneError(section.problems)
+    return Plain(**values)

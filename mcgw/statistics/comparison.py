@@ -1,6 +1,7 @@
 """Monte Carlo against theory: where both meet."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -8,6 +9,9 @@ from scipy.special import chdtrc
 
 from analytic import QUANTITIES, Fluctuations
 from mcgw.ensemble.ensemble import Ensemble
+from mcgw.ensemble.intervals import interval_text
+from mcgw.formats.sheet import Sheet, Shown
+from mcgw.machine.late import plotted
 from mcgw.scene.samplers import promise_of
 
 __all__ = ["FALSE_ALARM", "Comparison", "Curve", "Verdict", "compare", "verdict"]
@@ -70,8 +74,8 @@ class Verdict:
         return self.p > FALSE_ALARM
 
 
-@dataclass(frozen=True)
-class Comparison:
+@dataclass(frozen=True, repr=False)
+class Comparison(Shown):
     """A comparison of an ensemble with theory.
 
     Parameters
@@ -87,6 +91,36 @@ class Comparison:
     ensemble: Ensemble
     curves: dict[str, Curve]
     verdict: Verdict
+
+    def plot(self, ax: Any = None, *, quantity: str | None = None) -> Any:
+        """Draw the theory of a quantity with the Monte-Carlo means on it.
+
+        Parameters
+        ----------
+        ax : matplotlib Axes, optional
+            Where; default: new axes.
+        quantity : str, optional
+            One of the curves; default: the first.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+            With labels and a legend.
+        """
+        return plotted(self, ax, quantity=quantity or next(iter(self.curves)))
+
+    def sheet(self) -> Sheet:
+        """The verdict, and each quantity at the separation where it is farthest from theory."""
+        h, rows = self.ensemble.separations, []
+        for name, curve in self.curves.items():
+            k = int(np.argmax(np.abs(curve.residual)))
+            numbers = (f"{h[k]:g}", f"{curve.mean[k]:.6g}", interval_text(curve.low[k], curve.high[k]))
+            rows.append([name, *numbers, f"{curve.theory[k]:.6g}", f"{curve.residual[k]:+.2f}"])
+        v = self.verdict
+        seen = f"chi-square {v.chi_square:.1f} for {v.degrees} degrees of freedom, p = {v.p:.3g}"
+        head = ["farthest off", "d/sigma", "mean", "95 % interval", "theory", "residual"]
+        word = "agree" if v.agrees else "DISAGREE"
+        return Sheet(f"Monte Carlo and theory {word}", [("all means", seen)], head, rows)
 
 
 def compare(ensemble: Ensemble) -> Comparison:
@@ -106,6 +140,14 @@ def compare(ensemble: Ensemble) -> Comparison:
     ------
     ValueError
         If the surfaces are stratified: their fluctuations are not those of an ensemble.
+
+    Examples
+    --------
+    >>> import mcgw
+    >>> surface = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "1 mm^2", "78.6 GPa")
+    >>> e = mcgw.simulate(mcgw.Scene(surface, separations=[0, 1], n_surfaces=100, seed=1))
+    >>> mcgw.compare(e).verdict.agrees
+    True
     """
     if not promise_of(ensemble.sampler).real_surfaces:
         raise ValueError("a stratified file holds means, not an ensemble; compare takes another sampler")

@@ -10,6 +10,9 @@ from scipy.stats import binom, poisson
 
 from mcgw.ensemble.ensemble import Arrays, Ensemble
 from mcgw.ensemble.simulation import simulate
+from mcgw.formats.sheet import Sheet, Shown, brief
+from mcgw.machine.late import plotted
+from mcgw.machine.progress import Progress, told
 from mcgw.scene.samplers import promise_of
 from mcgw.scene.scene import Scene
 from mcgw.statistics.checks import (
@@ -35,12 +38,13 @@ Draw = Callable[[Scene], Sums]
 SEEDS = 24
 _FEWEST, _MOST = 64, 1000  # surfaces a seed
 _MOST_SEPARATIONS = 12
+_MOST_SHOWN = 8  # checks in a short look
 _FEWEST_ERRORS = 24  # to take a root mean square of
 _SIZES_OF_N = (64, 16, 4, 1)  # divisors of the scene's number of asperities
 
 
-@dataclass(frozen=True)
-class Convergence:
+@dataclass(frozen=True, repr=False)
+class Convergence(Shown):
     """What the test found.
 
     Parameters
@@ -70,13 +74,26 @@ class Convergence:
         """False for at most one in `1/FALSE_ALARM` right samplers."""
         return self.p > FALSE_ALARM
 
+    def plot(self, ax: Any = None) -> Any:
+        """Draw the probability of every check; returns the axes."""
+        return plotted(self, ax)
+
+    def sheet(self) -> Sheet:
+        """The verdict and its worst checks."""
+        word = "passed" if self.passed else "FAILED"
+        worst = sorted(self.checks, key=lambda check: check.p)[:_MOST_SHOWN]
+        rows = [[check.name, f"{check.p:.3g}", brief(check.seen)] for check in worst]
+        facts = [("p", f"{self.p:.3g} over all {len(self.checks)} checks")]
+        return Sheet(f"Statistical convergence {word}", facts, ["worst", "p", "seen"], rows)
+
 
 def converge(
     scene: Scene,
     draw: Draw | None = None,
     *,
     seeds: int = SEEDS,
-    progress: Callable[[int], Any] | None = None,
+    progress: Progress = None,
+    **changes: Any,
 ) -> Convergence:
     """Hold a sampler to the exact law of a scene.
 
@@ -86,11 +103,13 @@ def converge(
         What is asked; 64 to 1000 surfaces a seed and at most 12 of its separations are taken.
     draw : callable, optional
         Takes a scene (whose seed, number of surfaces and of asperities vary) and returns each quantity in
-        SI units, shape (surfaces, separations); left out: this simulator.
+        SI units, shape (surfaces, separations); default: this simulator.
     seeds : int, optional
         How many ensembles.
-    progress : callable, optional
-        Called with 1 after each ensemble.
+    progress : bool or callable, optional
+        True: a bar; a function: called with (done, total) ensembles.
+    **changes
+        Fields of the scene that have other values: see `mcgw.Scene.replace`.
 
     Returns
     -------
@@ -101,7 +120,18 @@ def converge(
     ------
     ValueError
         If the sampler is ``stratified``, which draws no ensemble, or nothing touches.
+    SceneError, TypeError
+        As from `mcgw.Scene.replace`.
+
+    Examples
+    --------
+    >>> import mcgw
+    >>> surface = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "1 mm^2", "78.6 GPa")
+    >>> scene = mcgw.Scene(surface, separations=[0, 1], seed=1)
+    >>> mcgw.converge(scene, n_surfaces=64, seeds=8).passed
+    True
     """
+    scene = scene.replace(**changes)
     if not promise_of(scene.sampler).real_surfaces:
         raise ValueError('sampler = "stratified" draws means, not an ensemble; converge takes another one')
     if not scene.touching:
@@ -112,10 +142,11 @@ def converge(
     draw = draw or _own
     scene = _tested(scene)
     parts = []
-    for k in range(seeds):
-        parts.append(draw(replace(scene, seed=(scene.seed + k) % 2**64)))
-        if progress:
-            progress(1)
+    with told(progress, "ensembles") as tell:
+        for k in range(seeds):
+            tell(k, seeds)
+            parts.append(draw(replace(scene, seed=(scene.seed + k) % 2**64)))
+        tell(seeds, seeds)
     sums = {name: np.concatenate([part[name] for part in parts]) for name in scene.quantities}
     law = Principal.of(scene)
     y = law.turn(sums)

@@ -12,6 +12,10 @@ from numpy.typing import NDArray
 
 from mcgw.ensemble.forecast import relative_spread
 from mcgw.formats.files import whole_file
+from mcgw.formats.sheet import Sheet, Shown
+from mcgw.machine.late import plotted
+from mcgw.machine.progress import Progress, told
+from mcgw.scene.reading import argument
 from mcgw.scene.scene import Scene
 from mcgw.statistics.methods import Method, methods_for
 
@@ -78,8 +82,8 @@ class Advice:
     cpu: float
 
 
-@dataclass(frozen=True)
-class Tradeoff:
+@dataclass(frozen=True, repr=False)
+class Tradeoff(Shown):
     """What the study found.
 
     Parameters
@@ -109,6 +113,42 @@ class Tradeoff:
         """Points of one method, by size."""
         return [point for point in self.points if point.method == method]
 
+    def plot(self, ax: Any = None, *, separation: float | None = None) -> Any:
+        """Draw error against time.
+
+        Parameters
+        ----------
+        ax : matplotlib Axes, optional
+            Where; default: new axes.
+        separation : float, optional
+            One of `separations`; default: the last.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+            With labels and a legend.
+
+        Raises
+        ------
+        ValueError
+            If no errors were taken at that separation.
+        """
+        h = self.separations[-1] if separation is None else separation
+        if h not in self.separations:
+            raise ValueError(
+                f"separation = {h:g}: give one of {', '.join(f'{x:g}' for x in self.separations)}"
+            )
+        return plotted(self, ax, k=self.separations.index(h))
+
+    def sheet(self) -> Sheet:
+        """What to run for each error of the mean."""
+        quantity, h = self.scene.quantities[0], f"{self.separations[-1]:g}"
+        rows = [
+            [f"{a.target:g}", a.scene.sampler, str(a.scene.n_surfaces), f"{a.cpu:.2g}"] for a in self.advice
+        ]
+        head = ["relative error", "sampler", "n_surfaces", "seconds of CPU"]
+        return Sheet(f"What to run for the mean {quantity} at d/sigma = {h}", (), head, rows)
+
 
 class _Task:
     """A method at a size, and what its runs gave."""
@@ -137,7 +177,7 @@ class _Task:
 
 
 def tradeoff(
-    scene: Scene, *, seconds: float = SECONDS, progress: Callable[[float], Any] | None = None
+    scene: Scene, *, seconds: float | str | None = None, progress: Progress = None, **changes: Any
 ) -> Tradeoff:
     """Measure every way to the first quantity of a scene.
 
@@ -148,10 +188,12 @@ def tradeoff(
     ----------
     scene : Scene
         What is asked.
-    seconds : float, optional
-        Bound of the whole study; it is kept to within the last run.
-    progress : callable, optional
-        Called with the share of the time used, 0 to 1.
+    seconds : float or str, optional
+        Bound of the whole study, s or as "5 min", default: 60; it is kept to within the last run.
+    progress : bool or callable, optional
+        True: a bar; a function: called with (done, total) seconds.
+    **changes
+        Fields of the scene that have other values: see `mcgw.Scene.replace`.
 
     Returns
     -------
@@ -160,26 +202,36 @@ def tradeoff(
 
     Raises
     ------
-    ValueError
-        If `seconds` is not positive.
+    SceneError, TypeError
+        If `seconds` is not positive; and as from `mcgw.Scene.replace`.
+
+    Examples
+    --------
+    >>> import mcgw
+    >>> surface = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "1 mm^2", "78.6 GPa")
+    >>> study = mcgw.tradeoff(mcgw.Scene(surface, separations=[0, 1], seed=1), seconds=0.1)
+    >>> study.advice[0].target
+    0.1
     """
-    if not seconds > 0:
-        raise ValueError(f"seconds = {seconds:g}: give a number > 0")
+    limit = argument("seconds", SECONDS if seconds is None else seconds, "s")
     started = monotonic()
-    scene = replace(scene, rel_err=None, max_seconds=None)
+    scene = replace(scene.replace(**changes), rel_err=None, max_seconds=None)
     chosen = _chosen(scene)
     methods = methods_for(scene, chosen)
-    tasks: list[_Task] = []
-    for method in methods:
-        tasks += _sized(method, seconds / (2 * _ROUNDS * len(methods)), scene.seed)
-        if progress:
-            progress(min((monotonic() - started) / seconds, 1.0))
-    for number in range(1, _MOST_ROUNDS + 1):
-        for task in tasks:
-            if monotonic() - started < seconds or not task.errors:
-                task.run((scene.seed + 7919 * number + 104729) % 2**64)
-        if progress:
-            progress(min((monotonic() - started) / seconds, 1.0))
+    with told(progress, "s") as tell:
+
+        def note() -> None:
+            tell(min(monotonic() - started, limit), limit)
+
+        tasks: list[_Task] = []
+        for method in methods:
+            note()
+            tasks += _sized(method, limit / (2 * _ROUNDS * len(methods)), scene.seed)
+        for number in range(1, _MOST_ROUNDS + 1):
+            for task in tasks:
+                if monotonic() - started < limit or not task.errors:
+                    task.run((scene.seed + 7919 * number + 104729) % 2**64)
+            note()
     points = tuple(task.point() for task in tasks)
     advice = tuple(a for t in TARGETS if (a := _advice(scene, chosen[-1], points, t)))
     h = tuple(scene.separations[k] for k in chosen)

@@ -1,0 +1,54 @@
+"""The numbers of an ensemble as xarray and pandas hold them."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from analytic import QUANTITIES
+from mcgw.machine.late import optional
+
+__all__ = ["dataframe", "dataset"]
+
+Arrays = Mapping[str, NDArray[Any]]
+_DIMS = ("surface", "separation")
+
+
+def dataset(arrays: Arrays, separations: NDArray[np.float64], attributes: Mapping[str, Any]) -> Any:
+    """An `xarray.Dataset` with dimensions, units and long names as in the file.
+
+    Raises
+    ------
+    ImportError
+        If xarray is not installed.
+    """
+    xarray = optional("xarray", "to_xarray")
+    rows = len(next(iter(arrays.values())))
+    variables = {
+        name: (_DIMS, values, {"units": QUANTITIES[name].unit, "long_name": QUANTITIES[name].long_name})
+        for name, values in arrays.items()
+    }
+    scales = {
+        "surface": ("surface", np.arange(rows), {"units": "1", "long_name": "number of the surface"}),
+        "separation": (
+            "separation",
+            separations,
+            {"units": "1", "long_name": "mean-plane separation d/sigma"},
+        ),
+    }
+    return xarray.Dataset(variables, scales, dict(attributes))
+
+
+def dataframe(arrays: Arrays, separations: NDArray[np.float64]) -> Any:
+    """A `pandas.DataFrame`, a row for each surface and separation, a column for each quantity.
+
+    Raises
+    ------
+    ImportError
+        If pandas is not installed.
+    """
+    pandas = optional("pandas", "to_dataframe")
+    rows = len(next(iter(arrays.values())))
+    index = pandas.MultiIndex.from_product([np.arange(rows), separations], names=_DIMS)
+    return pandas.DataFrame({name: values.ravel() for name, values in arrays.items()}, index=index)

@@ -1,0 +1,134 @@
+"""What ``.plot()`` of each result draws: one pair of axes."""
+
+from functools import singledispatch
+from typing import Any
+
+import matplotlib as mpl
+import numpy as np
+from scipy.stats import norm
+
+from analytic import quantity_of
+from mcgw.ensemble.ensemble import Ensemble
+from mcgw.ensemble.paired import Paired
+from mcgw.ensemble.solution import Solution
+from mcgw.figures.comparison import TITLES, draw_curve
+from mcgw.figures.convergence import draw_checks
+from mcgw.figures.style import STYLE, shown_title
+from mcgw.figures.tradeoff import draw_methods
+from mcgw.maps.fit import Fit
+from mcgw.scene.samplers import promise_of
+from mcgw.statistics.comparison import Comparison
+from mcgw.statistics.convergence import Convergence
+from mcgw.statistics.tradeoff import Tradeoff
+
+__all__ = ["draw"]
+
+_SEPARATION = "separation $d/\\sigma$"
+
+
+def draw(result: Any, ax: Any = None, **options: Any) -> Any:
+    """Draw a result.
+
+    Parameters
+    ----------
+    result : object
+        Of a class that has a function below.
+    ax : matplotlib Axes, optional
+        Where; default: new axes of pyplot, so that a notebook shows them.
+    **options
+        Of that function.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+        With title and labels.
+    """
+    with mpl.rc_context(STYLE):
+        if ax is None:
+            import matplotlib.pyplot as plt
+
+            ax = plt.subplots(layout="constrained")[1]
+        _draw(result, ax, **options)
+    return ax
+
+
+@singledispatch
+def _draw(result: Any, _: Any) -> None:
+    raise TypeError(f"{type(result).__name__}: no figure draws it")
+
+
+@_draw.register
+def _(result: Ensemble, ax: Any, *, quantity: str) -> None:
+    """Mean and interval; the band holds two thirds of the surfaces, about."""
+    h, q = result.separations, quantity_of(quantity)
+    order = np.argsort(h, kind="stable")
+    mean, std = result.mean(quantity), result.std(quantity)
+    if result.n_surfaces > 1:
+        low = np.maximum(mean - std, mean / 20)[order]  # an axis of logarithms has no place for 0
+        ax.fill_between(
+            h[order], low, (mean + std)[order], color="C0", alpha=0.18, lw=0, label="std over surfaces"
+        )
+    if not promise_of(result.sampler).real_surfaces:
+        ax.plot(h[order], mean[order], "o-", ms=3, mfc="none", label="mean")
+    else:
+        low, high = result.interval(quantity)
+        bars = np.nan_to_num([np.minimum(mean - low, 0.999 * mean), high - mean])[:, order]
+        ax.errorbar(h[order], mean[order], bars, fmt="o-", ms=3, mfc="none", label="mean, 95 %")
+    if np.any(mean > 0):
+        ax.set_yscale("log")
+    ax.set(xlabel=_SEPARATION, ylabel=f"{quantity.replace('_', ' ')} ({q.unit})")
+    ax.set_title(shown_title(result.scene, f"{result.n_surfaces} surfaces"))
+    ax.legend()
+
+
+@_draw.register
+def _(result: Comparison, ax: Any, *, quantity: str) -> None:
+    draw_curve(ax, result.ensemble.separations, result.curves[quantity])
+    word = "agree" if result.verdict.agrees else "DISAGREE"
+    ax.set(xlabel=_SEPARATION, ylabel=TITLES[quantity])
+    ax.set_title(f"Monte Carlo and theory {word}: p = {result.verdict.p:.3g} over all means")
+    ax.legend()
+
+
+@_draw.register
+def _(result: Paired, ax: Any) -> None:
+    order = np.argsort(result.separations, kind="stable")
+    columns = (x[order] for x in (result.separations, result.ratio, 1.96 * result.stderr))
+    ax.errorbar(*columns, fmt="o-", ms=3, mfc="none", label="same surfaces, 95 %")
+    ax.set(xlabel=_SEPARATION, ylabel=f"ratio of the mean {result.quantity}")
+    ax.legend()
+
+
+@_draw.register
+def _(result: Solution, ax: Any) -> None:
+    x = result.surfaces["separation"]
+    ax.hist(x, bins="auto", color="C5", label=f"{x.size} surfaces")
+    ax.axvline(result.theory["separation"], color="C0", label="theory, infinite surface")
+    ax.axvline(x.mean(), color="C1", ls="--", label="mean of the surfaces")
+    unit = quantity_of(result.given).unit
+    ax.set(xlabel=_SEPARATION, ylabel="surfaces", title=f"at {result.given} = {result.value:.6g} {unit}")
+    ax.legend()
+
+
+@_draw.register
+def _(result: Convergence, ax: Any) -> None:
+    draw_checks(ax, result)
+    ax.set_title(f"Statistical convergence {'passed' if result.passed else 'FAILED'}: p = {result.p:.3g}")
+
+
+@_draw.register
+def _(result: Tradeoff, ax: Any, *, k: int) -> None:
+    draw_methods(ax, result, k)
+    ax.set(xlabel="CPU time (s)", ylabel=f"rms relative error of the mean {result.scene.quantities[0]}")
+    ax.set_title(f"$d/\\sigma$ = {result.separations[k]:g}")
+    ax.legend(fontsize=7)
+
+
+@_draw.register
+def _(result: Fit, ax: Any) -> None:
+    sigma = float(result.summits.std())
+    ax.hist(result.summits, bins="auto", density=True, color="C5", label=f"{result.summits.size} summits")
+    z = np.linspace(-4 * sigma, 4 * sigma, 201)
+    ax.plot(z, norm.pdf(z, scale=sigma), color="C0", label="Gaussian")
+    ax.set(xlabel="summit height (m)", ylabel="density (1/m)", title=f"sigma = {sigma:.4g} m")
+    ax.legend()

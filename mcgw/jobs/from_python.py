@@ -1,0 +1,166 @@
+"""``mcgw.run``: a run as a notebook asks for it."""
+
+from pathlib import Path
+from typing import Any, overload
+
+from mcgw.ensemble.ensemble import Ensemble
+from mcgw.ensemble.forecast import forecast
+from mcgw.jobs import running
+from mcgw.jobs.engines import Engine, Processes
+from mcgw.jobs.running import Part
+from mcgw.machine.progress import Progress, told
+from mcgw.scene.reading import LeftOut
+from mcgw.scene.scene import Scene
+from mcgw.store.ensembles import recorded_seed
+
+__all__ = ["part_of", "run"]
+
+_ENGINES = ("threads", "processes", "dask")
+
+
+@overload
+def run(
+    scene: Scene,
+    path: str | Path,
+    *,
+    threads: int | None = None,
+    engine: "Engine | str | None" = None,
+    shard: None = None,
+    progress: Progress = None,
+    **changes: Any,
+) -> Ensemble: ...
+@overload
+def run(
+    scene: Scene,
+    path: str | Path,
+    *,
+    threads: int | None = None,
+    shard: str,
+    progress: Progress = None,
+    **changes: Any,
+) -> int: ...
+def run(
+    scene: Scene,
+    path: str | Path,
+    *,
+    threads: int | None = None,
+    engine: "Engine | str | None" = None,
+    shard: str | None = None,
+    progress: Progress = None,
+    **changes: Any,
+) -> Ensemble | int:
+    """Draw the ensemble of a scene into a file, going on where an earlier run stopped.
+
+    The same call again goes on, or extends the file if the scene now has more surfaces; where nobody gave a
+    seed it takes that of the file.
+
+    Parameters
+    ----------
+    scene : Scene
+        What is asked; `n_surfaces` is the total, or with `rel_err` or `max_seconds` the most.
+    path : str or Path
+        The file; it appears when it is complete. Until then, blocks lie in ``FILE.parts/``.
+    threads : int, optional
+        Cores: threads, or processes or workers of the engine. Default: all there are. The data are the
+        same for any number.
+    engine : {"threads", "processes", "dask"}, address or Engine, optional
+        Who draws; an address, as "tcp://host:8786", is that of a dask scheduler.
+    shard : str, optional
+        "2/8": draw only the second of eight shares, as one of eight jobs; then `mcgw.merge`.
+    progress : bool or callable, optional
+        True: a bar; a function: called with (done, total) surfaces.
+    **changes
+        Fields of the scene that have other values: see `mcgw.Scene.replace`.
+
+    Returns
+    -------
+    Ensemble
+        That reads from the file; its scene says how many surfaces `rel_err` or `max_seconds` made. With
+        `shard`: the number of surfaces of the whole that are still missing.
+
+    Raises
+    ------
+    SceneError, TypeError
+        As from `mcgw.Scene.replace`.
+    ValueError
+        If another argument is wrong.
+    StoreError
+        If the file cannot be written there, or the place belongs to another run.
+    RunError
+        If the run could not be finished; what is done is kept.
+
+    Examples
+    --------
+    >>> import mcgw, tempfile
+    >>> surface = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "1 mm^2", "78.6 GPa")
+    >>> scene = mcgw.Scene(surface, separations=[0, 1, 2], n_surfaces=20, seed=1)
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     mcgw.run(scene, f"{folder}/demo.h5").n_surfaces
+    ...     mcgw.run(scene, f"{folder}/demo.h5", n_surfaces=30).n_surfaces
+    20
+    30
+    """
+    path = Path(path)
+    scene = scene.replace(**changes)
+    if isinstance(scene.seed, LeftOut) and (recorded := recorded_seed(path)) is not None:
+        scene = scene.replace(seed=LeftOut(recorded))
+    part = None if shard is None else part_of(shard)
+    if part and engine is not None:
+        raise ValueError(f"shard = {shard!r}: a share is drawn by threads; leave engine out")
+    made = _engine_of(engine, threads)
+    total = forecast(scene).surfaces if progress else 0
+    with told(progress, "surfaces") as tell:
+
+        def note(done: int) -> None:
+            tell(done, total)
+
+        if part:
+            return running.run_part(scene, path, part, threads=threads, progress=note)
+        try:
+            return running.run(scene, path, threads=threads, engine=made or _given(engine), progress=note)
+        finally:
+            if made:
+                made.close()
+
+
+def part_of(shard: str) -> Part:
+    """The share that a text like "2/8" names.
+
+    Raises
+    ------
+    ValueError
+        If it names none.
+    """
+    number, _, of = str(shard).partition("/")
+    if not (number.isdecimal() and of.isdecimal()):
+        raise ValueError(f"--shard {shard}: give i/n with 1 <= i <= n")
+    return Part(int(number), int(of))
+
+
+def _given(engine: "Engine | str | None") -> Engine | None:
+    """An engine of the caller's own, which stays open."""
+    return None if isinstance(engine, str) else engine
+
+
+def _engine_of(engine: "Engine | str | None", cores: int | None) -> Engine | None:
+    """The engine that a word or an address names, which is closed in the end."""
+    if engine is None or engine == "threads":
+        return None
+    if not isinstance(engine, str):
+        if hasattr(engine, "submit") and hasattr(engine, "width"):
+            return None
+    elif engine == "processes":
+        return Processes(_cores() if cores is None else cores)
+    elif engine == "dask" or "://" in engine:
+        from mcgw.jobs.dask_engine import Dask
+
+        return Dask(None if engine == "dask" else engine, workers=_cores() if cores is None else cores)
+    raise ValueError(
+        f"engine = {engine!r}: give one of {', '.join(_ENGINES)}, or tcp://ADDRESS of a scheduler"
+    )
+
+
+def _cores() -> int:
+    import numba
+
+    return int(numba.get_num_threads())

@@ -1,0 +1,43 @@
+"""What is imported only when it is asked for, because it is heavy, optional or lies in a layer above."""
+
+from importlib import import_module
+from typing import Any
+
+__all__ = ["optional", "plotted"]
+
+
+def plotted(result: Any, ax: Any, **options: Any) -> Any:
+    """Draw a result of any layer.
+
+    Its class cannot import how it is drawn: figures lie above it, and know it. So this is the one call that
+    goes up, and the only place that names `mcgw.figures.of_results`, where each class has its function.
+
+    Parameters
+    ----------
+    result : object
+        An ensemble, a comparison, ...
+    ax : matplotlib Axes or None
+        Where; None: new axes.
+    **options
+        Of the function that draws it.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+        With title and labels.
+    """
+    return import_module("mcgw.figures.of_results").draw(result, ax, **options)
+
+
+def optional(package: str, what: str) -> Any:
+    """A package that mcgw does without.
+
+    Raises
+    ------
+    ImportError
+        If it is not installed; the message says what needs it and how to get it.
+    """
+    try:
+        return import_module(package)
+    except ImportError:
+        raise ImportError(f'{what} needs {package}: pip install "mcgw[notebook]"', name=package) from None

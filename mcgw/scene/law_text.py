@@ -1,0 +1,33 @@
+"""Gradings and laws of heights in a few words."""
+
+from collections.abc import Mapping
+from dataclasses import MISSING, fields, is_dataclass
+from typing import Any
+
+from analytic import Custom, ScipyHeights
+
+__all__ = ["law_text"]
+
+
+def law_text(law: Any) -> str:
+    """A law by its name and the numbers that were given for it.
+
+    Examples
+    --------
+    >>> from analytic import Exponential
+    >>> law_text(Exponential(2.0))
+    'Exponential(gamma=2.0)'
+    """
+    match law:
+        case ScipyHeights():
+            return f"scipy.stats.{law.distribution.dist.name}({_listed(law.distribution.kwds)})"
+        case Custom():
+            return f"Custom({getattr(law.function, '__name__', type(law.function).__name__)})"
+    if not is_dataclass(law):
+        return repr(law)
+    given = {field.name: getattr(law, field.name) for field in fields(law) if field.default is MISSING}
+    return f"{type(law).__name__}({_listed(given)})"
+
+
+def _listed(given: Mapping[str, Any]) -> str:
+    return ", ".join(f"{key}={value!r}" for key, value in given.items())

@@ -1,0 +1,178 @@
+"""Values of a scene, from its file or from Python: the same rules and the same messages for both."""
+
+import math
+import secrets
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+import numpy as np
+
+from analytic import QUANTITIES, Custom, Gaussian, Grading, HeightLaw, Homogeneous, ScipyHeights, Surface
+from mcgw.scene.samplers import SAMPLERS
+from mcgw.scene.section import SceneError, Section
+
+__all__ = ["LeftOut", "argument", "as_toml", "quantities_of", "read_values", "separations_of"]
+
+_MOST_SEPARATIONS = 100_000
+_LAW_OF_HEIGHTS = ("support", "breaks", "density", "from_below", "from_above")
+
+
+class LeftOut(int):
+    """A whole number that nobody gave: it equals any other, but is found anew when the scene changes."""
+
+
+def read_values(given: Mapping[str, Any]) -> tuple[dict[str, Any], list[str]]:
+    """Read what Python gives for the fields of a scene, as its file would be read.
+
+    Parameters
+    ----------
+    given : mapping
+        By the names of the fields of `mcgw.Scene`; None where a field is left out.
+
+    Returns
+    -------
+    (dict, list of str)
+        The values, those left out with their defaults; and one line for each mistake.
+    """
+    problems: list[str] = []
+    table = {key: as_toml(value) for key, value in given.items() if value is not None}
+    top, grading, contact, ensemble = (
+        Section(name, table, problems) for name in ("", "grading", "contact", "ensemble")
+    )
+    if not isinstance(given["surface"], Surface):
+        top.fail("surface", given["surface"], "give mcgw.Surface(sigma, radius, eta, nominal_area, E_star)")
+    values = {
+        "surface": given["surface"],
+        "separations": separations_of(contact),
+        "title": top.text("title", ""),
+        "grading": _grading(top, given["grading"]),
+        "negative": grading.choice("negative", "error", ("error", "clip", "allow")),
+        "heights": _heights(top, given["heights"]),
+        "quantities": quantities_of(contact),
+        "n_surfaces": _whole(ensemble, "n_surfaces", given, LeftOut(), least=1),
+        "n_asperities": _whole(ensemble, "n_asperities", given, LeftOut(), least=1),
+        "count": ensemble.choice("count", "fixed", ("fixed", "poisson")),
+        "seed": _whole(ensemble, "seed", given, LeftOut(secrets.randbits(63))),
+        "sampler": ensemble.choice("sampler", "auto", SAMPLERS),
+        "keep": ensemble.choice("keep", "sums", ("sums", "moments")),
+        "rel_err": ensemble.number("rel_err", unit="1") if "rel_err" in ensemble else None,
+        "max_seconds": ensemble.number("max_seconds", unit="s") if "max_seconds" in ensemble else None,
+    }
+    return values, problems
+
+
+def argument(key: str, value: Any, unit: str) -> float:
+    """An argument that is a positive number, or a text with its unit.
+
+    Raises
+    ------
+    SceneError
+        If it is none; the line names it.
+    """
+    section = Section("", {key: as_toml(value)}, [])
+    number = section.number(key, unit=unit)
+    if section.problems:
+        raise SceneError(section.problems)
+    return number
+
+
+def as_toml(value: Any) -> Any:
+    """A Python value as a TOML file would give it: arrays, tuples and ranges as lists of plain numbers."""
+    if isinstance(value, str | bytes | bool | int | float):
+        return value.item() if isinstance(value, np.generic) else value
+    if isinstance(value, Mapping):
+        return {key: as_toml(inner) for key, inner in value.items()}
+    if hasattr(value, "__array__"):
+        return np.asarray(value).tolist()
+    if isinstance(value, Iterable) and not isinstance(value, type):
+        return [as_toml(inner) for inner in value]
+    return value
+
+
+def separations_of(section: Section) -> tuple[float, ...]:
+    """A list, one number, or {start, stop, num}."""
+    given = section.take("separations")
+    advice = "give a list of finite numbers d/sigma, or {start = 0.0, stop = 4.0, num = 41}"
+    if given is None:
+        section.problems.append(f"contact.separations: missing; {advice}")
+        return (0.0,)
+    if isinstance(given, dict):
+        inner = Section("contact.separations", given, section.problems)
+        start = inner.number("start", positive=False)
+        stop = inner.number("stop", positive=False)
+        num = inner.whole("num", least=1)
+        inner.finish()
+        if num is None or math.isnan(start + stop):
+            return (0.0,)
+        if num > _MOST_SEPARATIONS:
+            inner.fail("num", num, f"give at most {_MOST_SEPARATIONS} separations")
+            return (0.0,)
+        return tuple(np.linspace(start, stop, num).tolist())
+    values = given if isinstance(given, list) else [given]
+    if not all(isinstance(h, int | float) and not isinstance(h, bool) and abs(h) <= 1e6 for h in values):
+        section.fail("separations", given, advice)
+        return (0.0,)
+    if len(values) > _MOST_SEPARATIONS:
+        section.fail("separations", given, f"give at most {_MOST_SEPARATIONS} of them, not {len(values)}")
+        return (0.0,)
+    return tuple(float(h) for h in values)
+
+
+def quantities_of(section: Section) -> tuple[str, ...]:
+    """A list of names."""
+    quantities = section.take("quantities")
+    if quantities is None:
+        quantities = ["load", "area", "stiffness", "contacts"]
+    if not (isinstance(quantities, list) and all(isinstance(q, str) for q in quantities)):
+        section.fail("quantities", quantities, f"give a list of {', '.join(QUANTITIES)}")
+        quantities = ["load"]
+    return tuple(quantities)
+
+
+def _whole(section: Section, key: str, given: Mapping[str, Any], default: LeftOut, *, least: int = 0) -> Any:
+    """A whole number; one that nobody gave stays marked as such."""
+    if isinstance(given[key], LeftOut):
+        return given[key]
+    return section.whole(key, default, least=least)
+
+
+def _grading(section: Section, given: Any) -> Grading:
+    if given is None:
+        return Homogeneous()
+    if isinstance(given, type) or not callable(given):
+        advice = "give mcgw.Exponential(gamma), mcgw.Table(s, ratio), or a function of an array of heights"
+        section.fail("grading", given, advice)
+        return Homogeneous()
+    if hasattr(given, "breaks") and hasattr(given, "smooth"):
+        return given  # type: ignore[no-any-return]
+    return Custom(given)
+
+
+def _heights(section: Section, given: Any) -> HeightLaw:
+    if given is None:
+        return Gaussian()
+    frozen = given.distribution if isinstance(given, ScipyHeights) else given
+    if hasattr(frozen, "dist") and hasattr(frozen, "kwds"):
+        return _of_scipy(section, given, frozen)
+    if all(hasattr(given, name) for name in _LAW_OF_HEIGHTS) and not isinstance(given, type):
+        return given  # type: ignore[no-any-return]
+    advice = (
+        "give mcgw.Weibull(shape), mcgw.HeightTable.of(heights), or a frozen law of scipy.stats, as "
+        "scipy.stats.lognorm(0.3)"
+    )
+    section.fail("heights", given, advice)
+    return Gaussian()
+
+
+def _of_scipy(section: Section, given: Any, frozen: Any) -> HeightLaw:
+    """The law by its shapes, as a file gives it: location and scale drop out where heights are reduced."""
+    from mcgw.scene.heights_section import shapes_of
+
+    try:
+        shapes = shapes_of(frozen)
+        if isinstance(given, ScipyHeights) and frozen.kwds == shapes and not frozen.args:
+            return given  # as it is: what it has found out of its law is kept
+        return ScipyHeights(frozen.dist(**shapes))
+    except (TypeError, ValueError) as error:
+        section.fail("heights", frozen, f"give a frozen continuous law of scipy.stats; {error}")
+        return Gaussian()
