@@ -39,7 +39,14 @@ class Grading(Protocol):
 
 @dataclass(frozen=True)
 class Homogeneous:
-    """The same modulus at every height (Greenwood and Williamson)."""
+    """The same modulus at every height (Greenwood and Williamson).
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> Homogeneous()(np.array([0.0, 2.0]))
+    array([1., 1.])
+    """
 
     breaks: tuple[float, ...] = ()
     smooth: bool = True
@@ -63,6 +70,12 @@ class Exponential:
     ------
     ValueError
         If `gamma` is not finite.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> Exponential(2.0)(np.array([0.0, 30.0]))
+    array([1., 2.])
     """
 
     gamma: float
@@ -99,6 +112,12 @@ class Custom:
         Takes an array of reduced heights, returns E*(s)/E* in the same shape.
     breaks : tuple of float, optional
         Heights where it jumps or has a kink: told, they cost nothing; untold, they are searched for.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> Custom(lambda s: np.where(s > 1, 1.5, 1.0), breaks=(1.0,))(np.array([0.0, 2.0]))
+    array([1. , 1.5])
     """
 
     function: Callable[[Array], ArrayLike]

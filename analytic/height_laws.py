@@ -50,6 +50,12 @@ class ExponentialHeights:
 
     Greenwood and Williamson (1966) used it for its closed form, ``F_n(h) = Gamma(n+1) exp(-1 - h)``
     for h >= -1: load, area and number of contacts are proportional to each other.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> float(ExponentialHeights().above(np.array(-1.0)))
+    1.0
     """
 
     support: tuple[float, float] = (-1.0, math.inf)
@@ -102,6 +108,11 @@ class Weibull:
     ------
     ValueError
         If the shape is not between 1 and 100.
+
+    Examples
+    --------
+    >>> Weibull(2.0).support
+    (-1.9130583802711005, inf)
     """
 
     shape: float
@@ -220,6 +231,13 @@ class ScipyHeights:
     ValueError
         If it is not continuous, its variance is not positive and finite, or scipy takes seconds to
         evaluate it.
+
+    Examples
+    --------
+    >>> import scipy.stats
+    >>> law = ScipyHeights(scipy.stats.uniform())
+    >>> [round(end, 6) for end in law.support]
+    [-1.732051, 1.732051]
     """
 
     distribution: Any

@@ -69,7 +69,14 @@ class HeightLaw(Protocol):
 
 @dataclass(frozen=True)
 class Gaussian:
-    """The normal law of Greenwood and Williamson."""
+    """The normal law of Greenwood and Williamson.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> float(Gaussian().above(np.array(0.0)))
+    0.5
+    """
 
     support: ClassVar[tuple[float, float]] = (-np.inf, np.inf)
     breaks: ClassVar[tuple[float, ...]] = ()

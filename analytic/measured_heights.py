@@ -55,6 +55,12 @@ class HeightTable:
     ------
     ValueError
         If the points are not such.
+
+    Examples
+    --------
+    >>> law = HeightTable.of([1.2e-6, 1.5e-6, 1.6e-6, 2.2e-6])
+    >>> len(law.s)
+    4
     """
 
     s: tuple[float, ...]
@@ -189,6 +195,11 @@ class MeasuredHeights:
     ------
     ValueError
         If there are fewer than two, or they are not finite, or all alike.
+
+    Examples
+    --------
+    >>> MeasuredHeights([1.0, 3.0]).heights
+    (-1.0, 1.0)
     """
 
     heights: tuple[float, ...]

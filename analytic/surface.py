@@ -22,6 +22,11 @@ class Body:
     ------
     ValueError
         If `E` is not positive or `nu` lies outside its range.
+
+    Examples
+    --------
+    >>> Body(E=70e9, nu=0.33)
+    Body(E=70000000000.0, nu=0.33)
     """
 
     E: float
@@ -51,6 +56,12 @@ def composite_modulus(bodies: Sequence[Body]) -> float:
     ------
     ValueError
         If there are not two bodies, or both are rigid.
+
+    Examples
+    --------
+    >>> rigid = Body(float("inf"))
+    >>> round(composite_modulus([Body(70e9, 0.5), rigid]) / 1e9, 6)
+    93.333333
     """
     if len(bodies) != 2:
         raise ValueError(f"bodies: give two of them, not {len(bodies)}")

@@ -30,6 +30,12 @@ class Table:
     ------
     ValueError
         If there are fewer than two points, if they are not finite, or not increasing in `s`.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> Table([0.0, 1.0, 2.0], [1.0, 1.5, 3.0])(np.array([-1.0, 1.0, 9.0]))
+    array([1. , 1.5, 3. ])
     """
 
     s: tuple[float, ...]

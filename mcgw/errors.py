@@ -4,7 +4,15 @@ __all__ = ["RunError", "StoppedError", "StoreError"]
 
 
 class StoreError(ValueError):
-    """A file that cannot be read or written, is no ensemble, or asks for another place."""
+    """A file that cannot be read or written, is no ensemble, or asks for another place.
+
+    Examples
+    --------
+    >>> import mcgw
+    >>> mcgw.open_ensemble("absent.h5")
+    Traceback (most recent call last):
+    mcgw.errors.StoreError: absent.h5: no such file
+    """
 
 
 class RunError(RuntimeError):
@@ -16,6 +24,15 @@ class RunError(RuntimeError):
         One line: what happened and what to do.
     code : int, optional
         Exit code of the command line.
+
+    Examples
+    --------
+    >>> import mcgw
+    >>> try:
+    ...     raise mcgw.RunError("demo.h5: 3 of 10 surfaces are missing; run the jobs that make them again")
+    ... except mcgw.RunError as error:
+    ...     error.code
+    1
     """
 
     def __init__(self, message: str, code: int = 1) -> None:

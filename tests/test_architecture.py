@@ -100,8 +100,8 @@ def test_the_root_has_only_the_door():
 
 SHARED = {
     "QUANTITIES", "Body", "Clipped", "Custom", "Exponential", "ExponentialHeights", "Gaussian", "Grading",
-    "HeightLaw", "HeightTable", "Homogeneous", "MeasuredHeights", "Quantity", "ScipyHeights", "Surface",
-    "Table", "Weibull", "composite_modulus", "first_negative", "resolved_breaks",
+    "HeightLaw", "HeightTable", "Homogeneous", "MeasuredHeights", "PER_AREA", "Quantity", "ScipyHeights",
+    "Surface", "Table", "Weibull", "composite_modulus", "first_negative", "quantity_of", "resolved_breaks",
 }  # fmt: skip
 GAUSSIAN_FIGURES = {"figures/paper.py", "figures/equal_load.py", "figures/summits.py"}  # those of the paper
 

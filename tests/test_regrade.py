@@ -103,8 +103,8 @@ def test_what_cannot_be_regraded(base, make_scene):
         regrade(base, analytic.Table([-1.0, 0.123, 1.0], [1.0, 2.0, 3.0]))
     with pytest.raises(ValueError, match="not resolve"):
         regrade(base, analytic.Custom(lambda s: 2 + np.sin(20 * s)))
-    with pytest.raises(ValueError, match="keeps no moments"):
-        regrade(mcgw.simulate(make_scene()), analytic.Homogeneous())
+    with pytest.raises(ValueError, match='sampler = "tail" has none; take "cells"'):
+        regrade(mcgw.simulate(make_scene(sampler="tail", n_surfaces=5)), analytic.Homogeneous())
 
 
 @pytest.mark.parametrize(

@@ -81,9 +81,11 @@ class Ensemble(Shown):
       grading  Homogeneous()
       heights  Gaussian()
       drawn    by cells, seed 1
-      mean over surfaces +- standard error, at d/sigma =
-                            0                1                 2
-      load (N)    22.8 +- 0.18   4.58 +- 0.077    0.503 +- 0.022
+      mean +- stderr, d/sigma =                    0                    1                    2
+      load (N)                         77.818 +- 0.8        13.536 +- 0.3       1.1153 +- 0.07
+      area (m^2)                 6.6821e-09 +- 6e-11   1.387e-09 +- 2e-11  1.3526e-10 +- 7e-12
+      stiffness (N/m)            8.1737e+07 +- 5e+05  2.0642e+07 +- 3e+05  2.4106e+06 +- 1e+05
+      contacts (1)                     149.83 +- 0.9          47.2 +- 0.6          6.72 +- 0.2
     """
 
     scene: Scene
@@ -276,7 +278,7 @@ class Ensemble(Shown):
             cells = (_with_error(*pair) for pair in zip(mean, error, strict=True))
             rows.append([f"{name} ({quantity_of(name).unit})", *cells])
         at = [f"{scene.separations[k]:g}" for k in shown]
-        return Sheet(head, facts, ["mean +- its standard error at d/sigma =", *at], rows)
+        return Sheet(head, facts, ["mean +- stderr, d/sigma =", *at], rows)
 
     def _all(self) -> dict[str, Array]:
         return {name: self.values(name) for name in self.scene.quantities}

@@ -133,7 +133,7 @@ def solve(
     >>> scene = mcgw.Scene(surface, separations=0.0, n_surfaces=20, seed=1)
     >>> found = mcgw.solve(scene, pressure="1 MPa")
     >>> round(found.theory["separation"], 4), found.surfaces["area"].shape
-    (1.7496, (20,))
+    (2.0666, (20,))
     """
     asked = {"load": load, "pressure": pressure, "area": area, "area_fraction": area_fraction}
     known = {key: value for key, value in asked.items() if value is not None}

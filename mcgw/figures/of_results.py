@@ -113,6 +113,8 @@ def _(result: Solution, ax: Any) -> None:
 @_draw.register
 def _(result: Convergence, ax: Any) -> None:
     draw_checks(ax, result)
+    ax.set_yticks(ax.get_yticks(), [check.name for check in result.checks])
+    ax.set_xlabel("probability by chance; grey: fails")
     ax.set_title(f"Statistical convergence {'passed' if result.passed else 'FAILED'}: p = {result.p:.3g}")
 
 

@@ -44,6 +44,17 @@ def load_scene(path: str | Path, *, seed: Callable[[], int | None] | None = None
     ------
     SceneError
         With one line for each mistake: the key, the value, and what would do.
+
+    Examples
+    --------
+    >>> import mcgw, tempfile
+    >>> surface = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "1 mm^2", "78.6 GPa")
+    >>> scene = mcgw.Scene(surface, separations=[0, 1, 2], n_surfaces=20, seed=1)
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     with open(f"{folder}/demo.toml", "w") as file:
+    ...         _ = file.write(mcgw.scene_text(scene))
+    ...     mcgw.load_scene(f"{folder}/demo.toml") == scene
+    True
     """
     path = Path(path)
     try:
@@ -95,6 +106,22 @@ def scene_from(
     ------
     SceneError
         With one line for each mistake.
+
+    Examples
+    --------
+    >>> import mcgw
+    >>> scene = mcgw.scene_from('''
+    ... [surface]
+    ... sigma = "1.37 um"
+    ... radius = "13 um"
+    ... eta = 3.0e8
+    ... nominal_area = "1 cm^2"
+    ... E_star = "78.6 GPa"
+    ... [contact]
+    ... separations = [0.0, 2.0]
+    ... ''')
+    >>> scene.n_asperities
+    30000
     """
     try:
         document = loads(text if isinstance(text, str) else text.decode("utf-8"))
@@ -263,6 +290,14 @@ def scene_text(scene: Scene, *, heights_file: str | None = None, left_out: bool 
     -------
     str
         The text; a grading that is a Python function is named, but cannot be read again.
+
+    Examples
+    --------
+    >>> import mcgw
+    >>> surface = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "1 mm^2", "78.6 GPa")
+    >>> scene = mcgw.Scene(surface, separations=[0, 1, 2], n_surfaces=20, seed=1)
+    >>> mcgw.scene_from(mcgw.scene_text(scene)) == scene
+    True
     """
     surface = scene.surface
     document = {

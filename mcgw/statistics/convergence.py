@@ -170,7 +170,7 @@ def converge(
             skewness(law, y),
             independence(groups),
         ]
-        slopes = [_slope_in_surfaces(law, y, scene.n_surfaces), *_slope_in_asperities(scene, draw)]
+        slopes = [*_slope_in_surfaces(law, y, scene.n_surfaces), *_slope_in_asperities(scene, draw)]
         checks += [found.check for found in slopes]
     return Convergence(scene, tuple(checks), tuple(slopes), z)
 
@@ -221,7 +221,7 @@ def _repeats(scene: Scene, sums: Sums) -> list[Check]:
     return [Check("repeated surfaces", f"{again} of {len(values)}", float(poisson.sf(again - 1, expected)))]
 
 
-def _slope_in_surfaces(law: Principal, y: Array, most: int) -> Slope:
+def _slope_in_surfaces(law: Principal, y: Array, most: int) -> list[Slope]:
     """Error of means of 1, 4, 16, ... surfaces, each size from surfaces of its own."""
     sizes = [m for m in 4 ** np.arange(8) if m <= most // 4]
     squares, used = [], []
@@ -231,7 +231,7 @@ def _slope_in_surfaces(law: Principal, y: Array, most: int) -> Slope:
             squares.append(np.asarray(means**2))
             used.append(float(m))
     kurtosis = float(law.kurtosis.mean())
-    return slope("M", used, squares, [kurtosis / m for m in used])
+    return [slope("M", used, squares, [kurtosis / m for m in used])] if len(used) > 1 else []
 
 
 def _slope_in_asperities(scene: Scene, draw: Draw) -> list[Slope]:

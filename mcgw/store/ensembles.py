@@ -51,6 +51,16 @@ def open_ensemble(path: str | Path) -> Ensemble:
     ------
     StoreError
         If it is no ensemble file, damaged, or of another format; or if no block is finished yet.
+
+    Examples
+    --------
+    >>> import mcgw, tempfile
+    >>> surface = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "1 mm^2", "78.6 GPa")
+    >>> scene = mcgw.Scene(surface, separations=[0, 1, 2], n_surfaces=20, seed=1)
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     e = mcgw.run(scene, f"{folder}/demo.h5")
+    ...     bool((mcgw.open_ensemble(f"{folder}/demo.h5").load == e.load).all())
+    True
     """
     path = Path(path)
     if not path.exists() and parts_of(path).is_dir():
@@ -221,6 +231,16 @@ def save(ensemble: Ensemble, path: str | Path, *, wall_seconds: float = 0.0) -> 
         is not finished, has it.
     RunError
         If the disk does not take it.
+
+    Examples
+    --------
+    >>> import mcgw, tempfile
+    >>> surface = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "1 mm^2", "78.6 GPa")
+    >>> scene = mcgw.Scene(surface, separations=[0, 1, 2], n_surfaces=20, seed=1)
+    >>> e = mcgw.simulate(scene)
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     mcgw.save(mcgw.regrade(e, mcgw.Exponential(2.0)), f"{folder}/stiffer.h5").n_surfaces
+    20
     """
     path = Path(path)
     check_output(path)

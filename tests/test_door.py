@@ -1,0 +1,411 @@
+"""The door: what a person types in a notebook works, is found by completion, and wrong words are told."""
+
+import ast
+import doctest
+import math
+import pkgutil
+import pydoc
+import re
+import rlcompleter
+import subprocess
+import sys
+from importlib import import_module
+from pathlib import Path
+
+import numpy as np
+import pytest
+import scipy.stats
+
+import analytic
+import mcgw
+from mcgw.maps.files import write_map
+from mcgw.maps.spectrum import gaussian_map, spectrum_from
+from mcgw.statistics import tradeoff
+
+SURFACE = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "1 mm^2", "78.6 GPa")
+
+# What the design promises, word for word.
+NOTEBOOK = """
+import mcgw, numpy as np
+surface = mcgw.Surface(sigma="1.37 um", radius="13 um", eta=3e8, nominal_area="1 cm^2", E_star="78.6 GPa")   # floats are SI
+scene = mcgw.Scene(surface, separations=np.linspace(0, 4, 41), grading=mcgw.Exponential(2.0), seed=1)        # any array; a number is one separation
+e = mcgw.simulate(scene, n_surfaces=1000)                 # in memory; keywords replace fields of the scene
+e = mcgw.run(scene, "demo.h5")                            # in a file: goes on, extends, honours rel_err, engine=, shard="2/8"
+e                                                         # at most a dozen lines; a table in a notebook
+e["load"], e.load, e.mean("pressure"), e.interval("area_fraction")
+e.to_xarray(), e.to_dataframe()
+mcgw.compare(e), mcgw.regrade(e, mcgw.Exponential(1.2)), mcgw.solve(scene, pressure="1 MPa"), mcgw.converge(scene), mcgw.tradeoff(scene), mcgw.fit("map.x3p", cutoff="5 um")
+scene.replace(nominal_area="10 cm^2")                     # N follows, unless it was given
+mcgw.Scene(surface, separations=2.0, grading=lambda s: 1 + 0.3*np.tanh(s), heights=scipy.stats.lognorm(0.3))  # any callable, any frozen scipy law; files hold it too
+scene.theory.mean("load", h)                              # the exact model of this very scene
+"""  # noqa: E501
+
+
+@pytest.fixture
+def map_file(tmp_path, monkeypatch):
+    """A folder with ``map.x3p``, and a study that takes a second, of two ways."""
+    spectrum = spectrum_from("rms=1um,long=100um,short=8um")
+    z = gaussian_map(spectrum, (256, 256), (1e-6, 1e-6), np.random.default_rng(1))
+    write_map(z, tmp_path / "map.x3p")
+    monkeypatch.chdir(tmp_path)
+    every = tradeoff.methods_for
+    monkeypatch.setattr(tradeoff, "SECONDS", 1.0)
+    monkeypatch.setattr(tradeoff, "methods_for", lambda *asked: every(*asked)[:2])
+
+
+@pytest.mark.usefixtures("map_file")
+def test_the_notebook_runs_word_for_word(capsys):
+    """Every line as in an interpreter that shows what it is given; the numbers against each other."""
+    names = {"scipy": scipy, "h": [0.0, 2.0]}
+    shown = []
+    for line in ast.parse(NOTEBOOK).body:
+        if isinstance(line, ast.Expr):
+            shown.append(eval(compile(ast.Expression(line.value), "notebook", "eval"), names))
+        else:
+            exec(compile(ast.Module([line], []), "notebook", "exec"), names)
+    scene, e = names["scene"], names["e"]
+    ensemble, values, _, results, larger, custom, theory = shown
+    assert ensemble is e
+    np.testing.assert_array_equal(e.load, mcgw.simulate(scene, n_surfaces=1000).load)
+    np.testing.assert_array_equal(values[0], values[1])
+    np.testing.assert_array_equal(values[2], e.mean("load") / 1e-4)
+    assert np.all(values[3][0] <= e.mean("area") / 1e-4)
+    comparison, graded, solution, convergence, study, fit = results
+    assert comparison.verdict.agrees
+    assert graded.scene.grading == mcgw.Exponential(1.2)
+    assert solution.value == pytest.approx(100, rel=1e-15)
+    assert convergence.passed
+    assert {method.name for method in study.methods} == {point.method for point in study.points}
+    assert set(fit.estimates) >= {"moments", "summits"}
+    assert (scene.n_asperities, larger.n_asperities) == (30_000, 300_000)
+    assert custom.separations == (2.0,)
+    assert mcgw.compare(mcgw.simulate(custom, n_surfaces=200, seed=3)).verdict.agrees
+    np.testing.assert_array_equal(theory, scene.theory.mean("load", [0.0, 2.0]))
+    np.testing.assert_allclose(theory, analytic.load(scene.surface, [0.0, 2.0], scene.grading), rtol=1e-14)
+    for result in (e, *results):
+        assert len(repr(result).splitlines()) <= 12
+        assert "<table>" in result._repr_html_()
+    assert capsys.readouterr() == ("", "")  # nothing is printed that was not asked for
+
+
+# --- what is found --------------------------------------------------------------------------------------
+
+
+def test_the_public_names_are_what_completion_shows():
+    """Whatever was imported of the packages inside, and without importing anything by looking."""
+    assert list(mcgw.__all__) == sorted(mcgw.__all__)
+    for module in pkgutil.walk_packages(mcgw.__path__, "mcgw."):
+        if not module.name.endswith("__main__"):
+            import_module(module.name)
+    assert dir(mcgw) == mcgw.__all__
+    assert rlcompleter.Completer({"mcgw": mcgw}).attr_matches("mcgw.Sc")[:2] == [
+        "mcgw.Scene(",
+        "mcgw.SceneError(",
+    ]
+    assert not [name for name in mcgw.__all__ if type(getattr(mcgw, name)) is type(mcgw)]
+    with pytest.raises(AttributeError, match="no attribute 'simulat'"):
+        mcgw.simulat  # noqa: B018 - it is not there
+
+
+def test_what_a_checker_of_types_sees_is_what_there_is():
+    tree = ast.parse(Path(mcgw.__file__).read_text())
+    (seen,) = [node for node in tree.body if isinstance(node, ast.If)]
+    names = {alias.name: node.module for node in seen.body for alias in node.names}
+    assert sorted(names) == mcgw.__all__
+    for name, module in names.items():
+        assert getattr(import_module(module), name) is getattr(mcgw, name)
+
+
+def test_all_names_come_with_a_star():
+    names = {}
+    exec("from mcgw import *", names)
+    assert names.keys() - {"__builtins__"} == set(mcgw.__all__)
+
+
+def test_help_is_a_map_of_the_names():
+    named = set(re.findall(r"`(\w+)`", mcgw.__doc__))
+    assert named == set(mcgw.__all__)
+    page = pydoc.plain(pydoc.render_doc(mcgw))
+    assert all(name in page for name in mcgw.__all__)
+    assert "Draw surfaces:" in page
+
+
+@pytest.mark.parametrize("name", mcgw.__all__)
+def test_help_of_every_name_has_an_example(name):
+    """That names it; that it runs is what the doctests of its module are for."""
+    thing = getattr(mcgw, name)
+    examples = doctest.DocTestParser().get_examples(thing.__doc__ or "")
+    assert any(name in f"{x.source}{x.want}{x.exc_msg}" for x in examples)
+    module = sys.modules[thing.__module__]
+    assert Path(module.__file__).is_relative_to(Path(mcgw.__file__).parent.parent)
+
+
+# --- arguments --------------------------------------------------------------------------------------------
+
+FILE = {
+    "surface": {
+        "sigma": "1.37e-6",
+        "radius": "13e-6",
+        "eta": "3e8",
+        "nominal_area": "1e-6",
+        "E_star": "78.6e9",
+    },
+    "contact": {"separations": "[0.0, 1.0]"},
+    "ensemble": {"seed": "1"},
+}  # fmt: skip
+# Key of the file, and values of it that neither a file nor Python may give.
+WRONG = {
+    ("", "title"): [1],
+    ("surface", "sigma"): [0.0, -1.0, math.nan, True, "1 N", [1.0]],
+    ("surface", "radius"): [0, -1, math.inf, "x"],
+    ("surface", "eta"): ["300 um", -3e8],
+    ("surface", "nominal_area"): ["1 m", 0],
+    ("surface", "E_star"): [-1e9, "1 N"],
+    ("grading", "negative"): ["no"],
+    ("contact", "separations"): [
+        "x",
+        [math.nan],
+        [],
+        True,
+        [[1.0]],
+        [1e-200],
+        [1e7],
+        {"start": 0.0, "stop": 1.0},
+    ],
+    ("contact", "quantities"): ["load", ["weight"], [], ["load", "load"], [1]],
+    ("ensemble", "n_surfaces"): [0, -1, 1.5, "10", True, math.inf],
+    ("ensemble", "n_asperities"): [0, 1.5, "many", 2**53 + 1],
+    ("ensemble", "count"): ["free", 1],
+    ("ensemble", "seed"): [-1, 1.5, 2**64, True],
+    ("ensemble", "sampler"): ["cell", 1],
+    ("ensemble", "keep"): ["all"],
+    ("ensemble", "rel_err"): [0, -0.1, 0.2, "x"],
+    ("ensemble", "max_seconds"): [0, math.inf, "1 m"],
+}  # fmt: skip
+
+
+def in_toml(value):
+    match value:
+        case bool():
+            return str(value).lower()
+        case str():
+            return f"'{value}'"
+        case list():
+            return f"[{', '.join(map(in_toml, value))}]"
+        case dict():
+            return f"{{{', '.join(f'{key} = {in_toml(x)}' for key, x in value.items())}}}"
+    return repr(value)
+
+
+def of_file(table, key, value):
+    """What the scene file says of this value."""
+    tables = {name: dict(lines) for name, lines in FILE.items()}
+    tables.setdefault(table, {})[key] = in_toml(value)
+    text = "".join(f"{k} = {v}\n" for k, v in tables.pop("", {}).items())
+    for name, lines in tables.items():
+        text += f"[{name}]\n" + "".join(f"{k} = {v}\n" for k, v in lines.items())
+    return problems(lambda: mcgw.scene_from(text))
+
+
+def problems(call):
+    with pytest.raises(mcgw.SceneError) as caught:
+        call()
+    assert isinstance(caught.value, ValueError)
+    assert all("\n" not in line and len(line) < 300 for line in caught.value.problems)
+    return caught.value.problems
+
+
+def scene(**changes):
+    return mcgw.Scene(**({"surface": SURFACE, "separations": [0.0, 1.0], "seed": 1} | changes))
+
+
+@pytest.mark.parametrize(("table", "key", "value"), [(*place, v) for place, vs in WRONG.items() for v in vs])
+def test_a_wrong_argument_gets_the_line_of_a_wrong_file(table, key, value):
+    said = of_file(table, key, value)
+    path = f"{table}.{key}" if table else key
+    assert all(line.startswith(path) for line in said)
+    if table == "surface":
+        values = {k: float(v) for k, v in FILE["surface"].items()} | {key: value}
+        assert problems(lambda: mcgw.Surface(**values)) == said
+        assert problems(lambda: scene().replace(**{key: value})) == said
+    else:
+        assert problems(lambda: scene(**{key: value})) == said
+        assert problems(lambda: scene().replace(**{key: value})) == said
+        assert problems(lambda: mcgw.simulate(scene(), **{key: value})) == said
+
+
+def scalar_only(s):
+    return 1.0 + math.tanh(s)
+
+
+ONLY_PYTHON = [
+    ({"surface": 3}, r"^surface = 3: give mcgw\.Surface\("),
+    ({"grading": 2.0}, r"^grading = 2\.0: give mcgw\.Exponential\(gamma\)"),
+    ({"grading": mcgw.Homogeneous}, r"^grading = <class .*Homogeneous'>: give"),
+    (
+        {"grading": scalar_only},
+        r"^grading: the function fails on an array of heights \(TypeError: .*vectorize",
+    ),
+    ({"grading": lambda s: s > 0 and 1.0}, r"^grading: the function fails on an array .*\(ValueError: "),
+    ({"grading": lambda s: s[:1]}, r"^grading: gave shape \(1,\)"),
+    ({"grading": lambda s: np.log(s - 3)}, r"^grading: E\*\(s\)/E\* is not finite at s = "),
+    ({"grading": lambda s: 1 - s}, r"^grading: E\*\(s\) is negative from s = 1\.\d*,"),
+    ({"heights": np.ones(3)}, r"^heights = array\(.*\): give .*mcgw\.HeightTable\.of\(heights\)"),
+    ({"heights": mcgw.Gaussian}, r"^heights = <class .*Gaussian'>: give"),
+    ({"heights": scipy.stats.lognorm}, r"^heights = <scipy.*: give"),
+    ({"heights": scipy.stats.poisson(3)}, r"^heights = <scipy.*: give a frozen continuous law"),
+    ({"heights": scipy.stats.cauchy()}, r"^heights = <scipy.*: give a frozen continuous law.*cauchy"),
+]
+
+
+@pytest.mark.parametrize(("change", "told"), ONLY_PYTHON, ids=[told for _, told in ONLY_PYTHON])
+def test_what_only_python_can_get_wrong(change, told):
+    (line,) = problems(lambda: scene(**change))
+    assert re.search(told, line)
+
+
+def test_all_mistakes_are_told_at_once():
+    said = problems(lambda: scene(separations="x", grading=3, n_surfaces=0, sampler="cell"))
+    assert [line.split(" = ")[0] for line in said] == [
+        "contact.separations", "grading", "ensemble.n_surfaces", "ensemble.sampler",
+    ]  # fmt: skip
+    said = problems(lambda: mcgw.Surface(-1, "13 N", 3e8, 1e-6, 1e9))
+    assert [line.split(" = ")[0] for line in said] == ["surface.sigma", "surface.radius"]
+
+
+CALLS = [
+    (lambda: mcgw.simulate(scene(), threads=0), r"^threads = 0: give a whole number >= 1$"),
+    (lambda: mcgw.simulate(scene(), threads=1.5), r"^threads = 1\.5: give a whole number >= 1$"),
+    (
+        lambda: mcgw.simulate(scene(), progress=3),
+        r"^progress = 3: give True, or a function of \(done, total\)$",
+    ),
+    (
+        lambda: mcgw.run(scene(), "x.h5", engine="gpu"),
+        r"^engine = 'gpu': give one of threads, processes, dask",
+    ),
+    (lambda: mcgw.run(scene(), "x.h5", shard="9/8"), "9/8: give i/n with 1 <= i <= n$"),
+    (lambda: mcgw.run(scene(), "x.h5", shard="first"), "first: give i/n with 1 <= i <= n$"),
+    (lambda: mcgw.run(scene(), "x.h5", shard="1/2", engine="dask"), r"^shard = '1/2': .*leave engine out$"),
+    (lambda: mcgw.solve(scene()), "^solve: give one of load, pressure, area, area_fraction, not none$"),
+    (lambda: mcgw.solve(scene(), load=1, area=1), "^solve: give one of .*, not load and area$"),
+    (
+        lambda: mcgw.solve(scene(), pressure="1 N"),
+        r"^pressure = '1 N': give a finite number > 0 in Pa, such as 1MPa",
+    ),
+    (
+        lambda: mcgw.solve(scene(), load=[1.0, -1.0]),
+        r"^load = -1\.0: give a finite number > 0 in N, such as 5N",
+    ),
+    (
+        lambda: mcgw.tradeoff(scene(), seconds="1 m"),
+        r"^seconds = '1 m': give a finite number > 0 in s, such as 90 s",
+    ),
+    (lambda: mcgw.fit("map.x3p", cutoff="5 N"), r"^cutoff = '5 N': give a finite number > 0 in m"),
+    (
+        lambda: mcgw.fit("map.x3p", cutoff=None, form="x"),
+        r"^form = 'x': choose one of none, plane, quadratic$",
+    ),
+    (lambda: mcgw.fit("map.x3p", cutoff=None, parts=1), r"^parts = 1: give a whole number >= 2$"),
+    (lambda: mcgw.fit("map.x3p", cutoff=None, pixel=-1), r"^pixel = -1: give a finite number > 0 in m"),
+    (lambda: mcgw.fit("absent.x3p", cutoff=None), r"^absent\.x3p: no such file$"),
+]
+
+
+@pytest.mark.parametrize(("call", "told"), CALLS, ids=[told for _, told in CALLS])
+def test_a_wrong_call_is_one_line_that_names_the_argument(call, told, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(ValueError, match=told) as caught:
+        call()
+    assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    "call", [mcgw.Scene.replace, mcgw.simulate, mcgw.solve, mcgw.converge, mcgw.tradeoff]
+)
+def test_a_misspelt_field_is_told_with_the_one_that_was_meant(call):
+    more = {"load": 1.0} if call is mcgw.solve else {}
+    with pytest.raises(TypeError, match=r"^a scene has no 'n_surface'; did you mean n_surfaces\?$"):
+        call(scene(), n_surface=3, **more)
+
+
+def test_separations_in_any_clothes():
+    pandas = pytest.importorskip("pandas")
+    for given in (
+        np.array([0.0, 1.0]), [0, 1], (0.0, 1.0), range(2), [np.float64(0), np.int32(1)],
+        pandas.Series([0.0, 1.0]), {"start": 0.0, "stop": 1.0, "num": 2}, np.arange(2),
+        np.array([0, 1], dtype=np.float32),
+    ):  # fmt: skip
+        assert scene(separations=given) == scene()
+        assert scene().replace(separations=given) == scene()
+    for one in (1, 1.0, np.float64(1), np.array(1.0), np.int64(1)):
+        assert scene(separations=one).separations == (1.0,)
+    assert scene(n_surfaces=np.int64(7), seed=np.uint64(2**63)).seed == 2**63
+    assert scene(rel_err="1 %", max_seconds="2 min").max_seconds == 120
+    assert scene(quantities=np.array(["load"])).quantities == ("load",)
+
+
+def test_a_seed_that_nobody_gives_is_drawn_and_recorded(tmp_path):
+    one, other = (mcgw.Scene(SURFACE, separations=1.0, n_surfaces=8) for _ in range(2))
+    assert one.seed != other.seed
+    assert one.replace(title="t").seed == one.seed
+    assert one.replace(seed=None).seed != one.seed
+    first = mcgw.run(one, tmp_path / "e.h5")
+    load = first.load
+    again = mcgw.run(other, tmp_path / "e.h5", n_surfaces=16)  # goes on with the seed that is there
+    assert again.scene.seed == first.scene.seed == one.seed
+    np.testing.assert_array_equal(again.load[:8], load)
+    with pytest.raises(mcgw.StoreError, match="seed"):
+        mcgw.run(other.replace(seed=other.seed), tmp_path / "e.h5")
+
+
+def test_none_leaves_a_field_out():
+    fixed = scene(n_asperities=7, n_surfaces=3, grading=mcgw.Exponential(2.0), heights=mcgw.Weibull(2.0))
+    assert fixed.replace(nominal_area="2 mm^2").n_asperities == 7
+    free = fixed.replace(n_asperities=None, n_surfaces=None, grading=None, heights=None)
+    assert free == scene()
+    assert free.replace(nominal_area="2 mm^2").n_asperities == 600
+
+
+def test_a_frozen_law_is_that_of_the_file():
+    """Location and scale drop out; shapes by place or by name."""
+    text = mcgw.scene_text(scene()).replace(
+        '[heights]\nlaw = "gaussian"', '[heights]\nlaw = "scipy"\nname = "lognorm"\nshapes = {s = 0.3}'
+    )
+    wanted = mcgw.scene_from(text)
+    for law in (
+        scipy.stats.lognorm(0.3), scipy.stats.lognorm(0.3, 1.0),
+        scipy.stats.lognorm(s=0.3, loc=2.0, scale=3e-6),
+        mcgw.ScipyHeights(scipy.stats.lognorm(0.3, scale=7.0)),
+    ):  # fmt: skip
+        given = scene(heights=law)
+        assert given == wanted
+        assert mcgw.scene_from(mcgw.scene_text(given)) == given
+        assert given.replace(title="t").heights is given.heights  # what it has found out is not lost
+    np.testing.assert_array_equal(
+        mcgw.simulate(given, n_surfaces=5).load, mcgw.simulate(wanted, n_surfaces=5).load
+    )
+
+
+def test_a_plain_function_is_custom():
+    def tips(s):
+        return np.where(s > 1.25, 1.5, 1.0)
+
+    plain, told = scene(grading=tips), scene(grading=mcgw.Custom(tips, breaks=(1.25,)))
+    assert plain.grading == mcgw.Custom(tips)
+    for x in (plain, told):
+        assert mcgw.compare(mcgw.simulate(x, n_surfaces=200)).verdict.agrees
+    means = [x.theory.mean("load", [0.0, 1.0, 2.0]) for x in (plain, told)]
+    np.testing.assert_allclose(*means, rtol=1e-11)
+    base = mcgw.simulate(scene(separations=[0.0, 1.0, 1.25]), n_surfaces=50, keep="moments")
+    assert mcgw.regrade(base, tips).scene.grading == mcgw.Custom(tips)
+
+
+def test_nothing_heavy_is_imported_by_a_frozen_law_that_is_not_there():
+    """A scene of numbers imports no scipy.stats of its own, and no pandas, xarray or pyplot ever."""
+    code = (
+        "import mcgw; e = mcgw.simulate(mcgw.Scene(mcgw.Surface(1e-6, 1e-5, 1e9, 1e-6, 1e9), separations=1, "
+        "n_surfaces=2)); repr(e); import sys; print({'pandas', 'xarray', 'matplotlib'} & set(sys.modules))"
+    )
+    said = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert said.stdout.strip() == "set()"

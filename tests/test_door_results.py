@@ -1,0 +1,359 @@
+"""What a notebook is given: quantities by name, tables, pictures, short looks, progress, files."""
+
+import math
+
+import matplotlib as mpl
+import numpy as np
+import pytest
+
+import analytic
+import mcgw
+from mcgw.ensemble.ensemble import Arrays, Ensemble
+from mcgw.figures.of_results import draw
+from mcgw.formats.sheet import Sheet, brief
+from mcgw.machine.progress import told
+
+mpl.use("agg")
+import matplotlib.pyplot as plt
+
+SURFACE = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "1 mm^2", "78.6 GPa")
+H = (2.0, 0.0, 1.0)  # in no order
+LAWS = {
+    "gaussian": mcgw.Gaussian(),
+    "weibull": mcgw.Weibull(2.0),
+    "exponential": mcgw.ExponentialHeights(),
+    "table": mcgw.HeightTable.of([0.0, 1.0, 1.5, 2.5, 4.0]),
+}
+
+
+@pytest.fixture(scope="module")
+def scene():
+    quantities = tuple(analytic.QUANTITIES)
+    return mcgw.Scene(
+        SURFACE, separations=H, grading=mcgw.Exponential(2.0), quantities=quantities, n_surfaces=60, seed=1
+    )
+
+
+@pytest.fixture(scope="module")
+def ensemble(scene):
+    return mcgw.simulate(scene)
+
+
+@pytest.fixture(scope="module")
+def results(scene, ensemble, tmp_path_factory):
+    """One of everything that is shown and drawn."""
+    folder = tmp_path_factory.mktemp("map")
+    z = np.random.default_rng(1).normal(size=(256, 256)) * 1e-6
+    np.save(folder / "map.npy", z)
+    other = mcgw.regrade(ensemble, mcgw.Exponential(1.2))
+    return {
+        "ensemble": ensemble,
+        "one surface": mcgw.simulate(scene, n_surfaces=1),
+        "stratified": mcgw.simulate(scene, sampler="stratified", n_surfaces=4),
+        "comparison": mcgw.compare(ensemble),
+        "regraded": other,
+        "ratio": mcgw.paired_ratio(other, ensemble, "load"),
+        "solution": mcgw.solve(scene, pressure="1 MPa"),
+        "convergence": mcgw.converge(scene, n_surfaces=64, seeds=4, quantities=["load"]),
+        "study": mcgw.tradeoff(scene, seconds=0.2),
+        "fit": mcgw.fit(folder / "map.npy", cutoff="10 um", pixel="1 um"),
+    }
+
+
+# --- quantities --------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(("name", "of"), [("pressure", "load"), ("area_fraction", "area")])
+@pytest.mark.parametrize("law", LAWS.values(), ids=LAWS.keys())
+def test_pressure_and_area_fraction_are_load_and_area_per_nominal_area(scene, law, name, of):
+    e = mcgw.simulate(scene, heights=law)
+    area = SURFACE.nominal_area
+    np.testing.assert_array_equal(e[name], e[of] / area)
+    np.testing.assert_array_equal(e.values(name), getattr(e, name))
+    for statistic in (e.mean, e.std, e.stderr):
+        np.testing.assert_allclose(statistic(name), statistic(of) / area, rtol=1e-15)
+    for end, other in zip(e.interval(name), e.interval(of), strict=True):
+        np.testing.assert_allclose(end, other / area, rtol=1e-15)
+    theory = e.scene.theory
+    for statistic in ("mean", "std"):
+        found, exact = (getattr(theory, statistic)(x, H) for x in (name, of))
+        np.testing.assert_allclose(found, exact / area, rtol=1e-14)
+    np.testing.assert_allclose(theory.separation_at(name, theory.mean(name, H)), H, rtol=1e-10, atol=1e-10)
+    matrix = theory.covariance([name, of], H)
+    np.testing.assert_allclose(matrix[0, :, 1], matrix[1, :, 1] / area, rtol=1e-12)
+    np.testing.assert_allclose(theory.slope(name, 1.0), theory.slope(of, 1.0) / area, rtol=1e-14)
+
+
+def test_a_quantity_that_is_not_there_is_told_with_those_that_are(scene, ensemble):
+    with pytest.raises(KeyError, match="'torque' is not in this ensemble; it has load, area"):
+        ensemble["torque"]
+    with pytest.raises(KeyError, match=r"'torque' is no quantity; give one of load, .*, area_fraction"):
+        scene.theory.mean("torque", 1.0)
+    only = mcgw.simulate(scene, quantities=["load"])
+    assert only["pressure"].shape == (60, 3)
+    for statistic in (only.mean, only.values, only.interval):
+        with pytest.raises(KeyError, match="'area_fraction' is not in this ensemble; it has load"):
+            statistic("area_fraction")
+
+
+# --- tables ------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("where", ["memory", "file"])
+def test_xarray_is_as_the_file_is(scene, ensemble, where, tmp_path):
+    xarray = pytest.importorskip("xarray")
+    pytest.importorskip("h5netcdf")
+    stored = mcgw.save(ensemble, tmp_path / "e.h5")
+    found = (ensemble if where == "memory" else stored).to_xarray()
+    with xarray.open_dataset(tmp_path / "e.h5", engine="h5netcdf") as file:
+        for name in (*scene.quantities, "surface", "separation"):
+            assert found[name].dims == file[name].dims
+            np.testing.assert_array_equal(found[name], file[name])
+            kept = {key: file[name].attrs[key] for key in ("units", "long_name")}
+            assert found[name].attrs == kept
+        for key in ("title", "scene", "sampler"):
+            assert found.attrs[key] == file.attrs[key]
+    assert mcgw.scene_from(found.attrs["scene"]) == scene
+
+
+def test_a_dataframe_has_a_row_for_each_surface_and_separation(ensemble):
+    pytest.importorskip("pandas")
+    table = ensemble.to_dataframe()
+    assert list(table.index.names) == ["surface", "separation"]
+    assert list(table.columns) == list(ensemble.scene.quantities)
+    for k, h in enumerate(H):
+        np.testing.assert_array_equal(table["load"].xs(h, level="separation"), ensemble.load[:, k])
+    assert table.loc[(7, 0.0), "area"] == ensemble.area[7, 1]
+    assert table["contacts"].dtype == np.int64
+
+
+@pytest.mark.parametrize(("method", "package"), [("to_dataframe", "pandas"), ("to_xarray", "xarray")])
+def test_a_package_that_is_not_installed_is_named(ensemble, monkeypatch, method, package):
+    monkeypatch.setitem(__import__("sys").modules, package, None)
+    with pytest.raises(ImportError, match=rf'^{method} needs {package}: pip install "mcgw\[notebook\]"$'):
+        getattr(ensemble, method)()
+
+
+# --- short looks -------------------------------------------------------------------------------------------
+
+
+def test_everything_is_shown_in_a_dozen_lines_and_as_a_table(results, scene):
+    for name, result in {**results, "scene": scene}.items():
+        lines = repr(result).splitlines()
+        assert len(lines) <= 12, name
+        assert max(map(len, lines)) <= 120, name
+        page = result._repr_html_()
+        assert page.count("<table>") == page.count("</table>") >= 1, name
+        assert str(result) == repr(result)
+
+
+def test_the_look_of_an_ensemble_has_its_means(ensemble, results):
+    """At the lowest, a middle and the highest separation, in this order."""
+    shown = repr(ensemble)
+    row = next(line for line in shown.splitlines() if "load (N)" in line)
+    means = [float(cell.split(" +- ")[0]) for cell in row.split("  ") if " +- " in cell]
+    np.testing.assert_allclose(means, ensemble.mean("load")[[1, 2, 0]], rtol=1e-4)
+    assert "nan" not in repr(results["one surface"])
+    assert (
+        "+-" not in repr(results["stratified"]).split("=", 1)[1]
+    )  # whose fluctuations are those of no ensemble
+
+
+def test_a_large_ensemble_is_not_read_for_a_look(ensemble):
+    class Untouched(Arrays):
+        def rows(self):
+            return 10**9
+
+        def read(self, *_):
+            raise AssertionError
+
+    shown = repr(Ensemble(ensemble.scene, "cells", Untouched({})))
+    assert "1000000000 surfaces" in shown
+    assert "load, area" in shown
+
+
+def test_a_title_is_no_tag_and_no_command(scene, ensemble):
+    title = "<script>alert(1)</script>\x1b[31m\n$x"
+    for shown in (scene.replace(title=title), mcgw.simulate(scene, title=title, n_surfaces=2)):
+        assert "<script" not in shown._repr_html_()
+        assert "&lt;script" in shown._repr_html_()
+        assert "\x1b" not in repr(shown)
+    sheet = Sheet("<a>", [("<b>", "<c>")], ["<d>"], [["<e>"]])
+    assert not [tag for tag in ("<a>", "<c>", "<d>", "<e>") if tag in sheet.html()]
+    assert sheet.html().count("<b>") == 1  # our own
+    assert brief("x" * 500).endswith("x...")
+
+
+# --- pictures ----------------------------------------------------------------------------------------------
+
+
+@pytest.fixture(autouse=True)
+def no_window():
+    yield
+    plt.close("all")
+
+
+def test_everything_draws_itself(results):
+    for name, result in results.items():
+        figure, ax = plt.subplots()
+        before = set(plt.get_fignums())
+        assert result.plot(ax) is ax, name
+        assert result.plot(ax=ax) is ax, name
+        assert set(plt.get_fignums()) == before, name
+        assert ax.get_xlabel(), name
+        assert ax.lines or ax.patches or ax.collections, name
+        own = result.plot()
+        assert own.figure is not figure, name
+        assert own.figure.number in plt.get_fignums(), name  # so a notebook shows it
+        own.figure.canvas.draw()
+
+
+def test_what_is_drawn_is_what_there_is(results, ensemble):
+    order = np.argsort(H)
+    for name in ("load", "pressure", "area_fraction", "contacts"):
+        ax = ensemble.plot(quantity=name)
+        np.testing.assert_allclose(ax.lines[0].get_ydata(), ensemble.mean(name)[order], rtol=1e-15)
+        np.testing.assert_array_equal(ax.lines[0].get_xdata(), np.sort(H))
+        assert f"({analytic.quantity_of(name).unit})" in ax.get_ylabel()
+    ax = results["comparison"].plot(quantity="area")
+    theory = ensemble.scene.theory.mean("area", np.sort(H))
+    np.testing.assert_allclose(ax.lines[0].get_ydata(), theory, rtol=1e-14)
+    ax = results["ratio"].plot()
+    np.testing.assert_array_equal(ax.lines[0].get_ydata(), results["ratio"].ratio[order])
+    ax = results["solution"].plot()
+    assert sum(bar.get_height() for bar in ax.patches) == 60
+    study = results["study"]
+    assert f"{study.separations[0]:g}" in study.plot(separation=study.separations[0]).get_title()
+    with pytest.raises(ValueError, match="separation = 9: give one of "):
+        study.plot(separation=9.0)
+    with pytest.raises(KeyError, match="torque"):
+        ensemble.plot(quantity="torque")
+    with pytest.raises(TypeError, match=r"^int: no figure draws it"):
+        draw(3)
+
+
+# --- progress ----------------------------------------------------------------------------------------------
+
+
+def checked(seen, total):
+    assert [of for _, of in seen] == [total] * len(seen)
+    done = [number for number, _ in seen]
+    assert done == sorted(done)
+    assert len(done) >= 2
+    return done
+
+
+def test_progress_means_the_same_everywhere(scene, tmp_path):
+    calls = {
+        60: lambda tell: mcgw.simulate(scene, progress=tell),
+        61: lambda tell: mcgw.run(scene, tmp_path / "e.h5", n_surfaces=61, progress=tell),
+        5: lambda tell: mcgw.converge(scene, n_surfaces=64, seeds=5, quantities=["load"], progress=tell),
+        0.5: lambda tell: mcgw.tradeoff(scene, seconds=0.5, progress=tell),
+    }
+    for total, call in calls.items():
+        seen = []
+        call(lambda done, of, seen=seen: seen.append((done, of)))
+        assert checked(seen, total)[-1] == total
+    seen = []
+    ruled = mcgw.run(
+        scene,
+        tmp_path / "ruled.h5",
+        n_surfaces=None,
+        rel_err=0.05,
+        progress=lambda done, of: seen.append((done, of)),
+    )
+    assert checked(seen, ruled.n_surfaces)[-1] == ruled.n_surfaces
+
+
+def test_true_is_a_bar_and_nothing_is_silence(scene, tmp_path, capsys):
+    mcgw.simulate(scene, progress=True)
+    mcgw.run(scene, tmp_path / "e.h5", progress=True)
+    said = capsys.readouterr()
+    assert said.out == ""
+    assert said.err.count("0/60 [00:00<?, ? surfaces/s]") == 2
+    mcgw.simulate(scene)
+    mcgw.simulate(scene, progress=False)
+    assert capsys.readouterr() == ("", "")
+    with pytest.raises(ValueError, match=r"^progress = 'yes': give True"), told("yes", "surfaces"):
+        raise AssertionError
+
+
+# --- files -------------------------------------------------------------------------------------------------
+
+
+def test_a_run_goes_on_and_its_keywords_are_fields(scene, tmp_path):
+    path = tmp_path / "e.h5"
+    first = mcgw.run(scene, path, n_surfaces=20, title="t")
+    assert (first.n_surfaces, first.scene.title) == (20, "t")
+    longer = mcgw.run(scene, str(path), n_surfaces=40, title="t", threads=1)
+    np.testing.assert_array_equal(longer.load, mcgw.simulate(scene).load[:40])
+    with pytest.raises(mcgw.StoreError, match="a different ensemble"):
+        mcgw.run(scene, path, grading=mcgw.Homogeneous())
+
+
+def test_shards_make_the_file_of_one_run(scene, tmp_path, monkeypatch):
+    whole = mcgw.run(scene, tmp_path / "whole.h5")
+    left = [mcgw.run(scene, tmp_path / "e.h5", shard=f"{k}/2") for k in (2, 1)]
+    assert left[-1] == 0
+    merged = mcgw.merge(tmp_path / "e.h5")
+    for name in scene.quantities:
+        np.testing.assert_array_equal(merged[name], whole[name])
+    assert mcgw.compare(merged).verdict == mcgw.compare(whole).verdict
+
+
+def test_an_engine_by_its_word_draws_the_same(scene, tmp_path):
+    found = mcgw.run(scene, tmp_path / "e.h5", engine="processes", threads=1)
+    np.testing.assert_array_equal(found.load, mcgw.simulate(scene).load)
+    again = mcgw.run(scene, tmp_path / "t.h5", engine="threads")
+    np.testing.assert_array_equal(again.load, found.load)
+
+
+# --- questions ---------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("law", LAWS.values(), ids=LAWS.keys())
+@pytest.mark.parametrize("sampler", ["cells", "aggregate"])
+def test_regrading_draws_the_same_surfaces_once_more(scene, law, sampler):
+    """With the moments or without: to rounding the same, and that of a new simulation."""
+    plain = mcgw.simulate(scene, heights=law, sampler=sampler)
+    kept = mcgw.simulate(plain.scene, keep="moments")
+    fresh = mcgw.simulate(plain.scene, grading=mcgw.Exponential(0.5))
+    for one in (plain, kept):
+        regraded = mcgw.regrade(one, mcgw.Exponential(0.5))
+        assert regraded.scene.keep == one.scene.keep
+        for name in scene.quantities:
+            np.testing.assert_allclose(
+                regraded[name], fresh[name], rtol=1e-9, atol=1e-11 * fresh.mean(name).max()
+            )
+
+
+def test_surfaces_that_are_others_are_not_regraded(scene, ensemble):
+    wrong = {name: ensemble[name] * (1 + 1e-6 * (name == "load")) for name in scene.quantities}
+    other = Ensemble(scene, ensemble.sampler, Arrays(wrong))
+    with pytest.raises(ValueError, match="cannot be drawn again: their load is another one"):
+        mcgw.regrade(other, mcgw.Homogeneous())
+    direct = mcgw.simulate(scene, sampler="direct", n_surfaces=3)
+    with pytest.raises(mcgw.SceneError, match='sampler = "direct" has none; take "cells"'):
+        mcgw.regrade(direct, mcgw.Homogeneous())
+
+
+def test_one_load_by_four_names(scene):
+    area = SURFACE.nominal_area
+    one = mcgw.solve(scene, load=2.0)
+    for words in ({"load": "2 N"}, {"pressure": 2.0 / area}, {"pressure": "2 MPa"}, {"load": np.float64(2)}):
+        found = mcgw.solve(scene, **words)
+        assert found.theory == pytest.approx(one.theory, rel=1e-14)
+        np.testing.assert_allclose(found.surfaces["area"], one.surfaces["area"], rtol=1e-12)
+    several = mcgw.solve(scene, area_fraction=["0.1 %", 0.002])
+    assert [s.value / area for s in several] == pytest.approx([0.001, 0.002], rel=1e-15)
+    assert [s.value for s in mcgw.solve(scene, area=np.array([1e-9]))] == [1e-9]
+    assert math.isclose(mcgw.solve(scene, load=2.0, n_surfaces=7).surfaces["load"].size, 7)
+
+
+def test_a_fit_makes_a_scene(results):
+    fit = results["fit"]
+    made = mcgw.fitted_scene(fit, E_star="70 GPa")
+    assert made.surface.E_star == 70e9
+    assert made.surface.sigma == fit.estimates["summits"].sigma[0]
+    assert fit.cautions  # white noise: the pixel sets it all
+    assert "caution" in repr(fit)
