@@ -77,8 +77,6 @@ def regrade(
     )
     again = replace(old, sampler=ensemble.sampler, keep="moments", n_surfaces=ensemble.n_surfaces)
     cells = regraded(scene, again)
-    _check_edges("separation", scene.separations, cells.mesh.edges)
-    _check_edges("break of the grading", scene.modulus.breaks, cells.mesh.edges)
     parts, first = [], 0
     for moments, counts, own in _read(ensemble, cells) if old.keep == "moments" else _again(ensemble, again):
         sums = cells.sums(first, np.ascontiguousarray(moments.T), np.ascontiguousarray(counts.T), own)
@@ -123,11 +121,3 @@ def _check_cells(drawn: Counted, ensemble: Ensemble) -> None:
             "the moments kept are of other cells, as another version of mcgw makes them; "
             "regrade with that version, or simulate the scene anew"
         )
-
-
-def _check_edges(what: str, wanted: Sequence[float], edges: Array) -> None:
-    """Every separation, and every break among the cells, must be an edge."""
-    for s in wanted:
-        if (what == "separation" or edges[0] < s < edges[-1]) and s not in edges:
-            near = edges[np.argmin(np.abs(edges - s))]
-            raise ValueError(f"{what} {s:.6g} is no edge of the cells (the nearest is {near:.6g})")

@@ -11,10 +11,11 @@ name            cells        numbers in them  moments     for
 ==============  ===========  ===============  ==========  =============================================
 """
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from analytic import QUANTITIES, Exponential
 from mcgw.machine.memory import keep_freed_memory
@@ -117,13 +118,24 @@ def regraded(scene: Scene, drawn: Scene) -> Counted:
     Raises
     ------
     ValueError
-        If the sampler has no cells, or the moments do not resolve what is asked.
+        If the sampler has no cells, a separation or break is no edge of them, or the moments do not
+        resolve what is asked.
     """
     sampler = sampler_of(drawn)
     if not isinstance(sampler, Counted):
         raise ValueError(f'sampler = "{sampler.name}" has no cells')
+    _check_edges("separation", scene.separations, sampler.mesh.edges)
+    _check_edges("break of the grading", scene.modulus.breaks, sampler.mesh.edges)
     response = response_of(scene, sampler.mesh, _summed(scene.quantities), kept=sampler.response.layout)
     return replace(sampler, scene=scene, response=response)
+
+
+def _check_edges(what: str, wanted: Sequence[float], edges: NDArray[np.float64]) -> None:
+    """Every separation, and every break among the cells, must be an edge."""
+    for s in wanted:
+        if (what == "separation" or edges[0] < s < edges[-1]) and s not in edges:
+            near = edges[np.argmin(np.abs(edges - s))]
+            raise ValueError(f"{what} {s:.6g} is no edge of the cells (the nearest is {near:.6g})")
 
 
 def _response(scene: Scene, mesh: Mesh) -> Response:
