@@ -11,7 +11,7 @@ class StoreError(ValueError):
     >>> import mcgw
     >>> mcgw.open_ensemble("absent.h5")
     Traceback (most recent call last):
-    mcgw.errors.StoreError: absent.h5: no such file
+    mcgw.errors.StoreError: absent.h5: No such file or directory
     """
 
 

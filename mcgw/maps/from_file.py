@@ -3,7 +3,7 @@
 from dataclasses import replace
 from pathlib import Path
 
-from mcgw.maps.cautions import doubts
+from mcgw.maps.cautions import cautions
 from mcgw.maps.files import read_map
 from mcgw.maps.fit import Fit, fit_map
 from mcgw.maps.form import FORMS, Form
@@ -72,4 +72,4 @@ def fit(
         size = None if pixel is None else (argument("pixel", pixel, "m"),) * 2
         heights = read_map(Path(heights), pixel=size, unit=unit)
     found = fit_map(heights, cutoff=limit, form=form, across=across)
-    return replace(found, cautions=tuple(doubts(found, heights, limit)))
+    return replace(found, cautions=tuple(cautions(found, heights, limit)))

@@ -44,7 +44,7 @@ def heights(scene: Scene, surface: int, *, untouched: bool = False) -> NDArray[n
     >>> surface = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "1 mm^2", "78.6 GPa")
     >>> scene = mcgw.Scene(surface, separations=[0, 1, 2], n_surfaces=20, seed=1)
     >>> s = mcgw.heights(scene, 3)
-    >>> s.size == mcgw.simulate(scene).contacts[3, 0]
+    >>> s.size == int(mcgw.simulate(scene).contacts[3, 0])
     True
     """
     sampler = sampler_of(scene)
