@@ -42,6 +42,7 @@ from analytic.contact import (
     stiffness,
     stiffness_ratio,
 )
+from analytic.extent import extent
 from analytic.gradings import Clipped, Custom, Exponential, Grading, Homogeneous
 from analytic.height_laws import ExponentialHeights, ScipyHeights, Weibull
 from analytic.height_rule import Fluctuations, HeightRule
@@ -50,9 +51,11 @@ from analytic.integrals import fn, fn_between, fn_paper, fn_scaled
 from analytic.inversion import ratio_at_equal_load
 from analytic.measured_heights import HeightTable, MeasuredHeights
 from analytic.model import Cumulants, Model
+from analytic.piecewise import PiecewiseSeries
 from analytic.plasticity import mean_modulus, plasticity_index
 from analytic.quantities import PER_AREA, QUANTITIES, Quantity, quantity_of
 from analytic.resolution import first_negative, resolved_breaks
+from analytic.series import bends, is_data, name_of, resolved
 from analytic.surface import Body, Surface, composite_modulus
 from analytic.tables import Table
 
@@ -74,6 +77,7 @@ __all__ = [
     "Homogeneous",
     "MeasuredHeights",
     "Model",
+    "PiecewiseSeries",
     "Quantity",
     "ScipyHeights",
     "Surface",
@@ -83,22 +87,27 @@ __all__ = [
     "area_per_load",
     "area_per_load_ratio",
     "barber_conductance",
+    "bends",
     "composite_modulus",
     "conductance",
     "contacts",
     "covariance",
     "cumulants",
+    "extent",
     "first_negative",
     "fn",
     "fn_between",
     "fn_paper",
     "fn_scaled",
+    "is_data",
     "load",
     "mean",
     "mean_modulus",
+    "name_of",
     "plasticity_index",
     "quantity_of",
     "ratio_at_equal_load",
+    "resolved",
     "resolved_breaks",
     "separation_at",
     "stiffness",

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from analytic.elementary import exp, log
+from analytic.piecewise import PiecewiseSeries
 
 __all__ = ["Clipped", "Custom", "Exponential", "Grading", "Homogeneous", "Squared"]
 
@@ -192,6 +193,8 @@ class Clipped:
                 return True
             case Exponential(gamma=gamma) if 0 <= gamma <= 1:
                 return True
+            case PiecewiseSeries(zeros=zeros):
+                return self.zeros == zeros
         return self.grading.smooth and bool(self.zeros)
 
     def __call__(self, s: Array) -> Array:
@@ -200,7 +203,9 @@ class Clipped:
 
     @classmethod
     def of(cls, grading: Grading) -> "Clipped":
-        """Clip a grading; the zero of the exponential one is known."""
+        """Clip a grading; the zeros of the exponential one and of series are known."""
+        if isinstance(grading, PiecewiseSeries):
+            return cls(grading, grading.zeros)
         if isinstance(grading, Exponential) and math.isfinite(grading.zero):
             return cls(grading, (grading.zero,))
         return cls(grading)

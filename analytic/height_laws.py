@@ -245,6 +245,7 @@ class ScipyHeights:
     def __post_init__(self) -> None:
         if not hasattr(self.distribution, "pdf"):
             raise ValueError(f"{self.distribution!r}: give a frozen continuous distribution of scipy.stats")
+        object.__setattr__(self, "distribution", _without_place(self.distribution))
         mean, std = self._mean_std
         if not (math.isfinite(mean) and math.isfinite(std) and std > 0):
             raise ValueError(
@@ -262,8 +263,15 @@ class ScipyHeights:
         return in_time(seconds, call, problem)
 
     @property
-    def _key(self) -> tuple[str, str, str]:
-        return self._name, repr(self.distribution.args), repr(self.distribution.kwds)
+    def shapes(self) -> dict[str, float]:
+        """Its shape parameters by their names."""
+        return {key: float(value) for key, value in getattr(self.distribution, "kwds", {}).items()}
+
+    @property
+    def _key(self) -> tuple[Any, ...]:
+        law = self.distribution
+        own = type(law.dist) if hasattr(law, "dist") else law
+        return own, self._name, tuple(sorted(self.shapes.items()))
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, ScipyHeights) and self._key == other._key
@@ -337,6 +345,18 @@ class ScipyHeights:
     def from_above(self, p: Array, s: float) -> Array:
         """Its ``isf``."""
         return self._s(self.distribution.isf(p * self.above(np.array(s))))
+
+
+def _without_place(distribution: Any) -> Any:
+    """The same law frozen with nothing but its shapes, by name: however given, it has the same digits."""
+    frozen = distribution() if hasattr(distribution, "freeze") else distribution
+    if not hasattr(frozen, "dist"):
+        return frozen
+    names = [name.strip() for name in (frozen.dist.shapes or "").split(",") if name.strip()]
+    given = {**dict(zip(names, frozen.args, strict=False)), **frozen.kwds}
+    if not set(names) <= set(given):
+        return frozen  # shapes of a kind that has no names
+    return frozen.dist(**{name: float(given[name]) for name in names})
 
 
 @dataclass(frozen=True)

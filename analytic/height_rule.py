@@ -26,7 +26,7 @@ from analytic.reach import Weight, tame
 from analytic.renamed import takes_heights
 from analytic.resolution import resolved_breaks
 
-__all__ = ["Count", "Fluctuations", "HeightRule"]
+__all__ = ["Count", "Fluctuations", "HeightRule", "normal_ends"]
 
 Array = NDArray[np.float64]
 Count = Literal["fixed", "poisson"]
@@ -49,13 +49,33 @@ def _graded(h: Array) -> list[float]:
     return edges
 
 
-def _ends(h: Array, grading: Grading) -> tuple[float, float]:
-    """Range of the rule under the normal law: from the lowest separation to where nothing is left."""
+def normal_ends(h: Array, grading: Grading, power: int = _POWER) -> tuple[float, float]:
+    """Range of the rule under the normal law: from the lowest separation to where nothing is left.
+
+    Parameters
+    ----------
+    h : ndarray
+        Reduced separations, increasing.
+    grading : Grading
+        E*(s)/E*.
+    power : int, optional
+        Of the modulus in what is summed.
+
+    Returns
+    -------
+    (float, float)
+        Reduced heights.
+
+    Raises
+    ------
+    ValueError
+        If the grading rises too steeply for such a sum.
+    """
     low, last = float(h[0]), max(float(h[-1]), 0.0)
     top = last + _REACH**2 / (last + np.hypot(last, _REACH))
     if tame(grading):
         return low, top
-    weight = Weight(lambda s: -s * s / 2, grading, _POWER)
+    weight = Weight(lambda s: -s * s / 2, grading, power)
     start = max(low, -_REACH)
     top = max(weight.reach(max(x, start), top, np.inf) for x in (low, last))
     return (weight.reach(0.0, -_REACH, low) if low < -_REACH else low), top
@@ -86,7 +106,7 @@ class HeightRule:
         h = np.unique(np.asarray(separations, dtype=np.float64))
         if not isinstance(heights, Gaussian):
             return cls(*law_rule(heights, h, grading), float(heights.below(h[0])))
-        low, top = _ends(h, grading)
+        low, top = normal_ends(h, grading)
         regular = _STEP * np.arange(np.floor(low / _STEP) + 1, np.ceil(top / _STEP))
         cuts = [low, *h, *_graded(h), *regular, *resolved_breaks(grading, max(low, -_REACH), top), top]
         edges = np.unique([c for c in cuts if low <= c <= top])

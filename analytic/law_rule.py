@@ -18,7 +18,7 @@ from analytic.measured_heights import MeasuredHeights
 from analytic.reach import Weight
 from analytic.resolution import resolved_breaks
 
-__all__ = ["law_integral", "law_rule"]
+__all__ = ["law_ends", "law_integral", "law_rule"]
 
 Array = NDArray[np.float64]
 
@@ -32,8 +32,16 @@ _RAREST = 1e-290  # share of the heights next to which densities underflow
 _NOTHING = 1e-32  # share of the touching heights that can be left out
 
 
-def _ends(law: HeightLaw, low: float, grading: Grading, power: int, exponent: float) -> tuple[float, float]:
-    """Range of the rule: from `low` or the lowest height there is to where nothing is left."""
+def law_ends(
+    law: HeightLaw, low: float, grading: Grading, power: int, exponent: float
+) -> tuple[float, float]:
+    """Range of the rule: from `low` or the lowest height there is to where nothing is left.
+
+    Raises
+    ------
+    ValueError
+        If the grading rises too steeply for sums of such powers.
+    """
     low, high = max(low, law.support[0]), law.support[1]
     start = max(low, float(law.from_below(np.array(_NOTHING), np.inf)))
     top = min(float(law.from_above(np.array(_NOTHING), start)), high)
@@ -95,7 +103,7 @@ def law_rule(
         s = np.array(law.heights)
         s = s[s > separations[0]]
         return s, np.full(s.size, 1 / len(law.heights))
-    start, top = _ends(law, float(separations[0]), grading, power, exponent)
+    start, top = law_ends(law, float(separations[0]), grading, power, exponent)
     if not start < top:
         return np.empty(0), np.empty(0)
     cuts = {*_edges(law, start, top), *resolved_breaks(grading, start, top)}

@@ -1,53 +1,139 @@
 """Where a grading varies: the heights between which it is resolved, and where it turns negative."""
 
+from dataclasses import dataclass
+from functools import cached_property
+
 import numpy as np
 from numpy.polynomial import chebyshev
 from numpy.typing import NDArray
 
 from analytic.gradings import Grading
 
-__all__ = ["first_negative", "resolved_breaks"]
+__all__ = ["SHORT", "bisected", "first_negative", "marks", "merged", "resolved_breaks", "spread_over"]
 
 Array = NDArray[np.float64]
 
-_DEGREE = 24
 _WIDEST = 4.0
-_NODES = chebyshev.chebpts1(_DEGREE + 1)
-_COEFFICIENTS = np.linalg.inv(chebyshev.chebvander(_NODES, _DEGREE))
+_NEAR, _GROWTH = 64.0, 1.25  # heights up to here are looked at in equal steps, then in ever wider ones
 _EDGES = 10.0 ** -np.arange(3.0, 13.0)  # a steep ramp may begin right at an edge
 _CHECKS = np.concatenate([_EDGES, np.linspace(0, 1, 66)[1:-1], 1 - _EDGES])
 _TINY = 2.0**-10
 _TOLERANCE = 1e-14
+_EVEN, _NARROW = 5.0, 2.0**-6  # greatest ratio of values on an interval, unless it is so narrow
+_OF_ONE = 2.0**-52  # rounding, as of 1 - tanh(s), that is not chased into narrow intervals
 _MOST = 4096
 
 
-def _misfit(grading: Grading, low: Array, high: Array, heights: Array) -> tuple[Array, Array]:
-    """How far the polynomial on each interval is from the grading there, and how far it may be."""
-    width = (high - low)[:, None]
-    at_nodes = grading(low[:, None] + width * (1 + _NODES) / 2)
-    at_heights = grading(heights)
-    basis = chebyshev.chebvander(2 * (heights - low[:, None]) / width - 1, _DEGREE)
-    fit = np.einsum("ijk,ik->ij", basis, at_nodes @ _COEFFICIENTS.T)
-    values = np.concatenate([at_nodes, at_heights], axis=1)
-    # A height is only known to its last digit: a slope of spread/width turns that into noise.
-    last_digit = np.spacing(np.maximum(np.abs(low), np.abs(high)))
-    noise = 4 * last_digit * np.ptp(values, axis=1) / width[:, 0]
-    return np.abs(fit - at_heights).max(axis=1), _TOLERANCE * np.abs(values).max(axis=1) + noise
+@dataclass(frozen=True)
+class _Fit:
+    """Polynomials that interpolate a grading, one on each interval.
+
+    Parameters
+    ----------
+    degree : int
+        Of all of them.
+    even : bool, optional
+        Whether an interval, unless it is narrow, must have values of one size: then the polynomial is
+        as accurate next to each height as it is on the whole.
+    """
+
+    degree: int
+    even: bool = False
+
+    @cached_property
+    def nodes(self) -> Array:
+        """Chebyshev points, shape (degree + 1,)."""
+        return np.asarray(chebyshev.chebpts1(self.degree + 1), dtype=np.float64)
+
+    @cached_property
+    def to_coefficients(self) -> Array:
+        """Matrix from values at the nodes to coefficients."""
+        return np.asarray(np.linalg.inv(chebyshev.chebvander(self.nodes, self.degree)), dtype=np.float64)
+
+    def heights(self, low: Array, high: Array) -> Array:
+        """The nodes on each interval, shape (intervals, degree + 1)."""
+        return np.asarray(low[:, None] + (high - low)[:, None] * (1 + self.nodes) / 2)
+
+    def at_nodes(self, grading: Grading, low: Array, high: Array) -> Array:
+        """Values of the grading there."""
+        return np.asarray(grading(self.heights(low, high)), dtype=np.float64)
+
+    def misfit(self, grading: Grading, low: Array, high: Array, heights: Array) -> tuple[Array, Array]:
+        """How far the polynomial on each interval is from the grading there, and how far it may be."""
+        width = (high - low)[:, None]
+        at_nodes, at_heights = self.at_nodes(grading, low, high), grading(heights)
+        basis = chebyshev.chebvander(2 * (heights - low[:, None]) / width - 1, self.degree)
+        fit = np.einsum("ijk,ik->ij", basis, at_nodes @ self.to_coefficients.T)
+        values = np.concatenate([at_nodes, at_heights], axis=1)
+        # A height is only known to its last digit: a slope of spread/width turns that into noise.
+        last_digit = np.spacing(np.maximum(np.abs(low), np.abs(high)))
+        noise = 4 * last_digit * np.ptp(values, axis=1) / width[:, 0]
+        size = np.abs(values)
+        misfit = np.abs(fit - at_heights).max(axis=1)
+        if self.even:
+            narrow = width[:, 0] <= _NARROW
+            uneven = size.max(axis=1) > _EVEN * size.min(axis=1)
+            misfit = np.where(uneven & ~narrow, np.inf, misfit)
+            noise = noise + np.where(narrow, _OF_ONE, 0.0)
+        return misfit, _TOLERANCE * size.max(axis=1) + noise
 
 
-def _spread_over(low: Array, high: Array) -> Array:
+_LONG, SHORT = _Fit(24), _Fit(12, even=True)
+
+
+def marks(low: float, high: float, step: float) -> list[float]:
+    """Multiples of a step between two heights and, far from the mean, ever fewer."""
+    far = [_NEAR]
+    while far[-1] < max(abs(low), abs(high)):
+        far.append(_GROWTH * far[-1])
+    regular = np.arange(-_NEAR, _NEAR, step).tolist()
+    return [x for x in (*regular, *far, *(-x for x in far)) if low < x < high]
+
+
+def spread_over(low: Array, high: Array) -> Array:
+    """Heights at which a polynomial on each interval is checked, shape (intervals, heights)."""
     return np.asarray(low[:, None] + (high - low)[:, None] * _CHECKS)
 
 
-def _rounding(grading: Grading, low: Array, high: Array) -> Array:
+def _rounding(fit: _Fit, grading: Grading, low: Array, high: Array) -> Array:
     """Rounding noise of the grading itself: the misfit that is left on intervals 1000 times narrower."""
     width = np.maximum(_TINY * (high - low), 4 * np.spacing(np.maximum(np.abs(low), np.abs(high))))
     starts = [low + part * (high - low) for part in (0.19, 0.47, 0.83)]
-    left = [_misfit(grading, s, s + width, _spread_over(s, s + width))[0] for s in starts]
+    left = [fit.misfit(grading, s, s + width, spread_over(s, s + width))[0] for s in starts]
     return np.asarray(np.median(left, axis=0))  # one of the three may lie on a jump
 
 
-def _merged(grading: Grading, edges: Array, kept: Array) -> Array:
+def bisected(fit: _Fit, grading: Grading, edges: Array, most: int) -> Array:
+    """With further edges, until polynomials describe the grading on all intervals.
+
+    Raises
+    ------
+    ValueError
+        If that takes more edges than `most`.
+    """
+    left, right, noise = edges[:-1], edges[1:], np.zeros(edges.size - 1)
+    most_noise = 2.0**-50 * np.abs(grading(spread_over(left, right))).max()
+    while left.size:
+        misfit, allowed = fit.misfit(grading, left, right, spread_over(left, right))
+        middle = (left + right) / 2
+        bad = (misfit > allowed + noise) & (middle > left) & (middle < right)
+        left, middle, right, noise = left[bad], middle[bad], right[bad], noise[bad]
+        if left.size:
+            noise = np.maximum(noise, np.minimum(8 * _rounding(fit, grading, left, right), most_noise))
+        bad = misfit[bad] > allowed[bad] + noise
+        left, middle, right, noise = left[bad], middle[bad], right[bad], noise[bad]
+        edges = np.union1d(edges, middle)
+        if edges.size > most:
+            raise ValueError(
+                f"grading: not resolved by {most} pieces near s = {middle[-1]:.6g}; is it noisy? "
+                "Smooth it, or give it as a table"
+            )
+        left, right = np.concatenate([left, middle]), np.concatenate([middle, right])
+        noise = np.concatenate([noise, noise])
+    return edges
+
+
+def merged(fit: _Fit, grading: Grading, edges: Array, kept: Array) -> Array:
     """Without the edges that no polynomial needs: neighbours are joined while one describes both."""
     size = 0
     while size != edges.size:
@@ -55,8 +141,8 @@ def _merged(grading: Grading, edges: Array, kept: Array) -> Array:
         for first in (0, 1):
             i = np.arange(first, edges.size - 2, 2)
             low, middle, high = edges[i], edges[i + 1], edges[i + 2]
-            heights = np.concatenate([_spread_over(low, middle), _spread_over(middle, high)], axis=1)
-            misfit, allowed = _misfit(grading, low, high, heights)
+            heights = np.concatenate([spread_over(low, middle), spread_over(middle, high)], axis=1)
+            misfit, allowed = fit.misfit(grading, low, high, heights)
             edges = np.delete(edges, i[(misfit <= allowed) & ~np.isin(middle, kept)] + 1)
     return edges
 
@@ -89,28 +175,9 @@ def resolved_breaks(grading: Grading, low: float, high: float) -> tuple[float, .
     declared = np.unique([float(b) for b in grading.breaks if low < b < high])
     if grading.smooth or not low < high:
         return tuple(declared.tolist())
-    regular = np.arange(np.floor(low / _WIDEST) + 1, np.ceil(high / _WIDEST)) * _WIDEST
-    edges = np.unique([low, *declared, *regular, high])
-    left, right, noise = edges[:-1], edges[1:], np.zeros(edges.size - 1)
-    most_noise = 2.0**-50 * np.abs(grading(_spread_over(left, right))).max()
-    while left.size:
-        misfit, allowed = _misfit(grading, left, right, _spread_over(left, right))
-        middle = (left + right) / 2
-        bad = (misfit > allowed + noise) & (middle > left) & (middle < right)
-        left, middle, right, noise = left[bad], middle[bad], right[bad], noise[bad]
-        if left.size:
-            noise = np.maximum(noise, np.minimum(8 * _rounding(grading, left, right), most_noise))
-        bad = misfit[bad] > allowed[bad] + noise
-        left, middle, right, noise = left[bad], middle[bad], right[bad], noise[bad]
-        edges = np.union1d(edges, middle)
-        if edges.size > _MOST:
-            raise ValueError(
-                f"grading: not resolved by {_MOST} pieces near s = {middle[-1]:.6g}; is it noisy? "
-                "Smooth it, or give it as a table"
-            )
-        left, right = np.concatenate([left, middle]), np.concatenate([middle, right])
-        noise = np.concatenate([noise, noise])
-    return tuple(_merged(grading, edges, declared)[1:-1].tolist())
+    edges = np.unique([low, *declared, *marks(low, high, _WIDEST), high])
+    edges = bisected(_LONG, grading, edges, _MOST)
+    return tuple(merged(_LONG, grading, edges, declared)[1:-1].tolist())
 
 
 def first_negative(grading: Grading, low: float, high: float) -> float | None:

@@ -1,0 +1,172 @@
+"""A grading as Chebyshev series on pieces: what is left of a Python function once it lies in a file."""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["PiecewiseSeries"]
+
+Array = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+_MOST_PIECES, _MOST_TERMS, _MOST_NAME = 4096, 64, 200
+_SAME, _SAME_END = 4e-13, 0.1  # of two resolutions: of the largest value next by, and of their ends
+_INSIDE = np.array([0.1, 0.3, 0.5, 0.7, 0.9])
+_HALVINGS, _MOST_PARTS = 40, 4096  # in the search for zeros
+
+
+@dataclass(frozen=True, repr=False)
+class PiecewiseSeries:
+    """Chebyshev series on neighbouring intervals: what `analytic.resolved` makes of any grading.
+
+    Outside its outermost edges it keeps the value that it has there; at an edge it is that of the
+    interval above. It is evaluated by sums, products and quotients alone: every processor gives the
+    same bits.
+
+    Parameters
+    ----------
+    edges : sequence of float
+        Reduced heights, increasing, where the intervals meet and end.
+    coefficients : sequence of sequences of float
+        For each interval those of T_0, T_1, ... in a variable that runs from -1 to 1 over it; as
+        `numpy.polynomial.chebyshev` has them.
+    name : str, optional
+        Of the function that it stands for; for people.
+    kinks : sequence of float, optional
+        Which inner edges are jumps or kinks; at the others the curve goes on smoothly.
+
+    Raises
+    ------
+    ValueError
+        If the edges do not increase, a number is not finite, or there are not as many series as intervals.
+
+    Examples
+    --------
+    >>> ramp = PiecewiseSeries([0.0, 2.0], [[2.0, 1.0]], name="ramp")
+    >>> ramp
+    PiecewiseSeries('ramp', 1 piece from s = 0 to 2)
+    >>> ramp(np.array([-1.0, 0.0, 0.5, 2.0, 3.0]))
+    array([1. , 1. , 1.5, 3. , 3. ])
+    """
+
+    edges: tuple[float, ...]
+    coefficients: tuple[tuple[float, ...], ...]
+    name: str
+    kinks: tuple[float, ...]
+    smooth: ClassVar[bool] = True
+
+    def __init__(
+        self,
+        edges: Sequence[float],
+        coefficients: Sequence[Sequence[float]],
+        name: str = "",
+        kinks: Sequence[float] = (),
+    ) -> None:
+        object.__setattr__(self, "edges", _floats(edges))
+        object.__setattr__(self, "coefficients", tuple(map(_floats, coefficients)))
+        object.__setattr__(self, "name", str(name)[:_MOST_NAME])
+        object.__setattr__(self, "kinks", _floats(kinks))
+        pieces = len(self.edges) - 1
+        if not 1 <= pieces <= _MOST_PIECES or not _rising(self.edges):
+            raise ValueError(f"edges: give 2 to {_MOST_PIECES + 1} finite heights that increase")
+        if len(self.coefficients) != pieces:
+            raise ValueError(
+                f"coefficients: give {pieces} lists, one for each interval between the edges, "
+                f"not {len(self.coefficients)}"
+            )
+        if not all(1 <= len(c) <= _MOST_TERMS and np.all(np.isfinite(c)) for c in self.coefficients):
+            raise ValueError(f"coefficients: each list must have 1 to {_MOST_TERMS} finite numbers")
+        if not (_rising(self.kinks) and set(self.kinks) <= set(self.breaks)):
+            raise ValueError("kinks: they must increase, and each be one of the inner edges")
+
+    def __repr__(self) -> str:
+        """Name and extent; the coefficients are too many to be read."""
+        n = len(self.coefficients)
+        pieces = f"{n} piece{'s' if n > 1 else ''}"
+        return f"PiecewiseSeries({self.name!r}, {pieces} from s = {self.edges[0]:g} to {self.edges[-1]:g})"
+
+    @property
+    def breaks(self) -> tuple[float, ...]:
+        """The inner edges."""
+        return self.edges[1:-1]
+
+    @cached_property
+    def _table(self) -> tuple[Array, Array, Array]:
+        """Lower and upper ends, shape (pieces,), and coefficients, shape (order, pieces)."""
+        edges, order = np.array(self.edges), max(map(len, self.coefficients))
+        padded = [[*c, *[0.0] * (order - len(c))] for c in self.coefficients]
+        return edges[:-1], edges[1:], np.ascontiguousarray(np.array(padded).T)
+
+    def __call__(self, s: Array) -> Array:
+        """Its values, by Clenshaw's scheme."""
+        s = np.asarray(s, dtype=np.float64)
+        low, high, c = self._table
+        piece = np.searchsorted(high[:-1], s, side="right")
+        a, b = low[piece], high[piece]
+        inside = np.clip(s, a, b)
+        return _clenshaw(c, piece, ((inside - a) - (b - inside)) / (b - a))
+
+    def agrees(self, other: "PiecewiseSeries") -> bool:
+        """Whether both stand for one function, resolved perhaps where its last digits are others."""
+        if not np.allclose(
+            [self.edges[0], self.edges[-1]], [other.edges[0], other.edges[-1]], atol=_SAME_END
+        ):
+            return False
+        low, high = max(self.edges[0], other.edges[0]), min(self.edges[-1], other.edges[-1])
+        edges = np.unique(np.clip([*self.edges, *other.edges], low, high))
+        s = edges[:-1, None] + np.diff(edges)[:, None] * _INSIDE
+        mine = self(s)
+        return bool(np.all(np.abs(mine - other(s)) <= _SAME * np.abs(mine).max(axis=1, keepdims=True)))
+
+    @cached_property
+    def zeros(self) -> tuple[float, ...]:
+        """Heights where it changes its sign; none is missed, but where it is zero to rounding alone."""
+        low, high, c = self._table
+        steepest = (np.arange(len(c))[:, None] ** 2 * np.abs(c)).sum(axis=0)  # bound of the slope in x
+        piece, x, half = np.arange(len(low)), np.zeros(len(low)), 1.0
+        for _ in range(_HALVINGS):  # a part is dropped if it is sure to have no zero
+            near = np.abs(_clenshaw(c, piece, x)) < steepest[piece] * half
+            piece, x = piece[near], x[near]
+            if not 0 < 2 * piece.size <= _MOST_PARTS:
+                break
+            half /= 2
+            piece, x = np.concatenate([piece, piece]), np.concatenate([x - half, x + half])
+        middle, width = (low + high) / 2, (high - low) / 2
+        ends = np.concatenate([middle[piece] + width[piece] * (x + side * half) for side in (-1, 1)])
+        at_edges = np.concatenate([self.edges[1:-1], np.nextafter(self.edges[1:-1], -np.inf)])
+        s = np.unique(np.concatenate([np.clip(ends, self.edges[0], self.edges[-1]), at_edges, self.edges]))
+        s = s[self(s) != 0]
+        sign = np.sign(self(s))
+        change = np.flatnonzero(sign[1:] != sign[:-1])
+        return tuple(self._halved(s[change], s[change + 1]).tolist())
+
+    def _halved(self, left: Array, right: Array) -> Array:
+        """Where the sign changes between two heights: the first on the far side of the zero."""
+        sign = np.sign(self(left))
+        while np.any((middle := left + (right - left) / 2) > left):
+            same = np.sign(self(middle)) == sign
+            inner = (middle > left) & (middle < right)
+            if not inner.any():
+                break
+            left, right = np.where(inner & same, middle, left), np.where(inner & ~same, middle, right)
+        return right
+
+
+def _floats(values: Iterable[float]) -> tuple[float, ...]:
+    return tuple(float(value) for value in values)
+
+
+def _rising(values: tuple[float, ...]) -> bool:
+    return bool(np.all(np.isfinite(values)) and np.all(np.diff(values) > 0))
+
+
+def _clenshaw(c: Array, piece: Ints, x: Array) -> Array:
+    """Sum of the Chebyshev series of a piece at x, element by element."""
+    twice, last, value = 2 * x, np.zeros_like(x), np.zeros_like(x)
+    for row in c[:0:-1]:
+        last, value = value, row[piece] + (twice * value - last)
+    return np.asarray(c[0][piece] + (x * value - last))

@@ -1,0 +1,269 @@
+"""A grading as Chebyshev series: next to every height as the function is, and the same bits everywhere."""
+
+import dataclasses
+import functools
+import math
+
+import mpmath as mp
+import numpy as np
+import pytest
+import scipy.stats
+from numpy.polynomial import chebyshev
+
+import analytic
+from analytic import Custom, Exponential, PiecewiseSeries, Table, extent, resolved
+
+RNG = np.random.default_rng(20)
+SPIKE = 0.03
+CURVES = {  # function of numpy, the same of mpmath, breaks that are told, kinks that are to be found
+    "smooth": (lambda s: 1 + 0.3 * np.tanh(s), lambda s: 1 + mp.mpf(0.3) * mp.tanh(s), (), []),
+    "kink": (lambda s: 2 + np.abs(s - 0.777), lambda s: 2 + abs(s - mp.mpf(0.777)), (), [0.777]),
+    "step": (lambda s: np.where(s > 1.234, 2.0, 0.5), lambda s: 2 if s > 1.234 else 0.5, (), [1.234]),
+    "told": (
+        lambda s: np.where(s > 1.1, 2.0, 1.0) + np.abs(s - 0.4),
+        lambda s: (2 if s > 1.1 else 1) + abs(s - mp.mpf(0.4)),
+        (0.4, 1.1),
+        [0.4, 1.1],
+    ),
+    "exp(12 s)": (lambda s: np.exp(12 * s), lambda s: mp.exp(12 * s), (), []),
+    "exp(-12 s)": (lambda s: np.exp(-12 * s), lambda s: mp.exp(-12 * s), (), []),
+    "waves": (lambda s: 2 + np.sin(20 * s), lambda s: 2 + mp.sin(20 * s), (), []),
+    "changes sign": (lambda s: np.sinh(s - 0.3), lambda s: mp.sinh(s - mp.mpf(0.3)), (), []),
+    "never below zero": (lambda s: (s - 1) ** 2, lambda s: (s - 1) ** 2, (), []),
+    "bump": (
+        lambda s: 1 + np.exp(-(((s - 1.2) / SPIKE) ** 2)),
+        lambda s: 1 + mp.exp(-(((s - mp.mpf(1.2)) / mp.mpf(SPIKE)) ** 2)),
+        (),
+        [],
+    ),
+}  # fmt: skip
+
+
+def truth(curve, s):
+    with mp.workdps(30):
+        return np.array([float(curve(mp.mpf(float(x)))) for x in s])
+
+
+def off(series, curve, s):
+    """Error over the largest value within 1/64, less what the last digit of a height does."""
+    exact = truth(curve, s)
+    near = np.max([np.abs(truth(curve, np.clip(s + d, 0, 13))) for d in (-1 / 64, 1 / 64)], axis=0)
+    slope = np.abs(truth(curve, s + 1e-7) - truth(curve, s - 1e-7)) / 2e-7
+    return (np.abs(series(s) - exact) - 4 * np.spacing(s) * slope) / np.maximum(near, np.abs(exact))
+
+
+@pytest.mark.parametrize("name", CURVES)
+def test_the_curve_itself(name):
+    function, exact, told, kinks = CURVES[name]
+    series = resolved(Custom(function, told), 0.0, 13.0)
+    s = np.concatenate([RNG.uniform(0, 13, 1000), RNG.uniform(0, 3, 500), np.array(series.edges[1:-1])])
+    s = s[np.min([np.abs(s - k) for k in (*kinks, math.inf)], axis=0) > 1e-9] if kinks else s
+    assert off(series, exact, s).max() < 1e-13
+    assert series.edges[0] == 0.0
+    assert series.edges[-1] == 13.0
+    assert all(min(abs(k - found) for k in kinks) < 1e-10 for found in series.kinks)
+    assert all(min(abs(k - found) for found in series.kinks) < 1e-10 for k in kinks)
+
+
+@pytest.mark.parametrize("name", CURVES)
+def test_ten_thousand_heights(name):
+    """Against the function in double precision, whose own rounding counts."""
+    function, _, told, _ = CURVES[name]
+    series = resolved(Custom(function, told), -2.0, 13.0)
+    s = RNG.uniform(-2, 13, 10_000)
+    near = np.max([np.abs(Custom(function)(s + d)) for d in np.linspace(-1 / 64, 1 / 64, 9)], axis=0)
+    slope = np.abs(Custom(function)(s + 1e-7) - Custom(function)(s - 1e-7)) / 2e-7
+    assert np.all(np.abs(series(s) - Custom(function)(s)) <= 1e-13 * near + 4 * np.spacing(np.abs(s)) * slope)
+
+
+def test_it_is_what_numpy_makes_of_the_coefficients():
+    edges, c = (-1.0, 0.5, 2.0), ((1.0, 0.3, -0.2), (0.5, 0.1, 0.7, -0.4))
+    series = PiecewiseSeries(edges, c, "two", kinks=(0.5,))
+    s = np.linspace(-3, 4, 501)
+    t = np.clip(s, -1, 2)
+    by_numpy = np.where(
+        t < 0.5, chebyshev.chebval((t + 0.25) / 0.75, c[0]), chebyshev.chebval((t - 1.25) / 0.75, c[1])
+    )
+    np.testing.assert_allclose(series(s), by_numpy, rtol=0, atol=1e-15)
+    assert series(np.array(-9.0)) == series(np.array(-1.0)) == pytest.approx(1.0 - 0.3 - 0.2, rel=1e-15)
+    assert series(np.array(9.0)) == series(np.array(2.0))  # held beyond its edges
+    assert series(np.array(0.5)) == pytest.approx(0.5 - 0.1 + 0.7 + 0.4, rel=1e-15)  # that of the upper one
+    assert series(s.reshape(3, -1)).shape == (3, 167)
+
+
+def test_evaluation_is_literal_arithmetic():
+    """Python's own floats, one by one, give the same bits: nothing is fused, reordered or called."""
+    series = resolved(Custom(lambda s: 1 + 0.3 * np.tanh(s)), 0.0, 13.0)
+    s = RNG.uniform(-1, 14, 300)
+    expected = []
+    for x in s.tolist():
+        x = min(max(x, series.edges[0]), series.edges[-1])
+        k = sum(edge <= x for edge in series.edges[1:-1])
+        a, b, c = series.edges[k], series.edges[k + 1], series.coefficients[k]
+        u, last, value = ((x - a) - (b - x)) / (b - a), 0.0, 0.0
+        for coefficient in c[:0:-1]:
+            last, value = value, coefficient + (2 * u * value - last)
+        expected.append(c[0] + (u * value - last))
+    np.testing.assert_array_equal(series(s), expected)
+
+
+def test_zeros_are_found_where_the_sign_changes():
+    roots = [0.3, 1.0, 1.0 + 1e-4, 7.7]
+
+    def function(s):
+        return np.prod([s - r for r in roots], axis=0)
+
+    series = resolved(Custom(function), 0.0, 13.0)
+    assert len(series.zeros) == len(roots)
+    slope = np.array([np.prod([r - q for q in roots if q != r]) for r in roots])
+    np.testing.assert_allclose(series.zeros, roots, rtol=0, atol=4e-16 * 100 / np.abs(slope).min())
+    for zero in series.zeros:
+        assert np.sign(series(np.array(zero))) != np.sign(series(np.nextafter(np.array(zero), -np.inf)))
+    assert resolved(Custom(lambda s: (s - 1) ** 2), 0.0, 3.0).zeros == ()
+    assert resolved(Custom(lambda s: np.where(s > 1, 1.0, -1.0), (1.0,)), 0.0, 3.0).zeros == (1.0,)
+    assert PiecewiseSeries([0, 1, 2], [[0.0], [1.0, 1.0]]).zeros == ()
+
+
+@pytest.mark.parametrize(
+    "function",
+    [
+        lambda s: (s - 1) ** 2,
+        lambda s: np.maximum(s - 1, 0),
+        lambda s: np.abs(s - 1.3),
+        lambda s: 1 - np.tanh(s),
+        lambda s: np.exp(-50 * (s - 1) ** 2),
+        lambda s: np.where(s > 0.3, 1.0, 0.0),
+        lambda s: np.cos(s) ** 2,
+    ],
+)
+@pytest.mark.parametrize("low", [0.0, -6.0, 0.123])
+def test_what_is_never_negative_stays_so(function, low):
+    series = resolved(Custom(function), low, 13.0)
+    assert analytic.first_negative(series, low, 13.0) is None
+    assert series(RNG.uniform(low, 13, 20_000)).min() >= 0
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+def test_rounding_noise_of_the_function_is_not_chased(sign):
+    series = resolved(Custom(lambda s: 1 + sign * np.tanh(s)), -20.0, 1e6)
+    assert len(series.coefficients) < 300
+    assert not series.kinks
+
+
+@pytest.mark.parametrize("amplitude", [1.0, 1e-3, 1e-9])
+def test_noise_is_refused_in_one_line(amplitude):
+    def noisy(s):
+        return 1 + amplitude * np.modf(np.sin(1e9 * s) * 1e5)[0]
+
+    with pytest.raises(ValueError, match=r"^grading: not resolved by 2048 pieces near s = .*noisy.*table$"):
+        resolved(Custom(noisy), 0, 4)
+
+
+@pytest.mark.parametrize(
+    ("edges", "coefficients", "more", "words"),
+    [
+        ([0.0], [], {}, "edges: give 2 to 4097"),
+        ([0.0, 0.0], [[1.0]], {}, "edges: .* increase"),
+        ([0.0, math.inf], [[1.0]], {}, "edges: .* finite"),
+        ([0.0, 1.0], [[1.0], [1.0]], {}, "coefficients: give 1 lists.*not 2"),
+        ([0.0, 1.0], [[]], {}, "coefficients: each list"),
+        ([0.0, 1.0], [[math.nan]], {}, "coefficients: .*finite"),
+        ([0.0, 1.0], [[1.0] * 65], {}, "coefficients: .*64"),
+        ([0.0, 1.0], [[1.0]], {"kinks": [1.0]}, "kinks: .*inner edges"),
+        (range(5000), [[1.0]] * 4999, {}, "edges: give 2 to 4097"),
+    ],
+)
+def test_what_are_no_series(edges, coefficients, more, words):
+    with pytest.raises(ValueError, match=words):
+        PiecewiseSeries(edges, coefficients, **more)
+
+
+def test_it_is_a_value():
+    one, other = (resolved(Custom(np.cosh), 0.0, 13.0) for _ in range(2))
+    assert one == other
+    assert hash(one) == hash(other)
+    assert one != dataclasses.replace(one, name="other")
+    assert len(repr(one)) < 80
+
+
+def named(s):
+    return 1 + s * s
+
+
+@pytest.mark.parametrize(
+    ("grading", "name"),
+    [
+        (named, "named"),
+        (lambda s: s, "<lambda>"),
+        (functools.partial(named), "named"),
+        (np.cosh, "cosh"),
+        (Custom(named), "named"),
+        (analytic.Clipped(Custom(named)), "named, clipped"),
+        (Exponential(2.0), "Exponential"),
+        (PiecewiseSeries([0, 1], [[1]], "kept"), "kept"),
+    ],
+)
+def test_names(grading, name):
+    assert analytic.name_of(grading) == name
+
+
+def test_two_resolutions_of_one_function_agree():
+    one = resolved(Custom(lambda s: 1 + 0.3 * np.tanh(s)), 0.0, 13.0)
+    assert one.agrees(resolved(Custom(lambda s: (1 + 0.3 * np.tanh(s)) * (1 + 1e-15)), 0.0, 13.0))
+    assert one.agrees(resolved(Custom(lambda s: 1 + 0.3 * np.tanh(s), (1.0,)), 0.0, 13.0))
+    assert not one.agrees(resolved(Custom(lambda s: (1 + 0.3 * np.tanh(s)) * (1 + 1e-12)), 0.0, 13.0))
+    assert not one.agrees(resolved(Custom(lambda s: 1 + 0.3 * np.tanh(s)), 1.0, 13.0))
+
+
+HEIGHTS = {
+    "gaussian": analytic.Gaussian(),
+    "exponential": analytic.ExponentialHeights(),
+    "weibull": analytic.Weibull(2.0),
+    "table": analytic.HeightTable.of([1.0, 2.0, 5.0, 9.0]),
+    "measured": analytic.MeasuredHeights([1.0, 2.0, 5.0, 9.0]),
+    "lognorm": analytic.ScipyHeights(scipy.stats.lognorm(0.3)),
+    "genextreme": analytic.ScipyHeights(scipy.stats.genextreme(-0.1)),
+    "pareto": analytic.ScipyHeights(scipy.stats.pareto(5)),
+}
+
+
+@pytest.mark.parametrize("name", HEIGHTS)
+@pytest.mark.parametrize("h", [(0.0, 4.0), (-30.0, 1.0), (1.0,)])
+def test_no_sample_leaves_the_range(name, h):
+    """What the samplers ask a law for at most: a share of 2^-66 of what is above their highest cell."""
+    law = HEIGHTS[name]
+    low, high = extent(Custom(np.tanh), law, h)
+    assert low == max(h[0], low)
+    assert float(law.from_below(np.array(2.0**-66), math.inf)) >= low or low == h[0]
+    for start in (-math.inf, h[-1], float(law.from_above(np.array(0.1 / 2**53), -math.inf))):
+        if float(law.above(np.array(start))) > 0:
+            assert float(law.from_above(np.array(2.0**-66), start)) <= high
+
+
+@pytest.mark.parametrize("name", ["gaussian", "exponential", "weibull", "lognorm", "genextreme"])
+@pytest.mark.parametrize(
+    "function",
+    [lambda s: 1 + 0.3 * np.tanh(s), lambda s: np.exp(2 * np.minimum(s, 9.0)), lambda s: 1 + s**4, np.cosh],
+)
+def test_theory_of_the_series_is_that_of_the_function(name, function):
+    """Where the function has moments at all, the series reach as far as these do."""
+    law, h = HEIGHTS[name], np.array([0.0, 1.0, 3.0])
+    series = resolved(Custom(function), *extent(Custom(function), law, h))
+    surface = analytic.Surface(1e-6, 1e-5, 1e9, 1e-6, 1e11)
+    theories = [
+        analytic.Model(surface, grading=g, heights=law, n_asperities=1e3) for g in (Custom(function), series)
+    ]
+    for ask in (
+        lambda model: model.mean("load", h),
+        lambda model: model.cumulants("load", h).skewness,
+    ):
+        try:
+            expected = ask(theories[0])
+        except ValueError:
+            continue
+        np.testing.assert_allclose(ask(theories[1]), expected, rtol=1e-11)
+
+
+def test_tables_stay_tables():
+    assert analytic.is_data(Table([0.0, 1.0], [1.0, 2.0]))
+    assert not analytic.is_data(analytic.Clipped(Exponential(2.0)))
