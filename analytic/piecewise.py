@@ -8,12 +8,13 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["PiecewiseSeries"]
+__all__ = ["MOST_PIECES", "PiecewiseSeries"]
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
-_MOST_PIECES, _MOST_TERMS, _MOST_NAME = 4096, 64, 200
+MOST_PIECES = 4096  # as text they stay below two megabytes
+_MOST_TERMS, _MOST_NAME = 64, 200
 _SAME, _SAME_END = 4e-13, 0.1  # of two resolutions: of the largest value next by, and of their ends
 _INSIDE = np.array([0.1, 0.3, 0.5, 0.7, 0.9])
 _HALVINGS, _MOST_PARTS = 40, 4096  # in the search for zeros
@@ -71,8 +72,8 @@ class PiecewiseSeries:
         object.__setattr__(self, "name", str(name)[:_MOST_NAME])
         object.__setattr__(self, "kinks", _floats(kinks))
         pieces = len(self.edges) - 1
-        if not 1 <= pieces <= _MOST_PIECES or not _rising(self.edges):
-            raise ValueError(f"edges: give 2 to {_MOST_PIECES + 1} finite heights that increase")
+        if not 1 <= pieces <= MOST_PIECES or not _rising(self.edges):
+            raise ValueError(f"edges: give 2 to {MOST_PIECES + 1} finite heights that increase")
         if len(self.coefficients) != pieces:
             raise ValueError(
                 f"coefficients: give {pieces} lists, one for each interval between the edges, "

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analytic.gradings import Clipped, Custom, Exponential, Grading, Homogeneous, Squared
-from analytic.piecewise import PiecewiseSeries
+from analytic.piecewise import MOST_PIECES, PiecewiseSeries
 from analytic.resolution import SHORT, bisected, marks, merged, resolved_breaks, spread_over
 from analytic.tables import Table
 
@@ -14,7 +14,6 @@ __all__ = ["bends", "is_data", "name_of", "resolved"]
 
 Array = NDArray[np.float64]
 
-_MOST = 2048  # pieces: as text they stay below a megabyte
 _NOTHING = 1e-15  # of the largest value on a piece
 _SLIVER = 64  # spacings of floats: pieces so narrow only close in on a jump
 _ABOUT = 2.0**-8  # a kink is what no polynomial describes up to here on either side
@@ -81,7 +80,7 @@ def resolved(grading: Grading, low: float, high: float) -> PiecewiseSeries:
     Raises
     ------
     ValueError
-        If more than 2048 pieces are not enough, as for noise, or a value is not finite.
+        If more than 4096 pieces are not enough, as for noise, or a value is not finite.
 
     Examples
     --------
@@ -89,7 +88,7 @@ def resolved(grading: Grading, low: float, high: float) -> PiecewiseSeries:
     PiecewiseSeries('<lambda>', 2 pieces from s = 0 to 8)
     """
     told = np.unique([float(b) for b in grading.breaks if low < b < high])
-    edges = bisected(SHORT, grading, np.unique([low, *marks(low, high, 1.0), *told, high]), _MOST)
+    edges = bisected(SHORT, grading, np.unique([low, *marks(low, high, 1.0), *told, high]), MOST_PIECES)
     edges = _without_slivers(merged(SHORT, grading, edges, told), told)
     left, right = edges[:-1], edges[1:]
     c = SHORT.at_nodes(grading, left, right) @ SHORT.to_coefficients.T

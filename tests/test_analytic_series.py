@@ -155,7 +155,7 @@ def test_noise_is_refused_in_one_line(amplitude):
     def noisy(s):
         return 1 + amplitude * np.modf(np.sin(1e9 * s) * 1e5)[0]
 
-    with pytest.raises(ValueError, match=r"^grading: not resolved by 2048 pieces near s = .*noisy.*table$"):
+    with pytest.raises(ValueError, match=r"^grading: not resolved by 4096 pieces near s = .*noisy.*table$"):
         resolved(Custom(noisy), 0, 4)
 
 

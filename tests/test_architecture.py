@@ -101,7 +101,8 @@ def test_the_root_has_only_the_door():
 SHARED = {
     "QUANTITIES", "Body", "Clipped", "Custom", "Exponential", "ExponentialHeights", "Gaussian", "Grading",
     "HeightLaw", "HeightTable", "Homogeneous", "MeasuredHeights", "PER_AREA", "Quantity", "ScipyHeights",
-    "Surface", "Table", "Weibull", "composite_modulus", "first_negative", "quantity_of", "resolved_breaks",
+    "PiecewiseSeries", "Surface", "Table", "Weibull", "bends", "composite_modulus", "extent",
+    "first_negative", "is_data", "quantity_of", "resolved", "resolved_breaks",
 }  # fmt: skip
 GAUSSIAN_FIGURES = {"figures/paper.py", "figures/equal_load.py", "figures/summits.py"}  # those of the paper
 

@@ -249,8 +249,8 @@ def test_row_36_ways_to_write_numbers(make):
 
 
 def test_row_38_too_long(make, tmp_path):
-    (tmp_path / "long.toml").write_text(GOOD + "#" * 2**20)
-    with pytest.raises(SceneError, match="longer than 1048576 bytes"):
+    (tmp_path / "long.toml").write_text(GOOD + "#" * 2**21)
+    with pytest.raises(SceneError, match="longer than 2097152 bytes"):
         mcgw.load_scene(tmp_path / "long.toml")
 
 

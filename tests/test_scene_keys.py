@@ -24,6 +24,7 @@ GOOD = {
         "keep": "'sums'", "max_seconds": "1.0", "left_out": "['seed']",
     },
 }  # fmt: skip
+SERIES = {"law": "'series'", "edges": "[0.0, 5.0, 20.0]", "coefficients": "[[1.0, 0.5], [1.5]]"}
 # Tables that need other company: key, its good value, and what is put in place of which other lines.
 COMPANY = {
     ("surface", "bodies"): ("[{E = 7e10, nu = 0.3}, {E = inf}]", {"E_star": None}),
@@ -31,6 +32,10 @@ COMPANY = {
     ("ensemble", "max_surfaces"): ("50", {"n_surfaces": None, "rel_err": "0.01"}),
     ("grading", "s"): ("[0.0, 1.0]", {"gamma": None, "law": "'table'", "ratio": "[1.0, 2.0]"}),
     ("grading", "ratio"): ("[1.0, 2.0]", {"gamma": None, "law": "'table'", "s": "[0.0, 1.0]"}),
+    ("grading", "edges"): ("[0.0, 5.0, 20.0]", {"gamma": None, **SERIES, "edges": None}),
+    ("grading", "coefficients"): ("[[1.0, 0.5], [1.5]]", {"gamma": None, **SERIES, "coefficients": None}),
+    ("grading", "kinks"): ("[5.0]", {"gamma": None, **SERIES}),
+    ("grading", "name"): ("'ramp'", {"gamma": None, **SERIES}),
     ("grading", "file"): ("'g.csv'", {"gamma": None, "law": "'table'"}),
     ("heights", "file"): ("'h.csv'", {"shape": None, "law": "'table'"}),
     ("heights", "heights"): ("[0.0, 1.0, 3.0]", {"shape": None, "law": "'table'"}),
@@ -48,6 +53,11 @@ WRONG = {
                "3", "[{E = true}, {E = 1}]", "[{E = 1, nu = '0.3'}, {E = 1}]", "[{E = '1 m'}, {E = 1}]"],
     "law": ["'gauss'", "1"], "gamma": ["nan", "inf", "'2'", "true"], "negative": ["'no'", "1"],
     "file": ["'absent.csv'", "1", "''"], "ratio": ["[1.0]", "1", "['a', 'b']", "[nan, 1.0]"],
+    "edges": ["[0.0, 20.0, 5.0]", "[0.0, 5.0, 5.0]", "[0.0, 5.0, inf]", "[0.0, 5.0, 'x']", "5.0", "[]",
+              "[0.0, 5.0, true]", "[0.0, 1.0, 2.0]", "[3.0, 5.0, 20.0]"],
+    "coefficients": ["[]", "[[1.0]]", "[[1.0], []]", "[[1.0], [nan]]", "[[1.0], ['x']]", "[1.0, 2.0]", "'x'",
+                     "[[1.0], [[1.0]]]", f"[[1.0], {[1.0] * 65}]"],
+    "kinks": ["[4.0]", "[0.0]", "['x']", "5.0", "[5.0, 5.0]"],
     "shape": ["0.5", "101", "'2'", "nan"], "heights": ["[]", "[1.0, 1.0]", "'x'", "1"],
     "resample": ["1.5", "'no'"],
     "share": ["[0.0, 0.5]", "[0.0]", "1"], "name": ["'absent'", "1", "'binom'"],
@@ -60,7 +70,11 @@ WRONG = {
     "rel_err": ["0", "-0.1", "0.2", "'x'", "true"], "max_seconds": ["0", "-1", "inf", "'1 m'"],
     "left_out": ["'seed'", "['gamma']", "[1]", "['n_asperities']"],
 }  # fmt: skip
-WRONG_S = {"grading": ["[1.0]", "[1.0, 0.0]", "[0.0, nan]", "1"], "heights": ["[1.0]", "[1.0, 0.0]", "1"]}
+WRONG_HERE = {
+    ("grading", "s"): ["[1.0]", "[1.0, 0.0]", "[0.0, nan]", "1"],
+    ("heights", "s"): ["[1.0]", "[1.0, 0.0]", "1"],
+    ("grading", "name"): ["1", "['x']"],
+}  # fmt: skip
 
 
 def keys():
@@ -115,7 +129,7 @@ def test_the_list_of_keys_is_whole(monkeypatch):
 def test_every_wrong_value_of_every_key_names_it(table, key):
     mcgw.scene_from(text_of(table, key, good(table, key)))
     path = f"{table}.{key}" if table else key
-    for value in WRONG_S[table] if key == "s" else WRONG[key]:
+    for value in WRONG_HERE.get((table, key)) or WRONG[key]:
         with pytest.raises(SceneError) as caught:
             mcgw.scene_from(text_of(table, key, value))
         said = caught.value.problems

@@ -9,10 +9,10 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
+import scipy.stats
 
 import analytic
 import mcgw
-from mcgw.errors import StoreError
 from mcgw.jobs.running import run
 from mcgw.sampling.samplers import sampler_of
 from mcgw.scene.samplers import SAMPLERS
@@ -63,9 +63,25 @@ def test_a_scene_without_a_seed_goes_on_with_the_recorded_one(tmp_path):
     assert mcgw.load_scene(scene).seed != first.seed
 
 
-def test_a_grading_that_no_file_can_hold_is_refused(make_scene, tmp_path):
-    with pytest.raises(StoreError, match="give its grading as a table"):
-        run(make_scene(grading=analytic.Custom(np.cosh)), tmp_path / "a.h5")
+class OwnHeights(analytic.ExponentialHeights):
+    """A law of the user: whatever its methods do, a file cannot hold them."""
+
+
+class OwnScipy(type(scipy.stats.expon)):
+    """One made of scipy's, that may do more."""
+
+
+@pytest.mark.parametrize(
+    ("heights", "name"), [(OwnHeights(), "OwnHeights"), (OwnScipy(a=0.0, name="expon")(), "OwnScipy")]
+)
+def test_a_height_law_that_no_file_can_hold_is_refused(make_scene, tmp_path, heights, name):
+    scene = make_scene(heights=heights, n_surfaces=2)
+    with pytest.raises(
+        ValueError, match=f"^heights: {name} is a Python class that no file can hold; give a "
+    ):
+        run(scene, tmp_path / "a.h5")
+    assert not list(tmp_path.iterdir())
+    assert mcgw.simulate(scene).load.shape == (2, 9)
 
 
 def drawn(sampler, seed=20240601):

@@ -14,6 +14,7 @@ from mcgw.sampling.block import Block
 from mcgw.sampling.counted import Counted
 from mcgw.sampling.samplers import regraded, sampler_of
 from mcgw.scene.scene import Scene
+from mcgw.scene.storable import storable
 
 __all__ = ["regrade"]
 
@@ -41,7 +42,8 @@ def regrade(
     ensemble : Ensemble
         Of the sampler ``cells`` or ``aggregate``.
     grading : Grading or callable
-        The new E*(s)/E*, as `mcgw.Scene` takes it, smooth inside the cells of the ensemble.
+        The new E*(s)/E*, as `mcgw.Scene` takes it, smooth inside the cells of the ensemble. A function is
+        resolved.
     quantities : sequence of str, optional
         Any; default: those of the ensemble.
     separations : array_like, optional
@@ -69,13 +71,14 @@ def regrade(
     (True, True)
     """
     old = ensemble.scene
-    scene = old.replace(
+    asked = old.replace(
         grading=grading,
         quantities=quantities or old.quantities,
         separations=old.separations if separations is None else separations,
         n_surfaces=ensemble.n_surfaces,
     )
     again = replace(old, sampler=ensemble.sampler, keep="moments", n_surfaces=ensemble.n_surfaces)
+    scene = storable(asked)
     cells = regraded(scene, again)
     parts, first = [], 0
     for moments, counts, own in _read(ensemble, cells) if old.keep == "moments" else _again(ensemble, again):

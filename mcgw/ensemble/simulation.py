@@ -19,6 +19,7 @@ from mcgw.sampling.counts import GROUP
 from mcgw.sampling.samplers import sampler_of
 from mcgw.scene.samplers import promise_of
 from mcgw.scene.scene import Scene
+from mcgw.scene.storable import storable
 
 __all__ = [
     "at_a_time",
@@ -56,7 +57,8 @@ def simulate(
     -------
     Ensemble
         With arrays of shape (surfaces, separations). Where `rel_err` or `max_seconds` decided how many
-        surfaces, its scene says their number instead: run again, it gives the same.
+        surfaces, its scene says their number instead: run again, it gives the same. A grading that is a
+        Python function is there as its series.
 
     Raises
     ------
@@ -75,6 +77,7 @@ def simulate(
     """
     scene = scene.replace(**changes)
     until = None if scene.max_seconds is None else monotonic() + scene.max_seconds
+    scene = storable(scene)
     if scene.rel_err is not None or scene.max_seconds is not None:
         scene = without_rule(scene)
     sampler = sampler_of(scene)

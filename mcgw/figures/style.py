@@ -4,7 +4,7 @@ from typing import Any
 
 from cycler import cycler
 
-from analytic import Exponential, Grading, Homogeneous
+from analytic import Exponential, Grading, Homogeneous, PiecewiseSeries
 from mcgw.machine.terminal import one_line
 from mcgw.scene.scene import Scene
 
@@ -38,4 +38,6 @@ def grading_label(grading: Grading) -> str:
             return "homogeneous"
         case Exponential():
             return f"exponential grading, γ = {grading.gamma:g}"
+        case PiecewiseSeries(name=name) if name:
+            return f"grading {one_line(name).replace('$', '')}"
     return f"{type(grading).__name__.lower()} grading"

@@ -1,11 +1,12 @@
 """A scene on its way into a file: asked by whoever runs it, draws a part of it, or merges it."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 
 import numpy as np
 
+from analytic import PiecewiseSeries, is_data
 from mcgw.ensemble.simulation import block_size, drawn_blocks, kept, use_threads
 from mcgw.errors import StoreError
 from mcgw.formats.files import check_output
@@ -13,11 +14,12 @@ from mcgw.jobs.disk_space import check_space
 from mcgw.sampling.samplers import Sampler, sampler_of
 from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_from, scene_text
-from mcgw.store.ensembles import finished
+from mcgw.scene.storable import storable
+from mcgw.store.ensembles import finished, recorded_scene
 from mcgw.store.run_folder import RunFolder, parts_of
 from mcgw.store.shards import Arrays, Span
 
-__all__ = ["Job"]
+__all__ = ["Job", "as_recorded"]
 
 _BYTES = 2**23  # of a shard: large enough that its flushing costs little
 _DRAWS = 4e8  # numbers drawn for a shard: a second or so
@@ -52,7 +54,7 @@ class Job:
             If the scene cannot be told by a file, the place belongs to something else, or the memory or the
             disk does not suffice.
         """
-        _check_storable(scene, path)
+        _check_readable(scene, path)
         job = cls(scene, sampler_of(scene), path)
         check_output(path)
         job.done()
@@ -120,10 +122,32 @@ class Job:
         return sum(file.stat().st_size for file in files if file.is_file())
 
 
-def _check_storable(scene: Scene, path: Path) -> None:
-    try:
-        as_read = scene_from(scene_text(scene))
-    except ValueError:
-        as_read = None
-    if as_read != scene:
-        raise StoreError(f"{path}: this scene cannot be written to a file; give its grading as a table")
+def as_recorded(scene: Scene, path: Path) -> Scene:
+    """The scene with its grading resolved, or as it was resolved when the run at this place began.
+
+    Another processor, or another NumPy, may give other last digits to a Python function.
+
+    Parameters
+    ----------
+    scene : Scene
+        With any grading.
+    path : Path
+        The file to be.
+
+    Returns
+    -------
+    Scene
+        Made of numbers alone.
+    """
+    if is_data(scene.grading):
+        return scene
+    resolved, there = storable(scene), recorded_scene(path)
+    mine, before = resolved.grading, there.grading if there else None
+    if isinstance(mine, PiecewiseSeries) and isinstance(before, PiecewiseSeries) and mine.agrees(before):
+        return replace(resolved, grading=before)
+    return resolved
+
+
+def _check_readable(scene: Scene, path: Path) -> None:
+    if scene_from(scene_text(scene)) != scene:
+        raise StoreError(f"{path}: this scene would be read otherwise than it is; give the values it shows")

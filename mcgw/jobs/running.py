@@ -13,7 +13,7 @@ from mcgw.errors import RunError, StoreError
 from mcgw.jobs.blocks import commit_block
 from mcgw.jobs.driver import Signals, drive, heed_signals
 from mcgw.jobs.engines import Engine, Threads
-from mcgw.jobs.job import Job
+from mcgw.jobs.job import Job, as_recorded
 from mcgw.jobs.merging import merge_once
 from mcgw.scene.scene import Scene
 from mcgw.store.ensembles import open_ensemble, write_ensemble
@@ -68,7 +68,8 @@ def run(
     Parameters
     ----------
     scene : Scene
-        What is asked; `n_surfaces` is the total, or with `rel_err` or `max_seconds` the most.
+        What is asked; `n_surfaces` is the total, or with `rel_err` or `max_seconds` the most. Of a grading
+        that is a Python function the file keeps its series and its name, and never the function.
     path : str or Path
         The file; it appears when it is complete. Until then, blocks lie in ``FILE.parts/``.
     threads : int, optional
@@ -92,6 +93,7 @@ def run(
         If the run could not be finished; what is done is kept.
     """
     path, by = Path(path), _By(engine, threads, progress or _silent)
+    scene = as_recorded(scene, path)
     started = monotonic()
     for stage in _stages(scene, path):
         ensemble = _run(Job.of(stage, path), by)
@@ -206,6 +208,7 @@ def run_part(
             "ensemble.max_seconds: jobs that share a run end at different times; give n_surfaces"
         )
     by = _By(None, threads, progress or _silent)
+    scene = as_recorded(scene, Path(path))
     job = Job.of(without_rule(scene) if scene.rel_err is not None else scene, Path(path))
     if job.done() == job.scene.n_surfaces:
         return 0

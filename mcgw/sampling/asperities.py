@@ -11,6 +11,7 @@ from mcgw.sampling.philox import CELLS, REST, uniforms
 from mcgw.sampling.samplers import sampler_of
 from mcgw.scene.samplers import promise_of
 from mcgw.scene.scene import Scene
+from mcgw.scene.storable import storable
 
 __all__ = ["heights"]
 
@@ -47,6 +48,7 @@ def heights(scene: Scene, surface: int, *, untouched: bool = False) -> NDArray[n
     >>> s.size == int(mcgw.simulate(scene).contacts[3, 0])
     True
     """
+    scene = storable(scene)
     sampler = sampler_of(scene)
     if not isinstance(sampler, Counted) or not promise_of(sampler.name).one_by_one:
         raise ValueError(f'sampler = "{sampler.name}" keeps no heights; "cells" and "tail" do')

@@ -19,7 +19,7 @@ import numpy as np
 from numpy.polynomial import chebyshev
 from numpy.typing import NDArray
 
-from analytic import Grading, HeightLaw, resolved_breaks
+from analytic import Grading, HeightLaw, PiecewiseSeries, bends
 from analytic.elementary import exp
 from mcgw.sampling.rules import chebyshev_points, chebyshev_transform, gauss_legendre, product
 from mcgw.sampling.spacing import cuts
@@ -31,7 +31,7 @@ Array = NDArray[np.float64]
 
 _ROUNDING = 1e-9  # of the width of a cell
 _CONVERGED = 1e-9  # a step of Newton whose square is nothing
-_SHORT, _MOST_HALVINGS = 13, 60  # terms for a grading on a cell, and how often it is cut to get there
+_SHORT, _MOST_HALVINGS = 16, 60  # terms for a grading on a cell, and how often it is cut to get there
 _FAR, _NARROWER = 2.0, 0.75  # spans from a root of the laws of contact, and what is left of one nearer by
 _CLOSEST = 2.0**-40  # of a cell to an end of the support that is a broken power
 
@@ -95,7 +95,7 @@ def mesh_of(scene: Scene, *, split: bool = True, rare: float = 0.1) -> Mesh:
     if not low < high:
         return no_cells(scene)
     separations = np.unique(scene.separations)
-    marks = np.unique([low, *separations, *resolved_breaks(scene.modulus, low, high), *law.breaks, high])
+    marks = np.unique([low, *separations, *bends(scene.modulus, low, high), *law.breaks, high])
     marks = marks[(low <= marks) & (marks <= high)]
     spaced = _spaced(law, scene.n_asperities if split else 0, separations, marks)
     edges = _resolving(scene.modulus, law, _refined(law, separations, spaced))
@@ -176,7 +176,8 @@ def _refined(law: HeightLaw, separations: Array, marks: Array) -> Array:
 
 def _resolving(grading: Grading, law: HeightLaw, edges: Array) -> Array:
     """Halve cells until a short series describes the grading: the law of contact has a root besides."""
-    if grading.smooth:
+    steep = isinstance(getattr(grading, "grading", grading), PiecewiseSeries)  # it may be, between its kinks
+    if grading.smooth and not steep:
         return edges
     for _ in range(_MOST_HALVINGS):
         a, width = edges[:-1], np.diff(edges)

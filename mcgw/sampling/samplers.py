@@ -17,7 +17,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from analytic import QUANTITIES, Exponential
+from analytic import QUANTITIES, Exponential, bends
 from mcgw.machine.memory import keep_freed_memory
 from mcgw.sampling.aggregate import CROWDED, VARYING
 from mcgw.sampling.block import Sampler
@@ -29,8 +29,11 @@ from mcgw.sampling.drawing import Crowds, InStrata
 from mcgw.sampling.layout import Layout
 from mcgw.sampling.response.response import Response, layout_of, response_of
 from mcgw.scene.scene import Scene
+from mcgw.scene.storable import storable
 
 __all__ = ["Sampler", "aggregate_of", "cells_of", "regraded", "sampler_of"]
+
+_SAME = 1e-10  # a kink so near to an edge was found, not told: no value is off by more
 
 
 def sampler_of(scene: Scene) -> Sampler:
@@ -39,13 +42,14 @@ def sampler_of(scene: Scene) -> Sampler:
     Parameters
     ----------
     scene : Scene
-        ``sampler = "auto"`` takes the cheapest exact one.
+        ``sampler = "auto"`` takes the cheapest exact one. A grading that is a Python function is resolved.
 
     Returns
     -------
     Sampler
         Ready to draw.
     """
+    scene = storable(scene)
     keep_freed_memory()
     return _MAKERS[_cheapest(scene) if scene.sampler == "auto" else scene.sampler](scene)
 
@@ -124,17 +128,19 @@ def regraded(scene: Scene, drawn: Scene) -> Counted:
     sampler = sampler_of(drawn)
     if not isinstance(sampler, Counted):
         raise ValueError(f'sampler = "{sampler.name}" has no cells')
-    _check_edges("separation", scene.separations, sampler.mesh.edges)
-    _check_edges("break of the grading", scene.modulus.breaks, sampler.mesh.edges)
+    edges = sampler.mesh.edges
+    _check_edges("separation", scene.separations, edges)
+    if edges.size:
+        _check_edges("break of the grading", bends(scene.modulus, edges[0], edges[-1]), edges, _SAME)
     response = response_of(scene, sampler.mesh, _summed(scene.quantities), kept=sampler.response.layout)
     return replace(sampler, scene=scene, response=response)
 
 
-def _check_edges(what: str, wanted: Sequence[float], edges: NDArray[np.float64]) -> None:
-    """Every separation, and every break among the cells, must be an edge."""
+def _check_edges(what: str, wanted: Sequence[float], edges: NDArray[np.float64], apart: float = 0.0) -> None:
+    """Every one of these heights must be an edge, or no farther from one."""
     for s in wanted:
-        if (what == "separation" or edges[0] < s < edges[-1]) and s not in edges:
-            near = edges[np.argmin(np.abs(edges - s))]
+        near = edges[np.argmin(np.abs(edges - s))]
+        if abs(s - near) > apart:
             raise ValueError(f"{what} {s:.6g} is no edge of the cells (the nearest is {near:.6g})")
 
 

@@ -1,6 +1,5 @@
 """The table [heights] of a scene: which law, and what it needs."""
 
-from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -18,11 +17,12 @@ from analytic import (
 )
 from mcgw.formats.npy_file import open_npy
 from mcgw.formats.plain_file import read_text
-from mcgw.scene.section import Section
+from mcgw.scene.section import SceneError, Section
 
-__all__ = ["LAWS", "heights_law", "heights_table", "read_heights", "shapes_of"]
+__all__ = ["LAWS", "heights_law", "heights_table", "read_heights"]
 
 LAWS = ("gaussian", "exponential", "weibull", "table", "scipy")
+_LAWS = (Gaussian, ExponentialHeights, Weibull, HeightTable, MeasuredHeights, ScipyHeights)
 _MOST_BYTES = 2**28
 
 
@@ -134,8 +134,16 @@ def _scipy(section: Section) -> HeightLaw:
 
 
 def heights_table(law: HeightLaw, file: str | None = None) -> dict[str, Any]:
-    """The table [heights] of a law, read again the same; measured heights by the name of their file."""
+    """The table [heights] of a law, read again the same; measured heights by the name of their file.
+
+    Raises
+    ------
+    SceneError
+        If it is a class of the user.
+    """
     match law:
+        case _ if type(law) not in _LAWS:  # a class made of one may do more
+            pass
         case Gaussian():
             return {"law": "gaussian"}
         case ExponentialHeights():
@@ -148,12 +156,16 @@ def heights_table(law: HeightLaw, file: str | None = None) -> dict[str, Any]:
             held = {"heights": list(law.heights)} if file is None else {"file": file}
             return {"law": "table", **held, "resample": False}
         case ScipyHeights():
-            return {"law": "scipy", "name": law.distribution.dist.name, "shapes": shapes_of(law.distribution)}
-    return {"law": f"python: {law!r}"}
+            import scipy.stats  # as above
 
-
-def shapes_of(frozen: Any) -> dict[str, float]:
-    """Shape parameters by name; location and scale drop out."""
-    names = [name.strip() for name in (frozen.dist.shapes or "").split(",") if name.strip()]
-    given: Mapping[str, Any] = {**dict(zip(names, frozen.args, strict=False)), **frozen.kwds}
-    return {name: float(given[name]) for name in names if name in given}
+            dist = getattr(law.distribution, "dist", None)
+            name = getattr(dist, "name", None)
+            if name and type(dist) is type(getattr(scipy.stats, name, None)):
+                return {"law": "scipy", "name": name, "shapes": law.shapes}
+    own = getattr(getattr(law, "distribution", None), "dist", law)
+    raise SceneError(
+        [
+            f"heights: {type(own).__name__} is a Python class that no file can hold; give a distribution of "
+            "scipy.stats, or points of it as a HeightTable"
+        ]
+    )

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import MISSING, fields, is_dataclass
 from typing import Any
 
-from analytic import Custom, ScipyHeights
+from analytic import Custom, PiecewiseSeries, ScipyHeights
 
 __all__ = ["law_text"]
 
@@ -21,6 +21,8 @@ def law_text(law: Any) -> str:
     match law:
         case ScipyHeights():
             return f"scipy.stats.{law.distribution.dist.name}({_listed(law.distribution.kwds)})"
+        case PiecewiseSeries():
+            return repr(law)
         case Custom():
             return f"Custom({getattr(law.function, '__name__', type(law.function).__name__)})"
     if not is_dataclass(law):

@@ -151,9 +151,8 @@ def _grading(section: Section, given: Any) -> Grading:
 def _heights(section: Section, given: Any) -> HeightLaw:
     if given is None:
         return Gaussian()
-    frozen = given.distribution if isinstance(given, ScipyHeights) else given
-    if hasattr(frozen, "dist") and hasattr(frozen, "kwds"):
-        return _of_scipy(section, given, frozen)
+    if hasattr(given, "dist") and hasattr(given, "kwds"):
+        return _of_scipy(section, given)
     if all(hasattr(given, name) for name in _LAW_OF_HEIGHTS) and not isinstance(given, type):
         return given  # type: ignore[no-any-return]
     advice = (
@@ -164,15 +163,9 @@ def _heights(section: Section, given: Any) -> HeightLaw:
     return Gaussian()
 
 
-def _of_scipy(section: Section, given: Any, frozen: Any) -> HeightLaw:
-    """The law by its shapes, as a file gives it: location and scale drop out where heights are reduced."""
-    from mcgw.scene.heights_section import shapes_of
-
+def _of_scipy(section: Section, given: Any) -> HeightLaw:
     try:
-        shapes = shapes_of(frozen)
-        if isinstance(given, ScipyHeights) and frozen.kwds == shapes and not frozen.args:
-            return given  # as it is: what it has found out of its law is kept
-        return ScipyHeights(frozen.dist(**shapes))
+        return ScipyHeights(given)
     except (TypeError, ValueError) as error:
-        section.fail("heights", frozen, f"give a frozen continuous law of scipy.stats; {error}")
+        section.fail("heights", given, f"give a frozen continuous law of scipy.stats; {error}")
         return Gaussian()

@@ -18,6 +18,7 @@ from analytic import (
     HeightLaw,
     MeasuredHeights,
     Model,
+    PiecewiseSeries,
     Surface,
     Table,
     first_negative,
@@ -146,7 +147,13 @@ class Scene(Shown):
         self._fill("n_surfaces", _SURFACES if self.rel_err is None else _MOST_SURFACES)
         object.__setattr__(self, "separations", tuple(h + 0.0 for h in self.separations))  # -0.0 is 0.0
         problems = [*self._wrong_values(), *self._wrong_scales(), *self._wrong_measured()]
-        problems = problems or self._wrong_function() or self._wrong_modulus() or self._wrong_grading()
+        problems = (
+            problems
+            or self._wrong_function()
+            or self._wrong_range()
+            or self._wrong_modulus()
+            or self._wrong_grading()
+        )
         if problems:
             raise SceneError(problems)
 
@@ -344,6 +351,19 @@ class Scene(Shown):
                 "give np.vectorize of it"
             ]
         return []
+
+    def _wrong_range(self) -> list[str]:
+        """Heights that touch and that the series of a grading do not reach."""
+        if not isinstance(self.grading, PiecewiseSeries):
+            return []
+        lowest = max(self.lowest, float(self.heights.from_below(np.array(_BEYOND), math.inf)))
+        first, last = self.grading.edges[0], self.grading.edges[-1]
+        if self.lowest >= self._highest() or (first <= lowest and self._highest() <= last):
+            return []
+        return [
+            f"grading.edges: the series reach from s = {first:.6g} to {last:.6g}, but heights from "
+            f"{lowest:.6g} to {self._highest():.6g} count; give the grading itself, or other separations"
+        ]
 
     def _highest(self) -> float:
         """Height that hardly an asperity exceeds, above every separation."""

@@ -8,7 +8,16 @@ from typing import Any
 
 import tomli_w
 
-from analytic import Body, Exponential, Grading, Homogeneous, Surface, Table, composite_modulus
+from analytic import (
+    Body,
+    Exponential,
+    Grading,
+    Homogeneous,
+    PiecewiseSeries,
+    Surface,
+    Table,
+    composite_modulus,
+)
 from mcgw.formats.plain_file import read_bytes, read_text
 from mcgw.formats.toml_text import loads
 from mcgw.formats.units import quantity
@@ -17,11 +26,13 @@ from mcgw.scene.reading import LeftOut, quantities_of, separations_of
 from mcgw.scene.samplers import SAMPLERS
 from mcgw.scene.scene import Scene
 from mcgw.scene.section import SceneError, Section
+from mcgw.scene.series_section import read_series, series_table
+from mcgw.scene.storable import storable
 from mcgw.scene.surface import SURFACE_UNITS
 
 __all__ = ["files_of", "load_scene", "read_grading", "scene_from", "scene_text"]
 
-_MOST_BYTES = 2**20
+_MOST_BYTES = 2**21
 _MOST_TABLE = 2**24  # bytes of a grading as CSV
 
 
@@ -175,7 +186,7 @@ def _body(E: float | str, **nu: float) -> Body:
 
 
 def _grading(section: Section, surface: Surface | None, folder: Path) -> dict[str, Any]:
-    laws = ("homogeneous", "exponential", "table")
+    laws = ("homogeneous", "exponential", "table", "series")
     law = section.choice("law", "exponential" if "gamma" in section else "homogeneous", laws)
     negative = section.choice("negative", "error", ("error", "clip", "allow"))
     grading: Grading = Homogeneous()
@@ -185,6 +196,8 @@ def _grading(section: Section, surface: Surface | None, folder: Path) -> dict[st
             grading = Exponential(gamma)
     elif law == "table":
         grading = _table(section, surface, folder) or grading
+    elif law == "series":
+        grading = read_series(section) or grading
     return {"grading": grading, "negative": negative}
 
 
@@ -279,7 +292,7 @@ def scene_text(scene: Scene, *, heights_file: str | None = None, left_out: bool 
     Parameters
     ----------
     scene : Scene
-        With a grading that a file can hold.
+        With any grading; a Python function becomes its series.
     heights_file : str, optional
         Name beside the scene of a file that holds its measured heights, in the place of a list.
     left_out : bool, optional
@@ -289,7 +302,12 @@ def scene_text(scene: Scene, *, heights_file: str | None = None, left_out: bool 
     Returns
     -------
     str
-        The text; a grading that is a Python function is named, but cannot be read again.
+        The text.
+
+    Raises
+    ------
+    SceneError
+        If the grading cannot be resolved, or the height law is a class of the user.
 
     Examples
     --------
@@ -299,6 +317,7 @@ def scene_text(scene: Scene, *, heights_file: str | None = None, left_out: bool 
     >>> mcgw.scene_from(mcgw.scene_text(scene)) == scene
     True
     """
+    scene = storable(scene)
     surface = scene.surface
     document = {
         "title": scene.title,
@@ -328,4 +347,6 @@ def _grading_table(grading: Grading) -> dict[str, Any]:
             return {"law": "exponential", "gamma": float(grading.gamma)}
         case Table():
             return {"law": "table", "s": list(grading.s), "ratio": list(grading.ratio)}
-    return {"law": f"python: {grading!r}"}
+        case PiecewiseSeries():
+            return series_table(grading)
+    raise AssertionError(grading)  # `storable` leaves no other

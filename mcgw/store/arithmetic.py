@@ -21,6 +21,7 @@ from analytic import (
     HeightTable,
     Homogeneous,
     MeasuredHeights,
+    PiecewiseSeries,
     Table,
 )
 from mcgw.scene.samplers import promise_of
@@ -32,14 +33,14 @@ __all__ = ["KIND", "depends_on_processor", "drawn_with", "kind_of_processor"]
 KIND = ", processor "  # stands between the versions and the kind
 
 _HEIGHTS = (Gaussian, ExponentialHeights, HeightTable, MeasuredHeights)
-_GRADINGS = (Homogeneous, Exponential, Table)
+_GRADINGS = (Homogeneous, Exponential, Table, PiecewiseSeries)
 _POINTS = 4096  # one value in a thousand differs between kinds
 
 
 def depends_on_processor(scene: Scene, sampler: str) -> bool:
     """Whether the last digits of what a sampler draws may differ from one kind of processor to another."""
     modulus = scene.modulus
-    if isinstance(modulus, Clipped) and isinstance(modulus.grading, Exponential):
+    if isinstance(modulus, Clipped) and isinstance(modulus.grading, Exponential | PiecewiseSeries):
         modulus = modulus.grading
     own = isinstance(scene.heights, _HEIGHTS) and isinstance(modulus, _GRADINGS)
     drawn_alike = promise_of(sampler).same_on_all_processors or isinstance(scene.heights, MeasuredHeights)

@@ -27,6 +27,7 @@ __all__ = [
     "finished",
     "open_ensemble",
     "read_attributes",
+    "recorded_scene",
     "recorded_seed",
     "save",
     "verify",
@@ -176,11 +177,17 @@ def verify(path: Path) -> tuple[str, str]:
     return problem, found
 
 
-def recorded_seed(path: Path) -> int | None:
-    """Seed of the ensemble or run that is at a place, for scenes that give none."""
+def recorded_scene(path: Path) -> Scene | None:
+    """Scene of the ensemble or run that is at a place, if there is one."""
     if path.is_file():
-        return _described(path)[1].seed
-    return RunFolder.open(parts_of(path)).scene.seed if (parts_of(path) / "run.toml").is_file() else None
+        return _described(path)[1]
+    return RunFolder.open(parts_of(path)).scene if (parts_of(path) / "run.toml").is_file() else None
+
+
+def recorded_seed(path: Path) -> int | None:
+    """Its seed, for scenes that give none."""
+    there = recorded_scene(path)
+    return there.seed if there else None
 
 
 def finished(path: Path, scene: Scene, sampler: str) -> int:

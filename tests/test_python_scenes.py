@@ -1,0 +1,363 @@
+"""Gradings and height laws of Python: simulated, stopped, shared, merged, looked at as any others."""
+
+import os
+import re
+import signal
+import subprocess
+import sys
+import time
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+import scipy.stats
+
+import analytic
+import mcgw
+from mcgw.cli import main
+from mcgw.ensemble.regrading import regrade
+from mcgw.errors import StoreError
+from mcgw.jobs import merging
+from mcgw.jobs.job import Job
+from mcgw.jobs.merging import merge
+from mcgw.jobs.running import Part, run, run_part
+from mcgw.scene.scene import SceneError
+from mcgw.scene.storable import storable
+from mcgw.store import ensembles, merged_file, structure
+from mcgw.store.run_folder import parts_of
+
+HERE = Path(__file__).parent
+SIZE, SURFACES = 16, 60
+H = (2.0, 0.5, 3.0)
+
+
+def bent(s):
+    """A kink that nobody tells of."""
+    return 1 + 0.3 * np.abs(s - 0.777)
+
+
+SCENES = {
+    "lambda": {"grading": lambda s: 1 + 0.3 * np.tanh(s)},
+    "kink": {"grading": bent},
+    "told": {"grading": analytic.Custom(lambda s: np.where(s > 1.1, 2.0, 1.0) + np.abs(s - 0.4), (0.4, 1.1))},
+    "exp(12 s)": {"grading": lambda s: np.exp(12 * s)},
+    "clip": {"grading": lambda s: s - 0.9, "negative": "clip"},
+    "allow": {"grading": lambda s: np.sin(3 * s), "negative": "allow"},
+    "clipped twice": {"grading": analytic.Clipped(analytic.Custom(lambda s: s - 0.9))},
+    "lognorm": {"heights": scipy.stats.lognorm(0.3)},
+    "genextreme": {"heights": scipy.stats.genextreme(0.1, 5.0, 2.0)},
+    "lambda, lognorm": {"grading": lambda s: 1 + s * s, "heights": scipy.stats.lognorm(0.3)},
+    "kink, weibull": {"grading": bent, "heights": analytic.Weibull(2.0), "count": "poisson"},
+    "direct": {"grading": bent, "sampler": "direct"},
+    "tail": {"grading": bent, "sampler": "tail"},
+    "aggregate": {"grading": bent, "sampler": "aggregate"},
+}
+
+
+@pytest.fixture
+def small_blocks(monkeypatch):
+    """Runs of four blocks, the last one short; merged and looked at in this process."""
+    monkeypatch.setattr(Job, "rows", SIZE)
+    monkeypatch.setattr(merging, "_merge_in_child", lambda *places: merged_file.merge_into(*places[:3]))
+    monkeypatch.setattr(ensembles, "examine", lambda path: structure.describe(str(path)))
+
+
+@pytest.fixture
+def make(make_scene):
+    def of(name="lambda", **changes):
+        values = {
+            "separations": H,
+            "n_surfaces": SURFACES,
+            "sampler": "cells",
+            "grading": analytic.Homogeneous(),
+        }
+        return make_scene(**(values | SCENES[name] | changes))
+
+    return of
+
+
+class HaltError(Exception):
+    """Stands for whatever ends a run."""
+
+
+def halt_at(surfaces):
+    def progress(done):
+        if done >= surfaces:
+            raise HaltError
+
+    return progress
+
+
+def digest(path):
+    problem, found = ensembles.verify(path)
+    assert problem == ""
+    return found
+
+
+# --- the same bits, however it is drawn -----------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_memory_file_stopped_and_shared_are_one(small_blocks, make, tmp_path, name):
+    scene, memory = make(name), mcgw.simulate(make(name))
+    whole = run(scene, tmp_path / "whole.h5")
+    stopped, shared, grown = (tmp_path / f"{word}.h5" for word in ("stopped", "shared", "grown"))
+    with pytest.raises(HaltError):
+        run(scene, stopped, progress=halt_at(2 * SIZE))
+    run(scene, stopped)
+    for i in (2, 1, 3):
+        run_part(scene, shared, Part(i, 3))
+    merge(shared)
+    run(replace(scene, n_surfaces=20), grown)
+    run(scene, grown)
+    for path in (stopped, shared, grown):
+        assert digest(path) == digest(tmp_path / "whole.h5")
+    for quantity in scene.quantities:
+        np.testing.assert_array_equal(whole.values(quantity), memory.values(quantity))
+    assert whole.scene == memory.scene == storable(scene)
+    np.testing.assert_array_equal(mcgw.simulate(whole.scene).load, memory.load)  # of what the file says alone
+
+
+@pytest.mark.parametrize("name", [name for name in SCENES if "grading" in SCENES[name]])
+def test_the_curve_of_the_file_is_that_of_the_function(make, tmp_path, name):
+    scene = make(name)
+    held = run(replace(scene, n_surfaces=1), tmp_path / "e.h5").scene.grading
+    s = np.random.default_rng(1).uniform(scene.lowest, 8, 10_000)
+    s = s[np.min([np.abs(s - k) for k in (0.4, 1.1, 0.777)], axis=0) > 1e-9]
+    exact, slope = scene.grading(s), np.abs(scene.grading(s + 1e-7) - scene.grading(s - 1e-7)) / 2e-7
+    near = np.max([np.abs(scene.grading(s + d)) for d in (-1 / 64, 0, 1 / 64)], axis=0)
+    assert np.all(np.abs(held(s) - exact) <= 1e-13 * near + 4 * np.spacing(s) * slope)
+
+
+@pytest.mark.parametrize("name", ["kink", "exp(12 s)", "told", "clip", "lambda, lognorm"])
+def test_sums_are_those_of_the_function(make, name):
+    """The heights themselves, added up with the function and not with its series."""
+    scene = make(name, n_surfaces=2, count="fixed")
+    drawn = mcgw.simulate(scene)
+    modulus = analytic.Clipped(scene.grading) if scene.negative == "clip" else scene.grading
+    for surface in range(2):
+        s = mcgw.heights(scene, surface)
+        unit = 4 / 3 * scene.surface.E_star * scene.surface.radius**0.5 * scene.surface.sigma**1.5
+        for k, h in enumerate(H):
+            exact = np.sum(modulus(s[s > h]) * (s[s > h] - h) ** 1.5) * unit
+            assert drawn.load[surface, k] == pytest.approx(exact, rel=2e-12)
+
+
+SCRIPT = """
+import sys, time
+import numpy as np, scipy.stats
+import analytic, mcgw
+from mcgw.jobs.job import Job
+from mcgw.jobs.running import run
+Job.rows = 16
+drawn = Job.draw
+def slowly(*arguments):
+    time.sleep(float(sys.argv[2]))
+    return drawn(*arguments)
+Job.draw = slowly
+surface = mcgw.Surface("1.37 um", "13 um", 3e8, "1 cm^2", "78.6 GPa")
+scene = mcgw.Scene(surface=surface, separations=(2.0, 1.0), n_asperities=3000, n_surfaces=100, seed=1,
+                   grading=lambda s: 1 + 0.3*np.abs(s - 0.777), heights=scipy.stats.lognorm(0.3))
+run(scene, sys.argv[1])
+"""
+
+
+def started(path, seconds):
+    env = os.environ | {"PYTHONPATH": str(HERE.parent)}
+    call = [sys.executable, "-c", SCRIPT, str(path), str(seconds)]
+    return subprocess.Popen(call, env=env, stderr=subprocess.PIPE, text=True)
+
+
+def test_a_script_that_is_killed_and_started_again(tmp_path):
+    whole, killed = tmp_path / "whole.h5", tmp_path / "killed.h5"
+    assert started(whole, 0.0).communicate(timeout=120)[1] == ""
+    process = started(killed, 0.3)
+    until = time.monotonic() + 60
+    while len(list(parts_of(killed).glob("shards/*.h5"))) < 2:
+        assert time.monotonic() < until
+        time.sleep(0.01)
+    process.send_signal(signal.SIGKILL)
+    process.communicate()
+    assert not killed.exists()
+    assert len(list(parts_of(killed).glob("shards/*.h5"))) < 7
+    process = started(killed, 0.0)
+    assert process.communicate(timeout=120)[1] == ""
+    assert digest(killed) == digest(whole)
+
+
+def test_begun_in_python_and_finished_by_commands(small_blocks, make, tmp_path, capsys):
+    """The scene that the file shows is all that the other machine needs."""
+    path, scene = tmp_path / "e.h5", make("lambda, lognorm")
+    run(scene, tmp_path / "whole.h5")
+    with pytest.raises(HaltError):
+        run(scene, path, progress=halt_at(SIZE))
+    assert main(["show", "--scene", str(path)]) == 0
+    text = capsys.readouterr().out
+    (tmp_path / "s.toml").write_text(text)
+    for share in ("1/2", "2/2"):
+        assert main(["run", str(tmp_path / "s.toml"), "-o", str(path), "--shard", share]) == 0
+    assert main(["merge", str(path)]) == 0
+    assert digest(path) == digest(tmp_path / "whole.h5")
+
+
+# --- another machine, another function ------------------------------------------------------------------
+
+
+def test_other_last_digits_go_on_and_another_function_does_not(small_blocks, make, tmp_path):
+    """As where another processor evaluates the function: the run keeps the series that it began with."""
+    path = tmp_path / "e.h5"
+    run(make("lambda"), tmp_path / "whole.h5")
+    with pytest.raises(HaltError):
+        run(make("lambda"), path, progress=halt_at(SIZE))
+
+    def elsewhere(s):
+        return (1 + 0.3 * np.tanh(s)) * (1 + 4e-16 * np.sign(np.sin(1e3 * s)))
+
+    assert storable(make("lambda", grading=elsewhere)).grading != storable(make("lambda")).grading
+    with pytest.raises(StoreError, match=r"holds a different run: grading\.coefficients is "):
+        run(make("lambda", grading=lambda s: 1 + (0.3 + 1e-11) * np.tanh(s)), path)
+    run(make("lambda", grading=elsewhere), path)
+    assert digest(path) == digest(tmp_path / "whole.h5")
+    run(make("lambda", grading=elsewhere, n_surfaces=70), path)
+    with pytest.raises(StoreError, match="holds a different ensemble: grading"):
+        run(make("lambda", grading=np.cosh, n_surfaces=80), path)
+
+
+# --- looked at ------------------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def held(make, tmp_path):
+    path = tmp_path / "e.h5"
+    run(make("kink", heights=scipy.stats.lognorm(0.3), keep="moments"), path)
+    return path
+
+
+def test_commands_name_the_function(held, tmp_path, capsys):
+    assert main(["show", str(held)]) == 0
+    assert re.search(
+        r"grading +PiecewiseSeries\('bent', \d+ pieces from s = 0.5 to ", capsys.readouterr().out
+    )
+    assert main(["compare", str(held), "-o", str(tmp_path / "e.svg")]) == 0
+    assert "grading bent" in (tmp_path / "e.svg").read_text()
+    assert main(["report", str(held), "-o", str(tmp_path / "e.html")]) == 0
+    assert "grading bent" in (tmp_path / "e.html").read_text()
+
+
+def test_a_name_is_only_shown(make, tmp_path, capsys):
+    """Whatever stands there: no markup, no formula, no control characters."""
+    series = replace(storable(make("lambda")).grading, name="<b>$\\frac{1}$\x1b[2J\n__import__('os')")
+    run(make("lambda", grading=series), tmp_path / "e.h5")
+    assert main(["show", str(tmp_path / "e.h5")]) == 0
+    assert "\x1b" not in capsys.readouterr().out
+    for kind in ("png", "svg"):
+        assert main(["compare", str(tmp_path / "e.h5"), "-o", str(tmp_path / f"e.{kind}")]) == 0
+    assert main(["report", str(tmp_path / "e.h5"), "-o", str(tmp_path / "e.html")]) == 0
+    page = (tmp_path / "e.html").read_text()
+    assert "<b>$" not in page
+    assert "\x1b" not in page
+
+
+def test_a_file_names_no_code():
+    """A law is one of a few words; there is no key that is evaluated."""
+    text = 'grading = {law = "python: lambda s: 1"}\n'
+    with pytest.raises(
+        SceneError, match=r"grading\.law = .*choose one of homogeneous, exponential, table, series"
+    ):
+        mcgw.scene_from(text + "[contact]\nseparations = [1.0]\n")
+
+
+# --- regraded -------------------------------------------------------------------------------------------
+
+
+def bent_at_an_edge(s):
+    return 1 + 0.3 * np.abs(s - H[0])
+
+
+@pytest.mark.parametrize("grading", [np.cosh, lambda s: 1 + 0.3 * np.tanh(s), bent_at_an_edge])
+def test_regraded_by_a_function_and_saved(make, tmp_path, grading):
+    base = run(make("lambda", grading=analytic.Homogeneous(), keep="moments"), tmp_path / "base.h5")
+    new = ensembles.save(regrade(base, grading), tmp_path / "new.h5")
+    fresh = mcgw.simulate(make("lambda", grading=grading, keep="sums"))
+    for quantity in fresh.scene.quantities:
+        x, y = new.values(quantity), fresh.values(quantity)
+        np.testing.assert_allclose(x, y, rtol=1e-12, atol=1e-14 * y.mean())
+    assert new.scene == replace(fresh.scene, keep="moments")
+    assert analytic.name_of(new.scene.grading) == grading.__name__
+    if grading is not np.cosh:  # which takes more moments than the exponential gradings do
+        again = regrade(new, base.scene.grading)  # there and back
+        np.testing.assert_allclose(again.load, base.load, rtol=1e-12, atol=1e-14 * base.load.mean())
+
+
+def test_regrading_by_what_a_file_holds(make):
+    base = mcgw.simulate(make("lambda", grading=analytic.Homogeneous(), keep="moments"))
+    one = regrade(base, SCENES["lambda"]["grading"])
+    np.testing.assert_array_equal(regrade(base, one.scene.grading).load, one.load)
+
+
+def test_a_kink_inside_a_cell_is_refused(make):
+    base = mcgw.simulate(make("lambda", grading=analytic.Homogeneous(), keep="moments"))
+    with pytest.raises(ValueError, match=r"break of the grading 0\.777 is no edge|not resolve"):
+        regrade(base, bent)
+
+
+# --- what is refused ------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "draw", [mcgw.simulate, storable, mcgw.scene_text, lambda scene: run(scene, "never.h5")]
+)
+def test_noise_is_one_line(make, tmp_path, monkeypatch, draw):
+    monkeypatch.chdir(tmp_path)
+    noisy = make("lambda", grading=lambda s: 1 + 1e-3 * np.modf(np.sin(1e9 * s) * 1e5)[0])
+    with pytest.raises(SceneError, match=r"^grading: not resolved by .* pieces near s = [^\n]*$"):
+        draw(noisy)
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"grading": 1.5}, r"^grading = 1\.5: give .*a function of an array"),
+        ({"heights": 1.5}, r"^heights = 1\.5: give .*a frozen law of scipy"),
+        ({"heights": scipy.stats.poisson(3)}, "^heights = .*give a frozen continuous law"),
+        ({"heights": scipy.stats.cauchy()}, "^heights = .*its mean is nan.*must be finite"),
+    ],
+)
+def test_what_is_neither(make, change, words):
+    with pytest.raises(SceneError, match=words):
+        make("lambda", **change)
+
+
+def test_series_are_not_taken_where_they_do_not_reach(make):
+    known = storable(make("lambda"))
+    assert replace(known, separations=(1.0, 3.0)).grading == known.grading
+    with pytest.raises(
+        SceneError, match=r"^grading\.edges: the series reach from s = 0\.5 .*give the grading"
+    ):
+        replace(known, separations=(-1.0, 3.0))
+    with pytest.raises(SceneError, match=r"^grading\.edges: "):
+        replace(known, heights=scipy.stats.lognorm(0.9))
+
+
+# --- distributions of scipy -----------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "given",
+    [
+        scipy.stats.lognorm(0.3),
+        scipy.stats.lognorm(s=0.3),
+        scipy.stats.lognorm(0.3, 2.0, 5.0),
+        scipy.stats.lognorm(0.3, scale=7.0),
+        analytic.ScipyHeights(scipy.stats.lognorm(0.3)),
+    ],
+)
+def test_a_distribution_is_its_shapes(make, given):
+    scene, plain = make("lambda", heights=given), make("lambda", heights=scipy.stats.lognorm(s=0.3))
+    assert scene.heights == plain.heights
+    assert hash(scene.heights) == hash(plain.heights)
+    np.testing.assert_array_equal(mcgw.simulate(scene).load, mcgw.simulate(plain).load)
+    assert mcgw.scene_from(mcgw.scene_text(scene)) == storable(scene)
+    assert 'law = "scipy"\nname = "lognorm"' in mcgw.scene_text(scene)
