@@ -13,6 +13,7 @@ from mcgw.sampling.cells import Mesh
 from mcgw.sampling.layout import Layout
 from mcgw.sampling.response.assembly import Entry
 from mcgw.sampling.response.tree import Tree, transfer
+from mcgw.sampling.rules import product
 
 __all__ = ["Parts"]
 
@@ -51,7 +52,7 @@ class Parts:
         matrix = np.zeros((answers, int(self.layout.starts[-1])))
         for entry in self.entries:
             moments = (rooted if entry.rooted else plain)[entry.node]
-            matrix[entry.laws] += entry.coefficients[: len(moments)].T @ moments
+            matrix[entry.laws] += product(entry.coefficients[: len(moments)].T, moments)
         return matrix
 
     def _moments_of_nodes(self) -> tuple[list[Array], list[Array]]:
@@ -65,6 +66,6 @@ class Parts:
             above = np.zeros((self.plain[node], itself.shape[1]))
             for child in (self.tree.left[node], self.tree.right[node]):
                 of_child = transfer(self.mesh, self.tree, node, child)[: len(above), : len(plain[child])]
-                above += of_child @ plain[child]
+                above += product(of_child, plain[child])
             plain.append(above)
         return plain, rooted
