@@ -34,7 +34,7 @@ def sums_of_heights(scene, heights, quantity, exponent=None):
         touching = heights[heights > h]
         e = scene.modulus(touching) ** modulus if touching.size else touching
         terms = (touching - h) ** power * e if power else np.ones_like(touching)
-        values.append(factor(scene.surface, quantity) * math.fsum(terms))
+        values.append(factor(scene.surface, quantity) * math.fsum(terms.tolist()))
     return np.array(values)
 
 

@@ -8,6 +8,7 @@ from oracles import sums_of_heights
 
 import analytic
 import mcgw
+from mcgw.sampling.asperities import heights_drawn
 from mcgw.sampling.samplers import sampler_of
 
 GRADINGS = {
@@ -21,6 +22,10 @@ GRADINGS = {
     "steep": analytic.Custom(lambda s: 1.5 + np.tanh(1e3 * (s - 0.5))),
     "steeper": analytic.Custom(lambda s: 1.5 + np.tanh(1e6 * (s - 0.5))),
     "exp(12 s)": analytic.Custom(lambda s: np.exp(12 * s)),
+    "exp(20 s)": analytic.Custom(lambda s: np.exp(20 * s)),
+    "exp(30 s)": analytic.Custom(lambda s: np.exp(30 * s)),
+    "exp(-30 s)": analytic.Custom(lambda s: np.exp(-30 * s)),
+    "exp(60 s)": analytic.Custom(lambda s: np.exp(60 * (s - 3))),
 }
 MANY = 20  # surfaces: what goes wrong in rare cells does not show in each
 RANDOM = np.random.default_rng(3)
@@ -50,8 +55,9 @@ def worst(scene, surface, sampler=None):
 
     Less what the last digit of a listed height is good for where a contact just touches.
     """
-    drawn = (sampler or sampler_of(scene)).block(surface, 1).sums
-    heights = mcgw.heights(scene, surface)
+    sampler = sampler or sampler_of(scene)
+    drawn = sampler.block(surface, 1).sums
+    heights = heights_drawn(scene, sampler, surface)
     errors = []
     for quantity in scene.quantities:
         exact = sums_of_heights(scene, heights, quantity)
@@ -151,6 +157,7 @@ def test_heights_in_all_are_the_asperities_asked_for(make_scene):
             assert len(every) == scene.n_asperities
         else:
             assert abs(len(every) - 3000) < 5 * 3000**0.5
+        np.testing.assert_array_equal(touching, heights_drawn(scene, sampler_of(scene), 1))
 
 
 def test_aggregate_and_direct_keep_no_heights(make_scene):

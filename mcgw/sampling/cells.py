@@ -25,7 +25,7 @@ from mcgw.sampling.rules import chebyshev_points, chebyshev_transform, gauss_leg
 from mcgw.sampling.spacing import cuts
 from mcgw.scene.scene import Scene
 
-__all__ = ["NODES", "TO_COEFFICIENTS", "Mesh", "height_noise", "mesh_of", "no_cells"]
+__all__ = ["NODES", "TO_COEFFICIENTS", "Mesh", "evenness", "height_noise", "mesh_of", "no_cells"]
 
 Array = NDArray[np.float64]
 
@@ -33,6 +33,8 @@ _ROUNDING = 1e-9  # of the width of a cell
 _CONVERGED = 1e-9  # a step of Newton whose square is nothing
 _SHORT, _MOST_HALVINGS = 16, 60  # terms for a grading on a cell, and how often it is cut to get there
 _FAR, _NARROWER = 2.0, 0.75  # spans from a root of the laws of contact, and what is left of one nearer by
+_DIGITS = 4.0  # of a height that coefficients without meaning may seem to be worth
+_EVEN, _LEAST = 4.0, 1 / 16  # see `evenness`
 _CLOSEST = 2.0**-40  # of a cell to an end of the support that is a broken power
 
 _ORDER = 20
@@ -185,7 +187,7 @@ def _resolving(grading: Grading, law: HeightLaw, edges: Array) -> Array:
         t = (1 + NODES) / 2 * chebyshev.chebval(NODES, stretch)
         e = grading(a[:, None] + t)
         tail = np.abs(product(TO_COEFFICIENTS, e.T))[_SHORT:].sum(axis=0)
-        rough = tail > 1e-13 * np.abs(e).max(axis=1) + height_noise(a, t, e)
+        rough = tail > 1e-13 * evenness(grading, e) * np.abs(e).max(axis=1) + height_noise(a, t, e)
         if not rough.any():
             break
         edges = np.unique(np.concatenate([edges, (a + width / 2)[rough]]))
@@ -195,7 +197,21 @@ def _resolving(grading: Grading, law: HeightLaw, edges: Array) -> Array:
 def height_noise(a: Array | float, t: Array, e: Array) -> Array:
     """What a steep grading `e` makes of the last digit of a height ``a + t``, over the last axis."""
     widest = t.max(axis=-1)
-    return np.asarray(64 * np.spacing(np.abs(a) + widest) * np.ptp(e, axis=-1) / widest)
+    return np.asarray(_DIGITS * np.spacing(np.abs(a) + widest) * np.ptp(e, axis=-1) / widest)
+
+
+def evenness(grading: Grading, e: Array) -> Array:
+    """Share of the largest modulus `e` on a cell that errors are held against, over the last axis.
+
+    A single contact may sit where the modulus is least, and is to be as accurate as all others. 1 up to a
+    ratio of four, for gradings without steep places, and where the modulus changes its sign.
+    """
+    if grading.smooth:
+        return np.ones(e.shape[:-1])
+    low, high = e.min(axis=-1), e.max(axis=-1)
+    small, large = np.minimum(np.abs(low), np.abs(high)), np.maximum(np.abs(low), np.abs(high))
+    share = np.clip(_EVEN * (small / np.maximum(large, np.finfo(float).tiny)), _LEAST, 1.0)
+    return np.asarray(np.where((low > 0) | (high < 0), share, 1.0))
 
 
 def _mass(law: HeightLaw, a: Array, t: Array) -> Array:

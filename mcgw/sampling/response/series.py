@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analytic import QUANTITIES, Grading, resolved_breaks
-from mcgw.sampling.cells import NODES, TO_COEFFICIENTS, height_noise
+from mcgw.sampling.cells import NODES, TO_COEFFICIENTS, evenness, height_noise
 from mcgw.sampling.rules import product
 from mcgw.sampling.spacing import SURE
 from mcgw.scene.scene import Scene
@@ -187,7 +187,8 @@ class Laws:
         """
         tail = np.cumsum(np.abs(c)[::-1], axis=0)[::-1]
         crowd = self.n_asperities * probability + _SCATTER
-        enough = np.maximum(tail[0], self.total[which] / crowd)
+        least = np.where(self.modulus[which], evenness(self.grading, e), 1.0) * tail[0]
+        enough = np.maximum(least, self.total[which] / crowd)
         relative = height_noise(a, t, e) / max(np.abs(e).max(), np.finfo(float).tiny)
         noise = np.where(self.modulus[which], relative, 0.0) * tail[0]
         limits = (
