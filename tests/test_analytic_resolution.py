@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+import scipy.stats
 
 import analytic
 from analytic import Custom, Exponential, resolved_breaks
@@ -82,3 +83,26 @@ def test_first_negative_looks_on_both_sides_of_a_break():
     assert (
         analytic.first_negative(Custom(lambda s: np.where(s < 1 / 3, -1.0, 1.0), (1 / 3,)), 1 / 3, 1) is None
     )
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+def test_heavy_tails_reach_far_in_few_pieces(sign):
+    """A t law of 5 degrees has heights of a million deviations: that is no reason for a million pieces."""
+    seen = []
+    step = sign * 1234.5
+
+    def grading(s):
+        seen.append(s.size)
+        return np.where(s > step, 2.0, 1.0)
+
+    ends = sorted((sign * 0.3, sign * 4e6))
+    breaks = resolved_breaks(Custom(grading), *ends)
+    assert min(abs(b - step) for b in breaks) < 1e-9
+    assert sum(seen) < 10**6
+
+
+def test_an_untold_grading_under_a_heavy_tail():
+    law = analytic.ScipyHeights(scipy.stats.t(5))
+    told, untold = (Custom(lambda s: 2 + np.tanh(s), smooth=smooth) for smooth in (True, False))
+    expected, found = (analytic.fn(1.5, [-0.5, 0.3, 2.0], g, heights=law) for g in (told, untold))
+    np.testing.assert_allclose(found, expected, rtol=1e-12)
