@@ -13,10 +13,10 @@ from itertools import pairwise
 from typing import Any, Literal
 
 import numpy as np
-from numpy.polynomial.legendre import leggauss
 from numpy.typing import ArrayLike, NDArray
 
 from analytic.elementary import exp_minus_half_square
+from analytic.gauss_legendre import gauss_legendre
 from analytic.gradings import Grading
 from analytic.heights import GAUSSIAN, Gaussian, HeightLaw
 from analytic.integrals import fn
@@ -110,8 +110,7 @@ class HeightRule:
         regular = _STEP * np.arange(np.floor(low / _STEP) + 1, np.ceil(top / _STEP))
         cuts = [low, *h, *_graded(h), *regular, *resolved_breaks(grading, max(low, -_REACH), top), top]
         edges = np.unique([c for c in cuts if low <= c <= top])
-        x, w = leggauss(_NODES)
-        x, w = (1 + x) / 2, w / 2
+        x, w = gauss_legendre(_NODES)
         pieces = []
         for left, right in pairwise(edges):
             anchor = h[h <= left][-1]

@@ -5,14 +5,13 @@ half-integer n, so Gauss-Legendre in v converges exponentially, whatever the smo
 h >= 0 everything is relative to phi(h), so nothing underflows before the answer does.
 """
 
-from functools import cache
 from itertools import pairwise
 
 import numpy as np
-from numpy.polynomial.legendre import leggauss
 from numpy.typing import ArrayLike, NDArray
 
 from analytic.elementary import exp_minus_half_square
+from analytic.gauss_legendre import gauss_legendre
 from analytic.gradings import Grading, Homogeneous
 from analytic.heights import GAUSSIAN, Gaussian, HeightLaw
 from analytic.law_rule import law_integral
@@ -33,16 +32,9 @@ _ALL = (-np.inf, np.inf)
 _BLOCK = 192  # separations at a time: nodes x block x 8 bytes stay in the cache
 
 
-@cache
-def _legendre(nodes: int) -> tuple[Array, Array]:
-    """Gauss-Legendre on [0, 1]."""
-    x, w = leggauss(nodes)
-    return (1 + x) / 2, w / 2
-
-
 def _panel(n: float, h: Array, grading: Grading, unit: Array, low: Array, high: Array) -> Array:
     """``int (s-h)^n g phi / phi(max(h, 0))`` over s from `low` to `high`, in units of g; columns like `h`."""
-    x, w = _legendre(_NODES)
+    x, w = gauss_legendre(_NODES)
     above = np.maximum(h, 0.0)
     start = np.sqrt(low - h)
     width = np.sqrt(high - h) - start
@@ -310,7 +302,7 @@ def fn_paper(n: float, h: ArrayLike, gamma: float, ngp: int) -> Array:
         In the shape of `h`.
     """
     h = np.asarray(h, dtype=np.float64)[..., None]
-    x, w = _legendre(ngp)
+    x, w = gauss_legendre(ngp)
     log_t = np.log(x)  # of t exp(h), so that s - h = -log_t even where exp(-h) underflows
     s = h - log_t
     terms = (-log_t) ** n * np.exp(-s * s / 2) * (gamma - (gamma - 1) * np.exp(-s)) / x

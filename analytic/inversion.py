@@ -1,12 +1,15 @@
 """Given the load (or area, ...), the separation; and comparisons at equal load."""
 
+from functools import cache
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import brentq
 
-from analytic.gradings import Grading
-from analytic.heights import GAUSSIAN, HeightLaw
+from analytic.gradings import Grading, Homogeneous
+from analytic.heights import GAUSSIAN, Gaussian, HeightLaw
 from analytic.integrals import fn, quotient
+from analytic.law_rule import law_rule
 from analytic.quantities import QUANTITIES, Quantity
 
 __all__ = ["ratio_at_equal_load", "separations_at"]
@@ -14,7 +17,10 @@ __all__ = ["ratio_at_equal_load", "separations_at"]
 Array = NDArray[np.float64]
 
 _RANGE = (-40.0, 1000.0)
+_GRID = np.concatenate([np.linspace(_RANGE[0], 10, 251), np.geomspace(10.5, _RANGE[1], 60)])
 _LAST_DIGITS = 4 * np.finfo(float).eps
+
+Problem = tuple[float, Grading | None, HeightLaw, float]
 
 
 def separations_at(
@@ -28,22 +34,55 @@ def separations_at(
         If a value is not reached between h = -40 and 1000.
     """
     n = quantity.exponent
-    grid = np.concatenate([np.linspace(_RANGE[0], 10, 251), np.geomspace(10.5, _RANGE[1], 60)])
-    on_grid = fn(n, grid, grading, log=True, heights=heights)
+
+    @cache
+    def on_grid() -> Array:
+        """For the Gaussian law all at once; else integral by integral, and only if it has to be."""
+        return fn(n, _GRID, grading, log=True, heights=heights)
+
+    about = None if isinstance(heights, Gaussian) else _about(n, grading, heights)
     roots = []
-    for target in log_target.ravel():
-        high_enough = np.flatnonzero(on_grid >= target)
-        if not high_enough.size or high_enough[-1] == len(grid) - 1:
-            raise ValueError(
-                f"{quantity.name}: not reached between h = {_RANGE[0]:g} and {_RANGE[1]:g}; "
-                "give another value"
-            )
-        left, right = grid[high_enough[-1] : high_enough[-1] + 2].tolist()
-        roots.append(_root(left, right, (n, grading, heights, target)))
+    for target in log_target.ravel().tolist():
+        problem = (n, grading, heights, target)
+        bracket = None if about is None else _near(about, problem)
+        if bracket is None:
+            last = _last(on_grid(), target)
+            if last is None:
+                raise ValueError(
+                    f"{quantity.name}: not reached between h = {_RANGE[0]:g} and {_RANGE[1]:g}; "
+                    "give another value"
+                )
+            bracket = _GRID[last], _GRID[last + 1]
+        roots.append(_root(*bracket, problem))
     return np.array(roots, dtype=np.float64).reshape(log_target.shape)
 
 
-def _root(left: float, right: float, problem: tuple[float, Grading | None, HeightLaw, float]) -> float:
+def _last(values: Array, target: float) -> int | None:
+    """Where they are last as large as the target, with a smaller one behind it."""
+    high_enough = np.flatnonzero(values >= target)
+    return int(high_enough[-1]) if high_enough.size and high_enough[-1] < len(values) - 1 else None
+
+
+def _about(n: float, grading: Grading | None, heights: HeightLaw) -> Array:
+    """Logarithms on the grid to some digits, by the heights and probabilities of its lowest separation."""
+    grading = Homogeneous() if grading is None else grading
+    s, probabilities = law_rule(heights, _GRID[:1], grading, power=1, exponent=n + 1)
+    approach = s - _GRID[:, None]
+    terms = np.where(approach > 0, np.abs(approach) ** n, 0.0)
+    with np.errstate(all="ignore"):
+        return np.asarray(np.log(terms @ (probabilities * grading(s))))
+
+
+def _near(about: Array, problem: Problem) -> tuple[float, float] | None:
+    """Ends around the root, one step farther on either side; None where the exact integrals deny it."""
+    last = _last(about, problem[-1])
+    if last is None:
+        return None
+    left, right = _GRID[max(last - 1, 0)], _GRID[min(last + 2, len(_GRID) - 1)]
+    return (left, right) if _excess(left, *problem) > 0 > _excess(right, *problem) else None
+
+
+def _root(left: float, right: float, problem: Problem) -> float:
     # A target right at the end of the bracket may lie beyond it by a last digit.
     if _excess(left, *problem) <= 0:
         return left

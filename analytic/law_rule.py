@@ -8,9 +8,9 @@ the last digit of a height, counts with its exact probability.
 from itertools import pairwise
 
 import numpy as np
-from numpy.polynomial.legendre import leggauss
 from numpy.typing import NDArray
 
+from analytic.gauss_legendre import gauss_legendre
 from analytic.gradings import Grading
 from analytic.heights import HeightLaw
 from analytic.magnitude import log_unit, over_unit
@@ -108,8 +108,7 @@ def law_rule(
         return np.empty(0), np.empty(0)
     cuts = {*_edges(law, start, top), *resolved_breaks(grading, start, top)}
     cuts |= {float(h) for h in separations if start < h < top} | set(_graded(separations, start, top))
-    x, w = leggauss(_NODES)
-    x, w = (1 + x) / 2, w / 2
+    x, w = gauss_legendre(_NODES)
     heights, probabilities = [], []
     for left, right in pairwise(sorted(cuts)):
         if right - left <= 2 * _TINY and (left in law.singular or right in law.singular):

@@ -5,10 +5,11 @@ import math
 import mpmath as mp
 import numpy as np
 import pytest
+import scipy.stats
 from reference import F, F_star
 
 import analytic
-from analytic import Custom, Exponential
+from analytic import Custom, Exponential, inversion, law_rule
 
 SURFACE = analytic.Surface(sigma=1.37e-6, radius=13e-6, eta=3e8, nominal_area=1e-4, E_star=78.6e9)
 H = np.array([-30.0, -8.0, -1.0, 0.0, 0.1, 2.0, 9.9, 10.2, 25.0, 36.0])
@@ -102,3 +103,46 @@ def test_equal_load_is_equal_load():
     np.testing.assert_allclose(
         analytic.ratio_at_equal_load("load", [0.0, 3.0], Exponential(2.0)), 1, rtol=1e-13
     )
+
+
+LAWS = {
+    "exponential": analytic.ExponentialHeights(),
+    "weibull": analytic.Weibull(1.5),
+    "table": analytic.HeightTable.of(np.random.default_rng(1).normal(size=300)),
+    "measured": analytic.MeasuredHeights(np.random.default_rng(2).normal(size=300)),
+    "uniform": analytic.ScipyHeights(scipy.stats.uniform()),
+    "lognormal": analytic.ScipyHeights(scipy.stats.lognorm(0.3)),
+    "t": analytic.ScipyHeights(scipy.stats.t(5)),
+}
+
+
+@pytest.mark.parametrize("grading", [None, Exponential(1.8), Custom(lambda s: 2 + np.tanh(s))])
+@pytest.mark.parametrize("law", LAWS)
+def test_any_law_is_inverted_by_few_integrals(law, grading, monkeypatch):
+    """To 1e-12 with at most 20 rules of heights a value, one of which the values of a call share."""
+    made = []
+    for module in (law_rule, inversion):
+
+        def counted(*given, rule=module.law_rule, **named):
+            made.append(1)
+            return rule(*given, **named)
+
+        monkeypatch.setattr(module, "law_rule", counted)
+    model = analytic.Model(SURFACE, grading=grading or analytic.Homogeneous(), heights=LAWS[law])
+    h = np.array([-0.7, 0.31, 12.0 if np.isinf(LAWS[law].support[1]) else 1.2])
+    values = model.mean("load", h)
+    made.clear()
+    np.testing.assert_allclose(model.separation_at("load", values), h, rtol=1e-12, atol=2e-13)
+    assert len(made) <= 19 * h.size + 1
+
+
+def test_where_theory_only_knows_the_last_of_several_it_is_found_for_any_law():
+    """gamma = 5 under exponential heights: the load turns round and is negative where much touches."""
+    model = analytic.Model(SURFACE, grading=Exponential(5.0), heights=LAWS["exponential"])
+    h = np.linspace(-12, 8, 401)
+    load = model.mean("load", h)
+    peak = h[np.argmax(load)]
+    value = float(load.max() * 0.9)
+    found = float(model.separation_at("load", value))
+    assert found > peak
+    assert float(model.mean("load", found)) == pytest.approx(value, rel=1e-12)
