@@ -1,10 +1,17 @@
 """Scenes to start from: each runs, and none is written over a file."""
 
+import csv
 from dataclasses import replace
+from itertools import pairwise
 from pathlib import Path
 
+import numpy as np
 import pytest
+from scipy.integrate import quad
+from scipy.interpolate import PchipInterpolator
+from scipy.stats import norm
 
+import analytic
 import mcgw
 from mcgw.cli import main
 from mcgw.commands.init import PRESETS
@@ -40,3 +47,45 @@ def test_never_over_another_file(tmp_path, capsys):
     assert main(["init", "-o", str(path)]) == 2
     assert "already there" in capsys.readouterr().err
     assert path.read_text() == "mine"
+
+
+def modulus_of(scene):
+    """E*(s)/E* as the comments of the presets have it."""
+    match scene.grading:
+        case analytic.Exponential(gamma=gamma):
+            return lambda s: gamma - (gamma - 1) * np.exp(-s)
+        case analytic.Table(s=heights, ratio=ratio):
+            curve = PchipInterpolator(heights, ratio)
+            return lambda s: curve(np.clip(s, heights[0], heights[-1]))
+    return lambda s: 1.0 + 0 * s
+
+
+@pytest.mark.parametrize("name", PRESETS)
+def test_theory_of_a_light_load_by_command(name, tmp_path):
+    """`solve --pressure 10kPa`: integrals by scipy at the separation that is printed give that load."""
+    path, table = tmp_path / "mine.toml", tmp_path / "table.csv"
+    assert main(["init", name, "-o", str(path)]) == 0
+    path.write_text(path.read_text().replace("n_surfaces = 1000", "n_surfaces = 4"))
+    assert main(["solve", str(path), "--pressure", "10kPa", "--csv", str(table)]) == 0
+    scene = mcgw.load_scene(path)
+    with table.open() as file:
+        said = {row["quantity"]: float(row["theory"]) for row in csv.DictReader(file)}
+    h, e, s = said["separation"], modulus_of(scene), scene.surface
+    root = scene.n_asperities * np.sqrt(s.radius * s.sigma)
+
+    def integral(n, modulus):
+        ends = [h, 4.0, 6.0, 12.0]  # a table of moduli ends at s = 4
+        parts = [
+            quad(lambda x: (x - h) ** n * modulus(x) * norm.pdf(x), *part, epsabs=0, epsrel=1e-11)[0]
+            for part in pairwise(ends)
+        ]
+        return sum(parts)
+
+    load = 4 / 3 * s.E_star * s.sigma * root * integral(1.5, e)
+    assert load == pytest.approx(1e4 * s.nominal_area, rel=1e-9)
+    assert said["area"] == pytest.approx(
+        np.pi * s.radius * s.sigma * scene.n_asperities * integral(1, np.ones_like), rel=1e-9
+    )
+    assert said["stiffness"] == pytest.approx(2 * s.E_star * root * integral(0.5, e), rel=1e-9)
+    assert said["conductance"] == pytest.approx(4 * root * integral(0.5, np.ones_like), rel=1e-9)
+    assert said["contacts"] == pytest.approx(scene.n_asperities * norm.sf(h), rel=1e-9)
