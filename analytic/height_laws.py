@@ -6,7 +6,7 @@ All are reduced: s = (z - mean)/(standard deviation). Separations stay d/sigma f
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property, partial
+from functools import cached_property, lru_cache, partial
 from typing import Any, TypeVar
 
 import numpy as np
@@ -29,6 +29,7 @@ _SECONDS = 5.0  # for moments, or jumps, of a law of scipy: some are integrals o
 _TRIAL, _TRIAL_SECONDS = np.array([1e-9, 0.1, 0.5, 0.9]), 1.0  # a few of the thousands of calls to come
 
 
+@lru_cache(maxsize=4096)  # every quantity asks for the same heights, and a call of scipy's laws is slow
 def narrowest(law: HeightLaw, s: float) -> float:
     """Width, halved until no quarter changes the logarithm of the density by more than 1/8."""
     width = max(_BEND, abs(s) / 8)  # far out in a heavy tail, a share of the height
@@ -328,7 +329,10 @@ class ScipyHeights:
         low, high = self.support
         start = np.asarray(s)
         moved = np.clip(start + t, low, high)
-        return np.asarray(self.distribution.logpdf(self._x(moved)) - self.distribution.logpdf(self._x(start)))
+        both = np.concatenate([moved.ravel(), start.ravel()])  # a call takes longer than a hundred values
+        logarithm = self.distribution.logpdf(self._x(both))
+        after, before = logarithm[: moved.size], logarithm[moved.size :]
+        return np.asarray(after.reshape(moved.shape) - before.reshape(start.shape))
 
     def below(self, s: Array) -> Array:
         """Its ``cdf``."""

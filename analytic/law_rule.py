@@ -109,19 +109,21 @@ def law_rule(
     cuts = {*_edges(law, start, top), *resolved_breaks(grading, start, top)}
     cuts |= {float(h) for h in separations if start < h < top} | set(_graded(separations, start, top))
     x, w = gauss_legendre(_NODES)
-    heights, probabilities = [], []
+    heights, weights, lumps = [], [], []
     for left, right in pairwise(sorted(cuts)):
         if right - left <= 2 * _TINY and (left in law.singular or right in law.singular):
-            heights.append(np.array([left]))
-            probabilities.append(np.array([_mass(law, left, right)]))
+            lumps.append((left, _mass(law, left, right)))
             continue
         anchor = separations[separations <= left][-1]
         v0, v1 = np.sqrt(left - anchor), np.sqrt(right - anchor)
         v = v0 + (v1 - v0) * x
-        s = np.clip(anchor + v * v, left, np.nextafter(right, left))
-        heights.append(s)
-        probabilities.append(2 * v * (v1 - v0) * w * law.density(s))
-    return np.concatenate(heights), np.concatenate(probabilities)
+        heights.append(np.clip(anchor + v * v, left, np.nextafter(right, left)))
+        weights.append(2 * v * (v1 - v0) * w)
+    s, weight = np.concatenate([np.empty(0), *heights]), np.concatenate([np.empty(0), *weights])
+    at, mass = np.array(lumps, dtype=np.float64).reshape(-1, 2).T
+    s, probabilities = np.append(s, at), np.append(weight * law.density(s), mass)
+    order = np.argsort(s, kind="stable")
+    return s[order], probabilities[order]
 
 
 def _mass(law: HeightLaw, left: float, right: float) -> float:
