@@ -15,7 +15,8 @@ def in_time(seconds: float, call: Callable[[], T], problem: str) -> T:
     """Result of a call that takes no more than so many seconds of this thread's own CPU time.
 
     Looks at the clock at each Python function that the call enters. So it does not depend on what else
-    the machine does, and works in any thread; only a single compiled function cannot be interrupted.
+    the machine does, and works in any thread; only a single compiled function cannot be interrupted. No
+    bound under a profiler.
 
     Parameters
     ----------
@@ -36,7 +37,9 @@ def in_time(seconds: float, call: Callable[[], T], problem: str) -> T:
     ValueError
         With `problem`, if it takes longer.
     """
-    end, before = thread_time() + seconds, sys.getprofile()
+    if sys.getprofile() is not None:  # a profiler at work would be thrown out: whoever runs it sees the time
+        return call()
+    end = thread_time() + seconds
 
     def look(frame: FrameType, event: str, arg: Any) -> None:  # noqa: ARG001 - the interpreter's own form
         if thread_time() > end:
@@ -46,4 +49,4 @@ def in_time(seconds: float, call: Callable[[], T], problem: str) -> T:
     try:
         return call()
     finally:
-        sys.setprofile(before)
+        sys.setprofile(None)
