@@ -4,6 +4,7 @@ import operator
 import re
 from dataclasses import replace
 from functools import cache, reduce
+from types import SimpleNamespace
 
 import exact
 import numpy as np
@@ -14,7 +15,7 @@ import analytic
 import mcgw
 from mcgw.cli import main
 from mcgw.statistics import convergence
-from mcgw.statistics.checks import coverage, variances
+from mcgw.statistics.checks import coverage, skewness, variances
 from mcgw.statistics.comparison import FALSE_ALARM
 from mcgw.statistics.convergence import Convergence, converge
 
@@ -265,3 +266,20 @@ def test_what_the_command_prints_is_what_was_found(scene_file, tmp_path, capsys)
         assert float(p) == pytest.approx(check.p, rel=5e-3)
     assert out[-2] == f"convergence passed: p = {found.p:.3g} over all (false alarms: 1 in 1000)"
     assert out[-1] == f"{tmp_path / 'x-converge.png'}: figure"
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+@pytest.mark.parametrize("axis", [0, 2])
+def test_a_skewness_is_seen_on_any_axis_and_either_side(sign, axis):
+    """One axis of three with the third cumulant of a gamma law, where theory has none, or the other way."""
+    rng = np.random.default_rng(5)
+    y = rng.standard_normal((7200, 3))
+    law = SimpleNamespace(skewness=np.zeros(3))
+    assert skewness(law, y).p > 0.01
+    skewed = sign * (rng.gamma(16.0, size=7200) - 16.0) / 4
+    of_one = np.where(np.arange(3) == axis, skewed[:, None], y)
+    check = skewness(law, of_one)
+    assert check.p < 1e-6
+    assert f"z = {'+' if sign > 0 else '-'}" in check.seen
+    law.skewness[axis] = sign * 0.5
+    assert skewness(law, of_one).p > 0.01

@@ -16,7 +16,7 @@ from mcgw.jobs.job import Job
 from mcgw.jobs.merging import merge
 from mcgw.jobs.running import Part, run, run_part
 from mcgw.machine.child_process import ChildError
-from mcgw.store import ensembles, merged_file, shards, structure
+from mcgw.store import ensembles, merged_file, shards, structure, untrusted
 from mcgw.store.run_folder import RunFolder, parts_of
 from mcgw.store.trailer import TRAILER_BYTES, check_trailer, read_checked, trailer_of
 
@@ -126,6 +126,19 @@ def test_a_damaged_file_is_not_extended_nor_sealed_anew(damaged, larger, way):
     assert not parts_of(damaged).exists() or not list(parts_of(damaged).glob("shards/*.h5"))
     with pytest.raises(StoreError):
         check_trailer(damaged)
+
+
+@pytest.mark.parametrize("damaged", [changed_in_place, a_changed_load], indirect=True)
+@pytest.mark.parametrize("way", ["run", "shard job", "command", "stop rule"])
+def test_a_large_damaged_file_is_not_extended_either(damaged, larger, way, monkeypatch):
+    """Of a large file only the head is looked at on opening: all of it before more is drawn for it."""
+    monkeypatch.setattr(untrusted, "_SMALL", 0)
+    untrusted._examined.cache_clear()
+    before = damaged.read_bytes()
+    with pytest.raises(StoreError):
+        ways(larger)[way](damaged)
+    assert damaged.read_bytes() == before
+    assert not parts_of(damaged).exists() or not list(parts_of(damaged).glob("shards/*.h5"))
 
 
 @every_damage

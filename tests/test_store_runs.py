@@ -24,7 +24,7 @@ from mcgw.jobs.job import Job
 from mcgw.jobs.merging import merge
 from mcgw.jobs.running import Part, run, run_part
 from mcgw.machine.child_process import ChildError
-from mcgw.store import ensembles, merged_file, structure
+from mcgw.store import ensembles, layout, merged_file, structure
 from mcgw.store.lock import LockedError, locked
 from mcgw.store.run_folder import missing, parts_of
 from mcgw.store.shards import Span
@@ -124,6 +124,24 @@ def test_moments_are_kept_through_shards_and_extension(small_blocks, make_scene,
     for name in ("load", "moments", "cells", "extras"):
         np.testing.assert_array_equal(grown.sums.read(name, 0, None), whole.sums.read(name, 0, None))
     assert digest(tmp_path / "e.h5") == ensembles.read_attributes(tmp_path / "e.h5")["digest"]
+
+
+@pytest.mark.parametrize("bytes_at_a_time", [1, 20_000, 2**23])
+def test_a_file_is_read_again_in_pieces_that_make_the_whole(
+    make_scene, tmp_path, monkeypatch, bytes_at_a_time
+):
+    """Tables with a row a surface and the ragged one: each row once, in the piece of its surface."""
+    scene = make_scene(sampler="cells", keep="moments", n_surfaces=50)
+    whole = run(scene, tmp_path / "e.h5")
+    assert len(np.unique(whole.sums.read("extras", 0, None)[:, 0])) > 4
+    monkeypatch.setattr(layout, "_PIECE", bytes_at_a_time)
+    with h5py.File(tmp_path / "e.h5", "r") as file:
+        pieces = list(layout.file_pieces(file))
+    assert [span.first for span, _ in pieces[1:]] == [span.stop for span, _ in pieces[:-1]]
+    assert (len(pieces) > 1) == (bytes_at_a_time < 2**23)
+    for name in ("load", "moments", "cells", "extras"):
+        read = np.concatenate([arrays[name] for _, arrays in pieces])
+        np.testing.assert_array_equal(read, whole.sums.read(name, 0, None))
 
 
 def test_n_surfaces_is_the_total(small_blocks, scene, tmp_path, expected):
