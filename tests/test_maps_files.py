@@ -279,6 +279,18 @@ def test_an_integer_x3p_made_by_hand(tmp_path):
     )
 
 
+def test_the_valid_points_of_an_x3p_made_by_hand(tmp_path):
+    """Whole numbers know no nan: bit 0 of byte 0 is the first point, and every point has its own bit."""
+    link = "<ValidPointsLink>bindata/valid.bin</ValidPointsLink></DataLink>"
+    for valid in (0b111111, 0b000001, 0b100110, 0b011010):
+        with zipfile.ZipFile(tmp_path / "hand.x3p", "w") as archive:
+            archive.writestr("main.xml", MAIN.replace("</DataLink>", link))
+            archive.writestr("bindata/data.bin", struct.pack("<6h", 0, 1, 2, -400, 400, 32767))
+            archive.writestr("bindata/valid.bin", bytes([valid]))
+        missing = np.isnan(read_map(tmp_path / "hand.x3p").heights).ravel()
+        assert missing.tolist() == [not valid >> k & 1 for k in range(6)]
+
+
 @pytest.mark.parametrize("kind", ["<f4", ">f8", ">i2", "<u1", "<i8", "<f2"])
 @pytest.mark.parametrize("order", ["C", "F"])
 def test_arrays_of_every_kind_are_read_as_numbers(kind, order, tmp_path):

@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 from scipy import fft
+from scipy.stats import t as t_law
 
 import mcgw
 from analytic import MeasuredHeights
@@ -13,10 +14,11 @@ from mcgw.maps.asperities import Asperities
 from mcgw.maps.cautions import cautions
 from mcgw.maps.envelope import envelope, hidden_summits
 from mcgw.maps.files import write_map
-from mcgw.maps.fit import fit_map
+from mcgw.maps.fit import _jackknife, fit_map
 from mcgw.maps.form import gaussian_transmission, smooth, without_form
 from mcgw.maps.nayak import SpectralMoments
 from mcgw.maps.spectrum import Spectrum, gaussian_map, moments_on_grid
+from mcgw.maps.summit_sums import tally_of
 from mcgw.maps.topography import Topography
 
 PIXEL = (1e-6, 1e-6)
@@ -112,6 +114,40 @@ def test_the_filter_halves_a_wave_at_its_cutoff():
         expected = float(gaussian_transmission(np.array(2 * np.pi / wavelength), 40e-6))
         assert left == pytest.approx(expected, abs=2e-6)  # the window ends at one cutoff, where 5e-7 is left
     assert float(gaussian_transmission(np.array(2 * np.pi / 40e-6), 40e-6)) == pytest.approx(0.5, rel=1e-12)
+
+
+@pytest.mark.parametrize("axis", [0, 1])
+@pytest.mark.parametrize("periodic", [True, False])
+def test_the_filter_knows_pixels_that_are_not_square(axis, periodic):
+    """A wave along x or y, on pixels two and a half times as long along y."""
+    pixel, cutoff = (1e-6, 2.5e-6), 40e-6
+    x, y = (p * (np.arange(n) + 0.5) for p, n in zip(pixel, (640, 256), strict=True))
+    along = (x[None, :] if axis == 0 else y[:, None]) + np.zeros((256, 640))
+    wave = Topography(np.sin(2 * np.pi * along / 80e-6), pixel, periodic=periodic)
+    left = smooth(wave, cutoff)
+    assert left.pixel == pixel
+    margin = [(n - m) // 2 for n, m in zip(wave.heights.shape, left.heights.shape, strict=True)]
+    assert margin == [0, 0] if periodic else margin in ([16, 40], [16, 41])  # a cutoff
+    inside = wave.heights[margin[0] : 256 - margin[0], margin[1] : 640 - margin[1]]
+    expected = float(gaussian_transmission(np.array(2 * np.pi / 80e-6), cutoff))
+    np.testing.assert_allclose(left.heights, expected * inside, atol=2e-6)
+
+
+def test_errors_are_a_jackknifes_widened_by_students_t():
+    """Literal: the spread of what is left without each sub-area; two of them hold 95.45 % of a t law."""
+    tally = tally_of(gaussian_map(Spectrum(1e-6, 60e-6, 6e-6, 0.8), (256, 256), PIXEL, rng(8)), across=3)
+
+    def mean(t):
+        return np.array([t.heights.mean(), t.heights.size / t.area])
+
+    n, found = tally.parts, _jackknife(tally, mean)
+    assert n == 9
+    for k in range(2):
+        without = [mean(tally.without(part))[k] for part in range(n)]
+        spread = math.sqrt((n - 1) / n * sum((x - sum(without) / n) ** 2 for x in without))
+        student = t_law(n - 1).ppf(0.5 + math.erf(math.sqrt(2)) / 2)
+        assert found[k][0] == mean(tally)[k]
+        assert found[k][1] == pytest.approx(spread * student / 2, rel=1e-10)
 
 
 def test_a_cutoff_gives_the_moments_of_the_filtered_spectrum():

@@ -112,7 +112,7 @@ def test_two_terraces_are_named(axis, place, tilt, grid):
     step = step_of(topography(z))
     assert step.axis == axis
     assert step.height == pytest.approx(10e-6, rel=0.1)
-    assert step.place / SIZE["xy".index(axis)] == pytest.approx(place, abs=0.06)
+    assert step.place / SIZE["xy".index(axis)] == pytest.approx(place, abs=0.045)  # an area and a bit
     found = lines(z)
     assert "e-05 m apart" in found["step"] or "e-06 m apart" in found["step"]
     assert "form" not in found
