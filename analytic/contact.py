@@ -1,6 +1,6 @@
 """The theory as functions of a surface: short names for `analytic.Model`, and the ratios of the paper.
 
-All take ``grading`` (E*(s)/E*, left out: homogeneous) and ``heights`` (left out: Gaussian); separations h
+All take ``grading`` (E*(s)/E*, default: homogeneous) and ``heights`` (default: Gaussian); separations h
 are reduced, d/sigma from the mean of the summit heights, any shape.
 """
 

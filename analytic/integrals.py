@@ -158,7 +158,7 @@ def fn_scaled(
     h : array_like
         Reduced separations d/sigma, any shape.
     grading : Grading, optional
-        E*(s)/E*; left out: homogeneous.
+        E*(s)/E*; default: homogeneous.
     between : (float, float), optional
         Count only heights between these two.
     heights : HeightLaw, optional
@@ -203,7 +203,7 @@ def fn(
     h : array_like
         Reduced separations d/sigma, any shape.
     grading : Grading, optional
-        E*(s)/E*; left out: homogeneous.
+        E*(s)/E*; default: homogeneous.
     log : bool, optional
         Return the natural logarithm, which does not underflow; nan where the integral is negative.
     heights : HeightLaw, optional
@@ -263,7 +263,7 @@ def fn_between(
     low, high : float
         Range of reduced heights; infinite for no bound.
     grading : Grading, optional
-        E*(s)/E*; left out: homogeneous.
+        E*(s)/E*; default: homogeneous.
     heights : HeightLaw, optional
         Law of the heights.
 

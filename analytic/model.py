@@ -51,11 +51,11 @@ class Model:
     surface : Surface
         Parameters in SI units.
     grading : Grading, optional
-        E*(s)/E*; left out: homogeneous.
+        E*(s)/E*; default: homogeneous.
     heights : HeightLaw, optional
-        Law of the reduced heights; left out: Gaussian.
+        Law of the reduced heights; default: Gaussian.
     n_asperities : float, optional
-        Asperities on the surface; left out: eta A_n.
+        Asperities on the surface; default: eta A_n.
     count : {"fixed", "poisson"}, optional
         Whether their number is the same on every surface, or the mean of a Poisson law (a window on an
         unbounded surface).

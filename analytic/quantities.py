@@ -117,5 +117,5 @@ def quantity_of(name: str) -> Quantity:
     """
     known = {**QUANTITIES, **PER_AREA}
     if name not in known:
-        raise KeyError(f"{name!r} is no quantity; give one of {', '.join(known)}")
+        raise KeyError(f"{name!r} is not a quantity; give one of {', '.join(known)}")
     return known[name]

@@ -92,7 +92,7 @@ class Table:
             If the header is another one, a row is not two numbers, or there is no such regular file.
         """
         if not Path(path).is_file():
-            raise ValueError(f"{path}: {'is no regular' if Path(path).exists() else 'no such'} file")
+            raise ValueError(f"{path}: {'is not a regular' if Path(path).exists() else 'no such'} file")
         try:
             with open(path, newline="", encoding="utf-8-sig") as file:
                 return cls.from_lines(file, sigma=sigma, E_star=E_star)
@@ -111,7 +111,7 @@ class Table:
         try:
             header, *rows = [row for row in csv.reader(lines) if row] or [[]]
         except csv.Error as error:
-            raise ValueError(f"is no table: {error}") from None
+            raise ValueError(f"is not a table: {error}") from None
         units = {"s": 1.0, "z": sigma, "ratio": 1.0, "E_star": E_star}
         names = [name.strip() for name in header]
         if len(names) != 2 or names[0] not in ("s", "z") or names[1] not in ("ratio", "E_star"):

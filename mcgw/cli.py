@@ -34,7 +34,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     Parameters
     ----------
     argv : sequence of str, optional
-        Left out: those of the process.
+        Default: those of the process.
 
     Returns
     -------

@@ -4,7 +4,7 @@ __all__ = ["RunError", "StoppedError", "StoreError"]
 
 
 class StoreError(ValueError):
-    """A file that cannot be read or written, is no ensemble, or asks for another place.
+    """A file that cannot be read or written, is not an ensemble, or asks for another place.
 
     Examples
     --------

@@ -87,7 +87,7 @@ def test_pressure_and_area_fraction_are_load_and_area_per_nominal_area(scene, la
 def test_a_quantity_that_is_not_there_is_told_with_those_that_are(scene, ensemble):
     with pytest.raises(KeyError, match="'torque' is not in this ensemble; it has load, area"):
         ensemble["torque"]
-    with pytest.raises(KeyError, match=r"'torque' is no quantity; give one of load, .*, area_fraction"):
+    with pytest.raises(KeyError, match=r"'torque' is not a quantity; give one of load, .*, area_fraction"):
         scene.theory.mean("torque", 1.0)
     only = mcgw.simulate(scene, quantities=["load"])
     assert only["pressure"].shape == (60, 3)

@@ -1,4 +1,4 @@
-"""Laws of heights beside the Gaussian: closed forms, literal quadrature, and every exact sampler.
+"""ContactLaws of heights beside the Gaussian: closed forms, literal quadrature, and every exact sampler.
 
 Statistical gates are |z| < 5 for means and variances with fixed seeds: a false alarm in 2e6. The laws
 differ from the Gaussian by tens of percent, thousands of standard errors; the last tests prove that.

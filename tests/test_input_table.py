@@ -258,7 +258,7 @@ def test_row_40_names_that_are_none(make, tmp_path):
     for name in ("..", "a\0b", "x" * 300, "a\nb"):
         with pytest.raises(StoreError):
             run(make(n_surfaces=2), tmp_path / name)
-    with pytest.raises(StoreError, match="is no name for a file"):
+    with pytest.raises(StoreError, match="is not a name for a file"):
         run(make(n_surfaces=2), "")
     assert not list(tmp_path.iterdir())
 
@@ -267,7 +267,7 @@ def test_row_41_output_that_is_a_link(make, tmp_path):
     victim = tmp_path / "victim"
     victim.write_bytes(b"precious")
     (tmp_path / "e.h5").symlink_to(victim)
-    with pytest.raises(StoreError, match="is no regular file"):
+    with pytest.raises(StoreError, match="is not a regular file"):
         run(make(n_surfaces=2), tmp_path / "e.h5")
     assert victim.read_bytes() == b"precious"
 
@@ -275,9 +275,9 @@ def test_row_41_output_that_is_a_link(make, tmp_path):
 def test_row_43_inputs_that_are_no_files(make, tmp_path):
     os.mkfifo(tmp_path / "pipe")
     for path in (tmp_path / "pipe", tmp_path, Path("/dev/zero")):
-        with pytest.raises(SceneError, match="is no regular file"):
+        with pytest.raises(SceneError, match="is not a regular file"):
             mcgw.load_scene(path)
-        with pytest.raises(StoreError, match=r"is no regular file|Is a directory"):
+        with pytest.raises(StoreError, match=r"is not a regular file|Is a directory"):
             mcgw.open_ensemble(path)
 
 

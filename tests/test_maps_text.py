@@ -139,7 +139,7 @@ def test_units_that_are_wrong_are_refused(tmp_path):
     (tmp_path / "map.txt").write_text("# Value units: nm\n1 2\n3 4\n", encoding="utf-8")
     with pytest.raises(ValueError, match="in nm as the file says, not in um"):
         read_map(tmp_path / "map.txt", pixel=(1.0, 1.0), unit="um")
-    with pytest.raises(ValueError, match="'furlong' is no unit"):
+    with pytest.raises(ValueError, match="'furlong' is not a unit"):
         read_map(tmp_path / "map.txt", pixel=(1.0, 1.0), unit="furlong")
 
 

@@ -191,7 +191,7 @@ def test_folders_are_made_alike(words, ending, here):
 def test_something_in_the_way_is_one_line(words, ending, kind, here, capsys):
     out = here / f"x{ending}"
     out.mkdir() if kind == "folder" else os.mkfifo(out)
-    assert "is no regular file" in told(capsys, words.replace("OUT", str(out)).split())
+    assert "is not a regular file" in told(capsys, words.replace("OUT", str(out)).split())
 
 
 @pytest.mark.parametrize(("words", "ending"), WRITE)

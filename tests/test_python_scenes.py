@@ -298,7 +298,7 @@ def test_regrading_by_what_a_file_holds(make):
 
 def test_a_kink_inside_a_cell_is_refused(make):
     base = mcgw.simulate(make("lambda", grading=analytic.Homogeneous(), keep="moments"))
-    with pytest.raises(ValueError, match=r"break of the grading 0\.777 is no edge|not resolve"):
+    with pytest.raises(ValueError, match=r"break of the grading 0\.777 is not an edge|not resolve"):
         regrade(base, bent)
 
 

@@ -97,7 +97,7 @@ def moment_of_the_square(n, h):
 
 
 def test_what_cannot_be_regraded(base, make_scene):
-    with pytest.raises(ValueError, match=r"separation 0\.123 is no edge"):
+    with pytest.raises(ValueError, match=r"separation 0\.123 is not an edge"):
         regrade(base, analytic.Homogeneous(), separations=(0.123,))
     with pytest.raises(ValueError, match="break of the grading"):
         regrade(base, analytic.Table([-1.0, 0.123, 1.0], [1.0, 2.0, 3.0]))

@@ -259,9 +259,9 @@ def folder(path):
 
 
 WRONG_FILES = {
-    "fifo": (fifo, "is no regular file"),
-    "device": (device, "is no regular file"),
-    "folder": (folder, "is no regular file"),
+    "fifo": (fifo, "is not a regular file"),
+    "device": (device, "is not a regular file"),
+    "folder": (folder, "is not a regular file"),
     "absent": (lambda path: None, "No such file"),
     "words": (passwords, "give "),
 }
@@ -295,7 +295,7 @@ def test_a_packed_list_of_heights_is_not_unpacked(tmp_path):
     bomb(tmp_path / "heights.gz")
     assert (tmp_path / "heights.gz").stat().st_size < 2e6
     put(tmp_path, SCENE.replace("[contact]", TABLES["heights"].format("heights.gz")))
-    refused(call("show --plan s.toml", tmp_path, seconds=30), "heights.gz: is no text in UTF-8")
+    refused(call("show --plan s.toml", tmp_path, seconds=30), "heights.gz: is not text in UTF-8")
 
 
 def test_a_table_of_regrade_is_read_as_carefully(tmp_path):
@@ -305,7 +305,7 @@ def test_a_table_of_regrade_is_read_as_carefully(tmp_path):
     words = "regrade e.h5 -o r.h5 --grading"
     made, pipe, done = calls(["run s.toml -o e.h5", f"{words} pipe.csv", f"{words} p.csv"], tmp_path)
     assert made.returncode == 0
-    refused(pipe, "pipe.csv: is no regular file")
+    refused(pipe, "pipe.csv: is not a regular file")
     refused(done, "p.csv: the first line must be s or z, a comma, then ratio or E_star")
     assert "secret" not in done.stderr
 

@@ -312,7 +312,7 @@ DOUBTED = {
         300.0,
         "surface.eta = 300: 300 1/m^2 is less than a summit a square centimetre; did you mean 300/",
     ),
-    "radius": (13.0, "surface.radius = 13: 13 m is no radius of a summit; did you mean 13 um = 1.3e-05?"),
+    "radius": (13.0, "surface.radius = 13: 13 m is not a radius of a summit; did you mean 13 um = 1.3e-05?"),
     "nominal_area": (
         100.0,
         "surface.nominal_area = 100: 100 m^2 is larger than two bodies in contact; did you",

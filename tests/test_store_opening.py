@@ -155,7 +155,7 @@ def test_a_changed_number_is_an_error_when_it_is_read(file):
         changed[at] ^= 1 << int(dice.integers(8))
         file.write_bytes(changed)
         with pytest.raises(StoreError, match="cannot be read; is it damaged"):
-            ensembles.FileSums(file).read("load", 0, None)
+            ensembles.FileResults(file).read("load", 0, None)
 
 
 @pytest.fixture

@@ -274,7 +274,7 @@ def test_planted_links_are_not_followed(small_blocks, scene, tmp_path):
         run(scene, tmp_path / "e.h5")
     assert not list(elsewhere.iterdir())
     (tmp_path / "f.h5").symlink_to(elsewhere / "victim")
-    with pytest.raises(StoreError, match="is no regular file"):
+    with pytest.raises(StoreError, match="is not a regular file"):
         run(scene, tmp_path / "f.h5")
 
 

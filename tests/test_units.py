@@ -1,4 +1,4 @@
-"""Every prefix and unit against a literal factor, in every spelling; and what is no unit."""
+"""Every prefix and unit against a literal factor, in every spelling; and what is not a unit."""
 
 import argparse
 from importlib import import_module

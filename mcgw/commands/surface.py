@@ -122,7 +122,7 @@ def _account(scene: "Scene", field: "Asperities", topography: "Topography") -> s
         f"h = {scene.lowest:g}",
     ]
     if overlap > CROWDED:
-        lines.append("warning: the caps overlap; this map is no field of independent asperities")
+        lines.append("warning: the caps overlap; this map is not a field of independent asperities")
     if max(topography.pixel) > 0.5 * (2 * field.radius * scene.surface.sigma) ** 0.5:
         lines.append(
             "warning: a pixel is wider than half the size of a cap, sqrt(2 R sigma); give a larger --shape"

@@ -59,7 +59,7 @@ def regrade(
     ------
     ValueError
         If the sampler has no moments, if the moments are those of other cells, or if a separation or break
-        is no edge of the cells.
+        is not an edge of the cells.
 
     Examples
     --------

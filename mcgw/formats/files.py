@@ -160,9 +160,9 @@ def check_output(path: Path) -> None:
     name = path.name
     try:
         if name in ("", ".", "..") or len(os.fsencode(name)) > 200 or not name.isprintable():
-            raise StoreError(f"{str(path)!r}: is no name for a file; choose another -o")
+            raise StoreError(f"{str(path)!r}: is not a name for a file; choose another -o")
         if path.is_symlink() or (path.exists() and not path.is_file()):
-            raise StoreError(f"{path}: is no regular file; choose another -o")
+            raise StoreError(f"{path}: is not a regular file; choose another -o")
         path.parent.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise StoreError(f"{path}: cannot be written ({error.strerror or error})") from None

@@ -49,4 +49,4 @@ def open_npy(path: Path) -> NDArray[Any]:
         raise
     except _UNSOUND as error:
         reason = (str(error).splitlines() or ["damaged"])[0]
-        raise ValueError(f"{path}: is no sound .npy file: {reason}") from None
+        raise ValueError(f"{path}: is not a sound .npy file: {reason}") from None

@@ -15,7 +15,7 @@ def open_regular(path: Path) -> int:
     Raises
     ------
     StoreError
-        If there is none, or it is no regular file.
+        If there is none, or it is not a regular file.
     """
     try:
         fd = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_CLOEXEC", 0))
@@ -23,7 +23,7 @@ def open_regular(path: Path) -> int:
         raise StoreError(f"{path}: {getattr(error, 'strerror', None) or error}") from None
     if not stat.S_ISREG(os.fstat(fd).st_mode):
         os.close(fd)
-        raise StoreError(f"{path}: is no regular file")
+        raise StoreError(f"{path}: is not a regular file")
     return fd
 
 
@@ -40,7 +40,7 @@ def read_bytes(path: Path, most: int) -> bytes:
     Raises
     ------
     StoreError
-        If it cannot be read, is no regular file, or is longer.
+        If it cannot be read, is not a regular file, or is longer.
     """
     with os.fdopen(open_regular(path), "rb") as file:
         try:
@@ -63,4 +63,4 @@ def read_text(path: Path, most: int) -> str:
     try:
         return read_bytes(path, most).decode("utf-8-sig")
     except UnicodeDecodeError as error:
-        raise StoreError(f"{path}: is no text in UTF-8 (byte {error.start})") from None
+        raise StoreError(f"{path}: is not text in UTF-8 (byte {error.start})") from None

@@ -75,7 +75,7 @@ def parse(text: str, unit: str, name: str = "") -> float:
     Raises
     ------
     ValueError
-        If it is no positive finite number with such a unit.
+        If it is not a positive finite number with such a unit.
 
     Examples
     --------

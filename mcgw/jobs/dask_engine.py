@@ -30,7 +30,7 @@ class Dask:
     Parameters
     ----------
     address : str, optional
-        Of a running scheduler. Left out: a cluster on this machine, that listens to it alone.
+        Of a running scheduler. Default: a cluster on this machine, that listens to it alone.
     workers : int, optional
         Processes of that cluster.
     insecure : bool, optional
@@ -128,7 +128,7 @@ def check_address(address: str, *, insecure: bool = False) -> None:
     Raises
     ------
     ValueError
-        If it is no address, or neither of this machine nor encrypted.
+        If it is not an address, or neither of this machine nor encrypted.
     """
     try:
         parts = urlsplit(address)

@@ -40,7 +40,7 @@ class Part:
     Raises
     ------
     ValueError
-        If it is no such part.
+        If it is not one of them.
     """
 
     number: int
@@ -73,9 +73,9 @@ def run(
     path : str or Path
         The file; it appears when it is complete. Until then, blocks lie in ``FILE.parts/``.
     threads : int, optional
-        Left out: all there are. The data are the same for any number.
+        Default: all there are. The data are the same for any number.
     engine : Engine, optional
-        Who draws; left out: the threads of this process. It is left open.
+        Who draws; default: the threads of this process. It is left open.
     progress : callable, optional
         Called with the number of surfaces that are done: at the start, and after each block.
 
@@ -189,7 +189,7 @@ def run_part(
     part : Part
         Which share.
     threads : int, optional
-        Left out: all there are.
+        Default: all there are.
     progress : callable, optional
         Called with the number of surfaces that are done in this share.
 

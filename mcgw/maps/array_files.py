@@ -52,7 +52,7 @@ def read_npy(path: Path, pixel: tuple[float, float] | None = None, unit: str | N
     Raises
     ------
     ValueError
-        If it is no matrix of real numbers, or no pixel size is known.
+        If it is not a matrix of real numbers, or no pixel size is known.
     OSError
         If a file cannot be read.
     """

@@ -57,7 +57,7 @@ def asperities_of(scene: Scene, surface: int, *, width: float | None = None) -> 
     surface : int
         Its number, from 0.
     width : float, optional
-        Extent of the nominal area along x, m; left out: it is a square.
+        Extent of the nominal area along x, m; default: it is a square.
 
     Returns
     -------

@@ -155,7 +155,7 @@ def envelope(
     periodic : bool, optional
         Whether caps reach across the edges.
     window : (float, float, float, float), optional
-        Left, right, bottom and top of what is mapped, inside the area, m; left out: all of it.
+        Left, right, bottom and top of what is mapped, inside the area, m; default: all of it.
 
     Returns
     -------

@@ -93,7 +93,7 @@ def read_map(path: Path, *, pixel: tuple[float, float] | None = None, unit: str 
         If it cannot be read.
     """
     if not path.is_file():
-        raise ValueError(f"{path}: is no regular file" if path.exists() else f"{path}: no such file")
+        raise ValueError(f"{path}: is not a regular file" if path.exists() else f"{path}: no such file")
     topography = _read(path, pixel, unit)
     if topography.assumed_unit and topography.steepness > STEEPEST:
         raise ValueError(

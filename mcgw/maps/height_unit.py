@@ -44,5 +44,5 @@ def metres_in(path: Path, unit: str) -> float:
         If it is unknown.
     """
     if unit not in METRES:
-        raise ValueError(f"{path}: {unit!r} is no unit of length known here: {', '.join(METRES)}")
+        raise ValueError(f"{path}: {unit!r} is not a unit of length known here: {', '.join(METRES)}")
     return METRES[unit]

@@ -250,7 +250,7 @@ def _numbers(path: Path, file: BinaryIO) -> Iterator[NDArray[np.float64]]:
         if star:
             return
         if len(left) > _CHUNK:
-            raise ValueError(f"{path}: a megabyte without a space is no list of heights")
+            raise ValueError(f"{path}: a megabyte without a space is not a list of heights")
     yield _parsed(path, left)
 
 

@@ -49,7 +49,7 @@ def read_text(path: Path, pixel: tuple[float, float] | None = None, unit: str | 
     Raises
     ------
     ValueError
-        If a row has another length than the first, a word is no number, a comma may mean two things, or
+        If a row has another length than the first, a word is not a number, a comma may mean two things, or
         no pixel size is known.
     OSError
         If it cannot be read.

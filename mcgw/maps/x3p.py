@@ -126,7 +126,7 @@ def read_x3p(path: Path) -> Topography:
         with zipfile.ZipFile(path) as archive:
             return _Reader(archive).topography()
     except (zipfile.BadZipFile, zlib.error, NotImplementedError, RuntimeError, EOFError) as error:
-        raise ValueError(f"{path}: is no sound zip archive, as X3P files are: {error}") from None
+        raise ValueError(f"{path}: is not a sound zip archive, as X3P files are: {error}") from None
     except (ElementTree.ParseError, KeyError, ValueError) as error:
         reason = error.args[0] if isinstance(error, KeyError) else error
         raise ValueError(f"{path}: {reason}") from None
@@ -143,7 +143,7 @@ class _Reader:
         self.root = ElementTree.fromstring(xml)
 
     def _unpacked(self, name: str, wanted: int | None) -> bytes:
-        """A member of exactly `wanted` bytes (left out: of at most a megabyte)."""
+        """A member of exactly `wanted` bytes (default: of at most a megabyte)."""
         try:
             info = self.archive.getinfo(name)
         except KeyError:
@@ -179,7 +179,7 @@ class _Reader:
         except ValueError:
             value = math.nan
         if not math.isfinite(value):
-            raise ValueError(f"{_MAIN}: {path} = {text!r} is no number")
+            raise ValueError(f"{_MAIN}: {path} = {text!r} is not a number")
         return value
 
     def _increment(self, path: str, default: str | None = None) -> float:
@@ -191,7 +191,7 @@ class _Reader:
     def _whole(self, path: str) -> int:
         value = self._number(path)
         if value != int(value):
-            raise ValueError(f"{_MAIN}: {path} = {value!r} is no whole number")
+            raise ValueError(f"{_MAIN}: {path} = {value!r} is not a whole number")
         return int(value)
 
     def topography(self) -> Topography:

@@ -57,7 +57,7 @@ def plan_of(scene: Scene, *, threads: int | None = None) -> Plan:
     scene : Scene
         What is asked.
     threads : int, optional
-        Left out: all there are.
+        Default: all there are.
 
     Returns
     -------

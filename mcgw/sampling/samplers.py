@@ -122,7 +122,7 @@ def regraded(scene: Scene, drawn: Scene) -> Counted:
     Raises
     ------
     ValueError
-        If the sampler has no cells, a separation or break is no edge of them, or the moments do not
+        If the sampler has no cells, a separation or break is not an edge of them, or the moments do not
         resolve what is asked.
     """
     sampler = sampler_of(drawn)
@@ -141,7 +141,7 @@ def _check_edges(what: str, wanted: Sequence[float], edges: NDArray[np.float64],
     for s in wanted:
         near = edges[np.argmin(np.abs(edges - s))]
         if abs(s - near) > apart:
-            raise ValueError(f"{what} {s:.6g} is no edge of the cells (the nearest is {near:.6g})")
+            raise ValueError(f"{what} {s:.6g} is not an edge of the cells (the nearest is {near:.6g})")
 
 
 def _response(scene: Scene, mesh: Mesh) -> Response:

@@ -11,7 +11,7 @@ __all__ = ["cautions"]
 
 _DEEP = 1e-3  # share of the contacts compressed by more than their radius
 _CROWDED = 0.05  # real over nominal area from which neighbouring asperities feel each other
-_STEEP = 0.3  # contact radius over summit radius from which a paraboloid is no sphere and strain is large
+_STEEP = 0.3  # contact radius over summit radius from which a paraboloid is not a sphere and strain is large
 _FEW = 30.0  # contacts a surface, below which single surfaces are far from Gaussian
 
 

@@ -25,7 +25,7 @@ RANGES = {
     "sigma": Range(
         1e-10, 1e-3, "is less than an atom", "is higher than the summits of any ground surface", ("um", "nm")
     ),
-    "radius": Range(1e-10, 0.1, "is less than an atom", "is no radius of a summit", ("um", "mm")),
+    "radius": Range(1e-10, 0.1, "is less than an atom", "is not a radius of a summit", ("um", "mm")),
     "eta": Range(
         1e4,
         1e19,

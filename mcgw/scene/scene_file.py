@@ -104,7 +104,7 @@ def scene_from(
     text : str or bytes
         The text, UTF-8.
     folder : Path, optional
-        Where the files lie that it names; left out: the current one.
+        Where the files lie that it names; default: the current one.
     seed : callable, optional
         As for `load_scene`.
 

@@ -43,7 +43,7 @@ def Surface(  # noqa: N802 - the door to a class of this name
     Raises
     ------
     SceneError
-        With one line for each parameter that is no positive finite quantity of that kind, as for
+        With one line for each parameter that is not a positive finite quantity of that kind, as for
         ``[surface]`` in a file.
 
     Examples

@@ -12,7 +12,7 @@ from scipy.special import polygamma, psi
 from scipy.stats import binom, chi2, kstest, norm
 from scipy.stats import t as student
 
-from mcgw.statistics.principal_components import Principal
+from mcgw.statistics.principal_components import PrincipalComponents
 
 __all__ = [
     "Check",
@@ -114,9 +114,9 @@ def slope(against: str, sizes: Sequence[float], squares: Sequence[Array], excess
     )
 
 
-def variances(law: Principal, y: Array) -> Check:
+def variances(exact: PrincipalComponents, y: Array) -> Check:
     """Variance along each axis: a scaled chi-square with the exact kurtosis."""
-    degrees = len(y) * 2 / (2 + law.kurtosis)
+    degrees = len(y) * 2 / (2 + exact.kurtosis)
     ratio = (y**2).mean(axis=0)
     p = 2 * np.minimum(chi2.cdf(degrees * ratio, degrees), chi2.sf(degrees * ratio, degrees))
     worst = int(np.argmin(p))
@@ -134,12 +134,12 @@ def covariances(y: Array) -> Check:
     return Check("covariance across separations", seen, float(chi2.sf(z @ z, z.size)) if z.size else 1.0)
 
 
-def skewness(law: Principal, y: Array) -> Check:
+def skewness(exact: PrincipalComponents, y: Array) -> Check:
     """Third cumulant along each axis, by the Hermite polynomial whose mean it is."""
     values = y**3 - 3 * y
-    z = (values.mean(axis=0) - law.skewness) / (values.std(axis=0) / np.sqrt(len(y)))
+    z = (values.mean(axis=0) - exact.skewness) / (values.std(axis=0) / np.sqrt(len(y)))
     worst = int(np.argmax(np.abs(z)))
-    seen = f"z = {z[worst]:+.2f} at worst of {z.size} axes, exact skewness {law.skewness[worst]:.3f}"
+    seen = f"z = {z[worst]:+.2f} at worst of {z.size} axes, exact skewness {exact.skewness[worst]:.3f}"
     return Check("skewness", seen, min(1.0, z.size * float(2 * norm.sf(abs(z[worst])))))
 
 

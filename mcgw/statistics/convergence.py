@@ -27,7 +27,7 @@ from mcgw.statistics.checks import (
     variances,
 )
 from mcgw.statistics.comparison import FALSE_ALARM, verdict
-from mcgw.statistics.principal_components import Principal
+from mcgw.statistics.principal_components import PrincipalComponents
 
 __all__ = ["SEEDS", "Convergence", "Draw", "converge"]
 
@@ -148,7 +148,7 @@ def converge(
             parts.append(draw(replace(scene, seed=(scene.seed + k) % 2**64)))
         tell(seeds, seeds)
     sums = {name: np.concatenate([part[name] for part in parts]) for name in scene.quantities}
-    law = Principal.of(scene)
+    law = PrincipalComponents.of(scene)
     y = law.turn(sums)
     whole = replace(scene, n_surfaces=len(y))
     means = verdict(Ensemble(whole, "drawn", Arrays(sums)))
@@ -221,7 +221,7 @@ def _repeats(scene: Scene, sums: Sums) -> list[Check]:
     return [Check("repeated surfaces", f"{again} of {len(values)}", float(poisson.sf(again - 1, expected)))]
 
 
-def _slope_in_surfaces(law: Principal, y: Array, most: int) -> list[Slope]:
+def _slope_in_surfaces(law: PrincipalComponents, y: Array, most: int) -> list[Slope]:
     """Error of means of 1, 4, 16, ... surfaces, each size from surfaces of its own."""
     sizes = [m for m in 4 ** np.arange(8) if m <= most // 4]
     squares, used = [], []
@@ -250,7 +250,7 @@ def _slope_in_asperities(scene: Scene, draw: Draw) -> list[Slope]:
             quantities=(name,),
             seed=(scene.seed + 10**6 + divisor) % 2**64,
         )
-        law = Principal.of(small)
+        law = PrincipalComponents.of(small)
         if law.axes.size:
             y = law.turn(draw(small))[:, 0]
             sizes.append(float(n))

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from analytic import QUANTITIES
 from mcgw.scene.scene import Scene
 
-__all__ = ["Principal"]
+__all__ = ["PrincipalComponents"]
 
 Array = NDArray[np.float64]
 
@@ -24,7 +24,7 @@ _MOST_KURTOSIS = 0.5  # of a combination over surfaces
 
 
 @dataclass(frozen=True)
-class Principal:
+class PrincipalComponents:
     """Axes and the exact law along them.
 
     Parameters
@@ -47,7 +47,7 @@ class Principal:
     kurtosis: Array
 
     @classmethod
-    def of(cls, scene: Scene) -> "Principal":
+    def of(cls, scene: Scene) -> "PrincipalComponents":
         """The axes of a scene: of those separations where single surfaces are nearly Gaussian."""
         n, h = scene.n_asperities, np.array(scene.separations)
         parts = scene.theory.fluctuations(scene.quantities, h)

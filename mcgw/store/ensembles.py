@@ -18,7 +18,7 @@ from mcgw.store.layout import FILETYPE, FORMAT, build, trailer_notes, values_dig
 from mcgw.store.lock import locked
 from mcgw.store.run_folder import RunFolder, difference, identity_of, parts_of
 from mcgw.store.shards import DRAWN, Span, in_memory
-from mcgw.store.stored import FileSums, ShardSums
+from mcgw.store.stored import FileResults, ShardResults
 from mcgw.store.trailer import check_trailer, read_trailer, trailer_of
 from mcgw.store.untrusted import examine
 
@@ -51,7 +51,7 @@ def open_ensemble(path: str | Path) -> Ensemble:
     Raises
     ------
     StoreError
-        If it is no ensemble file, damaged, or of another format; or if no block is finished yet.
+        If it is not an ensemble file, damaged, or of another format; or if no block is finished yet.
 
     Examples
     --------
@@ -69,9 +69,9 @@ def open_ensemble(path: str | Path) -> Ensemble:
         shards = tuple(run.shards())
         if not shards:
             raise StoreError(f"{path}: no block of its run is finished yet")
-        return Ensemble(run.scene, run.sampler, ShardSums(shards))
+        return Ensemble(run.scene, run.sampler, ShardResults(shards))
     attributes, scene = _described(path)
-    return Ensemble(scene, str(attributes["sampler"]), FileSums(path))
+    return Ensemble(scene, str(attributes["sampler"]), FileResults(path))
 
 
 def read_attributes(path: Path) -> dict[str, Any]:
@@ -80,7 +80,7 @@ def read_attributes(path: Path) -> dict[str, Any]:
     Raises
     ------
     StoreError
-        If it is no ensemble file, damaged, or of another format.
+        If it is not an ensemble file, damaged, or of another format.
     """
     if path.exists() or not parts_of(path).is_dir():
         return _described(path)[0]

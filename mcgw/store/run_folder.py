@@ -121,7 +121,7 @@ class RunFolder:
         Raises
         ------
         StoreError
-            If it belongs to another scene, seed or version, or is no folder of a run.
+            If it belongs to another scene, seed or version, or is not a folder of a run.
         """
         refuse_link(folder)
         (folder / "shards").mkdir(parents=True, exist_ok=True)
@@ -176,7 +176,7 @@ class RunFolder:
             with os.fdopen(fd, "rb") as opened:
                 said = _unchanged(opened.read(_MOST_BYTES))
             if said["filetype"] != _FILETYPE or said["format"][0] != _FORMAT[0]:
-                raise StoreError(f"{file}: is no run of format {_FORMAT[0]}.x, but {said['format']}")
+                raise StoreError(f"{file}: is not a run of format {_FORMAT[0]}.x, but {said['format']}")
             scene = scene_from(said["scene"])
             known = [str(said[key]) for key in ("identity", "versions", "date")]
             return cls(folder, scene, str(said["sampler"]), int(said["block"]), *known)

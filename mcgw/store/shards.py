@@ -192,9 +192,9 @@ def _described(path: Path, trailer: Trailer) -> tuple[Shard, str]:
         shard = Shard(path, span, str(notes["content"]), float(notes["seconds"]))
         identity = str(notes["run"])
     except (KeyError, TypeError, ValueError):
-        raise StoreError(f"{path}: is no shard") from None
+        raise StoreError(f"{path}: is not a shard") from None
     if span.first < 0 or span.n < 1:
-        raise StoreError(f"{path}: is no shard")
+        raise StoreError(f"{path}: is not a shard")
     return shard, identity
 
 
@@ -207,7 +207,7 @@ def _unpack(body: bytes, path: Path) -> Arrays:
             names = check_plain(file, most=_MOST_DATASETS)
             return {name: file[name][()] for name in names}
     except (OSError, RuntimeError, ValueError, RefusedError) as error:
-        raise StoreError(f"{path}: is no shard ({error})") from None
+        raise StoreError(f"{path}: is not a shard ({error})") from None
 
 
 def _check_rows(shard: Shard, arrays: Arrays) -> None:

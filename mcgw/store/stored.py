@@ -12,11 +12,11 @@ from mcgw.errors import StoreError
 from mcgw.store.layout import where
 from mcgw.store.shards import RAGGED, Shard
 
-__all__ = ["FileSums", "ShardSums"]
+__all__ = ["FileResults", "ShardResults"]
 
 
 @dataclass(frozen=True)
-class FileSums:
+class FileResults:
     """The datasets of an ensemble file, opened for each reading."""
 
     path: Path
@@ -36,7 +36,7 @@ class FileSums:
 
 
 @dataclass(frozen=True)
-class ShardSums:
+class ShardResults:
     """The blocks that a run had committed when it was looked at."""
 
     shards: tuple[Shard, ...]

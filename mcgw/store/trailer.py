@@ -66,7 +66,7 @@ class Trailer:
         Raises
         ------
         StoreError
-            If it is no trailer, or a damaged one.
+            If it is not a trailer, or a damaged one.
         """
         head, digest = data[:_HEAD], data[_HEAD:]
         if (

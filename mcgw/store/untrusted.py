@@ -2,8 +2,9 @@
 
 A file whose trailer holds is as `mcgw` wrote it, and is looked at in this process. Any other may come from
 a stranger, or from a failing disk, and HDF5 may crash on it: a child process looks at it. What is looked at
-is the same in both cases (`mcgw.store.structure`). A trailer is no signature: whoever makes one for a hostile
-file gets that file read here, where links to other places and a greed for memory are refused all the same.
+is the same in both cases (`mcgw.store.structure`). A trailer is not a signature: whoever makes one for a
+hostile file gets that file read here, where links to other places and a greed for memory are refused all the
+same.
 """
 
 import json

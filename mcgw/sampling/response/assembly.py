@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from mcgw.sampling.cells import Mesh
 from mcgw.sampling.layout import Layout
 from mcgw.sampling.response.product import FOUR, Blocks, Tiles, in_fours
-from mcgw.sampling.response.series import Laws
+from mcgw.sampling.response.series import ContactLaws
 from mcgw.sampling.response.tree import Tree, transfer
 
 __all__ = ["Entry", "tiles_of"]
@@ -27,14 +27,16 @@ class Entry:
     coefficients: Array
 
 
-def tiles_of(mesh: Mesh, tree: Tree, laws: Laws, entries: list[Entry], plain: Ints, rooted: Ints) -> Tiles:
+def tiles_of(
+    mesh: Mesh, tree: Tree, laws: ContactLaws, entries: list[Entry], plain: Ints, rooted: Ints
+) -> Tiles:
     """Tiles that make the sums of all laws of the moments of the cells.
 
     Parameters
     ----------
     mesh, tree : Mesh, Tree
         Cells, and the nodes over them.
-    laws : Laws
+    laws : ContactLaws
         The answers.
     entries : list of Entry
         What each node gives to them.

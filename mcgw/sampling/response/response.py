@@ -17,7 +17,7 @@ from mcgw.sampling.layout import Layout
 from mcgw.sampling.response.assembly import Entry, tiles_of
 from mcgw.sampling.response.dense import Parts
 from mcgw.sampling.response.product import Tiles
-from mcgw.sampling.response.series import ACCURACY, Laws
+from mcgw.sampling.response.series import ACCURACY, ContactLaws
 from mcgw.sampling.response.tree import Tree, heights_above, tree_over
 from mcgw.scene.scene import Scene
 
@@ -81,7 +81,7 @@ def response_of(
         Which answers there are. Each separation has its own once, in increasing order: repeated or
         permuted ones give the same bits.
     kept : Layout, optional
-        The moments there are; left out: as many as it takes.
+        The moments there are; default: as many as it takes.
     accuracy : float, optional
         Take as many moments as this needs.
 
@@ -134,14 +134,16 @@ def layout_of(
     return Layout(plain[: mesh.size], rooted)
 
 
-def _laws(scene: Scene, mesh: Mesh, quantities: tuple[str, ...], *, lasting: bool, accuracy: float) -> Laws:
+def _laws(
+    scene: Scene, mesh: Mesh, quantities: tuple[str, ...], *, lasting: bool, accuracy: float
+) -> ContactLaws:
     """The laws of some quantities on a mesh, each separation once, in increasing order."""
     scene = replace(scene, separations=tuple(sorted(set(scene.separations))))
     between = (mesh.edges[0], mesh.edges[-1]) if mesh.size else (0.0, 0.0)
-    return Laws.of(scene, quantities, between, lasting=lasting, accuracy=accuracy)
+    return ContactLaws.of(scene, quantities, between, lasting=lasting, accuracy=accuracy)
 
 
-def _walk(mesh: Mesh, tree: Tree, laws: Laws, kept: Layout | None) -> tuple[list[Entry], Ints, Ints]:
+def _walk(mesh: Mesh, tree: Tree, laws: ContactLaws, kept: Layout | None) -> tuple[list[Entry], Ints, Ints]:
     """From the root down: give each law to the coarsest nodes that resolve it."""
     entries: list[Entry] = []
     plain, rooted = np.zeros(tree.size, dtype=np.int64), np.zeros(mesh.size, dtype=np.int64)
@@ -182,7 +184,7 @@ def _walk(mesh: Mesh, tree: Tree, laws: Laws, kept: Layout | None) -> tuple[list
     return entries, plain, rooted
 
 
-def _for_parents(laws: Laws, a: float, t: Array, e: Array, p: float) -> int:
+def _for_parents(laws: ContactLaws, a: float, t: Array, e: Array, p: float) -> int:
     """Moments of a cell that the moments of its parents need at most.
 
     In the cell's uniform the height bends, so that even the first moments of a parent take many of its. But

@@ -12,7 +12,7 @@ from mcgw.sampling.rules import product
 from mcgw.sampling.spacing import SURE
 from mcgw.scene.scene import Scene
 
-__all__ = ["ACCURACY", "Laws"]
+__all__ = ["ACCURACY", "ContactLaws"]
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -55,7 +55,7 @@ class _Needed(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Laws:
+class ContactLaws:
     """All laws that are asked for, one an array element: ``scale (s - h)^exponent e(s)^modulus``.
 
     Quantity by quantity, at increasing separations.
@@ -67,7 +67,7 @@ class Laws:
     total : ndarray
         Mean sum over a surface, where so many touch that it is sure to be of that size; else 0.
     separations : int
-        Laws of each quantity.
+        ContactLaws of each quantity.
     n_asperities : int
         Of a surface.
     grading : Grading
@@ -98,7 +98,7 @@ class Laws:
         *,
         lasting: bool,
         accuracy: float = ACCURACY,
-    ) -> "Laws":
+    ) -> "ContactLaws":
         """The laws of some quantities at all separations, which increase, for heights in between.
 
         If they are to be lasting, they are resolved as if every surface could have a single contact.
