@@ -17,7 +17,7 @@ from mcgw.scene.samplers import promise_of
 from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_text
 
-__all__ = ["Arrays", "Ensemble", "Sums"]
+__all__ = ["Arrays", "Ensemble", "Results"]
 
 Array = NDArray[np.float64]
 
@@ -26,7 +26,7 @@ _LOW = 2**32 - 1  # the lower half of an integer: sums of halves do not overflow
 _MOST_SHOWN = 20_000_000  # numbers that are read for a short look; of more, only how many there are
 
 
-class Sums(Protocol):
+class Results(Protocol):
     """Where an ensemble's numbers lie: in memory or in a file."""
 
     def read(self, name: str, start: int, stop: int | None) -> Array:
@@ -66,7 +66,7 @@ class Ensemble(Shown):
         What was asked.
     sampler : str
         What drew it.
-    sums : Sums
+    sums : Results
         Its numbers.
 
     Examples
@@ -90,7 +90,7 @@ class Ensemble(Shown):
 
     scene: Scene
     sampler: str
-    sums: Sums
+    sums: Results
 
     @property
     def n_surfaces(self) -> int:
