@@ -21,8 +21,12 @@ from mcgw.scene.section import SceneError, Section
 
 __all__ = ["LAWS", "heights_law", "heights_table", "read_heights"]
 
-LAWS = ("gaussian", "exponential", "weibull", "table", "scipy")
-_LAWS = (Gaussian, ExponentialHeights, Weibull, HeightTable, MeasuredHeights, ScipyHeights)
+_PLAIN: dict[str, HeightLaw] = {
+    "gaussian": Gaussian(),
+    "exponential": ExponentialHeights(),
+}  # no keys besides
+LAWS = (*_PLAIN, "weibull", "table", "scipy")
+_KNOWN = (*map(type, _PLAIN.values()), Weibull, HeightTable, MeasuredHeights, ScipyHeights)
 _MOST_BYTES = 2**28
 
 
@@ -42,15 +46,14 @@ def heights_law(section: Section, folder: Path) -> HeightLaw:
         Gaussian where something is wrong or left out.
     """
     law = section.choice("law", "gaussian", LAWS)
-    if law == "exponential":
-        return ExponentialHeights()
-    if law == "weibull":
-        return _weibull(section)
-    if law == "table":
-        return _table(section, folder)
-    if law == "scipy":
-        return _scipy(section)
-    return Gaussian()
+    match law:
+        case "weibull":
+            return _weibull(section)
+        case "table":
+            return _table(section, folder)
+        case "scipy":
+            return _scipy(section)
+    return _PLAIN[law]
 
 
 def _weibull(section: Section) -> HeightLaw:
@@ -141,13 +144,12 @@ def heights_table(law: HeightLaw, file: str | None = None) -> dict[str, Any]:
     SceneError
         If it is a class of the user.
     """
+    for name, plain in _PLAIN.items():
+        if type(law) is type(plain):
+            return {"law": name}
     match law:
-        case _ if type(law) not in _LAWS:  # a class made of one may do more
+        case _ if type(law) not in _KNOWN:  # a class made of one may do more
             pass
-        case Gaussian():
-            return {"law": "gaussian"}
-        case ExponentialHeights():
-            return {"law": "exponential"}
         case Weibull():
             return {"law": "weibull", "shape": float(law.shape)}
         case HeightTable():
