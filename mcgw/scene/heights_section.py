@@ -21,10 +21,11 @@ from mcgw.scene.section import SceneError, Section
 
 __all__ = ["LAWS", "heights_law", "heights_table", "read_heights"]
 
+# Laws without parameters.
 _PLAIN: dict[str, HeightLaw] = {
     "gaussian": Gaussian(),
     "exponential": ExponentialHeights(),
-}  # no keys besides
+}
 LAWS = (*_PLAIN, "weibull", "table", "scipy")
 _KNOWN = (*map(type, _PLAIN.values()), Weibull, HeightTable, MeasuredHeights, ScipyHeights)
 _MOST_BYTES = 2**28
@@ -144,9 +145,9 @@ def heights_table(law: HeightLaw, file: str | None = None) -> dict[str, Any]:
     SceneError
         If it is a class of the user.
     """
-    for name, plain in _PLAIN.items():
+    for known, plain in _PLAIN.items():
         if type(law) is type(plain):
-            return {"law": name}
+            return {"law": known}
     match law:
         case _ if type(law) not in _KNOWN:  # a class made of one may do more
             pass
