@@ -18,7 +18,7 @@ from mcgw.maps.fit import _jackknife, fit_map
 from mcgw.maps.form import gaussian_transmission, smooth, without_form
 from mcgw.maps.nayak import SpectralMoments
 from mcgw.maps.spectrum import Spectrum, gaussian_map, moments_on_grid
-from mcgw.maps.summit_sums import tally_of
+from mcgw.maps.summit_sums import summit_sums_of
 from mcgw.maps.topography import Topography
 
 PIXEL = (1e-6, 1e-6)
@@ -135,18 +135,18 @@ def test_the_filter_knows_pixels_that_are_not_square(axis, periodic):
 
 def test_errors_are_a_jackknifes_widened_by_students_t():
     """Literal: the spread of what is left without each sub-area; two of them hold 95.45 % of a t law."""
-    tally = tally_of(gaussian_map(Spectrum(1e-6, 60e-6, 6e-6, 0.8), (256, 256), PIXEL, rng(8)), across=3)
+    sums = summit_sums_of(gaussian_map(Spectrum(1e-6, 60e-6, 6e-6, 0.8), (256, 256), PIXEL, rng(8)), across=3)
 
     def mean(t):
         return np.array([t.heights.mean(), t.heights.size / t.area])
 
-    n, found = tally.parts, _jackknife(tally, mean)
+    n, found = sums.parts, _jackknife(sums, mean)
     assert n == 9
     for k in range(2):
-        without = [mean(tally.without(part))[k] for part in range(n)]
+        without = [mean(sums.without(part))[k] for part in range(n)]
         spread = math.sqrt((n - 1) / n * sum((x - sum(without) / n) ** 2 for x in without))
         student = t_law(n - 1).ppf(0.5 + math.erf(math.sqrt(2)) / 2)
-        assert found[k][0] == mean(tally)[k]
+        assert found[k][0] == mean(sums)[k]
         assert found[k][1] == pytest.approx(spread * student / 2, rel=1e-10)
 
 
