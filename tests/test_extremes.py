@@ -73,7 +73,10 @@ def test_1e15_asperities(make_scene):
 
 
 def test_no_asperities_and_too_many(make_scene):
-    for n in (0, -1, 2**53 + 1, 10**30):
+    for n, advice in ((0, "give a whole number >= 1"), (-1, "give a whole number >= 1")):
+        with pytest.raises(SceneError, match=advice):
+            make_scene(n_asperities=n)
+    for n in (2**53 + 1, 10**30):
         with pytest.raises(SceneError, match="must lie between 1 and 2\\^53"):
             make_scene(n_asperities=n)
 

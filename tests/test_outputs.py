@@ -15,6 +15,7 @@ from mcgw.commands import outputs
 from mcgw.commands.outputs import CSV, Output, check_outputs
 from mcgw.errors import StoreError
 from mcgw.formats.files import rename_over, state_of, write_whole
+from mcgw.jobs.job import Job
 from mcgw.store import ensembles, structure, untrusted
 
 
@@ -270,13 +271,13 @@ def test_a_file_that_appears_while_a_run_draws_is_left_alone(make_scene, tmp_pat
     from mcgw.jobs import running
 
     monkeypatch.setattr(ensembles, "examine", untrusted.examine)
-    path, drawn = tmp_path / "e.h5", running.draw
+    path, drawn = tmp_path / "e.h5", Job.draw
 
     def slowly(*arguments):
         path.write_bytes(b"precious")
         return drawn(*arguments)
 
-    monkeypatch.setattr(running, "draw", slowly)
+    monkeypatch.setattr(Job, "draw", slowly)
     with pytest.raises(StoreError):
         running.run(make_scene(n_surfaces=4), path)
     assert path.read_bytes() == b"precious"

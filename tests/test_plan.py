@@ -42,14 +42,16 @@ def test_plan_counts_what_is_kept_and_says_who_chose(make_scene):
 def test_contacts_alone_draw_no_height(make_scene):
     scene = make_scene(quantities=("contacts",), sampler="cells")
     plan = plan_of(scene)
-    assert (plan.moments, plan.drawn) == (0, 0)
+    assert plan.moments == 0
+    assert plan.drawn < 0.1  # what lies beyond the last cell is drawn one by one
     assert "no height is drawn" in plan_text(scene, plan)
 
 
 def test_other_samplers(make_scene):
     assert plan_of(make_scene(sampler="direct")).drawn == 3000
     huge = plan_of(make_scene(sampler="aggregate", n_asperities=10**15))
-    assert huge.drawn == huge.moments < 5000
+    assert huge.moments <= huge.drawn < huge.moments + 0.1
+    assert huge.moments < 5000
     assert plan_of(make_scene(rel_err=0.01, n_surfaces=10**6, separations=(0.0,))).surfaces < 10**6
 
 

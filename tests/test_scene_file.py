@@ -160,7 +160,7 @@ def test_a_wrong_scene_in_python_is_refused_too():
 def test_files_that_are_none(tmp_path):
     with pytest.raises(SceneError, match="No such file"):
         mcgw.load_scene(tmp_path / "absent.toml")
-    with pytest.raises(SceneError, match="no regular file"):
+    with pytest.raises(SceneError, match="not a regular file"):
         mcgw.load_scene(tmp_path)
     (tmp_path / "binary.toml").write_bytes(bytes(range(256)))
     with pytest.raises(SceneError, match="not a TOML scene"):

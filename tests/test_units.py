@@ -107,9 +107,9 @@ def test_a_surface_of_texts_is_that_of_floats():
     assert mcgw.Surface(**AS_TEXT) == mcgw.Surface(**SI) == analytic.Surface(**SI)
     for key in SI:
         assert mcgw.Surface(**{**SI, key: AS_TEXT[key]}) == analytic.Surface(**SI)
-        with pytest.raises(ValueError, match=f"^{key} = '5 apples': give a number > 0 with its unit"):
+        with pytest.raises(ValueError, match=f"^surface.{key} = '5 apples': give a finite number > 0 in "):
             mcgw.Surface(**{**SI, key: "5 apples"})
-        with pytest.raises(ValueError, match=f"^{key} = -1"):
+        with pytest.raises(ValueError, match=f"^surface.{key} = -1"):
             mcgw.Surface(**{**SI, key: -1.0})
 
 

@@ -58,6 +58,7 @@ def _execute(args: argparse.Namespace) -> int:
     check_outputs([Output(path, HDF5, grows=True)], inputs=files_of(args.scene))
     expected = forecast(scene)
     short = [expected.shortfall] if part and expected.shortfall else []
+    engine = _engine(args)
     tell_notes(scene, *_of_threads(args.threads), *_of_time(scene), *short)
     if part:
         with bar("surfaces", terminal=True) as show:
@@ -68,7 +69,6 @@ def _execute(args: argparse.Namespace) -> int:
     ruled = scene.rel_err is not None or scene.max_seconds is not None
     if ruled:
         _tell_forecast(scene, expected)
-    engine = _engine(args)
     try:
         with bar("surfaces", terminal=True) as show:
             ensemble = run(scene, path, threads=args.threads, engine=engine, progress=show)
@@ -96,6 +96,8 @@ def _tell_forecast(scene: "Scene", expected: "Forecast") -> None:
 def _of_threads(threads: int | None) -> list[str]:
     from numba import get_num_threads
 
+    if threads is not None and threads < 1:
+        raise ValueError(f"threads = {threads}: give a whole number >= 1")
     if threads is None or threads <= get_num_threads():
         return []
     return [f"--threads {threads}: this machine has {get_num_threads()}, all are used"]

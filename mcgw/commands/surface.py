@@ -87,17 +87,18 @@ def _asperities(args: argparse.Namespace) -> int:
     scene = load_scene(args.scene)
     width = None if args.width is None else parse(args.width, "m", "--width")
     _check_output(args)
-    tell_notes(scene)
     field = asperities_of(scene, args.surface, width=width)
     if args.at is not None:
         spots = spots_at(scene, field, args.at)
         save_contact_map(field, spots, args.output, colour=args.colour, periodic=args.periodic)
+        tell_notes(scene)
         print(f"{args.output}: {spots.radius.size} contacts, {spots.load.sum():.6g} N")
         return 0
     columns, rows = _shape(args.shape)
     if rows is None:
         rows = max(round(columns * field.size[1] / field.size[0]), 1)
     topography = envelope(field, (rows, columns), periodic=args.periodic)
+    tell_notes(scene)
     for path in write_map(topography, args.output, field, scene=scene_text(scene)):
         print(path)
     print(_account(scene, field, topography))
