@@ -103,6 +103,7 @@ def _(result: Paired, ax: Any) -> None:
 def _(result: Solution, ax: Any) -> None:
     x = result.surfaces["separation"]
     ax.hist(x, bins="auto", color="C5", label=f"{x.size} surfaces")
+    ax.margins(y=0.3)  # room for the legend
     ax.axvline(result.theory["separation"], color="C0", label="theory, infinite surface")
     ax.axvline(x.mean(), color="C1", ls="--", label="mean of the surfaces")
     unit = quantity_of(result.given).unit
@@ -130,6 +131,7 @@ def _(result: Tradeoff, ax: Any, *, k: int) -> None:
 def _(result: Fit, ax: Any) -> None:
     sigma = float(result.summits.std())
     ax.hist(result.summits, bins="auto", density=True, color="C5", label=f"{result.summits.size} summits")
+    ax.margins(y=0.3)  # room for the legend
     z = np.linspace(-4 * sigma, 4 * sigma, 201)
     ax.plot(z, norm.pdf(z, scale=sigma), color="C0", label="Gaussian")
     ax.set(xlabel="summit height (m)", ylabel="density (1/m)", title=f"sigma = {sigma:.4g} m")
