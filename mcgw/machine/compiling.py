@@ -4,7 +4,6 @@ import hashlib
 import os
 import warnings
 from collections.abc import Callable
-from functools import cache
 from typing import Any
 
 import numba
@@ -79,9 +78,14 @@ def _go_on_when_full(kept: Any) -> None:
     kept.save_overload = try_to_save
 
 
-@cache
+_SAID: set[str] = set()
+
+
 def _say(folder: str, reason: str) -> None:
-    """Once for each folder and reason."""
+    """Once for each reason, though every package has a folder of its own."""
+    if reason in _SAID:
+        return
+    _SAID.add(reason)
     where = os.environ.get("NUMBA_CACHE_DIR")
     advice = "make room there" if where else "make room there, or set NUMBA_CACHE_DIR to another folder"
     warnings.warn(
