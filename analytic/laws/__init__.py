@@ -1,0 +1,1 @@
+"""Laws of contact of one asperity, one file each."""

@@ -1,0 +1,71 @@
+"""What a law of contact is: the load and the radius of one asperity's contact, piece by piece.
+
+Everything is in reduced units. An asperity of height s under a plane at the separation h is penetrated by
+``delta = s - h``; lengths normal to the plane are in sigma, contact radii in sqrt(R sigma), loads in
+``(4/3) E* sqrt(R) sigma^(3/2)``, and ``e = E*(s)/E*`` is the asperity's own modulus. Formulas take
+``y = sqrt(delta)``, in which a contact is analytic where it begins; y is Hertz's radius of contact.
+"""
+
+import math
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from analytic.surface import Surface
+
+__all__ = ["ContactLaw"]
+
+Array = NDArray[np.float64]
+
+
+class ContactLaw:
+    """The contact of one asperity: elastic and Hertz's, unless a law says otherwise.
+
+    A law consists of pieces. Piece 0 begins where the asperity touches, at delta = 0; piece j begins at
+    the penetration ``limits(e)[j - 1]``. `load` and `radius` of a piece are one formula each that goes on
+    smoothly beyond its ends, so that those of piece 0 also take -y. For a slope, formulas are asked for
+    complex y: they must not take absolute values, or compare.
+
+    Attributes
+    ----------
+    name : str
+        In scene files and reports.
+    elastic : bool
+        Whether an asperity unloads as it was loaded.
+    finest : float
+        How far above first touch the formulas of piece 0 are analytic, in penetration: infinite if they
+        are sums of powers of y.
+    root : bool
+        False if piece 0 is no analytic function of y next to y = 0, as a power that is no half-integer.
+    """
+
+    name: ClassVar[str] = "hertz"
+    elastic: ClassVar[bool] = True
+    root: ClassVar[bool] = True
+
+    @property
+    def finest(self) -> float:
+        """How far above first touch the formulas of piece 0 are analytic."""
+        return math.inf
+
+    def on(self, surface: Surface) -> "ContactLaw":
+        """The law on this surface, in reduced units: without anything in Pa or m left."""
+        return self
+
+    def limits(self, e: Array) -> Array:
+        """Penetrations at which the next piece begins, increasing; shape (pieces - 1, *e.shape)."""
+        return np.empty((0, *np.shape(e)))
+
+    def load(self, piece: int, y: Any, e: Array) -> Any:
+        """Load of a contact, in the shape of `y` and `e`."""
+        return e * (y * y * y)
+
+    def radius(self, piece: int, y: Any, e: Array) -> Any:
+        """Radius of a contact; its square is the area over pi R sigma."""
+        return y + 0.0 * e
+
+    def slope(self, piece: int, y: Array, e: Array) -> Array:
+        """Derivative of the load by the penetration, within the piece."""
+        step = 1e-30 * np.abs(y)  # into the complex plane, where nothing cancels
+        return np.asarray(np.imag(self.load(piece, y + 1j * step, e)) / step / (2 * y))

@@ -1,0 +1,82 @@
+"""What one contact adds to each quantity, over the quantity's scale, under any law of contact."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from analytic.laws.law import ContactLaw
+
+__all__ = ["of_spot", "piece_of", "term"]
+
+Array = NDArray[np.float64]
+
+
+def of_spot(quantity: str, law: ContactLaw, piece: int, y: Array, e: Array) -> Array:
+    """What a contact of this piece of the law adds, as the piece's formula goes on beyond its ends.
+
+    Parameters
+    ----------
+    quantity : str
+        Its name: one of `analytic.QUANTITIES` or `analytic.LAW_QUANTITIES`.
+    law : ContactLaw
+        In reduced units.
+    piece : int
+        Which formula.
+    y, e : ndarray
+        Root of the penetration and modulus E*(s)/E*, of any shapes that broadcast.
+
+    Returns
+    -------
+    ndarray
+        In their common shape.
+
+    Raises
+    ------
+    KeyError
+        If there is no such quantity.
+    """
+    known: dict[str, Any] = {
+        "load": lambda: law.load(piece, y, e),
+        "area": lambda: law.radius(piece, y, e) ** 2,
+        "stiffness": lambda: e * law.radius(piece, y, e),
+        "contacts": lambda: np.ones(np.broadcast_shapes(np.shape(y), np.shape(e))),
+        "conductance": lambda: law.radius(piece, y, e),
+        "load_slope": lambda: law.slope(piece, y, e) * (2 / 3),
+        "yielded": lambda: np.full(np.broadcast_shapes(np.shape(y), np.shape(e)), float(piece > 0)),
+    }
+    return np.asarray(known[quantity]())
+
+
+def piece_of(law: ContactLaw, penetration: Array, e: Array) -> NDArray[np.int64]:
+    """Which piece of the law holds at these penetrations, in the shape of both."""
+    return np.asarray((law.limits(e) <= penetration).sum(axis=0), dtype=np.int64)
+
+
+def term(quantity: str, law: ContactLaw, penetration: Array, e: Array) -> Array:
+    """What asperities add, 0 without contact: literally, each by the formula of its piece.
+
+    Parameters
+    ----------
+    quantity, law
+        As for `of_spot`.
+    penetration, e : ndarray
+        Reduced penetration s - h, negative without contact, and modulus E*(s)/E*; of any shapes that
+        broadcast.
+
+    Returns
+    -------
+    ndarray
+        In their common shape.
+    """
+    penetration, e = np.broadcast_arrays(penetration, e)
+    result = np.zeros(penetration.shape)
+    touching = penetration > 0
+    y, e = np.sqrt(penetration[touching]), e[touching]
+    piece = piece_of(law, penetration[touching], e)
+    value = np.zeros(y.shape)
+    for j in np.unique(piece):
+        here = piece == j
+        value[here] = of_spot(quantity, law, int(j), y[here], e[here])
+    result[touching] = value
+    return result
