@@ -79,7 +79,7 @@ def product(a: Array, b: Array) -> Array:
     """
     rows, columns = (
         np.ascontiguousarray(a.reshape(-1, a.shape[-1])),
-        np.ascontiguousarray(b.reshape(len(b), -1)),
+        np.ascontiguousarray(b.reshape(len(b), math.prod(b.shape[1:]))),
     )
     result = np.zeros((len(rows), columns.shape[1]))
     _add_product(rows, columns, result)

@@ -5,53 +5,38 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from mcgw.sampling.cells import Mesh
-from mcgw.sampling.layout import Layout
+from mcgw.sampling.cells import NODES
+from mcgw.sampling.response.dense import Parts
 from mcgw.sampling.response.product import FOUR, Blocks, Tiles, in_fours
-from mcgw.sampling.response.series import ContactLaws
-from mcgw.sampling.response.tree import Tree, transfer
+from mcgw.sampling.response.tree import transfers
 
-__all__ = ["Entry", "tiles_of"]
+__all__ = ["tiles_of"]
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
-
-@dataclass(frozen=True)
-class Entry:
-    """Coefficients of some laws on one node; `rooted` ones multiply the R_j."""
-
-    node: int
-    rooted: bool
-    laws: Ints
-    coefficients: Array
+_ORDER = len(NODES)
 
 
-def tiles_of(
-    mesh: Mesh, tree: Tree, laws: ContactLaws, entries: list[Entry], plain: Ints, rooted: Ints
-) -> Tiles:
-    """Tiles that make the sums of all laws of the moments of the cells.
+def tiles_of(parts: Parts, order: Ints) -> Tiles:
+    """Tiles that make the answers of the moments of the cells.
 
     Parameters
     ----------
-    mesh, tree : Mesh, Tree
-        Cells, and the nodes over them.
-    laws : ContactLaws
-        The answers.
-    entries : list of Entry
-        What each node gives to them.
-    plain, rooted : ndarray of int
-        How many T_j each node has, and how many R_j each cell.
+    parts : Parts
+        Series on the nodes of the tree.
+    order : ndarray of int
+        The answers, four by four such as need the same cells.
 
     Returns
     -------
     Tiles
         To apply to moments as `Layout` has them.
     """
-    rows = _Rows.of(Layout(plain[: mesh.size], rooted), plain[mesh.size :])
-    order = np.lexsort((laws.h, laws.exponent % 1 == 0))  # in fours that need the same cells
-    answers = _answers(entries, plain, rooted, rows, np.argsort(order))
-    return Tiles.of([*_transfers(mesh, tree, plain, rows), *answers], rows.given, rows.answers(order))
+    rows = _Rows.of(parts)
+    return Tiles.of(
+        [_transfers(parts, rows), _answers(parts, rows, np.argsort(order))], rows.given, rows.answers(order)
+    )
 
 
 @dataclass(frozen=True)
@@ -67,7 +52,8 @@ class _Rows:
     given: Ints
 
     @classmethod
-    def of(cls, cells: Layout, parents: Ints) -> "_Rows":
+    def of(cls, parts: Parts) -> "_Rows":
+        cells, parents = parts.layout, parts.plain[parts.mesh.size :]
         sizes = np.stack([cells.plain, cells.rooted], axis=1).ravel()
         starts = np.concatenate([[0], np.cumsum(in_fours(np.concatenate([sizes, parents])))])
         of_cells, of_parents = starts[: len(sizes)], starts[len(sizes) : -1]
@@ -84,31 +70,30 @@ class _Rows:
         return answers.reshape(-1, FOUR)
 
 
-def _transfers(mesh: Mesh, tree: Tree, plain: Ints, rows: _Rows) -> list[Blocks]:
+def _transfers(parts: Parts, rows: _Rows) -> Blocks:
     """Blocks that make the moments of the parents."""
-    blocks = []
-    for node in range(mesh.size, tree.size):
-        for child in (tree.left[node], tree.right[node]):
-            matrix = transfer(mesh, tree, node, child)[: plain[node], : plain[child]]
-            blocks.append(_blocks(rows.plain[node] + np.arange(len(matrix)), rows.plain[child], matrix.T))
-    return blocks
+    parent, child, matrices = transfers(parts.mesh, parts.tree)
+    j = np.arange(_ORDER)
+    wanted = j < parts.plain[parent][:, None]
+    pair, moment = np.nonzero(wanted)
+    coefficients = np.where(j < parts.plain[child[pair]][:, None], matrices[pair, moment], 0.0)
+    return _blocks(rows.plain[parent[pair]] + moment, rows.plain[child[pair]], coefficients)
 
 
-def _answers(entries: list[Entry], plain: Ints, rooted: Ints, rows: _Rows, places: Ints) -> list[Blocks]:
+def _answers(parts: Parts, rows: _Rows, places: Ints) -> Blocks:
     """Blocks that make the answers."""
-    blocks = []
-    for entry in entries:
-        size, start = (rooted, rows.rooted) if entry.rooted else (plain, rows.plain)
-        coefficients = entry.coefficients[: size[entry.node]]
-        blocks.append(_blocks(rows.end + places[entry.laws], start[entry.node], coefficients))
-    return blocks
+    node, rooted, entries = parts.entries.node, parts.entries.rooted, parts.entries
+    cell = np.where(rooted, node, 0)
+    start = np.where(rooted, rows.rooted[cell], rows.plain[node]) if len(node) else node
+    size = np.where(rooted, parts.rooted[cell], parts.plain[node]) if len(node) else node
+    coefficients = np.where(np.arange(_ORDER) < size[:, None], entries.coefficients.T, 0.0)
+    return _blocks(rows.end + places[parts.answer[entries.row]], start, coefficients)
 
 
-def _blocks(rows: Ints, start: int, coefficients: Array) -> Blocks:
-    """Coefficients (columns, rows) of neighbouring columns from `start` on, without blocks of zeros."""
-    n = -(-len(coefficients) // FOUR)
-    filled = np.zeros((n * FOUR, len(rows)))
-    filled[: len(coefficients)] = coefficients
-    blocks = filled.reshape(n, FOUR, len(rows)).transpose(0, 2, 1)
-    block, row = np.nonzero(blocks.any(axis=2))
-    return rows[row], start + FOUR * block, blocks[block, row]
+def _blocks(row: Ints, start: Ints, coefficients: Array) -> Blocks:
+    """Coefficients of rows, of neighbouring columns from `start` on, without blocks of zeros."""
+    filled = np.zeros((len(row), in_fours(_ORDER)))
+    filled[:, :_ORDER] = coefficients
+    blocks = filled.reshape(len(row), in_fours(_ORDER) // FOUR, FOUR)
+    which, block = np.nonzero(blocks.any(axis=2))
+    return row[which], start[which] + FOUR * block, blocks[which, block]

@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from mcgw.sampling.cells import Mesh
 from mcgw.sampling.layout import Layout
-from mcgw.sampling.response.assembly import Entry
-from mcgw.sampling.response.tree import Tree, transfer
+from mcgw.sampling.response.tree import Tree, transfers
+from mcgw.sampling.response.walk import Entries
 from mcgw.sampling.rules import product
 
 __all__ = ["Parts"]
@@ -29,15 +29,18 @@ class Parts:
     ----------
     mesh, tree : Mesh, Tree
         Cells, and the nodes over them.
-    entries : list of Entry
-        What each node gives to the answers.
+    entries : Entries
+        What each node gives to the rows.
+    answer : ndarray of int
+        Which answer each row adds to.
     plain, rooted : ndarray of int
         How many T_j each node has, and how many R_j each cell.
     """
 
     mesh: Mesh
     tree: Tree
-    entries: list[Entry]
+    entries: Entries
+    answer: Ints
     plain: Ints
     rooted: Ints
 
@@ -49,10 +52,12 @@ class Parts:
     def matrix(self, answers: int) -> Array:
         """What each moment of the cells adds to each answer, shape (answers, moments)."""
         plain, rooted = self._moments_of_nodes()
-        matrix = np.zeros((answers, int(self.layout.starts[-1])))
-        for entry in self.entries:
-            moments = (rooted if entry.rooted else plain)[entry.node]
-            matrix[entry.laws] += product(entry.coefficients[: len(moments)].T, moments)
+        matrix, entries = np.zeros((answers, int(self.layout.starts[-1]))), self.entries
+        for node, row, root, c in zip(
+            entries.node, entries.row, entries.rooted, entries.coefficients.T, strict=True
+        ):
+            moments = (rooted if root else plain)[node]
+            matrix[self.answer[row]] += product(c[: len(moments)], moments)
         return matrix
 
     def _moments_of_nodes(self) -> tuple[list[Array], list[Array]]:
@@ -62,10 +67,7 @@ class Parts:
         rooted = [
             itself[b - n : b] for b, n in zip(starts[1:], self.layout.rooted, strict=True)
         ]  # after the plain ones
-        for node in range(self.mesh.size, self.tree.size):
-            above = np.zeros((self.plain[node], itself.shape[1]))
-            for child in (self.tree.left[node], self.tree.right[node]):
-                of_child = transfer(self.mesh, self.tree, node, child)[: len(above), : len(plain[child])]
-                above += product(of_child, plain[child])
-            plain.append(above)
+        plain += [np.zeros((n, len(itself))) for n in self.plain[self.mesh.size :]]
+        for parent, child, matrix in zip(*transfers(self.mesh, self.tree), strict=True):
+            plain[parent] += product(matrix[: len(plain[parent]), : len(plain[child])], plain[child])
         return plain, rooted

@@ -12,21 +12,23 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from mcgw.sampling.cells import NODES, Mesh
+from mcgw.sampling.cells import Mesh
 from mcgw.sampling.layout import Layout
-from mcgw.sampling.response.assembly import Entry, tiles_of
+from mcgw.sampling.response.assembly import tiles_of
 from mcgw.sampling.response.dense import Parts
+from mcgw.sampling.response.hertz_rows import hertz_rows
+from mcgw.sampling.response.nodes import Nodes
 from mcgw.sampling.response.product import Tiles
-from mcgw.sampling.response.series import ACCURACY, ContactLaws
-from mcgw.sampling.response.tree import Tree, heights_above, tree_over
+from mcgw.sampling.response.rows import Rows
+from mcgw.sampling.response.tree import tree_over
+from mcgw.sampling.response.walk import walk
 from mcgw.scene.scene import Scene
 
 __all__ = ["Response", "layout_of", "response_of"]
 
 Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
-_MOST, _MOST_IN_CELL = 12, 19  # moments: what is not resolved by so many is left to the children, or refused
+ACCURACY = 1e-13  # relative to the largest value of a row on a node, or to the sum of a surface
 
 
 @dataclass(frozen=True)
@@ -96,10 +98,13 @@ def response_of(
     ValueError
         If the grading is not resolved on a cell, or not by the moments there are.
     """
-    tree, laws = tree_over(mesh), _laws(scene, mesh, quantities, lasting=kept is not None, accuracy=accuracy)
-    parts = Parts(mesh, tree, *_walk(mesh, tree, laws, kept))
-    tiles = tiles_of(mesh, tree, laws, parts.entries, parts.plain, parts.rooted)
-    return Response(parts, tiles, (len(quantities), laws.separations))
+    rows = _rows(scene, quantities, lasting=kept is not None)
+    parts = _parts(scene, mesh, rows, accuracy)
+    if kept:
+        _check_kept(mesh, kept, parts.layout)
+        plain = np.concatenate([kept.plain, parts.plain[mesh.size :]])
+        parts = replace(parts, plain=plain, rooted=kept.rooted)
+    return Response(parts, tiles_of(parts, rows.order), (len(quantities), len(set(scene.separations))))
 
 
 def layout_of(
@@ -129,70 +134,21 @@ def layout_of(
     ValueError
         If the grading is not resolved on a cell.
     """
-    laws = _laws(scene, mesh, quantities, lasting=lasting, accuracy=accuracy)
-    _, plain, rooted = _walk(mesh, tree_over(mesh), laws, None)
-    return Layout(plain[: mesh.size], rooted)
+    return _parts(scene, mesh, _rows(scene, quantities, lasting=lasting), accuracy).layout
 
 
-def _laws(
-    scene: Scene, mesh: Mesh, quantities: tuple[str, ...], *, lasting: bool, accuracy: float
-) -> ContactLaws:
-    """The laws of some quantities on a mesh, each separation once, in increasing order."""
-    scene = replace(scene, separations=tuple(sorted(set(scene.separations))))
-    between = (mesh.edges[0], mesh.edges[-1]) if mesh.size else (0.0, 0.0)
-    return ContactLaws.of(scene, quantities, between, lasting=lasting, accuracy=accuracy)
+def _rows(scene: Scene, quantities: tuple[str, ...], *, lasting: bool) -> Rows:
+    """What is asked, each separation once, in increasing order."""
+    return hertz_rows(
+        replace(scene, separations=tuple(sorted(set(scene.separations)))), quantities, lasting=lasting
+    )
 
 
-def _walk(mesh: Mesh, tree: Tree, laws: ContactLaws, kept: Layout | None) -> tuple[list[Entry], Ints, Ints]:
-    """From the root down: give each law to the coarsest nodes that resolve it."""
-    entries: list[Entry] = []
-    plain, rooted = np.zeros(tree.size, dtype=np.int64), np.zeros(mesh.size, dtype=np.int64)
-    start = mesh.edges[tree.first]
-    heights = [heights_above(mesh, tree, node) for node in range(tree.size)]
-    moduli = laws.grading(start[:, None] + np.reshape(heights, (tree.size, len(NODES))))
-    stack = [(tree.size - 1, np.arange(len(laws.h)), 0)] if tree.size else []
-    while stack:
-        node, which, inherited = stack.pop()
-        a, b = start[node], mesh.edges[tree.last[node]]
-        which = which[laws.h[which] < b]
-        t, e = heights[node], moduli[node]
-        smooth = laws.smooth_from(which, a)
-        if tree.left[node] >= 0:
-            smooth &= ~laws.broken_between(which, a, b)
-        p = tree.probability[node]
-        c, needed = laws.plain(which[smooth], a, t, e, p)
-        done = needed <= (_MOST if tree.left[node] >= 0 else _MOST_IN_CELL)
-        if done.any():
-            entries.append(Entry(node, False, which[smooth][done], c[:, done]))
-        rest = np.concatenate([which[smooth][~done], which[~smooth]])
-        if tree.left[node] >= 0:
-            plain[node] = max(inherited, needed[done].max(initial=0))
-            stack += [(tree.left[node], rest, plain[node]), (tree.right[node], rest, plain[node])]
-            continue
-        if not done.all():
-            raise ValueError(f"grading: not resolved near s = {a:.6g}; give its breaks, or a smoother one")
-        for_parents = _for_parents(laws, a, t, e, p) if inherited > 1 else inherited
-        plain[node] = max(needed.max(initial=0), for_parents)
-        at_edge = which[~smooth]
-        if at_edge.size:
-            c, needed = laws.from_edge(at_edge, a, t, e, p)
-            rooted[node] = needed.max()
-            entries.append(Entry(node, True, at_edge, c))
-    if kept:
-        _check_kept(mesh, kept, Layout(plain[: mesh.size], rooted))
-        plain[: mesh.size], rooted = kept.plain, kept.rooted
-    return entries, plain, rooted
-
-
-def _for_parents(laws: ContactLaws, a: float, t: Array, e: Array, p: float) -> int:
-    """Moments of a cell that the moments of its parents need at most.
-
-    In the cell's uniform the height bends, so that even the first moments of a parent take many of its. But
-    what parents stand in for are laws from farther below, smoother on this cell than the nearest ones: no
-    more of its moments count than those would need. One of them counts the asperities.
-    """
-    _, nearest = laws.plain(laws.nearest(a), a, t, e, p)
-    return int(nearest.max(initial=1))
+def _parts(scene: Scene, mesh: Mesh, rows: Rows, accuracy: float) -> Parts:
+    tree = tree_over(mesh)
+    nodes = Nodes.of(mesh, tree, scene.modulus, scene.n_asperities, accuracy)
+    entries, plain, rooted = walk(mesh, tree, rows, nodes)
+    return Parts(mesh, tree, entries, rows.answer, plain, rooted)
 
 
 def _check_kept(mesh: Mesh, kept: Layout, needed: Layout) -> None:

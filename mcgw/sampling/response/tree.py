@@ -15,9 +15,10 @@ from numpy.typing import NDArray
 from mcgw.sampling.cells import NODES, TO_COEFFICIENTS, Mesh
 from mcgw.sampling.rules import product
 
-__all__ = ["Tree", "transfer", "tree_over"]
+__all__ = ["Tree", "heights_above", "transfers", "tree_over"]
 
 Array = NDArray[np.float64]
+Ints = NDArray[np.int64]
 
 
 @dataclass(frozen=True)
@@ -66,16 +67,30 @@ def tree_over(mesh: Mesh) -> Tree:
     return Tree(links[0], links[1], links[2], links[3], np.array(probability, dtype=np.float64))
 
 
-def heights_above(mesh: Mesh, tree: Tree, node: int) -> Array:
-    """Heights above the lower edge of a node, at the Chebyshev points of its own variable."""
-    if tree.left[node] < 0:
-        return mesh.offsets(node, (1 + NODES) / 2)
-    return np.asarray((mesh.edges[tree.last[node]] - mesh.edges[tree.first[node]]) * (1 + NODES) / 2)
+def heights_above(mesh: Mesh, tree: Tree, nodes: Ints) -> Array:
+    """Heights above the lower edges of nodes, at the Chebyshev points of their variables: (points, nodes)."""
+    u = ((1 + NODES) / 2)[:, None]
+    width = mesh.edges[tree.last[nodes]] - mesh.edges[tree.first[nodes]]
+    cells = nodes < mesh.size
+    above = width * u
+    above[:, cells] = mesh.offsets(nodes[cells], np.repeat(u, np.count_nonzero(cells), axis=1))
+    return above
 
 
-def transfer(mesh: Mesh, tree: Tree, node: int, child: int) -> Array:
-    """Matrix from the moments T_k of a child to its part of the moments T_j of the parent."""
-    start, end = mesh.edges[tree.first[node]], mesh.edges[tree.last[node]]
+def transfers(mesh: Mesh, tree: Tree) -> tuple[Ints, Ints, Array]:
+    """Matrices from the moments T_k of each child to its part of the moments T_j of its parent.
+
+    Returns
+    -------
+    (ndarray, ndarray, ndarray)
+        Parents, children, and matrices of shape (pairs, order, order): j, then k.
+    """
+    parent = np.repeat(np.arange(mesh.size, tree.size), 2)
+    child = np.stack([tree.left, tree.right], axis=1)[mesh.size :].ravel()
+    start, end = mesh.edges[tree.first[parent]], mesh.edges[tree.last[parent]]
     s = (mesh.edges[tree.first[child]] - start) + heights_above(mesh, tree, child)
-    matrix = product(TO_COEFFICIENTS, chebyshev.chebvander(2 * s / (end - start) - 1, len(NODES) - 1)).T
-    return np.asarray(matrix if tree.left[child] < 0 else np.tril(matrix))  # no degree is raised
+    powers = np.asarray(chebyshev.chebvander(2 * s / (end - start) - 1, len(NODES) - 1), dtype=np.float64)
+    matrices = product(TO_COEFFICIENTS, powers).transpose(1, 2, 0)
+    of_parents = tree.left[child] >= 0
+    matrices[of_parents] = np.tril(matrices[of_parents])  # no degree is raised
+    return parent, child, matrices

@@ -1,0 +1,108 @@
+"""The nodes of the tree as the rows see them: heights, moduli, and how accurate a series must be there."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from analytic import Grading, resolved_breaks
+from mcgw.sampling.cells import Mesh, evenness, height_noise
+from mcgw.sampling.response.rows import Rows
+from mcgw.sampling.response.tree import Tree, heights_above
+
+__all__ = ["Nodes"]
+
+Array = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+_SCATTER = 8  # asperities more than expected
+_NODES = 32  # that add to one sum, with errors of their own
+
+
+@dataclass(frozen=True)
+class Nodes:
+    """All nodes, one an array element.
+
+    Parameters
+    ----------
+    start, end : ndarray
+        Their heights, shape (nodes,).
+    above, moduli : ndarray
+        Heights above the start at the Chebyshev points of a node's variable, and E*(s)/E* there; shape
+        (points, nodes).
+    parent : ndarray of bool
+        Whether it has children.
+    broken : ndarray of bool
+        Whether the grading has a break inside, which its values at 20 heights may not show.
+    crowd : ndarray
+        Asperities of a surface there, at most.
+    even, noise : ndarray
+        Share of the largest value that errors are held against, and share that the last digit of a height
+        makes: of rows that depend on the modulus.
+    accuracy : float
+        Of a series, relative to the largest value on the node or to the sum of a surface.
+    """
+
+    start: Array
+    end: Array
+    above: Array
+    moduli: Array
+    parent: NDArray[np.bool_]
+    broken: NDArray[np.bool_]
+    crowd: Array
+    even: Array
+    noise: Array
+    accuracy: float
+
+    @classmethod
+    def of(cls, mesh: Mesh, tree: Tree, grading: Grading, n_asperities: int, accuracy: float) -> "Nodes":
+        """The nodes of a tree, for surfaces of so many asperities."""
+        start, end = mesh.edges[tree.first], mesh.edges[tree.last]
+        above = heights_above(mesh, tree, np.arange(tree.size))
+        moduli = grading(start + above)
+        ends = (mesh.edges[0], mesh.edges[-1]) if mesh.size else (0.0, 0.0)
+        kinks = np.array(resolved_breaks(grading, *ends))
+        inside = np.searchsorted(kinks, end) > np.searchsorted(kinks, start, side="right")
+        e, t = moduli.T, above.T
+        largest = np.maximum(np.abs(e).max(axis=1), np.finfo(float).tiny)
+        return cls(
+            start=start,
+            end=end,
+            above=above,
+            moduli=moduli,
+            parent=tree.left >= 0,
+            broken=inside,
+            crowd=n_asperities * tree.probability + _SCATTER,
+            even=evenness(grading, e),
+            noise=height_noise(start, t, e) / largest,
+            accuracy=accuracy,
+        )
+
+    def needed(self, c: Array, node: Ints, row: Ints, rows: Rows) -> tuple[Ints, Ints]:
+        """How many leading coefficients of a series count.
+
+        Parameters
+        ----------
+        c : ndarray
+            Coefficients, shape (order, pairs).
+        node, row : ndarray of int
+            Whose they are, shape (pairs,).
+        rows : Rows
+            All rows.
+
+        Returns
+        -------
+        (ndarray, ndarray)
+            For this node, so many moments it must have; and in a sum over many nodes, whose errors add up:
+            what lies beyond is nothing, what is in between is used if others need the moments.
+        """
+        tail = np.cumsum(np.abs(c)[::-1], axis=0)[::-1]
+        graded = rows.graded[row]
+        least = np.where(graded, self.even[node], 1.0) * tail[0]
+        enough = np.maximum(least, rows.total[row] / self.crowd[node])
+        noise = np.where(graded, self.noise[node], 0.0) * tail[0]
+        alone, of_many = (
+            (tail > np.maximum(accuracy * enough, noise)).sum(axis=0)
+            for accuracy in (self.accuracy, self.accuracy / _NODES)
+        )
+        return alone, of_many

@@ -1,0 +1,116 @@
+"""What is asked of the heights, row by row: a formula that holds from one height to another.
+
+A quantity at a separation is one row under Hertz's law, and a few where a law of contact has breaks: one for
+each piece, on the heights at which that piece holds.
+"""
+
+from dataclasses import dataclass
+from typing import NamedTuple, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["Formulas", "Rows", "Start"]
+
+Array = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+
+class Start(NamedTuple):
+    """Smooth functions of u that rows consist of, on the cell at which they begin.
+
+    Attributes
+    ----------
+    rooted : bool
+        Whether they are still to be multiplied by sqrt(u).
+    rows : ndarray of int
+        Of which of the rows that were asked for.
+    values : ndarray
+        Shape (points, rows).
+    power : ndarray
+        Whole power of u that they are to be multiplied by besides.
+    """
+
+    rooted: bool
+    rows: Ints
+    values: Array
+    power: Array
+
+
+class Formulas(Protocol):
+    """The formulas of all rows."""
+
+    def values(self, rows: Ints, above: Array, e: Array) -> Array:
+        """Values at heights `above` the separation of each row, of modulus `e`: shape (points, rows)."""
+        ...
+
+    def at_start(self, rows: Ints, above: Array, e: Array, u: Array) -> list[Start]:
+        """The same on the cell or node at which each row begins; `u` is its variable, from 0 to 1."""
+        ...
+
+
+@dataclass(frozen=True)
+class Rows:
+    """What is asked, one row an array element.
+
+    Parameters
+    ----------
+    h : ndarray
+        Reduced separation of the row.
+    low, high : ndarray
+        Heights between which its formula holds.
+    rooted : ndarray of bool
+        Whether it is no smooth function of the height where it begins.
+    graded : ndarray of bool
+        Whether it depends on the modulus.
+    kind : ndarray of int
+        Which formula: those of one kind differ in their separation alone.
+    answer : ndarray of int
+        Which answer it adds to: quantity by quantity, at increasing separations.
+    total : ndarray
+        Mean sum over a surface of the answer, where so many touch that it is sure to be of that size; else 0.
+    formulas : Formulas
+        What holds.
+    """
+
+    h: Array
+    low: Array
+    high: Array
+    rooted: NDArray[np.bool_]
+    graded: NDArray[np.bool_]
+    kind: Ints
+    answer: Ints
+    total: Array
+    formulas: Formulas
+
+    @property
+    def order(self) -> Ints:
+        """The answers in an order in which neighbours need the same cells."""
+        _, first = np.unique(self.answer, return_index=True)
+        return np.lexsort((self.h[first], ~self.rooted[first]))
+
+    def nearest(self, starts: Array) -> tuple[Ints, Ints]:
+        """Of each kind the smooth row that begins last on or before each cell: the hardest to resolve.
+
+        Parameters
+        ----------
+        starts : ndarray
+            Where the cells begin, increasing.
+
+        Returns
+        -------
+        (ndarray, ndarray)
+            Cells and rows, pair by pair.
+        """
+        found = [(np.empty(0, dtype=np.int64), np.empty(0, dtype=np.int64))]
+        for kind in np.unique(self.kind):
+            rows = np.flatnonzero(self.kind == kind)
+            rows = rows[np.argsort(self.low[rows], kind="stable")]
+            low, rooted = self.low[rows], bool(self.rooted[rows].any())
+            last = np.searchsorted(low, starts, "left" if rooted else "right") - 1
+            cell = np.flatnonzero(last >= 0)
+            row = rows[last[cell]]
+            inside = self.high[row] > starts[cell]
+            found.append((cell[inside], row[inside]))
+        cell, row = (np.concatenate(part) for part in zip(*found, strict=True))
+        return cell, row

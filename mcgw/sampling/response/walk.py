@@ -1,0 +1,190 @@
+"""From the root down, level by level: give each row to the coarsest nodes that resolve it."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mcgw.sampling.cells import NODES, TO_COEFFICIENTS, Mesh
+from mcgw.sampling.response.nodes import Nodes
+from mcgw.sampling.response.rows import Rows
+from mcgw.sampling.response.tree import Tree
+from mcgw.sampling.rules import product
+
+__all__ = ["Entries", "walk"]
+
+Array = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+_MOST, _MOST_IN_CELL = 12, 19  # moments: what is not resolved by so many is left to the children, or refused
+_U = (1 + NODES) / 2
+
+
+@dataclass(frozen=True)
+class Entries:
+    """Coefficients of rows on nodes, one an array element.
+
+    Parameters
+    ----------
+    node, row : ndarray of int
+        Whose they are.
+    rooted : ndarray of bool
+        Whether they multiply the R_j of a cell, or the T_j of a node.
+    coefficients : ndarray
+        Shape (order, entries).
+    """
+
+    node: Ints
+    row: Ints
+    rooted: NDArray[np.bool_]
+    coefficients: Array
+
+    def take(self, which: NDArray[np.bool_]) -> "Entries":
+        """Some of them."""
+        return Entries(self.node[which], self.row[which], self.rooted[which], self.coefficients[:, which])
+
+    @classmethod
+    def joined(cls, parts: list["Entries"]) -> "Entries":
+        """Some after the others."""
+        return cls(
+            np.concatenate([_NO_INDEX, *(part.node for part in parts)]),
+            np.concatenate([_NO_INDEX, *(part.row for part in parts)]),
+            np.concatenate([_NO_INDEX.astype(bool), *(part.rooted for part in parts)]),
+            np.concatenate([np.empty((len(NODES), 0)), *(part.coefficients for part in parts)], axis=1),
+        )
+
+
+_NO_INDEX = np.empty(0, dtype=np.int64)
+
+
+def walk(mesh: Mesh, tree: Tree, rows: Rows, nodes: Nodes) -> tuple[Entries, Ints, Ints]:
+    """Series of all rows.
+
+    Parameters
+    ----------
+    mesh, tree, nodes : Mesh, Tree, Nodes
+        Cells, and the nodes over them.
+    rows : Rows
+        What is asked.
+
+    Returns
+    -------
+    (Entries, ndarray, ndarray)
+        The series; how many T_j each node must have, and how many R_j each cell.
+
+    Raises
+    ------
+    ValueError
+        If a row begins or ends inside a cell, or is not resolved on one.
+    """
+    plain, rooted = np.zeros(tree.size, dtype=np.int64), np.zeros(mesh.size, dtype=np.int64)
+    for_parents = np.zeros(tree.size, dtype=np.int64)
+    found: list[Entries] = []
+    level = np.array([tree.size - 1] if tree.size else [], dtype=np.int64)
+    node, row = np.repeat(level, len(rows.h)), np.tile(np.arange(len(rows.h)), len(level))
+    while level.size:
+        here = (rows.low[row] < nodes.end[node]) & (rows.high[row] > nodes.start[node])
+        node, row = node[here], row[here]
+        smooth = np.flatnonzero(_smooth(rows, nodes, node, row))
+        series, needed = _smooth_series(rows, nodes, node[smooth], row[smooth])
+        parent = nodes.parent[node[smooth]]
+        done = needed <= np.where(parent, _MOST, _MOST_IN_CELL)
+        _refuse(nodes, node[smooth][~done & ~parent])
+        found.append(series.take(done))
+        np.maximum.at(plain, node[smooth[done]], needed[done])
+        left = np.ones(len(node), dtype=bool)
+        left[smooth[done]] = False
+        begins = left & ~nodes.parent[node]
+        for some, needed in _begun_series(rows, nodes, node[begins], row[begins]):
+            found.append(some)
+            np.maximum.at(rooted if some.rooted.any() else plain, some.node, needed)
+        level, left = level[nodes.parent[level]], left & nodes.parent[node]
+        children = tree.left, tree.right
+        for child in children:
+            for_parents[child[level]] = plain[level]
+            plain[child[level]] = np.where(nodes.parent[child[level]], plain[level], 0)
+        node, row = np.concatenate([child[node[left]] for child in children]), np.tile(row[left], 2)
+        level = np.concatenate([child[level] for child in children])
+    cells = slice(0, mesh.size)
+    plain[cells] = np.maximum(plain[cells], _of_parents(rows, nodes, for_parents[cells]))
+    return Entries.joined(found), plain, rooted
+
+
+def _smooth(rows: Rows, nodes: Nodes, node: Ints, row: Ints) -> NDArray[np.bool_]:
+    """Whether a row is one smooth function on a node."""
+    start, low = nodes.start[node], rows.low[row]
+    whole = (low < start) | ((low == start) & ~rows.rooted[row])
+    whole &= nodes.end[node] <= rows.high[row]
+    return np.asarray(whole & ~(nodes.parent[node] & nodes.broken[node] & rows.graded[row]))
+
+
+def _refuse(nodes: Nodes, unresolved: Ints) -> None:
+    if unresolved.size:
+        s = nodes.start[unresolved].min()
+        raise ValueError(f"grading: not resolved near s = {s:.6g}; give its breaks, or a smoother one")
+
+
+def _smooth_series(rows: Rows, nodes: Nodes, node: Ints, row: Ints) -> tuple[Entries, Ints]:
+    """Series of rows that are smooth on nodes, and how many coefficients must count.
+
+    What no sum over many nodes can show is zero.
+    """
+    above = (nodes.start[node] - rows.h[row]) + nodes.above[:, node]
+    c = product(TO_COEFFICIENTS, rows.formulas.values(row, above, nodes.moduli[:, node]))
+    needed, of_many = nodes.needed(c, node, row, rows)
+    c[np.arange(len(c))[:, None] >= of_many] = 0.0
+    begins = np.flatnonzero(rows.low[row] == nodes.start[node])
+    for _, which, begun, count in _starts(rows, nodes, node[begins], row[begins]):
+        c[:, begins[which]], needed[begins[which]] = begun, count
+    return Entries(node, row, np.zeros(len(node), dtype=bool), c), needed
+
+
+def _begun_series(rows: Rows, nodes: Nodes, node: Ints, row: Ints) -> Iterator[tuple[Entries, Ints]]:
+    """Series of rows with a root, on the cells at which they begin."""
+    if np.any(rows.low[row] != nodes.start[node]):
+        s = rows.low[row][rows.low[row] != nodes.start[node]][0]
+        raise ValueError(f"a break of the contact law at s = {s:.6g} is not an edge of the cells")
+    for root, which, c, needed in _starts(rows, nodes, node, row):
+        yield Entries(node[which], row[which], np.full(len(which), root), c), needed
+
+
+def _starts(rows: Rows, nodes: Nodes, node: Ints, row: Ints) -> Iterator[tuple[bool, Ints, Array, Ints]]:
+    """Of rows that begin where a node does: rooted or not, which ones, series, and how many count.
+
+    A series is cut before the whole power of u is put in, so that it stays accurate relative to the row
+    down to u = 0.
+    """
+    if not row.size:
+        return
+    for start in rows.formulas.at_start(row, nodes.above[:, node], nodes.moduli[:, node], _U):
+        which = start.rows
+        c = product(TO_COEFFICIENTS, start.values)
+        needed, _ = nodes.needed(c, node[which], row[which], rows)
+        c[np.arange(len(c))[:, None] >= needed] = 0.0
+        for power in range(int(start.power.max(initial=0))):
+            more = start.power >= power + 1
+            c[:, more] = product(_times_u(len(c)), c[:, more])
+            needed = needed + more
+        yield start.rooted, which, c, needed
+
+
+def _times_u(order: int) -> Array:
+    """Matrix that multiplies a Chebyshev series by u = (1 + x)/2, leaving zeros where they are."""
+    matrix = np.eye(order) / 2 + np.eye(order, k=1) / 4 + np.eye(order, k=-1) / 4
+    matrix[1, 0] = 0.5
+    return matrix
+
+
+def _of_parents(rows: Rows, nodes: Nodes, inherited: Ints) -> Ints:
+    """Moments of each cell that the moments of its parents need at most.
+
+    In the cell's uniform the height bends, so that even the first moments of a parent take many of its. But
+    what parents stand in for are rows from farther below, smoother on this cell than the nearest ones: no
+    more of its moments count than those would need. One of them counts the asperities.
+    """
+    cell, row = rows.nearest(nodes.start[: len(inherited)])
+    _, needed = _smooth_series(rows, nodes, cell, row)
+    nearest = np.ones(len(inherited), dtype=np.int64)
+    np.maximum.at(nearest, cell, needed)
+    return np.where(inherited > 1, nearest, inherited)
