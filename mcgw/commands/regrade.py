@@ -30,7 +30,7 @@ def execute(args: argparse.Namespace) -> int:
     from mcgw.ensemble.regrading import regrade
     from mcgw.formats.csv_table import write_csv
     from mcgw.reports.text import RATIO_HEADER, ratio_rows, ratio_table
-    from mcgw.scene.scene_file import read_grading
+    from mcgw.scene.grading_section import read_grading
     from mcgw.store.ensembles import finished, open_ensemble, save
 
     old = open_ensemble(args.file)

@@ -9,7 +9,7 @@ from mcgw.jobs import running
 from mcgw.jobs.engines import Engine, Processes
 from mcgw.jobs.running import Part
 from mcgw.machine.progress import Progress, told
-from mcgw.scene.reading import LeftOut
+from mcgw.scene.ensemble_section import LeftOut
 from mcgw.scene.scene import Scene
 from mcgw.store.ensembles import recorded_seed
 

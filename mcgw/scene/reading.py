@@ -1,24 +1,20 @@
-"""Values of a scene, from its file or from Python: the same rules and the same messages for both."""
+"""Values of a scene from Python: the same rules and the same messages as for its file."""
 
-import math
 import secrets
 from collections.abc import Iterable, Mapping
 from typing import Any
 
 import numpy as np
 
-from analytic import QUANTITIES, Custom, Gaussian, Grading, HeightLaw, Homogeneous, ScipyHeights, Surface
-from mcgw.scene.samplers import SAMPLERS
+from analytic import Custom, Gaussian, Grading, HeightLaw, Homogeneous, ScipyHeights, Surface
+from mcgw.scene.contact_section import contact_values
+from mcgw.scene.ensemble_section import LeftOut, drawing_values
+from mcgw.scene.grading_section import NEGATIVE
 from mcgw.scene.section import SceneError, Section
 
-__all__ = ["LeftOut", "argument", "as_toml", "quantities_of", "read_values", "separations_of"]
+__all__ = ["argument", "as_toml", "read_values"]
 
-_MOST_SEPARATIONS = 100_000
 _LAW_OF_HEIGHTS = ("support", "breaks", "density", "from_below", "from_above")
-
-
-class LeftOut(int):
-    """A whole number that nobody gave: it equals any other, but is found anew when the scene changes."""
 
 
 def read_values(given: Mapping[str, Any]) -> tuple[dict[str, Any], list[str]]:
@@ -43,20 +39,15 @@ def read_values(given: Mapping[str, Any]) -> tuple[dict[str, Any], list[str]]:
         top.fail("surface", given["surface"], "give mcgw.Surface(sigma, radius, eta, nominal_area, E_star)")
     values = {
         "surface": given["surface"],
-        "separations": separations_of(contact),
+        **contact_values(contact),
         "title": top.text("title", ""),
         "grading": _grading(top, given["grading"]),
-        "negative": grading.choice("negative", "error", ("error", "clip", "allow")),
+        "negative": grading.choice("negative", "error", NEGATIVE),
         "heights": _heights(top, given["heights"]),
-        "quantities": quantities_of(contact),
         "n_surfaces": _whole(ensemble, "n_surfaces", given, LeftOut(), least=1),
         "n_asperities": _whole(ensemble, "n_asperities", given, LeftOut(), least=1),
-        "count": ensemble.choice("count", "fixed", ("fixed", "poisson")),
         "seed": _whole(ensemble, "seed", given, LeftOut(secrets.randbits(63))),
-        "sampler": ensemble.choice("sampler", "auto", SAMPLERS),
-        "keep": ensemble.choice("keep", "sums", ("sums", "moments")),
-        "rel_err": ensemble.number("rel_err", unit="1") if "rel_err" in ensemble else None,
-        "max_seconds": ensemble.number("max_seconds", unit="s") if "max_seconds" in ensemble else None,
+        **drawing_values(ensemble),
     }
     return values, problems
 
@@ -87,46 +78,6 @@ def as_toml(value: Any) -> Any:
     if isinstance(value, Iterable) and not isinstance(value, type):
         return [as_toml(inner) for inner in value]
     return value
-
-
-def separations_of(section: Section) -> tuple[float, ...]:
-    """A list, one number, or {start, stop, num}."""
-    given = section.take("separations")
-    advice = "give a list of finite numbers d/sigma, or {start = 0.0, stop = 4.0, num = 41}"
-    if given is None:
-        section.problems.append(f"contact.separations: missing; {advice}")
-        return (0.0,)
-    if isinstance(given, dict):
-        inner = Section("contact.separations", given, section.problems)
-        start = inner.number("start", positive=False)
-        stop = inner.number("stop", positive=False)
-        num = inner.whole("num", least=1)
-        inner.finish()
-        if num is None or math.isnan(start + stop):
-            return (0.0,)
-        if num > _MOST_SEPARATIONS:
-            inner.fail("num", num, f"give at most {_MOST_SEPARATIONS} separations")
-            return (0.0,)
-        return tuple(np.linspace(start, stop, num).tolist())
-    values = given if isinstance(given, list) else [given]
-    if not all(isinstance(h, int | float) and not isinstance(h, bool) and abs(h) <= 1e6 for h in values):
-        section.fail("separations", given, advice)
-        return (0.0,)
-    if len(values) > _MOST_SEPARATIONS:
-        section.fail("separations", given, f"give at most {_MOST_SEPARATIONS} of them, not {len(values)}")
-        return (0.0,)
-    return tuple(float(h) for h in values)
-
-
-def quantities_of(section: Section) -> tuple[str, ...]:
-    """A list of names."""
-    quantities = section.take("quantities")
-    if quantities is None:
-        quantities = ["load", "area", "stiffness", "contacts"]
-    if not (isinstance(quantities, list) and all(isinstance(q, str) for q in quantities)):
-        section.fail("quantities", quantities, f"give a list of {', '.join(QUANTITIES)}")
-        quantities = ["load"]
-    return tuple(quantities)
 
 
 def _whole(section: Section, key: str, given: Mapping[str, Any], default: LeftOut, *, least: int = 0) -> Any:

@@ -1,7 +1,6 @@
 """What is asked: surface, grading, contact and ensemble, checked before anything is computed."""
 
 import dataclasses
-import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
@@ -9,37 +8,23 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from analytic import (
-    QUANTITIES,
-    Clipped,
-    Custom,
-    Exponential,
-    Grading,
-    HeightLaw,
-    MeasuredHeights,
-    Model,
-    PiecewiseSeries,
-    Surface,
-    Table,
-    first_negative,
-)
-from mcgw.formats.sheet import Sheet, Shown, brief
+from analytic import Grading, Model, Surface
+from mcgw.formats.sheet import Sheet, Shown
+from mcgw.scene.ensemble_section import LeftOut
+from mcgw.scene.fields import Fields
 from mcgw.scene.law_text import law_text
-from mcgw.scene.reading import LeftOut, read_values
-from mcgw.scene.samplers import promise_of
+from mcgw.scene.mistakes import mistakes
+from mcgw.scene.reading import read_values
 from mcgw.scene.section import SceneError, nearest
 from mcgw.scene.surface import SURFACE_UNITS, surface_of
 
 __all__ = ["LeftOut", "Scene", "SceneError"]
 
-_LEAST = 1e-100  # next to it, powers of a distance are beyond double precision
-MOST_ASPERITIES = 2**53  # counts are exact in double precision up to here
 _SURFACES, _MOST_SURFACES = 1000, 10**9  # where n_surfaces is left out; where rel_err is to decide
-_BEYOND = 1e-16  # share of the heights that lie above what is checked for negative moduli
 
 
 @dataclass(frozen=True, repr=False)
-class Scene(Shown):
+class Scene(Fields, Shown):
     """Everything that determines an ensemble.
 
     Parameters
@@ -98,22 +83,6 @@ class Scene(Shown):
       ensemble     1000 surfaces of 30000 asperities (fixed), seed 1, sampler auto
     """
 
-    surface: Surface
-    separations: tuple[float, ...]
-    title: str
-    grading: Grading
-    negative: Literal["error", "clip", "allow"]
-    heights: HeightLaw
-    quantities: tuple[str, ...]
-    n_surfaces: int
-    n_asperities: int
-    count: Literal["fixed", "poisson"]
-    seed: int
-    sampler: str
-    keep: Literal["sums", "moments"]
-    rel_err: float | None
-    max_seconds: float | None
-
     def __init__(
         self,
         surface: Surface,
@@ -146,15 +115,7 @@ class Scene(Shown):
         self._fill("n_asperities", round(min(self.surface.n_asperities, 2.0**62)))
         self._fill("n_surfaces", _SURFACES if self.rel_err is None else _MOST_SURFACES)
         object.__setattr__(self, "separations", tuple(h + 0.0 for h in self.separations))  # -0.0 is 0.0
-        problems = [*self._wrong_values(), *self._wrong_scales(), *self._wrong_measured()]
-        problems = (
-            problems
-            or self._wrong_function()
-            or self._wrong_range()
-            or self._wrong_modulus()
-            or self._wrong_grading()
-        )
-        if problems:
+        if problems := mistakes(self):
             raise SceneError(problems)
 
     def _fill(self, key: str, value: int) -> None:
@@ -231,11 +192,6 @@ class Scene(Shown):
         return Sheet(f"Scene: {self.title}" if self.title else "Scene", facts)
 
     @property
-    def modulus(self) -> Grading:
-        """The grading as used: clipped if the scene says so."""
-        return Clipped.of(self.grading) if self.negative == "clip" else self.grading
-
-    @property
     def theory(self) -> Model:
         """The exact model of this very scene: its modulus, height law, number of asperities and count."""
         return Model(
@@ -247,170 +203,6 @@ class Scene(Shown):
         )
 
     @property
-    def lowest(self) -> float:
-        """The lowest separation: what lies below it never touches."""
-        return min(self.separations)
-
-    @property
     def touching(self) -> float:
         """Asperities of a surface that are expected above the lowest separation."""
         return self.n_asperities * float(self.heights.above(np.array(self.lowest)))
-
-    def negative_above(self, h: float) -> float | None:
-        """First height that touches at `h` where the grading is negative, clipped or not; or None."""
-        bottom, end = self.heights.support
-        high = min(max(self._highest(), h + 1), end)
-        start = max(h, float(self.heights.from_below(np.array(_BEYOND), math.inf)) - 1, bottom)
-        return first_negative(self.grading, start, high) if start < high else None
-
-    def _wrong_values(self) -> list[str]:
-        problems = []
-        if not self.separations:
-            problems.append("contact.separations = []: give at least one separation d/sigma")
-        tiny = [h for h in self.separations if 0 < abs(h) < _LEAST]
-        if tiny:
-            problems.append(
-                f"contact.separations: {tiny[0]:g} is too close to 0; give 0, or at least {_LEAST:g}"
-            )
-        if not self.quantities:
-            problems.append(f"contact.quantities = []: give one or more of {', '.join(QUANTITIES)}")
-        problems += [
-            f"contact.quantities: {name!r} is not one of {', '.join(QUANTITIES)}"
-            for name in self.quantities
-            if name not in QUANTITIES
-        ]
-        if len(set(self.quantities)) < len(self.quantities):
-            problems.append(f"contact.quantities = {list(self.quantities)}: name each quantity once")
-        if not 1 <= self.n_asperities <= MOST_ASPERITIES:
-            problems.append(
-                f"ensemble.n_asperities = {self.n_asperities}: must lie between 1 and 2^53; "
-                "change it, or surface.eta and surface.nominal_area"
-            )
-        if self.rel_err is not None and self.rel_err > 0.1:
-            problems.append(
-                f"ensemble.rel_err = {self.rel_err}: give a number > 0 and at most 0.1, beyond which so few "
-                "contacts would do that an interval means nothing"
-            )
-        if not promise_of(self.sampler).real_surfaces and self.rel_err is not None:
-            problems.append(
-                'ensemble.rel_err: sampler = "stratified" has no variance to stop by; take another'
-            )
-        if self.seed >= 2**64:
-            problems.append(f"ensemble.seed = {self.seed}: give a whole number from 0 to 2^64 - 1")
-        if self.keep == "moments" and not promise_of(self.sampler).keeps_moments:
-            problems.append(f'ensemble.keep = "moments": sampler = "{self.sampler}" has none; take "cells"')
-        return problems
-
-    def _wrong_scales(self) -> list[str]:
-        """Products of parameters that leave the range of double precision."""
-        problems = []
-        for name in self.quantities:
-            if name not in QUANTITIES:
-                continue
-            with np.errstate(all="ignore"):
-                try:
-                    one = QUANTITIES[name].scale(self.surface)
-                except OverflowError:
-                    one = math.inf
-                ends = (one * 1e-12, one * float(self.n_asperities) * 1e4)
-            if not (np.finfo(float).tiny < ends[0] and ends[1] < np.finfo(float).max):
-                problems.append(
-                    f"surface: the {name} of an asperity would be {one:.3g} {QUANTITIES[name].unit}, "
-                    "beyond double precision; check sigma, radius and E_star"
-                )
-        return problems
-
-    def _wrong_grading(self) -> list[str]:
-        """Sums that the grading makes larger than double precision holds."""
-        ends = np.array(sorted({self.lowest, self._highest(), *self.separations}))
-        with np.errstate(all="ignore"):
-            try:
-                steepest = float(np.max(np.abs(self.modulus(ends))))
-            except ValueError:
-                return []  # `_wrong_modulus` says why
-            stiff = [QUANTITIES[name] for name in self.quantities if QUANTITIES[name].modulus]
-            sums = [q.scale(self.surface) * steepest * float(self.n_asperities) * 1e4 for q in stiff]
-        if all(value < np.finfo(float).max for value in sums):
-            return []
-        key = (
-            f"grading.gamma = {self.grading.gamma:g}" if isinstance(self.grading, Exponential) else "grading"
-        )
-        return [f"{key}: E*(s)/E* reaches {steepest:.3g}, and sums leave double precision; give a modest one"]
-
-    def _wrong_function(self) -> list[str]:
-        """A Python function that does not take arrays."""
-        if not isinstance(self.grading, Custom):
-            return []
-        try:
-            with np.errstate(all="ignore"):
-                self.grading.function(np.array([self.lowest, self._highest()]))
-        except Exception as error:  # of any kind: it is the user's own code
-            reason = brief(f"{type(error).__name__}: {error}")
-            return [
-                f"grading: the function fails on an array of heights ({reason}); write it with numpy, or "
-                "give np.vectorize of it"
-            ]
-        return []
-
-    def _wrong_range(self) -> list[str]:
-        """Heights that touch and that the series of a grading do not reach."""
-        if not isinstance(self.grading, PiecewiseSeries):
-            return []
-        lowest = max(self.lowest, float(self.heights.from_below(np.array(_BEYOND), math.inf)))
-        first, last = self.grading.edges[0], self.grading.edges[-1]
-        if self.lowest >= self._highest() or (first <= lowest and self._highest() <= last):
-            return []
-        return [
-            f"grading.edges: the series reach from s = {first:.6g} to {last:.6g}, but heights from "
-            f"{lowest:.6g} to {self._highest():.6g} count; give the grading itself, or other separations"
-        ]
-
-    def _highest(self) -> float:
-        """Height that hardly an asperity exceeds, above every separation."""
-        top = float(self.heights.from_above(np.array(_BEYOND), -math.inf))
-        return min(max(top, max(self.separations) + 1), self.heights.support[1])
-
-    def _wrong_measured(self) -> list[str]:
-        """Measured heights are one surface, added up and not drawn."""
-        if not isinstance(self.heights, MeasuredHeights):
-            return []
-        problems = []
-        number = len(self.heights.heights)
-        if self.n_asperities != number:
-            problems.append(
-                f"ensemble.n_asperities = {self.n_asperities}: {number} heights are measured; give that "
-                "number, or heights.resample = true"
-            )
-        for key, value, wanted in (
-            ("n_surfaces", self.n_surfaces, (1,)),
-            ("count", self.count, ("fixed",)),
-            ("sampler", self.sampler, ("direct",)),
-        ):
-            if value not in wanted:
-                problems.append(
-                    f"ensemble.{key} = {value!r}: measured heights as they are need {wanted[0]!r}; "
-                    "or say resample = true under [heights]"
-                )
-        return problems
-
-    def _wrong_modulus(self) -> list[str]:
-        """Negative moduli among the heights that touch."""
-        if self.negative != "error":
-            return []
-        try:
-            where = self.negative_above(self.lowest)
-        except ValueError as error:
-            return [str(error)]
-        if where is None:
-            return []
-        if isinstance(self.grading, Exponential):
-            key = f"grading.gamma = {self.grading.gamma:g}"
-            where = self.grading.zero if self.grading.gamma < 0 else where
-        elif isinstance(self.grading, Table):
-            key = "grading.table"
-        else:
-            key = "grading"
-        return [
-            f"{key}: E*(s) is negative from s = {where:.4g}, which touches at h = {self.lowest:g}; raise the "
-            'separations, or say negative = "clip" or "allow" under [grading]'
-        ]

@@ -4,11 +4,13 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
+from analytic import Body, composite_modulus
 from analytic import Surface as Plain
+from mcgw.formats.units import quantity
 from mcgw.scene.reading import as_toml
 from mcgw.scene.section import SceneError, Section
 
-__all__ = ["SURFACE_UNITS", "Surface", "surface_of"]
+__all__ = ["SURFACE_UNITS", "Surface", "read_surface", "surface_of"]
 
 SURFACE_UNITS = {"sigma": "m", "radius": "m", "eta": "1/m^2", "nominal_area": "m^2", "E_star": "Pa"}
 
@@ -65,7 +67,34 @@ def surface_of(given: Mapping[str, Any]) -> Plain:
         With one line for each mistake.
     """
     section = Section("surface", {key: as_toml(value) for key, value in given.items()}, [])
-    values = {key: section.number(key, unit=unit) for key, unit in SURFACE_UNITS.items()}
-    if any(map(math.isnan, values.values())):
+    surface = read_surface(section)
+    if surface is None:
         raise SceneError(section.problems)
-    return Plain(**values)
+    return surface
+
+
+def read_surface(section: Section) -> Plain | None:
+    """Read the table [surface]; mistakes are noted in the section, and give None."""
+    values = {
+        key: _bodies(section) if key == "E_star" and "bodies" in section else section.number(key, unit=unit)
+        for key, unit in SURFACE_UNITS.items()
+    }
+    return None if any(map(math.isnan, values.values())) else Plain(**values)
+
+
+def _bodies(section: Section) -> float:
+    given = section.take("bodies")
+    if "E_star" in section:
+        section.fail("E_star", section.take("E_star"), "give either E_star or bodies, not both")
+    try:
+        return composite_modulus([_body(**body) for body in given])
+    except (TypeError, ValueError) as error:
+        reason = str(error) if type(error) is ValueError else "each needs E in Pa and may have nu"
+        section.fail("bodies", given, f"give two, as [{{E = 70e9, nu = 0.33}}, {{E = inf}}]; {reason}")
+        return math.nan
+
+
+def _body(E: float | str, **nu: float) -> Body:
+    if any(isinstance(value, str | bool) for value in nu.values()) or isinstance(E, bool):
+        raise TypeError
+    return Body(quantity(E, "Pa", "E"), **nu)

@@ -1,0 +1,58 @@
+"""The table [contact] of a scene: separations and quantities."""
+
+import math
+from typing import Any
+
+import numpy as np
+
+from analytic import QUANTITIES
+from mcgw.scene.section import Section
+
+__all__ = ["contact_values"]
+
+_MOST_SEPARATIONS = 100_000
+
+
+def contact_values(section: Section) -> dict[str, Any]:
+    """Read the table; mistakes are noted in the section."""
+    return {"separations": _separations(section), "quantities": _quantities(section)}
+
+
+def _separations(section: Section) -> tuple[float, ...]:
+    """A list, one number, or {start, stop, num}."""
+    given = section.take("separations")
+    advice = "give a list of finite numbers d/sigma, or {start = 0.0, stop = 4.0, num = 41}"
+    if given is None:
+        section.problems.append(f"contact.separations: missing; {advice}")
+        return (0.0,)
+    if isinstance(given, dict):
+        inner = Section("contact.separations", given, section.problems)
+        start = inner.number("start", positive=False)
+        stop = inner.number("stop", positive=False)
+        num = inner.whole("num", least=1)
+        inner.finish()
+        if num is None or math.isnan(start + stop):
+            return (0.0,)
+        if num > _MOST_SEPARATIONS:
+            inner.fail("num", num, f"give at most {_MOST_SEPARATIONS} separations")
+            return (0.0,)
+        return tuple(np.linspace(start, stop, num).tolist())
+    values = given if isinstance(given, list) else [given]
+    if not all(isinstance(h, int | float) and not isinstance(h, bool) and abs(h) <= 1e6 for h in values):
+        section.fail("separations", given, advice)
+        return (0.0,)
+    if len(values) > _MOST_SEPARATIONS:
+        section.fail("separations", given, f"give at most {_MOST_SEPARATIONS} of them, not {len(values)}")
+        return (0.0,)
+    return tuple(float(h) for h in values)
+
+
+def _quantities(section: Section) -> tuple[str, ...]:
+    """A list of names."""
+    quantities = section.take("quantities")
+    if quantities is None:
+        quantities = ["load", "area", "stiffness", "contacts"]
+    if not (isinstance(quantities, list) and all(isinstance(q, str) for q in quantities)):
+        section.fail("quantities", quantities, f"give a list of {', '.join(QUANTITIES)}")
+        quantities = ["load"]
+    return tuple(quantities)

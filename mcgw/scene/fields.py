@@ -1,0 +1,62 @@
+"""The values of a scene, and the heights that matter to it."""
+
+import math
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from analytic import Clipped, Grading, HeightLaw, Surface, first_negative
+
+__all__ = ["Fields"]
+
+_BEYOND = 1e-16  # share of the heights that lie above what is checked for negative moduli
+
+
+@dataclass(frozen=True, repr=False)
+class Fields:
+    """What `mcgw.Scene` holds; checked there."""
+
+    surface: Surface
+    separations: tuple[float, ...]
+    title: str
+    grading: Grading
+    negative: Literal["error", "clip", "allow"]
+    heights: HeightLaw
+    quantities: tuple[str, ...]
+    n_surfaces: int
+    n_asperities: int
+    count: Literal["fixed", "poisson"]
+    seed: int
+    sampler: str
+    keep: Literal["sums", "moments"]
+    rel_err: float | None
+    max_seconds: float | None
+
+    @property
+    def modulus(self) -> Grading:
+        """The grading as used: clipped if the scene says so."""
+        return Clipped.of(self.grading) if self.negative == "clip" else self.grading
+
+    @property
+    def lowest(self) -> float:
+        """The lowest separation: what lies below it never touches."""
+        return min(self.separations)
+
+    @property
+    def highest(self) -> float:
+        """Height that hardly an asperity exceeds, above every separation."""
+        top = float(self.heights.from_above(np.array(_BEYOND), -math.inf))
+        return min(max(top, max(self.separations) + 1), self.heights.support[1])
+
+    @property
+    def least(self) -> float:
+        """Height that hardly an asperity falls below."""
+        return float(self.heights.from_below(np.array(_BEYOND), math.inf))
+
+    def negative_above(self, h: float) -> float | None:
+        """First height that touches at `h` where the grading is negative, clipped or not; or None."""
+        bottom, end = self.heights.support
+        high = min(max(self.highest, h + 1), end)
+        start = max(h, self.least - 1, bottom)
+        return first_negative(self.grading, start, high) if start < high else None

@@ -1,0 +1,162 @@
+"""What is wrong with the values of a scene: a line for each mistake, with its key and what would do."""
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+
+from analytic import QUANTITIES, Custom, Exponential, MeasuredHeights, PiecewiseSeries
+from mcgw.formats.sheet import brief
+from mcgw.scene.fields import Fields
+from mcgw.scene.samplers import promise_of
+
+__all__ = ["mistakes"]
+
+_LEAST = 1e-100  # next to it, powers of a distance are beyond double precision
+_MOST_ASPERITIES = 2**53  # counts are exact in double precision up to here
+_SAFELY = 1e4  # factor by which the sum over all asperities stays below the largest number
+
+
+def mistakes(scene: Fields) -> list[str]:
+    """All that is wrong, later checks only where the earlier ones find nothing."""
+    for checks in ((_values, _scales, _measured), (_function,), (_range,), (_modulus,), (_sums,)):
+        if found := [line for check in checks for line in check(scene)]:
+            return found
+    return []
+
+
+def _values(scene: Fields) -> Iterator[str]:
+    names, sampler = ", ".join(QUANTITIES), scene.sampler
+    if not scene.separations:
+        yield "contact.separations = []: give at least one separation d/sigma"
+    if tiny := [h for h in scene.separations if 0 < abs(h) < _LEAST]:
+        yield f"contact.separations: {tiny[0]:g} is too close to 0; give 0, or at least {_LEAST:g}"
+    if not scene.quantities:
+        yield f"contact.quantities = []: give one or more of {names}"
+    for name in scene.quantities:
+        if name not in QUANTITIES:
+            yield f"contact.quantities: {name!r} is not one of {names}"
+    if len(set(scene.quantities)) < len(scene.quantities):
+        yield f"contact.quantities = {list(scene.quantities)}: name each quantity once"
+    if not 1 <= scene.n_asperities <= _MOST_ASPERITIES:
+        yield (
+            f"ensemble.n_asperities = {scene.n_asperities}: must lie between 1 and 2^53; "
+            "change it, or surface.eta and surface.nominal_area"
+        )
+    if scene.rel_err is not None and scene.rel_err > 0.1:
+        yield (
+            f"ensemble.rel_err = {scene.rel_err}: give a number > 0 and at most 0.1, beyond which so few "
+            "contacts would do that an interval means nothing"
+        )
+    if scene.rel_err is not None and not promise_of(sampler).real_surfaces:
+        yield f'ensemble.rel_err: sampler = "{sampler}" has no variance to stop by; take another'
+    if scene.seed >= 2**64:
+        yield f"ensemble.seed = {scene.seed}: give a whole number from 0 to 2^64 - 1"
+    if scene.keep == "moments" and not promise_of(sampler).keeps_moments:
+        yield f'ensemble.keep = "moments": sampler = "{sampler}" has none; take "cells"'
+
+
+def _scales(scene: Fields) -> Iterator[str]:
+    """Products of parameters that leave the range of double precision."""
+    for name in scene.quantities:
+        if name not in QUANTITIES:
+            continue
+        with np.errstate(all="ignore"):
+            try:
+                one = QUANTITIES[name].scale(scene.surface)
+            except OverflowError:
+                one = math.inf
+            ends = (one * 1e-12, one * float(scene.n_asperities) * _SAFELY)
+        if not (np.finfo(float).tiny < ends[0] and ends[1] < np.finfo(float).max):
+            yield (
+                f"surface: the {name} of an asperity would be {one:.3g} {QUANTITIES[name].unit}, "
+                "beyond double precision; check sigma, radius and E_star"
+            )
+
+
+def _measured(scene: Fields) -> Iterator[str]:
+    """Measured heights are one surface, added up and not drawn."""
+    if not isinstance(scene.heights, MeasuredHeights):
+        return
+    number = len(scene.heights.heights)
+    if scene.n_asperities != number:
+        yield (
+            f"ensemble.n_asperities = {scene.n_asperities}: {number} heights are measured; give that "
+            "number, or heights.resample = true"
+        )
+    for key, wanted in (("n_surfaces", 1), ("count", "fixed"), ("sampler", "direct")):
+        if getattr(scene, key) != wanted:
+            yield (
+                f"ensemble.{key} = {getattr(scene, key)!r}: measured heights as they are need {wanted!r}; "
+                "or say resample = true under [heights]"
+            )
+
+
+def _function(scene: Fields) -> Iterator[str]:
+    """A Python function that does not take arrays."""
+    if not isinstance(scene.grading, Custom):
+        return
+    try:
+        with np.errstate(all="ignore"):
+            scene.grading.function(np.array([scene.lowest, scene.highest]))
+    except Exception as error:  # of any kind: it is the user's own code
+        reason = brief(f"{type(error).__name__}: {error}")
+        yield (
+            f"grading: the function fails on an array of heights ({reason}); write it with numpy, or "
+            "give np.vectorize of it"
+        )
+
+
+def _range(scene: Fields) -> Iterator[str]:
+    """Heights that touch and that the series of a grading do not reach."""
+    if not isinstance(scene.grading, PiecewiseSeries) or scene.lowest >= scene.highest:
+        return
+    low, high = max(scene.lowest, scene.least), scene.highest
+    first, last = scene.grading.edges[0], scene.grading.edges[-1]
+    if not (first <= low and high <= last):
+        yield (
+            f"grading.edges: the series reach from s = {first:.6g} to {last:.6g}, but heights from "
+            f"{low:.6g} to {high:.6g} count; give the grading itself, or other separations"
+        )
+
+
+def _modulus(scene: Fields) -> Iterator[str]:
+    """Negative moduli among the heights that touch."""
+    if scene.negative != "error":
+        return
+    try:
+        where = scene.negative_above(scene.lowest)
+    except ValueError as error:
+        yield str(error)
+        return
+    if where is None:
+        return
+    if isinstance(scene.grading, Exponential) and scene.grading.gamma < 0:
+        where = scene.grading.zero
+    yield (
+        f"{_key(scene)}: E*(s) is negative from s = {where:.4g}, which touches at h = {scene.lowest:g}; "
+        'raise the separations, or say negative = "clip" or "allow" under [grading]'
+    )
+
+
+def _sums(scene: Fields) -> Iterator[str]:
+    """Sums that the grading makes larger than double precision holds."""
+    ends = np.array(sorted({scene.highest, *scene.separations}))
+    stiff = [QUANTITIES[name] for name in scene.quantities if QUANTITIES[name].modulus]
+    with np.errstate(all="ignore"):
+        try:
+            steepest = float(np.max(np.abs(scene.modulus(ends))))
+        except ValueError:
+            return  # `_modulus` says why, unless negative moduli are allowed
+        sums = [q.scale(scene.surface) * steepest * float(scene.n_asperities) * _SAFELY for q in stiff]
+    if not all(value < np.finfo(float).max for value in sums):
+        yield (
+            f"{_key(scene)}: E*(s)/E* reaches {steepest:.3g}, and sums leave double precision; give a modest "
+            "one"
+        )
+
+
+def _key(scene: Fields) -> str:
+    """The key of a grading, and its value if that is one number."""
+    grading = scene.grading
+    return f"grading.gamma = {grading.gamma:g}" if isinstance(grading, Exponential) else "grading"
