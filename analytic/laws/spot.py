@@ -50,7 +50,9 @@ def of_spot(quantity: str, law: ContactLaw, piece: int, y: Array, e: Array) -> A
 
 def piece_of(law: ContactLaw, penetration: Array, e: Array) -> NDArray[np.int64]:
     """Which piece of the law holds at these penetrations, in the shape of both."""
-    return np.asarray((law.limits(e) <= penetration).sum(axis=0), dtype=np.int64)
+    with np.errstate(divide="ignore", over="ignore"):  # without a modulus nothing yields
+        limits = law.limits(e)
+    return np.asarray((limits <= penetration).sum(axis=0), dtype=np.int64)
 
 
 def term(quantity: str, law: ContactLaw, penetration: Array, e: Array) -> Array:

@@ -1,0 +1,164 @@
+"""Heights where a contact law changes its piece: against closed forms and the literal comparison."""
+
+import math
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from scipy.optimize import brentq
+
+from analytic import Clipped, Custom, Exponential, Homogeneous, Table
+from analytic.laws.crossings import crossings_of
+from analytic.laws.law import ContactLaw
+from analytic.laws.regimes import merged_heights, regimes_of
+from analytic.laws.spot import piece_of
+
+
+class Yielding(ContactLaw):
+    """Pieces of Hertz that begin at multiples of a penetration, softer asperities deeper."""
+
+    def __init__(self, *limits):
+        self.penetrations = np.array(limits)
+
+    def limits(self, e):
+        return self.penetrations.reshape(-1, *[1] * np.ndim(e)) / np.asarray(e) ** 2
+
+
+def listed(regimes, k=0):
+    here = regimes.separation == k
+    return list(zip(regimes.low[here], regimes.high[here], regimes.piece[here], strict=True))
+
+
+def test_homogeneous_surface_yields_at_fixed_penetrations():
+    regimes = regimes_of(Yielding(0.05, 0.3, 5.5), Homogeneous(), [0.0, 1.0, 20.0], -3.0, 13.0)
+    for k, h in enumerate((0.0, 1.0)):
+        ends = [h, h + 0.05, h + 0.3, h + 5.5, 13.0]
+        np.testing.assert_allclose([low for low, *_ in listed(regimes, k)], ends[:-1], atol=1e-15)
+        np.testing.assert_allclose([high for _, high, _ in listed(regimes, k)], ends[1:], atol=1e-15)
+        assert [piece for *_, piece in listed(regimes, k)] == [0, 1, 2, 3]
+    assert listed(regimes, 2) == []
+
+
+def test_soft_tips_yield_between_two_heights_or_nowhere():
+    """gamma = 0: e = exp(-s), and s - dc exp(2 s) is highest, -(1 + log(2 dc))/2, at s = -log(2 dc)/2."""
+    dc = 0.05
+    highest = -(1 + math.log(2 * dc)) / 2
+    assert highest == pytest.approx(0.65129, abs=1e-5)
+    h = np.array([0.0, 0.6, highest - 1e-14, highest + 1e-14, 0.7])
+    regimes = regimes_of(Yielding(dc), Exponential(0.0), h, -1.0, 13.0)
+
+    def gap(s, level):
+        return s - level - dc * math.exp(2 * s)
+
+    top = -math.log(2 * dc) / 2
+    for k in (0, 1):
+        (_, one, _), (_, two, _), _ = listed(regimes, k)
+        assert one == pytest.approx(brentq(gap, h[k], top, (h[k],), xtol=1e-15), abs=4e-15)
+        assert two == pytest.approx(brentq(gap, top, 13, (h[k],), xtol=1e-15), abs=4e-15)
+        assert [piece for *_, piece in listed(regimes, k)] == [0, 1, 0]
+    (_, one, _), (_, two, _), _ = listed(regimes, 2)
+    assert two - one == pytest.approx(2 * math.sqrt(1e-14), rel=0.05)  # the curvature there is -2
+    assert [piece for *_, piece in listed(regimes, 3)] == [0]
+    assert [piece for *_, piece in listed(regimes, 4)] == [0]
+
+
+def bumpy(s):
+    return 1 + 0.3 * np.sin(3 * s)
+
+
+GRADINGS = {
+    "uniform": Homogeneous(),
+    "soft tips": Exponential(0.2),
+    "no tips": Exponential(0.0),
+    "stiff tips": Exponential(2.0),
+    "clipped": Clipped.of(Exponential(3.0)),
+    "table": Table([-1.0, 0.0, 0.7, 1.5], [0.4, 1.0, 0.3, 2.0]),
+    "jumps": Custom(lambda s: np.where(s > 1, 0.4, 1.0), breaks=(1.0,)),
+    "untold kink": Custom(lambda s: 0.3 + np.abs(s - 0.7)),
+    "waves": Custom(bumpy),
+}
+
+
+@pytest.mark.parametrize("name", GRADINGS)
+def test_regimes_are_what_the_literal_comparison_says(name):
+    """On random heights, and on the last floating-point numbers on either side of every end."""
+    grading, law = GRADINGS[name], Yielding(0.05, 0.3)
+    h = np.array([-1.3, 0.0, 0.05, 0.6, 1.0, 1.0 + 1e-9, 2.5])
+    low, high = -0.6, 6.0
+    regimes = regimes_of(law, grading, h, low, high)
+    rng = np.random.default_rng(20240603)
+    for k in range(h.size):
+        rows = listed(regimes, k)
+        assert rows[0][0] == max(h[k], low)
+        assert rows[-1][1] == high
+        for (_, end, _), (start, *_) in pairwise(rows):
+            assert end == start
+        for a, b, piece in rows:
+            s = rng.uniform(a, b, 2000)
+            margin = 20 * np.spacing(max(abs(a), abs(b), abs(h[k])))  # ends that near another are that one
+            s = np.append(s[(s > a + margin) & (s < b - margin)], [a + margin, b - margin])
+            if b - a > 3 * margin:
+                assert np.all(piece_of(law, s - h[k], grading(s)) == piece)
+
+
+@pytest.mark.parametrize("name", GRADINGS)
+def test_every_crossing_is_the_first_number_behind_it(name):
+    grading = GRADINGS[name]
+
+    def bound(s):
+        with np.errstate(divide="ignore"):
+            return 0.05 / grading(s) ** 2
+
+    h = np.linspace(-2, 3, 11)
+    found = crossings_of(bound, grading, h, -2.5, 6.0)
+    before = np.nextafter(found.height, -np.inf)
+    level = h[found.separation]
+    np.testing.assert_array_equal(found.height - level >= bound(found.height), found.begins)
+    np.testing.assert_array_equal(before - level >= bound(before), ~found.begins)
+
+
+def test_no_pair_of_crossings_next_to_a_tangency_is_missed():
+    """Literal: a million heights in [0, 6] see all but pairs closer than they are."""
+    s = np.linspace(0, 6, 1_000_001)
+    grading = GRADINGS["waves"]
+    for h in np.linspace(-0.2, 1.5, 18):
+        crossing = np.flatnonzero(np.diff(s - h >= 0.2 / grading(s) ** 2))
+        found = crossings_of(lambda x: 0.2 / grading(x) ** 2, grading, np.array([h]), 0.0, 6.0)
+        np.testing.assert_allclose(found.height, s[crossing + 1], atol=6.1e-6)
+
+
+def test_lift_off_is_a_crossing_too():
+    """Unloaded from h_min by a share of the greatest penetration: s - h = share (s - h_min)."""
+    h_min, share = 0.5, 0.3
+    h = np.array([0.6, 0.9])
+    found = crossings_of(lambda s: share * (s - h_min), Homogeneous(), h, 0.5, 13.0)
+    np.testing.assert_allclose(found.height, (h - share * h_min) / (1 - share), rtol=1e-15)
+    assert found.begins.all()
+
+
+def test_ends_that_cannot_be_told_apart_are_one():
+    """Separations a limit apart: h + 0.05 is the next of them but for its rounding."""
+    h = np.arange(21) * 0.05
+    regimes = regimes_of(Yielding(0.05, 0.05 * (1 + 1e-16)), Homogeneous(), h, -1.0, 13.0)
+    assert set(regimes.low) <= {*h, 1.05}
+    tiny = regimes_of(Yielding(1e-17), Homogeneous(), [1.0], -1.0, 13.0)
+    assert listed(tiny) == [(1.0, 13.0, 1)]
+    np.testing.assert_array_equal(
+        merged_heights(np.array([1.0, 1.0 + 2**-52, 3.0]), np.zeros(3), np.array([3.0 + 2**-50])),
+        [1.0, 1.0, 3.0 + 2**-50],
+    )
+    near = regimes_of(Yielding(0.05, 0.05 + 1e-12), Homogeneous(), [0.0], -1.0, 13.0)
+    assert [piece for *_, piece in listed(near)] == [0, 1, 2]
+
+
+def test_too_many_intervals_are_refused_in_one_line():
+    grading = Custom(lambda s: 1 + 0.5 * np.sin(30 * s))
+    with pytest.raises(ValueError, match=r"law: its pieces hold on \d+ intervals") as told:
+        regimes_of(Yielding(0.5), grading, [0.0], 0.0, 6.0)
+    assert "\n" not in str(told.value)
+
+
+def test_a_law_of_one_piece_has_one_regime():
+    regimes = regimes_of(ContactLaw(), Exponential(2.0), [0.0, 1.0], -1.0, 13.0)
+    assert listed(regimes, 0) == [(0.0, 13.0, 0)]
+    assert regimes.limits.size == 0
