@@ -12,6 +12,8 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
+from analytic.laws.derivative import slope_in_root
+from analytic.laws.unloading import Unloading
 from analytic.surface import Surface
 
 __all__ = ["ContactLaw"]
@@ -67,5 +69,23 @@ class ContactLaw:
 
     def slope(self, piece: int, y: Array, e: Array) -> Array:
         """Derivative of the load by the penetration, within the piece."""
-        step = 1e-30 * np.abs(y)  # into the complex plane, where nothing cancels
-        return np.asarray(np.imag(self.load(piece, y + 1j * step, e)) / step / (2 * y))
+        return slope_in_root(lambda v: self.load(piece, v, e), y)
+
+    def stiffness(self, piece: int, y: Array, e: Array) -> Array:
+        """Stiffness of a spot over 2 E* sqrt(R sigma); after yield that of the first unloading."""
+        return np.asarray(e * self.radius(piece, y, e))
+
+    def unloading(self) -> Unloading:
+        """How an asperity unloads.
+
+        Raises
+        ------
+        ValueError
+            If it yields, and nobody has fitted its unloading.
+        """
+        if not self.elastic:
+            raise ValueError(
+                f"law = {self.name!r}: its unloading has never been fitted; "
+                "take 'kogut-etsion', which has one, or an elastic law"
+            )
+        return Unloading(self)

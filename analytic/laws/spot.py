@@ -39,7 +39,7 @@ def of_spot(quantity: str, law: ContactLaw, piece: int, y: Array, e: Array) -> A
     known: dict[str, Any] = {
         "load": lambda: law.load(piece, y, e),
         "area": lambda: law.radius(piece, y, e) ** 2,
-        "stiffness": lambda: e * law.radius(piece, y, e),
+        "stiffness": lambda: law.stiffness(piece, y, e),
         "contacts": lambda: np.ones(np.broadcast_shapes(np.shape(y), np.shape(e))),
         "conductance": lambda: law.radius(piece, y, e),
         "load_slope": lambda: law.slope(piece, y, e) * (2 / 3),

@@ -1,0 +1,64 @@
+"""What a contact carries when it is unloaded from its deepest penetration."""
+
+from typing import Any, ClassVar, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from analytic.laws.derivative import slope_in_root
+
+__all__ = ["Unloading"]
+
+Array = NDArray[np.float64]
+
+
+class _Loading(Protocol):
+    """The formulas of loading."""
+
+    def load(self, piece: int, y: Any, e: Array) -> Any: ...
+    def radius(self, piece: int, y: Any, e: Array) -> Any: ...
+    def stiffness(self, piece: int, y: Array, e: Array) -> Array: ...
+
+
+class Unloading:
+    """Unloading of an elastic asperity: it goes back as it came.
+
+    The contact holds down to the penetration `residual`. Its formulas take
+    ``y = sqrt(penetration - residual)``, so that next to lift-off no digit is lost; `piece` is the piece
+    of the law that holds at the deepest penetration, and `deepest` that penetration.
+
+    Parameters
+    ----------
+    loading : ContactLaw
+        In reduced units.
+
+    Attributes
+    ----------
+    root : bool
+        False if `load` and `radius` are no analytic functions of y next to y = 0, in pieces from 1 on.
+    """
+
+    root: ClassVar[bool] = True
+
+    def __init__(self, loading: _Loading) -> None:
+        self.loading = loading
+
+    def residual(self, piece: int, deepest: Any, e: Array) -> Any:
+        """Penetration at which contact is lost, in the shape of `deepest` and `e`."""
+        return 0.0 * deepest + 0.0 * e
+
+    def load(self, piece: int, y: Any, deepest: Any, e: Array) -> Any:
+        """Load of a contact, in the shape of all."""
+        return self.loading.load(piece, y, e) + 0.0 * deepest
+
+    def radius(self, piece: int, y: Any, deepest: Any, e: Array) -> Any:
+        """Radius of a contact; its square is the area over pi R sigma."""
+        return self.loading.radius(piece, y, e) + 0.0 * deepest
+
+    def stiffness(self, piece: int, y: Array, deepest: Array, e: Array) -> Array:
+        """Stiffness of a spot over 2 E* sqrt(R sigma)."""
+        return np.asarray(self.loading.stiffness(piece, y, e) + 0.0 * deepest)
+
+    def slope(self, piece: int, y: Array, deepest: Array, e: Array) -> Array:
+        """Derivative of the load by the penetration, at a given deepest one."""
+        return slope_in_root(lambda v: self.load(piece, v, deepest, e), y)
