@@ -7,7 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analytic.laws.bridge import Bridgeable
-from analytic.laws.hardness import FromHardness, checked_poisson, kogut_etsion_factor
+from analytic.laws.hardness import FromHardness, kogut_etsion_factor
+from analytic.laws.poisson import checked_poisson
 
 __all__ = ["ChangEtsionBogy"]
 

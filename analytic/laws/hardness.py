@@ -7,20 +7,7 @@ from typing import Self
 from analytic.laws.elastic_plastic import ElasticPlastic
 from analytic.surface import Surface
 
-__all__ = ["FromHardness", "checked_poisson", "kogut_etsion_factor"]
-
-
-def checked_poisson(poisson: float) -> float:
-    """Poisson's ratio, if it is one.
-
-    Raises
-    ------
-    ValueError
-        If not.
-    """
-    if not -1 < poisson <= 0.5:
-        raise ValueError(f"poisson = {poisson!r}: give a Poisson's ratio between -1 and 0.5")
-    return poisson
+__all__ = ["FromHardness", "kogut_etsion_factor"]
 
 
 def kogut_etsion_factor(poisson: float) -> float:

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analytic.laws.bridge import Bridgeable
-from analytic.laws.hardness import checked_poisson
+from analytic.laws.poisson import checked_poisson
 from analytic.surface import Surface
 
 __all__ = ["JacksonGreen"]
@@ -114,9 +114,8 @@ class JacksonGreen(Bridgeable):
     def _hardness(self, x: Any, e: Array) -> Any:
         """H_G over the yield strength."""
         with np.errstate(over="ignore"):
-            radius = (
-                math.pi * self.yield_factor / 2 * self._strain(e) * np.sqrt(x * self.area_over_hertz(1, x, e))
-            )
+            at_yield = math.pi * self.yield_factor / 2 * self._strain(e)  # radius of contact over R
+            radius = at_yield * np.sqrt(x * self.area_over_hertz(1, x, e))
             return -2.84 * np.expm1(-0.82 * radius**-0.7)
 
     def _strain(self, e: Array) -> Array:

@@ -7,7 +7,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analytic.laws.bridge import Bridgeable
-from analytic.laws.hardness import FromHardness, checked_poisson, kogut_etsion_factor
+from analytic.laws.etsion_kligerman_kadin import EtsionKligermanKadin
+from analytic.laws.hardness import FromHardness, kogut_etsion_factor
+from analytic.laws.poisson import checked_poisson
 
 __all__ = ["KogutEtsion"]
 
@@ -74,6 +76,10 @@ class KogutEtsion(FromHardness, Bridgeable):
     def yield_factor(self) -> float:
         """K, the greatest contact pressure at the onset of yield over the hardness."""
         return kogut_etsion_factor(self.poisson)
+
+    def unloading(self) -> EtsionKligermanKadin:
+        """Etsion, Kligerman and Kadin's, which was fitted for this law; with a bridge, from its load."""
+        return EtsionKligermanKadin(self)
 
     def load_over_hertz(self, fit: int, x: Any, e: Array) -> Any:
         """From the powers of x, or the hardness."""
