@@ -10,11 +10,11 @@ and area fraction are load and area per nominal area.
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from analytic.surface import Surface
 
-__all__ = ["PER_AREA", "QUANTITIES", "Quantity", "quantity_of"]
+__all__ = ["LAW_QUANTITIES", "PER_AREA", "QUANTITIES", "UNLOADING", "Quantity", "quantity_of"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,6 +33,10 @@ class Quantity:
         Dimensional factor of one asperity, of the `Surface`.
     of : str, optional
         The quantity that this one is per nominal area.
+    unloading : str, optional
+        The quantity that this one is on the way back from the lowest separation.
+    counts : bool, optional
+        Whether it is a number of asperities.
     """
 
     name: str
@@ -42,6 +46,13 @@ class Quantity:
     modulus: int
     scale: Callable[[Surface], float]
     of: str = ""
+    unloading: str = ""
+    counts: bool = False
+
+    @property
+    def base(self) -> str:
+        """What one contact adds to it, on whatever way: `analytic.laws.of_spot` has the formulas."""
+        return self.unloading or self.of or self.name
 
 
 def _load(x: Surface) -> float:
@@ -56,7 +67,7 @@ def _stiffness(x: Surface) -> float:
     return 2 * x.E_star * math.sqrt(x.radius * x.sigma)
 
 
-def _contacts(_: Surface) -> float:
+def _one(_: Surface) -> float:
     return 1.0
 
 
@@ -70,7 +81,7 @@ QUANTITIES = {
         Quantity("load", "normal load", "N", 1.5, 1, _load),
         Quantity("area", "real contact area", "m^2", 1.0, 0, _area),
         Quantity("stiffness", "normal stiffness -dP/dd", "N/m", 0.5, 1, _stiffness),
-        Quantity("contacts", "number of contacts", "1", 0.0, 0, _contacts),
+        Quantity("contacts", "number of contacts", "1", 0.0, 0, _one, counts=True),
         Quantity(
             "conductance",
             "contact conductance of the spots, times the resistivity rho",
@@ -107,6 +118,26 @@ PER_AREA = {
 }
 
 
+# What only other laws of contact than Hertz's tell apart.
+LAW_QUANTITIES = {
+    q.name: q
+    for q in (
+        Quantity("load_slope", "slope -dP/dd of the loads of the spots", "N/m", 0.5, 1, _stiffness),
+        Quantity("yielded", "number of contacts that have yielded", "1", 0.0, 0, _one, counts=True),
+    )
+}
+
+UNLOADING = {
+    f"{name}_unloading": replace(
+        q, name=f"{name}_unloading", long_name=f"{q.long_name}, unloading", unloading=name
+    )
+    for name, q in {**QUANTITIES, **LAW_QUANTITIES}.items()
+    if name != "yielded"
+}
+
+_KNOWN = {**QUANTITIES, **PER_AREA, **LAW_QUANTITIES, **UNLOADING}
+
+
 def quantity_of(name: str) -> Quantity:
     """A quantity by its name.
 
@@ -115,7 +146,6 @@ def quantity_of(name: str) -> Quantity:
     KeyError
         If there is none of this name; the message lists them.
     """
-    known = {**QUANTITIES, **PER_AREA}
-    if name not in known:
-        raise KeyError(f"{name!r} is not a quantity; give one of {', '.join(known)}")
-    return known[name]
+    if name not in _KNOWN:
+        raise KeyError(f"{name!r} is not a quantity; give one of {', '.join(_KNOWN)}")
+    return _KNOWN[name]

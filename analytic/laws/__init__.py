@@ -1,5 +1,6 @@
 """Laws of contact of one asperity, one file each."""
 
+from analytic.laws.branch import Branch, Loading, Unloading, term_of
 from analytic.laws.chang_etsion_bogy import ChangEtsionBogy
 from analytic.laws.coated import Coated
 from analytic.laws.film import crowding_factor, film_conductance, film_parameter
@@ -8,14 +9,15 @@ from analytic.laws.jackson_green import JacksonGreen
 from analytic.laws.kogut_etsion import KogutEtsion
 from analytic.laws.law import ContactLaw
 from analytic.laws.power_law_graded import PowerLawGraded
+from analytic.laws.regimes import Regimes, merged_heights, regimes_of
 from analytic.laws.spot import of_spot, piece_of, term
-from analytic.laws.unloading import Unloading
 from analytic.laws.zhao_maietta_chang import ZhaoMaiettaChang
 
 __all__ = [
-    "ChangEtsionBogy", "Coated", "ContactLaw", "Hertz", "JacksonGreen", "KogutEtsion", "PowerLawGraded",
-    "Unloading", "ZhaoMaiettaChang", "by_name", "crowding_factor", "film_conductance", "film_parameter",
-    "of_spot", "piece_of", "term",
+    "Branch", "ChangEtsionBogy", "Coated", "ContactLaw", "Hertz", "JacksonGreen", "KogutEtsion", "Loading",
+    "PowerLawGraded", "Regimes", "Unloading", "ZhaoMaiettaChang", "by_name", "crowding_factor",
+    "film_conductance", "film_parameter", "merged_heights", "of_spot", "piece_of", "regimes_of", "term",
+    "term_of",
 ]  # fmt: skip
 
 _LAWS: tuple[type[ContactLaw], ...] = (

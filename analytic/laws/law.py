@@ -51,7 +51,7 @@ class ContactLaw:
         """How far above first touch the formulas of piece 0 are analytic."""
         return math.inf
 
-    def on(self, surface: Surface) -> "ContactLaw":  # noqa: ARG002 - other laws need it
+    def on(self, surface: Surface) -> "ContactLaw":
         """The law on this surface, in reduced units: without anything in Pa or m left."""
         return self
 
@@ -59,11 +59,11 @@ class ContactLaw:
         """Penetrations at which the next piece begins, increasing; shape (pieces - 1, *e.shape)."""
         return np.empty((0, *np.shape(e)))
 
-    def load(self, piece: int, y: Any, e: Array) -> Any:  # noqa: ARG002
+    def load(self, piece: int, y: Any, e: Array) -> Any:
         """Load of a contact, in the shape of `y` and `e`."""
         return e * (y * y * y)
 
-    def radius(self, piece: int, y: Any, e: Array) -> Any:  # noqa: ARG002
+    def radius(self, piece: int, y: Any, e: Array) -> Any:
         """Radius of a contact; its square is the area over pi R sigma."""
         return y + 0.0 * e
 

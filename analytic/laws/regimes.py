@@ -16,7 +16,7 @@ Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 _SAME = 8  # spacings of floating-point numbers between heights that are not told apart
-_MOST = 8  # intervals at one separation
+_MOST = 16  # intervals at one separation
 
 
 @dataclass(frozen=True)
@@ -72,7 +72,7 @@ def regimes_of(law: ContactLaw, grading: Grading, separations: ArrayLike, low: f
     Raises
     ------
     ValueError
-        If one separation has more than 8 intervals.
+        If one separation has more than 16 intervals.
     """
     h = np.asarray(separations, dtype=np.float64)
     count = len(law.limits(np.ones(1)))

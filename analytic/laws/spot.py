@@ -6,8 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analytic.laws.law import ContactLaw
+from analytic.laws.unloading import Unloading
 
-__all__ = ["of_spot", "piece_of", "term"]
+__all__ = ["of_spot", "of_unloading", "piece_of", "term"]
 
 Array = NDArray[np.float64]
 
@@ -44,6 +45,21 @@ def of_spot(quantity: str, law: ContactLaw, piece: int, y: Array, e: Array) -> A
         "conductance": lambda: law.radius(piece, y, e),
         "load_slope": lambda: law.slope(piece, y, e) * (2 / 3),
         "yielded": lambda: np.full(np.broadcast_shapes(np.shape(y), np.shape(e)), float(piece > 0)),
+    }
+    return np.asarray(known[quantity]())
+
+
+def of_unloading(
+    quantity: str, unloading: Unloading, piece: int, y: Array, deepest: Array, e: Array
+) -> Array:
+    """As `of_spot`, on the way back from `deepest`; y is the root of the penetration left to lift-off."""
+    known: dict[str, Any] = {
+        "load": lambda: unloading.load(piece, y, deepest, e),
+        "area": lambda: unloading.radius(piece, y, deepest, e) ** 2,
+        "stiffness": lambda: unloading.stiffness(piece, y, deepest, e),
+        "contacts": lambda: np.ones(np.broadcast_shapes(np.shape(y), np.shape(e))),
+        "conductance": lambda: unloading.radius(piece, y, deepest, e),
+        "load_slope": lambda: unloading.slope(piece, y, deepest, e) * (2 / 3),
     }
     return np.asarray(known[quantity]())
 

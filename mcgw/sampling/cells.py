@@ -23,6 +23,7 @@ from analytic import Grading, HeightLaw, PiecewiseSeries, bends
 from analytic.elementary import exp
 from mcgw.sampling.rules import chebyshev_points, chebyshev_transform, gauss_legendre, product
 from mcgw.sampling.spacing import cuts
+from mcgw.sampling.stretches import begins_and_breaks
 from mcgw.scene.scene import Scene
 
 __all__ = ["NODES", "TO_COEFFICIENTS", "Mesh", "evenness", "height_noise", "mesh_of", "no_cells"]
@@ -66,6 +67,11 @@ class Mesh:
     high_extras: float
 
     @property
+    def range(self) -> tuple[float, float]:
+        """Heights between which the cells lie; none if there is no cell."""
+        return (float(self.edges[0]), float(self.edges[-1])) if self.size else (0.0, 0.0)
+
+    @property
     def size(self) -> int:
         """Number of cells."""
         return len(self.probability)
@@ -96,11 +102,11 @@ def mesh_of(scene: Scene, *, split: bool = True, rare: float = 0.1) -> Mesh:
     low, high = _range(law, rare / scene.n_asperities, scene.lowest)
     if not low < high:
         return no_cells(scene)
-    separations = np.unique(scene.separations)
-    marks = np.unique([low, *separations, *bends(scene.modulus, low, high), *law.breaks, high])
+    begins, breaks = begins_and_breaks(scene, low, high)
+    marks = np.unique([low, *begins, *breaks, *bends(scene.modulus, low, high), *law.breaks, high])
     marks = marks[(low <= marks) & (marks <= high)]
-    spaced = _spaced(law, scene.n_asperities if split else 0, separations, marks)
-    edges = _resolving(scene.modulus, law, _refined(law, separations, spaced))
+    spaced = _spaced(law, scene.n_asperities if split else 0, begins, marks)
+    edges = _resolving(scene.modulus, law, _refined(law, begins, spaced))
     mass = _mass(law, edges[:-1], np.diff(edges)[:, None])[:, 0]
     probability = law.density(edges[:-1]) * mass
     stretch = _stretch(law, edges[:-1], np.diff(edges), mass)
@@ -151,23 +157,23 @@ def _widest(law: HeightLaw, a: float, distance: float) -> float:
     return width
 
 
-def _spaced(law: HeightLaw, n: int, separations: Array, marks: Array) -> Array:
-    """Marks, and cells above each separation such that drawing costs the least."""
-    before = np.diff(separations, prepend=-np.inf)
+def _spaced(law: HeightLaw, n: int, begins: Array, marks: Array) -> Array:
+    """Marks, and cells where contacts begin such that drawing costs the least."""
+    before = np.diff(begins, prepend=-np.inf)
     edges = [marks]
     for low, high in pairwise(marks):
-        k = np.searchsorted(separations, low)
-        if k < len(separations) and separations[k] == low:
+        k = np.searchsorted(begins, low)
+        if k < len(begins) and begins[k] == low:
             edges.append(cuts(law, n, low, high, before[k]))
     return np.unique(np.concatenate(edges))
 
 
-def _refined(law: HeightLaw, separations: Array, marks: Array) -> Array:
-    """Edges from mark to mark, each cell as wide as the law and the separation below it let it be."""
+def _refined(law: HeightLaw, begins: Array, marks: Array) -> Array:
+    """Edges from mark to mark, each cell as wide as the law and the contacts that begin below let it be."""
     edges = [marks[0]]
     for mark in marks[1:]:
         while (a := edges[-1]) < mark:
-            below = separations[np.searchsorted(separations, a) - 1] if separations[0] < a else -np.inf
+            below = begins[np.searchsorted(begins, a) - 1] if begins[0] < a else -np.inf
             widest, room = min(a - below, _widest(law, a, a - below)), mark - a
             if room <= widest * (1 + _ROUNDING):
                 edges.append(mark)

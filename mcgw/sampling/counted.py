@@ -2,17 +2,20 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
+from analytic import quantity_of
 from mcgw.sampling.block import Block
 from mcgw.sampling.cells import Mesh
 from mcgw.sampling.counts import Counts, contacts_above, counts_of
 from mcgw.sampling.drawing import Drawing, OneByOne
-from mcgw.sampling.hertz import hertz_sums
+from mcgw.sampling.law_sums import asperity_sums
 from mcgw.sampling.outside import extra_heights
 from mcgw.sampling.response.response import Response
+from mcgw.sampling.stretches import stretches_of
 from mcgw.scene.scene import Scene
 
 __all__ = ["Counted"]
@@ -108,16 +111,40 @@ class Counted:
         answers = iter(self.response @ moments)
         sums = {}
         for name in scene.quantities:
-            sums[name] = (
-                contacts_above(counts, self._places()) if name == "contacts" else next(answers)[:, columns]
-            )
+            if quantity_of(name).counts:
+                sums[name] = self._numbers(name, counts)
+            else:
+                sums[name] = next(answers)[:, columns]
         where, numbers = np.unique(extras[:, 0].astype(np.int64) - first, return_counts=True)
         heights, weights = np.ascontiguousarray(extras[:, 1:].T)
         with np.errstate(over="ignore"):  # as in the product: what is too large is infinite
-            for name, values in hertz_sums(scene, numbers, heights, weights).items():
+            for name, values in asperity_sums(scene, numbers, heights, weights).items():
                 sums[name][where] += values
         return sums
 
-    def _places(self) -> Ints:
-        """First cell above each separation."""
-        return np.searchsorted(self.mesh.edges[:-1], self.scene.separations)
+    def _numbers(self, name: str, counts: Array) -> Array:
+        """Asperities in cells that count for a quantity, shape (surfaces, separations)."""
+        if name == "contacts" or self.scene.hertzian:
+            return contacts_above(counts, np.searchsorted(self.mesh.edges[:-1], self.scene.separations))
+        separation, first, last = self._counted[name]
+        numbers = contacts_above(counts, first) - contacts_above(counts, last)
+        once, column = np.unique(self.scene.separations, return_inverse=True)
+        result = np.zeros((counts.shape[1], len(once)))
+        np.add.at(result.T, separation, numbers.T)
+        return result[:, column]
+
+    @cached_property
+    def _counted(self) -> dict[str, tuple[Ints, Ints, Ints]]:
+        """For each quantity that counts asperities: separations, and ranges of cells."""
+        ranges = {}
+        for name in self.scene.quantities:
+            q = quantity_of(name)
+            if q.counts:
+                found = stretches_of(self.scene, self.scene.branch_of(name), *self.mesh.range)
+                here = (found.piece > 0) if q.base == "yielded" else np.ones(len(found.piece), dtype=bool)
+                first, last = (
+                    np.minimum(np.searchsorted(self.mesh.edges, x[here]), self.mesh.size)
+                    for x in (found.low, found.high)
+                )
+                ranges[name] = found.separation[here], first, last
+        return ranges

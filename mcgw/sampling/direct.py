@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from mcgw.sampling.block import Block
 from mcgw.sampling.counts import generator
-from mcgw.sampling.hertz import hertz_sums
+from mcgw.sampling.law_sums import asperity_sums
 from mcgw.scene.scene import Scene
 
 __all__ = ["Direct"]
@@ -49,11 +49,11 @@ class Direct:
         scene = self.scene
         rng = generator(scene.seed, _PURPOSE, number)
         left = scene.n_asperities if scene.count == "fixed" else int(rng.poisson(scene.n_asperities))
-        total = hertz_sums(scene, np.array([0]), np.empty(0), np.empty(0))
+        total = asperity_sums(scene, np.array([0]), np.empty(0), np.empty(0))
         while left:
             now = min(left, _PIECE)
             heights = scene.heights.sample(rng, now)
             left -= now
-            for name, value in hertz_sums(scene, np.array([now]), heights, np.ones(now)).items():
+            for name, value in asperity_sums(scene, np.array([now]), heights, np.ones(now)).items():
                 total[name] += value
         return total

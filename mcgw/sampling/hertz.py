@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from analytic import QUANTITIES
+from analytic import quantity_of
 from mcgw.machine.compiling import njit
 from mcgw.scene.scene import Scene
 
@@ -62,7 +62,7 @@ def hertz_sums(scene: Scene, numbers: NDArray[np.int64], heights: Array, weights
     dict of str to ndarray
         Each quantity in SI units, shape (surfaces, separations).
     """
-    asked = [QUANTITIES[name] for name in scene.quantities]
+    asked = [quantity_of(name) for name in scene.quantities]
     graded = weights
     if any(q.modulus for q in asked):
         graded = weights * scene.modulus(heights)

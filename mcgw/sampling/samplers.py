@@ -17,7 +17,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from analytic import QUANTITIES, Exponential, bends
+from analytic import QUANTITIES, Exponential, bends, quantity_of
 from mcgw.machine.memory import keep_freed_memory
 from mcgw.sampling.aggregate import CROWDED, VARYING
 from mcgw.sampling.block import Sampler
@@ -151,7 +151,7 @@ def _response(scene: Scene, mesh: Mesh) -> Response:
 
 
 def _summed(quantities: Iterable[str]) -> tuple[str, ...]:
-    return tuple(name for name in quantities if QUANTITIES[name].exponent > 0)
+    return tuple(name for name in quantities if not quantity_of(name).counts)
 
 
 def _lasting_layout(scene: Scene, mesh: Mesh) -> Layout:

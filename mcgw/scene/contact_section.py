@@ -1,11 +1,12 @@
-"""The table [contact] of a scene: separations and quantities."""
+"""The table [contact] of a scene: law, separations, history and quantities."""
 
 import math
 from typing import Any
 
 import numpy as np
 
-from analytic import QUANTITIES
+from analytic import QUANTITIES, UNLOADING
+from mcgw.scene.law_section import contact_law
 from mcgw.scene.section import Section
 
 __all__ = ["contact_values"]
@@ -15,7 +16,14 @@ _MOST_SEPARATIONS = 100_000
 
 def contact_values(section: Section) -> dict[str, Any]:
     """Read the table; mistakes are noted in the section."""
-    return {"separations": _separations(section), "quantities": _quantities(section)}
+    separations = _separations(section)
+    unload_from = _unload_from(section, separations)
+    return {
+        "separations": separations,
+        "law": contact_law(section),
+        "unload_from": unload_from,
+        "quantities": _with_unloading(_quantities(section), unload_from),
+    }
 
 
 def _separations(section: Section) -> tuple[float, ...]:
@@ -45,6 +53,25 @@ def _separations(section: Section) -> tuple[float, ...]:
         section.fail("separations", given, f"give at most {_MOST_SEPARATIONS} of them, not {len(values)}")
         return (0.0,)
     return tuple(float(h) for h in values)
+
+
+def _unload_from(section: Section, separations: tuple[float, ...]) -> float | None:
+    """The lowest separation reached before, a number or "loop"; None if none was."""
+    if "unload_from" not in section:
+        section.known("unload_from")
+        return None
+    if section.table["unload_from"] == "loop":
+        section.known("unload_from")
+        return min(separations, default=0.0)
+    return section.number("unload_from", positive=False)
+
+
+def _with_unloading(names: tuple[str, ...], unload_from: float | None) -> tuple[str, ...]:
+    """Each quantity, and where the surface goes back, each on the way back."""
+    if unload_from is None:
+        return names
+    back = tuple(q.name for name in names for q in UNLOADING.values() if q.unloading == name)
+    return (*names, *(name for name in back if name not in names))
 
 
 def _quantities(section: Section) -> tuple[str, ...]:

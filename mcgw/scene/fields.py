@@ -6,7 +6,8 @@ from typing import Literal
 
 import numpy as np
 
-from analytic import Clipped, Grading, HeightLaw, Surface, first_negative
+from analytic import Clipped, Grading, HeightLaw, Surface, first_negative, quantity_of
+from analytic.laws import Branch, ContactLaw, Hertz, Loading, Unloading
 
 __all__ = ["Fields"]
 
@@ -23,6 +24,8 @@ class Fields:
     grading: Grading
     negative: Literal["error", "clip", "allow"]
     heights: HeightLaw
+    law: ContactLaw
+    unload_from: float | None
     quantities: tuple[str, ...]
     n_surfaces: int
     n_asperities: int
@@ -37,6 +40,24 @@ class Fields:
     def modulus(self) -> Grading:
         """The grading as used: clipped if the scene says so."""
         return Clipped.of(self.grading) if self.negative == "clip" else self.grading
+
+    @property
+    def hertzian(self) -> bool:
+        """Whether every contact is Hertz's, loaded and unloaded."""
+        return type(self.law) is Hertz
+
+    @property
+    def contact(self) -> ContactLaw:
+        """The contact law in reduced units."""
+        return self.law.on(self.surface)
+
+    def branch_of(self, quantity: str) -> Branch:
+        """The way to its separation that a quantity is about."""
+        if not quantity_of(quantity).unloading:
+            return Loading(self.contact)
+        if self.unload_from is None:
+            raise ValueError(f"contact.unload_from: {quantity} needs it")
+        return Unloading(self.contact, self.unload_from)
 
     @property
     def lowest(self) -> float:

@@ -1,12 +1,13 @@
-"""Gradings and laws of heights in a few words."""
+"""Gradings, height laws and contact laws in a few words."""
 
 from collections.abc import Mapping
 from dataclasses import MISSING, fields, is_dataclass
 from typing import Any
 
 from analytic import Custom, PiecewiseSeries, ScipyHeights
+from analytic.laws import ContactLaw
 
-__all__ = ["law_text"]
+__all__ = ["given_of", "law_text"]
 
 
 def law_text(law: Any) -> str:
@@ -25,10 +26,17 @@ def law_text(law: Any) -> str:
             return repr(law)
         case Custom():
             return f"Custom({getattr(law.function, '__name__', type(law.function).__name__)})"
+        case ContactLaw():
+            return f"{type(law).__name__}({_listed(given_of(law))})"
     if not is_dataclass(law):
         return repr(law)
     given = {field.name: getattr(law, field.name) for field in fields(law) if field.default is MISSING}
     return f"{type(law).__name__}({_listed(given)})"
+
+
+def given_of(law: ContactLaw) -> dict[str, Any]:
+    """The constants of a contact law that are given."""
+    return {f.name: value for f in fields(law) if (value := getattr(law, f.name)) is not None}  # type: ignore[arg-type]
 
 
 def _listed(given: Mapping[str, Any]) -> str:

@@ -5,7 +5,16 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from analytic import QUANTITIES, Custom, Exponential, MeasuredHeights, PiecewiseSeries
+from analytic import (
+    LAW_QUANTITIES,
+    QUANTITIES,
+    UNLOADING,
+    Custom,
+    Exponential,
+    MeasuredHeights,
+    PiecewiseSeries,
+    quantity_of,
+)
 from mcgw.formats.sheet import brief
 from mcgw.scene.fields import Fields
 from mcgw.scene.samplers import promise_of
@@ -19,14 +28,23 @@ _SAFELY = 1e4  # factor by which the sum over all asperities stays below the lar
 
 def mistakes(scene: Fields) -> list[str]:
     """All that is wrong, later checks only where the earlier ones find nothing."""
-    for checks in ((_values, _scales, _measured), (_function,), (_range,), (_modulus,), (_sums,)):
+    for checks in (
+        (_values, _history, _measured),
+        (_scales,),
+        (_law,),
+        (_function,),
+        (_range,),
+        (_modulus,),
+        (_sums,),
+    ):
         if found := [line for check in checks for line in check(scene)]:
             return found
     return []
 
 
 def _values(scene: Fields) -> Iterator[str]:
-    names, sampler = ", ".join(QUANTITIES), scene.sampler
+    known = {**QUANTITIES, **LAW_QUANTITIES, **({} if scene.unload_from is None else UNLOADING)}
+    names, sampler = ", ".join({**QUANTITIES, **LAW_QUANTITIES}), scene.sampler
     if not scene.separations:
         yield "contact.separations = []: give at least one separation d/sigma"
     if tiny := [h for h in scene.separations if 0 < abs(h) < _LEAST]:
@@ -34,7 +52,7 @@ def _values(scene: Fields) -> Iterator[str]:
     if not scene.quantities:
         yield f"contact.quantities = []: give one or more of {names}"
     for name in scene.quantities:
-        if name not in QUANTITIES:
+        if name not in known:
             yield f"contact.quantities: {name!r} is not one of {names}"
     if len(set(scene.quantities)) < len(scene.quantities):
         yield f"contact.quantities = {list(scene.quantities)}: name each quantity once"
@@ -56,20 +74,54 @@ def _values(scene: Fields) -> Iterator[str]:
         yield f'ensemble.keep = "moments": sampler = "{sampler}" has none; take "cells"'
 
 
+def _history(scene: Fields) -> Iterator[str]:
+    """Unloading that nobody has fitted, or from above where the surface is."""
+    if scene.unload_from is None:
+        return
+    if scene.unload_from > min(scene.separations, default=math.inf):
+        yield (
+            f"contact.unload_from = {scene.unload_from:g}: the separation {scene.lowest:g} is lower; "
+            'give the lowest that was reached, or "loop"'
+        )
+    try:
+        scene.law.unloading()
+    except ValueError as error:
+        yield f"contact.unload_from = {scene.unload_from:g}: {error}"
+
+
+def _law(scene: Fields) -> Iterator[str]:
+    """A law that means nothing for this surface."""
+    if scene.law.elastic and "yielded" in scene.quantities:
+        yield f'contact.quantities: "yielded": no contact yields with law = "{scene.law.name}"; leave it out'
+    if scene.hertzian:
+        return
+    try:
+        with np.errstate(all="ignore"):
+            limits = scene.contact.limits(np.ones(1))
+    except ValueError as error:
+        yield f'contact.law = "{scene.law.name}": {error}'
+        return
+    if not np.all(np.isfinite(limits)) or np.any(limits <= 0):
+        yield f'contact.law = "{scene.law.name}": yields at {limits.flat[0]:.3g} sigma; check its constants'
+    if scene.negative == "allow":
+        yield (
+            f'grading.negative = "allow": contact.law = "{scene.law.name}" knows no negative modulus; say '
+            '"clip"'
+        )
+
+
 def _scales(scene: Fields) -> Iterator[str]:
     """Products of parameters that leave the range of double precision."""
     for name in scene.quantities:
-        if name not in QUANTITIES:
-            continue
         with np.errstate(all="ignore"):
             try:
-                one = QUANTITIES[name].scale(scene.surface)
+                one = quantity_of(name).scale(scene.surface)
             except OverflowError:
                 one = math.inf
             ends = (one * 1e-12, one * float(scene.n_asperities) * _SAFELY)
         if not (np.finfo(float).tiny < ends[0] and ends[1] < np.finfo(float).max):
             yield (
-                f"surface: the {name} of an asperity would be {one:.3g} {QUANTITIES[name].unit}, "
+                f"surface: the {name} of an asperity would be {one:.3g} {quantity_of(name).unit}, "
                 "beyond double precision; check sigma, radius and E_star"
             )
 
@@ -142,7 +194,7 @@ def _modulus(scene: Fields) -> Iterator[str]:
 def _sums(scene: Fields) -> Iterator[str]:
     """Sums that the grading makes larger than double precision holds."""
     ends = np.array(sorted({scene.highest, *scene.separations}))
-    stiff = [QUANTITIES[name] for name in scene.quantities if QUANTITIES[name].modulus]
+    stiff = [q for q in map(quantity_of, scene.quantities) if q.modulus]
     with np.errstate(all="ignore"):
         try:
             steepest = float(np.max(np.abs(scene.modulus(ends))))

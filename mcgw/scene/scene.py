@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from analytic import Grading, Model, Surface
+from analytic.laws import ContactLaw
 from mcgw.formats.sheet import Sheet, Shown
 from mcgw.scene.ensemble_section import LeftOut
 from mcgw.scene.fields import Fields
@@ -42,8 +43,14 @@ class Scene(Fields, Shown):
         What to do where the grading makes the modulus of a contacting asperity negative.
     heights : HeightLaw or frozen law of scipy.stats, optional
         Law of the reduced heights: of a law of scipy the mean and the scale drop out. Default: Gaussian.
+    law : ContactLaw, optional
+        Law of contact of an asperity, as `mcgw.KogutEtsion(hardness=1.2e9)`. Default: Hertz's.
+    unload_from : float or "loop", optional
+        Lowest separation reached before, d/sigma; "loop": the lowest of `separations`. Every quantity then
+        has a second one, as ``load_unloading``, on the way back from there.
     quantities : sequence of str, optional
-        Which sums to compute: names of `analytic.QUANTITIES`. Default: load, area, stiffness, contacts.
+        Which sums to compute: names of `analytic.QUANTITIES` and `analytic.LAW_QUANTITIES`. Default: load,
+        area, stiffness, contacts.
     n_surfaces : int, optional
         Number of surfaces M, default: 1000; with `rel_err` the most that may be drawn, default: 1e9.
     n_asperities : int, optional
@@ -92,6 +99,8 @@ class Scene(Fields, Shown):
         grading: Grading | Callable[[Any], Any] | None = None,
         negative: Literal["error", "clip", "allow"] = "error",
         heights: Any = None,
+        law: ContactLaw | None = None,
+        unload_from: float | Literal["loop"] | None = None,
         quantities: Sequence[str] | None = None,
         n_surfaces: int | None = None,
         n_asperities: int | None = None,
@@ -176,12 +185,14 @@ class Scene(Fields, Shown):
         h, among = self.separations, f"{len(self.separations)} from " if len(self.separations) > 1 else ""
         ends = " to ".join(f"{end:g}" for end in sorted({min(h), max(h)}))
         stop = "" if self.rel_err is None else f" until rel_err = {self.rel_err:g}, at most"
+        back = "" if self.unload_from is None else f", and back from {self.unload_from:g}"
         facts = [
             ("surface", ", ".join((x["sigma"], x["radius"], x["eta"]))),
             ("", f"{x['nominal_area']}, {x['E_star']}"),
             ("grading", law_text(self.grading) + ("" if self.negative == "error" else f", {self.negative}")),
             ("heights", law_text(self.heights)),
-            ("separations", f"{among}{ends} (d/sigma)"),
+            *([] if self.hertzian else [("law", law_text(self.law))]),
+            ("separations", f"{among}{ends} (d/sigma){back}"),
             ("quantities", ", ".join(self.quantities)),
             (
                 "ensemble",

@@ -12,6 +12,7 @@ from mcgw.scene.contact_section import contact_values
 from mcgw.scene.ensemble_section import ensemble_values
 from mcgw.scene.grading_section import grading_table, grading_values
 from mcgw.scene.heights_section import heights_law, heights_table
+from mcgw.scene.law_section import law_table
 from mcgw.scene.scene import Scene
 from mcgw.scene.section import SceneError, Section
 from mcgw.scene.storable import storable
@@ -180,10 +181,16 @@ def scene_text(scene: Scene, *, heights_file: str | None = None, left_out: bool 
         "surface": {key: float(getattr(scene.surface, key)) for key in SURFACE_UNITS},
         "grading": {**grading_table(scene.grading), "negative": scene.negative},
         "heights": heights_table(scene.heights, heights_file),
-        "contact": {"separations": list(scene.separations), "quantities": list(scene.quantities)},
+        "contact": _contact_table(scene),
         "ensemble": _ensemble_table(scene, left_out),
     }
     return tomli_w.dumps(document)
+
+
+def _contact_table(scene: Scene) -> dict[str, Any]:
+    back = {} if scene.unload_from is None else {"unload_from": scene.unload_from}
+    asked = {"separations": list(scene.separations), "quantities": list(scene.quantities)}
+    return {**({} if scene.hertzian else law_table(scene.law)), **back, **asked}
 
 
 def _ensemble_table(scene: Scene, left_out: bool) -> dict[str, Any]:

@@ -18,7 +18,7 @@ from mcgw.errors import RunError
 from mcgw.sampling.asperities import heights
 from mcgw.sampling.cells import mesh_of
 from mcgw.sampling.counted import Counted
-from mcgw.sampling.hertz import hertz_sums
+from mcgw.sampling.law_sums import asperity_sums
 from mcgw.sampling.response.response import response_of
 from mcgw.sampling.samplers import Sampler, aggregate_of, sampler_of
 from mcgw.scene.scene import Scene
@@ -159,7 +159,7 @@ class _ByMoments:
         name = scene.quantities[0]
         scene = replace(scene, sampler="cells", n_asperities=n, quantities=(name,), n_surfaces=1, keep="sums")
         s = heights(scene, 0)
-        return cls(scene, chosen, hertz_sums(scene, np.array([s.size]), s, np.ones(s.size))[name][0])
+        return cls(scene, chosen, asperity_sums(scene, np.array([s.size]), s, np.ones(s.size))[name][0])
 
     def __call__(self, size: float, _seed: int) -> Array:
         scene, name = self.scene, self.scene.quantities[0]

@@ -16,6 +16,7 @@ Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 _SCATTER = 8  # asperities more than expected
+_DIGITS = 8.0  # last digits of a height that a formula may lose
 _NODES = 32  # that add to one sum, with errors of their own
 
 
@@ -60,8 +61,7 @@ class Nodes:
         start, end = mesh.edges[tree.first], mesh.edges[tree.last]
         above = heights_above(mesh, tree, np.arange(tree.size))
         moduli = grading(start + above)
-        ends = (mesh.edges[0], mesh.edges[-1]) if mesh.size else (0.0, 0.0)
-        kinks = np.array(resolved_breaks(grading, *ends))
+        kinks = np.array(resolved_breaks(grading, *mesh.range))
         inside = np.searchsorted(kinks, end) > np.searchsorted(kinks, start, side="right")
         e, t = moduli.T, above.T
         largest = np.maximum(np.abs(e).max(axis=1), np.finfo(float).tiny)
@@ -100,9 +100,20 @@ class Nodes:
         graded = rows.graded[row]
         least = np.where(graded, self.even[node], 1.0) * tail[0]
         enough = np.maximum(least, rows.total[row] / self.crowd[node])
-        noise = np.where(graded, self.noise[node], 0.0) * tail[0]
+        noise = np.maximum(np.where(graded, self.noise[node], 0.0), self._rough_noise(node, row, rows))
+        noise *= tail[0]
         alone, of_many = (
             (tail > np.maximum(accuracy * enough, noise)).sum(axis=0)
             for accuracy in (self.accuracy, self.accuracy / _NODES)
         )
         return alone, of_many
+
+    def _rough_noise(self, node: Ints, row: Ints, rows: Rows) -> Array:
+        """What the last digit of a height makes of a power of its small distance from where a row begins."""
+        noise = np.zeros(len(row))
+        rough = rows.rough[row]
+        start, low = self.start[node[rough]], rows.low[row[rough]]
+        near = np.isfinite(low) & (start > low)
+        share = np.spacing(np.abs(start[near])) / (start[near] - low[near])
+        noise[np.flatnonzero(rough)[near]] = np.minimum(_DIGITS * share, 1.0)
+        return noise

@@ -98,13 +98,14 @@ def response_of(
     ValueError
         If the grading is not resolved on a cell, or not by the moments there are.
     """
-    rows = _rows(scene, quantities, lasting=kept is not None)
+    rows = _rows(scene, mesh, quantities, lasting=kept is not None)
     parts = _parts(scene, mesh, rows, accuracy)
     if kept:
         _check_kept(mesh, kept, parts.layout)
         plain = np.concatenate([kept.plain, parts.plain[mesh.size :]])
         parts = replace(parts, plain=plain, rooted=kept.rooted)
-    return Response(parts, tiles_of(parts, rows.order), (len(quantities), len(set(scene.separations))))
+    shape = len(quantities), len(set(scene.separations))
+    return Response(parts, tiles_of(parts, rows.order(shape[0] * shape[1])), shape)
 
 
 def layout_of(
@@ -134,14 +135,17 @@ def layout_of(
     ValueError
         If the grading is not resolved on a cell.
     """
-    return _parts(scene, mesh, _rows(scene, quantities, lasting=lasting), accuracy).layout
+    return _parts(scene, mesh, _rows(scene, mesh, quantities, lasting=lasting), accuracy).layout
 
 
-def _rows(scene: Scene, quantities: tuple[str, ...], *, lasting: bool) -> Rows:
+def _rows(scene: Scene, mesh: Mesh, quantities: tuple[str, ...], *, lasting: bool) -> Rows:
     """What is asked, each separation once, in increasing order."""
-    return hertz_rows(
-        replace(scene, separations=tuple(sorted(set(scene.separations)))), quantities, lasting=lasting
-    )
+    scene = replace(scene, separations=tuple(sorted(set(scene.separations))))
+    if scene.hertzian:
+        return hertz_rows(scene, quantities, lasting=lasting)
+    from mcgw.sampling.response.law_rows import law_rows
+
+    return law_rows(scene, quantities, mesh, lasting=lasting)
 
 
 def _parts(scene: Scene, mesh: Mesh, rows: Rows, accuracy: float) -> Parts:

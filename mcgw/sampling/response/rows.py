@@ -59,8 +59,12 @@ class Rows:
         Reduced separation of the row.
     low, high : ndarray
         Heights between which its formula holds.
+    begins : ndarray of bool
+        Whether contact begins at `low`: there `Formulas.at_start` tells what it is made of.
     rooted : ndarray of bool
-        Whether it is no smooth function of the height where it begins.
+        Whether it has a root there, as a part of it or as a factor.
+    rough : ndarray of bool
+        Whether it begins with a power that no series resolves: on the smallest of cells it is taken as it is.
     graded : ndarray of bool
         Whether it depends on the modulus.
     kind : ndarray of int
@@ -76,18 +80,21 @@ class Rows:
     h: Array
     low: Array
     high: Array
+    begins: NDArray[np.bool_]
     rooted: NDArray[np.bool_]
+    rough: NDArray[np.bool_]
     graded: NDArray[np.bool_]
     kind: Ints
     answer: Ints
     total: Array
     formulas: Formulas
 
-    @property
-    def order(self) -> Ints:
-        """The answers in an order in which neighbours need the same cells."""
-        _, first = np.unique(self.answer, return_index=True)
-        return np.lexsort((self.h[first], ~self.rooted[first]))
+    def order(self, answers: int) -> Ints:
+        """So many answers in an order in which neighbours need the same cells."""
+        h, rooted = np.full(answers, np.inf), np.zeros(answers, dtype=bool)
+        first = np.unique(self.answer, return_index=True)[1]
+        h[self.answer[first]], rooted[self.answer[first]] = self.h[first], self.rooted[first]
+        return np.lexsort((h, ~rooted))
 
     def nearest(self, starts: Array) -> tuple[Ints, Ints]:
         """Of each kind the smooth row that begins last on or before each cell: the hardest to resolve.

@@ -89,6 +89,8 @@ def walk(mesh: Mesh, tree: Tree, rows: Rows, nodes: Nodes) -> tuple[Entries, Int
         smooth = np.flatnonzero(_smooth(rows, nodes, node, row))
         series, needed = _smooth_series(rows, nodes, node[smooth], row[smooth])
         parent = nodes.parent[node[smooth]]
+        begins = rows.rough[row[smooth]] & (rows.low[row[smooth]] == nodes.start[node[smooth]]) & ~parent
+        needed[begins] = np.minimum(needed[begins], _MOST_IN_CELL)
         done = needed <= np.where(parent, _MOST, _MOST_IN_CELL)
         _refuse(nodes, node[smooth][~done & ~parent])
         found.append(series.take(done))
@@ -134,7 +136,7 @@ def _smooth_series(rows: Rows, nodes: Nodes, node: Ints, row: Ints) -> tuple[Ent
     c = product(TO_COEFFICIENTS, rows.formulas.values(row, above, nodes.moduli[:, node]))
     needed, of_many = nodes.needed(c, node, row, rows)
     c[np.arange(len(c))[:, None] >= of_many] = 0.0
-    begins = np.flatnonzero(rows.low[row] == nodes.start[node])
+    begins = np.flatnonzero(rows.begins[row] & (rows.low[row] == nodes.start[node]))
     for _, which, begun, count in _starts(rows, nodes, node[begins], row[begins]):
         c[:, begins[which]], needed[begins[which]] = begun, count
     return Entries(node, row, np.zeros(len(node), dtype=bool), c), needed

@@ -1,0 +1,51 @@
+"""Sums over given heights under any contact law, by the formula of each contact: slow, literal, trusted."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from analytic import quantity_of
+from analytic.laws import term_of
+from mcgw.sampling.hertz import hertz_sums
+from mcgw.scene.scene import Scene
+
+__all__ = ["asperity_sums"]
+
+Array = NDArray[np.float64]
+
+
+def asperity_sums(
+    scene: Scene, numbers: NDArray[np.int64], heights: Array, weights: Array
+) -> dict[str, Array]:
+    """Load, area, ... of surfaces whose heights are given.
+
+    Parameters
+    ----------
+    scene : Scene
+        Its surface, grading, contact law, separations and quantities are used.
+    numbers : ndarray of int
+        How many of the heights belong to each surface, shape (surfaces,).
+    heights : ndarray
+        The reduced heights of all surfaces, one after the other.
+    weights : ndarray
+        For how many asperities each height stands: 1 in an ensemble.
+
+    Returns
+    -------
+    dict of str to ndarray
+        Each quantity in SI units, shape (surfaces, separations).
+    """
+    if scene.hertzian:
+        return hertz_sums(scene, numbers, heights, weights)
+    surface = np.repeat(np.arange(len(numbers)), numbers)
+    touching = heights > scene.lowest
+    surface, s, weight = surface[touching], heights[touching], weights[touching]
+    e = scene.modulus(s)
+    sums = {}
+    for name in scene.quantities:
+        q, branch = quantity_of(name), scene.branch_of(name)
+        rows = [
+            np.bincount(surface, weight * term_of(q.base, branch, h, s, e), len(numbers))
+            for h in scene.separations
+        ]
+        sums[name] = np.asarray(q.scale(scene.surface) * np.stack(rows, axis=1), dtype=np.float64)
+    return sums

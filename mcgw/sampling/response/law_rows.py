@@ -1,0 +1,132 @@
+"""Rows of any other law of contact: for each quantity and separation as many as pieces hold there."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from analytic import Homogeneous, quantity_of
+from analytic.laws import Branch, term_of
+from mcgw.sampling.cells import Mesh
+from mcgw.sampling.response.rows import Rows, Start
+from mcgw.sampling.spacing import SURE
+from mcgw.sampling.stretches import stretches_of
+from mcgw.scene.scene import Scene
+
+__all__ = ["law_rows"]
+
+Array = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class _Pieces:
+    """Formulas of pieces of a law.
+
+    Parameters
+    ----------
+    kinds : tuple of (Branch, str, int, float)
+        Way, quantity, piece and scale of each kind of row.
+    kind : ndarray of int
+        Of each row.
+    h : ndarray
+        Separation of each row.
+    """
+
+    kinds: tuple[tuple[Branch, str, int, float], ...]
+    kind: Ints
+    h: Array
+
+    def values(self, rows: Ints, above: Array, e: Array) -> Array:
+        """As `Formulas.values`."""
+        return self._values(rows, above, e, 1.0)
+
+    def at_start(self, rows: Ints, above: Array, e: Array, u: Array) -> list[Start]:
+        """The even part in the root of the penetration is smooth, the odd part has the root as a factor."""
+        forth, back = (self._values(rows, above, e, sign) for sign in (1.0, -1.0))
+        every, none = np.arange(len(rows)), np.zeros(len(rows))
+        even, odd = (forth + back) / 2, (forth - back) / 2 / np.sqrt(u)[:, None]
+        return [Start(False, every, even, none), Start(True, every, odd, none)]
+
+    def _values(self, rows: Ints, above: Array, e: Array, sign: float) -> Array:
+        result = np.empty(above.shape)
+        for here, (branch, quantity, piece, scale) in self._by_kind(rows):
+            h = self.h[rows[here]]
+            result[:, here] = scale * branch.value(quantity, piece, h, above[:, here], e[:, here], sign=sign)
+        return result
+
+    def _by_kind(self, rows: Ints) -> Iterator[tuple[Ints, tuple[Branch, str, int, float]]]:
+        """Which of the rows are of each kind."""
+        kind = self.kind[rows]
+        order = np.argsort(kind, kind="stable")
+        found, start = np.unique(kind[order], return_index=True)
+        if not found.size:
+            return
+        for number, here in zip(found.tolist(), np.split(order, start[1:]), strict=True):
+            yield here, self.kinds[number]
+
+
+def law_rows(scene: Scene, quantities: tuple[str, ...], mesh: Mesh, *, lasting: bool) -> Rows:
+    """Rows of some quantities at all separations of a scene, which increase.
+
+    Parameters
+    ----------
+    scene : Scene
+        With any contact law.
+    quantities : tuple of str
+        Which; none that counts asperities.
+    mesh : Mesh
+        Its cells end at every break.
+    lasting : bool
+        Whether they are to be resolved as if every surface could have a single contact.
+
+    Returns
+    -------
+    Rows
+        Quantity by quantity, at increasing separations, piece by piece.
+    """
+    separations = np.array(scene.separations)
+    parts: list[tuple[NDArray[Any], ...]] = []
+    kinds: list[tuple[Branch, str, int, float]] = []
+    for number, name in enumerate(quantities):
+        q, branch = quantity_of(name), scene.branch_of(name)
+        found = stretches_of(scene, branch, *mesh.range)
+        roots = np.array([branch.root(int(piece)) for piece in found.piece], dtype=bool)
+        total = np.zeros(len(separations)) if lasting else _totals(scene, name, branch)
+        parts.append(
+            (
+                separations[found.separation],
+                found.low,
+                found.high,
+                found.begins & roots,
+                found.begins & roots,
+                found.begins & ~roots,
+                len(kinds) + found.piece,
+                number * len(separations) + found.separation,
+                total[found.separation],
+            )
+        )
+        scale = q.scale(scene.surface)
+        kinds += [(branch, q.base, piece, scale) for piece in range(int(found.piece.max(initial=-1)) + 1)]
+    h, low, high, begins, rooted, rough, kind, answer, total = (
+        np.concatenate(x) for x in zip(*parts, strict=True)
+    )
+    graded = np.full(len(h), not isinstance(scene.modulus, Homogeneous))
+    formulas = _Pieces(tuple(kinds), kind, h)
+    return Rows(h, low, high, begins, rooted, rough, graded, kind, answer, total, formulas)
+
+
+def _totals(scene: Scene, name: str, branch: Branch) -> Array:
+    """Mean sums from 16 quantiles: the order of magnitude is all it takes."""
+    share, h = (np.arange(16) + 0.5) / 16, np.array(scene.separations)
+    touching = scene.heights.above(h)
+    rank = np.maximum(touching[:, None] * share, np.finfo(float).tiny)
+    s = np.maximum(scene.heights.from_above(rank, -np.inf), h[:, None])
+    q = quantity_of(name)
+    mean = np.mean(term_of(q.base, branch, h[:, None], s, scene.modulus(s)), axis=1)
+    contacts = scene.n_asperities * touching
+    with np.errstate(over="ignore"):
+        total = np.minimum(np.abs(q.scale(scene.surface) * mean) * contacts, np.finfo(float).max)
+    return np.asarray(np.where(contacts > SURE, total, 0.0))

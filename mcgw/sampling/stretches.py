@@ -1,0 +1,94 @@
+"""Stretches of heights on which one formula of a contact law holds, at each separation of a scene."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from analytic import quantity_of
+from analytic.laws import Branch
+from mcgw.scene.scene import Scene
+
+__all__ = ["Stretches", "begins_and_breaks", "stretches_of"]
+
+Array = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+_SMALLEST = 2.0**-30  # cell above the beginning of a power that no series resolves
+_ANALYTIC = 4.0  # how far a formula is analytic, in widths of the cell at which it begins
+
+
+@dataclass(frozen=True)
+class Stretches:
+    """Stretches of the separations of a scene, each separation once, in increasing order.
+
+    Parameters
+    ----------
+    separation : ndarray of int
+        Which of the separations.
+    low, high : ndarray
+        Reduced heights; infinite where the stretch goes on beyond the range.
+    piece : ndarray of int
+        Which formula.
+    begins : ndarray of bool
+        Whether contact begins at `low`, rather than go on from another piece.
+    """
+
+    separation: Ints
+    low: Array
+    high: Array
+    piece: Ints
+    begins: NDArray[np.bool_]
+
+
+def stretches_of(scene: Scene, branch: Branch, low: float, high: float) -> Stretches:
+    """Stretches between two heights."""
+    h = np.unique(scene.separations)
+    found = branch.regimes(scene.modulus, h, low, high)
+    goes_on = np.append(False, (found.low[1:] <= found.high[:-1]) & (np.diff(found.separation) == 0))
+    inside = (found.low > low) | (h[found.separation] >= low)
+    return Stretches(
+        separation=found.separation,
+        low=np.where(inside, found.low, -np.inf),
+        high=np.where(found.high < high, found.high, np.inf),
+        piece=found.piece,
+        begins=inside & ~goes_on[: len(inside)],
+    )
+
+
+def branches_of(scene: Scene) -> list[Branch]:
+    """The ways to the separations that the quantities of a scene are about."""
+    names = {quantity_of(name).unloading != "": name for name in scene.quantities}
+    return [scene.branch_of(name) for name in names.values()]
+
+
+def begins_and_breaks(scene: Scene, low: float, high: float) -> tuple[Array, Array]:
+    """Heights where contacts begin, and those that must be edges of cells besides.
+
+    Parameters
+    ----------
+    scene : Scene
+        With any contact law.
+    low, high : float
+        Range of reduced heights.
+
+    Returns
+    -------
+    (ndarray, ndarray)
+        Increasing; formulas are singular next to the first ones. Hertz's law has no others.
+    """
+    separations = np.unique(scene.separations)
+    if scene.hertzian:
+        return separations, np.empty(0)
+    begins, breaks = [separations], []
+    for branch in branches_of(scene):
+        found = stretches_of(scene, branch, low, high)
+        starts, pieces = found.low[found.begins], found.piece[found.begins]
+        begins.append(starts)
+        breaks += [found.low, found.high]
+        rough = np.array([not branch.root(int(piece)) for piece in pieces], dtype=bool)
+        breaks.append(starts[rough] + _SMALLEST)
+        if np.isfinite(scene.contact.finest):
+            breaks.append(starts[~rough] + scene.contact.finest / _ANALYTIC)
+    edges = np.unique(np.concatenate([np.empty(0), *breaks]))
+    return np.unique(np.concatenate(begins)), edges[np.isfinite(edges)]

@@ -1,0 +1,47 @@
+"""The contact law of a scene: its name and its constants, keys of the table [contact]."""
+
+from dataclasses import fields
+from typing import Any
+
+from analytic.laws import ContactLaw, Hertz, by_name
+from mcgw.scene.law_text import given_of
+from mcgw.scene.section import Section, nearest
+
+__all__ = ["contact_law", "law_table"]
+
+_UNITS = {"hardness": "Pa", "yield_strength": "Pa", "c0": "m", "thickness": "m"}
+_WORDS = {"bridge": ("hermite",)}
+
+
+def contact_law(section: Section) -> ContactLaw:
+    """Read the law and its constants; mistakes are noted in the section, and give Hertz's."""
+    given = section.take("law")
+    if isinstance(given, ContactLaw):
+        return given
+    if given is None:
+        given = "hertz"
+    if given not in by_name:
+        section.fail("law", given, f"{nearest(given, tuple(by_name))}choose one of {', '.join(by_name)}")
+        section.known(*section.table)  # whose constants they are is not known
+        return Hertz()
+    known, before = [field.name for field in fields(by_name[given])], len(section.problems)  # type: ignore[arg-type]
+    constants = {key: _constant(section, key) for key in known if key in section}
+    section.known(*known)
+    if len(section.problems) > before:
+        return Hertz()
+    try:
+        return by_name[given](**constants)
+    except (TypeError, ValueError) as error:
+        section.problems.append(f'contact.law = "{given}": {error}')
+        return Hertz()
+
+
+def _constant(section: Section, key: str) -> float | str:
+    if key in _WORDS:
+        return section.choice(key, "", _WORDS[key])
+    return section.number(key, unit=_UNITS.get(key, ""), positive=key != "poisson")
+
+
+def law_table(law: ContactLaw) -> dict[str, Any]:
+    """The keys that give the law back."""
+    return {"law": law.name, **given_of(law)}
