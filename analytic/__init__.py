@@ -49,6 +49,17 @@ from analytic.height_rule import Fluctuations, HeightRule
 from analytic.heights import Gaussian, HeightLaw
 from analytic.integrals import fn, fn_between, fn_paper, fn_scaled
 from analytic.inversion import ratio_at_equal_load
+from analytic.laws import (
+    ChangEtsionBogy,
+    Coated,
+    ContactLaw,
+    CustomLaw,
+    Hertz,
+    JacksonGreen,
+    KogutEtsion,
+    PowerLawGraded,
+    ZhaoMaiettaChang,
+)
 from analytic.measured_heights import HeightTable, MeasuredHeights
 from analytic.model import Cumulants, Model
 from analytic.piecewise import PiecewiseSeries
@@ -65,9 +76,13 @@ __all__ = [
     "QUANTITIES",
     "UNLOADING",
     "Body",
+    "ChangEtsionBogy",
     "Clipped",
+    "Coated",
+    "ContactLaw",
     "Cumulants",
     "Custom",
+    "CustomLaw",
     "Exponential",
     "ExponentialHeights",
     "Fluctuations",
@@ -76,15 +91,20 @@ __all__ = [
     "HeightLaw",
     "HeightRule",
     "HeightTable",
+    "Hertz",
     "Homogeneous",
+    "JacksonGreen",
+    "KogutEtsion",
     "MeasuredHeights",
     "Model",
     "PiecewiseSeries",
+    "PowerLawGraded",
     "Quantity",
     "ScipyHeights",
     "Surface",
     "Table",
     "Weibull",
+    "ZhaoMaiettaChang",
     "area",
     "area_per_load",
     "area_per_load_ratio",

@@ -10,7 +10,7 @@ import pytest
 import analytic
 
 ROW = re.compile(r"^Eq\. \((\d+)\)\s+((?:`[\w.]+`(?:, )?)+)\s+\S", re.MULTILINE)
-SOURCES = sorted(Path(analytic.__file__).parent.glob("*.py"))
+SOURCES = sorted(Path(analytic.__file__).parent.rglob("*.py"))
 
 
 def test_every_equation_has_its_function():

@@ -103,6 +103,8 @@ SHARED = {
     "HeightLaw", "HeightTable", "Homogeneous", "MeasuredHeights", "PER_AREA", "Quantity", "ScipyHeights",
     "PiecewiseSeries", "Surface", "Table", "Weibull", "bends", "composite_modulus", "extent",
     "first_negative", "is_data", "quantity_of", "resolved", "resolved_breaks",
+    "ChangEtsionBogy", "Coated", "ContactLaw", "CustomLaw", "Hertz", "JacksonGreen", "KogutEtsion",
+    "PowerLawGraded", "ZhaoMaiettaChang",
 }  # fmt: skip
 GAUSSIAN_FIGURES = {"figures/paper.py", "figures/equal_load.py", "figures/summits.py"}  # those of the paper
 

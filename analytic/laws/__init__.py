@@ -1,8 +1,9 @@
 """Laws of contact of one asperity, one file each."""
 
-from analytic.laws.branch import Branch, Loading, Unloading, term_of
+from analytic.laws.branch import Branch, LoadingBranch, UnloadingBranch, term_of
 from analytic.laws.chang_etsion_bogy import ChangEtsionBogy
 from analytic.laws.coated import Coated
+from analytic.laws.custom import CustomLaw
 from analytic.laws.film import crowding_factor, film_conductance, film_parameter
 from analytic.laws.hertz import Hertz
 from analytic.laws.jackson_green import JacksonGreen
@@ -11,13 +12,14 @@ from analytic.laws.law import ContactLaw
 from analytic.laws.power_law_graded import PowerLawGraded
 from analytic.laws.regimes import Regimes, merged_heights, regimes_of
 from analytic.laws.spot import of_spot, piece_of, term
+from analytic.laws.unloading import Unloading
 from analytic.laws.zhao_maietta_chang import ZhaoMaiettaChang
 
 __all__ = [
-    "Branch", "ChangEtsionBogy", "Coated", "ContactLaw", "Hertz", "JacksonGreen", "KogutEtsion", "Loading",
-    "PowerLawGraded", "Regimes", "Unloading", "ZhaoMaiettaChang", "by_name", "crowding_factor",
-    "film_conductance", "film_parameter", "merged_heights", "of_spot", "piece_of", "regimes_of", "term",
-    "term_of",
+    "Branch", "ChangEtsionBogy", "Coated", "ContactLaw", "CustomLaw", "Hertz", "JacksonGreen", "KogutEtsion",
+    "LoadingBranch", "PowerLawGraded", "Regimes", "Unloading", "UnloadingBranch", "ZhaoMaiettaChang", "by_name",
+    "crowding_factor", "film_conductance", "film_parameter", "merged_heights", "of_spot", "piece_of",
+    "regimes_of", "term", "term_of",
 ]  # fmt: skip
 
 _LAWS: tuple[type[ContactLaw], ...] = (

@@ -16,7 +16,7 @@ from analytic.laws.law import ContactLaw
 from analytic.laws.regimes import Regimes, merged_heights, regimes_of
 from analytic.laws.spot import of_spot, of_unloading, piece_of
 
-__all__ = ["Branch", "Loading", "Unloading", "term_of"]
+__all__ = ["Branch", "LoadingBranch", "UnloadingBranch", "term_of"]
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -48,7 +48,7 @@ class Branch(Protocol):
 
 
 @dataclass(frozen=True)
-class Loading:
+class LoadingBranch:
     """The surface comes closer, or has never been closer.
 
     Parameters
@@ -79,7 +79,7 @@ class Loading:
 
 
 @dataclass(frozen=True)
-class Unloading:
+class UnloadingBranch:
     """The surface goes back from the lowest separation it has reached.
 
     Parameters

@@ -24,10 +24,9 @@ class EtsionKligermanKadin(Unloading):
     ``[(delta - delta_res)/(delta_max - delta_res)]`` to the powers ``1.5 x_m^-0.0331`` and
     ``x_m^-0.12``. An asperity that has not yielded unloads as Hertz's. Fitted for x_m up to 170.
 
-    Known defects: the load of the loading fit jumps up by 3 % at delta_c, the unloading starts from
-    there and hardly differs from Hertz's yet, so up to x_m = 1.25 a loop gives out more work than it
-    took, up to 3 % of it. With ``bridge = "hermite"`` unloading starts from the bridged load, and the
-    gain is below 2e-4.
+    Known defects: the fit of loading jumps up by 3 % at delta_c, and unloading starts from there: up to
+    x_m = 1.248 a loop gives out more work than it took, up to 3 % of it. With ``bridge = "hermite"``
+    unloading starts from the bridged load; what is left of the gain is 0.13 %, at x_m = 1.11.
 
     Notes
     -----

@@ -81,11 +81,11 @@ class ContactLaw:
         Raises
         ------
         ValueError
-            If it yields, and nobody has fitted its unloading.
+            If it yields, and how it unloads is not known.
         """
         if not self.elastic:
             raise ValueError(
-                f"law = {self.name!r}: its unloading has never been fitted; "
+                f"law = {self.name!r}: its unloading is not known; "
                 "take 'kogut-etsion', which has one, or an elastic law"
             )
         return Unloading(self)

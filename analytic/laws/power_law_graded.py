@@ -1,12 +1,11 @@
 """Asperities whose modulus grows with depth as a power."""
 
-import math
 from dataclasses import dataclass, replace
+from math import cos, gamma, inf, pi, sin, sqrt
 from typing import Any, ClassVar, Self
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.special import gamma
 
 from analytic.laws.law import ContactLaw
 from analytic.laws.poisson import checked_poisson
@@ -76,23 +75,23 @@ class PowerLawGraded(ContactLaw):
             )
         for name in ("c0", "reduced_c0"):
             value = getattr(self, name)
-            if value is not None and not 0 < value < math.inf:
+            if value is not None and not 0 < value < inf:
                 raise ValueError(f"{name} = {value!r}: give a depth > 0")
 
     def on(self, surface: Surface) -> Self:
         """The law on this surface, in reduced units: with `reduced_c0` in place of `c0`."""
         if self.c0 is None:
             return self
-        return replace(self, c0=None, reduced_c0=self.c0 / math.sqrt(surface.radius * surface.sigma))
+        return replace(self, c0=None, reduced_c0=self.c0 / sqrt(surface.radius * surface.sigma))
 
     @property
     def H(self) -> float:  # noqa: N802
         """Factor of the normal stiffness, a function of k and Poisson's ratio alone."""
         k, nu = self.k, self.poisson
-        b = math.sqrt((1 + k) * (1 - k * nu / (1 - nu)))
-        c = 2 ** (1 + k) * gamma((3 + k + b) / 2) * gamma((3 + k - b) / 2) / (math.pi * gamma(2 + k))
-        above = 2 * (1 + k) * math.cos(k * math.pi / 2) * gamma(1 + k / 2)
-        return float(above / (math.sqrt(math.pi) * c * b * math.sin(b * math.pi / 2) * gamma((1 + k) / 2)))
+        b = sqrt((1 + k) * (1 - k * nu / (1 - nu)))
+        c = 2 ** (1 + k) * gamma((3 + k + b) / 2) * gamma((3 + k - b) / 2) / (pi * gamma(2 + k))
+        above = 2 * (1 + k) * cos(k * pi / 2) * gamma(1 + k / 2)
+        return above / (sqrt(pi) * c * b * sin(b * pi / 2) * gamma((1 + k) / 2))
 
     def load(self, piece: int, y: Any, e: Array) -> Any:
         """Load of a contact, in the shape of `y` and `e`."""
@@ -101,7 +100,7 @@ class PowerLawGraded(ContactLaw):
 
     def radius(self, piece: int, y: Any, e: Array) -> Any:
         """Radius of a contact; its square is the area over pi R sigma."""
-        return math.sqrt(1 + self.k) * (y + 0.0 * e)
+        return sqrt(1 + self.k) * (y + 0.0 * e)
 
     def stiffness(self, piece: int, y: Array, e: Array) -> Array:
         """Stiffness of a spot over 2 E* sqrt(R sigma)."""

@@ -7,7 +7,7 @@ from typing import Literal
 import numpy as np
 
 from analytic import Clipped, Grading, HeightLaw, Surface, first_negative, quantity_of
-from analytic.laws import Branch, ContactLaw, Hertz, Loading, Unloading
+from analytic.laws import Branch, ContactLaw, Hertz, LoadingBranch, UnloadingBranch
 
 __all__ = ["Fields"]
 
@@ -54,10 +54,10 @@ class Fields:
     def branch_of(self, quantity: str) -> Branch:
         """The way to its separation that a quantity is about."""
         if not quantity_of(quantity).unloading:
-            return Loading(self.contact)
+            return LoadingBranch(self.contact)
         if self.unload_from is None:
             raise ValueError(f"contact.unload_from: {quantity} needs it")
-        return Unloading(self.contact, self.unload_from)
+        return UnloadingBranch(self.contact, self.unload_from)
 
     @property
     def lowest(self) -> float:

@@ -1,0 +1,148 @@
+"""A law of contact of one's own: formulas of its pieces."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from analytic.laws.elastic_plastic import ElasticPlastic
+from analytic.laws.root_series import resolved_in_root
+
+__all__ = ["CustomLaw"]
+
+Array = NDArray[np.float64]
+Formula = Callable[[Any], Any]
+
+_PROBE = 1e-30j  # slopes are taken by a step into the complex plane
+
+
+@dataclass(frozen=True)
+class CustomLaw(ElasticPlastic):
+    """A law made of formulas, one for each piece, in ``u = sqrt(delta/delta_c)``.
+
+    In u a contact is analytic where it begins: Hertz's load is u^3, his area u^2. Formulas take arrays,
+    real and complex, so they must not take absolute values, or compare; those of the first piece also
+    take -u, and next to u = 0 they are power series that begin with u^2 or higher. How contacts unload
+    is not known: it is refused.
+
+    Parameters
+    ----------
+    load : sequence of callable
+        Load of each piece over ``(4/3) E*(s) sqrt(R) (delta_c)^1.5``, Hertz's at delta_c.
+    area : sequence of callable
+        Area of each piece over ``pi R delta_c``.
+    limits : sequence of float
+        ``x = delta/delta_c`` at which each piece from the second on begins, increasing.
+    critical : float
+        delta_c/sigma of an asperity of modulus E*; where the modulus is e E*, it is critical/e^2.
+
+    Raises
+    ------
+    ValueError
+        If there are not as many formulas as pieces, limits do not increase, or a formula gives no finite
+        numbers.
+
+    Examples
+    --------
+    Elastic, then a constant mean pressure:
+
+    >>> law = CustomLaw(
+    ...     load=(lambda u: u**3, lambda u: u**2),
+    ...     area=(lambda u: u**2, lambda u: u**2),
+    ...     limits=(1.0,),
+    ...     critical=0.05,
+    ... )
+    >>> float(law.load(1, np.sqrt(0.1), 1.0).round(12))
+    0.022360679775
+    """
+
+    name: ClassVar[str] = "custom"
+
+    load_of: tuple[Formula, ...]
+    area_of: tuple[Formula, ...]
+    beginnings: tuple[float, ...]
+
+    def __init__(
+        self, load: Sequence[Formula], area: Sequence[Formula], limits: Sequence[float], critical: float
+    ) -> None:
+        object.__setattr__(self, "load_of", tuple(load))
+        object.__setattr__(self, "area_of", tuple(area))
+        object.__setattr__(self, "beginnings", tuple(map(float, limits)))
+        object.__setattr__(self, "critical", float(critical))
+        super().__post_init__()
+        rising = [0.0, *self.beginnings]
+        if not (np.all(np.isfinite(rising)) and np.all(np.diff(rising) > 0)):
+            raise ValueError(f"limits = {list(self.beginnings)}: give numbers > 0 that increase")
+        for name, formulas in (("load", self.load_of), ("area", self.area_of)):
+            if len(formulas) != len(rising):
+                raise ValueError(
+                    f"{name}: give {len(rising)} formulas, one more than limits, not {len(formulas)}"
+                )
+            for piece, formula in enumerate(formulas):
+                self._check(f"{name}[{piece}]", formula, piece)
+
+    @property
+    def edges(self) -> tuple[float, ...]:
+        """Penetrations over the critical one at which pieces from 1 on begin."""
+        return self.beginnings
+
+    def load(self, piece: int, y: Any, e: Array) -> Any:
+        """Load of a contact, in the shape of `y` and `e`."""
+        e = np.asarray(e, dtype=np.float64)
+        at_yield = self._root_of_critical**3 / np.square(np.where(e > 0, e, np.inf))
+        return at_yield * self.load_of[piece](self._u(y, e))
+
+    def radius(self, piece: int, y: Any, e: Array) -> Any:
+        """Radius of a contact; its square is the area over pi R sigma."""
+        u = self._u(y, e)
+        u = np.where(u == 0, 1.0, u)  # where the factor y is 0
+        return y * np.sqrt(self.area_of[piece](u) / (u * u))
+
+    def resolved(self, x_max: float) -> "CustomLaw":
+        """The law as numbers alone: `RootSeries` up to ``x = x_max`` in place of formulas.
+
+        Parameters
+        ----------
+        x_max : float
+            Greatest delta/delta_c that is needed; pieces that begin there or beyond are left out.
+
+        Returns
+        -------
+        CustomLaw
+            Exact to 1e-13 of the largest load or area per penetration in each piece.
+
+        Raises
+        ------
+        ValueError
+            If a formula is no smooth function on its piece.
+        """
+        kept = [x for x in self.beginnings if x < x_max]
+        ends = np.sqrt([*kept, x_max]).tolist()
+        starts = [-ends[0], *ends[:-1]]
+        series: dict[str, list[Formula]] = {"load": [], "area": []}
+        for name, formulas in (("load", self.load_of), ("area", self.area_of)):
+            for piece, (low, high) in enumerate(zip(starts, ends, strict=True)):
+                try:
+                    series[name].append(resolved_in_root(formulas[piece], low, high))
+                except ValueError as error:
+                    raise ValueError(f"{name}[{piece}]: {error}") from None
+        return CustomLaw(series["load"], series["area"], kept, float(self._root_of_critical**2))
+
+    def _u(self, y: Any, e: Array) -> Any:
+        """``sqrt(delta/delta_c)``; 1 where there is no stiffness."""
+        return np.where(np.asarray(e) > 0, y * e / self._root_of_critical, 1.0)
+
+    def _check(self, name: str, formula: Formula, piece: int) -> None:
+        """Try a formula where its piece begins, and that of the first piece on both sides of first touch."""
+        start = self.beginnings[piece - 1] if piece else min(self.beginnings, default=1.0)
+        u = np.sqrt(start) * (np.array([1.1]) if piece else np.array([-0.5, 0.5]))
+        with np.errstate(all="ignore"):
+            try:
+                good = all(np.all(np.isfinite(formula(v))) for v in (u, u + _PROBE * np.abs(u)))
+            except TypeError:
+                good = False
+        if not good:
+            also = ", also negative ones," if piece == 0 else ""
+            raise ValueError(f"{name}: it must give finite numbers for arrays{also} of real and complex u")
