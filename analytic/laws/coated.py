@@ -27,12 +27,12 @@ class Coated(ContactLaw):
 
         I0(x) = (2/pi) arctan(x) + [(1 - 2 nu) x ln(1 + 1/x^2) - x/(1 + x^2)]/(2 pi (1 - nu))
 
-    from 1 (a small: all coating) to 0 (a large: all substrate). The load is the integral of K, so that
-    K = -dP/dd holds exactly; Hertz's load times E_eff(a) would break that. E* is that of the bare
-    substrate, and a grading over heights multiplies both.
+    which falls from 1 (a small: all coating) to 0 (a large: all substrate). The load is the integral of
+    K, so that K = -dP/dd holds exactly; Hertz's load times E_eff(a) would break that. E* is that of the
+    bare substrate, and a grading over heights multiplies both.
 
-    I0 is a first-order perturbation: good for ratios from about 1/3 to 3 [mem]. Known to be
-    wrong: the radius is kept at Hertz's, though a coating changes it.
+    I0 is a first-order perturbation: good for ratios from about 1/3 to 3 [mem]. Known to be wrong: the
+    radius is kept at Hertz's, though a coating changes it.
 
     Parameters
     ----------

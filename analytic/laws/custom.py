@@ -111,7 +111,7 @@ class CustomLaw(ElasticPlastic):
         Returns
         -------
         CustomLaw
-            Exact to 1e-13 of the largest load or area per penetration in each piece.
+            Exact to 1e-13 of the largest load or area per penetration in each piece; slopes to some 1e-12.
 
         Raises
         ------
@@ -128,7 +128,8 @@ class CustomLaw(ElasticPlastic):
                     series[name].append(resolved_in_root(formulas[piece], low, high))
                 except ValueError as error:
                     raise ValueError(f"{name}[{piece}]: {error}") from None
-        return CustomLaw(series["load"], series["area"], kept, float(self._root_of_critical**2))
+        assert self.critical is not None
+        return CustomLaw(series["load"], series["area"], kept, self.critical)
 
     def _u(self, y: Any, e: Array) -> Any:
         """``sqrt(delta/delta_c)``; 1 where there is no stiffness."""

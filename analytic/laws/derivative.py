@@ -11,6 +11,7 @@ __all__ = ["derivative", "slope_in_root"]
 Array = NDArray[np.float64]
 
 _STEP = 1e-30  # of the variable, into the complex plane
+_NEXT_TO_0 = 1e-60  # stands for 0: cubes of it, times a step, are still numbers
 
 
 def derivative(formula: Callable[[Any], Any], x: Array) -> Array:
@@ -20,5 +21,6 @@ def derivative(formula: Callable[[Any], Any], x: Array) -> Array:
 
 
 def slope_in_root(formula: Callable[[Any], Any], y: Array) -> Array:
-    """``d formula/d(y^2)`` where y is not 0."""
-    return derivative(formula, y) / (2 * np.asarray(y))
+    """``d formula/d(y^2)``, at y = 0 its limit."""
+    y = np.where(y == 0, _NEXT_TO_0, y)
+    return derivative(formula, y) / (2 * y)

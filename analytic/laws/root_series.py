@@ -10,7 +10,7 @@ from numpy.polynomial import chebyshev
 __all__ = ["RootSeries", "resolved_in_root"]
 
 _MOST_TERMS = 256
-_NOTHING = 2e-16  # of the largest value
+_NOTHING = 1e-16  # of the largest value
 _ALLOWED = 1e-13
 _BETWEEN = np.linspace(-1, 1, 301)
 
@@ -66,9 +66,8 @@ def resolved_in_root(formula: Callable[[Any], Any], low: float, high: float) -> 
         u = _at(nodes, low, high)
         c = 2 / terms * (chebyshev.chebvander(nodes, terms - 1).T @ (formula(u) / (u * u)))
         c[0] /= 2
-        tail = np.cumsum(np.abs(c)[::-1])[::-1]
-        count = max(int((tail > _NOTHING * tail[0]).sum()), 1)
-        found = RootSeries(low, high, tuple(c[:count].tolist()))
+        c[np.abs(c) <= _NOTHING * np.abs(c).max()] = 0  # so that what is even or odd stays it
+        found = RootSeries(low, high, tuple(np.trim_zeros(c, "b").tolist()))
         between = _at(_BETWEEN[_BETWEEN != 0], low, high)
         over = (found(between) - formula(between)) / between**2
         if np.all(np.abs(over) <= _ALLOWED * np.abs(c).max()):

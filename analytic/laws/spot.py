@@ -66,6 +66,7 @@ def of_unloading(
 
 def piece_of(law: ContactLaw, penetration: Array, e: Array) -> NDArray[np.int64]:
     """Which piece of the law holds at these penetrations, in the shape of both."""
+    penetration, e = np.broadcast_arrays(penetration, e)
     with np.errstate(divide="ignore", over="ignore"):  # without a modulus nothing yields
         limits = law.limits(e)
     return np.asarray((limits <= penetration).sum(axis=0), dtype=np.int64)
