@@ -18,8 +18,8 @@ from analytic.laws.zhao_maietta_chang import ZhaoMaiettaChang
 __all__ = [
     "Branch", "ChangEtsionBogy", "Coated", "ContactLaw", "CustomLaw", "Hertz", "JacksonGreen", "KogutEtsion",
     "LoadingBranch", "PowerLawGraded", "Regimes", "Unloading", "UnloadingBranch", "ZhaoMaiettaChang",
-    "by_name", "crowding_factor", "film_conductance", "film_parameter", "merged_heights", "of_spot", "piece_of",
-    "regimes_of", "term", "term_of",
+    "by_name", "crowding_factor", "film_conductance", "film_parameter", "merged_heights", "of_spot",
+    "piece_of", "regimes_of", "term", "term_of",
 ]  # fmt: skip
 
 _LAWS: tuple[type[ContactLaw], ...] = (

@@ -5,22 +5,24 @@ Asperities of height s are penetrated by s - h. What begins at the penetration `
 it falls faster than heights rise, as that of yielding does where the modulus falls.
 """
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.polynomial import chebyshev
 from numpy.typing import NDArray
 
-from analytic.gradings import Custom, Grading, Homogeneous
-from analytic.piecewise import PiecewiseSeries
-from analytic.series import resolved
+from analytic.gradings import Grading, Homogeneous
+from analytic.resolution import resolved_breaks
 
 __all__ = ["Bound", "Crossings", "crossings_of"]
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 Bound = Callable[[Array], Array]
+
+_STEP, _POINTS = 0.5, np.linspace(0, 1, 33)  # heights at which a bound is looked at, between its breaks
+_GOLDEN, _SECTIONS = (math.sqrt(5) - 1) / 2, 45
 
 
 @dataclass(frozen=True)
@@ -90,14 +92,32 @@ def _stretches(bound: Bound, grading: Grading, low: float, high: float) -> Array
     """Where stretches begin on which ``s - bound(s)`` only rises, or only falls."""
     if isinstance(grading, Homogeneous):
         return np.array([low])
+    breaks = [b for b in resolved_breaks(grading, low, high) if low < b < high]
+    starts = np.unique([low, *breaks, *np.arange(np.ceil(low / _STEP), high / _STEP) * _STEP])
+    ends = np.append(starts[1:], high)
+    s = starts[:, None] + (ends - starts)[:, None] * _POINTS
+    s[:, -1] = np.nextafter(ends, -np.inf)
 
-    def bent(s: Array) -> Array:  # the arctangent rises with it and is smooth where the bound is infinite
-        return np.arctan(s - bound(s))
+    def curve(x: Array) -> Array:  # the arctangent rises with it, also where the bound is infinite
+        with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
+            return np.arctan(x - bound(x))
 
-    curve = resolved(Custom(bent, grading.breaks), low, high)
-    slopes = [chebyshev.chebder([*c, 0.0]).tolist() for c in curve.coefficients]
-    turns = PiecewiseSeries(curve.edges, slopes).zeros
-    return np.unique([low, *curve.edges[:-1], *(s for s in turns if low < s < high)])
+    rises = np.diff(curve(s), axis=1) >= 0
+    piece, turn = np.nonzero(rises[:, :-1] != rises[:, 1:])
+    turns = _turns(curve, s[piece, turn], s[piece, turn + 2], rises[piece, turn])
+    return np.unique([low, *breaks, *turns[(low < turns) & (turns < high)]])
+
+
+def _turns(curve: Callable[[Array], Array], left: Array, right: Array, peak: NDArray[np.bool_]) -> Array:
+    """Highest or lowest points, by golden section."""
+    if not left.size:
+        return left
+    sign = np.where(peak, 1.0, -1.0)
+    for _ in range(_SECTIONS):
+        a, b = right - _GOLDEN * (right - left), left + _GOLDEN * (right - left)
+        first = sign * curve(a) > sign * curve(b)
+        left, right = np.where(first, left, a), np.where(first, b, right)
+    return np.asarray((left + right) / 2)
 
 
 def _halved(holds: Callable[[Array, Array], NDArray[np.bool_]], h: Array, left: Array, right: Array) -> Array:

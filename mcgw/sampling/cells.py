@@ -105,7 +105,7 @@ def mesh_of(scene: Scene, *, split: bool = True, rare: float = 0.1) -> Mesh:
     begins, breaks = begins_and_breaks(scene, low, high)
     marks = np.unique([low, *begins, *breaks, *bends(scene.modulus, low, high), *law.breaks, high])
     marks = marks[(low <= marks) & (marks <= high)]
-    spaced = _spaced(law, scene.n_asperities if split else 0, begins, marks)
+    spaced = _spaced(law, scene.n_asperities if split else 0, begins, breaks, marks)
     edges = _resolving(scene.modulus, law, _refined(law, begins, spaced))
     mass = _mass(law, edges[:-1], np.diff(edges)[:, None])[:, 0]
     probability = law.density(edges[:-1]) * mass
@@ -157,14 +157,16 @@ def _widest(law: HeightLaw, a: float, distance: float) -> float:
     return width
 
 
-def _spaced(law: HeightLaw, n: int, begins: Array, marks: Array) -> Array:
-    """Marks, and cells where contacts begin such that drawing costs the least."""
+def _spaced(law: HeightLaw, n: int, begins: Array, breaks: Array, marks: Array) -> Array:
+    """Marks, and cells where contacts begin or change their law such that drawing costs the least."""
     before = np.diff(begins, prepend=-np.inf)
     edges = [marks]
     for low, high in pairwise(marks):
         k = np.searchsorted(begins, low)
         if k < len(begins) and begins[k] == low:
             edges.append(cuts(law, n, low, high, before[k]))
+        elif k > 0 and low in breaks:
+            edges.append(cuts(law, n, low, high, low - begins[k - 1], root=False))
     return np.unique(np.concatenate(edges))
 
 

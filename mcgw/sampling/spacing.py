@@ -30,8 +30,8 @@ _MORE = 8  # cells than the fewest possible
 _CELL, _TWO_MORE, _FIVE_MORE, _ROOT, _FIVE_ROOTS_MORE = 250.0, 0.1, 0.25, 0.3, 0.2
 
 
-def cuts(law: HeightLaw, n: int, low: float, high: float, before: float) -> Array:
-    """Cut the heights from a separation to the next one.
+def cuts(law: HeightLaw, n: int, low: float, high: float, before: float, *, root: bool = True) -> Array:
+    """Cut the heights from a separation to the next one, or from a break of the contact law.
 
     Parameters
     ----------
@@ -43,6 +43,8 @@ def cuts(law: HeightLaw, n: int, low: float, high: float, before: float) -> Arra
         The two separations.
     before : float
         Distance from `low` to the separation below, infinite if there is none.
+    root : bool, optional
+        Whether contacts begin at `low`.
 
     Returns
     -------
@@ -52,9 +54,9 @@ def cuts(law: HeightLaw, n: int, low: float, high: float, before: float) -> Arra
     gap = high - low
     upper = _ladders(1 + math.ceil(max(math.log2(gap) - math.log2(before), 0.0) - 1e-9))
     width = np.diff(upper, axis=1, prepend=0.0)
-    distance = np.where(upper > width, upper - width, before / gap)
+    distance = np.where(upper > width, upper - width, before / gap) if root else upper - width + before / gap
     allowed = (width <= distance * (1 + 1e-9)).all(axis=1)
-    prices = np.where(allowed, _prices(law, n, low, gap, upper, distance), np.inf)
+    prices = np.where(allowed, _prices(law, n, low, gap, upper, distance, root), np.inf)
     cheapest = np.argmax(prices <= prices.min() * (1 + 1e-9))  # the first one: rounding breaks no tie
     return np.concatenate([[low], low + gap * upper[cheapest][width[cheapest] > 0][:-1], [high]])
 
@@ -71,7 +73,9 @@ def _ladders(fewest: int) -> Array:
     return np.array(rows)
 
 
-def _prices(law: HeightLaw, n: int, low: float, gap: float, upper: Array, distance: Array) -> Array:
+def _prices(
+    law: HeightLaw, n: int, low: float, gap: float, upper: Array, distance: Array, root: bool
+) -> Array:
     """What the asperities of a surface cost for each choice of cells."""
     width = np.diff(upper, axis=1, prepend=0.0)
     edges, used = low + gap * np.insert(upper, 0, 0.0, axis=1), width > 0
@@ -86,7 +90,7 @@ def _prices(law: HeightLaw, n: int, low: float, gap: float, upper: Array, distan
         digits = _DIGITS + np.log10(part)
         plain = digits / _rate(np.minimum(1 + 2 * distance / width, 2 / bend))
         rooted = 1 + digits / _rate(2 / bend)
-    first = used & (upper == width)
+    first = used & (upper == width) & root
     each = price(plain, np.where(first, rooted, 0.0))
     return np.asarray((np.where(used, _CELL + expected * each, 0.0)).sum(axis=1))
 

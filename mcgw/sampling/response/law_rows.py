@@ -12,7 +12,7 @@ from analytic.laws import Branch, term_of
 from mcgw.sampling.cells import Mesh
 from mcgw.sampling.response.rows import Rows, Start
 from mcgw.sampling.spacing import SURE
-from mcgw.sampling.stretches import stretches_of
+from mcgw.sampling.stretches import Stretches, stretches_of
 from mcgw.scene.scene import Scene
 
 __all__ = ["law_rows"]
@@ -89,10 +89,13 @@ def law_rows(scene: Scene, quantities: tuple[str, ...], mesh: Mesh, *, lasting: 
     """
     separations = np.array(scene.separations)
     parts: list[tuple[NDArray[Any], ...]] = []
+    stretches: dict[Branch, Stretches] = {}
     kinds: list[tuple[Branch, str, int, float]] = []
     for number, name in enumerate(quantities):
         q, branch = quantity_of(name), scene.branch_of(name)
-        found = stretches_of(scene, branch, *mesh.range)
+        if branch not in stretches:
+            stretches[branch] = stretches_of(scene, branch, *mesh.range)
+        found = stretches[branch]
         roots = np.array([branch.root(int(piece)) for piece in found.piece], dtype=bool)
         total = np.zeros(len(separations)) if lasting else _totals(scene, name, branch)
         parts.append(
