@@ -7,7 +7,7 @@ import pytest
 import analytic
 from mcgw.sampling.cells import mesh_of, no_cells
 from mcgw.sampling.samplers import sampler_of
-from mcgw.sampling.spacing import cuts
+from mcgw.sampling.spacing import Gap, cuts
 
 
 def mass(a, b):
@@ -63,15 +63,21 @@ def test_cells_are_no_wider_than_their_distance_to_a_root(make_scene, gap):
             assert b - a <= (a - below[-1]) * (1 + 1e-6)
 
 
+def cut(law, n, low, high, before):
+    """Edges of one gap."""
+    (edges,) = cuts(law, n, [Gap(low, high, before)])
+    return edges
+
+
 @pytest.mark.parametrize("gap", [1e-9, 0.01, 0.1, 3.0])
 def test_the_fewest_cells_between_two_separations(gap):
     """As wide as the distance below it lets each be: one for equal gaps, then one for each doubling."""
     law, high = analytic.Gaussian(), 1.0 + gap
     gap = high - 1.0  # as it is after rounding
-    assert len(cuts(law, 0, 1.0, high, gap)) == 2
-    assert len(cuts(law, 0, 1.0, high, np.inf)) == 2
+    assert len(cut(law, 0, 1.0, high, gap)) == 2
+    assert len(cut(law, 0, 1.0, high, np.inf)) == 2
     for doublings in (1, 2, 5, 30):
-        edges = cuts(law, 0, 1.0, high, gap / 2**doublings)
+        edges = cut(law, 0, 1.0, high, gap / 2**doublings)
         np.testing.assert_allclose(
             (edges[1:] - 1) / gap, 0.5 ** np.arange(doublings, -1, -1), atol=1e-15 / gap
         )
@@ -81,7 +87,7 @@ def test_crowds_pay_for_more_cells():
     """From none to many, and never one that is wider than its distance to the separation below."""
     law, sizes = analytic.Gaussian(), []
     for n in (0, 10**3, 10**5, 10**6, 10**8):
-        edges = cuts(law, n, 0.5, 0.6, 0.1)
+        edges = cut(law, n, 0.5, 0.6, 0.1)
         assert edges[0] == 0.5
         assert edges[-1] == 0.6
         distance = np.concatenate([[0.1], edges[1:-1] - 0.5])

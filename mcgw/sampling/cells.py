@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 from analytic import Grading, HeightLaw, PiecewiseSeries, bends
 from analytic.elementary import exp
 from mcgw.sampling.rules import chebyshev_points, chebyshev_transform, gauss_legendre, product
-from mcgw.sampling.spacing import cuts
+from mcgw.sampling.spacing import Gap, cuts
 from mcgw.sampling.stretches import begins_and_breaks
 from mcgw.scene.scene import Scene
 
@@ -159,15 +159,14 @@ def _widest(law: HeightLaw, a: float, distance: float) -> float:
 
 def _spaced(law: HeightLaw, n: int, begins: Array, breaks: Array, marks: Array) -> Array:
     """Marks, and cells where contacts begin or change their law such that drawing costs the least."""
-    before = np.diff(begins, prepend=-np.inf)
-    edges = [marks]
-    for low, high in pairwise(marks):
+    before, gaps = np.diff(begins, prepend=-np.inf), []
+    for low, high in pairwise(marks.tolist()):
         k = np.searchsorted(begins, low)
         if k < len(begins) and begins[k] == low:
-            edges.append(cuts(law, n, low, high, before[k]))
+            gaps.append(Gap(low, high, float(before[k])))
         elif k > 0 and low in breaks:
-            edges.append(cuts(law, n, low, high, low - begins[k - 1], root=False))
-    return np.unique(np.concatenate(edges))
+            gaps.append(Gap(low, high, float(low - begins[k - 1]), root=False))
+    return np.unique(np.concatenate([marks, *cuts(law, n, gaps)]))
 
 
 def _refined(law: HeightLaw, begins: Array, marks: Array) -> Array:

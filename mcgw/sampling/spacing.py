@@ -7,14 +7,16 @@ geometrically from a separation upwards, and how fast, and to how many, is chose
 """
 
 import math
+from collections.abc import Sequence
 from functools import cache
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from analytic import HeightLaw
 
-__all__ = ["SURE", "cuts", "price"]
+__all__ = ["SURE", "Gap", "cuts", "price"]
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -30,8 +32,32 @@ _MORE = 8  # cells than the fewest possible
 _CELL, _TWO_MORE, _FIVE_MORE, _ROOT, _FIVE_ROOTS_MORE = 250.0, 0.1, 0.25, 0.3, 0.2
 
 
-def cuts(law: HeightLaw, n: int, low: float, high: float, before: float, *, root: bool = True) -> Array:
-    """Cut the heights from a separation to the next one, or from a break of the contact law.
+class Gap(NamedTuple):
+    """Heights from a separation, or from a break of the contact law, to the next one.
+
+    Attributes
+    ----------
+    low, high : float
+        Its ends.
+    before : float
+        Distance from `low` to the separation below, infinite if there is none.
+    root : bool
+        Whether contacts begin at `low`.
+    """
+
+    low: float
+    high: float
+    before: float
+    root: bool = True
+
+    @property
+    def fewest(self) -> int:
+        """Cells that it takes if each is as wide as it may be."""
+        return 1 + math.ceil(max(math.log2(self.high - self.low) - math.log2(self.before), 0.0) - 1e-9)
+
+
+def cuts(law: HeightLaw, n: int, gaps: Sequence[Gap]) -> list[Array]:
+    """Cut gaps into cells.
 
     Parameters
     ----------
@@ -39,26 +65,36 @@ def cuts(law: HeightLaw, n: int, low: float, high: float, before: float, *, root
         Of the heights.
     n : int
         Asperities of a surface; none asks for the fewest cells.
-    low, high : float
-        The two separations.
-    before : float
-        Distance from `low` to the separation below, infinite if there is none.
-    root : bool, optional
-        Whether contacts begin at `low`.
+    gaps : sequence of Gap
+        What to cut.
 
     Returns
     -------
-    ndarray
-        Edges from `low` to `high`. No cell is wider than its distance to the nearest separation below.
+    list of ndarray
+        Edges from `low` to `high` of each gap, those that need as many cells together. No cell is wider than
+        its distance to the nearest separation below.
     """
-    gap = high - low
-    upper = _ladders(1 + math.ceil(max(math.log2(gap) - math.log2(before), 0.0) - 1e-9))
+    alike: dict[int, list[Gap]] = {}
+    for gap in gaps:
+        alike.setdefault(gap.fewest, []).append(gap)
+    return [edges for fewest, some in alike.items() for edges in _cut(law, n, some, _ladders(fewest))]
+
+
+def _cut(law: HeightLaw, n: int, gaps: list[Gap], upper: Array) -> list[Array]:
+    """Cut gaps, each by the cheapest of the ladders: arrays are (gaps, ladders, cells)."""
+    low, high, before, root = (np.array(part)[:, None, None] for part in zip(*gaps, strict=True))
+    length = high - low
     width = np.diff(upper, axis=1, prepend=0.0)
-    distance = np.where(upper > width, upper - width, before / gap) if root else upper - width + before / gap
-    allowed = (width <= distance * (1 + 1e-9)).all(axis=1)
-    prices = np.where(allowed, _prices(law, n, low, gap, upper, distance, root), np.inf)
-    cheapest = np.argmax(prices <= prices.min() * (1 + 1e-9))  # the first one: rounding breaks no tie
-    return np.concatenate([[low], low + gap * upper[cheapest][width[cheapest] > 0][:-1], [high]])
+    first = np.where(root, before / length, upper - width + before / length)
+    distance = np.where(root & (upper > width), upper - width, first)
+    allowed = (width <= distance * (1 + 1e-9)).all(axis=2)
+    prices = np.where(allowed, _prices(law, n, low, length, upper, distance, root), np.inf)
+    cheapest = np.argmax(prices <= prices.min(axis=1, keepdims=True) * (1 + 1e-9), axis=1)
+    found = []  # the first one of the cheapest: rounding breaks no tie
+    for gap, best in zip(gaps, cheapest.tolist(), strict=True):
+        inner = upper[best][width[best] > 0][:-1]
+        found.append(np.concatenate([[gap.low], gap.low + (gap.high - gap.low) * inner, [gap.high]]))
+    return found
 
 
 @cache
@@ -74,25 +110,25 @@ def _ladders(fewest: int) -> Array:
 
 
 def _prices(
-    law: HeightLaw, n: int, low: float, gap: float, upper: Array, distance: Array, root: bool
+    law: HeightLaw, n: int, low: Array, length: Array, upper: Array, distance: Array, root: NDArray[np.bool_]
 ) -> Array:
     """What the asperities of a surface cost for each choice of cells."""
     width = np.diff(upper, axis=1, prepend=0.0)
-    edges, used = low + gap * np.insert(upper, 0, 0.0, axis=1), width > 0
+    edges, used = low + length * np.insert(upper, 0, 0.0, axis=1), width > 0
     beyond = law.above(edges)
-    start, above = edges[:, :-1], beyond[:, :-1]
-    expected = n * np.where(used, above - beyond[:, 1:], 0.0)
+    start, above = edges[..., :-1], beyond[..., :-1]
+    expected = n * np.where(used, above - beyond[..., 1:], 0.0)
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-        bend = np.nan_to_num(np.abs(law.log_ratio(start, gap * width)), nan=np.inf)
+        bend = np.nan_to_num(np.abs(law.log_ratio(start, length * width)), nan=np.inf)
         # Of a surface's sum, rather than of the law, where so many touch that it is sure to be large.
-        reach = gap * (np.where(np.isfinite(distance), distance, 0.0) + width)
+        reach = length * (np.where(np.isfinite(distance), distance, 0.0) + width)
         part = np.where(n * above > SURE, expected / (n * above) * np.sqrt(reach), 1.0)
         digits = _DIGITS + np.log10(part)
         plain = digits / _rate(np.minimum(1 + 2 * distance / width, 2 / bend))
         rooted = 1 + digits / _rate(2 / bend)
     first = used & (upper == width) & root
     each = price(plain, np.where(first, rooted, 0.0))
-    return np.asarray((np.where(used, _CELL + expected * each, 0.0)).sum(axis=1))
+    return np.asarray((np.where(used, _CELL + expected * each, 0.0)).sum(axis=2))
 
 
 def price(plain: Array | Ints, rooted: Array | Ints) -> Array:

@@ -1,8 +1,8 @@
 """On what the numbers of a scene depend besides the scene: versions, and for some the kind of processor.
 
 Sums, products, quotients and roots are rounded alike by every processor, and the samplers, height laws and
-gradings of this package are made of them. A distribution of scipy.stats, a function of the user and the
-generators behind ``direct`` call exponentials and logarithms of NumPy and of the C library, whose last digits
+gradings of this package are made of them. A distribution of scipy.stats, a function of the user, the powers
+of contact laws and the generators behind ``direct`` call exponentials and logarithms of NumPy and of the C library, whose last digits
 differ from one kind of processor to another. Then the kind is told by what these give here.
 """
 
@@ -44,7 +44,7 @@ def depends_on_processor(scene: Scene, sampler: str) -> bool:
         modulus = modulus.grading
     own = isinstance(scene.heights, _HEIGHTS) and isinstance(modulus, _GRADINGS)
     drawn_alike = promise_of(sampler).same_on_all_processors or isinstance(scene.heights, MeasuredHeights)
-    return not (own and drawn_alike)
+    return not (own and drawn_alike and scene.hertzian)
 
 
 @cache
