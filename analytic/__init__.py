@@ -64,13 +64,22 @@ from analytic.measured_heights import HeightTable, MeasuredHeights
 from analytic.model import Cumulants, Model
 from analytic.piecewise import PiecewiseSeries
 from analytic.plasticity import mean_modulus, plasticity_index
-from analytic.quantities import LAW_QUANTITIES, PER_AREA, QUANTITIES, UNLOADING, Quantity, quantity_of
+from analytic.quantities import (
+    ALL_QUANTITIES,
+    LAW_QUANTITIES,
+    PER_AREA,
+    QUANTITIES,
+    UNLOADING,
+    Quantity,
+    quantity_of,
+)
 from analytic.resolution import first_negative, resolved_breaks
 from analytic.series import bends, is_data, name_of, resolved
 from analytic.surface import Body, Surface, composite_modulus
 from analytic.tables import Table
 
 __all__ = [
+    "ALL_QUANTITIES",
     "LAW_QUANTITIES",
     "PER_AREA",
     "QUANTITIES",

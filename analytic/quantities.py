@@ -14,7 +14,15 @@ from dataclasses import dataclass, replace
 
 from analytic.surface import Surface
 
-__all__ = ["LAW_QUANTITIES", "PER_AREA", "QUANTITIES", "UNLOADING", "Quantity", "quantity_of"]
+__all__ = [
+    "ALL_QUANTITIES",
+    "LAW_QUANTITIES",
+    "PER_AREA",
+    "QUANTITIES",
+    "UNLOADING",
+    "Quantity",
+    "quantity_of",
+]
 
 
 @dataclass(frozen=True, slots=True)
@@ -135,7 +143,10 @@ UNLOADING = {
     if name != "yielded"
 }
 
-_KNOWN = {**QUANTITIES, **PER_AREA, **LAW_QUANTITIES, **UNLOADING}
+# All that an ensemble can hold.
+ALL_QUANTITIES = {**QUANTITIES, **LAW_QUANTITIES, **UNLOADING}
+
+_KNOWN = {**ALL_QUANTITIES, **PER_AREA}
 
 
 def quantity_of(name: str) -> Quantity:

@@ -201,18 +201,21 @@ class Ensemble(Shown):
             raise ValueError("stratified surfaces have no interval: their fluctuations are not those of any")
         if isinstance(scene.heights, MeasuredHeights):
             return self.mean(quantity), self.mean(quantity)
-        if quantity == "contacts":
+        if quantity_of(name).counts:
             ends = count_interval(
-                self._contacts(), float(scene.n_asperities) * m, poisson=scene.count == "poisson", level=level
+                self._number(name),
+                float(scene.n_asperities) * m,
+                poisson=scene.count == "poisson",
+                level=level,
             )
             return ends[0] / m, ends[1] / m
         return mean_interval(self.mean(quantity), spread_of(scene, quantity), m, level)
 
-    def _contacts(self) -> Array:
-        """Number of contacts of all surfaces: exact but for its rounding to double precision."""
+    def _number(self, name: str) -> Array:
+        """Contacts of all surfaces that count: exact but for the rounding to double precision."""
         total = [0] * len(self.scene.separations)
         for start in range(0, self.n_surfaces, _ROWS):
-            rows = self.sums.read("contacts", start, min(start + _ROWS, self.n_surfaces)).astype(np.int64)
+            rows = self.sums.read(name, start, min(start + _ROWS, self.n_surfaces)).astype(np.int64)
             halves = zip((rows >> 32).sum(axis=0).tolist(), (rows & _LOW).sum(axis=0).tolist(), strict=True)
             total = [so_far + (high << 32) + low for so_far, (high, low) in zip(total, halves, strict=True)]
         return np.array([float(x) for x in total])

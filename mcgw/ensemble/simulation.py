@@ -9,6 +9,7 @@ from typing import Any
 import numba
 import numpy as np
 
+from analytic import quantity_of
 from mcgw.ensemble.ensemble import Arrays, Ensemble
 from mcgw.ensemble.forecast import without_rule
 from mcgw.machine.in_threads import in_threads, pieces
@@ -133,8 +134,9 @@ def _check_memory(scene: Scene, n_surfaces: int) -> None:
 def kept(scene: Scene, block: Block) -> dict[str, Any]:
     """What of a block is kept: its sums, and its moments if the scene says so."""
     arrays: dict[str, Any] = dict(block.sums)
-    if "contacts" in arrays and promise_of(scene.sampler).real_surfaces:
-        arrays["contacts"] = np.rint(arrays["contacts"]).astype(np.int64)
+    if promise_of(scene.sampler).real_surfaces:
+        for name in filter(lambda name: quantity_of(name).counts, block.sums):
+            arrays[name] = np.rint(arrays[name]).astype(np.int64)
     if scene.keep == "moments":
         arrays |= {"moments": block.moments, "cells": block.counts, "extras": block.extras}
     return arrays

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from scipy.optimize import brentq
 from scipy.special import stdtrit
 
-from analytic import QUANTITIES, Quantity
+from analytic import QUANTITIES, Quantity, quantity_of
 from mcgw.ensemble.intervals import FEWEST, interval_text
 from mcgw.formats.sheet import Sheet, Shown
 from mcgw.machine.late import plotted
@@ -86,7 +86,7 @@ class Solution(Shown):
             title = f"At the real area {self.value:.6g} m^2 = {share:.4%} of the nominal area"
         rows = []
         for name in ("separation", *(q for q in QUANTITIES if q != self.given)):
-            unit = QUANTITIES[name].unit if name in QUANTITIES else "d/sigma"
+            unit = quantity_of(name).unit if name in QUANTITIES else "d/sigma"
             x, (low, high) = self.surfaces[name], self.interval(name)
             cells = (f"{self.theory[name]:.6g}", f"{x.mean():.6g}", interval_text(low, high))
             rows.append([f"{name} ({unit})", *cells, f"{x.std(ddof=1):.3g}"])
@@ -177,7 +177,7 @@ def solutions(scene: Scene, given: str, values: Sequence[float]) -> list[Solutio
     """
     if scene.n_surfaces < 2:
         raise ValueError(f"n_surfaces = {scene.n_surfaces}: an interval takes at least 2 surfaces")
-    q = QUANTITIES[given]
+    q = quantity_of(given)
     theory = [_theory(scene, q, value) for value in values]
     drawn = _drawn(scene, q, [at["separation"] for at in theory])
     if drawn.touching * drawn.n_surfaces > _MOST_HEIGHTS:

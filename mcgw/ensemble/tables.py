@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from analytic import QUANTITIES
+from analytic import quantity_of
 from mcgw.machine.late import optional
 
 __all__ = ["dataframe", "dataset"]
@@ -26,7 +26,7 @@ def dataset(arrays: Arrays, separations: NDArray[np.float64], attributes: Mappin
     xarray = optional("xarray", "to_xarray")
     rows = len(next(iter(arrays.values())))
     variables = {
-        name: (_DIMS, values, {"units": QUANTITIES[name].unit, "long_name": QUANTITIES[name].long_name})
+        name: (_DIMS, values, {"units": quantity_of(name).unit, "long_name": quantity_of(name).long_name})
         for name, values in arrays.items()
     }
     scales = {

@@ -7,20 +7,29 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
 
+from analytic import quantity_of
 from mcgw.ensemble.intervals import TOO_FEW
 from mcgw.figures.style import STYLE, grading_label, shown_title
 from mcgw.formats.pictures import save_figure
 from mcgw.statistics.comparison import Comparison, Curve
 
-__all__ = ["TITLES", "draw_curve", "quantity_figure", "save_comparison"]
+__all__ = ["draw_curve", "quantity_figure", "save_comparison", "title_of"]
 
-TITLES = {
+_TITLES = {
     "load": "Load $P$ (N)",
     "area": "Real area $A$ (m²)",
     "stiffness": "Stiffness $-dP/dd$ (N/m)",
     "contacts": "Contacts",
     "conductance": r"Conductance $C\rho$ (m)",
+    "load_slope": "Slope of the loads (N/m)",
+    "yielded": "Yielded contacts",
 }
+
+
+def title_of(quantity: str) -> str:
+    """A quantity as the title of a panel."""
+    q = quantity_of(quantity)
+    return f"{_TITLES[q.base]}, unloading" if q.unloading else _TITLES[quantity]
 
 
 def save_comparison(comparison: Comparison, path: str | Path) -> None:
@@ -40,7 +49,7 @@ def save_comparison(comparison: Comparison, path: str | Path) -> None:
         axes = figure.subplots(2, columns, sharex=True, squeeze=False, height_ratios=[3, 1])
         for (name, curve), (above, below) in zip(comparison.curves.items(), axes.T, strict=True):
             draw_curve(above, ensemble.separations, curve)
-            above.set_title(TITLES[name])
+            above.set_title(title_of(name))
             _draw_residual(below, ensemble.separations, curve)
         axes[1, 0].set_ylabel("residual\n(standard errors)")
         axes[0, 0].legend(loc="lower left")
@@ -80,7 +89,7 @@ def quantity_figure(comparison: Comparison, name: str) -> Figure:
         above, below = figure.subplots(2, 1, sharex=True, height_ratios=[3, 1])
         draw_curve(above, h, curve)
         _draw_residual(below, h, curve)
-        above.set_title(TITLES[name], loc="left")
+        above.set_title(title_of(name), loc="left")
         above.legend(loc="lower left")
         below.set(xlabel="separation d/σ", ylabel="residual\n(std. errors)")
     return figure

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import ndtr
 
-from analytic import QUANTITIES
+from analytic import quantity_of
 from mcgw.ensemble.simulation import simulate
 from mcgw.figures.data import SEPARATION, FigureData, Panel, Points, Series
 from mcgw.figures.samples import Samples
@@ -116,7 +116,7 @@ def _load_panel(samples: Samples, key: str, contacts: float) -> Panel:
     width = std / mean / 4
     top = 1 + 5 * std / mean
     edges = np.arange(max(width * round((1 - 4 * std / mean) / width), width), top, width)
-    step = width * mean / QUANTITIES["load"].scale(scene.surface) / _FINE
+    step = width * mean / quantity_of("load").scale(scene.surface) / _FINE
     law = law_of_load(n, h, step, 2**18)
     cumulative = np.concatenate([[0.0], np.cumsum(law)])  # up to (k - 1/2) steps
     at = np.interp(edges / width * _FINE + 0.5, np.arange(len(cumulative)), cumulative)

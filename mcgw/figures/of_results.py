@@ -11,7 +11,7 @@ from analytic import quantity_of
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.paired import Paired
 from mcgw.ensemble.solution import Solution
-from mcgw.figures.comparison import TITLES, draw_curve
+from mcgw.figures.comparison import draw_curve, title_of
 from mcgw.figures.convergence import draw_checks
 from mcgw.figures.style import STYLE, shown_title
 from mcgw.figures.tradeoff import draw_methods
@@ -85,7 +85,7 @@ def _(result: Ensemble, ax: Any, *, quantity: str) -> None:
 def _(result: Comparison, ax: Any, *, quantity: str) -> None:
     draw_curve(ax, result.ensemble.separations, result.curves[quantity])
     word = "agree" if result.verdict.agrees else "DISAGREE"
-    ax.set(xlabel=_SEPARATION, ylabel=TITLES[quantity])
+    ax.set(xlabel=_SEPARATION, ylabel=title_of(quantity))
     ax.set_title(f"Monte Carlo and theory {word}: p = {result.verdict.p:.3g} over all means")
     ax.legend()
 

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import analytic
-from analytic import QUANTITIES, Exponential
+from analytic import Exponential, quantity_of
 from mcgw.ensemble.paired import paired_ratio
 from mcgw.figures.data import GAMMA, SEPARATION, FigureData, Panel, Points, Series, ratio_of_sums
 from mcgw.figures.samples import Samples
@@ -73,7 +73,7 @@ def _figure_1() -> FigureData:
 
 
 def _curves(samples: Samples, name: str, title: str, quantity: str, ylabel: str) -> FigureData:
-    q = QUANTITIES[quantity]
+    q = quantity_of(quantity)
     unit = samples.n_asperities * q.scale(samples.surface)
     line, h = np.linspace(0, 4, 161), samples.base.separations
     panels = []

@@ -10,7 +10,7 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
 
-from analytic import QUANTITIES
+from analytic import quantity_of
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.intervals import TOO_FEW
 from mcgw.figures.comparison import quantity_figure
@@ -115,7 +115,7 @@ def report_html(ensemble: Ensemble, attributes: dict[str, Any]) -> str:
     """
     comparison = compare(ensemble)
     names = ensemble.scene.quantities
-    figures = [_svg(quantity_figure(comparison, name), QUANTITIES[name].long_name) for name in names]
+    figures = [_svg(quantity_figure(comparison, name), quantity_of(name).long_name) for name in names]
     if ensemble.n_surfaces > 1:
         figures.append(_svg(draw(_spread(comparison)), "std over mean against separation"))
     return _PAGE.substitute(
@@ -240,7 +240,7 @@ def _facts(ensemble: Ensemble) -> str:
 
 
 def _table(comparison: Comparison, name: str) -> str:
-    curve, h, q = comparison.curves[name], comparison.ensemble.separations, QUANTITIES[name]
+    curve, h, q = comparison.curves[name], comparison.ensemble.separations, quantity_of(name)
     rows = []
     for k in np.unique(np.linspace(0, len(h) - 1, min(_MOST_ROWS, len(h))).round().astype(int)):
         half = (curve.high[k] - curve.low[k]) / 2

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from analytic import QUANTITIES
+from analytic import quantity_of
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.intervals import interval_text
 from mcgw.ensemble.paired import Paired, paired_ratio
@@ -64,7 +64,7 @@ def summary(ensemble: Ensemble, attributes: dict[str, Any]) -> str:
     ]
     for name in scene.quantities:
         mean, std, stderr = ensemble.mean(name), ensemble.std(name), ensemble.stderr(name)
-        q = QUANTITIES[name]
+        q = quantity_of(name)
         lines += [
             "",
             f"{q.long_name} ({q.unit})",
@@ -80,7 +80,7 @@ def comparison_table(comparison: Comparison) -> str:
     h = comparison.ensemble.separations
     lines = []
     for name, curve in comparison.curves.items():
-        q = QUANTITIES[name]
+        q = quantity_of(name)
         lines += [
             f"{q.long_name} ({q.unit})",
             f"  {'d/sigma':>8} {'Monte Carlo':>13} {'95 % interval':>27} {'theory':>13} {'residual':>9}",
@@ -100,7 +100,7 @@ def comparison_rows(comparison: Comparison) -> Iterator[Row]:
     for name, c in comparison.curves.items():
         columns = (ensemble.separations, c.mean, c.low, c.high, ensemble.std(name), c.theory, c.residual)
         for row in zip(*columns, strict=True):
-            yield name, QUANTITIES[name].unit, *row
+            yield name, quantity_of(name).unit, *row
 
 
 def summary_rows(ensemble: Ensemble) -> Iterator[Row]:
@@ -108,13 +108,13 @@ def summary_rows(ensemble: Ensemble) -> Iterator[Row]:
     for name in ensemble.scene.quantities:
         columns = (ensemble.separations, ensemble.mean(name), ensemble.std(name), ensemble.stderr(name))
         for row in zip(*columns, strict=True):
-            yield name, QUANTITIES[name].unit, *row
+            yield name, quantity_of(name).unit, *row
 
 
 def _ratios(new: Ensemble, old: Ensemble) -> Iterator[tuple[str, Paired, np.ndarray]]:
     """Name, ratio by Monte Carlo and by theory of each quantity that the modulus enters."""
     for name in new.scene.quantities:
-        if QUANTITIES[name].modulus:
+        if quantity_of(name).modulus:
             exact, before = (e.scene.theory.mean(name, e.separations) for e in (new, old))
             with np.errstate(invalid="ignore", divide="ignore"):
                 yield name, paired_ratio(new, old, name), exact / before
@@ -132,7 +132,7 @@ def ratio_table(new: Ensemble, old: Ensemble) -> str:
     lines = []
     for name, pair, exact in _ratios(new, old):
         lines += [
-            f"{QUANTITIES[name].long_name}, new over old",
+            f"{quantity_of(name).long_name}, new over old",
             f"  {'d/sigma':>8} {'ratio':>10} {'stderr':>9} {'theory':>10}   variance, independent/paired",
         ]
         for k in _rows(new.separations):

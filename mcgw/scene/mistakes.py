@@ -6,9 +6,9 @@ from collections.abc import Iterator
 import numpy as np
 
 from analytic import (
+    ALL_QUANTITIES,
     LAW_QUANTITIES,
     QUANTITIES,
-    UNLOADING,
     Custom,
     Exponential,
     MeasuredHeights,
@@ -43,7 +43,7 @@ def mistakes(scene: Fields) -> list[str]:
 
 
 def _values(scene: Fields) -> Iterator[str]:
-    known = {**QUANTITIES, **LAW_QUANTITIES, **({} if scene.unload_from is None else UNLOADING)}
+    known = [name for name, q in ALL_QUANTITIES.items() if not (q.unloading and scene.unload_from is None)]
     names, sampler = ", ".join({**QUANTITIES, **LAW_QUANTITIES}), scene.sampler
     if not scene.separations:
         yield "contact.separations = []: give at least one separation d/sigma"

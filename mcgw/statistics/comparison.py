@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import chdtrc
 
-from analytic import QUANTITIES, Fluctuations
+from analytic import Fluctuations, quantity_of
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.intervals import interval_text
 from mcgw.formats.sheet import Sheet, Shown
@@ -174,7 +174,7 @@ def verdict(ensemble: Ensemble) -> Verdict:
     h = _chosen(np.unique(scene.separations))
     parts = scene.theory.fluctuations(scene.quantities, h)
     index = [scene.separations.index(x) for x in h]
-    means = [ensemble.mean(q)[index] / QUANTITIES[q].scale(scene.surface) for q in scene.quantities]
+    means = [ensemble.mean(q)[index] / quantity_of(q).scale(scene.surface) for q in scene.quantities]
     difference = np.concatenate(means) - scene.n_asperities * parts.mean
     asperities = float(scene.n_asperities) * ensemble.n_surfaces
 

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import binom, poisson
 
+from analytic import quantity_of
 from mcgw.ensemble.ensemble import Arrays, Ensemble
 from mcgw.ensemble.simulation import simulate
 from mcgw.formats.sheet import Sheet, Shown, brief
@@ -208,7 +209,7 @@ def _contacts(scene: Scene, sums: Sums) -> list[Check]:
 
 def _repeats(scene: Scene, sums: Sums) -> list[Check]:
     """Surfaces that give the same number to the last bit, which independent ones never do."""
-    name = next((name for name in scene.quantities if name != "contacts"), None)
+    name = next((name for name in scene.quantities if not quantity_of(name).counts), None)
     lowest = int(np.argmin(scene.separations))
     if name is None or scene.touching < 100:
         return []

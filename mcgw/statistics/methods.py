@@ -164,7 +164,7 @@ class _ByMoments:
     def __call__(self, size: float, _seed: int) -> Array:
         scene, name = self.scene, self.scene.quantities[0]
         mesh = mesh_of(scene)
-        summed = (name,) if analytic.QUANTITIES[name].exponent > 0 else ()
+        summed = () if analytic.quantity_of(name).counts else (name,)
         sampler = Counted("cells", scene, mesh, response_of(scene, mesh, summed, accuracy=1 / size))
         value, plain = sampler.block(0, 1).sums[name][0], self.plain
         pick = list(self.chosen)
@@ -195,7 +195,7 @@ def _by_quad(scene: Scene, q: analytic.Quantity, h: float, accuracy: float) -> f
 
 
 def _quadratures(scene: Scene, chosen: tuple[int, ...], exact: Array) -> list[Method]:
-    q = analytic.QUANTITIES[scene.quantities[0]]
+    q = analytic.quantity_of(scene.quantities[0])
     h = np.array(scene.separations)[list(chosen)]
     factor = scene.n_asperities * q.scale(scene.surface)
     grading = scene.modulus if q.modulus else None

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from analytic import QUANTITIES
+from analytic import quantity_of
 from mcgw.scene.scene import Scene
 
 __all__ = ["PrincipalComponents"]
@@ -60,7 +60,7 @@ class PrincipalComponents:
         third, fourth = along.moment(3), along.moment(4) - 3 * (scene.count == "fixed")
         good = np.abs(fourth) / n < _MOST_KURTOSIS
         columns = tuple((scene.quantities[c // len(h)], c % len(h)) for c in chosen.tolist())
-        scale = np.array([QUANTITIES[name].scale(scene.surface) for name, _ in columns])
+        scale = np.array([quantity_of(name).scale(scene.surface) for name, _ in columns])
         return cls(
             columns,
             n * scale * parts.mean[chosen],

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.polynomial.legendre import leggauss
 from numpy.typing import NDArray
 
-from analytic import QUANTITIES, MeasuredHeights, Quantity, resolved_breaks
+from analytic import MeasuredHeights, Quantity, quantity_of, resolved_breaks
 from mcgw.scene.scene import Scene
 
 __all__ = ["quantiles", "reference"]
@@ -41,7 +41,7 @@ def reference(scene: Scene, chosen: tuple[int, ...]) -> Array:
     ndarray
         In the unit of the quantity, for the scene's number of asperities, shape (chosen,).
     """
-    q = QUANTITIES[scene.quantities[0]]
+    q = quantity_of(scene.quantities[0])
     of_one = [_one_asperity(scene, q, scene.separations[k]) for k in chosen]
     return scene.n_asperities * q.scale(scene.surface) * np.array(of_one)
 

@@ -8,7 +8,7 @@ import h5py
 import numpy as np
 from numpy.typing import NDArray
 
-from analytic import QUANTITIES
+from analytic import ALL_QUANTITIES
 from mcgw.errors import StoreError
 from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_text
@@ -95,7 +95,7 @@ def where(name: str) -> str:
 
 def tables(file: h5py.File) -> list[str]:
     """Names of the tables of results, in order."""
-    return sorted(name for name in (*QUANTITIES, *DRAWN) if where(name) in file)
+    return sorted(name for name in (*ALL_QUANTITIES, *DRAWN) if where(name) in file)
 
 
 class _Digest:
@@ -163,7 +163,7 @@ def _lay_out(file: h5py.File, scene: Scene, arrays: Arrays) -> None:
     _scale(file, "separation", np.array(scene.separations), "mean-plane separation d/sigma")
     for name in sorted(arrays):
         values = arrays[name]
-        q = QUANTITIES.get(name)
+        q = ALL_QUANTITIES.get(name)
         ragged = name == RAGGED
         rows, columns = 0 if ragged else scene.n_surfaces, values.shape[1]
         data = file.create_dataset(
