@@ -131,6 +131,14 @@ LAW_QUANTITIES = {
     q.name: q
     for q in (
         Quantity("load_slope", "slope -dP/dd of the loads of the spots", "N/m", 0.5, 1, _stiffness),
+        Quantity(
+            "conductance_si",
+            "contact conductance of the spots and their films",
+            "S or W/K",
+            0.5,
+            0,
+            _conductance,
+        ),
         Quantity("yielded", "number of contacts that have yielded", "1", 0.0, 0, _one, counts=True),
     )
 }

@@ -4,7 +4,7 @@ from analytic.laws.branch import Branch, LoadingBranch, UnloadingBranch, term_of
 from analytic.laws.chang_etsion_bogy import ChangEtsionBogy
 from analytic.laws.coated import Coated
 from analytic.laws.custom import CustomLaw
-from analytic.laws.film import crowding_factor, film_conductance, film_parameter
+from analytic.laws.film import Film, SpotConductance, crowding_factor, film_conductance, film_parameter
 from analytic.laws.hertz import Hertz
 from analytic.laws.jackson_green import JacksonGreen
 from analytic.laws.kogut_etsion import KogutEtsion
@@ -16,10 +16,10 @@ from analytic.laws.unloading import Unloading
 from analytic.laws.zhao_maietta_chang import ZhaoMaiettaChang
 
 __all__ = [
-    "Branch", "ChangEtsionBogy", "Coated", "ContactLaw", "CustomLaw", "Hertz", "JacksonGreen", "KogutEtsion",
-    "LoadingBranch", "PowerLawGraded", "Regimes", "Unloading", "UnloadingBranch", "ZhaoMaiettaChang",
-    "by_name", "crowding_factor", "film_conductance", "film_parameter", "merged_heights", "of_spot",
-    "piece_of", "regimes_of", "term", "term_of",
+    "Branch", "ChangEtsionBogy", "Coated", "ContactLaw", "CustomLaw", "Film", "Hertz", "JacksonGreen",
+    "KogutEtsion", "LoadingBranch", "PowerLawGraded", "Regimes", "SpotConductance", "Unloading",
+    "UnloadingBranch", "ZhaoMaiettaChang", "by_name", "crowding_factor", "film_conductance",
+    "film_parameter", "merged_heights", "of_spot", "piece_of", "regimes_of", "term", "term_of",
 ]  # fmt: skip
 
 _LAWS: tuple[type[ContactLaw], ...] = (

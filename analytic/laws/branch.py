@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from analytic.gradings import Custom, Grading, Homogeneous
 from analytic.laws.crossings import crossings_of
+from analytic.laws.film import SpotConductance
 from analytic.laws.law import ContactLaw
 from analytic.laws.regimes import Regimes, merged_heights, regimes_of
 from analytic.laws.spot import of_spot, of_unloading, piece_of
@@ -24,6 +25,11 @@ Ints = NDArray[np.int64]
 
 class Branch(Protocol):
     """A way that a surface can have gone to a separation."""
+
+    @property
+    def finest(self) -> float:
+        """How far above first touch formulas are analytic."""
+        ...
 
     def regimes(self, grading: Grading, separations: ArrayLike, low: float, high: float) -> Regimes:
         """At which heights there is contact, and which formula holds there."""
@@ -55,9 +61,17 @@ class LoadingBranch:
     ----------
     law : ContactLaw
         In reduced units.
+    conductance : SpotConductance, optional
+        Of "conductance_si".
     """
 
     law: ContactLaw
+    conductance: SpotConductance | None = None
+
+    @property
+    def finest(self) -> float:
+        """As `Branch.finest`."""
+        return min(self.law.finest, self.conductance.finest) if self.conductance else self.law.finest
 
     def regimes(self, grading: Grading, separations: ArrayLike, low: float, high: float) -> Regimes:
         """As `Branch.regimes`."""
@@ -75,6 +89,8 @@ class LoadingBranch:
         self, quantity: str, piece: int, h: Array, above: Array, e: Array, *, sign: float = 1.0
     ) -> Array:
         """As `Branch.value`."""
+        if quantity == "conductance_si":
+            return _conducted(self.conductance, self.value("conductance", piece, h, above, e, sign=sign))
         return of_spot(quantity, self.law, piece, sign * np.sqrt(above), e)
 
 
@@ -88,10 +104,18 @@ class UnloadingBranch:
         In reduced units.
     deepest : float
         That separation, d/sigma.
+    conductance : SpotConductance, optional
+        Of "conductance_si".
     """
 
     law: ContactLaw
     deepest: float
+    conductance: SpotConductance | None = None
+
+    @property
+    def finest(self) -> float:
+        """As `Branch.finest`."""
+        return LoadingBranch(self.law, self.conductance).finest
 
     def regimes(self, grading: Grading, separations: ArrayLike, low: float, high: float) -> Regimes:
         """As `Branch.regimes`: pieces are those of the deepest penetration."""
@@ -150,9 +174,17 @@ class UnloadingBranch:
         self, quantity: str, piece: int, h: Array, above: Array, e: Array, *, sign: float = 1.0
     ) -> Array:
         """As `Branch.value`."""
+        if quantity == "conductance_si":
+            return _conducted(self.conductance, self.value("conductance", piece, h, above, e, sign=sign))
         unloading, deepest = self.law.unloading(), above + (h - self.deepest)
         y = sign * np.sqrt(np.maximum(above - unloading.residual(piece, deepest, e), 0.0))
         return of_unloading(quantity, unloading, piece, y, deepest, e)
+
+
+def _conducted(conductance: SpotConductance | None, radius: Array) -> Array:
+    if conductance is None:
+        raise ValueError("conductance_si: give a resistivity")
+    return conductance(radius)
 
 
 def term_of(quantity: str, branch: Branch, h: ArrayLike, heights: ArrayLike, e: ArrayLike) -> Array:

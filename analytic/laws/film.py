@@ -1,13 +1,14 @@
 """Electrical or thermal contact through spots with a film, and how spots crowd each other."""
 
 import math
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from analytic.surface import Surface
 
-__all__ = ["crowding_factor", "film_conductance", "film_parameter"]
+__all__ = ["Film", "SpotConductance", "crowding_factor", "film_conductance", "film_parameter"]
 
 Array = NDArray[np.float64]
 
@@ -34,10 +35,7 @@ def film_parameter(surface: Surface, *, film_resistance: float, resistivity: flo
     ValueError
         If a resistance is not a number > 0 (the film's may be 0).
     """
-    if not 0 <= film_resistance < math.inf:
-        raise ValueError(f"film_resistance = {film_resistance!r}: give a finite number >= 0, in ohm m^2")
-    if not 0 < resistivity < math.inf:
-        raise ValueError(f"resistivity = {resistivity!r}: give a finite number > 0, in ohm m")
+    Film(resistivity, film_resistance)  # refuses what is no resistance
     return 4 * film_resistance / (math.pi * resistivity * math.sqrt(surface.radius * surface.sigma))
 
 
@@ -66,6 +64,67 @@ def film_conductance(radius: Array, b: float) -> Array:
     path l, add ``16 l/(3 pi sqrt(R sigma))`` to b.
     """
     return radius * (radius / (radius + b))
+
+
+@dataclass(frozen=True)
+class Film:
+    """What spots conduct through.
+
+    Parameters
+    ----------
+    resistivity : float
+        Sum of the two bodies' resistivities: ohm m, or m K/W.
+    film_resistance : float, optional
+        Of a unit area of film: ohm m^2, or m^2 K/W; 0 without a film.
+
+    Raises
+    ------
+    ValueError
+        If one is no finite number, the first one not > 0, or the second one negative.
+    """
+
+    resistivity: float
+    film_resistance: float = 0.0
+
+    def __post_init__(self) -> None:
+        if not 0 < self.resistivity < math.inf:
+            raise ValueError(f"resistivity = {self.resistivity!r}: give a finite number > 0, in ohm m")
+        if not 0 <= self.film_resistance < math.inf:
+            raise ValueError(
+                f"film_resistance = {self.film_resistance!r}: give a finite number >= 0, in ohm m^2"
+            )
+
+    def on(self, surface: Surface) -> "SpotConductance":
+        """In the reduced units of a surface."""
+        parameter = film_parameter(
+            surface, film_resistance=self.film_resistance, resistivity=self.resistivity
+        )
+        return SpotConductance(parameter, self.resistivity)
+
+
+@dataclass(frozen=True)
+class SpotConductance:
+    """Conductance of a spot, of its radius.
+
+    Parameters
+    ----------
+    parameter : float
+        Radius over sqrt(R sigma) of a spot whose film and constriction resist alike.
+    resistivity : float
+        As that of `Film`.
+    """
+
+    parameter: float
+    resistivity: float
+
+    @property
+    def finest(self) -> float:
+        """How far above first touch it is analytic: radii that go on to negative ones meet a pole."""
+        return self.parameter**2 if self.parameter > 0 else math.inf
+
+    def __call__(self, radius: Array) -> Array:
+        """Conductance over 4 sqrt(R sigma): 1/(ohm m), or W/(m K)."""
+        return film_conductance(radius, self.parameter) / self.resistivity
 
 
 def crowding_factor(area_fraction: ArrayLike) -> Array:

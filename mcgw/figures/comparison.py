@@ -22,6 +22,7 @@ _TITLES = {
     "contacts": "Contacts",
     "conductance": r"Conductance $C\rho$ (m)",
     "load_slope": "Slope of the loads (N/m)",
+    "conductance_si": "Conductance (S or W/K)",
     "yielded": "Yielded contacts",
 }
 

@@ -88,7 +88,7 @@ def begins_and_breaks(scene: Scene, low: float, high: float) -> tuple[Array, Arr
         breaks += [found.low, found.high]
         rough = np.array([not branch.root(int(piece)) for piece in pieces], dtype=bool)
         breaks.append(starts[rough] + _SMALLEST)
-        if np.isfinite(scene.contact.finest):
-            breaks.append(starts[~rough] + scene.contact.finest / _ANALYTIC)
+        if np.isfinite(branch.finest):
+            breaks.append(starts[~rough] + branch.finest / _ANALYTIC)
     edges = np.unique(np.concatenate([np.empty(0), *breaks]))
     return np.unique(np.concatenate(begins)), edges[np.isfinite(edges)]

@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from analytic import QUANTITIES, UNLOADING
+from mcgw.scene.film_section import conducting_film
 from mcgw.scene.law_section import contact_law
 from mcgw.scene.section import Section
 
@@ -18,11 +19,16 @@ def contact_values(section: Section) -> dict[str, Any]:
     """Read the table; mistakes are noted in the section."""
     separations = _separations(section)
     unload_from = _unload_from(section, separations)
+    film = conducting_film(section)
+    names = _quantities(section)
+    if film is not None and "conductance_si" not in names:
+        names = (*names, "conductance_si")
     return {
         "separations": separations,
         "law": contact_law(section),
         "unload_from": unload_from,
-        "quantities": _with_unloading(_quantities(section), unload_from),
+        "film": film,
+        "quantities": _with_unloading(names, unload_from),
     }
 
 

@@ -7,7 +7,7 @@ from typing import Literal
 import numpy as np
 
 from analytic import Clipped, Grading, HeightLaw, Surface, first_negative, quantity_of
-from analytic.laws import Branch, ContactLaw, Hertz, LoadingBranch, UnloadingBranch
+from analytic.laws import Branch, ContactLaw, Film, Hertz, LoadingBranch, UnloadingBranch
 
 __all__ = ["Fields"]
 
@@ -26,6 +26,7 @@ class Fields:
     heights: HeightLaw
     law: ContactLaw
     unload_from: float | None
+    film: Film | None
     quantities: tuple[str, ...]
     n_surfaces: int
     n_asperities: int
@@ -43,8 +44,8 @@ class Fields:
 
     @property
     def hertzian(self) -> bool:
-        """Whether every contact is Hertz's, loaded and unloaded."""
-        return type(self.law) is Hertz
+        """Whether every sum is one of powers of the penetration, as Hertz's law has them."""
+        return type(self.law) is Hertz and self.film is None
 
     @property
     def contact(self) -> ContactLaw:
@@ -53,11 +54,12 @@ class Fields:
 
     def branch_of(self, quantity: str) -> Branch:
         """The way to its separation that a quantity is about."""
+        conductance = None if self.film is None else self.film.on(self.surface)
         if not quantity_of(quantity).unloading:
-            return LoadingBranch(self.contact)
+            return LoadingBranch(self.contact, conductance)
         if self.unload_from is None:
             raise ValueError(f"contact.unload_from: {quantity} needs it")
-        return UnloadingBranch(self.contact, self.unload_from)
+        return UnloadingBranch(self.contact, self.unload_from, conductance)
 
     @property
     def lowest(self) -> float:

@@ -45,6 +45,8 @@ def mistakes(scene: Fields) -> list[str]:
 def _values(scene: Fields) -> Iterator[str]:
     known = [name for name, q in ALL_QUANTITIES.items() if not (q.unloading and scene.unload_from is None)]
     names, sampler = ", ".join({**QUANTITIES, **LAW_QUANTITIES}), scene.sampler
+    if "conductance_si" in scene.quantities and scene.film is None:
+        yield 'contact.quantities: "conductance_si" needs resistivity, or conductivities = [k1, k2]; give one'
     if not scene.separations:
         yield "contact.separations = []: give at least one separation d/sigma"
     if tiny := [h for h in scene.separations if 0 < abs(h) < _LEAST]:

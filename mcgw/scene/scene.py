@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from analytic import Grading, Model, Surface
-from analytic.laws import ContactLaw
+from analytic.laws import ContactLaw, Film, Hertz
 from mcgw.formats.sheet import Sheet, Shown
 from mcgw.scene.ensemble_section import LeftOut
 from mcgw.scene.fields import Fields
@@ -48,6 +48,9 @@ class Scene(Fields, Shown):
     unload_from : float or "loop", optional
         Lowest separation reached before, d/sigma; "loop": the lowest of `separations`. Every quantity then
         has a second one, as ``load_unloading``, on the way back from there.
+    film : Film, optional
+        Resistivity of the bodies, and resistance of a film on the spots: `mcgw.Film`. There is then a
+        quantity "conductance_si". Default: none is asked for.
     quantities : sequence of str, optional
         Which sums to compute: names of `analytic.QUANTITIES` and `analytic.LAW_QUANTITIES`. Default: load,
         area, stiffness, contacts.
@@ -101,6 +104,7 @@ class Scene(Fields, Shown):
         heights: Any = None,
         law: ContactLaw | None = None,
         unload_from: float | Literal["loop"] | None = None,
+        film: Film | None = None,
         quantities: Sequence[str] | None = None,
         n_surfaces: int | None = None,
         n_asperities: int | None = None,
@@ -191,7 +195,7 @@ class Scene(Fields, Shown):
             ("", f"{x['nominal_area']}, {x['E_star']}"),
             ("grading", law_text(self.grading) + ("" if self.negative == "error" else f", {self.negative}")),
             ("heights", law_text(self.heights)),
-            *([] if self.hertzian else [("law", law_text(self.law))]),
+            *([] if type(self.law) is Hertz else [("law", law_text(self.law))]),
             ("separations", f"{among}{ends} (d/sigma){back}"),
             ("quantities", ", ".join(self.quantities)),
             (

@@ -6,10 +6,12 @@ from typing import Any
 
 import tomli_w
 
+from analytic.laws import Hertz
 from mcgw.formats.plain_file import read_bytes
 from mcgw.formats.toml_text import loads
 from mcgw.scene.contact_section import contact_values
 from mcgw.scene.ensemble_section import ensemble_values
+from mcgw.scene.film_section import film_table
 from mcgw.scene.grading_section import grading_table, grading_values
 from mcgw.scene.heights_section import heights_law, heights_table
 from mcgw.scene.law_section import law_table
@@ -189,8 +191,10 @@ def scene_text(scene: Scene, *, heights_file: str | None = None, left_out: bool 
 
 def _contact_table(scene: Scene) -> dict[str, Any]:
     back = {} if scene.unload_from is None else {"unload_from": scene.unload_from}
+    film = {} if scene.film is None else film_table(scene.film)
     asked = {"separations": list(scene.separations), "quantities": list(scene.quantities)}
-    return {**({} if scene.hertzian else law_table(scene.law)), **back, **asked}
+    law = {} if type(scene.law) is Hertz else law_table(scene.law)
+    return {**law, **back, **film, **asked}
 
 
 def _ensemble_table(scene: Scene, left_out: bool) -> dict[str, Any]:
