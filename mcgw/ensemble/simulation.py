@@ -135,7 +135,7 @@ def kept(scene: Scene, block: Block) -> dict[str, Any]:
     """What of a block is kept: its sums, and its moments if the scene says so."""
     arrays: dict[str, Any] = dict(block.sums)
     if promise_of(scene.sampler).real_surfaces:
-        for name in filter(lambda name: quantity_of(name).counts, block.sums):
+        for name in filter(lambda name: quantity_of(name).counts, scene.quantities):
             arrays[name] = np.rint(arrays[name]).astype(np.int64)
     if scene.keep == "moments":
         arrays |= {"moments": block.moments, "cells": block.counts, "extras": block.extras}

@@ -15,6 +15,7 @@ from mcgw.sampling.drawing import Drawing, OneByOne
 from mcgw.sampling.law_sums import asperity_sums
 from mcgw.sampling.outside import extra_heights
 from mcgw.sampling.response.response import Response
+from mcgw.sampling.sideways import tangential_loads
 from mcgw.sampling.stretches import stretches_of
 from mcgw.scene.scene import Scene
 
@@ -106,15 +107,19 @@ class Counted:
             Each quantity in SI units, shape (surfaces, separations).
         """
         scene = self.scene
-        once, column = np.unique(scene.separations, return_inverse=True)
-        columns = slice(None) if np.array_equal(once, scene.separations) else column
+        once = np.array(scene.all_separations)
+        given = np.searchsorted(once, scene.separations)
+        columns = slice(None) if np.array_equal(once, scene.separations) else given
         answers = iter(self.response @ moments)
         sums = {}
         for name in scene.quantities:
             if quantity_of(name).counts:
                 sums[name] = self._numbers(name, counts)
             else:
-                sums[name] = next(answers)[:, columns]
+                everywhere = next(answers)
+                sums[name] = everywhere[:, columns]
+                if name == "load" and scene.tangential:
+                    sums["tangential_load"] = tangential_loads(scene, everywhere)
         where, numbers = np.unique(extras[:, 0].astype(np.int64) - first, return_counts=True)
         heights, weights = np.ascontiguousarray(extras[:, 1:].T)
         with np.errstate(over="ignore"):  # as in the product: what is too large is infinite
@@ -128,10 +133,10 @@ class Counted:
             return contacts_above(counts, np.searchsorted(self.mesh.edges[:-1], self.scene.separations))
         separation, first, last = self._counted[name]
         numbers = contacts_above(counts, first) - contacts_above(counts, last)
-        once, column = np.unique(self.scene.separations, return_inverse=True)
+        once = np.array(self.scene.all_separations)
         result = np.zeros((counts.shape[1], len(once)))
         np.add.at(result.T, separation, numbers.T)
-        return result[:, column]
+        return result[:, np.searchsorted(once, self.scene.separations)]
 
     @cached_property
     def _counted(self) -> dict[str, tuple[Ints, Ints, Ints]]:

@@ -1,11 +1,14 @@
 """Sums over given heights under any contact law, by the formula of each contact: slow, literal, trusted."""
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 
 from analytic import quantity_of
 from analytic.laws import term_of
 from mcgw.sampling.hertz import hertz_sums
+from mcgw.sampling.sideways import tangential_loads
 from mcgw.scene.scene import Scene
 
 __all__ = ["asperity_sums"]
@@ -34,6 +37,12 @@ def asperity_sums(
     dict of str to ndarray
         Each quantity in SI units, shape (surfaces, separations).
     """
+    if scene.tangential:
+        plain = replace(scene, tangential=None)
+        loads = replace(plain, separations=scene.all_separations, quantities=("load",))
+        everywhere = asperity_sums(loads, numbers, heights, weights)["load"]
+        sums = asperity_sums(plain, numbers, heights, weights)
+        return {**sums, "tangential_load": tangential_loads(scene, everywhere)}
     if scene.hertzian:
         return hertz_sums(scene, numbers, heights, weights)
     surface = np.repeat(np.arange(len(numbers)), numbers)

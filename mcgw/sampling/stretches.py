@@ -43,7 +43,7 @@ class Stretches:
 
 def stretches_of(scene: Scene, branch: Branch, low: float, high: float) -> Stretches:
     """Stretches between two heights."""
-    h = np.unique(scene.separations)
+    h = np.array(scene.all_separations)
     found = branch.regimes(scene.modulus, h, low, high)
     goes_on = np.append(False, (found.low[1:] <= found.high[:-1]) & (np.diff(found.separation) == 0))
     inside = (found.low > low) | (h[found.separation] >= low)
@@ -77,7 +77,7 @@ def begins_and_breaks(scene: Scene, low: float, high: float) -> tuple[Array, Arr
     (ndarray, ndarray)
         Increasing; formulas are singular next to the first ones. Hertz's law has no others.
     """
-    separations = np.unique(scene.separations)
+    separations = np.array(scene.all_separations)
     if scene.hertzian:
         return separations, np.empty(0)
     begins, breaks = [separations], []

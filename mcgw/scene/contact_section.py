@@ -9,6 +9,7 @@ from analytic import QUANTITIES, UNLOADING
 from mcgw.scene.film_section import conducting_film
 from mcgw.scene.law_section import contact_law
 from mcgw.scene.section import Section
+from mcgw.scene.tangential_section import tangential_values
 
 __all__ = ["contact_values"]
 
@@ -28,6 +29,7 @@ def contact_values(section: Section) -> dict[str, Any]:
         "law": contact_law(section),
         "unload_from": unload_from,
         "film": film,
+        "tangential": tangential_values(section),
         "quantities": _with_unloading(names, unload_from),
     }
 

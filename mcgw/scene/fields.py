@@ -7,7 +7,7 @@ from typing import Literal
 import numpy as np
 
 from analytic import Clipped, Grading, HeightLaw, Surface, first_negative, quantity_of
-from analytic.laws import Branch, ContactLaw, Film, Hertz, LoadingBranch, UnloadingBranch
+from analytic.laws import Branch, ContactLaw, Film, Hertz, LoadingBranch, Tangential, UnloadingBranch
 
 __all__ = ["Fields"]
 
@@ -27,6 +27,7 @@ class Fields:
     law: ContactLaw
     unload_from: float | None
     film: Film | None
+    tangential: Tangential | None
     quantities: tuple[str, ...]
     n_surfaces: int
     n_asperities: int
@@ -60,6 +61,14 @@ class Fields:
         if self.unload_from is None:
             raise ValueError(f"contact.unload_from: {quantity} needs it")
         return UnloadingBranch(self.contact, self.unload_from, conductance)
+
+    @property
+    def all_separations(self) -> tuple[float, ...]:
+        """Every separation at which loads are summed, once and increasing: those shifted sideways too."""
+        if self.tangential is None:
+            return tuple(sorted(set(self.separations)))
+        shifts = self.tangential.shifts(self.surface).tolist()
+        return tuple(sorted({h + shift for h in self.separations for shift in (0.0, *shifts)}))
 
     @property
     def lowest(self) -> float:

@@ -15,6 +15,7 @@ from analytic import (
     PiecewiseSeries,
     quantity_of,
 )
+from analytic.laws import Hertz, PowerLawGraded
 from mcgw.formats.sheet import brief
 from mcgw.scene.fields import Fields
 from mcgw.scene.samplers import promise_of
@@ -93,6 +94,13 @@ def _history(scene: Fields) -> Iterator[str]:
 
 def _law(scene: Fields) -> Iterator[str]:
     """A law that means nothing for this surface."""
+    if scene.tangential and type(scene.law) not in (Hertz, PowerLawGraded):
+        yield (
+            f'contact.tangential: the theorem needs elastic half-spaces, not law = "{scene.law.name}"; take '
+            '"hertz" or "power-law-graded"'
+        )
+    if scene.tangential and "load" not in scene.quantities:
+        yield 'contact.tangential: it is a difference of normal loads; add "load" to contact.quantities'
     if scene.law.elastic and "yielded" in scene.quantities:
         yield f'contact.quantities: "yielded": no contact yields with law = "{scene.law.name}"; leave it out'
     if scene.hertzian:

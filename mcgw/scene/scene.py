@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from analytic import Grading, Model, Surface
-from analytic.laws import ContactLaw, Film, Hertz
+from analytic.laws import ContactLaw, Film, Hertz, Tangential
 from mcgw.formats.sheet import Sheet, Shown
 from mcgw.scene.ensemble_section import LeftOut
 from mcgw.scene.fields import Fields
@@ -51,6 +51,9 @@ class Scene(Fields, Shown):
     film : Film, optional
         Resistivity of the bodies, and resistance of a film on the spots: `mcgw.Film`. There is then a
         quantity "conductance_si". Default: none is asked for.
+    tangential : Tangential, optional
+        Friction and displacements of a surface that is pushed sideways: `mcgw.Tangential`. An ensemble then
+        has "tangential_load", of shape (surface, separation, displacement). Default: it is not.
     quantities : sequence of str, optional
         Which sums to compute: names of `analytic.QUANTITIES` and `analytic.LAW_QUANTITIES`. Default: load,
         area, stiffness, contacts.
@@ -105,6 +108,7 @@ class Scene(Fields, Shown):
         law: ContactLaw | None = None,
         unload_from: float | Literal["loop"] | None = None,
         film: Film | None = None,
+        tangential: Tangential | None = None,
         quantities: Sequence[str] | None = None,
         n_surfaces: int | None = None,
         n_asperities: int | None = None,

@@ -19,6 +19,7 @@ from mcgw.scene.scene import Scene
 from mcgw.scene.section import SceneError, Section
 from mcgw.scene.storable import storable
 from mcgw.scene.surface import SURFACE_UNITS, read_surface
+from mcgw.scene.tangential_section import tangential_table
 
 __all__ = ["files_of", "load_scene", "scene_from", "scene_text"]
 
@@ -194,7 +195,8 @@ def _contact_table(scene: Scene) -> dict[str, Any]:
     film = {} if scene.film is None else film_table(scene.film)
     asked = {"separations": list(scene.separations), "quantities": list(scene.quantities)}
     law = {} if type(scene.law) is Hertz else law_table(scene.law)
-    return {**law, **back, **film, **asked}
+    pushed = {} if scene.tangential is None else {"tangential": tangential_table(scene.tangential)}
+    return {**law, **back, **film, **asked, **pushed}
 
 
 def _ensemble_table(scene: Scene, left_out: bool) -> dict[str, Any]:

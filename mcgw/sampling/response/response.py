@@ -104,7 +104,7 @@ def response_of(
         _check_kept(mesh, kept, parts.layout)
         plain = np.concatenate([kept.plain, parts.plain[mesh.size :]])
         parts = replace(parts, plain=plain, rooted=kept.rooted)
-    shape = len(quantities), len(set(scene.separations))
+    shape = len(quantities), len(scene.all_separations)
     return Response(parts, tiles_of(parts, rows.order(shape[0] * shape[1])), shape)
 
 
@@ -140,7 +140,7 @@ def layout_of(
 
 def _rows(scene: Scene, mesh: Mesh, quantities: tuple[str, ...], *, lasting: bool) -> Rows:
     """What is asked, each separation once, in increasing order."""
-    scene = replace(scene, separations=tuple(sorted(set(scene.separations))))
+    scene = replace(scene, separations=scene.all_separations, tangential=None)
     if scene.hertzian:
         return hertz_rows(scene, quantities, lasting=lasting)
     from mcgw.sampling.response.law_rows import law_rows
