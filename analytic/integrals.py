@@ -1,8 +1,9 @@
 """The integrals F_n and F*_n of the theory, to 1e-13 at any separation (Eqs. 2, 3, 7-9).
 
 With s = h + v^2 the integrand ``2 v^(2n+1) g(h + v^2) phi(h + v^2)`` is analytic in v for every
-half-integer n, so Gauss-Legendre in v converges exponentially, whatever the smooth grading g. For
-h >= 0 everything is relative to phi(h), so nothing underflows before the answer does.
+half-integer n, so Gauss-Legendre in v converges exponentially, whatever the smooth grading g; for other
+n the power is the weight of a Gauss-Jacobi rule. For h >= 0 everything is relative to phi(h), so nothing
+underflows before the answer does.
 """
 
 from itertools import pairwise
@@ -15,7 +16,8 @@ from analytic.gauss_legendre import gauss_legendre
 from analytic.gradings import Grading, Homogeneous
 from analytic.heights import GAUSSIAN, Gaussian, HeightLaw
 from analytic.law_rule import law_integral
-from analytic.magnitude import log_unit, over_unit
+from analytic.magnitude import log_unit
+from analytic.panels import panels
 from analytic.reach import Weight, tame
 from analytic.renamed import takes_heights
 from analytic.resolution import resolved_breaks
@@ -25,39 +27,10 @@ __all__ = ["fn", "fn_between", "fn_paper", "fn_scaled", "quotient"]
 Array = NDArray[np.float64]
 
 _REACH = 13.0  # phi(13)/phi(0) = 2e-37: enough for any modulus up to exp(3|s|); steeper ones reach farther
-_NODES = 64
 _WIDEST = 4.0
 _TRIED = 9  # separations of a column at which the reach is looked for
 _ALL = (-np.inf, np.inf)
 _BLOCK = 192  # separations at a time: nodes x block x 8 bytes stay in the cache
-
-
-def _panel(n: float, h: Array, grading: Grading, unit: Array, low: Array, high: Array) -> Array:
-    """``int (s-h)^n g phi / phi(max(h, 0))`` over s from `low` to `high`, in units of g; columns like `h`."""
-    x, w = gauss_legendre(_NODES)
-    above = np.maximum(h, 0.0)
-    start = np.sqrt(low - h)
-    width = np.sqrt(high - h) - start
-    odd = int(2 * n) + 1
-    later = bool(start.any())
-    if later:
-        v = start + width * x
-        approach = v * v
-    else:  # the panel begins at the separation: v^(2n+1) goes into the weights
-        approach = (width * width) * (x * x)
-        w = w * x**odd
-    beyond = approach + (h - above) if h[0, 0] < 0 else approach  # s - above, without cancellation
-    terms = beyond * -0.5
-    terms -= above
-    terms *= beyond
-    np.exp(terms, out=terms)
-    if not isinstance(grading, Homogeneous):
-        terms *= over_unit(grading, beyond + above, unit)
-    if later:
-        for _ in range(odd):  # products are ten times faster than a power
-            terms *= v
-        return np.asarray((terms @ (2 * w))[:, None] * width)
-    return np.asarray((terms @ (2 * w))[:, None] * width ** (odd + 1))
 
 
 def _top(above: Array, reach: float) -> Array:
@@ -98,7 +71,7 @@ def _sorted(n: float, h: Array, grading: Grading, unit: Array, between: tuple[fl
         inside = np.flatnonzero(high > low)
         for k in range(0, inside.size, _BLOCK):
             i = inside[k : k + _BLOCK]
-            result[i] += _panel(n, h[i], grading, unit[i], low[i], high[i])
+            result[i] += panels(n, h[i], grading, unit[i], low[i], high[i])
     return np.where(h >= 0, result, result / np.sqrt(2 * np.pi))
 
 
@@ -111,8 +84,8 @@ def _in_units(
 ) -> tuple[Array, Array]:
     """As `fn_scaled`, over the unit of the grading at each separation; and the logarithm of that unit."""
     h = np.asarray(h, dtype=np.float64)
-    if n < 0 or (2 * n) % 1:
-        raise ValueError(f"n = {n!r}: give a multiple of 1/2 that is not negative")
+    if not 0 <= n < np.inf:
+        raise ValueError(f"n = {n!r}: give a finite number that is not negative")
     if not np.all(np.isfinite(h)):
         raise ValueError("h: every separation must be finite")
     grading = Homogeneous() if grading is None else grading
@@ -154,7 +127,7 @@ def fn_scaled(
     Parameters
     ----------
     n : float
-        Power of the approach: an integer or half-integer >= 0.
+        Power of the approach, not negative.
     h : array_like
         Reduced separations d/sigma, any shape.
     grading : Grading, optional
@@ -172,7 +145,7 @@ def fn_scaled(
     Raises
     ------
     ValueError
-        If `n` is negative or no multiple of 1/2, or a separation is not finite.
+        If `n` is negative or not finite, or a separation is not finite.
     """
     value, unit = _in_units(n, h, grading, between, heights)
     return np.asarray(value * np.exp(unit))
@@ -199,7 +172,7 @@ def fn(
     Parameters
     ----------
     n : float
-        Power of the approach: 0, 1/2, 1, 3/2, ...
+        Power of the approach, not negative: 0, 1/2, 1, 3/2, or any other.
     h : array_like
         Reduced separations d/sigma, any shape.
     grading : Grading, optional
@@ -218,7 +191,7 @@ def fn(
     Raises
     ------
     ValueError
-        If `n` is negative or no multiple of 1/2, or a separation is not finite.
+        If `n` is negative or not finite, or a separation is not finite.
 
     Examples
     --------

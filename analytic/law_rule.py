@@ -5,6 +5,7 @@ shrinks towards the ends where the density is a broken power. What such an end l
 the last digit of a height, counts with its exact probability.
 """
 
+from collections.abc import Iterable
 from itertools import pairwise
 
 import numpy as np
@@ -18,7 +19,7 @@ from analytic.measured_heights import MeasuredHeights
 from analytic.reach import Weight
 from analytic.resolution import resolved_breaks
 
-__all__ = ["law_ends", "law_integral", "law_rule"]
+__all__ = ["NEAREST", "law_ends", "law_integral", "law_rule", "towards"]
 
 Array = NDArray[np.float64]
 
@@ -26,6 +27,7 @@ _NODES = 64
 _SPANS = 6.0  # a piece over which the density changes by a factor of 50 needs some 30 nodes
 _WIDEST = 4.0
 _GROWTH = 8.0  # of the pieces away from a singular end
+NEAREST = 2.0**-30  # to a separation; what a power >= 0 loses below is 1e-9 of 1e-7
 _TINY = 1e-14  # distance from such an end, below which heights are not told apart
 _UNDERFLOW = -745.0  # logarithm of the least density
 _RAREST = 1e-290  # share of the heights next to which densities underflow
@@ -78,7 +80,13 @@ def _edges(law: HeightLaw, start: float, top: float) -> list[float]:
 
 
 def law_rule(
-    law: HeightLaw, separations: Array, grading: Grading, *, power: int = 4, exponent: float = 0.0
+    law: HeightLaw,
+    separations: Array,
+    grading: Grading,
+    *,
+    power: int = 4,
+    exponent: float = 0.0,
+    further: Iterable[float] = (),
 ) -> tuple[Array, Array]:
     """Heights and probabilities: ``E f(s) = probabilities @ f(heights)`` for sums of Hertz terms.
 
@@ -93,6 +101,8 @@ def law_rule(
     power, exponent : optional
         Highest powers of the modulus and of the approach that are summed, for gradings that rise as fast
         as heights become rare; 4 is that of the kurtosis.
+    further : iterable of float, optional
+        Heights at which pieces end besides.
 
     Returns
     -------
@@ -108,6 +118,7 @@ def law_rule(
         return np.empty(0), np.empty(0)
     cuts = {*_edges(law, start, top), *resolved_breaks(grading, start, top)}
     cuts |= {float(h) for h in separations if start < h < top} | set(_graded(separations, start, top))
+    cuts |= {float(s) for s in further if start < s < top}
     x, w = gauss_legendre(_NODES)
     heights, weights, lumps = [], [], []
     for left, right in pairwise(sorted(cuts)):
@@ -135,13 +146,30 @@ def _mass(law: HeightLaw, left: float, right: float) -> float:
 
 def _graded(separations: Array, start: float, top: float) -> list[float]:
     """Edges above close separations, whose root almost has its kink inside the next piece."""
-    edges = []
-    for lower, upper in pairwise(separations):
-        distance = upper - lower
-        while distance < 1:
-            edges.append(float(upper + distance))
-            distance *= _GROWTH
-    return [e for e in edges if start < e < top]
+    edges = [e for lower, upper in pairwise(separations) for e in towards(upper, upper - lower)]
+    return [float(e) for e in edges if start < e < top]
+
+
+def towards(separation: float, nearest: float) -> list[float]:
+    """Edges that shrink towards a separation, where terms are powers that no root makes smooth.
+
+    Parameters
+    ----------
+    separation : float
+        Reduced.
+    nearest : float
+        How near they come.
+
+    Returns
+    -------
+    list of float
+        Heights up to one above the separation.
+    """
+    edges, distance = [], nearest
+    while distance < 1:
+        edges.append(separation + distance)
+        distance *= _GROWTH
+    return edges
 
 
 def law_integral(
@@ -172,7 +200,8 @@ def law_integral(
     for x in h.ravel():
         marks = [float(b) for b in between if np.isfinite(b) and b > x]
         cut = _Cut(grading, tuple(marks))
-        s, p = law_rule(law, np.array([x]), cut, power=1, exponent=n + 1)
+        finer = () if (2 * n) % 1 == 0 else towards(x, NEAREST)
+        s, p = law_rule(law, np.array([x]), cut, power=1, exponent=n + 1, further=finer)
         unit = log_unit(grading, s[:1]) if s.size else np.zeros(1)
         terms = (s - x) ** n * over_unit(grading, s, unit)
         inside = (s >= between[0]) & (s <= between[1])

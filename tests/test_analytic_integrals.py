@@ -110,9 +110,9 @@ def test_shape_order_and_neighbours_do_not_matter():
     assert analytic.fn(1.5, []).shape == (0,)
 
 
-@pytest.mark.parametrize("n", [-0.5, -1, 0.25, 1.3, math.nan])
+@pytest.mark.parametrize("n", [-0.5, -1, math.inf, math.nan])
 def test_wrong_order_is_refused(n):
-    with pytest.raises(ValueError, match="multiple of 1/2"):
+    with pytest.raises(ValueError, match=f"n = {n}: give a finite number that is not negative"):
         analytic.fn(n, 0.0)
 
 
