@@ -3,12 +3,14 @@
 One surface has N independent asperities (or a Poisson number of them with mean N), so a quantity is
 a sum of N independent terms ``f(s_i)``. Its cumulants follow from integrals over one asperity. These
 are taken with a fixed set of heights and probabilities (`HeightRule`): Gauss-Legendre in
-``sqrt(s - h_k)`` on pieces that no separation and no break divides, graded towards separations with a
-close neighbour. Means and variances underflow with the density, beyond h = 37.
+``sqrt(s - h_k)`` on pieces that no separation and no break divides, neither of the grading nor of the law
+of contact, graded towards separations with a close neighbour. Means and variances underflow with the
+density, beyond h = 37.
 """
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 from itertools import pairwise
 from typing import Any, Literal
 
@@ -21,10 +23,14 @@ from analytic.gradings import Grading
 from analytic.heights import GAUSSIAN, Gaussian, HeightLaw
 from analytic.integrals import fn
 from analytic.law_rule import law_rule
+from analytic.laws.cuts import cuts_of
+from analytic.laws.law import ContactLaw
+from analytic.laws.spot import term
 from analytic.quantities import quantity_of
 from analytic.reach import Weight, tame
 from analytic.renamed import takes_heights
 from analytic.resolution import resolved_breaks
+from analytic.towards import above_neighbours
 
 __all__ = ["Count", "Fluctuations", "HeightRule", "normal_ends"]
 
@@ -35,18 +41,6 @@ _REACH = 13.0
 _NODES = 64
 _POWER = 4  # of the modulus in the kurtosis
 _STEP = 4.0  # widest piece, on which the density is resolved as far down as s = -40
-_RATIO = 8.0  # of a piece to its distance from the next separation below
-
-
-def _graded(h: Array) -> list[float]:
-    """Edges above close neighbours, whose ``sqrt(s - h)`` almost has its kink inside the next piece."""
-    edges = []
-    for lower, upper in pairwise(h):
-        distance = upper - lower
-        while distance < 1:
-            edges.append(upper + distance)
-            distance *= _RATIO
-    return edges
 
 
 def normal_ends(h: Array, grading: Grading, power: int = _POWER) -> tuple[float, float]:
@@ -81,9 +75,25 @@ def normal_ends(h: Array, grading: Grading, power: int = _POWER) -> tuple[float,
     return (weight.reach(0.0, -_REACH, low) if low < -_REACH else low), top
 
 
+def _cuts(contact: ContactLaw | None, grading: Grading, h: Array, low: float, high: float) -> Sequence[float]:
+    """Further ends of pieces, for another law of contact than Hertz's."""
+    return [] if contact is None else cuts_of(contact, grading, h, low, high)
+
+
+def _check(s: Array, modulus: Array, contact: ContactLaw) -> None:
+    """Nothing yields at a negative modulus."""
+    negative = np.flatnonzero(modulus < 0)
+    if negative.size:
+        k = negative[-1]
+        raise ValueError(
+            f"grading: E*(s)/E* = {modulus[k]:.4g} at s = {s[k]:.4g}, and law = {contact.name!r} needs a "
+            "modulus >= 0; clip it (clip = true), or take higher separations"
+        )
+
+
 @dataclass(frozen=True, slots=True)
 class HeightRule:
-    """Heights and their probabilities: ``E f(s) = probabilities @ f(heights)`` for any sum of Hertz terms.
+    """Heights and their probabilities: ``E f(s) = probabilities @ f(heights)`` for any sum of contacts.
 
     Parameters
     ----------
@@ -101,15 +111,24 @@ class HeightRule:
 
     @classmethod
     @takes_heights
-    def over(cls, separations: ArrayLike, grading: Grading, heights: HeightLaw = GAUSSIAN) -> "HeightRule":
-        """The rule for these reduced separations, this grading and law of the heights."""
+    def over(
+        cls,
+        separations: ArrayLike,
+        grading: Grading,
+        heights: HeightLaw = GAUSSIAN,
+        *,
+        contact: ContactLaw | None = None,
+    ) -> "HeightRule":
+        """The rule for these reduced separations, this grading, law of the heights and law of contact."""
         h = np.unique(np.asarray(separations, dtype=np.float64))
+        further = partial(_cuts, contact, grading, h)
         if not isinstance(heights, Gaussian):
-            return cls(*law_rule(heights, h, grading), float(heights.below(h[0])))
+            return cls(*law_rule(heights, h, grading, further=further), float(heights.below(h[0])))
         low, top = normal_ends(h, grading)
         regular = _STEP * np.arange(np.floor(low / _STEP) + 1, np.ceil(top / _STEP))
-        cuts = [low, *h, *_graded(h), *regular, *resolved_breaks(grading, max(low, -_REACH), top), top]
-        edges = np.unique([c for c in cuts if low <= c <= top])
+        varied = max(low, -_REACH)
+        cuts = [low, *h, *above_neighbours(h), *regular, *resolved_breaks(grading, varied, top), top]
+        edges = np.unique([c for c in (*cuts, *further(varied, top)) if low <= c <= top])
         x, w = gauss_legendre(_NODES)
         pieces = []
         for left, right in pairwise(edges):
@@ -137,14 +156,25 @@ class HeightRule:
         offset = self.probabilities @ shifted - self.below * usual
         return Fluctuations(self, mean, shifted - offset, -usual - offset)
 
-    def terms(self, quantities: Sequence[str], separations: ArrayLike, grading: Grading) -> Array:
+    def terms(
+        self,
+        quantities: Sequence[str],
+        separations: ArrayLike,
+        grading: Grading,
+        contact: ContactLaw | None = None,
+    ) -> Array:
         """What one asperity adds to each quantity, over its scale: shape (m, quantities * separations)."""
         h = np.asarray(separations, dtype=np.float64)
         approach = self.heights[:, None] - h
         modulus = grading(self.heights)[:, None]
+        if contact is not None and not contact.elastic:
+            _check(self.heights, modulus[:, 0], contact)
         columns = []
         for name in quantities:
             q = quantity_of(name)
+            if contact is not None:
+                columns.append(term(q.of or name, contact, approach, modulus))
+                continue
             power = np.where(approach > 0, np.abs(approach) ** q.exponent, 0.0)
             columns.append(power * modulus**q.modulus)
         return np.concatenate(columns, axis=1)

@@ -99,7 +99,7 @@ def _excess(h: float, n: float, grading: Grading | None, heights: HeightLaw, log
 def ratio_at_equal_load(
     quantity: str, h: ArrayLike, grading: Grading, *, heights: HeightLaw = GAUSSIAN
 ) -> Array:
-    """A mean of the graded surface relative to the homogeneous one under the same load.
+    """A mean of the graded surface relative to the homogeneous one under the same load, by Hertz's law.
 
     Parameters
     ----------

@@ -5,7 +5,7 @@ shrinks towards the ends where the density is a broken power. What such an end l
 the last digit of a height, counts with its exact probability.
 """
 
-from collections.abc import Iterable
+from collections.abc import Callable, Sequence
 from itertools import pairwise
 
 import numpy as np
@@ -18,8 +18,9 @@ from analytic.magnitude import log_unit, over_unit
 from analytic.measured_heights import MeasuredHeights
 from analytic.reach import Weight
 from analytic.resolution import resolved_breaks
+from analytic.towards import NEAREST, above_neighbours, towards
 
-__all__ = ["NEAREST", "law_ends", "law_integral", "law_rule", "towards"]
+__all__ = ["law_ends", "law_integral", "law_rule"]
 
 Array = NDArray[np.float64]
 
@@ -27,7 +28,6 @@ _NODES = 64
 _SPANS = 6.0  # a piece over which the density changes by a factor of 50 needs some 30 nodes
 _WIDEST = 4.0
 _GROWTH = 8.0  # of the pieces away from a singular end
-NEAREST = 2.0**-30  # to a separation; what a power >= 0 loses below is 1e-9 of 1e-7
 _TINY = 1e-14  # distance from such an end, below which heights are not told apart
 _UNDERFLOW = -745.0  # logarithm of the least density
 _RAREST = 1e-290  # share of the heights next to which densities underflow
@@ -86,7 +86,7 @@ def law_rule(
     *,
     power: int = 4,
     exponent: float = 0.0,
-    further: Iterable[float] = (),
+    further: Callable[[float, float], Sequence[float]] = lambda *_: (),
 ) -> tuple[Array, Array]:
     """Heights and probabilities: ``E f(s) = probabilities @ f(heights)`` for sums of Hertz terms.
 
@@ -101,8 +101,8 @@ def law_rule(
     power, exponent : optional
         Highest powers of the modulus and of the approach that are summed, for gradings that rise as fast
         as heights become rare; 4 is that of the kurtosis.
-    further : iterable of float, optional
-        Heights at which pieces end besides.
+    further : callable, optional
+        Takes the lowest and the highest height of the rule and gives further ends of pieces.
 
     Returns
     -------
@@ -117,8 +117,8 @@ def law_rule(
     if not start < top:
         return np.empty(0), np.empty(0)
     cuts = {*_edges(law, start, top), *resolved_breaks(grading, start, top)}
-    cuts |= {float(h) for h in separations if start < h < top} | set(_graded(separations, start, top))
-    cuts |= {float(s) for s in further if start < s < top}
+    inside = [*separations.tolist(), *above_neighbours(separations), *further(start, top)]
+    cuts |= {s for s in inside if start < s < top}
     x, w = gauss_legendre(_NODES)
     heights, weights, lumps = [], [], []
     for left, right in pairwise(sorted(cuts)):
@@ -142,34 +142,6 @@ def _mass(law: HeightLaw, left: float, right: float) -> float:
     if left in law.singular:
         return float(law.below(np.array(right)))
     return float(law.above(np.array(left)))
-
-
-def _graded(separations: Array, start: float, top: float) -> list[float]:
-    """Edges above close separations, whose root almost has its kink inside the next piece."""
-    edges = [e for lower, upper in pairwise(separations) for e in towards(upper, upper - lower)]
-    return [float(e) for e in edges if start < e < top]
-
-
-def towards(separation: float, nearest: float) -> list[float]:
-    """Edges that shrink towards a separation, where terms are powers that no root makes smooth.
-
-    Parameters
-    ----------
-    separation : float
-        Reduced.
-    nearest : float
-        How near they come.
-
-    Returns
-    -------
-    list of float
-        Heights up to one above the separation.
-    """
-    edges, distance = [], nearest
-    while distance < 1:
-        edges.append(separation + distance)
-        distance *= _GROWTH
-    return edges
 
 
 def law_integral(
@@ -200,8 +172,10 @@ def law_integral(
     for x in h.ravel():
         marks = [float(b) for b in between if np.isfinite(b) and b > x]
         cut = _Cut(grading, tuple(marks))
-        finer = () if (2 * n) % 1 == 0 else towards(x, NEAREST)
-        s, p = law_rule(law, np.array([x]), cut, power=1, exponent=n + 1, further=finer)
+        finer = [] if (2 * n) % 1 == 0 else towards(float(x), NEAREST)
+        s, p = law_rule(
+            law, np.array([x]), cut, power=1, exponent=n + 1, further=lambda *_, finer=finer: finer
+        )
         unit = log_unit(grading, s[:1]) if s.size else np.zeros(1)
         terms = (s - x) ** n * over_unit(grading, s, unit)
         inside = (s >= between[0]) & (s <= between[1])

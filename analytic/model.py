@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import KW_ONLY, dataclass, field
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -11,7 +12,10 @@ from analytic.height_rule import Count, Fluctuations, HeightRule
 from analytic.heights import Gaussian, HeightLaw
 from analytic.integrals import fn
 from analytic.inversion import separations_at
-from analytic.quantities import Quantity, quantity_of
+from analytic.laws.law import ContactLaw
+from analytic.laws.plain import is_hertz
+from analytic.mean_contact import TOGETHER, MeanContact
+from analytic.quantities import LAW_QUANTITIES, Quantity, quantity_of
 from analytic.surface import Surface
 
 __all__ = ["Cumulants", "Model"]
@@ -54,6 +58,10 @@ class Model:
         E*(s)/E*; default: homogeneous.
     heights : HeightLaw, optional
         Law of the reduced heights; default: Gaussian.
+    law : ContactLaw, optional
+        Law of contact of an asperity, of `analytic.laws`; default: Hertz's. Quantities are then also
+        "load_slope" (N/m), the slope of the load without the jumps of asperities, and "yielded" (1), the
+        number of contacts beyond the first piece of the law.
     n_asperities : float, optional
         Asperities on the surface; default: eta A_n.
     count : {"fixed", "poisson"}, optional
@@ -63,7 +71,8 @@ class Model:
     Raises
     ------
     ValueError
-        If `n_asperities` is not a positive finite number, or `count` another word.
+        If `n_asperities` is not a positive finite number, `count` another word, or the law lacks a
+        constant.
 
     Examples
     --------
@@ -78,6 +87,7 @@ class Model:
     _: KW_ONLY
     grading: Grading = field(default_factory=Homogeneous)
     heights: HeightLaw = field(default_factory=Gaussian)
+    law: ContactLaw | None = None
     n_asperities: float | None = None
     count: Count = "fixed"
 
@@ -86,6 +96,7 @@ class Model:
             raise ValueError(f"n_asperities = {self.n_asperities!r}: give a finite number > 0")
         if self.count not in ("fixed", "poisson"):
             raise ValueError(f'count = {self.count!r}: give "fixed" or "poisson"')
+        _ = self._contact  # a law that lacks a constant says so now
 
     @property
     def number(self) -> float:
@@ -93,7 +104,7 @@ class Model:
         return self.surface.n_asperities if self.n_asperities is None else self.n_asperities
 
     def mean(self, quantity: str, h: ArrayLike) -> Array:
-        """Mean over surfaces: ``N scale F*_n(h)``.
+        """Mean over surfaces: ``N scale F*_n(h)`` under Hertz's law, to 1e-13; under others to 1e-12.
 
         Parameters
         ----------
@@ -113,18 +124,65 @@ class Model:
             If there is no such quantity.
         """
         q = quantity_of(quantity)
-        return self._unit(q) * fn(q.exponent, h, self._grading(q), heights=self.heights)
+        if self._by_powers(quantity):
+            return self._unit(q) * fn(q.exponent, h, self._grading(q), heights=self.heights)
+        return self._unit(q) * self._contact.mean(q.of or q.name, np.asarray(h, dtype=np.float64))
 
     def slope(self, quantity: str, h: ArrayLike) -> Array:
-        """How fast the mean of the load or the area falls with the separation, per unit of h."""
+        """How fast the mean falls with the separation, per unit of h.
+
+        Where asperities jump, at first touch or from one piece of the law to the next, this counts: the slope
+        of the mean load is not the mean of "load_slope". Of measured heights, which jump one by one,
+        it is the slope in between.
+
+        Parameters
+        ----------
+        quantity : str
+            Its name; not "load_slope".
+        h : array_like
+            Reduced separations, any shape.
+
+        Returns
+        -------
+        ndarray
+            In the unit of the quantity, in the shape of `h`.
+
+        Raises
+        ------
+        ValueError
+            For "load_slope".
+        """
         q = quantity_of(quantity)
-        return self._unit(q) * q.exponent * fn(q.exponent - 1, h, self._grading(q), heights=self.heights)
+        if quantity == "load_slope":
+            raise ValueError("quantity = 'load_slope': its own slope is not known; give another quantity")
+        if self._by_powers(quantity) and q.exponent >= 1:
+            return self._unit(q) * q.exponent * fn(q.exponent - 1, h, self._grading(q), heights=self.heights)
+        return self._unit(q) * self._contact.slope(q.of or q.name, np.asarray(h, dtype=np.float64))
+
+    def share(self, piece: int, h: ArrayLike) -> Array:
+        """Mean share of the contacts in which a piece of the law holds: who has yielded, and how far.
+
+        Parameters
+        ----------
+        piece : int
+            0 for the first, which is elastic.
+        h : array_like
+            Reduced separations, any shape.
+
+        Returns
+        -------
+        ndarray
+            In the shape of `h`; nan where no contact is to be expected in double precision.
+        """
+        return self._contact.share(piece, np.asarray(h, dtype=np.float64))
 
     def cumulants(self, quantity: str, h: ArrayLike) -> Cumulants:
         """Mean, variance, skewness and excess kurtosis over surfaces, in the shape of `h`."""
         h = np.asarray(h, dtype=np.float64)
-        rows = [self._one_asperity(quantity, x) for x in h.ravel()]
-        k1, k2, k3, k4 = np.array(rows).reshape(*h.shape, 4).transpose(-1, *range(h.ndim))
+        step = 1 if self._by_powers(quantity) else TOGETHER
+        parts = np.split(h.ravel(), range(step, h.size, step)) if h.size else []
+        rows = np.concatenate([np.empty((0, 4)), *(self._one_asperity(quantity, x) for x in parts)])
+        k1, k2, k3, k4 = rows.reshape(*h.shape, 4).transpose(-1, *range(h.ndim))
         n, scale = self.number, quantity_of(quantity).scale(self.surface)
         with np.errstate(divide="ignore", invalid="ignore"):
             return Cumulants(
@@ -163,22 +221,27 @@ class Model:
         Returns
         -------
         ndarray
-            Reduced separations; the largest one where a strongly negative modulus makes several.
+            Reduced separations; the largest one where a strongly negative modulus, or an area that falls
+            at yield, makes several.
 
         Raises
         ------
         ValueError
-            If a value is not positive or not reached between h = -40 and 1000.
+            If a value is not positive or not reached between h = -40 and 1000 (under other laws than
+            Hertz's: up to where the probability of a contact underflows).
         """
         q = quantity_of(quantity)
         target = np.asarray(value, dtype=np.float64)
         if not np.all(np.isfinite(target) & (target > 0)):
             raise ValueError(f"{quantity} = {value!r}: give finite values > 0 {q.unit}")
-        return separations_at(q, np.log(target / self._unit(q)), self._grading(q), self.heights)
+        if self._by_powers(quantity):
+            return separations_at(q, np.log(target / self._unit(q)), self._grading(q), self.heights)
+        return self._contact.separations_at(q.of or q.name, target / self._unit(q))
 
     def rule(self, separations: ArrayLike) -> HeightRule:
         """Heights and probabilities for integrals over one asperity at these separations."""
-        return HeightRule.over(separations, self.grading, self.heights)
+        contact = None if self._hertz else self._contact.law
+        return HeightRule.over(separations, self.grading, self.heights, contact=contact)
 
     def fluctuations(self, quantities: Sequence[str], separations: ArrayLike) -> Fluctuations:
         """What one asperity adds to each quantity at each separation, over its scale.
@@ -186,7 +249,21 @@ class Model:
         Columns are quantity by quantity, at increasing number of the separation.
         """
         rule = self.rule(separations)
-        return rule.fluctuations(rule.terms(quantities, separations, self.grading), self.count)
+        contact = None if all(map(self._by_powers, quantities)) else self._contact.law
+        return rule.fluctuations(rule.terms(quantities, separations, self.grading, contact), self.count)
+
+    @cached_property
+    def _hertz(self) -> bool:
+        return self.law is None or is_hertz(self.law)
+
+    @cached_property
+    def _contact(self) -> MeanContact:
+        law = ContactLaw() if self.law is None else self.law.on(self.surface)
+        return MeanContact(law, self.grading, self.heights)
+
+    def _by_powers(self, quantity: str) -> bool:
+        """Whether one asperity carries a power of its approach."""
+        return self._hertz and quantity not in LAW_QUANTITIES
 
     def _unit(self, q: Quantity) -> float:
         return self.number * q.scale(self.surface)
@@ -194,8 +271,8 @@ class Model:
     def _grading(self, q: Quantity) -> Grading | None:
         return self.grading if q.modulus else None
 
-    def _one_asperity(self, quantity: str, h: float) -> tuple[float, ...]:
-        """First four cumulants that one asperity contributes, over the scale."""
-        part = self.fluctuations([quantity], [h])
-        m2, m3, m4 = (float(part.moment(k)[0]) for k in (2, 3, 4))
-        return float(part.mean[0]), m2, m3, m4 - 3 * m2 * m2 * (self.count == "fixed")
+    def _one_asperity(self, quantity: str, h: Array) -> Array:
+        """First four cumulants that one asperity contributes, over the scale: shape (separations, 4)."""
+        part = self.fluctuations([quantity], h)
+        m2, m3, m4 = (part.moment(k) for k in (2, 3, 4))
+        return np.stack([part.mean, m2, m3, m4 - 3 * m2 * m2 * (self.count == "fixed")], axis=1)

@@ -1,0 +1,157 @@
+"""What one asperity contributes in the mean, under any law of contact: sums over a rule of heights."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import brentq
+
+from analytic.gradings import Grading
+from analytic.height_rule import HeightRule
+from analytic.heights import HeightLaw
+from analytic.laws.law import ContactLaw
+from analytic.laws.slopes import jump_terms, slope_term
+from analytic.laws.spot import piece_of
+from analytic.measured_heights import MeasuredHeights
+
+__all__ = ["TOGETHER", "MeanContact"]
+
+Array = NDArray[np.float64]
+
+TOGETHER = 8  # separations that share a rule
+_LOWEST, _HIGHEST = -40.0, 1000.0  # separations that are looked at
+_COUNTS = 13.0  # no lower height does
+_RAREST = 1e-280  # share of heights above the highest of them
+_LAST_DIGITS = 4 * np.finfo(float).eps
+
+
+@dataclass(frozen=True)
+class MeanContact:
+    """Means over the heights, per asperity and over the scale of each quantity.
+
+    Parameters
+    ----------
+    law : ContactLaw
+        In reduced units.
+    grading : Grading
+        E*(s)/E*.
+    heights : HeightLaw
+        Law of the reduced heights.
+    """
+
+    law: ContactLaw
+    grading: Grading
+    heights: HeightLaw
+
+    def mean(self, quantity: str, h: Array) -> Array:
+        """Mean at separations of any shape."""
+        return self._in_parts(h, lambda part: self._sums(part).mean([quantity])[0])
+
+    def share(self, piece: int, h: Array) -> Array:
+        """Share of the contacts in which this piece of the law holds; nan without a contact."""
+        return self._in_parts(h, lambda part: self._sums(part).share(piece))
+
+    def slope(self, quantity: str, h: Array) -> Array:
+        """How fast the mean falls with the separation, jumps of asperities included."""
+        return self._in_parts(h, lambda part: self._sums(part).slope(quantity))
+
+    def _in_parts(self, h: Array, function: Callable[[Array], Array]) -> Array:
+        """A few separations at a time: they share a rule."""
+        flat = np.ravel(h)
+        if not np.all(np.isfinite(flat)):
+            raise ValueError("h: every separation must be finite")
+        order = np.argsort(flat)
+        result = np.empty(flat.size)
+        for k in range(0, flat.size, TOGETHER):
+            part = order[k : k + TOGETHER]
+            result[part] = function(flat[part])
+        return result.reshape(np.shape(h))
+
+    def _sums(self, h: Array) -> "_Sums":
+        return _Sums(self, h, HeightRule.over(h, self.grading, self.heights, contact=self.law))
+
+    def separations_at(self, quantity: str, values: Array) -> Array:
+        """Largest separations with given means, in the shape of `values`.
+
+        Raises
+        ------
+        ValueError
+            If the mean does not have a value where it can be told from 0, at h = -40 or above.
+        """
+        grid = self._grid()
+        rough = HeightRule.over(grid, self.grading, self.heights)  # not cut where pieces of the law end
+        about = rough.probabilities @ rough.terms([quantity], grid, self.grading, self.law)
+        found = [self._separation_at(quantity, x, grid, about) for x in np.ravel(values).tolist()]
+        return np.array(found, dtype=np.float64).reshape(np.shape(values))
+
+    def _separation_at(self, quantity: str, value: float, grid: Array, about: Array) -> float:
+        high_enough = np.flatnonzero(about >= value)
+        k = int(high_enough[-1]) if high_enough.size else 0
+        left, right = grid[max(k - 1, 0)], grid[min(k + 2, grid.size - 1)]
+        if not self._excess(left, quantity, value) > 0 > self._excess(right, quantity, value):
+            left, right = self._bracket(grid, quantity, value)
+        return float(brentq(self._excess, left, right, (quantity, value), xtol=1e-15, rtol=_LAST_DIGITS))
+
+    def _bracket(self, grid: Array, quantity: str, value: float) -> tuple[float, float]:
+        high_enough = np.flatnonzero(self.mean(quantity, grid) >= value)
+        if not high_enough.size or high_enough[-1] == grid.size - 1:
+            raise ValueError(
+                f"{quantity}: not reached between h = {grid[0]:g} and {grid[-1]:.4g}; give another value"
+            )
+        return float(grid[high_enough[-1]]), float(grid[high_enough[-1] + 1])
+
+    def _grid(self) -> Array:
+        """Separations from where all touches to where probabilities underflow, or the highest height."""
+        if isinstance(self.heights, MeasuredHeights):
+            top = self.heights.support[1]
+        else:
+            top = min(float(self.heights.from_above(np.array(_RAREST), 0.0)), _HIGHEST)
+        near = min(top, 12.0)
+        far = np.geomspace(near, top, 25)[1:] if top > near else np.empty(0)
+        grid = np.concatenate([np.linspace(_LOWEST, -4, 10)[:-1], np.linspace(-4, near, 41), far])
+        low = self._softest(near)
+        return np.concatenate([[low], grid[grid > low]])
+
+    def _softest(self, near: float) -> float:
+        """Lowest separation of the grid: above it no modulus is negative, if the law cannot do with that."""
+        if self.law.elastic:
+            return _LOWEST
+        s = np.linspace(max(self.heights.support[0], -_COUNTS), near, 4001)
+        negative = np.flatnonzero(self.grading(s) < 0)
+        return float(s[min(negative[-1] + 1, s.size - 1)]) if negative.size else _LOWEST
+
+    def _excess(self, h: float, quantity: str, value: float) -> float:
+        """Logarithm relative to the value; -100 also where the mean is not positive."""
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return float(np.fmax(np.log(self.mean(quantity, np.array(h)) / value), -100.0))
+
+
+@dataclass(frozen=True)
+class _Sums:
+    """Sums over the rule of a few separations."""
+
+    contact: MeanContact
+    h: Array
+    rule: HeightRule
+
+    def mean(self, quantities: list[str]) -> Array:
+        terms = self.rule.terms(quantities, self.h, self.contact.grading, self.contact.law)
+        return np.asarray(self.rule.probabilities @ terms).reshape(len(quantities), -1)
+
+    def share(self, piece: int) -> Array:
+        s, law = self.rule.heights[:, None], self.contact.law
+        inside = (s > self.h) & (piece_of(law, s - self.h, self.contact.grading(s)) == piece)
+        with np.errstate(invalid="ignore"):
+            return np.asarray(self.rule.probabilities @ inside / self.mean(["contacts"])[0])
+
+    def slope(self, quantity: str) -> Array:
+        law, grading, heights = self.contact.law, self.contact.grading, self.contact.heights
+        s, p = self.rule.heights, self.rule.probabilities
+        if not s.size:
+            return np.zeros(self.h.shape)
+        within = p @ slope_term(quantity, law, s[:, None] - self.h, grading(s)[:, None])
+        if isinstance(heights, MeasuredHeights):
+            return np.asarray(within)  # between the separations at which one of them jumps
+        ends = float(s[0]), float(s[-1])
+        return np.asarray(within + jump_terms(quantity, law, grading, heights, self.h, ends))

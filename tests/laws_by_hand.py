@@ -1,0 +1,84 @@
+"""Contact laws typed in for the tests, in ten lines each: independent of those of `analytic.laws`."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from analytic.laws.law import ContactLaw
+
+
+@dataclass(frozen=True)
+class KogutEtsion(ContactLaw):
+    """Kogut and Etsion (2002) with nu = 0.3: K = 0.577."""
+
+    critical: float = 0.05
+    third: float = 1.4  # factor of the load between 6 and 110 critical penetrations
+
+    name = "by hand: kogut-etsion"
+    elastic = False
+
+    def limits(self, e):
+        e = np.asarray(e)
+        return np.array([1.0, 6.0, 110.0]).reshape(-1, *[1] * e.ndim) * (self.critical / e**2)
+
+    def load(self, piece, y, e):
+        dc = self.critical / e**2
+        x, pc = y * y / dc, e * dc**1.5
+        return [e * y**3, 1.03 * pc * x**1.425, self.third * pc * x**1.263, 3 * pc * x / 0.577][piece]
+
+    def radius(self, piece, y, e):
+        dc = self.critical / e**2
+        x = y * y / dc
+        return [y + 0 * e, (dc * 0.93 * x**1.136) ** 0.5, (dc * 0.94 * x**1.146) ** 0.5, 2**0.5 * y][piece]
+
+
+@dataclass(frozen=True)
+class ChangEtsionBogy(ContactLaw):
+    """Chang, Etsion and Bogy (1987): the load jumps by a half at yield, the area is continuous."""
+
+    critical: float = 0.05
+
+    name = "by hand: chang-etsion-bogy"
+    elastic = False
+
+    def limits(self, e):
+        return (self.critical / np.asarray(e) ** 2)[None]
+
+    def load(self, piece, y, e):
+        dc = self.critical / e**2
+        return [e * y**3, e * 1.5 * dc**0.5 * (2 * y * y - dc)][piece]
+
+    def radius(self, piece, y, e):
+        return (2 * y * y - self.critical / e**2) ** 0.5 if piece else y + 0 * e
+
+
+@dataclass(frozen=True)
+class HalfSpace(ContactLaw):
+    """A half-space whose modulus grows with the depth to the power k, over its own factor."""
+
+    k: float = 0.25
+
+    name = "by hand: graded half-space"
+    root = False
+
+    def load(self, piece, y, e):  # noqa: ARG002
+        return e * y ** (3 + self.k)
+
+    def radius(self, piece, y, e):  # noqa: ARG002
+        return y + 0 * e
+
+
+@dataclass(frozen=True)
+class Film(ContactLaw):
+    """Hertz's contact whose "radius" is its conductance behind a film: y^2/(y + b)."""
+
+    b: float = 0.1
+
+    name = "by hand: film"
+
+    @property
+    def finest(self):
+        return self.b**2
+
+    def radius(self, piece, y, e):  # noqa: ARG002
+        return y * y / (y + self.b) + 0 * e
