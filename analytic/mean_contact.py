@@ -9,17 +9,16 @@ from scipy.optimize import brentq
 
 from analytic.gradings import Grading
 from analytic.height_rule import HeightRule
-from analytic.heights import HeightLaw
+from analytic.heights import Gaussian, HeightLaw
 from analytic.laws.law import ContactLaw
 from analytic.laws.slopes import jump_terms, slope_term
 from analytic.laws.spot import piece_of
 from analytic.measured_heights import MeasuredHeights
 
-__all__ = ["TOGETHER", "MeanContact"]
+__all__ = ["MeanContact"]
 
 Array = NDArray[np.float64]
 
-TOGETHER = 8  # separations that share a rule
 _LOWEST, _HIGHEST = -40.0, 1000.0  # separations that are looked at
 _COUNTS = 13.0  # no lower height does
 _RAREST = 1e-280  # share of heights above the highest of them
@@ -44,6 +43,11 @@ class MeanContact:
     grading: Grading
     heights: HeightLaw
 
+    @property
+    def together(self) -> int:
+        """How many separations share a rule: other height laws leave out what the lowest hardly needs."""
+        return 8 if isinstance(self.heights, Gaussian) else 1
+
     def mean(self, quantity: str, h: Array) -> Array:
         """Mean at separations of any shape."""
         return self._in_parts(h, lambda part: self._sums(part).mean([quantity])[0])
@@ -63,8 +67,8 @@ class MeanContact:
             raise ValueError("h: every separation must be finite")
         order = np.argsort(flat)
         result = np.empty(flat.size)
-        for k in range(0, flat.size, TOGETHER):
-            part = order[k : k + TOGETHER]
+        for k in range(0, flat.size, self.together):
+            part = order[k : k + self.together]
             result[part] = function(flat[part])
         return result.reshape(np.shape(h))
 
@@ -80,10 +84,14 @@ class MeanContact:
             If the mean does not have a value where it can be told from 0, at h = -40 or above.
         """
         grid = self._grid()
-        rough = HeightRule.over(grid, self.grading, self.heights)  # not cut where pieces of the law end
-        about = rough.probabilities @ rough.terms([quantity], grid, self.grading, self.law)
+        about = self._in_parts(grid, lambda part: self._roughly(quantity, part))
         found = [self._separation_at(quantity, x, grid, about) for x in np.ravel(values).tolist()]
         return np.array(found, dtype=np.float64).reshape(np.shape(values))
+
+    def _roughly(self, quantity: str, h: Array) -> Array:
+        """Mean by a rule that is not cut where pieces of the law end: to a percent, and soon done."""
+        rule = HeightRule.over(h, self.grading, self.heights)
+        return np.asarray(rule.probabilities @ rule.terms([quantity], h, self.grading, self.law))
 
     def _separation_at(self, quantity: str, value: float, grid: Array, about: Array) -> float:
         high_enough = np.flatnonzero(about >= value)

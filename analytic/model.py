@@ -14,7 +14,7 @@ from analytic.integrals import fn
 from analytic.inversion import separations_at
 from analytic.laws.law import ContactLaw
 from analytic.laws.plain import is_hertz
-from analytic.mean_contact import TOGETHER, MeanContact
+from analytic.mean_contact import MeanContact
 from analytic.quantities import LAW_QUANTITIES, Quantity, quantity_of
 from analytic.surface import Surface
 
@@ -179,7 +179,7 @@ class Model:
     def cumulants(self, quantity: str, h: ArrayLike) -> Cumulants:
         """Mean, variance, skewness and excess kurtosis over surfaces, in the shape of `h`."""
         h = np.asarray(h, dtype=np.float64)
-        step = 1 if self._by_powers(quantity) else TOGETHER
+        step = 1 if self._by_powers(quantity) else self._contact.together
         parts = np.split(h.ravel(), range(step, h.size, step)) if h.size else []
         rows = np.concatenate([np.empty((0, 4)), *(self._one_asperity(quantity, x) for x in parts)])
         k1, k2, k3, k4 = rows.reshape(*h.shape, 4).transpose(-1, *range(h.ndim))

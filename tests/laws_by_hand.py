@@ -22,14 +22,19 @@ class KogutEtsion(ContactLaw):
         return np.array([1.0, 6.0, 110.0]).reshape(-1, *[1] * e.ndim) * (self.critical / e**2)
 
     def load(self, piece, y, e):
+        if piece == 0:
+            return e * y**3
         dc = self.critical / e**2
         x, pc = y * y / dc, e * dc**1.5
-        return [e * y**3, 1.03 * pc * x**1.425, self.third * pc * x**1.263, 3 * pc * x / 0.577][piece]
+        factor, power = ((1.03, 1.425), (self.third, 1.263), (3 / 0.577, 1.0))[piece - 1]
+        return factor * pc * x**power
 
     def radius(self, piece, y, e):
+        if piece == 0:
+            return y + 0 * e
         dc = self.critical / e**2
-        x = y * y / dc
-        return [y + 0 * e, (dc * 0.93 * x**1.136) ** 0.5, (dc * 0.94 * x**1.146) ** 0.5, 2**0.5 * y][piece]
+        factor, power = ((0.93, 1.136), (0.94, 1.146), (2.0, 1.0))[piece - 1]
+        return (dc * factor * (y * y / dc) ** power) ** 0.5
 
 
 @dataclass(frozen=True)
@@ -45,8 +50,10 @@ class ChangEtsionBogy(ContactLaw):
         return (self.critical / np.asarray(e) ** 2)[None]
 
     def load(self, piece, y, e):
+        if piece == 0:
+            return e * y**3
         dc = self.critical / e**2
-        return [e * y**3, e * 1.5 * dc**0.5 * (2 * y * y - dc)][piece]
+        return e * 1.5 * dc**0.5 * (2 * y * y - dc)
 
     def radius(self, piece, y, e):
         return (2 * y * y - self.critical / e**2) ** 0.5 if piece else y + 0 * e

@@ -73,7 +73,9 @@ GRADINGS = {
     "stiff tips": Exponential(2.0),
     "clipped": Clipped.of(Exponential(3.0)),
     "table": Table([-1.0, 0.0, 0.7, 1.5], [0.4, 1.0, 0.3, 2.0]),
-    "jumps": Custom(lambda s: np.where(s > 1, 0.4, 1.0), breaks=(1.0,)),
+    "jump behind a break": Custom(lambda s: np.where(s > 1, 0.4, 1.0), breaks=(1.0,)),
+    "jump at a break": Custom(lambda s: np.where(s >= 1, 0.4, 1.0), breaks=(1.0,)),
+    "untold jump": Custom(lambda s: np.where(s > 1.1, 0.4, 1.0)),
     "untold kink": Custom(lambda s: 0.3 + np.abs(s - 0.7)),
     "waves": Custom(bumpy),
 }
@@ -125,6 +127,14 @@ def test_no_pair_of_crossings_next_to_a_tangency_is_missed():
         crossing = np.flatnonzero(np.diff(s - h >= 0.2 / grading(s) ** 2))
         found = crossings_of(lambda x: 0.2 / grading(x) ** 2, grading, np.array([h]), 0.0, 6.0)
         np.testing.assert_allclose(found.height, s[crossing + 1], atol=6.1e-6)
+
+
+@pytest.mark.parametrize("name", ["jump behind a break", "jump at a break"])
+def test_a_jump_of_the_modulus_ends_a_regime(name):
+    """Yielded up to s = 1 and elastic above, where dc/e^2 = 1.875, until s - h is that large."""
+    regimes = regimes_of(Yielding(0.3), GRADINGS[name], [0.2], -1.0, 13.0)
+    assert [piece for *_, piece in listed(regimes)] == [0, 1, 0, 1]
+    np.testing.assert_allclose([low for low, *_ in listed(regimes)], [0.2, 0.5, 1.0, 2.075], rtol=1e-15)
 
 
 def test_lift_off_is_a_crossing_too():

@@ -105,7 +105,8 @@ def _stretches(bound: Bound, grading: Grading, low: float, high: float) -> Array
     rises = np.diff(curve(s), axis=1) >= 0
     piece, turn = np.nonzero(rises[:, :-1] != rises[:, 1:])
     turns = _turns(curve, s[piece, turn], s[piece, turn + 2], rises[piece, turn])
-    return np.unique([low, *breaks, *turns[(low < turns) & (turns < high)]])
+    behind = np.nextafter(breaks, np.inf)  # at a jump the modulus may still be that below it
+    return np.unique([low, *breaks, *behind, *turns[(low < turns) & (turns < high)]])
 
 
 def _turns(curve: Callable[[Array], Array], left: Array, right: Array, peak: NDArray[np.bool_]) -> Array:
