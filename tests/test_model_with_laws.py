@@ -129,16 +129,16 @@ def test_means_are_literal_integrals(law, grading):
                     return np.nan_to_num(term(quantity, law, s - h, grading(s)))
 
             truth = literal(f, law, grading, Gaussian(), h)
-            assert reduced(model, quantity, h) == pytest.approx(truth, rel=2e-11, abs=1e-15)
+            assert reduced(model, quantity, h) == pytest.approx(truth, rel=1e-12, abs=1e-16)
 
 
 @every_grading
 def test_separations_that_share_a_rule_do_not_matter_to_each_other(grading):
     """A limit apart, close together, and far away."""
     h = np.array([-0.5, 0.3, 0.35, 0.35 + 1e-9, 0.351, 1.0, 3.0, 6.0, 8.0, 20.0])
-    for law in (KogutEtsion(1e-3), KogutEtsion(0.05), HalfSpace(0.25), Film(0.1)):
+    for law in (KogutEtsion(1e-3), Film(0.1)):
         model = Model(SURFACE, law=law, grading=grading)
-        for quantity in ("load", "conductance", "load_slope"):
+        for quantity in ("load", "conductance"):
             alone = [float(model.mean(quantity, x)) for x in h]
             np.testing.assert_allclose(model.mean(quantity, h), alone, rtol=2e-12)
 

@@ -137,13 +137,34 @@ def test_a_jump_of_the_modulus_ends_a_regime(name):
     np.testing.assert_allclose([low for low, *_ in listed(regimes)], [0.2, 0.5, 1.0, 2.075], rtol=1e-15)
 
 
+def residual(deepest, dc):
+    """Etsion, Kligerman and Kadin (2005)."""
+    x = np.maximum(deepest / dc, 1.0)
+    return deepest * (1 - x**-0.28) * (1 - x**-0.69)
+
+
 def test_lift_off_is_a_crossing_too():
-    """Unloaded from h_min by a share of the greatest penetration: s - h = share (s - h_min)."""
-    h_min, share = 0.5, 0.3
-    h = np.array([0.6, 0.9])
-    found = crossings_of(lambda s: share * (s - h_min), Homogeneous(), h, 0.5, 13.0)
-    np.testing.assert_allclose(found.height, (h - share * h_min) / (1 - share), rtol=1e-15)
+    """Unloaded from h_min = 0.5: heights that still touch, by mpmath at 30 digits."""
+    found = crossings_of(
+        lambda s: residual(s - 0.5, 0.05), Homogeneous(), np.array([0.6, 0.7, 0.9]), 0.5, 13.0
+    )
+    touching = [0.608849771991328907, 0.769773542969503951, 1.21658942136438179]
+    np.testing.assert_allclose(found.height, touching, rtol=1e-13)
     assert found.begins.all()
+
+
+def test_lift_off_of_soft_tips():
+    """Against a fine grid: the bound has a kink of its own where asperities have just yielded."""
+    grading, h_min, h = Exponential(0.2), 0.0, np.array([0.1, 0.3])
+
+    def bound(s):
+        return residual(s - h_min, 0.05 / grading(s) ** 2)
+
+    found = crossings_of(bound, grading, h, 0.0, 8.0)
+    s = np.linspace(0, 8, 800_001)
+    for k in range(h.size):
+        crossing = np.flatnonzero(np.diff(s - h[k] >= bound(s)))
+        np.testing.assert_allclose(found.height[found.separation == k], s[crossing + 1], atol=1.1e-5)
 
 
 def test_ends_that_cannot_be_told_apart_are_one():

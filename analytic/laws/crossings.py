@@ -50,7 +50,8 @@ def crossings_of(bound: Bound, grading: Grading, separations: Array, low: float,
     Parameters
     ----------
     bound : callable
-        Penetration at which something begins, of the heights; infinite where it never does.
+        Penetration at which something begins, of the heights; infinite where it never does. Under one
+        modulus for all it must be constant, or rise by less than the height.
     grading : Grading
         The bound has its kinks and jumps where this has them.
     separations : ndarray
