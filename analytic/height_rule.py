@@ -173,7 +173,7 @@ class HeightRule:
         for name in quantities:
             q = quantity_of(name)
             if contact is not None:
-                columns.append(term(q.of or name, contact, approach, modulus))
+                columns.append(term(q.base, contact, approach, modulus))
                 continue
             power = np.where(approach > 0, np.abs(approach) ** q.exponent, 0.0)
             columns.append(power * modulus**q.modulus)

@@ -123,10 +123,10 @@ class Model:
         KeyError
             If there is no such quantity.
         """
-        q = quantity_of(quantity)
-        if self._by_powers(quantity):
+        q = self._asked(quantity)
+        if self._by_powers(q):
             return self._unit(q) * fn(q.exponent, h, self._grading(q), heights=self.heights)
-        return self._unit(q) * self._contact.mean(q.of or q.name, np.asarray(h, dtype=np.float64))
+        return self._unit(q) * self._contact.mean(q.base, np.asarray(h, dtype=np.float64))
 
     def slope(self, quantity: str, h: ArrayLike) -> Array:
         """How fast the mean falls with the separation, per unit of h.
@@ -152,12 +152,12 @@ class Model:
         ValueError
             For "load_slope".
         """
-        q = quantity_of(quantity)
-        if quantity == "load_slope":
-            raise ValueError("quantity = 'load_slope': its own slope is not known; give another quantity")
-        if self._by_powers(quantity) and q.exponent >= 1:
+        q = self._asked(quantity)
+        if q.base == "load_slope":
+            raise ValueError(f"quantity = {quantity!r}: its own slope is not known; give another quantity")
+        if self._by_powers(q) and q.exponent >= 1:
             return self._unit(q) * q.exponent * fn(q.exponent - 1, h, self._grading(q), heights=self.heights)
-        return self._unit(q) * self._contact.slope(q.of or q.name, np.asarray(h, dtype=np.float64))
+        return self._unit(q) * self._contact.slope(q.base, np.asarray(h, dtype=np.float64))
 
     def share(self, piece: int, h: ArrayLike) -> Array:
         """Mean share of the contacts in which a piece of the law holds: who has yielded, and how far.
@@ -179,7 +179,7 @@ class Model:
     def cumulants(self, quantity: str, h: ArrayLike) -> Cumulants:
         """Mean, variance, skewness and excess kurtosis over surfaces, in the shape of `h`."""
         h = np.asarray(h, dtype=np.float64)
-        step = 1 if self._by_powers(quantity) else self._contact.together
+        step = 1 if self._by_powers(self._asked(quantity)) else self._contact.together
         parts = np.split(h.ravel(), range(step, h.size, step)) if h.size else []
         rows = np.concatenate([np.empty((0, 4)), *(self._one_asperity(quantity, x) for x in parts)])
         k1, k2, k3, k4 = rows.reshape(*h.shape, 4).transpose(-1, *range(h.ndim))
@@ -230,13 +230,13 @@ class Model:
             If a value is not positive or not reached between h = -40 and 1000 (under other laws than
             Hertz's: up to where the probability of a contact underflows).
         """
-        q = quantity_of(quantity)
+        q = self._asked(quantity)
         target = np.asarray(value, dtype=np.float64)
         if not np.all(np.isfinite(target) & (target > 0)):
             raise ValueError(f"{quantity} = {value!r}: give finite values > 0 {q.unit}")
-        if self._by_powers(quantity):
+        if self._by_powers(q):
             return separations_at(q, np.log(target / self._unit(q)), self._grading(q), self.heights)
-        return self._contact.separations_at(q.of or q.name, target / self._unit(q))
+        return self._contact.separations_at(q.base, target / self._unit(q))
 
     def rule(self, separations: ArrayLike) -> HeightRule:
         """Heights and probabilities for integrals over one asperity at these separations."""
@@ -248,9 +248,10 @@ class Model:
 
         Columns are quantity by quantity, at increasing number of the separation.
         """
-        rule = self.rule(separations)
-        contact = None if all(map(self._by_powers, quantities)) else self._contact.law
-        return rule.fluctuations(rule.terms(quantities, separations, self.grading, contact), self.count)
+        asked, rule = [self._asked(name) for name in quantities], self.rule(separations)
+        contact = None if all(map(self._by_powers, asked)) else self._contact.law
+        terms = rule.terms([q.base for q in asked], separations, self.grading, contact)
+        return rule.fluctuations(terms, self.count)
 
     @cached_property
     def _hertz(self) -> bool:
@@ -261,9 +262,19 @@ class Model:
         law = ContactLaw() if self.law is None else self.law.on(self.surface)
         return MeanContact(law, self.grading, self.heights)
 
-    def _by_powers(self, quantity: str) -> bool:
+    def _asked(self, quantity: str) -> Quantity:
+        """A quantity of a surface that comes closer; where nothing yields it is the same on the way back."""
+        q = quantity_of(quantity)
+        if q.unloading and not self._contact.law.elastic:
+            raise ValueError(
+                f"quantity = {quantity!r}: its mean is not known for law = {self._contact.law.name!r}, whose "
+                f"asperities yield; give {q.base!r}, or simulate the unloading"
+            )
+        return q
+
+    def _by_powers(self, q: Quantity) -> bool:
         """Whether one asperity carries a power of its approach."""
-        return self._hertz and quantity not in LAW_QUANTITIES
+        return self._hertz and q.base not in LAW_QUANTITIES
 
     def _unit(self, q: Quantity) -> float:
         return self.number * q.scale(self.surface)

@@ -22,6 +22,7 @@ from analytic import (
     Model,
     Table,
     Weibull,
+    laws,
     quantity_of,
 )
 from analytic.laws.law import ContactLaw
@@ -105,6 +106,29 @@ CHECKS = [  # physics.md A.1 to A.9: mpmath at 25 digits, Gaussian heights at h 
 @pytest.mark.parametrize(("law", "quantity", "value"), CHECKS)
 def test_check_values(law, quantity, value):
     assert reduced(Model(SURFACE, law=law), quantity, 1.0) == pytest.approx(value, rel=1e-12)
+
+
+OF_THE_PACKAGE = [  # the same table, by the laws of the package, put on a surface
+    (laws.KogutEtsion(critical=0.05), "load", 0.05346624148043353),
+    (laws.KogutEtsion(critical=0.5), "area", 0.08489960729421809),
+    (laws.ChangEtsionBogy(critical=0.5), "load", 0.1088808976941458),
+    (laws.ZhaoMaiettaChang(critical=0.05), "load", 0.04876778006841703),
+    (laws.ZhaoMaiettaChang(critical=0.5), "area", 0.08346351478218223),
+    (laws.JacksonGreen(yield_strength=4e6), "load", 0.06273249305786957),  # 0.004 E*, R/sigma = 1000
+    (laws.JacksonGreen(yield_strength=4e6), "area", 0.1030235128462129),
+    (laws.PowerLawGraded(0.5, reduced_c0=1.0), "area", 1.5 * 0.08331547058768628),
+    (laws.Coated(reduced_thickness=0.5, ratio=3.0, poisson=0.3), "stiffness", 0.1780682584080905),
+    (laws.Coated(reduced_thickness=0.5, ratio=3.0, poisson=0.3), "load", 0.1321165629933847),
+    (laws.Coated(reduced_thickness=0.5, ratio=0.2, poisson=0.3), "load", 0.05308882315001123),
+]
+
+
+@pytest.mark.parametrize(("law", "quantity", "value"), OF_THE_PACKAGE)
+def test_check_values_of_the_laws_of_the_package(law, quantity, value):
+    surface = replace(SURFACE, radius=1e-3)
+    model = Model(surface, law=law)
+    found = float(model.mean(quantity, 1.0)) / model.number / quantity_of(quantity).scale(surface)
+    assert found == pytest.approx(value, rel=1e-12)
 
 
 def test_check_value_with_stiff_tips():
@@ -411,6 +435,19 @@ def test_questions_without_an_answer_are_refused():
         model.mean("load", math.nan)
     with pytest.raises(KeyError, match="load_slope, yielded"):
         model.mean("force", 0.0)
+
+
+def test_unloading_is_known_where_nothing_yields():
+    h = np.array([0.3, 1.0])
+    for law in (None, HalfSpace(0.25)):
+        model = Model(SURFACE, law=law)
+        np.testing.assert_array_equal(model.mean("load_unloading", h), model.mean("load", h))
+        np.testing.assert_array_equal(model.std("load_unloading", h), model.std("load", h))
+        np.testing.assert_array_equal(model.slope("load_unloading", h), model.slope("load", h))
+    model = Model(SURFACE, law=KogutEtsion(0.05))
+    for question in (model.mean, model.slope, model.std, model.separation_at):
+        with pytest.raises(ValueError, match="quantity = 'load_unloading': its mean is not known for law ="):
+            question("load_unloading", 0.5)
 
 
 def test_constants_are_asked_for_when_the_model_is_made():

@@ -51,7 +51,8 @@ class Regimes:
 def regimes_of(law: ContactLaw, grading: Grading, separations: ArrayLike, low: float, high: float) -> Regimes:
     """The regimes of asperities in contact, with ends to the last bit of ``s - h >= limit(e(s))``.
 
-    Ends within 8 spacings of floating-point numbers of a separation, or of each other, are one.
+    Ends within 8 spacings of floating-point numbers of a separation, of a break of the grading, or of each
+    other, are one.
 
     Parameters
     ----------
@@ -79,7 +80,8 @@ def regimes_of(law: ContactLaw, grading: Grading, separations: ArrayLike, low: f
     found = [crossings_of(_limit(law, grading, j), grading, h, low, high) for j in range(count)]
     empty = np.empty(0, np.int64)
     index = np.concatenate([empty, *(c.separation for c in found)])
-    height = merged_heights(np.concatenate([np.empty(0), *(c.height for c in found)]), h[index], h)
+    anchors = np.append(h, grading.breaks)
+    height = merged_heights(np.concatenate([np.empty(0), *(c.height for c in found)]), h[index], anchors)
     step = np.concatenate([empty, *(np.where(c.begins, 1, -1) for c in found)])
 
     touching = np.flatnonzero(h < high)
