@@ -272,6 +272,23 @@ def test_slopes_count_the_jumps(law, grading, quantity):
         assert float(model.slope(quantity, h)) == pytest.approx(differences(model, quantity, h), rel=1e-10)
 
 
+@pytest.mark.parametrize(
+    "law",
+    [
+        laws.KogutEtsion(critical=0.05, bridge="hermite"),
+        laws.ZhaoMaiettaChang(critical=0.05),
+        laws.JacksonGreen(yield_strength=4e6),
+        laws.Coated(ratio=3.0, reduced_thickness=0.5),
+    ],
+    ids=["bridged", "zhao", "jackson", "coated"],
+)
+def test_slopes_of_the_laws_of_the_package(law):
+    model = Model(replace(SURFACE, radius=1e-3), law=law, grading=Exponential(0.2))
+    for quantity in ("load", "area", "stiffness"):
+        slope = float(model.slope(quantity, 0.4))
+        assert slope == pytest.approx(differences(model, quantity, 0.4), rel=1e-10)
+
+
 def test_slopes_at_two_crossings_of_one_limit():
     """Soft tips (gamma = 0) yield between two heights: asperities jump at the upper one as well."""
     model = Model(SURFACE, law=ChangEtsionBogy(0.05), grading=Exponential(0.0))
