@@ -99,7 +99,8 @@ def test_the_root_has_only_the_door():
 
 
 SHARED = {
-    "QUANTITIES", "Body", "Clipped", "Custom", "Exponential", "ExponentialHeights", "Gaussian", "Grading",
+    "ALL_QUANTITIES", "LAW_QUANTITIES", "QUANTITIES", "UNLOADING",
+    "Body", "Clipped", "Custom", "Exponential", "ExponentialHeights", "Gaussian", "Grading",
     "HeightLaw", "HeightTable", "Homogeneous", "MeasuredHeights", "PER_AREA", "Quantity", "ScipyHeights",
     "PiecewiseSeries", "Surface", "Table", "Weibull", "bends", "composite_modulus", "extent",
     "first_negative", "is_data", "quantity_of", "resolved", "resolved_breaks",
