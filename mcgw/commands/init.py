@@ -20,12 +20,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of this command."""
     listed = "; ".join(f"{name}: {what}" for name, what in PRESETS.items())
     parser.add_argument(
-        "preset",
-        nargs="?",
-        default="demo",
-        choices=PRESETS,
-        metavar="PRESET",
-        help=f"{listed} default: demo",
+        "preset", nargs="?", default="demo", choices=PRESETS, metavar="PRESET", help=f"{listed} default: demo"
     )
     parser.add_argument("-o", "--output", type=Path, metavar="SCENE", help="default: PRESET.toml here")
 

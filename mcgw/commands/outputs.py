@@ -11,18 +11,7 @@ from mcgw.store.disk import parts_of
 from mcgw.store.lock import LOCK_FILES
 from mcgw.store.trailer import TRAILER_BYTES, TRAILER_MAGIC
 
-__all__ = [
-    "CSV",
-    "HDF5",
-    "HTML",
-    "JSON",
-    "NPY",
-    "TOML",
-    "Format",
-    "Output",
-    "check_outputs",
-    "figure_format",
-]
+__all__ = ["CSV", "HDF5", "HTML", "JSON", "NPY", "TOML", "Format", "Output", "check_outputs", "figure_format"]
 
 _SIGNATURE = b"\x89HDF\r\n\x1a\n"
 
@@ -79,12 +68,8 @@ class Output:
 def check_outputs(outputs: Iterable[Output], *, inputs: Iterable[Path] = ()) -> None:
     """Refuse what would destroy something or cannot be written; make the folders.
 
-    Parameters
-    ----------
-    outputs : iterable of Output
-        All that the command writes.
-    inputs : iterable of Path
-        All that it reads; with each, the folder of the run that makes it.
+    `outputs` are all that the command writes, `inputs` all that it reads, and with each the folder of the run
+    that makes it.
 
     Raises
     ------

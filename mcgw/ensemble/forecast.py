@@ -60,21 +60,11 @@ def relative_spread(scene: Scene, quantity: str) -> Array:
 
 
 def forecast(scene: Scene) -> Forecast:
-    """Number of surfaces of a scene.
+    """Number of surfaces of a scene, a function of the scene alone.
 
     With `rel_err` it is the smallest of `checkpoints` with which the 95 % interval of every mean reaches no
     farther than that share of it, but at most `n_surfaces`. A mean that would not be known to a factor of two
-    with that many is not waited for.
-
-    Parameters
-    ----------
-    scene : Scene
-        With `rel_err`, or without: then it is `n_surfaces`.
-
-    Returns
-    -------
-    Forecast
-        A function of the scene alone.
+    with that many is not waited for. Without, it is `n_surfaces`.
     """
     if scene.rel_err is None:
         return Forecast({}, scene.n_surfaces, ())

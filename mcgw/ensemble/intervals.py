@@ -124,21 +124,7 @@ def mean_interval(
 ) -> tuple[Array, Array]:
     """Confidence interval of the exact mean, of the sign of the mean seen; nan where contacts are too few.
 
-    Parameters
-    ----------
-    mean : ndarray
-        Mean over the surfaces, shape (separations,).
-    spread : Spread
-        Of one surface.
-    n_surfaces : int
-        How many.
-    level : float, optional
-        Probability that it covers.
-
-    Returns
-    -------
-    (ndarray, ndarray)
-        Lower and upper ends.
+    `mean` is over so many surfaces of this `spread`, shape (separations,), as are both ends.
     """
     low, high = spread.ratio(n_surfaces, level)
     ends = mean / high, mean / low
@@ -148,23 +134,10 @@ def mean_interval(
 def count_interval(
     contacts: Array, asperities: float, *, poisson: bool, level: float = CONFIDENCE
 ) -> tuple[Array, Array]:
-    """Exact confidence interval of an expected number of contacts.
+    """Exact confidence interval of an expected number of contacts, among so many asperities.
 
-    Parameters
-    ----------
-    contacts : ndarray
-        How many there were.
-    asperities : float
-        Of how many, in the mean if that number is `poisson`.
-    poisson : bool
-        Whether it is a Poisson number (Garwood's interval; else that of Clopper and Pearson).
-    level : float, optional
-        Probability, at least, that it covers.
-
-    Returns
-    -------
-    (ndarray, ndarray)
-        Lower and upper ends.
+    By Clopper and Pearson; if the number of asperities is a Poisson one, `asperities` is its mean, and the
+    interval Garwood's. It covers with at least the probability `level`.
     """
     tail, k = (1 - level) / 2, np.asarray(contacts, dtype=np.float64)
     low = np.where(k > 0, gammaincinv(np.maximum(k, 1.0), tail), 0.0)

@@ -102,9 +102,5 @@ def paired_ratio(numerator: Ensemble, denominator: Ensemble, quantity: str) -> P
     residual = (b - ratio * a).var(axis=0, ddof=1)
     apart = b.var(axis=0, ddof=1) + ratio**2 * a.var(axis=0, ddof=1)
     return Paired(
-        quantity,
-        numerator.separations,
-        ratio,
-        np.sqrt(residual / len(a)) / a.mean(axis=0),
-        apart / residual,
+        quantity, numerator.separations, ratio, np.sqrt(residual / len(a)) / a.mean(axis=0), apart / residual
     )

@@ -149,25 +149,11 @@ def solve(
 
 
 def solutions(scene: Scene, given: str, values: Sequence[float]) -> list[Solution]:
-    """Find the separations at which each surface has given loads or real areas.
+    """As `solve`, of loads ("load", N) or real areas ("area", m^2) of a scene.
 
     The asperities of a surface are drawn one by one (sampler ``tail``), once for all values; so this
     serves any separation, and the mean differs from theory by what the finite number of asperities
     does to it, of order 1/N.
-
-    Parameters
-    ----------
-    scene : Scene
-        Its surface, grading, number of surfaces and asperities, and seed are used.
-    given : {"load", "area"}
-        What is known of every surface.
-    values : sequence of float
-        Its values, N or m^2.
-
-    Returns
-    -------
-    list of Solution
-        One for each value.
 
     Raises
     ------

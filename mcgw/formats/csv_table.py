@@ -12,17 +12,7 @@ Row = Sequence[float | str]
 
 
 def write_csv(path: str | Path, header: Sequence[str], rows: Iterable[Row]) -> None:
-    """Write a table.
-
-    Parameters
-    ----------
-    path : str or Path
-        The file.
-    header : sequence of str
-        Names of the columns, with units.
-    rows : iterable of sequences
-        Text as it is; numbers with as many digits as they have.
-    """
+    """Write a table: text as it is, numbers with as many digits as they have."""
     with whole_file(Path(path)) as unfinished, open(unfinished, "w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow(header)

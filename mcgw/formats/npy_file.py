@@ -19,22 +19,12 @@ _HEADERS = {(1, 0): np.lib.format.read_array_header_1_0, (2, 0): np.lib.format.r
 
 
 def open_npy(path: Path) -> NDArray[Any]:
-    """Map an array of real numbers into memory; nothing is allocated or unpickled.
-
-    Parameters
-    ----------
-    path : Path
-        A ``.npy`` file.
-
-    Returns
-    -------
-    ndarray
-        Integers or floats of any shape, read-only.
+    """Map integers or floats of any shape into memory, read-only; nothing is allocated or unpickled.
 
     Raises
     ------
     ValueError
-        If it cannot be read, is damaged, or holds anything else.
+        If the file cannot be read, is damaged, or holds anything else.
     """
     try:
         with os.fdopen(open_regular(path), "rb") as file, warnings.catch_warnings():

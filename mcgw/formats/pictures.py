@@ -17,16 +17,7 @@ def figure_endings() -> tuple[str, ...]:
 
 
 def save_figure(figure: Figure, path: str | Path, **options: Any) -> None:
-    """Write a figure whole or not at all.
-
-    Parameters
-    ----------
-    figure : matplotlib.figure.Figure
-        What to draw.
-    path : str or Path
-        The ending chooses the format.
-    **options
-        For `matplotlib.figure.Figure.savefig`.
+    """Write a figure whole or not at all, in the format of the ending; options are those of ``savefig``.
 
     Raises
     ------

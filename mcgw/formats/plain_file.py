@@ -28,14 +28,7 @@ def open_regular(path: Path) -> int:
 
 
 def read_bytes(path: Path, most: int) -> bytes:
-    """The contents of a regular file.
-
-    Parameters
-    ----------
-    path : Path
-        The file; a link is followed.
-    most : int
-        Bytes that it may have.
+    """The contents of a regular file of at most so many bytes; a link is followed.
 
     Raises
     ------

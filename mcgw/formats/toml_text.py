@@ -20,22 +20,12 @@ _LONG_KEY = re.compile(rf"(?<![\w-])(?:[\w-]++[ \t]*+\.[ \t]*+){{{_MOST_PARTS}}}
 
 
 def loads(text: str) -> dict[str, Any]:
-    """Read a TOML document in a time that grows no faster than its length.
-
-    Parameters
-    ----------
-    text : str
-        The document.
-
-    Returns
-    -------
-    dict
-        As from `tomllib.loads`.
+    """Read a TOML document as `tomllib.loads`, in a time that grows no faster than its length.
 
     Raises
     ------
     ValueError
-        If it is no TOML, a key has a hundred parts, or brackets are nested a hundred deep.
+        If it is not TOML, a key has a hundred parts, or brackets are nested a hundred deep.
     """
     plain = _ASIDE.sub(lambda found: "" if found[0].startswith("#") else "t", text)
     if _LONG_KEY.search(plain):

@@ -14,22 +14,7 @@ __all__ = ["commit_block"]
 
 
 def commit_block(folder: str, first: int, n: int, threads: int | None = 1) -> str:
-    """Draw a block and commit its shard, unless a valid one is there.
-
-    Parameters
-    ----------
-    folder : str
-        The run's, on a disk that all workers share.
-    first, n : int
-        The block.
-    threads : int or None, optional
-        How many to use.
-
-    Returns
-    -------
-    str
-        Digest of the contents.
-    """
+    """Draw a block of the run in a folder and commit its shard, unless a valid one is there: its digest."""
     run, span = RunFolder.open(Path(folder)), Span(first, n)
     if shard := run.held(span):
         return shard.digest

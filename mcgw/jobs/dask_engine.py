@@ -77,11 +77,7 @@ class Dask:
         self._asked, self._threads = -_ASK_AGAIN, 1
         self._died = distributed.KilledWorker
         closed = distributed.comm.CommClosedError
-        self._lost = (
-            CancelledError,
-            distributed.client.FutureCancelledError,
-            closed,
-        )
+        self._lost = (CancelledError, distributed.client.FutureCancelledError, closed)
 
     @property
     def width(self) -> int:
@@ -116,14 +112,7 @@ class Dask:
 
 
 def check_address(address: str, *, insecure: bool = False) -> None:
-    """Refuse a scheduler elsewhere without encryption: whoever reaches it can run programs.
-
-    Parameters
-    ----------
-    address : str
-        Such as ``tcp://127.0.0.1:8786`` or ``tls://node7:8786``.
-    insecure : bool, optional
-        Allow it all the same.
+    """Refuse a scheduler elsewhere without encryption (unless `insecure`): who reaches it can run programs.
 
     Raises
     ------

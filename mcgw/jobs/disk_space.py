@@ -13,20 +13,9 @@ _MOST = 2**63 - 1
 
 
 def check_space(scene: Scene, path: Path, *, rows: int, columns: int, held: int = 0) -> None:
-    """Refuse a run that cannot fit.
+    """Refuse a run that cannot fit, with `held` bytes already at the place of its file.
 
-    Parameters
-    ----------
-    scene : Scene
-        What is asked.
-    path : Path
-        Where its file will lie; the folder exists.
-    rows : int
-        Surfaces that are drawn at a time.
-    columns : int
-        Numbers kept of a surface.
-    held : int, optional
-        Bytes that already lie there.
+    `rows` surfaces of `columns` numbers are drawn at a time.
 
     Raises
     ------

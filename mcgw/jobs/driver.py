@@ -67,25 +67,11 @@ def drive(
     done: Callable[[Span, Any], None],
     signals: Signals,
 ) -> None:
-    """Have every block drawn, in any order.
+    """Have an engine draw every block, in any order, and call `done` with each block and its result.
 
-    A block whose worker died is tried again, alone; after three times it is given up and the others
-    are drawn all the same.
-
-    Parameters
-    ----------
-    engine : Engine
-        Who draws.
-    spans : sequence of Span
-        The blocks.
-    task : callable
-        What to do with a block.
-    arguments : callable
-        Gives the arguments of the task for a block.
-    done : callable
-        Called with each block and its result.
-    signals : Signals
-        Looked at several times a second; when one has come, this returns.
+    `task` is called with what `arguments` gives for a block. A block whose worker died is tried again,
+    alone; after three times it is given up and the others are drawn all the same. When a signal has come,
+    which is asked several times a second, this returns.
 
     Raises
     ------

@@ -11,23 +11,9 @@ _TRIED = 0.05  # rough seconds of a surface up to which a block is drawn to see
 
 
 def seconds_for(scene: Scene, sampler: Sampler, surfaces: int, *, at_least: float = 0.0) -> float:
-    """Expected wall time of drawing some surfaces on this machine.
+    """Expected wall time of drawing some surfaces on this machine, s.
 
-    Parameters
-    ----------
-    scene : Scene
-        What is asked.
-    sampler : Sampler
-        Its sampler.
-    surfaces : int
-        How many.
-    at_least : float, optional
-        Where a rough guess lies below it, that is returned; no block is drawn.
-
-    Returns
-    -------
-    float
-        Seconds, from a block drawn on trial where a surface takes little.
+    From a block drawn on trial where a surface takes little, unless a rough guess lies below `at_least`.
     """
     columns = len(scene.separations) * len(scene.quantities)
     rough = sampler.draws * sampler.seconds_per_draw + columns * _PER_SUM

@@ -96,20 +96,7 @@ class Job:
         return RunFolder.begin(self.folder, self.scene, self.sampler.name, self.rows)
 
     def draw(self, span: Span, threads: int | None) -> Arrays:
-        """Results of some surfaces, in pieces that fit the memory.
-
-        Parameters
-        ----------
-        span : Span
-            Which surfaces.
-        threads : int or None
-            How many to use; the result does not depend on it.
-
-        Returns
-        -------
-        dict of str to ndarray
-            What is kept of them.
-        """
+        """Results of some surfaces, in pieces that fit the memory; they do not depend on `threads`."""
         size = block_size(self.scene, self.sampler)
         with use_threads(threads):
             blocks = drawn_blocks(self.sampler, span.first, span.stop, size)
@@ -126,18 +113,6 @@ def as_recorded(scene: Scene, path: Path) -> Scene:
     """The scene with its grading resolved, or as it was resolved when the run at this place began.
 
     Another processor, or another NumPy, may give other last digits to a Python function.
-
-    Parameters
-    ----------
-    scene : Scene
-        With any grading.
-    path : Path
-        The file to be.
-
-    Returns
-    -------
-    Scene
-        Made of numbers alone.
     """
     if is_data(scene.grading):
         return scene

@@ -63,34 +63,11 @@ def run(
     engine: Engine | None = None,
     progress: Progress | None = None,
 ) -> Ensemble:
-    """Draw the ensemble of a scene into a file, going on where an earlier run stopped.
+    """As `mcgw.run`: draw the ensemble of a scene into a file; the engine is left open.
 
-    Parameters
-    ----------
-    scene : Scene
-        What is asked; `n_surfaces` is the total, or with `rel_err` or `max_seconds` the most. Of a grading
-        that is a Python function the file keeps its series and its name, and never the function.
-    path : str or Path
-        The file; it appears when it is complete. Until then, blocks lie in ``FILE.parts/``.
-    threads : int, optional
-        Default: all there are. The data are the same for any number.
-    engine : Engine, optional
-        Who draws; default: the threads of this process. It is left open.
-    progress : callable, optional
-        Called with the number of surfaces that are done: at the start, and after each block.
-
-    Returns
-    -------
-    Ensemble
-        That reads from the file. Where `rel_err` or `max_seconds` decided how many surfaces, its scene says
-        their number instead. What a file holds already is never too much.
-
-    Raises
-    ------
-    StoreError
-        If the file cannot be written there, or the place belongs to another run.
-    RunError
-        If the run could not be finished; what is done is kept.
+    `progress` is called with the number of surfaces that are done: at the start, and after each block. What
+    a file holds already is never too much. Of a grading that is a Python function the file keeps its series
+    and its name, and never the function.
     """
     path, by = Path(path), _By(engine, threads, progress or _silent)
     scene = as_recorded(scene, path)
@@ -178,30 +155,9 @@ def run_part(
     threads: int | None = None,
     progress: Progress | None = None,
 ) -> int:
-    """Draw one job's share of the blocks; `mcgw.merge` makes the file once all are there.
+    """Draw one job's share of the blocks, and return how many surfaces are still missing of the whole.
 
-    Parameters
-    ----------
-    scene : Scene
-        What is asked, of all jobs together.
-    path : str or Path
-        The file to be, on a disk that all jobs share.
-    part : Part
-        Which share.
-    threads : int, optional
-        Default: all there are.
-    progress : callable, optional
-        Called with the number of surfaces that are done in this share.
-
-    Returns
-    -------
-    int
-        Surfaces still missing of the whole.
-
-    Raises
-    ------
-    StoreError, RunError
-        As `run`.
+    `mcgw.merge` makes the file once all are there, on a disk that all jobs share.
     """
     if scene.max_seconds is not None:
         raise ValueError(

@@ -11,19 +11,11 @@ _LINE = 8  # words
 
 
 def aligned(*shape: int) -> NDArray[np.float64]:
-    """Room for numbers, not filled: a full vector that straddles two lines takes twice as long to load.
+    """Memory for an array of this shape, not filled: its first word begins a line of the cache.
 
-    Parameters
-    ----------
-    *shape : int
-        Of the array.
-
-    Returns
-    -------
-    ndarray
-        In C order, its first word at the beginning of a line.
+    A full vector that straddles two lines takes twice as long to load.
     """
     words = math.prod(shape)
-    room = np.empty(words + _LINE)
-    start = -(room.ctypes.data // room.itemsize) % _LINE
-    return room[start : start + words].reshape(shape)
+    memory = np.empty(words + _LINE)
+    start = -(memory.ctypes.data // memory.itemsize) % _LINE
+    return memory[start : start + words].reshape(shape)

@@ -18,26 +18,12 @@ class ChildError(Exception):
 
 
 def run_child(module: str, *arguments: str, seconds: float | None = None) -> str:
-    """Run a module of this package and return what it prints.
-
-    Parameters
-    ----------
-    module : str
-        Such as ``"mcgw.store.structure"``; it is run as a script, and ends with this process.
-    arguments : str
-        Its command line.
-    seconds : float, optional
-        After which it is killed.
-
-    Returns
-    -------
-    str
-        Its standard output.
+    """Run a module of this package as a script that ends with this process, and return what it prints.
 
     Raises
     ------
     ChildError
-        If it does not end with exit code 0 in time.
+        If it does not end with exit code 0, within so many seconds if that is given.
     """
     home = str(Path(__file__).resolve().parents[2])
     paths = [home, *filter(None, [os.environ.get("PYTHONPATH")])]

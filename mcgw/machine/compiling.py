@@ -21,18 +21,7 @@ if numba.config.DISABLE_JIT:  # type: ignore[attr-defined, unused-ignore]
 
 
 def njit(**options: Any) -> Callable[[Any], Any]:
-    """As `numba.njit`; where a compiled loop cannot be kept for the next time, it is only said.
-
-    Parameters
-    ----------
-    **options
-        Those of `numba.njit`.
-
-    Returns
-    -------
-    callable
-        A decorator.
-    """
+    """As `numba.njit`; where a compiled loop cannot be kept for the next time, it is only said."""
 
     def decorate(function: Any) -> Any:
         try:

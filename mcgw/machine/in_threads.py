@@ -22,19 +22,10 @@ _Result = TypeVar("_Result")
 
 
 def in_threads(call: Callable[[_Item], _Result], items: Sequence[_Item]) -> list[_Result]:
-    """Call for every item, on as many threads as numba has been told to use; calls within a call run alone.
+    """Call for every item, on as many threads as numba has been told to use; results in their order.
 
-    Parameters
-    ----------
-    call : callable
-        Lets go of Python's lock while it computes.
-    items : sequence
-        Shared out in runs of equal length.
-
-    Returns
-    -------
-    list
-        Results in the order of the items.
+    Items are shared out in runs of equal length. What is called lets go of Python's lock while it computes;
+    calls within a call run alone.
     """
 
     def run(places: Iterable[int]) -> list[_Result]:

@@ -7,24 +7,10 @@ __all__ = ["optional", "plotted"]
 
 
 def plotted(result: Any, ax: Any, **options: Any) -> Any:
-    """Draw a result of any layer.
+    """Draw a result of any layer on axes, new ones if `ax` is None, and return them.
 
     Its class cannot import how it is drawn: figures lie above it, and know it. So this is the one call that
     goes up, and the only place that names `mcgw.figures.of_results`, where each class has its function.
-
-    Parameters
-    ----------
-    result : object
-        An ensemble, a comparison, ...
-    ax : matplotlib Axes or None
-        Where; None: new axes.
-    **options
-        Of the function that draws it.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
-        With title and labels.
     """
     return import_module("mcgw.figures.of_results").draw(result, ax, **options)
 

@@ -18,17 +18,11 @@ __all__ = ["end_with"]
 
 
 def end_with(pipe: int, gone: Callable[[], object] | None = None) -> None:
-    """End this process at once when the other end of a pipe is closed.
+    """End this process at once when the other end of a pipe is closed; nothing may ever be written into it.
 
     On Linux the kernel kills it, whatever it is busy with: a call into a C library that holds Python's
-    global lock does not delay it. Elsewhere a thread does, as soon as it can take that lock.
-
-    Parameters
-    ----------
-    pipe : int
-        Descriptor of the reading end; nothing may ever be written into it.
-    gone : callable, optional
-        Returns when the parent is gone; default: reads from the pipe.
+    global lock does not delay it. Elsewhere a thread does, as soon as it can take that lock: when `gone`
+    returns, or reading from the pipe.
     """
     try:
         import fcntl

@@ -14,17 +14,7 @@ Progress = bool | Tell | None
 def told(progress: Progress, unit: str) -> Iterator[Tell]:
     """Whom to tell ``(done, total)``: the one meaning of ``progress=`` in every call that takes it.
 
-    Parameters
-    ----------
-    progress : bool or callable, optional
-        True: a bar; a function: it is called with what is done and the total; default: nobody is told.
-    unit : str
-        What is counted.
-
-    Yields
-    ------
-    callable
-        Takes (done, total).
+    True draws a bar that counts in `unit`; a function is called; None and False tell nobody.
 
     Raises
     ------

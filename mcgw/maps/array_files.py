@@ -25,13 +25,7 @@ def sidecar_of(path: Path) -> Path:
 
 
 def write_npy(topography: Topography, path: Path) -> None:
-    """Write an array and its sidecar.
-
-    Raises
-    ------
-    OSError
-        If a file cannot be written.
-    """
+    """Write an array and its sidecar."""
     dx, dy = topography.pixel
     facts = {
         "filetype": _FILETYPE,

@@ -45,24 +45,11 @@ class Asperities:
 
 
 def asperities_of(scene: Scene, surface: int, *, width: float | None = None) -> Asperities:
-    """Give the asperities of one surface of an ensemble their places.
+    """Give the asperities of one surface of an ensemble their places, those that cannot touch included.
 
     The heights are the very ones whose loads are in the ensemble's file; the positions are uniform and
-    independent, and a pure function of the seed and the surface.
-
-    Parameters
-    ----------
-    scene : Scene
-        With sampler ``cells``, ``tail`` or ``auto``.
-    surface : int
-        Its number, from 0.
-    width : float, optional
-        Extent of the nominal area along x, m; default: it is a square.
-
-    Returns
-    -------
-    Asperities
-        All of them, those that cannot touch included.
+    independent, and a pure function of the seed and the surface. The nominal area is `width` m along x; it is
+    a square if that is left out.
 
     Raises
     ------

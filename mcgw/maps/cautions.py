@@ -14,22 +14,7 @@ _SKEW, _ALPHA, _FEW, _STREAKY = 0.3, 1.5, 100, 1.5
 
 
 def cautions(fit: Fit, topography: Topography, cutoff: float | None) -> list[str]:
-    """Warnings about a fit, each in one line that says what to do.
-
-    Parameters
-    ----------
-    fit : Fit
-        Of this map.
-    topography : Topography
-        The map as measured.
-    cutoff : float or None
-        As given to `fit_map`, m.
-
-    Returns
-    -------
-    list of str
-        Empty if nothing speaks against it.
-    """
+    """Warnings about the fit of a map, each in one line that says what to do."""
     return [
         *flaws(fit, topography),
         *_of_the_pixel(fit, max(topography.pixel), cutoff),

@@ -144,7 +144,7 @@ def envelope(
     periodic: bool = False,
     window: tuple[float, float, float, float] | None = None,
 ) -> Topography:
-    """Upper envelope of the caps ``z_i - r^2/(2R)`` on a grid.
+    """Upper envelope of the caps ``z_i - r^2/(2R)`` on a grid of rows and columns, heights in m.
 
     Parameters
     ----------
@@ -156,11 +156,6 @@ def envelope(
         Whether caps reach across the edges.
     window : (float, float, float, float), optional
         Left, right, bottom and top of what is mapped, inside the area, m; default: all of it.
-
-    Returns
-    -------
-    Topography
-        Heights in m, above the mean of all summit heights.
 
     Raises
     ------
@@ -190,20 +185,7 @@ def envelope(
 
 
 def hidden_summits(field: Asperities, *, periodic: bool = False) -> NDArray[np.bool_]:
-    """Which summits lie below the cap of a taller neighbour.
-
-    Parameters
-    ----------
-    field : Asperities
-        One or more asperities.
-    periodic : bool, optional
-        Whether caps reach across the edges.
-
-    Returns
-    -------
-    ndarray of bool
-        In the order of `field`.
-    """
+    """Which summits of a field lie below the cap of a taller neighbour, across the edges too if periodic."""
     b = bins_of(field)
     hidden = np.empty(field.number, dtype=np.bool_)
     hidden[b.order] = _hidden(b.x, b.y, b.z, b.starts, b.shape, b.size, 0.5 / b.radius, periodic)

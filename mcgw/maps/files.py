@@ -27,30 +27,14 @@ def files_of_map(path: Path) -> list[Path]:
 def write_map(
     topography: Topography, path: Path, field: Asperities | None = None, *, scene: str = ""
 ) -> list[Path]:
-    """Write a map in the format of the file's ending.
+    """Write a map in the format of the file's ending, one of `WRITTEN`; returns all files that were written.
 
-    Parameters
-    ----------
-    topography : Topography
-        The map.
-    path : Path
-        Ending in one of `WRITTEN`.
-    field : Asperities, optional
-        Goes into an HDF5 file with it.
-    scene : str, optional
-        Text of the scene, for an HDF5 file.
-
-    Returns
-    -------
-    list of Path
-        What was written.
+    The field of asperities and the text of the scene go into an HDF5 file with it.
 
     Raises
     ------
     ValueError
         If the ending is unknown or the map too large for the format.
-    OSError
-        If it cannot be written.
     """
     match path.suffix.lower():
         case ".sdf":

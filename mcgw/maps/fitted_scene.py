@@ -90,29 +90,10 @@ def heights_beside(path: Path) -> Path:
 
 
 def write_scene(scene: Scene, path: Path, measured: Fit | None, comments: list[str]) -> list[Path]:
-    """Write a scene with what was found as comments above it.
+    """Write a scene from `fitted_scene` with comments above it; returns the files that were written.
 
-    Parameters
-    ----------
-    scene : Scene
-        From `fitted_scene`.
-    path : Path
-        The TOML file.
-    measured : Fit or None
-        If given, its summit heights go to a file beside the scene, named after it, which the scene
-        names in the place of a list.
-    comments : list of str
-        Lines above the scene.
-
-    Returns
-    -------
-    list of Path
-        What was written.
-
-    Raises
-    ------
-    OSError
-        If a file cannot be written.
+    The summit heights of a fit that is `measured` go to a file beside the scene, which names it in the place
+    of a list.
     """
     text = "".join(f"# {line}\n" for line in comments) + "\n"
     if measured is None:

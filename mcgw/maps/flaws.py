@@ -12,20 +12,7 @@ _FEW_WAVES = 50  # sigma known to a tenth
 
 
 def flaws(fit: Fit, topography: Topography) -> list[str]:
-    """Warnings about what lies on a map, each in one line that says what to do.
-
-    Parameters
-    ----------
-    fit : Fit
-        Of this map.
-    topography : Topography
-        As measured.
-
-    Returns
-    -------
-    list of str
-        Empty if nothing was found.
-    """
+    """Warnings about what lies on a map, each in one line that says what to do."""
     return [
         *_units(topography),
         *_spikes(topography),

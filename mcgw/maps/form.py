@@ -21,19 +21,9 @@ _ORDER = {"none": -1, "plane": 1, "quadratic": 2}
 
 
 def without_form(topography: Topography, form: Form) -> Topography:
-    """Subtract the plane, or the second-order polynomial, of least squares.
+    """Subtract the plane, or the second-order polynomial, of least squares from a map that lacks no points.
 
-    Parameters
-    ----------
-    topography : Topography
-        Without missing points.
-    form : {"none", "plane", "quadratic"}
-        What to take off.
-
-    Returns
-    -------
-    Topography
-        The rest; no longer periodic unless nothing was taken off.
+    The rest is no longer periodic, unless nothing was taken off.
     """
     order = _ORDER[form]
     if order < 0:
@@ -64,17 +54,8 @@ def gaussian_transmission(q: Array, cutoff: float) -> Array:
 def smooth(topography: Topography, cutoff: float) -> Topography:
     """Apply the areal Gaussian filter of ISO 16610-61 and leave off the margin it cannot reach.
 
-    Parameters
-    ----------
-    topography : Topography
-        Without missing points.
-    cutoff : float
-        Wavelength of which half the amplitude is left, m.
-
-    Returns
-    -------
-    Topography
-        Smaller by one cutoff along each edge, unless it is periodic.
+    Of the wavelength `cutoff`, m, half the amplitude is left. Unless it is periodic, the map becomes smaller
+    by one cutoff along each edge. No point may be missing.
 
     Raises
     ------

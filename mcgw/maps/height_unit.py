@@ -8,21 +8,7 @@ __all__ = ["height_unit", "metres_in"]
 
 
 def height_unit(path: Path, told: str | None, given: str | None) -> tuple[float, str]:
-    """Size of the unit of heights, and what it was taken for if nobody told it.
-
-    Parameters
-    ----------
-    path : Path
-        For messages.
-    told : str or None
-        By the file.
-    given : str or None
-        By the user, for files that tell none.
-
-    Returns
-    -------
-    (float, str)
-        m, and the unit that was assumed: "m", or empty if it was told or given.
+    """Size of the unit of heights, m, and the unit that was assumed ("m") if neither file nor user tells one.
 
     Raises
     ------

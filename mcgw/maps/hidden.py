@@ -61,7 +61,7 @@ def _hiding(blur: float) -> Array:
 
 
 def visible(overlap: float, blur: float = 0.0) -> Visible:
-    """Statistics of the visible summits of Gaussian heights.
+    """Statistics of the visible summits of Gaussian heights, by quadrature over heights and distances.
 
     Parameters
     ----------
@@ -69,11 +69,6 @@ def visible(overlap: float, blur: float = 0.0) -> Visible:
         ``eta R sigma``.
     blur : float, optional
         Distance p from a valley that a summit needs, over ``sqrt(2 R sigma)``.
-
-    Returns
-    -------
-    Visible
-        By quadrature over heights and distances.
     """
     s, w = _nodes()
     p = w * np.exp(-4 * math.pi * overlap * _hiding(blur))
@@ -85,7 +80,7 @@ def visible(overlap: float, blur: float = 0.0) -> Visible:
 
 
 def unhidden(eta: float, radius: float, sigma: float, blur: float = 0.0) -> tuple[float, float] | None:
-    """Density and deviation of all summits from those of the visible ones.
+    """Density and standard deviation of all summits from those of the visible ones, SI units.
 
     Parameters
     ----------
@@ -97,7 +92,7 @@ def unhidden(eta: float, radius: float, sigma: float, blur: float = 0.0) -> tupl
     Returns
     -------
     (float, float) or None
-        eta and sigma; None if no field of independent caps shows so many.
+        None if no field of independent caps shows so many.
     """
     reduced = blur / math.sqrt(2 * radius * sigma)
 

@@ -61,17 +61,8 @@ def step_of(topography: Topography) -> Step | None:
 
     On at least half of all lines across it, one difference between medians of small areas must be six
     times the usual one, all of one sign, and two times any of the other sign: waves, form and roughness
-    change their level everywhere, and a ridge rises and falls.
-
-    Parameters
-    ----------
-    topography : Topography
-        As measured; without missing points.
-
-    Returns
-    -------
-    Step or None
-        None if no step is larger than the standard deviation of all heights without plane.
+    change their level everywhere, and a ridge rises and falls. It must be larger than the standard deviation
+    of all heights without plane. No point may be missing.
     """
     medians = _medians(block_means(topography.heights, _COARSE))
     found = []
@@ -100,20 +91,10 @@ def _medians(z: Array) -> Array:
 
 
 def form_left(topography: Topography, form: Form) -> FormLeft | None:
-    """Find a second-order surface that is more than long waves.
+    """Find a second-order surface that is more than long waves, once this form is taken off.
 
-    Parameters
-    ----------
-    topography : Topography
-        As measured; without missing points.
-    form : {"none", "plane", "quadratic"}
-        What is taken off.
-
-    Returns
-    -------
-    FormLeft or None
-        None unless it holds more than a twentieth of the variance, and three times what the longest
-        waves do, two on the map, once it is taken off.
+    It must hold more than a twentieth of the variance, and three times what the longest waves do, two on the
+    map, once it is taken off too. No point may be missing.
     """
     taken, rest = without_form(topography, form).heights, without_form(topography, "quadratic").heights
     left = taken - rest

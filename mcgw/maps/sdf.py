@@ -55,23 +55,12 @@ class _Header:
 
 
 def write_sdf(topography: Topography, path: Path, *, text: bool = False) -> None:
-    """Write a map.
-
-    Parameters
-    ----------
-    topography : Topography
-        At most 65535 points along each axis.
-    path : Path
-        Where to.
-    text : bool, optional
-        ASCII in the place of binary; both keep every digit.
+    """Write a map of at most 65535 points along each axis, binary or as ASCII; both keep every digit.
 
     Raises
     ------
     ValueError
         If the map is too large for the format.
-    OSError
-        If the file cannot be written.
     """
     rows, columns = topography.heights.shape
     if max(rows, columns) > _MOST_POINTS:
@@ -130,25 +119,13 @@ def _write_text(topography: Topography, file: BinaryIO, date: str) -> None:
 
 
 def read_sdf(path: Path) -> Topography:
-    """Read a map, binary or ASCII.
-
-    Parameters
-    ----------
-    path : Path
-        The file.
-
-    Returns
-    -------
-    Topography
-        Heights in m, missing points nan.
+    """Read a map, binary or ASCII: heights in m, missing points nan.
 
     Raises
     ------
     ValueError
         If the file is no SDF, is cut short, or declares what it does not hold. Nothing larger than
         the file's own contents is allocated.
-    OSError
-        If it cannot be read.
     """
     with open(path, "rb") as file:
         magic = file.read(8)

@@ -110,21 +110,9 @@ def _power(spectrum: Spectrum, shape: tuple[int, int], pixel: tuple[float, float
 def moments_on_grid(
     spectrum: Spectrum, shape: tuple[int, int], pixel: tuple[float, float]
 ) -> SpectralMoments:
-    """Expected moments of `gaussian_map`, with sums in the place of integrals over the spectrum.
+    """Expected moments of `gaussian_map` with the same arguments, averages over profiles along x and y.
 
-    Parameters
-    ----------
-    spectrum : Spectrum
-        Its two wavelengths must fit the grid.
-    shape : (int, int)
-        Rows and columns.
-    pixel : (float, float)
-        dx and dy, m.
-
-    Returns
-    -------
-    SpectralMoments
-        Averages over profiles along x and y.
+    Sums stand in the place of integrals over the spectrum.
     """
     power = _power(spectrum, shape, pixel)
     power[:, 1 : (shape[1] + 1) // 2] *= 2  # rfft2 leaves out their conjugates
@@ -138,7 +126,7 @@ def moments_on_grid(
 def gaussian_map(
     spectrum: Spectrum, shape: tuple[int, int], pixel: tuple[float, float], rng: np.random.Generator
 ) -> Topography:
-    """Draw a periodic isotropic Gaussian map.
+    """Draw a periodic isotropic Gaussian map: heights of mean 0 whose expected variance is ``rms**2``.
 
     Parameters
     ----------
@@ -150,11 +138,6 @@ def gaussian_map(
         dx and dy, m.
     rng : numpy.random.Generator
         Where the noise comes from.
-
-    Returns
-    -------
-    Topography
-        Heights of mean 0 whose expected variance is ``rms**2``.
 
     Raises
     ------

@@ -38,20 +38,10 @@ class Spikes:
 
 
 def spikes_of(topography: Topography) -> Spikes | None:
-    """Find points that stand out of the ring three pixels around them.
+    """Find points that stand out of the ring three pixels around them, on a map that lacks no points.
 
     By more than three times the range of heights on that ring, and on half of all rings of the map: the
     scale is that of the surface next to the point, and a few spikes do not change it.
-
-    Parameters
-    ----------
-    topography : Topography
-        As measured; without missing points.
-
-    Returns
-    -------
-    Spikes or None
-        None if there are none.
     """
     shape = topography.heights.shape
     if min(shape) <= 2 * _REACH:

@@ -143,19 +143,9 @@ def _pass(z: Any, dx: Any, dy: Any, across: Any, sums: Any, summits: Any, part_o
 
 
 def summit_sums_of(topography: Topography, *, across: int = 4) -> SummitSums:
-    """Go over a map once.
+    """Go once over a map that lacks no points, with `across` sub-areas along each axis.
 
-    Parameters
-    ----------
-    topography : Topography
-        Without missing points.
-    across : int, optional
-        Sub-areas along each axis.
-
-    Returns
-    -------
-    SummitSums
-        Of all points (of a map that is not periodic: without four at each edge).
+    Four points at each edge are left out, unless the map is periodic.
 
     Raises
     ------

@@ -26,33 +26,19 @@ _MISSING = ("", "BAD", "---")
 
 
 def read_text(path: Path, pixel: tuple[float, float] | None = None, unit: str | None = None) -> Topography:
-    """Read a matrix of numbers, one row a line, parted by spaces, tabs, semicolons or commas.
+    """Read a matrix of numbers, one row a line, parted by spaces, tabs, semicolons or commas; heights in m.
 
     Where something else parts the numbers of a line, a comma inside one is its decimal mark. Lines that
     begin with # are comments; of those that Gwyddion writes, ``Width``, ``Height`` and ``Value units``
-    are understood.
-
-    Parameters
-    ----------
-    path : Path
-        The file; UTF-8, or UTF-16 with its mark.
-    pixel : (float, float), optional
-        Size of a pixel, m; needed where no comment tells the width and height of the map.
-    unit : str, optional
-        Of the heights, where no comment tells it; m if left out.
-
-    Returns
-    -------
-    Topography
-        Heights in m; ``nan``, ``BAD``, ``---`` and nothing between two separators are missing points.
+    are understood. ``nan``, ``BAD``, ``---`` and nothing between two separators are missing points. The text
+    is UTF-8, or UTF-16 with its mark. What no comment tells is given: the size of a pixel, m, and the unit of
+    the heights, by default m.
 
     Raises
     ------
     ValueError
         If a row has another length than the first, a word is not a number, a comma may mean two things, or
         no pixel size is known.
-    OSError
-        If it cannot be read.
     """
     rows: list[NDArray[np.float64]] = []
     extent: dict[str, float] = {}

@@ -50,21 +50,12 @@ def block_means(heights: Array, most: int) -> Array:
 
 
 def waves_of(topography: Topography) -> Waves:
-    """Errors that follow from the power of every wave on a map.
+    """Errors that follow from the power of every wave on a map without form, which lacks no points.
 
     A moment is a sum of the powers of waves, each exponentially distributed: its variance is the sum of
     their squared means, and that is half the sum of the squares seen. For m0 this is ``2/A`` times the
-    integral of the squared autocorrelation. Ratios follow from derivatives of their logarithms.
-
-    Parameters
-    ----------
-    topography : Topography
-        Without missing points and without form.
-
-    Returns
-    -------
-    Waves
-        None of it is seen by sub-areas of the map, which all lie on the same waves.
+    integral of the squared autocorrelation. Ratios follow from derivatives of their logarithms. Sub-areas of
+    the map see none of it: they all lie on the same waves.
     """
     z = block_means(topography.heights - topography.heights.mean(), _ACROSS)
     rows, columns = topography.heights.shape

@@ -28,20 +28,7 @@ _MOST_RATIO, _SMALL = 200, 2**26  # a bomb: unpacks to more than 64 MiB, 200 to 
 
 
 def write_x3p(topography: Topography, path: Path) -> None:
-    """Write a map with every digit.
-
-    Parameters
-    ----------
-    topography : Topography
-        Missing points are nan in the matrix, as the standard has it for real numbers.
-    path : Path
-        Where to.
-
-    Raises
-    ------
-    OSError
-        If the file cannot be written.
-    """
+    """Write a map with every digit; missing points are nan, as the standard has it for real numbers."""
     data = np.ascontiguousarray(topography.heights, dtype="<f8")
     main = _description(topography, hashlib.md5(data.data, usedforsecurity=False).hexdigest())
     sums = f"{hashlib.md5(main, usedforsecurity=False).hexdigest()} *{_MAIN}\n"
@@ -103,24 +90,12 @@ def _add(parent: ElementTree.Element, tree: dict[str, object]) -> None:
 
 
 def read_x3p(path: Path) -> Topography:
-    """Read a map.
-
-    Parameters
-    ----------
-    path : Path
-        The file.
-
-    Returns
-    -------
-    Topography
-        Heights in m, missing points nan.
+    """Read a map: heights in m, missing points nan.
 
     Raises
     ------
     ValueError
         If the file is no X3P, is damaged, or declares what it does not hold.
-    OSError
-        If it cannot be read.
     """
     try:
         with zipfile.ZipFile(path) as archive:

@@ -94,19 +94,7 @@ mcgw compare again.h5</pre>
 
 
 def report_html(ensemble: Ensemble, attributes: dict[str, Any]) -> str:
-    """Write the report of an ensemble.
-
-    Parameters
-    ----------
-    ensemble : Ensemble
-        Of independent surfaces.
-    attributes : dict
-        Those of its file: scene, digest, versions, ...
-
-    Returns
-    -------
-    str
-        The page.
+    """The page of an ensemble and of the attributes of its file: scene, digest, versions, ...
 
     Raises
     ------

@@ -50,20 +50,7 @@ class Plan:
 
 
 def plan_of(scene: Scene, *, threads: int | None = None) -> Plan:
-    """Look at what a scene needs, and time a small block of it.
-
-    Parameters
-    ----------
-    scene : Scene
-        What is asked.
-    threads : int, optional
-        Default: all there are.
-
-    Returns
-    -------
-    Plan
-        Nothing of the trial block is kept.
-    """
+    """Look at what a scene needs, and time a small block of it, of which nothing is kept."""
     sampler = sampler_of(scene)
     columns = len(scene.separations) * len(scene.quantities)
     columns += (sampler.moments + sampler.cells) * (scene.keep == "moments")

@@ -16,18 +16,7 @@ _FEW = 30.0  # contacts a surface, below which single surfaces are far from Gaus
 
 
 def cautions(scene: Scene) -> list[str]:
-    """What a reader should know before trusting the numbers.
-
-    Parameters
-    ----------
-    scene : Scene
-        What is asked; what was drawn by chance does not matter.
-
-    Returns
-    -------
-    list of str
-        One line each; empty where the model has no known trouble.
-    """
+    """What a reader should know before trusting the numbers of a scene, a line each."""
     found = [_crowd, _half, _depth, _slope, _few_contacts, _other_number, _negative_modulus]
     return [*perhaps_other_units(scene), *(line for caution in found for line in caution(scene))]
 

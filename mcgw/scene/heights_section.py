@@ -32,20 +32,7 @@ _MOST_BYTES = 2**28
 
 
 def heights_law(section: Section, folder: Path) -> HeightLaw:
-    """Read the law of heights.
-
-    Parameters
-    ----------
-    section : Section
-        The table; mistakes are noted in it.
-    folder : Path
-        Where a file of heights lies.
-
-    Returns
-    -------
-    HeightLaw
-        Gaussian where something is wrong or left out.
-    """
+    """Read the height law; mistakes are noted in the section, and give the Gaussian one."""
     law = section.choice("law", "gaussian", LAWS)
     match law:
         case "weibull":
@@ -86,22 +73,12 @@ def _table(section: Section, folder: Path) -> HeightLaw:
 
 
 def read_heights(path: Path) -> NDArray[np.float64]:
-    """Heights from a file, in any unit.
-
-    Parameters
-    ----------
-    path : Path
-        ``.npy``, or text with one height a line; lines that begin with # are left out.
-
-    Returns
-    -------
-    ndarray
-        Shape (heights,).
+    """Heights from ``.npy`` or text with one a line (# begins a comment), in any unit; shape (heights,).
 
     Raises
     ------
     ValueError
-        If it cannot be read, is longer than 256 MB, or does not hold numbers; nothing of what stands
+        If the file cannot be read, is longer than 256 MB, or does not hold numbers; nothing of what stands
         there is quoted.
     """
     if path.suffix == ".npy":
@@ -138,7 +115,7 @@ def _scipy(section: Section) -> HeightLaw:
 
 
 def heights_table(law: HeightLaw, file: str | None = None) -> dict[str, Any]:
-    """The table [heights] of a law, read again the same; measured heights by the name of their file.
+    """The table [heights] of a height law, read again the same; measured heights by the name of their file.
 
     Raises
     ------

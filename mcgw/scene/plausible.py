@@ -27,18 +27,10 @@ RANGES = {
     ),
     "radius": Range(1e-10, 0.1, "is less than an atom", "is not a radius of a summit", ("um", "mm")),
     "eta": Range(
-        1e4,
-        1e19,
-        "is less than a summit a square centimetre",
-        "is more than a summit an atom",
-        ("/mm^2",),
+        1e4, 1e19, "is less than a summit a square centimetre", "is more than a summit an atom", ("/mm^2",)
     ),
     "nominal_area": Range(
-        1e-17,
-        10.0,
-        "is less than a hundred atoms",
-        "is larger than two bodies in contact",
-        ("mm^2", "um^2"),
+        1e-17, 10.0, "is less than a hundred atoms", "is larger than two bodies in contact", ("mm^2", "um^2")
     ),
     "E_star": Range(1e3, 2e12, "is softer than any gel", "is stiffer than diamond", ("GPa", "MPa")),
 }
@@ -46,18 +38,7 @@ _HARDLY_APART = 1e-3  # d/sigma: separations that all lie so close to 0 are leng
 
 
 def perhaps_other_units(scene: Scene) -> list[str]:
-    """Values that are perhaps given in another unit, each with what was perhaps meant.
-
-    Parameters
-    ----------
-    scene : Scene
-        What is asked.
-
-    Returns
-    -------
-    list of str
-        One line each; empty if every value is a usual one.
-    """
+    """Values that are perhaps given in another unit, a line each with what was perhaps meant."""
     found = []
     for key, known in RANGES.items():
         value = float(getattr(scene.surface, key))

@@ -18,17 +18,9 @@ _LAW_OF_HEIGHTS = ("support", "breaks", "density", "from_below", "from_above")
 
 
 def read_values(given: Mapping[str, Any]) -> tuple[dict[str, Any], list[str]]:
-    """Read what Python gives for the fields of a scene, as its file would be read.
+    """Read what Python gives for the fields of a scene (None: left out) as its file would be read.
 
-    Parameters
-    ----------
-    given : mapping
-        By the names of the fields of `mcgw.Scene`; None where a field is left out.
-
-    Returns
-    -------
-    (dict, list of str)
-        The values, those left out with their defaults; and one line for each mistake.
+    Returns the values, those left out with their defaults, and one line for each mistake.
     """
     problems: list[str] = []
     table = {key: as_toml(value) for key, value in given.items() if value is not None}

@@ -66,18 +66,7 @@ def load_scene(path: str | Path, *, seed: Callable[[], int | None] | None = None
 
 
 def files_of(path: str | Path) -> list[Path]:
-    """File of a scene, and the files that it names.
-
-    Parameters
-    ----------
-    path : str or Path
-        A scene that `load_scene` has read.
-
-    Returns
-    -------
-    list of Path
-        Itself first, then every ``file`` of its sections.
-    """
+    """The file of a scene that was read, then every ``file`` that its sections name."""
     path = Path(path)
     sections = loads(read_bytes(path, _MOST_BYTES).decode()).values()
     named = [section["file"] for section in sections if isinstance(section, dict) and "file" in section]

@@ -13,17 +13,7 @@ def storable(scene: Scene) -> Scene:
     """The scene with its grading resolved, unless it is one that a file holds as it is.
 
     All samplers draw with this one, so that in memory, in a file, and gone on with from there, a scene has
-    the same bits.
-
-    Parameters
-    ----------
-    scene : Scene
-        With any grading.
-
-    Returns
-    -------
-    Scene
-        Itself, or one whose grading is an `analytic.PiecewiseSeries` over all heights that count.
+    the same bits. A Python function becomes an `analytic.PiecewiseSeries` over all heights that count.
 
     Raises
     ------

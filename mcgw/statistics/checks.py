@@ -81,21 +81,8 @@ class Slope:
 def slope(against: str, sizes: Sequence[float], squares: Sequence[Array], excess: Sequence[float]) -> Slope:
     """Exponent of the root mean square error, each size with its own independent errors.
 
-    Parameters
-    ----------
-    against : str
-        What is varied.
-    sizes : sequence of float
-        How much there is of it.
-    squares : sequence of ndarray
-        Squared errors at each size.
-    excess : sequence of float
-        Excess kurtosis of an error at each size.
-
-    Returns
-    -------
-    Slope
-        By weighted least squares on logarithms, whose mean and variance are those of a chi-square.
+    By weighted least squares on logarithms, whose mean and variance are those of a chi-square: `squares` are
+    the squared errors at each size, `excess` is the excess kurtosis of one error there.
     """
     degrees = np.array([x.size / (1 + k / 2) for x, k in zip(squares, excess, strict=True)])
     bias = psi(degrees / 2) - np.log(degrees / 2)

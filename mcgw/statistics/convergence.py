@@ -89,12 +89,7 @@ class Convergence(Shown):
 
 
 def converge(
-    scene: Scene,
-    draw: Draw | None = None,
-    *,
-    seeds: int = SEEDS,
-    progress: Progress = None,
-    **changes: Any,
+    scene: Scene, draw: Draw | None = None, *, seeds: int = SEEDS, progress: Progress = None, **changes: Any
 ) -> Convergence:
     """Hold a sampler to the exact law of a scene.
 

@@ -27,20 +27,7 @@ _BREAKS = 46.0  # t up to which kinks are looked for: p = 1e-20
 
 
 def reference(scene: Scene, chosen: tuple[int, ...]) -> Array:
-    """Exact mean of the first quantity of a scene.
-
-    Parameters
-    ----------
-    scene : Scene
-        With any height law and grading.
-    chosen : tuple of int
-        Numbers of the separations.
-
-    Returns
-    -------
-    ndarray
-        In the unit of the quantity, for the scene's number of asperities, shape (chosen,).
-    """
+    """Exact mean of the first quantity of a scene, SI, at the chosen separations; shape (chosen,)."""
     q = quantity_of(scene.quantities[0])
     of_one = [_one_asperity(scene, q, scene.separations[k]) for k in chosen]
     return scene.n_asperities * q.scale(scene.surface) * np.array(of_one)

@@ -147,17 +147,9 @@ def _check_tables(path: Path, scene: Scene, datasets: dict[str, Any]) -> None:
 
 
 def verify(path: Path) -> tuple[str, str]:
-    """What is wrong with an ensemble file, and the digest of what it holds now.
+    """What is wrong with a finished file, and the digest of what it holds now.
 
-    Parameters
-    ----------
-    path : Path
-        A finished file.
-
-    Returns
-    -------
-    (str, str)
-        The first is empty for a file that is bit by bit as it was written.
+    The first is empty for a file that is bit by bit as it was written.
     """
     problem = ""
     try:

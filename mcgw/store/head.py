@@ -19,15 +19,7 @@ MOST_SCALE = 2**20  # values of a scale up to which they are looked at on openin
 
 
 def head_digest(file: h5py.File, names: Sequence[str]) -> str:
-    """SHA-256 of the head; it does not depend on how HDF5 laid out the file.
-
-    Parameters
-    ----------
-    file : h5py.File
-        Open for reading.
-    names : sequence of str
-        Paths of its tables.
-    """
+    """SHA-256 of the head, with tables of these paths; it does not depend on how HDF5 laid out the file."""
     lines = [*_attributes("/", file.attrs)]
     for name in sorted(names):
         lines += _table(name, file[name])

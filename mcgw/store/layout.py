@@ -34,25 +34,9 @@ _STORED: Any = {"compression": "gzip", "compression_opts": 1, "shuffle": True, "
 def build(
     file: h5py.File, scene: Scene, sampler: str, pieces: Iterable[tuple[Span, Arrays]], **attributes: Any
 ) -> str:
-    """Fill an empty HDF5 file with an ensemble.
+    """Fill an empty HDF5 file with all surfaces of a scene, in order, and with more root attributes.
 
-    Parameters
-    ----------
-    file : h5py.File
-        New.
-    scene : Scene
-        What was asked.
-    sampler : str
-        What drew it.
-    pieces : iterable of (Span, arrays)
-        All surfaces in order.
-    attributes : optional
-        More root attributes.
-
-    Returns
-    -------
-    str
-        The digest of scene and data, computed from the pieces; it is also an attribute.
+    Returns the digest of scene and data, computed from the pieces; it is also an attribute.
 
     Raises
     ------

@@ -35,16 +35,10 @@ class LockedError(StoreError):
 
 @contextmanager
 def locked(folder: Path, *, shared: bool = False, patience: float | None = None) -> Iterator[None]:
-    """Hold the folder of a run; it is made if it is not there.
+    """Hold the folder of a run, from `mcgw.store.disk.parts_of`; it is made if it is not there.
 
-    Parameters
-    ----------
-    folder : Path
-        From `mcgw.store.disk.parts_of`. It gets the files `LOCK_FILES`, which go with it.
-    shared : bool, optional
-        One of several jobs that each make a share of the blocks.
-    patience : float, optional
-        Seconds to wait for another holder; default: `PATIENCE`.
+    `shared` is for one of several jobs that each make a share of the blocks; `patience` is how many seconds
+    to wait for another holder, by default `PATIENCE`. The files `LOCK_FILES` in the folder go with it.
 
     Raises
     ------

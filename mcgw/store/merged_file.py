@@ -26,16 +26,7 @@ _CACHE = 2**25  # of chunks that a shard fills only in part
 
 
 def merge_into(folder: Path, target: Path, temporary: Path) -> None:
-    """Write the ensemble of a run under a temporary name.
-
-    Parameters
-    ----------
-    folder : Path
-        Of the run; its shards hold every surface that `target` does not.
-    target : Path
-        The file as it is, if there is one: its surfaces come first.
-    temporary : Path
-        Where to write; must not exist.
+    """Write the ensemble of a run under a temporary name: the surfaces of `target`, then those of the shards.
 
     Raises
     ------

@@ -124,25 +124,7 @@ def pack(arrays: Arrays) -> bytes:
 
 
 def commit_shard(path: Path, run: str, span: Span, arrays: Arrays, seconds: float) -> Shard:
-    """Write a shard in one atomic step.
-
-    Parameters
-    ----------
-    path : Path
-        Its name.
-    run : str
-        Identity of the run.
-    span : Span
-        Its surfaces.
-    arrays : dict of str to ndarray
-        With a leading axis of surfaces, but for the ragged table.
-    seconds : float
-        What drawing took.
-
-    Returns
-    -------
-    Shard
-        As it lies on the disk.
+    """Write a shard of a run in one atomic step, with the seconds that drawing it took.
 
     Raises
     ------

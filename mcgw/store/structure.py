@@ -24,12 +24,7 @@ from mcgw.store.head import head_digest
 __all__ = ["RefusedError", "check_plain", "describe"]
 
 GROUP = "drawn"
-_FILTERS = {
-    h5py.h5z.FILTER_DEFLATE,
-    h5py.h5z.FILTER_SHUFFLE,
-    h5py.h5z.FILTER_FLETCHER32,
-    h5py.h5z.FILTER_LZF,
-}
+_FILTERS = {h5py.h5z.FILTER_DEFLATE, h5py.h5z.FILTER_SHUFFLE, h5py.h5z.FILTER_FLETCHER32, h5py.h5z.FILTER_LZF}
 _MOST_ATTRIBUTES, _MOST_TEXT = 64, 2**22
 _READ_ALL = 2**26  # stored bytes up to which all is read here first
 _MOST_EXPANSION = 1100  # deflate cannot shrink more
@@ -41,19 +36,7 @@ class RefusedError(Exception):
 
 
 def check_plain(file: h5py.File, *, most: int = 64) -> list[str]:
-    """Paths of the datasets, each plain.
-
-    Parameters
-    ----------
-    file : h5py.File
-        Open for reading.
-    most : int, optional
-        Datasets there may be.
-
-    Returns
-    -------
-    list of str
-        In order of name.
+    """Paths of the datasets of an open file, in order of name, each plain; at most so many.
 
     Raises
     ------
@@ -115,19 +98,9 @@ def _check_storage(name: str, item: Any, plist: Any) -> None:
 
 
 def describe(path: str, *, read: bool = True) -> dict[str, Any]:
-    """Attributes and datasets of a file, all checked.
+    """``{"attributes": {...}, "datasets": {name: [type, shape]}, "head": digest}`` of a file, all checked.
 
-    Parameters
-    ----------
-    path : str
-        An HDF5 file.
-    read : bool, optional
-        Read every number once, if the file is small: HDF5 may fail on any of them.
-
-    Returns
-    -------
-    dict
-        ``{"attributes": {...}, "datasets": {name: [type, shape]}, "head": digest}``.
+    If it is small, every number is read once, unless `read` is False: HDF5 may fail on any of them.
 
     Raises
     ------

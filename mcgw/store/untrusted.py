@@ -27,17 +27,7 @@ _SMALL = 2**24  # bytes up to which all of a file is checked: a hundredth of a s
 
 
 def examine(path: Path) -> dict[str, Any]:
-    """Attributes and datasets of an HDF5 file that is safe to open.
-
-    Parameters
-    ----------
-    path : Path
-        The file.
-
-    Returns
-    -------
-    dict
-        ``{"attributes": {...}, "datasets": {name: [type, shape]}, "head": digest}``.
+    """What `mcgw.store.structure.describe` tells of an HDF5 file that is safe to open.
 
     Raises
     ------
