@@ -87,7 +87,8 @@ if TYPE_CHECKING:
     from mcgw.statistics.comparison import compare
     from mcgw.statistics.convergence import converge
     from mcgw.statistics.tradeoff import tradeoff
-    from mcgw.store.ensembles import open_ensemble, save
+    from mcgw.store.ensembles import open_ensemble
+    from mcgw.store.saving import save
 
 __all__ = [
     "Body",
@@ -150,7 +151,7 @@ _HOME = {
     "paired_ratio": "ensemble.paired",
     "regrade": "ensemble.regrading",
     "run": "jobs.from_python",
-    "save": "store.ensembles",
+    "save": "store.saving",
     "scene_from": "scene.scene_file",
     "scene_text": "scene.scene_file",
     "simulate": "ensemble.simulation",

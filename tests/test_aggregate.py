@@ -10,7 +10,8 @@ from scipy.stats import kurtosis, skew
 
 import analytic
 import mcgw
-from mcgw.ensemble.ensemble import Arrays, Ensemble
+from mcgw.ensemble.ensemble import Ensemble
+from mcgw.ensemble.results import MemoryResults
 from mcgw.sampling import samplers
 from mcgw.sampling.aggregate import _law_of_moments, _partly
 from mcgw.sampling.drawing import Crowds
@@ -65,7 +66,7 @@ def test_the_scores_can_fail(make_scene):
     assert scores(dataclasses.replace(ensemble, scene=fewer))[1] > GATE
     rng = np.random.default_rng(1)
     gaussian = ensemble.mean("load") + ensemble.std("load") * rng.standard_normal((100_000, 1))
-    assert scores(Ensemble(scene, "aggregate", Arrays({"load": gaussian})))[2] > GATE
+    assert scores(Ensemble(scene, "aggregate", MemoryResults({"load": gaussian})))[2] > GATE
 
 
 def test_where_the_approximation_begins_to_show(make_scene):

@@ -8,7 +8,8 @@ from oracles import ensemble_arrays
 
 import analytic
 import mcgw
-from mcgw.ensemble.ensemble import Arrays, Ensemble
+from mcgw.ensemble.ensemble import Ensemble
+from mcgw.ensemble.results import MemoryResults
 from mcgw.figures.comparison import save_comparison
 from mcgw.statistics.comparison import FALSE_ALARM, compare, verdict
 
@@ -60,8 +61,8 @@ def test_holds_for_every_sampler(make_scene, sampler, count):
 )
 def test_fails_for_a_wrong_law(make_scene, flaw):
     scene = make_scene(n_surfaces=500)
-    assert verdict(Ensemble(scene, "direct", Arrays(ensemble_arrays(scene, 2)))).agrees
-    assert not verdict(Ensemble(scene, "direct", Arrays(ensemble_arrays(scene, 2, **flaw)))).agrees
+    assert verdict(Ensemble(scene, "direct", MemoryResults(ensemble_arrays(scene, 2)))).agrees
+    assert not verdict(Ensemble(scene, "direct", MemoryResults(ensemble_arrays(scene, 2, **flaw)))).agrees
 
 
 def test_fails_for_a_grading_off_by_2_percent(make_scene):

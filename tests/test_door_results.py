@@ -8,7 +8,8 @@ import pytest
 
 import analytic
 import mcgw
-from mcgw.ensemble.ensemble import Arrays, Ensemble
+from mcgw.ensemble.ensemble import Ensemble
+from mcgw.ensemble.results import MemoryResults
 from mcgw.figures.of_results import draw
 from mcgw.formats.sheet import Sheet, brief
 from mcgw.machine.progress import told
@@ -159,7 +160,7 @@ def test_the_look_of_an_ensemble_has_its_means(ensemble, results):
 
 
 def test_a_large_ensemble_is_not_read_for_a_look(ensemble):
-    class Untouched(Arrays):
+    class Untouched(MemoryResults):
         def rows(self):
             return 10**9
 
@@ -328,7 +329,7 @@ def test_regrading_draws_the_same_surfaces_once_more(scene, law, sampler):
 
 def test_surfaces_that_are_others_are_not_regraded(scene, ensemble):
     wrong = {name: ensemble[name] * (1 + 1e-6 * (name == "load")) for name in scene.quantities}
-    other = Ensemble(scene, ensemble.sampler, Arrays(wrong))
+    other = Ensemble(scene, ensemble.sampler, MemoryResults(wrong))
     with pytest.raises(ValueError, match="cannot be drawn again: their load is another one"):
         mcgw.regrade(other, mcgw.Homogeneous())
     direct = mcgw.simulate(scene, sampler="direct", n_surfaces=3)

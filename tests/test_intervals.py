@@ -12,9 +12,10 @@ from scipy.stats import t as student
 
 import mcgw
 from analytic import Exponential, ExponentialHeights, Gaussian, MeasuredHeights, Weibull
-from mcgw.ensemble.ensemble import Arrays, Ensemble
+from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.forecast import forecast
 from mcgw.ensemble.intervals import FEWEST, TOO_FEW, Spread, count_interval, pearson3_quantile, spread_of
+from mcgw.ensemble.results import MemoryResults
 from mcgw.figures.comparison import quantity_figure
 from mcgw.reports.html import _table
 from mcgw.reports.text import COMPARISON_HEADER, comparison_rows, comparison_table
@@ -44,7 +45,7 @@ def intervals(ensemble, surfaces):
     for name in scene.quantities:
         parts = ensemble.values(name).reshape(SEEDS, surfaces).T
         wide = Scene(**{**vars(scene), "n_surfaces": surfaces, "separations": scene.separations * SEEDS})
-        found[name] = (parts, Ensemble(wide, "cells", Arrays({name: parts})).interval(name))
+        found[name] = (parts, Ensemble(wide, "cells", MemoryResults({name: parts})).interval(name))
     return found
 
 
@@ -156,7 +157,7 @@ def test_count_interval_of_few_of_very_many_is_garwoods(k):
 def test_contacts_are_counted_exactly(make_scene):
     contacts = np.array([[2**53 - 1], [2**53], [3]])
     scene = make_scene(separations=(0.0,), quantities=("contacts",), n_surfaces=3, n_asperities=2**53)
-    ensemble = Ensemble(scene, "cells", Arrays({"contacts": np.repeat(contacts, 3000, axis=0)}))
+    ensemble = Ensemble(scene, "cells", MemoryResults({"contacts": np.repeat(contacts, 3000, axis=0)}))
     assert ensemble._contacts()[0] == float(3000 * (2**54 + 2))
 
 

@@ -96,12 +96,13 @@ def test_a_poisson_number_for_a_fixed_one_fails(ensembles):
 )
 def test_a_wrong_law_fails(ensembles, flaw, where):
     """Exponent 1.4 for 3/2, normals biased by 0.01, a tail cut at 2.5 sigma."""
-    from mcgw.ensemble.ensemble import Arrays, Ensemble
+    from mcgw.ensemble.ensemble import Ensemble
+    from mcgw.ensemble.results import MemoryResults
 
     scene = ensembles["direct", "fixed"].scene
-    right = Ensemble(scene, "direct", Arrays(ensemble_arrays(scene, 5)))
+    right = Ensemble(scene, "direct", MemoryResults(ensemble_arrays(scene, 5)))
     assert max(scores(right)) < GATE
-    wrong = Ensemble(scene, "direct", Arrays(ensemble_arrays(scene, 5, **flaw)))
+    wrong = Ensemble(scene, "direct", MemoryResults(ensemble_arrays(scene, 5, **flaw)))
     assert scores(wrong)[where] > GATE
 
 

@@ -23,10 +23,10 @@ from mcgw.jobs.merging import merge
 from mcgw.jobs.running import Part, run, run_part
 from mcgw.machine.child_process import ChildError, run_child
 from mcgw.store import ensembles, lock, merged_file, structure
-from mcgw.store.ensembles import save
 from mcgw.store.leftovers import tidy
 from mcgw.store.lock import LockedError, locked
 from mcgw.store.run_folder import RunFolder, parts_of
+from mcgw.store.saving import save
 
 HERE = Path(__file__).parent
 SIZE = 16

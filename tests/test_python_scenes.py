@@ -278,7 +278,7 @@ def bent_at_an_edge(s):
 @pytest.mark.parametrize("grading", [np.cosh, lambda s: 1 + 0.3 * np.tanh(s), bent_at_an_edge])
 def test_regraded_by_a_function_and_saved(make, tmp_path, grading):
     base = run(make("lambda", grading=analytic.Homogeneous(), keep="moments"), tmp_path / "base.h5")
-    new = ensembles.save(regrade(base, grading), tmp_path / "new.h5")
+    new = mcgw.save(regrade(base, grading), tmp_path / "new.h5")
     fresh = mcgw.simulate(make("lambda", grading=grading, keep="sums"))
     for quantity in fresh.scene.quantities:
         x, y = new.values(quantity), fresh.values(quantity)

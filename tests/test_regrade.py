@@ -10,7 +10,7 @@ import mcgw
 from mcgw.ensemble.paired import paired_ratio
 from mcgw.ensemble.regrading import regrade
 from mcgw.jobs.running import run
-from mcgw.store.ensembles import save
+from mcgw.store.saving import save
 
 H = tuple(np.linspace(0, 4, 21))
 

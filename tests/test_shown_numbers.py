@@ -13,7 +13,7 @@ from scipy.stats import t as student
 import analytic
 import mcgw
 from mcgw.cli import main
-from mcgw.ensemble.ensemble import Arrays
+from mcgw.ensemble.results import MemoryResults
 from mcgw.jobs.running import run
 from mcgw.store import ensembles, structure
 
@@ -157,7 +157,7 @@ def test_compare_ends_with_1_and_says_so_where_they_disagree(file, tmp_path, cap
     """The same file, its loads read 5 % larger."""
     opened = mcgw.open_ensemble(file)
     arrays = {name: opened.values(name) * (1.05 if name == "load" else 1) for name in QUANTITIES}
-    wrong = dataclasses.replace(opened, sums=Arrays(arrays))
+    wrong = dataclasses.replace(opened, sums=MemoryResults(arrays))
     assert "theory agree" in out_of(["compare", file, "-o", tmp_path / "c.png"], capsys)
     monkeypatch.setattr(ensembles, "open_ensemble", lambda path: wrong)
     assert "theory DISAGREE" in out_of(["compare", file, "-o", tmp_path / "c.png"], capsys, code=1)

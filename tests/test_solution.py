@@ -9,7 +9,8 @@ import pytest
 import analytic
 import mcgw
 from mcgw.cli import main
-from mcgw.ensemble.solution import separation_on, solutions
+from mcgw.ensemble.separation import separation_on
+from mcgw.ensemble.solution import solutions
 from mcgw.formats.units import parse
 from mcgw.reports.solution import solution_table
 

@@ -16,7 +16,7 @@ import mcgw
 from mcgw.errors import StoreError
 from mcgw.jobs.job import Job
 from mcgw.jobs.running import Part, run, run_part
-from mcgw.store import ensembles, layout, run_folder, structure
+from mcgw.store import ensembles, layout, run_folder, saving, structure
 from mcgw.store.run_folder import RunFolder, parts_of
 from mcgw.store.trailer import trailer_of
 
@@ -65,7 +65,7 @@ def old_file(scene, file, monkeypatch):
     """The same as version 0.2 wrote it."""
     file.unlink()
     monkeypatch.setattr(layout, "FORMAT", (1, 0))
-    monkeypatch.setattr(ensembles, "trailer_notes", lambda opened: {})
+    monkeypatch.setattr(saving, "trailer_notes", lambda opened: {})
     run(scene, file)
     return file
 

@@ -10,7 +10,7 @@ import analytic
 import mcgw
 from mcgw.figures.tradeoff import save_tradeoff
 from mcgw.statistics.methods import _ByMoments, reference
-from mcgw.statistics.tradeoff import tradeoff, write_csv
+from mcgw.statistics.tradeoff import tradeoff
 
 
 @pytest.fixture(scope="module")
@@ -65,9 +65,7 @@ def test_advice_holds_for_100_seeds(found):
     assert np.median(seconds) < 2 * advice.cpu
 
 
-def test_record_and_figure(found, tmp_path):
-    write_csv(found, tmp_path / "x.csv")
-    assert len((tmp_path / "x.csv").read_text().splitlines()) == len(found.points) + 1
+def test_figure(found, tmp_path):
     save_tradeoff(found, tmp_path / "x.png")
     assert (tmp_path / "x.png").read_bytes().startswith(b"\x89PNG")
 

@@ -10,7 +10,7 @@ from scipy.stats import chi2
 
 import analytic
 import mcgw
-from mcgw.ensemble.ensemble import Arrays
+from mcgw.ensemble.results import MemoryResults
 from mcgw.statistics.comparison import FALSE_ALARM, Verdict, compare, verdict
 
 QUANTITIES = tuple(analytic.QUANTITIES)
@@ -42,7 +42,7 @@ def scaled(ensemble, factors):
     arrays = {name: ensemble.values(name).astype(float) for name in ensemble.scene.quantities}
     for (name, k), factor in factors.items():
         arrays[name][:, k] *= factor
-    return dataclasses.replace(ensemble, sums=Arrays(arrays))
+    return dataclasses.replace(ensemble, sums=MemoryResults(arrays))
 
 
 def test_the_ensemble_agrees_as_it_is(ensemble):

@@ -31,7 +31,8 @@ def execute(args: argparse.Namespace) -> int:
     from mcgw.formats.csv_table import write_csv
     from mcgw.reports.text import RATIO_HEADER, ratio_rows, ratio_table
     from mcgw.scene.grading_section import read_grading
-    from mcgw.store.ensembles import finished, open_ensemble, save
+    from mcgw.store.ensembles import finished, open_ensemble
+    from mcgw.store.saving import save
 
     old = open_ensemble(args.file)
     grading: Grading

@@ -21,10 +21,12 @@ def execute(args: argparse.Namespace) -> int:
     from mcgw.commands.notes import tell_notes
     from mcgw.commands.outputs import CSV, Output, check_outputs, figure_format
     from mcgw.figures.tradeoff import save_tradeoff
+    from mcgw.formats.csv_table import write_csv
     from mcgw.formats.units import parse
     from mcgw.machine.progress import bar
+    from mcgw.reports.tradeoff import tradeoff_header, tradeoff_rows
     from mcgw.scene.scene_file import files_of, load_scene
-    from mcgw.statistics.tradeoff import tradeoff, write_csv
+    from mcgw.statistics.tradeoff import tradeoff
 
     seconds = parse(args.seconds, "s", "--seconds")
     scene = load_scene(args.scene)
@@ -34,7 +36,7 @@ def execute(args: argparse.Namespace) -> int:
     tell_notes(scene)
     with bar("s", terminal=True) as show:
         found = tradeoff(scene, seconds=seconds, progress=show)
-    write_csv(found, table)
+    write_csv(table, tradeoff_header(found), tradeoff_rows(found))
     save_tradeoff(found, figure)
     quantity = scene.quantities[0]
     shown = ", ".join(f"{h:g}" for h in found.separations)

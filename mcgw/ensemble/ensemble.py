@@ -2,13 +2,14 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from analytic import PER_AREA, MeasuredHeights, quantity_of
 from mcgw.ensemble.intervals import CONFIDENCE, count_interval, mean_interval, spread_of
+from mcgw.ensemble.results import Results
 from mcgw.ensemble.tables import dataframe, dataset
 from mcgw.formats.sheet import Sheet, Shown
 from mcgw.machine.late import plotted
@@ -17,40 +18,13 @@ from mcgw.scene.samplers import promise_of
 from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_text
 
-__all__ = ["Arrays", "Ensemble", "Results"]
+__all__ = ["Ensemble"]
 
 Array = NDArray[np.float64]
 
 _ROWS = 8192  # surfaces at a time, for ensembles larger than the memory
 _LOW = 2**32 - 1  # the lower half of an integer: sums of halves do not overflow
 _MOST_SHOWN = 20_000_000  # numbers that are read for a short look; of more, only how many there are
-
-
-class Results(Protocol):
-    """Where an ensemble's numbers lie: in memory or in a file."""
-
-    def read(self, name: str, start: int, stop: int | None) -> Array:
-        """Rows `start` to `stop` (None: to the end) of a dataset."""
-        ...
-
-    def rows(self) -> int:
-        """Number of surfaces there are."""
-        ...
-
-
-@dataclass(frozen=True)
-class Arrays:
-    """Numbers in memory, by name."""
-
-    arrays: dict[str, Array]
-
-    def read(self, name: str, start: int, stop: int | None) -> Array:
-        """Rows `start` to `stop` (None: to the end) of an array."""
-        return self.arrays[name][start:stop]
-
-    def rows(self) -> int:
-        """Length of the arrays."""
-        return len(next(iter(self.arrays.values())))
 
 
 @dataclass(frozen=True, repr=False)
@@ -214,8 +188,7 @@ class Ensemble(Shown):
     def _number(self, name: str) -> Array:
         """Contacts of all surfaces that count: exact but for the rounding to double precision."""
         total = [0] * len(self.scene.separations)
-        for start in range(0, self.n_surfaces, _ROWS):
-            rows = self.sums.read(name, start, min(start + _ROWS, self.n_surfaces)).astype(np.int64)
+        for rows in self._chunks(name, np.int64):
             halves = zip((rows >> 32).sum(axis=0).tolist(), (rows & _LOW).sum(axis=0).tolist(), strict=True)
             total = [so_far + (high << 32) + low for so_far, (high, low) in zip(total, halves, strict=True)]
         return np.array([float(x) for x in total])
@@ -295,9 +268,9 @@ class Ensemble(Shown):
             raise KeyError(f"{quantity!r} is not in this ensemble; it has {have}")
         return name, divisor
 
-    def _chunks(self, name: str) -> Iterator[Array]:
+    def _chunks(self, name: str, kind: type = np.float64) -> Iterator[NDArray[Any]]:
         for start in range(0, self.n_surfaces, _ROWS):
-            yield self.sums.read(name, start, min(start + _ROWS, self.n_surfaces)).astype(np.float64)
+            yield self.sums.read(name, start, min(start + _ROWS, self.n_surfaces)).astype(kind)
 
     def _moments(self, quantity: str) -> tuple[Array, Array]:
         """Mean and standard deviation; shifted by the first row, so nothing cancels."""

@@ -79,9 +79,9 @@ class Spread:
         error = np.where(usual | (most * error < 0.5), error, np.nan)
         return 1 + error * np.where(usual, low, -most), 1 + error * np.where(usual, high, most)
 
-    def reach(self, n_surfaces: float | Array, level: float = CONFIDENCE) -> Array:
+    def reach(self, n_surfaces: float | Array) -> Array:
         """How far the interval of the mean reaches, over the mean; nan where there are too few contacts."""
-        low, high = self.ratio(n_surfaces, level)
+        low, high = self.ratio(n_surfaces)
         return np.asarray(np.maximum(1 / low - 1, 1 - 1 / high))
 
 

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mcgw.ensemble.ensemble import Ensemble
+from mcgw.formats.evenly import evenly
 from mcgw.formats.sheet import Sheet, Shown
 from mcgw.machine.late import plotted
 
@@ -46,7 +47,6 @@ class Paired(Shown):
 
     def sheet(self) -> Sheet:
         """Ratios at some separations."""
-        n = len(self.separations)
         rows = [
             [
                 f"{self.separations[k]:g}",
@@ -54,7 +54,7 @@ class Paired(Shown):
                 f"{self.stderr[k]:.1g}",
                 f"{self.gain[k]:.3g}",
             ]
-            for k in np.unique(np.linspace(0, n - 1, min(n, _MOST_ROWS)).round().astype(int))
+            for k in evenly(len(self.separations), _MOST_ROWS)
         ]
         head = ["d/sigma", "ratio", "stderr", "variance, independent/paired"]
         return Sheet(f"Ratio of the mean {self.quantity} over the same surfaces", (), head, rows)

@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from analytic import Grading
-from mcgw.ensemble.ensemble import Arrays, Ensemble
+from mcgw.ensemble.ensemble import Ensemble
+from mcgw.ensemble.results import MemoryResults, joined
 from mcgw.ensemble.simulation import blocks, kept
 from mcgw.sampling.block import Block
 from mcgw.sampling.counted import Counted
@@ -85,17 +86,16 @@ def regrade(
         sums = cells.sums(first, np.ascontiguousarray(moments.T), np.ascontiguousarray(counts.T), own)
         parts.append(kept(scene, Block(sums, moments, counts, own)))
         first += len(moments)
-    arrays = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
-    return Ensemble(scene, ensemble.sampler, Arrays(arrays))
+    return Ensemble(scene, ensemble.sampler, MemoryResults(joined(parts)))
 
 
 def _read(ensemble: Ensemble, drawn: Counted) -> Iterator[tuple[Array, Array, Array]]:
     """Moments, counts and single asperities of some surfaces at a time, as the ensemble keeps them."""
     _check_cells(drawn, ensemble)
-    extras = ensemble.sums.read("extras", 0, None)
+    outside = ensemble.sums.read("extras", 0, None)
     for first in range(0, ensemble.n_surfaces, _ROWS):
         stop = min(first + _ROWS, ensemble.n_surfaces)
-        own = extras[(extras[:, 0] >= first) & (extras[:, 0] < stop)]
+        own = outside[(outside[:, 0] >= first) & (outside[:, 0] < stop)]
         yield ensemble.sums.read("moments", first, stop), ensemble.sums.read("cells", first, stop), own
 
 

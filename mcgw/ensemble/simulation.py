@@ -10,8 +10,9 @@ import numba
 import numpy as np
 
 from analytic import quantity_of
-from mcgw.ensemble.ensemble import Arrays, Ensemble
+from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.forecast import without_rule
+from mcgw.ensemble.results import MemoryResults, joined
 from mcgw.machine.in_threads import in_threads, pieces
 from mcgw.machine.memory import check_memory
 from mcgw.machine.progress import Progress, told
@@ -95,8 +96,7 @@ def simulate(
             tell(drawn, scene.n_surfaces)
             if until is not None and monotonic() > until:
                 break
-    arrays = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
-    return Ensemble(replace(scene, n_surfaces=drawn), sampler.name, Arrays(arrays))
+    return Ensemble(replace(scene, n_surfaces=drawn), sampler.name, MemoryResults(joined(parts)))
 
 
 def blocks(scene: Scene, sampler: Sampler) -> Iterator[Block]:
@@ -154,13 +154,13 @@ def block_size(scene: Scene, sampler: Sampler) -> int:
     return (size // GROUP // 4 * 4 + 2) * GROUP if size > GROUP else max(size, 1)
 
 
-def seconds_per_surface(scene: Scene, sampler: Sampler, *, rounds: int = 3) -> float:
+def seconds_per_surface(scene: Scene, sampler: Sampler) -> float:
     """Median wall time of drawing one surface in a block, after a warm-up."""
     size = min(block_size(scene, sampler), 256)
     n = at_a_time(size)
     list(drawn_blocks(sampler, 0, n, size))
     times = []
-    for _ in range(rounds):
+    for _ in range(3):
         start = perf_counter()
         list(drawn_blocks(sampler, 0, n, size))
         times.append(perf_counter() - start)

@@ -1,32 +1,29 @@
 """The separation at a given load or real area: by theory, and on every surface for itself."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import brentq
 from scipy.special import stdtrit
 
 from analytic import QUANTITIES, Quantity, quantity_of
 from mcgw.ensemble.intervals import FEWEST, interval_text
+from mcgw.ensemble.separation import crossing, separation_on
 from mcgw.formats.sheet import Sheet, Shown
 from mcgw.machine.late import plotted
 from mcgw.sampling.asperities import heights
 from mcgw.scene.reading import argument, as_toml
 from mcgw.scene.scene import Scene
 
-__all__ = ["Solution", "separation_on", "solutions", "solve"]
+__all__ = ["Solution", "solutions", "solve"]
 
 Array = NDArray[np.float64]
 
 _MARGIN = 6.0  # standard deviations of a surface's separation that are drawn at once
 _MOST_HEIGHTS = 3e9
 _STEP = 0.5  # by which the search for a start goes down, where the margin was not enough
-_ENOUGH = 1e-14  # relative excess of load where Newton's steps are rounding errors
-_FINE = 1 / 64  # step of the search where a negative modulus makes the sum rise and fall
-_LOWEST = -40.0  # separation where that search ends
 _NOTHING = 1e-16  # share of the heights below all that are drawn
 _NEGATIVE = (
     "{} = {:g} {}: {} does not reach it without asperities of negative modulus, at s = {:.4g}; give less, "
@@ -254,18 +251,10 @@ def _anywhere(scene: Scene, q: Quantity, s: Array, target: float, start: float) 
         found = _above(scene, q, s, target, -np.inf)
         if found is not None or scene.negative == "error":
             return found
-        return _crossing(lambda h: _power_sum(q, s, modulus, h) - target, float(negative.max()))
+        return crossing(lambda h: _power_sum(q, s, modulus, h) - target, float(negative.max()))
     while _power_sum(q, s, modulus, start) < target:
         start -= _STEP
     return separation_on(s, modulus, q.exponent, target, start)
-
-
-def _crossing(excess: Callable[[float], float], high: float) -> float | None:
-    """Largest root below `high`, where the function is negative; None down to the end of theory's range."""
-    for low in np.arange(high - _FINE, _LOWEST, -_FINE).tolist():
-        if excess(low) >= 0:
-            return float(brentq(excess, low, low + _FINE, xtol=1e-15, rtol=1e-14))
-    return None
 
 
 def _sorted(s: Array) -> Array:
@@ -288,37 +277,3 @@ def _sums(scene: Scene, s: Array, h: float) -> Iterator[tuple[str, float]]:
     for name, q in QUANTITIES.items():
         weights = modulus if q.modulus else 1.0
         yield name, q.scale(scene.surface) * float(np.sum(weights * (s - h) ** q.exponent))
-
-
-def separation_on(heights: Array, modulus: Array, exponent: float, target: float, start: float) -> float:
-    """Separation h at which ``sum modulus (s - h)_+^exponent`` over given heights is `target`.
-
-    The root of order `exponent` of that sum is a norm of the approaches, so convex and decreasing
-    in h: Newton's steps on it run up to the solution from below and never pass it.
-
-    Parameters
-    ----------
-    heights, modulus : ndarray
-        Reduced heights in falling order, and E*(s)/E* >= 0 of each; shape (n,).
-    exponent : float
-        At least 1.
-    target : float
-        Positive.
-    start : float
-        A separation where the sum is at least `target`.
-
-    Returns
-    -------
-    float
-        Reduced separation.
-    """
-    rising, h = -heights, start  # as searchsorted wants it
-    while True:
-        n = int(np.searchsorted(rising, -h))
-        d = heights[:n] - h
-        forces = modulus[:n] * d ** (exponent - 1)
-        total = float(forces @ d)
-        step = total / float(forces.sum()) * (1 - (target / total) ** (1 / exponent))
-        if total <= target * (1 + _ENOUGH) or h + step <= h:
-            return h
-        h += step

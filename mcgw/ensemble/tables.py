@@ -11,11 +11,11 @@ from mcgw.machine.late import optional
 
 __all__ = ["dataframe", "dataset"]
 
-Arrays = Mapping[str, NDArray[Any]]
+Values = Mapping[str, NDArray[Any]]
 _DIMS = ("surface", "separation")
 
 
-def dataset(arrays: Arrays, separations: NDArray[np.float64], attributes: Mapping[str, Any]) -> Any:
+def dataset(sums: Values, separations: NDArray[np.float64], attributes: Mapping[str, Any]) -> Any:
     """An `xarray.Dataset` with dimensions, units and long names as in the file.
 
     Raises
@@ -24,10 +24,10 @@ def dataset(arrays: Arrays, separations: NDArray[np.float64], attributes: Mappin
         If xarray is not installed.
     """
     xarray = optional("xarray", "to_xarray")
-    rows = len(next(iter(arrays.values())))
+    rows = len(next(iter(sums.values())))
     variables = {
         name: (_DIMS, values, {"units": quantity_of(name).unit, "long_name": quantity_of(name).long_name})
-        for name, values in arrays.items()
+        for name, values in sums.items()
     }
     scales = {
         "surface": ("surface", np.arange(rows), {"units": "1", "long_name": "number of the surface"}),
@@ -40,7 +40,7 @@ def dataset(arrays: Arrays, separations: NDArray[np.float64], attributes: Mappin
     return xarray.Dataset(variables, scales, dict(attributes))
 
 
-def dataframe(arrays: Arrays, separations: NDArray[np.float64]) -> Any:
+def dataframe(sums: Values, separations: NDArray[np.float64]) -> Any:
     """A `pandas.DataFrame`, a row for each surface and separation, a column for each quantity.
 
     Raises
@@ -49,6 +49,6 @@ def dataframe(arrays: Arrays, separations: NDArray[np.float64]) -> Any:
         If pandas is not installed.
     """
     pandas = optional("pandas", "to_dataframe")
-    rows = len(next(iter(arrays.values())))
+    rows = len(next(iter(sums.values())))
     index = pandas.MultiIndex.from_product([np.arange(rows), separations], names=_DIMS)
-    return pandas.DataFrame({name: values.ravel() for name, values in arrays.items()}, index=index)
+    return pandas.DataFrame({name: values.ravel() for name, values in sums.items()}, index=index)

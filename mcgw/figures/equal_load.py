@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 import analytic
 from analytic import Exponential
 from mcgw.ensemble.paired import paired_ratio
-from mcgw.ensemble.solution import separation_on
+from mcgw.ensemble.separation import separation_on
 from mcgw.figures.data import GAMMA, FigureData, Panel, Points, Series
 from mcgw.figures.samples import Samples
 

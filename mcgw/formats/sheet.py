@@ -11,10 +11,10 @@ __all__ = ["Sheet", "Shown", "brief"]
 _LONGEST = 88  # characters of one fact
 
 
-def brief(text: str, most: int = _LONGEST) -> str:
-    """A text on one line of so many characters, with dots in the place of its end if it is longer."""
+def brief(text: str) -> str:
+    """A text on one line, with dots in the place of its end if it is longer than 88 characters."""
     plain = one_line(text)
-    return plain if len(plain) <= most else f"{plain[: most - 3]}..."
+    return plain if len(plain) <= _LONGEST else f"{plain[: _LONGEST - 3]}..."
 
 
 @dataclass(frozen=True)

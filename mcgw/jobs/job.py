@@ -4,9 +4,8 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 
-import numpy as np
-
 from analytic import PiecewiseSeries, is_data
+from mcgw.ensemble.results import joined
 from mcgw.ensemble.simulation import block_size, drawn_blocks, kept, use_threads
 from mcgw.errors import StoreError
 from mcgw.formats.files import check_output
@@ -17,13 +16,13 @@ from mcgw.scene.scene_file import scene_from, scene_text
 from mcgw.scene.storable import storable
 from mcgw.store.ensembles import finished, recorded_scene
 from mcgw.store.run_folder import RunFolder, parts_of
-from mcgw.store.shards import Arrays, Span
+from mcgw.store.shards import Span, Tables
 
 __all__ = ["Job", "as_recorded"]
 
 _BYTES = 2**23  # of a shard: large enough that its flushing costs little
 _DRAWS = 4e8  # numbers drawn for a shard: a second or so
-_OF_AN_EXTRA = 3  # numbers kept of an asperity outside the cells: surface, height, weight
+_OUTSIDE = 3  # numbers kept of an asperity outside the cells: surface, height, weight
 
 
 @dataclass(frozen=True)
@@ -79,7 +78,7 @@ class Job:
         sums = len(self.scene.separations) * len(self.scene.quantities)
         if self.scene.keep == "sums":
             return sums
-        return sums + self.sampler.moments + self.sampler.cells + _OF_AN_EXTRA
+        return sums + self.sampler.moments + self.sampler.cells + _OUTSIDE
 
     def done(self) -> int:
         """Surfaces that its file holds.
@@ -95,13 +94,12 @@ class Job:
         """The folder of its blocks, new or as it is. Only with the lock."""
         return RunFolder.begin(self.folder, self.scene, self.sampler.name, self.rows)
 
-    def draw(self, span: Span, threads: int | None) -> Arrays:
+    def draw(self, span: Span, threads: int | None) -> Tables:
         """Results of some surfaces, in pieces that fit the memory; they do not depend on `threads`."""
         size = block_size(self.scene, self.sampler)
         with use_threads(threads):
             blocks = drawn_blocks(self.sampler, span.first, span.stop, size)
-            parts = [kept(self.scene, block) for block in blocks]
-        return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
+            return joined([kept(self.scene, block) for block in blocks])
 
     def _bytes(self) -> int:
         """What lies there already: the file, and shards of a run."""

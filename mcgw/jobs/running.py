@@ -7,8 +7,9 @@ from pathlib import Path
 from time import monotonic, perf_counter
 from typing import Any
 
-from mcgw.ensemble.ensemble import Arrays, Ensemble
+from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.forecast import checkpoints, without_rule
+from mcgw.ensemble.results import MemoryResults
 from mcgw.errors import RunError, StoreError
 from mcgw.jobs.blocks import commit_block
 from mcgw.jobs.driver import Signals, drive, heed_signals
@@ -16,10 +17,11 @@ from mcgw.jobs.engines import Engine, Threads
 from mcgw.jobs.job import Job, as_recorded
 from mcgw.jobs.merging import merge_once
 from mcgw.scene.scene import Scene
-from mcgw.store.ensembles import open_ensemble, write_ensemble
+from mcgw.store.ensembles import open_ensemble
 from mcgw.store.leftovers import drop_leftovers, tidy
 from mcgw.store.lock import locked
 from mcgw.store.run_folder import RunFolder
+from mcgw.store.saving import write_ensemble
 from mcgw.store.shards import Shard, Span
 
 __all__ = ["Part", "run", "run_part"]
@@ -196,7 +198,7 @@ def _at_once(job: Job, session: _Session) -> None:
         session.signals,
     )
     session.signals.check("nothing was kept, the run is one block; the same command starts it again")
-    ensemble = Ensemble(job.scene, job.sampler.name, Arrays(answers[0]))
+    ensemble = Ensemble(job.scene, job.sampler.name, MemoryResults(answers[0]))
     write_ensemble(ensemble, job.path, wall_seconds=perf_counter() - started)
     session.progress(job.scene.n_surfaces)
 

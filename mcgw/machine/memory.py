@@ -1,5 +1,6 @@
 """How much memory there is: asked before anything is computed. And how what a block frees is kept."""
 
+from collections.abc import Callable
 from functools import cache
 from pathlib import Path
 
@@ -8,7 +9,7 @@ import numpy as np
 from mcgw.errors import StoreError
 from mcgw.machine.child_process import memory_limit
 
-__all__ = ["check_memory", "gibibytes", "keep_freed_memory", "memory_available"]
+__all__ = ["check_memory", "gibibytes", "keep_freed_memory", "memory_available", "peak_growth"]
 
 _MOST = 2**63 - 1
 _LARGE = 31 * 2**20  # bytes; at 32 MiB the GNU C library learns no more
@@ -57,6 +58,23 @@ def _number(text: str) -> int:
 def gibibytes(size: int) -> str:
     """A number of bytes for people."""
     return f"{size / 2**30:.4g} GiB"
+
+
+def peak_growth(call: Callable[[], object]) -> float:
+    """Bytes of memory that a call takes at most on top of what there was (Linux; else nan)."""
+    try:
+        Path("/proc/self/clear_refs").write_text("5")  # forget the highest level so far
+        before = _status("VmHWM")
+    except OSError:
+        call()
+        return float("nan")
+    call()
+    return float(_status("VmHWM") - before)
+
+
+def _status(key: str) -> int:
+    lines = Path("/proc/self/status").read_text().splitlines()
+    return next(int(line.split()[1]) * 1024 for line in lines if line.startswith(key))
 
 
 @cache

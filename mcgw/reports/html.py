@@ -17,6 +17,7 @@ from mcgw.figures.comparison import quantity_figure
 from mcgw.figures.data import FigureData, Panel, Points, Series
 from mcgw.figures.drawing import draw
 from mcgw.figures.style import STYLE, grading_label
+from mcgw.formats.evenly import evenly
 from mcgw.machine.terminal import one_line, plain_text
 from mcgw.reports.text import verdict_line
 from mcgw.scene.cautions import cautions
@@ -230,7 +231,7 @@ def _facts(ensemble: Ensemble) -> str:
 def _table(comparison: Comparison, name: str) -> str:
     curve, h, q = comparison.curves[name], comparison.ensemble.separations, quantity_of(name)
     rows = []
-    for k in np.unique(np.linspace(0, len(h) - 1, min(_MOST_ROWS, len(h))).round().astype(int)):
+    for k in evenly(len(h), _MOST_ROWS):
         half = (curve.high[k] - curve.low[k]) / 2
         few = f", {TOO_FEW}" if np.isnan(half) else ""
         rows.append(

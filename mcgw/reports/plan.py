@@ -4,7 +4,6 @@ from dataclasses import dataclass
 
 from analytic import QUANTITIES
 from mcgw.ensemble.forecast import forecast
-from mcgw.ensemble.simulation import use_threads
 from mcgw.jobs.duration import in_words, seconds_for
 from mcgw.machine.terminal import one_line
 from mcgw.sampling.samplers import sampler_of
@@ -49,14 +48,12 @@ class Plan:
     seconds: float
 
 
-def plan_of(scene: Scene, *, threads: int | None = None) -> Plan:
+def plan_of(scene: Scene) -> Plan:
     """Look at what a scene needs, and time a small block of it, of which nothing is kept."""
     sampler = sampler_of(scene)
     columns = len(scene.separations) * len(scene.quantities)
     columns += (sampler.moments + sampler.cells) * (scene.keep == "moments")
     surfaces = forecast(scene).surfaces
-    with use_threads(threads):
-        seconds = seconds_for(scene, sampler, surfaces)
     return Plan(
         sampler.name,
         surfaces,
@@ -66,7 +63,7 @@ def plan_of(scene: Scene, *, threads: int | None = None) -> Plan:
         sampler.cells,
         sampler.moments,
         8 * columns * surfaces,
-        seconds,
+        seconds_for(scene, sampler, surfaces),
     )
 
 

@@ -10,6 +10,7 @@ from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.intervals import interval_text
 from mcgw.ensemble.paired import Paired, paired_ratio
 from mcgw.formats.csv_table import Row
+from mcgw.formats.evenly import evenly
 from mcgw.machine.terminal import one_line
 from mcgw.statistics.comparison import FALSE_ALARM, Comparison, Verdict
 
@@ -42,11 +43,6 @@ RATIO_HEADER = ("quantity", "separation", "ratio", "stderr", "theory", "variance
 _MOST_ROWS = 9
 
 
-def _rows(h: np.ndarray) -> np.ndarray:
-    """Some of many separations, with the first and the last."""
-    return np.unique(np.linspace(0, len(h) - 1, min(_MOST_ROWS, len(h))).round().astype(int))
-
-
 def summary(ensemble: Ensemble, attributes: dict[str, Any]) -> str:
     """What a file holds: provenance and a table of means."""
     scene = ensemble.scene
@@ -70,7 +66,7 @@ def summary(ensemble: Ensemble, attributes: dict[str, Any]) -> str:
             f"{q.long_name} ({q.unit})",
             f"  {'d/sigma':>8} {'mean':>13} {'std':>11} {'stderr':>11}",
         ]
-        for k in _rows(ensemble.separations):
+        for k in evenly(len(ensemble.separations), _MOST_ROWS):
             lines.append(f"  {scene.separations[k]:8.3f} {mean[k]:13.6g} {std[k]:11.3g} {stderr[k]:11.3g}")
     return "\n".join(lines)
 
@@ -85,7 +81,7 @@ def comparison_table(comparison: Comparison) -> str:
             f"{q.long_name} ({q.unit})",
             f"  {'d/sigma':>8} {'Monte Carlo':>13} {'95 % interval':>27} {'theory':>13} {'residual':>9}",
         ]
-        for k in _rows(h):
+        for k in evenly(len(h), _MOST_ROWS):
             interval = interval_text(curve.low[k], curve.high[k])
             lines.append(
                 f"  {h[k]:8.3f} {curve.mean[k]:13.6g} {interval:>27} {curve.theory[k]:13.6g} "
@@ -135,7 +131,7 @@ def ratio_table(new: Ensemble, old: Ensemble) -> str:
             f"{quantity_of(name).long_name}, new over old",
             f"  {'d/sigma':>8} {'ratio':>10} {'stderr':>9} {'theory':>10}   variance, independent/paired",
         ]
-        for k in _rows(new.separations):
+        for k in evenly(len(new.separations), _MOST_ROWS):
             lines.append(
                 f"  {new.scene.separations[k]:8.3f} {pair.ratio[k]:10.6f} {pair.stderr[k]:9.1e} "
                 f"{exact[k]:10.6f}   {pair.gain[k]:.3g}"

@@ -10,6 +10,7 @@ from scipy.special import chdtrc
 from analytic import Fluctuations, quantity_of
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.intervals import interval_text
+from mcgw.formats.evenly import evenly
 from mcgw.formats.sheet import Sheet, Shown
 from mcgw.machine.late import plotted
 from mcgw.scene.samplers import promise_of
@@ -171,7 +172,8 @@ def verdict(ensemble: Ensemble) -> Verdict:
     so the false-alarm rate is the stated one also where few asperities touch.
     """
     scene = ensemble.scene
-    h = _chosen(np.unique(scene.separations))
+    h = np.unique(scene.separations)
+    h = h[evenly(len(h), _MOST_SEPARATIONS)]
     parts = scene.theory.fluctuations(scene.quantities, h)
     index = [scene.separations.index(x) for x in h]
     means = [ensemble.mean(q)[index] / quantity_of(q).scale(scene.surface) for q in scene.quantities]
@@ -198,10 +200,3 @@ def _gaussian(parts: Fluctuations, asperities: float) -> NDArray[np.bool_]:
         third, fourth = parts.moment(3), parts.moment(4)
     skew = np.abs(third) / np.sqrt(asperities)
     return np.asarray((skew < _SKEW) & (fourth / asperities < _KURTOSIS))
-
-
-def _chosen(separations: Array) -> Array:
-    """Some of many separations, evenly, with the first and the last."""
-    n = len(separations)
-    chosen = np.unique(np.linspace(0, n - 1, min(n, _MOST_SEPARATIONS)).round().astype(int))
-    return np.asarray(separations[chosen])

@@ -9,8 +9,10 @@ from numpy.typing import NDArray
 from scipy.stats import binom, poisson
 
 from analytic import quantity_of
-from mcgw.ensemble.ensemble import Arrays, Ensemble
+from mcgw.ensemble.ensemble import Ensemble
+from mcgw.ensemble.results import MemoryResults, joined
 from mcgw.ensemble.simulation import simulate
+from mcgw.formats.evenly import evenly
 from mcgw.formats.sheet import Sheet, Shown, brief
 from mcgw.machine.late import plotted
 from mcgw.machine.progress import Progress, told
@@ -143,11 +145,11 @@ def converge(
             tell(k, seeds)
             parts.append(draw(replace(scene, seed=(scene.seed + k) % 2**64)))
         tell(seeds, seeds)
-    sums = {name: np.concatenate([part[name] for part in parts]) for name in scene.quantities}
+    sums = joined([{name: part[name] for name in scene.quantities} for part in parts])
     law = PrincipalComponents.of(scene)
     y = law.turn(sums)
     whole = replace(scene, n_surfaces=len(y))
-    means = verdict(Ensemble(whole, "drawn", Arrays(sums)))
+    means = verdict(Ensemble(whole, "drawn", MemoryResults(sums)))
     checks = [
         Check("means", f"chi-square {means.chi_square:.1f} for {means.degrees} combinations", means.p),
         *_contacts(whole, sums),
@@ -179,7 +181,7 @@ def _own(scene: Scene) -> Sums:
 def _tested(scene: Scene) -> Scene:
     """The scene with few separations, in their order, and a number of surfaces that a test can take."""
     h = np.unique(scene.separations)
-    chosen = h[np.unique(np.linspace(0, len(h) - 1, min(len(h), _MOST_SEPARATIONS)).round().astype(int))]
+    chosen = h[evenly(len(h), _MOST_SEPARATIONS)]
     m = min(max(scene.n_surfaces, _FEWEST), _MOST)
     return replace(
         scene, separations=tuple(chosen.tolist()), n_surfaces=m, rel_err=None, max_seconds=None, keep="sums"

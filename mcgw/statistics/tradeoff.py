@@ -1,9 +1,8 @@
 """Error against time and memory for one scene on this machine: a work-precision study in bounded time."""
 
-import csv
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from pathlib import Path
+from functools import partial
 from time import monotonic, perf_counter, process_time
 from typing import Any
 
@@ -11,15 +10,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mcgw.ensemble.forecast import relative_spread
-from mcgw.formats.files import whole_file
 from mcgw.formats.sheet import Sheet, Shown
 from mcgw.machine.late import plotted
+from mcgw.machine.memory import peak_growth
 from mcgw.machine.progress import Progress, told
 from mcgw.scene.reading import argument
 from mcgw.scene.scene import Scene
 from mcgw.statistics.methods import Method, methods_for
 
-__all__ = ["Advice", "Point", "Tradeoff", "tradeoff", "write_csv"]
+__all__ = ["Advice", "Point", "Tradeoff", "tradeoff"]
 
 Array = NDArray[np.float64]
 
@@ -255,27 +254,10 @@ def _sized(method: Method, longest: float, seed: int) -> list[_Task]:
             break
         method.errors(size, seed)
         start = perf_counter()
-        peak = _peak(lambda size=size: method.errors(size, seed))  # type: ignore[misc]
+        peak = peak_growth(partial(method.errors, size, seed))
         before = perf_counter() - start
         tasks.append(_Task(method, size, peak, max(1, min(100, int(_SHORTEST / before)))))
     return tasks
-
-
-def _peak(call: Callable[[], Any]) -> float:
-    """Bytes of memory that a call takes at most on top of what there was (Linux; else nan)."""
-    try:
-        Path("/proc/self/clear_refs").write_text("5")  # forget the highest level so far
-        before = _status("VmHWM")
-    except OSError:
-        call()
-        return float("nan")
-    call()
-    return float(_status("VmHWM") - before)
-
-
-def _status(key: str) -> int:
-    lines = Path("/proc/self/status").read_text().splitlines()
-    return next(int(line.split()[1]) * 1024 for line in lines if line.startswith(key))
 
 
 def _advice(scene: Scene, k: int, points: Sequence[Point], target: float) -> Advice | None:
@@ -298,22 +280,3 @@ def _advice(scene: Scene, k: int, points: Sequence[Point], target: float) -> Adv
     if best is None or needed > 10**12:
         return None
     return Advice(target, replace(scene, sampler=best[1], n_surfaces=needed), best[0])
-
-
-def write_csv(found: Tradeoff, path: str | Path) -> None:
-    """Write every point as a row.
-
-    Parameters
-    ----------
-    found : Tradeoff
-        From `tradeoff`.
-    path : str or Path
-        The file.
-    """
-    columns = [f"rms_relative_error_at_h_{h:g}" for h in found.separations]
-    with whole_file(Path(path)) as unfinished, open(unfinished, "w", newline="") as file:
-        table = csv.writer(file)
-        ends = ["rms_uncertainty", "cpu_s", "wall_s", "peak_growth_bytes", "seeds"]
-        table.writerow(["method", "size", "size_counts", *columns, *ends])
-        for p in found.points:
-            table.writerow([p.method, p.size, p.unit, *p.rms, p.rms_stderr, p.cpu, p.wall, p.peak, p.seeds])

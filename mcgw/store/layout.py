@@ -14,7 +14,7 @@ from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_text
 from mcgw.store.head import head_digest
 from mcgw.store.provenance import now, provenance
-from mcgw.store.shards import DRAWN, RAGGED, Arrays, Span
+from mcgw.store.shards import DRAWN, RAGGED, Span, Tables
 
 __all__ = ["FILETYPE", "FORMAT", "build", "file_pieces", "trailer_notes", "values_digest", "where"]
 
@@ -32,7 +32,7 @@ _STORED: Any = {"compression": "gzip", "compression_opts": 1, "shuffle": True, "
 
 
 def build(
-    file: h5py.File, scene: Scene, sampler: str, pieces: Iterable[tuple[Span, Arrays]], **attributes: Any
+    file: h5py.File, scene: Scene, sampler: str, pieces: Iterable[tuple[Span, Tables]], **attributes: Any
 ) -> str:
     """Fill an empty HDF5 file with all surfaces of a scene, in order, and with more root attributes.
 
@@ -119,18 +119,18 @@ def values_digest(file: h5py.File, scene: Scene) -> str:
     return digest.hexdigest()
 
 
-def file_pieces(file: h5py.File) -> Iterator[tuple[Span, Arrays]]:
+def file_pieces(file: h5py.File) -> Iterator[tuple[Span, Tables]]:
     """The surfaces of an ensemble file, some at a time."""
     data = {name: file[where(name)] for name in tables(file)}
-    extras = data.pop(RAGGED)[()] if RAGGED in data else None
+    outside = data.pop(RAGGED)[()] if RAGGED in data else None
     rows = len(file["surface"])
     width = sum(8 * table.shape[1] for table in data.values())
     step = max(_PIECE // max(width, 1), 1)
     for first in range(0, rows, step):
         span = Span(first, min(step, rows - first))
         arrays = {name: table[span.first : span.stop] for name, table in data.items()}
-        if extras is not None:
-            arrays[RAGGED] = extras[(extras[:, 0] >= span.first) & (extras[:, 0] < span.stop)]
+        if outside is not None:
+            arrays[RAGGED] = outside[(outside[:, 0] >= span.first) & (outside[:, 0] < span.stop)]
         yield span, arrays
 
 
@@ -141,7 +141,7 @@ def _steps(data: h5py.Dataset) -> Iterator[tuple[int, int]]:
         yield start, min(start + step, data.shape[0])
 
 
-def _lay_out(file: h5py.File, scene: Scene, arrays: Arrays) -> None:
+def _lay_out(file: h5py.File, scene: Scene, arrays: Tables) -> None:
     """Empty datasets with their scales, units and names."""
     _scale(file, "surface", np.arange(scene.n_surfaces), "number of the surface")
     _scale(file, "separation", np.array(scene.separations), "mean-plane separation d/sigma")
@@ -175,7 +175,7 @@ def _scale(file: h5py.File, name: str, values: NDArray[Any], long_name: str) -> 
     scale.make_scale(name)
 
 
-def _put(file: h5py.File, span: Span, arrays: Arrays) -> None:
+def _put(file: h5py.File, span: Span, arrays: Tables) -> None:
     for name, values in arrays.items():
         data, first = file[where(name)], span.first
         if name == RAGGED:

@@ -16,7 +16,7 @@ from mcgw.errors import StoreError
 from mcgw.store.disk import SteadyFile
 from mcgw.store.layout import build, file_pieces, trailer_notes, values_digest
 from mcgw.store.run_folder import RunFolder
-from mcgw.store.shards import LIBVER, Arrays, Shard, Span
+from mcgw.store.shards import LIBVER, Shard, Span, Tables
 from mcgw.store.trailer import Trailer, sha256_of
 
 __all__ = ["DAMAGED", "merge_into"]
@@ -58,14 +58,14 @@ def merge_into(folder: Path, target: Path, temporary: Path) -> None:
         raw.trailer(Trailer(length, sha256_of(temporary, length), notes).to_bytes())
 
 
-def _checked(raw: SteadyFile, pieces: Iterator[tuple[Span, Arrays]]) -> Iterator[tuple[Span, Arrays]]:
+def _checked(raw: SteadyFile, pieces: Iterator[tuple[Span, Tables]]) -> Iterator[tuple[Span, Tables]]:
     """End with the first error of the disk, not after all shards."""
     for piece in pieces:
         raw.check()
         yield piece
 
 
-def _pieces(shards: list[Shard], target: Path) -> Iterator[tuple[Span, Arrays]]:
+def _pieces(shards: list[Shard], target: Path) -> Iterator[tuple[Span, Tables]]:
     """All surfaces in order: first those of the finished file, then those of the shards."""
     stop = 0
     if target.exists():

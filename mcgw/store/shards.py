@@ -25,9 +25,9 @@ __all__ = [
     "DRAWN",
     "LIBVER",
     "RAGGED",
-    "Arrays",
     "Shard",
     "Span",
+    "Tables",
     "commit_shard",
     "content_digest",
     "in_memory",
@@ -35,7 +35,7 @@ __all__ = [
     "pack",
 ]
 
-Arrays = dict[str, NDArray[Any]]
+Tables = dict[str, NDArray[Any]]
 
 RAGGED = "extras"  # the one table whose rows are not surfaces
 DRAWN = ("moments", "cells", RAGGED)  # what `keep = "moments"` adds to the quantities
@@ -85,7 +85,7 @@ class Shard:
     digest: str
     seconds: float
 
-    def arrays(self) -> Arrays:
+    def arrays(self) -> Tables:
         """Its contents, read and checked again.
 
         Raises
@@ -113,7 +113,7 @@ def in_memory(fill: Callable[[h5py.File], Any]) -> bytes:
     return body.getvalue()
 
 
-def pack(arrays: Arrays) -> bytes:
+def pack(arrays: Tables) -> bytes:
     """HDF5 file with these arrays, in memory."""
 
     def fill(file: h5py.File) -> None:
@@ -123,7 +123,7 @@ def pack(arrays: Arrays) -> bytes:
     return in_memory(fill)
 
 
-def commit_shard(path: Path, run: str, span: Span, arrays: Arrays, seconds: float) -> Shard:
+def commit_shard(path: Path, run: str, span: Span, arrays: Tables, seconds: float) -> Shard:
     """Write a shard of a run in one atomic step, with the seconds that drawing it took.
 
     Raises
@@ -157,7 +157,7 @@ def open_shard(path: Path, run: str) -> Shard:
     return shard
 
 
-def content_digest(arrays: Arrays) -> str:
+def content_digest(arrays: Tables) -> str:
     """SHA-256 over names, types, shapes and values."""
     sha = hashlib.sha256()
     for name in sorted(arrays):
@@ -180,8 +180,8 @@ def _described(path: Path, trailer: Trailer) -> tuple[Shard, str]:
     return shard, identity
 
 
-def _unpack(body: bytes, path: Path) -> Arrays:
-    """Arrays of an HDF5 file in memory that must be as `pack` makes it."""
+def _unpack(body: bytes, path: Path) -> Tables:
+    """Tables of an HDF5 file in memory that must be as `pack` makes it."""
     from mcgw.store.structure import RefusedError, check_plain
 
     try:
@@ -192,7 +192,7 @@ def _unpack(body: bytes, path: Path) -> Arrays:
         raise StoreError(f"{path}: is not a shard ({error})") from None
 
 
-def _check_rows(shard: Shard, arrays: Arrays) -> None:
+def _check_rows(shard: Shard, arrays: Tables) -> None:
     for name, values in arrays.items():
         if name == RAGGED:
             surfaces = values[:, 0] if len(values) else np.empty(0)

@@ -17,7 +17,7 @@ from harness import ROWS, forked, prepare, scene_of
 from mcgw.errors import StoreError
 from mcgw.jobs.job import Job
 from mcgw.jobs.running import Part, run, run_part
-from mcgw.store import ensembles, layout, merged_file, structure
+from mcgw.store import ensembles, layout, merged_file, saving, structure
 from mcgw.store.run_folder import parts_of
 
 BLOCKS = 5
@@ -89,7 +89,7 @@ def main(folder, flips, *, old=False):
     prepare()
     if old:
         layout.FORMAT = (1, 0)
-        for module in (ensembles, merged_file):
+        for module in (saving, merged_file):
             module.trailer_notes = lambda file: {}
     folder.mkdir(parents=True)
     dice, (one, merged, begun) = random.Random(1), made(folder)

@@ -1,0 +1,103 @@
+"""Ensembles that lie in memory, written to files; the schema stands in `mcgw.store`."""
+
+import io
+from pathlib import Path
+
+import h5py
+
+from mcgw.ensemble.ensemble import Ensemble
+from mcgw.errors import RunError, StoreError
+from mcgw.formats.files import check_output, state_of, write_whole
+from mcgw.store.arithmetic import drawn_with
+from mcgw.store.ensembles import finished, open_ensemble
+from mcgw.store.layout import build, trailer_notes
+from mcgw.store.lock import locked
+from mcgw.store.run_folder import identity_of, parts_of
+from mcgw.store.shards import DRAWN, Span, in_memory
+from mcgw.store.trailer import trailer_of
+
+__all__ = ["save", "write_ensemble"]
+
+
+def save(ensemble: Ensemble, path: str | Path, *, wall_seconds: float = 0.0) -> Ensemble:
+    """Write an ensemble that lies in memory, in one atomic step; never over another one.
+
+    Parameters
+    ----------
+    ensemble : Ensemble
+        With all surfaces of its scene.
+    path : str or Path
+        The file.
+    wall_seconds : float, optional
+        What making it took.
+
+    Returns
+    -------
+    Ensemble
+        That reads from the file.
+
+    Raises
+    ------
+    StoreError
+        If the place cannot be written, another process writes there, or another ensemble, or a run that
+        is not finished, has it.
+    RunError
+        If the disk does not take it.
+
+    Examples
+    --------
+    >>> import mcgw, tempfile
+    >>> surface = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "1 mm^2", "78.6 GPa")
+    >>> scene = mcgw.Scene(surface, separations=[0, 1, 2], n_surfaces=20, seed=1)
+    >>> e = mcgw.simulate(scene)
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     mcgw.save(mcgw.regrade(e, mcgw.Exponential(2.0)), f"{folder}/stiffer.h5").n_surfaces
+    20
+    """
+    path = Path(path)
+    check_output(path)
+    with locked(parts_of(path)):
+        if (parts_of(path) / "run.toml").exists():
+            raise StoreError(
+                f"{path}: a run that makes this file is not finished; finish it, choose another -o, "
+                f"or remove {parts_of(path)}"
+            )
+        write_ensemble(ensemble, path, wall_seconds=wall_seconds)
+    return open_ensemble(path)
+
+
+def write_ensemble(ensemble: Ensemble, path: Path, *, wall_seconds: float) -> None:
+    """Write an ensemble in one atomic step, over none but a part of itself. Only with the lock.
+
+    Raises
+    ------
+    StoreError
+        If another ensemble, or anything else, has this name.
+    RunError
+        If the disk does not take it.
+    """
+    scene, before = ensemble.scene, state_of(path)
+    finished(path, scene, ensemble.sampler)
+    names = [*scene.quantities, *(DRAWN if scene.keep == "moments" else ())]
+    arrays = {name: ensemble.sums.read(name, 0, None) for name in names}
+    body = in_memory(
+        lambda file: build(
+            file,
+            scene,
+            ensemble.sampler,
+            [(Span(0, ensemble.n_surfaces), arrays)],
+            run=identity_of(scene, ensemble.sampler),
+            draws=drawn_with(scene, ensemble.sampler),
+            wall_seconds=wall_seconds,
+        )
+    )
+    with h5py.File(io.BytesIO(body), "r") as file:
+        notes = trailer_notes(file)
+    try:
+        write_whole(path, (body, trailer_of(body, **notes)), expected=before)
+    except FileExistsError as error:
+        raise StoreError(f"{path}: {error.strerror}; it is left as it is, choose another -o") from None
+    except OSError as error:
+        raise RunError(
+            f"{path}: cannot be written ({error.strerror or error}); make room and repeat"
+        ) from None
