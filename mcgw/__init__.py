@@ -9,14 +9,14 @@ Describe a surface and what is asked of it:
 `load_scene`             a scene from its TOML file; `scene_from`, `scene_text`: from and to text
 =======================  =========================================================================
 
-Gradings E*(s)/E*, and laws of the heights s = z/sigma:
+Gradings E*(s)/E*, and height laws, of s = z/sigma:
 
 =======================  =========================================================================
 `Homogeneous`            the same modulus at every height; `Exponential`: Eq. (4) of the paper
 `Table`                  measured moduli; `Custom`: any function of s, as a plain lambda is too
 `Gaussian`               the default; `ExponentialHeights`, `Weibull`
 `HeightTable`            measured heights, resampled; `MeasuredHeights`: just as they are
-`ScipyHeights`           any law of scipy.stats, as a plain frozen law is too
+`ScipyHeights`           any distribution of scipy.stats, as a plain frozen one is too
 =======================  =========================================================================
 
 Draw surfaces:

@@ -253,8 +253,11 @@ ONLY_PYTHON = [
     ({"heights": np.ones(3)}, r"^heights = array\(.*\): give .*mcgw\.HeightTable\.of\(heights\)"),
     ({"heights": mcgw.Gaussian}, r"^heights = <class .*Gaussian'>: give"),
     ({"heights": scipy.stats.lognorm}, r"^heights = <scipy.*: give"),
-    ({"heights": scipy.stats.poisson(3)}, r"^heights = <scipy.*: give a frozen continuous law"),
-    ({"heights": scipy.stats.cauchy()}, r"^heights = <scipy.*: give a frozen continuous law.*cauchy"),
+    ({"heights": scipy.stats.poisson(3)}, r"^heights = <scipy.*: give a frozen continuous distribution"),
+    (
+        {"heights": scipy.stats.cauchy()},
+        r"^heights = <scipy.*: give a frozen continuous distribution.*cauchy",
+    ),
 ]
 
 

@@ -330,7 +330,7 @@ def test_regrading_draws_the_same_surfaces_once_more(scene, law, sampler):
 def test_surfaces_that_are_others_are_not_regraded(scene, ensemble):
     wrong = {name: ensemble[name] * (1 + 1e-6 * (name == "load")) for name in scene.quantities}
     other = Ensemble(scene, ensemble.sampler, MemoryResults(wrong))
-    with pytest.raises(ValueError, match="cannot be drawn again: their load is another one"):
+    with pytest.raises(ValueError, match="cannot be drawn again: their load differs"):
         mcgw.regrade(other, mcgw.Homogeneous())
     direct = mcgw.simulate(scene, sampler="direct", n_surfaces=3)
     with pytest.raises(mcgw.SceneError, match='sampler = "direct" has none; take "cells"'):

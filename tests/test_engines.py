@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 
+import mcgw
 from mcgw.errors import RunError
 from mcgw.jobs.dask_engine import Dask, check_address
 from mcgw.jobs.driver import Signals, drive
@@ -100,6 +101,36 @@ def test_killed_dask_workers_are_replaced(scene, tmp_path, expected):
         engine.close()
     assert len(killed) == 3
     assert digest(tmp_path / "e.h5") == expected(scene)
+
+
+@pytest.mark.slow
+def test_dask_by_its_word(make_scene, tmp_path):
+    """`mcgw.run` starts workers of its own and ends them."""
+    pytest.importorskip("distributed")
+    scene = make_scene(n_surfaces=3 * SIZE)
+    mcgw.run(scene, tmp_path / "dask.h5", engine="dask", threads=2)
+    mcgw.run(scene, tmp_path / "threads.h5")
+    assert digest(tmp_path / "dask.h5") == digest(tmp_path / "threads.h5")
+
+
+@pytest.mark.parametrize(
+    ("word", "address"), [("dask", None), ("tcp://127.0.0.1:8786", "tcp://127.0.0.1:8786")]
+)
+def test_a_word_or_an_address_asks_for_dask(word, address, make_scene, tmp_path, monkeypatch):
+    asked = []
+
+    class Recorded(Threads):
+        def __init__(self, *args, **options):
+            super().__init__()
+            asked.append((args, options))
+
+        def close(self):
+            super().close()
+            asked.append("closed")
+
+    monkeypatch.setattr("mcgw.jobs.dask_engine.Dask", Recorded)
+    mcgw.run(make_scene(n_surfaces=3 * SIZE), tmp_path / "e.h5", engine=word, threads=3)
+    assert asked == [((address,), {"workers": 3}), "closed"]
 
 
 def free_port():

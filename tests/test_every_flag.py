@@ -621,7 +621,7 @@ def few_methods(methods_for):
     return few
 
 
-def test_figures_take_folder_scene_and_csv(call, monkeypatch):
+def test_figures_take_folder_scene_and_csv(call, tmp_path, monkeypatch):
     from mcgw.figures import further, paper
 
     seen = []
@@ -638,9 +638,13 @@ def test_figures_take_folder_scene_and_csv(call, monkeypatch):
     assert sorted(p.name for p in (given.folder / "there").iterdir()) == [
         "figure-1.csv", "figure-1.png", "figure-1.svg"
     ]  # fmt: skip
-    default, asked = seen
     scene = mcgw.scene_from(SCENE)
-    assert (asked.surface, asked.n_asperities, asked.seed) == (scene.surface, 300, 5)
+    of_python = scene.replace(grading=lambda s: 1 + 0.3 * np.tanh(s))
+    (tmp_path / "python.toml").write_text(mcgw.scene_text(of_python))  # holds the series of that grading
+    assert call(["figures", "--scene", str(tmp_path / "python.toml")]).code == 0
+    default, *both = seen
+    for asked in both:
+        assert (asked.surface, asked.n_asperities, asked.seed) == (scene.surface, 300, 5)
     assert (default.n_asperities, default.seed) == (30_000, 20240601)
 
 

@@ -172,7 +172,7 @@ HOSTILE = {
     missing: "load has shape none, its scene declares",
     many: "datasets; at most 64 are allowed",
     large_attribute: "attribute numbers: too large",
-    scene_bomb: "its scene is none: not a TOML scene",
+    scene_bomb: "its scene cannot be read: not a TOML scene",
     no_scene: "an attribute is missing",
     odd_attribute: "refused: (attribute wall_seconds|not an HDF5 file, or a damaged one)",
 }

@@ -320,8 +320,8 @@ def test_noise_is_one_line(make, tmp_path, monkeypatch, draw):
     ("change", "words"),
     [
         ({"grading": 1.5}, r"^grading = 1\.5: give .*a function of an array"),
-        ({"heights": 1.5}, r"^heights = 1\.5: give .*a frozen law of scipy"),
-        ({"heights": scipy.stats.poisson(3)}, "^heights = .*give a frozen continuous law"),
+        ({"heights": 1.5}, r"^heights = 1\.5: give .*a frozen distribution of scipy"),
+        ({"heights": scipy.stats.poisson(3)}, "^heights = .*give a frozen continuous distribution"),
         ({"heights": scipy.stats.cauchy()}, "^heights = .*its mean is nan.*must be finite"),
     ],
 )

@@ -200,7 +200,7 @@ def test_contents_that_are_others_than_the_digest_says_are_refused(scene, tmp_pa
     path = tmp_path / "e.h5"
     make_trailer_anew(begun(scene, path)[2], another_number)
     run_here = RunFolder.open(parts_of(path))
-    with pytest.raises(StoreError, match=r"block-0000000000032.*contents are others"):
+    with pytest.raises(StoreError, match=r"block-0000000000032.*mismatch of its contents"):
         [shard.arrays() for shard in run_here.shards()]
 
 
@@ -209,7 +209,7 @@ def test_a_shard_of_other_contents_never_becomes_a_file(scene, tmp_path, way, ca
     path = tmp_path / "e.h5"
     make_trailer_anew(begun(scene, path)[2], another_number)
     if way == "read":
-        with pytest.raises(StoreError, match="contents are others"):
+        with pytest.raises(StoreError, match="mismatch of its contents"):
             _ = mcgw.open_ensemble(path).load
     elif "typed" in way:
         (tmp_path / "s.toml").write_text(mcgw.scene_text(scene))

@@ -306,7 +306,7 @@ def test_changed_data_with_a_good_trailer_are_noticed(scene, tmp_path):
     with h5py.File(path, "r+") as file:
         file["load"][3, 1] *= 1 + 1e-15
     trailer_again(path)
-    assert ensembles.verify(path)[0] == "its data have another digest than it says"
+    assert ensembles.verify(path)[0] == "digest mismatch of its data"
 
 
 def test_room_is_asked_for_what_is_not_there_yet(small_blocks, scene, tmp_path, monkeypatch):

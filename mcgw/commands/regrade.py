@@ -10,11 +10,11 @@ EXAMPLE = 'mcgw regrade demo.h5 --gamma 0.5 -o softer.h5   # simulated with keep
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of this command."""
     parser.add_argument("file", type=Path, metavar="FILE", help="ensemble file that keeps its moments")
-    law = parser.add_mutually_exclusive_group(required=True)
-    law.add_argument(
+    grading = parser.add_mutually_exclusive_group(required=True)
+    grading.add_argument(
         "--gamma", type=float, metavar="G", help="exponential grading, Eq. (4); 1 is homogeneous"
     )
-    law.add_argument("--grading", type=Path, metavar="TABLE.csv", help="columns s or z, ratio or E_star")
+    grading.add_argument("--grading", type=Path, metavar="TABLE.csv", help="columns s or z, ratio or E_star")
     parser.add_argument("-o", "--output", type=Path, metavar="FILE.h5", help="default: FILE.regraded.h5")
     parser.add_argument(
         "--csv", type=Path, metavar="CSV", help="also write the ratios at all separations there"

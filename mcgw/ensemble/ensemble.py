@@ -140,7 +140,7 @@ class Ensemble(Shown):
         return np.asarray(self.std(quantity) / np.sqrt(self.n_surfaces))
 
     def interval(self, quantity: str, level: float = CONFIDENCE) -> tuple[Array, Array]:
-        """Confidence interval of the mean, from the exact spread and skewness of the scene's own law.
+        """Confidence interval of the mean, from the exact spread and skewness of the scene.
 
         For any number of surfaces, one too. That of `contacts` is exact (Clopper-Pearson, or Garwood for
         a Poisson number of asperities). Measured heights as they are leave nothing open: both ends are

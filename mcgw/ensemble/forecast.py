@@ -1,4 +1,4 @@
-"""How many surfaces a scene takes: known before any is drawn, from the exact law of a finite surface.
+"""How many surfaces a scene takes: known before any is drawn, from the exact theory of a finite surface.
 
 An interval of a mean reaches the same share of the mean in every ensemble of a scene
 (`mcgw.ensemble.intervals`). So the stop rule `rel_err` needs no look at what was drawn, and cannot stop by

@@ -1,8 +1,8 @@
-"""Confidence intervals of means over surfaces, from the exact law of the scene.
+"""Confidence intervals of means over surfaces, from the exact distribution that a scene has.
 
 What fluctuates from ensemble to ensemble is a sum over independent asperities, whose relative spread and
-skewness theory gives. So the ratio of a mean to its exact value follows, closely, a gamma law of that
-spread and skewness, shifted (Pearson's type III); over many contacts, the Gaussian law. Its quantiles
+skewness theory gives. So the ratio of a mean to its exact value follows, closely, a gamma distribution of
+that spread and skewness, shifted (Pearson's type III); over many contacts, the Gaussian one. Its quantiles
 turned round are the interval: it needs no second surface, and it ends where values can. The number of
 contacts is binomial or Poisson, and its interval exact (Clopper and Pearson 1934, Garwood 1936).
 """
@@ -36,7 +36,7 @@ FEWEST = 10.0  # effective contacts in the whole ensemble, below which there is 
 MANY = 30.0  # below it a sum of nearly equal terms is still discrete: half of the tails is left for that
 TOO_FEW = "too few contacts"
 _HALVINGS = 60
-_GAUSSIAN = 1e-5  # skewness below which the law is the Gaussian one to ten digits
+_GAUSSIAN = 1e-5  # skewness below which the distribution is Gaussian to ten digits
 _AT_A_TIME = 32  # separations that share a rule of heights, whose size is the square of their number
 _NOTHING = 1e-280  # a mean below it has lost its variance to underflow
 
@@ -59,7 +59,7 @@ class Spread:
     def effective(self, n_surfaces: float | Array) -> Array:
         """Effective number of contacts in so many surfaces: that of equal contacts as uncertain, or as skew.
 
-        The smaller of the shapes of two gamma laws: the one of this relative spread, and the one of this
+        The smaller of the shapes of two gamma distributions: that of this relative spread, and that of this
         skewness.
         """
         with np.errstate(divide="ignore"):
@@ -69,7 +69,7 @@ class Spread:
         """Range of the mean of so many surfaces over the exact mean; nan where there are too few contacts.
 
         Where only the skewness is too large, as that of a number of contacts which hardly ever fails to be
-        that of all asperities, the range is Chebyshev's, if that is below a half: it holds for any law.
+        that of all asperities, the range is Chebyshev's, if that is below a half: it always holds.
         """
         contacts, error = self.effective(n_surfaces), self.relative / np.sqrt(n_surfaces)
         usual, tail = contacts >= FEWEST, (1 - level) / np.where(contacts < MANY, 4, 2)
@@ -86,7 +86,7 @@ class Spread:
 
 
 def pearson3_quantile(share: Array | float, skewness: Array) -> Array:
-    """Quantile of the gamma law of this skewness, shifted and scaled to mean 0 and variance 1.
+    """Quantile of the gamma distribution of this skewness, shifted and scaled to mean 0 and variance 1.
 
     As ``scipy.stats.pearson3.ppf``, whose import takes half a second that `mcgw show` need not wait.
     """
@@ -97,7 +97,7 @@ def pearson3_quantile(share: Array | float, skewness: Array) -> Array:
 
 
 def chebyshev(level: float = CONFIDENCE) -> float:
-    """Standard deviations within which any law has at least this share."""
+    """Standard deviations within which any distribution has at least this share."""
     return float(1 / np.sqrt(1 - level))
 
 
@@ -145,7 +145,7 @@ def count_interval(
     if poisson:
         return low, np.asarray(high)
     n = asperities
-    # SciPy's inverse of the beta law fails beyond 1e9 asperities, its law does not.
+    # SciPy's inverse of the beta distribution fails beyond 1e9 asperities, the distribution does not.
     inside, rest = np.maximum(k, 1.0), np.maximum(n - k, 1.0)
     below = _root(lambda p: betainc(inside, n - inside + 1, p) > tail, np.zeros_like(k), k / n)
     above = _root(lambda p: betaincc(k + 1, rest, p) < tail, k / n, np.minimum(high / n, 1.0))

@@ -109,7 +109,7 @@ def _again(ensemble: Ensemble, scene: Scene) -> Iterator[tuple[Array, Array, Arr
             held = ensemble.sums.read(name, first, first + len(values))
             if not np.allclose(values, held, rtol=_SAME, atol=_SAME * float(np.abs(held).mean())):
                 raise ValueError(
-                    f"the surfaces cannot be drawn again: their {name} is another one (another version of "
+                    f"the surfaces cannot be drawn again: their {name} differs (another version of "
                     'mcgw, or a run that is not finished); simulate them with keep = "moments"'
                 )
         yield block.moments, block.counts, block.extras

@@ -51,7 +51,7 @@ def read_text(path: Path, most: int) -> str:
     Raises
     ------
     StoreError
-        Also if it is no such text.
+        Also if it is not such text.
     """
     try:
         return read_bytes(path, most).decode("utf-8-sig")

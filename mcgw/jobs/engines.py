@@ -1,4 +1,4 @@
-"""Engines: where blocks are drawn. One seam: submit a call, get a future of its answer.
+"""Engines: where blocks are drawn. One interface: submit a call, get a future of its answer.
 
 A worker may die at any time and a block may be drawn twice: tasks are idempotent, and what counts is
 what lies on the disk.

@@ -109,14 +109,14 @@ def read_h5(path: Path, unit: str | None = None) -> Topography:
     Raises
     ------
     ValueError
-        If it is none.
+        If it is not one.
     OSError
         If it cannot be read.
     """
     try:
         with h5py.File(path, "r") as file:
             if file.attrs.get("filetype") != _FILETYPE:
-                raise ValueError(f"{path}: is no {_FILETYPE} file; it was not written by mcgw surface")
+                raise ValueError(f"{path}: is not a {_FILETYPE} file; it was not written by mcgw surface")
             data = file["height"]
             checked_shape(*data.shape)
             dx, dy = (float(p) for p in file.attrs["pixel"])

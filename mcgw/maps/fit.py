@@ -29,7 +29,7 @@ METHODS = {
 }
 # Of caps placed at random 12 and 20 pixels apart, so many were lost as if a summit had to be 0.7 to 1.2
 # pixels from a valley, and 0.2 to 0.45 cutoffs: the correction is good to a quarter of itself.
-_BLUR, _DOUBT = 0.3, 0.25
+_BLUR, _UNSURE = 0.3, 0.25
 _FLAT = 0.5  # of the median curvature
 _MOST_CAUTIONS = 4  # in a short look
 
@@ -101,7 +101,7 @@ class Fit(Shown):
     cautions: tuple[str, ...] = ()
 
     def plot(self, ax: Any = None) -> Any:
-        """Draw the summit heights beside a Gaussian law of their spread; returns the axes."""
+        """Draw the summit heights beside a Gaussian distribution of their spread; returns the axes."""
         return plotted(self, ax)
 
     def sheet(self) -> Sheet:
@@ -282,7 +282,7 @@ def _caps(counted: SummitSums, blur: float) -> Estimate | None:
     values = np.array([estimate.eta, estimate.radius, estimate.sigma])
     if not (np.all(np.isfinite(values)) and np.all(np.isfinite(sharp))):
         return None
-    doubt = _DOUBT * np.abs(values[:, 0] - sharp)
-    doubt[1] = abs(1 / float(counted.curvatures.mean()) - values[1, 0])
-    errors = np.hypot(values[:, 1], doubt)
+    systematic = _UNSURE * np.abs(values[:, 0] - sharp)
+    systematic[1] = abs(1 / float(counted.curvatures.mean()) - values[1, 0])
+    errors = np.hypot(values[:, 1], systematic)
     return Estimate(*((float(v), float(e)) for v, e in zip(values[:, 0], errors, strict=True)))

@@ -15,14 +15,14 @@ from mcgw.scene.scene_file import scene_text
 
 __all__ = ["fitted_scene", "heights_beside", "write_scene"]
 
-Law = Literal["gaussian", "table", "measured"]
+Heights = Literal["gaussian", "table", "measured"]
 
 
 def fitted_scene(
     fit: Fit,
     *,
     use: str = "summits",
-    heights: Law = "gaussian",
+    heights: Heights = "gaussian",
     E_star: float | str = "100 GPa",
     title: str = "",
 ) -> Scene:
@@ -67,21 +67,21 @@ def fitted_scene(
             f"use = {use!r}: there is no such estimate of this map; {', '.join(fit.estimates)} are"
         )
     estimate = fit.estimates[use]
-    law: HeightLaw = Gaussian()
+    drawn: HeightLaw = Gaussian()
     sigma = estimate.sigma[0]
     if heights != "gaussian":
         sigma = float(fit.summits.std())
-        law = HeightTable.of(fit.summits) if heights == "table" else MeasuredHeights(fit.summits)
+        drawn = HeightTable.of(fit.summits) if heights == "table" else MeasuredHeights(fit.summits)
     surface = Surface(sigma, estimate.radius[0], estimate.eta[0], fit.area, modulus)
     separations = tuple(np.linspace(0, 3, 31).tolist())
     if heights == "measured":
         if not math.isclose(surface.n_asperities, fit.summits.size, rel_tol=1e-9):
             raise ValueError(f'use = "{use}": measured heights as they are need "summits", their own number')
         return Scene(
-            surface=surface, separations=separations, title=title, heights=law,
+            surface=surface, separations=separations, title=title, heights=drawn,
             n_surfaces=1, n_asperities=fit.summits.size, sampler="direct", seed=1,
         )  # fmt: skip
-    return Scene(surface=surface, separations=separations, title=title, heights=law, seed=1)
+    return Scene(surface=surface, separations=separations, title=title, heights=drawn, seed=1)
 
 
 def heights_beside(path: Path) -> Path:

@@ -3,7 +3,7 @@
 A cap of height z is hidden where an asperity at a distance r has ``z_j - r^2/(2R) > z``. It cannot be
 told from the slope of its neighbour where the valley between them is nearer to its summit than the
 blur p of the map: where ``z_j - (r^2 - 2 r p)/(2R) > z``. Of a Poisson field the number of such
-neighbours has a Poisson law, so the share of visible summits of that height is the exponential of
+neighbours is Poisson distributed, so the share of visible summits of that height is the exponential of
 minus its mean.
 """
 
@@ -52,7 +52,7 @@ def _nodes() -> tuple[Array, Array]:
 
 
 @lru_cache(maxsize=64)
-def _hiding(blur: float) -> Array:
+def _taller_neighbours(blur: float) -> Array:
     """Mean number of neighbours that hide each height, over ``4 pi eta R sigma``."""
     x, w = leggauss(_NODES)
     reach = blur + math.sqrt(blur**2 + 2 * _REACH)  # beyond, nobody is tall enough
@@ -71,7 +71,7 @@ def visible(overlap: float, blur: float = 0.0) -> Visible:
         Distance p from a valley that a summit needs, over ``sqrt(2 R sigma)``.
     """
     s, w = _nodes()
-    p = w * np.exp(-4 * math.pi * overlap * _hiding(blur))
+    p = w * np.exp(-4 * math.pi * overlap * _taller_neighbours(blur))
     share = float(p.sum())
     if share == 0:
         return Visible(0.0, 0.0, 0.0)

@@ -124,7 +124,7 @@ def read_sdf(path: Path) -> Topography:
     Raises
     ------
     ValueError
-        If the file is no SDF, is cut short, or declares what it does not hold. Nothing larger than
+        If the file is not SDF, is cut short, or declares what it does not hold. Nothing larger than
         the file's own contents is allocated.
     """
     with open(path, "rb") as file:
@@ -135,7 +135,7 @@ def read_sdf(path: Path) -> Topography:
             header, raw = _read_text(path, file)
         else:
             raise ValueError(
-                f"{path}: begins with {magic!r}, not with aISO-1.0 or bISO-1.0; it is no SDF file"
+                f"{path}: begins with {magic!r}, not with aISO-1.0 or bISO-1.0; it is not an SDF file"
             )
     heights = raw.astype(np.float64)
     if header.dtype.kind in "iu" and header.dtype.itemsize > 1:

@@ -95,7 +95,7 @@ def read_x3p(path: Path) -> Topography:
     Raises
     ------
     ValueError
-        If the file is no X3P, is damaged, or declares what it does not hold.
+        If the file is not X3P, is damaged, or declares what it does not hold.
     """
     try:
         with zipfile.ZipFile(path) as archive:
@@ -197,7 +197,7 @@ class _Reader:
         data = self._unpacked(name, number * np.dtype(_TYPES[kind]).itemsize)
         told = self._text("Record3/DataLink/MD5ChecksumPointData", "")
         if told and hashlib.md5(data, usedforsecurity=False).hexdigest() != told.lower():
-            raise ValueError(f"{name}: its checksum is another one than {_MAIN} says; the file is damaged")
+            raise ValueError(f"{name}: damaged (checksum mismatch with {_MAIN})")
         return np.frombuffer(data, dtype=_TYPES[kind]).astype(np.float64)
 
     def _mark_missing(self, heights: NDArray[np.float64]) -> None:

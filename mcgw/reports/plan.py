@@ -22,7 +22,7 @@ class Plan:
     sampler : str
         The one that ``auto`` stands for, too.
     surfaces : int
-        How many will be drawn; with `rel_err` from the exact law.
+        How many will be drawn; with `rel_err` by `forecast`.
     asperities : float
         On a surface.
     touching : float

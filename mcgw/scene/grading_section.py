@@ -51,7 +51,7 @@ def read_grading(path: Path, surface: Surface) -> Table:
     Raises
     ------
     ValueError
-        If it cannot be read, or is no such table.
+        If it cannot be read, or is not such a table.
     """
     lines = read_text(path, _MOST_BYTES).splitlines()
     try:

@@ -1,4 +1,4 @@
-"""The table [heights] of a scene: which law, and what it needs."""
+"""The table [heights] of a scene: which height law, and what it needs."""
 
 from pathlib import Path
 from typing import Any
@@ -55,7 +55,7 @@ def _weibull(section: Section) -> HeightLaw:
 
 
 def _table(section: Section, folder: Path) -> HeightLaw:
-    """Heights in the scene or in a file, to be resampled or added up; or points of their law."""
+    """Heights in the scene or in a file, to be resampled or added up; or points of their distribution."""
     keys = ("file", "heights", "s", "share", "resample")
     file, heights, s, share, resample = (section.take(key) for key in keys)
     key = "file" if file is not None else "heights" if heights is not None else "s"

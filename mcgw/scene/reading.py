@@ -99,7 +99,7 @@ def _heights(section: Section, given: Any) -> HeightLaw:
     if all(hasattr(given, name) for name in _LAW_OF_HEIGHTS) and not isinstance(given, type):
         return given  # type: ignore[no-any-return]
     advice = (
-        "give mcgw.Weibull(shape), mcgw.HeightTable.of(heights), or a frozen law of scipy.stats, as "
+        "give mcgw.Weibull(shape), mcgw.HeightTable.of(heights), or a frozen distribution of scipy.stats, as "
         "scipy.stats.lognorm(0.3)"
     )
     section.fail("heights", given, advice)
@@ -110,5 +110,5 @@ def _of_scipy(section: Section, given: Any) -> HeightLaw:
     try:
         return ScipyHeights(given)
     except (TypeError, ValueError) as error:
-        section.fail("heights", given, f"give a frozen continuous law of scipy.stats; {error}")
+        section.fail("heights", given, f"give a frozen continuous distribution of scipy.stats; {error}")
         return Gaussian()

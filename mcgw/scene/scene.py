@@ -41,8 +41,8 @@ class Scene(Fields, Shown):
         and jumps are searched for, or told by `mcgw.Custom`. Default: homogeneous.
     negative : {"error", "clip", "allow"}, optional
         What to do where the grading makes the modulus of a contacting asperity negative.
-    heights : HeightLaw or frozen law of scipy.stats, optional
-        Law of the reduced heights: of a law of scipy the mean and the scale drop out. Default: Gaussian.
+    heights : HeightLaw or frozen distribution of scipy.stats, optional
+        Of the reduced heights: of a distribution of scipy mean and scale drop out. Default: Gaussian.
     law : ContactLaw, optional
         Law of contact of an asperity, as `mcgw.KogutEtsion(hardness=1.2e9)`. Default: Hertz's.
     unload_from : float or "loop", optional
@@ -72,7 +72,7 @@ class Scene(Fields, Shown):
         Whether the file also keeps the moments, from which `mcgw.regrade` starts.
     rel_err : float or str, optional
         Draw so many surfaces that the 95 % interval of every mean reaches no farther than this share of
-        it, 0 to 0.1 or as "1 %": as many as the exact law of a finite surface says.
+        it, 0 to 0.1 or as "1 %": as many as the exact theory of a finite surface says.
     max_seconds : float or str, optional
         Stop after the block that is being drawn then; s, or as "2 h".
 

@@ -1,4 +1,4 @@
-"""Single checks of statistical convergence: each gives the probability of what is seen, if the law is right.
+"""Single checks of statistical convergence: each gives the probability of what is seen, if all is right.
 
 They take surfaces along the principal axes: independent, of mean 0 and variance 1, nearly Gaussian.
 """

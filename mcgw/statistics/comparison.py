@@ -22,7 +22,7 @@ Array = NDArray[np.float64]
 FALSE_ALARM = 1e-3
 _MOST_SEPARATIONS = 48
 _SKEW, _KURTOSIS = 0.1, 0.1  # so nearly Gaussian must a combination of means be to count
-_INDEPENDENT = 1e-9  # variance of a combination that is no rounding error
+_INDEPENDENT = 1e-9  # variance of a combination that is not a rounding error
 
 
 @dataclass(frozen=True)

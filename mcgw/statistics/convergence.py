@@ -1,4 +1,4 @@
-"""The statistical convergence test, for this simulator and for anybody's sampler or law of contact."""
+"""The statistical convergence test, for this simulator and for anybody's sampler or contact law."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
@@ -93,7 +93,7 @@ class Convergence(Shown):
 def converge(
     scene: Scene, draw: Draw | None = None, *, seeds: int = SEEDS, progress: Progress = None, **changes: Any
 ) -> Convergence:
-    """Hold a sampler to the exact law of a scene.
+    """Hold a sampler to the exact theory of a scene.
 
     Parameters
     ----------
@@ -146,8 +146,8 @@ def converge(
             parts.append(draw(replace(scene, seed=(scene.seed + k) % 2**64)))
         tell(seeds, seeds)
     sums = joined([{name: part[name] for name in scene.quantities} for part in parts])
-    law = PrincipalComponents.of(scene)
-    y = law.turn(sums)
+    exact = PrincipalComponents.of(scene)
+    y = exact.turn(sums)
     whole = replace(scene, n_surfaces=len(y))
     means = verdict(Ensemble(whole, "drawn", MemoryResults(sums)))
     checks = [
@@ -163,12 +163,12 @@ def converge(
         checks += [
             score,
             coverage(groups),
-            variances(law, y),
+            variances(exact, y),
             covariances(y),
-            skewness(law, y),
+            skewness(exact, y),
             independence(groups),
         ]
-        slopes = [*_slope_in_surfaces(law, y, scene.n_surfaces), *_slope_in_asperities(scene, draw)]
+        slopes = [*_slope_in_surfaces(exact, y, scene.n_surfaces), *_slope_in_asperities(scene, draw)]
         checks += [found.check for found in slopes]
     return Convergence(scene, tuple(checks), tuple(slopes), z)
 
@@ -195,8 +195,8 @@ def _contacts(scene: Scene, sums: Sums) -> list[Check]:
     total = np.rint(np.asarray(sums["contacts"], dtype=np.float64).sum(axis=0))
     share = scene.heights.above(np.array(scene.separations))
     tried = float(scene.n_surfaces) * scene.n_asperities
-    law = binom(tried, share) if scene.count == "fixed" else poisson(tried * share)
-    p = np.minimum(2 * np.minimum(law.cdf(total), law.sf(total - 1)), 1.0)
+    exact = binom(tried, share) if scene.count == "fixed" else poisson(tried * share)
+    p = np.minimum(2 * np.minimum(exact.cdf(total), exact.sf(total - 1)), 1.0)
     worst = int(np.argmin(p))
     seen = (
         f"{total[worst]:.0f} at d/sigma = {scene.separations[worst]:g}, {tried * share[worst]:.1f} expected"
@@ -219,7 +219,7 @@ def _repeats(scene: Scene, sums: Sums) -> list[Check]:
     return [Check("repeated surfaces", f"{again} of {len(values)}", float(poisson.sf(again - 1, expected)))]
 
 
-def _slope_in_surfaces(law: PrincipalComponents, y: Array, most: int) -> list[Slope]:
+def _slope_in_surfaces(exact: PrincipalComponents, y: Array, most: int) -> list[Slope]:
     """Error of means of 1, 4, 16, ... surfaces, each size from surfaces of its own."""
     sizes = [m for m in 4 ** np.arange(8) if m <= most // 4]
     squares, used = [], []
@@ -228,7 +228,7 @@ def _slope_in_surfaces(law: PrincipalComponents, y: Array, most: int) -> list[Sl
         if means.size >= _FEWEST_ERRORS:
             squares.append(np.asarray(means**2))
             used.append(float(m))
-    kurtosis = float(law.kurtosis.mean())
+    kurtosis = float(exact.kurtosis.mean())
     return [slope("M", used, squares, [kurtosis / m for m in used])] if len(used) > 1 else []
 
 
@@ -248,10 +248,10 @@ def _slope_in_asperities(scene: Scene, draw: Draw) -> list[Slope]:
             quantities=(name,),
             seed=(scene.seed + 10**6 + divisor) % 2**64,
         )
-        law = PrincipalComponents.of(small)
-        if law.axes.size:
-            y = law.turn(draw(small))[:, 0]
+        exact = PrincipalComponents.of(small)
+        if exact.axes.size:
+            y = exact.turn(draw(small))[:, 0]
             sizes.append(float(n))
-            squares.append(np.asarray((y * law.std[0] / law.mean[0]) ** 2))
-            excess.append(float(law.kurtosis[0]))
+            squares.append(np.asarray((y * exact.std[0] / exact.mean[0]) ** 2))
+            excess.append(float(exact.kurtosis[0]))
     return [slope("N", sizes, squares, excess)] if len(sizes) > 1 else []

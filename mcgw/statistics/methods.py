@@ -181,7 +181,7 @@ def _integrand(scene: Scene, q: analytic.Quantity, h: float, v: Array | float) -
 
 
 def _by_quad(scene: Scene, q: analytic.Quantity, h: float, accuracy: float) -> float:
-    """F*_n by SciPy's adaptive rule, from break to break and to the law's own tail."""
+    """F*_n by SciPy's adaptive rule, from break to break and to the tail of the heights."""
     ends = quantiles(scene, h, np.array(_PIECES))
     breaks = [b for b in (*scene.heights.breaks, *scene.modulus.breaks) if ends[0] < b < ends[-1]]
     ends = np.sqrt(np.unique([*ends, *breaks]) - h)

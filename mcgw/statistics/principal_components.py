@@ -25,7 +25,7 @@ _MOST_KURTOSIS = 0.5  # of a combination over surfaces
 
 @dataclass(frozen=True)
 class PrincipalComponents:
-    """Axes and the exact law along them.
+    """Axes and the exact distribution along them.
 
     Parameters
     ----------

@@ -2,7 +2,7 @@
 
 With ``p = exp(-t)`` the share of the touching heights that lie above s, the mean of f over these is
 ``int exp(-t) f(s(t)) dt``: no density is asked for, any tail falls at least like a power of p, and a
-bounded law ends where p does. Panels shrink towards t = 0, where f has a root or the law begins with a
+bounded distribution ends where p does. Panels shrink towards t = 0, where f has a root or the density a
 broken power.
 """
 
@@ -35,17 +35,17 @@ def reference(scene: Scene, chosen: tuple[int, ...]) -> Array:
 
 def quantiles(scene: Scene, h: float, t: Array) -> Array:
     """Heights above which the share ``exp(-t)`` of the heights above `h` lies, rising with t."""
-    with np.errstate(under="ignore"):  # a share of 0 is the end of the law
+    with np.errstate(under="ignore"):  # a share of 0 is the end of the support
         return np.maximum(scene.heights.from_above(np.exp(-t), h), h)
 
 
 def _one_asperity(scene: Scene, q: Quantity, h: float) -> float:
     """Mean of ``(s - h)_+^n e(s)``."""
-    law = scene.heights
-    if isinstance(law, MeasuredHeights):
-        s = np.array(law.heights)
+    heights = scene.heights
+    if isinstance(heights, MeasuredHeights):
+        s = np.array(heights.heights)
         return float(np.sum(_term(scene, q, h, s[s > h]))) / s.size
-    touching = float(law.above(np.array(h)))
+    touching = float(heights.above(np.array(h)))
     if not touching > 0:
         return 0.0
     x, w = leggauss(_POINTS)

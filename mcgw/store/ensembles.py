@@ -119,7 +119,7 @@ def _described(path: Path) -> tuple[dict[str, Any], Scene]:
     except ValueError as error:
         if isinstance(error, StoreError):
             raise
-        raise StoreError(f"{path}: its scene is none: {str(error).splitlines()[0]}") from None
+        raise StoreError(f"{path}: its scene cannot be read: {str(error).splitlines()[0]}") from None
     _check_tables(path, scene, answer["datasets"])
     return attributes, scene
 
@@ -154,7 +154,7 @@ def verify(path: Path) -> tuple[str, str]:
         with h5py.File(path, "r") as file:
             found = values_digest(file, scene)
         if found != attributes["digest"]:
-            problem = problem or "its data have another digest than it says"
+            problem = problem or "digest mismatch of its data"
     except (OSError, RuntimeError, KeyError, ValueError) as error:
         if not problem:
             raise

@@ -96,7 +96,7 @@ class Shard:
         _, body = read_checked(self.path)
         arrays = _unpack(body, self.path)
         if content_digest(arrays) != self.digest:
-            raise StoreError(f"{self.path}: damaged (its contents are others)")
+            raise StoreError(f"{self.path}: damaged (checksum mismatch of its contents)")
         _check_rows(self, arrays)
         return arrays
 
