@@ -16,6 +16,7 @@ from mcgw.maps.x3p import read_x3p, write_x3p
 __all__ = ["WRITTEN", "files_of_map", "read_map", "write_map"]
 
 WRITTEN = (".sdf", ".ascii.sdf", ".x3p", ".npy", ".h5")
+_READERS = {".sdf": read_sdf, ".x3p": read_x3p}  # of formats that tell the size of a pixel, and heights in m
 _TEXT = (".txt", ".csv", ".asc", ".dat", ".tsv")
 
 
@@ -97,10 +98,10 @@ def _read(path: Path, pixel: tuple[float, float] | None, unit: str | None) -> To
         raise ValueError(f"{path}: tells the size of a pixel itself; leave --pixel out")
     if ending == ".h5":
         return read_h5(path, unit)
-    if ending not in (".sdf", ".x3p"):
-        return _from_surface_topography(path, unit)
-    height_unit(path, "m", unit)
-    return read_sdf(path) if ending == ".sdf" else read_x3p(path)
+    if ending in _READERS:
+        height_unit(path, "m", unit)
+        return _READERS[ending](path)
+    return _from_surface_topography(path, unit)
 
 
 def _from_surface_topography(path: Path, unit: str | None) -> Topography:
