@@ -107,7 +107,7 @@ def run(
     part = None if shard is None else part_of(shard)
     if part and engine is not None:
         raise ValueError(f"shard = {shard!r}: a share is drawn by threads; leave engine out")
-    made = _engine_of(engine, threads)
+    draws = _engine_of(engine, threads)
     total = forecast(scene).surfaces if progress else 0
     with told(progress, "surfaces") as tell:
 
@@ -117,10 +117,10 @@ def run(
         if part:
             return running.run_part(scene, path, part, threads=threads, progress=note)
         try:
-            return running.run(scene, path, threads=threads, engine=made or _given(engine), progress=note)
+            return running.run(scene, path, threads=threads, engine=draws, progress=note)
         finally:
-            if made:
-                made.close()
+            if draws is not None and draws is not engine:
+                draws.close()
 
 
 def part_of(shard: str) -> Part:
@@ -137,24 +137,20 @@ def part_of(shard: str) -> Part:
     return Part(int(number), int(of))
 
 
-def _given(engine: "Engine | str | None") -> Engine | None:
-    """An engine of the caller's own, which stays open."""
-    return None if isinstance(engine, str) else engine
-
-
-def _engine_of(engine: "Engine | str | None", cores: int | None) -> Engine | None:
-    """The engine that a word or an address names, which is closed in the end."""
-    if engine is None or engine == "threads":
-        return None
-    if not isinstance(engine, str):
-        if hasattr(engine, "submit") and hasattr(engine, "width"):
+def _engine_of(engine: "Engine | str | None", threads: int | None) -> Engine | None:
+    """The engine that is given, or that a word or an address names; None for threads of this process."""
+    match engine:
+        case None | "threads":
             return None
-    elif engine == "processes":
-        return Processes(_cores() if cores is None else cores)
-    elif engine == "dask" or "://" in engine:
-        from mcgw.jobs.dask_engine import Dask
+        case "processes":
+            return Processes(_cores() if threads is None else threads)
+        case str() if engine == "dask" or "://" in engine:
+            from mcgw.jobs.dask_engine import Dask
 
-        return Dask(None if engine == "dask" else engine, workers=_cores() if cores is None else cores)
+            address = None if engine == "dask" else engine
+            return Dask(address, workers=_cores() if threads is None else threads)
+        case _ if not isinstance(engine, str) and hasattr(engine, "submit") and hasattr(engine, "width"):
+            return engine
     raise ValueError(
         f"engine = {engine!r}: give one of {', '.join(_ENGINES)}, or tcp://ADDRESS of a scheduler"
     )

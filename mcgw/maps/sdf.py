@@ -38,14 +38,16 @@ class _Header:
 
     rows: int
     columns: int
-    pixel: tuple[float, float]
+    dx: float
+    dy: float
     z_scale: float
     data_type: int
 
     def __post_init__(self) -> None:
         checked_shape(self.rows, self.columns)
-        if not all(math.isfinite(v) and v > 0 for v in (*self.pixel, self.z_scale)):
-            raise ValueError(f"Xscale, Yscale, Zscale = {(*self.pixel, self.z_scale)}: all must be > 0")
+        scales = (self.dx, self.dy, self.z_scale)
+        if not all(math.isfinite(v) and v > 0 for v in scales):
+            raise ValueError(f"Xscale, Yscale, Zscale = {scales}: all must be > 0")
         if not 0 <= self.data_type < len(_TYPES):
             raise ValueError(f"DataType = {self.data_type}: SDF knows 0 to {len(_TYPES) - 1}")
 
@@ -74,22 +76,9 @@ def write_sdf(topography: Topography, path: Path, *, text: bool = False) -> None
             return
         dx, dy = topography.pixel
         stamp = date.encode()
-        fields = (
-            b"bISO-1.0",
-            b"mcgw".ljust(10),
-            stamp,
-            stamp,
-            columns,
-            rows,
-            dx,
-            dy,
-            1.0,
-            0.0,
-            0,
-            _DOUBLE,
-            0,
-        )
-        file.write(_HEADER.pack(*fields))
+        scales = (dx, dy, 1.0, 0.0)  # of x, y and z, and the resolution of z
+        head = (b"bISO-1.0", b"mcgw".ljust(10), stamp, stamp, columns, rows, *scales, 0, _DOUBLE, 0)
+        file.write(_HEADER.pack(*head))
         for row in topography.heights:
             file.write(row.astype("<f8").tobytes())
 
@@ -141,7 +130,7 @@ def read_sdf(path: Path) -> Topography:
     if header.dtype.kind in "iu" and header.dtype.itemsize > 1:
         heights[raw == _MISSING[_TYPES[header.data_type]]] = np.nan
     heights *= header.z_scale
-    return Topography(heights.reshape(header.rows, header.columns), header.pixel)
+    return Topography(heights.reshape(header.rows, header.columns), (header.dx, header.dy))
 
 
 def _read_binary(path: Path, file: BinaryIO) -> tuple[_Header, NDArray[np.generic]]:
@@ -149,7 +138,7 @@ def _read_binary(path: Path, file: BinaryIO) -> tuple[_Header, NDArray[np.generi
     if len(rest) < _HEADER.size - 8:
         raise ValueError(f"{path}: cut short inside the SDF header")
     columns, rows, dx, dy, z_scale, _, compression, data_type, _ = struct.unpack("<HHddddBBB", rest[34:])
-    header = _checked(path, _Numbers(rows, columns, dx, dy, z_scale, data_type), compression)
+    header = _checked(path, (rows, columns, dx, dy, z_scale, data_type), compression)
     wanted = rows * columns * header.dtype.itemsize
     held = path.stat().st_size - _HEADER.size
     if held < wanted:
@@ -160,23 +149,11 @@ def _read_binary(path: Path, file: BinaryIO) -> tuple[_Header, NDArray[np.generi
     return header, np.fromfile(file, dtype=header.dtype, count=rows * columns)
 
 
-@dataclass(frozen=True)
-class _Numbers:
-    """Header fields as they stand in the file."""
-
-    rows: int
-    columns: int
-    dx: float
-    dy: float
-    z_scale: float
-    data_type: int
-
-
-def _checked(path: Path, n: _Numbers, compression: int) -> _Header:
+def _checked(path: Path, header: tuple[int, int, float, float, float, int], compression: int) -> _Header:
     if compression:
         raise ValueError(f"{path}: compressed SDF files are not read; save it without compression")
     try:
-        return _Header(n.rows, n.columns, (n.dx, n.dy), n.z_scale, n.data_type)
+        return _Header(*header)
     except ValueError as error:
         raise ValueError(f"{path}: {error}") from None
 
@@ -192,12 +169,12 @@ def _read_text(path: Path, file: BinaryIO) -> tuple[_Header, NDArray[np.float64]
     if missing:
         raise ValueError(f"{path}: the SDF header lacks {', '.join(missing)}")
     try:
-        whole = [int(found[key]) for key in ("NumProfiles", "NumPoints", "DataType")]
-        real = [float(found[key]) for key in ("Xscale", "Yscale", "Zscale")]
+        rows, columns, data_type = (int(found[key]) for key in ("NumProfiles", "NumPoints", "DataType"))
+        dx, dy, z_scale = (float(found[key]) for key in ("Xscale", "Yscale", "Zscale"))
         compression = int(found.get("Compression", "0"))
     except ValueError as error:
         raise ValueError(f"{path}: the SDF header is malformed: {error}") from None
-    header = _checked(path, _Numbers(whole[0], whole[1], real[0], real[1], real[2], whole[2]), compression)
+    header = _checked(path, (rows, columns, dx, dy, z_scale, data_type), compression)
     wanted = header.rows * header.columns
     held = path.stat().st_size - 8 - end.end()
     if 2 * wanted > held + 2:

@@ -44,20 +44,10 @@ def _description(topography: Topography, md5: str) -> bytes:
     """The file main.xml."""
     rows, columns = topography.heights.shape
     date = datetime.now(UTC).strftime("%Y-%m-%dT%H:%M:%S.0+00:00")
+    dx, dy = topography.pixel
     axes = {
-        "CX": {
-            "AxisType": "I",
-            "DataType": "D",
-            "Increment": repr(float(topography.pixel[0])),
-            "Offset": "0.0",
-        },
-        "CY": {
-            "AxisType": "I",
-            "DataType": "D",
-            "Increment": repr(float(topography.pixel[1])),
-            "Offset": "0.0",
-        },
-        "CZ": {"AxisType": "A", "DataType": "D", "Increment": "1.0", "Offset": "0.0"},
+        name: {"AxisType": kind, "DataType": "D", "Increment": repr(float(step)), "Offset": "0.0"}
+        for name, kind, step in (("CX", "I", dx), ("CY", "I", dy), ("CZ", "A", 1.0))
     }
     instrument = {"Manufacturer": "mcgw", "Model": "synthetic", "Serial": "none", "Version": "1"}
     tree = {

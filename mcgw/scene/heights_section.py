@@ -33,15 +33,15 @@ _MOST_BYTES = 2**28
 
 def heights_law(section: Section, folder: Path) -> HeightLaw:
     """Read the height law; mistakes are noted in the section, and give the Gaussian one."""
-    law = section.choice("law", "gaussian", LAWS)
-    match law:
+    name = section.choice("law", "gaussian", LAWS)
+    match name:
         case "weibull":
             return _weibull(section)
         case "table":
             return _table(section, folder)
         case "scipy":
             return _scipy(section)
-    return _PLAIN[law]
+    return _PLAIN[name]
 
 
 def _weibull(section: Section) -> HeightLaw:
@@ -114,7 +114,7 @@ def _scipy(section: Section) -> HeightLaw:
         return Gaussian()
 
 
-def heights_table(law: HeightLaw, file: str | None = None) -> dict[str, Any]:
+def heights_table(heights: HeightLaw, file: str | None = None) -> dict[str, Any]:
     """The table [heights] of a height law, read again the same; measured heights by the name of their file.
 
     Raises
@@ -123,26 +123,26 @@ def heights_table(law: HeightLaw, file: str | None = None) -> dict[str, Any]:
         If it is a class of the user.
     """
     for known, plain in _PLAIN.items():
-        if type(law) is type(plain):
+        if type(heights) is type(plain):
             return {"law": known}
-    match law:
-        case _ if type(law) not in _KNOWN:  # a class made of one may do more
+    match heights:
+        case _ if type(heights) not in _KNOWN:  # a class made of one may do more
             pass
         case Weibull():
-            return {"law": "weibull", "shape": float(law.shape)}
+            return {"law": "weibull", "shape": float(heights.shape)}
         case HeightTable():
-            return {"law": "table", "s": list(law.s), "share": list(law.share)}
+            return {"law": "table", "s": list(heights.s), "share": list(heights.share)}
         case MeasuredHeights():
-            held = {"heights": list(law.heights)} if file is None else {"file": file}
+            held = {"heights": list(heights.heights)} if file is None else {"file": file}
             return {"law": "table", **held, "resample": False}
         case ScipyHeights():
             import scipy.stats  # as above
 
-            dist = getattr(law.distribution, "dist", None)
+            dist = getattr(heights.distribution, "dist", None)
             name = getattr(dist, "name", None)
             if name and type(dist) is type(getattr(scipy.stats, name, None)):
-                return {"law": "scipy", "name": name, "shapes": law.shapes}
-    own = getattr(getattr(law, "distribution", None), "dist", law)
+                return {"law": "scipy", "name": name, "shapes": heights.shapes}
+    own = getattr(getattr(heights, "distribution", None), "dist", heights)
     raise SceneError(
         [
             f"heights: {type(own).__name__} is a Python class that no file can hold; give a distribution of "
