@@ -19,23 +19,20 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 def execute(args: argparse.Namespace) -> int:
     """Print table and verdict, save the figure."""
     from mcgw.commands.notes import tell_notes
-    from mcgw.commands.outputs import CSV, Output, check_outputs, figure_format
+    from mcgw.commands.outputs import Output, check_outputs, figure_format
+    from mcgw.commands.table_option import table_output, write_table
     from mcgw.figures.comparison import save_comparison
-    from mcgw.formats.csv_table import write_csv
     from mcgw.reports.text import COMPARISON_HEADER, comparison_rows, comparison_table, verdict_line
     from mcgw.statistics.comparison import compare
     from mcgw.store.ensembles import open_ensemble
 
     path = args.output or args.file.with_suffix(".png")
     ensemble = open_ensemble(args.file)
-    table = [Output(args.csv, CSV, "--csv")] if args.csv else []
-    check_outputs([Output(path, figure_format()), *table], inputs=[args.file])
+    check_outputs([Output(path, figure_format()), *table_output(args.csv)], inputs=[args.file])
     tell_notes(ensemble.scene)
     comparison = compare(ensemble)
     save_comparison(comparison, path)
     print(comparison_table(comparison))
-    if args.csv:
-        write_csv(args.csv, COMPARISON_HEADER, comparison_rows(comparison))
-        print(f"{args.csv}: the table")
+    write_table(args.csv, COMPARISON_HEADER, comparison_rows(comparison))
     print(f"\n{verdict_line(comparison.verdict)}\n{path}: figure")
     return 0 if comparison.verdict.agrees else 1

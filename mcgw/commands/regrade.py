@@ -25,30 +25,24 @@ def execute(args: argparse.Namespace) -> int:
     """Write the new ensemble and print its ratios to the old one."""
     from dataclasses import replace
 
-    from analytic import Exponential, Grading
-    from mcgw.commands.outputs import CSV, HDF5, Output, check_outputs
+    from analytic import Exponential
+    from mcgw.commands.outputs import HDF5, Output, check_outputs
+    from mcgw.commands.table_option import table_output, write_table
     from mcgw.ensemble.regrading import regrade
-    from mcgw.formats.csv_table import write_csv
     from mcgw.reports.text import RATIO_HEADER, ratio_rows, ratio_table
     from mcgw.scene.grading_section import read_grading
     from mcgw.store.ensembles import finished, open_ensemble
     from mcgw.store.saving import save
 
     old = open_ensemble(args.file)
-    grading: Grading
-    if args.grading:
-        grading = read_grading(args.grading, old.scene.surface)
-    else:
-        grading = Exponential(args.gamma)
+    table, gamma = args.grading, args.gamma
+    grading = read_grading(table, old.scene.surface) if table else Exponential(gamma)
     path = args.output or args.file.with_suffix(".regraded.h5")
-    table = [Output(args.csv, CSV, "--csv")] if args.csv else []
-    inputs = [args.file, *([args.grading] if args.grading else [])]
-    check_outputs([Output(path, HDF5, grows=True), *table], inputs=inputs)
+    inputs = [args.file, table] if table else [args.file]
+    check_outputs([Output(path, HDF5, grows=True), *table_output(args.csv)], inputs=inputs)
     finished(path, replace(old.scene, grading=grading, n_surfaces=old.n_surfaces), old.sampler)
     new = save(regrade(old, grading), path)
     print(ratio_table(new, old))
     print(f"{path}: {new.n_surfaces} surfaces, the same as in {args.file}")
-    if args.csv:
-        write_csv(args.csv, RATIO_HEADER, ratio_rows(new, old))
-        print(f"{args.csv}: the table")
+    write_table(args.csv, RATIO_HEADER, ratio_rows(new, old))
     return 0

@@ -25,7 +25,8 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 def execute(args: argparse.Namespace) -> int:
     """Print to standard output; with --csv, write the table there."""
     from mcgw.commands.notes import tell_notes
-    from mcgw.commands.outputs import CSV, Output, check_outputs
+    from mcgw.commands.outputs import check_outputs
+    from mcgw.commands.table_option import table_output, write_table
     from mcgw.store.ensembles import open_ensemble, read_attributes, verify
     from mcgw.store.leftovers import tidy
 
@@ -50,14 +51,11 @@ def execute(args: argparse.Namespace) -> int:
     elif args.digest:
         print(attributes["digest"])
     else:
-        from mcgw.formats.csv_table import write_csv
         from mcgw.reports.text import SUMMARY_HEADER, summary, summary_rows
 
         ensemble = open_ensemble(args.file)
-        check_outputs([Output(args.csv, CSV, "--csv")] if args.csv else [], inputs=[args.file])
+        check_outputs(table_output(args.csv), inputs=[args.file])
         tell_notes(ensemble.scene)
         print(summary(ensemble, attributes))
-        if args.csv:
-            write_csv(args.csv, SUMMARY_HEADER, summary_rows(ensemble))
-            print(f"{args.csv}: the table")
+        write_table(args.csv, SUMMARY_HEADER, summary_rows(ensemble))
     return 0

@@ -25,15 +25,15 @@ def execute(args: argparse.Namespace) -> int:
     from dataclasses import replace
 
     from mcgw.commands.notes import tell_notes
-    from mcgw.commands.outputs import CSV, Output, check_outputs
+    from mcgw.commands.outputs import check_outputs
+    from mcgw.commands.table_option import table_output, write_table
     from mcgw.ensemble.solution import solutions
-    from mcgw.formats.csv_table import write_csv
     from mcgw.formats.units import parse
     from mcgw.reports.solution import SOLUTION_HEADER, solution_rows, solution_table
     from mcgw.scene.scene_file import files_of, load_scene
 
     scene = load_scene(args.scene)
-    check_outputs([Output(args.csv, CSV, "--csv")] if args.csv else [], inputs=files_of(args.scene))
+    check_outputs(table_output(args.csv), inputs=files_of(args.scene))
     if args.surfaces is not None:
         scene = replace(scene, n_surfaces=args.surfaces)
     tell_notes(scene)
@@ -46,7 +46,5 @@ def execute(args: argparse.Namespace) -> int:
         given, values = "area", [parse(a, "1", "--area-fraction") * area for a in args.area_fraction]
     found = solutions(scene, given, values)
     print(solution_table(scene, found))
-    if args.csv:
-        write_csv(args.csv, SOLUTION_HEADER, solution_rows(scene, found))
-        print(f"{args.csv}: the table")
+    write_table(args.csv, SOLUTION_HEADER, solution_rows(scene, found))
     return 0

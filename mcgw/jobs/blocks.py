@@ -9,14 +9,15 @@ from mcgw.formats.files import State, state_of
 from mcgw.jobs.job import Job
 from mcgw.sampling.samplers import sampler_of
 from mcgw.store.disk import file_of
-from mcgw.store.run_folder import RunFolder, difference, identity_of
+from mcgw.store.identity import difference, identity_of
+from mcgw.store.run_folder import RunFolder
 from mcgw.store.shards import Span, commit_shard
 
 __all__ = ["commit_block"]
 
 
 def commit_block(folder: str, first: int, n: int, threads: int | None = 1) -> str:
-    """Draw a block of the run in a folder and commit its shard, unless a valid one is there: its digest."""
+    """Draw a block of a run into its folder, unless a valid shard is there; returns its digest."""
     run, job = _prepared(folder, state_of(Path(folder) / "run.toml"))
     span = Span(first, n)
     if shard := run.held(span):

@@ -33,6 +33,7 @@ are merged at the end and then removed. What each mechanism is for:
 ``layout``       the schema above, written and read back
 ``shards``       a killed run loses at most the blocks in hand; workers elsewhere share no open file
 ``run_folder``   a run goes on only with what it was begun with: scene, sampler, versions
+``identity``     which scenes, samplers and versions those are
 ``merged_file``  the file is made beside its place, in a child, for HDF5 may crash on a full disk
 ``disk``         that crash: the library never sees an error of the disk
 ``trailer``      whether a file is whole and unchanged, without HDF5

@@ -11,8 +11,9 @@ from mcgw.errors import StoreError
 from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_from, scene_text
 from mcgw.store.head import MOST_SCALE
+from mcgw.store.identity import difference, identity_of
 from mcgw.store.layout import FILETYPE, FORMAT, values_digest
-from mcgw.store.run_folder import RunFolder, difference, identity_of, parts_of
+from mcgw.store.run_folder import RunFolder, parts_of
 from mcgw.store.stored import FileResults, ShardResults
 from mcgw.store.trailer import check_trailer, read_trailer
 from mcgw.store.untrusted import examine

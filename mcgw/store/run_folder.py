@@ -27,56 +27,18 @@ from mcgw.formats.files import Expected, sync, write_whole
 from mcgw.formats.toml_text import loads
 from mcgw.scene.scene import Scene, SceneError
 from mcgw.scene.scene_file import scene_from, scene_text
-from mcgw.store.arithmetic import KIND, drawn_with
+from mcgw.store.arithmetic import drawn_with
 from mcgw.store.disk import parts_of
+from mcgw.store.identity import difference, identity_of
 from mcgw.store.lock import refuse_link
 from mcgw.store.provenance import now
 from mcgw.store.shards import Shard, Span, open_shard
 
-__all__ = ["RunFolder", "difference", "identity_of", "missing", "parts_of", "remove_run"]
+__all__ = ["RunFolder", "missing", "parts_of", "remove_run"]
 
 _FILETYPE, _FORMAT = "mcgw-run", [1, 1]
 _CHECKSUM = 'sha256 = "'
 _MOST_BYTES = 2**23
-
-
-def frozen_text(scene: Scene) -> str:
-    """What of a scene must stay the same while its ensemble grows: the values, whoever gave them."""
-    return scene_text(replace(scene, n_surfaces=1), left_out=False)
-
-
-def identity_of(scene: Scene, sampler: str) -> str:
-    """SHA-256 of all that the numbers of a surface depend on: frozen scene, sampler, what draws."""
-    parts = (frozen_text(scene), sampler, drawn_with(scene, sampler))
-    return hashlib.sha256("\0".join(parts).encode()).hexdigest()
-
-
-def difference(scene: Scene, made_with: str, wanted: Scene, sampler: str) -> str:
-    """What keeps two runs from being one, in words."""
-    there, here = (dict(_flat(loads(frozen_text(s)))) for s in (scene, wanted))
-    for key, value in here.items():
-        if there.get(key) != value:
-            return f"{key} is {_short(there.get(key))} there and {_short(value)} here"
-    for key, value in there.items():
-        if key not in here:
-            return f"{key} is {_short(value)} there and not given here"
-    this = drawn_with(wanted, sampler)
-    if made_with.partition(KIND)[0] == this.partition(KIND)[0] and made_with != this:
-        return "it was drawn on another kind of processor, which rounds exponentials and logarithms otherwise"
-    return f"it was drawn with {made_with}, this is {this}"
-
-
-def _flat(table: dict[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
-    for key, value in table.items():
-        if isinstance(value, dict):
-            yield from _flat(value, f"{prefix}{key}.")
-        else:
-            yield prefix + key, value
-
-
-def _short(value: Any) -> str:
-    shown = repr(value)
-    return shown if len(shown) <= 60 else shown[:57] + "..."
 
 
 @dataclass(frozen=True)

@@ -9,10 +9,11 @@ from mcgw.ensemble.ensemble import Ensemble
 from mcgw.errors import RunError, StoreError
 from mcgw.formats.files import check_output, state_of, write_whole
 from mcgw.store.arithmetic import drawn_with
+from mcgw.store.disk import parts_of
 from mcgw.store.ensembles import finished, open_ensemble
+from mcgw.store.identity import identity_of
 from mcgw.store.layout import build, trailer_notes
 from mcgw.store.lock import locked
-from mcgw.store.run_folder import identity_of, parts_of
 from mcgw.store.shards import DRAWN, Span, in_memory
 from mcgw.store.trailer import trailer_of
 
