@@ -44,6 +44,24 @@ COMPANY = {
     ("heights", "share"): ("[0.0, 1.0]", {"shape": None, "law": "'table'", "s": "[0.0, 1.0]"}),
     ("heights", "name"): ("'gamma'", {"shape": None, "law": "'scipy'", "shapes": "{a = 4.0}"}),
     ("heights", "shapes"): ("{a = 4.0}", {"shape": None, "law": "'scipy'", "name": "'gamma'"}),
+    ("contact", "law"): ("'kogut-etsion'", {"critical": "0.05"}),
+    ("contact", "critical"): ("0.05", {"law": "'kogut-etsion'"}),
+    ("contact", "hardness"): ("'1.2 GPa'", {"law": "'kogut-etsion'"}),
+    ("contact", "poisson"): ("0.3", {"law": "'kogut-etsion'", "critical": "0.05"}),
+    ("contact", "bridge"): ("'hermite'", {"law": "'kogut-etsion'", "critical": "0.05"}),
+    ("contact", "yield_strength"): ("'400 MPa'", {"law": "'jackson-green'"}),
+    ("contact", "yield_strain"): ("0.004", {"law": "'jackson-green'", "critical": "0.1"}),
+    ("contact", "k"): ("0.5", {"law": "'power-law-graded'", "c0": "'10 um'"}),
+    ("contact", "c0"): ("'10 um'", {"law": "'power-law-graded'", "k": "0.5"}),
+    ("contact", "reduced_c0"): ("1.0", {"law": "'power-law-graded'", "k": "0.5"}),
+    ("contact", "thickness"): ("'1 um'", {"law": "'coated'", "ratio": "3.0"}),
+    ("contact", "reduced_thickness"): ("0.5", {"law": "'coated'", "ratio": "3.0"}),
+    ("contact", "ratio"): ("3.0", {"law": "'coated'", "thickness": "'1 um'"}),
+    ("contact", "unload_from"): ("-0.5", {}),
+    ("contact", "resistivity"): ("1e-7", {}),
+    ("contact", "conductivities"): ("[150.0, 16.0]", {}),
+    ("contact", "film_resistance"): ("1e-12", {"resistivity": "1e-7"}),
+    ("contact", "tangential"): ("{friction = 0.3, poisson = 0.3, displacements = [1e-8]}", {}),
 }
 WRONG = {
     "title": ["1"], "sigma": ["0.0", "-1e-6", "nan", "true", "[1.0]"], "radius": ["0", "-1", "inf", "'x'"],
@@ -68,12 +86,26 @@ WRONG = {
     "n_asperities": ["0", "-1", "1.5", "true", "1e300"], "count": ["'free'", "1"],
     "seed": ["-1", "1.5", "18446744073709551616", "true"], "sampler": ["'all'", "1"], "keep": ["'all'", "1"],
     "rel_err": ["0", "-0.1", "0.2", "'x'", "true"], "max_seconds": ["0", "-1", "inf", "'1 m'"],
+    "critical": ["0", "-1", "'x'", "nan"], "hardness": ["0", "-1", "'1 m'"],
+    "poisson": ["0.6", "-1.5", "'x'"], "bridge": ["'cubic'", "1"],
+    "yield_strength": ["0", "'1 N'"], "yield_strain": ["0", "nan"],
+    "k": ["1.0", "-0.1", "'x'"], "c0": ["0", "'1 Pa'"], "reduced_c0": ["0", "-1"],
+    "thickness": ["0", "'1 Pa'"], "reduced_thickness": ["0", "-1"], "unload_from": ["0.5", "'back'", "nan"],
+    "resistivity": ["0", "-1", "'x'"], "conductivities": ["[1.0]", "[0.0, 1.0]", "1.0", "['x', 1.0]"],
+    "film_resistance": ["-1", "'x'"],
+    "tangential": ["1", "{}", "{friction = 0.3}", "{friction = 0, poisson = 0.3, displacements = [1e-8]}",
+                   "{friction = 0.3, poisson = 0.9, displacements = [1e-8]}",
+                   "{friction = 0.3, poisson = 0.3, displacements = []}",
+                   "{friction = 0.3, poisson = 0.3, displacements = [-1.0]}",
+                   "{friction = 0.3, poisson = 0.3, displacements = ['x']}",
+                   "{friction = 0.3, poisson = 0.3, displacements = [1e-8], u = 1}"],
     "left_out": ["'seed'", "['gamma']", "[1]", "['n_asperities']"],
 }  # fmt: skip
 WRONG_HERE = {
     ("grading", "s"): ["[1.0]", "[1.0, 0.0]", "[0.0, nan]", "1"],
     ("heights", "s"): ["[1.0]", "[1.0, 0.0]", "1"],
     ("grading", "name"): ["1", "['x']"],
+    ("contact", "ratio"): ["0", "-1", "'x'"],
 }  # fmt: skip
 
 
@@ -121,6 +153,7 @@ def test_the_list_of_keys_is_whole(monkeypatch):
     for table, key in keys():
         mcgw.scene_from(text_of(table, key, good(table, key)))
     inner = {("contact.separations", name) for name in ("start", "stop", "num")}
+    inner |= {("contact.tangential", name) for name in ("friction", "poisson", "displacements")}
     tables = {("", name) for name in GOOD if name}
     assert asked - inner - tables == set(keys())
 

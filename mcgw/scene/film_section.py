@@ -11,9 +11,12 @@ __all__ = ["conducting_film", "film_table"]
 
 def conducting_film(section: Section) -> Film | None:
     """Read the resistances; mistakes are noted in the section. None where nobody asks for conductances."""
-    given = section.take("film")
+    given = section.table.get("film")  # from Python; a file has the keys below
     if isinstance(given, Film):
         return given
+    if given is not None:
+        section.fail("film", given, "give resistivity and film_resistance; in Python mcgw.Film of them")
+        section.known("film")
     section.known("resistivity", "conductivities", "film_resistance")
     if "resistivity" in section and "conductivities" in section:
         section.fail("resistivity", section.table["resistivity"], "give it, or conductivities, not both")

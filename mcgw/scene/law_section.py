@@ -1,6 +1,6 @@
 """The contact law of a scene: its name and its constants, keys of the table [contact]."""
 
-from dataclasses import fields
+from dataclasses import MISSING, fields
 from typing import Any
 
 from analytic.laws import ContactLaw, Hertz, by_name
@@ -24,15 +24,18 @@ def contact_law(section: Section) -> ContactLaw:
         section.fail("law", given, f"{nearest(given, tuple(by_name))}choose one of {', '.join(by_name)}")
         section.known(*section.table)  # whose constants they are is not known
         return Hertz()
-    known, before = [field.name for field in fields(by_name[given])], len(section.problems)  # type: ignore[arg-type]
-    constants = {key: _constant(section, key) for key in known if key in section}
-    section.known(*known)
+    known, before = fields(by_name[given]), len(section.problems)  # type: ignore[arg-type]
+    section.known(*(field.name for field in known))
+    constants = {field.name: _constant(section, field.name) for field in known if field.name in section}
+    for field in known:
+        if field.default is MISSING and field.name not in section:
+            section.problems.append(f'contact.{field.name}: missing; law = "{given}" needs it')
     if len(section.problems) > before:
         return Hertz()
     try:
         return by_name[given](**constants)
-    except (TypeError, ValueError) as error:
-        section.problems.append(f'contact.law = "{given}": {error}')
+    except ValueError as error:
+        section.problems.append(f"contact.{error}")
         return Hertz()
 
 

@@ -30,7 +30,7 @@ def tangential_values(section: Section) -> Tangential | None:
     try:
         return Tangential(friction, poisson, values)
     except ValueError as error:
-        section.problems.append(f"contact.tangential: {error}")
+        section.problems.append(f"contact.tangential.{error}")
         return None
 
 
