@@ -19,6 +19,7 @@ __all__ = [
     "LAW_QUANTITIES",
     "PER_AREA",
     "QUANTITIES",
+    "TANGENTIAL",
     "UNLOADING",
     "Quantity",
     "quantity_of",
@@ -151,8 +152,10 @@ UNLOADING = {
     if name != "yielded"
 }
 
+TANGENTIAL = Quantity("tangential_load", "tangential load", "N", 1.5, 1, _load)
+
 # All that an ensemble can hold.
-ALL_QUANTITIES = {**QUANTITIES, **LAW_QUANTITIES, **UNLOADING}
+ALL_QUANTITIES = {**QUANTITIES, **LAW_QUANTITIES, **UNLOADING, TANGENTIAL.name: TANGENTIAL}
 
 _KNOWN = {**ALL_QUANTITIES, **PER_AREA}
 

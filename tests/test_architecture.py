@@ -99,7 +99,7 @@ def test_the_root_has_only_the_door():
 
 
 SHARED = {
-    "ALL_QUANTITIES", "LAW_QUANTITIES", "QUANTITIES", "UNLOADING",
+    "ALL_QUANTITIES", "LAW_QUANTITIES", "QUANTITIES", "TANGENTIAL", "UNLOADING",
     "Body", "Clipped", "Custom", "Exponential", "ExponentialHeights", "Gaussian", "Grading",
     "HeightLaw", "HeightTable", "Homogeneous", "MeasuredHeights", "PER_AREA", "Quantity", "ScipyHeights",
     "PiecewiseSeries", "Surface", "Table", "Weibull", "bends", "composite_modulus", "extent",

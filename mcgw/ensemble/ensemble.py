@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from analytic import PER_AREA, MeasuredHeights, quantity_of
+from analytic import PER_AREA, TANGENTIAL, MeasuredHeights, quantity_of
 from mcgw.ensemble.intervals import CONFIDENCE, count_interval, mean_interval, spread_of
 from mcgw.ensemble.results import Results
 from mcgw.ensemble.tables import dataframe, dataset
@@ -183,6 +183,8 @@ class Ensemble(Shown):
                 level=level,
             )
             return ends[0] / m, ends[1] / m
+        if name == TANGENTIAL.name:
+            raise ValueError(f"{name} has no interval, as a difference of normal loads; ask for its stderr")
         return mean_interval(self.mean(quantity), spread_of(scene, quantity), m, level)
 
     def _number(self, name: str) -> Array:
@@ -203,7 +205,9 @@ class Ensemble(Shown):
         """
         scene = self.scene
         about = {"title": scene.title, "scene": scene_text(scene), "sampler": self.sampler}
-        return dataset(self._all(), self.separations, about)
+        pushed = scene.tangential
+        displacements = None if pushed is None else np.array(pushed.displacements)
+        return dataset(self._all(), self.separations, about, displacements)
 
     def to_dataframe(self) -> Any:
         """All values as a `pandas.DataFrame`: rows (surface, separation), a column for each quantity.
@@ -213,7 +217,7 @@ class Ensemble(Shown):
         ImportError
             If pandas is not installed.
         """
-        return dataframe(self._all(), self.separations)
+        return dataframe({name: self.values(name) for name in self.scene.quantities}, self.separations)
 
     def plot(self, ax: Any = None, *, quantity: str | None = None) -> Any:
         """Draw the mean of a quantity with its interval, and how far surfaces spread.
@@ -257,14 +261,14 @@ class Ensemble(Shown):
         return Sheet(head, facts, ["mean +- stderr, d/sigma =", *at], rows)
 
     def _all(self) -> dict[str, Array]:
-        return {name: self.values(name) for name in self.scene.quantities}
+        return {name: self.values(name) for name in self.scene.shapes}
 
     def _held(self, quantity: str) -> tuple[str, float]:
         """The quantity that is held, and the area that this one is per, or 0."""
         q = PER_AREA.get(quantity)
         name, divisor = (q.of, self.scene.surface.nominal_area) if q else (quantity, 0.0)
-        if name not in self.scene.quantities:
-            have = ", ".join(self.scene.quantities)
+        if name not in self.scene.shapes:
+            have = ", ".join(self.scene.shapes)
             raise KeyError(f"{quantity!r} is not in this ensemble; it has {have}")
         return name, divisor
 
@@ -279,7 +283,7 @@ class Ensemble(Shown):
         m = self.n_surfaces
         mean = sum((chunk - shift).sum(axis=0) for chunk in self._chunks(name)) / m + shift
         squares = sum(((chunk - mean) ** 2).sum(axis=0) for chunk in self._chunks(name))
-        std = np.sqrt(squares / (m - 1)) if m > 1 else np.full(len(mean), np.nan)
+        std = np.sqrt(squares / (m - 1)) if m > 1 else np.full(np.shape(mean), np.nan)
         return np.asarray(mean / (divisor or 1.0)), np.asarray(std / (divisor or 1.0))
 
 

@@ -128,7 +128,7 @@ def at_a_time(size: int) -> int:
 def _check_memory(scene: Scene, n_surfaces: int) -> None:
     quantities, separations = len(scene.quantities), len(scene.separations)
     what = f"ensemble.n_surfaces = {n_surfaces}: {quantities} quantities at {separations} separations"
-    check_memory(what, 2 * 8 * n_surfaces * separations * quantities)  # the blocks, and all of them joined
+    check_memory(what, 2 * 8 * n_surfaces * scene.width)  # the blocks, and all of them joined
 
 
 def kept(scene: Scene, block: Block) -> dict[str, Any]:
@@ -148,7 +148,7 @@ def block_size(scene: Scene, sampler: Sampler) -> int:
     Whole groups, so that no generator of the counts is made for two blocks; an odd number of pairs, since
     with a multiple of eight the rows of the moments would share their places in the innermost cache.
     """
-    words = len(scene.separations) * len(scene.quantities) + sampler.words
+    words = scene.width + sampler.words
     most = int(min(_MOST_WORDS / words, _DRAWS / (sampler.draws + 1), 30 * GROUP))
     size = min(most, max(_WORDS // words, GROUP))
     return (size // GROUP // 4 * 4 + 2) * GROUP if size > GROUP else max(size, 1)

@@ -12,10 +12,15 @@ from mcgw.machine.late import optional
 __all__ = ["dataframe", "dataset"]
 
 Values = Mapping[str, NDArray[Any]]
-_DIMS = ("surface", "separation")
+_DIMS = ("surface", "separation", "displacement")
 
 
-def dataset(sums: Values, separations: NDArray[np.float64], attributes: Mapping[str, Any]) -> Any:
+def dataset(
+    sums: Values,
+    separations: NDArray[np.float64],
+    attributes: Mapping[str, Any],
+    displacements: NDArray[np.float64] | None = None,
+) -> Any:
     """An `xarray.Dataset` with dimensions, units and long names as in the file.
 
     Raises
@@ -25,10 +30,10 @@ def dataset(sums: Values, separations: NDArray[np.float64], attributes: Mapping[
     """
     xarray = optional("xarray", "to_xarray")
     rows = len(next(iter(sums.values())))
-    variables = {
-        name: (_DIMS, values, {"units": quantity_of(name).unit, "long_name": quantity_of(name).long_name})
-        for name, values in sums.items()
-    }
+    variables = {}
+    for name, values in sums.items():
+        q = quantity_of(name)
+        variables[name] = _DIMS[: values.ndim], values, {"units": q.unit, "long_name": q.long_name}
     scales = {
         "surface": ("surface", np.arange(rows), {"units": "1", "long_name": "number of the surface"}),
         "separation": (
@@ -37,6 +42,9 @@ def dataset(sums: Values, separations: NDArray[np.float64], attributes: Mapping[
             {"units": "1", "long_name": "mean-plane separation d/sigma"},
         ),
     }
+    if displacements is not None:
+        about = {"units": "m", "long_name": "tangential displacement"}
+        scales["displacement"] = ("displacement", displacements, about)
     return xarray.Dataset(variables, scales, dict(attributes))
 
 
@@ -50,5 +58,5 @@ def dataframe(sums: Values, separations: NDArray[np.float64]) -> Any:
     """
     pandas = optional("pandas", "to_dataframe")
     rows = len(next(iter(sums.values())))
-    index = pandas.MultiIndex.from_product([np.arange(rows), separations], names=_DIMS)
+    index = pandas.MultiIndex.from_product([np.arange(rows), separations], names=_DIMS[:2])
     return pandas.DataFrame({name: values.ravel() for name, values in sums.items()}, index=index)

@@ -15,7 +15,7 @@ def seconds_for(scene: Scene, sampler: Sampler, surfaces: int, *, at_least: floa
 
     From a block drawn on trial where a surface takes little, unless a rough guess lies below `at_least`.
     """
-    columns = len(scene.separations) * len(scene.quantities)
+    columns = scene.width
     rough = sampler.draws * sampler.seconds_per_draw + columns * _PER_SUM
     if rough * surfaces < at_least or rough > _TRIED:
         return rough * surfaces

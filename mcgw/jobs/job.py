@@ -75,7 +75,7 @@ class Job:
     @property
     def columns(self) -> int:
         """Numbers kept of a surface."""
-        sums = len(self.scene.separations) * len(self.scene.quantities)
+        sums = self.scene.width
         if self.scene.keep == "sums":
             return sums
         return sums + self.sampler.moments + self.sampler.cells + _OUTSIDE

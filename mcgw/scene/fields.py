@@ -71,6 +71,19 @@ class Fields:
         return tuple(sorted({h + shift for h in self.separations for shift in (0.0, *shifts)}))
 
     @property
+    def shapes(self) -> dict[str, tuple[int, ...]]:
+        """Shape of what one surface has of each table that an ensemble of the scene holds."""
+        shapes: dict[str, tuple[int, ...]] = {name: (len(self.separations),) for name in self.quantities}
+        if self.tangential is not None:
+            shapes["tangential_load"] = (len(self.separations), len(self.tangential.displacements))
+        return shapes
+
+    @property
+    def width(self) -> int:
+        """Numbers of one surface in all these tables."""
+        return sum(math.prod(shape) for shape in self.shapes.values())
+
+    @property
     def lowest(self) -> float:
         """The lowest separation: what lies below it never touches."""
         return min(self.separations)

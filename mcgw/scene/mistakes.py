@@ -6,9 +6,9 @@ from collections.abc import Iterator
 import numpy as np
 
 from analytic import (
-    ALL_QUANTITIES,
     LAW_QUANTITIES,
     QUANTITIES,
+    UNLOADING,
     Custom,
     Exponential,
     MeasuredHeights,
@@ -44,7 +44,7 @@ def mistakes(scene: Fields) -> list[str]:
 
 
 def _values(scene: Fields) -> Iterator[str]:
-    known = [name for name, q in ALL_QUANTITIES.items() if not (q.unloading and scene.unload_from is None)]
+    known = {**QUANTITIES, **LAW_QUANTITIES, **({} if scene.unload_from is None else UNLOADING)}
     names, sampler = ", ".join({**QUANTITIES, **LAW_QUANTITIES}), scene.sampler
     if "conductance_si" in scene.quantities and scene.film is None:
         yield 'contact.quantities: "conductance_si" needs resistivity, or conductivities = [k1, k2]; give one'

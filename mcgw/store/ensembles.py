@@ -12,7 +12,7 @@ from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_from, scene_text
 from mcgw.store.head import MOST_SCALE
 from mcgw.store.identity import difference, identity_of
-from mcgw.store.layout import FILETYPE, FORMAT, values_digest
+from mcgw.store.layout import FILETYPE, FORMAT, scales_of, values_digest
 from mcgw.store.run_folder import RunFolder, parts_of
 from mcgw.store.stored import FileResults, ShardResults
 from mcgw.store.trailer import check_trailer, read_trailer
@@ -127,16 +127,16 @@ def _described(path: Path) -> tuple[dict[str, Any], Scene]:
 
 def _check_tables(path: Path, scene: Scene, datasets: dict[str, Any]) -> None:
     """The datasets must have the shapes that the scene declares, and the scales its values."""
-    shapes = {"surface": [scene.n_surfaces], "separation": [len(scene.separations)]}
-    shapes |= {name: [scene.n_surfaces, len(scene.separations)] for name in scene.quantities}
+    scales = scales_of(scene)
+    shapes = {name: [len(values)] for name, values in scales.items()}
+    shapes |= {name: [scene.n_surfaces, *shape] for name, shape in scene.shapes.items()}
     for name, shape in shapes.items():
         if name not in datasets or datasets[name][1] != shape:
             found = datasets.get(name, ["", "none"])[1]
             raise StoreError(f"{path}: {name} has shape {found}, its scene declares {shape}")
-    scales = {"separation": scene.separations, "surface": range(min(scene.n_surfaces, MOST_SCALE))}
     with h5py.File(path, "r") as file:
         for name, values in scales.items():
-            if not np.array_equal(file[name][: len(values)], values):
+            if not np.array_equal(file[name][:MOST_SCALE], values[:MOST_SCALE]):
                 raise StoreError(f"{path}: {name} does not hold the values that its scene declares")
 
 

@@ -1,7 +1,8 @@
 """How an ensemble lies in its HDF5 file; the schema is written out in `mcgw.store`."""
 
 import hashlib
-from collections.abc import Iterable, Iterator
+import math
+from collections.abc import Iterable, Iterator, Sequence
 from typing import Any
 
 import h5py
@@ -16,7 +17,16 @@ from mcgw.store.head import head_digest
 from mcgw.store.provenance import now, provenance
 from mcgw.store.shards import DRAWN, RAGGED, Span, Tables
 
-__all__ = ["FILETYPE", "FORMAT", "build", "file_pieces", "trailer_notes", "values_digest", "where"]
+__all__ = [
+    "FILETYPE",
+    "FORMAT",
+    "build",
+    "file_pieces",
+    "scales_of",
+    "trailer_notes",
+    "values_digest",
+    "where",
+]
 
 FILETYPE, FORMAT = "mcgw-ensemble", (1, 1)
 
@@ -24,6 +34,11 @@ _LONG_NAMES = {
     "moments": "sums of Chebyshev polynomials of the uniforms in each cell",
     "cells": "asperities in each cell",
     RAGGED: "asperities outside the cells: surface, height, weight",
+}
+_SCALES = {  # of the axes of tables, in their order: unit and long name
+    "surface": ("1", "number of the surface"),
+    "separation": ("1", "mean-plane separation d/sigma"),
+    "displacement": ("m", "tangential displacement"),
 }
 _PIECE = 2**23  # bytes read at a time
 _CHUNK, _CHUNK_ROWS = 2**20, 256
@@ -49,8 +64,8 @@ def build(
             raise StoreError(f"surfaces {stop} ... {span.first - 1} are missing")
         if not stop:
             _lay_out(file, scene, arrays)
-            digest.add("surface", np.arange(scene.n_surfaces))
-            digest.add("separation", np.array(scene.separations))
+            for name, scale in scales_of(scene).items():
+                digest.add(name, np.array(scale))
         for name, values in arrays.items():
             digest.add(name, values)
         _put(file, span, arrays)
@@ -82,6 +97,16 @@ def tables(file: h5py.File) -> list[str]:
     return sorted(name for name in (*ALL_QUANTITIES, *DRAWN) if where(name) in file)
 
 
+def scales_of(scene: Scene) -> dict[str, Sequence[float]]:
+    """What the axes of the tables count."""
+    scales: dict[str, Sequence[float]] = {"surface": range(scene.n_surfaces), "separation": scene.separations}
+    return scales if scene.tangential is None else {**scales, "displacement": scene.tangential.displacements}
+
+
+def _scales(file: h5py.File) -> list[str]:
+    return [name for name in _SCALES if name in file]
+
+
 class _Digest:
     """SHA-256 over a scene and named tables that come in pieces: not over the bytes of a container."""
 
@@ -106,14 +131,14 @@ class _Digest:
 
 def trailer_notes(file: h5py.File) -> dict[str, str]:
     """What the trailer of an ensemble file says besides its length and digest."""
-    names = ["surface", "separation", *(where(name) for name in tables(file))]
+    names = [*_scales(file), *(where(name) for name in tables(file))]
     return {"head": head_digest(file, names)}
 
 
 def values_digest(file: h5py.File, scene: Scene) -> str:
     """Digest of what a file holds, read piece by piece."""
     digest = _Digest(scene)
-    for name in ("surface", "separation", *tables(file)):
+    for name in (*_scales(file), *tables(file)):
         for start, stop in _steps(file[where(name)]):
             digest.add(name, file[where(name)][start:stop])
     return digest.hexdigest()
@@ -124,7 +149,7 @@ def file_pieces(file: h5py.File) -> Iterator[tuple[Span, Tables]]:
     data = {name: file[where(name)] for name in tables(file)}
     outside = data.pop(RAGGED)[()] if RAGGED in data else None
     rows = len(file["surface"])
-    width = sum(8 * table.shape[1] for table in data.values())
+    width = sum(8 * math.prod(table.shape[1:]) for table in data.values())
     step = max(_PIECE // max(width, 1), 1)
     for first in range(0, rows, step):
         span = Span(first, min(step, rows - first))
@@ -143,24 +168,25 @@ def _steps(data: h5py.Dataset) -> Iterator[tuple[int, int]]:
 
 def _lay_out(file: h5py.File, scene: Scene, arrays: Tables) -> None:
     """Empty datasets with their scales, units and names."""
-    _scale(file, "surface", np.arange(scene.n_surfaces), "number of the surface")
-    _scale(file, "separation", np.array(scene.separations), "mean-plane separation d/sigma")
+    for name, scale in scales_of(scene).items():
+        _scale(file, name, np.array(scale), *_SCALES[name])
     for name in sorted(arrays):
         values = arrays[name]
         q = ALL_QUANTITIES.get(name)
         ragged = name == RAGGED
-        rows, columns = 0 if ragged else scene.n_surfaces, values.shape[1]
+        rows, shape = 0 if ragged else scene.n_surfaces, values.shape[1:]
+        columns = math.prod(shape)
         data = file.create_dataset(
             where(name),
-            (rows, columns),
+            (rows, *shape),
             values.dtype.newbyteorder("<"),
-            maxshape=(None, columns) if ragged else None,
-            chunks=(_chunk_rows(rows, columns), max(columns, 1)),
+            maxshape=(None, *shape) if ragged else None,
+            chunks=(_chunk_rows(rows, columns), *(max(size, 1) for size in shape)),
             **_STORED,
         )
         data.attrs.update(units=q.unit if q else "1", long_name=q.long_name if q else _LONG_NAMES[name])
-        for axis, scale in enumerate(("surface", "separation") if q else ()):
-            data.dims[axis].attach_scale(file[scale])
+        for axis, name_of_scale in enumerate(tuple(_SCALES)[: values.ndim] if q else ()):
+            data.dims[axis].attach_scale(file[name_of_scale])
 
 
 def _chunk_rows(rows: int, columns: int) -> int:
@@ -168,10 +194,10 @@ def _chunk_rows(rows: int, columns: int) -> int:
     return min(_CHUNK_ROWS, fitting, rows or _CHUNK_ROWS)
 
 
-def _scale(file: h5py.File, name: str, values: NDArray[Any], long_name: str) -> None:
+def _scale(file: h5py.File, name: str, values: NDArray[Any], unit: str, long_name: str) -> None:
     chunks = (min(len(values), _CHUNK // 8),)
     scale = file.create_dataset(name, data=values, chunks=chunks, **_STORED)
-    scale.attrs.update(units="1", long_name=long_name)
+    scale.attrs.update(units=unit, long_name=long_name)
     scale.make_scale(name)
 
 

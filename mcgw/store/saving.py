@@ -79,7 +79,7 @@ def write_ensemble(ensemble: Ensemble, path: Path, *, wall_seconds: float) -> No
     """
     scene, before = ensemble.scene, state_of(path)
     finished(path, scene, ensemble.sampler)
-    names = [*scene.quantities, *(DRAWN if scene.keep == "moments" else ())]
+    names = [*scene.shapes, *(DRAWN if scene.keep == "moments" else ())]
     arrays = {name: ensemble.sums.read(name, 0, None) for name in names}
     body = in_memory(
         lambda file: build(
