@@ -25,6 +25,8 @@ GOOD = {
     },
 }  # fmt: skip
 SERIES = {"law": "'series'", "edges": "[0.0, 5.0, 20.0]", "coefficients": "[[1.0, 0.5], [1.5]]"}
+PIECE = "[{low = -1.0, high = 1.0, coefficients = [1.0]}, {low = 1.0, high = 3.0, coefficients = [1.0]}]"
+CUSTOM = {"law": "'custom'", "critical": "0.05", "limits": "[1.0]", "load": PIECE, "area": PIECE}
 # Tables that need other company: key, its good value, and what is put in place of which other lines.
 COMPANY = {
     ("surface", "bodies"): ("[{E = 7e10, nu = 0.3}, {E = inf}]", {"E_star": None}),
@@ -57,6 +59,9 @@ COMPANY = {
     ("contact", "thickness"): ("'1 um'", {"law": "'coated'", "ratio": "3.0"}),
     ("contact", "reduced_thickness"): ("0.5", {"law": "'coated'", "ratio": "3.0"}),
     ("contact", "ratio"): ("3.0", {"law": "'coated'", "thickness": "'1 um'"}),
+    ("contact", "limits"): ("[1.0]", CUSTOM | {"limits": None}),
+    ("contact", "load"): (CUSTOM["load"], CUSTOM | {"load": None}),
+    ("contact", "area"): (CUSTOM["area"], CUSTOM | {"area": None}),
     ("contact", "unload_from"): ("-0.5", {}),
     ("contact", "resistivity"): ("1e-7", {}),
     ("contact", "conductivities"): ("[150.0, 16.0]", {}),
@@ -99,6 +104,10 @@ WRONG = {
                    "{friction = 0.3, poisson = 0.3, displacements = [-1.0]}",
                    "{friction = 0.3, poisson = 0.3, displacements = ['x']}",
                    "{friction = 0.3, poisson = 0.3, displacements = [1e-8], u = 1}"],
+    "limits": ["1.0", "[-1.0]", "['x']", "[nan]"],
+    "load": ["[]", "1", PIECE.replace("}, {", "}] #"), "[{low = 1.0}]", PIECE.replace("[1.0]", "[]"),
+             PIECE.replace("high = 3.0", "high = 0.5")],
+    "area": ["[]", "'x'", PIECE.replace("[1.0]", "['x']"), PIECE.replace("low = 1.0", "lowest = 1.0")],
     "left_out": ["'seed'", "['gamma']", "[1]", "['n_asperities']"],
 }  # fmt: skip
 WRONG_HERE = {

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analytic.laws.elastic_plastic import ElasticPlastic
-from analytic.laws.root_series import resolved_in_root
+from analytic.laws.root_series import RootSeries, resolved_in_root
 
 __all__ = ["CustomLaw"]
 
@@ -84,6 +84,11 @@ class CustomLaw(ElasticPlastic):
                 self._check(f"{name}[{piece}]", formula, piece)
 
     @property
+    def is_data(self) -> bool:
+        """Whether it consists of series, which a file can hold."""
+        return all(isinstance(formula, RootSeries) for formula in (*self.load_of, *self.area_of))
+
+    @property
     def edges(self) -> tuple[float, ...]:
         """Penetrations over the critical one at which pieces from 1 on begin."""
         return self.beginnings
@@ -130,6 +135,14 @@ class CustomLaw(ElasticPlastic):
                     raise ValueError(f"{name}[{piece}]: {error}") from None
         assert self.critical is not None
         return CustomLaw(series["load"], series["area"], kept, self.critical)
+
+    def agrees(self, other: object) -> bool:
+        """Whether another law is the same but for the last digits of its series."""
+        if not (isinstance(other, CustomLaw) and self.is_data and other.is_data):
+            return False
+        alike = self.beginnings == other.beginnings and self.critical == other.critical
+        pairs = zip((*self.load_of, *self.area_of), (*other.load_of, *other.area_of), strict=True)
+        return alike and all(mine.agrees(theirs) for mine, theirs in pairs)  # type: ignore[attr-defined]
 
     def _u(self, y: Any, e: Array) -> Any:
         """``sqrt(delta/delta_c)``; 1 where there is no stiffness."""

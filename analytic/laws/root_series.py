@@ -36,6 +36,13 @@ class RootSeries:
         """Its values, for real and complex u, also slightly outside."""
         return u * u * chebyshev.chebval(_variable(u, self.low, self.high), np.array(self.coefficients))
 
+    def agrees(self, other: "RootSeries") -> bool:
+        """Whether another series has the same values, to 1e-13 of the largest."""
+        between = _at(_BETWEEN[_BETWEEN != 0], self.low, self.high)
+        mine, theirs = self(between), other(between)
+        near = np.allclose([self.low, self.high], [other.low, other.high], rtol=_ALLOWED)
+        return bool(near and np.all(np.abs(mine - theirs) <= _ALLOWED * np.abs(mine).max()))
+
 
 def _variable(u: Any, low: float, high: float) -> Any:
     if low == -high:

@@ -4,7 +4,8 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 
-from analytic import PiecewiseSeries, is_data
+from analytic import PiecewiseSeries
+from analytic.laws import CustomLaw
 from mcgw.ensemble.results import joined
 from mcgw.ensemble.simulation import block_size, drawn_blocks, kept, use_threads
 from mcgw.errors import StoreError
@@ -108,16 +109,19 @@ class Job:
 
 
 def as_recorded(scene: Scene, path: Path) -> Scene:
-    """The scene with its grading resolved, or as it was resolved when the run at this place began.
+    """The scene with its functions resolved, or as they were when the run at this place began.
 
     Another processor, or another NumPy, may give other last digits to a Python function.
     """
-    if is_data(scene.grading):
-        return scene
-    resolved, there = storable(scene), recorded_scene(path)
-    mine, before = resolved.grading, there.grading if there else None
+    resolved = storable(scene)
+    there = None if resolved is scene else recorded_scene(path)
+    if there is None:
+        return resolved
+    mine, before = resolved.grading, there.grading
     if isinstance(mine, PiecewiseSeries) and isinstance(before, PiecewiseSeries) and mine.agrees(before):
-        return replace(resolved, grading=before)
+        resolved = replace(resolved, grading=before)
+    if isinstance(resolved.law, CustomLaw) and resolved.law.agrees(there.law):
+        resolved = replace(resolved, law=there.law)
     return resolved
 
 

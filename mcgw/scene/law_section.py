@@ -3,7 +3,8 @@
 from dataclasses import MISSING, fields
 from typing import Any
 
-from analytic.laws import ContactLaw, Hertz, by_name
+from analytic.laws import ContactLaw, CustomLaw, Hertz, by_name
+from mcgw.scene.custom_law_section import custom_law, custom_table
 from mcgw.scene.law_text import given_of
 from mcgw.scene.section import Section, nearest
 
@@ -20,6 +21,8 @@ def contact_law(section: Section) -> ContactLaw:
         return given
     if given is None:
         given = "hertz"
+    if given == CustomLaw.name:
+        return custom_law(section) or Hertz()
     if given not in by_name:
         section.fail("law", given, f"{nearest(given, tuple(by_name))}choose one of {', '.join(by_name)}")
         section.known(*section.table)  # whose constants they are is not known
@@ -47,4 +50,6 @@ def _constant(section: Section, key: str) -> float | str:
 
 def law_table(law: ContactLaw) -> dict[str, Any]:
     """The keys that give the law back."""
+    if isinstance(law, CustomLaw):
+        return custom_table(law)
     return {"law": law.name, **given_of(law)}

@@ -5,7 +5,7 @@ from dataclasses import MISSING, fields, is_dataclass
 from typing import Any
 
 from analytic import Custom, PiecewiseSeries, ScipyHeights
-from analytic.laws import ContactLaw
+from analytic.laws import ContactLaw, CustomLaw
 
 __all__ = ["given_of", "law_text"]
 
@@ -26,6 +26,8 @@ def law_text(law: Any) -> str:
             return repr(law)
         case Custom():
             return f"Custom({getattr(law.function, '__name__', type(law.function).__name__)})"
+        case CustomLaw():
+            return f"CustomLaw({len(law.load_of)} pieces, critical={law.critical!r})"
         case ContactLaw():
             return f"{type(law).__name__}({_listed(given_of(law))})"
     if not is_dataclass(law):

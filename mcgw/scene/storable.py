@@ -2,15 +2,20 @@
 
 from dataclasses import replace
 
+import numpy as np
+
 from analytic import extent, is_data, resolved
+from analytic.laws import CustomLaw
 from mcgw.scene.scene import Scene
 from mcgw.scene.section import SceneError
 
 __all__ = ["storable"]
 
+_LOOKED_AT, _BEYOND = 4001, 1.1  # heights for the stiffest; and how much farther series reach
+
 
 def storable(scene: Scene) -> Scene:
-    """The scene with its grading resolved, unless it is one that a file holds as it is.
+    """The scene with its grading and contact law resolved, unless a file holds them as they are.
 
     All samplers draw with this one, so that in memory, in a file, and gone on with from there, a scene has
     the same bits. A Python function becomes an `analytic.PiecewiseSeries` over all heights that count.
@@ -20,6 +25,8 @@ def storable(scene: Scene) -> Scene:
     SceneError
         If the grading cannot be resolved, as one that is noisy.
     """
+    if isinstance(scene.law, CustomLaw) and not scene.law.is_data:
+        scene = replace(scene, law=_resolved_law(scene, scene.law))
     if is_data(scene.grading):
         return scene
     try:
@@ -29,3 +36,15 @@ def storable(scene: Scene) -> Scene:
         raise
     except ValueError as error:
         raise SceneError([str(error)]) from None
+
+
+def _resolved_law(scene: Scene, law: CustomLaw) -> CustomLaw:
+    """The series of a law up to the deepest penetration of the stiffest asperity."""
+    low, high = extent(scene.grading, scene.heights, scene.separations)
+    deepest = high - min(scene.lowest, low if scene.unload_from is None else scene.unload_from)
+    stiffest = float(np.max(np.abs(scene.modulus(np.linspace(low, high, _LOOKED_AT)))))
+    assert law.critical is not None
+    try:
+        return law.resolved(_BEYOND * deepest * stiffest**2 / law.critical)
+    except ValueError as error:
+        raise SceneError([f"contact.law = CustomLaw: {error}"]) from None
