@@ -23,6 +23,9 @@ LAWS = {
     "Jackson": laws.JacksonGreen(yield_strain=0.004, critical=0.1),
     "graded half-space": laws.PowerLawGraded(0.5, reduced_c0=1.0),
     "coated": laws.Coated(reduced_thickness=0.5, ratio=3.0),
+    "Derjaguin": laws.DerjaguinMullerToporov(pull_off=0.05),
+    "Johnson": laws.JohnsonKendallRoberts(pull_off=0.05),
+    "Johnson, sticky": laws.JohnsonKendallRoberts(pull_off=0.5),
 }
 GRADINGS = {
     "homogeneous": analytic.Homogeneous(),
@@ -43,6 +46,8 @@ SURFACE = analytic.Surface(sigma=1.37e-6, radius=1.3e-5, eta=3e8, nominal_area=1
 
 def scene_of(law, grading, separations, **changes):
     names = QUANTITIES if law.elastic else (*QUANTITIES, "yielded")
+    if "unload_from" in changes and not law.on(SURFACE).unloading().stiff:
+        names = ("load", "area", "contacts", "conductance")
     return mcgw.Scene(
         SURFACE,
         separations=separations,
@@ -68,7 +73,7 @@ def literal(scene, heights, name):
             with np.errstate(divide="ignore"):
                 limits = law.limits(e_of_all)
             deepest = heights - (h if not q.unloading else scene.unload_from)
-            here = (heights > h) & ((limits <= deepest).sum(axis=0) == piece)
+            here = (deepest >= 0) & ((limits <= deepest).sum(axis=0) == piece)
             d, most, e = heights[here] - h, deepest[here], e_of_all[here]
             terms += of_piece(law, q.base, piece, d, most, e, back=bool(q.unloading)).tolist()
         sums.append(q.scale(scene.surface) * math.fsum(terms))
@@ -83,8 +88,12 @@ def of_piece(law, name, piece, d, most, e, *, back):
         held = left > 0
         y, most, e = np.sqrt(left[held]), most[held], e[held]
         load, radius = way.load(piece, y, most, e), way.radius(piece, y, most, e)
-        stiffness, slope = way.stiffness(piece, y, most, e), way.slope(piece, y, most, e)
+        if way.stiff:
+            stiffness, slope = way.stiffness(piece, y, most, e), way.slope(piece, y, most, e)
+        else:
+            stiffness = slope = np.full(len(y), np.nan)
     else:
+        d, e = d[d > 0], e[d > 0]
         y = np.sqrt(d)
         load, radius = law.load(piece, y, e), law.radius(piece, y, e)
         stiffness, slope = law.stiffness(piece, y, e), law.slope(piece, y, e)

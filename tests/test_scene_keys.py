@@ -62,6 +62,8 @@ COMPANY = {
     ("contact", "limits"): ("[1.0]", CUSTOM | {"limits": None}),
     ("contact", "load"): (CUSTOM["load"], CUSTOM | {"load": None}),
     ("contact", "area"): (CUSTOM["area"], CUSTOM | {"area": None}),
+    ("contact", "work"): ("'0.05 J/m^2'", {"law": "'johnson-kendall-roberts'"}),
+    ("contact", "pull_off"): ("0.1", {"law": "'derjaguin-muller-toporov'"}),
     ("contact", "unload_from"): ("-0.5", {}),
     ("contact", "resistivity"): ("1e-7", {}),
     ("contact", "conductivities"): ("[150.0, 16.0]", {}),
@@ -108,6 +110,7 @@ WRONG = {
     "load": ["[]", "1", PIECE.replace("}, {", "}] #"), "[{low = 1.0}]", PIECE.replace("[1.0]", "[]"),
              PIECE.replace("high = 3.0", "high = 0.5")],
     "area": ["[]", "'x'", PIECE.replace("[1.0]", "['x']"), PIECE.replace("low = 1.0", "lowest = 1.0")],
+    "work": ["0", "-1", "'x'"], "pull_off": ["0", "-1", "inf"],
     "left_out": ["'seed'", "['gamma']", "[1]", "['n_asperities']"],
 }  # fmt: skip
 WRONG_HERE = {

@@ -1,4 +1,4 @@
-"""Files of scenes with a contact law: written, gone on with, read again; one's own law lies there as series."""
+"""Files of scenes with a contact law: written, gone on with, read again; one's own as series."""
 
 import numpy as np
 import pytest

@@ -35,6 +35,7 @@ LITERAL = {
         "GN": 1e9,
     },
     "s": {"": 1, "s": 1, "ms": 1e-3, "min": 60, "h": 3600},
+    "J/m^2": {"": 1, "J/m^2": 1, "J/m2": 1, "mJ/m^2": 1e-3, "N/m": 1, "mN/m": 1e-3},
     "1": {"": 1, "%": 1e-2},
 }  # fmt: skip
 CASES = [(kind, unit, factor) for kind, units in LITERAL.items() for unit, factor in units.items()]

@@ -1,5 +1,6 @@
 """Laws of contact of one asperity, one file each."""
 
+from analytic.laws.adhesion import DerjaguinMullerToporov, JohnsonKendallRoberts
 from analytic.laws.branch import Branch, LoadingBranch, UnloadingBranch, term_of
 from analytic.laws.chang_etsion_bogy import ChangEtsionBogy
 from analytic.laws.coated import Coated
@@ -17,34 +18,11 @@ from analytic.laws.unloading import Unloading
 from analytic.laws.zhao_maietta_chang import ZhaoMaiettaChang
 
 __all__ = [
-    "Branch",
-    "ChangEtsionBogy",
-    "Coated",
-    "ContactLaw",
-    "CustomLaw",
-    "Film",
-    "Hertz",
-    "JacksonGreen",
-    "KogutEtsion",
-    "LoadingBranch",
-    "PowerLawGraded",
-    "Regimes",
-    "SpotConductance",
-    "Tangential",
-    "Unloading",
-    "UnloadingBranch",
-    "ZhaoMaiettaChang",
-    "by_name",
-    "crowding_factor",
-    "film_conductance",
-    "film_parameter",
-    "masing",
-    "merged_heights",
-    "of_spot",
-    "piece_of",
-    "regimes_of",
-    "term",
-    "term_of",
+    "Branch", "ChangEtsionBogy", "Coated", "ContactLaw", "CustomLaw", "Film", "Hertz", "JacksonGreen",
+    "KogutEtsion", "LoadingBranch", "PowerLawGraded", "Regimes", "SpotConductance", "Tangential",
+    "Unloading", "UnloadingBranch", "ZhaoMaiettaChang", "by_name", "crowding_factor",
+    "film_conductance", "film_parameter", "masing", "merged_heights", "of_spot", "piece_of",
+    "regimes_of", "term", "term_of",
 ]  # fmt: skip
 
 _LAWS: tuple[type[ContactLaw], ...] = (
@@ -55,6 +33,8 @@ _LAWS: tuple[type[ContactLaw], ...] = (
     JacksonGreen,
     PowerLawGraded,
     Coated,
+    DerjaguinMullerToporov,
+    JohnsonKendallRoberts,
 )
 
 by_name = {law.name: law for law in _LAWS}

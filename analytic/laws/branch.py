@@ -39,6 +39,10 @@ class Branch(Protocol):
         """Whether a contact of this piece is analytic in the root of the penetration where it begins."""
         ...
 
+    def left(self, h: Array, above: Array, e: Array) -> Array:
+        """Penetration left until contact is lost, whose root the formulas take."""
+        ...
+
     def pieces(self, h: Array, above: Array, e: Array) -> Ints:
         """Which formula holds at heights `above` the separations, -1 without contact."""
         ...
@@ -80,6 +84,10 @@ class LoadingBranch:
     def root(self, piece: int) -> bool:
         """As `Branch.root`."""
         return piece > 0 or self.law.root
+
+    def left(self, h: Array, above: Array, e: Array) -> Array:
+        """As `Branch.left`."""
+        return above
 
     def pieces(self, h: Array, above: Array, e: Array) -> Ints:
         """As `Branch.pieces`."""
@@ -157,18 +165,22 @@ class UnloadingBranch:
         for j in np.unique(piece):
             here = piece == j
             result[here] = unloading.residual(int(j), deepest[here], e[here])
-        return np.where(deepest > 0, result, np.where(deepest == 0, 0.0, np.inf))
+        return np.where(deepest >= 0, result, np.inf)
 
     def root(self, piece: int) -> bool:
         """As `Branch.root`."""
         return self.law.root if piece == 0 else self.law.unloading().root
+
+    def left(self, h: Array, above: Array, e: Array) -> Array:
+        """As `Branch.left`."""
+        return above - self._residual(h + above, e)
 
     def pieces(self, h: Array, above: Array, e: Array) -> Ints:
         """As `Branch.pieces`."""
         above, h, e = np.broadcast_arrays(above, h, e)
         s = h + above
         piece = piece_of(self.law, above + (h - self.deepest), e)
-        return np.where((above > 0) & (above > self._residual(s, e)), piece, -1)
+        return np.where(above > self._residual(s, e), piece, -1)
 
     def value(
         self, quantity: str, piece: int, h: Array, above: Array, e: Array, *, sign: float = 1.0

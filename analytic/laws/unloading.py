@@ -36,9 +36,12 @@ class Unloading:
     ----------
     root : bool
         False if `load` and `radius` are no analytic functions of y next to y = 0, in pieces from 1 on.
+    stiff : bool
+        False if the stiffness of a contact has no variance, and so is refused.
     """
 
     root: ClassVar[bool] = True
+    stiff: ClassVar[bool] = True
 
     def __init__(self, loading: _Loading) -> None:
         self.loading = loading

@@ -37,6 +37,7 @@ _FACTORS = {
     },
     "N": _prefixed("N", "nu\N{GREEK SMALL LETTER MU}mkMG"),
     "s": _prefixed("s", "m") | {"min": Fraction(60), "h": Fraction(3600)},
+    "J/m^2": {"J/m2": Fraction(1), "mJ/m2": Fraction("1e-3"), "N/m": Fraction(1), "mN/m": Fraction("1e-3")},
     "1": {"%": Fraction("1e-2")},
 }
 EXAMPLES = {
@@ -46,6 +47,7 @@ EXAMPLES = {
     "Pa": "1MPa, 78.6 GPa or 1e6 (Pa)",
     "N": "5N, 2kN or 0.3 (N)",
     "s": "90 s, 30 min or 2 h",
+    "J/m^2": "50 mJ/m^2 or 0.05 (J/m^2)",
     "1": "1% or 0.01",
 }
 _NUMBER = re.compile(r"\s*([-+]?(?:\d{1,99}\.?\d{0,99}|\.\d{1,99})(?:[eE][-+]?\d{1,3})?)\s*(\S.*?)?\s*")

@@ -14,6 +14,7 @@ __all__ = ["Stretches", "begins_and_breaks", "stretches_of"]
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
+_NOTHING = 1e-12  # penetration
 _SMALLEST = 2.0**-30  # cell above the beginning of a power that no series resolves
 _ANALYTIC = 4.0  # how far a formula is analytic, in widths of the cell at which it begins
 
@@ -31,7 +32,9 @@ class Stretches:
     piece : ndarray of int
         Which formula.
     begins : ndarray of bool
-        Whether contact begins at `low`, rather than go on from another piece.
+        Whether contact begins at `low` from nothing, rather than with a jump or from another piece.
+    root : ndarray
+        About where it would begin from nothing, next to which formulas are singular: at `low` or below.
     """
 
     separation: Ints
@@ -39,6 +42,7 @@ class Stretches:
     high: Array
     piece: Ints
     begins: NDArray[np.bool_]
+    root: Array
 
 
 def stretches_of(scene: Scene, branch: Branch, low: float, high: float) -> Stretches:
@@ -47,12 +51,16 @@ def stretches_of(scene: Scene, branch: Branch, low: float, high: float) -> Stret
     found = branch.regimes(scene.modulus, h, low, high)
     goes_on = np.append(False, (found.low[1:] <= found.high[:-1]) & (np.diff(found.separation) == 0))
     inside = (found.low > low) | (h[found.separation] >= low)
+    at = h[found.separation]
+    left = branch.left(at, found.low - at, scene.modulus(found.low))
+    nothing = np.abs(left) <= _NOTHING
     return Stretches(
         separation=found.separation,
         low=np.where(inside, found.low, -np.inf),
         high=np.where(found.high < high, found.high, np.inf),
         piece=found.piece,
-        begins=inside & ~goes_on[: len(inside)],
+        begins=inside & nothing & ~goes_on[: len(inside)],
+        root=np.where(nothing, found.low, found.low - left),
     )
 
 
@@ -84,7 +92,7 @@ def begins_and_breaks(scene: Scene, low: float, high: float) -> tuple[Array, Arr
     for branch in branches_of(scene):
         found = stretches_of(scene, branch, low, high)
         starts, pieces = found.low[found.begins], found.piece[found.begins]
-        begins.append(starts)
+        begins.append(found.root)
         breaks += [found.low, found.high]
         rough = np.array([not branch.root(int(piece)) for piece in pieces], dtype=bool)
         breaks.append(starts[rough] + _SMALLEST)

@@ -85,8 +85,9 @@ class Fields:
 
     @property
     def lowest(self) -> float:
-        """The lowest separation: what lies below it never touches."""
-        return min(self.separations)
+        """The lowest separation there is or was: what lies below it never touches."""
+        lowest = min(self.separations)
+        return lowest if self.unload_from is None else min(lowest, self.unload_from)
 
     @property
     def highest(self) -> float:

@@ -10,7 +10,7 @@ from mcgw.scene.section import Section, nearest
 
 __all__ = ["contact_law", "law_table"]
 
-_UNITS = {"hardness": "Pa", "yield_strength": "Pa", "c0": "m", "thickness": "m"}
+_UNITS = {"hardness": "Pa", "yield_strength": "Pa", "c0": "m", "thickness": "m", "work": "J/m^2"}
 _WORDS = {"bridge": ("hermite",)}
 
 

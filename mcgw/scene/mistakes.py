@@ -87,7 +87,12 @@ def _history(scene: Fields) -> Iterator[str]:
             'give the lowest that was reached, or "loop"'
         )
     try:
-        scene.law.unloading()
+        stiff = [name for name in ("stiffness", "load_slope") if name in scene.quantities]
+        if stiff and not scene.contact.unloading().stiff:
+            yield (
+                f"contact.quantities: {stiff[0]!r} of contacts that break off has no variance (law = "
+                f'"{scene.law.name}"); leave it out, or unload_from'
+            )
     except ValueError as error:
         yield f"contact.unload_from = {scene.unload_from:g}: {error}"
 

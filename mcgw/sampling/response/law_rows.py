@@ -31,13 +31,14 @@ class _Pieces:
         Way, quantity, piece and scale of each kind of row.
     kind : ndarray of int
         Of each row.
-    h : ndarray
-        Separation of each row.
+    h, low : ndarray
+        Separation of each row, and height from which on it holds.
     """
 
     kinds: tuple[tuple[Branch, str, int, float], ...]
     kind: Ints
     h: Array
+    low: Array
 
     def values(self, rows: Ints, above: Array, e: Array) -> Array:
         """As `Formulas.values`."""
@@ -45,6 +46,7 @@ class _Pieces:
 
     def at_start(self, rows: Ints, above: Array, e: Array, u: Array) -> list[Start]:
         """The even part in the root of the penetration is smooth, the odd part has the root as a factor."""
+        above = (self.low[rows] - self.h[rows]) + above
         forth, back = (self._values(rows, above, e, sign) for sign in (1.0, -1.0))
         every, none = np.arange(len(rows)), np.zeros(len(rows))
         even, odd = (forth + back) / 2, (forth - back) / 2 / np.sqrt(u)[:, None]
@@ -117,7 +119,7 @@ def law_rows(scene: Scene, quantities: tuple[str, ...], mesh: Mesh, *, lasting: 
         np.concatenate(x) for x in zip(*parts, strict=True)
     )
     graded = np.full(len(h), not isinstance(scene.modulus, Homogeneous))
-    formulas = _Pieces(tuple(kinds), kind, h)
+    formulas = _Pieces(tuple(kinds), kind, h, low)
     return Rows(h, low, high, begins, rooted, rough, graded, kind, answer, total, formulas)
 
 

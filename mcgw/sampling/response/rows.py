@@ -45,7 +45,10 @@ class Formulas(Protocol):
         ...
 
     def at_start(self, rows: Ints, above: Array, e: Array, u: Array) -> list[Start]:
-        """The same on the cell or node at which each row begins; `u` is its variable, from 0 to 1."""
+        """The same on the cell or node at which each row begins, at heights `above` its start.
+
+        `u` is the variable of the cell or node, from 0 to 1.
+        """
         ...
 
 

@@ -1,0 +1,235 @@
+"""Elastic contacts that stick: Derjaguin, Muller and Toporov's, and Johnson, Kendall and Roberts'."""
+
+import math
+from dataclasses import dataclass, replace
+from typing import Any, ClassVar, Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from analytic.laws.law import ContactLaw
+from analytic.laws.unloading import Unloading
+from analytic.surface import Surface
+
+__all__ = ["DerjaguinMullerToporov", "JohnsonKendallRoberts"]
+
+Array = NDArray[np.float64]
+
+_STEPS = 60  # of Newton's method at most; it takes six
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Adhesive(ContactLaw):
+    """A law with a work of adhesion.
+
+    Parameters
+    ----------
+    work : float, optional
+        Work of adhesion w, J/m^2.
+    pull_off : float, optional
+        ``D = (3/4) (pi^2 w^2 R/E*^2)^(1/3)/sigma``, how far an asperity of modulus E* is stretched before it
+        breaks off under a given displacement (Johnson, Kendall, Roberts). Give it, or `work`.
+    """
+
+    work: float | None = None
+    pull_off: float | None = None
+
+    def __post_init__(self) -> None:
+        if (self.work is None) == (self.pull_off is None):
+            raise ValueError(
+                f"work = {self.work!r}, pull_off = {self.pull_off!r}: give one of them, a work of adhesion "
+                "in J/m^2 or a stretch over sigma"
+            )
+        for name in ("work", "pull_off"):
+            value = getattr(self, name)
+            if value is not None and not 0 < value < math.inf:
+                raise ValueError(f"{name} = {value!r}: give a finite number > 0")
+
+    def on(self, surface: Surface) -> Self:
+        """The law on this surface, in reduced units: with `pull_off` in place of `work`."""
+        if self.work is None:
+            return self
+        stretch = 0.75 * (math.pi**2 * self.work**2 * surface.radius / surface.E_star**2) ** (1 / 3)
+        return replace(self, work=None, pull_off=stretch / surface.sigma)
+
+    @property
+    def _stretch(self) -> float:
+        if self.pull_off is None:
+            raise ValueError(f"{self}: put it on a surface first, law.on(surface), or give `pull_off`")
+        return self.pull_off
+
+
+@dataclass(frozen=True, kw_only=True)
+class DerjaguinMullerToporov(_Adhesive):
+    """Derjaguin, Muller and Toporov: Hertz's contact, pulled by ``2 pi w R`` as long as it touches.
+
+    For small, stiff asperities and weak adhesion (Tabor's parameter below 0.1). The attraction of asperities
+    that do not touch is left out, so the load jumps at first touch.
+
+    Parameters
+    ----------
+    work : float, optional
+        Work of adhesion w, J/m^2.
+    pull_off : float, optional
+        As of `JohnsonKendallRoberts`. Give it, or `work`.
+
+    Raises
+    ------
+    ValueError
+        If not exactly one of them is given, or it is not a finite number > 0.
+
+    Notes
+    -----
+    Source: B. V. Derjaguin, V. M. Muller, Y. P. Toporov, J. Colloid Interface Sci. 53 (1975) 314 [mem].
+
+    Examples
+    --------
+    >>> law = DerjaguinMullerToporov(pull_off=0.05)
+    >>> float(law.load(0, np.sqrt(0.5), np.array(1.0)).round(6))
+    0.327733
+    """
+
+    name: ClassVar[str] = "derjaguin-muller-toporov"
+
+    def load(self, piece: int, y: Any, e: Array) -> Any:
+        """Hertz's load less a constant: the pull knows no modulus."""
+        return super().load(piece, y, e) - 12 * (self._stretch / 3) ** 1.5
+
+
+@dataclass(frozen=True, kw_only=True)
+class JohnsonKendallRoberts(_Adhesive):
+    """Johnson, Kendall and Roberts: contacts that snap in, stick, and break off under tension.
+
+    With z, the root of the contact radius over that at break-off, and D_e = D/e^(2/3) ::
+
+        delta = (D_e/3) (z^4 - 4 z)        p = e (D_e/3)^1.5 (z^6 - 6 z^3)        radius = sqrt(D_e/3) z^2
+
+    A contact forms at delta = 0, where z^3 = 4 and the load jumps to ``-(4/3) pi w R``, and breaks off at
+    delta = -D_e, z = 1, with ``-(5/6) pi w R``. The load is not monotone: at one load there can be several
+    separations. For large, soft asperities (Tabor's parameter above 5).
+
+    On the way back the stiffness of a contact tends to -infinity where it breaks off; its mean exists, its
+    variance does not, and it is refused.
+
+    Parameters
+    ----------
+    work : float, optional
+        Work of adhesion w, J/m^2.
+    pull_off : float, optional
+        ``D = (3/4) (pi^2 w^2 R/E*^2)^(1/3)/sigma``. Give it, or `work`.
+
+    Raises
+    ------
+    ValueError
+        If not exactly one of them is given, or it is not a finite number > 0.
+
+    Notes
+    -----
+    Source: K. L. Johnson, K. Kendall, A. D. Roberts, Proc. R. Soc. A 324 (1971) 301 [mem]. Over Gaussian
+    heights it is the model of K. N. G. Fuller, D. Tabor, Proc. R. Soc. A 345 (1975) 327.
+
+    Examples
+    --------
+    >>> law = JohnsonKendallRoberts(pull_off=0.5)
+    >>> law.load(0, np.array([0.0, 1.0]), np.ones(2)).round(6)
+    array([-0.544331,  0.220467])
+    """
+
+    name: ClassVar[str] = "johnson-kendall-roberts"
+    elastic: ClassVar[bool] = False
+
+    @property
+    def finest(self) -> float:
+        """The formulas end where contacts break off."""
+        return self._stretch
+
+    def stretch(self, e: Array) -> Array:
+        """D_e, in the shape of `e`; infinite without stiffness."""
+        with np.errstate(divide="ignore"):
+            return np.asarray(self._stretch * np.asarray(e, dtype=np.float64) ** (-2 / 3))
+
+    def load(self, piece: int, y: Any, e: Array) -> Any:
+        """Load of a contact, in the shape of `y` and `e`."""
+        return self.load_at(_pressed(y * y, self.stretch(e)), e)
+
+    def radius(self, piece: int, y: Any, e: Array) -> Any:
+        """Radius of a contact; its square is the area over pi R sigma."""
+        return self.radius_at(_pressed(y * y, self.stretch(e)), e)
+
+    def stiffness(self, piece: int, y: Array, e: Array) -> Array:
+        """Stiffness of a spot over 2 E* sqrt(R sigma): ``dP/d delta``."""
+        z = _pressed(y * y, self.stretch(e))
+        return np.asarray(e * self.radius_at(z, e) * (z**3 - 3) / (z**3 - 1))
+
+    def load_at(self, z: Any, e: Array) -> Any:
+        """Load of contacts of this z."""
+        return e * (self.stretch(e) / 3) ** 1.5 * (z**6 - 6 * z**3)
+
+    def radius_at(self, z: Any, e: Array) -> Any:
+        """Radius of contacts of this z."""
+        return np.sqrt(self.stretch(e) / 3) * z * z
+
+    def unloading(self) -> "_Stuck":
+        """It holds until it is stretched by D_e."""
+        return _Stuck(self)
+
+
+class _Stuck(Unloading):
+    """Contacts that formed and are pulled: ``y = sqrt(delta + D_e)``."""
+
+    stiff: ClassVar[bool] = False
+
+    def __init__(self, loading: JohnsonKendallRoberts) -> None:
+        super().__init__(loading)
+        self.law = loading
+
+    def residual(self, piece: int, deepest: Any, e: Array) -> Any:
+        """Penetration at which contact is lost, in the shape of `deepest` and `e`."""
+        return -self.law.stretch(e) + 0.0 * deepest
+
+    def load(self, piece: int, y: Any, deepest: Any, e: Array) -> Any:
+        """Load of a contact, in the shape of all."""
+        return self.law.load_at(_pulled(y, self.law.stretch(e)), e) + 0.0 * deepest
+
+    def radius(self, piece: int, y: Any, deepest: Any, e: Array) -> Any:
+        """Radius of a contact; its square is the area over pi R sigma."""
+        return self.law.radius_at(_pulled(y, self.law.stretch(e)), e) + 0.0 * deepest
+
+    def stiffness(self, piece: int, y: Array, deepest: Array, e: Array) -> Array:
+        """Refused: its variance is infinite."""
+        raise ValueError(_NO_STIFFNESS)
+
+    def slope(self, piece: int, y: Array, deepest: Array, e: Array) -> Array:
+        """Refused: its variance is infinite."""
+        raise ValueError(_NO_STIFFNESS)
+
+
+_NO_STIFFNESS = (
+    "the stiffness of contacts that break off has no variance (johnson-kendall-roberts); leave stiffness and "
+    "load_slope out, or unload_from"
+)
+
+
+def _pressed(delta: Any, stretch: Array) -> Any:
+    """Root z of ``z^4 - 4 z = 3 delta/D_e``, the larger root."""
+    wanted = 3 * delta / stretch
+    z = (wanted + 4 ** (4 / 3)) ** 0.25  # right at first touch, and far beyond it
+    for _ in range(_STEPS):
+        step = (z * (z**3 - 4) - wanted) / (4 * z**3 - 4)
+        z = z - step
+        if np.all(np.abs(step) <= 1e-9 * np.abs(z)):  # the next step would be the square of that
+            break
+    return z
+
+
+def _pulled(y: Any, stretch: Array) -> Any:
+    """Root z of ``(z - 1) sqrt(z^2 + 2 z + 3) = y sqrt(3/D_e)``; below 1 for -y."""
+    wanted = y * np.sqrt(3 / stretch)
+    z = 1 + wanted / np.sqrt(6 + np.abs(wanted) * 2)
+    for _ in range(_STEPS):
+        root = np.sqrt(z * z + 2 * z + 3)
+        step = ((z - 1) * root - wanted) / (root + (z - 1) * (z + 1) / root)
+        z = z - step
+        if np.all(np.abs(step) <= 1e-9 * np.abs(z)):
+            break
+    return z
