@@ -18,11 +18,11 @@ from analytic.laws.unloading import Unloading
 from analytic.laws.zhao_maietta_chang import ZhaoMaiettaChang
 
 __all__ = [
-    "Branch", "ChangEtsionBogy", "Coated", "ContactLaw", "CustomLaw", "Film", "Hertz", "JacksonGreen",
-    "KogutEtsion", "LoadingBranch", "PowerLawGraded", "Regimes", "SpotConductance", "Tangential",
-    "Unloading", "UnloadingBranch", "ZhaoMaiettaChang", "by_name", "crowding_factor",
-    "film_conductance", "film_parameter", "masing", "merged_heights", "of_spot", "piece_of",
-    "regimes_of", "term", "term_of",
+    "Branch", "ChangEtsionBogy", "Coated", "ContactLaw", "CustomLaw", "DerjaguinMullerToporov", "Film",
+    "Hertz", "JacksonGreen", "JohnsonKendallRoberts", "KogutEtsion", "LoadingBranch", "PowerLawGraded",
+    "Regimes", "SpotConductance", "Tangential", "Unloading", "UnloadingBranch", "ZhaoMaiettaChang",
+    "by_name", "crowding_factor", "film_conductance", "film_parameter", "masing", "merged_heights",
+    "of_spot", "piece_of", "regimes_of", "term", "term_of",
 ]  # fmt: skip
 
 _LAWS: tuple[type[ContactLaw], ...] = (

@@ -1,7 +1,6 @@
 """Tangential contact by the theorem of Ciavarella and Jaeger: a difference of two normal loads."""
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -34,7 +33,7 @@ class Tangential:
         Coefficient of friction.
     poisson : float
         Poisson's ratio of both bodies.
-    displacements : sequence of float
+    displacements : array_like
         Tangential displacements u >= 0, m.
 
     Raises
@@ -59,10 +58,10 @@ class Tangential:
     poisson: float
     displacements: tuple[float, ...]
 
-    def __init__(self, friction: float, poisson: float, displacements: Sequence[float]) -> None:
+    def __init__(self, friction: float, poisson: float, displacements: ArrayLike) -> None:
         object.__setattr__(self, "friction", friction)
         object.__setattr__(self, "poisson", poisson)
-        object.__setattr__(self, "displacements", tuple(float(u) for u in displacements))
+        object.__setattr__(self, "displacements", tuple(np.ravel(displacements).astype(np.float64).tolist()))
         if not 0 < friction < math.inf:
             raise ValueError(f"friction = {friction!r}: give a coefficient of friction > 0")
         if not -1 < poisson <= 0.5:

@@ -111,6 +111,6 @@ def _share_points(
 def _at_load(hertz: Model, yielding: Model) -> tuple[Array, Array]:
     """Pressures in MPa, and the area over Hertz's under the same load: both curves log by log."""
     loads, areas = (hertz.mean(name, _LINE) for name in ("load", "area"))
-    ours = [np.log(yielding.mean(name, _LOWER))[::-1] for name in ("load", "area")]
-    area = np.exp(np.interp(np.log(loads), *ours))
+    load, ours = (np.log(yielding.mean(name, _LOWER))[::-1] for name in ("load", "area"))
+    area = np.exp(np.interp(np.log(loads), load, ours))
     return loads / hertz.surface.nominal_area / 1e6, area / areas
