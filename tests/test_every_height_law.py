@@ -9,20 +9,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-import scipy.stats
+from twelve_height_laws import LAWS, SAMPLE
 
 import mcgw
 import mcgw.reports.html
-from analytic import (
-    QUANTITIES,
-    Exponential,
-    ExponentialHeights,
-    Gaussian,
-    HeightTable,
-    MeasuredHeights,
-    ScipyHeights,
-    Weibull,
-)
+from analytic import QUANTITIES, Exponential, Gaussian, MeasuredHeights
 from mcgw.ensemble.forecast import forecast
 from mcgw.reports.html import report_html
 from mcgw.reports.text import comparison_table, summary, verdict_line
@@ -30,21 +21,6 @@ from mcgw.scene.cautions import cautions
 from mcgw.statistics.comparison import compare
 from mcgw.statistics.convergence import converge
 
-SAMPLE = np.random.default_rng(1).weibull(1.6, size=300)
-LAWS = {
-    "gaussian": Gaussian(),
-    "exponential": ExponentialHeights(),
-    "weibull 1.5": Weibull(1.5),
-    "weibull 3.6": Weibull(3.6),
-    "table": HeightTable.of(SAMPLE),
-    "measured": MeasuredHeights(SAMPLE),
-    "uniform": ScipyHeights(scipy.stats.uniform()),
-    "beta": ScipyHeights(scipy.stats.beta(2, 3)),
-    "lognormal": ScipyHeights(scipy.stats.lognorm(0.3)),
-    "gamma": ScipyHeights(scipy.stats.gamma(4)),
-    "t": ScipyHeights(scipy.stats.t(5)),
-    "triangle": ScipyHeights(scipy.stats.triang(0.3)),
-}
 BOUNDED = {name: law for name, law in LAWS.items() if np.isfinite(law.support[1])}
 ATTRIBUTES = {
     "digest": "0", "seed": 1, "sampler": "cells", "date": "", "versions": "", "commit": "", "cpu": "",

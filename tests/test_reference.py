@@ -5,40 +5,27 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-import scipy.stats
 from conftest import SURFACE
+from twelve_height_laws import LAWS, SAMPLE
 
 import analytic
-from analytic import ExponentialHeights, Gaussian, HeightTable, MeasuredHeights, ScipyHeights, Weibull
+from analytic import ExponentialHeights, MeasuredHeights, Weibull
 from mcgw.errors import RunError
 from mcgw.scene.scene import Scene
 from mcgw.statistics.methods import methods_for, reference
 
-SAMPLE = np.random.default_rng(1).weibull(1.6, size=3000)
-LAWS = {
-    "gaussian": Gaussian(),
-    "exponential": ExponentialHeights(),
-    "weibull 1.5": Weibull(1.5),
-    "weibull 3.6": Weibull(3.6),
-    "table": HeightTable.of(SAMPLE),
-    "measured": MeasuredHeights(SAMPLE),
-    "uniform": ScipyHeights(scipy.stats.uniform()),
-    "beta": ScipyHeights(scipy.stats.beta(2, 3)),
-    "lognormal": ScipyHeights(scipy.stats.lognorm(0.3)),
-    "gamma": ScipyHeights(scipy.stats.gamma(4)),
-    "t": ScipyHeights(scipy.stats.t(5)),
-    "triangle": ScipyHeights(scipy.stats.triang(0.3)),
-}
 QUANTITIES = ("load", "area", "stiffness", "contacts")
 every_law = pytest.mark.parametrize("law", LAWS.values(), ids=LAWS.keys())
 STIFFER = analytic.Table([-3, 0, 1, 3], [1, 1.2, 2, 2.5])
 
 
 def scene_of(law, quantity="load", separations=(-2.0, -1.0, 0.0, 1.0, 2.0, 3.0)):
-    measured = {"n_surfaces": 1, "sampler": "direct"} if isinstance(law, MeasuredHeights) else {}
+    own = {"n_asperities": 3000}
+    if isinstance(law, MeasuredHeights):
+        own = {"n_surfaces": 1, "sampler": "direct", "n_asperities": SAMPLE.size}
     return Scene(
         surface=SURFACE, separations=separations, quantities=(quantity,), heights=law, grading=STIFFER,
-        n_asperities=3000, **measured,
+        **own,
     )  # fmt: skip
 
 
