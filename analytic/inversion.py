@@ -4,7 +4,6 @@ from functools import cache
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.optimize import brentq
 
 from analytic.gradings import Grading, Homogeneous
 from analytic.heights import GAUSSIAN, Gaussian, HeightLaw
@@ -88,6 +87,8 @@ def _root(left: float, right: float, problem: Problem) -> float:
         return left
     if _excess(right, *problem) >= 0:
         return right
+    from scipy.optimize import brentq  # imports half of SciPy, which few separations are asked for
+
     return float(brentq(_excess, left, right, problem, xtol=1e-15, rtol=_LAST_DIGITS))
 
 

@@ -5,10 +5,13 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import PchipInterpolator
+
+if TYPE_CHECKING:
+    from scipy.interpolate import PchipInterpolator
 
 __all__ = ["Table"]
 
@@ -60,7 +63,9 @@ class Table:
         return self.s
 
     @cached_property
-    def _interpolant(self) -> PchipInterpolator:
+    def _interpolant(self) -> "PchipInterpolator":
+        from scipy.interpolate import PchipInterpolator  # a third of what the import of all else here takes
+
         return PchipInterpolator(self.s, self.ratio)
 
     def __call__(self, s: Array) -> Array:

@@ -10,14 +10,15 @@ import numpy as np
 import pytest
 import xarray
 from new_trailer import trailer_again
-from said import without_notes
+from said import call, without_notes
 
 import mcgw
 
 SCENE = Path(__file__).parent.parent / "runs" / "quick.toml"
 
 
-def call(*words, cwd=None):
+def child(*words, cwd=None):
+    """In a process of its own, by the entry point of `python -m mcgw`."""
     command = [sys.executable, "-m", "mcgw", *map(str, words)]
     env = os.environ | {"PYTHONPATH": str(SCENE.parent.parent)}
     return subprocess.run(command, capture_output=True, text=True, cwd=cwd, env=env, check=False, timeout=120)
@@ -26,7 +27,7 @@ def call(*words, cwd=None):
 @pytest.fixture(scope="module")
 def file(tmp_path_factory):
     path = tmp_path_factory.mktemp("run") / "quick.h5"
-    done = call("run", SCENE, "-o", path)
+    done = child("run", SCENE, "-o", path)
     assert (done.returncode, without_notes(done.stderr)) == (0, "")
     assert str(path) in done.stdout
     return path
@@ -76,7 +77,7 @@ def test_a_changed_number_is_noticed(file, tmp_path):
     copy.write_bytes(file.read_bytes())
     with h5py.File(copy, "r+") as data:
         data["load"][3, 3] *= 1 + 1e-15
-    assert call("show", copy, "--verify").returncode == 1
+    assert child("show", copy, "--verify").returncode == 1
 
 
 def test_compare_agrees_and_draws(file, tmp_path):
@@ -129,3 +130,11 @@ def test_help_has_an_example(command):
     done = call(command, "--help")
     assert done.returncode == 0
     assert f"example: mcgw {command}" in done.stdout
+
+
+def test_a_child_answers_as_this_process_does(file, tmp_path):
+    """What other tests see in this process: exit code, output and errors of the entry point."""
+    for words in (("show", file), ("run", "absent.toml"), ("merge", "--help")):
+        ours, theirs = call(*words, cwd=tmp_path), child(*words, cwd=tmp_path)
+        said = (theirs.returncode, theirs.stdout, theirs.stderr)
+        assert said == (ours.returncode, ours.stdout, ours.stderr), words

@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import scipy.stats
+from said import call as call_here
 from said import without_notes
 
 import analytic
@@ -153,7 +154,7 @@ def test_a_command_with_a_full_folder_of_kernels(tmp_path):
 
 def test_tail_with_more_asperities_than_memory_is_refused_before_drawing(tmp_path):
     put(tmp_path, SCENE.replace("[ensemble]", '[ensemble]\nsampler = "tail"'), n_asperities=10**15)
-    done = call("run s.toml -o e.h5", tmp_path)
+    done = call_here("run", "s.toml", "-o", "e.h5", cwd=tmp_path)
     lines = [line for line in done.stderr.splitlines() if "note:" not in line]
     assert done.returncode == 2, done.stderr
     assert len(lines) == 1
@@ -178,7 +179,8 @@ def test_a_long_run_says_so_before_it_begins(tmp_path):
 
 def test_a_short_run_says_nothing(tmp_path):
     put(tmp_path)
-    assert "about" not in call("run s.toml -o e.h5", tmp_path).stderr
+    done = call_here("run", "s.toml", "-o", "e.h5", cwd=tmp_path)
+    assert (done.returncode, "about" in done.stderr) == (0, False)
 
 
 def test_a_doubted_unit_is_told_by_every_command_that_speaks_of_the_scene(tmp_path):
@@ -188,7 +190,8 @@ def test_a_doubted_unit_is_told_by_every_command_that_speaks_of_the_scene(tmp_pa
         "show --plan s.toml", "solve s.toml --pressure 0.001 --surfaces 5", "run s.toml -o e.h5", "show e.h5",
         "compare e.h5", "surface s.toml --shape 8 -o m.npy",
     ]  # fmt: skip
-    for done in calls(words, tmp_path):
+    for line in words:
+        done = call_here(*line.split(), cwd=tmp_path)
         assert done.returncode == 0, done.stderr
         asked = "mcgw: note: surface.E_star = 50: 50 Pa is softer than any gel; did you mean 50 GPa = 5e+10?"
         assert done.stderr.splitlines().count(asked) == 1, done.args
@@ -199,14 +202,14 @@ EVIL = "\\u001b]0;owned\\u0007\\u001b[31mred\\r$x_{\\u202e\\nverdict: agrees"
 
 def test_titles_cannot_steer_the_terminal(tmp_path):
     put(tmp_path, title=f'"{EVIL}"', n_surfaces=20)
-    assert call("run s.toml -o e.h5", tmp_path).returncode == 0
-    shown = calls(["show --plan s.toml", "show e.h5", "show --scene e.h5"], tmp_path)
+    lines = ["run s.toml -o e.h5", "show --plan s.toml", "show e.h5", "show --scene e.h5"]
+    shown = calls(lines, tmp_path)
     for done in shown:
         assert done.returncode == 0, done.stderr
         for line in (done.stdout + done.stderr).splitlines():
             assert line.isprintable(), line
         assert "verdict: agrees" not in done.stdout.splitlines()
-    assert mcgw.scene_from(shown[2].stdout) == mcgw.load_scene(tmp_path / "s.toml")
+    assert mcgw.scene_from(shown[-1].stdout) == mcgw.load_scene(tmp_path / "s.toml")
 
 
 @pytest.mark.slow
