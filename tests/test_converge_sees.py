@@ -19,6 +19,8 @@ from mcgw.statistics.checks import coverage, skewness, variances
 from mcgw.statistics.comparison import FALSE_ALARM
 from mcgw.statistics.convergence import Convergence, converge
 
+pytestmark = pytest.mark.usefixtures("blank_figures")
+
 H = (0.0, 1.0, 2.0)
 CHECKS = [
     "means",

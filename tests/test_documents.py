@@ -35,6 +35,7 @@ def smaller(words):
     return [*words, "--surfaces", "20"] if words[0] == "solve" else words
 
 
+@pytest.mark.usefixtures("blank_figures")
 @pytest.mark.parametrize("page", ["README.md", "runs/TUTORIAL.md"])
 def test_commands_run_in_their_order(page, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
@@ -119,6 +120,7 @@ def test_errata_are_wrong_as_printed_and_right_as_corrected():
     assert names["eq_9"](1.0, 1.5, 64, np.exp(-0.5))[1] > 0.3
 
 
+@pytest.mark.usefixtures("blank_figures")
 def test_csv_of_compare_is_the_ensemble(tmp_path):
     run(mcgw.load_scene(ROOT / "runs" / "quick.toml"), tmp_path / "quick.h5")
     words = [

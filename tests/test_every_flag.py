@@ -15,11 +15,12 @@ import analytic
 import mcgw
 from mcgw.cli import _parser, main
 from mcgw.figures.contact_map import EllipseCollection
-from mcgw.jobs import merging
 from mcgw.jobs.running import run
 from mcgw.maps.files import read_map
-from mcgw.store import ensembles, merged_file, structure
+from mcgw.store import ensembles, structure
 from mcgw.store.ensembles import read_attributes
+
+pytestmark = pytest.mark.usefixtures("blank_figures")
 
 SCENE = """
 title = "Flags"
@@ -67,11 +68,6 @@ def material(tmp_path_factory):
     assert main(["surface", *SPECTRUM, "--seed", "3", "-o", str(folder / "map.sdf")]) == 0
     np.save(folder / "bare.npy", read_map(folder / "map.sdf").heights)
     return folder
-
-
-@pytest.fixture(autouse=True)
-def _merged_here(monkeypatch):
-    monkeypatch.setattr(merging, "_merge_in_child", lambda *places: merged_file.merge_into(*places[:3]))
 
 
 @pytest.fixture

@@ -22,7 +22,7 @@ from mcgw.jobs.job import Job
 from mcgw.jobs.merging import merge
 from mcgw.jobs.running import Part, run, run_part
 from mcgw.machine.child_process import ChildError, run_child
-from mcgw.store import ensembles, lock, merged_file, structure
+from mcgw.store import ensembles, lock, structure
 from mcgw.store.leftovers import tidy
 from mcgw.store.lock import LockedError, locked
 from mcgw.store.run_folder import RunFolder, parts_of
@@ -34,8 +34,7 @@ SIZE = 16
 
 @pytest.fixture(autouse=True)
 def _in_this_process(monkeypatch):
-    """Merge and look here: children take most of the time."""
-    monkeypatch.setattr(merging, "_merge_in_child", lambda *words: merged_file.merge_into(*words))
+    """Look here: children take most of the time."""
     monkeypatch.setattr(ensembles, "examine", lambda path: structure.describe(str(path)))
     monkeypatch.setattr(Job, "rows", SIZE)
     monkeypatch.setattr(lock, "PATIENCE", 0.0)

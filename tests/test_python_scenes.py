@@ -18,13 +18,12 @@ import mcgw
 from mcgw.cli import main
 from mcgw.ensemble.regrading import regrade
 from mcgw.errors import StoreError
-from mcgw.jobs import merging
 from mcgw.jobs.job import Job
 from mcgw.jobs.merging import merge
 from mcgw.jobs.running import Part, run, run_part
 from mcgw.scene.scene import SceneError
 from mcgw.scene.storable import storable
-from mcgw.store import ensembles, merged_file, structure
+from mcgw.store import ensembles, structure
 from mcgw.store.run_folder import parts_of
 
 HERE = Path(__file__).parent
@@ -57,9 +56,8 @@ SCENES = {
 
 @pytest.fixture
 def small_blocks(monkeypatch):
-    """Runs of four blocks, the last one short; merged and looked at in this process."""
+    """Runs of four blocks, the last one short; looked at in this process."""
     monkeypatch.setattr(Job, "rows", SIZE)
-    monkeypatch.setattr(merging, "_merge_in_child", lambda *places: merged_file.merge_into(*places[:3]))
     monkeypatch.setattr(ensembles, "examine", lambda path: structure.describe(str(path)))
 
 
@@ -100,19 +98,16 @@ def digest(path):
 
 @pytest.mark.parametrize("name", SCENES)
 def test_memory_file_stopped_and_shared_are_one(small_blocks, make, tmp_path, name):
+    """One file in one go; another begun smaller, extended, stopped on the way and finished by shares."""
     scene, memory = make(name), mcgw.simulate(make(name))
-    whole = run(scene, tmp_path / "whole.h5")
-    stopped, shared, grown = (tmp_path / f"{word}.h5" for word in ("stopped", "shared", "grown"))
+    whole, path = run(scene, tmp_path / "whole.h5"), tmp_path / "e.h5"
+    run(replace(scene, n_surfaces=20), path)
     with pytest.raises(HaltError):
-        run(scene, stopped, progress=halt_at(2 * SIZE))
-    run(scene, stopped)
+        run(scene, path, progress=halt_at(2 * SIZE))
     for i in (2, 1, 3):
-        run_part(scene, shared, Part(i, 3))
-    merge(shared)
-    run(replace(scene, n_surfaces=20), grown)
-    run(scene, grown)
-    for path in (stopped, shared, grown):
-        assert digest(path) == digest(tmp_path / "whole.h5")
+        run_part(scene, path, Part(i, 3))
+    merge(path)
+    assert digest(path) == digest(tmp_path / "whole.h5")
     for quantity in scene.quantities:
         np.testing.assert_array_equal(whole.values(quantity), memory.values(quantity))
     assert whole.scene == memory.scene == storable(scene)
@@ -169,9 +164,10 @@ def started(path, seconds):
     return subprocess.Popen(call, env=env, stderr=subprocess.PIPE, text=True)
 
 
-def test_a_script_that_is_killed_and_started_again(tmp_path):
+def test_a_script_that_is_killed_and_started_again(make_scene, tmp_path):
     whole, killed = tmp_path / "whole.h5", tmp_path / "killed.h5"
-    assert started(whole, 0.0).communicate(timeout=120)[1] == ""
+    grading, law = lambda s: 1 + 0.3 * np.abs(s - 0.777), scipy.stats.lognorm(0.3)
+    run(make_scene(separations=(2.0, 1.0), n_surfaces=100, grading=grading, heights=law), whole)
     process = started(killed, 0.3)
     until = time.monotonic() + 60
     while len(list(parts_of(killed).glob("shards/*.h5"))) < 2:
@@ -230,7 +226,7 @@ def test_other_last_digits_go_on_and_another_function_does_not(small_blocks, mak
 @pytest.fixture
 def held(make, tmp_path):
     path = tmp_path / "e.h5"
-    run(make("kink", heights=scipy.stats.lognorm(0.3), keep="moments"), path)
+    run(make("kink", heights=scipy.stats.lognorm(0.3), keep="moments", quantities=("load",)), path)
     return path
 
 
@@ -248,7 +244,7 @@ def test_commands_name_the_function(held, tmp_path, capsys):
 def test_a_name_is_only_shown(make, tmp_path, capsys):
     """Whatever stands there: no markup, no formula, no control characters."""
     series = replace(storable(make("lambda")).grading, name="<b>$\\frac{1}$\x1b[2J\n__import__('os')")
-    run(make("lambda", grading=series), tmp_path / "e.h5")
+    run(make("lambda", grading=series, quantities=("load",)), tmp_path / "e.h5")
     assert main(["show", str(tmp_path / "e.h5")]) == 0
     assert "\x1b" not in capsys.readouterr().out
     for kind in ("png", "svg"):

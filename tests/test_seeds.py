@@ -55,6 +55,7 @@ def test_a_file_keeps_the_seed_and_goes_on_with_it(make_scene, tmp_path, sampler
         run(replace(longer, seed=seed - 1), path)
 
 
+@pytest.mark.usefixtures("blank_figures")
 @pytest.mark.parametrize("seed", LARGE)
 def test_commands_take_it(tmp_path, capsys, seed):
     scene, path = tmp_path / "s.toml", tmp_path / "e.h5"

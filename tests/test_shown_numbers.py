@@ -17,6 +17,8 @@ from mcgw.ensemble.results import MemoryResults
 from mcgw.jobs.running import run
 from mcgw.store import ensembles, structure
 
+pytestmark = pytest.mark.usefixtures("blank_figures")
+
 QUANTITIES = ("conductance", "load", "contacts", "area", "stiffness")  # in no usual order
 H = (0.5, 0.0, 2.0, 1.0)
 LONG = {

@@ -11,11 +11,9 @@ import pytest
 import mcgw
 from mcgw.cli import main
 from mcgw.errors import RunError, StoreError
-from mcgw.jobs import merging
 from mcgw.jobs.job import Job
 from mcgw.jobs.merging import merge
 from mcgw.jobs.running import Part, run, run_part
-from mcgw.machine.child_process import ChildError
 from mcgw.store import ensembles, merged_file, shards, structure, untrusted
 from mcgw.store.run_folder import RunFolder, parts_of
 from mcgw.store.trailer import TRAILER_BYTES, check_trailer, read_checked, trailer_of
@@ -25,9 +23,8 @@ SIZE, SURFACES = 16, 100
 
 @pytest.fixture(autouse=True)
 def _small_blocks_in_this_process(monkeypatch):
-    """Seven blocks, merged and looked at here: children take most of the time."""
+    """Seven blocks, looked at here: children take most of the time."""
     monkeypatch.setattr(Job, "rows", SIZE)
-    monkeypatch.setattr(merging, "_merge_in_child", merged_here)
     monkeypatch.setattr(ensembles, "examine", examined_here)
 
 
@@ -36,13 +33,6 @@ def examined_here(path):
         return structure.describe(str(path))
     except OSError as error:
         raise StoreError(f"{path}: {error}") from None
-
-
-def merged_here(folder, path, temporary, *rest):
-    try:
-        merged_file.merge_into(folder, path, temporary)
-    except StoreError as error:
-        raise ChildError("exit code 3", str(error)) from None
 
 
 @pytest.fixture

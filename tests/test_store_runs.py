@@ -23,8 +23,7 @@ from mcgw.jobs import merging
 from mcgw.jobs.job import Job
 from mcgw.jobs.merging import merge
 from mcgw.jobs.running import Part, run, run_part
-from mcgw.machine.child_process import ChildError
-from mcgw.store import ensembles, layout, merged_file, structure
+from mcgw.store import ensembles, layout, structure
 from mcgw.store.lock import LockedError, locked
 from mcgw.store.run_folder import missing, parts_of
 from mcgw.store.shards import Span
@@ -45,16 +44,8 @@ def small_blocks(monkeypatch):
 
 @pytest.fixture(autouse=True)
 def _in_this_process(request, monkeypatch):
-    """Merge and look here: children take most of the time. Tests of the command line have them."""
-    monkeypatch.setattr(merging, "_merge_in_child", merged_here)
+    """Look here: children take most of the time. Tests of the command line have them."""
     monkeypatch.setattr(ensembles, "examine", lambda path: structure.describe(str(path)))
-
-
-def merged_here(folder, path, temporary):
-    try:
-        merged_file.merge_into(folder, path, temporary)
-    except StoreError as error:
-        raise ChildError("exit code 3", str(error)) from None
 
 
 @pytest.fixture
@@ -358,7 +349,7 @@ def wait_for_shards(path, n):
 
 
 @pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
-def test_signals_stop_a_run_that_then_goes_on(scene, tmp_path, number, code, expected):
+def test_signals_stop_a_run_that_then_goes_on(small_blocks, scene, tmp_path, number, code, expected):
     path = tmp_path / "e.h5"
     process = started(scene, path)
     wait_for_shards(path, 2)
@@ -369,9 +360,7 @@ def test_signals_stop_a_run_that_then_goes_on(scene, tmp_path, number, code, exp
     assert len(without_notes(err).splitlines()) == 1
     assert "the same command goes on" in err
     assert not path.exists()
-    process = started(scene, path)
-    out, err = process.communicate(timeout=60)
-    assert (process.returncode, without_notes(err)) == (0, "")
+    run(scene, path)
     assert digest(path) == expected
 
 
@@ -382,7 +371,8 @@ def test_kill_9_and_going_on(scene, tmp_path, expected):
     process.kill()
     process.communicate()
     process = started(scene, path)
-    assert without_notes(process.communicate(timeout=60)[1]) == ""
+    err = process.communicate(timeout=60)[1]
+    assert (process.returncode, without_notes(err)) == (0, "")
     assert digest(path) == expected
 
 
@@ -410,11 +400,11 @@ def test_a_full_disk_is_one_line_and_the_run_completes_later(make_scene, tmp_pat
     assert digest(path) == digest(whole)
 
 
-def soaked(tmp_path, kills):
+def soaked(tmp_path, kills, blocks):
     place = Path("/dev/shm") if Path("/dev/shm").is_dir() else tmp_path
     folder = place / f"soak-{os.getpid()}"
     env = os.environ | {"PYTHONPATH": os.pathsep.join([str(HERE.parent), str(HERE / "crash")])}
-    call = [sys.executable, str(HERE / "crash" / "soak.py"), str(folder), str(kills)]
+    call = [sys.executable, str(HERE / "crash" / "soak.py"), str(folder), str(kills), str(blocks)]
     try:
         done = subprocess.run(call, env=env, capture_output=True, text=True, check=True, timeout=500)
     finally:
@@ -423,14 +413,14 @@ def soaked(tmp_path, kills):
 
 
 def test_random_kills(tmp_path):
-    found = soaked(tmp_path, 12)
+    found = soaked(tmp_path, 12, 30)
     assert found["kills"] >= 12
     assert (found["vanished"], found["wrong"]) == (0, 0)
 
 
 @pytest.mark.slow
 def test_many_random_kills(tmp_path):
-    found = soaked(tmp_path, 80)
+    found = soaked(tmp_path, 80, 120)
     assert found["refused"] > 0
     assert (found["vanished"], found["wrong"]) == (0, 0)
 

@@ -36,7 +36,7 @@ def crash(folder):
 
 def kills(folder):
     """Kill at random."""
-    call(TESTS / "crash" / "soak.py", folder / "soak", 500)
+    call(TESTS / "crash" / "soak.py", folder / "soak", 500, 120)
 
 
 def flips(folder):

@@ -1,4 +1,4 @@
-"""A long run killed at random times, again and again: ``python soak.py FOLDER KILLS``.
+"""A long run killed at random times, again and again: ``python soak.py FOLDER KILLS BLOCKS``.
 
 Prints one JSON line: kills, second drivers refused, blocks that vanished, digests that differ.
 """
@@ -17,8 +17,6 @@ from harness import ROWS, attempt, forked, prepare, scene_of
 from mcgw.store import ensembles
 from mcgw.store.run_folder import RunFolder, parts_of
 
-BLOCKS = 120
-
 
 def begun(scene, file):
     """Start a driver in a process of its own."""
@@ -35,9 +33,9 @@ def committed(file):
     return {shard.span.first for shard in RunFolder.open(parts_of(file)).shards()}
 
 
-def main(folder, kills):
+def main(folder, kills, blocks):
     prepare()
-    scene, dice = scene_of(BLOCKS), random.Random(1)
+    scene, dice = scene_of(blocks), random.Random(1)
     folder.mkdir(parents=True)
     whole, file = folder / "whole.h5", folder / "e.h5"
     begin = time.perf_counter()
@@ -65,8 +63,8 @@ def main(folder, kills):
             count["vanished"] += len(before - committed(file))
     count["wrong"] += forked(lambda: attempt(scene, file)) != 0
     count["wrong"] += ensembles.verify(file) != ("", digest)
-    sys.stdout.write(json.dumps({**count, "surfaces": ROWS * BLOCKS}) + "\n")
+    sys.stdout.write(json.dumps({**count, "surfaces": ROWS * blocks}) + "\n")
 
 
 if __name__ == "__main__":
-    main(Path(sys.argv[1]), int(sys.argv[2]))
+    main(Path(sys.argv[1]), int(sys.argv[2]), int(sys.argv[3]))
