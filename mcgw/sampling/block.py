@@ -66,6 +66,10 @@ class Sampler(Protocol):
         """Very roughly."""
         ...
 
+    def with_seed(self, seed: int) -> "Sampler":
+        """The same cells and physics with other draws."""
+        ...
+
     def block(self, first: int, n: int) -> Block:
         """Results of surfaces `first` ... `first + n - 1`: the same in any block."""
         ...

@@ -1,7 +1,7 @@
 """Samplers that count before they draw: the numbers in the cells, their moments, and the product."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -80,6 +80,10 @@ class Counted:
     def _outside(self) -> float:
         """Asperities that are expected to be drawn by themselves."""
         return self.scene.n_asperities * (self.mesh.low_extras + self.mesh.high_extras)
+
+    def with_seed(self, seed: int) -> "Counted":
+        """The same cells and physics with other draws."""
+        return replace(self, scene=replace(self.scene, seed=seed))
 
     def block(self, first: int, n: int) -> Block:
         """Results of surfaces `first` ... `first + n - 1`."""

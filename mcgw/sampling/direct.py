@@ -1,6 +1,6 @@
 """All heights, by NumPy's generator, and plain loops: the witness against the other samplers."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -39,6 +39,10 @@ class Direct:
     def draws(self) -> float:
         """Numbers drawn for a surface."""
         return float(self.scene.n_asperities)
+
+    def with_seed(self, seed: int) -> "Direct":
+        """The same scene with other draws."""
+        return replace(self, scene=replace(self.scene, seed=seed))
 
     def block(self, first: int, n: int) -> Block:
         """Results of surfaces `first` ... `first + n - 1`."""
