@@ -11,7 +11,26 @@ import mcgw
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.results import MemoryResults
 from mcgw.figures.comparison import save_comparison
+from mcgw.sampling.samplers import sampler_of
 from mcgw.statistics.comparison import FALSE_ALARM, compare, verdict
+
+
+def ensembles(scene, seeds):
+    """As `simulate` draws them, by a sampler that is prepared once."""
+    sampler = sampler_of(scene)
+    for seed in seeds:
+        sums = sampler.with_seed(seed).block(0, scene.n_surfaces).sums
+        yield Ensemble(dataclasses.replace(scene, seed=seed), sampler.name, MemoryResults(sums))
+
+
+def test_ensembles_of_a_prepared_sampler_are_those_of_simulate(make_scene):
+    scene = make_scene(n_surfaces=20)
+    for seed, ensemble in enumerate(ensembles(scene, range(3))):
+        whole = mcgw.simulate(scene, seed=seed)
+        assert ensemble.scene == whole.scene
+        assert ensemble.sampler == whole.sampler
+        for name in scene.quantities:
+            np.testing.assert_array_equal(ensemble.values(name), whole.values(name))
 
 
 @pytest.mark.slow
@@ -19,16 +38,13 @@ from mcgw.statistics.comparison import FALSE_ALARM, compare, verdict
 def test_holds_for_20_seeds_of_20(make_scene, gamma):
     """100 verdicts at a false-alarm rate of 1e-3 each: a right program fails this in 1 of 10 choices of
     seeds, and these are fixed."""
-    p = []
-    for seed in range(20):
-        scene = make_scene(
-            grading=analytic.Exponential(gamma),
-            separations=tuple(np.linspace(0, 4, 41)),
-            n_asperities=30_000,
-            n_surfaces=500,
-            seed=seed,
-        )
-        p.append(verdict(mcgw.simulate(scene)).p)
+    scene = make_scene(
+        grading=analytic.Exponential(gamma),
+        separations=tuple(np.linspace(0, 4, 41)),
+        n_asperities=30_000,
+        n_surfaces=500,
+    )
+    p = [verdict(ensemble).p for ensemble in ensembles(scene, range(20))]
     assert min(p) > FALSE_ALARM
     assert max(p) > 0.5  # a chi-square that is far too small is as wrong as one too large
 
@@ -36,10 +52,8 @@ def test_holds_for_20_seeds_of_20(make_scene, gamma):
 @pytest.mark.slow
 def test_p_values_are_uniform(make_scene):
     """400 seeds at few contacts: the share of p < 0.1 is 0.1 within 5 standard errors."""
-    p = [
-        verdict(mcgw.simulate(make_scene(seed=seed, n_asperities=2000, n_surfaces=50))).p
-        for seed in range(400)
-    ]
+    scene = make_scene(n_asperities=2000, n_surfaces=50)
+    p = [verdict(ensemble).p for ensemble in ensembles(scene, range(400))]
     assert abs(np.mean(np.array(p) < 0.1) - 0.1) < 5 * np.sqrt(0.09 / 400)
     assert abs(np.mean(np.array(p) < 0.5) - 0.5) < 5 * np.sqrt(0.25 / 400)
 

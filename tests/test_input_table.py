@@ -1,14 +1,13 @@
 """Sixty inputs and what each must get: works, fails in one line that names it, or degrades as stated."""
 
 import os
-import subprocess
-import sys
 from dataclasses import replace
 from pathlib import Path
 
 import h5py
 import numpy as np
 import pytest
+from said import call
 
 import analytic
 import mcgw
@@ -297,16 +296,11 @@ def test_row_44_folders_that_are_none(make, tmp_path):
 def test_row_55_threads(make, tmp_path):
     scene = tmp_path / "scene.toml"
     scene.write_text(GOOD)
-    env = os.environ | {"PYTHONPATH": str(TESTS.parent)}
-
-    def call(threads):
-        words = [sys.executable, "-m", "mcgw", "run", scene, "-o", tmp_path / "e.h5", "--threads", threads]
-        return subprocess.run(list(map(str, words)), capture_output=True, text=True, env=env, check=False)
-
+    words = ["run", scene, "-o", tmp_path / "e.h5", "--threads"]
     for bad in ("0", "max"):
-        assert call(bad).returncode == 2
+        assert call(*words, bad).returncode == 2
         assert not (tmp_path / "e.h5").exists()
-    done = call("1000")
+    done = call(*words, "1000")
     assert done.returncode == 0
     assert "note: --threads 1000: this machine has" in done.stderr
 

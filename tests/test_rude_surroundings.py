@@ -71,7 +71,7 @@ def refused(done, message, lines=1):
 
 @pytest.mark.parametrize("redirect", ["2>&-", ">&-", "<&- >&- 2>&-"])
 def test_a_run_with_closed_streams_makes_its_file(redirect, tmp_path):
-    put(tmp_path)
+    put(tmp_path, n_surfaces=20)
     done = call("run s.toml -o e.h5", tmp_path, redirect=redirect)
     assert done.returncode == 0, done.stderr
     there = mcgw.open_ensemble(tmp_path / "e.h5")

@@ -33,10 +33,11 @@ def equal_load(samples: Samples) -> FigureData:
         (("b", "conductance", "C"), ("c", "area", "A"), ("d", "stiffness", "K"))
     ):
         series = []
-        for h in _EQUAL_H:
+        exact, curves = _exact_equal(name, _EQUAL_GAMMAS), _exact_equal(name, line)
+        for i, h in enumerate(_EQUAL_H):
             mean, stderr = found[h]
-            points = Points(_EQUAL_GAMMAS, mean[:, k], stderr[:, k], _exact_equal(name, h, _EQUAL_GAMMAS))
-            series.append(Series(f"d/σ = {h:g}", line, _exact_equal(name, h, line), points))
+            points = Points(_EQUAL_GAMMAS, mean[:, k], stderr[:, k], exact[i])
+            series.append(Series(f"d/σ = {h:g}", line, curves[i], points))
         title = f"{key}  equal load: {name}"
         panels.append(Panel(title, GAMMA, rf"${symbol}/{symbol}_\mathrm{{hom}}$", tuple(series), level=1.0))
     return FigureData(
@@ -60,8 +61,9 @@ def _stiffness_points(samples: Samples, h: float) -> Points:
     return Points(_EQUAL_GAMMAS, mean, stderr, _exact_stiffness(h, _EQUAL_GAMMAS))
 
 
-def _exact_equal(name: str, h: float, gammas: Array) -> Array:
-    return np.array([float(analytic.ratio_at_equal_load(name, h, Exponential(float(g)))) for g in gammas])
+def _exact_equal(name: str, gammas: Array) -> Array:
+    """Shape (separations, gammas)."""
+    return np.transpose([analytic.ratio_at_equal_load(name, _EQUAL_H, Exponential(float(g))) for g in gammas])
 
 
 def _jackknifed(listed: tuple[Array, ...], h: float) -> tuple[Array, Array]:

@@ -101,7 +101,7 @@ def _ratios(samples: Samples, name: str, title: str, quantity: str) -> FigureDat
             f"{key}  {word}",
             GAMMA,
             ylabel,
-            tuple(_ratio_series(samples, quantity, h, key) for h in _H),
+            _ratio_series(samples, quantity, key),
             level=1.0,
         )
         for key, word in (("a", "stiffer tips"), ("b", "softer tips"))
@@ -109,22 +109,27 @@ def _ratios(samples: Samples, name: str, title: str, quantity: str) -> FigureDat
     return FigureData(name, title, samples.caption, panels)
 
 
-def _ratio_series(samples: Samples, quantity: str, h: float, key: str) -> Series:
-    line = np.linspace(*_RANGES[key], 81)
-    k = samples.base.scene.separations.index(h)
+def _ratio_series(samples: Samples, quantity: str, key: str) -> tuple[Series, ...]:
+    """One for each separation."""
+    line, gammas = np.linspace(*_RANGES[key], 81), _GAMMAS[key]
+    columns = [samples.base.scene.separations.index(h) for h in _H]
     pairs = []
-    for gamma in _GAMMAS[key]:
+    for gamma in gammas:
         new, old = samples.graded(float(gamma)), samples.base
         pair = paired_ratio(old, new, quantity) if quantity == "load" else paired_ratio(new, old, quantity)
-        pairs.append((pair.ratio[k], pair.stderr[k]))
-    mean, stderr = np.array(pairs).T
-    points = Points(_GAMMAS[key], mean, stderr, _exact_ratio(quantity, h, _GAMMAS[key]))
-    return Series(f"d/σ = {h:g}", line, _exact_ratio(quantity, h, line), points)
+        pairs.append((pair.ratio[columns], pair.stderr[columns]))
+    mean, stderr = np.transpose(pairs, (1, 2, 0))
+    exact, curves = _exact_ratios(quantity, gammas), _exact_ratios(quantity, line)
+    return tuple(
+        Series(f"d/σ = {h:g}", line, curves[k], Points(gammas, mean[k], stderr[k], exact[k]))
+        for k, h in enumerate(_H)
+    )
 
 
-def _exact_ratio(quantity: str, h: float, gammas: Array) -> Array:
+def _exact_ratios(quantity: str, gammas: Array) -> Array:
+    """Shape (separations, gammas)."""
     law = analytic.area_per_load_ratio if quantity == "load" else analytic.stiffness_ratio
-    return np.array([float(law(h, Exponential(float(g)))) for g in gammas])
+    return np.transpose([law(_H, Exponential(float(g))) for g in gammas])
 
 
 def _figure_4(samples: Samples) -> FigureData:
@@ -140,10 +145,11 @@ def _figure_4(samples: Samples) -> FigureData:
     )
     for title, weight in weights:
         series = []
-        for h in _H:
+        exact, curves = _exact_moduli(gammas, weight), _exact_moduli(line, weight)
+        for k, h in enumerate(_H):
             mean, stderr = _mean_moduli(samples.heights, float(h), gammas, weight)
-            points = Points(gammas, mean, stderr, _exact_moduli(h, gammas, weight))
-            series.append(Series(f"d/σ = {h:g}", line, _exact_moduli(h, line, weight), points))
+            points = Points(gammas, mean, stderr, exact[k])
+            series.append(Series(f"d/σ = {h:g}", line, curves[k], points))
         panels.append(Panel(title, GAMMA, r"$\psi/\psi_\mathrm{hom}$", tuple(series), level=1.0))
     return FigureData(
         "figure-4",
@@ -153,8 +159,9 @@ def _figure_4(samples: Samples) -> FigureData:
     )
 
 
-def _exact_moduli(h: float, gammas: Array, weight: Weight) -> Array:
-    return np.array([float(analytic.mean_modulus(h, Exponential(float(g)), weight=weight)) for g in gammas])
+def _exact_moduli(gammas: Array, weight: Weight) -> Array:
+    """Shape (separations, gammas)."""
+    return np.transpose([analytic.mean_modulus(_H, Exponential(float(g)), weight=weight) for g in gammas])
 
 
 def _mean_moduli(listed: tuple[Array, ...], h: float, gammas: Array, weight: Weight) -> tuple[Array, Array]:
