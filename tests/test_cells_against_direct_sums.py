@@ -94,9 +94,8 @@ def test_separations(make_scene, separations, n_asperities):
         sampler="cells",
     )
     sampler = sampler_of(scene)
-    assert (
-        max(worst(scene, surface, sampler) for surface in range(MANY if n_asperities < 1000 else 2)) < 1e-12
-    )
+    surfaces = MANY if n_asperities < 1000 else 1  # in which a million fill every cell
+    assert max(worst(scene, surface, sampler) for surface in range(surfaces)) < 1e-12
 
 
 @pytest.mark.parametrize("grading", GRADINGS.values(), ids=GRADINGS.keys())
