@@ -1,4 +1,4 @@
-"""The pictures of the README: ``python runs/pictures.py`` writes them to runs/pictures."""
+"""The pictures of the README and of LAWS.md: ``python runs/pictures.py`` writes them to runs/pictures."""
 
 from dataclasses import replace
 from itertools import pairwise
@@ -11,9 +11,10 @@ from matplotlib.patches import Rectangle
 
 import mcgw
 from mcgw.figures.drawing import draw
-from mcgw.figures.further import further_figures
+from mcgw.figures.equal_load import equal_load
 from mcgw.figures.samples import Samples
 from mcgw.figures.style import STYLE
+from mcgw.figures.yielding import laws_compared, who_yields
 from mcgw.sampling.cells import mesh_of
 
 HERE = Path(__file__).parent
@@ -25,8 +26,16 @@ def trend():
     """Equal separation against equal load, from `mcgw figures`."""
     scene = mcgw.load_scene(HERE / "demo.toml")
     samples = Samples(scene.surface, 200, scene.n_asperities, scene.seed, 100)
-    data = next(x for x in further_figures(samples) if x.name == "equal-load")
+    data = equal_load(samples)
     draw(replace(data, panels=data.panels[:2])).savefig(FOLDER / "equal-load.png", dpi=110)
+
+
+def laws():
+    """Who yields, and the laws side by side, from `mcgw figures`."""
+    scene = mcgw.load_scene(HERE / "demo.toml")
+    samples = Samples(scene.surface, 200, scene.n_asperities, scene.seed, 100)
+    for data in (who_yields(samples), laws_compared(samples)):
+        draw(data).savefig(FOLDER / f"{data.name}.png", dpi=110)
 
 
 def how_it_works():
@@ -107,5 +116,6 @@ def _draw_answer(axis, scene):
 if __name__ == "__main__":
     FOLDER.mkdir(exist_ok=True)
     trend()
+    laws()
     how_it_works()
     print(FOLDER)
