@@ -26,6 +26,7 @@ _BACKWARDS, _PER_LOG2 = _TAYLOR[::-1], 1 / (_LOG2_HIGH + _LOG2_LOW)
 _PLAIN = 700.0  # up to here neither exp nor its steps overflow or lose a digit
 _SMALLEST, _LARGEST = -745.2, 709.79  # beyond, exp is 0 or infinite
 _HALF = np.sqrt(0.5)
+_FAR = 1e4  # beyond, a density is 0
 
 
 def _in_pieces(function: Callable[[Array], Array]) -> Callable[[Any], Array]:
@@ -138,7 +139,7 @@ def log1p(x: Any) -> Array:
 
 def exp_minus_half_square(h: Any) -> Array:
     """exp(-h^2/2) to full relative accuracy: the square is split so that its rounding drops out."""
-    h = np.asarray(h, dtype=np.float64)
+    h = np.clip(np.asarray(h, dtype=np.float64), -_FAR, _FAR)
     a = np.round(16 * h) / 16
     coarse, fine = exp(np.stack([a * a, (h - a) * (h + a)]) * -0.5)
     return np.asarray(coarse * fine)

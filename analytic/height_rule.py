@@ -8,7 +8,7 @@ of contact, graded towards separations with a close neighbour. Means and varianc
 density, beyond h = 37.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import partial
 from itertools import pairwise
@@ -23,9 +23,10 @@ from analytic.gradings import Grading
 from analytic.heights import GAUSSIAN, Gaussian, HeightLaw
 from analytic.integrals import fn
 from analytic.law_rule import law_rule
+from analytic.laws.branch import Branch, term_of
 from analytic.laws.cuts import cuts_of
 from analytic.laws.law import ContactLaw
-from analytic.laws.spot import term
+from analytic.laws.ways import Ways
 from analytic.quantities import quantity_of
 from analytic.reach import Weight, tame
 from analytic.renamed import takes_heights
@@ -75,11 +76,6 @@ def normal_ends(h: Array, grading: Grading, power: int = _POWER) -> tuple[float,
     return (weight.reach(0.0, -_REACH, low) if low < -_REACH else low), top
 
 
-def _cuts(contact: ContactLaw | None, grading: Grading, h: Array, low: float, high: float) -> Sequence[float]:
-    """Further ends of pieces, for another law of contact than Hertz's."""
-    return [] if contact is None else cuts_of(contact, grading, h, low, high)
-
-
 def _check(s: Array, modulus: Array, contact: ContactLaw) -> None:
     """Nothing yields at a negative modulus."""
     negative = np.flatnonzero(modulus < 0)
@@ -117,11 +113,14 @@ class HeightRule:
         grading: Grading,
         heights: HeightLaw = GAUSSIAN,
         *,
-        contact: ContactLaw | None = None,
+        branches: Iterable[Branch] = (),
     ) -> "HeightRule":
-        """The rule for these reduced separations, this grading, law of the heights and law of contact."""
+        """The rule for these reduced separations, this grading and law of the heights.
+
+        `branches` are those of what is summed, unless that is powers of the approach.
+        """
         h = np.unique(np.asarray(separations, dtype=np.float64))
-        further = partial(_cuts, contact, grading, h)
+        further = partial(cuts_of, tuple(branches), grading, h)
         if not isinstance(heights, Gaussian):
             return cls(*law_rule(heights, h, grading, further=further), float(heights.below(h[0])))
         low, top = normal_ends(h, grading)
@@ -161,19 +160,22 @@ class HeightRule:
         quantities: Sequence[str],
         separations: ArrayLike,
         grading: Grading,
-        contact: ContactLaw | None = None,
+        ways: Ways | None = None,
     ) -> Array:
-        """What one asperity adds to each quantity, over its scale: shape (m, quantities * separations)."""
+        """What one asperity adds to each quantity, over its scale: shape (m, quantities * separations).
+
+        Without `ways` these are powers of the approach, as under Hertz's law.
+        """
         h = np.asarray(separations, dtype=np.float64)
         approach = self.heights[:, None] - h
         modulus = grading(self.heights)[:, None]
-        if contact is not None and not contact.elastic:
-            _check(self.heights, modulus[:, 0], contact)
+        if ways is not None and not ways.law.elastic:
+            _check(self.heights, modulus[:, 0], ways.law)
         columns = []
         for name in quantities:
             q = quantity_of(name)
-            if contact is not None:
-                columns.append(term(q.base, contact, approach, modulus))
+            if ways is not None:
+                columns.append(term_of(q.base, ways.of(name), h, self.heights[:, None], modulus))
                 continue
             power = np.where(approach > 0, np.abs(approach) ** q.exponent, 0.0)
             columns.append(power * modulus**q.modulus)

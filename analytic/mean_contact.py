@@ -10,9 +10,10 @@ from scipy.optimize import brentq
 from analytic.gradings import Grading
 from analytic.height_rule import HeightRule
 from analytic.heights import Gaussian, HeightLaw
-from analytic.laws.law import ContactLaw
+from analytic.laws.branch import LoadingBranch, UnloadingBranch
 from analytic.laws.slopes import jump_terms, slope_term
 from analytic.laws.spot import piece_of
+from analytic.laws.ways import Ways
 from analytic.measured_heights import MeasuredHeights
 
 __all__ = ["MeanContact"]
@@ -31,15 +32,15 @@ class MeanContact:
 
     Parameters
     ----------
-    law : ContactLaw
-        In reduced units.
+    ways : Ways
+        Law of contact and history, in reduced units.
     grading : Grading
         E*(s)/E*.
     heights : HeightLaw
         Law of the reduced heights.
     """
 
-    law: ContactLaw
+    ways: Ways
     grading: Grading
     heights: HeightLaw
 
@@ -50,15 +51,18 @@ class MeanContact:
 
     def mean(self, quantity: str, h: Array) -> Array:
         """Mean at separations of any shape."""
-        return self._in_parts(h, lambda part: self._sums(part).mean([quantity])[0])
+        beyond = np.isfinite(h) & (self.heights.above(h) == 0)  # far ones would make a rule long
+        result = np.zeros(np.shape(h))
+        result[~beyond] = self._in_parts(h[~beyond], lambda part: self._sums(part, quantity).mean(quantity))
+        return result
 
     def share(self, piece: int, h: Array) -> Array:
         """Share of the contacts in which this piece of the law holds; nan without a contact."""
-        return self._in_parts(h, lambda part: self._sums(part).share(piece))
+        return self._in_parts(h, lambda part: self._sums(part, "contacts").share(piece))
 
     def slope(self, quantity: str, h: Array) -> Array:
-        """How fast the mean falls with the separation, jumps of asperities included."""
-        return self._in_parts(h, lambda part: self._sums(part).slope(quantity))
+        """How fast the mean falls with the separation, jumps of asperities included; of a loading one."""
+        return self._in_parts(h, lambda part: self._sums(part, quantity).slope(quantity))
 
     def _in_parts(self, h: Array, function: Callable[[Array], Array]) -> Array:
         """A few separations at a time: they share a rule."""
@@ -72,8 +76,9 @@ class MeanContact:
             result[part] = function(flat[part])
         return result.reshape(np.shape(h))
 
-    def _sums(self, h: Array) -> "_Sums":
-        return _Sums(self, h, HeightRule.over(h, self.grading, self.heights, contact=self.law))
+    def _sums(self, h: Array, quantity: str) -> "_Sums":
+        branches = self.ways.among([quantity])
+        return _Sums(self, h, HeightRule.over(h, self.grading, self.heights, branches=branches))
 
     def separations_at(self, quantity: str, values: Array) -> Array:
         """Largest separations with given means, in the shape of `values`.
@@ -83,7 +88,7 @@ class MeanContact:
         ValueError
             If the mean does not have a value where it can be told from 0, at h = -40 or above.
         """
-        grid = self._grid()
+        grid = self._grid(quantity)
         about = self._in_parts(grid, lambda part: self._roughly(quantity, part))
         found = [self._separation_at(quantity, x, grid, about) for x in np.ravel(values).tolist()]
         return np.array(found, dtype=np.float64).reshape(np.shape(values))
@@ -91,7 +96,7 @@ class MeanContact:
     def _roughly(self, quantity: str, h: Array) -> Array:
         """Mean by a rule that is not cut where pieces of the law end: to a percent, and soon done."""
         rule = HeightRule.over(h, self.grading, self.heights)
-        return np.asarray(rule.probabilities @ rule.terms([quantity], h, self.grading, self.law))
+        return np.asarray(rule.probabilities @ rule.terms([quantity], h, self.grading, self.ways))
 
     def _separation_at(self, quantity: str, value: float, grid: Array, about: Array) -> float:
         high_enough = np.flatnonzero(about >= value)
@@ -109,7 +114,7 @@ class MeanContact:
             )
         return float(grid[high_enough[-1]]), float(grid[high_enough[-1] + 1])
 
-    def _grid(self) -> Array:
+    def _grid(self, quantity: str) -> Array:
         """Separations from where all touches to where probabilities underflow, or the highest height."""
         if isinstance(self.heights, MeasuredHeights):
             top = self.heights.support[1]
@@ -118,16 +123,18 @@ class MeanContact:
         near = min(top, 12.0)
         far = np.geomspace(near, top, 25)[1:] if top > near else np.empty(0)
         grid = np.concatenate([np.linspace(_LOWEST, -4, 10)[:-1], np.linspace(-4, near, 41), far])
-        low = self._softest(near)
+        low = self._lowest(quantity, near)
         return np.concatenate([[low], grid[grid > low]])
 
-    def _softest(self, near: float) -> float:
-        """Lowest separation of the grid: above it no modulus is negative, if the law cannot do with that."""
-        if self.law.elastic:
+    def _lowest(self, quantity: str, near: float) -> float:
+        """Lowest separation of the grid: that of the turn, or above it one that has no negative modulus."""
+        if self.ways.law.elastic:
             return _LOWEST
+        branch = self.ways.of(quantity)
+        lowest = branch.deepest if isinstance(branch, UnloadingBranch) else _LOWEST
         s = np.linspace(max(self.heights.support[0], -_COUNTS), near, 4001)
         negative = np.flatnonzero(self.grading(s) < 0)
-        return float(s[min(negative[-1] + 1, s.size - 1)]) if negative.size else _LOWEST
+        return max(lowest, float(s[min(negative[-1] + 1, s.size - 1)])) if negative.size else lowest
 
     def _excess(self, h: float, quantity: str, value: float) -> float:
         """Logarithm relative to the value; -100 also where the mean is not positive."""
@@ -143,23 +150,24 @@ class _Sums:
     h: Array
     rule: HeightRule
 
-    def mean(self, quantities: list[str]) -> Array:
-        terms = self.rule.terms(quantities, self.h, self.contact.grading, self.contact.law)
-        return np.asarray(self.rule.probabilities @ terms).reshape(len(quantities), -1)
+    def mean(self, quantity: str) -> Array:
+        terms = self.rule.terms([quantity], self.h, self.contact.grading, self.contact.ways)
+        return np.asarray(self.rule.probabilities @ terms)
 
     def share(self, piece: int) -> Array:
-        s, law = self.rule.heights[:, None], self.contact.law
+        s, law = self.rule.heights[:, None], self.contact.ways.law
         inside = (s > self.h) & (piece_of(law, s - self.h, self.contact.grading(s)) == piece)
         with np.errstate(invalid="ignore"):
-            return np.asarray(self.rule.probabilities @ inside / self.mean(["contacts"])[0])
+            return np.asarray(self.rule.probabilities @ inside / self.mean("contacts"))
 
     def slope(self, quantity: str) -> Array:
-        law, grading, heights = self.contact.law, self.contact.grading, self.contact.heights
+        grading, heights, ways = self.contact.grading, self.contact.heights, self.contact.ways
+        branch = LoadingBranch(ways.law, ways.conductance)
         s, p = self.rule.heights, self.rule.probabilities
         if not s.size:
             return np.zeros(self.h.shape)
-        within = p @ slope_term(quantity, law, s[:, None] - self.h, grading(s)[:, None])
+        within = p @ slope_term(quantity, branch, s[:, None] - self.h, grading(s)[:, None])
         if isinstance(heights, MeasuredHeights):
             return np.asarray(within)  # between the separations at which one of them jumps
         ends = float(s[0]), float(s[-1])
-        return np.asarray(within + jump_terms(quantity, law, grading, heights, self.h, ends))
+        return np.asarray(within + jump_terms(quantity, branch, grading, heights, self.h, ends))

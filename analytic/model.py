@@ -12,8 +12,11 @@ from analytic.height_rule import Count, Fluctuations, HeightRule
 from analytic.heights import Gaussian, HeightLaw
 from analytic.integrals import fn
 from analytic.inversion import separations_at
+from analytic.laws.film import Film
 from analytic.laws.law import ContactLaw
 from analytic.laws.plain import is_hertz
+from analytic.laws.tangential import Tangential, half_spaces
+from analytic.laws.ways import Ways
 from analytic.mean_contact import MeanContact
 from analytic.quantities import LAW_QUANTITIES, Quantity, quantity_of
 from analytic.surface import Surface
@@ -62,6 +65,11 @@ class Model:
         Law of contact of an asperity, of `analytic.laws`; default: Hertz's. Quantities are then also
         "load_slope" (N/m), the slope of the load without the jumps of asperities, and "yielded" (1), the
         number of contacts beyond the first piece of the law.
+    unload_from : float, optional
+        Lowest separation reached before, d/sigma. Each quantity has a second one, as "load_unloading", on
+        the way back from there; where asperities yield it needs this, and a law that says how they unload.
+    film : Film, optional
+        What spots conduct through: "conductance_si" (S, or W/K) needs it.
     n_asperities : float, optional
         Asperities on the surface; default: eta A_n.
     count : {"fixed", "poisson"}, optional
@@ -72,7 +80,7 @@ class Model:
     ------
     ValueError
         If `n_asperities` is not a positive finite number, `count` another word, or the law lacks a
-        constant.
+        constant, or its unloading is asked for and not known.
 
     Examples
     --------
@@ -88,6 +96,8 @@ class Model:
     grading: Grading = field(default_factory=Homogeneous)
     heights: HeightLaw = field(default_factory=Gaussian)
     law: ContactLaw | None = None
+    unload_from: float | None = None
+    film: Film | None = None
     n_asperities: float | None = None
     count: Count = "fixed"
 
@@ -96,7 +106,11 @@ class Model:
             raise ValueError(f"n_asperities = {self.n_asperities!r}: give a finite number > 0")
         if self.count not in ("fixed", "poisson"):
             raise ValueError(f'count = {self.count!r}: give "fixed" or "poisson"')
-        _ = self._contact  # a law that lacks a constant says so now
+        law = self.ways.law  # one that lacks a constant says so now
+        if self.unload_from is not None:
+            law.unloading()
+            if not np.isfinite(self.unload_from):
+                raise ValueError(f"unload_from = {self.unload_from!r}: give a finite separation d/sigma")
 
     @property
     def number(self) -> float:
@@ -122,23 +136,26 @@ class Model:
         ------
         KeyError
             If there is no such quantity.
+        ValueError
+            If the way back is asked for and not known, or starts above `h`.
         """
-        q = self._asked(quantity)
+        q = self._asked(quantity, h)
         if self._by_powers(q):
             return self._unit(q) * fn(q.exponent, h, self._grading(q), heights=self.heights)
-        return self._unit(q) * self._contact.mean(q.base, np.asarray(h, dtype=np.float64))
+        return self._unit(q) * self._contact.mean(quantity, np.asarray(h, dtype=np.float64))
 
     def slope(self, quantity: str, h: ArrayLike) -> Array:
         """How fast the mean falls with the separation, per unit of h.
 
         Where asperities jump, at first touch or from one piece of the law to the next, this counts: the slope
         of the mean load is not the mean of "load_slope". Of measured heights, which jump one by one,
-        it is the slope in between.
+        it is the slope in between. On the way back no asperity jumps as the separation grows.
 
         Parameters
         ----------
         quantity : str
-            Its name; not "load_slope".
+            Its name; not "load_slope", and of those on the way back where asperities have yielded
+            "load_unloading" only.
         h : array_like
             Reduced separations, any shape.
 
@@ -150,14 +167,19 @@ class Model:
         Raises
         ------
         ValueError
-            For "load_slope".
+            For others.
         """
-        q = self._asked(quantity)
+        q = self._asked(quantity, h)
         if q.base == "load_slope":
             raise ValueError(f"quantity = {quantity!r}: its own slope is not known; give another quantity")
         if self._by_powers(q) and q.exponent >= 1:
             return self._unit(q) * q.exponent * fn(q.exponent - 1, h, self._grading(q), heights=self.heights)
-        return self._unit(q) * self._contact.slope(q.base, np.asarray(h, dtype=np.float64))
+        h = np.asarray(h, dtype=np.float64)
+        if not q.unloading or self.ways.law.elastic:
+            return self._unit(q) * self._contact.slope(q.base, h)
+        if q.base != "load":
+            raise ValueError(f"quantity = {quantity!r}: its slope is not known; give 'load_unloading'")
+        return self._unit(q) * q.exponent * self._contact.mean("load_slope_unloading", h)
 
     def share(self, piece: int, h: ArrayLike) -> Array:
         """Mean share of the contacts in which a piece of the law holds: who has yielded, and how far.
@@ -179,7 +201,7 @@ class Model:
     def cumulants(self, quantity: str, h: ArrayLike) -> Cumulants:
         """Mean, variance, skewness and excess kurtosis over surfaces, in the shape of `h`."""
         h = np.asarray(h, dtype=np.float64)
-        step = 1 if self._by_powers(self._asked(quantity)) else self._contact.together
+        step = 1 if self._by_powers(self._asked(quantity, h)) else self._contact.together
         parts = np.split(h.ravel(), range(step, h.size, step)) if h.size else []
         rows = np.concatenate([np.empty((0, 4)), *(self._one_asperity(quantity, x) for x in parts)])
         k1, k2, k3, k4 = rows.reshape(*h.shape, 4).transpose(-1, *range(h.ndim))
@@ -207,6 +229,36 @@ class Model:
         return np.asarray(self.number * matrix * np.outer(scale, scale)).reshape(
             2 * (len(quantities), h.size)
         )
+
+    def tangential_load(self, h: ArrayLike, tangential: Tangential) -> Array:
+        """Mean tangential load of a surface that is pressed on and then pushed sideways.
+
+        Parameters
+        ----------
+        h : array_like
+            Reduced separations, any shape.
+        tangential : Tangential
+            Friction, and displacements.
+
+        Returns
+        -------
+        ndarray
+            N, shape ``(*h.shape, displacements)``.
+
+        Raises
+        ------
+        ValueError
+            If the law is not that of elastic half-spaces.
+        """
+        if not half_spaces(self.ways.law):
+            raise ValueError(
+                f"law = {self.ways.law.name!r}: tangential loads need elastic half-spaces; take 'hertz' or "
+                "'power-law-graded'"
+            )
+        h, shifts = np.asarray(h, dtype=np.float64)[..., None], tangential.shifts(self.surface)
+        once, where = np.unique([h + 0 * shifts, h + shifts], return_inverse=True)  # u = 0 gives exactly 0
+        pressed, shifted = self.mean("load", once)[where].reshape(2, *h.shape[:-1], shifts.size)
+        return tangential.load(pressed, shifted)
 
     def separation_at(self, quantity: str, value: ArrayLike) -> Array:
         """Separation at which the mean has a given value.
@@ -236,21 +288,22 @@ class Model:
             raise ValueError(f"{quantity} = {value!r}: give finite values > 0 {q.unit}")
         if self._by_powers(q):
             return separations_at(q, np.log(target / self._unit(q)), self._grading(q), self.heights)
-        return self._contact.separations_at(q.base, target / self._unit(q))
+        return self._contact.separations_at(quantity, target / self._unit(q))
 
-    def rule(self, separations: ArrayLike) -> HeightRule:
-        """Heights and probabilities for integrals over one asperity at these separations."""
-        contact = None if self._hertz else self._contact.law
-        return HeightRule.over(separations, self.grading, self.heights, contact=contact)
+    def rule(self, separations: ArrayLike, quantities: Sequence[str] = ("load",)) -> HeightRule:
+        """Heights and probabilities for integrals of these quantities of an asperity at these separations."""
+        powers = all(self._by_powers(self._asked(name, separations)) for name in quantities)
+        branches = () if powers else self.ways.among(quantities)
+        return HeightRule.over(separations, self.grading, self.heights, branches=branches)
 
     def fluctuations(self, quantities: Sequence[str], separations: ArrayLike) -> Fluctuations:
         """What one asperity adds to each quantity at each separation, over its scale.
 
         Columns are quantity by quantity, at increasing number of the separation.
         """
-        asked, rule = [self._asked(name) for name in quantities], self.rule(separations)
-        contact = None if all(map(self._by_powers, asked)) else self._contact.law
-        terms = rule.terms([q.base for q in asked], separations, self.grading, contact)
+        powers = all(self._by_powers(quantity_of(name)) for name in quantities)
+        rule = self.rule(separations, quantities)
+        terms = rule.terms(quantities, separations, self.grading, None if powers else self.ways)
         return rule.fluctuations(terms, self.count)
 
     @cached_property
@@ -258,17 +311,23 @@ class Model:
         return self.law is None or is_hertz(self.law)
 
     @cached_property
-    def _contact(self) -> MeanContact:
+    def ways(self) -> Ways:
+        """Law of contact, history and film, in reduced units."""
         law = ContactLaw() if self.law is None else self.law.on(self.surface)
-        return MeanContact(law, self.grading, self.heights)
+        return Ways(law, self.unload_from, None if self.film is None else self.film.on(self.surface))
 
-    def _asked(self, quantity: str) -> Quantity:
-        """A quantity of a surface that comes closer; where nothing yields it is the same on the way back."""
+    @cached_property
+    def _contact(self) -> MeanContact:
+        return MeanContact(self.ways, self.grading, self.heights)
+
+    def _asked(self, quantity: str, h: ArrayLike = np.inf) -> Quantity:
+        """A quantity that is known at these separations."""
         q = quantity_of(quantity)
-        if q.unloading and not self._contact.law.elastic:
+        self.ways.of(quantity)
+        if q.unloading and self.unload_from is not None and np.any(np.less(h, self.unload_from)):
             raise ValueError(
-                f"quantity = {quantity!r}: its mean is not known for law = {self._contact.law.name!r}, whose "
-                f"asperities yield; give {q.base!r}, or simulate the unloading"
+                f"quantity = {quantity!r}: h = {np.min(h):g} is lower than unload_from = "
+                f"{self.unload_from:g}, from where the surface goes back; give higher separations"
             )
         return q
 

@@ -12,7 +12,7 @@ from scipy.optimize import brentq
 from scipy.special import ndtr
 
 from analytic import ChangEtsionBogy, JacksonGreen, KogutEtsion, Surface, ZhaoMaiettaChang
-from analytic.laws import term
+from analytic.laws import LoadingBranch, term_of
 
 ONE = np.array(1.0)
 SURFACE = Surface(sigma=1e-6, radius=1e-3, eta=1e9, nominal_area=1e-6, E_star=100e9)
@@ -34,6 +34,11 @@ def density(s):
 
 def ones(s):
     return np.ones_like(s)
+
+
+def term(quantity, law, penetration, e):
+    """What asperities add that are loaded to a penetration, each by the formula of its piece."""
+    return term_of(quantity, LoadingBranch(law), 0.0, penetration, e)
 
 
 def starts(law, h, modulus=ones):

@@ -4,9 +4,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from law_means import BRIDGED, FOUR, ONE, name
+from law_means import BRIDGED, FOUR, ONE, name, term
 
-from analytic.laws import piece_of, term
+from analytic.laws import piece_of
 
 
 @pytest.mark.parametrize("law", BRIDGED, ids=name)

@@ -2,8 +2,9 @@
 
 import numpy as np
 import pytest
+from law_means import term
 
-from analytic.laws import CustomLaw, KogutEtsion, term
+from analytic.laws import CustomLaw, KogutEtsion
 
 KOGUT = KogutEtsion(critical=0.05)
 QUANTITIES = ("load", "area", "stiffness", "conductance", "load_slope", "contacts", "yielded")

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from law_means import BRIDGED, FOUR, ONE, STEEL, SURFACE, density, mean, name, quadrature, tail
+from law_means import BRIDGED, FOUR, ONE, STEEL, SURFACE, density, mean, name, quadrature, tail, term
 
 import analytic
 from analytic.laws import (
@@ -17,7 +17,6 @@ from analytic.laws import (
     KogutEtsion,
     ZhaoMaiettaChang,
     by_name,
-    term,
 )
 
 SOFTER = JacksonGreen(yield_strength=1e9).on(replace(SURFACE, radius=1e-4))

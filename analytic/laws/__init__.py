@@ -12,17 +12,18 @@ from analytic.laws.kogut_etsion import KogutEtsion
 from analytic.laws.law import ContactLaw
 from analytic.laws.power_law_graded import PowerLawGraded
 from analytic.laws.regimes import Regimes, merged_heights, regimes_of
-from analytic.laws.spot import of_spot, piece_of, term
-from analytic.laws.tangential import Tangential, masing
+from analytic.laws.spot import of_spot, piece_of
+from analytic.laws.tangential import Tangential, half_spaces, masing
 from analytic.laws.unloading import Unloading
+from analytic.laws.ways import Ways
 from analytic.laws.zhao_maietta_chang import ZhaoMaiettaChang
 
 __all__ = [
     "Branch", "ChangEtsionBogy", "Coated", "ContactLaw", "CustomLaw", "DerjaguinMullerToporov", "Film",
     "Hertz", "JacksonGreen", "JohnsonKendallRoberts", "KogutEtsion", "LoadingBranch", "PowerLawGraded",
-    "Regimes", "SpotConductance", "Tangential", "Unloading", "UnloadingBranch", "ZhaoMaiettaChang",
-    "by_name", "crowding_factor", "film_conductance", "film_parameter", "masing", "merged_heights",
-    "of_spot", "piece_of", "regimes_of", "term", "term_of",
+    "Regimes", "SpotConductance", "Tangential", "Unloading", "UnloadingBranch", "Ways",
+    "ZhaoMaiettaChang", "by_name", "crowding_factor", "film_conductance", "film_parameter",
+    "half_spaces", "masing", "merged_heights", "of_spot", "piece_of", "regimes_of", "term_of",
 ]  # fmt: skip
 
 _LAWS: tuple[type[ContactLaw], ...] = (

@@ -5,7 +5,7 @@ So everything that sums over asperities treats loading, unloading and any law of
 """
 
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -97,9 +97,13 @@ class LoadingBranch:
         self, quantity: str, piece: int, h: Array, above: Array, e: Array, *, sign: float = 1.0
     ) -> Array:
         """As `Branch.value`."""
+        return self.of_root(quantity, piece, sign * np.sqrt(above), e)
+
+    def of_root(self, quantity: str, piece: int, y: Any, e: Array) -> Array:
+        """The same of the root of the penetration, which may be complex."""
         if quantity == "conductance_si":
-            return _conducted(self.conductance, self.value("conductance", piece, h, above, e, sign=sign))
-        return of_spot(quantity, self.law, piece, sign * np.sqrt(above), e)
+            return _conducted(self.conductance, self.of_root("conductance", piece, y, e))
+        return of_spot(quantity, self.law, piece, y, e)
 
 
 @dataclass(frozen=True)

@@ -4,7 +4,7 @@ from analytic.laws.law import ContactLaw
 
 __all__ = ["is_hertz"]
 
-_FORMULAS = ("limits", "load", "radius", "stiffness", "slope")
+_FORMULAS = ("limits", "load", "radius", "stiffness", "slope", "unloading")
 
 
 def is_hertz(law: ContactLaw) -> bool:

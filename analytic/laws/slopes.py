@@ -6,9 +6,9 @@ from numpy.typing import NDArray
 
 from analytic.gradings import Grading
 from analytic.heights import HeightLaw
+from analytic.laws.branch import LoadingBranch
 from analytic.laws.crossings import Bound, crossings_of
-from analytic.laws.law import ContactLaw
-from analytic.laws.spot import of_spot, piece_of
+from analytic.laws.spot import piece_of
 from analytic.resolution import resolved_breaks
 
 __all__ = ["jump_terms", "slope_term"]
@@ -21,13 +21,18 @@ _ABOUT, _NODES = 2.0**-6, 16  # of the fit from which the slope of a bound is ta
 _JUMP = 1e-9  # a bound that misses by more jumps over the penetration
 
 
-def slope_term(quantity: str, law: ContactLaw, penetration: Array, e: Array) -> Array:
+def slope_term(quantity: str, branch: LoadingBranch, penetration: Array, e: Array) -> Array:
     """Derivative by the penetration of what asperities add, within the piece that holds.
 
     Parameters
     ----------
-    quantity, law, penetration, e
-        As for `analytic.laws.spot.term`.
+    quantity : str
+        Its name.
+    branch : LoadingBranch
+        With the law in reduced units.
+    penetration, e : ndarray
+        Reduced penetration s - h, negative without contact, and modulus E*(s)/E*; of any shapes that
+        broadcast.
 
     Returns
     -------
@@ -35,20 +40,20 @@ def slope_term(quantity: str, law: ContactLaw, penetration: Array, e: Array) -> 
         In the common shape of penetration and modulus, 0 without contact.
     """
     penetration, e = np.broadcast_arrays(penetration, e)
-    piece = piece_of(law, penetration, e)
+    piece = piece_of(branch.law, penetration, e)
     result = np.zeros(penetration.shape)
     for j in np.unique(piece[penetration > 0]):
         here = (piece == j) & (penetration > 0)
         y = np.sqrt(penetration[here])
         step = _COMPLEX_STEP * y
-        value = of_spot(quantity, law, int(j), y + 1j * step, e[here])
+        value = branch.of_root(quantity, int(j), y + 1j * step, e[here])
         result[here] = np.imag(value) / step / (2 * y)
     return result
 
 
 def jump_terms(
     quantity: str,
-    law: ContactLaw,
+    branch: LoadingBranch,
     grading: Grading,
     heights: HeightLaw,
     separations: Array,
@@ -63,7 +68,7 @@ def jump_terms(
     ----------
     quantity : str
         Its name.
-    law, grading, heights
+    branch, grading, heights
         In reduced units.
     separations : ndarray
         Reduced separations, shape (k,).
@@ -75,12 +80,12 @@ def jump_terms(
     ndarray
         Shape (k,).
     """
-    low, high = ends
+    (low, high), law = ends, branch.law
     e = grading(separations)
     total = np.zeros(separations.shape)
     touch = np.full(separations.shape, _TOUCH)
     for j in np.unique(piece_of(law, 0 * separations, e)):
-        first = of_spot(quantity, law, int(j), touch, e)
+        first = branch.of_root(quantity, int(j), touch, e)
         total += np.where(piece_of(law, 0 * separations, e) == j, first, 0.0) * heights.density(separations)
     for j in range(len(law.limits(np.ones(1)))):
 
@@ -90,7 +95,7 @@ def jump_terms(
         found = crossings_of(bound, grading, separations, low, high)
         t, h = found.height, separations[found.separation]
         y, e = np.sqrt(np.maximum(t - h, 0.0)), grading(t)
-        jump = of_spot(quantity, law, j + 1, y, e) - of_spot(quantity, law, j, y, e)
+        jump = branch.of_root(quantity, j + 1, y, e) - branch.of_root(quantity, j, y, e)
         met = jump * heights.density(t) * _shares(bound, grading, t, h, ends)
         np.add.at(total, found.separation, met)
     return total

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from analytic.laws.law import ContactLaw
 from analytic.laws.unloading import Unloading
 
-__all__ = ["of_spot", "of_unloading", "piece_of", "term"]
+__all__ = ["of_spot", "of_unloading", "piece_of"]
 
 Array = NDArray[np.float64]
 
@@ -70,32 +70,3 @@ def piece_of(law: ContactLaw, penetration: Array, e: Array) -> NDArray[np.int64]
     with np.errstate(divide="ignore", over="ignore"):  # without a modulus nothing yields
         limits = law.limits(e)
     return np.asarray((limits <= penetration).sum(axis=0), dtype=np.int64)
-
-
-def term(quantity: str, law: ContactLaw, penetration: Array, e: Array) -> Array:
-    """What asperities add, 0 without contact: literally, each by the formula of its piece.
-
-    Parameters
-    ----------
-    quantity, law
-        As for `of_spot`.
-    penetration, e : ndarray
-        Reduced penetration s - h, negative without contact, and modulus E*(s)/E*; of any shapes that
-        broadcast.
-
-    Returns
-    -------
-    ndarray
-        In their common shape.
-    """
-    penetration, e = np.broadcast_arrays(penetration, e)
-    result = np.zeros(penetration.shape)
-    touching = penetration > 0
-    y, e = np.sqrt(penetration[touching]), e[touching]
-    piece = piece_of(law, penetration[touching], e)
-    value = np.zeros(y.shape)
-    for j in np.unique(piece):
-        here = piece == j
-        value[here] = of_spot(quantity, law, int(j), y[here], e[here])
-    result[touching] = value
-    return result

@@ -6,9 +6,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from analytic.laws.law import ContactLaw
+from analytic.laws.plain import is_hertz
+from analytic.laws.power_law_graded import PowerLawGraded
 from analytic.surface import Surface
 
-__all__ = ["Tangential", "masing"]
+__all__ = ["Tangential", "half_spaces", "masing"]
 
 Array = NDArray[np.float64]
 
@@ -84,6 +87,11 @@ class Tangential:
     def load(self, load: Array, shifted: Array) -> Array:
         """Tangential loads from the normal load, and those at the separations shifted."""
         return np.asarray(self.friction * (load - shifted))
+
+
+def half_spaces(law: ContactLaw) -> bool:
+    """Whether bodies are elastic half-spaces, which the theorem needs: Hertz's law and the graded one."""
+    return is_hertz(law) or isinstance(law, PowerLawGraded)
 
 
 def masing(virgin: ArrayLike) -> Array:

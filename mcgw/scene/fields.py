@@ -6,8 +6,8 @@ from typing import Literal
 
 import numpy as np
 
-from analytic import Clipped, Grading, HeightLaw, Surface, first_negative, quantity_of
-from analytic.laws import Branch, ContactLaw, Film, Hertz, LoadingBranch, Tangential, UnloadingBranch
+from analytic import Clipped, Grading, HeightLaw, Surface, first_negative
+from analytic.laws import Branch, ContactLaw, Film, Hertz, Tangential, Ways
 
 __all__ = ["Fields"]
 
@@ -56,11 +56,7 @@ class Fields:
     def branch_of(self, quantity: str) -> Branch:
         """The way to its separation that a quantity is about."""
         conductance = None if self.film is None else self.film.on(self.surface)
-        if not quantity_of(quantity).unloading:
-            return LoadingBranch(self.contact, conductance)
-        if self.unload_from is None:
-            raise ValueError(f"contact.unload_from: {quantity} needs it")
-        return UnloadingBranch(self.contact, self.unload_from, conductance)
+        return Ways(self.contact, self.unload_from, conductance).of(quantity)
 
     @property
     def all_separations(self) -> tuple[float, ...]:

@@ -15,7 +15,7 @@ from analytic import (
     PiecewiseSeries,
     quantity_of,
 )
-from analytic.laws import Hertz, PowerLawGraded
+from analytic.laws import half_spaces
 from mcgw.formats.sheet import brief
 from mcgw.scene.fields import Fields
 from mcgw.scene.samplers import promise_of
@@ -99,7 +99,7 @@ def _history(scene: Fields) -> Iterator[str]:
 
 def _law(scene: Fields) -> Iterator[str]:
     """A law that means nothing for this surface."""
-    if scene.tangential and type(scene.law) not in (Hertz, PowerLawGraded):
+    if scene.tangential and not half_spaces(scene.law):
         yield (
             f'contact.tangential: the theorem needs elastic half-spaces, not law = "{scene.law.name}"; take '
             '"hertz" or "power-law-graded"'

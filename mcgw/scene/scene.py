@@ -212,11 +212,14 @@ class Scene(Fields, Shown):
 
     @property
     def theory(self) -> Model:
-        """The exact model of this very scene: its modulus, height law, number of asperities and count."""
+        """The exact model of this very scene: its modulus, height law, contact law, history, asperities."""
         return Model(
             self.surface,
             grading=self.modulus,
             heights=self.heights,
+            law=self.law,
+            unload_from=self.unload_from,
+            film=self.film,
             n_asperities=float(self.n_asperities),
             count=self.count,
         )

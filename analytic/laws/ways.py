@@ -1,0 +1,59 @@
+"""Which way a surface has gone to the separation that a quantity is about."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from analytic.laws.branch import Branch, LoadingBranch, UnloadingBranch
+from analytic.laws.film import SpotConductance
+from analytic.laws.law import ContactLaw
+from analytic.quantities import quantity_of
+
+__all__ = ["Ways"]
+
+
+@dataclass(frozen=True)
+class Ways:
+    """A law of contact, the history of the surface, and what its spots conduct through.
+
+    Parameters
+    ----------
+    law : ContactLaw
+        In reduced units.
+    unload_from : float, optional
+        Lowest separation reached before quantities on the way back are asked for, d/sigma.
+    conductance : SpotConductance, optional
+        Of "conductance_si".
+    """
+
+    law: ContactLaw
+    unload_from: float | None = None
+    conductance: SpotConductance | None = None
+
+    def of(self, quantity: str) -> Branch:
+        """The branch that a quantity is on.
+
+        Where nothing yields the way back is the way there, from whatever separation.
+
+        Raises
+        ------
+        KeyError
+            If there is no such quantity.
+        ValueError
+            If the way back, or what spots conduct through, is not known.
+        """
+        q = quantity_of(quantity)
+        if q.base == "conductance_si" and self.conductance is None:
+            raise ValueError(f"quantity = {quantity!r}: give a film, or at least a resistivity")
+        if not q.unloading or self.law.elastic:
+            return LoadingBranch(self.law, self.conductance)
+        self.law.unloading()  # a law that has none says so
+        if self.unload_from is None:
+            raise ValueError(
+                f"quantity = {quantity!r}: asperities yield under law = {self.law.name!r}; give unload_from, "
+                "the lowest separation reached before"
+            )
+        return UnloadingBranch(self.law, self.unload_from, self.conductance)
+
+    def among(self, quantities: Iterable[str]) -> tuple[Branch, ...]:
+        """The branches of some quantities, each once."""
+        return tuple(dict.fromkeys(self.of(name) for name in quantities))

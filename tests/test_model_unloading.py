@@ -1,0 +1,358 @@
+"""The exact theory of the way back, of films, and of surfaces pushed sideways."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from laws_by_hand import KogutEtsion as LoadingByHand
+from unloading_by_hand import TOP, carried, density, ends, integral
+
+import analytic
+from analytic import (
+    ChangEtsionBogy,
+    Coated,
+    Exponential,
+    ExponentialHeights,
+    Homogeneous,
+    KogutEtsion,
+    MeasuredHeights,
+    Model,
+    PowerLawGraded,
+    quantity_of,
+)
+from analytic.laws import Film, Tangential, Unloading
+
+SURFACE = analytic.Surface(sigma=1e-6, radius=1e-5, eta=1e9, nominal_area=1e-6, E_star=1e9)
+LAW = KogutEtsion(critical=0.05)
+BACK = Model(SURFACE, law=LAW, unload_from=0.5)
+GRADINGS = {
+    "uniform": Homogeneous(),
+    "no tips": Exponential(0.0),
+    "soft tips": Exponential(0.2),
+    "stiff tips": Exponential(2.0),
+}
+MEASURED = MeasuredHeights(np.random.default_rng(3).standard_normal(200))
+
+
+def reduced(model, quantity, h):
+    return np.asarray(model.mean(quantity, h)) / model.number / quantity_of(quantity).scale(SURFACE)
+
+
+def film_of(b):
+    """A film of this parameter, with a resistivity of 1."""
+    return Film(1.0, b * math.pi * math.sqrt(SURFACE.radius * SURFACE.sigma) / 4)
+
+
+# Means of the way back
+
+
+@pytest.mark.parametrize(
+    ("h", "value"),  # physics.md, A: scipy.quad
+    [(0.5, 0.133048585347), (0.6, 0.0951909343557), (0.7, 0.0639624164483), (0.9, 0.0229255442328)],
+)
+def test_check_values(h, value):
+    by_quad = integral(lambda s: carried("load", s, h, 0.5), ends(h, 0.5))
+    assert float(reduced(BACK, "load_unloading", h)) == pytest.approx(value, rel=1e-11)
+    assert float(reduced(BACK, "load_unloading", h)) == pytest.approx(by_quad, rel=1e-12)
+
+
+@pytest.mark.parametrize("grading", GRADINGS.values(), ids=GRADINGS)
+@pytest.mark.parametrize("quantity", ["load", "area", "contacts", "conductance"])
+def test_means_are_literal_integrals(grading, quantity):
+    model = replace(BACK, grading=grading)
+
+    def modulus(s):
+        return float(grading(np.array(s)))
+
+    for h in (0.52, 0.55, 0.8):
+        marks = ends(h, 0.5, modulus)
+        truth = integral(lambda s, h=h: carried(quantity, s, h, 0.5, modulus(s)), marks)
+        assert float(reduced(model, f"{quantity}_unloading", h)) == pytest.approx(truth, rel=1e-11)
+
+
+def test_other_constants_are_seen(monkeypatch):
+    """The lift-off of the fit with another power: what the literal integral is for."""
+    truth = float(reduced(BACK, "load_unloading", 0.7))
+    law = type(LAW.unloading())
+    right = law.residual
+    monkeypatch.setattr(law, "residual", lambda *asked: 1.01 * right(*asked))
+    assert abs(float(reduced(BACK, "load_unloading", 0.7)) / truth - 1) > 1e-3
+
+
+def test_pieces_that_do_not_shrink_to_lift_off_are_not_enough(monkeypatch):
+    truth = float(reduced(BACK, "conductance_unloading", 0.9))
+    monkeypatch.setattr("analytic.laws.cuts._above_beginnings", lambda *_: [])
+    assert abs(float(reduced(BACK, "conductance_unloading", 0.9)) / truth - 1) > 1e-8
+
+
+@pytest.mark.parametrize("grading", GRADINGS.values(), ids=GRADINGS)
+def test_unloading_begins_where_loading_ends(grading):
+    model = replace(BACK, grading=grading, film=film_of(0.1))
+    for name in ("load", "area", "stiffness", "contacts", "conductance", "conductance_si"):
+        turn, there = model.mean(f"{name}_unloading", 0.5), model.mean(name, 0.5)
+        assert float(turn) == pytest.approx(float(there), rel=1e-12)
+
+
+def test_separations_that_share_a_rule_do_not_matter_to_each_other():
+    h = np.array([0.5, 0.5 + 1e-9, 0.53, 0.55, 0.9, 0.9 + 1e-9, 2.0, 4.0])
+    for grading in GRADINGS.values():
+        model = replace(BACK, grading=grading)
+        for name in ("load_unloading", "contacts_unloading"):
+            alone = [float(model.mean(name, x)) for x in h]
+            np.testing.assert_allclose(model.mean(name, h), alone, rtol=1e-11)
+
+
+def test_other_heights():
+    exponential = replace(BACK, heights=ExponentialHeights())
+    marks = [*ends(0.8, 0.5), 20.0, 40.0]
+    truth = integral(lambda s: carried("load", s, 0.8, 0.5), marks, lambda s: math.exp(-1 - s))
+    assert float(reduced(exponential, "load_unloading", 0.8)) == pytest.approx(truth, rel=1e-10)
+    measured = replace(BACK, heights=MEASURED)
+    exact = math.fsum(carried("load", s, 0.8, 0.5) for s in MEASURED.heights) / 200
+    assert float(reduced(measured, "load_unloading", 0.8)) == pytest.approx(exact, rel=1e-13)
+
+
+def work_of_a_loop(law, grading):
+    """Integral of loading less unloading over the separation, over the scale of the load."""
+    model = replace(BACK, grading=grading, law=law)
+    x, w = np.polynomial.legendre.leggauss(40)
+    h = 0.5 + 3 * (1 + x)
+    return float(w * 3 @ (reduced(model, "load", h) - reduced(model, "load_unloading", h)))
+
+
+@pytest.mark.parametrize("grading", GRADINGS.values(), ids=GRADINGS)
+def test_a_loop_takes_work(grading):
+    assert work_of_a_loop(KogutEtsion(critical=0.05, bridge="hermite"), grading) > 0
+    if grading != GRADINGS["no tips"]:
+        assert work_of_a_loop(LAW, grading) > 1e-3
+
+
+@pytest.mark.parametrize(("critical", "grading"), [(3.0, Homogeneous()), (0.05, GRADINGS["no tips"])])
+def test_a_loop_gives_work_where_asperities_hardly_yield(critical, grading):
+    """The known defect of the fit: up to 1.25 delta_c its jump is given back, and was never taken."""
+    assert -1e-4 < work_of_a_loop(KogutEtsion(critical=critical), grading) < 0
+
+
+# Fluctuations of the way back
+
+
+def test_fluctuations_are_literal_moments():
+    n = 70.0
+    model = replace(BACK, grading=Exponential(0.2), n_asperities=n)
+
+    def modulus(s):
+        return 0.2 + 0.8 * math.exp(-s)
+
+    for name in ("load", "contacts", "area"):
+        scale = quantity_of(name).scale(SURFACE)
+        marks = ends(0.8, 0.5, modulus)
+        m1, m2 = (
+            integral(lambda s, k=k: carried(name, s, 0.8, 0.5, modulus(s)) ** k, marks)  # noqa: B023
+            for k in (1, 2)
+        )
+        variance = n * scale**2 * (m2 - m1**2)
+        assert float(model.std(f"{name}_unloading", 0.8)) ** 2 == pytest.approx(variance, rel=1e-10)
+        poisson = replace(model, count="poisson")
+        assert float(poisson.cumulants(f"{name}_unloading", 0.8).variance) == pytest.approx(
+            n * scale**2 * m2, rel=1e-10
+        )
+
+
+def test_covariance_of_there_and_back_is_literal():
+    names, h = ["load", "load_unloading", "contacts_unloading"], np.array([0.6, 0.9])
+    model = replace(BACK, n_asperities=1.0, count="poisson")
+    matrix = model.covariance(names, h)
+    law, scale = LoadingByHand(0.05), quantity_of("load").scale(SURFACE)
+
+    def loaded(s):
+        if s <= 0.6:
+            return 0.0
+        piece = int((law.limits(np.ones(1)) <= s - 0.6).sum())
+        return float(law.load(piece, math.sqrt(s - 0.6), 1.0))
+
+    kinks = [0.6 + 0.05 * x for x in (1, 6, 110)]
+    truth = integral(lambda s: loaded(s) * carried("load", s, 0.9, 0.5), [*ends(0.9, 0.5), 0.9, *kinks[2:]])
+    assert matrix[0, 0, 1, 1] / scale**2 == pytest.approx(truth, rel=1e-10)
+    marks = [*ends(0.6, 0.5), *ends(0.9, 0.5)]
+    truth = integral(
+        lambda s: carried("load", s, 0.6, 0.5) * carried("contacts", s, 0.9, 0.5), np.unique(marks)
+    )
+    assert matrix[1, 0, 2, 1] / scale == pytest.approx(truth, rel=1e-10)
+    for k, name in enumerate(names):
+        np.testing.assert_allclose(np.diag(matrix[k, :, k, :]), model.std(name, h) ** 2, rtol=1e-11)
+
+
+# Slopes and separations of the way back
+
+
+@pytest.mark.parametrize("grading", [GRADINGS["uniform"], GRADINGS["soft tips"]], ids=["uniform", "soft"])
+def test_slope_of_the_load(grading):
+    """By differences of the eighth order, away from where asperities first come off."""
+    model, step = replace(BACK, grading=grading), 4e-3
+    k, weights = step * np.array([1, 2, 3, 4]), np.array([4 / 5, -1 / 5, 4 / 105, -1 / 280]) / step
+    for h in (0.8, 1.5):
+        down, up = model.mean("load_unloading", h - k), model.mean("load_unloading", h + k)
+        slope = float(model.slope("load_unloading", h))
+        assert slope == pytest.approx(float((down - up) @ weights), rel=1e-9)
+        assert slope != pytest.approx(float(model.slope("load", h)), rel=0.05)
+
+
+def test_slopes_that_are_not_known_are_refused():
+    with pytest.raises(ValueError, match="quantity = 'area_unloading': its slope is not known; give"):
+        BACK.slope("area_unloading", 0.6)
+    with pytest.raises(ValueError, match="load_slope_unloading"):
+        BACK.slope("load_slope_unloading", 0.6)
+
+
+def test_separations_belong_to_means():
+    h = np.array([0.501, 0.7, 3.0])
+    found = BACK.separation_at("load_unloading", BACK.mean("load_unloading", h))
+    np.testing.assert_allclose(found, h, rtol=1e-12)
+    with pytest.raises(ValueError, match=r"load_unloading: not reached between h = 0\.5 and"):
+        BACK.separation_at("load_unloading", 2 * float(BACK.mean("load", 0.5)))
+
+
+# Who has no way back
+
+
+def test_the_way_back_asks_for_where_it_starts():
+    with pytest.raises(
+        ValueError, match=r"quantity = 'load_unloading': asperities yield .* give unload_from"
+    ):
+        Model(SURFACE, law=LAW).mean("load_unloading", 0.5)
+    with pytest.raises(ValueError, match=r"h = 0\.4 is lower than unload_from = 0\.5"):
+        BACK.mean("load_unloading", [0.6, 0.4])
+    with pytest.raises(ValueError, match="unload_from = nan: give a finite separation"):
+        replace(BACK, unload_from=math.nan)
+    with pytest.raises(ValueError, match="law = 'chang-etsion-bogy': its unloading is not known"):
+        Model(SURFACE, law=ChangEtsionBogy(critical=0.05), unload_from=0.5)
+    with pytest.raises(KeyError, match="yielded_unloading"):
+        BACK.mean("yielded_unloading", 0.6)
+
+
+@pytest.mark.parametrize(
+    "law", [None, PowerLawGraded(0.5, reduced_c0=1.0), Coated(ratio=3.0, reduced_thickness=0.5)]
+)
+def test_elastic_asperities_go_back_as_they_came(law):
+    model, h = Model(SURFACE, law=law, unload_from=0.5), np.array([0.5, 1.0])
+    for name in ("load", "contacts", "stiffness"):
+        np.testing.assert_array_equal(model.mean(f"{name}_unloading", h), model.mean(name, h))
+    matrix = model.covariance(["load", "load_unloading"], h)
+    np.testing.assert_array_equal(matrix[0, :, 0], matrix[1, :, 1])
+
+
+def test_a_law_of_one_piece_that_comes_off_late():
+    """Contact is lost at a tenth of the deepest penetration: (s - h) > (s - h_min)/10, by hand."""
+
+    class Late(Unloading):
+        def residual(self, piece, deepest, e):  # noqa: ARG002
+            return 0.1 * deepest + 0 * e
+
+    class Law(analytic.ContactLaw):
+        name, elastic = "late", False
+
+        def unloading(self):
+            return Late(self)
+
+    model = Model(SURFACE, law=Law(), unload_from=0.5)
+    lost = (0.8 - 0.05) / 0.9
+    truth = math.erfc(lost / math.sqrt(2)) / 2
+    assert float(reduced(model, "contacts_unloading", 0.8)) == pytest.approx(truth, rel=1e-12)
+
+
+# Films
+
+
+@pytest.mark.parametrize(("b", "value"), [(0.1, 0.09089518816122444), (1.0, 0.04466451344935666)])
+def test_films_at_their_check_values(b, value):
+    """physics.md A.8."""
+    assert float(reduced(Model(SURFACE, film=film_of(b)), "conductance_si", 1.0)) == pytest.approx(
+        value, rel=1e-12
+    )
+    wrong = float(reduced(Model(SURFACE, film=film_of(1.01 * b)), "conductance_si", 1.0))
+    assert abs(wrong / value - 1) > 1e-3
+
+
+def test_without_a_film_resistance_it_is_the_spots():
+    model, h = Model(SURFACE, film=Film(2e-8), law=LAW), np.array([0.0, 2.0])
+    np.testing.assert_allclose(
+        model.mean("conductance_si", h), model.mean("conductance", h) / 2e-8, rtol=1e-13
+    )
+    np.testing.assert_allclose(
+        model.slope("conductance_si", h), model.slope("conductance", h) / 2e-8, rtol=1e-12
+    )
+
+
+@pytest.mark.parametrize("grading", GRADINGS.values(), ids=GRADINGS)
+@pytest.mark.parametrize("back", [False, True])
+def test_films_on_spots_that_yield(grading, back):
+    model, h, b = replace(BACK, grading=grading, film=film_of(0.03)), 0.8, 0.03
+    law = LoadingByHand(0.05)
+
+    def modulus(s):
+        return float(grading(np.array(s)))
+
+    def radius(s):
+        if back:
+            return carried("conductance", s, h, 0.5, modulus(s))
+        piece = int((law.limits(np.array([modulus(s)])) <= s - h).sum())
+        return float(law.radius(piece, math.sqrt(s - h), modulus(s)))
+
+    def conducted(s):
+        a = radius(s)
+        return a * a / (a + b)
+
+    marks = ends(h, 0.5, modulus) if back else ends(h, h, modulus)
+    name = "conductance_si_unloading" if back else "conductance_si"
+    assert float(reduced(model, name, h)) == pytest.approx(integral(conducted, marks), rel=1e-11)
+    m2 = integral(lambda s: conducted(s) ** 2, marks)
+    spread = float(replace(model, count="poisson", n_asperities=1.0).std(name, h))
+    assert spread / quantity_of(name).scale(SURFACE) == pytest.approx(math.sqrt(m2), rel=1e-10)
+
+
+def test_conductances_in_si_need_a_resistivity():
+    with pytest.raises(ValueError, match="quantity = 'conductance_si': give a film"):
+        BACK.mean("conductance_si", 1.0)
+
+
+# Tangential loads
+
+
+def pushed(shift):
+    """A displacement that shifts the second normal load by so much."""
+    ratio = Tangential(0.3, 0.3, [0.0]).ratio
+    return Tangential(0.3, 0.3, [0.0, shift * 0.3 * SURFACE.sigma / ratio])
+
+
+def test_tangential_load_at_its_check_value():
+    """physics.md A.9."""
+    model = Model(SURFACE)
+    found = model.tangential_load([[1.0]], pushed(0.1)) / (
+        0.3 * model.number * quantity_of("load").scale(SURFACE)
+    )
+    assert found.shape == (1, 1, 2)
+    np.testing.assert_allclose(found[0, 0], [0.0, 0.0143314500896241], rtol=1e-12)
+
+
+@pytest.mark.parametrize("law", [None, PowerLawGraded(0.5, reduced_c0=1.0)])
+def test_tangential_loads_rise_to_the_friction(law):
+    model = Model(SURFACE, law=law, grading=Exponential(0.2))
+    h = np.array([-1.0, 2.0])
+    gross = 0.3 * model.mean("load", h)
+    for far in (50.0, 3e6 + 0.03):
+        np.testing.assert_array_equal(model.tangential_load(h, pushed(far))[:, 1], gross)
+    half = model.tangential_load(h, pushed(0.3))[:, 1]
+    assert np.all((half > 0) & (half < gross))
+
+
+def test_tangential_loads_need_half_spaces():
+    for law in (LAW, Coated(ratio=3.0, reduced_thickness=0.5)):
+        with pytest.raises(ValueError, match="tangential loads need elastic half-spaces; take"):
+            Model(SURFACE, law=law).tangential_load(1.0, pushed(0.1))
+
+
+def test_oracle_counts_heights():
+    """The integral by hand over a constant is a probability."""
+    assert integral(lambda _: 1.0, [0.0, 1.0, TOP]) == pytest.approx(0.5, rel=1e-13)
+    assert density(0.0) == pytest.approx(0.3989422804014327, rel=1e-15)
