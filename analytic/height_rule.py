@@ -119,8 +119,9 @@ class HeightRule:
 
         `branches` are those of what is summed, unless that is powers of the approach.
         """
-        h = np.unique(np.asarray(separations, dtype=np.float64))
-        further = partial(cuts_of, tuple(branches), grading, h)
+        branches, h = tuple(branches), np.unique(np.asarray(separations, dtype=np.float64))
+        further = partial(cuts_of, branches, grading, h)
+        h = np.unique([*h, *(branch.lowest(h[0]) for branch in branches)])
         if not isinstance(heights, Gaussian):
             return cls(*law_rule(heights, h, grading, further=further), float(heights.below(h[0])))
         low, top = normal_ends(h, grading)

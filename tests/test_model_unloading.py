@@ -21,7 +21,7 @@ from analytic import (
     PowerLawGraded,
     quantity_of,
 )
-from analytic.laws import Film, Tangential, Unloading
+from analytic.laws import DerjaguinMullerToporov, Film, JohnsonKendallRoberts, Tangential, Unloading
 
 SURFACE = analytic.Surface(sigma=1e-6, radius=1e-5, eta=1e9, nominal_area=1e-6, E_star=1e9)
 LAW = KogutEtsion(critical=0.05)
@@ -259,6 +259,8 @@ def test_a_law_of_one_piece_that_comes_off_late():
     lost = (0.8 - 0.05) / 0.9
     truth = math.erfc(lost / math.sqrt(2)) / 2
     assert float(reduced(model, "contacts_unloading", 0.8)) == pytest.approx(truth, rel=1e-12)
+    truth = integral(lambda s: (0.9 * (s - lost)) ** 0.5, [lost, lost + 1, TOP])
+    assert float(reduced(model, "conductance_unloading", 0.8)) == pytest.approx(truth, rel=1e-11)
 
 
 # Films
@@ -356,3 +358,57 @@ def test_oracle_counts_heights():
     """The integral by hand over a constant is a probability."""
     assert integral(lambda _: 1.0, [0.0, 1.0, TOP]) == pytest.approx(0.5, rel=1e-13)
     assert density(0.0) == pytest.approx(0.3989422804014327, rel=1e-15)
+
+
+# Contacts that stick
+
+
+def stuck(stretch, **changes):
+    return Model(SURFACE, law=JohnsonKendallRoberts(pull_off=stretch), **changes)
+
+
+@pytest.mark.parametrize(
+    ("stretch", "quantity", "value"),  # physics.md A.7: mpmath, from a deepest separation far below
+    [
+        (0.05, "load", 0.07347199399110158),
+        (0.5, "area", 0.2710312896208413),
+        (0.05, "load_unloading", 0.07324746648337926),
+        (0.05, "area_unloading", 0.1097973547290834),
+        (0.05, "contacts_unloading", 0.1710561263084818),
+        (0.5, "load_unloading", -0.08691870486353161),
+        (0.5, "area_unloading", 0.370556433499445),
+        (0.5, "contacts_unloading", 0.3085375387259869),
+    ],
+)
+def test_contacts_that_stick_at_their_check_values(stretch, quantity, value):
+    """On the way back asperities that have touched hold below the separation."""
+    assert float(reduced(stuck(stretch, unload_from=-6.0), quantity, 1.0)) == pytest.approx(value, rel=1e-12)
+
+
+@pytest.mark.parametrize("h", [0.5, 0.9, 1.0, 1.2, 2.0])
+def test_only_what_has_touched_sticks(h):
+    """From a turn at 0.5 contacts are those above h - D, and above 0.5; and both ways have a covariance."""
+    model = stuck(0.5, unload_from=0.5, n_asperities=1.0, count="poisson")
+    low, back = max(h - 0.5, 0.5), JohnsonKendallRoberts(pull_off=0.5).unloading()
+    most = np.array(9.0)
+
+    def load(s):
+        return float(back.load(0, np.sqrt(max(s - h + 0.5, 0.0)), most, np.array(1.0)))
+
+    marks = [low, *(low + x for x in (0.5, 2.0, 5.0)), TOP]
+    assert float(reduced(model, "load_unloading", h)) == pytest.approx(integral(load, marks), rel=1e-11)
+    scale = quantity_of("load").scale(SURFACE)
+    m2 = integral(lambda s: load(s) ** 2, marks)
+    assert float(model.std("load_unloading", h)) / scale == pytest.approx(math.sqrt(m2), rel=1e-11)
+    both = model.covariance(["contacts", "contacts_unloading"], [h])[0, 0, 1, 0]
+    assert both == pytest.approx(math.erfc(h / math.sqrt(2)) / 2, rel=1e-12)
+
+
+def test_the_slope_counts_that_contacts_snap_in():
+    for law in (JohnsonKendallRoberts(pull_off=0.3), DerjaguinMullerToporov(pull_off=0.3)):
+        model, step = Model(SURFACE, law=law, grading=Exponential(0.2)), 4e-3
+        k, weights = step * np.array([1, 2, 3, 4]), np.array([4 / 5, -1 / 5, 4 / 105, -1 / 280]) / step
+        found = float((model.mean("load", 0.8 - k) - model.mean("load", 0.8 + k)) @ weights)
+        assert float(model.slope("load", 0.8)) == pytest.approx(found, rel=1e-9)
+    with pytest.raises(ValueError, match="the stiffness of contacts that break off has no variance"):
+        stuck(0.3, unload_from=0.5).slope("load_unloading", 0.8)

@@ -31,6 +31,10 @@ class Branch(Protocol):
         """How far above first touch formulas are analytic."""
         ...
 
+    def lowest(self, h: float) -> float:
+        """Height below which nothing touches, at a separation or at higher ones."""
+        ...
+
     def regimes(self, grading: Grading, separations: ArrayLike, low: float, high: float) -> Regimes:
         """At which heights there is contact, and which formula holds there."""
         ...
@@ -76,6 +80,10 @@ class LoadingBranch:
     def finest(self) -> float:
         """As `Branch.finest`."""
         return min(self.law.finest, self.conductance.finest) if self.conductance else self.law.finest
+
+    def lowest(self, h: float) -> float:
+        """As `Branch.lowest`."""
+        return h
 
     def regimes(self, grading: Grading, separations: ArrayLike, low: float, high: float) -> Regimes:
         """As `Branch.regimes`."""
@@ -128,6 +136,10 @@ class UnloadingBranch:
     def finest(self) -> float:
         """As `Branch.finest`."""
         return LoadingBranch(self.law, self.conductance).finest
+
+    def lowest(self, h: float) -> float:
+        """As `Branch.lowest`: what has touched may stick."""
+        return self.deepest
 
     def regimes(self, grading: Grading, separations: ArrayLike, low: float, high: float) -> Regimes:
         """As `Branch.regimes`: pieces are those of the deepest penetration."""

@@ -21,9 +21,10 @@ def cuts_of(
 ) -> list[float]:
     """Ends of the regimes, and heights that shrink towards those where a broken power begins.
 
-    Formulas that are smooth in the root of s - h are so up to the end of their regime, or as far as the
-    branch says. Others are made of powers of the distance from first touch or lift-off, or begin next to
-    such a height: they are smooth on pieces that are no wider than some times that distance.
+    Formulas that begin at the separation and are smooth in the root of s - h are so up to the end of their
+    regime, or as far as the branch says. Others are made of powers of the distance from first touch or
+    lift-off, or begin next to such a height: they are smooth on pieces that are no wider than some times
+    that distance.
 
     Parameters
     ----------
@@ -54,8 +55,8 @@ def cuts_of(
 def _above_beginnings(branch: Branch, regimes: Regimes, smooth: Marks, h: Array, low: float) -> list[float]:
     """Towards where contact begins, and where formulas of broken powers follow smooth ones."""
     h = h[regimes.separation]
-    start = np.where(regimes.low > np.maximum(h, low), regimes.low, h)
-    rooted = smooth & (regimes.piece == 0)
+    start = np.where(regimes.low > low, regimes.low, np.minimum(h, low))
+    rooted = smooth & (regimes.piece == 0) & (start == h)
     begins = np.append(True, ~_goes_on(regimes))[: smooth.size]
     rough = ~smooth & np.append(True, smooth[:-1])[: smooth.size]
     nearest = np.minimum(branch.finest, np.where(rooted, regimes.high - start, NEAREST))

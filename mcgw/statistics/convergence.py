@@ -257,7 +257,7 @@ def _slope_in_asperities(scene: Scene, draw: Draw) -> list[Slope]:
             quantities=(name,),
             seed=(scene.seed + 10**6 + divisor) % 2**64,
         )
-        exact = PrincipalComponents.of(small)
+        exact = PrincipalComponents.of(small, (name,))
         if exact.axes.size:
             y = exact.turn(draw(small))[:, 0]
             sizes.append(float(n))

@@ -22,7 +22,7 @@ from mcgw.sampling.law_sums import asperity_sums
 from mcgw.sampling.response.response import response_of
 from mcgw.sampling.samplers import Sampler, aggregate_of, sampler_of
 from mcgw.scene.scene import Scene
-from mcgw.statistics.reference import quantiles, reference
+from mcgw.statistics.reference import added, by_powers, formula_ends, lowest, quantiles, reference
 
 __all__ = ["Method", "methods_for", "reference"]
 
@@ -164,7 +164,7 @@ class _ByMoments:
     def __call__(self, size: float, _seed: int) -> Array:
         scene, name = self.scene, self.scene.quantities[0]
         mesh = mesh_of(scene)
-        summed = () if analytic.quantity_of(name).counts else (name,)
+        summed = tuple(q for q in scene.quantities if not analytic.quantity_of(q).counts)
         sampler = Counted("cells", scene, mesh, response_of(scene, mesh, summed, accuracy=1 / size))
         value, plain = sampler.block(0, 1).sums[name][0], self.plain
         pick = list(self.chosen)
@@ -173,18 +173,19 @@ class _ByMoments:
 
 
 def _integrand(scene: Scene, q: analytic.Quantity, h: float, v: Array | float) -> Array:
-    """Of F*_n in v, with s = h + v^2."""
+    """Of the mean of one asperity in v, the root of how far it rises above the lowest that can touch."""
     v = np.asarray(v)
-    s = h + v * v
-    e = scene.modulus(s) if q.modulus else np.ones_like(s)
-    return np.asarray(2 * v ** (2 * q.exponent + 1) * e * scene.heights.density(s))
+    s = lowest(scene, q, h) + v * v
+    return np.asarray(2 * v * added(scene, q, h, s) * scene.heights.density(s))
 
 
 def _by_quad(scene: Scene, q: analytic.Quantity, h: float, accuracy: float) -> float:
-    """F*_n by SciPy's adaptive rule, from break to break and to the tail of the heights."""
-    ends = quantiles(scene, h, np.array(_PIECES))
-    breaks = [b for b in (*scene.heights.breaks, *scene.modulus.breaks) if ends[0] < b < ends[-1]]
-    ends = np.sqrt(np.unique([*ends, *breaks]) - h)
+    """Mean of one asperity by SciPy's adaptive rule, from break to break and to the tail of the heights."""
+    low = lowest(scene, q, h)
+    ends = quantiles(scene, low, np.array(_PIECES))
+    changes = formula_ends(scene, q, h, float(ends[0]), float(ends[-1]))
+    breaks = [b for b in (*scene.heights.breaks, *scene.modulus.breaks, *changes) if ends[0] < b < ends[-1]]
+    ends = np.sqrt(np.unique([*ends, *breaks]) - low)
 
     def integrand(v: float) -> float:
         return float(_integrand(scene, q, h, v))
@@ -211,12 +212,19 @@ def _quadratures(scene: Scene, chosen: tuple[int, ...], exact: Array) -> list[Me
         gamma = grading.gamma if isinstance(grading, analytic.Exponential) else 1.0
         return factor * analytic.fn_paper(q.exponent, h, gamma, int(size)) / exact - 1
 
+    powers = by_powers(scene, q)
     found = [
-        Method("theory: analytic.fn", "64 points", (64.0,), None, ours),
+        Method(
+            "theory: analytic.fn" if powers else "theory: analytic.Model", "64 points", (64.0,), None, ours
+        ),
         Method("scipy.integrate.quad", "1/epsrel", (1e2, 1e6, 1e10), None, scipys),
     ]
     gaussian = isinstance(scene.heights, analytic.Gaussian)
-    if gaussian and (grading is None or isinstance(grading, analytic.Exponential | analytic.Homogeneous)):
+    if (
+        powers
+        and gaussian
+        and (grading is None or isinstance(grading, analytic.Exponential | analytic.Homogeneous))
+    ):
         sizes = tuple(2.0**k for k in range(2, 9))
         found.append(Method("paper's Gauss rule, Eq. (9)", "points", sizes, None, papers))
     return found

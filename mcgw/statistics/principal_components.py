@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from analytic import quantity_of
+from analytic import Quantity, quantity_of
 from mcgw.scene.scene import Scene
 
 __all__ = ["PrincipalComponents"]
@@ -47,19 +47,23 @@ class PrincipalComponents:
     kurtosis: Array
 
     @classmethod
-    def of(cls, scene: Scene) -> "PrincipalComponents":
-        """The axes of a scene: of those separations where single surfaces are nearly Gaussian."""
-        n, h = scene.n_asperities, np.array(scene.separations)
-        parts = scene.theory.fluctuations(scene.quantities, h)
-        variance, share = parts.moment(2), scene.heights.above(h)
+    def of(cls, scene: Scene, quantities: tuple[str, ...] = ()) -> "PrincipalComponents":
+        """The axes of a scene: of those separations where single surfaces are nearly Gaussian.
+
+        Of all its quantities, unless some are named.
+        """
+        n, h, quantities = scene.n_asperities, np.array(scene.separations), quantities or scene.quantities
+        parts = scene.theory.fluctuations(quantities, h)
+        variance = parts.moment(2)
+        share = np.concatenate([_share(scene, quantity_of(name), h) for name in quantities])
         touching = n * np.minimum(share, 1 - share + (scene.count == "poisson"))
-        chosen = np.flatnonzero(np.tile(touching > _TOUCHING, len(scene.quantities)) & (variance > 0))
+        chosen = np.flatnonzero((touching > _TOUCHING) & (variance > 0))
         unit = np.sqrt(variance[chosen])
         axes = parts.take(chosen, unit).whitening(_INDEPENDENT)
         along = parts.take(chosen, unit).turned(axes)
         third, fourth = along.moment(3), along.moment(4) - 3 * (scene.count == "fixed")
         good = np.abs(fourth) / n < _MOST_KURTOSIS
-        columns = tuple((scene.quantities[c // len(h)], c % len(h)) for c in chosen.tolist())
+        columns = tuple((quantities[c // len(h)], c % len(h)) for c in chosen.tolist())
         scale = np.array([quantity_of(name).scale(scene.surface) for name, _ in columns])
         return cls(
             columns,
@@ -76,3 +80,12 @@ class PrincipalComponents:
             return np.empty((len(next(iter(sums.values()))), 0))
         values = np.stack([sums[name][:, k] for name, k in self.columns], axis=1).astype(np.float64)
         return np.asarray((values - self.mean) / self.std @ self.axes)
+
+
+def _share(scene: Scene, q: Quantity, h: Array) -> Array:
+    """Share of the asperities that add to a quantity."""
+    if q.base == "yielded":
+        return scene.theory.mean("yielded", h) / scene.n_asperities
+    if q.unloading and not scene.law.elastic:
+        return scene.theory.mean("contacts_unloading", h) / scene.n_asperities
+    return scene.heights.above(h)

@@ -3,17 +3,19 @@
 With ``p = exp(-t)`` the share of the touching heights that lie above s, the mean of f over these is
 ``int exp(-t) f(s(t)) dt``: no density is asked for, any tail falls at least like a power of p, and a
 bounded distribution ends where p does. Panels shrink towards t = 0, where f has a root or the density a
-broken power.
+broken power. Under other contact laws than Hertz's every asperity adds what its own formula says, and
+panels shrink towards both sides of every height at which another formula begins.
 """
 
 import numpy as np
 from numpy.polynomial.legendre import leggauss
 from numpy.typing import NDArray
 
-from analytic import MeasuredHeights, Quantity, quantity_of, resolved_breaks
+from analytic import LAW_QUANTITIES, MeasuredHeights, Quantity, quantity_of, resolved_breaks
+from analytic.laws import Hertz, term_of
 from mcgw.scene.scene import Scene
 
-__all__ = ["quantiles", "reference"]
+__all__ = ["added", "by_powers", "formula_ends", "lowest", "quantiles", "reference"]
 
 Array = NDArray[np.float64]
 
@@ -40,24 +42,24 @@ def quantiles(scene: Scene, h: float, t: Array) -> Array:
 
 
 def _one_asperity(scene: Scene, q: Quantity, h: float) -> float:
-    """Mean of ``(s - h)_+^n e(s)``."""
-    heights = scene.heights
+    """Mean of what one asperity adds, over the scale."""
+    heights, low = scene.heights, lowest(scene, q, h)
     if isinstance(heights, MeasuredHeights):
         s = np.array(heights.heights)
-        return float(np.sum(_term(scene, q, h, s[s > h]))) / s.size
-    touching = float(heights.above(np.array(h)))
+        return float(np.sum(added(scene, q, h, s[s > low]))) / s.size
+    touching = float(heights.above(np.array(low)))
     if not touching > 0:
         return 0.0
     x, w = leggauss(_POINTS)
-    edges = _edges(scene, h, touching)
+    edges = _edges(scene, q, h, touching)
     total = 0.0
     for few in np.split(edges, np.searchsorted(edges, _STAGES)):
         ends = np.append(few, edges[edges > few[-1]][:1])
         half = np.diff(ends)[:, None] / 2
         t = ends[:-1, None] + half * (1 + x)
-        s = quantiles(scene, h, t)
+        s = quantiles(scene, low, t)
         there = np.isfinite(s)
-        values = np.exp(-t) * _term(scene, q, h, np.where(there, s, h))
+        values = np.exp(-t) * added(scene, q, h, np.where(there, s, low))
         more = float(np.sum(np.where(there, half * w * values, 0.0)))
         total += more
         if abs(more) < _NOTHING * abs(total):
@@ -65,15 +67,42 @@ def _one_asperity(scene: Scene, q: Quantity, h: float) -> float:
     return touching * total
 
 
-def _term(scene: Scene, q: Quantity, h: float, s: Array) -> Array:
-    modulus = scene.modulus(s) if q.modulus else np.ones_like(s)
-    return np.asarray((s - h) ** q.exponent * modulus)
+def added(scene: Scene, q: Quantity, h: float, s: Array) -> Array:
+    """What asperities of heights `s` above `h` add, over the scale: ``(s - h)^n e(s)`` under Hertz's law."""
+    if by_powers(scene, q):
+        modulus = scene.modulus(s) if q.modulus else np.ones_like(s)
+        return np.asarray((s - h) ** q.exponent * modulus)
+    return term_of(q.base, scene.branch_of(q.name), h, s, scene.modulus(s))
 
 
-def _edges(scene: Scene, h: float, touching: float) -> Array:
-    """Ends of the panels in t: small ones first, and one at every kink of density and modulus."""
-    lowest, highest = quantiles(scene, h, np.array([0.0, _BREAKS]))
-    kinks = [*scene.heights.breaks, *resolved_breaks(scene.modulus, float(lowest), float(highest))]
-    share = scene.heights.above(np.array([b for b in kinks if lowest < b < highest])) / touching
+def by_powers(scene: Scene, q: Quantity) -> bool:
+    """Whether asperities add powers of their approach."""
+    return type(scene.law) is Hertz and q.base not in LAW_QUANTITIES
+
+
+def lowest(scene: Scene, q: Quantity, h: float) -> float:
+    """Height below which no asperity adds anything."""
+    return h if by_powers(scene, q) else scene.branch_of(q.name).lowest(h)
+
+
+def formula_ends(scene: Scene, q: Quantity, h: float, low: float, high: float) -> Array:
+    """Heights between two others at which another formula begins, increasing."""
+    if by_powers(scene, q):
+        return np.empty(0)
+    found = scene.branch_of(q.name).regimes(scene.modulus, [h], low, high)
+    ends = np.unique([found.low, found.high])
+    return np.asarray(ends[(low < ends) & (ends < high)])
+
+
+def _edges(scene: Scene, q: Quantity, h: float, touching: float) -> Array:
+    """Ends of the panels in t: small ones first, and one at every kink of density, modulus and formula."""
+    above, range_ends = scene.heights.above, quantiles(scene, lowest(scene, q, h), np.array([0.0, _BREAKS]))
+    low, high = range_ends.tolist()
+    kinks = [*scene.heights.breaks, *resolved_breaks(scene.modulus, low, high)]
+    share = above(np.array([b for b in kinks if low < b < high])) / touching
+    ends = above(formula_ends(scene, q, h, low, high)) / touching
+    t = -np.log(ends[ends > 0])[:, None]
     small = 2.0 ** np.arange(_SMALLEST, 0)
-    return np.unique([*small, *np.arange(_WIDEST, _LAST, _WIDEST), *-np.log(share[share > 0])])
+    around = [*t.ravel(), *(t - small).ravel(), *(t + small).ravel()]
+    inside = [x for x in around if x > small[0]]
+    return np.unique([*small, *np.arange(_WIDEST, _LAST, _WIDEST), *-np.log(share[share > 0]), *inside])
