@@ -1,10 +1,12 @@
 """Figures by their numbers: every Monte-Carlo point against theory; then that they are drawn at all."""
 
 import csv
+from itertools import pairwise
 
 import numpy as np
 import pytest
 from conftest import SURFACE
+from scipy.integrate import quad
 
 import analytic
 from mcgw.figures.data import FigureData, Panel, Points, Series, ratio_of_sums
@@ -31,7 +33,8 @@ def test_all_are_there(figures):
     assert [f"figure-{k}" for k in range(1, 7)] == list(figures)[:6]
     assert (*PAPER, *FURTHER) == tuple(figures)  # the names that are checked before anything is drawn
     assert set(list(figures)[6:]) == {
-        "equal-load", "fluctuations", "distribution", "area-and-load", "who-carries", "negative-modulus"
+        "equal-load", "fluctuations", "distribution", "area-and-load", "who-carries", "negative-modulus",
+        "who-yields", "laws-compared", "way-back", "sliding", "films",
     }  # fmt: skip
     assert {name for name, data in figures.items() if not points(data)} == THEORY_ALONE
 
@@ -152,6 +155,7 @@ def test_files(figures, tmp_path):
 
 
 H, G, S = "separation d/σ", "grading factor γ", "summit height s = z/σ"
+P = "pressure $P/A_n$ (MPa)"
 AXES = {
     "figure-1": [(S, "E*(s)/E*")] * 2,
     "figure-2": [(H, r"load integral $F^*_{3/2}$")] * 2,
@@ -168,7 +172,14 @@ AXES = {
     ],
     "who-carries": [(S, "E*(s)/E*"), (S, "share per σ")],
     "negative-modulus": [(G, S)],
-}
+    "who-yields": [(P, "share of the contacts")] * 3,
+    "laws-compared": [
+        (H, "load over Hertz's"), (H, "area over Hertz's"), (P, "area over Hertz's at this load")
+    ],
+    "way-back": [(H, "pressure (MPa)"), (H, "contacts per mm²")] * 2,
+    "sliding": [(r"displacement $u/(\mu\sigma)$", r"$T/(\mu P)$")] * 2,
+    "films": [(P, "resistance of 1 mm² (mΩ)")],
+}  # fmt: skip
 
 
 def test_axes_say_what_is_drawn_and_in_which_unit(figures):
@@ -233,3 +244,46 @@ def test_a_csv_has_every_number_of_its_figure(figures, tmp_path):
     for a, b in zip(found, expected, strict=True):
         assert a[:3] == b[:3]
         assert [float(x) if x else "" for x in a[3:]] == list(b[3:])
+
+
+# --- contact laws -------------------------------------------------------------------------------------
+
+
+def test_shares_of_the_states_of_contacts_add_up(figures):
+    """Elastic, elastoplastic and fully plastic contacts are all there are, at each separation."""
+    panels = figures["who-yields"].panels
+    for series in zip(*(panel.series for panel in panels), strict=True):
+        np.testing.assert_allclose(sum(x.theory for x in series), 1, rtol=1e-12)
+
+
+def test_laws_side_by_side_are_those_of_theory(figures):
+    """Kogut's load over Hertz's at h = 1, by quadrature of the published powers."""
+    loads = figures["laws-compared"].panels[0]
+    (kogut,) = [series for series in loads.series if series.label == "Kogut"]
+    critical, factor = 0.02, 0.454 + 0.41 * 0.3
+
+    def load(s):
+        x = (s - 1) / critical
+        over = (
+            x**1.5 if x < 1 else 1.03 * x**1.425 if x < 6 else 1.4 * x**1.263 if x < 110 else 3 * x / factor
+        )
+        return critical**1.5 * over * np.exp(-s * s / 2)
+
+    ends = [1, 1 + critical, 1 + 6 * critical, 1 + 110 * critical, 12]
+    ours = sum(quad(load, *pair, epsrel=1e-10)[0] for pair in pairwise(ends))
+    hertz = quad(lambda s: (s - 1) ** 1.5 * np.exp(-s * s / 2), 1, 12, epsrel=1e-10)[0]
+    assert np.interp(1.0, kogut.x, kogut.theory) == pytest.approx(ours / hertz, rel=1e-9)
+
+
+def test_the_way_back_begins_where_the_way_in_ended(figures):
+    for panel in figures["way-back"].panels:
+        way_in, back = panel.series
+        assert (way_in.label, back.label) == ("in", "back")
+        assert back.theory[0] == pytest.approx(way_in.theory[0], rel=1e-12)
+        assert not np.allclose(back.theory[1:10], way_in.theory[1:10], rtol=1e-3)
+
+
+def test_cycles_close(figures):
+    for series in figures["sliding"].panels[1].series:
+        assert series.theory[-1] == pytest.approx(series.theory[60], rel=1e-12)
+        assert series.x[-1] == pytest.approx(series.x[60])

@@ -15,6 +15,8 @@ from mcgw.statistics.comparison import Comparison, Curve
 
 __all__ = ["draw_curve", "quantity_figure", "save_comparison", "title_of"]
 
+_MOST_COLUMNS = 6
+_BELOW = 0.01  # of the smallest mean that is drawn: how far down its axis goes
 _TITLES = {
     "load": "Load $P$ (N)",
     "area": "Real area $A$ (m²)",
@@ -44,15 +46,21 @@ def save_comparison(comparison: Comparison, path: str | Path) -> None:
         The ending chooses the format: .png, .pdf, .svg.
     """
     ensemble, scene = comparison.ensemble, comparison.ensemble.scene
-    columns = len(comparison.curves)
+    columns = min(len(comparison.curves), _MOST_COLUMNS)
+    bands = -(-len(comparison.curves) // columns)
     with mpl.rc_context(STYLE):
-        figure = Figure(figsize=(max(3.1 * columns, 6.2), 5.2), layout="constrained")
-        axes = figure.subplots(2, columns, sharex=True, squeeze=False, height_ratios=[3, 1])
-        for (name, curve), (above, below) in zip(comparison.curves.items(), axes.T, strict=True):
+        figure = Figure(figsize=(max(3.1 * columns, 6.2), 4.6 * bands + 0.6), layout="constrained")
+        axes = figure.subplots(2 * bands, columns, sharex=True, squeeze=False, height_ratios=[3, 1] * bands)
+        for k, (name, curve) in enumerate(comparison.curves.items()):
+            above, below = axes[2 * (k // columns) :, k % columns][:2]
             draw_curve(above, ensemble.separations, curve)
             above.set_title(title_of(name))
             _draw_residual(below, ensemble.separations, curve)
-        axes[1, 0].set_ylabel("residual\n(standard errors)")
+        for k in range(len(comparison.curves), bands * columns):
+            for axis in axes[2 * (k // columns) :, k % columns][:2]:
+                axis.remove()
+        for below in axes[1::2, 0]:
+            below.set_ylabel("residual\n(standard errors)")
         axes[0, 0].legend(loc="lower left")
         verdict = comparison.verdict
         word = "agree" if verdict.agrees else "DISAGREE"
@@ -100,16 +108,21 @@ def draw_curve(axis: Any, h: np.ndarray, curve: Curve) -> None:
     """One quantity: its theory as a line, means with intervals on it."""
     order = np.argsort(h, kind="stable")
     axis.plot(h[order], curve.theory[order], label="theory", zorder=2)
-    seen, known = curve.mean > 0, np.isfinite(curve.low)
+    pulls = bool(np.any(curve.theory < 0) or np.any(curve.mean < 0))  # no place for it on a log axis
+    seen, known = (curve.mean != 0) if pulls else (curve.mean > 0), np.isfinite(curve.low)
     for shown, marker, label in ((seen & known, "o", "Monte Carlo, 95 %"), (seen & ~known, "x", TOO_FEW)):
         mean, low, high = (x[shown] for x in (curve.mean, curve.low, curve.high))
-        bars = np.nan_to_num([np.minimum(mean - low, 0.999 * mean), high - mean])
+        bars = np.nan_to_num([mean - low if pulls else np.minimum(mean - low, 0.999 * mean), high - mean])
         if shown.any() or marker == "o":
             axis.errorbar(
                 h[shown], mean, bars, fmt=marker, ms=3, mfc="none", color="C1", lw=1, label=label, zorder=3
             )
-    if np.any(seen) or np.any(curve.theory > 0):
+    if pulls:
+        axis.axhline(0, color="0.55", lw=0.8, zorder=1)
+    elif np.any(seen) or np.any(curve.theory > 0):
         axis.set_yscale("log")
+        if np.any(seen) and np.any(~seen):  # theory goes on falling where nothing touches any more
+            axis.set_ylim(bottom=_BELOW * curve.mean[seen].min())
 
 
 def _draw_residual(axis: Any, h: np.ndarray, curve: Curve) -> None:

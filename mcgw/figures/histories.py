@@ -90,7 +90,7 @@ def _slipping(model: Model, h: float, u: Array) -> Array:
 
 def films(samples: Samples) -> FigureData:
     """Resistance against load, with a film on the spots."""
-    h, line = np.linspace(0, 3, 7), np.linspace(0, 3.5, 36)
+    h, line = np.linspace(0, 3, 7), np.linspace(3.5, 0, 36)  # pressures rise
     root, unit = np.sqrt(samples.surface.radius * samples.surface.sigma), 1e9 * area_of(samples)
     bare, series = model_of(samples, Hertz()), []
     pressure, shown = (bare.mean("pressure", x) / 1e6 for x in (h, line))
@@ -105,8 +105,8 @@ def films(samples: Samples) -> FigureData:
         series.append(Series("no film" if b == 0 else f"b = {b:g}", shown, resistance, points))
     return FigureData(
         "films",
-        "A film on the spots: the resistance starts higher and falls faster with the load",
-        f"b is the radius of a spot over (Rσ)^½ whose film and constriction resist alike; "
+        "A film on the spots",
+        f"b is the radius of a spot over √(Rσ) whose film and constriction resist alike; "
         f"ρ = {_RESISTIVITY:g} Ω m. {samples.listed_caption}",
         (Panel("", PRESSURE, "resistance of 1 mm² (mΩ)", tuple(series), ("log", "log")),),
         columns=1,

@@ -23,6 +23,7 @@ Array = NDArray[np.float64]
 
 _CRITICAL, _STRAIN = 0.02, 0.004
 _AT, _LINE = np.linspace(0, 3, 7), np.linspace(0, 3.5, 36)
+_FALLING = _LINE[::-1]  # pressures rise
 _LOWER = np.linspace(-2, 3.5, 56)  # where the loads of Hertz are reached
 _STATES = (("elastic", (0,)), ("elastoplastic", (1, 2)), ("fully plastic", (3,)))
 _LAWS: dict[str, ContactLaw] = {
@@ -41,9 +42,9 @@ def who_yields(samples: Samples) -> FigureData:
     for key, (name, pieces) in zip("abc", _STATES, strict=True):
         series = []
         for gamma, model in models.items():
-            line = _share(model, pieces, _LINE)
+            line = _share(model, pieces, _FALLING)
             points = _share_points(samples, law, gamma, model, pieces)
-            series.append(Series(f"γ = {gamma:g}", _pressure(model, _LINE), line, points))
+            series.append(Series(f"γ = {gamma:g}", _pressure(model, _FALLING), line, points))
         title, label = f"{key}  {name}", "share of the contacts"
         panels.append(Panel(title, PRESSURE, label, tuple(series), ("log", "linear")))
     return FigureData(
@@ -110,7 +111,7 @@ def _share_points(
 
 def _at_load(hertz: Model, yielding: Model) -> tuple[Array, Array]:
     """Pressures in MPa, and the area over Hertz's under the same load: both curves log by log."""
-    loads, areas = (hertz.mean(name, _LINE) for name in ("load", "area"))
+    loads, areas = (hertz.mean(name, _FALLING) for name in ("load", "area"))
     load, ours = (np.log(yielding.mean(name, _LOWER))[::-1] for name in ("load", "area"))
     area = np.exp(np.interp(np.log(loads), load, ours))
     return loads / hertz.surface.nominal_area / 1e6, area / areas
