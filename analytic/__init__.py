@@ -27,6 +27,8 @@ Eq. (15)  `analytic.stiffness_ratio`           its ratio: that of the stiffnesse
 ========  ===================================  ================================================
 """
 
+from typing import TYPE_CHECKING, Any
+
 from analytic.contact import (
     area,
     area_per_load,
@@ -49,17 +51,6 @@ from analytic.height_rule import Fluctuations, HeightRule
 from analytic.heights import Gaussian, HeightLaw
 from analytic.integrals import fn, fn_between, fn_paper, fn_scaled
 from analytic.inversion import ratio_at_equal_load
-from analytic.laws import (
-    ChangEtsionBogy,
-    Coated,
-    ContactLaw,
-    CustomLaw,
-    Hertz,
-    JacksonGreen,
-    KogutEtsion,
-    PowerLawGraded,
-    ZhaoMaiettaChang,
-)
 from analytic.measured_heights import HeightTable, MeasuredHeights
 from analytic.model import Cumulants, Model
 from analytic.piecewise import PiecewiseSeries
@@ -78,6 +69,19 @@ from analytic.resolution import first_negative, resolved_breaks
 from analytic.series import bends, is_data, name_of, resolved
 from analytic.surface import Body, Surface, composite_modulus
 from analytic.tables import Table
+
+if TYPE_CHECKING:
+    from analytic.laws import (
+        ChangEtsionBogy,
+        Coated,
+        ContactLaw,
+        CustomLaw,
+        Hertz,
+        JacksonGreen,
+        KogutEtsion,
+        PowerLawGraded,
+        ZhaoMaiettaChang,
+    )
 
 __all__ = [
     "ALL_QUANTITIES",
@@ -146,3 +150,12 @@ __all__ = [
     "stiffness",
     "stiffness_ratio",
 ]
+
+
+def __getattr__(name: str) -> Any:
+    """A law of contact, loaded when it is asked for."""
+    if name in __all__:
+        from analytic import laws
+
+        return getattr(laws, name)
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

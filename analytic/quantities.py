@@ -89,7 +89,7 @@ QUANTITIES = {
     for q in (
         Quantity("load", "normal load", "N", 1.5, 1, _load),
         Quantity("area", "real contact area", "m^2", 1.0, 0, _area),
-        Quantity("stiffness", "normal stiffness -dP/dd", "N/m", 0.5, 1, _stiffness),
+        Quantity("stiffness", "normal stiffness", "N/m", 0.5, 1, _stiffness),
         Quantity("contacts", "number of contacts", "1", 0.0, 0, _one, counts=True),
         Quantity(
             "conductance",

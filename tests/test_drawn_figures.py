@@ -25,7 +25,7 @@ from mcgw.statistics.convergence import Convergence
 TITLES = {
     "load": "Load $P$ (N)",
     "area": "Real area $A$ (m²)",
-    "stiffness": "Stiffness $-dP/dd$ (N/m)",
+    "stiffness": "Stiffness $K$ (N/m)",
     "contacts": "Contacts",
     "conductance": r"Conductance $C\rho$ (m)",
 }

@@ -24,7 +24,7 @@ H = (0.5, 0.0, 2.0, 1.0)
 LONG = {
     "load": "normal load (N)",
     "area": "real contact area (m^2)",
-    "stiffness": "normal stiffness -dP/dd (N/m)",
+    "stiffness": "normal stiffness (N/m)",
     "contacts": "number of contacts (1)",
     "conductance": "contact conductance of the spots, times the resistivity rho (m)",
 }

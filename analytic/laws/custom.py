@@ -136,6 +136,15 @@ class CustomLaw(ElasticPlastic):
         assert self.critical is not None
         return CustomLaw(series["load"], series["area"], kept, self.critical)
 
+    def as_data(self, deepest: float) -> "CustomLaw":
+        """Series in place of formulas, up to a penetration of an asperity of modulus E*."""
+        assert self.critical is not None
+        return self.resolved(deepest / self.critical)
+
+    def given(self) -> dict[str, Any]:
+        """How many pieces it has, and the critical penetration."""
+        return {"pieces": len(self.load_of), "critical": self.critical}
+
     def agrees(self, other: object) -> bool:
         """Whether another law is the same but for the last digits of its series."""
         if not (isinstance(other, CustomLaw) and self.is_data and other.is_data):

@@ -7,6 +7,7 @@ Everything is in reduced units. An asperity of height s under a plane at the sep
 """
 
 import math
+from dataclasses import fields, is_dataclass
 from typing import Any, ClassVar
 
 import numpy as np
@@ -38,6 +39,8 @@ class ContactLaw:
     finest : float
         How far above first touch the formulas of piece 0 are analytic, in penetration: infinite if they
         are sums of powers of y.
+    half_space : bool
+        Whether bodies are elastic half-spaces though the law is not Hertz's.
     root : bool
         False if piece 0 is no analytic function of y next to y = 0, as a power that is no half-integer.
     """
@@ -45,11 +48,30 @@ class ContactLaw:
     name: ClassVar[str] = "hertz"
     elastic: ClassVar[bool] = True
     root: ClassVar[bool] = True
+    half_space: ClassVar[bool] = False
 
     @property
     def finest(self) -> float:
         """How far above first touch the formulas of piece 0 are analytic."""
         return math.inf
+
+    @property
+    def is_data(self) -> bool:
+        """Whether it consists of numbers alone, which a file can hold."""
+        return True
+
+    def as_data(self, deepest: float) -> "ContactLaw":
+        """The law as numbers alone, up to a penetration of an asperity of modulus E*."""
+        return self
+
+    def agrees(self, other: "ContactLaw") -> bool:
+        """Whether another law is the same, but for last digits of what was resolved."""
+        return self == other
+
+    def given(self) -> dict[str, Any]:
+        """The constants that were given, by their names."""
+        known: list[str] = [field.name for field in fields(self)] if is_dataclass(self) else []
+        return {name: getattr(self, name) for name in known if getattr(self, name) is not None}
 
     def on(self, surface: Surface) -> "ContactLaw":
         """The law on this surface, in reduced units: without anything in Pa or m left."""

@@ -58,6 +58,7 @@ class PowerLawGraded(ContactLaw):
 
     name: ClassVar[str] = "power-law-graded"
     root: ClassVar[bool] = False
+    half_space: ClassVar[bool] = True
 
     k: float
     c0: float | None = None

@@ -8,7 +8,6 @@ from numpy.typing import ArrayLike, NDArray
 
 from analytic.laws.law import ContactLaw
 from analytic.laws.plain import is_hertz
-from analytic.laws.power_law_graded import PowerLawGraded
 from analytic.surface import Surface
 
 __all__ = ["Tangential", "half_spaces", "masing"]
@@ -91,7 +90,7 @@ class Tangential:
 
 def half_spaces(law: ContactLaw) -> bool:
     """Whether bodies are elastic half-spaces, which the theorem needs: Hertz's law and the graded one."""
-    return is_hertz(law) or isinstance(law, PowerLawGraded)
+    return law.half_space or is_hertz(law)
 
 
 def masing(virgin: ArrayLike) -> Array:
@@ -100,8 +99,8 @@ def masing(virgin: ArrayLike) -> Array:
     Parameters
     ----------
     virgin : array_like
-        Tangential loads of a surface that is pushed for the first time, at equal steps of the displacement
-        from 0 to the last one, shape (..., 2 n + 1).
+        Tangential loads of a surface that is pushed for the first time, at equal steps of the
+        displacement, 0 to the last one; shape (..., 2 n + 1).
 
     Returns
     -------

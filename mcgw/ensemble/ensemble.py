@@ -104,7 +104,7 @@ class Ensemble(Shown):
 
     @property
     def stiffness(self) -> Array:
-        """Stiffness -dP/dd, N/m, shape (surfaces, separations)."""
+        """Stiffness of the spots, N/m, shape (surfaces, separations): -dP/dd where nothing yields."""
         return self.values("stiffness")
 
     @property

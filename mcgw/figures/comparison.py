@@ -20,7 +20,7 @@ _BELOW = 0.01  # of the smallest mean that is drawn: how far down its axis goes
 _TITLES = {
     "load": "Load $P$ (N)",
     "area": "Real area $A$ (m²)",
-    "stiffness": "Stiffness $-dP/dd$ (N/m)",
+    "stiffness": "Stiffness $K$ (N/m)",
     "contacts": "Contacts",
     "conductance": r"Conductance $C\rho$ (m)",
     "load_slope": "Slope of the loads (N/m)",

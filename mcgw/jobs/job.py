@@ -5,7 +5,6 @@ from functools import cached_property
 from pathlib import Path
 
 from analytic import PiecewiseSeries
-from analytic.laws import CustomLaw
 from mcgw.ensemble.results import joined
 from mcgw.ensemble.simulation import block_size, drawn_blocks, kept, use_threads
 from mcgw.errors import StoreError
@@ -120,7 +119,7 @@ def as_recorded(scene: Scene, path: Path) -> Scene:
     mine, before = resolved.grading, there.grading
     if isinstance(mine, PiecewiseSeries) and isinstance(before, PiecewiseSeries) and mine.agrees(before):
         resolved = replace(resolved, grading=before)
-    if isinstance(resolved.law, CustomLaw) and resolved.law.agrees(there.law):
+    if resolved.law.agrees(there.law):
         resolved = replace(resolved, law=there.law)
     return resolved
 

@@ -54,7 +54,7 @@ def _are_numbers(value: Any) -> bool:
     )
 
 
-def custom_table(law: CustomLaw) -> dict[str, Any]:
+def custom_table(law: Any) -> dict[str, Any]:
     """The keys that give the law back, whose formulas are series."""
     return {
         "law": law.name,

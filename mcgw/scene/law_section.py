@@ -3,14 +3,13 @@
 from dataclasses import MISSING, fields
 from typing import Any
 
-from analytic.laws import ContactLaw, CustomLaw, Hertz, by_name
-from mcgw.scene.custom_law_section import custom_law, custom_table
-from mcgw.scene.law_text import given_of
+from analytic.laws import ContactLaw, Hertz
 from mcgw.scene.section import Section, nearest
 
 __all__ = ["contact_law", "law_table"]
 
 _UNITS = {"hardness": "Pa", "yield_strength": "Pa", "c0": "m", "thickness": "m", "work": "J/m^2"}
+_CUSTOM = "custom"
 _WORDS = {"bridge": ("hermite",)}
 
 
@@ -19,10 +18,14 @@ def contact_law(section: Section) -> ContactLaw:
     given = section.take("law")
     if isinstance(given, ContactLaw):
         return given
-    if given is None:
-        given = "hertz"
-    if given == CustomLaw.name:
+    if given is None or given == Hertz.name:
+        return Hertz()
+    if given == _CUSTOM:
+        from mcgw.scene.custom_law_section import custom_law
+
         return custom_law(section) or Hertz()
+    from analytic.laws import by_name
+
     if given not in by_name:
         section.fail("law", given, f"{nearest(given, tuple(by_name))}choose one of {', '.join(by_name)}")
         section.known(*section.table)  # whose constants they are is not known
@@ -50,6 +53,8 @@ def _constant(section: Section, key: str) -> float | str:
 
 def law_table(law: ContactLaw) -> dict[str, Any]:
     """The keys that give the law back."""
-    if isinstance(law, CustomLaw):
+    if law.name == _CUSTOM:
+        from mcgw.scene.custom_law_section import custom_table
+
         return custom_table(law)
-    return {"law": law.name, **given_of(law)}
+    return {"law": law.name, **law.given()}

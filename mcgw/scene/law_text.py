@@ -5,9 +5,9 @@ from dataclasses import MISSING, fields, is_dataclass
 from typing import Any
 
 from analytic import Custom, PiecewiseSeries, ScipyHeights
-from analytic.laws import ContactLaw, CustomLaw
+from analytic.laws import ContactLaw
 
-__all__ = ["given_of", "law_text"]
+__all__ = ["law_text"]
 
 
 def law_text(law: Any) -> str:
@@ -26,19 +26,12 @@ def law_text(law: Any) -> str:
             return repr(law)
         case Custom():
             return f"Custom({getattr(law.function, '__name__', type(law.function).__name__)})"
-        case CustomLaw():
-            return f"CustomLaw({len(law.load_of)} pieces, critical={law.critical!r})"
         case ContactLaw():
-            return f"{type(law).__name__}({_listed(given_of(law))})"
+            return f"{type(law).__name__}({_listed(law.given())})"
     if not is_dataclass(law):
         return repr(law)
     given = {field.name: getattr(law, field.name) for field in fields(law) if field.default is MISSING}
     return f"{type(law).__name__}({_listed(given)})"
-
-
-def given_of(law: ContactLaw) -> dict[str, Any]:
-    """The constants of a contact law that are given."""
-    return {f.name: value for f in fields(law) if (value := getattr(law, f.name)) is not None}  # type: ignore[arg-type]
 
 
 def _listed(given: Mapping[str, Any]) -> str:

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from analytic import extent, is_data, resolved
-from analytic.laws import CustomLaw
+from analytic.laws import ContactLaw
 from mcgw.scene.scene import Scene
 from mcgw.scene.section import SceneError
 
@@ -25,8 +25,8 @@ def storable(scene: Scene) -> Scene:
     SceneError
         If the grading cannot be resolved, as one that is noisy.
     """
-    if isinstance(scene.law, CustomLaw) and not scene.law.is_data:
-        scene = replace(scene, law=_resolved_law(scene, scene.law))
+    if not scene.law.is_data:
+        scene = replace(scene, law=_resolved_law(scene))
     if is_data(scene.grading):
         return scene
     try:
@@ -38,13 +38,12 @@ def storable(scene: Scene) -> Scene:
         raise SceneError([str(error)]) from None
 
 
-def _resolved_law(scene: Scene, law: CustomLaw) -> CustomLaw:
+def _resolved_law(scene: Scene) -> ContactLaw:
     """The series of a law up to the deepest penetration of the stiffest asperity."""
     low, high = extent(scene.grading, scene.heights, scene.separations)
     deepest = high - min(scene.lowest, low if scene.unload_from is None else scene.unload_from)
     stiffest = float(np.max(np.abs(scene.modulus(np.linspace(low, high, _LOOKED_AT)))))
-    assert law.critical is not None
     try:
-        return law.resolved(_BEYOND * deepest * stiffest**2 / law.critical)
+        return scene.law.as_data(_BEYOND * deepest * stiffest**2)
     except ValueError as error:
-        raise SceneError([f"contact.law = CustomLaw: {error}"]) from None
+        raise SceneError([f"contact.law = {type(scene.law).__name__}: {error}"]) from None
