@@ -257,6 +257,8 @@ def test_every_law_has_its_name():
         "jackson-green",
         "power-law-graded",
         "coated",
+        "derjaguin-muller-toporov",
+        "johnson-kendall-roberts",
     ]
     assert all(kind.name == key for key, kind in by_name.items())
 
