@@ -6,13 +6,13 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 
-__all__ = ["crossing", "separation_on"]
+__all__ = ["LOWEST", "crossing", "separation_on"]
 
 Array = NDArray[np.float64]
 
 _ENOUGH = 1e-14  # relative excess of load where Newton's steps are rounding errors
 _FINE = 1 / 64  # step of the search where a negative modulus makes the sum rise and fall
-_LOWEST = -40.0  # separation where that search ends
+LOWEST = -40.0  # separation where searches end
 
 
 def separation_on(heights: Array, modulus: Array, exponent: float, target: float, start: float) -> float:
@@ -51,7 +51,7 @@ def separation_on(heights: Array, modulus: Array, exponent: float, target: float
 
 def crossing(excess: Callable[[float], float], high: float) -> float | None:
     """Largest root below `high`, where the function is negative; None down to the end of theory's range."""
-    for low in np.arange(high - _FINE, _LOWEST, -_FINE).tolist():
+    for low in np.arange(high - _FINE, LOWEST, -_FINE).tolist():
         if excess(low) >= 0:
             return float(brentq(excess, low, low + _FINE, xtol=1e-15, rtol=1e-14))
     return None

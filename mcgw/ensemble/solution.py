@@ -1,18 +1,17 @@
 """The separation at a given load or real area: by theory, and on every surface for itself."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.special import stdtrit
 
-from analytic import QUANTITIES, Quantity, quantity_of
-from mcgw.ensemble.intervals import FEWEST, interval_text
-from mcgw.ensemble.separation import crossing, separation_on
-from mcgw.formats.sheet import Sheet, Shown
-from mcgw.machine.late import plotted
+from analytic import QUANTITIES, Hertz, Quantity, quantity_of
+from analytic.laws import LoadingBranch, term_of
+from mcgw.ensemble.law_separation import LawSum
+from mcgw.ensemble.separation import LOWEST, crossing, separation_on
+from mcgw.ensemble.solved import Solution
 from mcgw.sampling.asperities import heights
 from mcgw.scene.reading import argument, as_toml
 from mcgw.scene.scene import Scene
@@ -38,59 +37,6 @@ _GIVEN = {
 }
 
 
-@dataclass(frozen=True, repr=False)
-class Solution(Shown):
-    """What holds at one given load or area.
-
-    Parameters
-    ----------
-    scene : Scene
-        Of which surfaces.
-    given : str
-        Which quantity was given: "load" or "area".
-    value : float
-        Its value, N or m^2.
-    theory : dict of str to float
-        "separation" (d/sigma) and every quantity (SI) of the mean surface.
-    surfaces : dict of str to ndarray
-        The same on every surface at its own separation, shape (surfaces,).
-    """
-
-    scene: Scene
-    given: str
-    value: float
-    theory: dict[str, float]
-    surfaces: dict[str, Array]
-
-    def interval(self, name: str, level: float = 0.95) -> tuple[float, float]:
-        """Confidence interval of the mean over surfaces, by Student's t; nan for too few contacts of all."""
-        x = self.surfaces[name]
-        if len(x) * self.theory["contacts"] < FEWEST:
-            return float("nan"), float("nan")
-        half = stdtrit(len(x) - 1, (1 + level) / 2) * x.std(ddof=1) / np.sqrt(len(x))
-        return float(x.mean() - half), float(x.mean() + half)
-
-    def plot(self, ax: Any = None) -> Any:
-        """Draw how the separation differs from surface to surface; returns the axes."""
-        return plotted(self, ax)
-
-    def sheet(self) -> Sheet:
-        """Theory and Monte Carlo side by side."""
-        share = self.value / self.scene.surface.nominal_area
-        if self.given == "load":
-            title = f"At the load {self.value:.6g} N = pressure {share / 1e6:.6g} MPa"
-        else:
-            title = f"At the real area {self.value:.6g} m^2 = {share:.4%} of the nominal area"
-        rows = []
-        for name in ("separation", *(q for q in QUANTITIES if q != self.given)):
-            unit = quantity_of(name).unit if name in QUANTITIES else "d/sigma"
-            x, (low, high) = self.surfaces[name], self.interval(name)
-            cells = (f"{self.theory[name]:.6g}", f"{x.mean():.6g}", interval_text(low, high))
-            rows.append([f"{name} ({unit})", *cells, f"{x.std(ddof=1):.3g}"])
-        many = f"{len(self.surfaces['separation'])} surfaces of {self.scene.n_asperities} asperities"
-        return Sheet(title, [("over", many)], ["", "theory", "mean", "95 % interval", "std"], rows)
-
-
 def solve(
     scene: Scene,
     *,
@@ -105,7 +51,7 @@ def solve(
     Parameters
     ----------
     scene : Scene
-        Its surface, grading, heights, number of surfaces and asperities, and seed are used.
+        Its surface, grading, heights, contact law, number of surfaces and asperities, and seed are used.
     load, pressure, area, area_fraction : float, str or sequence of them
         One of the four: P (N), P/A_n (Pa), A (m^2) or A/A_n; or texts with units, as "1 MPa".
     **changes
@@ -152,6 +98,10 @@ def solutions(scene: Scene, given: str, values: Sequence[float]) -> list[Solutio
     serves any separation, and the mean differs from theory by what the finite number of asperities
     does to it, of order 1/N.
 
+    Surfaces are loaded from far away: of several separations the largest one counts. Under a law that
+    jumps the load of a surface does so at each asperity that yields, and may pass a value without having
+    it; the solution is then the separation of the jump, with the load behind it.
+
     Raises
     ------
     ValueError
@@ -182,7 +132,13 @@ def _theory(scene: Scene, q: Quantity, value: float) -> dict[str, float]:
     h = float(scene.theory.separation_at(q.name, value))
     if scene.negative == "error" and (where := scene.negative_above(h)) is not None:
         raise ValueError(_NEGATIVE.format(q.name, value, q.unit, "the mean surface", where))
-    return {"separation": h, **{name: float(scene.theory.mean(name, h)) for name in QUANTITIES}}
+    return {"separation": h, **{name: float(scene.theory.mean(name, h)) for name in _quantities(scene)}}
+
+
+def _quantities(scene: Scene) -> tuple[str, ...]:
+    """All that a surface that is loaded has."""
+    yielding = () if scene.law.elastic else ("load_slope", "yielded")
+    return (*QUANTITIES, *yielding, *(() if scene.film is None else ("conductance_si",)))
 
 
 def _drawn(scene: Scene, q: Quantity, separations: Sequence[float]) -> Scene:
@@ -202,6 +158,10 @@ def _drawn(scene: Scene, q: Quantity, separations: Sequence[float]) -> Scene:
         keep="sums",
         separations=(min(starts),),
         quantities=tuple(QUANTITIES),
+        law=Hertz(),  # heights are what is drawn, the same under every law
+        unload_from=None,
+        film=None,
+        tangential=None,
         negative="clip" if scene.negative == "clip" else "allow",
     )
 
@@ -224,6 +184,8 @@ def _surface(
                 raise ValueError(f"surface {number} has not one asperity; give more n_asperities")
             h = _anywhere(scene, q, s, target, drawn.lowest)
         negative = s[scene.modulus(s) < 0]
+        if h is None and not negative.size:
+            raise ValueError(f"{q.name} = {value:g} {q.unit}: surface {number} does not reach it; give less")
         if h is None or (scene.negative == "error" and np.any(negative > h)):
             raise ValueError(_NEGATIVE.format(q.name, value, q.unit, f"surface {number}", negative.max()))
         rows.append({"separation": h, **dict(_sums(scene, s, h))})
@@ -233,9 +195,13 @@ def _surface(
 def _above(scene: Scene, q: Quantity, s: Array, target: float, start: float) -> float | None:
     """The solution among separations from `start` on at which no modulus is negative, or None.
 
-    `s` are all heights above `start`, in falling order. Above the highest one of negative modulus the
+    `s` are all heights above `start`, in falling order. Above the highest one of negative modulus Hertz's
     sum falls with the separation: so there is no larger solution.
     """
+    if not _by_powers(scene):
+        e = scene.modulus(s)
+        start = float(s[e < 0].max(initial=start))
+        return LawSum(q.base, _loading(scene), s, e).largest_separation(target, start)
     modulus = _weights(scene, q, s)
     start = float(s[modulus < 0].max(initial=start))
     if _power_sum(q, s, modulus, start) < target:
@@ -245,6 +211,8 @@ def _above(scene: Scene, q: Quantity, s: Array, target: float, start: float) -> 
 
 def _anywhere(scene: Scene, q: Quantity, s: Array, target: float, start: float) -> float | None:
     """The largest solution on all heights of a surface, in falling order; None if there is none."""
+    if not _by_powers(scene):
+        return _going_down(scene, q, s, target, start)
     modulus = _weights(scene, q, s)
     negative = s[modulus < 0]
     if negative.size:
@@ -255,6 +223,25 @@ def _anywhere(scene: Scene, q: Quantity, s: Array, target: float, start: float) 
     while _power_sum(q, s, modulus, start) < target:
         start -= _STEP
     return separation_on(s, modulus, q.exponent, target, start)
+
+
+def _going_down(scene: Scene, q: Quantity, s: Array, target: float, start: float) -> float | None:
+    """As `_anywhere` under any law, step by step."""
+    softest = float(s[scene.modulus(s) < 0].max(initial=LOWEST))
+    while start > softest:
+        start = max(start - _STEP, softest)
+        if (found := _above(scene, q, s[s > start], target, start)) is not None:
+            return found
+    return None
+
+
+def _by_powers(scene: Scene) -> bool:
+    """Whether load and area are sums of powers of the approaches."""
+    return type(scene.law) is Hertz
+
+
+def _loading(scene: Scene) -> LoadingBranch:
+    return LoadingBranch(scene.contact, None if scene.film is None else scene.film.on(scene.surface))
 
 
 def _sorted(s: Array) -> Array:
@@ -274,6 +261,10 @@ def _sums(scene: Scene, s: Array, h: float) -> Iterator[tuple[str, float]]:
     """All quantities of asperities of heights `s` at one separation, SI."""
     s = s[s > h]
     modulus = scene.modulus(s)
-    for name, q in QUANTITIES.items():
-        weights = modulus if q.modulus else 1.0
-        yield name, q.scale(scene.surface) * float(np.sum(weights * (s - h) ** q.exponent))
+    for name in _quantities(scene):
+        q = quantity_of(name)
+        if scene.hertzian:
+            terms = (modulus if q.modulus else 1.0) * (s - h) ** q.exponent
+        else:
+            terms = term_of(name, _loading(scene), h, s, modulus)
+        yield name, q.scale(scene.surface) * float(np.sum(terms))

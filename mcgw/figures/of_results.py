@@ -10,7 +10,7 @@ from scipy.stats import norm
 from analytic import quantity_of
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.paired import Paired
-from mcgw.ensemble.solution import Solution
+from mcgw.ensemble.solved import Solution
 from mcgw.figures.comparison import draw_curve, title_of
 from mcgw.figures.convergence import draw_checks
 from mcgw.figures.style import STYLE, shown_title

@@ -4,10 +4,11 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from analytic import QUANTITIES
+from analytic import quantity_of
 from mcgw.ensemble.intervals import interval_text
-from mcgw.ensemble.solution import Solution
+from mcgw.ensemble.solved import Solution
 from mcgw.formats.csv_table import Row
+from mcgw.scene.law_text import law_text
 from mcgw.scene.scene import Scene
 
 __all__ = ["SOLUTION_HEADER", "solution_rows", "solution_table"]
@@ -15,11 +16,7 @@ __all__ = ["SOLUTION_HEADER", "solution_rows", "solution_table"]
 SOLUTION_HEADER = (
     "pressure_Pa", "load_or_area_SI", "quantity", "unit", "theory", "mean", "low_95", "high_95", "std"
 )  # fmt: skip
-_NAMES = {
-    "separation": ("separation d/sigma", "1"),
-    **{q.name: (q.name, q.unit) for q in QUANTITIES.values()},
-}
-_NAMES["conductance"] = ("conductance x rho", "m")
+_LABELS = {"separation": "separation d/sigma", "conductance": "conductance x rho"}
 
 
 def solution_table(scene: Scene, solutions: Sequence[Solution]) -> str:
@@ -30,10 +27,10 @@ def solution_table(scene: Scene, solutions: Sequence[Solution]) -> str:
             f"{_title(scene, solution)}",
             f"  {'':22} {'theory':>12} {'mean':>12} {'95 % interval of the mean':>29} {'std':>10}",
         ]
-        for name, (label, unit) in _NAMES.items():
+        for name, x in solution.surfaces.items():
             if name == solution.given:
                 continue
-            x = solution.surfaces[name]
+            label, unit = _LABELS.get(name, name), _unit(name)
             low, high = solution.interval(name)
             lines.append(
                 f"  {label + (f' ({unit})' if unit != '1' else ''):22} {solution.theory[name]:12.6g} "
@@ -45,6 +42,8 @@ def solution_table(scene: Scene, solutions: Sequence[Solution]) -> str:
         lines.append(
             "Few contacts: finite surfaces differ from theory, whose surface is infinite, by more than noise."
         )
+    if not scene.law.elastic:
+        lines.append(f"law: {law_text(scene.law)}; loaded from far away, nothing unloads")
     lines.append(
         f"std: over {scene.n_surfaces} surfaces of {scene.n_asperities:g} asperities, each at its own d;"
         f" heights drawn one by one, seed {scene.seed}"
@@ -56,11 +55,14 @@ def solution_rows(scene: Scene, solutions: Sequence[Solution]) -> Iterator[Row]:
     """Rows under `SOLUTION_HEADER`; an interval of too few contacts is nan."""
     for solution in solutions:
         pressure = solution.value / scene.surface.nominal_area if solution.given == "load" else np.nan
-        for name, (_, unit) in _NAMES.items():
-            x = solution.surfaces[name]
+        for name, x in solution.surfaces.items():
             low, high = solution.interval(name)
             std = x.std(ddof=1)
-            yield pressure, solution.value, name, unit, solution.theory[name], x.mean(), low, high, std
+            yield pressure, solution.value, name, _unit(name), solution.theory[name], x.mean(), low, high, std
+
+
+def _unit(name: str) -> str:
+    return "1" if name == "separation" else quantity_of(name).unit
 
 
 def _title(scene: Scene, solution: Solution) -> str:

@@ -1,0 +1,71 @@
+"""What holds on surfaces at one given load or area: what `mcgw.solve` finds."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.special import stdtrit
+
+from analytic import quantity_of
+from mcgw.ensemble.intervals import FEWEST, interval_text
+from mcgw.formats.sheet import Sheet, Shown
+from mcgw.machine.late import plotted
+from mcgw.scene.scene import Scene
+
+__all__ = ["Solution"]
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, repr=False)
+class Solution(Shown):
+    """What holds at one given load or area.
+
+    Parameters
+    ----------
+    scene : Scene
+        Of which surfaces.
+    given : str
+        Which quantity was given: "load" or "area".
+    value : float
+        Its value, N or m^2.
+    theory : dict of str to float
+        "separation" (d/sigma) and every quantity (SI) of the mean surface, on loading.
+    surfaces : dict of str to ndarray
+        The same on every surface at its own separation, shape (surfaces,).
+    """
+
+    scene: Scene
+    given: str
+    value: float
+    theory: dict[str, float]
+    surfaces: dict[str, Array]
+
+    def interval(self, name: str, level: float = 0.95) -> tuple[float, float]:
+        """Confidence interval of the mean over surfaces, by Student's t; nan for too few contacts of all."""
+        x = self.surfaces[name]
+        if len(x) * self.theory["contacts"] < FEWEST:
+            return float("nan"), float("nan")
+        half = stdtrit(len(x) - 1, (1 + level) / 2) * x.std(ddof=1) / np.sqrt(len(x))
+        return float(x.mean() - half), float(x.mean() + half)
+
+    def plot(self, ax: Any = None) -> Any:
+        """Draw how the separation differs from surface to surface; returns the axes."""
+        return plotted(self, ax)
+
+    def sheet(self) -> Sheet:
+        """Theory and Monte Carlo side by side."""
+        share = self.value / self.scene.surface.nominal_area
+        if self.given == "load":
+            title = f"At the load {self.value:.6g} N = pressure {share / 1e6:.6g} MPa"
+        else:
+            title = f"At the real area {self.value:.6g} m^2 = {share:.4%} of the nominal area"
+        rows = []
+        for name in (name for name in self.theory if name != self.given):
+            unit = "d/sigma" if name == "separation" else quantity_of(name).unit
+            x, (low, high) = self.surfaces[name], self.interval(name)
+            cells = (f"{self.theory[name]:.6g}", f"{x.mean():.6g}", interval_text(low, high))
+            rows.append([f"{name} ({unit})", *cells, f"{x.std(ddof=1):.3g}"])
+        many = f"{len(self.surfaces['separation'])} surfaces of {self.scene.n_asperities} asperities"
+        return Sheet(title, [("over", many)], ["", "theory", "mean", "95 % interval", "std"], rows)
