@@ -76,11 +76,14 @@ if TYPE_CHECKING:
         Coated,
         ContactLaw,
         CustomLaw,
+        Film,
         Hertz,
         JacksonGreen,
         KogutEtsion,
         PowerLawGraded,
+        Tangential,
         ZhaoMaiettaChang,
+        masing,
     )
 
 __all__ = [
@@ -100,6 +103,7 @@ __all__ = [
     "CustomLaw",
     "Exponential",
     "ExponentialHeights",
+    "Film",
     "Fluctuations",
     "Gaussian",
     "Grading",
@@ -118,6 +122,7 @@ __all__ = [
     "ScipyHeights",
     "Surface",
     "Table",
+    "Tangential",
     "Weibull",
     "ZhaoMaiettaChang",
     "area",
@@ -138,6 +143,7 @@ __all__ = [
     "fn_scaled",
     "is_data",
     "load",
+    "masing",
     "mean",
     "mean_modulus",
     "name_of",

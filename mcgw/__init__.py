@@ -19,6 +19,17 @@ Gradings E*(s)/E*, and height laws, of s = z/sigma:
 `ScipyHeights`           any distribution of scipy.stats, as a plain frozen one is too
 =======================  =========================================================================
 
+Laws of contact of one asperity, in place of Hertz's, and what else the contacts do:
+
+=======================  =========================================================================
+`KogutEtsion`            asperities that yield, from hardness or critical penetration; as
+                         `ChangEtsionBogy`, `ZhaoMaiettaChang` and `JacksonGreen` (yield strength)
+`Hertz`                  the default; `PowerLawGraded`: graded in depth; `Coated`; `CustomLaw`:
+                         formulas of one's own
+`Film`                   resistivity, and a film on the spots: conductance in S
+`Tangential`             friction, and displacements sideways; `masing`: the way back
+=======================  =========================================================================
+
 Draw surfaces:
 
 =======================  =========================================================================
@@ -33,7 +44,7 @@ Ask:
 
 =======================  =========================================================================
 `compare`                Monte Carlo against theory; the theory itself: ``scene.theory``
-`regrade`                another grading on the same surfaces; `paired_ratio` of the two
+`regrade`                another grading or contact law, same surfaces; `paired_ratio` of the two
 `solve`                  the separation at a load, pressure or area
 `converge`, `tradeoff`   the statistical convergence test; error against time on this machine
 `fit`, `fitted_scene`    the surface of a measured height map, and a scene of it
@@ -57,17 +68,28 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from analytic import (
         Body,
+        ChangEtsionBogy,
+        Coated,
         Custom,
+        CustomLaw,
         Exponential,
         ExponentialHeights,
+        Film,
         Gaussian,
         HeightTable,
+        Hertz,
         Homogeneous,
+        JacksonGreen,
+        KogutEtsion,
         MeasuredHeights,
+        PowerLawGraded,
         ScipyHeights,
         Table,
+        Tangential,
         Weibull,
+        ZhaoMaiettaChang,
         composite_modulus,
+        masing,
     )
     from mcgw.ensemble.ensemble import Ensemble
     from mcgw.ensemble.paired import paired_ratio
@@ -92,14 +114,22 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Body",
+    "ChangEtsionBogy",
+    "Coated",
     "Custom",
+    "CustomLaw",
     "Ensemble",
     "Exponential",
     "ExponentialHeights",
+    "Film",
     "Gaussian",
     "HeightTable",
+    "Hertz",
     "Homogeneous",
+    "JacksonGreen",
+    "KogutEtsion",
     "MeasuredHeights",
+    "PowerLawGraded",
     "RunError",
     "Scene",
     "SceneError",
@@ -107,7 +137,9 @@ __all__ = [
     "StoreError",
     "Surface",
     "Table",
+    "Tangential",
     "Weibull",
+    "ZhaoMaiettaChang",
     "compare",
     "composite_modulus",
     "converge",
@@ -115,6 +147,7 @@ __all__ = [
     "fitted_scene",
     "heights",
     "load_scene",
+    "masing",
     "merge",
     "open_ensemble",
     "paired_ratio",

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from analytic.gauss_legendre import gauss_legendre
 from analytic.laws.law import ContactLaw
 from analytic.laws.poisson import checked_poisson
+from analytic.laws.positive import is_positive
 from analytic.surface import Surface
 
 __all__ = ["Coated"]
@@ -78,7 +79,7 @@ class Coated(ContactLaw):
             )
         for name in ("thickness", "ratio", "reduced_thickness"):
             value = getattr(self, name)
-            if value is not None and not 0 < value < math.inf:
+            if value is not None and not is_positive(value):
                 raise ValueError(f"{name} = {value!r}: give a finite number > 0")
 
     def on(self, surface: Surface) -> Self:

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analytic.laws.law import ContactLaw
+from analytic.laws.positive import is_positive
 
 __all__ = ["ElasticPlastic"]
 
@@ -36,7 +37,7 @@ class ElasticPlastic(ContactLaw):
     starts: ClassVar[tuple[float, ...]] = (1.0,)
 
     def __post_init__(self) -> None:
-        if self.critical is not None and not 0 < self.critical < np.inf:
+        if self.critical is not None and not is_positive(self.critical):
             raise ValueError(f"critical = {self.critical!r}: give a critical penetration over sigma > 0")
 
     @property

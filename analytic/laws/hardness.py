@@ -5,6 +5,7 @@ from dataclasses import KW_ONLY, dataclass, replace
 from typing import Self
 
 from analytic.laws.elastic_plastic import ElasticPlastic
+from analytic.laws.positive import is_positive
 from analytic.surface import Surface
 
 __all__ = ["FromHardness", "kogut_etsion_factor"]
@@ -35,8 +36,8 @@ class FromHardness(ElasticPlastic):
                 f"hardness = {self.hardness!r}, critical = {self.critical!r}: give one of them, "
                 "a hardness in Pa or a critical penetration over sigma"
             )
-        if self.hardness is not None and not 0 < self.hardness < math.inf:
-            raise ValueError(f"hardness = {self.hardness!r}: give a hardness > 0 Pa")
+        if self.hardness is not None and not is_positive(self.hardness):
+            raise ValueError(f"hardness = {self.hardness!r}: give a hardness > 0 Pa, as a number")
 
     @property
     def yield_factor(self) -> float:

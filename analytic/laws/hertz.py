@@ -15,7 +15,15 @@ class Hertz(ContactLaw):
     Valid for frictionless elastic spheres whose radius of contact is small against R. Nothing is known
     to be wrong with it; metals seldom stay elastic (see the laws that yield).
 
+    Notes
+    -----
     Source: H. Hertz, J. reine angew. Math. 92 (1882) 156.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> float(Hertz().load(0, np.sqrt(4.0), np.array(1.0)))
+    8.0
     """
 
     name: ClassVar[str] = "hertz"

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from analytic.laws.bridge import Bridgeable
 from analytic.laws.poisson import checked_poisson
+from analytic.laws.positive import is_positive
 from analytic.surface import Surface
 
 __all__ = ["JacksonGreen"]
@@ -78,7 +79,7 @@ class JacksonGreen(Bridgeable):
         checked_poisson(self.poisson)
         for name in ("yield_strength", "yield_strain"):
             value = getattr(self, name)
-            if value is not None and not 0 < value < math.inf:
+            if value is not None and not is_positive(value):
                 raise ValueError(f"{name} = {value!r}: give a finite number > 0")
         reduced = (self.yield_strain is not None, self.critical is not None)
         if reduced[0] != reduced[1] or reduced[0] == (self.yield_strength is not None):

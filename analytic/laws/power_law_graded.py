@@ -1,7 +1,7 @@
 """Asperities whose modulus grows with depth as a power."""
 
 from dataclasses import dataclass, replace
-from math import cos, gamma, inf, pi, sin, sqrt
+from math import cos, gamma, pi, sin, sqrt
 from typing import Any, ClassVar, Self
 
 import numpy as np
@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from analytic.laws.law import ContactLaw
 from analytic.laws.poisson import checked_poisson
+from analytic.laws.positive import is_positive
 from analytic.surface import Surface
 
 __all__ = ["PowerLawGraded"]
@@ -76,7 +77,7 @@ class PowerLawGraded(ContactLaw):
             )
         for name in ("c0", "reduced_c0"):
             value = getattr(self, name)
-            if value is not None and not 0 < value < inf:
+            if value is not None and not is_positive(value):
                 raise ValueError(f"{name} = {value!r}: give a depth > 0")
 
     def on(self, surface: Surface) -> Self:

@@ -107,6 +107,11 @@ def masing(virgin: ArrayLike) -> Array:
     ndarray
         ``T(u_m) - 2 T((u_m - u)/2)`` at the displacements ``u_m - 2 k u_m/(2 n)``, k = 0 ... 2 n, from u_m
         down to -u_m: shape (..., 2 n + 1).
+
+    Examples
+    --------
+    >>> masing([0.0, 3.0, 5.0])
+    array([ 5., -1., -5.])
     """
     loads = np.asarray(virgin, dtype=np.float64)
     return np.asarray(loads[..., -1:] - 2 * loads)

@@ -42,6 +42,8 @@ class Ensemble(Shown):
         What drew it.
     sums : Results
         Its numbers.
+    drawn_for : Scene, optional
+        The scene that its surfaces were drawn for, if that is another one, as after `mcgw.regrade`.
 
     Examples
     --------
@@ -65,6 +67,12 @@ class Ensemble(Shown):
     scene: Scene
     sampler: str
     sums: Results
+    drawn_for: Scene | None = None
+
+    @property
+    def surfaces_of(self) -> Scene:
+        """The scene whose seed gives the surfaces."""
+        return self.drawn_for or self.scene
 
     @property
     def n_surfaces(self) -> int:

@@ -1,6 +1,6 @@
 """Two ensembles of the same surfaces, compared surface by surface."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -10,6 +10,7 @@ from mcgw.ensemble.ensemble import Ensemble
 from mcgw.formats.evenly import evenly
 from mcgw.formats.sheet import Sheet, Shown
 from mcgw.machine.late import plotted
+from mcgw.sampling.asperities import same_heights
 
 __all__ = ["Paired", "paired_ratio"]
 
@@ -79,7 +80,8 @@ def paired_ratio(numerator: Ensemble, denominator: Ensemble, quantity: str) -> P
     Raises
     ------
     ValueError
-        If the two differ in anything but grading and quantities; the line says in what.
+        If the two differ in anything but grading, contact law and quantities, or were drawn in other cells;
+        the line says in what.
 
     Examples
     --------
@@ -93,6 +95,8 @@ def paired_ratio(numerator: Ensemble, denominator: Ensemble, quantity: str) -> P
     differ += [
         name for name in ("n_surfaces", "sampler") if getattr(numerator, name) != getattr(denominator, name)
     ]
+    if not differ and not _same_asperities(numerator, denominator):
+        differ = ["law, so that asperities do (mcgw.regrade gives the same surfaces another law)"]
     if differ:
         raise ValueError(
             f"a paired ratio takes two ensembles of the same surfaces; these differ in {', '.join(differ)}"
@@ -104,3 +108,11 @@ def paired_ratio(numerator: Ensemble, denominator: Ensemble, quantity: str) -> P
     return Paired(
         quantity, numerator.separations, ratio, np.sqrt(residual / len(a)) / a.mean(axis=0), apart / residual
     )
+
+
+def _same_asperities(one: Ensemble, other: Ensemble) -> bool:
+    """Whether the surfaces are the same, where contact laws put edges between cells."""
+    scenes = [replace(e.surfaces_of, sampler=e.sampler, n_surfaces=1) for e in (one, other)]
+    if scenes[0] == scenes[1] or all(s.hertzian and s.tangential is None for s in scenes):
+        return True
+    return same_heights(*scenes)

@@ -1,4 +1,4 @@
-"""Another grading, quantity or separation on the same surfaces: one product, nothing drawn again."""
+"""Another grading, contact law, quantity or separation on the same surfaces."""
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
@@ -7,60 +7,80 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from analytic import Grading
+from analytic import Grading, quantity_of
+from analytic.laws import ContactLaw
 from mcgw.ensemble.ensemble import Ensemble
+from mcgw.ensemble.from_heights import sums_of_heights
 from mcgw.ensemble.results import MemoryResults, joined
+from mcgw.ensemble.same_surfaces import check_same
 from mcgw.ensemble.simulation import blocks, kept
 from mcgw.sampling.block import Block
 from mcgw.sampling.counted import Counted
 from mcgw.sampling.samplers import regraded, sampler_of
+from mcgw.scene.law_section import read_law
+from mcgw.scene.reading import as_toml
 from mcgw.scene.scene import Scene
 from mcgw.scene.storable import storable
 
-__all__ = ["regrade"]
+__all__ = ["regrade", "regraded_scene"]
 
 Array = NDArray[np.float64]
+Drawn = tuple[Array, Array, Array]  # moments, counts and single asperities of some surfaces
+Tables = dict[str, NDArray[Any]]
 
 _ROWS = 1024  # surfaces at a time
-_SAME = 1e-9  # relative difference of sums that are only rounded differently
+_CONTACT = ("unload_from", "film", "tangential")
 
 
 def regrade(
     ensemble: Ensemble,
-    grading: Grading | Callable[[Any], Any],
+    grading: Grading | Callable[[Any], Any] | None = None,
     *,
+    law: ContactLaw | dict[str, Any] | None = None,
     quantities: Sequence[str] | None = None,
     separations: ArrayLike | None = None,
+    **contact: Any,
 ) -> Ensemble:
-    """Give the surfaces of an ensemble another grading.
+    """Give the surfaces of an ensemble another grading, or another contact law.
 
-    Nothing is drawn again if the ensemble keeps its moments (``keep = "moments"``). Otherwise the very same
-    surfaces are drawn once more from their seed, which takes as long as simulating them, and checked
-    against what the ensemble holds.
+    Nothing is drawn again if the ensemble keeps its moments (``keep = "moments"``) and its cells have edges
+    wherever a piece of the contact law begins, as always under Hertz's. Otherwise the very same surfaces are
+    drawn once more from their seed, and checked against what the ensemble holds. Under Hertz's law that
+    takes as long as simulating them. With another law, before or after, it takes much longer: each contact is
+    summed by its formula at each separation, some 1e-7 s for one contact, separation and quantity.
 
     Parameters
     ----------
     ensemble : Ensemble
-        Of the sampler ``cells`` or ``aggregate``.
-    grading : Grading or callable
-        The new E*(s)/E*, as `mcgw.Scene` takes it, smooth inside the cells of the ensemble. A function is
-        resolved.
+        Of the sampler ``cells`` or ``aggregate``; for another contact law of ``cells`` or ``tail``.
+    grading : Grading or callable, optional
+        The new E*(s)/E*, as `mcgw.Scene` takes it; from kept moments it must be smooth inside the cells of
+        the ensemble. A function is resolved. Default: that of the ensemble.
+    law : ContactLaw or dict, optional
+        The new one, as `mcgw.KogutEtsion(critical=0.05)`, or `mcgw.Hertz()`; as `mcgw.Scene` takes it.
+        Default: that of the ensemble.
     quantities : sequence of str, optional
-        Any; default: those of the ensemble.
+        Any; default: those of the ensemble that there still are.
     separations : array_like, optional
-        Edges of its cells, such as its own separations; default: these.
+        From kept moments edges of the cells, such as the ensemble's own separations; else any that is not
+        lower than these. Default: these.
+    **contact
+        ``unload_from``, ``film`` or ``tangential``, where they are to change; None leaves them out.
 
     Returns
     -------
     Ensemble
-        Of the same surfaces, in memory; with no breaks in the grading, what a new simulation with the
-        same seed would give.
+        Of the same surfaces, in memory. A new simulation with the same seed gives the same only if the cells
+        are: if neither a break of the grading nor another law of contact puts edges elsewhere.
 
     Raises
     ------
     ValueError
-        If the sampler has no moments, if the moments are those of other cells, or if a separation or break
-        is not an edge of the cells.
+        If the ensemble has no cells, a separation or break is not an edge of them, the moments kept do not
+        resolve what is asked, or the surfaces that are drawn again are not those of the ensemble (of
+        another version, or of a run that is not finished).
+    SceneError, TypeError
+        As from `mcgw.Scene.replace`.
 
     Examples
     --------
@@ -70,49 +90,119 @@ def regrade(
     >>> stiffer = mcgw.regrade(e, mcgw.Exponential(2.0))
     >>> bool((stiffer.contacts == e.contacts).all()), bool((stiffer.load > e.load)[:, 1:].all())
     (True, True)
+    >>> metal = mcgw.regrade(e, law=mcgw.KogutEtsion(critical=0.05))
+    >>> mcgw.paired_ratio(metal, e, "load").ratio.round(1)
+    array([0.7, 0.7, 0.8])
     """
+    scene = storable(regraded_scene(ensemble, grading, law, quantities, separations, contact))
+    cells = _fitting(ensemble, scene)
+    parts = list(_of_moments(ensemble, scene, cells) if cells else _of_heights(ensemble, scene))
+    return Ensemble(scene, ensemble.sampler, MemoryResults(joined(parts)), ensemble.surfaces_of)
+
+
+def regraded_scene(
+    ensemble: Ensemble,
+    grading: Grading | Callable[[Any], Any] | None,
+    law: ContactLaw | dict[str, Any] | None,
+    quantities: Sequence[str] | None = None,
+    separations: ArrayLike | None = None,
+    contact: dict[str, Any] | None = None,
+) -> Scene:
+    """What is asked of the surfaces of an ensemble; arguments as of `regrade`."""
+    contact = contact or {}
+    if unknown := set(contact) - set(_CONTACT):
+        raise TypeError(f"regrade: {sorted(unknown)[0]!r} cannot be changed; {', '.join(_CONTACT)} can")
     old = ensemble.scene
-    asked = old.replace(
-        grading=grading,
-        quantities=quantities or old.quantities,
+    law = old.law if law is None else read_law(as_toml(law))
+    if quantities is None:
+        quantities = [name for name in old.quantities if _is_left(name, law, {**vars(old), **contact})]
+    return old.replace(
+        grading=old.grading if grading is None else grading,
+        law=law,
+        quantities=quantities,
         separations=old.separations if separations is None else separations,
         n_surfaces=ensemble.n_surfaces,
+        **contact,
     )
-    again = replace(old, sampler=ensemble.sampler, keep="moments", n_surfaces=ensemble.n_surfaces)
-    scene = storable(asked)
-    cells = regraded(scene, again)
-    parts, first = [], 0
-    for moments, counts, own in _read(ensemble, cells) if old.keep == "moments" else _again(ensemble, again):
-        sums = cells.sums(first, np.ascontiguousarray(moments.T), np.ascontiguousarray(counts.T), own)
-        parts.append(kept(scene, Block(sums, moments, counts, own)))
-        first += len(moments)
-    return Ensemble(scene, ensemble.sampler, MemoryResults(joined(parts)))
 
 
-def _read(ensemble: Ensemble, drawn: Counted) -> Iterator[tuple[Array, Array, Array]]:
+def _is_left(name: str, law: ContactLaw, contact: dict[str, Any]) -> bool:
+    """Whether surfaces still have a quantity of the ensemble."""
+    q = quantity_of(name)
+    return not (
+        (q.unloading and contact["unload_from"] is None)
+        or (q.base == "conductance_si" and contact["film"] is None)
+        or (q.base == "yielded" and law.elastic)
+    )
+
+
+def _fitting(ensemble: Ensemble, scene: Scene) -> Counted | None:
+    """Cells whose moments serve the scene; None if the heights must, where a law is not Hertz's."""
+    hertzian = all(x.hertzian for x in (scene, ensemble.scene, ensemble.surfaces_of))
+    if not hertzian and ensemble.scene.keep != "moments":
+        return None
+    try:
+        return regraded(scene, _with_moments(ensemble))
+    except ValueError:
+        if hertzian:
+            raise
+        return None
+
+
+def _of_moments(ensemble: Ensemble, scene: Scene, cells: Counted) -> Iterator[Tables]:
+    """What is kept of each block of surfaces, from its moments."""
+    first = 0
+    for drawn in _read(ensemble, cells) if ensemble.scene.keep == "moments" else _again(ensemble):
+        yield kept(scene, Block(_sums(cells, first, drawn), *drawn))
+        first += len(drawn[0])
+
+
+def _of_heights(ensemble: Ensemble, scene: Scene) -> Iterator[Tables]:
+    """The same from the heights; moments that are there stay."""
+    first = 0
+    for sums in sums_of_heights(ensemble, scene):
+        stop = first + len(next(iter(sums.values())))
+        drawn = _held(ensemble, first, stop) if scene.keep == "moments" else (None, None, None)
+        yield kept(scene, Block(sums, *drawn))
+        first = stop
+
+
+def _with_moments(ensemble: Ensemble) -> Scene:
+    """The scene that gives the surfaces of an ensemble, and their moments."""
+    return replace(
+        ensemble.surfaces_of, sampler=ensemble.sampler, keep="moments", n_surfaces=ensemble.n_surfaces
+    )
+
+
+def _sums(cells: Counted, first: int, drawn: Drawn) -> dict[str, Array]:
+    moments, counts, own = drawn
+    return cells.sums(first, np.ascontiguousarray(moments.T), np.ascontiguousarray(counts.T), own)
+
+
+def _read(ensemble: Ensemble, drawn: Counted) -> Iterator[Drawn]:
     """Moments, counts and single asperities of some surfaces at a time, as the ensemble keeps them."""
     _check_cells(drawn, ensemble)
-    outside = ensemble.sums.read("extras", 0, None)
     for first in range(0, ensemble.n_surfaces, _ROWS):
-        stop = min(first + _ROWS, ensemble.n_surfaces)
-        own = outside[(outside[:, 0] >= first) & (outside[:, 0] < stop)]
-        yield ensemble.sums.read("moments", first, stop), ensemble.sums.read("cells", first, stop), own
+        yield _held(ensemble, first, min(first + _ROWS, ensemble.n_surfaces))
 
 
-def _again(ensemble: Ensemble, scene: Scene) -> Iterator[tuple[Array, Array, Array]]:
+def _held(ensemble: Ensemble, first: int, stop: int) -> Drawn:
+    outside = ensemble.sums.read("extras", 0, None)
+    own = outside[(outside[:, 0] >= first) & (outside[:, 0] < stop)]
+    return ensemble.sums.read("moments", first, stop), ensemble.sums.read("cells", first, stop), own
+
+
+def _again(ensemble: Ensemble) -> Iterator[Drawn]:
     """The same, drawn once more; refused if they are not the surfaces of the ensemble."""
+    origin = _with_moments(ensemble)
+    other = None if ensemble.drawn_for is None else regraded(ensemble.scene, origin)
     first = 0
-    for block in blocks(scene, sampler_of(scene)):
+    for block in blocks(origin, sampler_of(origin)):
         if block.moments is None or block.counts is None or block.extras is None:
             raise AssertionError("a sampler that keeps moments gives them")
-        for name, values in block.sums.items():
-            held = ensemble.sums.read(name, first, first + len(values))
-            if not np.allclose(values, held, rtol=_SAME, atol=_SAME * float(np.abs(held).mean())):
-                raise ValueError(
-                    f"the surfaces cannot be drawn again: their {name} differs (another version of "
-                    'mcgw, or a run that is not finished); simulate them with keep = "moments"'
-                )
-        yield block.moments, block.counts, block.extras
+        drawn = block.moments, block.counts, block.extras
+        check_same(ensemble, first, _sums(other, first, drawn) if other else block.sums)
+        yield drawn
         first += len(block.moments)
 
 

@@ -13,7 +13,7 @@ from mcgw.scene.samplers import promise_of
 from mcgw.scene.scene import Scene
 from mcgw.scene.storable import storable
 
-__all__ = ["heights", "heights_drawn"]
+__all__ = ["heights", "heights_drawn", "listing_sampler", "same_heights"]
 
 
 def heights(scene: Scene, surface: int, *, untouched: bool = False) -> NDArray[np.float64]:
@@ -49,10 +49,32 @@ def heights(scene: Scene, surface: int, *, untouched: bool = False) -> NDArray[n
     True
     """
     scene = storable(scene)
+    return heights_drawn(scene, listing_sampler(scene), surface, untouched=untouched)
+
+
+def listing_sampler(scene: Scene) -> Counted:
+    """The sampler of a scene, if it can tell the heights.
+
+    Raises
+    ------
+    ValueError
+        If it does not draw asperities one by one.
+    """
     sampler = sampler_of(scene)
     if not isinstance(sampler, Counted) or not promise_of(sampler.name).one_by_one:
         raise ValueError(f'sampler = "{sampler.name}" keeps no heights; "cells" and "tail" do')
-    return heights_drawn(scene, sampler, surface, untouched=untouched)
+    return sampler
+
+
+def same_heights(one: Scene, other: Scene) -> bool:
+    """Whether surfaces of two scenes of one seed, height law and sampler have the same asperities.
+
+    Cells are edged by the breaks of contact laws, and each cell has uniforms of its own.
+    """
+    first, second = sampler_of(one), sampler_of(other)
+    if not (isinstance(first, Counted) and isinstance(second, Counted)):
+        return True
+    return np.array_equal(first.mesh.edges, second.mesh.edges)
 
 
 def heights_drawn(

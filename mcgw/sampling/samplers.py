@@ -17,7 +17,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from analytic import QUANTITIES, Exponential, bends, quantity_of
+from analytic import QUANTITIES, UNLOADING, Exponential, Hertz, bends, quantity_of
 from mcgw.machine.memory import keep_freed_memory
 from mcgw.sampling.aggregate import CROWDED, VARYING
 from mcgw.sampling.block import Sampler
@@ -28,6 +28,7 @@ from mcgw.sampling.direct import Direct
 from mcgw.sampling.drawing import Crowds, InStrata
 from mcgw.sampling.layout import Layout
 from mcgw.sampling.response.response import Response, layout_of, response_of
+from mcgw.sampling.stretches import begins_and_breaks
 from mcgw.scene.scene import Scene
 from mcgw.scene.storable import storable
 
@@ -122,8 +123,8 @@ def regraded(scene: Scene, drawn: Scene) -> Counted:
     Raises
     ------
     ValueError
-        If the sampler has no cells, a separation or break is not an edge of them, or the moments do not
-        resolve what is asked.
+        If the sampler has no cells, a separation, a break of the grading or a height where a piece of the
+        contact law begins is not an edge of them, or the moments do not resolve what is asked.
     """
     sampler = sampler_of(drawn)
     if not isinstance(sampler, Counted):
@@ -132,6 +133,9 @@ def regraded(scene: Scene, drawn: Scene) -> Counted:
     _check_edges("separation", scene.separations, edges)
     if edges.size:
         _check_edges("break of the grading", bends(scene.modulus, edges[0], edges[-1]), edges, _SAME)
+        for heights in begins_and_breaks(scene, *sampler.mesh.range):
+            inside = heights[(edges[0] <= heights) & (heights <= edges[-1])]
+            _check_edges("height where a piece of the contact law begins,", inside.tolist(), edges)
     response = response_of(scene, sampler.mesh, _summed(scene.quantities), kept=sampler.response.layout)
     return replace(sampler, scene=scene, response=response)
 
@@ -155,11 +159,30 @@ def _summed(quantities: Iterable[str]) -> tuple[str, ...]:
 
 
 def _lasting_layout(scene: Scene, mesh: Mesh) -> Layout:
-    """Moments that serve every quantity, this grading, and another exponential one."""
-    others = [replace(scene, grading=Exponential(gamma), negative="allow") for gamma in (2.0, 0.5, 0.0)]
-    layouts = [layout_of(x, mesh, _summed(QUANTITIES), lasting=True) for x in (scene, *others)]
+    """Moments that serve every quantity, this grading, and another exponential one under Hertz's law."""
+    plainly = replace(
+        scene,
+        law=Hertz(),
+        unload_from=None,
+        film=None,
+        tangential=None,
+        quantities=tuple(QUANTITIES),
+        negative="allow",
+    )
+    others = [replace(plainly, grading=Exponential(gamma)) for gamma in (2.0, 0.5, 0.0)]
+    layouts = [layout_of(x, mesh, _every_sum(x), lasting=True) for x in (scene, *others)]
     plain = np.max([layout.plain for layout in layouts], axis=0)
     return Layout(plain + 1, np.max([layout.rooted for layout in layouts], axis=0) + 1)  # one in reserve
+
+
+def _every_sum(scene: Scene) -> tuple[str, ...]:
+    """Quantities that the surfaces of a scene have, but those that are counted."""
+    names = [*QUANTITIES]
+    if not scene.hertzian:
+        names += ["load_slope"] if scene.film is None else ["load_slope", "conductance_si"]
+    if scene.unload_from is not None:
+        names += [q.name for q in UNLOADING.values() if q.unloading in names]
+    return _summed(names)
 
 
 def _cheapest(scene: Scene) -> str:

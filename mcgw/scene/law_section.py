@@ -4,9 +4,9 @@ from dataclasses import MISSING, fields
 from typing import Any
 
 from analytic.laws import ContactLaw, Hertz
-from mcgw.scene.section import Section, nearest
+from mcgw.scene.section import SceneError, Section, nearest
 
-__all__ = ["contact_law", "law_table"]
+__all__ = ["contact_law", "law_table", "read_law"]
 
 _UNITS = {"hardness": "Pa", "yield_strength": "Pa", "c0": "m", "thickness": "m", "work": "J/m^2"}
 _CUSTOM = "custom"
@@ -18,6 +18,8 @@ def contact_law(section: Section) -> ContactLaw:
     given = section.take("law")
     if isinstance(given, ContactLaw):
         return given
+    if isinstance(given, dict):  # of Python
+        return _of_table(given, section.problems)
     if given is None or given == Hertz.name:
         return Hertz()
     if given == _CUSTOM:
@@ -26,7 +28,7 @@ def contact_law(section: Section) -> ContactLaw:
         return custom_law(section) or Hertz()
     from analytic.laws import by_name
 
-    if given not in by_name:
+    if not isinstance(given, str) or given not in by_name:
         section.fail("law", given, f"{nearest(given, tuple(by_name))}choose one of {', '.join(by_name)}")
         section.known(*section.table)  # whose constants they are is not known
         return Hertz()
@@ -43,6 +45,32 @@ def contact_law(section: Section) -> ContactLaw:
     except ValueError as error:
         section.problems.append(f"contact.{error}")
         return Hertz()
+
+
+def _of_table(given: dict[str, Any], problems: list[str]) -> ContactLaw:
+    """A law by the keys that it has in a file."""
+    inner = Section("contact", given, problems)
+    if not isinstance(given.get("law"), str):
+        inner.fail("law", given.get("law"), f"choose one of {', '.join(by_name)}")
+        return Hertz()
+    law = contact_law(inner)
+    inner.finish()
+    return law
+
+
+def read_law(given: ContactLaw | dict[str, Any]) -> ContactLaw:
+    """A law, or one by the keys that it has in a file.
+
+    Raises
+    ------
+    SceneError
+        With one line for each mistake.
+    """
+    section = Section("contact", {"law": given}, [])
+    law = contact_law(section)
+    if section.problems:
+        raise SceneError(section.problems)
+    return law
 
 
 def _constant(section: Section, key: str) -> float | str:

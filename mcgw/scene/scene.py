@@ -43,8 +43,9 @@ class Scene(Fields, Shown):
         What to do where the grading makes the modulus of a contacting asperity negative.
     heights : HeightLaw or frozen distribution of scipy.stats, optional
         Of the reduced heights: of a distribution of scipy mean and scale drop out. Default: Gaussian.
-    law : ContactLaw, optional
-        Law of contact of an asperity, as `mcgw.KogutEtsion(hardness=1.2e9)`. Default: Hertz's.
+    law : ContactLaw or dict, optional
+        Law of contact of an asperity, as `mcgw.KogutEtsion(hardness=1.2e9)`; or its keys in a scene file,
+        as ``{"law": "kogut-etsion", "hardness": "1.2 GPa"}``. Default: Hertz's.
     unload_from : float or "loop", optional
         Lowest separation reached before, d/sigma; "loop": the lowest of `separations`. Every quantity then
         has a second one, as ``load_unloading``, on the way back from there.
@@ -105,7 +106,7 @@ class Scene(Fields, Shown):
         grading: Grading | Callable[[Any], Any] | None = None,
         negative: Literal["error", "clip", "allow"] = "error",
         heights: Any = None,
-        law: ContactLaw | None = None,
+        law: ContactLaw | dict[str, Any] | None = None,
         unload_from: float | Literal["loop"] | None = None,
         film: Film | None = None,
         tangential: Tangential | None = None,

@@ -65,7 +65,19 @@ def open_ensemble(path: str | Path) -> Ensemble:
             raise StoreError(f"{path}: no block of its run is finished yet")
         return Ensemble(run.scene, run.sampler, ShardResults(shards))
     attributes, scene = _described(path)
-    return Ensemble(scene, str(attributes["sampler"]), FileResults(path))
+    return Ensemble(scene, str(attributes["sampler"]), FileResults(path), _drawn_for(path, attributes))
+
+
+def _drawn_for(path: Path, attributes: dict[str, Any]) -> Scene | None:
+    """The scene that the surfaces were drawn for, if the file says that it is another one."""
+    if "drawn_for" not in attributes:
+        return None
+    try:
+        return scene_from(str(attributes["drawn_for"]))
+    except ValueError as error:
+        raise StoreError(
+            f"{path}: its attribute drawn_for cannot be read: {str(error).splitlines()[0]}"
+        ) from None
 
 
 def read_attributes(path: Path) -> dict[str, Any]:

@@ -8,6 +8,7 @@ import h5py
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.errors import RunError, StoreError
 from mcgw.formats.files import check_output, state_of, write_whole
+from mcgw.scene.scene_file import scene_text
 from mcgw.store.arithmetic import drawn_with
 from mcgw.store.disk import parts_of
 from mcgw.store.ensembles import finished, open_ensemble
@@ -90,6 +91,7 @@ def write_ensemble(ensemble: Ensemble, path: Path, *, wall_seconds: float) -> No
             run=identity_of(scene, ensemble.sampler),
             draws=drawn_with(scene, ensemble.sampler),
             wall_seconds=wall_seconds,
+            **({} if ensemble.drawn_for is None else {"drawn_for": scene_text(ensemble.drawn_for)}),
         )
     )
     with h5py.File(io.BytesIO(body), "r") as file:

@@ -1,0 +1,29 @@
+"""Whether surfaces that were drawn again are those of an ensemble."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mcgw.ensemble.ensemble import Ensemble
+
+__all__ = ["check_same"]
+
+_SAME = 1e-9  # relative difference of sums that are only rounded differently
+
+
+def check_same(
+    ensemble: Ensemble, first: int, sums: dict[str, NDArray[np.float64]], columns: slice = slice(None)
+) -> None:
+    """Compare sums of surfaces from `first` on, at some columns, with those that the ensemble holds.
+
+    Raises
+    ------
+    ValueError
+        If they differ.
+    """
+    for name, values in sums.items():
+        held = ensemble.sums.read(name, first, first + len(values))[:, columns]
+        if not np.allclose(values, held, rtol=_SAME, atol=_SAME * float(np.abs(held).mean())):
+            raise ValueError(
+                f"the surfaces cannot be drawn again: their {name} differs (another version of "
+                'mcgw, or a run that is not finished); simulate them with keep = "moments"'
+            )
