@@ -65,7 +65,8 @@ def regrade(
         From kept moments edges of the cells, such as the ensemble's own separations; else any that is not
         lower than these. Default: these.
     **contact
-        ``unload_from``, ``film`` or ``tangential``, where they are to change; None leaves them out.
+        ``unload_from``, ``film`` or ``tangential``, where they are to change; None leaves them out. By
+        default they stay, where the law has them.
 
     Returns
     -------
@@ -114,6 +115,7 @@ def regraded_scene(
         raise TypeError(f"regrade: {sorted(unknown)[0]!r} cannot be changed; {', '.join(_CONTACT)} can")
     old = ensemble.scene
     law = old.law if law is None else read_law(as_toml(law))
+    contact = {**_unknown_under(law), **contact}
     if quantities is None:
         quantities = [name for name in old.quantities if _is_left(name, law, {**vars(old), **contact})]
     return old.replace(
@@ -124,6 +126,16 @@ def regraded_scene(
         n_surfaces=ensemble.n_surfaces,
         **contact,
     )
+
+
+def _unknown_under(law: ContactLaw) -> dict[str, None]:
+    """What there cannot be under a law."""
+    unknown: dict[str, None] = {} if half_spaces(law) else {"tangential": None}
+    try:
+        law.unloading()
+    except ValueError:
+        unknown["unload_from"] = None
+    return unknown
 
 
 def _is_left(name: str, law: ContactLaw, contact: dict[str, Any]) -> bool:

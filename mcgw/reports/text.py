@@ -108,9 +108,11 @@ def summary_rows(ensemble: Ensemble) -> Iterator[Row]:
 
 
 def _ratios(new: Ensemble, old: Ensemble) -> Iterator[tuple[str, Paired, np.ndarray]]:
-    """Name, ratio by Monte Carlo and by theory of each quantity that the modulus enters."""
-    for name in new.scene.quantities:
-        if quantity_of(name).modulus:
+    """Name, ratio by Monte Carlo and by theory of each quantity that the change enters."""
+    other_law = new.scene.law != old.scene.law
+    for name in filter(old.scene.quantities.__contains__, new.scene.quantities):
+        q = quantity_of(name)
+        if q.modulus or (other_law and not q.counts):
             exact, before = (e.scene.theory.mean(name, e.separations) for e in (new, old))
             with np.errstate(invalid="ignore", divide="ignore"):
                 yield name, paired_ratio(new, old, name), exact / before
