@@ -1,6 +1,7 @@
 """The separation at which contacts under any law carry a given load, or have a given area."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,8 +20,8 @@ _LAST_DIGITS = 4 * np.finfo(float).eps
 class LawSum:
     """A sum over given asperities as the separation falls.
 
-    Each piece of the law rises with the penetration. From one piece to the next a contact may jump, up or
-    down: so the sum need not be monotone, and may pass a value without having it.
+    Each piece of the law rises with the penetration. From one piece to the next, and where it begins, a
+    contact may jump, up or down: so the sum need not be monotone, and may pass a value without having it.
 
     Parameters
     ----------
@@ -67,16 +68,26 @@ class LawSum:
         s, e = self._touching(low)
         terms = term_of(self.quantity, self.branch, low, s, e)
         at_low = float(np.sum(terms))
-        first, last = np.maximum(self._pieces(high, s, e), 0), self._pieces(low, s, e)
+        first, last = self._pieces(high, s, e), self._pieces(low, s, e)
+        if self._snaps:
+            terms = np.where(first < 0, np.maximum(terms, 0.0), terms)
+        else:  # a contact begins as nothing
+            first = np.maximum(first, 0)
         changed = np.flatnonzero(first < last)
         if not changed.size:
-            return at_low, at_low, bool(np.all(first == last))
+            return at_low, at_low, True
         for j, limit in enumerate(self.branch.law.limits(e[changed])):
             ends = (first[changed] <= j) & (j < last[changed])
             here, limit = changed[ends], limit[ends]
             at_end = self.branch.value(self.quantity, j, s[here] - limit, limit, e[here])
             terms[here] = np.maximum(terms[here], at_end)
         return at_low, float(np.sum(terms)), False
+
+    @cached_property
+    def _snaps(self) -> bool:
+        """Whether contacts begin with a load or area of their own."""
+        none = np.zeros(1)
+        return bool(self.branch.value(self.quantity, 0, none, none, np.ones(1))[0] != 0)
 
     def _at(self, h: float) -> float:
         s, e = self._touching(h)

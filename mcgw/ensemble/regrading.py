@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from analytic import Grading, quantity_of
-from analytic.laws import ContactLaw
+from analytic.laws import ContactLaw, half_spaces
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.from_heights import sums_of_heights
 from mcgw.ensemble.results import MemoryResults, joined

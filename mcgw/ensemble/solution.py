@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from analytic import QUANTITIES, Hertz, Quantity, quantity_of
 from analytic.laws import LoadingBranch, term_of
+from analytic.laws.elastic_plastic import ElasticPlastic
 from mcgw.ensemble.law_separation import LawSum
 from mcgw.ensemble.separation import LOWEST, crossing, separation_on
 from mcgw.ensemble.solved import Solution
@@ -137,7 +138,7 @@ def _theory(scene: Scene, q: Quantity, value: float) -> dict[str, float]:
 
 def _quantities(scene: Scene) -> tuple[str, ...]:
     """All that a surface that is loaded has."""
-    yielding = () if scene.law.elastic else ("load_slope", "yielded")
+    yielding = ("load_slope", "yielded") if isinstance(scene.law, ElasticPlastic) else ()
     return (*QUANTITIES, *yielding, *(() if scene.film is None else ("conductance_si",)))
 
 
