@@ -158,3 +158,79 @@ def test_what_was_not_reached_is_said_after(make_scene):
         assert float(width) == pytest.approx((high[1] - mean) / mean, rel=0.06)
         assert low[1] < mean
     assert len(after(ensemble, 1.0)) == 1
+
+
+METAL = mcgw.KogutEtsion(critical=0.05)
+
+
+def told_of(make_scene, shallow, law, **changes):
+    return cautions(make_scene(surface=shallow, law=law, grading=analytic.Homogeneous(), **changes))
+
+
+def test_the_choice_of_the_law_is_worth_ten_percent(make_scene, shallow):
+    """Means of physics.md at h = 1 and delta_c = 0.05: CEB .0532829, KE .0534662, ZMC .0487678, Hertz."""
+    (line,) = about(told_of(make_scene, shallow, METAL, separations=(0.0, 1.0, 2.0)), "choice of the law")
+    said = {name: float(x) for name, x in re.findall(r"([a-z-]+) ([0-9.]+)(?:,|$)", line.split("sigma: ")[1])}
+    here = 0.05346624148043353
+    known = {"chang-etsion-bogy": 0.05328285176044976, "zhao-maietta-chang": 0.04876778006841703}
+    for name, mean in known.items():
+        assert said[name] == pytest.approx(mean / here, abs=6e-4)
+    assert said["hertz"] == pytest.approx(float(analytic.fn(1.5, 1.0)) / here, abs=6e-3)
+    worth = max(1.0, said["jackson-green"]) / min(x for n, x in said.items() if n != "hertz") - 1
+    assert f"is worth {worth:.0%} of the load at d/sigma = 1;" in line
+    assert not about(told_of(make_scene, shallow, None), "choice of the law")
+    assert not about(told_of(make_scene, shallow, mcgw.PowerLawGraded(0.5, c0=1e-6)), "choice of the law")
+
+
+def test_jumps_are_told_unless_they_are_bridged(make_scene, shallow):
+    bridged = dataclasses.replace(METAL, bridge="hermite")
+    for law, given in ((METAL, True), (bridged, False), (mcgw.ZhaoMaiettaChang(critical=0.05), False)):
+        told = told_of(make_scene, shallow, law)
+        assert bool(about(told, "the law's load jumps")) == given
+        assert len(about(told, "stiffness is that of first unloading")) == 1
+    assert not about(told_of(make_scene, shallow, None), "stiffness")
+
+
+def test_a_loop_that_gains_energy(make_scene, shallow):
+    """The share of contacts with a deepest penetration from 1 to 1.25 times 0.05, by the exact law."""
+    (line,) = about(told_of(make_scene, shallow, METAL, unload_from="loop", separations=(0.5, 1.0)), "work")
+    scene = make_scene(grading=analytic.Homogeneous(), separations=(0.5, 1.0))
+    share = exact.share_above(scene, 0.55) - exact.share_above(scene, 0.5625)
+    said = float(re.search(r"a share of (\S+) of", line)[1])
+    assert said == pytest.approx(share / exact.share_above(scene, 0.5), abs=2e-3)
+    assert not about(told_of(make_scene, shallow, METAL), "work")
+
+
+@pytest.mark.parametrize(("critical", "given"), [(0.02, 0), (0.005, 1), (0.001, 1)])
+def test_contacts_deeper_than_the_fit(make_scene, shallow, critical, given):
+    law = mcgw.KogutEtsion(critical=critical)
+    told = about(told_of(make_scene, shallow, law, separations=(0.0, 1.0)), "110 critical")
+    scene = make_scene(grading=analytic.Homogeneous())
+    share = exact.share_above(scene, 110 * critical) / exact.share_above(scene, 0.0)
+    assert len(told) == given == (share > 1e-3)
+    if told:
+        assert float(re.search(r"a share of (\S+) of", told[0])[1]) == pytest.approx(share, abs=2e-3)
+
+
+def test_materials_and_contacts_beyond_jackson_and_green(make_scene, shallow):
+    """S_y/E* from 0.001 to 0.01, contacts up to 0.4 R."""
+    for strain, given in ((4e-3, False), (2e-2, True), (5e-4, True)):
+        law = mcgw.JacksonGreen(yield_strength=strain * shallow.E_star)
+        assert bool(about(told_of(make_scene, shallow, law), "contact.yield_strength")) == given
+    law = mcgw.JacksonGreen(yield_strength=4e-3 * shallow.E_star)
+    assert not about(told_of(make_scene, shallow, law), "of the summit radius")
+    sharp = dataclasses.replace(shallow, radius=10e-6)
+    assert about(told_of(make_scene, sharp, law), "of the summit radius")
+
+
+def test_a_coating_too_unlike_its_substrate(make_scene, shallow):
+    for ratio, given in ((0.2, True), (0.5, False), (2.9, False), (4.0, True)):
+        law = mcgw.Coated(ratio=ratio, thickness=1e-6)
+        assert bool(about(told_of(make_scene, shallow, law), "contact.ratio")) == given
+
+
+def test_metals_are_shown_the_way(make_scene):
+    """Where contacts are steep and elastic, the key is named."""
+    for law, given in ((None, True), (METAL, False)):
+        (line,) = about(cautions(make_scene(law=law)), "times their radius")
+        assert ('contact.law = "kogut-etsion"' in line) == given

@@ -10,6 +10,7 @@ EXAMPLE = "mcgw init coating -o mine.toml && mcgw run mine.toml -o mine.h5"
 PRESETS = {
     "demo": "bead-blasted aluminium with stiffened tips",
     "aluminium": "bead-blasted aluminium of Greenwood and Williamson, homogeneous",
+    "metal": "the same where asperities yield, with its way back",
     "coating": "a graded hard coating",
     "degradation": "tips softened by chemical attack",
     "nanoindentation": "a table of measured moduli",

@@ -31,7 +31,7 @@ class Paired(Shown):
     separations : ndarray
         Where, d/sigma.
     ratio, stderr : ndarray
-        Ratio of the means and its standard error.
+        Ratio of the means and its standard error; nan where the denominator has no contact.
     gain : ndarray
         Variance of the ratio of two independent ensembles of this size over that of the pair.
     """
@@ -102,12 +102,15 @@ def paired_ratio(numerator: Ensemble, denominator: Ensemble, quantity: str) -> P
             f"a paired ratio takes two ensembles of the same surfaces; these differ in {', '.join(differ)}"
         )
     b, a = (e.values(quantity).astype(np.float64) for e in (numerator, denominator))
-    ratio = b.mean(axis=0) / a.mean(axis=0)
+    with np.errstate(divide="ignore", invalid="ignore"):  # without a contact there is no ratio
+        return _pair(quantity, numerator.separations, b, a)
+
+
+def _pair(quantity: str, separations: Array, b: Array, a: Array) -> Paired:
+    ratio = b.mean(axis=0) / np.where(a.mean(axis=0) == 0, np.nan, a.mean(axis=0))
     residual = (b - ratio * a).var(axis=0, ddof=1)
     apart = b.var(axis=0, ddof=1) + ratio**2 * a.var(axis=0, ddof=1)
-    return Paired(
-        quantity, numerator.separations, ratio, np.sqrt(residual / len(a)) / a.mean(axis=0), apart / residual
-    )
+    return Paired(quantity, separations, ratio, np.sqrt(residual / len(a)) / a.mean(axis=0), apart / residual)
 
 
 def _same_asperities(one: Ensemble, other: Ensemble) -> bool:

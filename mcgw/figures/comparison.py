@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 
 from analytic import quantity_of
 from mcgw.ensemble.intervals import TOO_FEW
-from mcgw.figures.style import STYLE, grading_label, shown_title
+from mcgw.figures.style import STYLE, contact_label, shown_title
 from mcgw.formats.pictures import save_figure
 from mcgw.statistics.comparison import Comparison, Curve
 
@@ -71,7 +71,7 @@ def save_comparison(comparison: Comparison, path: str | Path) -> None:
         )
         caption = (
             f"{ensemble.n_surfaces} surfaces of {scene.n_asperities:g} asperities, "
-            f"{grading_label(scene.grading)}; sampler {ensemble.sampler}, seed {scene.seed}"
+            f"{contact_label(scene)}; sampler {ensemble.sampler}, seed {scene.seed}"
         )
         figure.supxlabel(f"separation $d/\\sigma$\n{caption}", fontsize=9)
         save_figure(figure, path)

@@ -4,11 +4,12 @@ from typing import Any
 
 from cycler import cycler
 
-from analytic import Exponential, Grading, Homogeneous, PiecewiseSeries
+from analytic import Exponential, Grading, Hertz, Homogeneous, PiecewiseSeries
 from mcgw.machine.terminal import one_line
+from mcgw.scene.law_text import law_text
 from mcgw.scene.scene import Scene
 
-__all__ = ["STYLE", "grading_label", "shown_title"]
+__all__ = ["STYLE", "contact_label", "grading_label", "shown_title"]
 
 # One style for all figures: colours of Okabe and Ito, told apart by colour-blind readers and in grey.
 STYLE: Any = {
@@ -41,3 +42,9 @@ def grading_label(grading: Grading) -> str:
         case PiecewiseSeries(name=name) if name:
             return f"grading {one_line(name).replace('$', '')}"
     return f"{type(grading).__name__.lower()} grading"
+
+
+def contact_label(scene: Scene) -> str:
+    """Grading and contact law for a caption; Hertz's law is not named."""
+    law = "" if type(scene.law) is Hertz else f", {one_line(law_text(scene.law))}"
+    return f"{grading_label(scene.grading)}{law}"

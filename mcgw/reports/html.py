@@ -19,8 +19,10 @@ from mcgw.figures.drawing import draw
 from mcgw.figures.style import STYLE, grading_label
 from mcgw.formats.evenly import evenly
 from mcgw.machine.terminal import one_line, plain_text
+from mcgw.reports.laws_section import contacts_sentence, laws_section, yielding_item
 from mcgw.reports.text import verdict_line
 from mcgw.scene.cautions import cautions
+from mcgw.scene.contact_text import contact_facts
 from mcgw.statistics.comparison import Comparison, compare
 
 __all__ = ["report_html"]
@@ -77,10 +79,9 @@ residual in standard errors.</p>
 <div class="grid">$tables</div>
 <h2>The surface</h2>
 <table class="facts">$facts</table>
-<h2>Before you trust it</h2>
+$laws<h2>Before you trust it</h2>
 <ul>$cautions
-<li>every contact is elastic: with the hardness H and slope of the material at hand, check the plasticity
-index (analytic.plasticity_index) before using loads at small separations</li></ul>
+$yielding</ul>
 <h2>Provenance</h2>
 <table class="facts">$provenance</table>
 <h2>Do it again</h2>
@@ -116,6 +117,8 @@ def report_html(ensemble: Ensemble, attributes: dict[str, Any]) -> str:
         figures="\n".join(f"<figure>{figure}</figure>" for figure in figures),
         tables="\n".join(_table(comparison, name) for name in names),
         facts=_facts(ensemble),
+        laws=laws_section(ensemble.scene),
+        yielding=yielding_item(ensemble.scene),
         cautions="\n".join(f"<li>{escape(text)}</li>" for text in cautions(ensemble.scene)),
         provenance=_rows(
             (key, escape(str(attributes[key])))
@@ -176,7 +179,7 @@ def _words(ensemble: Ensemble) -> str:
     return (
         f"{ensemble.n_surfaces} rough surfaces of {scene.n_asperities:g} asperities{count}, "
         f"{escape(grading_label(scene.grading))}, each pressed on a plane at {separations} from d/σ = "
-        f"{min(scene.separations):g} to {max(scene.separations):g}. Every asperity is a Hertz contact."
+        f"{min(scene.separations):g} to {max(scene.separations):g}. {contacts_sentence(scene)}"
     )
 
 
@@ -223,6 +226,7 @@ def _facts(ensemble: Ensemble) -> str:
             ),
             ("composite modulus E*", f"{_number(x.E_star)} Pa"),
             ("grading E*(s)/E*", escape(grading_label(scene.grading))),
+            *((word, escape(what)) for word, what in contact_facts(scene)),
             ("contacts expected at the lowest separation", _number(contacts)),
         )
     )

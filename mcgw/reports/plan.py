@@ -7,6 +7,7 @@ from mcgw.ensemble.forecast import forecast
 from mcgw.jobs.duration import in_words, seconds_for
 from mcgw.machine.terminal import one_line
 from mcgw.sampling.samplers import sampler_of
+from mcgw.scene.contact_text import contact_facts
 from mcgw.scene.samplers import promise_of
 from mcgw.scene.scene import Scene
 
@@ -51,7 +52,7 @@ class Plan:
 def plan_of(scene: Scene) -> Plan:
     """Look at what a scene needs, and time a small block of it, of which nothing is kept."""
     sampler = sampler_of(scene)
-    columns = len(scene.separations) * len(scene.quantities)
+    columns = scene.width
     columns += (sampler.moments + sampler.cells) * (scene.keep == "moments")
     surfaces = forecast(scene).surfaces
     return Plan(
@@ -77,6 +78,7 @@ def plan_text(scene: Scene, plan: Plan) -> str:
         f"  drawn         {plan.drawn:.4g} of a surface",
         f"  cells         {plan.cells}, with {plan.moments} moments a surface",
         f"  quantities    {', '.join(scene.quantities)} at {len(scene.separations)} separations",
+        *(f"  {word:13} {what}" for word, what in contact_facts(scene)),
         f"  results       {plan.bytes / 1e6:.4g} MB before compression",
         f"  time          about {in_words(plan.seconds)} on this machine",
         "not done:",

@@ -8,7 +8,7 @@ from analytic import quantity_of
 from mcgw.ensemble.intervals import interval_text
 from mcgw.ensemble.solved import Solution
 from mcgw.formats.csv_table import Row
-from mcgw.scene.law_text import law_text
+from mcgw.scene.contact_text import contact_facts
 from mcgw.scene.scene import Scene
 
 __all__ = ["SOLUTION_HEADER", "solution_rows", "solution_table"]
@@ -42,8 +42,9 @@ def solution_table(scene: Scene, solutions: Sequence[Solution]) -> str:
         lines.append(
             "Few contacts: finite surfaces differ from theory, whose surface is infinite, by more than noise."
         )
-    if not scene.law.elastic:
-        lines.append(f"law: {law_text(scene.law)}; loaded from far away, nothing unloads")
+    lines += [f"{word}: {what}" for word, what in contact_facts(scene) if word in ("contact law", "film")]
+    if scene.unload_from is not None:
+        lines.append("each surface is loaded from far away; nothing of it is on the way back")
     lines.append(
         f"std: over {scene.n_surfaces} surfaces of {scene.n_asperities:g} asperities, each at its own d;"
         f" heights drawn one by one, seed {scene.seed}"

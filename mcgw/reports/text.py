@@ -12,6 +12,7 @@ from mcgw.ensemble.paired import Paired, paired_ratio
 from mcgw.formats.csv_table import Row
 from mcgw.formats.evenly import evenly
 from mcgw.machine.terminal import one_line
+from mcgw.scene.contact_text import contact_facts
 from mcgw.statistics.comparison import FALSE_ALARM, Comparison, Verdict
 
 __all__ = [
@@ -52,6 +53,7 @@ def summary(ensemble: Ensemble, attributes: dict[str, Any]) -> str:
         f"  separations   {len(scene.separations)} from {min(scene.separations):g} to "
         f"{max(scene.separations):g} (d/sigma)",
         f"  grading       {scene.grading}",
+        *(f"  {word:13} {what}" for word, what in contact_facts(scene)),
         f"  sampler       {ensemble.sampler}, seed {scene.seed}",
         f"  complete      {'yes' if attributes['complete'] else 'no'}",
         f"  digest        {attributes['digest']}",
@@ -74,7 +76,7 @@ def summary(ensemble: Ensemble, attributes: dict[str, Any]) -> str:
 def comparison_table(comparison: Comparison) -> str:
     """Monte Carlo beside theory at some separations."""
     h = comparison.ensemble.separations
-    lines = []
+    lines = [f"{word}: {what}" for word, what in contact_facts(comparison.ensemble.scene)]
     for name, curve in comparison.curves.items():
         q = quantity_of(name)
         lines += [
@@ -135,8 +137,8 @@ def ratio_table(new: Ensemble, old: Ensemble) -> str:
         ]
         for k in evenly(len(new.separations), _MOST_ROWS):
             lines.append(
-                f"  {new.scene.separations[k]:8.3f} {pair.ratio[k]:10.6f} {pair.stderr[k]:9.1e} "
-                f"{exact[k]:10.6f}   {pair.gain[k]:.3g}"
+                f"  {new.scene.separations[k]:8.3f} {pair.ratio[k]:10.6g} {pair.stderr[k]:9.1e} "
+                f"{exact[k]:10.6g}   {pair.gain[k]:.3g}"
             )
     return "\n".join(lines)
 

@@ -4,6 +4,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from analytic import Hertz
+from mcgw.scene.law_cautions import law_cautions
 from mcgw.scene.plausible import perhaps_other_units
 from mcgw.scene.scene import Scene
 
@@ -18,7 +20,8 @@ _FEW = 30.0  # contacts a surface, below which single surfaces are far from Gaus
 def cautions(scene: Scene) -> list[str]:
     """What a reader should know before trusting the numbers of a scene, a line each."""
     found = [_crowd, _half, _depth, _slope, _few_contacts, _other_number, _negative_modulus]
-    return [*perhaps_other_units(scene), *(line for caution in found for line in caution(scene))]
+    lines = [line for caution in found for line in caution(scene)]
+    return [*perhaps_other_units(scene), *lines, *law_cautions(scene)]
 
 
 def _crowd(scene: Scene) -> Iterator[str]:
@@ -58,7 +61,7 @@ def _depth(scene: Scene) -> Iterator[str]:
     if share > _DEEP or surface.sigma >= surface.radius:
         yield (
             f"surface.radius = {surface.radius:g} m: at d/sigma = {lowest:g} a share of {share:.2g} "
-            "of the contacts is compressed by more than the radius, where Hertz does not hold"
+            f"of the contacts is compressed by more than the radius, where {_model(scene)} does not hold"
         )
 
 
@@ -68,8 +71,19 @@ def _slope(scene: Scene) -> Iterator[str]:
     if steepest > _STEEP:
         yield (
             f"the highest summits (s = {top:.1f}) have contacts of {steepest:.2f} times their radius at "
-            "the lowest separation, more than Hertz's parabolic contact bears; metals yield far earlier"
+            f"the lowest separation, more than the parabolic contact of {_model(scene)} bears{_metals(scene)}"
         )
+
+
+def _model(scene: Scene) -> str:
+    return "Hertz" if type(scene.law) is Hertz else f'law = "{scene.law.name}"'
+
+
+def _metals(scene: Scene) -> str:
+    """That there are laws for them, where asperities stay elastic."""
+    if not scene.law.elastic:
+        return ""
+    return '; metals yield far earlier: contact.law = "kogut-etsion" with their hardness'
 
 
 def _few_contacts(scene: Scene) -> Iterator[str]:

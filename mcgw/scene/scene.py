@@ -9,8 +9,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from analytic import Grading, Model, Surface
-from analytic.laws import ContactLaw, Film, Hertz, Tangential
+from analytic.laws import ContactLaw, Film, Tangential
 from mcgw.formats.sheet import Sheet, Shown
+from mcgw.scene.contact_text import contact_facts
 from mcgw.scene.ensemble_section import LeftOut
 from mcgw.scene.fields import Fields
 from mcgw.scene.law_text import law_text
@@ -194,14 +195,13 @@ class Scene(Fields, Shown):
         h, among = self.separations, f"{len(self.separations)} from " if len(self.separations) > 1 else ""
         ends = " to ".join(f"{end:g}" for end in sorted({min(h), max(h)}))
         stop = "" if self.rel_err is None else f" until rel_err = {self.rel_err:g}, at most"
-        back = "" if self.unload_from is None else f", and back from {self.unload_from:g}"
         facts = [
             ("surface", ", ".join((x["sigma"], x["radius"], x["eta"]))),
             ("", f"{x['nominal_area']}, {x['E_star']}"),
             ("grading", law_text(self.grading) + ("" if self.negative == "error" else f", {self.negative}")),
             ("heights", law_text(self.heights)),
-            *([] if type(self.law) is Hertz else [("law", law_text(self.law))]),
-            ("separations", f"{among}{ends} (d/sigma){back}"),
+            *contact_facts(self),
+            ("separations", f"{among}{ends} (d/sigma)"),
             ("quantities", ", ".join(self.quantities)),
             (
                 "ensemble",

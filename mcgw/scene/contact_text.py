@@ -1,0 +1,29 @@
+"""What a scene says of its contacts besides separations: law, way back, film, sliding; in words."""
+
+from analytic import Hertz
+from mcgw.scene.fields import Fields
+from mcgw.scene.law_text import law_text
+
+__all__ = ["contact_facts"]
+
+
+def contact_facts(scene: Fields) -> list[tuple[str, str]]:
+    """A word and what holds, only for what is not Hertz's contact pressed once; for reports of any kind."""
+    facts = []
+    if type(scene.law) is not Hertz:
+        facts.append(("contact law", law_text(scene.law)))
+    if scene.unload_from is not None:
+        facts.append(("way back", f"from d/sigma = {scene.unload_from:g}"))
+    if scene.film is not None:
+        film = f", film {scene.film.film_resistance:g} ohm m^2" if scene.film.film_resistance else ""
+        facts.append(("film", f"resistivity {scene.film.resistivity:g} ohm m{film}"))
+    if scene.tangential is not None:
+        pushed = scene.tangential
+        facts.append(
+            (
+                "sideways",
+                f"friction {pushed.friction:g}, Poisson's ratio {pushed.poisson:g}, "
+                f"u up to {max(pushed.displacements):g} m",
+            )
+        )
+    return facts

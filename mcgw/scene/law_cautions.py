@@ -1,0 +1,132 @@
+"""Where a contact law is asked beyond what it was made for: fits that jump, and their ranges."""
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from analytic import Coated, JacksonGreen, KogutEtsion
+from analytic.laws.elastic_plastic import ElasticPlastic
+from mcgw.scene.other_laws import other_laws
+from mcgw.scene.scene import Scene
+
+__all__ = ["law_cautions"]
+
+_DEEP = 1e-3  # share of the contacts beyond the range of a fit
+_FITTED, _UNLOADED = 110.0, 170.0  # delta/delta_c up to which Kogut-Etsion, and its unloading, were fitted
+_STRAINS, _WIDEST = (1e-3, 1e-2), 0.4  # S_y/E* and a/R of Jackson and Green's finite elements
+_RATIOS = (1 / 3, 3.0)  # of moduli for which a coating's perturbation is good
+
+
+def law_cautions(scene: Scene) -> list[str]:
+    """What a reader should know of the contact law, a line each; none under Hertz's."""
+    found = [_choice, _jumps, _gain, _fitted, _strain, _radius, _coating]
+    return [line for caution in found for line in caution(scene)]
+
+
+def _choice(scene: Scene) -> Iterator[str]:
+    """How far laws that are meant alike differ."""
+    others = other_laws(scene)
+    if others is None:
+        return
+    low, high = others.spread
+    ratios = ", ".join(f"{name} {ratio:.3g}" for name, ratio in others.load.items())
+    yield (
+        f'contact.law = "{scene.law.name}": the choice of the law is worth {high / low - 1:.0%} of the load '
+        f"at d/sigma = {others.separation:.3g}; over this one's, with the same critical penetration of "
+        f"{others.critical:.3g} sigma: {ratios}"
+    )
+
+
+def _jumps(scene: Scene) -> Iterator[str]:
+    """Stiffness is not the slope of the load."""
+    if not isinstance(scene.law, ElasticPlastic):
+        return
+    line = f'contact.law = "{scene.law.name}": stiffness is that of first unloading, 2 E*(s) a a contact'
+    if getattr(scene.law, "bridge", "none to build") is None:
+        yield (
+            f"{line}; the law's load jumps, and load_slope leaves the jumps out "
+            '(bridge = "hermite" joins them)'
+        )
+    elif {"stiffness", "load_slope"} & set(scene.quantities):
+        yield f"{line}; load_slope is -dP/dd of loading"
+
+
+def _gain(scene: Scene) -> Iterator[str]:
+    """The fits of loading and unloading do not quite belong together."""
+    if isinstance(scene.law, KogutEtsion) and scene.unload_from is not None and scene.law.bridge is None:
+        share = _share(scene, 1.0) - _share(scene, 1.25)
+        if share > 0:
+            yield (
+                "contact.unload_from: a contact that turns at 1 to 1.25 critical penetrations gives out up "
+                f"to 3 % more work than it took, because the fitted load jumps; a share of {share:.2g} of "
+                "the contacts does"
+            )
+
+
+def _fitted(scene: Scene) -> Iterator[str]:
+    if not isinstance(scene.law, KogutEtsion):
+        return
+    back = scene.unload_from is not None
+    for most, what, applies in ((_FITTED, "loading", True), (_UNLOADED, "unloading", back)):
+        share = _share(scene, most) if applies else 0.0
+        if share > _DEEP:
+            yield (
+                f"contact.law: a share of {share:.2g} of the contacts is deeper at the lowest separation "
+                f"than {most:g} critical penetrations, up to which its {what} was fitted"
+            )
+
+
+def _share(scene: Scene, multiple: float) -> float:
+    """Contacts at the deepest separation that are deeper than a multiple of the critical penetration."""
+    h, law = _deepest(scene), scene.contact
+    assert isinstance(law, ElasticPlastic)
+    touching = scene.heights.above(np.array(h))
+    rank = touching * (np.arange(1000) + 0.5) / 1000
+    s = scene.heights.from_above(np.maximum(rank, np.finfo(float).tiny), h)
+    return float(np.mean(s - h > multiple * law.delta_c(scene.modulus(s)))) if touching > 0 else 0.0
+
+
+def _deepest(scene: Scene) -> float:
+    return scene.lowest if scene.unload_from is None else min(scene.lowest, scene.unload_from)
+
+
+def _strain(scene: Scene) -> Iterator[str]:
+    """Outside of the materials of the finite elements."""
+    law: Any = scene.contact
+    if not isinstance(law, JacksonGreen):
+        return
+    s = np.linspace(max(_deepest(scene), scene.least), scene.highest, 101)
+    e = scene.modulus(s)
+    strains = law.yield_strain / e[e > 0] if law.yield_strain else np.empty(0)
+    if strains.size and not (_STRAINS[0] <= strains.min() and strains.max() <= _STRAINS[1]):
+        yield (
+            f"contact.yield_strength: over E*(s) it runs from {strains.min():.2g} to {strains.max():.2g} "
+            f"among the heights that touch; the law was fitted from {_STRAINS[0]:g} to {_STRAINS[1]:g}"
+        )
+
+
+def _radius(scene: Scene) -> Iterator[str]:
+    """Contacts wider than those of the finite elements."""
+    law = scene.contact
+    if not isinstance(law, JacksonGreen):
+        return
+    h, touching = _deepest(scene), float(scene.heights.above(np.array(_deepest(scene))))
+    s = scene.heights.from_above(np.array([_DEEP * touching]), h)
+    y, e = np.sqrt(np.maximum(s - h, 0)), scene.modulus(s)
+    piece = int(np.sum(law.limits(e)[:, 0] <= s - h))
+    a = float(law.radius(piece, y, e)[0]) * np.sqrt(scene.surface.sigma / scene.surface.radius)
+    if a > _WIDEST:
+        yield (
+            f"contact.law: the widest thousandth of the contacts at the lowest separation reaches {a:.2g} of "
+            f"the summit radius; the law was fitted up to {_WIDEST:g}"
+        )
+
+
+def _coating(scene: Scene) -> Iterator[str]:
+    law = scene.law
+    if isinstance(law, Coated) and not _RATIOS[0] <= law.ratio <= _RATIOS[1]:
+        yield (
+            f"contact.ratio = {law.ratio:g}: the coating is a first-order perturbation, good for ratios from "
+            "1/3 to 3"
+        )
