@@ -262,6 +262,15 @@ def graded_by(grading):
     return check
 
 
+def contact_by(law):
+    def check(plain, given):
+        assert given.code == 0, given.err
+        assert mcgw.open_ensemble(given.folder / "a.h5").scene.law == law
+        assert plain.code != 0 or mcgw.open_ensemble(plain.folder / "a.h5").scene.law != law
+
+    return check
+
+
 def solved_for(value, unit):
     """Theory's load or area is what was asked."""
 
@@ -312,6 +321,8 @@ class Row:
 
 
 E = ["@e.h5"]
+LAW = [*E, "-o", "a.h5", "--law"]
+HERTZ, KE = [*LAW, "hertz"], [*LAW, "kogut-etsion"]
 RUN = ["@s.toml", "-o", "a.h5"]
 MAP = ["@s.toml", "--shape", "200", "-o", "m.sdf"]
 HDF = [*MAP[:-1], "m.h5"]
@@ -356,6 +367,35 @@ ROWS = [
     row("regrade", "--csv", [*E, "--gamma", "1", "-o", "a.h5"],
         [*E, "--gamma", "1", "-o", "a.h5", "--csv", "x.csv"],
         csv_columns("x.csv", "ratio", "stderr", "theory", "variance_gain")),
+    row("regrade", "--law", HERTZ, [*KE, "--critical", "0.05"], contact_by(mcgw.KogutEtsion(critical=0.05))),
+    row("regrade", "--critical", HERTZ, [*KE, "--critical", "0.05"],
+        contact_by(mcgw.KogutEtsion(critical=0.05))),
+    row("regrade", "--hardness", [*KE, "--critical", "0.05"], [*KE, "--hardness", "2GPa"],
+        contact_by(mcgw.KogutEtsion(hardness=2e9))),
+    row("regrade", "--poisson", [*KE, "--critical", "0.05"], [*KE, "--critical", "0.05", "--poisson", "0.4"],
+        contact_by(mcgw.KogutEtsion(critical=0.05, poisson=0.4))),
+    row("regrade", "--bridge", [*KE, "--critical", "0.05"],
+        [*KE, "--critical", "0.05", "--bridge", "hermite"],
+        contact_by(mcgw.KogutEtsion(critical=0.05, bridge="hermite"))),
+    row("regrade", "--yield-strength", HERTZ,
+        [*LAW, "jackson-green", "--yield-strength", "500MPa"],
+        contact_by(mcgw.JacksonGreen(yield_strength=5e8))),
+    row("regrade", "--k", HERTZ,
+        [*LAW, "power-law-graded", "--k", "0.5", "--c0", "1um"],
+        contact_by(mcgw.PowerLawGraded(0.5, c0=1e-6))),
+    row("regrade", "--c0", [*LAW, "power-law-graded", "--k", "0.5", "--c0", "1um"],
+        [*LAW, "power-law-graded", "--k", "0.5", "--c0", "2um"],
+        contact_by(mcgw.PowerLawGraded(0.5, c0=2e-6))),
+    row("regrade", "--thickness", [*LAW, "coated", "--thickness", "1um", "--ratio", "2"],
+        [*LAW, "coated", "--thickness", "0.5um", "--ratio", "2"],
+        contact_by(mcgw.Coated(thickness=5e-7, ratio=2.0))),
+    row("regrade", "--ratio", [*LAW, "coated", "--thickness", "1um", "--ratio", "2"],
+        [*LAW, "coated", "--thickness", "1um", "--ratio", "3"],
+        contact_by(mcgw.Coated(thickness=1e-6, ratio=3.0))),
+    row("regrade", "--work", HERTZ, [*LAW, "derjaguin-muller-toporov", "--work", "0.05"],
+        contact_by(analytic.laws.DerjaguinMullerToporov(work=0.05))),
+    row("regrade", "--pull-off", HERTZ, [*LAW, "derjaguin-muller-toporov", "--pull-off", "0.01"],
+        contact_by(analytic.laws.DerjaguinMullerToporov(pull_off=0.01))),
     row("solve", "--pressure", ["@s.toml", "--pressure", "1MPa"], ["@s.toml", "--pressure", "2MPa"],
         says("Load 2 N = pressure 2 MPa")),
     row("solve", "--load", ["@s.toml", "--pressure", "1MPa"], ["@s.toml", "--load", "250mN"],

@@ -132,3 +132,53 @@ def test_in_a_browser(file, page, tmp_path):
     assert "CONSOLE" not in done.stderr
     browse(f"--print-to-pdf={tmp_path / 'page.pdf'}", file.with_suffix(".html").as_uri())
     assert (tmp_path / "page.pdf").read_bytes().startswith(b"%PDF")
+
+
+METAL = {"law": mcgw.KogutEtsion(critical=0.05), "unload_from": "loop", "film": mcgw.Film(1e-7, 1e-14)}
+
+
+def test_the_contact_law_and_its_rivals_are_in_the_report(file, make_scene):
+    """Ratios of the means at h = 1 from physics.md: Chang .0532829, Kogut .0534662, Zhao .0487678; areas."""
+    ensemble = mcgw.simulate(
+        make_scene(n_surfaces=5, separations=(0.5, 1.0, 2.0), grading=analytic.Homogeneous(), **METAL)
+    )
+    page = report_html(ensemble, read_attributes(file))
+    assert "Every asperity is a contact by KogutEtsion(critical=0.05, poisson=0.3)" in page
+    assert "quantities on the way back start from d/σ = 0.5" in page
+    assert "film 1e-14 ohm m^2" in page
+    rows = dict(re.findall(r"<tr><td>(chang-etsion-bogy|zhao-maietta-chang)</td><td>([^<]+)</td>", page))
+    for name, mean in (
+        ("chang-etsion-bogy", 0.05328285176044976),
+        ("zhao-maietta-chang", 0.04876778006841703),
+    ):
+        assert float(rows[name]) == pytest.approx(mean / 0.05346624148043353, rel=1e-4)
+    share = re.search(r"contacts at d/σ = 1 a share of (\S+) has yielded", page)[1]
+    gone = analytic.contacts(ensemble.scene.surface, 1.05) / analytic.contacts(ensemble.scene.surface, 1.0)
+    assert float(share) == pytest.approx(float(gone), abs=1e-3)
+    assert "every contact is elastic" not in page
+
+
+def test_hertz_has_no_rivals(page):
+    assert "Other contact laws" not in page
+    assert "Every asperity is a Hertz contact." in page
+    assert "<code>contact.law</code> has laws of asperities that yield" in page
+
+
+def test_every_kind_of_report_names_the_law(make_scene, tmp_path, capsys):
+    (tmp_path / "s.toml").write_text(mcgw.scene_text(make_scene(n_surfaces=20, **METAL)))
+    commands = (
+        ["run", "s.toml", "-o", "e.h5"],
+        ["show", "--plan", "s.toml"],
+        ["show", "e.h5"],
+        ["compare", "e.h5"],
+        ["solve", "s.toml", "--pressure", "100kPa"],
+    )
+    for command, *words in commands:
+        assert main([command, *(str(tmp_path / x) if "." in x else x for x in words)]) == 0
+        said = capsys.readouterr()
+        assert command == "run" or "KogutEtsion(critical=0.05, poisson=0.3)" in said.out
+        assert 'contact.law = "kogut-etsion": the choice of the law' in said.err
+    ensemble = mcgw.open_ensemble(tmp_path / "e.h5")
+    for shown in (ensemble, ensemble.scene):
+        assert "contact law  KogutEtsion(critical=0.05, poisson=0.3)" in repr(shown)
+        assert "resistivity 1e-07 ohm m, film 1e-14 ohm m^2" in repr(shown)

@@ -9,7 +9,6 @@ if TYPE_CHECKING:
 
 __all__ = ["add_law_options", "law_of"]
 
-_LAWS = "hertz, chang-etsion-bogy, zhao-maietta-chang, kogut-etsion, jackson-green, power-law-graded, coated"
 _CONSTANTS = {
     "critical": ("X", "penetration over sigma at which asperities yield"),
     "hardness": ("H", "of the softer body, as 1.2GPa"),
@@ -20,13 +19,15 @@ _CONSTANTS = {
     "c0": ("DEPTH", "depth of the modulus E*, as 1um (power-law-graded)"),
     "thickness": ("T", "of the coating, as 0.5um (coated)"),
     "ratio": ("R", "modulus of the coating over that of the substrate (coated)"),
+    "work": ("W", "of adhesion, J/m^2 (the laws that stick)"),
+    "pull-off": ("D", "stretch over sigma at which contacts break off (the laws that stick)"),
 }
 
 
 def add_law_options(parser: argparse.ArgumentParser) -> None:
     """A group of options; the values are checked as those of a scene file."""
     group = parser.add_argument_group("another contact law, and its constants as in a scene file")
-    group.add_argument("--law", metavar="LAW", help=f"one of {_LAWS}")
+    group.add_argument("--law", metavar="LAW", help="its name, as kogut-etsion; a wrong one gets the list")
     for name, (metavar, what) in _CONSTANTS.items():
         group.add_argument(f"--{name}", metavar=metavar, help=what)
 

@@ -15,6 +15,7 @@ __all__ = ["law_cautions"]
 _DEEP = 1e-3  # share of the contacts beyond the range of a fit
 _FITTED, _UNLOADED = 110.0, 170.0  # delta/delta_c up to which Kogut-Etsion, and its unloading, were fitted
 _STRAINS, _WIDEST = (1e-3, 1e-2), 0.4  # S_y/E* and a/R of Jackson and Green's finite elements
+_QUANTILES = 10_000
 _RATIOS = (1 / 3, 3.0)  # of moduli for which a coating's perturbation is good
 
 
@@ -81,10 +82,10 @@ def _share(scene: Scene, multiple: float) -> float:
     """Contacts at the deepest separation that are deeper than a multiple of the critical penetration."""
     h, law = _deepest(scene), scene.contact
     assert isinstance(law, ElasticPlastic)
-    touching = scene.heights.above(np.array(h))
-    rank = touching * (np.arange(1000) + 0.5) / 1000
-    s = scene.heights.from_above(np.maximum(rank, np.finfo(float).tiny), h)
-    return float(np.mean(s - h > multiple * law.delta_c(scene.modulus(s)))) if touching > 0 else 0.0
+    if not scene.heights.above(np.array(h)) > 0:
+        return 0.0
+    s = scene.heights.from_above((np.arange(_QUANTILES) + 0.5) / _QUANTILES, h)  # of those that touch
+    return float(np.mean(s - h > multiple * law.delta_c(scene.modulus(s))))
 
 
 def _deepest(scene: Scene) -> float:
@@ -111,8 +112,10 @@ def _radius(scene: Scene) -> Iterator[str]:
     law = scene.contact
     if not isinstance(law, JacksonGreen):
         return
-    h, touching = _deepest(scene), float(scene.heights.above(np.array(_deepest(scene))))
-    s = scene.heights.from_above(np.array([_DEEP * touching]), h)
+    h = _deepest(scene)
+    if not scene.heights.above(np.array(h)) > 0:
+        return
+    s = scene.heights.from_above(np.array([_DEEP]), h)
     y, e = np.sqrt(np.maximum(s - h, 0)), scene.modulus(s)
     piece = int(np.sum(law.limits(e)[:, 0] <= s - h))
     a = float(law.radius(piece, y, e)[0]) * np.sqrt(scene.surface.sigma / scene.surface.radius)
