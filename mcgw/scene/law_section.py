@@ -51,6 +51,8 @@ def _of_table(given: dict[str, Any], problems: list[str]) -> ContactLaw:
     """A law by the keys that it has in a file."""
     inner = Section("contact", given, problems)
     if not isinstance(given.get("law"), str):
+        from analytic.laws import by_name
+
         inner.fail("law", given.get("law"), f"choose one of {', '.join(by_name)}")
         return Hertz()
     law = contact_law(inner)
