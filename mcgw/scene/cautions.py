@@ -5,7 +5,6 @@ from collections.abc import Iterator
 import numpy as np
 
 from analytic import Hertz
-from mcgw.scene.law_cautions import law_cautions
 from mcgw.scene.plausible import perhaps_other_units
 from mcgw.scene.scene import Scene
 
@@ -21,7 +20,7 @@ def cautions(scene: Scene) -> list[str]:
     """What a reader should know before trusting the numbers of a scene, a line each."""
     found = [_crowd, _half, _depth, _slope, _few_contacts, _other_number, _negative_modulus]
     lines = [line for caution in found for line in caution(scene)]
-    return [*perhaps_other_units(scene), *lines, *law_cautions(scene)]
+    return [*perhaps_other_units(scene), *lines, *_of_law(scene)]
 
 
 def _crowd(scene: Scene) -> Iterator[str]:
@@ -111,3 +110,12 @@ def _negative_modulus(scene: Scene) -> Iterator[str]:
     if scene.negative != "error" and scene.negative_above(scene.lowest) is not None:
         word = "set to zero" if scene.negative == "clip" else "left negative"
         yield f"the modulus is negative at heights that touch, and {word}: a fit taken beyond its range"
+
+
+def _of_law(scene: Scene) -> list[str]:
+    """What a reader should know of another law than Hertz's."""
+    if type(scene.law) is Hertz:
+        return []
+    from mcgw.scene.law_cautions import law_cautions  # who asks for Hertz needs no other law
+
+    return law_cautions(scene)
