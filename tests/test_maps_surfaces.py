@@ -89,8 +89,11 @@ def test_loads_of_the_listed_asperities_are_those_in_the_file(count, make_scene,
         assert z.size == scene.n_asperities
 
 
-def test_spots_carry_the_load_of_the_row(make_scene):
-    scene = make_scene(separations=(0.5,), sampler="tail", n_surfaces=2)
+@pytest.mark.parametrize(
+    "law", [mcgw.Hertz(), mcgw.KogutEtsion(critical=0.05), mcgw.PowerLawGraded(0.5, 1e-6)]
+)
+def test_spots_carry_the_load_of_the_row(make_scene, law):
+    scene = make_scene(separations=(0.5,), sampler="tail", n_surfaces=2, law=law)
     spots = spots_at(scene, asperities_of(scene, 1), 0.5)
     ensemble = mcgw.simulate(scene)
     assert spots.load.sum() == pytest.approx(ensemble.load[1, 0], rel=1e-12)

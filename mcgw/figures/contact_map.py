@@ -11,6 +11,8 @@ from matplotlib.colors import LogNorm, Normalize
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
+from analytic import Hertz, quantity_of
+from analytic.laws import LoadingBranch, term_of
 from mcgw.formats.pictures import save_figure
 from mcgw.maps.asperities import Asperities
 from mcgw.maps.envelope import envelope
@@ -35,9 +37,9 @@ class Spots:
     Parameters
     ----------
     x, y, radius : ndarray
-        Centre and radius ``sqrt(R delta)``, m.
+        Centre and radius, m.
     load : ndarray
-        ``(4/3) E*(s) sqrt(R) delta^(3/2)``, N.
+        N.
     modulus : ndarray
         E*(s)/E*.
     separation : float
@@ -58,7 +60,7 @@ def spots_at(scene: Scene, field: Asperities, separation: float) -> Spots:
     Parameters
     ----------
     scene : Scene
-        Its surface and grading are used.
+        Its surface, grading and contact law are used.
     field : Asperities
         One of its surfaces.
     separation : float
@@ -71,11 +73,22 @@ def spots_at(scene: Scene, field: Asperities, separation: float) -> Spots:
     """
     surface = scene.surface
     touching = field.z > separation * surface.sigma
-    delta = field.z[touching] - separation * surface.sigma
-    modulus = scene.modulus(field.z[touching] / surface.sigma)
-    load = 4 / 3 * surface.E_star * modulus * math.sqrt(surface.radius) * delta * np.sqrt(delta)
-    radius = np.sqrt(surface.radius * delta)
+    s = field.z[touching] / surface.sigma
+    modulus = scene.modulus(s)
+    load, radius = _load_and_radius(scene, field.z[touching] - separation * surface.sigma, modulus)
     return Spots(field.x[touching], field.y[touching], radius, load, modulus, separation)
+
+
+def _load_and_radius(scene: Scene, delta: Array, modulus: Array) -> tuple[Array, Array]:
+    """Of contacts of these penetrations, all in SI units."""
+    surface = scene.surface
+    if type(scene.law) is Hertz:
+        load = 4 / 3 * surface.E_star * modulus * math.sqrt(surface.radius) * delta * np.sqrt(delta)
+        return load, np.sqrt(surface.radius * delta)
+    branch, penetration = LoadingBranch(scene.contact), delta / surface.sigma
+    load, radius = (term_of(name, branch, 0.0, penetration, modulus) for name in ("load", "conductance"))
+    scale = quantity_of("load").scale(surface)
+    return scale * load, np.sqrt(surface.radius * surface.sigma) * radius
 
 
 def _window(spots: Spots, size: tuple[float, float]) -> tuple[float, float, float, float]:
