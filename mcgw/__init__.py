@@ -26,6 +26,7 @@ Laws of contact of one asperity, in place of Hertz's, and what else the contacts
                          `ChangEtsionBogy`, `ZhaoMaiettaChang` and `JacksonGreen` (yield strength)
 `Hertz`                  the default; `PowerLawGraded`: graded in depth; `Coated`; `CustomLaw`:
                          formulas of one's own
+`JohnsonKendallRoberts`  contacts that stick, as `DerjaguinMullerToporov`
 `Film`                   resistivity, and a film on the spots: conductance in S
 `Tangential`             friction, and displacements sideways; `masing`: the way back
 =======================  =========================================================================
@@ -72,6 +73,7 @@ if TYPE_CHECKING:
         Coated,
         Custom,
         CustomLaw,
+        DerjaguinMullerToporov,
         Exponential,
         ExponentialHeights,
         Film,
@@ -80,6 +82,7 @@ if TYPE_CHECKING:
         Hertz,
         Homogeneous,
         JacksonGreen,
+        JohnsonKendallRoberts,
         KogutEtsion,
         MeasuredHeights,
         PowerLawGraded,
@@ -118,6 +121,7 @@ __all__ = [
     "Coated",
     "Custom",
     "CustomLaw",
+    "DerjaguinMullerToporov",
     "Ensemble",
     "Exponential",
     "ExponentialHeights",
@@ -127,6 +131,7 @@ __all__ = [
     "Hertz",
     "Homogeneous",
     "JacksonGreen",
+    "JohnsonKendallRoberts",
     "KogutEtsion",
     "MeasuredHeights",
     "PowerLawGraded",

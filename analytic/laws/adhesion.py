@@ -86,7 +86,7 @@ class DerjaguinMullerToporov(_Adhesive):
     --------
     >>> law = DerjaguinMullerToporov(pull_off=0.05)
     >>> float(law.load(0, np.sqrt(0.5), np.array(1.0)).round(6))
-    0.327733
+    0.327734
     """
 
     name: ClassVar[str] = "derjaguin-muller-toporov"
@@ -132,7 +132,7 @@ class JohnsonKendallRoberts(_Adhesive):
     --------
     >>> law = JohnsonKendallRoberts(pull_off=0.5)
     >>> law.load(0, np.array([0.0, 1.0]), np.ones(2)).round(6)
-    array([-0.544331,  0.220467])
+    array([-0.544331,  0.542015])
     """
 
     name: ClassVar[str] = "johnson-kendall-roberts"
