@@ -105,7 +105,8 @@ SHARED = {
     "PiecewiseSeries", "Surface", "Table", "Weibull", "bends", "composite_modulus", "extent",
     "first_negative", "is_data", "quantity_of", "resolved", "resolved_breaks",
     "ChangEtsionBogy", "Coated", "ContactLaw", "CustomLaw", "DerjaguinMullerToporov", "Hertz",
-    "JacksonGreen", "JohnsonKendallRoberts", "KogutEtsion", "PowerLawGraded", "ZhaoMaiettaChang", "Film", "Tangential", "masing",
+    "JacksonGreen", "JohnsonKendallRoberts", "KogutEtsion", "PowerLawGraded", "ZhaoMaiettaChang",
+    "Film", "Tangential", "masing",
 }  # fmt: skip
 LAW_FILES = {
     "adhesion", "bridge", "chang_etsion_bogy", "coated", "custom", "elastic_plastic",
