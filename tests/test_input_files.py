@@ -122,6 +122,11 @@ def cube(data, folder):
     data["load"] = np.ones((20, 2, 1))
 
 
+def hypercube(data, folder):
+    swapped(data)
+    data["load"] = np.ones((20, 2, 1, 1))
+
+
 def narrow(data, folder):
     swapped(data)
     data["load"] = np.ones((20, 1))
@@ -167,7 +172,8 @@ HOSTILE = {
     of_type("complex128"): "load: type complex128",
     references: "load: type object",
     empty: "load: not a table",
-    cube: "load: not a table",
+    cube: r"load has shape \[20, 2, 1\], its scene declares \[20, 2\]",
+    hypercube: "load: not a table",
     narrow: r"load has shape \[20, 1\], its scene declares \[20, 2\]",
     missing: "load has shape none, its scene declares",
     many: "datasets; at most 64 are allowed",

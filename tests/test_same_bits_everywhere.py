@@ -14,6 +14,7 @@ from numpy._core import _multiarray_umath as umath
 
 import analytic
 from mcgw.errors import RunError, StoreError
+from mcgw.jobs import blocks
 from mcgw.jobs.blocks import commit_block
 from mcgw.jobs.running import Part, run, run_part
 from mcgw.sampling.samplers import sampler_of
@@ -151,6 +152,7 @@ def test_a_run_goes_on_where_it_was_drawn(make_scene, tmp_path, monkeypatch, hei
     monkeypatch.setattr("mcgw.jobs.job.Job.rows", 4)
     run_part(more, begun, Part(1, 2))
     monkeypatch.setattr(arithmetic, "kind_of_processor", lambda: "00000000")
+    blocks._prepared.cache_clear()  # as in a worker that starts on such a processor
     going_on = [
         (StoreError, lambda: run(more, whole)),
         (StoreError, lambda: run_part(more, begun, Part(2, 2))),
