@@ -56,7 +56,7 @@ def test_commands_run_in_their_order(page, tmp_path, monkeypatch, capsys):
 
 @pytest.mark.slow
 def test_figures_command(tmp_path, monkeypatch, capsys):
-    """Half a minute: the whole set."""
+    """A minute: the whole set."""
     monkeypatch.chdir(tmp_path)
     (words,) = [words for words in commands("README.md") if words[0] == "figures"]
     assert main(words) == 0

@@ -3,7 +3,7 @@
 import argparse
 from pathlib import Path
 
-HELP = "draw the paper's Figures 1-6 with Monte-Carlo points, and those it lacks (half a minute)"
+HELP = "draw the paper's Figures 1-6 with Monte-Carlo points, and those it lacks (a minute)"
 EXAMPLE = "mcgw figures -o figures --csv"
 
 
