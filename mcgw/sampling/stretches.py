@@ -60,8 +60,13 @@ def stretches_of(scene: Scene, branch: Branch, low: float, high: float) -> Stret
         high=np.where(found.high < high, found.high, np.inf),
         piece=found.piece,
         begins=inside & nothing & ~goes_on[: len(inside)],
-        root=np.where(nothing, found.low, found.low - left),
+        root=np.where(nothing, found.low, _snapped(found.low - left, at)),
     )
+
+
+def _snapped(roots: Array, h: Array) -> Array:
+    """Where contacts would begin, on the separation itself if only rounding lies in between."""
+    return np.where(np.abs(roots - h) <= _NOTHING, h, roots)
 
 
 def branches_of(scene: Scene) -> list[Branch]:
