@@ -37,29 +37,27 @@ def of_spot(quantity: str, law: ContactLaw, piece: int, y: Array, e: Array) -> A
     KeyError
         If there is no such quantity.
     """
-    known: dict[str, Any] = {
-        "load": lambda: law.load(piece, y, e),
-        "area": lambda: law.radius(piece, y, e) ** 2,
-        "stiffness": lambda: law.stiffness(piece, y, e),
-        "contacts": lambda: np.ones(np.broadcast_shapes(np.shape(y), np.shape(e))),
-        "conductance": lambda: law.radius(piece, y, e),
-        "load_slope": lambda: law.slope(piece, y, e) * (2 / 3),
-        "yielded": lambda: np.full(np.broadcast_shapes(np.shape(y), np.shape(e)), float(piece > 0)),
-    }
-    return np.asarray(known[quantity]())
+    return _added(quantity, law, piece, y, e)
 
 
 def of_unloading(
     quantity: str, unloading: Unloading, piece: int, y: Array, deepest: Array, e: Array
 ) -> Array:
     """As `of_spot`, on the way back from `deepest`; y is the root of the penetration left to lift-off."""
+    return _added(quantity, unloading, piece, y, deepest, e)
+
+
+def _added(quantity: str, formulas: Any, piece: int, *at: Array) -> Array:
+    """A quantity by the formulas of load, radius, stiffness and slope, on either way."""
+    shape = np.broadcast_shapes(*map(np.shape, at))
     known: dict[str, Any] = {
-        "load": lambda: unloading.load(piece, y, deepest, e),
-        "area": lambda: unloading.radius(piece, y, deepest, e) ** 2,
-        "stiffness": lambda: unloading.stiffness(piece, y, deepest, e),
-        "contacts": lambda: np.ones(np.broadcast_shapes(np.shape(y), np.shape(e))),
-        "conductance": lambda: unloading.radius(piece, y, deepest, e),
-        "load_slope": lambda: unloading.slope(piece, y, deepest, e) * (2 / 3),
+        "load": lambda: formulas.load(piece, *at),
+        "area": lambda: formulas.radius(piece, *at) ** 2,
+        "stiffness": lambda: formulas.stiffness(piece, *at),
+        "contacts": lambda: np.ones(shape),
+        "conductance": lambda: formulas.radius(piece, *at),
+        "load_slope": lambda: formulas.slope(piece, *at) * (2 / 3),
+        "yielded": lambda: np.full(shape, float(piece > 0)),
     }
     return np.asarray(known[quantity]())
 
