@@ -44,24 +44,7 @@ def _sums(starts: Any, heights: Any, factors: Any, separations: Any, twice: Any)
 
 
 def hertz_sums(scene: Scene, numbers: NDArray[np.int64], heights: Array, weights: Array) -> dict[str, Array]:
-    """Load, area, ... of surfaces whose heights are given.
-
-    Parameters
-    ----------
-    scene : Scene
-        Its surface, grading, separations and quantities are used.
-    numbers : ndarray of int
-        How many of the heights belong to each surface, shape (surfaces,).
-    heights : ndarray
-        The reduced heights of all surfaces, one after the other.
-    weights : ndarray
-        For how many asperities each height stands: 1 in an ensemble.
-
-    Returns
-    -------
-    dict of str to ndarray
-        Each quantity in SI units, shape (surfaces, separations).
-    """
+    """As `mcgw.sampling.law_sums.asperity_sums`, of Hertz contacts."""
     asked = [quantity_of(name) for name in scene.quantities]
     graded = weights
     if any(q.modulus for q in asked):

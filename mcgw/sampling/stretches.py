@@ -5,7 +5,6 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from analytic import quantity_of
 from analytic.laws import Branch
 from mcgw.scene.scene import Scene
 
@@ -69,12 +68,6 @@ def _snapped(roots: Array, h: Array) -> Array:
     return np.where(np.abs(roots - h) <= _NOTHING, h, roots)
 
 
-def branches_of(scene: Scene) -> list[Branch]:
-    """The ways to the separations that the quantities of a scene are about."""
-    names = {quantity_of(name).unloading != "": name for name in scene.quantities}
-    return [scene.branch_of(name) for name in names.values()]
-
-
 def begins_and_breaks(scene: Scene, low: float, high: float) -> tuple[Array, Array]:
     """Heights where contacts begin, and those that must be edges of cells besides.
 
@@ -94,7 +87,7 @@ def begins_and_breaks(scene: Scene, low: float, high: float) -> tuple[Array, Arr
     if scene.hertzian:
         return separations, np.empty(0)
     begins, breaks = [separations], []
-    for branch in branches_of(scene):
+    for branch in scene.ways.among(scene.quantities):
         found = stretches_of(scene, branch, low, high)
         starts, pieces = found.low[found.begins], found.piece[found.begins]
         begins.append(found.root)

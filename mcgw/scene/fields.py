@@ -53,10 +53,15 @@ class Fields:
         """The contact law in reduced units."""
         return self.law.on(self.surface)
 
+    @property
+    def ways(self) -> Ways:
+        """The ways to its separations that quantities are about."""
+        conductance = None if self.film is None else self.film.on(self.surface)
+        return Ways(self.contact, self.unload_from, conductance)
+
     def branch_of(self, quantity: str) -> Branch:
         """The way to its separation that a quantity is about."""
-        conductance = None if self.film is None else self.film.on(self.surface)
-        return Ways(self.contact, self.unload_from, conductance).of(quantity)
+        return self.ways.of(quantity)
 
     @property
     def all_separations(self) -> tuple[float, ...]:
