@@ -1,7 +1,6 @@
 """Imports point one way, and nothing is compiled or drawn before it is needed."""
 
 import ast
-import os
 import subprocess
 import sys
 from graphlib import TopologicalSorter
@@ -10,7 +9,6 @@ from pathlib import Path
 import pytest
 
 import mcgw
-from mcgw import sampling
 from mcgw.scene.samplers import SAMPLERS
 
 # Packages are layers: each imports only from those before it, and within one nothing goes round in a circle.
@@ -192,26 +190,26 @@ def test_help_needs_not_even_numpy(command):
     assert found.stdout.strip() == "False"
 
 
-def test_kernels_older_than_a_file_are_compiled_anew(tmp_path):
-    """A kernel holds the functions it calls from other files, which numba does not look at."""
-    source, kernel = tmp_path / "a.py", tmp_path / "__pycache__" / "b.nbi"
-    kernel.parent.mkdir()
-    for path in (source, kernel):
-        path.touch()
-    for changed, kept in ((kernel.stat().st_mtime - 5, True), (kernel.stat().st_mtime + 5, False)):
-        os.utime(source, (changed, changed))
-        sampling._forget_old_kernels(tmp_path)
-        assert kernel.exists() == kept
-    sampling._forget_old_kernels(tmp_path / "nowhere")
-
-
-def test_compiled_functions_lie_where_old_kernels_are_looked_for():
-    """Those of one package only call each other: a folder is all that has to be watched."""
+def test_compiled_functions_call_those_of_their_own_layer():
+    """Whose files are all that is looked at to know whether what was kept is old."""
     for name, tree in inside():
         if any(isinstance(node, ast.Name) and node.id == "njit" for node in ast.walk(tree)):
             assert name.startswith(("sampling.", "maps.")), name
             if name.startswith("maps."):
                 assert not any(other.startswith("sampling") for other in imports(tree)), name
+
+
+def test_a_compiled_function_made_several_times_has_a_name_for_each():
+    """Of two with one name, one is called in the place of the other (`mcgw.machine.compiling`)."""
+    made = 0
+    for name, tree in inside():
+        outer = {id(node) for node in tree.body}
+        for node in ast.walk(tree):
+            if isinstance(node, ast.FunctionDef) and id(node) not in outer:
+                for call in (c for c in node.decorator_list if "njit" in ast.unparse(c)):
+                    assert "version=" in ast.unparse(call), (name, node.name)
+                    made += 1
+    assert made
 
 
 def test_no_loop_of_the_sampler_has_threads_of_its_own():

@@ -1,6 +1,7 @@
 """Compiled loops kept on the disk are those that are asked for, whoever compiles at the same time."""
 
 import importlib.util
+import subprocess
 import sys
 
 import numba
@@ -52,3 +53,64 @@ def test_loops_compiled_at_the_same_time_are_not_mixed_up(loops):
 def test_with_the_files_of_numba_they_are(loops):
     """Otherwise the test above says nothing."""
     assert compiled_at_once(loops, numba.njit) != [3.0, 6.0]
+
+
+VERSIONS = """
+{imported}
+
+def make(n):
+    @njit(cache=True{version})
+    def ramp(x):
+        total = 0.0
+        for i in range(n):
+            total += x * i
+        return total
+    return ramp
+
+two, three = make(2), make(3)
+
+@njit(cache=True)
+def both(x):
+    return two(x), three(x)
+"""
+
+
+def called_through_a_third(tmp_path, imported, version):
+    """What a loop finds that calls two versions of one function, which two processes compiled before."""
+    (tmp_path / "versions.py").write_text(VERSIONS.format(imported=imported, version=version))
+    for call in ("two(1.0)", "three(1.0)", "both(1.0)"):
+        code = f"import sys; sys.path.insert(0, '.'); import versions; print(versions.{call})"
+        done = subprocess.run(
+            [sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, check=True
+        )
+    return done.stdout.strip()
+
+
+def test_versions_kept_by_several_processes_are_not_called_for_each_other(tmp_path):
+    imported = "from mcgw.machine.compiling import njit"
+    assert called_through_a_third(tmp_path, imported, ", version=str(n)") == "(1.0, 3.0)"
+
+
+def test_with_the_names_of_numba_they_are_called_for_each_other(tmp_path):
+    """Otherwise the test above says nothing."""
+    assert called_through_a_third(tmp_path, "from numba import njit", "") != "(1.0, 3.0)"
+
+
+@pytest.mark.parametrize(("imported", "found"), [("mcgw.machine.compiling", 6.0), ("numba", 3.0)])
+def test_a_loop_whose_callee_has_changed_is_compiled_anew(tmp_path, imported, found):
+    """Numba alone goes on with the old one: the file of the caller is as it was."""
+    layer = tmp_path / "house" / "layer"
+    layer.mkdir(parents=True)
+    for folder in (layer, layer.parent):
+        (folder / "__init__.py").touch()
+    head = f"from {imported} import njit\n"
+    (layer / "caller.py").write_text(
+        f"{head}from house.layer.callee import times\n@njit(cache=True)\ndef call(x):\n    return times(x)\n"
+    )
+    for factor in ("3.0", "6.0"):
+        (layer / "callee.py").write_text(f"{head}@njit(cache=True)\ndef times(x):\n    return {factor} * x\n")
+        code = "import sys; sys.path.insert(0, '.'); from house.layer.caller import call; print(call(1.0))"
+        done = subprocess.run(
+            [sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, check=True
+        )
+    assert float(done.stdout) == found

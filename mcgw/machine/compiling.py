@@ -1,9 +1,18 @@
-"""Compiled loops, kept on the disk where that can be done."""
+"""Compiled loops, kept on the disk where that can be done.
+
+What Numba keeps is the machine code of a loop with that of all loops it calls, under names it takes from
+module, function and types. Three things can make it go wrong without a word, and are seen to here: a loop
+called has changed in another file (`_stamp_of_package`), two processes give the versions of a loop one
+number (`_name_by_contents`), and two versions of one inner function have one name (`version` of `njit`).
+"""
 
 import hashlib
 import os
+import sys
 import warnings
 from collections.abc import Callable
+from functools import lru_cache
+from pathlib import Path
 from typing import Any
 
 import numba
@@ -20,10 +29,21 @@ if numba.config.DISABLE_JIT:  # type: ignore[attr-defined, unused-ignore]
     )
 
 
-def njit(**options: Any) -> Callable[[Any], Any]:
-    """As `numba.njit`; where a compiled loop cannot be kept for the next time, it is only said."""
+def njit(*, version: str = "", **options: Any) -> Callable[[Any], Any]:
+    """As `numba.njit`; where a compiled loop cannot be kept for the next time, it is only said.
+
+    Parameters
+    ----------
+    version : str, optional
+        Needed for a function inside a function, which is made several times: another word each time. Of two
+        versions of one name, kept by different processes, one would be called in the place of the other.
+    **options
+        Those of `numba.njit`.
+    """
 
     def decorate(function: Any) -> Any:
+        if version:
+            function.__name__ = function.__qualname__ = f"{function.__name__}_{version}"
         try:
             compiled = numba.njit(**options)(function)
         except RuntimeError as error:  # no folder can be written to
@@ -32,11 +52,24 @@ def njit(**options: Any) -> Callable[[Any], Any]:
             _say("any folder", str(error))
             return numba.njit(**{**options, "cache": False})(function)
         if options.get("cache"):
-            _name_by_contents(compiled._cache._cache_file)
+            kept = compiled._cache._cache_file
+            kept._source_stamp = _stamp_of_package(function.__module__) or kept._source_stamp
+            _name_by_contents(kept)
             _go_on_when_full(compiled._cache)
         return compiled
 
     return decorate
+
+
+@lru_cache
+def _stamp_of_package(module: str) -> bytes:
+    """Of all files of the layer that a loop belongs to: Numba looks at none but the own file of the loop."""
+    layer = sys.modules[".".join(module.split(".")[:2])]
+    files = sorted(path for folder in getattr(layer, "__path__", ()) for path in Path(folder).rglob("*.py"))
+    stamp = hashlib.sha256()
+    for path in files:
+        stamp.update(path.read_bytes())
+    return stamp.digest() if files else b""
 
 
 def _name_by_contents(kept: Any) -> None:

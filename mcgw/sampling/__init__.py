@@ -31,22 +31,3 @@ without any surface; it is that of its very asperities, added up one by one:
 >>> bool(np.all(np.abs(load[2] / hertz.sum(axis=0) - 1) < 1e-13))
 True
 """
-
-from contextlib import suppress
-from pathlib import Path
-
-
-def _forget_old_kernels(folder: Path) -> None:
-    """Have kernels compiled anew that are older than any of their files.
-
-    Numba asks whether the file of a kernel has changed, never those of the functions that it calls: after
-    an update of one file the others would go on with the old one, and draw what no version draws.
-    """
-    with suppress(OSError):  # a folder that cannot be written to has no kernels in it
-        newest = max((path.stat().st_mtime for path in folder.rglob("*.py")), default=0.0)
-        for index in folder.rglob("__pycache__/*.nbi"):
-            if index.stat().st_mtime < newest:
-                index.unlink()
-
-
-_forget_old_kernels(Path(__file__).parent)

@@ -55,7 +55,7 @@ def _adder(plain: int, rooted: int) -> Any:
     where each polynomial is 1: they are taken off again.
     """
 
-    @njit(nogil=True, cache=True)
+    @njit(nogil=True, cache=True, version=f"{plain}_{rooted}")
     def add(w: Any, n: Any, filled: Any) -> None:
         a = b = c = d = e = f = g = h = p = q = alike(0.0)
         v1 = v2 = v3 = v4 = v5 = alike(0.0)
