@@ -44,6 +44,7 @@ from analytic.contact import (
     stiffness,
     stiffness_ratio,
 )
+from analytic.curvature import RandomCurvature
 from analytic.extent import extent
 from analytic.gradings import Clipped, Custom, Exponential, Grading, Homogeneous
 from analytic.height_laws import ExponentialHeights, ScipyHeights, Weibull
@@ -53,6 +54,7 @@ from analytic.integrals import fn, fn_between, fn_paper, fn_scaled
 from analytic.inversion import ratio_at_equal_load
 from analytic.measured_heights import HeightTable, MeasuredHeights
 from analytic.model import Cumulants, Model
+from analytic.nayak import Nayak
 from analytic.piecewise import PiecewiseSeries
 from analytic.plasticity import mean_modulus, plasticity_index
 from analytic.quantities import (
@@ -67,6 +69,7 @@ from analytic.quantities import (
 )
 from analytic.resolution import first_negative, resolved_breaks
 from analytic.series import bends, is_data, name_of, resolved
+from analytic.spectral_moments import SpectralMoments
 from analytic.surface import Body, Surface, composite_modulus
 from analytic.tables import Table
 
@@ -120,10 +123,13 @@ __all__ = [
     "KogutEtsion",
     "MeasuredHeights",
     "Model",
+    "Nayak",
     "PiecewiseSeries",
     "PowerLawGraded",
     "Quantity",
+    "RandomCurvature",
     "ScipyHeights",
+    "SpectralMoments",
     "Surface",
     "Table",
     "Tangential",

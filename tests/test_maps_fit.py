@@ -8,7 +8,7 @@ from scipy import fft
 from scipy.stats import t as t_law
 
 import mcgw
-from analytic import MeasuredHeights
+from analytic import MeasuredHeights, SpectralMoments
 from mcgw.cli import main
 from mcgw.maps.asperities import Asperities
 from mcgw.maps.cautions import cautions
@@ -16,7 +16,6 @@ from mcgw.maps.envelope import envelope, hidden_summits
 from mcgw.maps.files import write_map
 from mcgw.maps.fit import _jackknife, fit_map
 from mcgw.maps.form import gaussian_transmission, smooth, without_form
-from mcgw.maps.nayak import SpectralMoments
 from mcgw.maps.spectrum import Spectrum, gaussian_map, moments_on_grid
 from mcgw.maps.summit_sums import summit_sums_of
 from mcgw.maps.topography import Topography

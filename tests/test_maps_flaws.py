@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 import mcgw.maps.fit as fit_module
+from analytic import SpectralMoments
 from mcgw.maps.cautions import cautions
 from mcgw.maps.fit import fit_map
 from mcgw.maps.flaws import _waves, flaws
 from mcgw.maps.levels import form_left, step_of
-from mcgw.maps.nayak import SpectralMoments
 from mcgw.maps.spectrum import Spectrum, gaussian_map, moments_on_grid
 from mcgw.maps.spikes import spikes_of
 from mcgw.maps.topography import Topography

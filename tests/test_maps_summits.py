@@ -9,8 +9,8 @@ from scipy.integrate import quad
 from scipy.special import ndtr
 
 import mcgw.maps.fit as fit_module
+from analytic import SpectralMoments
 from mcgw.maps.fit import Estimate, fit_map
-from mcgw.maps.nayak import SpectralMoments
 from mcgw.maps.spectrum import Spectrum, gaussian_map, moments_on_grid
 from mcgw.maps.summit_sums import _apex, summit_sums_of
 from mcgw.maps.topography import Topography

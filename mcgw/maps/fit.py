@@ -9,13 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import ndtr, stdtrit
 
+from analytic import SpectralMoments
 from mcgw.formats.sheet import Sheet, Shown
 from mcgw.machine.late import plotted
 from mcgw.maps.form import Form, smooth, without_form
 from mcgw.maps.hidden import Visible, unhidden, visible
 from mcgw.maps.levels import form_left
 from mcgw.maps.leverage import Alone, alone_of
-from mcgw.maps.nayak import SpectralMoments
 from mcgw.maps.summit_sums import SUMS, SummitSums, summit_sums_of
 from mcgw.maps.topography import Topography
 from mcgw.maps.waves import Waves, waves_of

@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 from scipy import fft
 from scipy.optimize import brentq
 
+from analytic import SpectralMoments
 from mcgw.formats.units import parse
-from mcgw.maps.nayak import SpectralMoments
 from mcgw.maps.topography import Topography, checked_shape
 
 __all__ = ["Spectrum", "gaussian_map", "moments_on_grid", "spectrum_from"]

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import fft
 
-from mcgw.maps.nayak import SpectralMoments
+from analytic import SpectralMoments
 from mcgw.maps.topography import Topography
 
 __all__ = ["Waves", "block_means", "waves_of"]

@@ -1,0 +1,161 @@
+"""Radii of the summits of an isotropic Gaussian surface, given their heights.
+
+With the height x over sqrt(m0) and curvatures over sqrt(m4/3): mean curvature tau, geometric mean g, mu =
+sqrt(2) rho x and v = 2 (1 - rho^2) of `analytic.nayak`, ::
+
+    tau | x   ~ (tau^2 - 2 + 2 exp(-tau^2/2)) N(tau; mu, v),   tau > 0
+    g^2 | tau ~ w exp(w/2),   0 < w < tau^2
+
+in whose product the integral over tau is closed ::
+
+    g | x ~ g^3 exp(g^2/2) P(T > g),   T normal of mean mu/(1 + v) and variance v/(1 + v)
+
+The radius of a summit is that of the sphere of its geometric mean curvature (Greenwood 2006, Wear 261, 191).
+"""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from analytic.curvature_given_height import CurvatureGivenHeight
+from analytic.fitted import fitted
+from analytic.nayak import Nayak, tables_of
+from analytic.piecewise import PiecewiseSeries
+
+__all__ = ["MEAN_CURVATURE", "RandomCurvature"]
+
+Array = NDArray[np.float64]
+
+MEAN_CURVATURE = 8 / math.sqrt(3 * math.pi)  # of the summits, over sqrt(m4/3)
+_DIVERGES = 4.0  # power of the radius that has no mean: the density of g begins as its cube
+_TERMS = 24
+_BLOCK = 1024  # numbers whose rules are summed at a time
+
+
+@dataclass(frozen=True)
+class RandomCurvature:
+    """Radius ratios c = R_i/R of summits, R being the inverse of their mean curvature.
+
+    Everything takes reduced heights s as those of `analytic.Nayak`, and curvatures g; c is 2.60588/g.
+
+    Parameters
+    ----------
+    alpha : float
+        Nayak's bandwidth, of the height law too.
+    largest : float, optional
+        Largest ratio: flatter summits count as having this one (a map has none as flat as it is long).
+
+    Raises
+    ------
+    ValueError
+        If alpha is not one of `analytic.Nayak`, or `largest` not positive.
+
+    Examples
+    --------
+    >>> law = RandomCurvature(5.0)
+    >>> law.mean(1, [0.0, 3.0]).round(4)
+    array([1.3093, 0.7853])
+    """
+
+    alpha: float
+    largest: float = math.inf
+
+    def __post_init__(self) -> None:
+        Nayak(self.alpha)
+        if not self.largest > 0:
+            raise ValueError(f"largest = {self.largest!r}: give a ratio of radii > 0, or inf for no bound")
+
+    @property
+    def heights(self) -> Nayak:
+        """Law of the heights of the same summits."""
+        return Nayak(self.alpha)
+
+    def ratio(self, g: ArrayLike) -> Array:
+        """Radius ratio of a curvature."""
+        with np.errstate(divide="ignore"):
+            return np.minimum(MEAN_CURVATURE / np.asarray(g, dtype=np.float64), self.largest)
+
+    def density(self, g: ArrayLike, s: ArrayLike) -> Array:
+        """Probability density of the curvature at given heights, broadcast."""
+        return self._broadcast(lambda a, x: CurvatureGivenHeight(self.alpha, x).density(a), g, s)
+
+    def below(self, g: ArrayLike, s: ArrayLike) -> Array:
+        """Probability of a smaller curvature, to full relative accuracy."""
+        return self._broadcast(lambda a, x: CurvatureGivenHeight(self.alpha, x).between(0 * a, a), g, s)
+
+    def above(self, g: ArrayLike, s: ArrayLike) -> Array:
+        """Probability of a larger curvature, to full relative accuracy."""
+        return self._broadcast(lambda a, x: CurvatureGivenHeight(self.alpha, x).above(a), g, s)
+
+    def at(self, t: ArrayLike, s: ArrayLike) -> Array:
+        """Curvature below which the share ``1 - (1 + t^2) exp(-t^2)`` lies: smooth in t, and 0 at 0.
+
+        Parameters
+        ----------
+        t : array_like
+            Not negative: the root of a gamma variable of shape 2.
+        s : array_like
+            Reduced heights.
+
+        Returns
+        -------
+        ndarray
+            Of both shapes, broadcast.
+        """
+        return self._broadcast(lambda a, x: CurvatureGivenHeight(self.alpha, x).at(a), t, s)
+
+    def mean(self, power: float, s: ArrayLike) -> Array:
+        """Mean of a power of the radius ratio at given heights, in their shape.
+
+        Parameters
+        ----------
+        power : float
+            A multiple of 1/2.
+        s : array_like
+            Reduced heights.
+
+        Raises
+        ------
+        ValueError
+            If the power is negative or no such multiple; or 4 or more, of which there is no mean unless
+            `largest` is finite.
+        """
+        if (2 * power) % 1:
+            raise ValueError(f"power = {power!r}: give a multiple of 1/2")
+        if not 0 <= power < (_DIVERGES if math.isinf(self.largest) else math.inf):
+            raise ValueError(
+                f"power = {power!r}: give one from 0 to below 4 (radii have no mean of the fourth power, "
+                "unless largest bounds them)"
+            )
+        x = self.heights.over_rms(s)
+        return np.ones_like(x) if power == 0 else _means(self.alpha, self.largest, float(power))(x)
+
+    def sample(self, rng: np.random.Generator, s: ArrayLike) -> Array:
+        """Radius ratios of summits of given heights."""
+        s = np.asarray(s, dtype=np.float64)
+        return self.ratio(self.at(np.sqrt(rng.standard_gamma(2.0, s.shape)), s))
+
+    def _broadcast(self, function: Callable[[Array, Array], Array], first: ArrayLike, s: ArrayLike) -> Array:
+        edges = tables_of(float(self.alpha)).edges
+        x = np.clip(self.heights.over_rms(s), edges[0], edges[-1])  # beyond, there are no heights
+        a, x = np.broadcast_arrays(np.asarray(first, dtype=np.float64), x)
+        result, flat, heights = np.empty(a.size), a.ravel(), x.ravel()
+        for k in range(0, a.size, _BLOCK):
+            i = slice(k, k + _BLOCK)
+            result[i] = function(flat[i], heights[i])
+        return result.reshape(a.shape)
+
+
+@lru_cache(maxsize=64)
+def _means(alpha: float, largest: float, power: float) -> PiecewiseSeries:
+    """Mean of a power of the ratio, of heights over sqrt(m0)."""
+
+    def mean(x: Array) -> Array:
+        inverse = CurvatureGivenHeight(alpha, x).mean_inverse(power, MEAN_CURVATURE / largest)
+        return np.asarray(MEAN_CURVATURE**power * inverse)
+
+    return fitted(mean, tables_of(alpha).edges, _TERMS)

@@ -1,0 +1,167 @@
+"""Curvatures of the summits of given heights: integrals of positive terms over what `curvature` derives."""
+
+import math
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.special import gammainc, gammaincc, gammainccinv, gammaincinv, ndtr
+
+from analytic.nayak import NayakTables, panelled, tables_of, upper_tail
+
+__all__ = ["CurvatureGivenHeight"]
+
+Array = NDArray[np.float64]
+
+_WIDE = 9.5  # standard deviations, beyond which a normal density is 1e-20 of its largest value
+_MEDIAN = 1.6783469900166605  # of the gamma law of shape 2
+_MOST_STEPS, _NEAR, _SAME = 100, 1e-8, 1e-12
+_FLATTEST = 1e-7  # curvature from which on guesses are tabulated
+_LOWEST, _HIGHEST, _STEP = -12.0, 16.0, 0.125  # heights over sqrt(m0) of the table of guesses
+_GUESSED = np.concatenate(
+    [np.linspace(-14.0, -2.0, 120, endpoint=False), np.log(np.linspace(np.exp(-2), 7.5, 150))]
+)
+
+
+@dataclass(frozen=True, eq=False)
+class CurvatureGivenHeight:
+    """Law of g, the geometric mean curvature over sqrt(m4/3), of summits at heights x over sqrt(m0).
+
+    Parameters
+    ----------
+    alpha : float
+        Nayak's bandwidth.
+    x : ndarray
+        Heights, shape (n,).
+    """
+
+    alpha: float
+    x: Array
+
+    @property
+    def _tables(self) -> NayakTables:
+        return tables_of(float(self.alpha))
+
+    @property
+    def _v(self) -> float:
+        return 2 * self._tables.width**2
+
+    @cached_property
+    def _mu(self) -> Array:
+        return np.asarray(math.sqrt(2) * self._tables.rho * self.x)
+
+    @cached_property
+    def _whole(self) -> Array:
+        """Integral of `_parts` over all g."""
+        return self._tables.density(self.x) * math.sqrt(2 * math.pi / 3)
+
+    def _parts(self, g: Array) -> Array:
+        """``exp(g^2/2)`` times the integral over tau > g; far below over a factor that the height decides."""
+        v, mu = self._v, self._mu
+        x, a = g / math.sqrt(v), mu / math.sqrt(v)
+        z = math.sqrt(1 + v) * x - a / math.sqrt(1 + v)
+        tail = upper_tail(z) * np.exp(np.where(a < 0, x * (a - x / 2), -((x - a) ** 2) / 2))
+        body = ndtr(-z) * np.exp(np.minimum(g * g - mu * mu / (1 + v), 0.0) / 2)
+        return np.asarray(np.where(z > 0, tail, body) / math.sqrt(1 + v))
+
+    def edges(self, low: Array, high: Array) -> Array:
+        """Ends of pieces on which the law is smooth, between two curvatures at each height; shape (6, n)."""
+        v, mu = self._v, self._mu
+        turn, width = mu / (1 + v), _WIDE * math.sqrt(v / (1 + v))
+        peak = mu - _WIDE * math.sqrt(v), self.highest(0 * mu)
+        return np.sort(np.clip([low, turn - width, turn + width, *peak, high], low, high), axis=0)
+
+    def highest(self, g: Array) -> Array:
+        """Curvature of which there are 1e-20 times as many as of `g`, or as of the most frequent one."""
+        above = np.maximum(g - self._mu, 0.0)
+        return np.asarray(self._mu + np.hypot(above, (_WIDE + 0.5) * math.sqrt(self._v)))
+
+    def density(self, g: Array) -> Array:
+        """Probability density at `g`, shape (n,)."""
+        return g**3 * self._parts(g) / self._whole
+
+    def between(self, low: Array, high: Array) -> Array:
+        """Probability of a curvature between two."""
+        g, w = panelled(self.edges(low, high))
+        return np.asarray((w * g**3 * self._parts(g)).sum(axis=0) / self._whole)
+
+    def above(self, low: Array) -> Array:
+        """Probability of a larger curvature."""
+        return self.between(low, np.maximum(self.highest(low), low))
+
+    def mean_inverse(self, power: float, flattest: float) -> Array:
+        """Mean of ``max(g, flattest)^-power``."""
+        low = np.full_like(self.x, flattest)
+        high = np.maximum(self.highest(low), low)
+        y, w = panelled(np.sqrt(self.edges(low, high)))  # of the root all powers that are asked for are whole
+        rest = (w * 2 * y ** (7 - 2 * power) * self._parts(y * y)).sum(axis=0) / self._whole
+        return np.asarray(rest if flattest == 0 else rest + flattest**-power * self.between(0 * low, low))
+
+    def at(self, t: Array) -> Array:
+        """Curvature below which the share ``1 - (1 + t^2) exp(-t^2)`` lies, by safeguarded Newton steps."""
+        q = t * t
+        is_low = q < _MEDIAN
+        share = np.where(is_low, gammainc(2, q), gammaincc(2, q))
+        found = np.where(q > 0, t * np.exp(_guess(self.alpha, t, self.x)), 0.0)
+        for lower in (True, False):
+            some = np.flatnonzero((q > 0) & np.isfinite(q) & (is_low == lower))
+            found[some] = self._found(found[some], share[some], self.x[some], lower=lower)
+        return found
+
+    def _found(self, g: Array, share: Array, x: Array, *, lower: bool) -> Array:
+        """Curvatures with given shares below or above them, at heights x; `g` is a guess."""
+        low, left = np.zeros(g.size), np.arange(g.size)
+        high = 2 * CurvatureGivenHeight(self.alpha, x).highest(g) + g
+        for _ in range(_MOST_STEPS):
+            if not left.size:
+                break
+            at, law = g[left], CurvatureGivenHeight(self.alpha, x[left])
+            seen = law.between(0 * at, at) if lower else law.above(at)
+            with np.errstate(all="ignore"):
+                excess = np.log(seen / share[left]) * (1 if lower else -1)
+                moved = at - excess * seen / law.density(at)
+            low, high = np.where(excess < 0, at, low), np.where(excess > 0, at, high)
+            trusted = (low < moved) & (moved < high) | (np.abs(moved - at) < _SAME * at)
+            g[left] = np.where(trusted, moved, (low + high) / 2)
+            more = np.abs(g[left] - at) > _NEAR * at  # a last step doubles the digits
+            left, low, high = left[more], low[more], high[more]
+        return g
+
+
+@lru_cache(maxsize=16)
+def _guesses(alpha: float) -> tuple[Array, Array]:
+    """Heights, and the logarithm of g/t at each (first axis) and at given t."""
+    x = np.arange(_LOWEST, _HIGHEST + _STEP, _STEP)
+    given, columns = CurvatureGivenHeight(alpha, x), []
+    top = given.highest(0 * x)
+    shape = np.concatenate([np.geomspace(_FLATTEST, 0.02, 60, endpoint=False), np.linspace(0.02, 1, 200)])
+    g = shape[:, None] * top
+    nodes, weights = np.polynomial.legendre.leggauss(6)
+    inner = g[:-1, None] + np.diff(g, axis=0)[:, None] * (1 + nodes[:, None]) / 2
+    parts = np.array([given.density(row) for row in inner.reshape(-1, x.size)]).reshape(inner.shape)
+    mass = (parts * weights[:, None]).sum(axis=1) * np.diff(g, axis=0) / 2
+    below = np.cumsum(np.vstack([g[:1] / 4 * given.density(g[0]), mass]), axis=0)
+    above = np.cumsum(np.vstack([1e-24 + 0 * x[None], mass[::-1]]), axis=0)[::-1]
+    low = below < 0.5
+    t = np.sqrt(
+        np.where(low, gammaincinv(2, np.where(low, below, 0.5)), gammainccinv(2, np.where(low, 0.5, above)))
+    )
+    for k in range(x.size):
+        rising = np.maximum.accumulate(t[:, k])
+        columns.append(np.interp(_GUESSED, np.log(rising), np.log(g[:, k] / rising)))
+    return x, np.array(columns)
+
+
+def _guess(alpha: float, t: Array, x: Array) -> Array:
+    """Logarithm of g/t, to a percent or so."""
+    heights, table = _guesses(alpha)
+    with np.errstate(divide="ignore"):
+        u = np.clip(np.log(t), _GUESSED[0], _GUESSED[-1])
+    i = np.clip(np.searchsorted(_GUESSED, u) - 1, 0, _GUESSED.size - 2)
+    along = (u - _GUESSED[i]) / (_GUESSED[i + 1] - _GUESSED[i])
+    place = np.clip((x - heights[0]) / _STEP, 0, heights.size - 1.000001)
+    j = place.astype(np.int64)
+    across = place - j
+    rows = [table[j + k, i] * (1 - along) + table[j + k, i + 1] * along for k in (0, 1)]
+    return np.asarray(rows[0] * (1 - across) + rows[1] * across)

@@ -1,0 +1,307 @@
+"""Heights of the summits of an isotropic Gaussian surface (P. R. Nayak 1971, J. Lubr. Technol. 93, 398).
+
+With heights x over sqrt(m0), ``rho^2 = 3/(2 alpha)`` and tau the mean curvature of a summit over
+sqrt(m4/3), the curvatures have a density that is free of alpha, and the height of a summit of given
+curvature is normal ::
+
+    p(tau) = sqrt(3)/(2 sqrt(pi)) (tau^2 - 2 + 2 exp(-tau^2/2)) exp(-tau^2/4),  tau > 0
+    x | tau ~ N(rho tau/sqrt(2), 1 - rho^2)
+
+Density and probabilities are integrals over tau of positive terms, in which nothing cancels, unlike in
+Nayak's closed form far down. They are taken once for each alpha, over the Gaussian factor by which they
+fall, and held as Chebyshev series.
+"""
+
+import math
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.special import erfcx, ndtr
+
+from analytic.elementary import exp_minus_half_square
+from analytic.fitted import fitted
+from analytic.gauss_legendre import gauss_legendre
+from analytic.height_laws import narrowest
+from analytic.piecewise import PiecewiseSeries
+from analytic.spectral_moments import LEAST_ALPHA, SUMMIT_SPREAD
+
+__all__ = ["Nayak", "NayakTables", "panelled", "tables_of", "upper_tail"]
+
+Array = NDArray[np.float64]
+
+_NODES, _TERMS = 64, 24
+_WIDE = 9.5  # standard deviations, beyond which a normal density is 1e-20 of its largest value
+_LARGEST = 13.5  # curvature tau: exp(-tau^2/4) is 1e-20
+_FAR = 40.0  # standard deviations: beyond, densities underflow
+_STEPS = (0.0, 0.6, 1.2, 1.8, 2.5, 3.2, 4.0, 5.0, 6.0, 7.5, 9.0, 11.0, 13.0, 16.0, 20.0, 25.0, 32.0, _FAR)
+_PER_PIECE = 8  # points of the first guess of a quantile
+_STEPS_OF_NEWTON = 4
+_LEAST, _MOST = 1.501, 1e12
+
+
+def panelled(edges: Array) -> tuple[Array, Array]:
+    """Points and weights of Gauss-Legendre rules between neighbouring edges.
+
+    Parameters
+    ----------
+    edges : ndarray
+        Increasing along the first axis, shape (k, n); equal ones cost nothing but time.
+
+    Returns
+    -------
+    (ndarray, ndarray)
+        Each of shape (64 (k - 1), n).
+    """
+    x, w = gauss_legendre(_NODES)
+    width = np.diff(edges, axis=0)[:, None]
+    points = edges[:-1, None] + width * x[:, None]
+    return points.reshape(-1, edges.shape[1]), (width * w[:, None]).reshape(-1, edges.shape[1])
+
+
+def upper_tail(z: Array) -> Array:
+    """``exp(z^2/2) P(Z > z)`` for z > 0, where P(Z > z) underflows."""
+    return np.asarray(0.5 * erfcx(np.maximum(z, 0.0) * math.sqrt(0.5)))
+
+
+def _share(q: Array) -> Array:
+    """``q - 1 + exp(-q)``, of which the small values do not cancel."""
+    small, series = np.minimum(q, 1.0), np.ones_like(q)
+    for k in range(20, 2, -1):
+        series = 1 - series * small / k
+    return np.where(q < 1, small * small / 2 * series, q + np.expm1(-q))
+
+
+@dataclass(frozen=True)
+class NayakTables:
+    """What is integrated once for each alpha, in heights x over sqrt(m0).
+
+    Each series stands for a function over ``envelope``: ``exp(-x^2/2)`` for x >= 0 and, as heights become
+    rare faster below, ``exp(-x^2/(2 (1 - rho^2)))`` for x < 0.
+
+    Parameters
+    ----------
+    alpha : float
+        Nayak's bandwidth.
+    """
+
+    alpha: float
+
+    @property
+    def rho(self) -> float:
+        """Correlation of the height of any point with its mean curvature."""
+        return math.sqrt(LEAST_ALPHA / self.alpha)
+
+    @property
+    def width(self) -> float:
+        """Deviation of the heights of summits of one curvature."""
+        return math.sqrt((self.alpha - LEAST_ALPHA) / self.alpha)
+
+    @property
+    def edges(self) -> Array:
+        """Between which everything is smooth: graded by either deviation, 0 among them."""
+        steps = np.array(_STEPS)
+        return np.unique([*(-self.width * steps), *(self.width * steps), *steps[steps > self.width]])
+
+    def envelope(self, x: Array) -> Array:
+        """The Gaussian factor by which densities fall."""
+        return exp_minus_half_square(np.where(x < 0, x / self.width, x))
+
+    def log_envelope_step(self, x: Array, t: Array) -> Array:
+        """How the logarithm of the envelope changes from `x` to `x + t`."""
+        own = np.where(x < 0, self.width, 1.0)
+        other = np.where(x + t < 0, self.width, 1.0)
+        across = ((x / own) ** 2 - ((x + t) / other) ** 2) / 2
+        return np.where(own == other, -t * (x + t / 2) / own**2, across)
+
+    @cached_property
+    def density(self) -> PiecewiseSeries:
+        """Density over the envelope."""
+        return fitted(self._density, self.edges, _TERMS)
+
+    @cached_property
+    def below(self) -> PiecewiseSeries:
+        """Probability of a lower height, for x < 0 over the envelope."""
+        return fitted(self._below, self.edges[self.edges < 3.5], _TERMS)
+
+    @cached_property
+    def above(self) -> PiecewiseSeries:
+        """Probability of a higher height over the envelope, for x >= 0."""
+        return fitted(self._above, self.edges[self.edges >= 0], _TERMS)
+
+    @cached_property
+    def guesses(self) -> tuple[Array, Array, Array]:
+        """Heights, and logarithms of the probabilities below and above them."""
+        parts = np.linspace(0, 1, _PER_PIECE, endpoint=False)
+        x = np.append((self.edges[:-1, None] + np.diff(self.edges)[:, None] * parts).ravel(), self.edges[-1])
+        with np.errstate(divide="ignore"):
+            return x, np.log(self.shares(x)[0]), np.log(self.shares(x)[1])
+
+    def shares(self, x: Array) -> tuple[Array, Array]:
+        """Probabilities of lower and of higher heights, each to full relative accuracy."""
+        envelope = self.envelope(x)
+        above = np.where(x < 0, 1.0, self.above(x) * envelope)
+        low = above > 0.5
+        below = np.where(low, self.below(x) * np.where(x < 0, envelope, 1.0), 1 - above)
+        return below, np.where(low, 1 - below, above)
+
+    def _rule(self, x: Array) -> tuple[Array, Array, Array]:
+        """Points u = tau/sqrt(v), ``v = 2 (1 - rho^2)``, weights with the share of summits, and x/width."""
+        y, rho = x / self.width, self.rho
+        a, begins = rho * y, y / rho  # of the two factors the one has its peak, the other its end there
+        inner = [a - _WIDE, a + np.hypot(np.minimum(a, 0.0), _WIDE), begins - _WIDE, begins + _WIDE]
+        most = np.hypot(_LARGEST / math.sqrt(2), np.maximum(x, 0.0) / rho) / self.width
+        edges = np.sort(np.clip([0 * x, *inner, most], 0, most), axis=0)
+        u, w = panelled(edges)
+        return u, w * 2 * _share((self.width * u) ** 2), y
+
+    def _falling(self, u: Array, y: Array) -> Array:
+        """``sqrt(2 pi) phi(u - rho y)``, for y < 0 over its value at u = 0."""
+        a = self.rho * y
+        return np.exp(np.where(a < 0, u * (a - u / 2), -((u - a) ** 2) / 2))
+
+    def _density(self, x: Array) -> Array:
+        u, w, y = self._rule(x)
+        return np.asarray((w * self._falling(u, y)).sum(axis=0) * math.sqrt(3) / (2 * math.pi))
+
+    def _below(self, x: Array) -> Array:
+        u, w, y = self._rule(x)
+        z = self.rho * u - y
+        tail = np.where(y < 0, 1.0, np.exp(-x * x / 2)) * upper_tail(z) * self._falling(u, y)
+        body = np.exp(-((self.width * u) ** 2) / 2) * ndtr(-z)
+        return self._curvatures(w * np.where(z > 0, tail, body))
+
+    def _above(self, x: Array) -> Array:
+        u, w, y = self._rule(x)
+        z, far = y - self.rho * u, self.width * u
+        body = np.exp(np.minimum((x - far) * (x + far) / 2, 50.0)) * ndtr(-z)
+        return self._curvatures(w * np.where(z > 0, upper_tail(z) * self._falling(u, y), body))
+
+    def _curvatures(self, terms: Array) -> Array:
+        return np.asarray(terms.sum(axis=0) * self.width * math.sqrt(3 / (2 * math.pi)))
+
+
+@lru_cache(maxsize=64)
+def tables_of(alpha: float) -> NayakTables:
+    """The same tables for all that ask for one alpha."""
+    return NayakTables(alpha)
+
+
+@dataclass(frozen=True)
+class Nayak:
+    """Law of the summit heights of an isotropic Gaussian surface.
+
+    Parameters
+    ----------
+    alpha : float
+        Nayak's bandwidth ``m0 m4/m2^2``. The limit of large values is the Gaussian law; at 1.5 all waves
+        of the surface have one length, and a height has one curvature: that limit is left out.
+
+    Raises
+    ------
+    ValueError
+        If alpha is not a finite number > 1.5.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> round(float(Nayak(5.0).above(np.array(0.0))), 6)
+    0.489446
+    """
+
+    alpha: float
+    support: ClassVar[tuple[float, float]] = (-np.inf, np.inf)
+    breaks: ClassVar[tuple[float, ...]] = ()
+    singular: ClassVar[tuple[float, ...]] = ()
+
+    def __post_init__(self) -> None:
+        if not _LEAST <= self.alpha <= _MOST:
+            raise ValueError(
+                f"alpha = {self.alpha!r}: give a number from {_LEAST:g} to {_MOST:g} (isotropic surfaces "
+                "have more than 1.5; the limit of large ones is the Gaussian law)"
+            )
+
+    @property
+    def _tables(self) -> NayakTables:
+        return tables_of(float(self.alpha))
+
+    @property
+    def mean(self) -> float:
+        """Mean height of the summits above the mean plane of the surface, over sqrt(m0)."""
+        return 4 / math.sqrt(math.pi * self.alpha)
+
+    @property
+    def std(self) -> float:
+        """Standard deviation of the heights of the summits, over sqrt(m0)."""
+        return math.sqrt(1 - SUMMIT_SPREAD / self.alpha)
+
+    def over_rms(self, s: ArrayLike) -> Array:
+        """Heights above the mean plane of the surface over sqrt(m0), of reduced ones."""
+        return np.asarray(self.mean + self.std * np.asarray(s, dtype=np.float64))
+
+    def span(self, s: float) -> float:
+        """Where the logarithm of the density changes evenly, by at most one half."""
+        return narrowest(self, s)
+
+    def sample(self, rng: np.random.Generator, n: int) -> Array:
+        """Drawn with their curvatures, of which 57.7 % are accepted: principal ones of one sign."""
+        tau = np.empty(0)
+        while tau.size < n:
+            more = int(1.8 * (n - tau.size)) + 16
+            square = 2 * rng.chisquare(3, more)
+            tau = np.append(tau, np.sqrt(square[rng.random(more) * square < square - rng.chisquare(2, more)]))
+        tables, tau = self._tables, tau[:n]
+        x = tables.rho / math.sqrt(2) * tau + tables.width * rng.standard_normal(n)
+        return np.asarray((x - self.mean) / self.std)
+
+    def density(self, s: Array) -> Array:
+        """Nayak's, reduced."""
+        x = self.over_rms(s)
+        return np.asarray(self.std * self._tables.density(x) * self._tables.envelope(x))
+
+    def log_ratio(self, s: Array, t: Array) -> Array:
+        """That of the envelope, and that of the rest."""
+        x, step = self.over_rms(s), self.std * np.asarray(t)
+        rest = np.log(self._tables.density(x + step) / self._tables.density(x))
+        return np.asarray(self._tables.log_envelope_step(x, step) + rest)
+
+    def below(self, s: Array) -> Array:
+        """Integral of the density from below."""
+        return self._tables.shares(self.over_rms(s))[0]
+
+    def above(self, s: Array) -> Array:
+        """Integral of the density from above."""
+        return self._tables.shares(self.over_rms(s))[1]
+
+    def from_below(self, p: Array, s: float) -> Array:
+        """By Newton's method on the logarithm of the smaller probability; `s` where there is none."""
+        below, above = self._tables.shares(self.over_rms(s))
+        p = np.asarray(p, dtype=np.float64)
+        found = self._at(p * below, above + (1 - p) * below)
+        return np.minimum(found if below > 0 else s + 0 * p, s)
+
+    def from_above(self, p: Array, s: float) -> Array:
+        """The same from the top."""
+        below, above = self._tables.shares(self.over_rms(s))
+        p = np.asarray(p, dtype=np.float64)
+        found = self._at(below + (1 - p) * above, p * above)
+        return np.maximum(found if above > 0 else s + 0 * p, s)
+
+    def _at(self, below: Array, above: Array) -> Array:
+        """Reduced height with these probabilities on either side."""
+        x, log_below, log_above = self._tables.guesses
+        low = below < above
+        with np.errstate(divide="ignore"):
+            target = np.log(np.where(low, below, above))
+        found = np.where(low, np.interp(target, log_below, x), np.interp(target, log_above[::-1], x[::-1]))
+        inside = np.isfinite(target)
+        for _ in range(_STEPS_OF_NEWTON):
+            share = np.where(low, *self._tables.shares(found))
+            density = self._tables.density(found) * self._tables.envelope(found)
+            with np.errstate(all="ignore"):
+                step = (target - np.log(share)) * share / density
+            found = found + np.where(inside & np.isfinite(step), np.where(low, step, -step), 0.0)
+        ends = np.where(low, -np.inf, np.inf)
+        return np.where(inside, (found - self.mean) / self.std, ends)

@@ -1,0 +1,235 @@
+"""Random curvature of summits: published check values, mpmath, four Gaussians, and wrong versions that fail.
+
+Values of ``VALUES`` are exact integrals over the mean curvature at 25 digits: per summit, contacts,
+A/(pi sqrt(m0)/q), P/((4/3) E* m0^(3/4) q^(-1/2)) and K/(2 E* m0^(1/4) q^(-1/2)) at d = x sqrt(m0) from the
+surface's mean plane, q = sqrt(m4/3); last, kap in A/A_n = kap p/(E* sqrt(2 m2)).
+"""
+
+import math
+
+import mpmath as mp
+import numpy as np
+import pytest
+import scipy.stats
+
+from analytic import HeightRule, Homogeneous, Nayak, RandomCurvature, SpectralMoments
+from analytic.curvature import MEAN_CURVATURE
+
+VALUES = {
+    (1.6, 1): (0.888293413654686, 0.3036956121514147, 0.5189530616922176, 0.5029355458390308, 2.2818489),
+    (1.6, 2): (0.3517724494908437, 0.04927359299064154, 0.07895799938442455, 0.122753436260124, 2.4332938),
+    (2, 2): (0.2852230161151171, 0.04260601204160218, 0.06566624072252187, 0.1018374596744787, 2.3926418),
+    (5, 2): (0.1371804861479188, 0.02348253758298309, 0.032156778412333, 0.05103261613338234, 2.1415905),
+    (10, 2): (0.088960295574169, 0.01594392212504669, 0.02045428400384436, 0.03349541393768213, 1.922283),
+    (10, 3): (
+        0.008427784831721935, 0.0009854417450848941, 0.001155105342234502, 0.002545680458901638, 2.103855,
+    ),
+    (100, 2): (
+        0.03735397215512889, 0.007093871562627524, 0.008019818952040003, 0.01426849605349182, 1.2266628,
+    ),
+    (100, 3): (
+        0.002663262506931592, 0.0003674578406350325, 0.0003702569003428179, 0.0008624363327222108, 1.3762927,
+    ),
+}  # fmt: skip
+EXPONENTS_AND_POWERS = ((0, 0), (1, 1), (1.5, 0.5), (0.5, 0.5))
+ALPHAS = (1.6, 2.0, 5.0, 10.0, 100.0)
+
+
+def per_summit(alpha, x, mean_power=None):
+    """N, A, P and K of `VALUES` by sums over a rule of heights."""
+    law = Nayak(alpha)
+    mean_power = mean_power or RandomCurvature(alpha).mean
+    h = (x - law.mean) / law.std
+    rule = HeightRule.over([h], Homogeneous(), law)
+    depth = law.over_rms(rule.heights) - x
+    return [
+        float(rule.probabilities @ (depth**n * mean_power(q, rule.heights))) / MEAN_CURVATURE**q
+        for n, q in EXPONENTS_AND_POWERS
+    ]
+
+
+def slope_of_area(alpha, area, load):
+    """kap of `VALUES`, m0 = 1 and q = 1."""
+    return math.pi * area / (4 / 3 * load) * math.sqrt(2 * math.sqrt(3 / alpha))
+
+
+@pytest.mark.parametrize("alpha_x", VALUES, ids=str)
+def test_check_values(alpha_x):
+    *exact, kap = VALUES[alpha_x]
+    found = per_summit(*alpha_x)
+    assert found == pytest.approx(exact, rel=1e-12)
+    assert slope_of_area(alpha_x[0], *found[1:3]) == pytest.approx(kap, abs=6e-8 if kap < 10 else 0)
+
+
+def test_area_rises_to_that_of_the_limit():
+    """kap tends to sqrt(2 pi) as the surfaces part: slowly, from below."""
+    for alpha, known in ((2.0, (2.4809, 2.4952, 2.5025)), (10.0, (2.238, 2.393, 2.480, 2.5012))):
+        separations = (4, 6, 10, 20)[: len(known)]
+        kap = [slope_of_area(alpha, *per_summit(alpha, x)[1:3]) for x in separations]
+        assert kap == pytest.approx(known, abs=6e-4)
+        assert np.all(np.diff(kap) > 0)
+        assert kap[-1] < math.sqrt(2 * math.pi)
+    assert slope_of_area(2.0, *per_summit(2.0, 30)[1:3]) == pytest.approx(math.sqrt(2 * math.pi), rel=5e-4)
+
+
+def test_moments_of_the_curvatures():
+    """E tau, and the mean and the spread of g, free of alpha: means over heights of those at a height."""
+    assert pytest.approx(2.60588006348224, rel=1e-14) == MEAN_CURVATURE
+    for alpha in ALPHAS:
+        law, rule = RandomCurvature(alpha), HeightRule.over([-60.0], Homogeneous(), Nayak(alpha))
+        g, w = np.polynomial.legendre.leggauss(100)
+        g, w = 10 * (1 + g), 10 * w
+        marginal = law.density(g[:, None], rule.heights) @ rule.probabilities
+        assert w @ marginal == pytest.approx(1, rel=1e-12)
+        assert (w * g) @ marginal == pytest.approx(2.34902690068464, rel=1e-12)
+
+
+def given_height(alpha, s):
+    """Density of g at a height, unscaled, at 22 digits, and a normal one's peak to cut integrals at."""
+    law = Nayak(alpha)
+    x = mp.mpf(float(law.over_rms(s)))
+    rho = mp.sqrt(mp.mpf(3) / (2 * mp.mpf(alpha)))
+    mu, v = mp.sqrt(2) * rho * x, 2 * (1 - rho**2)
+
+    def density(g):
+        return g**3 * mp.exp(g * g / 2) * mp.erfc((g - mu / (1 + v)) / mp.sqrt(2 * v / (1 + v)))
+
+    top = float(max(mu, 0) + 13 * mp.sqrt(v))
+    return density, [mp.mpf(c) * top for c in (0, 0.01, 0.05, 0.15, 0.3, 0.45, 0.6, 0.75, 0.9, 1, 1.3)]
+
+
+@pytest.mark.parametrize("alpha", [1.6, 5.0, 100.0])
+@pytest.mark.parametrize("s", [-5.0, 0.3, 9.0])
+def test_the_law_at_a_height_against_quadrature(alpha, s):
+    law = RandomCurvature(alpha)
+    with mp.workdps(22):
+        density, cuts = given_height(alpha, s)
+        whole = mp.quad(density, cuts)
+        for power in (0.5, 1, 2, 3):
+            exact = (
+                mp.mpf(MEAN_CURVATURE) ** power * mp.quad(lambda g, q=power: density(g) / g**q, cuts) / whole
+            )
+            # 1e-14 of what the last digit of the height leaves known
+            assert float(law.mean(power, s)) == pytest.approx(float(exact), rel=2e-14 * (1 + s * s / 10)), (
+                power
+            )
+        for t in (1e-3, 1.2, 1.4, 6.8):
+            g = float(law.at(t, s))
+            below = mp.quad(density, [c for c in cuts if c < g] + [mp.mpf(g)])
+            above = mp.quad(density, [mp.mpf(g), *(c for c in cuts if c > g)])
+            q = mp.mpf(t) ** 2
+            if below < above:
+                exact, found, share = below / whole, law.below(g, s), mp.gammainc(2, 0, q)
+            else:
+                exact, found, share = above / whole, law.above(g, s), mp.gammainc(2, q)
+            assert float(found) == pytest.approx(float(exact), rel=1e-12)
+            # what an error of 1e-12 in g makes of the share
+            steep = abs(float(law.density(g, s))) * g / float(exact)
+            assert float(exact) == pytest.approx(float(share), rel=1e-12 * (1 + steep))
+
+
+def four_gaussians(alpha, rng, n):
+    """Heights and curvatures of summits: points of a surface, weighted by their Hessian (m0 = 1, q = 1)."""
+    m2 = math.sqrt(3 / alpha)
+    root = np.linalg.cholesky(np.array([[1, -m2, -m2], [-m2, 3, 1], [-m2, 1, 3]]))
+    z, xx, yy = root @ rng.standard_normal((3, n))
+    xy = rng.standard_normal(n)
+    return z, xx + yy, xx * yy - xy * xy
+
+
+def drawn(alpha, n):
+    """As `four_gaussians` has them with their weights; the weight of a point decides whether it is kept."""
+    rng = np.random.default_rng(4)
+    z, trace, det = four_gaussians(alpha, rng, n)
+    kept = (det > 0) & (trace < 0) & (rng.random(n) * 30 < det)  # above 30 one in 1e5
+    return z[kept], np.sqrt(det[kept])
+
+
+def ks(alpha, z, g, law=None, shift=0.0):
+    """p values: heights under Nayak's law, curvatures each at its own height, and all of them."""
+    heights = Nayak(alpha)
+    s = (z - heights.mean) / heights.std
+    law = law or RandomCurvature(alpha)
+    return (
+        scipy.stats.kstest(heights.below(s + shift), "uniform").pvalue,
+        scipy.stats.kstest(law.below(g, s), "uniform").pvalue,
+    )
+
+
+@pytest.mark.parametrize("alpha", [1.6, 5.0])
+def test_same_law_as_four_gaussians(alpha):
+    """p > 1e-4 for fixed seeds: a false alarm in 5000."""
+    z, g = drawn(alpha, 400_000)
+    assert z.size > 7000
+    assert min(ks(alpha, z, g)) > 1e-4
+
+
+def test_wrong_laws_fail_the_same_test():
+    z, g = drawn(2.0, 400_000)
+    assert ks(2.0, z, g, shift=0.1)[0] < 1e-4
+    shuffled = np.random.default_rng(1).permutation(g)  # curvature independent of height
+    assert ks(2.0, z, shuffled)[1] < 1e-20
+    assert ks(2.0, z, g, RandomCurvature(2.3))[1] < 1e-4
+
+
+def test_draws_follow_the_law():
+    """Heights and ratios by their own samplers: p > 1e-4, a false alarm in 3000."""
+    rng, heights, law = np.random.default_rng(8), Nayak(3.0), RandomCurvature(3.0)
+    s = heights.sample(rng, 20_000)
+    g = MEAN_CURVATURE / law.sample(rng, s)
+    assert scipy.stats.kstest(heights.below(s), "uniform").pvalue > 1e-4
+    assert scipy.stats.kstest(law.below(g, s), "uniform").pvalue > 1e-4
+    assert scipy.stats.pearsonr(heights.below(s), law.below(g, s)).pvalue > 1e-4
+
+
+def test_wrong_versions_are_seen_by_the_check_values():
+    """Curvature free of height; saddles and pits counted; arithmetic mean curvature; E[1/g] for 1/E[g]."""
+    exact, kap = VALUES[2, 2][:4], VALUES[2, 2][4]
+    independent = RandomCurvature(1e9)  # rho = 0, the same marginal law
+    found = per_summit(2, 2, lambda q, s: independent.mean(q, s))
+    assert abs(found[1] / exact[1] - 1) > 0.1
+    one = per_summit(2, 2, lambda q, s: np.ones_like(s))
+    assert abs(slope_of_area(2, *one[1:3]) / kap - 1) > 0.05
+    ratio = float(RandomCurvature(1e9).mean(1, 0.0))
+    assert ratio > 1.2  # E[1/g] E[tau]
+
+
+def test_bounded_radii():
+    """`largest` holds ratios down: means by a plain sum over the quantiles of the law."""
+    bounded, free, s = RandomCurvature(2.0, largest=2.0), RandomCurvature(2.0), np.array([-2.0, 0.0, 3.0])
+    x, w = np.polynomial.legendre.leggauss(200)
+    kink = MEAN_CURVATURE / 2
+    g = np.concatenate([kink * (1 + x) / 2, kink + (14 - kink) * (1 + x) / 2])
+    weights = np.concatenate([kink / 2 * w, (14 - kink) / 2 * w])
+    for power in (0.5, 2, 4, 6):
+        sums = (weights * bounded.ratio(g) ** power) @ free.density(g[:, None], s)
+        assert bounded.mean(power, s) == pytest.approx(sums, rel=1e-12)
+    assert np.all(bounded.mean(1, s) < free.mean(1, s))
+    assert bounded.sample(np.random.default_rng(1), np.full(500, -2.0)).max() == 2.0
+
+
+def test_the_limit_of_large_alpha_forgets_the_height():
+    wide = RandomCurvature(1e10).mean(1, np.array([-3.0, 0.0, 3.0]))
+    assert wide == pytest.approx(np.full(3, wide[1]), rel=1e-4)
+
+
+def test_what_there_is_not_is_refused():
+    with pytest.raises(ValueError, match="power = 4"):
+        RandomCurvature(2.0).mean(4, 0.0)
+    with pytest.raises(ValueError, match=r"alpha = 1\.5"):
+        RandomCurvature(1.5)
+    with pytest.raises(ValueError, match="largest = 0"):
+        RandomCurvature(2.0, 0)
+    with pytest.raises(ValueError, match=r"alpha = m0 m4/m2\^2 = 1.4"):
+        SpectralMoments(1.4, 1.0, 1.0).surface(1.0, 1.0)
+    assert SpectralMoments(1.4, 1.0, 1.0).sigma > 0  # a measured map may have it
+
+
+def test_the_surface_of_spectral_moments():
+    moments = SpectralMoments(2e-12, 3e-3, 7e7)
+    surface = moments.surface(1e-6, 2e9)
+    law = Nayak(moments.alpha)
+    assert surface.sigma == pytest.approx(law.std * math.sqrt(moments.m0), rel=1e-14)
+    assert moments.mean_height == pytest.approx(law.mean * math.sqrt(moments.m0), rel=1e-14)
+    assert 1 / surface.radius == pytest.approx(MEAN_CURVATURE * math.sqrt(moments.m4 / 3), rel=1e-14)
+    assert (surface.eta, surface.nominal_area, surface.E_star) == (moments.eta, 1e-6, 2e9)
