@@ -14,7 +14,7 @@ Gradings E*(s)/E*, and height laws, of s = z/sigma:
 =======================  =========================================================================
 `Homogeneous`            the same modulus at every height; `Exponential`: Eq. (4) of the paper
 `Table`                  measured moduli; `Custom`: any function of s, as a plain lambda is too
-`Gaussian`               the default; `ExponentialHeights`, `Weibull`
+`Gaussian`               the default; `ExponentialHeights`, `Weibull`, `Nayak`
 `HeightTable`            measured heights, resampled; `MeasuredHeights`: just as they are
 `ScipyHeights`           any distribution of scipy.stats, as a plain frozen one is too
 =======================  =========================================================================
@@ -85,6 +85,7 @@ if TYPE_CHECKING:
         JohnsonKendallRoberts,
         KogutEtsion,
         MeasuredHeights,
+        Nayak,
         PowerLawGraded,
         ScipyHeights,
         Table,
@@ -134,6 +135,7 @@ __all__ = [
     "JohnsonKendallRoberts",
     "KogutEtsion",
     "MeasuredHeights",
+    "Nayak",
     "PowerLawGraded",
     "RunError",
     "Scene",

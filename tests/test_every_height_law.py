@@ -1,4 +1,4 @@
-"""Twelve height laws through everything that judges and shows, below, at and above their support.
+"""Thirteen height laws through everything that judges and shows, below, at and above their support.
 
 What is printed of N, contacts and means is held to an independent integral over the density (or a plain
 sum over measured heights); a separation that nothing reaches has mean and variance 0, and no warning.
@@ -9,7 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from twelve_height_laws import LAWS, SAMPLE
+from thirteen_height_laws import LAWS, SAMPLE
 
 import mcgw
 import mcgw.reports.html

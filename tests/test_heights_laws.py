@@ -22,6 +22,7 @@ from analytic import (
     Gaussian,
     HeightTable,
     MeasuredHeights,
+    Nayak,
     ScipyHeights,
     Weibull,
 )
@@ -34,6 +35,7 @@ LAWS = {
     "weibull +1": Weibull(1.56391),
     "weibull 0": Weibull(3.60235),
     "weibull -1": Weibull(40.743),
+    "nayak": Nayak(1.8),
     "gamma": ScipyHeights(scipy.stats.gamma(2.5)),
     "beta": ScipyHeights(scipy.stats.beta(2.5, 3.5)),
     "laplace": ScipyHeights(scipy.stats.laplace()),

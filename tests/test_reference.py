@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from conftest import SURFACE
-from twelve_height_laws import LAWS, SAMPLE
+from thirteen_height_laws import LAWS, SAMPLE
 
 import analytic
 from analytic import ExponentialHeights, MeasuredHeights, Weibull

@@ -130,6 +130,7 @@ def test_the_compiler_neither_fuses_nor_reorders():
         ({"grading": analytic.Custom(np.cosh)}, True),
         ({"grading": analytic.Clipped(analytic.Custom(np.sinh))}, True),
         ({"heights": analytic.Weibull(3.6)}, True),
+        ({"heights": analytic.Nayak(5.0)}, True),
     ],
 )
 def test_what_depends_on_the_processor(make_scene, change, depends):

@@ -201,7 +201,7 @@ def test_bounded_radii():
     kink = MEAN_CURVATURE / 2
     g = np.concatenate([kink * (1 + x) / 2, kink + (14 - kink) * (1 + x) / 2])
     weights = np.concatenate([kink / 2 * w, (14 - kink) / 2 * w])
-    for power in (0.5, 2, 4, 6):
+    for power in (0.5, 2, 4):
         sums = (weights * bounded.ratio(g) ** power) @ free.density(g[:, None], s)
         assert bounded.mean(power, s) == pytest.approx(sums, rel=1e-12)
     assert np.all(bounded.mean(1, s) < free.mean(1, s))

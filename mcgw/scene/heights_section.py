@@ -12,6 +12,7 @@ from analytic import (
     HeightLaw,
     HeightTable,
     MeasuredHeights,
+    Nayak,
     ScipyHeights,
     Weibull,
 )
@@ -26,8 +27,8 @@ _PLAIN: dict[str, HeightLaw] = {
     "gaussian": Gaussian(),
     "exponential": ExponentialHeights(),
 }
-LAWS = (*_PLAIN, "weibull", "table", "scipy")
-_KNOWN = (*map(type, _PLAIN.values()), Weibull, HeightTable, MeasuredHeights, ScipyHeights)
+LAWS = (*_PLAIN, "weibull", "nayak", "table", "scipy")
+_KNOWN = (*map(type, _PLAIN.values()), Weibull, Nayak, HeightTable, MeasuredHeights, ScipyHeights)
 _MOST_BYTES = 2**28
 
 
@@ -37,6 +38,8 @@ def heights_law(section: Section, folder: Path) -> HeightLaw:
     match name:
         case "weibull":
             return _weibull(section)
+        case "nayak":
+            return _nayak(section)
         case "table":
             return _table(section, folder)
         case "scipy":
@@ -51,6 +54,16 @@ def _weibull(section: Section) -> HeightLaw:
     except ValueError:
         if np.isfinite(shape):
             section.fail("shape", shape, "give a number from 1 to 100 (3.6 has no skewness)")
+        return Gaussian()
+
+
+def _nayak(section: Section) -> HeightLaw:
+    alpha = section.number("alpha")
+    try:
+        return Nayak(alpha)
+    except ValueError:
+        if np.isfinite(alpha):
+            section.fail("alpha", alpha, "give a number from 1.501 to 1e12, m0 m4/m2^2 of the surface")
         return Gaussian()
 
 
@@ -130,6 +143,8 @@ def heights_table(heights: HeightLaw, file: str | None = None) -> dict[str, Any]
             pass
         case Weibull():
             return {"law": "weibull", "shape": float(heights.shape)}
+        case Nayak():
+            return {"law": "nayak", "alpha": float(heights.alpha)}
         case HeightTable():
             return {"law": "table", "s": list(heights.s), "share": list(heights.share)}
         case MeasuredHeights():

@@ -99,8 +99,8 @@ def _heights(section: Section, given: Any) -> HeightLaw:
     if all(hasattr(given, name) for name in _LAW_OF_HEIGHTS) and not isinstance(given, type):
         return given  # type: ignore[no-any-return]
     advice = (
-        "give mcgw.Weibull(shape), mcgw.HeightTable.of(heights), or a frozen distribution of scipy.stats, as "
-        "scipy.stats.lognorm(0.3)"
+        "give mcgw.Weibull(shape), mcgw.Nayak(alpha), mcgw.HeightTable.of(heights), or a frozen distribution "
+        "of scipy.stats, as scipy.stats.lognorm(0.3)"
     )
     section.fail("heights", given, advice)
     return Gaussian()
