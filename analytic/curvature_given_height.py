@@ -6,7 +6,7 @@ from functools import cached_property, lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.special import gammainc, gammaincc, gammainccinv, gammaincinv, ndtr
+from scipy.special import erfcx, gammainc, gammaincc, gammainccinv, gammaincinv, ndtr
 
 from analytic.nayak import NayakTables, panelled, tables_of, upper_tail
 
@@ -80,6 +80,13 @@ class CurvatureGivenHeight:
     def density(self, g: Array) -> Array:
         """Probability density at `g`, shape (n,)."""
         return g**3 * self._parts(g) / self._whole
+
+    def elasticity(self, g: Array) -> Array:
+        """``d log(density)/d log(g)``."""
+        v = self._v
+        z = (math.sqrt(1 + v) * g - self._mu / math.sqrt(1 + v)) / math.sqrt(v)
+        rate = math.sqrt(2 / math.pi) / erfcx(z * math.sqrt(0.5))  # of the normal tail
+        return np.asarray(3 + g * g - g * math.sqrt((1 + v) / v) * rate)
 
     def between(self, low: Array, high: Array) -> Array:
         """Probability of a curvature between two."""

@@ -38,6 +38,8 @@ class Quantity:
         Power n of the approach (s - h).
     modulus : int
         Power of the grading E*(s)/E*: 1 where the modulus counts, else 0.
+    radius : float
+        Power of the asperity's radius, where radii differ: as in `scale`.
     scale : callable
         Dimensional factor of one asperity, of the `Surface`.
     of : str, optional
@@ -53,6 +55,7 @@ class Quantity:
     unit: str
     exponent: float
     modulus: int
+    radius: float
     scale: Callable[[Surface], float]
     of: str = ""
     unloading: str = ""
@@ -87,16 +90,17 @@ def _conductance(x: Surface) -> float:
 QUANTITIES = {
     q.name: q
     for q in (
-        Quantity("load", "normal load", "N", 1.5, 1, _load),
-        Quantity("area", "real contact area", "m^2", 1.0, 0, _area),
-        Quantity("stiffness", "normal stiffness", "N/m", 0.5, 1, _stiffness),
-        Quantity("contacts", "number of contacts", "1", 0.0, 0, _one, counts=True),
+        Quantity("load", "normal load", "N", 1.5, 1, 0.5, _load),
+        Quantity("area", "real contact area", "m^2", 1.0, 0, 1.0, _area),
+        Quantity("stiffness", "normal stiffness", "N/m", 0.5, 1, 0.5, _stiffness),
+        Quantity("contacts", "number of contacts", "1", 0.0, 0, 0.0, _one, counts=True),
         Quantity(
             "conductance",
             "contact conductance of the spots, times the resistivity rho",
             "m",
             0.5,
             0,
+            0.5,
             _conductance,
         ),
     )
@@ -111,6 +115,7 @@ PER_AREA = {
             "Pa",
             1.5,
             1,
+            0.5,
             lambda x: _load(x) / x.nominal_area,
             of="load",
         ),
@@ -120,6 +125,7 @@ PER_AREA = {
             "1",
             1.0,
             0,
+            1.0,
             lambda x: _area(x) / x.nominal_area,
             of="area",
         ),
@@ -131,16 +137,17 @@ PER_AREA = {
 LAW_QUANTITIES = {
     q.name: q
     for q in (
-        Quantity("load_slope", "slope -dP/dd of the loads of the spots", "N/m", 0.5, 1, _stiffness),
+        Quantity("load_slope", "slope -dP/dd of the loads of the spots", "N/m", 0.5, 1, 0.5, _stiffness),
         Quantity(
             "conductance_si",
             "contact conductance of the spots and their films",
             "S or W/K",
             0.5,
             0,
+            0.5,
             _conductance,
         ),
-        Quantity("yielded", "number of contacts that have yielded", "1", 0.0, 0, _one, counts=True),
+        Quantity("yielded", "number of contacts that have yielded", "1", 0.0, 0, 0.0, _one, counts=True),
     )
 }
 
@@ -152,7 +159,7 @@ UNLOADING = {
     if name != "yielded"
 }
 
-TANGENTIAL = Quantity("tangential_load", "tangential load", "N", 1.5, 1, _load)
+TANGENTIAL = Quantity("tangential_load", "tangential load", "N", 1.5, 1, 0.5, _load)
 
 # All that an ensemble can hold.
 ALL_QUANTITIES = {**QUANTITIES, **LAW_QUANTITIES, **UNLOADING, TANGENTIAL.name: TANGENTIAL}

@@ -31,6 +31,8 @@ class _Adhesive(ContactLaw):
         breaks off under a given displacement (Johnson, Kendall, Roberts). Give it, or `work`.
     """
 
+    of_radius: ClassVar[tuple[str, float]] = ("pull_off", 1 / 3)
+
     work: float | None = None
     pull_off: float | None = None
 
@@ -53,7 +55,7 @@ class _Adhesive(ContactLaw):
         return replace(self, work=None, pull_off=stretch / surface.sigma)
 
     @property
-    def _stretch(self) -> float:
+    def _stretch(self) -> Any:
         if self.pull_off is None:
             raise ValueError(f"{self}: put it on a surface first, law.on(surface), or give `pull_off`")
         return self.pull_off
@@ -141,7 +143,7 @@ class JohnsonKendallRoberts(_Adhesive):
     @property
     def finest(self) -> float:
         """The formulas end where contacts break off."""
-        return self._stretch
+        return float(self._stretch)
 
     def stretch(self, e: Array) -> Array:
         """D_e, in the shape of `e`; infinite without stiffness."""

@@ -176,11 +176,10 @@ class UnloadingBranch:
     def _residual(self, s: Array, e: Array) -> Array:
         """Penetration at which an asperity is lost; infinite where it was never in contact."""
         deepest = s - self.deepest
-        unloading, piece = self.law.unloading(), piece_of(self.law, deepest, e)
-        result = np.zeros(np.shape(s))
+        piece, result = piece_of(self.law, deepest, e), np.zeros(np.shape(s))
         for j in np.unique(piece):
             here = piece == j
-            result[here] = unloading.residual(int(j), deepest[here], e[here])
+            result[here] = self.law.of_some(here).unloading().residual(int(j), deepest[here], e[here])
         return np.where(deepest >= 0, result, np.inf)
 
     def root(self, piece: int) -> bool:

@@ -64,6 +64,7 @@ class Coated(ContactLaw):
     """
 
     name: ClassVar[str] = "coated"
+    of_radius: ClassVar[tuple[str, float]] = ("reduced_thickness", -0.5)
 
     thickness: float | None = None
     ratio: float
@@ -92,7 +93,7 @@ class Coated(ContactLaw):
     @property
     def finest(self) -> float:
         """How far above first touch the formulas are analytic: arctan(a/t) up to |a| = t."""
-        return self._t**2
+        return float(self._t**2)
 
     def load(self, piece: int, y: Any, e: Array) -> Any:
         """Load of a contact, in the shape of `y` and `e`: three times the integral of its stiffness y dy."""
@@ -114,7 +115,7 @@ class Coated(ContactLaw):
         return 1 - 2 / math.pi * np.arctan(w) + mixed / (2 * math.pi * (1 - nu))
 
     @property
-    def _t(self) -> float:
+    def _t(self) -> Any:
         if self.reduced_thickness is None:
             raise ValueError(f"{self}: put it on a surface first, law.on(surface)")
         return self.reduced_thickness

@@ -34,6 +34,7 @@ class ElasticPlastic(ContactLaw):
     critical: float | None = None
 
     elastic: ClassVar[bool] = False
+    of_radius: ClassVar[tuple[str, float]] = ("critical", 1.0)
     starts: ClassVar[tuple[float, ...]] = (1.0,)
 
     def __post_init__(self) -> None:
@@ -46,10 +47,10 @@ class ElasticPlastic(ContactLaw):
         return self.starts
 
     @property
-    def _root_of_critical(self) -> float:
+    def _root_of_critical(self) -> Any:
         if self.critical is None:
             raise ValueError(f"{self}: put it on a surface first, law.on(surface), or give `critical`")
-        return float(np.sqrt(self.critical))
+        return np.sqrt(self.critical)
 
     def delta_c(self, e: Array) -> Array:
         """Critical penetration, infinite where there is no stiffness; in the shape of `e`."""

@@ -1,7 +1,8 @@
 """Electrical or thermal contact through spots with a film, and how spots crowd each other."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -40,7 +41,7 @@ def film_parameter(surface: Surface, *, film_resistance: float, resistivity: flo
     return 4 * film_resistance / (math.pi * resistivity * math.sqrt(surface.radius * surface.sigma))
 
 
-def film_conductance(radius: Array, b: float) -> Array:
+def film_conductance(radius: Array, b: Any) -> Array:
     """Conductance of a spot over 4 sqrt(R sigma)/rho, ``a^2/(a + b)``.
 
     In series: ``1/C = rho/(4 a) + r_f/(pi a^2)``.
@@ -64,7 +65,7 @@ def film_conductance(radius: Array, b: float) -> Array:
     Source: R. Holm, Electric Contacts (1967). For Sharvin's (or Knudsen's) resistance with the mean free
     path l, add ``16 l/(3 pi sqrt(R sigma))`` to b.
     """
-    return radius * (radius / (radius + b))
+    return np.asarray(radius * (radius / (radius + b)))
 
 
 @dataclass(frozen=True)
@@ -124,13 +125,17 @@ class SpotConductance:
         As that of `Film`.
     """
 
-    parameter: float
+    parameter: Any
     resistivity: float
 
     @property
     def finest(self) -> float:
         """How far above first touch it is analytic: radii that go on to negative ones meet a pole."""
         return self.parameter**2 if self.parameter > 0 else math.inf
+
+    def with_radii(self, ratios: Array) -> "SpotConductance":
+        """In the units of summits whose radii are these multiples of the surface's."""
+        return replace(self, parameter=self.parameter / np.sqrt(ratios))
 
     def __call__(self, radius: Array) -> Array:
         """Conductance over 4 sqrt(R sigma): 1/(ohm m), or W/(m K)."""

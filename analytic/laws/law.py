@@ -7,8 +7,10 @@ Everything is in reduced units. An asperity of height s under a plane at the sep
 """
 
 import math
+from collections.abc import Callable
+from copy import copy
 from dataclasses import fields, is_dataclass
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -39,6 +41,9 @@ class ContactLaw:
     finest : float
         How far above first touch the formulas of piece 0 are analytic, in penetration: infinite if they
         are sums of powers of y.
+    of_radius : (str, float) or None
+        The constant that follows the radius of a summit on one surface, and the power of the radius that it
+        goes as.
     half_space : bool
         Whether bodies are elastic half-spaces though the law is not Hertz's.
     root : bool
@@ -49,6 +54,7 @@ class ContactLaw:
     elastic: ClassVar[bool] = True
     root: ClassVar[bool] = True
     half_space: ClassVar[bool] = False
+    of_radius: ClassVar[tuple[str, float] | None] = None
 
     @property
     def finest(self) -> float:
@@ -76,6 +82,33 @@ class ContactLaw:
     def on(self, surface: Surface) -> "ContactLaw":
         """The law on this surface, in reduced units: without anything in Pa or m left."""
         return self
+
+    def with_radii(self, ratios: Array) -> Self:
+        """The law in the units of summits whose radii are these multiples of the surface's.
+
+        Parameters
+        ----------
+        ratios : ndarray
+            One a summit: formulas then take arrays of this shape.
+
+        Returns
+        -------
+        ContactLaw
+            Radii of contact over sqrt(c R sigma), loads over ``(4/3) E* sqrt(c R) sigma^(3/2)``.
+        """
+        return self._with(lambda constant, power: constant * ratios**power)
+
+    def of_some(self, which: NDArray[np.bool_]) -> Self:
+        """The law of some of the summits that it was made for; itself where all have one radius."""
+        return self._with(lambda constant, _: constant[which] if np.ndim(constant) else constant)
+
+    def _with(self, change: Callable[[Any, float], Any]) -> Self:
+        """The law with another constant in the place of the one that follows the radius."""
+        if not self.of_radius:
+            return self
+        law, (name, power) = copy(self), self.of_radius
+        object.__setattr__(law, name, change(getattr(self, name), power))  # checks are for numbers
+        return law
 
     def limits(self, e: Array) -> Array:
         """Penetrations at which the next piece begins, increasing; shape (pieces - 1, *e.shape)."""

@@ -60,6 +60,7 @@ class PowerLawGraded(ContactLaw):
     name: ClassVar[str] = "power-law-graded"
     root: ClassVar[bool] = False
     half_space: ClassVar[bool] = True
+    of_radius: ClassVar[tuple[str, float]] = ("reduced_c0", -0.5)
 
     k: float
     c0: float | None = None
@@ -109,7 +110,7 @@ class PowerLawGraded(ContactLaw):
         return np.asarray((1 + self.k) ** ((self.k - 1) / 2) * self._scale * e * y ** (1 + self.k))
 
     @property
-    def _scale(self) -> float:
+    def _scale(self) -> Any:
         if self.reduced_c0 is None:
             raise ValueError(f"{self}: put it on a surface first, law.on(surface), or give `reduced_c0`")
-        return float(self.H / self.reduced_c0**self.k)
+        return self.H / self.reduced_c0**self.k

@@ -1,7 +1,10 @@
 """Which way a surface has gone to the separation that a quantity is about."""
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
 
 from analytic.laws.branch import Branch, LoadingBranch, UnloadingBranch
 from analytic.laws.film import SpotConductance
@@ -9,6 +12,8 @@ from analytic.laws.law import ContactLaw
 from analytic.quantities import quantity_of
 
 __all__ = ["Ways"]
+
+Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -28,6 +33,36 @@ class Ways:
     law: ContactLaw
     unload_from: float | None = None
     conductance: SpotConductance | None = None
+
+    def with_radii(self, ratios: Array) -> "Ways":
+        """Those of summits whose radii are these multiples of the surface's, each in its own units."""
+        conductance = None if self.conductance is None else self.conductance.with_radii(ratios)
+        return replace(self, law=self.law.with_radii(ratios), conductance=conductance)
+
+    def term(self, quantity: str, h: float, s: Array, e: Array, ratios: Array) -> Array:
+        """What summits of radii of their own add at a separation, 0 without contact.
+
+        Parameters
+        ----------
+        quantity : str
+            Its name, on whatever way.
+        h : float
+            Reduced separation.
+        s, e, ratios : ndarray
+            Reduced heights, moduli E*(s)/E*, and radii over that of the surface, shape (summits,).
+
+        Returns
+        -------
+        ndarray
+            Over the quantity's scale for the radius of the surface, shape (summits,).
+        """
+        q, above = quantity_of(quantity), s - h
+        pieces, result = self.with_radii(ratios).of(quantity).pieces(np.full(s.shape, h), above, e), 0.0 * s
+        for piece in np.unique(pieces[pieces >= 0]).tolist():
+            here = pieces == piece
+            branch = self.with_radii(ratios[here]).of(quantity)
+            result[here] = branch.value(q.base, piece, np.full(here.sum(), h), above[here], e[here])
+        return np.asarray(ratios**q.radius * result)
 
     def of(self, quantity: str) -> Branch:
         """The branch that a quantity is on.

@@ -1,0 +1,75 @@
+"""Laws of contact where each summit has a radius of its own: each as on a surface of that radius."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import analytic
+from analytic import laws, quantity_of
+from analytic.laws import Ways, term_of
+
+SURFACE = analytic.Surface(1e-6, 1e-5, 1e9, 1e-6, 1e11)
+RNG = np.random.default_rng(0)
+S, RATIOS = RNG.normal(size=200), RNG.gamma(3, size=200) / 2
+MODULI = np.exp(0.3 * S)
+FILM = laws.Film(1e-7, 1e-12)
+LAWS = {
+    "hertz": laws.Hertz(),
+    "kogut-etsion": laws.KogutEtsion(hardness=1.2e9),
+    "bridged": laws.KogutEtsion(hardness=1.2e9, bridge="hermite"),
+    "chang-etsion-bogy": laws.ChangEtsionBogy(hardness=1.2e9),
+    "zhao-maietta-chang": laws.ZhaoMaiettaChang(hardness=1.2e9),
+    "jackson-green": laws.JacksonGreen(yield_strength=4e8),
+    "graded in depth": laws.PowerLawGraded(k=0.3, c0=1e-6),
+    "coated": laws.Coated(thickness=1e-7, ratio=2.0),
+    "johnson-kendall-roberts": laws.JohnsonKendallRoberts(work=0.05),
+    "derjaguin-muller-toporov": laws.DerjaguinMullerToporov(work=0.05),
+}
+NO_WAY_BACK = ("chang-etsion-bogy", "zhao-maietta-chang", "jackson-green")
+
+
+def literal(law, name, unload_from, h):
+    """Summit by summit, in SI units."""
+    q, terms = quantity_of(name), []
+    for s, c, e in zip(S, RATIOS, MODULI, strict=True):
+        own = replace(SURFACE, radius=SURFACE.radius * c)
+        branch = Ways(law.on(own), unload_from, FILM.on(own)).of(name)
+        terms.append(float(q.scale(own) * term_of(q.base, branch, h, s, e)))
+    return np.array(terms)
+
+
+@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize("unload_from", [None, -1.0])
+def test_each_summit_is_one_of_a_surface_of_its_radius(law, unload_from):
+    names = ["load", "area", "stiffness", "conductance", "conductance_si", "contacts"]
+    if unload_from is not None:
+        if law in NO_WAY_BACK:
+            return
+        names = ["load_unloading", "area_unloading", "contacts_unloading"]
+    ways = Ways(LAWS[law].on(SURFACE), unload_from, FILM.on(SURFACE))
+    for name in names:
+        for h in (-0.5, 0.2, 5.0):
+            found = quantity_of(name).scale(SURFACE) * ways.term(name, h, S, MODULI, RATIOS)
+            wanted = literal(LAWS[law], name, unload_from, h)
+            assert np.abs(found - wanted).max() <= 1e-13 * max(np.abs(wanted).max(), 1e-300), (name, h)
+
+
+def test_another_radius_is_seen():
+    """Otherwise the test above says nothing: the constant of each law follows the radius."""
+    for name, law in LAWS.items():
+        if name == "hertz":
+            continue
+        on = law.on(SURFACE)
+        key, power = law.of_radius
+        doubled = getattr(law.on(replace(SURFACE, radius=2 * SURFACE.radius)), key) / getattr(on, key)
+        assert doubled == pytest.approx(2**power, rel=1e-12), name
+        assert getattr(on.with_radii(np.array([1.0, 2.0])), key)[1] == pytest.approx(
+            2**power * getattr(on, key)
+        )
+
+
+def test_one_radius_is_the_law_itself():
+    ways = Ways(LAWS["kogut-etsion"].on(SURFACE))
+    same = ways.term("load", 0.2, S, MODULI, np.ones(S.size))
+    np.testing.assert_array_equal(same, term_of("load", ways.of("load"), 0.2, S, MODULI))
