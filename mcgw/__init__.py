@@ -4,6 +4,7 @@ Describe a surface and what is asked of it:
 
 =======================  =========================================================================
 `Surface`                sigma, R, eta, A_n, E*, as numbers (SI) or texts with units
+`SpectralSurface`        instead: the moments m0, m2, m4 of an isotropic Gaussian surface
 `Body`                   one of two bodies; `composite_modulus` of both is E*
 `Scene`                  a surface, separations d/sigma, grading, heights, how many surfaces, seed
 `load_scene`             a scene from its TOML file; `scene_from`, `scene_text`: from and to text
@@ -17,6 +18,7 @@ Gradings E*(s)/E*, and height laws, of s = z/sigma:
 `Gaussian`               the default; `ExponentialHeights`, `Weibull`, `Nayak`
 `HeightTable`            measured heights, resampled; `MeasuredHeights`: just as they are
 `ScipyHeights`           any distribution of scipy.stats, as a plain frozen one is too
+`Nayak`                  summits of a Gaussian surface; `RandomCurvature`: each with its own radius
 =======================  =========================================================================
 
 Laws of contact of one asperity, in place of Hertz's, and what else the contacts do:
@@ -38,7 +40,7 @@ Draw surfaces:
 `run`                    into a file: goes on, extends, in processes, as one of many jobs; `merge`
 `open_ensemble`          what is in a file; `save`: an ensemble in memory to a file
 `Ensemble`               load, area, ... of every surface; means, errors, intervals, tables
-`heights`                the very heights of one surface
+`heights`, `radii`       the very summits of one surface
 =======================  =========================================================================
 
 Ask:
@@ -87,6 +89,7 @@ if TYPE_CHECKING:
         MeasuredHeights,
         Nayak,
         PowerLawGraded,
+        RandomCurvature,
         ScipyHeights,
         Table,
         Tangential,
@@ -105,11 +108,11 @@ if TYPE_CHECKING:
     from mcgw.jobs.merging import merge
     from mcgw.maps.fitted_scene import fitted_scene
     from mcgw.maps.from_file import fit
-    from mcgw.sampling.asperities import heights
+    from mcgw.sampling.asperities import heights, radii
     from mcgw.scene.scene import Scene
     from mcgw.scene.scene_file import load_scene, scene_from, scene_text
     from mcgw.scene.section import SceneError
-    from mcgw.scene.surface import Surface
+    from mcgw.scene.surface import SpectralSurface, Surface
     from mcgw.statistics.comparison import compare
     from mcgw.statistics.convergence import converge
     from mcgw.statistics.tradeoff import tradeoff
@@ -137,10 +140,12 @@ __all__ = [
     "MeasuredHeights",
     "Nayak",
     "PowerLawGraded",
+    "RandomCurvature",
     "RunError",
     "Scene",
     "SceneError",
     "ScipyHeights",
+    "SpectralSurface",
     "StoreError",
     "Surface",
     "Table",
@@ -158,6 +163,7 @@ __all__ = [
     "merge",
     "open_ensemble",
     "paired_ratio",
+    "radii",
     "regrade",
     "run",
     "save",
@@ -178,6 +184,7 @@ _HOME = {
     "RunError": "errors",
     "Scene": "scene.scene",
     "SceneError": "scene.section",
+    "SpectralSurface": "scene.surface",
     "StoreError": "errors",
     "Surface": "scene.surface",
     "compare": "statistics.comparison",
@@ -189,6 +196,7 @@ _HOME = {
     "merge": "jobs.merging",
     "open_ensemble": "store.ensembles",
     "paired_ratio": "ensemble.paired",
+    "radii": "sampling.asperities",
     "regrade": "ensemble.regrading",
     "run": "jobs.from_python",
     "save": "store.saving",

@@ -8,7 +8,7 @@ from oracles import sums_of_heights
 
 import analytic
 import mcgw
-from mcgw.sampling.asperities import heights_drawn
+from mcgw.sampling.asperities import summits_drawn
 from mcgw.sampling.samplers import sampler_of
 
 GRADINGS = {
@@ -57,7 +57,7 @@ def worst(scene, surface, sampler=None):
     """
     sampler = sampler or sampler_of(scene)
     drawn = sampler.block(surface, 1).sums
-    heights = heights_drawn(scene, sampler, surface)
+    heights = summits_drawn(scene, sampler, surface)[0]
     errors = []
     for quantity in scene.quantities:
         exact = sums_of_heights(scene, heights, quantity)
@@ -156,7 +156,7 @@ def test_heights_in_all_are_the_asperities_asked_for(make_scene):
             assert len(every) == scene.n_asperities
         else:
             assert abs(len(every) - 3000) < 5 * 3000**0.5
-        np.testing.assert_array_equal(touching, heights_drawn(scene, sampler_of(scene), 1))
+        np.testing.assert_array_equal(touching, summits_drawn(scene, sampler_of(scene), 1)[0])
 
 
 def test_aggregate_and_direct_keep_no_heights(make_scene):

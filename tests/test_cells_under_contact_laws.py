@@ -10,7 +10,7 @@ import analytic
 import mcgw
 from analytic import laws
 from mcgw.sampling import cells
-from mcgw.sampling.asperities import heights_drawn
+from mcgw.sampling.asperities import summits_drawn
 from mcgw.sampling.samplers import cells_of
 
 LAWS = {
@@ -111,7 +111,7 @@ def of_piece(law, name, piece, d, most, e, *, back):
 def worst(scene):
     """Largest difference, of the largest value of each quantity."""
     sampler = cells_of(scene)
-    drawn, heights = sampler.block(0, 1).sums, heights_drawn(scene, sampler, 0)
+    drawn, heights = sampler.block(0, 1).sums, summits_drawn(scene, sampler, 0)[0]
     found = []
     for name in scene.quantities:
         expected = literal(scene, heights, name)

@@ -342,7 +342,7 @@ def test_contact_map(make_scene, kept, tmp_path):
     scene = make_scene(grading=analytic.Exponential(2.0))
     sigma, radius = scene.surface.sigma, scene.surface.radius
     x, y = np.array([10e-6, 30e-6, 45e-6]), np.array([15e-6, 20e-6, 5e-6])
-    field = Asperities(x, y, sigma * np.array([2.0, 1.5, 0.5]), radius, (60e-6, 40e-6))
+    field = Asperities(x, y, sigma * np.array([2.0, 1.5, 0.5]), np.full(3, radius), radius, (60e-6, 40e-6))
     spots = spots_at(scene, field, 1.0)
     delta = sigma * np.array([1.0, 0.5])
     modulus = 2 - np.exp(-np.array([2.0, 1.5]))

@@ -35,7 +35,7 @@ def caps(overlap, *, number=2500, pixels=1536, seed=2, per_gap=30):
     generator = rng(seed)
     field = Asperities(
         side * generator.random(number), side * generator.random(number),
-        sigma * generator.normal(size=number), radius, (side, side),
+        sigma * generator.normal(size=number), np.full(number, radius), radius, (side, side),
     )  # fmt: skip
     assert pixels / math.sqrt(number) > per_gap
     return envelope(field, (pixels, pixels)), field, (eta, radius, sigma)

@@ -27,7 +27,7 @@ RUNS = Path(__file__).parents[1] / "runs"
 def random_field(number, size, radius, sigma, seed=1):
     rng = np.random.default_rng(seed)
     x, y = rng.random((2, number)) * np.array(size)[:, None]
-    return Asperities(x, y, sigma * rng.normal(size=number), radius, size)
+    return Asperities(x, y, sigma * rng.normal(size=number), np.full(number, radius), radius, size)
 
 
 def offsets(a, b, length, periodic):

@@ -11,6 +11,7 @@ PRESETS = {
     "demo": "bead-blasted aluminium with stiffened tips",
     "aluminium": "bead-blasted aluminium of Greenwood and Williamson, homogeneous",
     "metal": "the same where asperities yield, with its way back",
+    "spectral": "a Gaussian surface by its spectrum, each summit with its own radius",
     "coating": "a graded hard coating",
     "degradation": "tips softened by chemical attack",
     "nanoindentation": "a table of measured moduli",

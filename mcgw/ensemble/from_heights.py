@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.same_surfaces import check_same
-from mcgw.sampling.asperities import heights_drawn, listing_sampler
+from mcgw.sampling.asperities import listing_sampler, summits_drawn
 from mcgw.sampling.law_sums import asperity_sums
 from mcgw.scene.scene import Scene
 
@@ -40,8 +40,10 @@ def sums_of_heights(ensemble: Ensemble, scene: Scene) -> Iterator[dict[str, NDAr
     step = max(int(_HEIGHTS / max(origin.touching, 1.0)), 1)
     for first in range(0, ensemble.n_surfaces, step):
         surfaces = range(first, min(first + step, ensemble.n_surfaces))
-        listed = [heights_drawn(origin, sampler, number) for number in surfaces]
-        numbers, heights = np.array([s.size for s in listed]), np.concatenate(listed)
-        again = asperity_sums(lowest, numbers, heights, np.ones(heights.size))
+        listed = [summits_drawn(origin, sampler, number) for number in surfaces]
+        numbers = np.array([s.size for s, _ in listed])
+        heights, own = np.concatenate([s for s, _ in listed]), [c for _, c in listed if c is not None]
+        drawn = numbers, heights, np.ones(heights.size), np.concatenate(own) if own else None
+        again = asperity_sums(lowest, *drawn)
         check_same(ensemble, first, again, slice(where, where + 1))
-        yield asperity_sums(scene, numbers, heights, np.ones(heights.size))
+        yield asperity_sums(scene, *drawn)

@@ -7,7 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 
-from analytic.laws import LoadingBranch, term_of
+from analytic import quantity_of
+from analytic.laws import LoadingBranch, Ways, term_of
 
 __all__ = ["LawSum"]
 
@@ -31,12 +32,15 @@ class LawSum:
         With the law in reduced units.
     heights, modulus : ndarray
         Reduced heights in falling order, and E*(s)/E* >= 0 of each; shape (n,).
+    ratios : ndarray, optional
+        Radius of each over that of the surface, where summits have their own.
     """
 
     quantity: str
     branch: LoadingBranch
     heights: Array
     modulus: Array
+    ratios: Array | None = None
 
     def largest_separation(self, value: float, start: float) -> float | None:
         """Largest separation from `start` on at which the sum is `value`, or jumps past it, or None.
@@ -65,10 +69,10 @@ class LawSum:
 
         Each contact is at most what it is at `low`, or where one of its pieces ends.
         """
-        s, e = self._touching(low)
-        terms = term_of(self.quantity, self.branch, low, s, e)
+        n = self._touching(low)
+        s, e, terms = self.heights[:n], self.modulus[:n], self._terms(low, n)
         at_low = float(np.sum(terms))
-        first, last = self._pieces(high, s, e), self._pieces(low, s, e)
+        first, last = self._pieces(high, n), self._pieces(low, n)
         if self._snaps:
             terms = np.where(first < 0, np.maximum(terms, 0.0), terms)
         else:  # a contact begins as nothing
@@ -76,11 +80,11 @@ class LawSum:
         changed = np.flatnonzero(first < last)
         if not changed.size:
             return at_low, at_low, True
-        for j, limit in enumerate(self.branch.law.limits(e[changed])):
+        for j, limit in enumerate(self._branch(changed).law.limits(e[changed])):
             ends = (first[changed] <= j) & (j < last[changed])
             here, limit = changed[ends], limit[ends]
-            at_end = self.branch.value(self.quantity, j, s[here] - limit, limit, e[here])
-            terms[here] = np.maximum(terms[here], at_end)
+            at_end = self._branch(here).value(self.quantity, j, s[here] - limit, limit, e[here])
+            terms[here] = np.maximum(terms[here], self._weight(here) * at_end)
         return at_low, float(np.sum(terms)), False
 
     @cached_property
@@ -90,12 +94,34 @@ class LawSum:
         return bool(self.branch.value(self.quantity, 0, none, none, np.ones(1))[0] != 0)
 
     def _at(self, h: float) -> float:
-        s, e = self._touching(h)
-        return float(np.sum(term_of(self.quantity, self.branch, h, s, e)))
+        return float(np.sum(self._terms(h, self._touching(h))))
 
-    def _touching(self, h: float) -> tuple[Array, Array]:
-        n = int(np.searchsorted(-self.heights, -h))
-        return self.heights[:n], self.modulus[:n]
+    def _touching(self, h: float) -> int:
+        """How many rise above a separation: they come first."""
+        return int(np.searchsorted(-self.heights, -h))
 
-    def _pieces(self, h: float, s: Array, e: Array) -> NDArray[np.int64]:
-        return self.branch.pieces(np.full(s.shape, h), s - h, e)
+    def _terms(self, h: float, n: int) -> Array:
+        """What each of the first `n` adds."""
+        s, e = self.heights[:n], self.modulus[:n]
+        if self.ratios is None:
+            return term_of(self.quantity, self.branch, h, s, e)
+        return self._ways.term(self.quantity, h, s, e, self.ratios[:n])
+
+    def _pieces(self, h: float, n: int) -> NDArray[np.int64]:
+        s, e = self.heights[:n], self.modulus[:n]
+        return self._branch(slice(n)).pieces(np.full(n, h), s - h, e)
+
+    @property
+    def _ways(self) -> Ways:
+        return Ways(self.branch.law, None, self.branch.conductance)
+
+    def _branch(self, which: slice | NDArray[np.int64]) -> LoadingBranch:
+        """That of some asperities, each by the law of its own radius."""
+        if self.ratios is None:
+            return self.branch
+        ways = self._ways.with_radii(self.ratios[which])
+        return LoadingBranch(ways.law, ways.conductance)
+
+    def _weight(self, which: NDArray[np.int64]) -> Array | float:
+        """What a load or an area is worth by the radius."""
+        return 1.0 if self.ratios is None else self.ratios[which] ** quantity_of(self.quantity).radius

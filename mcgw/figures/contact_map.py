@@ -1,6 +1,5 @@
 """The contact map: spots to scale on the height map, coloured by what they carry."""
 
-import math
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
@@ -12,7 +11,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from analytic import Hertz, quantity_of
-from analytic.laws import LoadingBranch, term_of
+from analytic.laws import Ways
 from mcgw.formats.pictures import save_figure
 from mcgw.maps.asperities import Asperities
 from mcgw.maps.envelope import envelope
@@ -75,18 +74,19 @@ def spots_at(scene: Scene, field: Asperities, separation: float) -> Spots:
     touching = field.z > separation * surface.sigma
     s = field.z[touching] / surface.sigma
     modulus = scene.modulus(s)
-    load, radius = _load_and_radius(scene, field.z[touching] - separation * surface.sigma, modulus)
+    delta = field.z[touching] - separation * surface.sigma
+    load, radius = _load_and_radius(scene, delta, modulus, field.radii[touching])
     return Spots(field.x[touching], field.y[touching], radius, load, modulus, separation)
 
 
-def _load_and_radius(scene: Scene, delta: Array, modulus: Array) -> tuple[Array, Array]:
-    """Of contacts of these penetrations, all in SI units."""
+def _load_and_radius(scene: Scene, delta: Array, modulus: Array, radii: Array) -> tuple[Array, Array]:
+    """Of contacts of these penetrations and summit radii, all in SI units."""
     surface = scene.surface
     if type(scene.law) is Hertz:
-        load = 4 / 3 * surface.E_star * modulus * math.sqrt(surface.radius) * delta * np.sqrt(delta)
-        return load, np.sqrt(surface.radius * delta)
-    branch, penetration = LoadingBranch(scene.contact), delta / surface.sigma
-    load, radius = (term_of(name, branch, 0.0, penetration, modulus) for name in ("load", "conductance"))
+        load = 4 / 3 * surface.E_star * modulus * np.sqrt(radii * delta) * delta
+        return load, np.sqrt(radii * delta)
+    ways, penetration, ratios = Ways(scene.contact), delta / surface.sigma, radii / surface.radius
+    load, radius = (ways.term(name, 0.0, penetration, modulus, ratios) for name in ("load", "conductance"))
     scale = quantity_of("load").scale(surface)
     return scale * load, np.sqrt(surface.radius * surface.sigma) * radius
 

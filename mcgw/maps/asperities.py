@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from mcgw.sampling.asperities import heights
+from mcgw.sampling.asperities import summits
 from mcgw.sampling.philox import POSITIONS, uniforms
 from mcgw.scene.scene import Scene
 
@@ -26,8 +26,10 @@ class Asperities:
     x, y, z : ndarray
         Positions of the summits in the nominal area and heights about the mean of all summit heights,
         m, shape (asperities,). Those that touch at the scene's lowest separation come first.
+    radii : ndarray
+        Radius of each summit, m.
     radius : float
-        Radius R of the summits, m.
+        Radius R of the surface, m: that of every summit, or the inverse of the mean curvature.
     size : (float, float)
         Extent of the nominal area along x and y, m.
     """
@@ -35,6 +37,7 @@ class Asperities:
     x: Array
     y: Array
     z: Array
+    radii: Array
     radius: float
     size: tuple[float, float]
 
@@ -63,6 +66,8 @@ def asperities_of(scene: Scene, surface: int, *, width: float | None = None) -> 
     if not (math.isfinite(width) and width > 0):
         raise ValueError(f"width = {width}: give a length > 0 m")
     size = (width, area / width)
-    z = scene.surface.sigma * heights(scene, surface, untouched=True)
+    s, ratios = summits(scene, surface)
+    z, radius = scene.surface.sigma * s, scene.surface.radius
+    radii = np.full(s.shape, radius) if ratios is None else radius * ratios
     x, y = (uniforms(scene.seed, POSITIONS, surface, stream, len(z)) for stream in (_X, _Y))
-    return Asperities(size[0] * x, size[1] * y, z, scene.surface.radius, size)
+    return Asperities(size[0] * x, size[1] * y, z, radii, radius, size)

@@ -1,4 +1,4 @@
-"""The height map of a field of asperities: the upper envelope of paraboloid caps of one radius.
+"""The height map of a field of asperities: the upper envelope of paraboloid caps.
 
 A bin of a regular grid holds about one asperity. The highest cap above a point is sought bin by bin,
 ring by ring, until no asperity further out could rise above what was found: the cost is proportional
@@ -39,8 +39,8 @@ class Bins:
         Bins along y and x.
     size : (float, float)
         Extent of the area along x and y, m.
-    radius : float
-        Of the caps, m.
+    sharpness : ndarray
+        1/(2R) of the caps, bin by bin, 1/m.
     """
 
     x: Array
@@ -50,7 +50,7 @@ class Bins:
     starts: Ints
     shape: tuple[int, int]
     size: tuple[float, float]
-    radius: float
+    sharpness: Array
 
 
 def bins_of(field: Asperities) -> Bins:
@@ -61,16 +61,16 @@ def bins_of(field: Asperities) -> Bins:
     j = np.minimum((field.y / field.size[1] * rows).astype(np.int64), rows - 1)
     order = np.argsort(j * columns + i, kind="stable")
     starts = np.concatenate([[0], np.cumsum(np.bincount(j * columns + i, minlength=rows * columns))])
-    x, y, z = field.x[order], field.y[order], field.z[order]
-    return Bins(x, y, z, order, starts, (rows, columns), field.size, field.radius)
+    x, y, z, radii = (each[order] for each in (field.x, field.y, field.z, field.radii))
+    return Bins(x, y, z, order, starts, (rows, columns), field.size, 0.5 / radii)
 
 
 @njit(nogil=True, cache=True)
 def _highest(
     px: Any, py: Any, best: Any, asperities: Any, starts: Any, shape: Any, size: Any, per: Any, periodic: Any
 ) -> Any:
-    """Height of the envelope above (px, py), `best` or more; `per` is 1/(2R)."""
-    x, y, z, top = asperities
+    """Height of the envelope above (px, py), `best` or more; `per` is 1/(2R) of each cap."""
+    x, y, z, top, flattest = asperities
     rows, columns = shape
     bx, by = size[0] / columns, size[1] / rows
     ci, cj = min(int(px / bx), columns - 1), min(int(py / by), rows - 1)
@@ -80,7 +80,7 @@ def _highest(
     furthest = max(rows, columns)
     for ring in range(furthest + 1):
         away = max((ring - 1) * least + margin, 0.0) if ring else 0.0
-        if best >= top - away * away * per:
+        if best >= top - away * away * flattest:
             break
         for dj in range(-ring, ring + 1):
             j, shift_y = cj + dj, 0.0
@@ -99,7 +99,7 @@ def _highest(
                     i = i % columns
                 for k in range(starts[j * columns + i], starts[j * columns + i + 1]):
                     dx, dy = x[k] + shift_x - px, y[k] + shift_y - py
-                    best = max(best, z[k] - (dx * dx + dy * dy) * per)
+                    best = max(best, z[k] - (dx * dx + dy * dy) * per[k])
     return best
 
 
@@ -119,11 +119,13 @@ def _map(
 ) -> Any:
     """Envelope above the centre of every pixel."""
     result = np.empty(shape)
-    top = z.max()
+    top, flattest = z.max(), per.min()
     for j in prange(shape[0]):
         for i in range(shape[1]):
             px, py = origin[0] + (i + 0.5) * pixel[0], origin[1] + (j + 0.5) * pixel[1]
-            result[j, i] = _highest(px, py, -np.inf, (x, y, z, top), starts, bins, size, per, periodic)
+            result[j, i] = _highest(
+                px, py, -np.inf, (x, y, z, top, flattest), starts, bins, size, per, periodic
+            )
     return result
 
 
@@ -131,9 +133,11 @@ def _map(
 def _hidden(x: Any, y: Any, z: Any, starts: Any, bins: Any, size: Any, per: Any, periodic: Any) -> Any:
     """Whether a taller neighbour's cap rises above each summit."""
     result = np.zeros(z.size, dtype=np.bool_)
-    top = z.max()
+    top, flattest = z.max(), per.min()
     for k in prange(z.size):
-        result[k] = _highest(x[k], y[k], z[k], (x, y, z, top), starts, bins, size, per, periodic) > z[k]
+        result[k] = (
+            _highest(x[k], y[k], z[k], (x, y, z, top, flattest), starts, bins, size, per, periodic) > z[k]
+        )
     return result
 
 
@@ -178,7 +182,7 @@ def envelope(
         b.starts,
         b.shape,
         b.size,
-        0.5 / b.radius,
+        b.sharpness,
         periodic,
     )
     return Topography(heights, pixel, periodic and window is None)
@@ -188,5 +192,5 @@ def hidden_summits(field: Asperities, *, periodic: bool = False) -> NDArray[np.b
     """Which summits of a field lie below the cap of a taller neighbour, across the edges too if periodic."""
     b = bins_of(field)
     hidden = np.empty(field.number, dtype=np.bool_)
-    hidden[b.order] = _hidden(b.x, b.y, b.z, b.starts, b.shape, b.size, 0.5 / b.radius, periodic)
+    hidden[b.order] = _hidden(b.x, b.y, b.z, b.starts, b.shape, b.size, b.sharpness, periodic)
     return hidden

@@ -1,5 +1,7 @@
 """The heights themselves: the very asperities whose sums the samplers ``tail`` and ``cells`` give."""
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -7,13 +9,27 @@ from mcgw.machine.memory import check_memory
 from mcgw.sampling.counted import Counted
 from mcgw.sampling.counts import counts_of, generator
 from mcgw.sampling.outside import extra_heights
-from mcgw.sampling.philox import CELLS, REST, uniforms
+from mcgw.sampling.philox import CELLS, RADII, RADII_LOW, REST, uniforms
 from mcgw.sampling.samplers import sampler_of
 from mcgw.scene.samplers import promise_of
 from mcgw.scene.scene import Scene
 from mcgw.scene.storable import storable
 
-__all__ = ["heights", "heights_drawn", "listing_sampler", "same_heights"]
+if TYPE_CHECKING:
+    from mcgw.sampling.radius_table import RadiusTable
+
+__all__ = [
+    "heights",
+    "listing_sampler",
+    "radii",
+    "same_heights",
+    "summits",
+    "summits_drawn",
+    "touching_summits",
+]
+
+Array = NDArray[np.float64]
+Listed = tuple[Array, Array | None]  # reduced heights; radii over the surface's, where summits have their own
 
 
 def heights(scene: Scene, surface: int, *, untouched: bool = False) -> NDArray[np.float64]:
@@ -48,8 +64,41 @@ def heights(scene: Scene, surface: int, *, untouched: bool = False) -> NDArray[n
     >>> s.size == int(mcgw.simulate(scene).contacts[3, 0])
     True
     """
-    scene = storable(scene)
-    return heights_drawn(scene, listing_sampler(scene), surface, untouched=untouched)
+    if untouched:
+        return summits(scene, surface)[0]
+    return touching_summits(scene, surface)[0]
+
+
+def radii(scene: Scene, surface: int) -> NDArray[np.float64]:
+    """Radii of the summits of one surface of an ensemble that touch, in the order of `heights`.
+
+    Parameters
+    ----------
+    scene : Scene
+        With sampler ``cells``, ``tail`` or ``auto``.
+    surface : int
+        Its number, from 0.
+
+    Returns
+    -------
+    ndarray
+        m; all alike where summits have one radius.
+
+    Raises
+    ------
+    ValueError
+        If the sampler does not draw asperities one by one.
+
+    Examples
+    --------
+    >>> import mcgw
+    >>> surface = mcgw.SpectralSurface(1e-12, 1e-3, 5e6, "1 mm^2", "78.6 GPa")
+    >>> scene = mcgw.Scene(surface, separations=[0, 1, 2], n_surfaces=20, seed=1)
+    >>> mcgw.radii(scene, 3).size == mcgw.heights(scene, 3).size
+    True
+    """
+    s, ratios = touching_summits(scene, surface)
+    return np.asarray(scene.surface.radius * (np.ones_like(s) if ratios is None else ratios))
 
 
 def listing_sampler(scene: Scene) -> Counted:
@@ -77,23 +126,57 @@ def same_heights(one: Scene, other: Scene) -> bool:
     return np.array_equal(first.mesh.edges, second.mesh.edges)
 
 
-def heights_drawn(
-    scene: Scene, sampler: Counted, surface: int, *, untouched: bool = False
-) -> NDArray[np.float64]:
-    """As `heights`, for many surfaces of one sampler, which takes longer to make than they do."""
-    mesh = sampler.mesh
+def touching_summits(scene: Scene, surface: int) -> Listed:
+    """The asperities of one surface that touch."""
+    scene = storable(scene)
+    return summits_drawn(scene, listing_sampler(scene), surface)
+
+
+def summits(scene: Scene, surface: int) -> Listed:
+    """All asperities of one surface, those that touch first."""
+    scene = storable(scene)
+    touching, ratios = summits_drawn(scene, listing_sampler(scene), surface)
+    rest = _below(scene, surface, len(touching))
+    s, table = np.concatenate([touching, rest]), _table(scene, -np.inf)
+    if table is None or ratios is None:
+        return s, None
+    words = (2 * uniforms(scene.seed, REST, surface, stream, rest.size) - 1 for stream in (1, 2))
+    return s, np.concatenate([ratios, table.root_ratios(rest, *words) ** 2])
+
+
+def summits_drawn(scene: Scene, sampler: Counted, surface: int) -> Listed:
+    """The asperities of one surface that touch, by its sampler, which takes longer to make than they do."""
+    mesh, table = sampler.mesh, _table(scene, scene.lowest)
     counts = counts_of(scene, mesh, surface, 1)
-    drawn = scene.n_asperities if untouched else int(counts.cells.sum())
-    check_memory("the heights of one surface", 24 * drawn)
-    parts = [extra_heights(scene, mesh, surface, counts)[:, 1]]
-    for cell in np.flatnonzero(counts.cells[:, 0]):
-        u = uniforms(scene.seed, CELLS, surface, int(cell), int(counts.cells[cell, 0]))
-        parts.append(mesh.edges[cell] + mesh.offsets(int(cell), u))
-    touching = np.concatenate(parts[1:] + parts[:1])
-    if not untouched:
-        return touching
-    u = uniforms(scene.seed, REST, surface, 0, _untouched(scene, surface, len(touching)))
-    return np.concatenate([touching, scene.heights.from_below(u, scene.lowest)])
+    check_memory("the heights of one surface", 24 * int(counts.cells.sum()))
+    outside = extra_heights(scene, mesh, surface, counts, table)
+    heights, ratios = [], []
+    for cell in np.flatnonzero(counts.cells[:, 0]).tolist():
+        n = int(counts.cells[cell, 0])
+        u = uniforms(scene.seed, CELLS, surface, cell, n)
+        heights.append(mesh.edges[cell] + mesh.offsets(cell, u))
+        if table:
+            words = (2 * uniforms(scene.seed, stream, surface, cell, n) - 1 for stream in (RADII, RADII_LOW))
+            ratios.append(table.root_ratios(heights[-1], *words) ** 2)
+    s = np.concatenate([*heights, outside[:, 1]])
+    return s, np.concatenate([*ratios, outside[:, 3]]) if table else None
+
+
+def _table(scene: Scene, lowest: float) -> "RadiusTable | None":
+    """Of radii, where summits have their own: a sampler that counts contacts alone has none."""
+    if scene.curvature is None:
+        return None
+    from mcgw.sampling.radius_table import radius_table  # for those scenes alone
+
+    return radius_table(scene.curvature, lowest)
+
+
+def _below(scene: Scene, surface: int, touching: int) -> Array:
+    """Heights of the asperities that no separation reaches."""
+    rest = _untouched(scene, surface, touching)
+    check_memory("the heights of one surface", 24 * rest)
+    u = uniforms(scene.seed, REST, surface, 0, rest)
+    return np.asarray(scene.heights.from_below(u, scene.lowest))
 
 
 def _untouched(scene: Scene, surface: int, touching: int) -> int:

@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +19,10 @@ from mcgw.sampling.response.response import Response
 from mcgw.sampling.sideways import tangential_loads
 from mcgw.sampling.stretches import stretches_of
 from mcgw.scene.scene import Scene
+
+if TYPE_CHECKING:
+    from mcgw.sampling.families import Families
+    from mcgw.sampling.radius_table import RadiusTable
 
 __all__ = ["Counted"]
 
@@ -39,20 +44,23 @@ class Counted:
         What is asked.
     mesh : Mesh
         Its cells; with none, every asperity is drawn by itself.
-    response : Response
+    response : Response or Families
         Physics on this mesh.
     counting : callable, optional
         Numbers of asperities of surfaces `first` ... `first + n - 1`: ``counting(scene, mesh, first, n)``.
     drawing : Drawing, optional
         How the moments of the cells are drawn.
+    table : RadiusTable, optional
+        Of radii, where summits have their own.
     """
 
     name: str
     scene: Scene
     mesh: Mesh
-    response: Response
+    response: "Response | Families"
     counting: Callable[[Scene, Mesh, int, int], Counts] = counts_of
     drawing: Drawing = OneByOne()  # noqa: RUF009 - it has no state
+    table: "RadiusTable | None" = None
     seconds_per_draw: float = 2e-9
 
     @property
@@ -89,7 +97,7 @@ class Counted:
         """Results of surfaces `first` ... `first + n - 1`."""
         counts = self.counting(self.scene, self.mesh, first, n)
         moments = self.drawing.moments(self.scene.seed, first, counts, self.response.layout)
-        extras = extra_heights(self.scene, self.mesh, first, counts)
+        extras = extra_heights(self.scene, self.mesh, first, counts, self.table)
         numbers = counts.cells * counts.weights[1:-1, None]
         return Block(self.sums(first, moments, numbers, extras), moments.T, numbers.T, extras)
 
@@ -103,7 +111,7 @@ class Counted:
         moments, counts : ndarray
             Shape (moments, surfaces) and (cells, surfaces).
         extras : ndarray
-            Rows (surface, height, weight).
+            Rows (surface, height, weight), and the ratio of the radius where summits have their own.
 
         Returns
         -------
@@ -125,9 +133,9 @@ class Counted:
                 if name == "load" and scene.tangential:
                     sums["tangential_load"] = tangential_loads(scene, everywhere)
         where, numbers = np.unique(extras[:, 0].astype(np.int64) - first, return_counts=True)
-        heights, weights = np.ascontiguousarray(extras[:, 1:].T)
+        heights, weights, *ratios = np.ascontiguousarray(extras[:, 1:].T)
         with np.errstate(over="ignore"):  # as in the product: what is too large is infinite
-            for name, values in asperity_sums(scene, numbers, heights, weights).items():
+            for name, values in asperity_sums(scene, numbers, heights, weights, *ratios).items():
                 sums[name][where] += values
         return sums
 

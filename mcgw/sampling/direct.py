@@ -57,7 +57,8 @@ class Direct:
         while left:
             now = min(left, _PIECE)
             heights = scene.heights.sample(rng, now)
+            ratios = None if scene.curvature is None else scene.curvature.sample(rng, heights)
             left -= now
-            for name, value in asperity_sums(scene, np.array([now]), heights, np.ones(now)).items():
+            for name, value in asperity_sums(scene, np.array([now]), heights, np.ones(now), ratios).items():
                 total[name] += value
         return total

@@ -1,4 +1,4 @@
-"""From the numbers of asperities in the cells to their moments: three ways.
+"""From the numbers of asperities in the cells to their moments: four ways.
 
 ``OneByOne``   a uniform for each asperity
 ``InStrata``   a uniform in each of as many equal strata of the cell, with the weight it stands for

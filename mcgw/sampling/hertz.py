@@ -43,16 +43,26 @@ def _sums(starts: Any, heights: Any, factors: Any, separations: Any, twice: Any)
     return result
 
 
-def hertz_sums(scene: Scene, numbers: NDArray[np.int64], heights: Array, weights: Array) -> dict[str, Array]:
+def hertz_sums(
+    scene: Scene,
+    numbers: NDArray[np.int64],
+    heights: Array,
+    weights: Array,
+    ratios: Array | None = None,
+) -> dict[str, Array]:
     """As `mcgw.sampling.law_sums.asperity_sums`, of Hertz contacts."""
     asked = [quantity_of(name) for name in scene.quantities]
     graded = weights
     if any(q.modulus for q in asked):
         graded = weights * scene.modulus(heights)
+    factors = np.stack([graded if q.modulus else weights for q in asked])
+    if ratios is not None:
+        of_radius = {0.0: np.ones_like(ratios), 0.5: np.sqrt(ratios), 1.0: ratios}
+        factors *= np.stack([of_radius[q.radius] for q in asked])
     sums = _sums(
         np.concatenate([[0], np.cumsum(numbers)]),
         heights,
-        np.stack([graded if q.modulus else weights for q in asked]),
+        factors,
         np.array(scene.separations),
         np.array([round(2 * q.exponent) for q in asked]),
     )

@@ -16,7 +16,7 @@ from numba.core import cgutils
 from numba.core.typing.templates import ConcreteTemplate, infer_global, signature
 from numba.extending import intrinsic, lower_builtin, models, register_model
 
-__all__ = ["LANES", "alike", "fused", "load", "roots", "store", "total"]
+__all__ = ["LANES", "alike", "bits", "fused", "load", "roots", "store", "total"]
 
 LANES = 4
 
@@ -142,3 +142,13 @@ def total(_typing: Any, a: Any) -> Any:
         return builder.fadd(builder.fadd(x[0], x[2]), builder.fadd(x[1], x[3]))
 
     return types.float64(a), code
+
+
+@_intrinsic
+def bits(_typing: Any, a: Any) -> Any:
+    """The word that holds a number: sign, exponent, fraction."""
+
+    def code(_context: Any, builder: Any, _sig: Any, args: Any) -> Any:
+        return builder.bitcast(args[0], ir.IntType(64))
+
+    return types.int64(a), code

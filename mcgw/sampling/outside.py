@@ -1,6 +1,6 @@
 """Asperities drawn one by one: those outside all cells, and all of them for the sampler ``tail``."""
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,15 +12,20 @@ from mcgw.sampling.counts import Counts
 from mcgw.sampling.philox import EXTRAS, centred, made_for
 from mcgw.scene.scene import Scene
 
+if TYPE_CHECKING:
+    from mcgw.sampling.radius_table import RadiusTable
+
 __all__ = ["extra_heights"]
 
 Array = NDArray[np.float64]
 
-_HIGH, _LOW = 0, 1  # streams
+_HIGH, _LOW, _RADII = 0, 1, 2  # streams, and what leads from one of heights to that of their radii
 _MANY, _BYTES = 10**7, 100  # heights that are worth asking whether there is room; bytes of one
 
 
-def extra_heights(scene: Scene, mesh: Mesh, first: int, counts: Counts) -> Array:
+def extra_heights(
+    scene: Scene, mesh: Mesh, first: int, counts: Counts, table: "RadiusTable | None" = None
+) -> Array:
     """Contacting heights outside the cells, for a block of surfaces.
 
     Parameters
@@ -33,11 +38,14 @@ def extra_heights(scene: Scene, mesh: Mesh, first: int, counts: Counts) -> Array
         Number of the block's first surface.
     counts : Counts
         How many lie below and above the cells.
+    table : RadiusTable, optional
+        Of radii, where summits have their own.
 
     Returns
     -------
     ndarray
-        Rows (number of the surface, reduced height, weight), surface by surface, low ones first.
+        Rows (number of the surface, reduced height, weight), surface by surface, low ones first; and in a
+        fourth column the radius over that of the surface, where summits have their own.
     """
     law = scene.heights
     number = int(counts.high_extras.sum() + counts.low_extras.sum())
@@ -46,12 +54,16 @@ def extra_heights(scene: Scene, mesh: Mesh, first: int, counts: Counts) -> Array
     edge = float(mesh.edges[-1]) if mesh.size else scene.lowest
     heights = law.from_above(_wide_uniforms(scene.seed, first, _HIGH, counts.high_extras), edge)
     rows = _rows(first, counts.high_extras, heights, counts.weights[-1])
+    if table:
+        rows = _with_radii(rows, table, scene.seed, first, _HIGH, counts.high_extras)
     if not counts.low_extras.any():
         return rows
     bottom = float(mesh.edges[0])
     least = float(law.below(np.array(scene.lowest)) / law.below(np.array(bottom)))
     share = least + (1 - least) * _wide_uniforms(scene.seed, first, _LOW, counts.low_extras)
     low = _rows(first, counts.low_extras, law.from_below(share, bottom), counts.weights[0])
+    if table:
+        low = _with_radii(low, table, scene.seed, first, _LOW, counts.low_extras)
     rows = np.concatenate([low, rows])
     return np.asarray(rows[np.argsort(rows[:, 0], kind="stable")])
 
@@ -59,6 +71,15 @@ def extra_heights(scene: Scene, mesh: Mesh, first: int, counts: Counts) -> Array
 def _rows(first: int, numbers: NDArray[np.int64], heights: Array, weight: float) -> Array:
     surfaces = np.repeat(first + np.arange(len(numbers)), numbers)
     return np.column_stack([surfaces, heights, np.full(len(heights), weight)])
+
+
+def _with_radii(
+    rows: Array, table: "RadiusTable", seed: int, first: int, stream: int, numbers: NDArray[np.int64]
+) -> Array:
+    """The rows with the ratio of each radius in a column more."""
+    pairs = _centred_pairs(np.uint64(seed), first, stream + _RADII, numbers)
+    roots = table.root_ratios(np.ascontiguousarray(rows[:, 1]), *np.ascontiguousarray(pairs.reshape(-1, 2).T))
+    return np.column_stack([rows, roots * roots])
 
 
 def _wide_uniforms(seed: int, first: int, stream: int, numbers: NDArray[np.int64]) -> Array:

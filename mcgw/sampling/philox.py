@@ -33,6 +33,8 @@ __all__ = [
     "EXTRAS",
     "MOMENTS",
     "POSITIONS",
+    "RADII",
+    "RADII_LOW",
     "REST",
     "TAIL",
     "centred",
@@ -45,7 +47,7 @@ __all__ = [
 AT_ONCE = 64  # words that are made together
 
 # Purposes: streams of the same surface that must not overlap.
-CELLS, TAIL, EXTRAS, MOMENTS, REST, POSITIONS, COUNTS = range(7)
+CELLS, TAIL, EXTRAS, MOMENTS, REST, POSITIONS, COUNTS, RADII, RADII_LOW = range(9)
 
 _M0, _M1 = uint64(0xD2511F53), uint64(0xCD9E8D57)
 _W0, _W1 = uint64(0x9E3779B9), uint64(0xBB67AE85)

@@ -13,6 +13,7 @@ name            cells        numbers in them  moments     for
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,14 +24,17 @@ from mcgw.sampling.aggregate import CROWDED, VARYING
 from mcgw.sampling.block import Sampler
 from mcgw.sampling.cells import Mesh, mesh_of, no_cells
 from mcgw.sampling.counted import Counted
-from mcgw.sampling.counts import strata_of
+from mcgw.sampling.counts import Counts, counts_of, strata_of
 from mcgw.sampling.direct import Direct
-from mcgw.sampling.drawing import Crowds, InStrata
+from mcgw.sampling.drawing import Crowds, InStrata, OneByOne
 from mcgw.sampling.layout import Layout
 from mcgw.sampling.response.response import Response, layout_of, response_of
 from mcgw.sampling.stretches import begins_and_breaks
 from mcgw.scene.scene import Scene
 from mcgw.scene.storable import storable
+
+if TYPE_CHECKING:
+    from mcgw.sampling.families import Families
 
 __all__ = ["Sampler", "aggregate_of", "cells_of", "regraded", "sampler_of"]
 
@@ -57,20 +61,35 @@ def sampler_of(scene: Scene) -> Sampler:
 
 def tail_of(scene: Scene) -> Counted:
     """Prepare ``tail``: cells without any cell."""
-    mesh = no_cells(scene)
-    return Counted("tail", scene, mesh, _response(scene, mesh))
+    return _counted("tail", scene, no_cells(scene))
 
 
 def cells_of(scene: Scene) -> Counted:
     """Prepare ``cells``."""
-    mesh = mesh_of(scene)
-    return Counted("cells", scene, mesh, _response(scene, mesh))
+    return _counted("cells", scene, mesh_of(scene))
 
 
 def stratified_of(scene: Scene) -> Counted:
     """Prepare ``stratified``."""
     mesh = mesh_of(scene, split=False, rare=1e-9)
-    return Counted("stratified", scene, mesh, _response(scene, mesh), strata_of, InStrata())
+    return _counted("stratified", scene, mesh, strata_of, strata=True)
+
+
+def _counted(
+    name: str,
+    scene: Scene,
+    mesh: Mesh,
+    counting: Callable[[Scene, Mesh, int, int], Counts] = counts_of,
+    *,
+    strata: bool = False,
+) -> Counted:
+    """A sampler on a mesh, with radii where the scene has them."""
+    response = _response(scene, mesh)
+    if not isinstance(response, Response):
+        from mcgw.sampling.with_radii import with_radii
+
+        return with_radii(name, scene, mesh, response, counting, strata=strata)
+    return Counted(name, scene, mesh, response, counting, InStrata() if strata else OneByOne())
 
 
 def aggregate_of(scene: Scene, crowded: int = CROWDED) -> Counted:
@@ -136,7 +155,7 @@ def regraded(scene: Scene, drawn: Scene) -> Counted:
         for heights in begins_and_breaks(scene, *sampler.mesh.range):
             inside = heights[(edges[0] <= heights) & (heights <= edges[-1])]
             _check_edges("height where a piece of the contact law begins,", inside.tolist(), edges)
-    response = response_of(scene, sampler.mesh, _summed(scene.quantities), kept=sampler.response.layout)
+    response = _response(scene, sampler.mesh, sampler.response)
     return replace(sampler, scene=scene, response=response)
 
 
@@ -148,18 +167,34 @@ def _check_edges(what: str, wanted: Sequence[float], edges: NDArray[np.float64],
             raise ValueError(f"{what} {s:.6g} is not an edge of the cells (the nearest is {near:.6g})")
 
 
-def _response(scene: Scene, mesh: Mesh) -> Response:
-    """Response for all that moments can tell; contacts are counted."""
-    kept = _lasting_layout(scene, mesh) if scene.keep == "moments" else None
-    return response_of(scene, mesh, _summed(scene.quantities), kept=kept)
+def _response(scene: Scene, mesh: Mesh, drawn: "Response | Families | None" = None) -> "Response | Families":
+    """Response for all that moments can tell, by those that were `drawn`; contacts are counted."""
+
+    def response_to(power: float | None, names: tuple[str, ...]) -> Response:
+        kept = None
+        if drawn:
+            kept = drawn.layout if isinstance(drawn, Response) else drawn.layout_of(power)
+        elif scene.keep == "moments":
+            kept = _lasting_layout(scene, mesh, power)
+        return response_of(scene, mesh, names, kept=kept)
+
+    names = _summed(scene.quantities)
+    if scene.curvature is None or (not names and scene.keep == "sums"):
+        return response_to(None, names)
+    from mcgw.sampling.families import Families
+
+    return Families.of(names, response_to, every=bool(drawn) or scene.keep == "moments")
 
 
 def _summed(quantities: Iterable[str]) -> tuple[str, ...]:
     return tuple(name for name in quantities if not quantity_of(name).counts)
 
 
-def _lasting_layout(scene: Scene, mesh: Mesh) -> Layout:
-    """Moments that serve every quantity, this grading, and another exponential one under Hertz's law."""
+def _lasting_layout(scene: Scene, mesh: Mesh, power: float | None) -> Layout:
+    """Moments that serve this grading, another exponential one under Hertz's law, and every quantity.
+
+    With a power, every quantity that has this power of the radius.
+    """
     plainly = replace(
         scene,
         law=Hertz(),
@@ -170,22 +205,24 @@ def _lasting_layout(scene: Scene, mesh: Mesh) -> Layout:
         negative="allow",
     )
     others = [replace(plainly, grading=Exponential(gamma)) for gamma in (2.0, 0.5, 0.0)]
-    layouts = [layout_of(x, mesh, _every_sum(x), lasting=True) for x in (scene, *others)]
+    layouts = [layout_of(x, mesh, _every_sum(x, power), lasting=True) for x in (scene, *others)]
     plain = np.max([layout.plain for layout in layouts], axis=0)
     return Layout(plain + 1, np.max([layout.rooted for layout in layouts], axis=0) + 1)  # one in reserve
 
 
-def _every_sum(scene: Scene) -> tuple[str, ...]:
-    """Quantities that the surfaces of a scene have, but those that are counted."""
+def _every_sum(scene: Scene, power: float | None) -> tuple[str, ...]:
+    """Quantities that the surfaces of a scene have, but those that are counted or have another power."""
     names = [*QUANTITIES]
     if not scene.hertzian:
         names += ["load_slope"] if scene.film is None else ["load_slope", "conductance_si"]
     if scene.unload_from is not None:
         names += [q.name for q in UNLOADING.values() if q.unloading in names]
-    return _summed(names)
+    return tuple(name for name in _summed(names) if power in (None, quantity_of(name).radius))
 
 
 def _cheapest(scene: Scene) -> str:
     """Cells, unless most of them would be empty (`runs/bench/auto.py`)."""
+    if scene.curvature and not scene.hertzian:
+        return "tail"  # each summit has breaks of its own
     few = scene.touching < min(5 + len(scene.separations) / 20, 20)
     return "tail" if few and scene.keep == "sums" else "cells"

@@ -30,14 +30,14 @@ from mcgw.machine.compiling import njit
 from mcgw.sampling.lanes import LANES, alike, fused, load, roots, store, total
 from mcgw.sampling.philox import CELLS, centred
 
-__all__ = ["PLAIN", "ROOTED", "WORDS", "sum_uniforms", "unfold"]
+__all__ = ["PLAIN", "ROOTED", "WORDS", "five", "five_more", "stratify", "sum_uniforms", "unfold"]
 
 _BUFFER = 1024  # uniforms at a time: they stay in the innermost cache
 _ROOT, _ONE, PLAIN, ROOTED, WORDS = 1024, 2048, 3072, 3104, 3136  # see above
 
 
 @njit(inline="always")
-def _five(x: Any) -> Any:
+def five(x: Any) -> Any:
     """T_1 ... T_5 at x."""
     twice, minus = x + x, alike(-1.0)
     t2 = fused(twice, x, minus)
@@ -62,7 +62,7 @@ def _adder(plain: int, rooted: int) -> Any:
         r0 = r1 = r2 = r3 = r4 = r5 = s1 = s2 = s3 = s4 = s5 = alike(0.0)
         half, minus = alike(0.5), alike(-1.0)
         for i in range(0, n, LANES):
-            t1, t2, t3, t4, t5 = _five(load(w, i))
+            t1, t2, t3, t4, t5 = five(load(w, i))
             a += t1
             b += t2
             c += t3
@@ -154,19 +154,19 @@ def _add(w: Any, count: Any, plain: Any, rooted: Any) -> None:
     else:
         _16_11(w, n, filled)
     if plain > 16:
-        _five_more(w, n, filled, 3, _ONE, PLAIN)
+        five_more(w, n, filled, 3, _ONE, PLAIN)
     if rooted > 11:
-        _five_more(w, n, filled, 2, _ROOT, ROOTED)
+        five_more(w, n, filled, 2, _ROOT, ROOTED)
     if rooted > 16:
-        _five_more(w, n, filled, 3, _ROOT, ROOTED)
+        five_more(w, n, filled, 3, _ROOT, ROOTED)
 
 
 @njit(nogil=True, cache=True)
-def _five_more(w: Any, n: Any, filled: Any, m: Any, factor: Any, sums: Any) -> None:
+def five_more(w: Any, n: Any, filled: Any, m: Any, factor: Any, sums: Any) -> None:
     """Add sums of T_5m T_1 ... T_5m T_5, m = 2 or 3, times a factor: T_5m is T_m of T_5."""
     a = b = c = d = e = alike(0.0)
     for i in range(0, n, LANES):
-        t1, t2, t3, t4, t5 = _five(load(w, i))
+        t1, t2, t3, t4, t5 = five(load(w, i))
         f = fused(t5 + t5, t5, alike(-1.0))
         if m == 3:
             f = fused(t5 + t5, f, alike(-1.0) * t5)
@@ -181,7 +181,7 @@ def _five_more(w: Any, n: Any, filled: Any, m: Any, factor: Any, sums: Any) -> N
 
 
 @njit(nogil=True, cache=True)
-def _stratified(w: Any, n: Any, first: Any, strata: Any) -> None:
+def stratify(w: Any, n: Any, first: Any, strata: Any) -> None:
     """Move the uniform of asperity ``first + i`` into its own one of `strata` equal strata."""
     for i in range(n):
         w[i] = (2.0 * (first + i) + 1.0 + w[i]) / strata - 1.0
@@ -213,7 +213,7 @@ def sum_uniforms(
         n = min(_BUFFER, stop - first)
         centred(w, seed, CELLS, surface, cell, first, n)
         if strata:
-            _stratified(w, n, first, strata)
+            stratify(w, n, first, strata)
         _add(w, n, plain, rooted)
     w[PLAIN] = stop - start
 

@@ -5,10 +5,11 @@ from typing import Any
 
 import numpy as np
 
-from analytic import QUANTITIES, UNLOADING
+from analytic import QUANTITIES, UNLOADING, HeightLaw
 from mcgw.scene.film_section import conducting_film
 from mcgw.scene.law_section import contact_law
 from mcgw.scene.section import Section
+from mcgw.scene.summits_section import datum_shift
 from mcgw.scene.tangential_section import tangential_values
 
 __all__ = ["contact_values"]
@@ -16,9 +17,10 @@ __all__ = ["contact_values"]
 _MOST_SEPARATIONS = 100_000
 
 
-def contact_values(section: Section) -> dict[str, Any]:
-    """Read the table; mistakes are noted in the section."""
-    separations = _separations(section)
+def contact_values(section: Section, heights: HeightLaw) -> dict[str, Any]:
+    """Read the table for summits of these heights; mistakes are noted in the section."""
+    shift = datum_shift(section, heights)
+    separations = tuple(h - shift for h in _separations(section))
     unload_from = _unload_from(section, separations)
     film = conducting_film(section)
     names = _quantities(section)

@@ -6,7 +6,7 @@ from typing import Literal
 
 import numpy as np
 
-from analytic import Clipped, Grading, HeightLaw, Surface, first_negative
+from analytic import Clipped, Grading, HeightLaw, RandomCurvature, Surface, first_negative
 from analytic.laws import Branch, ContactLaw, Film, Hertz, Tangential, Ways
 
 __all__ = ["Fields"]
@@ -24,6 +24,7 @@ class Fields:
     grading: Grading
     negative: Literal["error", "clip", "allow"]
     heights: HeightLaw
+    curvature: RandomCurvature | None
     law: ContactLaw
     unload_from: float | None
     film: Film | None

@@ -12,6 +12,7 @@ from analytic import (
     Custom,
     Exponential,
     MeasuredHeights,
+    Nayak,
     PiecewiseSeries,
     quantity_of,
 )
@@ -30,7 +31,7 @@ _SAFELY = 1e4  # factor by which the sum over all asperities stays below the lar
 def mistakes(scene: Fields) -> list[str]:
     """All that is wrong, later checks only where the earlier ones find nothing."""
     for checks in (
-        (_values, _history, _measured),
+        (_values, _history, _measured, _radii),
         (_scales,),
         (_law,),
         (_function,),
@@ -157,6 +158,28 @@ def _measured(scene: Fields) -> Iterator[str]:
                 f"ensemble.{key} = {getattr(scene, key)!r}: measured heights as they are need {wanted!r}; "
                 "or say resample = true under [heights]"
             )
+
+
+def _radii(scene: Fields) -> Iterator[str]:
+    """Radii of summits that do not go with their heights, or that a sampler does not draw."""
+    if scene.curvature is None:
+        return
+    if not isinstance(scene.heights, Nayak) or scene.heights.alpha != scene.curvature.alpha:
+        yield (
+            'summits.curvature = "random": it goes with heights.law = "nayak", alpha = '
+            f'{scene.curvature.alpha:g}; take these heights, or curvature = "mean"'
+        )
+    if scene.sampler == "aggregate":
+        yield (
+            'ensemble.sampler = "aggregate": sums of summits with radii of their own are far from Gaussian; '
+            'take "cells", or summits.curvature = "mean"'
+        )
+    if not scene.hertzian and (scene.sampler in ("cells", "stratified") or scene.keep == "moments"):
+        key, value = ("keep", "moments") if scene.keep == "moments" else ("sampler", scene.sampler)
+        yield (
+            f'ensemble.{key} = "{value}": each summit with a radius of its own has its own breaks of '
+            f'contact.law = "{scene.law.name}"; take sampler = "tail", or summits.curvature = "mean"'
+        )
 
 
 def _function(scene: Fields) -> Iterator[str]:

@@ -6,11 +6,21 @@ from typing import Any
 
 import numpy as np
 
-from analytic import Custom, Gaussian, Grading, HeightLaw, Homogeneous, ScipyHeights, Surface
+from analytic import (
+    Custom,
+    Gaussian,
+    Grading,
+    HeightLaw,
+    Homogeneous,
+    RandomCurvature,
+    ScipyHeights,
+    Surface,
+)
 from mcgw.scene.contact_section import contact_values
 from mcgw.scene.ensemble_section import LeftOut, drawing_values
 from mcgw.scene.grading_section import NEGATIVE
 from mcgw.scene.section import SceneError, Section
+from mcgw.scene.summits_section import Spectral, curvature_of
 
 __all__ = ["argument", "as_toml", "read_values"]
 
@@ -24,18 +34,24 @@ def read_values(given: Mapping[str, Any]) -> tuple[dict[str, Any], list[str]]:
     """
     problems: list[str] = []
     table = {key: as_toml(value) for key, value in given.items() if value is not None}
-    top, grading, contact, ensemble = (
-        Section(name, table, problems) for name in ("", "grading", "contact", "ensemble")
+    top, grading, summits, contact, ensemble = (
+        Section(name, table, problems) for name in ("", "grading", "summits", "contact", "ensemble")
     )
-    if not isinstance(given["surface"], Surface):
+    surface, heights = given["surface"], given["heights"]
+    spectral = isinstance(surface, Spectral)
+    if spectral:
+        surface, heights = surface.surface, surface.heights if heights is None else heights
+    if not isinstance(surface, Surface):
         top.fail("surface", given["surface"], "give mcgw.Surface(sigma, radius, eta, nominal_area, E_star)")
+    law = _heights(top, heights)
     values = {
-        "surface": given["surface"],
-        **contact_values(contact),
+        "surface": surface,
+        **contact_values(contact, law),
         "title": top.text("title", ""),
         "grading": _grading(top, given["grading"]),
         "negative": grading.choice("negative", "error", NEGATIVE),
-        "heights": _heights(top, given["heights"]),
+        "heights": law,
+        "curvature": _curvature(summits, given["curvature"], law, surface, "random" if spectral else "mean"),
         "n_surfaces": _whole(ensemble, "n_surfaces", given, LeftOut(), least=1),
         "n_asperities": _whole(ensemble, "n_asperities", given, LeftOut(), least=1),
         "seed": _whole(ensemble, "seed", given, LeftOut(secrets.randbits(63))),
@@ -104,6 +120,12 @@ def _heights(section: Section, given: Any) -> HeightLaw:
     )
     section.fail("heights", given, advice)
     return Gaussian()
+
+
+def _curvature(
+    section: Section, given: Any, heights: HeightLaw, surface: Surface, default: str
+) -> RandomCurvature | None:
+    return given if isinstance(given, RandomCurvature) else curvature_of(section, heights, surface, default)
 
 
 def _of_scipy(section: Section, given: Any) -> HeightLaw:

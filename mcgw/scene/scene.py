@@ -8,7 +8,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from analytic import Grading, Model, Surface
+from analytic import Grading, Model, RandomCurvature, Surface
 from analytic.laws import ContactLaw, Film, Tangential
 from mcgw.formats.sheet import Sheet, Shown
 from mcgw.scene.contact_text import contact_facts
@@ -18,6 +18,7 @@ from mcgw.scene.law_text import law_text
 from mcgw.scene.mistakes import mistakes
 from mcgw.scene.reading import read_values
 from mcgw.scene.section import SceneError, nearest
+from mcgw.scene.summits_section import Spectral
 from mcgw.scene.surface import SURFACE_UNITS, surface_of
 
 __all__ = ["LeftOut", "Scene", "SceneError"]
@@ -31,10 +32,13 @@ class Scene(Fields, Shown):
 
     Parameters
     ----------
-    surface : Surface
-        Parameters in SI units: `mcgw.Surface`.
+    surface : Surface or Spectral
+        Parameters in SI units: `mcgw.Surface`; or its spectrum, of which the heights of the summits follow
+        too: `mcgw.SpectralSurface`.
     separations : array_like
         Reduced separations d/sigma, in any order, repeated or not: an array, a list, or one number.
+    datum : {"summits", "surface"}, optional
+        Mean plane that `separations` count from; the scene holds them from that of the summits.
     title : str, optional
         For people.
     grading : Grading or callable, optional
@@ -44,6 +48,9 @@ class Scene(Fields, Shown):
         What to do where the grading makes the modulus of a contacting asperity negative.
     heights : HeightLaw or frozen distribution of scipy.stats, optional
         Of the reduced heights: of a distribution of scipy mean and scale drop out. Default: Gaussian.
+    curvature : {"random", "mean"} or RandomCurvature, optional
+        Whether each summit of an isotropic Gaussian surface has a radius of its own. Needs the heights of
+        `mcgw.Nayak`. Default: "random" for a surface that is told by its spectrum, else "mean".
     law : ContactLaw or dict, optional
         Law of contact of an asperity, as `mcgw.KogutEtsion(hardness=1.2e9)`; or its keys in a scene file,
         as ``{"law": "kogut-etsion", "hardness": "1.2 GPa"}``. Default: Hertz's.
@@ -100,13 +107,15 @@ class Scene(Fields, Shown):
 
     def __init__(
         self,
-        surface: Surface,
+        surface: Surface | Spectral,
         *,
         separations: ArrayLike,
+        datum: Literal["summits", "surface"] = "summits",
         title: str = "",
         grading: Grading | Callable[[Any], Any] | None = None,
         negative: Literal["error", "clip", "allow"] = "error",
         heights: Any = None,
+        curvature: RandomCurvature | Literal["random", "mean"] | None = None,
         law: ContactLaw | dict[str, Any] | None = None,
         unload_from: float | Literal["loop"] | None = None,
         film: Film | None = None,
@@ -200,6 +209,7 @@ class Scene(Fields, Shown):
             ("", f"{x['nominal_area']}, {x['E_star']}"),
             ("grading", law_text(self.grading) + ("" if self.negative == "error" else f", {self.negative}")),
             ("heights", law_text(self.heights)),
+            *([] if self.curvature is None else [("radii", law_text(self.curvature))]),
             *contact_facts(self),
             ("separations", f"{among}{ends} (d/sigma)"),
             ("quantities", ", ".join(self.quantities)),
@@ -218,6 +228,7 @@ class Scene(Fields, Shown):
             self.surface,
             grading=self.modulus,
             heights=self.heights,
+            curvature=self.curvature,
             law=self.law,
             unload_from=self.unload_from,
             film=self.film,

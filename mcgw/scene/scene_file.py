@@ -18,6 +18,7 @@ from mcgw.scene.law_section import law_table
 from mcgw.scene.scene import Scene
 from mcgw.scene.section import SceneError, Section
 from mcgw.scene.storable import storable
+from mcgw.scene.summits_section import MOMENTS, curvature_of, read_spectral, summits_table
 from mcgw.scene.surface import SURFACE_UNITS, read_surface
 from mcgw.scene.tangential_section import tangential_table
 
@@ -119,14 +120,28 @@ def scene_from(
         reason = str(error).splitlines()[0] if str(error) else "nested too deeply"
         raise SceneError([f"not a TOML scene: {reason}"]) from None
     top = Section("", document, [])
-    sections = {name: top.section(name) for name in ("surface", "grading", "heights", "contact", "ensemble")}
-    surface, folder = read_surface(sections["surface"]), folder or Path()
+    sections = {
+        name: top.section(name)
+        for name in ("surface", "grading", "heights", "summits", "contact", "ensemble")
+    }
+    surface, spectral, folder = None, None, folder or Path()
+    if any(key in sections["surface"] for key in MOMENTS):
+        if spectral := read_spectral(sections["surface"]):
+            surface = spectral.surface
+    else:
+        surface = read_surface(sections["surface"])
+    heights = (
+        heights_law(sections["heights"], folder)
+        if sections["heights"].table or not spectral
+        else spectral.heights
+    )
     values = {
         "title": top.text("title", ""),
         "surface": surface,
         **grading_values(sections["grading"], surface, folder),
-        "heights": heights_law(sections["heights"], folder),
-        **contact_values(sections["contact"]),
+        "heights": heights,
+        "curvature": curvature_of(sections["summits"], heights, surface, "random" if spectral else "mean"),
+        **contact_values(sections["contact"], heights),
         **ensemble_values(sections["ensemble"], surface, seed),
     }
     for section in (top, *sections.values()):
@@ -168,11 +183,13 @@ def scene_text(scene: Scene, *, heights_file: str | None = None, left_out: bool 
     True
     """
     scene = storable(scene)
+    summits = summits_table(scene.curvature, scene.surface)
     document = {
         "title": scene.title,
         "surface": {key: float(getattr(scene.surface, key)) for key in SURFACE_UNITS},
         "grading": {**grading_table(scene.grading), "negative": scene.negative},
         "heights": heights_table(scene.heights, heights_file),
+        **({"summits": summits} if summits else {}),
         "contact": _contact_table(scene),
         "ensemble": _ensemble_table(scene, left_out),
     }

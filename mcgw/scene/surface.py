@@ -9,8 +9,9 @@ from analytic import Surface as Plain
 from mcgw.formats.units import quantity
 from mcgw.scene.reading import as_toml
 from mcgw.scene.section import SceneError, Section
+from mcgw.scene.summits_section import Spectral, read_spectral
 
-__all__ = ["SURFACE_UNITS", "Surface", "read_surface", "surface_of"]
+__all__ = ["SURFACE_UNITS", "SpectralSurface", "Surface", "read_surface", "surface_of"]
 
 SURFACE_UNITS = {"sigma": "m", "radius": "m", "eta": "1/m^2", "nominal_area": "m^2", "E_star": "Pa"}
 
@@ -56,6 +57,57 @@ def Surface(  # noqa: N802 - the door to a class of this name
     """
     given = {"sigma": sigma, "radius": radius, "eta": eta, "nominal_area": nominal_area, "E_star": E_star}
     return surface_of(given)
+
+
+def SpectralSurface(  # noqa: N802 - as above
+    m0: float | str,
+    m2: float | str,
+    m4: float | str,
+    nominal_area: float | str,
+    E_star: float | str,
+) -> Spectral:
+    """An isotropic Gaussian surface, told by the moments of its spectrum, pressed on a rigid plane.
+
+    Parameters
+    ----------
+    m0 : float or str
+        Mean square of the heights of the surface, m^2.
+    m2 : float
+        Mean square of the slope of a profile.
+    m4 : float or str
+        Mean square of the second derivative of a profile, 1/m^2.
+    nominal_area : float or str
+        Nominal contact area A_n, m^2; or as "1 cm^2".
+    E_star : float or str
+        Composite modulus E*, Pa; or as "78.6 GPa".
+
+    Returns
+    -------
+    Spectral
+        To be the surface of a `mcgw.Scene`, whose heights are then Nayak's, and whose summits have radii of
+        their own.
+
+    Raises
+    ------
+    SceneError
+        With one line for each parameter that is not a positive finite quantity of that kind, or if no
+        isotropic surface has such moments.
+
+    Examples
+    --------
+    >>> import mcgw
+    >>> surface = mcgw.SpectralSurface(1e-12, 1e-3, 5e6, "1 mm^2", "78.6 GPa")
+    >>> round(surface.moments.alpha, 9)
+    5.0
+    >>> mcgw.Scene(surface, separations=[0, 1, 2]).heights
+    Nayak(alpha=5.0)
+    """
+    given = {"m0": m0, "m2": m2, "m4": m4, "nominal_area": nominal_area, "E_star": E_star}
+    section = Section("surface", {key: as_toml(value) for key, value in given.items()}, [])
+    spectral = read_spectral(section)
+    if spectral is None:
+        raise SceneError(section.problems)
+    return spectral
 
 
 def surface_of(given: Mapping[str, Any]) -> Plain:

@@ -15,7 +15,7 @@ from scipy.integrate import quad
 import analytic
 from mcgw.ensemble.simulation import blocks
 from mcgw.errors import RunError
-from mcgw.sampling.asperities import heights
+from mcgw.sampling.asperities import touching_summits
 from mcgw.sampling.cells import mesh_of
 from mcgw.sampling.counted import Counted
 from mcgw.sampling.law_sums import asperity_sums
@@ -91,6 +91,16 @@ def methods_for(scene: Scene, chosen: tuple[int, ...]) -> tuple[Method, ...]:
         for name, draws in (("direct", n), ("tail", touching), ("cells", touching / 100))
         if draws < _MOST_DRAWS
     ]
+    if scene.curvature is None:  # radii of their own are drawn one by one
+        found += _of_one_radius(scene, chosen, exact, surfaces)
+    return (*found, *_quadratures(scene, chosen, exact))
+
+
+def _of_one_radius(
+    scene: Scene, chosen: tuple[int, ...], exact: Array, surfaces: tuple[float, ...]
+) -> list[Method]:
+    """Ways that need all summits to have one radius."""
+    found = []
     for crowd in (1, 16, 256, 4096):
         errors = partial(_by_aggregate, scene, chosen, exact, crowd)
         found.append(Method(f"aggregate, crowds from {crowd}", "surfaces", surfaces, -0.5, errors))
@@ -99,7 +109,7 @@ def methods_for(scene: Scene, chosen: tuple[int, ...]) -> tuple[Method, ...]:
     orders = tuple(10.0**k for k in range(1, 14, 2))
     by_moments = _ByMoments.of(scene, chosen)
     found.append(Method("order of moments (same asperities)", "1/accuracy", orders, None, by_moments))
-    return (*found, *_quadratures(scene, chosen, exact))
+    return found
 
 
 def _checked(scene: Scene, chosen: tuple[int, ...]) -> Array:
@@ -158,8 +168,9 @@ class _ByMoments:
         n = min(scene.n_asperities, 10**5)
         name = scene.quantities[0]
         scene = replace(scene, sampler="cells", n_asperities=n, quantities=(name,), n_surfaces=1, keep="sums")
-        s = heights(scene, 0)
-        return cls(scene, chosen, asperity_sums(scene, np.array([s.size]), s, np.ones(s.size))[name][0])
+        s, ratios = touching_summits(scene, 0)
+        plain = asperity_sums(scene, np.array([s.size]), s, np.ones(s.size), ratios)
+        return cls(scene, chosen, plain[name][0])
 
     def __call__(self, size: float, _seed: int) -> Array:
         scene, name = self.scene, self.scene.quantities[0]

@@ -70,8 +70,15 @@ def _one_asperity(scene: Scene, q: Quantity, h: float) -> float:
 def added(scene: Scene, q: Quantity, h: float, s: Array) -> Array:
     """What asperities of heights `s` above `h` add, over the scale: ``(s - h)^n e(s)`` under Hertz's law."""
     if by_powers(scene, q):
-        modulus = scene.modulus(s) if q.modulus else np.ones_like(s)
-        return np.asarray((s - h) ** q.exponent * modulus)
+        weight = scene.modulus(s) if q.modulus else np.ones_like(s)
+        if scene.curvature:
+            weight = weight * scene.curvature.mean(q.radius, s)
+        return np.asarray((s - h) ** q.exponent * weight)
+    if scene.curvature:
+        raise ValueError(
+            f'contact.law = "{scene.law.name}" with summits.curvature = "random": means are integrals over '
+            'heights and radii, which no other rule here checks; take curvature = "mean"'
+        )
     return term_of(q.base, scene.branch_of(q.name), h, s, scene.modulus(s))
 
 

@@ -1,0 +1,97 @@
+"""The response where summits have radii of their own: one matrix for each power of the radius.
+
+Sums of load, stiffness and conductance count a summit with the root of its radius, areas with the radius. The
+matrices are those of one radius; only the moments differ (`mcgw.sampling.weighted_sums`).
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from analytic import quantity_of
+from mcgw.sampling.layout import Layout
+from mcgw.sampling.response.response import Response
+
+__all__ = ["POWERS", "Families"]
+
+Array = NDArray[np.float64]
+
+POWERS = (0.5, 1.0)  # of the radius, that quantities have
+
+
+@dataclass(frozen=True)
+class Families:
+    """Responses side by side.
+
+    Parameters
+    ----------
+    powers : tuple of float
+        Of the radius, one a family: only those that are asked for.
+    responses : tuple of Response
+        One a family.
+    places : tuple of int
+        Where each of their quantities, family by family, stands among all.
+    """
+
+    powers: tuple[float, ...]
+    responses: tuple[Response, ...]
+    places: tuple[int, ...]
+
+    @classmethod
+    def of(
+        cls,
+        quantities: tuple[str, ...],
+        response_to: Callable[[float, tuple[str, ...]], Response],
+        *,
+        every: bool,
+    ) -> "Families":
+        """Sort quantities by their power, and have a response made for each power and its quantities.
+
+        With `every`, there is a family also for a power that no quantity has.
+        """
+        power = [quantity_of(name).radius for name in quantities]
+        powers = POWERS if every else tuple(sorted(set(power)))
+        groups = [[i for i, p in enumerate(power) if p == one] for one in powers]
+        responses = tuple(
+            response_to(one, tuple(quantities[i] for i in group))
+            for one, group in zip(powers, groups, strict=True)
+        )
+        return cls(powers, responses, tuple(i for group in groups for i in group))
+
+    @cached_property
+    def layout(self) -> Layout:
+        """The moments of each cell, one family after the other."""
+        parts = [response.layout for response in self.responses]
+        none = [np.empty(0, dtype=np.int64)]
+        return Layout(
+            np.concatenate(none + [part.plain for part in parts]),
+            np.concatenate(none + [part.rooted for part in parts]),
+        )
+
+    def layout_of(self, power: float | None) -> Layout:
+        """The moments of one family."""
+        return self.responses[self.powers.index(power or 0.0)].layout
+
+    def __matmul__(self, moments: Array) -> Array:
+        """Quantities of every surface: moments (rows, surfaces) to (quantities, surfaces, separations)."""
+        ends = np.cumsum([response.layout.starts[-1] for response in self.responses])
+        parts = np.split(moments, ends[:-1])
+        found = np.concatenate([r @ part for r, part in zip(self.responses, parts, strict=True)])
+        answers = np.empty_like(found)
+        answers[list(self.places)] = found
+        return answers
+
+    def matrix(self) -> Array:
+        """All of it as numbers, shape (quantities, separations, moments): large, slow and plain to see."""
+        parts = [response.matrix() for response in self.responses]
+        quantities, moments = len(self.places), int(self.layout.starts[-1])
+        result = np.zeros((quantities, parts[0].shape[1] if parts else 0, moments))
+        row = column = 0
+        for part in parts:
+            rows = list(self.places[row : row + len(part)])
+            result[rows, :, column : column + part.shape[2]] = part
+            row, column = row + len(part), column + part.shape[2]
+        return result

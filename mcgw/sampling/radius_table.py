@@ -1,0 +1,185 @@
+"""Radii of summits from uniforms: the law of a radius given the height, inverted once and tabulated.
+
+A summit's radius is ``c R``; its sums need sqrt(c), which goes with the root of the load, and c. For a given
+height the share of summits with a smaller curvature is a uniform; what is tabulated is sqrt(c) as a function
+of the height and of this uniform, or of what it lacks to 1 in the upper half. Each octave of the smaller of
+the two has pieces of its own, down to 2^-64, so that the flattest and the sharpest of 1e15 summits have the
+right law too. On a piece sqrt(c) is a polynomial of degree 4 in the height and 5 in the uniform: a share p
+of the summits becomes one of p (1 +- 2e-5), and is off by at most 3e-8 of all summits (1e-6 below alpha = 2).
+"""
+
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+from numpy.polynomial import chebyshev
+from numpy.typing import NDArray
+
+from analytic import Nayak, RandomCurvature
+from analytic.curvature import MEAN_CURVATURE
+from analytic.curvature_given_height import CurvatureGivenHeight
+from mcgw.machine.compiling import njit
+from mcgw.sampling.lanes import bits, fused
+from mcgw.sampling.rules import chebyshev_points, chebyshev_transform, gauss_legendre, product
+
+__all__ = ["RadiusTable", "radius_table", "root_ratio"]
+
+Array = NDArray[np.float64]
+
+_PANELS = 4  # in a unit of height
+_OCTAVES, _FINE, _PARTS = 64, 8, 4  # of a uniform; those that are cut, and into how many parts
+_PIECES = _FINE * _PARTS + _OCTAVES - _FINE
+_IN_HEIGHT, _IN_SHARE = 5, 6  # terms
+_NEVER = 1e-22  # share of the heights beyond which none is drawn
+_FURTHEST, _POINTS = 46.0, 501  # logarithm of the least share, and curvatures that tell the law
+_X, _W = gauss_legendre(6)
+
+
+@dataclass(frozen=True, eq=False)
+class RadiusTable:
+    """The table.
+
+    Parameters
+    ----------
+    bottom : float
+        Reduced height at which it begins.
+    largest : float
+        No sqrt(c) is larger.
+    coefficients : ndarray
+        Of powers of the height, then of the share: shape (panels, 2 pieces, 5, 6); pieces of shares from
+        below, then of those from above.
+    """
+
+    bottom: float
+    largest: float
+    coefficients: Array
+
+    def root_ratios(self, s: Array, centred: Array, fine: Array) -> Array:
+        """sqrt(c) of summits of heights `s`, from two uniforms between -1 and 1 each."""
+        return np.asarray(_root_ratios(self.coefficients, self.bottom, self.largest, s, centred, fine))
+
+
+@lru_cache(maxsize=8)
+def radius_table(curvature: RandomCurvature, lowest: float) -> RadiusTable:
+    """Tabulate the radii of summits above `lowest`."""
+    heights = Nayak(curvature.alpha)
+    low = max(lowest, float(heights.from_below(np.array(_NEVER), np.inf)))
+    high = max(float(heights.from_above(np.array(_NEVER), -np.inf)), low)
+    first, last = np.floor(_PANELS * low), np.floor(_PANELS * high) + 1
+    points = chebyshev_points(_IN_HEIGHT)
+    s = (np.arange(first, last)[:, None] + (1 + points) / 2) / _PANELS
+    roots = np.sqrt(MEAN_CURVATURE / _inverted(curvature.alpha, s.ravel(), _shares())).reshape(
+        *s.shape, 2 * _PIECES, _IN_SHARE
+    )
+    to_height, to_share = _powers(_IN_HEIGHT), _powers(_IN_SHARE)
+    by_height = np.moveaxis(product(to_height, np.moveaxis(roots, 1, 0).reshape(_IN_HEIGHT, -1)), 0, -1)
+    by_height = by_height.reshape(len(s), 2 * _PIECES, _IN_SHARE, _IN_HEIGHT)
+    by_both = product(to_share, np.moveaxis(by_height, 2, 0).reshape(_IN_SHARE, -1))
+    coefficients = np.moveaxis(by_both.reshape(_IN_SHARE, len(s), 2 * _PIECES, _IN_HEIGHT), 0, -1)
+    return RadiusTable(
+        float(first) / _PANELS, float(np.sqrt(curvature.largest)), np.ascontiguousarray(coefficients)
+    )
+
+
+def _powers(n: int) -> Array:
+    """From values at Chebyshev points to coefficients of powers."""
+    of_series = np.stack([np.pad(chebyshev.cheb2poly(row), (0, n))[:n] for row in np.eye(n)], axis=1)
+    return product(np.asarray(of_series, dtype=np.float64), chebyshev_transform(chebyshev_points(n)))
+
+
+def _shares() -> Array:
+    """Shares at the Chebyshev points of each piece, shape (pieces, terms)."""
+    fine = np.arange(_FINE * _PARTS)
+    low = np.concatenate(
+        [
+            2.0 ** -(fine // _PARTS + 2.0) * (1 + fine % _PARTS / _PARTS),
+            2.0 ** -(np.arange(_FINE, _OCTAVES) + 2.0),
+        ]
+    )
+    width = np.concatenate([2.0 ** -(fine // _PARTS + 2.0) / _PARTS, low[_FINE * _PARTS :]])
+    return np.asarray(low[:, None] + width[:, None] * (1 + chebyshev_points(_IN_SHARE)) / 2)
+
+
+def _inverted(alpha: float, s: Array, share: Array) -> Array:
+    """Curvatures below, then above which a share of the summits lies: (heights, 2, *share.shape)."""
+    law = CurvatureGivenHeight(alpha, Nayak(alpha).over_rms(s))
+    g = _evenly_likely(law)
+    inner = g[:-1, None] + np.diff(g, axis=0)[:, None] * _X[:, None]
+    mass = (law.density(inner) * _W[:, None]).sum(axis=1) * np.diff(g, axis=0)
+    density, bend = law.density(g), 1 + law.elasticity(g)
+    below = np.cumsum(np.concatenate([g[:1] * density[:1] / bend[:1], mass]), axis=0)
+    above = np.cumsum(np.concatenate([mass, -g[-1:] * density[-1:] / bend[-1:]])[::-1], axis=0)[::-1]
+    wanted, found = np.log(share.ravel()), np.empty((s.size, 2, share.size))
+    for side, (sum_, sign) in enumerate(((below, 1.0), (above, -1.0))):
+        first = 1.0 / (sign * g * density / sum_)  # of log g by the logarithm of the share
+        second = (1 / first - bend) * first * first
+        for i in range(s.size):
+            order = slice(None, None, int(sign))
+            shares, values = np.log(sum_[order, i]), np.log(g[order, i])
+            found[i, side] = np.exp(_between(wanted, shares, values, first[order, i], second[order, i]))
+    return found.reshape(s.size, 2, *share.shape)
+
+
+def _evenly_likely(law: CurvatureGivenHeight) -> Array:
+    """Curvatures between which about the same share lies, on a logarithmic scale to either end."""
+    top = law.highest(0 * law.x)
+    g = np.concatenate([np.geomspace(1e-8, 0.1, 100), np.linspace(0.1, 1.05, 400)[1:]])[:, None] * top
+    rise = law.density(g)
+    mass = (rise[1:] + rise[:-1]) / 2 * np.diff(g, axis=0)
+    below = np.cumsum(np.concatenate([g[:1] * rise[:1] / 4, mass]), axis=0)
+    above = np.cumsum(np.concatenate([mass, 1e-3 * rise[-1:]])[::-1], axis=0)[::-1]
+    scale = np.log(below) - np.log(above)
+    ends = np.maximum(scale[0], -_FURTHEST), np.minimum(scale[-1], _FURTHEST)
+    wanted = np.linspace(*ends, _POINTS)
+    columns = [np.interp(wanted[:, i], scale[:, i], np.log(g[:, i])) for i in range(law.x.size)]
+    return np.exp(np.stack(columns, axis=1))
+
+
+def _between(x: Array, at: Array, value: Array, first: Array, second: Array) -> Array:
+    """Hermite interpolation of degree 5 from values and two derivatives."""
+    i = np.clip(np.searchsorted(at, x) - 1, 0, at.size - 2)
+    width = at[i + 1] - at[i]
+    t = (x - at[i]) / width
+    rise = value[i + 1] - value[i]
+    slopes, bends = (width * first[i], width * first[i + 1]), (width**2 * second[i], width**2 * second[i + 1])
+    cubic = 10 * rise - 6 * slopes[0] - 4 * slopes[1] - 1.5 * bends[0] + 0.5 * bends[1]
+    quartic = -15 * rise + 8 * slopes[0] + 7 * slopes[1] + 1.5 * bends[0] - bends[1]
+    quintic = 6 * rise - 3 * slopes[0] - 3 * slopes[1] - 0.5 * bends[0] + 0.5 * bends[1]
+    return np.asarray(
+        value[i] + t * (slopes[0] + t * (bends[0] / 2 + t * (cubic + t * (quartic + t * quintic))))
+    )
+
+
+@njit(inline="always")
+def root_ratio(coefficients: Any, bottom: Any, largest: Any, s: Any, centred: Any, fine: Any) -> Any:
+    """sqrt(c) of one summit."""
+    p = 0.5 * (1.0 - abs(centred)) + fine * 2.0**-33
+    word = bits(p)
+    octave = 1021 - (word >> 52)
+    if octave < _FINE:
+        piece = octave * _PARTS + ((word >> 50) & 3)
+        y = (word & ((1 << 50) - 1)) * 2.0**-49 - 1.0
+    else:
+        piece = min(octave, _OCTAVES - 1) + _FINE * (_PARTS - 1)
+        y = (word & ((1 << 52) - 1)) * 2.0**-51 - 1.0
+    if centred > 0.0:
+        piece += _PIECES
+    above = (s - bottom) * _PANELS
+    panel = min(max(int(above), 0), coefficients.shape[0] - 1)
+    z = 2.0 * (above - panel) - 1.0
+    value = 0.0
+    for i in range(_IN_HEIGHT - 1, -1, -1):
+        inner = coefficients[panel, piece, i, _IN_SHARE - 1]
+        for j in range(_IN_SHARE - 2, -1, -1):
+            inner = fused(inner, y, coefficients[panel, piece, i, j])
+        value = fused(value, z, inner)
+    return min(value, largest)
+
+
+@njit(nogil=True, cache=True)
+def _root_ratios(coefficients: Any, bottom: Any, largest: Any, s: Any, centred: Any, fine: Any) -> Any:
+    result = np.empty(s.size)
+    for i in range(s.size):
+        result[i] = root_ratio(coefficients, bottom, largest, s[i], centred[i], fine[i])
+    return result

@@ -1,0 +1,269 @@
+"""Moments of cells whose summits have radii of their own: each uniform counts with a power of its radius.
+
+The load of a summit of radius ``c R`` is sqrt(c) times that of one of radius R at the same height, its area c
+times. Of the uniforms u of a cell, with x = 2u - 1, a surface keeps for each power that is asked for
+
+    T_j = sum w T_j(x),  j < plain        R_j = sum w sqrt(u) T_j(x),  j < rooted       w = sqrt(c) or c
+
+in the place of the sums of `mcgw.sampling.moments`; what turns them into loads and areas is the same. A
+radius is drawn for each summit from the table of `mcgw.sampling.radius_table`, at its height: that is the
+cell's lower edge and its series of the uniform.
+"""
+
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+from numba import get_num_threads
+from numpy.typing import NDArray
+
+from mcgw.machine.aligned import aligned
+from mcgw.machine.compiling import njit
+from mcgw.machine.in_threads import in_threads
+from mcgw.sampling.cells import Mesh
+from mcgw.sampling.lanes import LANES, alike, fused, load, roots, store, total
+from mcgw.sampling.layout import Layout
+from mcgw.sampling.philox import CELLS, RADII, RADII_LOW, centred
+from mcgw.sampling.radius_table import RadiusTable, root_ratio
+from mcgw.sampling.uniform_sums import five, five_more, stratify, unfold
+
+__all__ = ["weighted_moments"]
+
+_BUFFER = 1024  # uniforms at a time
+_MOST = 32  # sums of one kind: there are 21
+# A thread's workspace: x, sqrt(u), two uniforms of the radius, weights, factors; then sums and their carries
+_ROOT, _FINE, _COARSE, _WEIGHT, _FACTOR, _SUMS, _WORDS = (k * _BUFFER for k in range(1, 8))
+_ALONE = 2e5  # summits that a thread draws before another one has begun
+
+
+@njit(nogil=True, cache=True)
+def _factor(w: Any, n: Any, squared: Any, rooted: Any) -> None:
+    """Weight of each uniform, 0 for what fills the last lanes."""
+    for i in range(0, n, LANES):
+        f = load(w, _WEIGHT + i)
+        if squared:
+            f *= f
+        if rooted:
+            f *= load(w, _ROOT + i)
+        store(w, _FACTOR + i, f)
+
+
+@njit(nogil=True, cache=True)
+def _eleven(w: Any, n: Any, sums: Any) -> None:
+    """Add the sums of f T_0 ... f T_5, then f T_5 T_1 ... f T_5 T_5."""
+    r0 = r1 = r2 = r3 = r4 = r5 = s1 = s2 = s3 = s4 = s5 = alike(0.0)
+    for i in range(0, n, LANES):
+        t1, t2, t3, t4, t5 = five(load(w, i))
+        f = load(w, _FACTOR + i)
+        r0 += f
+        r1 = fused(f, t1, r1)
+        r2 = fused(f, t2, r2)
+        r3 = fused(f, t3, r3)
+        r4 = fused(f, t4, r4)
+        r5 = fused(f, t5, r5)
+        s = f * t5
+        s1 = fused(s, t1, s1)
+        s2 = fused(s, t2, s2)
+        s3 = fused(s, t3, s3)
+        s4 = fused(s, t4, s4)
+        s5 = fused(s, t5, s5)
+    for k, lanes in enumerate((r0, r1, r2, r3, r4, r5, s1, s2, s3, s4, s5)):
+        w[sums + k] += total(lanes)
+
+
+@njit(nogil=True, cache=True)
+def _weigh(w: Any, n: Any, edge: Any, series: Any, table: Any) -> Any:
+    """Roots and weights of `n` uniforms; returns how many lanes hold, the last ones filled with nothing."""
+    coefficients, bottom, largest = table
+    half = alike(0.5)
+    whole = (n + LANES - 1) // LANES * LANES
+    for i in range(n, whole):
+        w[i] = 1.0
+    for i in range(0, whole, LANES):
+        x = load(w, i)
+        u = fused(half, x, half)
+        twice = x + x
+        a, b = alike(0.0), alike(0.0)
+        for k in range(series.size - 1, 0, -1):
+            a, b = fused(twice, a, alike(series[k]) - b), a
+        height = fused(u, fused(x, a, alike(series[0]) - b), alike(edge))
+        store(w, _FACTOR + i, height)
+        store(w, _ROOT + i, roots(u))
+    for i in range(n):
+        w[_WEIGHT + i] = root_ratio(
+            coefficients, bottom, largest, w[_FACTOR + i], w[_COARSE + i], w[_FINE + i]
+        )
+    for i in range(n, whole):
+        w[_WEIGHT + i] = 0.0
+    return whole
+
+
+@njit(nogil=True, cache=True)
+def _sum_cell(
+    w: Any,
+    seed: Any,
+    surface: Any,
+    cell: Any,
+    n: Any,
+    strata: Any,
+    orders: Any,
+    squares: Any,
+    edge: Any,
+    series: Any,
+    table: Any,
+) -> None:
+    """Leave the sums over the uniforms of a cell in the workspace: 32 for each kind, and their carries."""
+    kinds = orders.size
+    for k in range(_SUMS, _SUMS + 3 * _MOST * kinds):
+        w[k] = 0.0
+    for first in range(0, n, _BUFFER):
+        m = min(_BUFFER, n - first)
+        centred(w, seed, CELLS, surface, cell, first, m)
+        centred(w[_COARSE:], seed, RADII, surface, cell, first, m)
+        centred(w[_FINE:], seed, RADII_LOW, surface, cell, first, m)
+        if strata:
+            stratify(w, m, first, n)
+        whole = _weigh(w, m, edge, series, table)
+        for kind in range(kinds):
+            wanted, sums = orders[kind], _SUMS + 3 * _MOST * kind
+            if wanted == 0:
+                continue
+            _factor(w, whole, squares[kind // 2], kind % 2)
+            for k in range(_MOST):
+                w[sums + k] = 0.0
+            _eleven(w, whole, sums)
+            if wanted > 11:
+                five_more(w, whole, 0, 2, _FACTOR, sums)
+            if wanted > 16:
+                five_more(w, whole, 0, 3, _FACTOR, sums)
+            for k in range(_MOST):  # Neumaier's sum
+                at, carry = sums + _MOST + k, sums + 2 * _MOST + k
+                new = w[at] + w[sums + k]
+                if abs(w[at]) >= abs(w[sums + k]):
+                    w[carry] += (w[at] - new) + w[sums + k]
+                else:
+                    w[carry] += (w[sums + k] - new) + w[at]
+                w[at] = new
+
+
+@njit(nogil=True, cache=True)
+def _sum_cells(
+    seed: Any,
+    first: Any,
+    counts: Any,
+    starts: Any,
+    orders: Any,
+    squares: Any,
+    bounds: Any,
+    stratified: Any,
+    edges: Any,
+    series: Any,
+    table: Any,
+    moments: Any,
+) -> None:
+    """Sum a run of cells, all surfaces of one after the other."""
+    w = np.ones(_WORDS)
+    surfaces = counts.shape[1]
+    for at in range(bounds[0], bounds[1]):
+        cell, surface = at // surfaces, at % surfaces
+        n = counts[cell, surface]
+        _sum_cell(
+            w,
+            seed,
+            first + surface,
+            cell,
+            n,
+            stratified,
+            orders[cell],
+            squares,
+            edges[cell],
+            series[cell],
+            table,
+        )
+        for kind in range(orders.shape[1]):
+            sums, row = _SUMS + (3 * kind + 1) * _MOST, starts[cell, kind]
+            for j in range(orders[cell, kind]):
+                moments[row + j, surface] = w[sums + j] + w[sums + _MOST + j]
+
+
+def weighted_moments(
+    seed: int,
+    first: int,
+    counts: NDArray[np.int64],
+    layouts: list[Layout],
+    squares: list[bool],
+    mesh: Mesh,
+    table: RadiusTable,
+    *,
+    stratified: bool = False,
+) -> NDArray[np.float64]:
+    """Moments of all cells of a block of surfaces, one family after the other.
+
+    Parameters
+    ----------
+    seed : int
+        The key.
+    first : int
+        Number of the block's first surface.
+    counts : ndarray of int
+        Asperities to draw in each cell, shape (cells, surfaces).
+    layouts : list of Layout
+        Moments of each cell, for each family.
+    squares : list of bool
+        Whether a family counts with c in the place of sqrt(c).
+    mesh : Mesh
+        The cells.
+    table : RadiusTable
+        Radii by height.
+    stratified : bool, optional
+        Jitter the uniforms of a cell over as many equal strata.
+
+    Returns
+    -------
+    ndarray
+        Shape (moments, surfaces): the same bits for any number of threads and in any block.
+    """
+    orders = np.stack([part for layout in layouts for part in (layout.plain, layout.rooted)], axis=1)
+    before = np.cumsum([0, *(layout.starts[-1] for layout in layouts)])
+    starts = np.stack(
+        [
+            start + layout.starts[:-1] + rooted * layout.plain
+            for layout, start in zip(layouts, before, strict=False)
+            for rooted in (0, 1)
+        ],
+        axis=1,
+    )
+    counts = np.where((orders > 0).any(axis=1, keepdims=True), counts, 0)  # what nobody asks for is not drawn
+    moments = aligned(int(before[-1]), counts.shape[1])
+    series = np.ascontiguousarray(mesh.stretch.T)
+    held = table.coefficients, table.bottom, table.largest
+
+    def sum_share(bounds: tuple[int, int]) -> None:
+        """Every thread has a run of cells: no number of threads changes the order of a sum."""
+        _sum_cells(
+            np.uint64(seed),
+            first,
+            counts,
+            starts,
+            orders,
+            np.array(squares),
+            bounds,
+            stratified,
+            mesh.edges,
+            series,
+            held,
+            moments,
+        )
+
+    in_threads(sum_share, list(pairwise(_shares(counts).tolist())))
+    for row, number in zip(starts.ravel().tolist(), orders.ravel().tolist(), strict=True):
+        unfold(moments, row, number)
+    return moments
+
+
+def _shares(counts: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Where the work of each thread begins and ends, counted through the surfaces of each cell in turn."""
+    work = np.cumsum(counts)
+    threads = get_num_threads() if work.size and work[-1] > _ALONE else 1
+    inner = np.searchsorted(work, np.arange(1, threads) * (work[-1] / threads)) if threads > 1 else ()
+    return np.array([0, *inner, counts.size], dtype=np.int64)

@@ -1,0 +1,104 @@
+"""The table [summits] of a scene, and a surface that is told by its spectrum."""
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+from analytic import HeightLaw, Nayak, RandomCurvature, SpectralMoments, Surface
+from mcgw.scene.section import Section
+
+__all__ = ["MOMENTS", "Spectral", "curvature_of", "datum_shift", "read_spectral", "summits_table"]
+
+MOMENTS = {"m0": "m^2", "m2": "1", "m4": "1/m^2"}
+_CURVATURES = ("random", "mean")
+
+
+@dataclass(frozen=True)
+class Spectral:
+    """An isotropic Gaussian surface.
+
+    Parameters
+    ----------
+    moments : SpectralMoments
+        Of its spectrum.
+    surface : Surface
+        Its summits, all of the inverse of their mean curvature.
+    """
+
+    moments: SpectralMoments
+    surface: Surface
+
+    @property
+    def heights(self) -> Nayak:
+        """Law of the heights of its summits."""
+        return Nayak(self.moments.alpha)
+
+
+def read_spectral(section: Section) -> Spectral | None:
+    """Read [surface] with m0, m2, m4 for sigma, radius, eta; mistakes are noted, and give None."""
+    units = {**MOMENTS, "nominal_area": "m^2", "E_star": "Pa"}
+    values = {key: section.number(key, unit=unit) for key, unit in units.items()}
+    for key in ("sigma", "radius", "eta"):
+        if key in section:
+            section.fail(key, section.take(key), "give either m0, m2, m4, or sigma, radius, eta")
+    if any(map(math.isnan, values.values())):
+        return None
+    try:
+        moments = SpectralMoments(*(values[key] for key in MOMENTS))
+        Nayak(moments.alpha)
+        return Spectral(moments, moments.surface(values["nominal_area"], values["E_star"]))
+    except ValueError as error:
+        section.problems.append(f"surface: {error}")
+        return None
+
+
+def curvature_of(
+    section: Section, heights: HeightLaw, surface: Surface | None, default: str
+) -> RandomCurvature | None:
+    """Read whether summits have radii of their own; mistakes are noted, and give None.
+
+    Parameters
+    ----------
+    section : Section
+        With ``curvature`` and ``largest_radius``.
+    heights : HeightLaw
+        Of the summits.
+    surface : Surface or None
+        Whose radius is the inverse of the mean curvature; None if it was not understood.
+    default : {"random", "mean"}
+        Where the section does not say.
+    """
+    word = section.choice("curvature", default, _CURVATURES)
+    largest = section.number("largest_radius", math.inf, unit="m")
+    if word == "mean" or surface is None:
+        if math.isfinite(largest):
+            section.fail("largest_radius", section.table["largest_radius"], 'needs curvature = "random"')
+        return None
+    if not isinstance(heights, Nayak):
+        section.fail("curvature", word, 'needs heights.law = "nayak", or m0, m2, m4 under [surface]')
+        return None
+    try:
+        return RandomCurvature(heights.alpha, largest / surface.radius)
+    except ValueError as error:
+        section.fail("largest_radius", section.table.get("largest_radius", largest), str(error))
+        return None
+
+
+def datum_shift(section: Section, heights: HeightLaw) -> float:
+    """What is to be taken off separations d/sigma that count from the plane that ``datum`` names."""
+    if section.choice("datum", "summits", ("summits", "surface")) == "summits":
+        return 0.0
+    if not isinstance(heights, Nayak):
+        section.fail(
+            "datum", "surface", 'needs heights.law = "nayak", which knows the mean plane of the surface'
+        )
+        return 0.0
+    return heights.mean / heights.std
+
+
+def summits_table(curvature: RandomCurvature | None, surface: Surface) -> dict[str, Any]:
+    """The table [summits], read again the same; empty where all summits have one radius."""
+    if curvature is None:
+        return {}
+    bound = {} if math.isinf(curvature.largest) else {"largest_radius": curvature.largest * surface.radius}
+    return {"curvature": "random", **bound}

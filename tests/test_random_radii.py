@@ -1,0 +1,303 @@
+"""Summits with radii of their own: drawn sums against literal ones, the law of the radii, every crossing."""
+
+import dataclasses
+import math
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from scipy import stats
+
+import analytic
+import mcgw
+from analytic.laws import LoadingBranch, term_of
+from mcgw.sampling.asperities import summits, summits_drawn
+from mcgw.sampling.radius_table import radius_table
+from mcgw.sampling.samplers import regraded, sampler_of
+
+ALPHAS = (1.55, 2.0, 5.0, 50.0)
+POWERS = {"load": 0.5, "area": 1.0, "stiffness": 0.5, "conductance": 0.5, "contacts": 0.0}
+
+
+def spectral(alpha=5.0, **changes):
+    """A scene of a surface with this bandwidth."""
+    moments = analytic.SpectralMoments(1e-12, 1e-3, alpha * 1e-6 / 1e-12)
+    surface = mcgw.SpectralSurface(moments.m0, moments.m2, moments.m4, 1e-6, 78.6e9)
+    values = {
+        "separations": np.linspace(0, 4, 9),
+        "n_asperities": 20_000,
+        "n_surfaces": 20,
+        "seed": 1,
+        "quantities": tuple(POWERS),
+    }
+    return mcgw.Scene(surface, **(values | changes))
+
+
+def literal(scene, s, radii):
+    """Hertz's formulas, summit by summit, exactly rounded."""
+    x, found = scene.surface, {}
+    e = scene.modulus(s)
+    for name in scene.quantities:
+        column = []
+        for h in scene.separations:
+            d = x.sigma * np.maximum(s - h, 0)
+            terms = {
+                "load": 4 / 3 * x.E_star * e * np.sqrt(radii) * d**1.5,
+                "area": math.pi * radii * d,
+                "stiffness": 2 * x.E_star * e * np.sqrt(radii * d),
+                "conductance": 4 * np.sqrt(radii * d),
+                "contacts": d > 0,
+            }[name]
+            column.append(math.fsum(terms.tolist()))
+        found[name] = np.array(column)
+    return found
+
+
+def worst(scene, sampler, surface):
+    s, ratios = summits_drawn(scene, sampler, surface)
+    exact, drawn = literal(scene, s, scene.surface.radius * ratios), sampler.block(surface, 1).sums
+    errors = []
+    for name, values in exact.items():
+        np.testing.assert_array_equal(drawn[name][0][values == 0], 0)
+        reached = values > 0
+        errors.append(np.abs(drawn[name][0][reached] / values[reached] - 1).max(initial=0))
+    return max(errors)
+
+
+@pytest.mark.parametrize("alpha", ALPHAS)
+@pytest.mark.parametrize("sampler", ["cells", "tail"])
+def test_sums_are_those_of_the_very_summits(alpha, sampler):
+    scene = spectral(alpha, sampler=sampler, separations=[-1.0, 0.0, 0.3, 1.0, 2.5])
+    made = sampler_of(scene)
+    assert max(worst(scene, made, surface) for surface in range(3)) < 1e-12
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"grading": analytic.Exponential(2.0)},
+        {"grading": analytic.Table([-1.0, 0.3, 1.0, 2.2], [0.3, 0.5, 1.4, 1.5])},
+        {"grading": lambda s: 1 + 0.3 * np.tanh(s)},
+        {"n_asperities": 2},
+        {"n_asperities": 400_000, "separations": (1.0,)},
+        {"count": "poisson"},
+        {"seed": 2**64 - 1},
+        {"separations": np.linspace(0, 4, 41)},
+        {"separations": (1.0, 1.0 + 1e-9, 1.5)},
+        {"curvature": analytic.RandomCurvature(5.0, 2.0)},
+        {"keep": "moments"},
+        {"quantities": ("area",)},
+        {"quantities": ("contacts",)},
+        {"quantities": ("contacts", "area", "load")},
+    ],
+    ids=lambda changes: ", ".join(changes),
+)
+def test_crossings(changes):
+    scene = spectral(sampler="cells", **changes)
+    made = sampler_of(scene)
+    assert max(worst(scene, made, surface) for surface in range(2)) < 1e-12
+
+
+def test_another_radius_is_seen():
+    """Otherwise the comparison says nothing."""
+    scene = spectral(sampler="cells")
+    sampler = sampler_of(scene)
+    s, ratios = summits_drawn(scene, sampler, 0)
+    ratios[0] *= 1 + 1e-6
+    exact, drawn = literal(scene, s, scene.surface.radius * ratios), sampler.block(0, 1).sums
+    assert abs(drawn["area"][0][0] / exact["area"][0] - 1) > 1e-12
+
+
+@pytest.mark.parametrize("alpha", ALPHAS)
+def test_table_is_the_inverse_of_the_law(alpha):
+    """Shares of what the table gives, by the law's own distribution function, down to 2^-40 at both ends."""
+    curvature = analytic.RandomCurvature(alpha)
+    table, rng = radius_table(curvature, -3.0), np.random.default_rng(1)
+    s = rng.uniform(-3, 7, 400)
+    p = np.concatenate([rng.uniform(0, 0.5, 200), 2.0 ** rng.uniform(-40, -1, 200)])
+    for side, of in ((-1, curvature.below), (1, curvature.above)):
+        x = 1 - 2 * p
+        coarse = side * ((np.floor(np.abs(x) * 2**31) + 0.5) * 2.0**-31)  # as 32 bits give it
+        fine = ((1 - np.abs(coarse)) / 2 - p) * -(2.0**33)
+        g = (8 / math.sqrt(3 * math.pi)) / table.root_ratios(s, coarse, fine) ** 2
+        np.testing.assert_allclose(of(g, s), p, rtol=2e-5, atol=0)
+        np.testing.assert_allclose(of(g, s), p, rtol=0, atol=1e-6 if alpha < 2 else 3e-8)
+
+
+def test_radii_and_heights_have_the_joint_law():
+    """Kolmogorov and Smirnov, against summits made of four Gaussians; of nine tests, alarm at 1e-4 each."""
+    alpha, n = 2.0, 60_000
+    scene = spectral(alpha, sampler="cells", separations=(-0.5,), n_asperities=n, n_surfaces=2)
+    sampler = sampler_of(scene)
+    s, c = (
+        np.concatenate(part) for part in zip(*(summits_drawn(scene, sampler, i) for i in (0, 1)), strict=True)
+    )
+    rng = np.random.default_rng(5)
+    rho = math.sqrt(1.5 / alpha)
+    zeta, xi = rng.normal(size=(2, 2, 4_000_000))  # of curvatures; of what is left of the height
+    mean = rng.normal(size=4_000_000) * math.sqrt(2)  # T/q, of variance 2
+    deviator = np.hypot(*zeta)
+    det = mean**2 - deviator**2
+    keep = (mean > 0) & (det > 0) & (rng.random(4_000_000) * 25 < det)
+    heights = rho * mean / math.sqrt(2) + math.sqrt(1 - rho**2) * xi[0]
+    law = analytic.Nayak(alpha)
+    theirs = (heights[keep] - law.mean) / law.std, 8 / math.sqrt(3 * math.pi) / np.sqrt(det[keep])
+    touching = theirs[0] > -0.5
+    theirs = [part[touching] for part in theirs]
+    for low, high in ((-0.5, 10), (-0.5, 0.3), (1.2, 10)):
+        mine, other = ((a > low) & (a < high) for a in (s, theirs[0]))
+        for ours, theirs_too in ((s, theirs[0]), (c, theirs[1]), (c * s, theirs[1] * theirs[0])):
+            assert stats.ks_2samp(ours[mine], theirs_too[other]).pvalue > 1e-4
+    assert (
+        stats.ks_2samp(rng.permutation(c) * s, theirs[1] * theirs[0]).pvalue < 1e-6
+    )  # were they independent
+
+
+def test_the_same_bits_in_any_block_and_on_any_number_of_threads():
+    import numba
+
+    scene = spectral(sampler="cells", n_asperities=300_000, separations=(0.0, 1.0))
+    sampler = sampler_of(scene)
+    whole = sampler.block(0, 4)
+    parts = [sampler.block(0, 1), sampler.block(1, 3)]
+    before = numba.get_num_threads()
+    try:
+        numba.set_num_threads(1)
+        alone = sampler.block(0, 4)
+    finally:
+        numba.set_num_threads(before)
+    for name, values in whole.sums.items():
+        np.testing.assert_array_equal(values, alone.sums[name])
+        np.testing.assert_array_equal(values, np.concatenate([part.sums[name] for part in parts]))
+
+
+@pytest.mark.parametrize("sampler", ["cells", "tail", "direct", "stratified"])
+def test_means_are_those_of_theory(sampler):
+    """|z| < 5 by the exact variance, which exists though the kurtosis of the area does not."""
+    scene = spectral(2.0, sampler=sampler, n_asperities=2000, n_surfaces=400, separations=(0.0, 1.5))
+    ensemble = mcgw.simulate(scene)
+    for name in scene.quantities:
+        for k, h in enumerate(scene.separations):
+            mean, exact = ensemble[name][:, k].mean(), scene.theory.mean(name, h)
+            error = math.sqrt(scene.theory.covariance((name, name), (h, h)) / scene.n_surfaces)
+            assert abs(mean - exact) < 5 * error, (name, h)
+
+
+LAWS = [
+    mcgw.KogutEtsion(hardness=1.2e9),
+    mcgw.JacksonGreen(yield_strength=4e8),
+    mcgw.JohnsonKendallRoberts(work=0.05),
+    mcgw.PowerLawGraded(k=0.3, c0=1e-6),
+]
+
+
+@pytest.mark.parametrize("law", LAWS, ids=lambda law: law.name)
+def test_each_summit_has_the_law_of_its_own_radius(law):
+    scene = spectral(
+        law=law, n_asperities=300, separations=(-0.5, 1.0), grading=analytic.Exponential(0.5),
+        quantities=("load", "area", "stiffness", "contacts"),
+    )  # fmt: skip
+    sampler = sampler_of(scene)
+    assert sampler.name == "tail"
+    s, ratios = summits_drawn(scene, sampler, 0)
+    drawn = sampler.block(0, 1).sums
+    for name in scene.quantities:
+        for k, h in enumerate(scene.separations):
+            exact = 0.0
+            for one, c in zip(s.tolist(), ratios.tolist(), strict=True):
+                own = dataclasses.replace(scene.surface, radius=scene.surface.radius * c)
+                term = term_of(name, LoadingBranch(law.on(own)), h, one, scene.modulus(np.array(one)))
+                exact += float(term) * analytic.quantity_of(name).scale(own)
+            assert drawn[name][0, k] == pytest.approx(exact, rel=1e-12), (name, h)
+
+
+def test_regraded_from_moments_as_drawn_anew():
+    scene = spectral(sampler="cells", keep="moments", quantities=("load",))
+    other = scene.replace(grading=analytic.Exponential(2.0), quantities=("load", "area"))
+    drawn, fresh = sampler_of(scene), sampler_of(other)
+    block = drawn.block(0, 3)
+    again = regraded(other, scene).sums(0, block.moments.T.copy(), block.counts.T.copy(), block.extras)
+    for name, values in fresh.block(0, 3).sums.items():
+        np.testing.assert_allclose(again[name], values, rtol=1e-12)
+
+
+def test_all_summits_of_a_surface():
+    scene = spectral(sampler="cells", n_asperities=5000)
+    s, ratios = summits(scene, 0)
+    touching = mcgw.radii(scene, 0)
+    assert s.size == ratios.size == 5000
+    np.testing.assert_allclose(scene.surface.radius * ratios[: touching.size], touching, rtol=1e-15)
+    assert stats.kstest(s, lambda x: analytic.Nayak(5.0).below(x)).pvalue > 1e-4
+    assert np.mean(1 / ratios) == pytest.approx(2.34902690068464 / 2.60588006348224, abs=0.02)
+
+
+def test_one_radius_loads_nothing_of_this(tmp_path):
+    code = (
+        "import sys, mcgw\n"
+        "surface = mcgw.Surface('1.37 um', '13 um', '300/mm^2', '1 mm^2', '78.6 GPa')\n"
+        "mcgw.simulate(mcgw.Scene(surface, separations=[0, 1], n_surfaces=3, seed=1))\n"
+        "print([name for name in sys.modules if name.rpartition('.')[2] in"
+        " ('radius_table', 'weighted_sums', 'with_radii', 'families')])\n"
+    )
+    found = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert found.stdout.strip() == "[]"
+
+
+def test_file_keys():
+    text = """
+    [surface]
+    m0 = "1 um^2"
+    m2 = 1e-3
+    m4 = 5e6
+    nominal_area = "1 mm^2"
+    E_star = "78.6 GPa"
+    [contact]
+    separations = [0.0, 1.0]
+    """.replace('"1 um^2"', "1e-12")
+    scene = mcgw.scene_from(text)
+    assert scene.heights == analytic.Nayak(5.0)
+    assert scene.curvature == analytic.RandomCurvature(5.0)
+    again = mcgw.scene_from(mcgw.scene_text(scene))
+    assert again == scene
+    mean = mcgw.scene_from(text + '[summits]\ncurvature = "mean"\n')
+    assert mean.curvature is None
+    assert mean.heights == scene.heights
+    bound = mcgw.scene_from(text + '[summits]\nlargest_radius = "1 mm"\n')
+    assert bound.curvature.largest == pytest.approx(1e-3 / scene.surface.radius)
+    assert mcgw.scene_from(mcgw.scene_text(bound)) == bound
+    surface = mcgw.scene_from(text + 'datum = "surface"\n')
+    shift = 4 / math.sqrt(5 * math.pi) / math.sqrt(1 - 0.8968057562340189 / 5)
+    np.testing.assert_allclose(surface.separations, (-shift, 1 - shift), rtol=1e-12)
+    assert mcgw.scene_from(mcgw.scene_text(surface)) == surface
+
+
+AT_1 = "[contact]\nseparations = 1\n"
+HEAD = '[surface]\nnominal_area = "1 mm^2"\nE_star = "78.6 GPa"\n'
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        (HEAD + "m0 = 1e-12\nm2 = 1e-3\nm4 = 1e6\n" + AT_1, "alpha"),
+        (HEAD + "m0 = 1e-12\nm2 = 1e-3\n" + AT_1, "m4: missing"),
+        (HEAD + "m0 = 1e-12\nm2 = 1e-3\nm4 = 5e6\nradius = 1\n" + AT_1, "either m0"),
+        (HEAD + "m0 = 1e-12\nm2 = 1e-3\nm4 = 5e6\n" + AT_1 + "[ensemble]\nsampler='aggregate'\n",
+         "aggregate"),
+        (HEAD + "m0 = 1e-12\nm2 = 1e-3\nm4 = 5e6\n[heights]\nlaw = 'gaussian'\n" + AT_1,
+         "nayak"),
+        (HEAD + "sigma = 1e-6\nradius = 1e-5\neta = 1e9\n" + AT_1 + "datum = 'surface'\n", "datum"),
+        (HEAD + "sigma = 1e-6\nradius = 1e-5\neta = 1e9\n" + AT_1 + "[summits]\ncurvature='random'\n",
+         "nayak"),
+        (HEAD + "sigma = 1e-6\nradius = 1e-5\neta = 1e9\n" + AT_1 + "[summits]\nlargest_radius = 1\n",
+         "largest_radius"),
+        (HEAD + "m0 = 1e-12\nm2 = 1e-3\nm4 = 5e6\n" + AT_1 + "law = 'kogut-etsion'\n"
+         "hardness = 1e9\n[ensemble]\nsampler = 'cells'\n", "tail"),
+    ],
+    ids=["alpha", "m4", "radius", "aggregate", "gaussian", "datum", "curvature", "largest", "metal"],
+)  # fmt: skip
+def test_what_does_not_go_together_gets_one_line(text, says):
+    with pytest.raises(mcgw.SceneError) as caught:
+        mcgw.scene_from(text)
+    assert len(caught.value.problems) == 1, caught.value.problems
+    assert says in caught.value.problems[0]
