@@ -5,8 +5,7 @@ import re
 import numpy as np
 import pytest
 
-from mcgw.maps.cautions import cautions
-from mcgw.maps.fit import fit_map
+import mcgw
 from mcgw.maps.form import smooth
 from mcgw.maps.topography import Topography
 
@@ -19,7 +18,7 @@ def test_a_lay_along_either_axis(axis):
     noise = np.random.default_rng(1).normal(size=(300, 300))
     plain = smooth(Topography(noise, PIXEL, periodic=True), 12e-6).heights
     drawn_out = Topography(np.repeat(plain, 4, axis=axis), PIXEL)
-    (line,) = (x for x in cautions(fit_map(drawn_out, cutoff=None), drawn_out, None) if x.startswith("lay:"))
+    (line,) = (x for x in mcgw.fit(drawn_out, cutoff=None).cautions if x.startswith("lay:"))
     ratio = float(re.search(r"ratio (\S+);", line)[1])
     expected = 1 / 8 if axis else 8  # of squares; steps between equal pixels make it less
     assert 0.4 < ratio / expected < 2.5

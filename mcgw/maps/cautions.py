@@ -3,7 +3,7 @@
 from mcgw.maps.fit import Fit
 from mcgw.maps.flaws import flaws
 from mcgw.maps.hidden import CROWDED, visible
-from mcgw.maps.topography import Topography
+from mcgw.maps.preparation import Prepared
 
 __all__ = ["cautions"]
 
@@ -13,11 +13,11 @@ _LOST = 0.1  # of the summits
 _SKEW, _ALPHA, _FEW, _STREAKY = 0.3, 1.5, 100, 1.5
 
 
-def cautions(fit: Fit, topography: Topography, cutoff: float | None) -> list[str]:
+def cautions(fit: Fit, ready: Prepared) -> list[str]:
     """Warnings about the fit of a map, each in one line that says what to do."""
     return [
-        *flaws(fit, topography),
-        *_of_the_pixel(fit, max(topography.pixel), cutoff),
+        *flaws(fit, ready),
+        *_of_the_pixel(fit, max(ready.used.pixel), ready.asked.cutoff),
         *_of_the_heights(fit),
         *_of_the_summits(fit),
     ]
@@ -46,8 +46,8 @@ def _of_the_heights(fit: Fit) -> list[str]:
             f"skewness: {skewness:.2f} of the heights; spectral moments tell of summits for Gaussian heights "
             "only; count them, and keep their heights (--heights table)"
         )
-    if fit.alpha[0] < _ALPHA:
-        warnings.append(f"alpha: {fit.alpha[0]:.3g} is below 1.5, which no isotropic Gaussian surface has")
+    if fit.alpha.value < _ALPHA:
+        warnings.append(f"alpha: {fit.alpha.value:.3g} is below 1.5, which no isotropic Gaussian surface has")
     ratio = fit.mean_squares["slope_x"] / fit.mean_squares["slope_y"]
     if not 1 / _STREAKY < ratio < _STREAKY:
         warnings.append(

@@ -1,6 +1,5 @@
 """The scene of a fit: it runs as it is."""
 
-import math
 from pathlib import Path
 from typing import Literal
 
@@ -68,15 +67,17 @@ def fitted_scene(
         )
     estimate = fit.estimates[use]
     drawn: HeightLaw = Gaussian()
-    sigma = estimate.sigma[0]
+    sigma, eta = estimate.sigma.value, estimate.eta.value
     if heights != "gaussian":
         sigma = float(fit.summits.std())
         drawn = HeightTable.of(fit.summits) if heights == "table" else MeasuredHeights(fit.summits)
-    surface = Surface(sigma, estimate.radius[0], estimate.eta[0], fit.area, modulus)
+    if heights == "measured":
+        if use != "summits":
+            raise ValueError(f'use = "{use}": measured heights as they are need "summits", their own number')
+        eta = fit.summits.size / fit.area  # those between pixels have no heights
+    surface = Surface(sigma, estimate.radius.value, eta, fit.area, modulus)
     separations = tuple(np.linspace(0, 3, 31).tolist())
     if heights == "measured":
-        if not math.isclose(surface.n_asperities, fit.summits.size, rel_tol=1e-9):
-            raise ValueError(f'use = "{use}": measured heights as they are need "summits", their own number')
         return Scene(
             surface=surface, separations=separations, title=title, heights=drawn,
             n_surfaces=1, n_asperities=fit.summits.size, sampler="direct", seed=1,

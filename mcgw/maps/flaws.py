@@ -1,7 +1,9 @@
 """What does not belong to the roughness of a map, or makes one map too little: each with what would do."""
 
+from mcgw.maps.edges import bad_edges
 from mcgw.maps.fit import Fit
 from mcgw.maps.levels import form_left, step_of
+from mcgw.maps.preparation import Prepared
 from mcgw.maps.spikes import spikes_of
 from mcgw.maps.topography import STEEPEST, Topography
 
@@ -11,13 +13,15 @@ _WIDEST = 1e-2  # m
 _FEW_WAVES = 50  # sigma known to a tenth
 
 
-def flaws(fit: Fit, topography: Topography) -> list[str]:
+def flaws(fit: Fit, ready: Prepared) -> list[str]:
     """Warnings about what lies on a map, each in one line that says what to do."""
+    level = ready.levelled
     return [
-        *_units(topography),
-        *_spikes(topography),
-        *_alone(fit, topography),
-        *(_step(topography) or _form(fit, topography) or _waves(fit)),
+        *_units(ready.raw),
+        *_edges(level),
+        *_spikes(level),
+        *_alone(fit, level),
+        *(_step(level) or _form(fit, level) or _waves(fit)),
     ]
 
 
@@ -32,6 +36,14 @@ def _units(topography: Topography) -> list[str]:
     return lines
 
 
+def _edges(topography: Topography) -> list[str]:
+    number = bad_edges(topography.heights)
+    if not number:
+        return []
+    points = "outermost points" if number == 1 else f"outermost {number} points"
+    return [f"edge: the {points} of the map jump unlike all others; leave them off by --trim {number}"]
+
+
 def _spikes(topography: Topography) -> list[str]:
     spikes = spikes_of(topography)
     if spikes is None:
@@ -41,7 +53,7 @@ def _spikes(topography: Topography) -> list[str]:
     return [
         f"spikes: {places} out of the map, the largest at x = {spikes.x:.4g} m, y = {spikes.y:.4g} m, "
         f"{abs(spikes.height):.3g} m {kind} and narrower than five pixels; one alone can set R, eta and "
-        "sigma: replace such points by their neighbours, or crop the map"
+        "sigma: take them out by --spikes remove, or crop the map"
     ]
 
 
@@ -64,8 +76,8 @@ def _step(topography: Topography) -> list[str]:
     if step is None:
         return []
     return [
-        f"step: two levels {step.height:.3g} m apart meet near {step.axis} = {step.place:.3g} m; crop the "
-        "map there, and fit one terrace"
+        f"step: two levels {step.height:.3g} m apart meet near {step.axis} = {step.place:.3g} m; keep the "
+        "larger terrace by --step crop"
     ]
 
 
@@ -73,10 +85,10 @@ def _form(fit: Fit, topography: Topography) -> list[str]:
     left = form_left(topography, fit.form)
     if left is None:
         return []
-    kind = "a tilt or a curved form" if fit.form == "none" else "a curved form (sphere, cylinder)"
+    kind = "a tilt or a curved form" if fit.form == "none" else "a curved form"
     return [
         f"form: {kind} of {left.height:.3g} m from peak to valley was left and holds "
-        f"{100 * left.share:.0f} % of the variance; give --form quadratic"
+        f"{100 * left.share:.0f} % of the variance; give --form {left.form}"
     ]
 
 
@@ -86,5 +98,5 @@ def _waves(fit: Fit) -> list[str]:
         return []
     return [
         f"waves: the longest are so few that m0 is known as from {number:.2g} heights: sigma may be another "
-        f"one elsewhere, by {100 * fit.waves.sigma:.2g} % or more; give a longer map"
+        f"one elsewhere, by {100 * fit.waves.sigma.error:.2g} % or more; give a longer map"
     ]

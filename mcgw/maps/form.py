@@ -7,38 +7,50 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter
 
+from mcgw.maps.round_forms import round_form
 from mcgw.maps.topography import Topography
 
-__all__ = ["FORMS", "Form", "gaussian_transmission", "smooth", "without_form"]
+__all__ = ["FORMS", "ORDERS", "Form", "gaussian_transmission", "lowpass", "smooth", "without_form"]
 
 Array = NDArray[np.float64]
-Form = Literal["none", "plane", "quadratic"]
+Form = Literal["none", "plane", "quadratic", "cubic", "quartic", "sphere", "cylinder"]
 FORMS: tuple[str, ...] = get_args(Form)
+ORDERS = {"none": -1, "plane": 1, "quadratic": 2, "cubic": 3, "quartic": 4, "sphere": 2, "cylinder": 2}
 
 _ALPHA = math.sqrt(math.log(2) / math.pi)  # ISO 16610-61: half the amplitude is left at the cutoff
 _REACH = 1.0  # of the filter's window, in cutoffs: beyond lies a share of 5e-7
-_ORDER = {"none": -1, "plane": 1, "quadratic": 2}
 
 
 def without_form(topography: Topography, form: Form) -> Topography:
-    """Subtract the plane, or the second-order polynomial, of least squares from a map that lacks no points.
+    """Subtract the form of least squares: a polynomial of two coordinates, a sphere or a cylinder.
 
-    The rest is no longer periodic, unless nothing was taken off.
+    Missing points neither count nor get a height. The rest is no longer periodic, unless nothing was taken
+    off.
     """
-    order = _ORDER[form]
-    if order < 0:
-        return topography
-    z = topography.heights
+    match form:
+        case "none":
+            return topography
+        case "sphere" | "cylinder":
+            shape = round_form(topography, axis=form == "cylinder")
+        case _:
+            shape = _polynomial(topography.heights, ORDERS[form])
+    return Topography(topography.heights - shape, topography.pixel)
+
+
+def _polynomial(z: Array, order: int) -> Array:
+    """Of least squares over the points that are there."""
     y, x = (_powers(n, order) for n in z.shape)
     terms = [(a, b) for a in range(order + 1) for b in range(order + 1 - a)]
-    projected = y.T @ z @ x
-    gram_y, gram_x = y.T @ y, x.T @ x
-    matrix = np.array([[gram_y[a, c] * gram_x[b, d] for c, d in terms] for a, b in terms])
+    there = np.isfinite(z)
+    projected = y.T @ np.where(there, z, 0.0) @ x
+    square_y, square_x = ((v[:, :, None] * v[:, None, :]).reshape(len(v), -1) for v in (y, x))
+    gram = (square_y.T @ there @ square_x).reshape([order + 1] * 4)  # powers a and c of y, b and d of x
+    matrix = np.array([[gram[a, c, b, d] for c, d in terms] for a, b in terms])
     found = np.linalg.lstsq(matrix, np.array([projected[a, b] for a, b in terms]), rcond=None)[0]
     weights = np.zeros_like(projected)
     for (a, b), value in zip(terms, found, strict=True):
         weights[a, b] = value
-    return Topography(z - (y @ weights) @ x.T, topography.pixel)
+    return np.asarray((y @ weights) @ x.T)
 
 
 def _powers(n: int, order: int) -> Array:
@@ -63,9 +75,7 @@ def smooth(topography: Topography, cutoff: float) -> Topography:
         If nothing would be left.
     """
     dx, dy = topography.pixel
-    width = _ALPHA / math.sqrt(2 * math.pi) * cutoff  # standard deviation of the window
-    mode: Literal["wrap", "reflect"] = "wrap" if topography.periodic else "reflect"
-    radius = tuple(max(math.ceil(_REACH * cutoff / p), 1) for p in (dy, dx))
+    radius = _window(topography, cutoff)
     rows, columns = topography.heights.shape
     if topography.periodic and max(radius) >= min(rows, columns):
         raise ValueError(f"cutoff = {cutoff:g} m: longer than the map of {columns * dx:g} x {rows * dy:g} m")
@@ -74,7 +84,27 @@ def smooth(topography: Topography, cutoff: float) -> Topography:
             f"cutoff = {cutoff:g} m: leaves nothing of a map of {columns * dx:g} x {rows * dy:g} m "
             "without its margin of one cutoff"
         )
-    smoothed = gaussian_filter(topography.heights, (width / dy, width / dx), mode=mode, radius=radius)
+    smoothed = lowpass(topography, cutoff)
     if not topography.periodic:
         smoothed = smoothed[radius[0] : rows - radius[0], radius[1] : columns - radius[1]]
     return Topography(np.ascontiguousarray(smoothed), topography.pixel, topography.periodic)
+
+
+def lowpass(topography: Topography, cutoff: float) -> Array:
+    """What the filter leaves of every point, in m; beyond its edges the map goes on as in a mirror.
+
+    Unless it is periodic. No point may be missing.
+    """
+    width = _ALPHA / math.sqrt(2 * math.pi) * cutoff  # standard deviation of the window
+    dx, dy = topography.pixel
+    mode: Literal["wrap", "reflect"] = "wrap" if topography.periodic else "reflect"
+    widths = (width / dy, width / dx)
+    return np.asarray(
+        gaussian_filter(topography.heights, widths, mode=mode, radius=_window(topography, cutoff))
+    )
+
+
+def _window(topography: Topography, cutoff: float) -> tuple[int, int]:
+    """Half its size along y and x, in points."""
+    dx, dy = topography.pixel
+    return max(math.ceil(_REACH * cutoff / dy), 1), max(math.ceil(_REACH * cutoff / dx), 1)

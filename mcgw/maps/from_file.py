@@ -5,8 +5,18 @@ from pathlib import Path
 
 from mcgw.maps.cautions import cautions
 from mcgw.maps.files import read_map
-from mcgw.maps.fit import Fit, fit_map
+from mcgw.maps.fit import Fit, fit_prepared
 from mcgw.maps.form import FORMS, Form
+from mcgw.maps.preparation import (
+    MISSING,
+    SPIKES,
+    STEP,
+    Missing,
+    Preparation,
+    SpikesTo,
+    StepTo,
+    prepared,
+)
 from mcgw.maps.topography import Topography
 from mcgw.scene.reading import argument, as_toml
 from mcgw.scene.section import SceneError, Section
@@ -19,6 +29,11 @@ def fit(
     *,
     cutoff: float | str | None,
     form: Form = "plane",
+    missing: Missing = "auto",
+    spikes: SpikesTo = "keep",
+    step: StepTo = "keep",
+    trim: int = 0,
+    long_cutoff: float | str | None = None,
     parts: int = 4,
     pixel: float | str | None = None,
     unit: str | None = None,
@@ -31,10 +46,23 @@ def fit(
         A file (SDF, X3P, .npy, .h5, text, or whatever SurfaceTopography reads), or a map in memory.
     cutoff : float, str or None
         Shortest wavelength that counts (Gaussian filter, ISO 16610-61), m or as "5 um"; None: as measured.
-    form : {"plane", "none", "quadratic"}, optional
+    form : {"plane", "none", "quadratic", "cubic", "quartic", "sphere", "cylinder"}, optional
         What is taken off first.
+    missing : {"auto", "mask", "fill"}, optional
+        Missing points are filled from the edges of their holes. With ``mask`` neither they nor points whose
+        neighbours are missing count; with ``fill`` all do; ``auto`` masks them while half of the measured
+        points is left. ``notes`` of the fit say what was done.
+    spikes : {"keep", "remove"}, optional
+        Whether points that stand out of the map become missing ones.
+    step : {"keep", "crop"}, optional
+        Whether of two terraces only the larger one is kept.
+    trim : int, optional
+        Points that are left off along each edge.
+    long_cutoff : float, str or None, optional
+        Longest wavelength that counts, m or as "80 um"; None: as measured.
     parts : int, optional
-        Sub-areas along each axis, whose differences tell the errors; at least 2.
+        Sub-areas along each axis, whose differences tell the errors; at least 2, and fewer where summits
+        are few.
     pixel : float or str, optional
         Size of a pixel, m or as "1 um", where the file does not tell it.
     unit : str, optional
@@ -62,14 +90,21 @@ def fit(
     >>> sorted(found.estimates)
     ['moments', 'summits']
     """
-    section = Section("", {"parts": as_toml(parts), "form": form}, [])
-    across = section.whole("parts", least=2)
-    section.choice("form", "plane", FORMS)
+    given = {"parts": as_toml(parts), "trim": as_toml(trim)}
+    given |= {"form": form, "missing": missing, "spikes": spikes, "step": step}
+    section = Section("", given, [])
+    across, trimmed = section.whole("parts", least=2), section.whole("trim", least=0)
+    for key, kinds in (("form", FORMS), ("missing", MISSING), ("spikes", SPIKES), ("step", STEP)):
+        section.choice(key, kinds[0], kinds)
     if section.problems:
         raise SceneError(section.problems)
-    limit = None if cutoff is None else argument("cutoff", cutoff, "m")
+    short, long = (
+        None if length is None else argument(name, length, "m")
+        for name, length in (("cutoff", cutoff), ("long_cutoff", long_cutoff))
+    )
     if not isinstance(heights, Topography):
         size = None if pixel is None else (argument("pixel", pixel, "m"),) * 2
         heights = read_map(Path(heights), pixel=size, unit=unit)
-    found = fit_map(heights, cutoff=limit, form=form, across=across)
-    return replace(found, cautions=tuple(cautions(found, heights, limit)))
+    ready = prepared(heights, Preparation(short, form, missing, spikes, step, trimmed, long))
+    found = fit_prepared(ready, across=across)
+    return replace(found, cautions=tuple(cautions(found, ready)))

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import fft
 
-from mcgw.maps.form import Form, without_form
+from mcgw.maps.form import ORDERS, Form, without_form
 from mcgw.maps.topography import Topography
 from mcgw.maps.waves import block_means
 
@@ -17,8 +17,11 @@ Array = NDArray[np.float64]
 _COARSE, _BLOCKS = 192, 24
 _ISOLATED = 6.0  # times the usual difference along a line: 4 standard deviations of Gaussian ones
 _LINES = 0.5  # of all lines across a step
+_FIRST = 0.05  # of all lines may see it elsewhere
 _LONGEST = 2.3  # waves on the map; there are 20 such wave vectors
 _STRONGER, _COUNTS = 3.0, 0.05
+_ROUND: tuple[Form, ...] = ("sphere", "cylinder")
+_AS_MUCH = 0.02  # of its variance may be left
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,16 +36,20 @@ class Step:
         About where, m.
     height : float
         Difference of the levels, m.
+    begin, end : float
+        Between which it lies, where it is oblique or ragged, m.
     """
 
     axis: str
     place: float
     height: float
+    begin: float
+    end: float
 
 
 @dataclass(frozen=True, slots=True)
 class FormLeft:
-    """A surface of second order that was not taken off.
+    """A smooth form that was not taken off.
 
     Parameters
     ----------
@@ -50,10 +57,13 @@ class FormLeft:
         Of the variance of heights.
     height : float
         Its peak to valley, m.
+    form : str
+        What takes it off.
     """
 
     share: float
     height: float
+    form: Form
 
 
 def step_of(topography: Topography) -> Step | None:
@@ -75,8 +85,10 @@ def step_of(topography: Topography) -> Step | None:
         back = np.max(-sign * changes, axis=1)
         steps = sign * largest > np.maximum(_ISOLATED * np.median(np.abs(changes), axis=1), 2 * back)
         if steps.mean() >= _LINES:
-            place = (np.median(at[steps]) + 1.5) / levels.shape[1] * size
-            found.append(Step(axis, float(place), float(abs(np.median(largest[steps])))))
+            height = float(abs(np.median(largest[steps])))
+            area = size / levels.shape[1]
+            begin, place, end = (area * (q + 1.5) for q in np.quantile(at[steps], (_FIRST, 0.5, 1 - _FIRST)))
+            found.append(Step(axis, place, height, max(begin - 2 * area, 0.0), min(end + 2 * area, size)))
     step = max(found, key=lambda s: s.height, default=None)
     rms = float(without_form(topography, "plane").heights.std())
     return step if step is not None and step.height > rms else None
@@ -91,12 +103,15 @@ def _medians(z: Array) -> Array:
 
 
 def form_left(topography: Topography, form: Form) -> FormLeft | None:
-    """Find a second-order surface that is more than long waves, once this form is taken off.
+    """Find a polynomial that is more than long waves, once this form is taken off.
 
-    It must hold more than a twentieth of the variance, and three times what the longest waves do, two on the
-    map, once it is taken off too. No point may be missing.
+    It is of second order, or of fourth where that was taken off already. It must hold more than a twentieth
+    of the variance, and three times what the longest waves do, two on the map, once it is taken off too. A
+    sphere or a cylinder is named where it takes off as much. No point may be missing.
     """
-    taken, rest = without_form(topography, form).heights, without_form(topography, "quadratic").heights
+    taken = without_form(topography, form).heights
+    more: Form = "quadratic" if ORDERS[form] < ORDERS["quadratic"] else "quartic"
+    rest = without_form(topography, more).heights
     left = taken - rest
     variance = float(left.var())
     share = variance / float(taken.var())
@@ -106,4 +121,6 @@ def form_left(topography: Topography, form: Form) -> FormLeft | None:
     longest = float(power[np.hypot(along, down[:, None]) < _LONGEST].sum())
     if share < _COUNTS or variance < _STRONGER * longest:
         return None
-    return FormLeft(share, float(np.ptp(left)))
+    enough = float(rest.var()) + _AS_MUCH * variance
+    simple = (f for f in _ROUND if more == "quadratic" and without_form(topography, f).heights.var() < enough)
+    return FormLeft(share, float(np.ptp(left)), next(simple, more))

@@ -38,6 +38,8 @@ def alone_of(counted: SummitSums) -> Alone | None:
     """The sub-area that most of a mean square stands on, if there is one; m4 before m2 before m0."""
     sums = dict(zip(SUMS, counted.sums, strict=True))
     points = sums["points"]
+    if np.count_nonzero(points) == 1:
+        return None
     mean = sums["z"].sum() / points.sum()
     squares = {
         "m4": sums["bend"],

@@ -9,7 +9,7 @@ from scipy import ndimage
 
 from mcgw.maps.topography import Topography
 
-__all__ = ["Spikes", "spikes_of"]
+__all__ = ["Spikes", "spike_heights", "spikes_of"]
 
 Array = NDArray[np.float64]
 
@@ -43,22 +43,28 @@ def spikes_of(topography: Topography) -> Spikes | None:
     By more than three times the range of heights on that ring, and on half of all rings of the map: the
     scale is that of the surface next to the point, and a few spikes do not change it.
     """
+    above = spike_heights(topography)
+    out = above != 0
+    if not out.any():
+        return None
+    _, number = ndimage.label(out, structure=np.ones((3, 3)))
+    j, i = np.unravel_index(int(np.argmax(np.abs(above))), above.shape)
+    dx, dy = topography.pixel
+    return Spikes(number, (int(i) + 0.5) * dx, (int(j) + 0.5) * dy, float(above[j, i]))
+
+
+def spike_heights(topography: Topography) -> Array:
+    """How far every point of a spike stands above (or, below 0, under) its ring, m; 0 for all others."""
     shape = topography.heights.shape
     if min(shape) <= 2 * _REACH:
-        return None
+        return np.zeros(shape)
     padded = np.pad(topography.heights, _REACH, mode="reflect")
     low = _ring(padded, ndimage.minimum_filter1d, np.minimum)
     high = _ring(padded, ndimage.maximum_filter1d, np.maximum)
     ranges = high - low
     above = np.maximum(topography.heights - high, 0.0) + np.minimum(topography.heights - low, 0.0)
     usual = float(np.median(ranges)) or float(ranges.mean())  # 0: most of the map is flat
-    out: NDArray[np.bool_] = np.abs(above) > _OUT * np.maximum(ranges, usual)
-    if not out.any():
-        return None
-    _, number = ndimage.label(out, structure=np.ones((3, 3)))
-    j, i = np.unravel_index(int(np.argmax(np.where(out, np.abs(above), 0.0))), shape)
-    dx, dy = topography.pixel
-    return Spikes(number, (int(i) + 0.5) * dx, (int(j) + 0.5) * dy, float(above[j, i]))
+    return np.asarray(np.where(np.abs(above) > _OUT * np.maximum(ranges, usual), above, 0.0))
 
 
 def _ring(padded: Array, filter1d: Any, extreme: Any) -> Array:

@@ -5,18 +5,21 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy import ndimage
 
 from mcgw.machine.compiling import njit
 from mcgw.maps.topography import Topography
 
-__all__ = ["SUMS", "SummitSums", "summit_sums_of"]
+__all__ = ["SUMS", "SummitSums", "coarse_sums_of", "summit_sums_of"]
 
 Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
 
 # Rows of the sums: points, powers of height, squared slopes, squared second derivatives, and the
 # latter by plain differences over one pixel and over two, which tell whether the pixel resolves them.
 SUMS = ("points", "z", "z2", "z3", "slope_x", "slope_y", "bend", "bend_1", "bend_2")
-_EDGE = 4  # pixels that the stencils reach
+_EDGE = 4  # pixels that are left out
+_STENCIL = 2  # pixels that the differences reach
 
 
 @dataclass(frozen=True)
@@ -49,11 +52,18 @@ class SummitSums:
         """Number of sub-areas."""
         return int(self.sums.shape[1])
 
+    @property
+    def used(self) -> list[int]:
+        """Sub-areas that show anything."""
+        return np.flatnonzero(self.sums[0]).tolist()
+
     def without(self, part: int) -> "SummitSums":
         """All but one sub-area."""
         kept = self.part != part
+        sums = self.sums.copy()
+        sums[:, part] = 0.0
         return SummitSums(
-            np.delete(self.sums, part, axis=1),
+            sums,
             self.heights[kept],
             self.curvatures[kept],
             self.places[:, kept],
@@ -107,13 +117,18 @@ def _apex(z: Any, j: Any, i: Any) -> Any:
 
 
 @njit(nogil=True, cache=True)
-def _pass(z: Any, dx: Any, dy: Any, across: Any, sums: Any, summits: Any, part_of: Any) -> Any:
-    """Fill `sums`; write height, curvature, place and sub-area of each summit; give their number."""
+def _pass(z: Any, seen: Any, dx: Any, dy: Any, across: Any, sums: Any, summits: Any, part_of: Any) -> Any:
+    """Fill `sums`; write height, curvature, place and sub-area of each summit; give their number.
+
+    Of points that are not `seen`, unless that is empty, nothing is written.
+    """
     rows, columns = z.shape[0] - 8, z.shape[1] - 8
     found = 0
     for j in range(rows):
         for i in range(columns):
             b, a = j + 4, i + 4
+            if seen.size and not seen[b, a]:
+                continue
             c = z[b, a]
             x1, x2, y1, y2 = z[b, a + 1], z[b, a + 2], z[b + 1, a], z[b + 2, a]
             w1, w2, v1, v2 = z[b, a - 1], z[b, a - 2], z[b - 1, a], z[b - 2, a]
@@ -142,18 +157,22 @@ def _pass(z: Any, dx: Any, dy: Any, across: Any, sums: Any, summits: Any, part_o
     return found
 
 
-def summit_sums_of(topography: Topography, *, across: int = 4) -> SummitSums:
+def summit_sums_of(topography: Topography, *, across: int = 4, seen: Mask | None = None) -> SummitSums:
     """Go once over a map that lacks no points, with `across` sub-areas along each axis.
 
-    Four points at each edge are left out, unless the map is periodic.
+    Four points at each edge are left out, unless the map is periodic. Where a mask says what was `seen`,
+    points count whose differences and neighbours were.
 
     Raises
     ------
     ValueError
-        If the map is smaller than the sub-areas need.
+        If the map is smaller than the sub-areas need, or no point counts.
     """
     z = topography.heights - topography.heights.mean()
-    z = np.pad(z, _EDGE, mode="wrap") if topography.periodic else z
+    counts = np.empty((0, 0), dtype=np.bool_) if seen is None else _with_neighbours(seen, topography.periodic)
+    if topography.periodic:
+        z = np.pad(z, _EDGE, mode="wrap")
+        counts = np.pad(counts, _EDGE, mode="wrap") if seen is not None else counts
     rows, columns = (n - 2 * _EDGE for n in z.shape)
     if min(rows, columns) < 4 * across:
         raise ValueError(
@@ -161,7 +180,42 @@ def summit_sums_of(topography: Topography, *, across: int = 4) -> SummitSums:
         )
     sums = np.zeros((len(SUMS), across * across))
     summits, part = np.empty((4, rows * columns // 2 + 1)), np.empty(rows * columns // 2 + 1, dtype=np.int64)
-    found = _pass(z, *topography.pixel, across, sums, summits, part)
+    found = _pass(z, counts, *topography.pixel, across, sums, summits, part)
+    if not sums[0].any():
+        raise ValueError("too many points are missing: none has all its neighbours; give --missing fill")
     dx, dy = topography.pixel
     summits = summits[:, :found].copy()
     return SummitSums(sums, summits[0], summits[1], summits[2:], part[:found].copy(), dx * dy)
+
+
+def _with_neighbours(seen: Mask, periodic: bool) -> Mask:
+    """Points whose neighbours were seen too, as far as differences reach."""
+    wide = np.pad(seen, _STENCIL, mode="wrap" if periodic else "edge")
+    counts = ndimage.minimum_filter(wide, 2 * _STENCIL + 1)
+    return np.asarray(counts[_STENCIL:-_STENCIL, _STENCIL:-_STENCIL])
+
+
+def coarse_sums_of(topography: Topography, *, across: int = 4, seen: Mask | None = None) -> SummitSums:
+    """Go over the four maps of every second point along each axis, and put together what they show.
+
+    Raises
+    ------
+    ValueError
+        As `summit_sums_of` does.
+    """
+    pixel = (2 * topography.pixel[0], 2 * topography.pixel[1])
+    rows, columns = (n - n % 2 for n in topography.heights.shape)  # all four of one size
+    found = []
+    for j in (0, 1):
+        for i in (0, 1):
+            every = (slice(j, rows, 2), slice(i, columns, 2))
+            half = Topography(np.ascontiguousarray(topography.heights[every]), pixel, topography.periodic)
+            found.append(summit_sums_of(half, across=across, seen=None if seen is None else seen[every]))
+    return SummitSums(
+        np.sum([f.sums for f in found], axis=0),
+        np.concatenate([f.heights for f in found]),
+        np.concatenate([f.curvatures for f in found]),
+        np.concatenate([f.places for f in found], axis=1),
+        np.concatenate([f.part for f in found]),
+        found[0].pixel_area,
+    )

@@ -1,0 +1,223 @@
+"""What is done to a measured map before it is looked at, step by step, each with a line that tells it."""
+
+from dataclasses import dataclass, replace
+from typing import Literal, get_args
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import ndimage
+
+from mcgw.maps.form import Form, lowpass, smooth, without_form
+from mcgw.maps.holes import filled
+from mcgw.maps.levels import step_of
+from mcgw.maps.spikes import spike_heights
+from mcgw.maps.topography import Topography
+
+__all__ = [
+    "MISSING",
+    "SPIKES",
+    "STEP",
+    "Missing",
+    "Preparation",
+    "Prepared",
+    "SpikesTo",
+    "StepTo",
+    "prepared",
+]
+
+Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+Missing = Literal["auto", "mask", "fill"]
+SpikesTo = Literal["keep", "remove"]
+StepTo = Literal["keep", "crop"]
+MISSING, SPIKES, STEP = (get_args(t) for t in (Missing, SpikesTo, StepTo))
+
+_NEIGHBOURS = 2  # pixels on each side that differences need
+_LEAST = 0.5  # of the measured points must have all neighbours, or filled ones count too
+_SHARE = 0.1  # of the filter's window may be filled
+_ROUNDS = 5  # of looking for spikes: small ones stand beside large ones
+_ROUNDING = 1e-12  # of the range that was taken off
+
+
+@dataclass(frozen=True)
+class Preparation:
+    """What is asked for.
+
+    Parameters
+    ----------
+    cutoff : float or None
+        Shortest wavelength that counts, m (ISO 16610-61); None: as measured.
+    form : {"plane", "none", "quadratic", "cubic", "quartic", "sphere", "cylinder"}, optional
+        What is taken off.
+    missing : {"auto", "mask", "fill"}, optional
+        Missing points are filled from the edges of their holes. With ``mask`` neither they nor points whose
+        neighbours are missing count; with ``fill`` all do; ``auto`` masks them while half of the measured
+        points is left.
+    spikes : {"keep", "remove"}, optional
+        Whether points that stand out (`mcgw.maps.spikes`) become missing.
+    step : {"keep", "crop"}, optional
+        Whether of two terraces only the larger is kept.
+    trim : int, optional
+        Points that are left off along each edge.
+    long_cutoff : float or None, optional
+        Longest wavelength that counts, m.
+    """
+
+    cutoff: float | None
+    form: Form = "plane"
+    missing: Missing = "auto"
+    spikes: SpikesTo = "keep"
+    step: StepTo = "keep"
+    trim: int = 0
+    long_cutoff: float | None = None
+
+
+@dataclass(frozen=True)
+class Prepared:
+    """A map that can be looked at.
+
+    Parameters
+    ----------
+    raw : Topography
+        As it was read.
+    levelled : Topography
+        Without form; lacks no points, and no wavelength.
+    used : Topography
+        Between both cutoffs.
+    seen : ndarray of bool or None
+        Points of `used` that count; None: all.
+    asked : Preparation
+        What was asked for.
+    notes : tuple of str
+        What was done, a line each.
+    """
+
+    raw: Topography
+    levelled: Topography
+    used: Topography
+    seen: Mask | None
+    asked: Preparation
+    notes: tuple[str, ...]
+
+
+def prepared(topography: Topography, asked: Preparation) -> Prepared:
+    """Trim, crop, clean, level, fill and filter a map, in this order.
+
+    Raises
+    ------
+    ValueError
+        If nothing is left of the map, or it is flat.
+    """
+    notes: list[str] = []
+    kept = _within(_trimmed(topography, asked.trim, notes), notes)
+    if asked.step == "crop":
+        kept = _terrace(kept, notes)
+    if not np.nanmax(kept.heights) > np.nanmin(kept.heights):
+        raise ValueError("the map is flat: there is no roughness to fit")
+    kept, level, holes = _levelled(kept, asked, notes)
+    used = level
+    if asked.long_cutoff is not None:
+        used = replace(used, heights=used.heights - lowpass(used, asked.long_cutoff))
+        notes.append(
+            f"long cutoff: waves longer than {asked.long_cutoff:g} m taken off (Gaussian, ISO 16610-61)"
+        )
+    if asked.cutoff is not None:
+        used = smooth(used, asked.cutoff)
+    seen = None if holes is None else _seen(kept, holes, asked, notes)
+    return Prepared(topography, level, used, seen, asked, tuple(notes))
+
+
+def _trimmed(topography: Topography, trim: int, notes: list[str]) -> Topography:
+    if not trim:
+        return topography
+    rows, columns = topography.heights.shape
+    if 2 * trim >= min(rows, columns):
+        raise ValueError(f"trim = {trim}: leaves nothing of {columns} x {rows} points")
+    notes.append(f"trim: {trim} points left off along each edge")
+    return Topography(
+        topography.heights[trim:-trim, trim:-trim], topography.pixel, assumed_unit=topography.assumed_unit
+    )
+
+
+def _within(topography: Topography, notes: list[str]) -> Topography:
+    """Without rows and columns at the edges where all is missing."""
+    there = np.isfinite(topography.heights)
+    if there.all():
+        return topography
+    if not there.any():
+        raise ValueError(f"the map lacks all of its {there.size} points")
+    (j0, j1), (i0, i1) = (np.flatnonzero(there.any(axis=axis))[[0, -1]] for axis in (1, 0))
+    box = topography.heights[j0 : j1 + 1, i0 : i1 + 1]
+    if box.size < there.size:
+        notes.append(f"edges: {box.shape[1]} x {box.shape[0]} points kept, beyond which all are missing")
+        return Topography(box, topography.pixel, assumed_unit=topography.assumed_unit)
+    return topography
+
+
+def _terrace(topography: Topography, notes: list[str]) -> Topography:
+    """The larger side of a step, if there is one."""
+    whole = replace(topography, heights=filled(without_form(topography, "plane").heights))
+    step = step_of(whole)
+    if step is None:
+        notes.append("step: none was found, nothing cropped")
+        return topography
+    along = "xy".index(step.axis)
+    size, pixel, n = topography.size[along], topography.pixel[along], topography.heights.shape[1 - along]
+    first = step.begin >= size - step.end
+    part = slice(0, round(step.begin / pixel)) if first else slice(round(step.end / pixel), n)
+    heights = topography.heights[:, part] if along == 0 else topography.heights[part]
+    if min(heights.shape) < 1:
+        raise ValueError("step: no side of it is large enough to be kept; crop the map by hand")
+    end = f"up to {step.begin:.4g}" if first else f"from {step.end:.4g}"
+    notes.append(
+        f"step: {step.height:.3g} m near {step.axis} = {step.place:.4g} m; only the map {end} m kept"
+    )
+    return Topography(heights, topography.pixel, assumed_unit=topography.assumed_unit)
+
+
+def _levelled(
+    topography: Topography, asked: Preparation, notes: list[str]
+) -> tuple[Topography, Topography, Mask | None]:
+    """The map, without spikes; without form and holes; and where its holes are."""
+    kept, number, largest = topography, 0, 0.0
+    for _ in range(_ROUNDS):
+        plain = without_form(kept, asked.form)
+        if np.nanmax(np.abs(plain.heights)) < _ROUNDING * np.nanmax(np.abs(kept.heights)):
+            raise ValueError(f"the map is flat without its form ({asked.form}): there is no roughness to fit")
+        whole = replace(plain, heights=filled(plain.heights))
+        if asked.spikes == "keep":
+            break
+        above = spike_heights(whole) * np.isfinite(plain.heights)
+        places = ndimage.label(above, structure=np.ones((3, 3)))[1]
+        if not places:
+            break
+        number, largest = number + places, max(largest, float(np.abs(above).max()))
+        around = ndimage.binary_dilation(above != 0, np.ones((3, 3), dtype=np.bool_))
+        kept = replace(kept, heights=np.where(around, np.nan, kept.heights))
+    if asked.spikes == "remove":
+        notes.append(f"spikes: {number} places taken out" + (f", up to {largest:.3g} m" if number else ""))
+    holes = ~np.isfinite(kept.heights)
+    return kept, whole, holes if holes.any() else None
+
+
+def _seen(topography: Topography, holes: Mask, asked: Preparation, notes: list[str]) -> Mask | None:
+    """Which points of the map between its cutoffs count."""
+    if asked.cutoff is None:
+        seen = ~holes
+    else:
+        share = smooth(replace(topography, heights=holes.astype(np.float64)), asked.cutoff).heights
+        seen = share < _SHARE
+    number = int(np.count_nonzero(holes))
+    told = f"missing: {number} of {holes.size} points ({100 * holes.mean():.2g} %) filled from their edges"
+    whole = ndimage.minimum_filter(seen, 2 * _NEIGHBOURS + 1)
+    left = np.count_nonzero(whole) / max(np.count_nonzero(~holes) * seen.size / holes.size, 1)
+    if asked.missing == "fill" or (asked.missing == "auto" and left < _LEAST):
+        why = (
+            "" if asked.missing == "fill" else f": only {100 * left:.2g} % of the others have all neighbours"
+        )
+        notes.append(f"{told}, and counted like others{why}")
+        return None
+    notes.append(
+        f"{told}; neither they nor their neighbours count: {100 * whole.mean():.3g} % of the map does"
+    )
+    return seen

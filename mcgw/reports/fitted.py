@@ -1,0 +1,45 @@
+"""What a map told, as lines of text."""
+
+from mcgw.maps.estimates import METHODS
+from mcgw.maps.fit import Fit
+from mcgw.maps.preparation import Preparation
+from mcgw.maps.uncertain import Uncertain
+
+__all__ = ["fit_lines", "map_line"]
+
+
+def map_line(name: str, asked: Preparation, assumed_unit: str) -> str:
+    """Which map it was, its form and cutoff, and the unit that was taken where none was told."""
+    filtered = "none" if asked.cutoff is None else f"{asked.cutoff:g} m (Gaussian, ISO 16610-61)"
+    line = f"{name}: form taken off: {asked.form}; cutoff: {filtered}"
+    if assumed_unit:
+        line += f"; heights taken in {assumed_unit}, since the file tells no unit"
+    return line
+
+
+def fit_lines(fit: Fit) -> list[str]:
+    """Moments, and the estimates by all methods, one a line, with standard errors."""
+    m0, m2, m4, alpha = (_told(x) for x in (fit.m0, fit.m2, fit.m4, fit.alpha))
+    lines = [
+        f"m0 = {m0} m^2, m2 = {m2}, m4 = {m4} 1/m^2, alpha = {alpha}, "
+        f"skewness {fit.skewness[0]:.2f} +- {fit.skewness[1]:.1g}",
+        f"{fit.summits.size} summits on {fit.area:.4g} m^2, "
+        f"on average {fit.mean_summit:.3g} m above the mean plane",
+        f"{'':36}{'eta (1/m^2)':22}{'R (m)':22}{'sigma (m)':22}eta R sigma",
+    ]
+    for name, label in METHODS.items():
+        if name in fit.estimates:
+            e = fit.estimates[name]
+            cells = "".join(f"{_told(x):22}" for x in (e.eta, e.radius, e.sigma))
+            lines.append(f"{label:36}{cells}{e.overlap:.3g}")
+    if fit.visible is not None:
+        lines.append(
+            f"of independent caps like these the map shows {100 * fit.visible.share:.3g} %: what is counted "
+            f"is off by {100 * (fit.visible.share - 1):+.2g} % in eta and "
+            f"{100 * (fit.visible.std - 1):+.2g} % in sigma"
+        )
+    return lines
+
+
+def _told(x: Uncertain) -> str:
+    return f"{x.value:.4g} +- {x.error:.1g}"
