@@ -182,7 +182,7 @@ def waves_named(long, short, number):
     return [bool(_waves(fit_map(Topography(m.heights, m.pixel), cutoff=None))) for m in maps]
 
 
-def test_few_long_waves_are_named():
+def test_few_long_waves_are_named(monkeypatch):
     """One of the longest on the map: three of four maps say so. Ten of them: none does."""
     monkeypatch.setattr(fit_module, "by_caps", lambda *_: None)  # they take most of the time
     assert np.mean(waves_named(256e-6, 18e-6, 40)) > 0.75
