@@ -16,8 +16,8 @@ from pathlib import Path
 
 import numpy as np
 
+from analytic import SpectralMoments
 from mcgw.maps.fit import Fit, fit_map
-from mcgw.maps.nayak import SpectralMoments
 from mcgw.maps.spectrum import Spectrum, gaussian_map, moments_on_grid
 from mcgw.maps.topography import Topography
 
