@@ -50,7 +50,7 @@ Ask:
 `regrade`                another grading or contact law, same surfaces; `paired_ratio` of the two
 `solve`                  the separation at a load, pressure or area
 `converge`, `tradeoff`   the statistical convergence test; error against time on this machine
-`fit`, `fitted_scene`    the surface of a measured height map, and a scene of it
+`fit`, `fitted_scene`    the surface of a measured height map or of profiles, and a scene of it
 =======================  =========================================================================
 
 What goes wrong is a `SceneError` (a wrong argument or scene: one line for each mistake), a `StoreError`

@@ -75,6 +75,8 @@ CASES = {
         "fit map.npy --cutoff none --heights measured -o DIR/f.toml",
         "f.heights.npy",
     ),
+    "fit --summits": ("map.npy", "fit map.npy --cutoff none -o f.toml --summits OUT", ".csv"),
+    "fit --tiles": ("map.npy", "fit map.npy --cutoff none -o f.toml --tiles OUT", ".csv"),
     "converge": ("table.csv", "converge scene.toml -o DIR", "scene-converge.png"),
     "tradeoff": ("table.csv", "tradeoff scene.toml -o DIR", "scene-tradeoff.csv"),
     "tradeoff, figure": ("scene.toml", "tradeoff scene.toml -o DIR", "scene-tradeoff.png"),

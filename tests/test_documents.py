@@ -16,7 +16,14 @@ from mcgw.cli import COMMANDS, _parser, main
 from mcgw.jobs.running import run
 
 ROOT = Path(__file__).parent.parent
-PAGES = ("README.md", "runs/README.md", "runs/ERRATA.md", "runs/TUTORIAL.md", "runs/LAWS.md")
+PAGES = (
+    "README.md",
+    "runs/README.md",
+    "runs/ERRATA.md",
+    "runs/TUTORIAL.md",
+    "runs/LAWS.md",
+    "runs/ROUGHNESS.md",
+)
 SLOW = ("figures",)
 
 

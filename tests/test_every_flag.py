@@ -439,6 +439,10 @@ ROWS = [
     row("fit", "--E-star", FIT, [*FIT, "--E-star", "5e9"],
         fitted("E_star", lambda a, b: (a.surface.E_star, b.surface.E_star) == (1e11, 5e9))),
     row("fit", "--parts", FIT, [*FIT, "--parts", "3"], errors_differ),
+    row("fit", "--summits", FIT, [*FIT, "--summits", "s.csv"], writes("s.csv")),
+    row("fit", "--tiles", FIT, [*FIT, "--tiles", "t.csv"], writes("t.csv")),
+    row("fit", "--profile", ["@bare.npy", *FIT[1:], "--pixel", "1um"],
+        ["@bare.npy", *FIT[1:], "--pixel", "1um", "--profile"], refuses("holds 2 dimensions")),
     row("fit", "--output", FIT, [*FIT[:-1], "g.toml"], writes("g.toml", instead=["f.toml"])),
     row("converge", "--output", ["@s.toml", "-o", "a"], ["@s.toml", "-o", "b"], writes("s-converge.png")),
 ]  # fmt: skip

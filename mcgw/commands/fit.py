@@ -2,6 +2,10 @@
 
 import argparse
 from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from mcgw.maps.fit import Fit
 
 HELP = "fit summit density, radius and spread to a measured height map, and write a scene"
 EXAMPLE = "mcgw fit map.sdf --cutoff 5um -o fitted.toml"
@@ -11,7 +15,11 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of this command."""
     from mcgw.commands.preparation import preparation_arguments
 
-    parser.add_argument("map", type=Path, metavar="MAP", help="SDF, X3P, .npy, .h5 or text")
+    parser.add_argument(
+        "map", type=Path, nargs="+", metavar="MAP",
+        help="SDF, X3P, .npy, .h5 or text; or profiles of one surface (x, z text), told by their shape",
+    )  # fmt: skip
+    parser.add_argument("--profile", action="store_true", help="read each file as a profile in any case")
     preparation_arguments(parser)
     parser.add_argument("--pixel", metavar="LENGTH", help="size of a pixel, where the file does not tell it")
     parser.add_argument(
@@ -31,12 +39,17 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--parts", type=int, default=4, help="sub-areas along each axis, for errors; default: 4"
     )
+    parser.add_argument(
+        "--summits", type=Path, metavar="CSV", help="write every summit: place, height, radius, curvatures"
+    )
+    parser.add_argument("--tiles", type=Path, metavar="CSV", help="write what each sub-area tells by itself")
     parser.add_argument("-o", "--output", type=Path, required=True, metavar="SCENE", help="TOML file")
 
 
 def execute(args: argparse.Namespace) -> int:
     """Print the estimates side by side with warnings, write the scene, and say where it is."""
-    from mcgw.commands.outputs import NPY, TOML, Output, check_outputs
+    from mcgw.commands.fit_profiles import fit_of_profiles
+    from mcgw.commands.outputs import CSV, NPY, TOML, Output, check_outputs
     from mcgw.commands.preparation import preparation
     from mcgw.formats.units import parse
     from mcgw.maps.cautions import cautions
@@ -44,22 +57,46 @@ def execute(args: argparse.Namespace) -> int:
     from mcgw.maps.fit import fit_prepared
     from mcgw.maps.fitted_scene import fitted_scene, heights_beside, write_scene
     from mcgw.maps.preparation import prepared
+    from mcgw.maps.profile_files import holds_profile
     from mcgw.reports.fitted import fit_lines, map_line
 
     if args.parts < 2:
         raise ValueError(f"--parts {args.parts}: give 2 or more, to have sub-areas to compare")
     asked = preparation(args)
     E_star = parse(args.E_star, "Pa", "--E-star")
+    if args.profile or holds_profile(args.map[0]):
+        return fit_of_profiles(args, asked.cutoff, E_star)
+    if len(args.map) > 1:
+        raise ValueError(
+            f"{args.map[1]}: the first of {len(args.map)} files is a map; give one map, or profiles"
+        )
+    (path_of_map,) = args.map
     pixel = None if args.pixel is None else (parse(args.pixel, "m", "--pixel"),) * 2
-    topography = read_map(args.map, pixel=pixel, unit=args.unit)
+    topography = read_map(path_of_map, pixel=pixel, unit=args.unit)
     beside = [Output(heights_beside(args.output), NPY)] if args.heights == "measured" else []
-    check_outputs([Output(args.output, TOML), *beside], inputs=files_of_map(args.map))
+    tables = {"--summits": args.summits, "--tiles": args.tiles}
+    beside += [Output(path, CSV, option) for option, path in tables.items() if path is not None]
+    check_outputs([Output(args.output, TOML), *beside], inputs=files_of_map(path_of_map))
     ready = prepared(topography, asked)
     fit = fit_prepared(ready, across=args.parts)
-    head = map_line(args.map.name, asked, topography.assumed_unit)
+    head = map_line(path_of_map.name, asked, topography.assumed_unit)
     text = [head, *fit.notes, *fit_lines(fit), *(f"warning: {line}" for line in cautions(fit, ready))]
     print("\n".join(text))
     scene = fitted_scene(fit, use=args.use, heights=args.heights, E_star=E_star, title=f"Fitted to {head}")
     for path in write_scene(scene, args.output, fit if args.heights == "measured" else None, text):
         print(path)
+    _write_tables(fit, args.summits, args.tiles)
     return 0
+
+
+def _write_tables(fit: "Fit", summits: Path | None, tiles: Path | None) -> None:
+    """The tables that were asked for, and where they are."""
+    from mcgw.maps.summits import write_summits
+    from mcgw.maps.tiles import write_tiles
+
+    if summits is not None:
+        write_summits(fit.listed, summits)
+        print(summits)
+    if tiles is not None:
+        write_tiles(fit.tiles, tiles)
+        print(tiles)

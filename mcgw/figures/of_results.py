@@ -16,6 +16,7 @@ from mcgw.figures.convergence import draw_checks
 from mcgw.figures.style import STYLE, shown_title
 from mcgw.figures.tradeoff import draw_methods
 from mcgw.maps.fit import Fit
+from mcgw.maps.profile_fit import ProfileFit
 from mcgw.scene.samplers import promise_of
 from mcgw.statistics.comparison import Comparison
 from mcgw.statistics.convergence import Convergence
@@ -135,4 +136,18 @@ def _(result: Fit, ax: Any) -> None:
     z = np.linspace(-4 * sigma, 4 * sigma, 201)
     ax.plot(z, norm.pdf(z, scale=sigma), color="C0", label="Gaussian")
     ax.set(xlabel="summit height (m)", ylabel="density (1/m)", title=f"sigma = {sigma:.4g} m")
+    ax.legend()
+
+
+@_draw.register
+def _(result: ProfileFit, ax: Any) -> None:
+    m = result.moments
+    rms = float(np.sqrt(m.m0))
+    z = np.linspace(-4 * rms, m.mean_height + 4 * m.sigma, 401)
+    ax.plot(z, norm.pdf(z, scale=rms), color="C5", label=f"all heights, Sq = {rms:.4g} m")
+    summits = norm.pdf(z, m.mean_height, m.sigma)
+    ax.plot(z, summits, color="C0", label=f"summits, sigma = {m.sigma:.4g} m")
+    ax.set(xlabel="height above the mean plane (m)", ylabel="density (1/m)")
+    ax.set_title(f"from {len(result.lengths)} profile(s), alpha = {m.alpha:.3g}")
+    ax.margins(y=0.3)  # room for the legend
     ax.legend()

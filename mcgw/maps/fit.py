@@ -27,7 +27,10 @@ from mcgw.maps.hidden import Visible, visible
 from mcgw.maps.levels import form_left
 from mcgw.maps.leverage import Alone, alone_of
 from mcgw.maps.preparation import Preparation, Prepared, prepared
-from mcgw.maps.summit_sums import SummitSums, coarse_sums_of, summit_sums_of
+from mcgw.maps.roughness import Roughness, roughness_of
+from mcgw.maps.summit_sums import EDGE, SummitSums, coarse_sums_of, summit_sums_of
+from mcgw.maps.summits import Summits, summits_of
+from mcgw.maps.tiles import Tiles, tiles_of
 from mcgw.maps.topography import Topography
 from mcgw.maps.uncertain import Uncertain, uncertain
 from mcgw.maps.waves import Waves, waves_of
@@ -59,10 +62,8 @@ class Fit(Shown):
         The moments with their errors, m^2, 1 and 1/m^2; and m0 m4/m2^2.
     skewness : (float, float)
         Of the map's heights, and its standard error.
-    summits, curvatures : ndarray
-        Heights of the summits about their mean, m, and mean curvatures, 1/m, as counted.
-    places : ndarray
-        Where they are, shape (2, summits): x and y from 0 to 1 across what was looked at.
+    listed : Summits
+        Every summit: where it is, how high and how sharp.
     mean_summit : float
         Their mean above the mean plane, m.
     area : float
@@ -77,6 +78,10 @@ class Fit(Shown):
         Errors that follow from how few waves the map holds.
     alone : Alone or None
         The sub-area that carries the map alone, if one does.
+    tiles : Tiles
+        What each sub-area tells by itself.
+    roughness : Roughness
+        Of all heights of the map, without form and filtered: sigma is that of the summits alone.
     notes : tuple of str, optional
         What was done to the map: one line each.
     cautions : tuple of str, optional
@@ -90,9 +95,7 @@ class Fit(Shown):
     m4: Uncertain
     alpha: Uncertain
     skewness: tuple[float, float]
-    summits: NDArray[np.float64]
-    curvatures: NDArray[np.float64]
-    places: NDArray[np.float64]
+    listed: Summits
     mean_summit: float
     area: float
     visible: Visible | None
@@ -100,8 +103,20 @@ class Fit(Shown):
     form: Form
     waves: Waves
     alone: Alone | None
+    tiles: Tiles
+    roughness: Roughness
     notes: tuple[str, ...] = ()
     cautions: tuple[str, ...] = ()
+
+    @property
+    def summits(self) -> NDArray[np.float64]:
+        """Heights of the summits about their mean, m."""
+        return self.listed.heights
+
+    @property
+    def radii(self) -> NDArray[np.float64]:
+        """Radii of the summits, in the order of their heights, m: ``1/sqrt(k1 k2)``."""
+        return self.listed.radii
 
     def plot(self, ax: Any = None) -> Any:
         """Draw the summit heights beside a Gaussian distribution of their spread; returns the axes."""
@@ -113,7 +128,8 @@ class Fit(Shown):
             [METHODS[name], *(f"{x.value:.4g} +- {x.error:.1g}" for x in (e.eta, e.radius, e.sigma))]
             for name, e in self.estimates.items()
         ]
-        facts = [("spectrum", f"alpha = {self.alpha.value:.3g}, skewness {self.skewness[0]:.2f}")]
+        facts = [("roughness", self.roughness.text("S"))]
+        facts += [("spectrum", f"alpha = {self.alpha.value:.3g}, skewness {self.skewness[0]:.2f}")]
         facts += [("caution", line) for line in self.cautions[:_MOST_CAUTIONS]]
         more = len(self.cautions) - _MOST_CAUTIONS
         facts += [("", f"and {more} more in .cautions")] if more > 0 else []
@@ -189,12 +205,26 @@ def fit_prepared(ready: Prepared, *, across: int = 4) -> Fit:
     return Fit(
         estimates, moments_of(counted), m0, m2, m4, alpha,
         jackknife(counted, lambda t: np.array([skewness_of(t)]))[0],
-        counted.heights - counted.heights.mean(), counted.curvatures, counted.places,
+        summits_of(used, counted, _origin(ready.levelled, used)),
         float(counted.heights.mean()) - mean_squares(counted)["z"],
         counted.area,
         None if found is None else _visible(found, blur),
-        mean_squares(counted), form, waves, alone_of(counted), ready.notes,
+        mean_squares(counted), form, waves, alone_of(counted), tiles_of(counted),
+        roughness_of(_inside(ready)), ready.notes,
     )  # fmt: skip
+
+
+def _inside(ready: Prepared) -> NDArray[np.float64]:
+    """Heights of the points that were seen."""
+    inside = (slice(None),) if ready.used.periodic else (slice(EDGE, -EDGE), slice(EDGE, -EDGE))
+    heights = ready.used.heights[inside]
+    return heights if ready.seen is None else heights[ready.seen[inside]]
+
+
+def _origin(whole: Topography, used: Topography) -> tuple[float, float]:
+    """Corner of what is left of a map between margins that are equal on both sides, m."""
+    x, y = ((a - b) / 2 for a, b in zip(whole.size, used.size, strict=True))
+    return x, y
 
 
 def _scales(ready: Prepared, across: int, number: int) -> Scales:

@@ -8,6 +8,8 @@ import numpy as np
 from analytic import Gaussian, HeightLaw, HeightTable, MeasuredHeights, Surface
 from mcgw.formats.files import whole_file
 from mcgw.maps.fit import Fit
+from mcgw.maps.profile_fit import ProfileFit
+from mcgw.maps.profile_scene import profile_scene
 from mcgw.scene.reading import argument
 from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_text
@@ -18,7 +20,7 @@ Heights = Literal["gaussian", "table", "measured"]
 
 
 def fitted_scene(
-    fit: Fit,
+    fit: Fit | ProfileFit,
     *,
     use: str = "summits",
     heights: Heights = "gaussian",
@@ -29,8 +31,8 @@ def fitted_scene(
 
     Parameters
     ----------
-    fit : Fit
-        With the estimate that is asked for.
+    fit : Fit or ProfileFit
+        With the estimate that is asked for; profiles have one alone.
     use : {"moments", "summits", "caps"}
         Which estimate. With measured heights sigma is that of the heights.
     heights : {"gaussian", "table", "measured"}
@@ -61,6 +63,13 @@ def fitted_scene(
     70000000000.0
     """
     modulus = argument("E_star", E_star, "Pa")
+    if isinstance(fit, ProfileFit):
+        if use == "caps" or heights != "gaussian":
+            raise ValueError(
+                f'use = "{use}", heights = "{heights}": profiles show no summits; they give moments, and '
+                "gaussian heights"
+            )
+        return profile_scene(fit, modulus, title)
     if use not in fit.estimates:
         raise ValueError(
             f"use = {use!r}: there is no such estimate of this map; {', '.join(fit.estimates)} are"

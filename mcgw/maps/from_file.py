@@ -1,5 +1,6 @@
 """From the file of a map to its fit, in one call."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -17,6 +18,10 @@ from mcgw.maps.preparation import (
     StepTo,
     prepared,
 )
+from mcgw.maps.profile import Profile
+from mcgw.maps.profile_cautions import profile_cautions
+from mcgw.maps.profile_files import holds_profile, read_profile
+from mcgw.maps.profile_fit import ProfileFit, fit_profiles
 from mcgw.maps.topography import Topography
 from mcgw.scene.reading import argument, as_toml
 from mcgw.scene.section import SceneError, Section
@@ -25,7 +30,7 @@ __all__ = ["fit"]
 
 
 def fit(
-    heights: str | Path | Topography,
+    heights: str | Path | Topography | Profile | Sequence[str | Path | Profile],
     *,
     cutoff: float | str | None,
     form: Form = "plane",
@@ -37,13 +42,15 @@ def fit(
     parts: int = 4,
     pixel: float | str | None = None,
     unit: str | None = None,
-) -> Fit:
-    """Fit summit density, radius and spread to a measured height map.
+    profile: bool = False,
+) -> Fit | ProfileFit:
+    """Fit summit density, radius and spread to a measured height map, or to profiles of one surface.
 
     Parameters
     ----------
-    heights : str, Path or Topography
-        A file (SDF, X3P, .npy, .h5, text, or whatever SurfaceTopography reads), or a map in memory.
+    heights : str, Path, Topography or Profile
+        A file (SDF, X3P, .npy, .h5, text, or whatever SurfaceTopography reads), or a map in memory; or
+        profiles, one or a list: text of x and z, or any file that holds heights along a line.
     cutoff : float, str or None
         Shortest wavelength that counts (Gaussian filter, ISO 16610-61), m or as "5 um"; None: as measured.
     form : {"plane", "none", "quadratic", "cubic", "quartic", "sphere", "cylinder"}, optional
@@ -67,11 +74,14 @@ def fit(
         Size of a pixel, m or as "1 um", where the file does not tell it.
     unit : str, optional
         Of the heights, as "um", where the file does not tell it.
+    profile : bool, optional
+        Read a file as a profile whatever its shape.
 
     Returns
     -------
-    Fit
-        Estimates by all methods, and the reasons not to trust them; `mcgw.fitted_scene` makes a scene of it.
+    Fit or ProfileFit
+        Estimates by all methods (of profiles there is one), and the reasons not to trust them;
+        `mcgw.fitted_scene` makes a scene of it.
 
     Raises
     ------
@@ -102,9 +112,19 @@ def fit(
         None if length is None else argument(name, length, "m")
         for name, length in (("cutoff", cutoff), ("long_cutoff", long_cutoff))
     )
-    if not isinstance(heights, Topography):
-        size = None if pixel is None else (argument("pixel", pixel, "m"),) * 2
-        heights = read_map(Path(heights), pixel=size, unit=unit)
-    ready = prepared(heights, Preparation(short, form, missing, spikes, step, trimmed, long))
-    found = fit_prepared(ready, across=across)
-    return replace(found, cautions=tuple(cautions(found, ready)))
+    length = None if pixel is None else argument("pixel", pixel, "m")
+    if isinstance(heights, str | Path):
+        path = Path(heights)
+        square = None if length is None else (length, length)
+        as_profile = profile or holds_profile(path)
+        heights = [path] if as_profile else read_map(path, pixel=square, unit=unit)
+    if isinstance(heights, Topography):
+        ready = prepared(heights, Preparation(short, form, missing, spikes, step, trimmed, long))
+        found = fit_prepared(ready, across=across)
+        return replace(found, cautions=tuple(cautions(found, ready)))
+    several = [heights] if isinstance(heights, Profile) else heights
+    read = [
+        p if isinstance(p, Profile) else read_profile(Path(p), spacing=length, unit=unit) for p in several
+    ]
+    of_profiles = fit_profiles(read, cutoff=short, form=form)
+    return replace(of_profiles, cautions=tuple(profile_cautions(of_profiles, read, short)))

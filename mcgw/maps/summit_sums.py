@@ -10,7 +10,7 @@ from scipy import ndimage
 from mcgw.machine.compiling import njit
 from mcgw.maps.topography import Topography
 
-__all__ = ["SUMS", "SummitSums", "coarse_sums_of", "summit_sums_of"]
+__all__ = ["EDGE", "SUMS", "SummitSums", "coarse_sums_of", "summit_sums_of"]
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -18,7 +18,7 @@ Mask = NDArray[np.bool_]
 # Rows of the sums: points, powers of height, squared slopes, squared second derivatives, and the
 # latter by plain differences over one pixel and over two, which tell whether the pixel resolves them.
 SUMS = ("points", "z", "z2", "z3", "slope_x", "slope_y", "bend", "bend_1", "bend_2")
-_EDGE = 4  # pixels that are left out
+EDGE = 4  # pixels that are left out
 _STENCIL = 2  # pixels that the differences reach
 
 
@@ -171,9 +171,9 @@ def summit_sums_of(topography: Topography, *, across: int = 4, seen: Mask | None
     z = topography.heights - topography.heights.mean()
     counts = np.empty((0, 0), dtype=np.bool_) if seen is None else _with_neighbours(seen, topography.periodic)
     if topography.periodic:
-        z = np.pad(z, _EDGE, mode="wrap")
-        counts = np.pad(counts, _EDGE, mode="wrap") if seen is not None else counts
-    rows, columns = (n - 2 * _EDGE for n in z.shape)
+        z = np.pad(z, EDGE, mode="wrap")
+        counts = np.pad(counts, EDGE, mode="wrap") if seen is not None else counts
+    rows, columns = (n - 2 * EDGE for n in z.shape)
     if min(rows, columns) < 4 * across:
         raise ValueError(
             f"{max(columns, 0)} x {max(rows, 0)} points are left: too few for {across} x {across} sub-areas"

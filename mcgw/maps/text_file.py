@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from mcgw.maps.height_unit import height_unit, metres_in
 from mcgw.maps.topography import Topography, checked_shape
 
-__all__ = ["read_text"]
+__all__ = ["lines_of", "numbers_of", "read_text", "words_of"]
 
 _MOST_LINE = 2**24
 _LENGTH = re.compile(r"#\s*(Width|Height)\s*:\s*([-+.,\deE]+)\s*(\S+)\s*$")
@@ -44,17 +44,17 @@ def read_text(path: Path, pixel: tuple[float, float] | None = None, unit: str | 
     extent: dict[str, float] = {}
     told: str | None = None
     total, open_left, open_right = 0, True, True
-    for number, line in _lines(path):
+    for number, line in lines_of(path):
         if line.startswith("#"):
             if found := _LENGTH.match(line):
-                length = _numbers(path, number, [found[2].replace(",", ".")])[0]
+                length = numbers_of(path, number, [found[2].replace(",", ".")])[0]
                 extent[found[1]] = float(length) * metres_in(path, found[3])
             elif found := _UNIT.match(line):
                 told = found[1]
             continue
-        words = _words(path, number, line)
+        words = words_of(path, number, line)
         open_left, open_right = open_left and not words[0], open_right and not words[-1]
-        rows.append(_numbers(path, number, words))
+        rows.append(numbers_of(path, number, words))
         if rows[-1].size != rows[0].size:
             raise ValueError(
                 f"{path}: line {number} has {rows[-1].size} numbers, the first row {rows[0].size}"
@@ -75,7 +75,7 @@ def read_text(path: Path, pixel: tuple[float, float] | None = None, unit: str | 
     return Topography(heights, pixel, assumed_unit=assumed)
 
 
-def _lines(path: Path) -> Iterator[tuple[int, str]]:
+def lines_of(path: Path) -> Iterator[tuple[int, str]]:
     """Lines that are not blank, with their numbers."""
     with open(path, "rb") as file:
         start = file.read(3)
@@ -88,7 +88,7 @@ def _lines(path: Path) -> Iterator[tuple[int, str]]:
                 yield number, line.strip(_BLANKS)
 
 
-def _words(path: Path, number: int, line: str) -> list[str]:
+def words_of(path: Path, number: int, line: str) -> list[str]:
     """Numbers of a row as they stand, with decimal points."""
     words = _WITHOUT_COMMA.split(line)
     if "," not in line:
@@ -113,7 +113,8 @@ def _words(path: Path, number: int, line: str) -> list[str]:
     return words
 
 
-def _numbers(path: Path, number: int, words: list[str]) -> NDArray[np.float64]:
+def numbers_of(path: Path, number: int, words: list[str]) -> NDArray[np.float64]:
+    """What `words_of` found, nan where points are missing."""
     try:
         row = np.array([float("nan" if word in _MISSING else word) for word in words])
     except ValueError as error:

@@ -25,6 +25,7 @@ def fit_lines(fit: Fit) -> list[str]:
         f"skewness {fit.skewness[0]:.2f} +- {fit.skewness[1]:.1g}",
         f"{fit.summits.size} summits on {fit.area:.4g} m^2, "
         f"on average {fit.mean_summit:.3g} m above the mean plane",
+        f"of all heights (sigma below is of the summits): {fit.roughness.text('S')}",
         f"{'':36}{'eta (1/m^2)':22}{'R (m)':22}{'sigma (m)':22}eta R sigma",
     ]
     for name, label in METHODS.items():
@@ -32,6 +33,12 @@ def fit_lines(fit: Fit) -> list[str]:
             e = fit.estimates[name]
             cells = "".join(f"{_told(x):22}" for x in (e.eta, e.radius, e.sigma))
             lines.append(f"{label:36}{cells}{e.overlap:.3g}")
+    across, *varies = fit.tiles.across, *(fit.tiles.variation(x) for x in ("eta", "radius", "sigma"))
+    shares = zip(("eta", "R", "sigma"), varies, strict=True)
+    lines.append(
+        f"from one of {across} x {across} sub-areas to another, counted summits vary (standard deviation): "
+        + ", ".join(f"{name} by {100 * share:.2g} %" for name, share in shares)
+    )
     if fit.visible is not None:
         lines.append(
             f"of independent caps like these the map shows {100 * fit.visible.share:.3g} %: what is counted "

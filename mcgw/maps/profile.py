@@ -1,0 +1,152 @@
+"""A profile: heights along a line, as a stylus gives them."""
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.ndimage import gaussian_filter1d
+
+from mcgw.maps.areal_weights import filter_variance
+from mcgw.maps.form import Form
+from mcgw.maps.topography import STEEPEST
+
+__all__ = ["Profile", "profile_at", "smooth_profile", "without_profile_form"]
+
+Array = NDArray[np.float64]
+
+_EVEN = 0.1  # of a step, which places may lie beside an even grid
+_MOST_MISSING = 0.1  # of all points
+_LEAST = 8
+_WIDEST = 1e-2  # m
+_ORDER = {"none": 0, "plane": 1, "quadratic": 2}
+
+
+@dataclass(frozen=True)
+class Profile:
+    """Heights on an even grid along a line.
+
+    Parameters
+    ----------
+    heights : ndarray
+        m, shape (points,); none is missing.
+    spacing : float
+        Between two points, m.
+    assumed_unit : str, optional
+        What lengths were taken to be in where nobody told it; empty: they are known.
+    filled : int, optional
+        How many heights were missing and lie on straight lines now.
+    resampled : bool, optional
+        Whether the places were uneven, so that heights were interpolated.
+
+    Raises
+    ------
+    ValueError
+        If there are fewer than 8 points, one is missing, or the spacing is no length.
+    """
+
+    heights: Array
+    spacing: float
+    assumed_unit: str = ""
+    filled: int = 0
+    resampled: bool = False
+
+    def __post_init__(self) -> None:
+        if self.heights.ndim != 1:
+            raise ValueError(f"a profile has one row of heights, not {self.heights.ndim} dimensions")
+        if self.heights.size < _LEAST:
+            raise ValueError(f"{self.heights.size} points: a profile has {_LEAST} or more")
+        if not np.all(np.isfinite(self.heights)):
+            raise ValueError("the profile lacks points (nan): fill them in first")
+        if not (math.isfinite(self.spacing) and self.spacing > 0):
+            raise ValueError(f"spacing = {self.spacing!r}: give a length > 0 m")
+
+    @property
+    def length(self) -> float:
+        """Along the line, m: points count with the whole spacing."""
+        return self.heights.size * self.spacing
+
+    @property
+    def steepness(self) -> float:
+        """The usual slope: from the median difference between neighbours."""
+        return float(np.median(np.abs(np.diff(self.heights)))) / self.spacing
+
+    @property
+    def doubtful(self) -> str:
+        """Why these lengths cannot be in the unit they were taken in; empty: they can."""
+        if not self.assumed_unit:
+            return ""
+        if self.steepness > STEEPEST:
+            return f"the usual slope is {self.steepness:.3g}"
+        return f"the points are {self.spacing:g} m apart" if self.spacing > _WIDEST else ""
+
+
+def profile_at(places: Array, heights: Array, assumed_unit: str = "") -> Profile:
+    """A profile of heights at places along a line, on an even grid of as many points.
+
+    Places a tenth of a step beside an even grid are taken as rounded. Otherwise, and where heights are
+    missing (nan), those on the grid are interpolated along straight lines.
+
+    Parameters
+    ----------
+    places, heights : ndarray
+        m, shape (points,); places rise or fall.
+    assumed_unit : str, optional
+        As in `Profile`.
+
+    Raises
+    ------
+    ValueError
+        If places do not rise or fall, or too many heights are missing.
+    """
+    known = np.isfinite(heights)
+    if not known.any():
+        raise ValueError("the profile has no heights")
+    first, last = int(np.argmax(known)), int(known.size - np.argmax(known[::-1]))
+    places, heights, known = places[first:last], heights[first:last], known[first:last]
+    missing = int(np.count_nonzero(~known))
+    if missing > _MOST_MISSING * known.size:
+        raise ValueError(f"the profile lacks {missing} of its {known.size} heights: measure it again")
+    if places.size > 1 and places[-1] < places[0]:
+        places, heights, known = places[::-1], heights[::-1], known[::-1]
+    if places.size < _LEAST:
+        raise ValueError(f"{places.size} points: a profile has {_LEAST} or more")
+    steps = np.diff(places)
+    if not np.all(steps > 0):
+        k = int(np.argmin(steps))
+        raise ValueError(
+            f"x = {places[k]:g} m is followed by {places[k + 1]:g} m; give x that rises or falls"
+        )
+    even = np.linspace(places[0], places[-1], places.size)
+    spacing = float(even[1] - even[0])
+    resampled = bool(np.abs(places - even).max() > _EVEN * spacing)
+    if resampled or missing:
+        heights = np.interp(even if resampled else places, places[known], heights[known])
+    return Profile(np.array(heights, dtype=np.float64), spacing, assumed_unit, missing, resampled)
+
+
+def without_profile_form(profile: Profile, form: Form) -> Profile:
+    """Subtract the line, or the parabola, of least squares; the mean in any case."""
+    t = np.linspace(-1, 1, profile.heights.size)
+    basis = np.polynomial.legendre.legvander(t, _ORDER[form])
+    found = np.linalg.lstsq(basis, profile.heights, rcond=None)[0]
+    return replace(profile, heights=profile.heights - basis @ found)
+
+
+def smooth_profile(profile: Profile, cutoff: float) -> Profile:
+    """Apply the Gaussian filter of ISO 16610-21 and leave off the margins of one cutoff it cannot reach.
+
+    Raises
+    ------
+    ValueError
+        If nothing would be left.
+    """
+    radius = math.ceil(cutoff / profile.spacing)
+    if 2 * radius + _LEAST > profile.heights.size:
+        raise ValueError(
+            f"cutoff = {cutoff:g} m: leaves nothing of a profile of {profile.length:g} m without its margins "
+            "of one cutoff"
+        )
+    width = math.sqrt(filter_variance(cutoff)) / profile.spacing
+    smoothed = gaussian_filter1d(profile.heights, width, radius=radius)
+    return replace(profile, heights=smoothed[radius : smoothed.size - radius])

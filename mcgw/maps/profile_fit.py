@@ -1,0 +1,232 @@
+"""From profiles of one isotropic surface to its summits, with their uncertainty.
+
+A profile sees summits of its own: a peak of the profile is no summit of the surface, which lies beside the
+line. What both share are the moments: of an isotropic surface m0, m2 and m4 of any profile are those of the
+surface (Nayak 1971), and if heights are Gaussian they tell density, curvature and heights of its summits.
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.special import stdtrit
+
+from mcgw.formats.sheet import Sheet, Shown
+from mcgw.machine.late import plotted
+from mcgw.maps.estimates import Estimate
+from mcgw.maps.form import Form
+from mcgw.maps.nayak import SpectralMoments
+from mcgw.maps.profile import Profile, smooth_profile, without_profile_form
+from mcgw.maps.profile_waves import ProfileWaves, waves_of_profile
+from mcgw.maps.roughness import Roughness, roughness_of
+from mcgw.maps.uncertain import Uncertain
+
+__all__ = ["ProfileFit", "fit_profiles"]
+
+Array = NDArray[np.float64]
+
+_TERMS = {"none": 1, "plane": 2, "quadratic": 3}
+_PIECES = 16
+_SMOOTH = 3  # waves over which power is averaged
+_LEAST_ALPHA = 0.9  # below, summit heights would have no variance
+_NAMES = ("m0", "m2", "m4", "alpha", "eta", "radius", "sigma")
+
+
+@dataclass(frozen=True, repr=False)
+class ProfileFit(Shown):
+    """What profiles tell of their surface, if it is isotropic and its heights are Gaussian.
+
+    Parameters
+    ----------
+    moments : SpectralMoments
+        Of the surface, filtered as `mcgw.fit` filters a map.
+    errors : dict of str to float
+        Standard errors of the logarithms of m0, m2, m4, alpha, eta, radius and sigma, widened so that two of
+        them to both sides hold 95 %.
+    roughness : Roughness
+        Of the profiles themselves, without form and filtered along the line.
+    peaks : (float, float)
+        Of these filtered profiles, 1/m: counted, and by their own moments, sqrt(m4/m2)/(2 pi).
+    lengths : tuple of float
+        Of the profiles, m.
+    form : {"none", "plane", "quadratic"}
+        What was taken off.
+    cautions : tuple of str, optional
+        Why not to trust it.
+    """
+
+    moments: SpectralMoments
+    errors: dict[str, float]
+    roughness: Roughness
+    peaks: tuple[float, float]
+    lengths: tuple[float, ...]
+    form: Form
+    cautions: tuple[str, ...] = ()
+
+    @property
+    def area(self) -> float:
+        """Square of the mean length, m^2: a profile has none of its own."""
+        return (sum(self.lengths) / len(self.lengths)) ** 2
+
+    @property
+    def estimates(self) -> dict[str, Estimate]:
+        """The one estimate there is, as a map's fit names it: ``moments``."""
+        m = self.moments
+        values = {"eta": m.eta, "radius": m.radius, "sigma": m.sigma}
+        told = {k: Uncertain(v, v * self.errors[k], *self.interval(k)) for k, v in values.items()}
+        return {"moments": Estimate(**told)}
+
+    def interval(self, name: str) -> tuple[float, float]:
+        """Ends of the 95 % interval of m0, m2, m4, alpha, eta, radius or sigma, SI units.
+
+        Raises
+        ------
+        KeyError
+            If there is no such number.
+        """
+        value, error = getattr(self.moments, name), self.errors[name]
+        return value * math.exp(-2 * error), value * math.exp(2 * error)
+
+    def plot(self, ax: Any = None) -> Any:
+        """Draw the law of all heights and that of the summits that follows; returns the axes."""
+        return plotted(self, ax)
+
+    def sheet(self) -> Sheet:
+        """Each number with its 95 % interval, and the first of the cautions."""
+        units = {"m0": "m^2", "m4": "1/m^2", "eta": "1/m^2", "radius": "m", "sigma": "m"}
+        rows = []
+        for name in _NAMES:
+            low, high = self.interval(name)
+            unit = f" ({units[name]})" if name in units else ""
+            rows.append([name + unit, f"{getattr(self.moments, name):.4g}", f"{low:.3g} to {high:.3g}"])
+        facts = [("profiles", self.roughness.text("P"))]
+        facts += [("caution", line) for line in self.cautions[:2]]
+        title = f"Fit of {len(self.lengths)} profile(s), {sum(self.lengths):.4g} m together"
+        return Sheet(title, facts, ["", "value", "95 %"], rows)
+
+
+def fit_profiles(profiles: Sequence[Profile], *, cutoff: float | None, form: Form = "plane") -> ProfileFit:
+    """Estimate moments and summits of the surface that profiles were taken from.
+
+    Longer profiles count more. Standard errors follow from the power of the waves seen, as for maps
+    (`mcgw.maps.waves`), with the profiles independent of each other; or from what stretches of them differ,
+    if that is more.
+
+    Parameters
+    ----------
+    profiles : sequence of Profile
+        Of one surface, in any direction, so far apart that they do not share waves.
+    cutoff : float or None
+        Shortest wavelength that counts, m, of the areal filter of ISO 16610-61; None: as measured.
+    form : {"none", "plane", "quadratic"}, optional
+        What is taken off first: nothing but the mean, a line, or a parabola.
+
+    Returns
+    -------
+    ProfileFit
+        `mcgw.maps.profile_cautions` says why not to trust it.
+
+    Raises
+    ------
+    ValueError
+        If there is no profile, or they are flat, or too short for the cutoff.
+    """
+    if form not in _TERMS:
+        raise ValueError(f"form = {form!r}: a profile has plane (a line), quadratic (a parabola) or none")
+    if not profiles:
+        raise ValueError("no profile was given")
+    plain = [without_profile_form(p, form) for p in profiles]
+    if not any(
+        np.ptp(p.heights) > 1e-12 * np.abs(q.heights).max() for p, q in zip(plain, profiles, strict=True)
+    ):
+        raise ValueError("the profile is flat: there is no roughness to fit")
+    filtered = plain if cutoff is None else [smooth_profile(p, cutoff) for p in plain]
+    pieces = math.ceil(_PIECES / len(profiles))
+    shortest = min(p.heights.size for p in profiles)
+    if shortest < 4 * pieces:
+        raise ValueError(f"{shortest} points: too few for {pieces} stretches; give a longer profile")
+    seen = [waves_of_profile(p, cutoff=cutoff, terms=_TERMS[form], pieces=pieces) for p in plain]
+    shares = np.array([w.length for w in seen]) / sum(w.length for w in seen)
+    values = sum(share * w.moments for share, w in zip(shares, seen, strict=True))
+    moments = _checked(np.asarray(values))
+    return ProfileFit(
+        moments,
+        {name: _error(d, np.asarray(values), seen, shares) for name, d in _derivatives(moments).items()},
+        roughness_of(np.concatenate([p.heights for p in filtered])),
+        _peaks(filtered),
+        tuple(p.length for p in profiles),
+        form,
+    )
+
+
+def _checked(values: Array) -> SpectralMoments:
+    """Moments that a surface can have."""
+    if not np.all(values > 0):
+        raise ValueError(
+            f"m0, m2, m4 = {', '.join(f'{v:.3g}' for v in values)}: not all are > 0, so that the profile is "
+            "too short for this cutoff, or of no isotropic surface; give a longer one"
+        )
+    moments = SpectralMoments(*values.tolist())
+    if moments.alpha < _LEAST_ALPHA:
+        raise ValueError(
+            f"m0 m4/m2^2 = {moments.alpha:.3g}, which no isotropic surface has (1.5 or more): it is turned "
+            "or ground in one direction, or the profile is too short"
+        )
+    return moments
+
+
+def _derivatives(moments: SpectralMoments) -> dict[str, Array]:
+    """Of the logarithms of all numbers by those of m0, m2 and m4."""
+    share = moments.sigma**2 / moments.m0
+    alpha, m0 = np.array([1.0, -2.0, 1.0]), np.array([1.0, 0.0, 0.0])
+    return {
+        "m0": m0,
+        "m2": np.array([0.0, 1.0, 0.0]),
+        "m4": np.array([0.0, 0.0, 1.0]),
+        "alpha": alpha,
+        "eta": np.array([0.0, -1.0, 1.0]),
+        "radius": np.array([0.0, 0.0, -0.5]),
+        "sigma": (m0 + (1 / share - 1) * alpha) / 2,  # sigma^2 is m0 (1 - c/alpha)
+    }
+
+
+def _error(derivative: Array, values: Array, seen: list[ProfileWaves], shares: Array) -> float:
+    """Of the logarithm of a number, widened by Student's t: two of them hold 95 %."""
+    derivative = derivative / values
+    squares = np.concatenate(
+        [
+            (share * _smooth(derivative @ w.weights, w.power)) ** 2
+            for share, w in zip(shares, seen, strict=True)
+        ]
+    )
+    by_waves = math.sqrt(float(squares.sum()) / (1 + 1 / _SMOOTH))
+    freedom = max(float(squares.sum() ** 2 / (squares**2).sum()) / 2, 2.0)  # neighbours share power
+    stretches = np.concatenate(
+        [share * len(seen) * (derivative @ w.pieces) for share, w in zip(shares, seen, strict=True)]
+    )
+    by_stretches = float(stretches.std(ddof=1)) / math.sqrt(stretches.size)
+    return max(by_waves * _widened(freedom), by_stretches * _widened(stretches.size - 1))
+
+
+def _smooth(weights: Array, power: Array) -> Array:
+    """Power averaged over neighbouring waves, times weights."""
+    return np.asarray(weights * np.convolve(power, np.full(_SMOOTH, 1 / _SMOOTH), mode="same"))
+
+
+def _widened(freedom: float) -> float:
+    return float(stdtrit(freedom, 0.975)) / 2
+
+
+def _peaks(profiles: list[Profile]) -> tuple[float, float]:
+    """Of filtered profiles: peaks a length, counted and by Rice's formula."""
+    counted, slopes, bends, points, length = 0, 0.0, 0.0, 0, 0.0
+    for p in profiles:
+        z, h = p.heights, p.spacing
+        counted += int(np.count_nonzero((z[1:-1] > z[:-2]) & (z[1:-1] >= z[2:])))
+        slopes += float(np.sum((np.diff(z)[:-1] / h) ** 2))
+        bends += float(np.sum((np.diff(z, 2) / h**2) ** 2))
+        points, length = points + z.size - 2, length + (z.size - 2) * h
+    return counted / length, math.sqrt(bends / slopes) / (2 * math.pi)

@@ -1,0 +1,137 @@
+"""Every summit of a map: where it is, how high, and how sharp along its two principal directions."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mcgw.formats.csv_table import write_csv
+from mcgw.maps.summit_sums import EDGE, SummitSums
+from mcgw.maps.topography import Topography
+
+__all__ = ["Summits", "summits_of", "write_summits"]
+
+Array = NDArray[np.float64]
+
+_COLUMNS = ("x", "y", "height", "radius", "curvature_1", "curvature_2", "tile")
+_UNITS = (
+    "x, y, height and radius in m, curvature_1 and curvature_2 in 1/m; height is above the mean of the "
+    "summits, radius is 1/sqrt(curvature_1 curvature_2)"
+)
+# Of the fourth order, as in the sums: from two points before to two points after.
+_SLOPE = np.array([1, -8, 0, 8, -1]) / 12
+_BEND = np.array([-1, 16, -30, 16, -1]) / 12
+
+
+@dataclass(frozen=True)
+class Summits:
+    """Summits of a map; arrays of shape (summits,) if nothing else is said.
+
+    Parameters
+    ----------
+    x, y : ndarray
+        From the corner of the map after trimming and cropping, whose first pixel has its centre at half
+        a pixel, m.
+    heights : ndarray
+        About their mean, m.
+    curvatures : ndarray
+        Principal curvatures, shape (2, summits), the larger ones first, 1/m; positive.
+    tile : ndarray of int
+        Sub-area of each, counted from 0 along x first.
+    unresolved : int
+        How many are ridges between pixels, of which only a mean curvature is known: both are that.
+    """
+
+    x: Array
+    y: Array
+    heights: Array
+    curvatures: Array
+    tile: NDArray[np.int64]
+    unresolved: int
+
+    @property
+    def radii(self) -> Array:
+        """Of the spheres that carry nearly what the summits do, ``1/sqrt(k1 k2)``, m (Greenwood 2006)."""
+        return np.asarray(1 / np.sqrt(self.curvatures[0] * self.curvatures[1]))
+
+
+def summits_of(used: Topography, counted: SummitSums, origin: tuple[float, float]) -> Summits:
+    """Look again at every summit that was counted.
+
+    Parameters
+    ----------
+    used : Topography
+        The map that was counted, without form and filtered.
+    counted : SummitSums
+        Of this map.
+    origin : (float, float)
+        Where its corner lies on the map as it was read, x and y in m.
+    """
+    margin = 0 if used.periodic else EDGE
+    shape = tuple(n - 2 * margin for n in used.heights.shape)
+    i, j = (
+        np.rint(p * n - 0.5).astype(np.int64) + margin
+        for p, n in zip(counted.places, shape[::-1], strict=True)
+    )
+    curvatures, unresolved = _curvatures(used, j, i)
+    right, up = _apex(used.heights, j, i)
+    dx, dy = used.pixel
+    return Summits(
+        origin[0] + (i + 0.5 + right) * dx,
+        origin[1] + (j + 0.5 + up) * dy,
+        counted.heights - counted.heights.mean(),
+        curvatures,
+        counted.part,
+        unresolved,
+    )
+
+
+def _at(z: Array, j: NDArray[np.int64], i: NDArray[np.int64]) -> Array:
+    """Heights at points that may lie beyond the edges of a periodic map."""
+    return np.asarray(z[j % z.shape[0], i % z.shape[1]])
+
+
+def _curvatures(used: Topography, j: NDArray[np.int64], i: NDArray[np.int64]) -> tuple[Array, int]:
+    """Principal curvatures, and how many had to be taken from the mean curvature."""
+    z, (dx, dy) = used.heights, used.pixel
+    here = _at(z, j, i)  # differences from it lose no digits
+    steps = range(-2, 3)
+    xx = sum(w * (_at(z, j, i + s) - here) for s, w in zip(steps, _BEND, strict=True)) / dx**2
+    yy = sum(w * (_at(z, j + s, i) - here) for s, w in zip(steps, _BEND, strict=True)) / dy**2
+    xy = np.zeros(len(i))
+    for down, v in zip(steps, _SLOPE, strict=True):
+        for along, w in zip(steps, _SLOPE, strict=True):
+            if v * w != 0:
+                xy += v * w * (_at(z, j + down, i + along) - here)
+    mean, turn = -(xx + yy) / 2, np.hypot((xx - yy) / 2, xy / (dx * dy))
+    found = np.array([mean + turn, mean - turn])
+    ridges = ~(found[1] > 0)
+    # The neighbours next to it are lower, so these plain differences have a sign.
+    j, i, here = j[ridges], i[ridges], here[ridges]
+    plain = (2 * here - _at(z, j, i + 1) - _at(z, j, i - 1)) / dx**2
+    plain += (2 * here - _at(z, j + 1, i) - _at(z, j - 1, i)) / dy**2
+    found[:, ridges] = plain / 2
+    return found, int(ridges.sum())
+
+
+def _apex(z: Array, j: NDArray[np.int64], i: NDArray[np.int64]) -> tuple[Array, Array]:
+    """Vertex, within the summit's own pixel, of the paraboloid through it and its neighbours, in pixels."""
+    gx, gy = (_at(z, j, i + 1) - _at(z, j, i - 1)) / 2, (_at(z, j + 1, i) - _at(z, j - 1, i)) / 2
+    xx = _at(z, j, i + 1) - 2 * _at(z, j, i) + _at(z, j, i - 1)
+    yy = _at(z, j + 1, i) - 2 * _at(z, j, i) + _at(z, j - 1, i)
+    xy = (_at(z, j + 1, i + 1) - _at(z, j + 1, i - 1) - _at(z, j - 1, i + 1) + _at(z, j - 1, i - 1)) / 4
+    det = xx * yy - xy * xy
+    flat = ~(det > 0)
+    det = np.where(flat, 1.0, det)
+    right, up = ((gy * xy - gx * yy) / det, (gx * xy - gy * xx) / det)
+    return tuple(np.where(flat, 0.0, np.clip(t, -0.5, 0.5)) for t in (right, up))  # type: ignore[return-value]
+
+
+def write_summits(summits: Summits, path: Path) -> None:
+    """Write a table with a row for each summit; a comment above it tells the units."""
+    columns = (summits.x, summits.y, summits.heights, summits.radii, *summits.curvatures)
+    rows = (
+        (*row[:-1], str(row[-1])) for row in zip(*(c.tolist() for c in columns), summits.tile, strict=True)
+    )
+    write_csv(path, _COLUMNS, rows, comment=_UNITS)

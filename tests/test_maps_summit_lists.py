@@ -1,0 +1,235 @@
+"""Summits one by one: those of a few cosines, known on paper; their table; what each tile of a map tells."""
+
+import csv
+import math
+
+import numpy as np
+import pytest
+from scipy.optimize import brentq
+
+import mcgw
+from mcgw.cli import main
+from mcgw.maps.files import write_map
+from mcgw.maps.fit import fit_map
+from mcgw.maps.spectrum import Spectrum, gaussian_map
+from mcgw.maps.summit_contact import summit_contact
+from mcgw.maps.summit_sums import summit_sums_of
+from mcgw.maps.summits import summits_of
+from mcgw.maps.tiles import tiles_of
+from mcgw.maps.topography import Topography
+
+UM = 1e-6
+
+
+class Wave:
+    """Two cosines along a line that repeats itself, and its maxima by bracketing."""
+
+    def __init__(self, length, long, short):
+        self.length = length
+        self.parts = [(a, 2 * math.pi * n / length, phase) for a, n, phase in (long, short)]
+
+    def __call__(self, t, order=0):
+        return sum(a * q**order * np.cos(q * t + p + order * math.pi / 2) for a, q, p in self.parts)
+
+    def maxima(self):
+        grid = np.linspace(0, self.length, 20001)
+        slope = self(grid, 1)
+        at = np.nonzero((slope[:-1] > 0) & (slope[1:] <= 0))[0]
+        return np.array([brentq(lambda t: self(t, 1), grid[k], grid[k + 1], xtol=1e-15) for k in at])
+
+
+X = Wave(400 * UM, (0.3 * UM, 3, 0.4), (0.1 * UM, 16, 1.1))
+Y = Wave(300 * UM, (0.2 * UM, 2, 2.0), (0.05 * UM, 10, 0.3))
+
+
+@pytest.fixture(scope="module")
+def waves():
+    """Their sum on pixels of 0.5 x 0.6 um, 50 to a short wave."""
+    x, y = (np.arange(800) + 0.5) * 0.5 * UM, (np.arange(500) + 0.5) * 0.6 * UM
+    return Topography(X(x) + Y(y)[:, None], (0.5 * UM, 0.6 * UM), periodic=True)
+
+
+def test_every_summit_of_four_cosines(waves):
+    """A summit stands where both waves have a maximum: place, height and curvatures follow."""
+    fit = fit_map(waves, cutoff=None, form="none")
+    x, y = (a.ravel() for a in np.meshgrid(X.maxima(), Y.maxima()))
+    assert fit.summits.size == x.size == 160
+    found = fit.listed
+    assert found.unresolved == 0
+    true = X(x) + Y(y)
+    nearest = np.argmin(np.hypot(x - found.x[:, None], y - found.y[:, None]), axis=1)
+    assert sorted(nearest) == list(range(x.size))
+    bend_x, bend_y = -X(x, 2), -Y(y, 2)
+    skew_x, skew_y = (abs(w(t, 3) / w(t, 2))[nearest] for w, t in ((X, x), (Y, y)))
+    # The vertex through three points h apart lies h^2/6 times (third over second derivative) beside it.
+    assert np.all(abs(found.x - x[nearest]) < 1.2 * (0.5 * UM) ** 2 / 6 * skew_x + 1e-3 * UM)
+    assert np.all(abs(found.y - y[nearest]) < 1.2 * (0.6 * UM) ** 2 / 6 * skew_y + 1e-3 * UM)
+    np.testing.assert_allclose(found.heights, (true - true.mean())[nearest], atol=1e-4 * 0.1 * UM)
+    # Curvatures are those at the pixel, up to half of it beside the summit.
+    order = np.argsort([-bend_x[nearest], -bend_y[nearest]], axis=0)
+    bends = np.take_along_axis(np.array([bend_x, bend_y])[:, nearest], order, axis=0)
+    beside = np.take_along_axis(np.array([0.25 * UM * skew_x, 0.3 * UM * skew_y]), order, axis=0)
+    assert np.all(abs(found.curvatures / bends - 1) < 1.1 * beside + 0.004)
+    assert np.all(abs(fit.radii * np.sqrt(bends[0] * bends[1]) - 1) < beside.sum(axis=0) + 0.004)
+
+
+def test_waves_along_the_diagonals():
+    """Principal directions between the axes: the mixed derivative tells the two curvatures apart."""
+    n, q = 200, 2 * math.pi / (20 * UM)
+    x, y = np.meshgrid(np.arange(n) * UM, np.arange(n) * UM)
+    z = 1e-7 * (3 * np.cos(q * (x + y)) + np.cos(q * (x - y)))
+    topography = Topography(z, (UM, UM), periodic=True)
+    found = summits_of(topography, summit_sums_of(topography), (0.0, 0.0))
+    assert found.heights.size == 200  # two in each cell of 20 um
+    a = 2 * q * q * 1e-7
+    # Stencils of the fourth order at 20 pixels a wave: (2 pi/20)^4/30 of a first derivative, twice.
+    np.testing.assert_allclose(found.curvatures[0], 3 * a, rtol=1e-3)
+    np.testing.assert_allclose(found.curvatures[1], a, rtol=2e-3)
+    np.testing.assert_allclose(found.x / (10 * UM) % 1, np.full(200, 0.05), atol=1e-6)  # half a pixel
+
+
+@pytest.mark.parametrize("periodic", [True, False])
+def test_mean_curvatures_and_heights_are_those_that_were_counted(periodic):
+    spectrum = Spectrum(1e-6, 60e-6, 8e-6)
+    drawn = gaussian_map(spectrum, (200, 240), (1e-6, 1.2e-6), np.random.default_rng(3))
+    topography = Topography(drawn.heights, drawn.pixel, periodic)
+    counted = summit_sums_of(topography)
+    fit = fit_map(topography, cutoff=None, form="none")
+    resolved = fit.listed.curvatures[0] != fit.listed.curvatures[1]
+    assert fit.listed.unresolved == np.count_nonzero(~resolved)
+    mean = fit.listed.curvatures.mean(axis=0)
+    np.testing.assert_allclose(mean[resolved], counted.curvatures[resolved], rtol=1e-9)
+    np.testing.assert_array_equal(fit.summits, counted.heights - counted.heights.mean())
+    np.testing.assert_array_equal(fit.listed.tile, counted.part)
+
+
+def test_places_are_those_on_the_map_as_it_was_read():
+    """A cutoff takes a margin off; the bumps, one a field of a chess board, stay where they were."""
+    rng = np.random.default_rng(4)
+    column, row = (a.ravel() for a in np.meshgrid(np.arange(14), np.arange(12)))
+    bumps = np.array([30 + 20 * column, 30 + 20 * row]) + rng.uniform(-1, 1, (2, column.size))
+    y, x = np.mgrid[0:280, 0:320] + 0.5
+    z = sum(np.exp(-((x - a) ** 2 + (y - b) ** 2) / 20) for a, b in bumps.T)
+    found = fit_map(Topography(z * UM, (UM, UM)), cutoff=8 * UM, form="none").listed
+    distance = np.hypot(found.x / UM - bumps[0][:, None], found.y / UM - bumps[1][:, None]).min(axis=1)
+    assert np.all(distance < 0.05)
+
+
+def test_ridges_between_pixels_are_counted_and_have_a_radius():
+    """White noise: some have a saddle by stencils of the fourth order. None is without a curvature."""
+    noise = Topography(np.random.default_rng(5).normal(size=(200, 200)) * UM, (UM, UM))
+    found = fit_map(noise, cutoff=None).listed
+    assert 0 < found.unresolved < 0.03 * found.heights.size
+    assert np.all(found.curvatures > 0)
+    assert np.all(np.isfinite(found.radii))
+
+
+@pytest.fixture(scope="module")
+def tables(waves, tmp_path_factory):
+    folder = tmp_path_factory.mktemp("tables")
+    write_map(waves, folder / "map.npy")
+    words = ["fit", str(folder / "map.npy"), "--cutoff", "none", "--form", "none", "--parts", "3"]
+    words += ["--summits", str(folder / "s.csv"), "--tiles", str(folder / "t.csv")]
+    assert main([*words, "-o", str(folder / "f.toml")]) == 0
+    return folder
+
+
+def rows(path):
+    comment, *lines = path.read_text().splitlines()
+    assert comment.startswith("# ")
+    assert "in m" in comment
+    return list(csv.DictReader(lines))
+
+
+def test_the_table_reads_back_to_the_last_bit(tables, waves):
+    fit = mcgw.fit(waves, cutoff=None, form="none", parts=3)
+    found = rows(tables / "s.csv")
+    listed = fit.listed
+    columns = (listed.x, listed.y, fit.summits, fit.radii, *listed.curvatures)
+    for name, values in zip(
+        ("x", "y", "height", "radius", "curvature_1", "curvature_2"), columns, strict=True
+    ):
+        np.testing.assert_array_equal([float(row[name]) for row in found], values)
+    assert [int(row["tile"]) for row in found] == listed.tile.tolist()
+
+
+def test_each_tile_by_itself(tables, waves):
+    """Literal: the mean squares of numbers on each ninth of the map, and the summits that stand there."""
+    found = rows(tables / "t.csv")
+    listed = mcgw.fit(waves, cutoff=None, form="none", parts=3).listed
+    assert [(row["column"], row["row"]) for row in found[:4]] == [
+        ("0", "0"),
+        ("1", "0"),
+        ("2", "0"),
+        ("0", "1"),
+    ]
+    x, y = X(0.5 * UM * (np.arange(800) + 0.5)), Y(0.6 * UM * (np.arange(500) + 0.5))
+    column, line = np.arange(800) * 3 // 800, np.arange(500) * 3 // 500
+    for k, row in enumerate(found):
+        z = x[column == k % 3] + y[line == k // 3][:, None]
+        assert float(row["m0"]) == pytest.approx(z.var(), rel=1e-9)
+        here = listed.tile == k
+        assert int(row["summits"]) == here.sum()
+        assert float(row["eta"]) == pytest.approx(here.sum() / (z.size * 0.3e-12), rel=1e-12)
+        assert float(row["sigma"]) == pytest.approx(listed.heights[here].std(ddof=1), rel=1e-9)
+        assert float(row["radius"]) == pytest.approx(1 / listed.curvatures[:, here].mean(), rel=1e-9)
+
+
+def test_tiles_tell_a_map_that_varies():
+    """Twice as rough on its right half: sigma varies by more than it does on a map that is alike all over."""
+    even = gaussian_map(Spectrum(1e-6, 20e-6, 10e-6), (600, 600), (UM, UM), np.random.default_rng(1))
+    rough = even.heights * np.where(np.arange(600) < 300, 1.0, 2.0)
+    assert tiles_of(summit_sums_of(even)).variation("sigma") < 0.2
+    # one and two by halves: 0.5/1.5, times sqrt(16/15)
+    assert tiles_of(summit_sums_of(Topography(rough, (UM, UM)))).variation("sigma") > 0.3
+    (alone,) = tiles_of(summit_sums_of(even, across=1)).m0
+    assert alone == pytest.approx(even.heights.var(), rel=1e-12)
+    assert math.isnan(tiles_of(summit_sums_of(even, across=1)).variation("sigma"))
+
+
+def test_contacts_of_measured_summits_are_hertzian():
+    """By the radius a of each spot: P = 4 E a^3/(3 R), A = pi a^2, K = 2 E a; in plain Python."""
+    rng = np.random.default_rng(2)
+    z, R, tile = rng.normal(size=300) * UM, rng.lognormal(size=300) * 1e-5, rng.integers(0, 4, 300)
+    separations = np.array([-1.0, 0.0, 1.5, 9.0]) * UM
+    found = summit_contact(z, R, 1e11, separations, tile=tile)
+    assert found.load.shape == (4, 4)
+    for t in range(4):
+        for k, d in enumerate(separations):
+            spots = [
+                (math.sqrt(r * (s - d)), r) for s, r, u in zip(z, R, tile, strict=True) if u == t and s > d
+            ]
+            assert found.contacts[t, k] == len(spots)
+            load = math.fsum(4e11 * a**3 / (3 * r) for a, r in spots)
+            assert found.load[t, k] == pytest.approx(load, rel=1e-12)
+            assert found.area[t, k] == pytest.approx(math.fsum(math.pi * a * a for a, _ in spots), rel=1e-12)
+            assert found.stiffness[t, k] == pytest.approx(math.fsum(2e11 * a for a, _ in spots), rel=1e-12)
+    whole = summit_contact(z, R, 1e11, separations)
+    np.testing.assert_allclose(whole.load[0], found.load.sum(axis=0), rtol=1e-12)
+    step = 1e-13
+    ahead, behind = (summit_contact(z, R, 1e11, separations[1] + s).load[0, 0] for s in (step, -step))
+    assert (behind - ahead) / (2 * step) == pytest.approx(whole.stiffness[0, 1], rel=1e-5)
+
+
+def test_with_one_radius_it_is_the_simulators_own_sum(waves):
+    """The scene of measured heights, drawn by `direct`."""
+    fit = mcgw.fit(waves, cutoff=None, form="none")
+    scene = mcgw.fitted_scene(fit, heights="measured", E_star=1e11)
+    e = mcgw.simulate(scene)
+    radii = np.full(fit.summits.size, scene.surface.radius)
+    found = summit_contact(fit.summits, radii, 1e11, np.array(scene.separations) * fit.summits.std())
+    np.testing.assert_allclose(found.load[0], e.load[0], rtol=1e-11)
+    np.testing.assert_allclose(found.area[0], e.area[0], rtol=1e-11)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "told"),
+    [
+        (([1.0, 2.0], [1.0], 1.0, 0.0), "one list each"),
+        (([1.0], [0.0], 1.0, 0.0), "numbers > 0"),
+        (([1.0], [1.0], -1.0, 0.0), "numbers > 0"),
+    ],
+)
+def test_what_makes_no_contact_is_refused(arguments, told):
+    with pytest.raises(ValueError, match=told):
+        summit_contact(*arguments)
