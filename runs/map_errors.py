@@ -42,7 +42,7 @@ def spectrum_of(alpha: int, waves: int) -> Spectrum:
 
 
 def numbers(fit: Fit, truth: SpectralMoments) -> list[tuple[float, float, float]]:
-    """Error of the logarithm, the stated one, and whether the interval holds the truth; nan: not estimated."""
+    """Error of the logarithm, the stated one, whether the interval holds the truth; nan: no estimate."""
     found = {name: (getattr(fit, name), getattr(truth, name)) for name in MOMENTS}
     for method, e in fit.estimates.items():
         found |= {f"{method} {p}": (getattr(e, p), getattr(truth, p)) for p in PARAMETERS}

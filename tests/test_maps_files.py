@@ -1,11 +1,13 @@
 """Files of maps: every digit back, other people's readers, and damaged ones refused in one line."""
 
 import json
+import re
 import shutil
 import struct
 import subprocess
 import zipfile
 
+import h5py
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -363,3 +365,90 @@ def test_nothing_half_written_is_left(tmp_path):
     assert [(path.name, path.read_text()) for path in tmp_path.iterdir()] == [("map.sdf", "mine")]
     with pytest.raises(OSError, match="nowhere"):
         write_map(Topography(np.zeros((1, 2)), (1.0, 1.0)), tmp_path / "nowhere" / "map.npy")
+
+
+def test_the_lowest_floating_number_is_a_missing_point(tmp_path):
+    for code, dtype in ((7, "<f8"), (3, "<f4")):
+        raw = np.array([[1, 2, 3], [4, np.finfo(dtype).min, 6]], dtype=dtype)
+        head = struct.pack(
+            "<8s10s12s12sHHddddBBB", b"bISO-1.0", b"", b"", b"", 3, 2, 1e-6, 1e-6, 1e-9, 0, 0, code, 0
+        )
+        (tmp_path / "f.sdf").write_bytes(head + raw.tobytes())
+        expected = 1e-9 * np.array([[1, 2, 3], [4, np.nan, 6]])
+        assert read_sdf(tmp_path / "f.sdf").heights == pytest.approx(expected, nan_ok=True, rel=1e-15)
+    write_map(Topography(np.array([[1.0, 2.0], [3.0, 4.0]]), (1.0, 1.0)), tmp_path / "t.ascii.sdf")
+    text = (tmp_path / "t.ascii.sdf").read_text().replace("4.0", "-1.7976931348623e+308")
+    (tmp_path / "t.ascii.sdf").write_text(text)
+    assert read_map(tmp_path / "t.ascii.sdf").missing == 1
+
+
+def gwyddions_numbers(text):
+    """What Gwyddion's sdfile.c reads after the header: as C's strtod does, it ends at the first word."""
+    rest, found = text.partition("*")[2], []
+    while match := re.match(r"\s*([-+]?(?:nan|inf|\d+\.?\d*(?:[eE][-+]?\d+)?))", rest):
+        found.append(float(match[1]))
+        rest = rest[match.end() :]
+    return found
+
+
+def test_ascii_sdf_with_missing_points_is_read_by_gwyddions_rules(topography, tmp_path):
+    """All points are numbers to strtod, and header lines stand in the order it asks for."""
+    topography.heights[2, 3] = np.nan
+    write_map(topography, tmp_path / "map.ascii.sdf")
+    text = (tmp_path / "map.ascii.sdf").read_text()
+    assert gwyddions_numbers(text) == pytest.approx(topography.heights.ravel(), nan_ok=True, rel=1e-15)
+    assert len(gwyddions_numbers(text.replace("nan", "BAD"))) == 2 * 7 + 3
+    keys = [line.split("=")[0].strip() for line in text.partition("*")[0].splitlines()[1:]]
+    order = "ManufacID CreateDate ModDate NumPoints NumProfiles Xscale Yscale Zscale Zresolution"
+    assert keys == [*order.split(), "Compression", "DataType", "CheckType"]
+
+
+GERMAN = "# Kanal: Z\n# Breite: 10,0 µm\n# Höhe: 4,0 µm\n# Werteinheit: nm\n1,5\t2,5\n3,5\t4,25\n"
+
+
+def test_german_exports(tmp_path):
+    (tmp_path / "map.txt").write_text(GERMAN, encoding="utf-8")
+    found = read_map(tmp_path / "map.txt")
+    assert found.heights == pytest.approx(1e-9 * np.array([[1.5, 2.5], [3.5, 4.25]]))
+    assert found.pixel == pytest.approx((5e-6, 2e-6))
+
+
+@pytest.mark.filterwarnings("ignore")
+@pytest.mark.parametrize("mark", [".", ","])
+def test_lists_of_points_are_read_by_surface_topography(mark, tmp_path):
+    pytest.importorskip("SurfaceTopography")
+    rows = ["0.0\t0.0\t1.5", "1.0\t0.0\t2.5", "0.0\t1.0\t3.5", "1.0\t1.0\t4.5"]
+    (tmp_path / "map.xyz").write_text("\n".join(rows).replace(".", mark) + "\n")
+    found = read_map(tmp_path / "map.xyz", unit="um")
+    assert found.heights == pytest.approx(1e-6 * np.array([[1.5, 2.5], [3.5, 4.5]]))
+    assert found.pixel == pytest.approx((1e-6, 1e-6))
+
+
+@pytest.mark.filterwarnings("ignore")
+def test_what_our_readers_refuse_surface_topography_is_asked(topography, tmp_path):
+    """Under endings that are ours: its own netCDF as HDF5, and a text with a header of its own."""
+    library = pytest.importorskip("SurfaceTopography")
+    theirs = library.Topography(topography.heights.T, topography.size, unit="m")
+    theirs.to_netcdf(str(tmp_path / "map.nc"))
+    for name in ("map.h5", "map.dat", "map.sdf"):
+        shutil.copy(tmp_path / "map.nc", tmp_path / name)
+        found = read_map(tmp_path / name)
+        assert found.heights == pytest.approx(topography.heights, rel=1e-12)
+        assert found.pixel == pytest.approx(topography.pixel, rel=1e-12)
+        with pytest.raises(ValueError, match="leave --pixel out"):
+            read_map(tmp_path / name, pixel=(1e-6, 1e-6))
+    (tmp_path / "own.txt").write_text("h=2 w=2\npixel size=1e-006 m\n1 2\n3 4\n")
+    with pytest.raises(ValueError, match=r"^[^;]*line 1: could not convert"):
+        read_map(tmp_path / "own.txt")
+
+
+@pytest.mark.filterwarnings("ignore")
+def test_a_foreign_map_without_a_pixel_takes_one(topography, tmp_path):
+    pytest.importorskip("SurfaceTopography")
+    with h5py.File(tmp_path / "bare.h5", "w") as file:
+        file["surface"] = topography.heights.T
+    with pytest.raises(ValueError, match="give --pixel"):
+        read_map(tmp_path / "bare.h5")
+    found = read_map(tmp_path / "bare.h5", pixel=(1e-6, 1e-6), unit="m")
+    assert found.heights == pytest.approx(topography.heights)
+    assert found.pixel == (1e-6, 1e-6)

@@ -10,6 +10,7 @@ import numpy as np
 from mcgw.formats.files import whole_file
 from mcgw.formats.npy_file import open_npy
 from mcgw.maps.asperities import Asperities
+from mcgw.maps.foreign import ForeignError
 from mcgw.maps.height_unit import height_unit
 from mcgw.maps.topography import Topography, checked_shape
 
@@ -113,10 +114,12 @@ def read_h5(path: Path, unit: str | None = None) -> Topography:
     OSError
         If it cannot be read.
     """
+    if not h5py.is_hdf5(path):
+        raise ForeignError(f"{path}: is not a sound HDF5 file")
     try:
         with h5py.File(path, "r") as file:
             if file.attrs.get("filetype") != _FILETYPE:
-                raise ValueError(f"{path}: is not a {_FILETYPE} file; it was not written by mcgw surface")
+                raise ForeignError(f"{path}: is not a {_FILETYPE} file; it was not written by mcgw surface")
             data = file["height"]
             checked_shape(*data.shape)
             dx, dy = (float(p) for p in file.attrs["pixel"])

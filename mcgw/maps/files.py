@@ -1,16 +1,14 @@
 """Which reader and writer a map's file needs: its ending says so."""
 
-from importlib import import_module
 from pathlib import Path
-
-import numpy as np
 
 from mcgw.maps.array_files import read_h5, read_npy, sidecar_of, write_h5, write_npy
 from mcgw.maps.asperities import Asperities
+from mcgw.maps.foreign import ForeignError, UnreadableError, read_foreign
 from mcgw.maps.height_unit import height_unit
 from mcgw.maps.sdf import read_sdf, write_sdf
 from mcgw.maps.text_file import read_text
-from mcgw.maps.topography import STEEPEST, Topography, checked_shape
+from mcgw.maps.topography import STEEPEST, Topography
 from mcgw.maps.x3p import read_x3p, write_x3p
 
 __all__ = ["WRITTEN", "files_of_map", "read_map", "write_map"]
@@ -58,7 +56,7 @@ def read_map(path: Path, *, pixel: tuple[float, float] | None = None, unit: str 
     ----------
     path : Path
         SDF, X3P, ``.npy``, HDF5 of mcgw or text; any other goes to SurfaceTopography, where it is
-        installed.
+        installed, whatever its ending.
     pixel : (float, float), optional
         Size of a pixel, m, for arrays and text that do not tell it.
     unit : str, optional
@@ -89,40 +87,41 @@ def read_map(path: Path, *, pixel: tuple[float, float] | None = None, unit: str 
 
 
 def _read(path: Path, pixel: tuple[float, float] | None, unit: str | None) -> Topography:
+    """By our own readers; what is none of their files by SurfaceTopography."""
     ending = path.suffix.lower()
-    if ending == ".npy":
-        return read_npy(path, pixel, unit)
-    if ending in _TEXT:
-        return read_text(path, pixel, unit)
+    try:
+        if ending == ".npy":
+            return read_npy(path, pixel, unit)
+        if ending in _TEXT:
+            return read_text(path, pixel, unit)
+        if ending == ".h5":
+            return _told(path, pixel, read_h5(path, unit))
+        if ending in _READERS:
+            height_unit(path, "m", unit)
+            return _told(path, pixel, _READERS[ending](path))
+    except ForeignError as refused:
+        return _otherwise(path, pixel, unit, refused)
+    return read_foreign(path, pixel, unit)
+
+
+def _otherwise(
+    path: Path, pixel: tuple[float, float] | None, unit: str | None, refused: ForeignError
+) -> Topography:
+    """By SurfaceTopography; of text it skips what it does not know, so that has to tell its pixel too."""
+    if path.suffix.lower() not in _TEXT:
+        try:
+            return read_foreign(path, pixel, unit)
+        except UnreadableError as too:
+            raise ValueError(f"{refused}; {str(too).removeprefix(f'{path}: ')}") from None
+    try:
+        found = read_foreign(path, None, unit)
+    except ValueError:
+        raise refused from None
+    return _told(path, pixel, found)
+
+
+def _told(path: Path, pixel: tuple[float, float] | None, found: Topography) -> Topography:
+    """A map whose file told the size of a pixel."""
     if pixel is not None:
         raise ValueError(f"{path}: tells the size of a pixel itself; leave --pixel out")
-    if ending == ".h5":
-        return read_h5(path, unit)
-    if ending in _READERS:
-        height_unit(path, "m", unit)
-        return _READERS[ending](path)
-    return _from_surface_topography(path, unit)
-
-
-def _from_surface_topography(path: Path, unit: str | None) -> Topography:
-    """Any of the many formats that SurfaceTopography reads."""
-    try:
-        library = import_module("SurfaceTopography")
-    except ImportError:
-        raise ValueError(
-            f"{path}: {path.suffix or 'no ending'} is not read here; install SurfaceTopography "
-            "(the extra mcgw[maps]), or save the map as SDF, X3P, .npy or text"
-        ) from None
-    try:
-        found = library.read_topography(str(path))
-    except Exception as error:  # its readers raise errors of many kinds
-        reason = " ".join(str(error).split())[:160]
-        raise ValueError(f"{path}: SurfaceTopography cannot read it: {reason}") from None
-    if found.dim != 2:
-        raise ValueError(f"{path}: is a profile along a line; a map has rows and columns")
-    columns, rows = found.nb_grid_pts
-    checked_shape(rows, columns)
-    metre, assumed = height_unit(path, found.unit, unit)  # of lengths along x and y too
-    heights = np.ma.filled(np.ma.masked_invalid(found.heights()), np.nan).T * metre
-    dx, dy = (float(p) * metre for p in found.pixel_size)
-    return Topography(np.ascontiguousarray(heights), (dx, dy), bool(found.is_periodic), assumed)
+    return found

@@ -2,7 +2,8 @@
 
 Profiles (rows) follow one another, points (columns) run fastest; lengths are in m. Binary files are
 little-endian, as Gwyddion and SurfaceTopography take them. Values that mean "not measured" are the
-lowest integer of signed types, the highest of unsigned ones, ``BAD`` in text, and nan.
+lowest number of signed types, floating ones too, the highest of unsigned ones, ``BAD`` in text, and nan. The
+latter is written in text too: Gwyddion's reader (sdfile.c) takes it, and ends at a word.
 """
 
 import math
@@ -18,6 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mcgw.formats.files import whole_file
+from mcgw.maps.foreign import ForeignError
 from mcgw.maps.topography import Topography, checked_shape
 
 __all__ = ["read_sdf", "write_sdf"]
@@ -26,6 +28,7 @@ _HEADER = struct.Struct("<8s10s12s12sHHddddBBB")
 _TYPES = ("u1", "<u2", "<u4", "<f4", "i1", "<i2", "<i4", "<f8")
 _MISSING = {"<u2": 2**16 - 1, "<u4": 2**32 - 1, "<i2": -(2**15), "<i4": -(2**31)}
 _DOUBLE = 7
+_LOWEST = 0.999  # of the lowest floating number: text may have rounded it
 _MOST_POINTS = 65535  # along each axis: 16 bits in a binary file
 _TEXT_HEADER = 4096  # bytes
 _CHUNK = 2**20
@@ -103,7 +106,7 @@ def _write_text(topography: Topography, file: BinaryIO, date: str) -> None:
     lines = ["aISO-1.0", *(f"{key} = {value}" for key, value in values.items()), "*"]
     file.write("".join(f"{line}\r\n" for line in lines).encode("ascii"))
     for row in topography.heights:
-        file.write((" ".join("BAD" if math.isnan(z) else repr(z) for z in row.tolist()) + "\r\n").encode())
+        file.write((" ".join("nan" if math.isnan(z) else repr(z) for z in row.tolist()) + "\r\n").encode())
     file.write(b"*\r\n")
 
 
@@ -123,12 +126,14 @@ def read_sdf(path: Path) -> Topography:
         elif magic == b"aISO-1.0":
             header, raw = _read_text(path, file)
         else:
-            raise ValueError(
+            raise ForeignError(
                 f"{path}: begins with {magic!r}, not with aISO-1.0 or bISO-1.0; it is not an SDF file"
             )
     heights = raw.astype(np.float64)
     if header.dtype.kind in "iu" and header.dtype.itemsize > 1:
         heights[raw == _MISSING[_TYPES[header.data_type]]] = np.nan
+    elif header.dtype.kind == "f":
+        heights[heights < _LOWEST * np.finfo(_TYPES[header.data_type]).min] = np.nan
     heights *= header.z_scale
     return Topography(heights.reshape(header.rows, header.columns), (header.dx, header.dy))
 

@@ -97,7 +97,7 @@ def _power(spectrum: Spectrum, shape: tuple[int, int], pixel: tuple[float, float
     rows, columns = checked_shape(*shape)
     if spectrum.short < 2 * max(pixel):
         raise ValueError(f"short = {spectrum.short:g} m: a pixel of {max(pixel):g} m shows 2 pixels or more")
-    if spectrum.long > min(columns * pixel[0], rows * pixel[1]):
+    if spectrum.long > (1 + 1e-9) * min(columns * pixel[0], rows * pixel[1]):
         raise ValueError(f"long = {spectrum.long:g} m: longer than the map; give more pixels")
     qy = 2 * math.pi * fft.fftfreq(rows, pixel[1])[:, None]
     qx = 2 * math.pi * fft.rfftfreq(columns, pixel[0])

@@ -8,14 +8,16 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from mcgw.maps.foreign import ForeignError
 from mcgw.maps.height_unit import height_unit, metres_in
 from mcgw.maps.topography import Topography, checked_shape
 
 __all__ = ["lines_of", "numbers_of", "read_text", "words_of"]
 
 _MOST_LINE = 2**24
-_LENGTH = re.compile(r"#\s*(Width|Height)\s*:\s*([-+.,\deE]+)\s*(\S+)\s*$")
-_UNIT = re.compile(r"#\s*Value units\s*:\s*(\S+)\s*$")
+_LENGTH = re.compile(r"#\s*(Width|Height|Breite|Höhe)\s*:\s*([-+.,\deE]+)\s*(\S+)\s*$")
+_ENGLISH = {"Breite": "Width", "Höhe": "Height"}
+_UNIT = re.compile(r"#\s*(?:Value units|Werteinheit(?:en)?|Einheit(?:en)? der Werte)\s*:\s*(\S+)\s*$")
 _ENCODINGS = {codecs.BOM_UTF8: "utf-8-sig", codecs.BOM_UTF16_LE: "utf-16", codecs.BOM_UTF16_BE: "utf-16"}
 _BLANKS = " \r\n\f\v"  # a tab parts two numbers, both of which may be missing
 _COMMA_TOO = re.compile(r"[ \f\v]*[;,\t][ \f\v]*|[ \f\v]+")
@@ -30,9 +32,9 @@ def read_text(path: Path, pixel: tuple[float, float] | None = None, unit: str | 
 
     Where something else parts the numbers of a line, a comma inside one is its decimal mark. Lines that
     begin with # are comments; of those that Gwyddion writes, ``Width``, ``Height`` and ``Value units``
-    are understood. ``nan``, ``BAD``, ``---`` and nothing between two separators are missing points. The text
-    is UTF-8, or UTF-16 with its mark. What no comment tells is given: the size of a pixel, m, and the unit of
-    the heights, by default m.
+    are understood, in German too. ``nan``, ``BAD``, ``---`` and nothing between two separators are missing
+    points. The text is UTF-8, or UTF-16 with its mark. What no comment tells is given: the size of a pixel,
+    m, and the unit of the heights, by default m.
 
     Raises
     ------
@@ -48,7 +50,7 @@ def read_text(path: Path, pixel: tuple[float, float] | None = None, unit: str | 
         if line.startswith("#"):
             if found := _LENGTH.match(line):
                 length = numbers_of(path, number, [found[2].replace(",", ".")])[0]
-                extent[found[1]] = float(length) * metres_in(path, found[3])
+                extent[_ENGLISH.get(found[1], found[1])] = float(length) * metres_in(path, found[3])
             elif found := _UNIT.match(line):
                 told = found[1]
             continue
@@ -56,20 +58,20 @@ def read_text(path: Path, pixel: tuple[float, float] | None = None, unit: str | 
         open_left, open_right = open_left and not words[0], open_right and not words[-1]
         rows.append(numbers_of(path, number, words))
         if rows[-1].size != rows[0].size:
-            raise ValueError(
+            raise ForeignError(
                 f"{path}: line {number} has {rows[-1].size} numbers, the first row {rows[0].size}"
             )
         total += rows[-1].size
         checked_shape(1, total)
     if not rows:
-        raise ValueError(f"{path}: holds no numbers")
+        raise ForeignError(f"{path}: holds no numbers")
     metre, assumed = height_unit(path, told, unit)
     heights = np.array(rows) * metre
     # every row begins or ends with a separator: there is no column beyond it
     heights = np.ascontiguousarray(heights[:, int(open_left) : heights.shape[1] - int(open_right)])
     if pixel is None:
         if set(extent) != {"Width", "Height"}:
-            raise ValueError(f"{path}: does not tell the size of a pixel; give --pixel")
+            raise ForeignError(f"{path}: does not tell the size of a pixel; give --pixel")
         checked_shape(*heights.shape)
         pixel = extent["Width"] / heights.shape[1], extent["Height"] / heights.shape[0]
     return Topography(heights, pixel, assumed_unit=assumed)
@@ -118,7 +120,7 @@ def numbers_of(path: Path, number: int, words: list[str]) -> NDArray[np.float64]
     try:
         row = np.array([float("nan" if word in _MISSING else word) for word in words])
     except ValueError as error:
-        raise ValueError(f"{path}: line {number}: {str(error)[:80]}") from None
+        raise ForeignError(f"{path}: line {number}: {str(error)[:80]}") from None
     if np.any(np.isinf(row)):
         raise ValueError(f"{path}: line {number}: a height is infinite")
     return row
