@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 import mcgw
+from analytic import SpectralMoments
 from mcgw.cli import main
 from mcgw.maps.areal_weights import areal_weights, filter_variance, stencil_weights
 from mcgw.maps.form import gaussian_transmission
-from mcgw.maps.nayak import SpectralMoments
 from mcgw.maps.profile import Profile, smooth_profile, without_profile_form
 from mcgw.maps.profile_fit import fit_profiles
 from mcgw.maps.profile_waves import waves_of_profile

@@ -9,8 +9,8 @@ import pytest
 from scipy.integrate import quad
 
 import analytic
+from analytic import SpectralMoments
 from mcgw.maps.form import gaussian_transmission
-from mcgw.maps.nayak import SpectralMoments
 from mcgw.maps.spectrum import Spectrum
 
 PAGE = (Path(__file__).parent.parent / "runs" / "ROUGHNESS.md").read_text(encoding="utf-8")

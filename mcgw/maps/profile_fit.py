@@ -14,11 +14,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import stdtrit
 
+from analytic import SpectralMoments
 from mcgw.formats.sheet import Sheet, Shown
 from mcgw.machine.late import plotted
 from mcgw.maps.estimates import Estimate
 from mcgw.maps.form import Form
-from mcgw.maps.nayak import SpectralMoments
 from mcgw.maps.profile import Profile, smooth_profile, without_profile_form
 from mcgw.maps.profile_waves import ProfileWaves, waves_of_profile
 from mcgw.maps.roughness import Roughness, roughness_of
