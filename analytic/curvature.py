@@ -79,6 +79,16 @@ class RandomCurvature:
         with np.errstate(divide="ignore"):
             return np.minimum(MEAN_CURVATURE / np.asarray(g, dtype=np.float64), self.largest)
 
+    def steepest(self, s: float) -> float:
+        """Curvature above which there is next to no summit as low as `s`."""
+        x = self.heights.over_rms([s])
+        return float(CurvatureGivenHeight(self.alpha, x).highest(0 * x)[0])
+
+    @property
+    def narrowest(self) -> float:
+        """Range of reduced heights over which the density at one curvature hardly bends."""
+        return tables_of(float(self.alpha)).width / self.heights.std / 2
+
     def density(self, g: ArrayLike, s: ArrayLike) -> Array:
         """Probability density of the curvature at given heights, broadcast."""
         return self._broadcast(lambda a, x: CurvatureGivenHeight(self.alpha, x).density(a), g, s)
@@ -107,6 +117,28 @@ class RandomCurvature:
             Of both shapes, broadcast.
         """
         return self._broadcast(lambda a, x: CurvatureGivenHeight(self.alpha, x).at(a), t, s)
+
+    def rule(self, s: ArrayLike) -> tuple[Array, Array]:
+        """Gauss's rule in the root of the ratio.
+
+        Parameters
+        ----------
+        s : array_like
+            Reduced heights.
+
+        Returns
+        -------
+        (ndarray, ndarray)
+            Ratios and their probabilities, shape (4, *s.shape): exact for ``c^(k/2)``, k = 0 ... 7; if
+            `largest` is finite there are five, up to k = 9.
+        """
+        x = self._over_rms(s)
+        nodes, flattest = (4, 0.0) if math.isinf(self.largest) else (5, MEAN_CURVATURE / self.largest)
+        parts = [x.ravel()[k : k + _BLOCK] for k in range(0, max(x.size, 1), _BLOCK)]
+        rules = [CurvatureGivenHeight(self.alpha, part).root_rule(nodes, flattest) for part in parts]
+        root, probability = (np.concatenate(part, axis=1) for part in zip(*rules, strict=True))
+        shape = (nodes, *x.shape)
+        return MEAN_CURVATURE * root.reshape(shape) ** 2, probability.reshape(shape)
 
     def mean(self, power: float, s: ArrayLike) -> Array:
         """Mean of a power of the radius ratio at given heights, in their shape.
@@ -139,10 +171,13 @@ class RandomCurvature:
         s = np.asarray(s, dtype=np.float64)
         return self.ratio(self.at(np.sqrt(rng.standard_gamma(2.0, s.shape)), s))
 
-    def _broadcast(self, function: Callable[[Array, Array], Array], first: ArrayLike, s: ArrayLike) -> Array:
+    def _over_rms(self, s: ArrayLike) -> Array:
+        """Heights over sqrt(m0), no farther out than there are any."""
         edges = tables_of(float(self.alpha)).edges
-        x = np.clip(self.heights.over_rms(s), edges[0], edges[-1])  # beyond, there are no heights
-        a, x = np.broadcast_arrays(np.asarray(first, dtype=np.float64), x)
+        return np.clip(self.heights.over_rms(s), edges[0], edges[-1])
+
+    def _broadcast(self, function: Callable[[Array, Array], Array], first: ArrayLike, s: ArrayLike) -> Array:
+        a, x = np.broadcast_arrays(np.asarray(first, dtype=np.float64), self._over_rms(s))
         result, flat, heights = np.empty(a.size), a.ravel(), x.ravel()
         for k in range(0, a.size, _BLOCK):
             i = slice(k, k + _BLOCK)

@@ -17,7 +17,7 @@ Array = NDArray[np.float64]
 _WIDE = 9.5  # standard deviations, beyond which a normal density is 1e-20 of its largest value
 _MEDIAN = 1.6783469900166605  # of the gamma law of shape 2
 _MOST_STEPS, _NEAR, _SAME = 100, 1e-8, 1e-12
-_FLATTEST = 1e-7  # curvature from which on guesses are tabulated
+_FLATTEST = 1e-7  # curvature of which there is none flatter in 1e27 summits
 _LOWEST, _HIGHEST, _STEP = -12.0, 16.0, 0.125  # heights over sqrt(m0) of the table of guesses
 _GUESSED = np.concatenate(
     [np.linspace(-14.0, -2.0, 120, endpoint=False), np.log(np.linspace(np.exp(-2), 7.5, 150))]
@@ -105,6 +105,32 @@ class CurvatureGivenHeight:
         rest = (w * 2 * y ** (7 - 2 * power) * self._parts(y * y)).sum(axis=0) / self._whole
         return np.asarray(rest if flattest == 0 else rest + flattest**-power * self.between(0 * low, low))
 
+    def root_rule(self, nodes: int, flattest: float) -> tuple[Array, Array]:
+        """Gauss's rule for functions of ``y = max(g, flattest)^(-1/2)``.
+
+        Parameters
+        ----------
+        nodes : int
+            Powers up to ``y^(2 nodes - 1)`` have their exact means: radii have none from y^8 on, so 4 at most
+            if `flattest` is 0.
+        flattest : float
+            Smallest curvature.
+
+        Returns
+        -------
+        (ndarray, ndarray)
+            Values of y, and their probabilities, shape (nodes, n).
+        """
+        low = np.full_like(self.x, flattest)
+        high = np.maximum(self.highest(low), low)
+        root, w = panelled(np.sqrt(self.edges(low, high)))  # y^7 of it leaves nothing to divide by
+        root = np.maximum(root, _FLATTEST)
+        mass, y = w * 2 * root**7 * self._parts(root * root) / self._whole, 1 / root
+        if flattest > 0:
+            mass = np.vstack([mass, self.between(0 * low, low)])
+            y = np.vstack([y, low**-0.5])
+        return _gauss(y, mass, nodes)
+
     def at(self, t: Array) -> Array:
         """Curvature below which the share ``1 - (1 + t^2) exp(-t^2)`` lies, by safeguarded Newton steps."""
         q = t * t
@@ -134,6 +160,22 @@ class CurvatureGivenHeight:
             more = np.abs(g[left] - at) > _NEAR * at  # a last step doubles the digits
             left, low, high = left[more], low[more], high[more]
         return g
+
+
+def _gauss(y: Array, mass: Array, nodes: int) -> tuple[Array, Array]:
+    """Rules that match the first moments of discrete measures, one in each column (Golub and Welsch)."""
+    matrix = np.zeros((y.shape[1], nodes, nodes))
+    total = mass.sum(axis=0)
+    last, now, size = np.zeros_like(y), np.ones_like(y), total
+    for k in range(nodes):
+        middle = (mass * y * now * now).sum(axis=0) / size
+        matrix[:, k, k] = middle
+        last, now = now, (y - middle) * now - (matrix[:, k, k - 1] ** 2 * last if k else 0.0)
+        smaller, size = size, (mass * now * now).sum(axis=0)
+        if k + 1 < nodes:
+            matrix[:, k, k + 1] = matrix[:, k + 1, k] = np.sqrt(size / smaller)
+    values, vectors = np.linalg.eigh(matrix)
+    return values.T, (total[:, None] * vectors[:, 0] ** 2).T
 
 
 @lru_cache(maxsize=16)

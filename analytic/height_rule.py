@@ -41,6 +41,7 @@ Count = Literal["fixed", "poisson"]
 _REACH = 13.0
 _NODES = 64
 _POWER = 4  # of the modulus in the kurtosis
+_DIVERGES = 4  # power of the radius of a summit that has no mean
 _STEP = 4.0  # widest piece, on which the density is resolved as far down as s = -40
 
 
@@ -199,17 +200,21 @@ class Fluctuations:
         The random part at each height of the rule, shape (m, columns).
     below : ndarray
         That below all of them, shape (columns,).
+    radius : ndarray, optional
+        Power of the radius in each column, where radii have means up to the third power only.
     """
 
     rule: HeightRule
     mean: Array
     at_heights: Array
     below: Array
+    radius: Array | None = None
 
     def moment(self, k: int) -> Array:
-        """Mean of the `k`-th power, shape (columns,)."""
+        """Mean of the `k`-th power, shape (columns,); infinite where there is none."""
         rule = self.rule
-        return np.asarray(rule.probabilities @ self.at_heights**k + rule.below * self.below**k)
+        found = np.asarray(rule.probabilities @ self.at_heights**k + rule.below * self.below**k)
+        return found if self.radius is None else np.where(k * self.radius < _DIVERGES, found, np.inf)
 
     def products(self) -> Array:
         """Mean products of all columns, shape (columns, columns)."""
@@ -223,11 +228,13 @@ class Fluctuations:
             self.mean[columns] / unit,
             self.at_heights[:, columns] / unit,
             self.below[columns] / unit,
+            None if self.radius is None else self.radius[columns],
         )
 
     def turned(self, axes: Array) -> "Fluctuations":
         """Combinations of the columns; `axes` has shape (columns, combinations)."""
-        return Fluctuations(self.rule, self.mean @ axes, self.at_heights @ axes, self.below @ axes)
+        radius = None if self.radius is None else np.where(axes, self.radius[:, None], 0.0).max(axis=0)
+        return Fluctuations(self.rule, self.mean @ axes, self.at_heights @ axes, self.below @ axes, radius)
 
     def whitening(self, least: float) -> Array:
         """Matrix that turns columns of unit variance into uncorrelated ones, shape (columns, axes).

@@ -1,12 +1,13 @@
 """The exact statistics of one rough surface in contact: means, fluctuations and their inversion."""
 
 from collections.abc import Sequence
-from dataclasses import KW_ONLY, dataclass, field
-from functools import cached_property
+from dataclasses import KW_ONLY, dataclass, field, replace
+from functools import cached_property, partial
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from analytic.curvature import RandomCurvature
 from analytic.gradings import Grading, Homogeneous
 from analytic.height_rule import Count, Fluctuations, HeightRule
 from analytic.heights import Gaussian, HeightLaw
@@ -19,7 +20,9 @@ from analytic.laws.tangential import Tangential, half_spaces
 from analytic.laws.ways import Ways
 from analytic.mean_contact import MeanContact
 from analytic.quantities import LAW_QUANTITIES, Quantity, quantity_of
+from analytic.summits import over_radii, random_fluctuations, separations_of_means
 from analytic.surface import Surface
+from analytic.weighted_heights import WeightedHeights
 
 __all__ = ["Cumulants", "Model"]
 
@@ -61,6 +64,10 @@ class Model:
         E*(s)/E*; default: homogeneous.
     heights : HeightLaw, optional
         Law of the reduced heights; default: Gaussian.
+    curvature : RandomCurvature, optional
+        Radii of the summits, given their heights, which must be those of the same alpha; the radius of the
+        surface is then the inverse of their mean curvature. Default: one radius. The fourth cumulant of the
+        area is infinite where radii have no bound.
     law : ContactLaw, optional
         Law of contact of an asperity, of `analytic.laws`; default: Hertz's. Quantities are then also
         "load_slope" (N/m), the slope of the load without the jumps of asperities, and "yielded" (1), the
@@ -95,6 +102,7 @@ class Model:
     _: KW_ONLY
     grading: Grading = field(default_factory=Homogeneous)
     heights: HeightLaw = field(default_factory=Gaussian)
+    curvature: RandomCurvature | None = None
     law: ContactLaw | None = None
     unload_from: float | None = None
     film: Film | None = None
@@ -106,6 +114,11 @@ class Model:
             raise ValueError(f"n_asperities = {self.n_asperities!r}: give a finite number > 0")
         if self.count not in ("fixed", "poisson"):
             raise ValueError(f'count = {self.count!r}: give "fixed" or "poisson"')
+        if self.curvature is not None and self.heights != self.curvature.heights:
+            raise ValueError(
+                f"heights = {self.heights!r}: summits of random curvature have heights of their own; give "
+                f"heights = {self.curvature.heights!r}"
+            )
         law = self.ways.law  # one that lacks a constant says so now
         if self.unload_from is not None:
             law.unloading()
@@ -141,7 +154,9 @@ class Model:
         """
         q = self._asked(quantity, h)
         if self._by_powers(q):
-            return self._unit(q) * fn(q.exponent, h, self._grading(q), heights=self.heights)
+            return self._unit(q) * fn(q.exponent, h, self._grading(q), heights=self._weighted(q))
+        if self.curvature is not None:
+            return over_radii(self, np.asarray(h), lambda one: one.mean(quantity, h))
         return self._unit(q) * self._contact.mean(quantity, np.asarray(h, dtype=np.float64))
 
     def slope(self, quantity: str, h: ArrayLike) -> Array:
@@ -173,10 +188,16 @@ class Model:
         if q.base == "load_slope":
             raise ValueError(f"quantity = {quantity!r}: its own slope is not known; give another quantity")
         if self._by_powers(q) and q.exponent >= 1:
-            return self._unit(q) * q.exponent * fn(q.exponent - 1, h, self._grading(q), heights=self.heights)
+            return (
+                self._unit(q)
+                * q.exponent
+                * fn(q.exponent - 1, h, self._grading(q), heights=self._weighted(q))
+            )
+        if self.curvature is not None and not self._by_powers(q):
+            return over_radii(self, np.asarray(h), lambda one: one.slope(quantity, h))
         h = np.asarray(h, dtype=np.float64)
         if not q.unloading or self.ways.law.elastic:
-            return self._unit(q) * self._contact.slope(q.base, h)
+            return self._unit(q) * replace(self._contact, heights=self._weighted(q)).slope(q.base, h)
         if q.base != "load":
             raise ValueError(f"quantity = {quantity!r}: its slope is not known; give 'load_unloading'")
         return self._unit(q) * q.exponent * self._contact.mean("load_slope_unloading", h)
@@ -196,7 +217,14 @@ class Model:
         ndarray
             In the shape of `h`; nan where no contact is to be expected in double precision.
         """
-        return self._contact.share(piece, np.asarray(h, dtype=np.float64))
+        h = np.asarray(h, dtype=np.float64)
+        if self.curvature is None:
+            return self._contact.share(piece, h)
+        met = over_radii(
+            self, np.asarray(h), lambda one: np.nan_to_num(one.share(piece, h)) * one.mean("contacts", h)
+        )
+        with np.errstate(invalid="ignore"):
+            return np.asarray(met / self.mean("contacts", h))
 
     def cumulants(self, quantity: str, h: ArrayLike) -> Cumulants:
         """Mean, variance, skewness and excess kurtosis over surfaces, in the shape of `h`."""
@@ -287,7 +315,9 @@ class Model:
         if not np.all(np.isfinite(target) & (target > 0)):
             raise ValueError(f"{quantity} = {value!r}: give finite values > 0 {q.unit}")
         if self._by_powers(q):
-            return separations_at(q, np.log(target / self._unit(q)), self._grading(q), self.heights)
+            return separations_at(q, np.log(target / self._unit(q)), self._grading(q), self._weighted(q))
+        if self.curvature is not None:
+            return separations_of_means(self, quantity, target)
         return self._contact.separations_at(quantity, target / self._unit(q))
 
     def rule(self, separations: ArrayLike, quantities: Sequence[str] = ("load",)) -> HeightRule:
@@ -302,6 +332,8 @@ class Model:
         Columns are quantity by quantity, at increasing number of the separation.
         """
         powers = all(self._by_powers(quantity_of(name)) for name in quantities)
+        if self.curvature is not None:
+            return random_fluctuations(self, quantities, np.asarray(separations, dtype=float), powers=powers)
         rule = self.rule(separations, quantities)
         terms = rule.terms(quantities, separations, self.grading, None if powers else self.ways)
         return rule.fluctuations(terms, self.count)
@@ -337,6 +369,12 @@ class Model:
 
     def _unit(self, q: Quantity) -> float:
         return self.number * q.scale(self.surface)
+
+    def _weighted(self, q: Quantity) -> HeightLaw:
+        """The heights, each with the mean of the power of the radius that counts in a quantity."""
+        if self.curvature is None or q.radius == 0:
+            return self.heights
+        return WeightedHeights(self.heights, partial(self.curvature.mean, q.radius))
 
     def _grading(self, q: Quantity) -> Grading | None:
         return self.grading if q.modulus else None

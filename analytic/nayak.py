@@ -48,16 +48,18 @@ def panelled(edges: Array) -> tuple[Array, Array]:
     Parameters
     ----------
     edges : ndarray
-        Increasing along the first axis, shape (k, n); equal ones cost nothing but time.
+        Increasing along the first axis, shape (k, n), some of them equal.
 
     Returns
     -------
     (ndarray, ndarray)
-        Each of shape (64 (k - 1), n).
+        Each of shape (64 m, n), m <= k - 1: pieces that have no width in any column are left out.
     """
     x, w = gauss_legendre(_NODES)
-    width = np.diff(edges, axis=0)[:, None]
-    points = edges[:-1, None] + width * x[:, None]
+    width = np.diff(edges, axis=0)
+    some = width.any(axis=1)
+    width = width[some][:, None]
+    points = edges[:-1][some][:, None] + width * x[:, None]
     return points.reshape(-1, edges.shape[1]), (width * w[:, None]).reshape(-1, edges.shape[1])
 
 

@@ -1,0 +1,79 @@
+"""A height law whose density counts with a weight."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from analytic.heights import HeightLaw
+
+__all__ = ["WeightedHeights"]
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class WeightedHeights:
+    """A height law whose density counts with a weight: what summits of each height add in the mean.
+
+    Parameters
+    ----------
+    law : HeightLaw
+        The law itself, which all but `density` is of.
+    weight : callable
+        Takes reduced heights to their weights.
+    widest : float, optional
+        Largest span over which the weight hardly bends.
+    """
+
+    law: HeightLaw
+    weight: Callable[[Array], Array]
+    widest: float = np.inf
+
+    @property
+    def support(self) -> tuple[float, float]:
+        """As the law's."""
+        return self.law.support
+
+    @property
+    def breaks(self) -> tuple[float, ...]:
+        """As the law's."""
+        return self.law.breaks
+
+    @property
+    def singular(self) -> tuple[float, ...]:
+        """As the law's."""
+        return self.law.singular
+
+    def span(self, s: float) -> float:
+        """As the law's, or narrower."""
+        return min(self.law.span(s), self.widest)
+
+    def sample(self, rng: np.random.Generator, n: int) -> Array:
+        """Heights of the law, without the weight."""
+        return self.law.sample(rng, n)
+
+    def density(self, s: Array) -> Array:
+        """Density times weight."""
+        return self.law.density(s) * self.weight(s)
+
+    def log_ratio(self, s: Array, t: Array) -> Array:
+        """As the law's."""
+        return self.law.log_ratio(s, t)
+
+    def below(self, s: Array) -> Array:
+        """As the law's."""
+        return self.law.below(s)
+
+    def above(self, s: Array) -> Array:
+        """As the law's."""
+        return self.law.above(s)
+
+    def from_below(self, p: Array, s: float) -> Array:
+        """As the law's."""
+        return self.law.from_below(p, s)
+
+    def from_above(self, p: Array, s: float) -> Array:
+        """As the law's."""
+        return self.law.from_above(p, s)
