@@ -56,8 +56,10 @@ class Direct:
         total = asperity_sums(scene, np.array([0]), np.empty(0), np.empty(0))
         while left:
             now = min(left, _PIECE)
-            heights = scene.heights.sample(rng, now)
-            ratios = None if scene.curvature is None else scene.curvature.sample(rng, heights)
+            if scene.curvature:
+                heights, ratios = scene.curvature.summits(rng, now)
+            else:
+                heights, ratios = scene.heights.sample(rng, now), None
             left -= now
             for name, value in asperity_sums(scene, np.array([now]), heights, np.ones(now), ratios).items():
                 total[name] += value

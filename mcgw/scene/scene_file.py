@@ -18,8 +18,8 @@ from mcgw.scene.law_section import law_table
 from mcgw.scene.scene import Scene
 from mcgw.scene.section import SceneError, Section
 from mcgw.scene.storable import storable
-from mcgw.scene.summits_section import MOMENTS, curvature_of, read_spectral, summits_table
-from mcgw.scene.surface import SURFACE_UNITS, read_surface
+from mcgw.scene.summits_section import curvature_of, summits_table
+from mcgw.scene.surface import MOMENTS, SURFACE_UNITS, read_spectral, read_surface
 from mcgw.scene.tangential_section import tangential_table
 
 __all__ = ["files_of", "load_scene", "scene_from", "scene_text"]

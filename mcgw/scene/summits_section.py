@@ -7,9 +7,8 @@ from typing import Any
 from analytic import HeightLaw, Nayak, RandomCurvature, SpectralMoments, Surface
 from mcgw.scene.section import Section
 
-__all__ = ["MOMENTS", "Spectral", "curvature_of", "datum_shift", "read_spectral", "summits_table"]
+__all__ = ["Spectral", "curvature_of", "datum_shift", "summits_table"]
 
-MOMENTS = {"m0": "m^2", "m2": "1", "m4": "1/m^2"}
 _CURVATURES = ("random", "mean")
 
 
@@ -32,24 +31,6 @@ class Spectral:
     def heights(self) -> Nayak:
         """Law of the heights of its summits."""
         return Nayak(self.moments.alpha)
-
-
-def read_spectral(section: Section) -> Spectral | None:
-    """Read [surface] with m0, m2, m4 for sigma, radius, eta; mistakes are noted, and give None."""
-    units = {**MOMENTS, "nominal_area": "m^2", "E_star": "Pa"}
-    values = {key: section.number(key, unit=unit) for key, unit in units.items()}
-    for key in ("sigma", "radius", "eta"):
-        if key in section:
-            section.fail(key, section.take(key), "give either m0, m2, m4, or sigma, radius, eta")
-    if any(map(math.isnan, values.values())):
-        return None
-    try:
-        moments = SpectralMoments(*(values[key] for key in MOMENTS))
-        Nayak(moments.alpha)
-        return Spectral(moments, moments.surface(values["nominal_area"], values["E_star"]))
-    except ValueError as error:
-        section.problems.append(f"surface: {error}")
-        return None
 
 
 def curvature_of(

@@ -4,15 +4,24 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
-from analytic import Body, composite_modulus
+from analytic import Body, Nayak, SpectralMoments, composite_modulus
 from analytic import Surface as Plain
 from mcgw.formats.units import quantity
 from mcgw.scene.reading import as_toml
 from mcgw.scene.section import SceneError, Section
-from mcgw.scene.summits_section import Spectral, read_spectral
+from mcgw.scene.summits_section import Spectral
 
-__all__ = ["SURFACE_UNITS", "SpectralSurface", "Surface", "read_surface", "surface_of"]
+__all__ = [
+    "MOMENTS",
+    "SURFACE_UNITS",
+    "SpectralSurface",
+    "Surface",
+    "read_spectral",
+    "read_surface",
+    "surface_of",
+]
 
+MOMENTS = {"m0": "m^2", "m2": "1", "m4": "1/m^2"}
 SURFACE_UNITS = {"sigma": "m", "radius": "m", "eta": "1/m^2", "nominal_area": "m^2", "E_star": "Pa"}
 
 
@@ -127,11 +136,33 @@ def surface_of(given: Mapping[str, Any]) -> Plain:
 
 def read_surface(section: Section) -> Plain | None:
     """Read the table [surface]; mistakes are noted in the section, and give None."""
-    values = {
-        key: _bodies(section) if key == "E_star" and "bodies" in section else section.number(key, unit=unit)
-        for key, unit in SURFACE_UNITS.items()
-    }
+    values = _values(section, SURFACE_UNITS)
     return None if any(map(math.isnan, values.values())) else Plain(**values)
+
+
+def read_spectral(section: Section) -> Spectral | None:
+    """Read [surface] with m0, m2, m4 for sigma, radius, eta; mistakes are noted, and give None."""
+    values = _values(section, {**MOMENTS, "nominal_area": "m^2", "E_star": "Pa"})
+    for key in ("sigma", "radius", "eta"):
+        if key in section:
+            section.fail(key, section.take(key), "give either m0, m2, m4, or sigma, radius, eta")
+    if any(map(math.isnan, values.values())):
+        return None
+    try:
+        moments = SpectralMoments(*(values[key] for key in MOMENTS))
+        Nayak(moments.alpha)
+        return Spectral(moments, moments.surface(values["nominal_area"], values["E_star"]))
+    except ValueError as error:
+        section.problems.append(f"surface: {error}")
+        return None
+
+
+def _values(section: Section, units: Mapping[str, str]) -> dict[str, float]:
+    """Numbers by their keys; E_star may be told by two bodies."""
+    return {
+        key: _bodies(section) if key == "E_star" and "bodies" in section else section.number(key, unit=unit)
+        for key, unit in units.items()
+    }
 
 
 def _bodies(section: Section) -> float:
