@@ -301,3 +301,32 @@ def test_what_does_not_go_together_gets_one_line(text, says):
         mcgw.scene_from(text)
     assert len(caught.value.problems) == 1, caught.value.problems
     assert says in caught.value.problems[0]
+
+
+def test_a_wrong_area_is_seen_though_its_kurtosis_is_infinite(monkeypatch):
+    """The verdict holds areas to theory: were each summit 5 % too large, it would say so."""
+    from mcgw.statistics.comparison import verdict
+
+    scene = spectral(n_surfaces=400, n_asperities=5000, sampler="cells", separations=(0.0, 1.0, 2.0))
+    ensemble = mcgw.simulate(scene)
+    assert np.isinf(scene.theory.cumulants("area", 1.0).excess_kurtosis)
+    found = verdict(ensemble)
+    assert found.agrees
+    assert found.degrees > len(scene.separations) * 2
+    plain = type(ensemble).mean
+
+    def wrong(self, quantity):
+        return plain(self, quantity) * (1.05 if quantity == "area" else 1.0)
+
+    monkeypatch.setattr(type(ensemble), "mean", wrong)
+    assert not verdict(ensemble).agrees
+
+
+def test_solved_on_each_surface():
+    """At the separation of each surface its very summits carry the load; also where they yield."""
+    for law in (mcgw.Hertz(), mcgw.KogutEtsion(hardness=1.2e9)):
+        scene = spectral(law=law, n_asperities=500, n_surfaces=3)
+        found = mcgw.solve(scene, load=2.0)
+        for name, value in (("load", 2.0),):
+            np.testing.assert_allclose(found.surfaces[name], value, rtol=1e-9)
+        assert found.theory["separation"] == pytest.approx(float(scene.theory.separation_at("load", 2.0)))

@@ -169,12 +169,13 @@ def _radii(scene: Fields) -> Iterator[str]:
             'summits.curvature = "random": it goes with heights.law = "nayak", alpha = '
             f'{scene.curvature.alpha:g}; take these heights, or curvature = "mean"'
         )
-    if scene.sampler == "aggregate":
+    promise = promise_of(scene.sampler)
+    if not promise.own_radii:
         yield (
-            'ensemble.sampler = "aggregate": sums of summits with radii of their own are far from Gaussian; '
-            'take "cells", or summits.curvature = "mean"'
+            f'ensemble.sampler = "{scene.sampler}": sums of summits with radii of their own are far from '
+            'Gaussian; take "cells", or summits.curvature = "mean"'
         )
-    if not scene.hertzian and (scene.sampler in ("cells", "stratified") or scene.keep == "moments"):
+    if not scene.hertzian and (not promise.own_laws or scene.keep == "moments"):
         key, value = ("keep", "moments") if scene.keep == "moments" else ("sampler", scene.sampler)
         yield (
             f'ensemble.{key} = "{value}": each summit with a radius of its own has its own breaks of '

@@ -20,6 +20,10 @@ class Promise:
         The heights are those of single asperities, which `mcgw.heights` can tell.
     keeps_moments : bool, optional
         Its surfaces can be given another grading afterwards.
+    own_radii : bool, optional
+        It can draw a radius for each summit.
+    own_laws : bool, optional
+        It adds up summit by summit, so that each can have breaks of its own in the law of contact.
     not_done : tuple of str, optional
         What it spares, for people; ``{spared}`` stands for the asperities that do not touch.
     """
@@ -28,6 +32,8 @@ class Promise:
     same_on_all_processors: bool = True
     one_by_one: bool = True
     keeps_moments: bool = True
+    own_radii: bool = True
+    own_laws: bool = False
     not_done: tuple[str, ...] = ()
 
 
@@ -35,10 +41,10 @@ _UNTOUCHED = "{spared:.4g} asperities of a surface lie below every separation an
 _CROWDED = "asperities of crowded cells are not drawn: their moments are, as Gaussian numbers"
 
 _PROMISES = {
-    "direct": Promise(same_on_all_processors=False, one_by_one=False, keeps_moments=False),
-    "tail": Promise(keeps_moments=False, not_done=(_UNTOUCHED,)),
+    "direct": Promise(same_on_all_processors=False, one_by_one=False, keeps_moments=False, own_laws=True),
+    "tail": Promise(keeps_moments=False, own_laws=True, not_done=(_UNTOUCHED,)),
     "cells": Promise(not_done=(_UNTOUCHED,)),
-    "aggregate": Promise(one_by_one=False, not_done=(_UNTOUCHED, _CROWDED)),
+    "aggregate": Promise(one_by_one=False, own_radii=False, not_done=(_UNTOUCHED, _CROWDED)),
     "stratified": Promise(real_surfaces=False, one_by_one=False, keeps_moments=False, not_done=(_UNTOUCHED,)),
 }
 SAMPLERS = ("auto", *_PROMISES)
@@ -46,4 +52,4 @@ SAMPLERS = ("auto", *_PROMISES)
 
 def promise_of(sampler: str) -> Promise:
     """What a sampler promises; ``auto`` takes one that promises all."""
-    return _PROMISES.get(sampler, Promise())
+    return _PROMISES.get(sampler, Promise(own_laws=True))

@@ -14,6 +14,7 @@ from mcgw.formats.evenly import evenly
 from mcgw.formats.sheet import Sheet, Shown
 from mcgw.machine.late import plotted
 from mcgw.scene.samplers import promise_of
+from mcgw.statistics.bounded import bounded_theory
 
 __all__ = ["FALSE_ALARM", "Comparison", "Curve", "Verdict", "compare", "verdict"]
 
@@ -174,7 +175,7 @@ def verdict(ensemble: Ensemble) -> Verdict:
     scene = ensemble.scene
     h = np.unique(scene.separations)
     h = h[evenly(len(h), _MOST_SEPARATIONS)]
-    parts = scene.theory.fluctuations(scene.quantities, h)
+    parts = bounded_theory(scene, ensemble.n_surfaces).fluctuations(scene.quantities, h)
     index = [scene.separations.index(x) for x in h]
     means = [ensemble.mean(q)[index] / quantity_of(q).scale(scene.surface) for q in scene.quantities]
     difference = np.concatenate(means) - scene.n_asperities * parts.mean

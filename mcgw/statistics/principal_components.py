@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from analytic import Quantity, quantity_of
 from mcgw.scene.scene import Scene
+from mcgw.statistics.bounded import bounded_theory
 
 __all__ = ["PrincipalComponents"]
 
@@ -53,7 +54,7 @@ class PrincipalComponents:
         Of all its quantities, unless some are named.
         """
         n, h, quantities = scene.n_asperities, np.array(scene.separations), quantities or scene.quantities
-        parts = scene.theory.fluctuations(quantities, h)
+        parts = bounded_theory(scene, scene.n_surfaces).fluctuations(quantities, h)
         variance = parts.moment(2)
         share = np.concatenate([_share(scene, quantity_of(name), h) for name in quantities])
         touching = n * np.minimum(share, 1 - share + (scene.count == "poisson"))
