@@ -66,7 +66,14 @@ def material(tmp_path_factory):
     scene = mcgw.load_scene(folder / "s.toml")
     run(dataclasses.replace(scene, keep="moments"), folder / "e.h5")
     assert main(["surface", *SPECTRUM, "--seed", "3", "-o", str(folder / "map.sdf")]) == 0
-    np.save(folder / "bare.npy", read_map(folder / "map.sdf").heights)
+    z = read_map(folder / "map.sdf").heights
+    np.save(folder / "bare.npy", z)
+    holes, spiked, stepped = z.copy(), z.copy(), z.copy()
+    holes[100:140, 200:260] = np.nan
+    spiked[50::60, 40::70] += 3e-5
+    stepped[:, 300:] += 1e-5
+    for name, heights in (("holes", holes), ("spiked", spiked), ("stepped", stepped)):
+        np.save(folder / f"{name}.npy", heights)
     return folder
 
 
@@ -328,6 +335,9 @@ MAP = ["@s.toml", "--shape", "200", "-o", "m.sdf"]
 HDF = [*MAP[:-1], "m.h5"]
 GAUSS = [*SPECTRUM, "-o", "m.sdf"]
 FIT = ["@map.sdf", "--cutoff", "none", "-o", "f.toml"]
+HOLES, SPIKED, STEPPED = (
+    [f"@{name}.npy", "--cutoff", "none", "--pixel", "1um"] for name in ("holes", "spiked", "stepped")
+)
 SHAPES = {f: ["@s.toml", "--shape", f, "-o", "m.sdf"] for f in ("50", "60x40")}
 
 
@@ -436,6 +446,17 @@ ROWS = [
     row("fit", "--heights", FIT, [*FIT, "--heights", "table"],
         fitted("heights", lambda a, b: isinstance(b.heights, analytic.HeightTable))),
     row("fit", "--heights", FIT, [*FIT, "--heights", "measured"], writes("f.heights.npy")),
+    row("fit", "--long-cutoff", FIT, [*FIT, "--long-cutoff", "40um"],
+        fitted("sigma", lambda a, b: b.surface.sigma < 0.9 * a.surface.sigma)),
+    row("fit", "--missing", [*HOLES, "-o", "f.toml"], [*HOLES, "--missing", "fill", "-o", "f.toml"],
+        fitted("area", lambda a, b: b.surface.nominal_area > a.surface.nominal_area)),
+    row("fit", "--spikes", [*SPIKED, "-o", "f.toml"], [*SPIKED, "--spikes", "remove", "-o", "f.toml"],
+        fitted("radius", lambda a, b: b.surface.radius > a.surface.radius)),
+    row("fit", "--step", [*STEPPED, "-o", "f.toml"], [*STEPPED, "--step", "crop", "-o", "f.toml"],
+        fitted("area", lambda a, b: b.surface.nominal_area < 0.75 * a.surface.nominal_area)),
+    row("fit", "--trim", FIT, [*FIT, "--trim", "30"],
+        fitted("area", lambda a, b: b.surface.nominal_area < a.surface.nominal_area)),
+    row("fit", "--picture", FIT, [*FIT, "--picture", "f.png"], writes("f.png")),
     row("fit", "--E-star", FIT, [*FIT, "--E-star", "5e9"],
         fitted("E_star", lambda a, b: (a.surface.E_star, b.surface.E_star) == (1e11, 5e9))),
     row("fit", "--parts", FIT, [*FIT, "--parts", "3"], errors_differ),

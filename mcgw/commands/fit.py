@@ -1,6 +1,7 @@
 """``mcgw fit``: a scene from a measured map."""
 
 import argparse
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -26,8 +27,8 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         "--unit", metavar="UNIT", help="of the heights, as um, where the file does not tell it; default: m"
     )
     parser.add_argument(
-        "--use", choices=("moments", "summits", "caps"), default="summits",
-        help="which estimate goes into the scene; default: summits",
+        "--use", choices=("auto", "moments", "summits", "caps"), default="auto",
+        help="which estimate goes into the scene; default: caps if all summits have one radius, else summits",
     )  # fmt: skip
     parser.add_argument(
         "--heights", choices=("gaussian", "table", "measured"), default="gaussian",
@@ -43,13 +44,17 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         "--summits", type=Path, metavar="CSV", help="write every summit: place, height, radius, curvatures"
     )
     parser.add_argument("--tiles", type=Path, metavar="CSV", help="write what each sub-area tells by itself")
+    parser.add_argument(
+        "--picture", type=Path, metavar="PNG",
+        help="also draw the map before and after, its summits, their laws, and moments against cutoff",
+    )  # fmt: skip
     parser.add_argument("-o", "--output", type=Path, required=True, metavar="SCENE", help="TOML file")
 
 
 def execute(args: argparse.Namespace) -> int:
     """Print the estimates side by side with warnings, write the scene, and say where it is."""
     from mcgw.commands.fit_profiles import fit_of_profiles
-    from mcgw.commands.outputs import CSV, NPY, TOML, Output, check_outputs
+    from mcgw.commands.outputs import CSV, NPY, TOML, Output, check_outputs, figure_format
     from mcgw.commands.preparation import preparation
     from mcgw.formats.units import parse
     from mcgw.maps.cautions import cautions
@@ -76,16 +81,26 @@ def execute(args: argparse.Namespace) -> int:
     beside = [Output(heights_beside(args.output), NPY)] if args.heights == "measured" else []
     tables = {"--summits": args.summits, "--tiles": args.tiles}
     beside += [Output(path, CSV, option) for option, path in tables.items() if path is not None]
+    if args.picture is not None:
+        beside.append(Output(args.picture, figure_format(), "--picture"))
     check_outputs([Output(args.output, TOML), *beside], inputs=files_of_map(path_of_map))
     ready = prepared(topography, asked)
     fit = fit_prepared(ready, across=args.parts)
+    fit = replace(fit, cautions=tuple(cautions(fit, ready)))
     head = map_line(path_of_map.name, asked, topography.assumed_unit)
-    text = [head, *fit.notes, *fit_lines(fit), *(f"warning: {line}" for line in cautions(fit, ready))]
+    text = [head, *fit.notes, *fit_lines(fit), *(f"warning: {line}" for line in fit.cautions)]
     print("\n".join(text))
     scene = fitted_scene(fit, use=args.use, heights=args.heights, E_star=E_star, title=f"Fitted to {head}")
-    for path in write_scene(scene, args.output, fit if args.heights == "measured" else None, text):
+    comments = [*text, "", "units: sigma and radius in m, eta in 1/m^2, nominal_area in m^2, E_star in Pa"]
+    for path in write_scene(scene, args.output, fit if args.heights == "measured" else None, comments):
         print(path)
     _write_tables(fit, args.summits, args.tiles)
+    if args.picture is not None:
+        from mcgw.figures.map_fit import save_fit_picture
+
+        save_fit_picture(fit, ready, args.picture)
+        print(f"{args.picture}: figure")
+    print(f"next: mcgw run {args.output} -o {args.output.with_suffix('.h5')}")
     return 0
 
 

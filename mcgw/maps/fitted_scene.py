@@ -22,7 +22,7 @@ Heights = Literal["gaussian", "table", "measured"]
 def fitted_scene(
     fit: Fit | ProfileFit,
     *,
-    use: str = "summits",
+    use: str = "auto",
     heights: Heights = "gaussian",
     E_star: float | str = "100 GPa",
     title: str = "",
@@ -33,8 +33,9 @@ def fitted_scene(
     ----------
     fit : Fit or ProfileFit
         With the estimate that is asked for; profiles have one alone.
-    use : {"moments", "summits", "caps"}
-        Which estimate. With measured heights sigma is that of the heights.
+    use : {"auto", "moments", "summits", "caps"}
+        Which estimate; ``auto`` is `Fit.best`, and with heights of their own the counted summits. With
+        measured heights sigma is that of the heights.
     heights : {"gaussian", "table", "measured"}
         Law of the heights; ``measured`` makes an ensemble of the one surface there is.
     E_star : float or str
@@ -70,6 +71,8 @@ def fitted_scene(
                 "gaussian heights"
             )
         return profile_scene(fit, modulus, title)
+    if use == "auto":
+        use = fit.best if heights == "gaussian" else "summits"
     if use not in fit.estimates:
         raise ValueError(
             f"use = {use!r}: there is no such estimate of this map; {', '.join(fit.estimates)} are"
