@@ -8,7 +8,7 @@ from mcgw.maps.preparation import Prepared
 __all__ = ["cautions"]
 
 _PIXELS = 10.0  # a cutoff wavelength should have
-_RESOLVED = 0.85  # of m4 over two pixels to that over one: below, plain differences lose a twentieth of it
+_RESOLVED = 0.05  # that two ways to m4 may differ by: at about ten pixels a wavelength
 _LOST = 0.1  # of the summits
 _SKEW, _ALPHA, _FEW, _STREAKY = 0.3, 1.5, 100, 1.5
 
@@ -29,12 +29,12 @@ def _of_the_pixel(fit: Fit, pixel: float, cutoff: float | None) -> list[str]:
             f"cutoff: {cutoff / pixel:.3g} pixels a wavelength; below {_PIXELS:g} the pixel sets eta and R, "
             "not the specimen; give a longer cutoff or finer pixels"
         ]
-    kept = fit.mean_squares["bend_2"] / fit.mean_squares["bend_1"]
-    if kept < _RESOLVED:
-        more = max(_PIXELS, 1.5 * (cutoff or 0.0) / pixel)
+    more = fit.mean_squares["bend"] / fit.mean_squares["bend_1"] - 1
+    if more > _RESOLVED:
+        longer = max(_PIXELS, 1.5 * (cutoff or 0.0) / pixel)
         return [
-            f"pixel: the mean square curvature falls to {kept:.2g} of itself from one pixel to two; the "
-            f"pixel has a say in m4, R and eta; give a cutoff of {more:.3g} pixels or more"
+            f"pixel: m4 by differences of fourth order is {100 * more:.2g} % above that by plain ones; it "
+            f"has a say in m4, R and eta; give a cutoff of {longer:.3g} pixels or more"
         ]
     return []
 
