@@ -23,7 +23,7 @@ def fit_of_profiles(args: argparse.Namespace, cutoff: float | None, E_star: floa
     from mcgw.maps.profile_files import read_profile
     from mcgw.maps.profile_fit import fit_profiles
 
-    for option, given in (("--summits", args.summits), ("--tiles", args.tiles)):
+    for option, given in (("--summits", args.summits), ("--tiles", args.tiles), ("--picture", args.picture)):
         if given is not None:
             raise ValueError(
                 f"{option} {given}: a profile shows no summits, and has no sub-areas; give a map"

@@ -1,6 +1,7 @@
 """A fitted map as one picture: before and after, the summits, their laws, and moments against cutoff."""
 
 import textwrap
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -29,8 +30,7 @@ _SIZE, _DPI = (11.0, 6.8), 160
 _POINTS = 700  # of a map along each side: more are not seen
 _MOST_MARKS = 3000
 _CUTOFFS = 8
-_WIDTH, _LINES = 50, 27  # of the text, in characters and lines
-_LEAST_ALPHA = 1.5  # of an isotropic Gaussian surface
+_WIDTH, _LINES = 46, 27  # of the text, in characters and lines
 _TIMES = 12.0  # from the shortest cutoff to the longest
 
 
@@ -138,14 +138,14 @@ def _draw_heights(axis: Any, fit: Fit) -> None:
         axis.plot(z, density(z), look, label=label)
     axis.set(xlabel="summit height, about its mean, over its std", ylabel="density")
     axis.set_title("d  summit heights", loc="left")
-    axis.margins(y=0.25)
+    axis.margins(y=0.5)
     axis.legend()
 
 
 def height_laws(fit: Fit) -> list[tuple[str, Any]]:
     """Densities of summit heights, mean 0 and standard deviation 1, that are drawn."""
-    laws = [("Gaussian", norm.pdf)]
-    if fit.alpha.value > _LEAST_ALPHA:
+    laws: list[tuple[str, Any]] = [("Gaussian", norm.pdf)]
+    with suppress(ValueError):  # no isotropic surface has such an alpha
         laws.append((f"Nayak, α = {fit.alpha.value:.3g}", Nayak(fit.alpha.value).density))
     return laws
 
