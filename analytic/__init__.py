@@ -53,6 +53,7 @@ from analytic.heights import Gaussian, HeightLaw
 from analytic.integrals import fn, fn_between, fn_paper, fn_scaled
 from analytic.inversion import ratio_at_equal_load
 from analytic.measured_heights import HeightTable, MeasuredHeights
+from analytic.measured_radii import MeasuredRadii
 from analytic.model import Cumulants, Model
 from analytic.nayak import Nayak
 from analytic.piecewise import PiecewiseSeries
@@ -122,6 +123,7 @@ __all__ = [
     "JohnsonKendallRoberts",
     "KogutEtsion",
     "MeasuredHeights",
+    "MeasuredRadii",
     "Model",
     "Nayak",
     "PiecewiseSeries",

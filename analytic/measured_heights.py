@@ -184,12 +184,15 @@ def _ranks(k: int) -> NDArray[np.int64]:
 
 @dataclass(frozen=True)
 class MeasuredHeights:
-    """Measured heights as they are: one surface, nothing drawn.
+    """Measured heights themselves: one surface, nothing drawn; or drawn from these very heights.
 
     Parameters
     ----------
     heights : sequence of float
         In any unit; reduced to mean 0 and standard deviation 1 (divisor K).
+    resampled : bool, optional
+        Whether each asperity of a surface has one of the heights, drawn with replacement. Default: the
+        surface has each height once.
 
     Raises
     ------
@@ -203,13 +206,15 @@ class MeasuredHeights:
     """
 
     heights: tuple[float, ...]
+    resampled: bool = False
     singular: tuple[float, ...] = ()
 
-    def __init__(self, heights: Sequence[float] | Array) -> None:
+    def __init__(self, heights: Sequence[float] | Array, *, resampled: bool = False) -> None:
         z = checked_heights(heights)
         if abs(z.mean()) > 1e-12 or abs(z.std() - 1) > 1e-12:
             z = reduced(z)
         object.__setattr__(self, "heights", tuple(z.tolist()))
+        object.__setattr__(self, "resampled", resampled)
 
     @cached_property
     def _sorted(self) -> Array:
@@ -233,16 +238,18 @@ class MeasuredHeights:
         ValueError
             Always.
         """
-        raise ValueError(f"measured heights have no density at s = {s:g}; resample them, or add them up")
+        raise ValueError(f"measured heights have no density at s = {s:g}; make a HeightTable, or add them up")
 
-    def sample(self, rng: np.random.Generator, n: int) -> Array:  # noqa: ARG002 - nothing is drawn
-        """The heights themselves, in their own order.
+    def sample(self, rng: np.random.Generator, n: int) -> Array:
+        """The heights themselves, in their own order; or `n` of them, drawn with replacement.
 
         Raises
         ------
         ValueError
-            If `n` is not their number.
+            If they are not drawn, and `n` is not their number.
         """
+        if self.resampled:
+            return np.array(self.heights)[rng.integers(0, len(self.heights), n)]
         if n != len(self.heights):
             raise ValueError(f"n = {n}: there are {len(self.heights)} measured heights")
         return np.array(self.heights)

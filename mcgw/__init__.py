@@ -16,7 +16,8 @@ Gradings E*(s)/E*, and height laws, of s = z/sigma:
 `Homogeneous`            the same modulus at every height; `Exponential`: Eq. (4) of the paper
 `Table`                  measured moduli; `Custom`: any function of s, as a plain lambda is too
 `Gaussian`               the default; `ExponentialHeights`, `Weibull`, `Nayak`
-`HeightTable`            measured heights, resampled; `MeasuredHeights`: just as they are
+`HeightTable`            measured heights, resampled; `MeasuredHeights`: just as they are, with a
+                         `MeasuredRadii` each summit's own radius too
 `ScipyHeights`           any distribution of scipy.stats, as a plain frozen one is too
 `Nayak`                  summits of a Gaussian surface; `RandomCurvature`: each with its own radius
 =======================  =========================================================================
@@ -87,6 +88,7 @@ if TYPE_CHECKING:
         JohnsonKendallRoberts,
         KogutEtsion,
         MeasuredHeights,
+        MeasuredRadii,
         Nayak,
         PowerLawGraded,
         RandomCurvature,
@@ -138,6 +140,7 @@ __all__ = [
     "JohnsonKendallRoberts",
     "KogutEtsion",
     "MeasuredHeights",
+    "MeasuredRadii",
     "Nayak",
     "PowerLawGraded",
     "RandomCurvature",

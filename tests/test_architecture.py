@@ -99,8 +99,9 @@ def test_the_root_has_only_the_door():
 SHARED = {
     "ALL_QUANTITIES", "LAW_QUANTITIES", "QUANTITIES", "TANGENTIAL", "UNLOADING",
     "Body", "Clipped", "Custom", "Exponential", "ExponentialHeights", "Gaussian", "Grading",
-    "HeightLaw", "HeightTable", "Homogeneous", "MeasuredHeights", "Nayak", "PER_AREA", "Quantity",
-    "PiecewiseSeries", "RandomCurvature", "ScipyHeights", "SpectralMoments", "Surface", "Table", "Weibull",
+    "HeightLaw", "HeightTable", "Homogeneous", "MeasuredHeights", "MeasuredRadii", "Nayak", "PER_AREA",
+    "PiecewiseSeries", "Quantity", "RandomCurvature", "ScipyHeights", "SpectralMoments", "Surface", "Table",
+    "Weibull",
     "bends", "composite_modulus", "extent",
     "first_negative", "is_data", "quantity_of", "resolved", "resolved_breaks",
     "ChangEtsionBogy", "Coated", "ContactLaw", "CustomLaw", "DerjaguinMullerToporov", "Hertz",

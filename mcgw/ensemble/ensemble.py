@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from analytic import PER_AREA, TANGENTIAL, MeasuredHeights, quantity_of
+from analytic import PER_AREA, TANGENTIAL, quantity_of
 from mcgw.ensemble.intervals import CONFIDENCE, count_interval, mean_interval, spread_of
 from mcgw.ensemble.results import Results
 from mcgw.ensemble.tables import dataframe, dataset
@@ -182,7 +182,7 @@ class Ensemble(Shown):
         scene, m = self.scene, self.n_surfaces
         if not promise_of(self.sampler).real_surfaces:
             raise ValueError("stratified surfaces have no interval: their fluctuations are not those of any")
-        if isinstance(scene.heights, MeasuredHeights):
+        if scene.as_measured:
             return self.mean(quantity), self.mean(quantity)
         if quantity_of(name).counts:
             ends = count_interval(

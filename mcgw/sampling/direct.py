@@ -55,7 +55,7 @@ class Direct:
         left = scene.n_asperities if scene.count == "fixed" else int(rng.poisson(scene.n_asperities))
         total = asperity_sums(scene, np.array([0]), np.empty(0), np.empty(0))
         while left:
-            now = min(left, _PIECE)
+            now = left if scene.as_measured else min(left, _PIECE)
             if scene.curvature:
                 heights, ratios = scene.curvature.summits(rng, now)
             else:

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from analytic import QUANTITIES, UNLOADING, Exponential, Hertz, bends, quantity_of
+from analytic import QUANTITIES, UNLOADING, Exponential, Hertz, MeasuredHeights, bends, quantity_of
 from mcgw.machine.memory import keep_freed_memory
 from mcgw.sampling.aggregate import CROWDED, VARYING
 from mcgw.sampling.block import Sampler
@@ -222,6 +222,8 @@ def _every_sum(scene: Scene, power: float | None) -> tuple[str, ...]:
 
 def _cheapest(scene: Scene) -> str:
     """Cells, unless most of them would be empty (`runs/bench/auto.py`)."""
+    if isinstance(scene.heights, MeasuredHeights):
+        return "direct"  # cells need a density
     if scene.curvature and not scene.hertzian:
         return "tail"  # each summit has breaks of its own
     few = scene.touching < min(5 + len(scene.separations) / 20, 20)

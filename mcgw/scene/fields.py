@@ -6,7 +6,16 @@ from typing import Literal
 
 import numpy as np
 
-from analytic import Clipped, Grading, HeightLaw, RandomCurvature, Surface, first_negative
+from analytic import (
+    Clipped,
+    Grading,
+    HeightLaw,
+    MeasuredHeights,
+    MeasuredRadii,
+    RandomCurvature,
+    Surface,
+    first_negative,
+)
 from analytic.laws import Branch, ContactLaw, Film, Hertz, Tangential, Ways
 
 __all__ = ["Fields"]
@@ -24,7 +33,7 @@ class Fields:
     grading: Grading
     negative: Literal["error", "clip", "allow"]
     heights: HeightLaw
-    curvature: RandomCurvature | None
+    curvature: RandomCurvature | MeasuredRadii | None
     law: ContactLaw
     unload_from: float | None
     film: Film | None
@@ -43,6 +52,11 @@ class Fields:
     def modulus(self) -> Grading:
         """The grading as used: clipped if the scene says so."""
         return Clipped.of(self.grading) if self.negative == "clip" else self.grading
+
+    @property
+    def as_measured(self) -> bool:
+        """Whether its one surface has the measured heights as they are, and nothing is drawn."""
+        return isinstance(self.heights, MeasuredHeights) and not self.heights.resampled
 
     @property
     def hertzian(self) -> bool:

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import MISSING, fields, is_dataclass
 from typing import Any
 
-from analytic import Custom, PiecewiseSeries, ScipyHeights
+from analytic import Custom, MeasuredHeights, MeasuredRadii, PiecewiseSeries, ScipyHeights
 from analytic.laws import ContactLaw
 
 __all__ = ["law_text"]
@@ -26,6 +26,10 @@ def law_text(law: Any) -> str:
             return repr(law)
         case Custom():
             return f"Custom({getattr(law.function, '__name__', type(law.function).__name__)})"
+        case MeasuredHeights():
+            return f"{len(law.heights)} measured ones, {'drawn again' if law.resampled else 'as they are'}"
+        case MeasuredRadii():
+            return f"{len(law.ratios)} measured ones, each with its height"
         case ContactLaw():
             return f"{type(law).__name__}({_listed(law.given())})"
     if not is_dataclass(law):

@@ -12,6 +12,7 @@ from analytic import (
     Custom,
     Exponential,
     MeasuredHeights,
+    MeasuredRadii,
     Nayak,
     PiecewiseSeries,
     quantity_of,
@@ -143,26 +144,41 @@ def _scales(scene: Fields) -> Iterator[str]:
 
 
 def _measured(scene: Fields) -> Iterator[str]:
-    """Measured heights are one surface, added up and not drawn."""
+    """Measured heights are one surface, added up and not drawn; or drawn one by one, in pairs with radii."""
     if not isinstance(scene.heights, MeasuredHeights):
+        return
+    table = "heights" if scene.curvature is None else "summits"
+    if scene.sampler not in ("auto", "direct") or scene.keep == "moments":
+        key, value = ("keep", "moments") if scene.keep == "moments" else ("sampler", scene.sampler)
+        yield (
+            f'ensemble.{key} = "{value}": measured heights have no density to draw from, only sampler = '
+            f'"direct" sums them; take that and keep = "sums"'
+        )
+    if not scene.as_measured:
+        if scene.curvature is None:
+            yield "heights: those that are resampled without radii have a smooth law; make a mcgw.HeightTable"
         return
     number = len(scene.heights.heights)
     if scene.n_asperities != number:
         yield (
             f"ensemble.n_asperities = {scene.n_asperities}: {number} heights are measured; give that "
-            "number, or heights.resample = true"
+            f"number, or {table}.resample = true"
         )
-    for key, wanted in (("n_surfaces", 1), ("count", "fixed"), ("sampler", "direct")):
+    for key, wanted in (("n_surfaces", 1), ("count", "fixed")):
         if getattr(scene, key) != wanted:
             yield (
                 f"ensemble.{key} = {getattr(scene, key)!r}: measured heights as they are need {wanted!r}; "
-                "or say resample = true under [heights]"
+                f"or say resample = true under [{table}]"
             )
 
 
 def _radii(scene: Fields) -> Iterator[str]:
     """Radii of summits that do not go with their heights, or that a sampler does not draw."""
     if scene.curvature is None:
+        return
+    if isinstance(scene.curvature, MeasuredRadii):
+        if scene.heights != scene.curvature.heights:
+            yield "heights: they are not those of the summits whose radii were measured; leave them out"
         return
     if not isinstance(scene.heights, Nayak) or scene.heights.alpha != scene.curvature.alpha:
         yield (

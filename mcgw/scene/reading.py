@@ -12,6 +12,7 @@ from analytic import (
     Grading,
     HeightLaw,
     Homogeneous,
+    MeasuredRadii,
     RandomCurvature,
     ScipyHeights,
     Surface,
@@ -41,6 +42,8 @@ def read_values(given: Mapping[str, Any]) -> tuple[dict[str, Any], list[str]]:
     spectral = isinstance(surface, Spectral)
     if spectral:
         surface, heights = surface.surface, surface.heights if heights is None else heights
+    if heights is None and isinstance(given["curvature"], MeasuredRadii):
+        heights = given["curvature"].heights
     if not isinstance(surface, Surface):
         top.fail("surface", given["surface"], "give mcgw.Surface(sigma, radius, eta, nominal_area, E_star)")
     law = _heights(top, heights)
@@ -124,8 +127,10 @@ def _heights(section: Section, given: Any) -> HeightLaw:
 
 def _curvature(
     section: Section, given: Any, heights: HeightLaw, surface: Surface, default: str
-) -> RandomCurvature | None:
-    return given if isinstance(given, RandomCurvature) else curvature_of(section, heights, surface, default)
+) -> RandomCurvature | MeasuredRadii | None:
+    if isinstance(given, RandomCurvature | MeasuredRadii):
+        return given
+    return curvature_of(section, heights, surface, default)
 
 
 def _of_scipy(section: Section, given: Any) -> HeightLaw:

@@ -8,7 +8,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from analytic import Grading, Model, RandomCurvature, Surface
+from analytic import Grading, MeasuredRadii, Model, RandomCurvature, Surface
 from analytic.laws import ContactLaw, Film, Tangential
 from mcgw.formats.sheet import Sheet, Shown
 from mcgw.scene.contact_text import contact_facts
@@ -48,9 +48,10 @@ class Scene(Fields, Shown):
         What to do where the grading makes the modulus of a contacting asperity negative.
     heights : HeightLaw or frozen distribution of scipy.stats, optional
         Of the reduced heights: of a distribution of scipy mean and scale drop out. Default: Gaussian.
-    curvature : {"random", "mean"} or RandomCurvature, optional
+    curvature : {"random", "mean"}, RandomCurvature or MeasuredRadii, optional
         Whether each summit of an isotropic Gaussian surface has a radius of its own. Needs the heights of
-        `mcgw.Nayak`. Default: "random" for a surface that is told by its spectrum, else "mean".
+        `mcgw.Nayak`. Default: "random" for a surface that is told by its spectrum, else "mean". Or the
+        measured radii of summits, whose heights are then those measured with them.
     law : ContactLaw or dict, optional
         Law of contact of an asperity, as `mcgw.KogutEtsion(hardness=1.2e9)`; or its keys in a scene file,
         as ``{"law": "kogut-etsion", "hardness": "1.2 GPa"}``. Default: Hertz's.
@@ -115,7 +116,7 @@ class Scene(Fields, Shown):
         grading: Grading | Callable[[Any], Any] | None = None,
         negative: Literal["error", "clip", "allow"] = "error",
         heights: Any = None,
-        curvature: RandomCurvature | Literal["random", "mean"] | None = None,
+        curvature: RandomCurvature | MeasuredRadii | Literal["random", "mean"] | None = None,
         law: ContactLaw | dict[str, Any] | None = None,
         unload_from: float | Literal["loop"] | None = None,
         film: Film | None = None,
@@ -140,8 +141,12 @@ class Scene(Fields, Shown):
 
     def _check(self) -> None:
         """Give what was left out its value, and refuse values that do not go together."""
+        listed = self.curvature if self.as_measured and isinstance(self.curvature, MeasuredRadii) else None
+        if listed and isinstance(self.n_asperities, LeftOut):  # as many as there are, on whatever area
+            object.__setattr__(self, "n_asperities", len(listed.ratios))
         self._fill("n_asperities", round(min(self.surface.n_asperities, 2.0**62)))
-        self._fill("n_surfaces", _SURFACES if self.rel_err is None else _MOST_SURFACES)
+        most = _SURFACES if self.rel_err is None else _MOST_SURFACES
+        self._fill("n_surfaces", 1 if listed else most)
         object.__setattr__(self, "separations", tuple(h + 0.0 for h in self.separations))  # -0.0 is 0.0
         if problems := mistakes(self):
             raise SceneError(problems)

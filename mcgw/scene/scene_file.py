@@ -6,6 +6,7 @@ from typing import Any
 
 import tomli_w
 
+from analytic import MeasuredRadii
 from analytic.laws import Hertz
 from mcgw.formats.plain_file import read_bytes
 from mcgw.formats.toml_text import loads
@@ -13,13 +14,14 @@ from mcgw.scene.contact_section import contact_values
 from mcgw.scene.ensemble_section import ensemble_values
 from mcgw.scene.film_section import film_table
 from mcgw.scene.grading_section import grading_table, grading_values
-from mcgw.scene.heights_section import heights_law, heights_table
+from mcgw.scene.heights_section import heights_table
 from mcgw.scene.law_section import law_table
 from mcgw.scene.scene import Scene
 from mcgw.scene.section import SceneError, Section
 from mcgw.scene.storable import storable
-from mcgw.scene.summits_section import curvature_of, summits_table
-from mcgw.scene.surface import MOMENTS, SURFACE_UNITS, read_spectral, read_surface
+from mcgw.scene.summits_section import summits_table
+from mcgw.scene.surface import SURFACE_UNITS
+from mcgw.scene.surface_and_summits import surface_and_summits
 from mcgw.scene.tangential_section import tangential_table
 
 __all__ = ["files_of", "load_scene", "scene_from", "scene_text"]
@@ -124,23 +126,14 @@ def scene_from(
         name: top.section(name)
         for name in ("surface", "grading", "heights", "summits", "contact", "ensemble")
     }
-    surface, spectral, folder = None, None, folder or Path()
-    if any(key in sections["surface"] for key in MOMENTS):
-        if spectral := read_spectral(sections["surface"]):
-            surface = spectral.surface
-    else:
-        surface = read_surface(sections["surface"])
-    heights = (
-        heights_law(sections["heights"], folder)
-        if sections["heights"].table or not spectral
-        else spectral.heights
-    )
+    folder = folder or Path()
+    surface, heights, curvature = surface_and_summits(sections, folder)
     values = {
         "title": top.text("title", ""),
         "surface": surface,
         **grading_values(sections["grading"], surface, folder),
         "heights": heights,
-        "curvature": curvature_of(sections["summits"], heights, surface, "random" if spectral else "mean"),
+        "curvature": curvature,
         **contact_values(sections["contact"], heights),
         **ensemble_values(sections["ensemble"], surface, seed),
     }
@@ -159,7 +152,8 @@ def scene_text(scene: Scene, *, heights_file: str | None = None, left_out: bool 
     scene : Scene
         With any grading; a Python function becomes its series.
     heights_file : str, optional
-        Name beside the scene of a file that holds its measured heights, in the place of a list.
+        Name beside the scene of a file that holds its measured heights, or heights and radii, in the place
+        of lists.
     left_out : bool, optional
         Whether `left_out` under ``[ensemble]`` lists the numbers that nobody gave, so that
         n_asperities follows when the surface of a scene that was read is replaced.
@@ -183,12 +177,13 @@ def scene_text(scene: Scene, *, heights_file: str | None = None, left_out: bool 
     True
     """
     scene = storable(scene)
-    summits = summits_table(scene.curvature, scene.surface)
+    summits = summits_table(scene.curvature, scene.surface, heights_file)
+    listed = isinstance(scene.curvature, MeasuredRadii)  # whose heights stand there too
     document = {
         "title": scene.title,
         "surface": {key: float(getattr(scene.surface, key)) for key in SURFACE_UNITS},
         "grading": {**grading_table(scene.grading), "negative": scene.negative},
-        "heights": heights_table(scene.heights, heights_file),
+        **({} if listed else {"heights": heights_table(scene.heights, heights_file)}),
         **({"summits": summits} if summits else {}),
         "contact": _contact_table(scene),
         "ensemble": _ensemble_table(scene, left_out),

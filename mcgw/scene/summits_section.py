@@ -4,7 +4,8 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
-from analytic import HeightLaw, Nayak, RandomCurvature, SpectralMoments, Surface
+from analytic import HeightLaw, MeasuredRadii, Nayak, RandomCurvature, SpectralMoments, Surface
+from mcgw.scene.listed_summits import listed_table
 from mcgw.scene.section import Section
 
 __all__ = ["Spectral", "curvature_of", "datum_shift", "summits_table"]
@@ -77,9 +78,16 @@ def datum_shift(section: Section, heights: HeightLaw) -> float:
     return heights.mean / heights.std
 
 
-def summits_table(curvature: RandomCurvature | None, surface: Surface) -> dict[str, Any]:
-    """The table [summits], read again the same; empty where all summits have one radius."""
+def summits_table(
+    curvature: RandomCurvature | MeasuredRadii | None, surface: Surface, file: str | None = None
+) -> dict[str, Any]:
+    """The table [summits], read again the same; empty where all summits have one radius.
+
+    Measured ones are told by the name of their file, if they have one.
+    """
     if curvature is None:
         return {}
+    if isinstance(curvature, MeasuredRadii):
+        return listed_table(curvature, file)
     bound = {} if math.isinf(curvature.largest) else {"largest_radius": curvature.largest * surface.radius}
     return {"curvature": "random", **bound}

@@ -7,6 +7,7 @@ from typing import Any
 from analytic import Body, Nayak, SpectralMoments, composite_modulus
 from analytic import Surface as Plain
 from mcgw.formats.units import quantity
+from mcgw.scene.listed_summits import ListedSummits
 from mcgw.scene.reading import as_toml
 from mcgw.scene.section import SceneError, Section
 from mcgw.scene.summits_section import Spectral
@@ -134,10 +135,22 @@ def surface_of(given: Mapping[str, Any]) -> Plain:
     return surface
 
 
-def read_surface(section: Section) -> Plain | None:
-    """Read the table [surface]; mistakes are noted in the section, and give None."""
-    values = _values(section, SURFACE_UNITS)
+def read_surface(section: Section, listed: ListedSummits | None = None) -> Plain | None:
+    """Read the table [surface]; mistakes are noted in the section, and give None.
+
+    What summits that are `listed` tell can be left out.
+    """
+    told = {} if listed is None else _told(section, listed)
+    values = told | _values(section, {key: unit for key, unit in SURFACE_UNITS.items() if key not in told})
     return None if any(map(math.isnan, values.values())) else Plain(**values)
+
+
+def _told(section: Section, listed: ListedSummits) -> dict[str, float]:
+    """The nominal area, and what summits tell on it that the section leaves out."""
+    area = section.number("nominal_area", unit="m^2")
+    told = listed.of_surface(area)
+    section.known(*told)
+    return {"nominal_area": area, **{key: told[key] for key in told if key not in section}}
 
 
 def read_spectral(section: Section) -> Spectral | None:

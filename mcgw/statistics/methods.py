@@ -80,6 +80,8 @@ def methods_for(scene: Scene, chosen: tuple[int, ...]) -> tuple[Method, ...]:
     RunError
         If theory and its reference, an integral by another rule, differ by more than 1e-10.
     """
+    if isinstance(scene.curvature, analytic.MeasuredRadii):
+        raise ValueError("summits: those of a list are added up or drawn, by no other method")
     if isinstance(scene.heights, analytic.MeasuredHeights):
         raise ValueError("heights: measured ones are added up exactly; say resample = true to trade off")
     exact = _checked(scene, chosen)
