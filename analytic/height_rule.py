@@ -27,6 +27,7 @@ from analytic.laws.branch import Branch, term_of
 from analytic.laws.cuts import cuts_of
 from analytic.laws.law import ContactLaw
 from analytic.laws.ways import Ways
+from analytic.measured_radii import MeasuredRadii
 from analytic.quantities import quantity_of
 from analytic.reach import Weight, tame
 from analytic.renamed import takes_heights
@@ -100,11 +101,14 @@ class HeightRule:
         Their weights, shape (m,).
     below : float
         Probability of a height below the lowest separation, where nothing touches.
+    ratios : ndarray, optional
+        Radius of the summit at each of them over that of the surface, where radii differ, shape (m,).
     """
 
     heights: Array
     probabilities: Array
     below: float
+    ratios: Array | None = None
 
     @classmethod
     @takes_heights
@@ -142,6 +146,18 @@ class HeightRule:
         s, probabilities = (np.concatenate(part) for part in zip(*pieces, strict=True))
         return cls(s, probabilities, float(fn(0, -h[0])))
 
+    @classmethod
+    def of_summits(
+        cls, separations: ArrayLike, summits: MeasuredRadii, branches: Iterable[Branch]
+    ) -> "HeightRule":
+        """The rule over the very summits of a list, each as probable as another; otherwise as `over`."""
+        h = float(np.min(separations))
+        h = min([h, *(branch.lowest(h) for branch in branches)])
+        s, ratios = np.array(summits.heights.heights), np.array(summits.ratios)
+        touching = s > h
+        number = int(touching.sum())
+        return cls(s[touching], np.full(number, 1 / s.size), 1 - number / s.size, ratios[touching])
+
     def fluctuations(self, f: Array, count: Count) -> "Fluctuations":
         """What makes sums of the columns of `f` fluctuate.
 
@@ -166,7 +182,7 @@ class HeightRule:
     ) -> Array:
         """What one asperity adds to each quantity, over its scale: shape (m, quantities * separations).
 
-        Without `ways` these are powers of the approach, as under Hertz's law.
+        Without `ways` these are powers of the approach and of the radius, as under Hertz's law.
         """
         h = np.asarray(separations, dtype=np.float64)
         approach = self.heights[:, None] - h
@@ -176,11 +192,16 @@ class HeightRule:
         columns = []
         for name in quantities:
             q = quantity_of(name)
+            if ways is not None and self.ratios is not None:
+                of_each = partial(ways.term, name, s=self.heights, e=modulus[:, 0], ratios=self.ratios)
+                columns.append(np.stack([of_each(h=x) for x in h.tolist()], axis=1))
+                continue
             if ways is not None:
                 columns.append(term_of(q.base, ways.of(name), h, self.heights[:, None], modulus))
                 continue
             power = np.where(approach > 0, np.abs(approach) ** q.exponent, 0.0)
-            columns.append(power * modulus**q.modulus)
+            radius = 1.0 if self.ratios is None else self.ratios[:, None] ** q.radius
+            columns.append(power * modulus**q.modulus * radius)
         return np.concatenate(columns, axis=1)
 
 

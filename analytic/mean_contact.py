@@ -1,6 +1,6 @@
 """What one asperity contributes in the mean, under any law of contact: sums over a rule of heights."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,11 +10,13 @@ from scipy.optimize import brentq
 from analytic.gradings import Grading
 from analytic.height_rule import HeightRule
 from analytic.heights import Gaussian, HeightLaw
-from analytic.laws.branch import LoadingBranch, UnloadingBranch
+from analytic.laws.branch import Branch, LoadingBranch, UnloadingBranch
 from analytic.laws.slopes import jump_terms, slope_term
 from analytic.laws.spot import piece_of
 from analytic.laws.ways import Ways
 from analytic.measured_heights import MeasuredHeights
+from analytic.measured_radii import MeasuredRadii
+from analytic.quantities import quantity_of
 
 __all__ = ["MeanContact"]
 
@@ -38,11 +40,14 @@ class MeanContact:
         E*(s)/E*.
     heights : HeightLaw
         Law of the reduced heights.
+    summits : MeasuredRadii, optional
+        The very summits, where heights were measured together with radii.
     """
 
     ways: Ways
     grading: Grading
     heights: HeightLaw
+    summits: MeasuredRadii | None = None
 
     @property
     def together(self) -> int:
@@ -78,7 +83,12 @@ class MeanContact:
 
     def _sums(self, h: Array, quantity: str) -> "_Sums":
         branches = self.ways.among([quantity])
-        return _Sums(self, h, HeightRule.over(h, self.grading, self.heights, branches=branches))
+        return _Sums(self, h, self._rule(h, branches))
+
+    def _rule(self, h: Array, branches: Iterable[Branch] = ()) -> HeightRule:
+        if self.summits is not None:
+            return HeightRule.of_summits(h, self.summits, branches)
+        return HeightRule.over(h, self.grading, self.heights, branches=branches)
 
     def separations_at(self, quantity: str, values: Array) -> Array:
         """Largest separations with given means, in the shape of `values`.
@@ -95,7 +105,7 @@ class MeanContact:
 
     def _roughly(self, quantity: str, h: Array) -> Array:
         """Mean by a rule that is not cut where pieces of the law end: to a percent, and soon done."""
-        rule = HeightRule.over(h, self.grading, self.heights)
+        rule = self._rule(h)
         return np.asarray(rule.probabilities @ rule.terms([quantity], h, self.grading, self.ways))
 
     def _separation_at(self, quantity: str, value: float, grid: Array, about: Array) -> float:
@@ -155,18 +165,27 @@ class _Sums:
         return np.asarray(self.rule.probabilities @ terms)
 
     def share(self, piece: int) -> Array:
-        s, law = self.rule.heights[:, None], self.contact.ways.law
-        inside = (s > self.h) & (piece_of(law, s - self.h, self.contact.grading(s)) == piece)
+        s, e, law = self.rule.heights, self.contact.grading(self.rule.heights), self._ways.law
+        inside = np.stack([(s > h) & (piece_of(law, s - h, e) == piece) for h in self.h], axis=1)
         with np.errstate(invalid="ignore"):
             return np.asarray(self.rule.probabilities @ inside / self.mean("contacts"))
 
+    @property
+    def _ways(self) -> Ways:
+        """In units of each summit, where radii differ."""
+        ways = self.contact.ways
+        return ways if self.rule.ratios is None else ways.with_radii(self.rule.ratios)
+
     def slope(self, quantity: str) -> Array:
-        grading, heights, ways = self.contact.grading, self.contact.heights, self.contact.ways
-        branch = LoadingBranch(ways.law, ways.conductance)
+        grading, heights = self.contact.grading, self.contact.heights
+        branch = LoadingBranch(self._ways.law, self._ways.conductance)
         s, p = self.rule.heights, self.rule.probabilities
         if not s.size:
             return np.zeros(self.h.shape)
-        within = p @ slope_term(quantity, branch, s[:, None] - self.h, grading(s)[:, None])
+        if self.rule.ratios is not None:
+            p = p * self.rule.ratios ** quantity_of(quantity).radius
+        e = grading(s)
+        within = p @ np.stack([slope_term(quantity, branch, s - h, e) for h in self.h], axis=1)
         if isinstance(heights, MeasuredHeights):
             return np.asarray(within)  # between the separations at which one of them jumps
         ends = float(s[0]), float(s[-1])

@@ -19,6 +19,7 @@ from analytic.laws.plain import is_hertz
 from analytic.laws.tangential import Tangential, half_spaces
 from analytic.laws.ways import Ways
 from analytic.mean_contact import MeanContact
+from analytic.measured_radii import MeasuredRadii
 from analytic.quantities import LAW_QUANTITIES, Quantity, quantity_of
 from analytic.summits import over_radii, random_fluctuations, separations_of_means
 from analytic.surface import Surface
@@ -64,10 +65,11 @@ class Model:
         E*(s)/E*; default: homogeneous.
     heights : HeightLaw, optional
         Law of the reduced heights; default: Gaussian.
-    curvature : RandomCurvature, optional
-        Radii of the summits, given their heights, which must be those of the same alpha; the radius of the
-        surface is then the inverse of their mean curvature. Default: one radius. The fourth cumulant of the
-        area is infinite where radii have no bound.
+    curvature : RandomCurvature or MeasuredRadii, optional
+        Radii of the summits, given their heights, which must be those of the same alpha, or those measured
+        with them. A random curvature needs the radius of the surface to be the inverse of its mean; the
+        fourth cumulant of the area is infinite where such radii have no bound. Measured summits count as
+        drawn from their list, each as likely as another. Default: one radius.
     law : ContactLaw, optional
         Law of contact of an asperity, of `analytic.laws`; default: Hertz's. Quantities are then also
         "load_slope" (N/m), the slope of the load without the jumps of asperities, and "yielded" (1), the
@@ -102,7 +104,7 @@ class Model:
     _: KW_ONLY
     grading: Grading = field(default_factory=Homogeneous)
     heights: HeightLaw = field(default_factory=Gaussian)
-    curvature: RandomCurvature | None = None
+    curvature: RandomCurvature | MeasuredRadii | None = None
     law: ContactLaw | None = None
     unload_from: float | None = None
     film: Film | None = None
@@ -116,8 +118,8 @@ class Model:
             raise ValueError(f'count = {self.count!r}: give "fixed" or "poisson"')
         if self.curvature is not None and self.heights != self.curvature.heights:
             raise ValueError(
-                f"heights = {self.heights!r}: summits of random curvature have heights of their own; give "
-                f"heights = {self.curvature.heights!r}"
+                f"heights = {self.heights!r:.60}: summits with radii of their own have heights of their own; "
+                f"give heights = {self.curvature.heights!r:.60}"
             )
         law = self.ways.law  # one that lacks a constant says so now
         if self.unload_from is not None:
@@ -155,7 +157,7 @@ class Model:
         q = self._asked(quantity, h)
         if self._by_powers(q):
             return self._unit(q) * fn(q.exponent, h, self._grading(q), heights=self._weighted(q))
-        if self.curvature is not None:
+        if isinstance(self.curvature, RandomCurvature):
             return over_radii(self, np.asarray(h), lambda one: one.mean(quantity, h))
         return self._unit(q) * self._contact.mean(quantity, np.asarray(h, dtype=np.float64))
 
@@ -193,7 +195,7 @@ class Model:
                 * q.exponent
                 * fn(q.exponent - 1, h, self._grading(q), heights=self._weighted(q))
             )
-        if self.curvature is not None and not self._by_powers(q):
+        if isinstance(self.curvature, RandomCurvature) and not self._by_powers(q):
             return over_radii(self, np.asarray(h), lambda one: one.slope(quantity, h))
         h = np.asarray(h, dtype=np.float64)
         if not q.unloading or self.ways.law.elastic:
@@ -218,7 +220,7 @@ class Model:
             In the shape of `h`; nan where no contact is to be expected in double precision.
         """
         h = np.asarray(h, dtype=np.float64)
-        if self.curvature is None:
+        if not isinstance(self.curvature, RandomCurvature):
             return self._contact.share(piece, h)
         met = over_radii(
             self, np.asarray(h), lambda one: np.nan_to_num(one.share(piece, h)) * one.mean("contacts", h)
@@ -316,7 +318,7 @@ class Model:
             raise ValueError(f"{quantity} = {value!r}: give finite values > 0 {q.unit}")
         if self._by_powers(q):
             return separations_at(q, np.log(target / self._unit(q)), self._grading(q), self._weighted(q))
-        if self.curvature is not None:
+        if isinstance(self.curvature, RandomCurvature):
             return separations_of_means(self, quantity, target)
         return self._contact.separations_at(quantity, target / self._unit(q))
 
@@ -324,6 +326,8 @@ class Model:
         """Heights and probabilities for integrals of these quantities of an asperity at these separations."""
         powers = all(self._by_powers(self._asked(name, separations)) for name in quantities)
         branches = () if powers else self.ways.among(quantities)
+        if isinstance(self.curvature, MeasuredRadii):
+            return HeightRule.of_summits(separations, self.curvature, branches)
         return HeightRule.over(separations, self.grading, self.heights, branches=branches)
 
     def fluctuations(self, quantities: Sequence[str], separations: ArrayLike) -> Fluctuations:
@@ -332,7 +336,7 @@ class Model:
         Columns are quantity by quantity, at increasing number of the separation.
         """
         powers = all(self._by_powers(quantity_of(name)) for name in quantities)
-        if self.curvature is not None:
+        if isinstance(self.curvature, RandomCurvature):
             return random_fluctuations(self, quantities, np.asarray(separations, dtype=float), powers=powers)
         rule = self.rule(separations, quantities)
         terms = rule.terms(quantities, separations, self.grading, None if powers else self.ways)
@@ -350,7 +354,8 @@ class Model:
 
     @cached_property
     def _contact(self) -> MeanContact:
-        return MeanContact(self.ways, self.grading, self.heights)
+        measured = self.curvature if isinstance(self.curvature, MeasuredRadii) else None
+        return MeanContact(self.ways, self.grading, self.heights, measured)
 
     def _asked(self, quantity: str, h: ArrayLike = np.inf) -> Quantity:
         """A quantity that is known at these separations."""
@@ -364,15 +369,16 @@ class Model:
         return q
 
     def _by_powers(self, q: Quantity) -> bool:
-        """Whether one asperity carries a power of its approach."""
-        return self._hertz and q.base not in LAW_QUANTITIES
+        """Whether one asperity carries a power of its approach, whose mean is an integral over heights."""
+        listed = isinstance(self.curvature, MeasuredRadii)
+        return self._hertz and q.base not in LAW_QUANTITIES and not listed
 
     def _unit(self, q: Quantity) -> float:
         return self.number * q.scale(self.surface)
 
     def _weighted(self, q: Quantity) -> HeightLaw:
         """The heights, each with the mean of the power of the radius that counts in a quantity."""
-        if self.curvature is None or q.radius == 0:
+        if not isinstance(self.curvature, RandomCurvature) or q.radius == 0:
             return self.heights
         return WeightedHeights(self.heights, partial(self.curvature.mean, q.radius))
 

@@ -41,27 +41,26 @@ def random_fluctuations(model: "Model", quantities: Sequence[str], h: Array, *, 
     powers : bool
         Whether an asperity adds powers of its approach and of its radius.
     """
-    assert model.curvature is not None
+    assert isinstance(model.curvature, RandomCurvature)
     radius = np.repeat([quantity_of(name).radius for name in quantities], h.size)
     if powers:
-        rule, ratio = _with_radii(model.rule(h, quantities), model.curvature)
-        terms = rule.terms(quantities, h, model.grading) * ratio[:, None] ** radius
+        rule = _with_radii(model.rule(h, quantities), model.curvature)
+        terms = rule.terms(quantities, h, model.grading)
     else:
         rule, terms = _of_all_radii(model, quantities, h)
     result = rule.fluctuations(terms, model.count)
     return replace(result, radius=radius) if np.isinf(model.curvature.largest) else result
 
 
-def _with_radii(rule: HeightRule, curvature: RandomCurvature) -> tuple[HeightRule, Array]:
-    """Rule over heights and radii of summits, and the radius ratio at each of its points, shape (m,).
+def _with_radii(rule: HeightRule, curvature: RandomCurvature) -> HeightRule:
+    """Rule over heights and radii of summits.
 
     Exact for sums, their products and third powers where one summit adds a power of its radius, up to 1;
     fourth powers of the radius have a mean only if it is bounded.
     """
     ratio, probability = curvature.rule(rule.heights)
     heights = np.broadcast_to(rule.heights, ratio.shape)
-    both = HeightRule(heights.ravel(), (rule.probabilities * probability).ravel(), rule.below)
-    return both, ratio.ravel()
+    return HeightRule(heights.ravel(), (rule.probabilities * probability).ravel(), rule.below, ratio.ravel())
 
 
 def of_each_radius(model: "Model", separations: Array) -> list[tuple[float, "Model"]]:
@@ -83,7 +82,7 @@ def of_each_radius(model: "Model", separations: Array) -> list[tuple[float, "Mod
         Weight and model; flatter summits than the flattest are one of them.
     """
     law = model.curvature
-    assert law is not None
+    assert isinstance(law, RandomCurvature)
     nayak = law.heights
     top = float(nayak.from_above(np.array(_RAREST), float(np.max(separations, initial=0.0))))
     first = np.sqrt(MEAN_CURVATURE / law.largest)
@@ -101,7 +100,7 @@ def of_each_radius(model: "Model", separations: Array) -> list[tuple[float, "Mod
 
 def _of_one(model: "Model", ratio: float, weight: Callable[[Array], Array]) -> "Model":
     """The summits of one radius, whose heights count with a weight."""
-    assert model.curvature is not None
+    assert isinstance(model.curvature, RandomCurvature)
     surface = replace(model.surface, radius=ratio * model.surface.radius)
     heights = WeightedHeights(model.heights, weight, model.curvature.narrowest)
     law = None if model.law is None else _on_radius(model.law.on(model.surface), ratio)

@@ -107,6 +107,11 @@ class LoadingBranch:
         """As `Branch.value`."""
         return self.of_root(quantity, piece, sign * np.sqrt(above), e)
 
+    def of_some(self, which: NDArray[np.bool_]) -> "LoadingBranch":
+        """That of some of the summits that the law was made for; as it is where all have one radius."""
+        conductance = None if self.conductance is None else self.conductance.of_some(which)
+        return LoadingBranch(self.law.of_some(which), conductance)
+
     def of_root(self, quantity: str, piece: int, y: Any, e: Array) -> Array:
         """The same of the root of the penetration, which may be complex."""
         if quantity == "conductance_si":

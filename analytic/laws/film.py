@@ -137,6 +137,10 @@ class SpotConductance:
         """In the units of summits whose radii are these multiples of the surface's."""
         return replace(self, parameter=self.parameter / np.sqrt(ratios))
 
+    def of_some(self, which: NDArray[np.bool_]) -> "SpotConductance":
+        """That of some of these summits; as it is where all have one radius."""
+        return replace(self, parameter=self.parameter[which]) if np.ndim(self.parameter) else self
+
     def __call__(self, radius: Array) -> Array:
         """Conductance over 4 sqrt(R sigma): 1/(ohm m), or W/(m K)."""
         return film_conductance(radius, self.parameter) / self.resistivity

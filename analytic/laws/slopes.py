@@ -46,7 +46,7 @@ def slope_term(quantity: str, branch: LoadingBranch, penetration: Array, e: Arra
         here = (piece == j) & (penetration > 0)
         y = np.sqrt(penetration[here])
         step = _COMPLEX_STEP * y
-        value = branch.of_root(quantity, int(j), y + 1j * step, e[here])
+        value = branch.of_some(here).of_root(quantity, int(j), y + 1j * step, e[here])
         result[here] = np.imag(value) / step / (2 * y)
     return result
 

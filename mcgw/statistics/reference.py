@@ -11,7 +11,14 @@ import numpy as np
 from numpy.polynomial.legendre import leggauss
 from numpy.typing import NDArray
 
-from analytic import LAW_QUANTITIES, MeasuredHeights, Quantity, quantity_of, resolved_breaks
+from analytic import (
+    LAW_QUANTITIES,
+    MeasuredHeights,
+    Quantity,
+    RandomCurvature,
+    quantity_of,
+    resolved_breaks,
+)
 from analytic.laws import Hertz, term_of
 from mcgw.scene.scene import Scene
 
@@ -71,7 +78,7 @@ def added(scene: Scene, q: Quantity, h: float, s: Array) -> Array:
     """What asperities of heights `s` above `h` add, over the scale: ``(s - h)^n e(s)`` under Hertz's law."""
     if by_powers(scene, q):
         weight = scene.modulus(s) if q.modulus else np.ones_like(s)
-        if scene.curvature:
+        if isinstance(scene.curvature, RandomCurvature):  # of listed summits there is one method alone
             weight = weight * scene.curvature.mean(q.radius, s)
         return np.asarray((s - h) ** q.exponent * weight)
     if scene.curvature:
