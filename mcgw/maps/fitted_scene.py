@@ -10,13 +10,14 @@ from mcgw.formats.files import whole_file
 from mcgw.maps.fit import Fit
 from mcgw.maps.profile_fit import ProfileFit
 from mcgw.maps.profile_scene import profile_scene
+from mcgw.maps.spectral_scene import spectral_scene
 from mcgw.scene.reading import argument
 from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_text
 
 __all__ = ["fitted_scene", "heights_beside", "write_scene"]
 
-Heights = Literal["gaussian", "table", "measured"]
+Heights = Literal["gaussian", "nayak", "table", "measured"]
 
 
 def fitted_scene(
@@ -36,8 +37,9 @@ def fitted_scene(
     use : {"auto", "moments", "summits", "caps"}
         Which estimate; ``auto`` is `Fit.best`, and with heights of their own the counted summits. With
         measured heights sigma is that of the heights.
-    heights : {"gaussian", "table", "measured"}
-        Law of the heights; ``measured`` makes an ensemble of the one surface there is.
+    heights : {"gaussian", "nayak", "table", "measured"}
+        Law of the heights; ``nayak`` is that of the isotropic Gaussian surface with the map's moments, whose
+        summits have radii of their own; ``measured`` makes an ensemble of the one surface there is.
     E_star : float or str
         Composite modulus, which no map tells, Pa or as "78.6 GPa".
     title : str
@@ -65,12 +67,16 @@ def fitted_scene(
     """
     modulus = argument("E_star", E_star, "Pa")
     if isinstance(fit, ProfileFit):
-        if use == "caps" or heights != "gaussian":
+        if use == "caps" or heights not in ("gaussian", "nayak"):
             raise ValueError(
                 f'use = "{use}", heights = "{heights}": profiles show no summits; they give moments, and '
-                "gaussian heights"
+                "gaussian heights or nayak"
             )
-        return profile_scene(fit, modulus, title)
+        return profile_scene(fit, modulus, title, nayak=heights == "nayak")
+    if heights == "nayak":
+        if use not in ("auto", "moments"):
+            raise ValueError(f'use = "{use}": heights = "nayak" follow from the "moments"')
+        return spectral_scene(fit.moments, fit.area, modulus, title)
     if use == "auto":
         use = fit.best if heights == "gaussian" else "summits"
     if use not in fit.estimates:

@@ -1,0 +1,68 @@
+"""From a map or profiles to a scene whose summits have radii of their own."""
+
+import math
+
+import numpy as np
+import pytest
+
+import analytic
+import mcgw
+from mcgw.cli import main
+from mcgw.maps.fit import fit_map
+from mcgw.maps.spectrum import Spectrum, gaussian_map
+
+
+@pytest.fixture(scope="module")
+def fit():
+    spectrum = Spectrum(1e-6, 100e-6, 12e-6)
+    return fit_map(gaussian_map(spectrum, (768, 768), (1e-6, 1e-6), np.random.default_rng(3)), cutoff=None)
+
+
+def test_scene_has_the_moments_of_the_map(fit):
+    scene = mcgw.fitted_scene(fit, heights="nayak", E_star="70 GPa")
+    m = fit.moments
+    assert scene.heights == analytic.Nayak(m.alpha)
+    assert scene.surface.radius == pytest.approx(3 * math.sqrt(math.pi / m.m4) / 8, rel=1e-12)
+    assert scene.surface.eta == pytest.approx(m.m4 / (6 * math.sqrt(3) * math.pi * m.m2), rel=1e-12)
+    assert scene.surface.sigma == pytest.approx(
+        math.sqrt((1 - 0.8968057562340189 / m.alpha) * m.m0), rel=1e-12
+    )
+    assert scene.curvature.largest * scene.surface.radius == pytest.approx(math.sqrt(fit.area), rel=1e-12)
+    assert mcgw.scene_from(mcgw.scene_text(scene)) == scene
+
+
+def test_other_estimates_know_no_such_heights(fit):
+    with pytest.raises(ValueError, match='use = "summits": heights = "nayak" follow from the "moments"'):
+        mcgw.fitted_scene(fit, heights="nayak", use="summits")
+
+
+def test_summits_of_the_map_have_the_heights_and_curvatures_of_the_scene(fit):
+    """Density, spread, curvature, and that high summits are sharper: the law is that of such maps."""
+    scene = mcgw.fitted_scene(fit, heights="nayak")
+    counted = fit.summits.size / fit.area
+    assert counted == pytest.approx(scene.surface.eta, rel=0.15)
+    assert fit.summits.std() == pytest.approx(scene.surface.sigma, rel=0.15)
+    curvatures = 1 / fit.radii
+    geometric = 2.34902690068464 / 2.60588006348224 / scene.surface.radius
+    assert curvatures.mean() == pytest.approx(geometric, rel=0.1)
+    # High summits are sharper, as the joint law has it.
+    high = fit.summits > np.quantile(fit.summits, 0.75)
+    found = curvatures[high].mean() / curvatures.mean()
+    s, ratios = scene.curvature.summits(np.random.default_rng(1), 200_000)
+    expected = (1 / ratios[s > np.quantile(s, 0.75)]).mean() / (1 / ratios).mean()
+    assert found == pytest.approx(expected, rel=0.05)
+    assert expected > 1.1
+
+
+def test_by_command_from_map_to_verdict(tmp_path, capsys):
+    spectrum = "rms=1um,long=100um,short=12um"
+    path, scene, file = (str(tmp_path / name) for name in ("map.sdf", "scene.toml", "scene.h5"))
+    assert main(["surface", "--from-spectrum", spectrum, "--pixel", "1um", "--shape", "256", "-o", path]) == 0
+    assert main(["fit", path, "--cutoff", "none", "--heights", "nayak", "-o", scene]) == 0
+    read = mcgw.load_scene(scene)
+    assert isinstance(read.curvature, analytic.RandomCurvature)
+    text = (tmp_path / "scene.toml").read_text().replace("n_surfaces = 1000", "n_surfaces = 50")
+    (tmp_path / "scene.toml").write_text(text)
+    assert main(["run", scene, "-o", file]) == 0
+    assert main(["compare", file]) == 0
+    assert "agree" in capsys.readouterr().out
