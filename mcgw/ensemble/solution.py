@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from analytic import QUANTITIES, Hertz, Quantity, quantity_of
+from analytic import QUANTITIES, Hertz, MeasuredHeights, Quantity, quantity_of
 from analytic.laws import LoadingBranch, term_of
 from analytic.laws.elastic_plastic import ElasticPlastic
 from mcgw.ensemble.law_separation import LawSum
@@ -109,6 +109,11 @@ def solutions(scene: Scene, given: str, values: Sequence[float]) -> list[Solutio
         If a value is not reached, or only with contacts of negative modulus where the scene does not allow
         them, if there are too many asperities to draw, or if a surface has none.
     """
+    if isinstance(scene.heights, MeasuredHeights):
+        raise ValueError(
+            "heights: surfaces of measured ones are not solved one by one; their mean is, in Python, by "
+            f"scene.theory.separation_at({given!r}, {values[0]:g})"
+        )
     if scene.n_surfaces < 2:
         raise ValueError(f"n_surfaces = {scene.n_surfaces}: an interval takes at least 2 surfaces")
     q = quantity_of(given)

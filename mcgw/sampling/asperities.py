@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from analytic import MeasuredHeights
 from mcgw.machine.memory import check_memory
 from mcgw.sampling.counted import Counted
 from mcgw.sampling.counts import counts_of, generator
@@ -109,6 +110,8 @@ def listing_sampler(scene: Scene) -> Counted:
     ValueError
         If it does not draw asperities one by one.
     """
+    if isinstance(scene.heights, MeasuredHeights):
+        raise ValueError("heights: measured ones have no places; those of the scene are in scene.heights")
     sampler = sampler_of(scene)
     if not isinstance(sampler, Counted) or not promise_of(sampler.name).one_by_one:
         raise ValueError(f'sampler = "{sampler.name}" keeps no heights; "cells" and "tail" do')

@@ -75,7 +75,8 @@ def _values(scene: Fields) -> Iterator[str]:
         yield f'ensemble.rel_err: sampler = "{sampler}" has no variance to stop by; take another'
     if scene.seed >= 2**64:
         yield f"ensemble.seed = {scene.seed}: give a whole number from 0 to 2^64 - 1"
-    if scene.keep == "moments" and not promise_of(sampler).keeps_moments:
+    listed = isinstance(scene.heights, MeasuredHeights)  # of which no sampler has moments
+    if scene.keep == "moments" and not promise_of(sampler).keeps_moments and not listed:
         yield f'ensemble.keep = "moments": sampler = "{sampler}" has none; take "cells"'
 
 
@@ -148,12 +149,13 @@ def _measured(scene: Fields) -> Iterator[str]:
     if not isinstance(scene.heights, MeasuredHeights):
         return
     table = "heights" if scene.curvature is None else "summits"
-    if scene.sampler not in ("auto", "direct") or scene.keep == "moments":
-        key, value = ("keep", "moments") if scene.keep == "moments" else ("sampler", scene.sampler)
+    if promise_of(scene.sampler).needs_density:
         yield (
-            f'ensemble.{key} = "{value}": measured heights have no density to draw from, only sampler = '
-            f'"direct" sums them; take that and keep = "sums"'
+            f'ensemble.sampler = "{scene.sampler}": it draws from a density, and measured heights have none; '
+            'take "direct"'
         )
+    if scene.keep == "moments":
+        yield 'ensemble.keep = "moments": sums of measured heights have none; take "sums"'
     if not scene.as_measured:
         if scene.curvature is None:
             yield "heights: those that are resampled without radii have a smooth law; make a mcgw.HeightTable"

@@ -24,6 +24,8 @@ class Promise:
         It can draw a radius for each summit.
     own_laws : bool, optional
         It adds up summit by summit, so that each can have breaks of its own in the law of contact.
+    needs_density : bool, optional
+        It draws from the density of the heights, which a list of measured ones has not.
     not_done : tuple of str, optional
         What it spares, for people; ``{spared}`` stands for the asperities that do not touch.
     """
@@ -34,6 +36,7 @@ class Promise:
     keeps_moments: bool = True
     own_radii: bool = True
     own_laws: bool = False
+    needs_density: bool = False
     not_done: tuple[str, ...] = ()
 
 
@@ -42,10 +45,18 @@ _CROWDED = "asperities of crowded cells are not drawn: their moments are, as Gau
 
 _PROMISES = {
     "direct": Promise(same_on_all_processors=False, one_by_one=False, keeps_moments=False, own_laws=True),
-    "tail": Promise(keeps_moments=False, own_laws=True, not_done=(_UNTOUCHED,)),
-    "cells": Promise(not_done=(_UNTOUCHED,)),
-    "aggregate": Promise(one_by_one=False, own_radii=False, not_done=(_UNTOUCHED, _CROWDED)),
-    "stratified": Promise(real_surfaces=False, one_by_one=False, keeps_moments=False, not_done=(_UNTOUCHED,)),
+    "tail": Promise(keeps_moments=False, own_laws=True, needs_density=True, not_done=(_UNTOUCHED,)),
+    "cells": Promise(needs_density=True, not_done=(_UNTOUCHED,)),
+    "aggregate": Promise(
+        one_by_one=False, own_radii=False, needs_density=True, not_done=(_UNTOUCHED, _CROWDED)
+    ),
+    "stratified": Promise(
+        real_surfaces=False,
+        one_by_one=False,
+        keeps_moments=False,
+        needs_density=True,
+        not_done=(_UNTOUCHED,),
+    ),
 }
 SAMPLERS = ("auto", *_PROMISES)
 

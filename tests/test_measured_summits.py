@@ -1,0 +1,279 @@
+"""Summits from a file in a scene: literal sums over them, resampled in pairs, and mistakes in files."""
+
+import dataclasses
+import math
+
+import numpy as np
+import pytest
+
+import analytic
+import mcgw
+from analytic.laws import LoadingBranch, term_of
+from mcgw.maps.summit_contact import summit_contact
+from mcgw.maps.summits import Summits, write_summits
+
+K = 200
+MODULUS = 78.6e9
+QUANTITIES = ("load", "area", "stiffness", "contacts", "conductance")
+SEPARATIONS = (-1.0, 0.0, 0.7, 1.5)
+
+
+def measured(seed=1):
+    """Heights and radii in m; high summits are sharper, as on a map, and two have the same height."""
+    rng = np.random.default_rng(seed)
+    z = rng.normal(size=K) * 1e-6
+    radii = 1e-5 * np.exp(0.4 * rng.normal(size=K) - 0.5 * z / 1e-6)
+    z[7] = z[8]
+    return z - z.mean(), radii
+
+
+Z, RADII = measured()
+
+
+def scene(*, resampled=False, radii=RADII, **changes):
+    """A scene of these summits, from Python."""
+    surface = mcgw.Surface(Z.std(), 1 / np.mean(1 / radii), K / 1e-6, 1e-6, MODULUS)
+    heights = mcgw.MeasuredHeights(Z, resampled=resampled)
+    values = {"separations": SEPARATIONS, "quantities": QUANTITIES, "seed": 1, "n_surfaces": 1}
+    return mcgw.Scene(
+        surface, curvature=mcgw.MeasuredRadii(heights, radii / surface.radius), **(values | changes)
+    )
+
+
+def literal(x, quantity):
+    """What each summit adds, in SI, by the law on a surface of its own radius; (separations, summits)."""
+    s, terms = Z / Z.std(), []
+    for one, radius in zip(s.tolist(), RADII.tolist(), strict=True):
+        own = dataclasses.replace(x.surface, radius=radius)
+        term = term_of(quantity, LoadingBranch(x.law.on(own)), SEPARATIONS, one, x.modulus(np.array(one)))
+        terms.append(term * analytic.quantity_of(quantity).scale(own))
+    return np.array(terms).T
+
+
+HEAD = '[surface]\nnominal_area = "1 mm^2"\nE_star = "78.6 GPa"\n'
+ASKED = "[contact]\nseparations = [-1.0, 0.0, 0.7, 1.5]\n[ensemble]\nseed = 1\n"
+
+
+@pytest.fixture
+def table(tmp_path):
+    """The summits in a file as `mcgw fit --summits` writes it."""
+    curvatures = np.array([1.25 / RADII, 0.8 / RADII])
+    place = np.linspace(0, 1e-3, K)
+    summits = Summits(place, place, Z, curvatures, np.zeros(K, dtype=np.int64), 0)
+    write_summits(summits, tmp_path / "summits.csv")
+    return tmp_path / "summits.csv"
+
+
+def from_file(table, more=""):
+    return mcgw.scene_from(HEAD + f'[summits]\nfile = "{table.name}"\n{more}' + ASKED, folder=table.parent)
+
+
+def test_file_as_it_is_gives_the_sums_over_its_summits(table):
+    x = from_file(table)
+    assert (x.n_asperities, x.n_surfaces) == (K, 1)
+    assert x.surface.sigma == Z.std()
+    assert x.surface.radius == pytest.approx(1 / np.mean(1 / RADII), rel=1e-14)
+    assert x.surface.eta == K / 1e-6
+    ensemble = mcgw.simulate(x)
+    exact = summit_contact(Z, RADII, MODULUS, np.array(SEPARATIONS) * Z.std())
+    for name in ("load", "area", "stiffness", "contacts"):
+        np.testing.assert_allclose(ensemble[name], getattr(exact, name), rtol=1e-12)
+        np.testing.assert_allclose(x.theory.mean(name, SEPARATIONS), getattr(exact, name)[0], rtol=1e-12)
+    assert mcgw.compare(ensemble).verdict.agrees
+
+
+LAWS = [
+    None,
+    mcgw.KogutEtsion(hardness=1.2e9),
+    mcgw.JacksonGreen(yield_strength=4e8),
+    mcgw.JohnsonKendallRoberts(work=0.05),
+    mcgw.PowerLawGraded(k=0.3, c0=1e-6),
+]
+GRADINGS = [None, mcgw.Exponential(1.5), mcgw.Table([-1.0, 0.3, 1.0, 2.2], [0.3, 0.5, 1.4, 1.5])]
+
+
+@pytest.mark.parametrize("law", LAWS, ids=lambda law: law.name if law else "hertz")
+@pytest.mark.parametrize("grading", GRADINGS, ids=("homogeneous", "exponential", "table"))
+def test_each_summit_has_the_law_of_its_own_radius(law, grading):
+    """Means over surfaces drawn from the list, and their variance, as well: n times those of one summit."""
+    x = scene(law=law, grading=grading)
+    drawn, theory = mcgw.simulate(x), x.theory
+    for name in QUANTITIES:
+        terms = literal(x, name)
+        sums = [math.fsum(row) for row in terms.tolist()]
+        np.testing.assert_allclose(drawn[name][0], sums, rtol=1e-12)
+        np.testing.assert_allclose(theory.mean(name, SEPARATIONS), sums, rtol=1e-12)
+        covariance = K * np.cov(terms, bias=True)
+        found = theory.covariance([name], SEPARATIONS)[0, :, 0]
+        np.testing.assert_allclose(found, covariance, rtol=1e-10, atol=1e-12 * np.diag(covariance).max())
+
+
+def test_another_radius_is_seen():
+    """Otherwise the comparisons say nothing."""
+    radii = RADII.copy()
+    radii[np.argmax(Z)] *= 1 + 1e-6
+    other = mcgw.simulate(scene(radii=radii))
+    exact = summit_contact(Z, RADII, MODULUS, np.array(SEPARATIONS) * Z.std())
+    assert np.all(np.abs(other.area / exact.area - 1) > 1e-12)
+
+
+@pytest.mark.parametrize("law", [None, mcgw.KogutEtsion(hardness=1.2e9)], ids=("hertz", "kogut-etsion"))
+def test_resampled_means_and_variances_are_exact(law):
+    """|z| < 5 of 16 means and 16 variances each: a false alarm in 50 000."""
+    x = scene(resampled=True, law=law, n_surfaces=2000, count="fixed", quantities=QUANTITIES[:4])
+    ensemble, m = mcgw.simulate(x), x.n_surfaces
+    assert ensemble.sampler == "direct"
+    for name in x.quantities:
+        for k, terms in enumerate(literal(x, name)):
+            mean, variance = K * terms.mean(), K * terms.var()
+            fourth = K * (np.mean((terms - terms.mean()) ** 4) - 3 * terms.var() ** 2) + 3 * variance**2
+            assert abs(ensemble[name][:, k].mean() - mean) < 5 * math.sqrt(variance / m), (name, k)
+            spread = math.sqrt((fourth - variance**2) / m)
+            assert abs(ensemble[name][:, k].var() - variance) < 5 * spread, (name, k)
+    assert mcgw.compare(ensemble).verdict.agrees
+
+
+def test_pairs_that_are_broken_are_seen():
+    """The same heights and the same radii, but not of the same summits."""
+    shuffled = np.random.default_rng(2).permutation(RADII)
+    x = scene(resampled=True, radii=shuffled, n_surfaces=2000)
+    area = mcgw.simulate(x).area[:, -1]
+    truth = scene(resampled=True).theory
+    error = truth.std("area", SEPARATIONS[-1]) / math.sqrt(x.n_surfaces)
+    assert abs(area.mean() - truth.mean("area", SEPARATIONS[-1])) > 5 * error
+
+
+def test_what_is_drawn_are_pairs():
+    heights = mcgw.MeasuredHeights(Z, resampled=True)
+    law = mcgw.MeasuredRadii(heights, RADII)
+    s, ratios = law.summits(np.random.default_rng(1), 20_000)
+    known = set(zip(heights.heights, law.ratios, strict=True))
+    assert (
+        set(zip(s.tolist(), ratios.tolist(), strict=True)) == known
+    )  # each of 200: one is missed in 1 of 10^41
+    assert {ratio for height, ratio in known if height == heights.heights[7]} == {RADII[7], RADII[8]}
+
+
+@pytest.mark.parametrize("law", [None, mcgw.KogutEtsion(hardness=1.2e9)], ids=("hertz", "kogut-etsion"))
+def test_slopes_inverses_and_shares(law):
+    theory, h = scene(law=law).theory, 0.7123
+    for name in ("load", "area"):
+        step = 1e-6
+        rise = (theory.mean(name, h - step) - theory.mean(name, h + step)) / (2 * step)
+        assert theory.slope(name, h) == pytest.approx(rise, rel=1e-6)
+        assert theory.separation_at(name, theory.mean(name, h)) == pytest.approx(h, abs=1e-12)
+    yielded = 0.0 if law is None else theory.mean("yielded", h) / theory.mean("contacts", h)
+    assert theory.share(0, h) == pytest.approx(1 - yielded, rel=1e-12)
+
+
+def test_a_scene_reads_the_same_again(table):
+    for resample in ("", "resample = true\n"):
+        x = from_file(table, resample)
+        assert mcgw.scene_from(mcgw.scene_text(x)) == x
+        beside = mcgw.scene_text(x, heights_file=table.name)
+        assert mcgw.scene_from(beside, folder=table.parent) == x
+        assert len(beside) < 2000
+    with_lists = HEAD + f"[summits]\nheights = {Z.tolist()}\nradii = {RADII.tolist()}\n" + ASKED
+    found = mcgw.scene_from(with_lists)
+    assert found.heights == from_file(table).heights
+    assert found.curvature.ratios == pytest.approx(RADII * np.mean(1 / RADII), rel=1e-14)
+
+
+def test_a_stored_ensemble_has_its_scene(table, tmp_path):
+    ensemble = mcgw.run(from_file(table, "resample = true\n"), tmp_path / "a.h5")
+    again = mcgw.open_ensemble(tmp_path / "a.h5")
+    assert again.scene == ensemble.scene
+    np.testing.assert_array_equal(again.load, ensemble.load)
+
+
+def test_what_the_surface_gives_is_used(table):
+    x = mcgw.scene_from(
+        HEAD + f'sigma = "2 um"\nradius = "20 um"\n[summits]\nfile = "{table.name}"\n' + ASKED,
+        folder=table.parent,
+    )
+    assert (x.surface.sigma, x.surface.radius) == (2e-6, 2e-5)
+    exact = summit_contact(Z * (2e-6 / Z.std()), RADII, MODULUS, np.array(SEPARATIONS) * 2e-6)
+    np.testing.assert_allclose(mcgw.simulate(x).load, exact.load, rtol=1e-12)
+
+
+PAIR = "heights = [1e-6, 2e-6, 4e-6]\nradii = [1e-5, 2e-5, 1e-5]\n"
+
+
+@pytest.mark.parametrize(
+    ("head", "summits", "ensemble", "says"),
+    [
+        (HEAD, "heights = [1e-6, 2e-6]\nradii = [1e-5]", "", "2 heights and 1 radii"),
+        (HEAD, "heights = [1e-6, nan]\nradii = [1e-5, 1e-5]", "", "height of summit 2 is nan"),
+        (HEAD, "heights = [1e-6, 2e-6]\nradii = [1e-5, -1e-5]", "", "radius of summit 2 is -1e-05"),
+        (HEAD, "heights = [1e-6, 2e-6]\nradii = [1e-5, inf]", "", "radius of summit 2 is inf"),
+        (HEAD, "heights = [1e-6, 1e-6]\nradii = [1e-5, 1e-5]", "", "all alike"),
+        (HEAD, "heights = ['a', 1e-6]\nradii = [1e-5, 1e-5]", "", "summits.heights"),
+        (HEAD, "heights = [1e-6, 2e-6]", "", "lists heights and radii"),
+        (HEAD, "resample = true", "", "lists heights and radii"),
+        (HEAD, PAIR + "ratios = [1, 2, 1]", "", "lists heights and radii"),
+        (HEAD, PAIR + "file = 'a.csv'", "", "not both"),
+        (HEAD, "file = 'no.csv'", "", "No such file"),
+        (HEAD, PAIR + "resample = 1.5", "", "say true or false"),
+        (HEAD, PAIR + "curvature = 'random'", "", "leave it out"),
+        (HEAD, PAIR + "largest_radius = 1", "", "leave it out"),
+        (HEAD, PAIR + "tiles = 4", "", "unknown key"),
+        (HEAD, PAIR + "[heights]\nlaw = 'nayak'\nalpha = 5.0", "", "leave [heights] out"),
+        (HEAD + "m0 = 1e-12\nm2 = 1e-3\nm4 = 5e6\n", PAIR, "", "surface.m0"),
+        (HEAD.replace("nominal_area", "area"), PAIR, "", "surface.nominal_area: missing"),
+        (HEAD, PAIR, "sampler = 'cells'", 'take "direct"'),
+        (HEAD, PAIR, "keep = 'moments'", 'take "sums"'),
+        (HEAD, PAIR, "n_surfaces = 5", "resample = true under [summits]"),
+        (HEAD, PAIR, "n_asperities = 5", "summits.resample = true"),
+        (HEAD, PAIR + "resample = true", "sampler = 'aggregate'", 'take "direct"'),
+    ],
+)
+def test_bad_input_gets_one_line(head, summits, ensemble, says, tmp_path):
+    text = head + f"[summits]\n{summits}\n[contact]\nseparations = [0.0]\n[ensemble]\n{ensemble}\n"
+    with pytest.raises(mcgw.SceneError) as caught:
+        mcgw.scene_from(text, folder=tmp_path)
+    problems = [line for line in caught.value.problems if "surface.area" not in line]
+    assert len(problems) == 1, problems
+    assert says in problems[0]
+
+
+@pytest.mark.parametrize(
+    ("content", "says"),
+    [
+        ("height\n1e-6\n2e-6\n", "no column radius"),
+        ("x,y\n1e-6,1\n", "no column height and no column radius"),
+        ("height,radius\n1e-6,1e-5\n2e-6,flat\n", "summit 2 has no number"),
+        ("height,radius\n1e-6,1e-5\n2e-6\n", "summit 2 has no number"),
+        ("height,radius\n1e-6,1e-5\nnan,1e-5\n", "height of summit 2 is nan"),
+        ("# nothing\n", "no column"),
+        ("height,radius\n", "two or more"),
+    ],
+)
+def test_bad_files_get_one_line(content, says, tmp_path):
+    (tmp_path / "s.csv").write_text(content)
+    with pytest.raises(mcgw.SceneError) as caught:
+        from_file(tmp_path / "s.csv")
+    assert len(caught.value.problems) == 1, caught.value.problems
+    assert says in caught.value.problems[0]
+
+
+def test_what_needs_single_surfaces_says_so():
+    x = scene(resampled=True)
+    with pytest.raises(ValueError, match=r"theory\.separation_at"):
+        mcgw.solve(x, load=1.0)
+    with pytest.raises(ValueError, match="measured ones"):
+        mcgw.heights(x, 0)
+    with pytest.raises(ValueError, match="no other method"):
+        mcgw.tradeoff(x)
+
+
+def test_radii_of_other_heights_are_refused():
+    radii = mcgw.MeasuredRadii(mcgw.MeasuredHeights(Z), RADII)
+    with pytest.raises(mcgw.SceneError, match="not those of the summits"):
+        scene().replace(heights=mcgw.MeasuredHeights(-Z))
+    with pytest.raises(ValueError, match="heights of their own"):
+        analytic.Model(scene().surface, curvature=radii)
+    with pytest.raises(mcgw.SceneError, match="HeightTable"):
+        scene().replace(heights=mcgw.MeasuredHeights(Z, resampled=True), curvature=None)
+    for ratios, says in (([1.0], "1 for 200"), (np.where(Z > 0, 1.0, np.nan), "is nan")):
+        with pytest.raises(ValueError, match=says):
+            mcgw.MeasuredRadii(mcgw.MeasuredHeights(Z), ratios)
