@@ -330,3 +330,40 @@ def test_solved_on_each_surface():
         for name, value in (("load", 2.0),):
             np.testing.assert_allclose(found.surfaces[name], value, rtol=1e-9)
         assert found.theory["separation"] == pytest.approx(float(scene.theory.separation_at("load", 2.0)))
+
+
+def test_the_arithmetic_mean_curvature_is_another_surface():
+    """A E* sqrt(2 m2)/P at alpha = 2, x = 2 is 2.393 by geometric means, 2.277 by arithmetic ones."""
+    alpha, x = 2.0, 2.0
+    rho = math.sqrt(1.5 / alpha)
+    tau, w = np.polynomial.legendre.leggauss(400)
+    tau, w = 6 * (1 + tau), 6 * w
+    density = math.sqrt(3 / math.pi) / 2 * (tau**2 - 2 + 2 * np.exp(-(tau**2) / 2)) * np.exp(-(tau**2) / 4)
+    spread = math.sqrt(1 - rho**2)
+    z = (x - rho * tau / math.sqrt(2)) / spread
+    f1, f15 = (spread**n * np.array([float(analytic.fn(n, h)) for h in z]) for n in (1.0, 1.5))
+    area, load = (w * density / tau * f1).sum(), (w * density / np.sqrt(tau) * f15).sum()
+    # Units of physics: A/(pi sqrt(m0)/q), P/((4/3) E* m0^(3/4) q^(-1/2)), q^2 = m4/3, alpha = m0 m4/m2^2.
+    factor = 3 * math.pi / 4 * math.sqrt(2) / (alpha / 3) ** 0.25
+    assert factor * area / load == pytest.approx(2.277, abs=5e-4)
+    law = analytic.Nayak(alpha)
+    s = (x - law.mean) / law.std
+    scene = spectral(alpha, separations=(s,), n_asperities=1000)
+    m2 = 1e-3
+    pressure = scene.theory.mean("load", s) / scene.surface.E_star
+    kappa = scene.theory.mean("area", s) * math.sqrt(2 * m2) / pressure
+    assert kappa == pytest.approx(2.3926418, rel=1e-7)
+
+
+def test_minima_and_saddles_are_no_summits():
+    """With the weight |det| for every sign of the mean curvature, heights would have the mean 0."""
+    alpha, n = 2.0, 200_000
+    rng, rho = np.random.default_rng(8), math.sqrt(0.75)
+    mean, deviator = rng.normal(size=n) * math.sqrt(2), np.hypot(*rng.normal(size=(2, n)))
+    x = rho * mean / math.sqrt(2) + math.sqrt(1 - rho**2) * rng.normal(size=n)
+    weight = np.abs(mean**2 - deviator**2)
+    law = analytic.Nayak(alpha)
+    assert abs((weight * x).sum() / weight.sum()) < 0.02
+    summit = weight * ((mean > 0) & (mean > deviator))
+    assert (summit * x).sum() / summit.sum() == pytest.approx(law.mean, abs=0.02)
+    assert law.mean > 1
