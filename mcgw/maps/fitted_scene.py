@@ -10,7 +10,7 @@ from mcgw.formats.files import whole_file
 from mcgw.maps.fit import Fit
 from mcgw.maps.profile_fit import ProfileFit
 from mcgw.maps.profile_scene import profile_scene
-from mcgw.maps.spectral_scene import spectral_scene
+from mcgw.maps.spectral_scene import FITTED, spectral_scene
 from mcgw.scene.reading import argument
 from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_text
@@ -97,10 +97,12 @@ def fitted_scene(
     separations = tuple(np.linspace(0, 3, 31).tolist())
     if heights == "measured":
         return Scene(
-            surface=surface, separations=separations, title=title, heights=drawn,
+            surface=surface, separations=separations, title=title, heights=drawn, quantities=FITTED,
             n_surfaces=1, n_asperities=fit.summits.size, sampler="direct", seed=1,
         )  # fmt: skip
-    return Scene(surface=surface, separations=separations, title=title, heights=drawn, seed=1)
+    return Scene(
+        surface=surface, separations=separations, title=title, heights=drawn, quantities=FITTED, seed=1
+    )
 
 
 def heights_beside(path: Path) -> Path:

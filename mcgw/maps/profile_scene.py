@@ -4,7 +4,7 @@ import numpy as np
 
 from analytic import Surface
 from mcgw.maps.profile_fit import ProfileFit
-from mcgw.maps.spectral_scene import spectral_scene
+from mcgw.maps.spectral_scene import FITTED, spectral_scene
 from mcgw.scene.scene import Scene
 
 __all__ = ["profile_scene"]
@@ -28,4 +28,4 @@ def profile_scene(fit: ProfileFit, modulus: float, title: str, *, nayak: bool = 
     if nayak:
         return spectral_scene(m, fit.area, modulus, title)
     surface = Surface(m.sigma, m.radius, m.eta, fit.area, modulus)
-    return Scene(surface=surface, separations=tuple(np.linspace(0, 3, 31).tolist()), title=title, seed=1)
+    return Scene(surface, separations=np.linspace(0, 3, 31), title=title, quantities=FITTED, seed=1)

@@ -7,7 +7,9 @@ import numpy as np
 from analytic import Nayak, RandomCurvature, SpectralMoments
 from mcgw.scene.scene import Scene
 
-__all__ = ["spectral_scene"]
+__all__ = ["FITTED", "spectral_scene"]
+
+FITTED = ("load", "area", "stiffness", "contacts", "conductance")  # what a fitted scene asks for
 
 
 def spectral_scene(moments: SpectralMoments, area: float, modulus: float, title: str) -> Scene:
@@ -36,5 +38,6 @@ def spectral_scene(moments: SpectralMoments, area: float, modulus: float, title:
         heights=heights,
         curvature=RandomCurvature(heights.alpha, math.sqrt(area) / surface.radius),
         title=title,
+        quantities=FITTED,
         seed=1,
     )
