@@ -277,3 +277,18 @@ def test_radii_of_other_heights_are_refused():
     for ratios, says in (([1.0], "1 for 200"), (np.where(Z > 0, 1.0, np.nan), "is nan")):
         with pytest.raises(ValueError, match=says):
             mcgw.MeasuredRadii(mcgw.MeasuredHeights(Z), ratios)
+
+
+def test_more_summits_than_a_file_can_tell_are_refused_before_anything_is_drawn(tmp_path):
+    """A file whose scene is longer would not be opened again."""
+    rng = np.random.default_rng(1)
+    heights = mcgw.MeasuredHeights(rng.normal(size=120_000), resampled=True)
+    x = scene(resampled=True, n_asperities=100).replace(
+        heights=heights, curvature=mcgw.MeasuredRadii(heights, rng.lognormal(size=120_000)), n_surfaces=2
+    )
+    for write in (
+        lambda: mcgw.run(x, tmp_path / "a.h5"),
+        lambda: mcgw.save(mcgw.simulate(x), tmp_path / "a.h5"),
+    ):
+        with pytest.raises(mcgw.StoreError, match="list fewer summits"):
+            write()

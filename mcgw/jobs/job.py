@@ -12,9 +12,10 @@ from mcgw.formats.files import check_output
 from mcgw.jobs.disk_space import check_space
 from mcgw.sampling.samplers import Sampler, sampler_of
 from mcgw.scene.scene import Scene
-from mcgw.scene.scene_file import scene_from, scene_text
+from mcgw.scene.scene_file import scene_from
 from mcgw.scene.storable import storable
 from mcgw.store.ensembles import finished, recorded_scene
+from mcgw.store.layout import stored_text
 from mcgw.store.run_folder import RunFolder, parts_of
 from mcgw.store.shards import Span, Tables
 
@@ -125,5 +126,5 @@ def as_recorded(scene: Scene, path: Path) -> Scene:
 
 
 def _check_readable(scene: Scene, path: Path) -> None:
-    if scene_from(scene_text(scene)) != scene:
+    if scene_from(stored_text(scene)) != scene:
         raise StoreError(f"{path}: this scene would be read otherwise than it is; give the values it shows")

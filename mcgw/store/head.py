@@ -13,8 +13,9 @@ from typing import Any
 import h5py
 import numpy as np
 
-__all__ = ["MOST_SCALE", "head_digest"]
+__all__ = ["MOST_SCALE", "MOST_TEXT", "head_digest"]
 
+MOST_TEXT = 2**22  # characters of an attribute, such as the scene
 MOST_SCALE = 2**20  # values of a scale up to which they are looked at on opening
 
 

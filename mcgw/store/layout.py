@@ -13,7 +13,7 @@ from analytic import ALL_QUANTITIES
 from mcgw.errors import StoreError
 from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_text
-from mcgw.store.head import head_digest
+from mcgw.store.head import MOST_TEXT, head_digest
 from mcgw.store.provenance import now, provenance
 from mcgw.store.shards import DRAWN, RAGGED, Span, Tables
 
@@ -23,6 +23,7 @@ __all__ = [
     "build",
     "file_pieces",
     "scales_of",
+    "stored_text",
     "trailer_notes",
     "values_digest",
     "where",
@@ -58,6 +59,7 @@ def build(
     StoreError
         If the pieces are not all surfaces of the scene in order.
     """
+    text = stored_text(scene)
     stop, digest = 0, _Digest(scene)
     for span, arrays in pieces:
         if span.first != stop:
@@ -76,7 +78,7 @@ def build(
         filetype=FILETYPE,
         format=FORMAT,
         title=scene.title,
-        scene=scene_text(scene),
+        scene=text,
         seed=np.uint64(scene.seed),
         sampler=sampler,
         complete=True,
@@ -95,6 +97,23 @@ def where(name: str) -> str:
 def tables(file: h5py.File) -> list[str]:
     """Names of the tables of results, in order."""
     return sorted(name for name in (*ALL_QUANTITIES, *DRAWN) if where(name) in file)
+
+
+def stored_text(scene: Scene) -> str:
+    """The scene as its file holds it.
+
+    Raises
+    ------
+    StoreError
+        If it is longer than the file may be told: a list of very many heights, or radii.
+    """
+    text = scene_text(scene)
+    if len(text.encode()) > MOST_TEXT:
+        raise StoreError(
+            f"scene: its lists take {len(text)} characters, and a file of results holds {MOST_TEXT}; "
+            "list fewer summits, or simulate in memory"
+        )
+    return text
 
 
 def scales_of(scene: Scene) -> dict[str, Sequence[float]]:

@@ -19,13 +19,13 @@ from typing import Any
 import h5py
 import numpy as np
 
-from mcgw.store.head import head_digest
+from mcgw.store.head import MOST_TEXT, head_digest
 
 __all__ = ["RefusedError", "check_plain", "describe"]
 
 GROUP = "drawn"
 _FILTERS = {h5py.h5z.FILTER_DEFLATE, h5py.h5z.FILTER_SHUFFLE, h5py.h5z.FILTER_FLETCHER32, h5py.h5z.FILTER_LZF}
-_MOST_ATTRIBUTES, _MOST_TEXT = 64, 2**22
+_MOST_ATTRIBUTES = 64
 _READ_ALL = 2**26  # stored bytes up to which all is read here first
 _MOST_EXPANSION = 1100  # deflate cannot shrink more
 _MOST_CHUNK = 2**28
@@ -124,11 +124,11 @@ def describe(path: str, *, read: bool = True) -> dict[str, Any]:
 def _plain_value(name: str, attributes: Any) -> Any:
     """An attribute as text, number, or list of numbers."""
     identity = attributes.get_id(name)
-    if identity.get_storage_size() > _MOST_TEXT or math.prod(identity.shape or (1,)) > 64:
+    if identity.get_storage_size() > MOST_TEXT or math.prod(identity.shape or (1,)) > 64:
         raise RefusedError(f"attribute {name}: too large")
     value = attributes[name]
     if isinstance(value, str):
-        if len(value) > _MOST_TEXT:
+        if len(value) > MOST_TEXT:
             raise RefusedError(f"attribute {name}: too large")
         return value
     if isinstance(value, np.ndarray | np.generic) and value.dtype.kind in "iufb":
