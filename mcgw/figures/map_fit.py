@@ -30,7 +30,7 @@ _SIZE, _DPI = (11.0, 6.8), 160
 _POINTS = 700  # of a map along each side: more are not seen
 _MOST_MARKS = 3000
 _CUTOFFS = 8
-_WIDTH, _LINES = 46, 27  # of the text, in characters and lines
+_WIDTH, _LINES = 42, 27  # of the text, in characters and lines
 _TIMES = 12.0  # from the shortest cutoff to the longest
 
 
