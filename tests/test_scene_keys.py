@@ -27,7 +27,13 @@ GOOD = {
 SERIES = {"law": "'series'", "edges": "[0.0, 5.0, 20.0]", "coefficients": "[[1.0, 0.5], [1.5]]"}
 PIECE = "[{low = -1.0, high = 1.0, coefficients = [1.0]}, {low = 1.0, high = 3.0, coefficients = [1.0]}]"
 CUSTOM = {"law": "'custom'", "critical": "0.05", "limits": "[1.0]", "load": PIECE, "area": PIECE}
-# Tables that need other company: key, its good value, and what is put in place of which other lines.
+NAYAK = {("heights", "law"): "'nayak'", ("heights", "shape"): None, ("heights", "alpha"): "5.0"}
+SPECTRAL = {"sigma": None, "radius": None, "eta": None, ("heights", "law"): None, ("heights", "shape"): None}
+SPECTRAL |= {"m0": "1e-12", "m2": "1e-3", "m4": "5e6"}
+LISTED = {("heights", "law"): None, ("heights", "shape"): None, ("ensemble", "sampler"): "'direct'"}
+LISTED |= {"resample": "true"}
+HEIGHTS, RADII = {"heights": "[0.0, 1e-6, 3e-6]"}, {"radii": "[1e-5, 2e-5, 3e-5]"}
+# Keys that need other company: its good value, and what is put in place of which other lines.
 COMPANY = {
     ("surface", "bodies"): ("[{E = 7e10, nu = 0.3}, {E = inf}]", {"E_star": None}),
     ("ensemble", "rel_err"): ("0.01", {"n_surfaces": None}),
@@ -46,6 +52,18 @@ COMPANY = {
     ("heights", "share"): ("[0.0, 1.0]", {"shape": None, "law": "'table'", "s": "[0.0, 1.0]"}),
     ("heights", "name"): ("'gamma'", {"shape": None, "law": "'scipy'", "shapes": "{a = 4.0}"}),
     ("heights", "shapes"): ("{a = 4.0}", {"shape": None, "law": "'scipy'", "name": "'gamma'"}),
+    ("heights", "alpha"): ("5.0", {"shape": None, "law": "'nayak'"}),
+    ("surface", "m0"): ("1e-12", SPECTRAL),
+    ("surface", "m2"): ("1e-3", SPECTRAL),
+    ("surface", "m4"): ("5e6", SPECTRAL),
+    ("summits", "curvature"): ("'random'", NAYAK),
+    ("summits", "largest_radius"): ("'1 mm'", NAYAK | {"curvature": "'random'"}),
+    ("summits", "file"): ("'s.csv'", LISTED),
+    ("summits", "heights"): (HEIGHTS["heights"], LISTED | RADII),
+    ("summits", "radii"): (RADII["radii"], LISTED | HEIGHTS),
+    ("summits", "ratios"): ("[1.0, 2.0, 3.0]", LISTED | HEIGHTS),
+    ("summits", "resample"): ("true", LISTED | {"file": "'s.csv'"}),
+    ("contact", "datum"): ("'surface'", NAYAK),
     ("contact", "law"): ("'kogut-etsion'", {"critical": "0.05"}),
     ("contact", "critical"): ("0.05", {"law": "'kogut-etsion'"}),
     ("contact", "hardness"): ("'1.2 GPa'", {"law": "'kogut-etsion'"}),
@@ -111,6 +129,11 @@ WRONG = {
              PIECE.replace("high = 3.0", "high = 0.5")],
     "area": ["[]", "'x'", PIECE.replace("[1.0]", "['x']"), PIECE.replace("low = 1.0", "lowest = 1.0")],
     "work": ["0", "-1", "'x'"], "pull_off": ["0", "-1", "inf"],
+    "alpha": ["1.5", "0", "'x'", "nan", "inf"], "curvature": ["'all'", "1"],
+    "m0": ["0", "-1", "'1 m'"], "m2": ["0", "nan", "'1 m'"], "m4": ["0", "-1", "'1 m'"],
+    "largest_radius": ["0", "-1", "'1 Pa'"], "datum": ["'top'", "1"],
+    "radii": ["[1e-5]", "1", "[1e-5, -1e-5, 1e-5]", "[1e-5, nan, 1e-5]", "['x', 1, 1]"],
+    "ratios": ["[1.0]", "'x'", "[1.0, -1.0, 1.0]"],
     "left_out": ["'seed'", "['gamma']", "[1]", "['n_asperities']"],
 }  # fmt: skip
 WRONG_HERE = {
@@ -118,6 +141,7 @@ WRONG_HERE = {
     ("heights", "s"): ["[1.0]", "[1.0, 0.0]", "1"],
     ("grading", "name"): ["1", "['x']"],
     ("contact", "ratio"): ["0", "-1", "'x'"],
+    ("summits", "heights"): ["[]", "[1.0]", "1", "[1.0, nan, 2.0]"],
 }  # fmt: skip
 
 
@@ -131,10 +155,11 @@ def text_of(table, key, value):
     tables = {name: dict(lines) for name, lines in GOOD.items()}
     _, others = COMPANY.get((table, key), ("", {}))
     for other, line in others.items():
-        tables[table].pop(other, None)
+        place, name = other if isinstance(other, tuple) else (table, other)
+        tables.setdefault(place, {}).pop(name, None)
         if line is not None:
-            tables[table][other] = line
-    tables[table][key] = value
+            tables[place][name] = line
+    tables.setdefault(table, {})[key] = value
     return "\n".join(
         (f"[{name}]\n" if name else "") + "".join(f"{k} = {v}\n" for k, v in lines.items())
         for name, lines in tables.items()
@@ -150,6 +175,7 @@ def files(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     Path("g.csv").write_text("s,ratio\n0,1\n1,2\n")
     Path("h.csv").write_text("0\n1\n3\n")
+    Path("s.csv").write_text("height,radius\n0,1e-5\n1e-6,2e-5\n3e-6,3e-5\n")
 
 
 def test_the_list_of_keys_is_whole(monkeypatch):
@@ -166,7 +192,7 @@ def test_the_list_of_keys_is_whole(monkeypatch):
         mcgw.scene_from(text_of(table, key, good(table, key)))
     inner = {("contact.separations", name) for name in ("start", "stop", "num")}
     inner |= {("contact.tangential", name) for name in ("friction", "poisson", "displacements")}
-    tables = {("", name) for name in GOOD if name}
+    tables = {("", name) for name in (*GOOD, "summits") if name}
     assert asked - inner - tables == set(keys())
 
 
@@ -179,6 +205,8 @@ def test_every_wrong_value_of_every_key_names_it(table, key):
             mcgw.scene_from(text_of(table, key, value))
         said = caught.value.problems
         named = {path, f"{table}.s"} if key in ("share", "ratio") else {path}
+        if key in ("radii", "ratios"):  # lists of two lengths are told by the first
+            named.add("summits.heights")
         if key == "left_out":
             named.add("ensemble.n_asperities")
         if key == "law":  # of another law other keys are unknown
