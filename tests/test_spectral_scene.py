@@ -10,6 +10,7 @@ import mcgw
 from mcgw.cli import main
 from mcgw.maps.fit import fit_map
 from mcgw.maps.spectrum import Spectrum, gaussian_map
+from mcgw.maps.summit_contact import summit_contact
 
 
 @pytest.fixture(scope="module")
@@ -52,6 +53,16 @@ def test_summits_of_the_map_have_the_heights_and_curvatures_of_the_scene(fit):
     expected = (1 / ratios[s > np.quantile(s, 0.75)]).mean() / (1 / ratios).mean()
     assert found == pytest.approx(expected, rel=0.05)
     assert expected > 1.1
+
+
+def test_the_very_summits_carry_what_they_carry_literally(fit, tmp_path):
+    scene = mcgw.fitted_scene(fit, heights="summits", E_star=70e9)
+    ensemble = mcgw.run(mcgw.scene_from(mcgw.scene_text(scene)), tmp_path / "summits.h5")
+    d = scene.surface.sigma * np.array(scene.separations)
+    exact = summit_contact(fit.listed.heights, fit.listed.radii, 70e9, d)
+    for name in ("load", "area", "stiffness", "contacts"):
+        np.testing.assert_allclose(ensemble[name], getattr(exact, name), rtol=1e-11)
+    assert exact.load[0, 0] > 0
 
 
 def test_by_command_from_map_to_verdict(tmp_path, capsys):

@@ -31,9 +31,9 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         help="which estimate goes into the scene; default: caps if all summits have one radius, else summits",
     )  # fmt: skip
     parser.add_argument(
-        "--heights", choices=("gaussian", "nayak", "table", "measured"), default="gaussian",
+        "--heights", choices=("gaussian", "nayak", "table", "measured", "summits"), default="gaussian",
         help="gaussian; nayak: from the moments, each summit with its own radius; the summits' own heights, "
-        "resampled (table) or just as they are (measured); default: gaussian",
+        "resampled (table) or just as they are (measured), with their own radii (summits); default: gaussian",
     )  # fmt: skip
     parser.add_argument(
         "--E-star", default="100 GPa", metavar="E", help="composite modulus; default: 100 GPa"

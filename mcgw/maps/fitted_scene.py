@@ -5,7 +5,7 @@ from typing import Literal
 
 import numpy as np
 
-from analytic import Gaussian, HeightLaw, HeightTable, MeasuredHeights, Surface
+from analytic import Gaussian, HeightLaw, HeightTable, MeasuredHeights, MeasuredRadii, Surface
 from mcgw.formats.files import whole_file
 from mcgw.maps.fit import Fit
 from mcgw.maps.profile_fit import ProfileFit
@@ -17,7 +17,7 @@ from mcgw.scene.scene_file import scene_text
 
 __all__ = ["fitted_scene", "heights_beside", "write_scene"]
 
-Heights = Literal["gaussian", "nayak", "table", "measured"]
+Heights = Literal["gaussian", "nayak", "table", "measured", "summits"]
 
 
 def fitted_scene(
@@ -37,9 +37,10 @@ def fitted_scene(
     use : {"auto", "moments", "summits", "caps"}
         Which estimate; ``auto`` is `Fit.best`, and with heights of their own the counted summits. With
         measured heights sigma is that of the heights.
-    heights : {"gaussian", "nayak", "table", "measured"}
+    heights : {"gaussian", "nayak", "table", "measured", "summits"}
         Law of the heights; ``nayak`` is that of the isotropic Gaussian surface with the map's moments, whose
-        summits have radii of their own; ``measured`` makes an ensemble of the one surface there is.
+        summits have radii of their own; ``measured`` makes an ensemble of the one surface there is, and so
+        does ``summits``, each with its own height and radius.
     E_star : float or str
         Composite modulus, which no map tells, Pa or as "78.6 GPa".
     title : str
@@ -77,6 +78,8 @@ def fitted_scene(
         if use not in ("auto", "moments"):
             raise ValueError(f'use = "{use}": heights = "nayak" follow from the "moments"')
         return spectral_scene(fit.moments, fit.area, modulus, title)
+    if heights == "summits":
+        return _of_summits(fit, modulus, title)
     if use == "auto":
         use = fit.best if heights == "gaussian" else "summits"
     if use not in fit.estimates:
@@ -102,6 +105,25 @@ def fitted_scene(
         )  # fmt: skip
     return Scene(
         surface=surface, separations=separations, title=title, heights=drawn, quantities=FITTED, seed=1
+    )
+
+
+def _of_summits(fit: Fit, modulus: float, title: str) -> Scene:
+    """The very summits of the map: their heights and radii, nothing drawn."""
+    z, radii = fit.listed.heights, fit.listed.radii
+    radius = float(1 / np.mean(1 / radii))
+    heights = MeasuredHeights(z)
+    return Scene(
+        surface=Surface(float(z.std()), radius, z.size / fit.area, fit.area, modulus),
+        separations=np.linspace(0, 3, 31),
+        heights=heights,
+        curvature=MeasuredRadii(heights, radii / radius),
+        title=title,
+        quantities=FITTED,
+        n_surfaces=1,
+        n_asperities=z.size,
+        sampler="direct",
+        seed=1,
     )
 
 
