@@ -58,7 +58,7 @@ class RandomCurvature:
     --------
     >>> law = RandomCurvature(5.0)
     >>> law.mean(1, [0.0, 3.0]).round(4)
-    array([1.3093, 0.7853])
+    array([1.3407, 0.8021])
     """
 
     alpha: float

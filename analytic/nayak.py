@@ -210,7 +210,7 @@ class Nayak:
     --------
     >>> import numpy as np
     >>> round(float(Nayak(5.0).above(np.array(0.0))), 6)
-    0.489446
+    0.498232
     """
 
     alpha: float

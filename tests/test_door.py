@@ -307,7 +307,7 @@ CALLS = [
     (lambda: mcgw.fit("map.x3p", cutoff="5 N"), r"^cutoff = '5 N': give a finite number > 0 in m"),
     (
         lambda: mcgw.fit("map.x3p", cutoff=None, form="x"),
-        r"^form = 'x': choose one of none, plane, quadratic$",
+        r"^form = 'x': choose one of none, plane, quadratic, cubic, quartic, sphere, cylinder$",
     ),
     (lambda: mcgw.fit("map.x3p", cutoff=None, parts=1), r"^parts = 1: give a whole number >= 2$"),
     (lambda: mcgw.fit("map.x3p", cutoff=None, pixel=-1), r"^pixel = -1: give a finite number > 0 in m"),

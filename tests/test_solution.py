@@ -138,7 +138,7 @@ def test_light_loads_on_stiffer_tips(scene, gamma, monkeypatch):
     grading = analytic.Exponential(gamma)
     loads = [3e2, 3e1, 3.0, 3e-1, 3e-2, 3e-3, 3e-4]
     graded = replace(scene, grading=grading, n_surfaces=20)
-    drawn = entered(monkeypatch, "heights")
+    drawn = entered(monkeypatch, "touching_summits")
     found = solutions(graded, "load", loads)
     assert drawn[0][0].lowest < grading.zero
     for number in range(20):
@@ -179,7 +179,7 @@ def literal_load(scene, heights, h):
 @pytest.mark.parametrize("negative", ["clip", "allow"])
 def test_negative_moduli_as_the_scene_wants_them(scene, negative, monkeypatch):
     """Clipped they carry nothing, allowed they pull: the heights are those of the search's own start."""
-    drawn = entered(monkeypatch, "heights")
+    drawn = entered(monkeypatch, "touching_summits")
     wanted = replace(scene, negative=negative, n_asperities=20, n_surfaces=100)
     (solution,) = solutions(wanted, "load", [14.0])
     starts = {args[0].lowest for args in drawn}
@@ -201,18 +201,17 @@ def test_the_branch_below_the_margin_is_entered(scene, monkeypatch):
 
     few = replace(scene, n_asperities=3, grading=analytic.Homogeneous(), n_surfaces=200)
     monkeypatch.setattr(solution, "_MARGIN", 0.5)
-    drawn_whole, listed, starts = [], solution.heights, []
+    drawn_whole, listed, starts = [], solution.summits, []
 
-    def spy(asked, number, *, untouched=False):
-        if untouched:
-            drawn_whole.append(number)
-        return listed(asked, number, untouched=untouched)
+    def spy(asked, number):
+        drawn_whole.append(number)
+        return listed(asked, number)
 
     def newton(s, modulus, exponent, target, start):
         starts.append(start)
         return separation_on(s, modulus, exponent, target, start)
 
-    monkeypatch.setattr(solution, "heights", spy)
+    monkeypatch.setattr(solution, "summits", spy)
     monkeypatch.setattr(solution, "separation_on", newton)
     (found,) = solutions(few, "load", [2.0])
     assert 0 < len(drawn_whole) < 200
@@ -221,7 +220,7 @@ def test_the_branch_below_the_margin_is_entered(scene, monkeypatch):
     asked = replace(few, sampler="tail", separations=(max(starts),), quantities=tuple(analytic.QUANTITIES))
     scale = analytic.QUANTITIES["load"].scale(few.surface)
     for number in (*drawn_whole[:5], *(k for k in range(5) if k not in drawn_whole)):
-        s = listed(asked, number, untouched=True)
+        s = listed(asked, number)[0]
         low, high = -50.0, float(s.max())
         for _ in range(100):
             middle = (low + high) / 2
@@ -231,17 +230,10 @@ def test_the_branch_below_the_margin_is_entered(scene, monkeypatch):
 
 
 def test_surfaces_within_the_margin_are_drawn_once(scene, monkeypatch):
-    from mcgw.ensemble import solution
-
-    listed, whole = solution.heights, []
-
-    def spy(asked, number, *, untouched=False):
-        whole.append(untouched)
-        return listed(asked, number, untouched=untouched)
-
-    monkeypatch.setattr(solution, "heights", spy)
+    touching, whole = entered(monkeypatch, "touching_summits"), entered(monkeypatch, "summits")
     solutions(replace(scene, n_surfaces=40), "load", [900.0])
-    assert whole == [False] * 40
+    assert len(touching) == 40
+    assert not whole
 
 
 @pytest.mark.parametrize("level", [0.5, 0.95, 0.99])

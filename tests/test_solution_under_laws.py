@@ -138,13 +138,13 @@ def drawn_by(monkeypatch, scene, given, values):
     """Solutions, and the scene whose heights were drawn for them."""
     import mcgw.ensemble.solution as module
 
-    listed, scenes = module.heights, []
+    listed, scenes = module.touching_summits, []
 
-    def spy(drawn, number, *, untouched=False):
+    def spy(drawn, number):
         scenes.append(drawn)
-        return listed(drawn, number, untouched=untouched)
+        return listed(drawn, number)
 
-    monkeypatch.setattr(module, "heights", spy)
+    monkeypatch.setattr(module, "touching_summits", spy)
     found = solutions(scene, given, values)
     monkeypatch.undo()
     return found, scenes[0]

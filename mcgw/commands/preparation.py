@@ -24,7 +24,7 @@ def preparation_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--missing", choices=("auto", "mask", "fill"), default="auto",
         help="missing points are filled from the edges of their holes; mask: they and their neighbours do "
-        "not count, fill: they do; default: mask, while half of the others are left",
+        "not count, fill: they do; auto: mask, while half of the others are left; default: auto",
     )  # fmt: skip
     parser.add_argument(
         "--spikes", choices=("keep", "remove"), default="keep",

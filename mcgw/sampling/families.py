@@ -79,7 +79,9 @@ class Families:
         """Quantities of every surface: moments (rows, surfaces) to (quantities, surfaces, separations)."""
         ends = np.cumsum([response.layout.starts[-1] for response in self.responses])
         parts = np.split(moments, ends[:-1])
-        found = np.concatenate([r @ part for r, part in zip(self.responses, parts, strict=True)])
+        found = np.concatenate(
+            [response @ part for response, part in zip(self.responses, parts, strict=True)]
+        )
         answers = np.empty_like(found)
         answers[list(self.places)] = found
         return answers
