@@ -28,8 +28,8 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument(
         "--use", choices=("auto", "moments", "summits", "caps"), default="auto",
-        help="which estimate goes into the scene; auto: caps if all summits have one radius, else summits; default: "
-        "auto",
+        help="which estimate goes into the scene; auto: caps if all summits have one radius, else summits; "
+        "default: auto",
     )  # fmt: skip
     parser.add_argument(
         "--heights", choices=("gaussian", "nayak", "table", "measured", "summits"), default="gaussian",
