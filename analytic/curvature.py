@@ -167,21 +167,9 @@ class RandomCurvature:
         return np.ones_like(x) if power == 0 else _means(self.alpha, self.largest, float(power))(x)
 
     def summits(self, rng: np.random.Generator, n: int) -> tuple[Array, Array]:
-        """Reduced heights and radius ratios of `n` summits, of Gaussian numbers, accepted by their weight.
-
-        Points of a surface are summits if both principal curvatures are positive, and count by their
-        product: 57.7 % of the points that are drawn are accepted.
-        """
-        tau, square = np.empty(0), np.empty(0)
-        while tau.size < n:
-            more = int(1.8 * (n - tau.size)) + 16
-            mean, difference = 2 * rng.chisquare(3, more), rng.chisquare(2, more)
-            accepted = rng.random(more) * mean < mean - difference
-            tau = np.append(tau, np.sqrt(mean[accepted]))
-            square = np.append(square, (mean - difference)[accepted])
-        tables, law = tables_of(float(self.alpha)), self.heights
-        x = tables.rho / math.sqrt(2) * tau[:n] + tables.width * rng.standard_normal(n)
-        return np.asarray((x - law.mean) / law.std), self.ratio(np.sqrt(square[:n]))
+        """Reduced heights and radius ratios of `n` summits, drawn together (`analytic.Nayak.summits`)."""
+        s, g = self.heights.summits(rng, n)
+        return s, self.ratio(g)
 
     def sample(self, rng: np.random.Generator, s: ArrayLike) -> Array:
         """Radius ratios of summits of given heights."""

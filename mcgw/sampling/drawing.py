@@ -1,8 +1,10 @@
-"""From the numbers of asperities in the cells to their moments: four ways.
+"""From the numbers of asperities in the cells to their moments: three ways.
 
 ``OneByOne``   a uniform for each asperity
 ``InStrata``   a uniform in each of as many equal strata of the cell, with the weight it stands for
 ``Crowds``     for cells with few asperities as `OneByOne`, else one Gaussian number a moment
+
+Where summits have radii of their own there is a fourth, `mcgw.sampling.with_radii`.
 """
 
 from dataclasses import dataclass
