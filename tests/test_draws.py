@@ -10,7 +10,7 @@ from test_binomial import draw
 
 from mcgw.sampling import counts
 from mcgw.sampling.layout import Layout
-from mcgw.sampling.moments import _PIECE, _add_compensated, cell_moments
+from mcgw.sampling.moments import _PIECE, add_compensated, cell_moments
 from mcgw.sampling.philox import CELLS, uniforms
 from mcgw.sampling.samplers import sampler_of
 from mcgw.sampling.uniform_sums import PLAIN, ROOTED, WORDS, sum_uniforms
@@ -73,7 +73,7 @@ def test_a_compensated_sum_is_the_exact_one():
     terms = np.array([[1.0, 1e16], [1e16, 1.0], [1.0, -1e16], [-1e16, 3.0], [2.0**-40, 2.0**-40]])
     total, carry = np.zeros(2), np.zeros(2)
     for row in terms:
-        _add_compensated(total, carry, row)
+        add_compensated(total, carry, row)
     exact = [math.fsum(column) for column in terms.T]
     np.testing.assert_array_equal(total + carry, exact)
     assert (total != exact).all()

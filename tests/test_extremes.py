@@ -16,7 +16,7 @@ import analytic
 import mcgw
 from mcgw.sampling.counts import counts_of
 from mcgw.sampling.layout import Layout
-from mcgw.sampling.moments import _add_compensated, cell_moments
+from mcgw.sampling.moments import add_compensated, cell_moments
 from mcgw.sampling.samplers import sampler_of
 from mcgw.scene.scene import Scene, SceneError
 
@@ -197,7 +197,7 @@ def test_pieces_of_1e12_terms():
     pieces = np.random.default_rng(1).uniform(0.0, 2.6e5, (4_000_000, 1))
     total, carry = np.zeros(1), np.zeros(1)
     for piece in pieces[:1000]:
-        _add_compensated(total, carry, piece)
+        add_compensated(total, carry, piece)
     assert (total + carry)[0] == math.fsum(pieces[:1000, 0])
     assert _all_pieces(pieces) == math.fsum(pieces[:, 0])
     naive = np.add.accumulate(pieces[:, 0])[-1]  # the companion: plain addition loses digits
@@ -208,7 +208,7 @@ def test_pieces_of_1e12_terms():
 def _all_pieces(pieces):
     total, carry = np.zeros(1), np.zeros(1)
     for k in range(len(pieces)):
-        _add_compensated(total, carry, pieces[k])
+        add_compensated(total, carry, pieces[k])
     return total[0] + carry[0]
 
 

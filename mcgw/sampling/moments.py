@@ -22,7 +22,7 @@ from mcgw.sampling.layout import Layout
 from mcgw.sampling.spacing import price
 from mcgw.sampling.uniform_sums import PLAIN, ROOTED, WORDS, sum_uniforms, unfold
 
-__all__ = ["cell_moments"]
+__all__ = ["add_compensated", "cell_moments"]
 
 _START = 80.0  # asperities that take as long to draw as a cell takes to begin
 _ALONE = 1e6  # asperities' work that a thread does before another one has begun
@@ -30,7 +30,7 @@ _PIECE = 512 * 512  # a plain sum of so many terms is good to 1e-14; beyond, it 
 
 
 @njit(nogil=True, cache=True)
-def _add_compensated(total: Any, carry: Any, sums: Any) -> None:
+def add_compensated(total: Any, carry: Any, sums: Any) -> None:
     """Neumaier's sum: what rounding drops from `total` is kept in `carry`."""
     for j in range(total.size):
         new = total[j] + sums[j]
@@ -48,7 +48,7 @@ def _sum_pieces(w: Any, seed: Any, surface: Any, cell: Any, n: Any, strata: Any,
     total, carry = np.zeros(sums.size), np.zeros(sums.size)
     for start in range(0, n, _PIECE):
         sum_uniforms(w, seed, surface, cell, start, min(start + _PIECE, n), strata, orders)
-        _add_compensated(total, carry, sums)
+        add_compensated(total, carry, sums)
     for j in range(sums.size):
         sums[j] = total[j] + carry[j]
 

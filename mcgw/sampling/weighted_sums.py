@@ -23,6 +23,7 @@ from mcgw.machine.in_threads import in_threads
 from mcgw.sampling.cells import Mesh
 from mcgw.sampling.lanes import LANES, alike, fused, load, roots, store, total
 from mcgw.sampling.layout import Layout
+from mcgw.sampling.moments import add_compensated
 from mcgw.sampling.philox import CELLS, RADII, RADII_LOW, centred
 from mcgw.sampling.radius_table import RadiusTable, root_ratio
 from mcgw.sampling.uniform_sums import five, five_more, stratify, unfold
@@ -136,14 +137,8 @@ def _sum_cell(
                 five_more(w, whole, 0, 2, _FACTOR, sums)
             if wanted > 16:
                 five_more(w, whole, 0, 3, _FACTOR, sums)
-            for k in range(_MOST):  # Neumaier's sum
-                at, carry = sums + _MOST + k, sums + 2 * _MOST + k
-                new = w[at] + w[sums + k]
-                if abs(w[at]) >= abs(w[sums + k]):
-                    w[carry] += (w[at] - new) + w[sums + k]
-                else:
-                    w[carry] += (w[sums + k] - new) + w[at]
-                w[at] = new
+            kept, carry = sums + _MOST, sums + 2 * _MOST
+            add_compensated(w[kept:carry], w[carry : carry + _MOST], w[sums:kept])
 
 
 @njit(nogil=True, cache=True)
