@@ -27,6 +27,7 @@ Eq. (15)  `analytic.stiffness_ratio`           its ratio: that of the stiffnesse
 ========  ===================================  ================================================
 """
 
+from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 from analytic.contact import (
@@ -63,6 +64,7 @@ from analytic.quantities import (
     LAW_QUANTITIES,
     PER_AREA,
     QUANTITIES,
+    SEPARATIONS,
     TANGENTIAL,
     UNLOADING,
     Quantity,
@@ -75,6 +77,8 @@ from analytic.surface import Body, Surface, composite_modulus
 from analytic.tables import Table
 
 if TYPE_CHECKING:
+    from analytic.interacting import InteractingModel
+    from analytic.interaction import Interaction
     from analytic.laws import (
         ChangEtsionBogy,
         Coated,
@@ -97,6 +101,7 @@ __all__ = [
     "LAW_QUANTITIES",
     "PER_AREA",
     "QUANTITIES",
+    "SEPARATIONS",
     "TANGENTIAL",
     "UNLOADING",
     "Body",
@@ -119,6 +124,8 @@ __all__ = [
     "HeightTable",
     "Hertz",
     "Homogeneous",
+    "InteractingModel",
+    "Interaction",
     "JacksonGreen",
     "JohnsonKendallRoberts",
     "KogutEtsion",
@@ -169,11 +176,13 @@ __all__ = [
     "stiffness_ratio",
 ]
 
+_LATER = {"Interaction": "interaction", "InteractingModel": "interacting"}
+
 
 def __getattr__(name: str) -> Any:
-    """A law of contact, loaded when it is asked for."""
+    """A law of contact or an interaction, loaded when it is asked for."""
+    if name in _LATER:
+        return getattr(import_module(f"analytic.{_LATER[name]}"), name)
     if name in __all__:
-        from analytic import laws
-
-        return getattr(laws, name)
+        return getattr(import_module("analytic.laws"), name)
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

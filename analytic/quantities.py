@@ -19,6 +19,7 @@ __all__ = [
     "LAW_QUANTITIES",
     "PER_AREA",
     "QUANTITIES",
+    "SEPARATIONS",
     "TANGENTIAL",
     "UNLOADING",
     "Quantity",
@@ -159,10 +160,28 @@ UNLOADING = {
     if name != "yielded"
 }
 
+# The other separation of a surface whose asperities press each other down.
+SEPARATIONS = {
+    f"{name}{way}": Quantity(
+        f"{name}{way}", f"{long_name}{way and ', unloading'}", "1", 1.5, 1, 0.5, _one, unloading=way and name
+    )
+    for name, long_name, ways in (
+        ("nominal_separation", "nominal separation d/sigma", ("", "_unloading")),
+        ("effective_separation", "separation d/sigma that the asperities feel", ("",)),
+    )
+    for way in ways
+}
+
 TANGENTIAL = Quantity("tangential_load", "tangential load", "N", 1.5, 1, 0.5, _load)
 
 # All that an ensemble can hold.
-ALL_QUANTITIES = {**QUANTITIES, **LAW_QUANTITIES, **UNLOADING, TANGENTIAL.name: TANGENTIAL}
+ALL_QUANTITIES = {
+    **QUANTITIES,
+    **LAW_QUANTITIES,
+    **UNLOADING,
+    TANGENTIAL.name: TANGENTIAL,
+    **SEPARATIONS,
+}
 
 _KNOWN = {**ALL_QUANTITIES, **PER_AREA}
 

@@ -134,6 +134,10 @@ def _check_memory(scene: Scene, n_surfaces: int) -> None:
 def kept(scene: Scene, block: Block) -> dict[str, Any]:
     """What of a block is kept: its sums, and its moments if the scene says so."""
     arrays: dict[str, Any] = dict(block.sums)
+    if scene.interaction is not None:
+        from mcgw.ensemble.interacting import with_interaction  # for those scenes alone
+
+        arrays = with_interaction(scene, arrays)
     if promise_of(scene.sampler).real_surfaces:
         for name in filter(lambda name: quantity_of(name).counts, scene.quantities):
             arrays[name] = np.rint(arrays[name]).astype(np.int64)

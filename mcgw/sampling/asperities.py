@@ -1,13 +1,13 @@
 """The heights themselves: the very asperities whose sums the samplers ``tail`` and ``cells`` give."""
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
 from analytic import MeasuredHeights
 from mcgw.machine.memory import check_memory
-from mcgw.sampling.counted import Counted
+from mcgw.sampling.cells import Mesh
 from mcgw.sampling.counts import counts_of, generator
 from mcgw.sampling.outside import extra_heights
 from mcgw.sampling.philox import CELLS, RADII, RADII_LOW, REST, uniforms
@@ -102,7 +102,13 @@ def radii(scene: Scene, surface: int) -> NDArray[np.float64]:
     return np.asarray(scene.surface.radius * (np.ones_like(s) if ratios is None else ratios))
 
 
-def listing_sampler(scene: Scene) -> Counted:
+class Listing(Protocol):
+    """A sampler whose asperities are drawn one by one, in cells or beside them."""
+
+    mesh: Mesh
+
+
+def listing_sampler(scene: Scene) -> Listing:
     """The sampler of a scene, if it can tell the heights.
 
     Raises
@@ -113,9 +119,9 @@ def listing_sampler(scene: Scene) -> Counted:
     if isinstance(scene.heights, MeasuredHeights):
         raise ValueError("heights: measured ones have no places; those of the scene are in scene.heights")
     sampler = sampler_of(scene)
-    if not isinstance(sampler, Counted) or not promise_of(sampler.name).one_by_one:
+    if not hasattr(sampler, "mesh") or not promise_of(sampler.name).one_by_one:
         raise ValueError(f'sampler = "{sampler.name}" keeps no heights; "cells" and "tail" do')
-    return sampler
+    return cast(Listing, sampler)
 
 
 def same_heights(one: Scene, other: Scene) -> bool:
@@ -123,10 +129,8 @@ def same_heights(one: Scene, other: Scene) -> bool:
 
     Cells are edged by the breaks of contact laws, and each cell has uniforms of its own.
     """
-    first, second = sampler_of(one), sampler_of(other)
-    if not (isinstance(first, Counted) and isinstance(second, Counted)):
-        return True
-    return np.array_equal(first.mesh.edges, second.mesh.edges)
+    first, second = (getattr(sampler_of(scene), "mesh", None) for scene in (one, other))
+    return not (first and second) or np.array_equal(first.edges, second.edges)
 
 
 def touching_summits(scene: Scene, surface: int) -> Listed:
@@ -147,7 +151,7 @@ def summits(scene: Scene, surface: int) -> Listed:
     return s, np.concatenate([ratios, table.root_ratios(rest, *words) ** 2])
 
 
-def summits_drawn(scene: Scene, sampler: Counted, surface: int) -> Listed:
+def summits_drawn(scene: Scene, sampler: Listing, surface: int) -> Listed:
     """The asperities of one surface that touch, by its sampler, which takes longer to make than they do."""
     mesh, table = sampler.mesh, _table(scene, scene.lowest)
     counts = counts_of(scene, mesh, surface, 1)

@@ -53,14 +53,27 @@ class Direct:
         scene = self.scene
         rng = generator(scene.seed, _PURPOSE, number)
         left = scene.n_asperities if scene.count == "fixed" else int(rng.poisson(scene.n_asperities))
+        if scene.interaction and scene.interaction.nominal:
+            return self._balanced(number, *self._summits(rng, left))
         total = asperity_sums(scene, np.array([0]), np.empty(0), np.empty(0))
         while left:
             now = left if scene.as_measured else min(left, _PIECE)
-            if scene.curvature:
-                heights, ratios = scene.curvature.summits(rng, now)
-            else:
-                heights, ratios = scene.heights.sample(rng, now), None
+            heights, ratios = self._summits(rng, now)
             left -= now
             for name, value in asperity_sums(scene, np.array([now]), heights, np.ones(now), ratios).items():
                 total[name] += value
         return total
+
+    def _summits(self, rng: np.random.Generator, n: int) -> tuple[Array, Array | None]:
+        """Heights of so many summits, and ratios of their radii where they have their own."""
+        if self.scene.curvature:
+            return self.scene.curvature.summits(rng, n)
+        return self.scene.heights.sample(rng, n), None
+
+    def _balanced(self, number: int, heights: Array, ratios: Array | None) -> dict[str, Array]:
+        """The surface at the separations that its asperities feel."""
+        from mcgw.sampling.nominal_literal import balanced_sums  # for those scenes alone
+
+        touching = heights > self.scene.lowest
+        ratios = None if ratios is None else ratios[touching]
+        return balanced_sums(self.scene, number, heights[touching], ratios)

@@ -56,7 +56,10 @@ def sampler_of(scene: Scene) -> Sampler:
     """
     scene = storable(scene)
     keep_freed_memory()
-    return _MAKERS[_cheapest(scene) if scene.sampler == "auto" else scene.sampler](scene)
+    name = _cheapest(scene) if scene.sampler == "auto" else scene.sampler
+    if scene.interaction and scene.interaction.nominal:
+        return _at_nominal(name, scene)
+    return _MAKERS[name](scene)
 
 
 def tail_of(scene: Scene) -> Counted:
@@ -122,6 +125,19 @@ _MAKERS: dict[str, Callable[[Scene], Sampler]] = {
     "aggregate": aggregate_of,
     "stratified": stratified_of,
 }
+
+
+def _at_nominal(name: str, scene: Scene) -> Sampler:
+    """The sampler of a scene whose surfaces each find their own balance: imported for those alone."""
+    if name == "direct":
+        return Direct(scene)
+    if name == "tail":
+        from mcgw.sampling.nominal_literal import TailAtNominal
+
+        return TailAtNominal(scene, tail_of(replace(scene, interaction=None, separations=(scene.lowest,))))
+    from mcgw.sampling.nominal import CellsAtNominal
+
+    return CellsAtNominal.of(scene)
 
 
 def regraded(scene: Scene, drawn: Scene) -> Counted:
@@ -224,7 +240,10 @@ def _cheapest(scene: Scene) -> str:
     """Cells, unless most of them would be empty (`runs/bench/auto.py`)."""
     if isinstance(scene.heights, MeasuredHeights):
         return "direct"  # cells need a density
-    if scene.curvature and not scene.hertzian:
+    nominal = scene.interaction is not None and scene.interaction.nominal
+    if scene.curvature and (nominal or not scene.hertzian):
         return "tail"  # each summit has breaks of its own
+    if nominal:
+        return "cells" if scene.hertzian else "tail"
     few = scene.touching < min(5 + len(scene.separations) / 20, 20)
     return "tail" if few and scene.keep == "sums" else "cells"

@@ -6,6 +6,8 @@ from mcgw.scene.law_text import law_text
 
 __all__ = ["contact_facts"]
 
+_PLANES = {"body": "undeformed body", "mean-plane": "mean deformed plane"}
+
 
 def contact_facts(scene: Fields) -> list[tuple[str, str]]:
     """A word and what holds, only for what is not Hertz's contact pressed once; for reports of any kind."""
@@ -26,4 +28,7 @@ def contact_facts(scene: Fields) -> list[tuple[str, str]]:
                 f"u up to {max(pushed.displacements):g} m",
             )
         )
+    if scene.interaction is not None:
+        felt = "as nominal ones" if scene.interaction.nominal else "as asperities feel them"
+        facts.append(("interaction", f"from the {_PLANES[scene.interaction.reference]}, separations {felt}"))
     return facts

@@ -2,7 +2,8 @@
 
 import math
 from dataclasses import dataclass
-from typing import Literal
+from functools import cached_property
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
@@ -17,6 +18,9 @@ from analytic import (
     first_negative,
 )
 from analytic.laws import Branch, ContactLaw, Film, Hertz, Tangential, Ways
+
+if TYPE_CHECKING:
+    from analytic import Interaction
 
 __all__ = ["Fields"]
 
@@ -38,6 +42,7 @@ class Fields:
     unload_from: float | None
     film: Film | None
     tangential: Tangential | None
+    interaction: "Interaction | None"
     quantities: tuple[str, ...]
     n_surfaces: int
     n_asperities: int
@@ -92,7 +97,19 @@ class Fields:
         shapes: dict[str, tuple[int, ...]] = {name: (len(self.separations),) for name in self.quantities}
         if self.tangential is not None:
             shapes["tangential_load"] = (len(self.separations), len(self.tangential.displacements))
+        for name in self.other_separations:
+            shapes[name] = (len(self.separations),)
         return shapes
+
+    @property
+    def other_separations(self) -> tuple[str, ...]:
+        """What an ensemble says of separations where asperities press each other down."""
+        if self.interaction is None:
+            return ()
+        if self.interaction.nominal:
+            return ("effective_separation",)
+        back = () if self.unload_from is None else ("nominal_separation_unloading",)
+        return ("nominal_separation", *back)
 
     @property
     def width(self) -> int:
@@ -101,9 +118,18 @@ class Fields:
 
     @property
     def lowest(self) -> float:
-        """The lowest separation there is or was: what lies below it never touches."""
-        lowest = min(self.separations)
+        """The lowest separation there is or was that asperities feel: what lies below it never touches."""
+        lowest = min(self.separations) if self._felt is None else self._felt
         return lowest if self.unload_from is None else min(lowest, self.unload_from)
+
+    @cached_property
+    def _felt(self) -> float | None:
+        """The same where each surface finds its own and may go down farther than asked; else None."""
+        if self.interaction is None or not self.interaction.nominal or self.interaction.reference == "body":
+            return None
+        from mcgw.scene.lowest_felt import lowest_felt  # for those scenes alone
+
+        return lowest_felt(self)
 
     @property
     def highest(self) -> float:

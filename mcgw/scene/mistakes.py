@@ -34,7 +34,7 @@ def mistakes(scene: Fields) -> list[str]:
     for checks in (
         (_values, _history, _measured, _radii),
         (_scales,),
-        (_law,),
+        (_law, _interaction),
         (_function,),
         (_range,),
         (_modulus,),
@@ -126,6 +126,15 @@ def _law(scene: Fields) -> Iterator[str]:
             f'grading.negative = "allow": contact.law = "{scene.law.name}" knows no negative modulus; say '
             '"clip"'
         )
+
+
+def _interaction(scene: Fields) -> Iterator[str]:
+    """Asperities that press each other down where that is not known, or finds no balance."""
+    if scene.interaction is None:
+        return
+    from mcgw.scene.interaction_mistakes import interaction_mistakes  # for those scenes alone
+
+    yield from interaction_mistakes(scene)
 
 
 def _scales(scene: Fields) -> Iterator[str]:

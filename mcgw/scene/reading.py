@@ -2,7 +2,7 @@
 
 import secrets
 from collections.abc import Iterable, Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -22,6 +22,9 @@ from mcgw.scene.ensemble_section import LeftOut, drawing_values
 from mcgw.scene.grading_section import NEGATIVE
 from mcgw.scene.section import SceneError, Section
 from mcgw.scene.summits_section import Spectral, curvature_of
+
+if TYPE_CHECKING:
+    from analytic import Interaction
 
 __all__ = ["argument", "as_toml", "read_values"]
 
@@ -54,6 +57,7 @@ def read_values(given: Mapping[str, Any]) -> tuple[dict[str, Any], list[str]]:
         "grading": _grading(top, given["grading"]),
         "negative": grading.choice("negative", "error", NEGATIVE),
         "heights": law,
+        "interaction": _interaction(table.get("interaction"), problems),
         "curvature": _curvature(summits, given["curvature"], law, surface, "random" if spectral else "mean"),
         "n_surfaces": _whole(ensemble, "n_surfaces", given, LeftOut(), least=1),
         "n_asperities": _whole(ensemble, "n_asperities", given, LeftOut(), least=1),
@@ -123,6 +127,14 @@ def _heights(section: Section, given: Any) -> HeightLaw:
     )
     section.fail("heights", given, advice)
     return Gaussian()
+
+
+def _interaction(given: Any, problems: list[str]) -> "Interaction | None":
+    if given is None:
+        return None
+    from mcgw.scene.interaction_section import interaction_argument  # for those scenes alone
+
+    return interaction_argument(given, problems)
 
 
 def _curvature(

@@ -24,6 +24,8 @@ class Promise:
         It can draw a radius for each summit.
     own_laws : bool, optional
         It adds up summit by summit, so that each can have breaks of its own in the law of contact.
+    finds_balance : bool, optional
+        It has the asperities of each surface, which finds its own balance where they press each other down.
     needs_density : bool, optional
         It draws from the density of the heights, which a list of measured ones has not.
     not_done : tuple of str, optional
@@ -36,6 +38,7 @@ class Promise:
     keeps_moments: bool = True
     own_radii: bool = True
     own_laws: bool = False
+    finds_balance: bool = True
     needs_density: bool = False
     not_done: tuple[str, ...] = ()
 
@@ -48,12 +51,17 @@ _PROMISES = {
     "tail": Promise(keeps_moments=False, own_laws=True, needs_density=True, not_done=(_UNTOUCHED,)),
     "cells": Promise(needs_density=True, not_done=(_UNTOUCHED,)),
     "aggregate": Promise(
-        one_by_one=False, own_radii=False, needs_density=True, not_done=(_UNTOUCHED, _CROWDED)
+        one_by_one=False,
+        own_radii=False,
+        finds_balance=False,
+        needs_density=True,
+        not_done=(_UNTOUCHED, _CROWDED),
     ),
     "stratified": Promise(
         real_surfaces=False,
         one_by_one=False,
         keeps_moments=False,
+        finds_balance=False,
         needs_density=True,
         not_done=(_UNTOUCHED,),
     ),

@@ -3,7 +3,7 @@
 import dataclasses
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -20,6 +20,10 @@ from mcgw.scene.reading import read_values
 from mcgw.scene.section import SceneError, nearest
 from mcgw.scene.summits_section import Spectral
 from mcgw.scene.surface import SURFACE_UNITS, surface_of
+from mcgw.scene.theory import model_of
+
+if TYPE_CHECKING:
+    from analytic import Interaction
 
 __all__ = ["LeftOut", "Scene", "SceneError"]
 
@@ -64,6 +68,10 @@ class Scene(Fields, Shown):
     tangential : Tangential, optional
         Friction and displacements of a surface that is pushed sideways: `mcgw.Tangential`. An ensemble then
         has "tangential_load", of shape (surface, separation, displacement). Default: it is not.
+    interaction : Interaction, {"body", "mean-plane"} or dict, optional
+        How asperities press each other down: `mcgw.Interaction`, its reference alone, or its keys in a scene
+        file. An ensemble then has "nominal_separation" or "effective_separation" besides, and stiffnesses are
+        in series with the half-space. Default: they are independent.
     quantities : sequence of str, optional
         Which sums to compute: names of `analytic.QUANTITIES` and `analytic.LAW_QUANTITIES`. Default: load,
         area, stiffness, contacts.
@@ -121,6 +129,7 @@ class Scene(Fields, Shown):
         unload_from: float | Literal["loop"] | None = None,
         film: Film | None = None,
         tangential: Tangential | None = None,
+        interaction: "Interaction | str | dict[str, Any] | None" = None,
         quantities: Sequence[str] | None = None,
         n_surfaces: int | None = None,
         n_asperities: int | None = None,
@@ -229,17 +238,7 @@ class Scene(Fields, Shown):
     @property
     def theory(self) -> Model:
         """The exact model of this very scene: its modulus, height law, contact law, history, asperities."""
-        return Model(
-            self.surface,
-            grading=self.modulus,
-            heights=self.heights,
-            curvature=self.curvature,
-            law=self.law,
-            unload_from=self.unload_from,
-            film=self.film,
-            n_asperities=float(self.n_asperities),
-            count=self.count,
-        )
+        return model_of(self)
 
     @property
     def touching(self) -> float:

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import tomli_w
 
@@ -23,6 +23,9 @@ from mcgw.scene.summits_section import summits_table
 from mcgw.scene.surface import SURFACE_UNITS
 from mcgw.scene.surface_and_summits import surface_and_summits
 from mcgw.scene.tangential_section import tangential_table
+
+if TYPE_CHECKING:
+    from analytic import Interaction
 
 __all__ = ["files_of", "load_scene", "scene_from", "scene_text"]
 
@@ -126,6 +129,7 @@ def scene_from(
         name: top.section(name)
         for name in ("surface", "grading", "heights", "summits", "contact", "ensemble")
     }
+    interaction = top.section("interaction")
     folder = folder or Path()
     surface, heights, curvature = surface_and_summits(sections, folder)
     values = {
@@ -135,6 +139,7 @@ def scene_from(
         "heights": heights,
         "curvature": curvature,
         **contact_values(sections["contact"], heights),
+        "interaction": _interaction(interaction) if "interaction" in top else None,
         **ensemble_values(sections["ensemble"], surface, seed),
     }
     for section in (top, *sections.values()):
@@ -186,9 +191,24 @@ def scene_text(scene: Scene, *, heights_file: str | None = None, left_out: bool 
         **({} if listed else {"heights": heights_table(scene.heights, heights_file)}),
         **({"summits": summits} if summits else {}),
         "contact": _contact_table(scene),
+        **_interaction_table(scene),
         "ensemble": _ensemble_table(scene, left_out),
     }
     return tomli_w.dumps(document)
+
+
+def _interaction(section: Section) -> "Interaction | None":
+    from mcgw.scene.interaction_section import interaction_values  # for those scenes alone
+
+    return interaction_values(section)
+
+
+def _interaction_table(scene: Scene) -> dict[str, Any]:
+    if scene.interaction is None:
+        return {}
+    from mcgw.scene.interaction_section import interaction_table
+
+    return {"interaction": interaction_table(scene.interaction)}
 
 
 def _contact_table(scene: Scene) -> dict[str, Any]:

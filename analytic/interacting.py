@@ -1,0 +1,266 @@
+"""The statistics of surfaces whose asperities press each other down: `analytic.Model` with an interaction.
+
+At effective separations x everything but the stiffness is that of independent asperities, exactly. What each
+surface answers by itself is not a sum over asperities any more: the stiffness in series with the half-space,
+``1/K = 1/K_asp + compliance``, and at nominal separations h every quantity, since the separation that its
+asperities feel, ``x = h + compliance P``, has its own balance on each surface. These follow by expansion
+about the balance of the mean surface, x0. Fluctuations are to leading order: with s and q the deviations of
+load and quantity from their means at x0, ``k = -dP/dx`` and c the compliance, ::
+
+    dP = s/(1 + c k),    dQ = q + (dQ/dx) c dP,    Var P = Var s/(1 + c k)^2
+
+Means are to second order, so what is left out is of the order N^-2 of the mean::
+
+    E P = P(x0) + b,  b (1 + c k) = P'' c^2 Var P/2 + c Cov(s', s)/(1 + c k)
+    E Q = Q(x0) + Q' c b + Q'' c^2 Var P/2 + c Cov(q', s)/(1 + c k)
+
+The mean of the balances is not the balance of the means: the load of a finite surface is smaller.
+"""
+
+from collections.abc import Sequence
+from dataclasses import KW_ONLY, dataclass, fields
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from analytic.height_rule import Fluctuations, HeightRule
+from analytic.interaction import Interaction
+from analytic.model import Model
+from analytic.quantities import SEPARATIONS, quantity_of
+
+__all__ = ["InteractingModel", "in_series"]
+
+Array = NDArray[np.float64]
+
+_STEP = 0.01  # of the differences that give derivatives by h, whose error is its fourth power
+_WEIGHTS = np.array([[1, -8, 0, 8, -1], [-1, 16, -30, 16, -1]]) / 12.0
+_SERIES = ("stiffness", "load_slope")
+_MOST_STEPS = 200
+_CLOSE = 4e-15  # of a separation
+
+
+def in_series(quantity: str) -> bool:
+    """Whether a quantity is a stiffness, which the half-space is in series with."""
+    q = quantity_of(quantity)
+    return q.base in _SERIES
+
+
+@dataclass(frozen=True)
+class InteractingModel(Model):
+    """A rough surface whose asperities press each other down; otherwise as `analytic.Model`.
+
+    Besides the quantities of a `Model` it has the other separation, d/sigma: "nominal_separation" where its
+    separations are effective ones, "effective_separation" where they are nominal.
+
+    Parameters
+    ----------
+    interaction : Interaction
+        Which; needed.
+
+    Examples
+    --------
+    >>> import analytic
+    >>> surface = analytic.Surface(sigma=1e-6, radius=1e-5, eta=1e9, nominal_area=1e-6, E_star=1e9)
+    >>> punch = analytic.Interaction("body", at="nominal")
+    >>> model = analytic.InteractingModel(surface, interaction=punch)
+    >>> float(model.mean("load", 1.0).round(4)), float(analytic.Model(surface).mean("load", 1.0).round(4))
+    (0.1987, 0.3193)
+    """
+
+    _: KW_ONLY
+    interaction: Interaction
+
+    @classmethod
+    def of(cls, model: Model, interaction: Interaction) -> "InteractingModel":
+        """The asperities of a model with an interaction."""
+        return cls(**_values(model), interaction=interaction)
+
+    @cached_property
+    def alone(self) -> Model:
+        """The same asperities without interaction."""
+        return Model(**_values(self))
+
+    @property
+    def compliance(self) -> float:
+        """Of the interaction, in units of sigma: d/sigma for each newton."""
+        return self.interaction.compliance(self.surface, self.number) / self.surface.sigma
+
+    def effective(self, h: ArrayLike) -> Array:
+        """Separation that the asperities of the mean surface feel, at the separations of the model.
+
+        Raises
+        ------
+        ValueError
+            If there is none: where the mean deformed plane is the reference, loads from some separation on
+            pull it down faster than the body follows.
+        """
+        h = np.asarray(h, dtype=np.float64)
+        if not self.interaction.nominal:
+            return h
+        return self._balance(h)
+
+    def _balance(self, h: Array) -> Array:
+        """By Newton from the side of no load, where the balance is monotone and convex or concave."""
+        x, c = h.copy(), self.compliance
+        for _ in range(_MOST_STEPS):
+            rate = 1 + c * self.alone.slope("load", x)
+            if np.any(rate <= 0):
+                where = float(np.max(h[rate <= 0]))
+                raise ValueError(
+                    f"interaction: no balance at d/sigma = {where:g} from the mean plane: the plane sinks "
+                    "faster than it is pressed; give higher separations"
+                )
+            step = (h - x + c * self.alone.mean("load", x)) / rate
+            x = x + step
+            if np.all(np.abs(step) <= _CLOSE * np.maximum(np.abs(x), 1.0)):
+                break
+        return x
+
+    def mean(self, quantity: str, h: ArrayLike) -> Array:
+        """Mean over surfaces, to second order where a surface answers by itself; as `Model.mean`."""
+        h = np.asarray(h, dtype=np.float64)
+        if quantity in SEPARATIONS:
+            self._check_separation(quantity)
+            way = SEPARATIONS[quantity].unloading and "_unloading"
+            loads = self.mean(f"load{way}", h)
+            return h + (self.compliance if self.interaction.nominal else -self.compliance) * loads
+        self._asked(quantity, h)
+        if self.interaction.nominal:
+            return self._nominal_mean(quantity, h)
+        mean = self.alone.mean(quantity, h)
+        if not in_series(quantity):
+            return mean
+        c = self.compliance * self.surface.sigma
+        variance = self.alone.cumulants(quantity, h).variance
+        return mean / (1 + c * mean) - c * variance / (1 + c * mean) ** 3
+
+    def slope(self, quantity: str, h: ArrayLike) -> Array:
+        """How fast the mean falls with the separation, of the mean surface."""
+        h = np.asarray(h, dtype=np.float64)
+        if not self.interaction.nominal and not in_series(quantity) and quantity not in SEPARATIONS:
+            return self.alone.slope(quantity, h)
+        around = [self.mean(quantity, h + k * _STEP) for k in range(-2, 3)]
+        return -np.tensordot(_WEIGHTS[0], around, 1) / _STEP
+
+    def share(self, piece: int, h: ArrayLike) -> Array:
+        """As `Model.share`, at what the asperities of the mean surface feel."""
+        return self.alone.share(piece, self.effective(h))
+
+    def rule(self, separations: ArrayLike, quantities: Sequence[str] = ("load",)) -> HeightRule:
+        """As `Model.rule`, at what the asperities of the mean surface feel."""
+        return self.alone.rule(self.effective(separations), quantities)
+
+    def separation_at(self, quantity: str, value: ArrayLike) -> Array:
+        """As `Model.separation_at`, of the mean surface: at a given load only the separation differs."""
+        if quantity in SEPARATIONS or in_series(quantity):
+            raise ValueError(
+                f"quantity = {quantity!r}: give a load, an area, or another sum of the asperities"
+            )
+        x = self.alone.separation_at(quantity, value)
+        if not self.interaction.nominal:
+            return x
+        return np.asarray(x - self.compliance * self.alone.mean("load", x))
+
+    def fluctuations(self, quantities: Sequence[str], separations: ArrayLike) -> Fluctuations:
+        """As `Model.fluctuations`, to leading order where a surface answers by itself."""
+        h = np.asarray(separations, dtype=np.float64)
+        sums = [name for name in quantities if name not in SEPARATIONS]
+        loads = tuple(dict.fromkeys(_load_of(name) for name in quantities))
+        x, columns = self.effective(h), [*sums, *(name for name in loads if name not in sums)]
+        one = self.alone.fluctuations(columns, x)
+        own, loads_at, pressing, means = [], [], [], []
+        for name in quantities:
+            q = quantity_of(name)
+            load = columns.index(_load_of(name)) * h.size + np.arange(h.size)
+            own.append(load if name in SEPARATIONS else columns.index(name) * h.size + np.arange(h.size))
+            factor, press = self._linear(name, x)
+            loads_at.append(load)
+            scale = quantity_of(_load_of(name)).scale(self.surface) / q.scale(self.surface)
+            pressing.append((factor, press * scale))
+            means.append(self.mean(name, h) / self._unit(q))
+        mine, with_load = np.concatenate(own), np.concatenate(loads_at)
+        factor, press = (np.concatenate(part) for part in zip(*pressing, strict=True))
+        radius = None
+        if one.radius is not None:
+            radius = np.where(
+                press != 0, np.maximum(one.radius[mine], one.radius[with_load]), one.radius[mine]
+            )
+        return Fluctuations(
+            one.rule,
+            np.concatenate(means),
+            one.at_heights[:, mine] * factor + one.at_heights[:, with_load] * press,
+            one.below[mine] * factor + one.below[with_load] * press,
+            radius,
+        )
+
+    def _linear(self, quantity: str, x: Array) -> tuple[Array, Array]:
+        """Deviation of a quantity on one surface by those of its own sum and of the load at x0, SI."""
+        c, sign = self.compliance, 1.0 if self.interaction.nominal else -1.0
+        rate = 1 + c * self.alone.slope("load", x) if self.interaction.nominal else np.ones_like(x)
+        if quantity in SEPARATIONS:
+            return np.zeros_like(x), sign * c / rate
+        if self.interaction.nominal:
+            first = self._derivatives(quantity, x)[0]
+            factor, press = np.ones_like(x), first * c / rate
+        else:
+            factor, press = np.ones_like(x), np.zeros_like(x)
+        if in_series(quantity):
+            series = (1 + c * self.surface.sigma * self.alone.mean(quantity, x)) ** -2.0
+            factor, press = factor * series, press * series
+        return factor, press
+
+    def _nominal_mean(self, quantity: str, h: Array) -> Array:
+        """To second order in what surfaces differ by; the formulas are in the module's text."""
+        x, c = self.effective(h), self.compliance
+        rate = 1 + c * self.alone.slope("load", x)
+        _, load2 = self._derivatives("load", x)
+        spread = self.alone.cumulants("load", x).variance / rate**2
+        bias = (load2 * c**2 * spread / 2 + c * self._changing("load", x) / rate) / rate
+        if quantity == "load":
+            return np.asarray(self.alone.mean("load", x) + bias)
+        first, second = self._derivatives(quantity, x)
+        value = self.alone.mean(quantity, x)
+        mean = value + first * c * bias + second * (c**2 * spread / 2)
+        mean = mean + c * self._changing(quantity, x) / rate
+        if not in_series(quantity):
+            return np.asarray(mean)
+        stiff = c * self.surface.sigma
+        press = first * c / rate
+        both = self._covariance(quantity, x, x)
+        own = self.alone.cumulants(quantity, x).variance
+        variance = own + 2 * press * both + press**2 * spread * rate**2
+        return np.asarray(mean / (1 + stiff * mean) - stiff * variance / (1 + stiff * mean) ** 3)
+
+    def _derivatives(self, quantity: str, x: Array) -> tuple[Array, Array]:
+        """First and second derivative of the mean of a sum by the separation."""
+        around = np.stack([self.alone.mean(quantity, x + k * _STEP) for k in range(-2, 3)])
+        first, second = np.tensordot(_WEIGHTS, around, 1)
+        return first / _STEP, second / _STEP**2
+
+    def _changing(self, quantity: str, x: Array) -> Array:
+        """Covariance of the derivative of a sum by the separation with the load."""
+        around = [self._covariance(quantity, x + k * _STEP, x) for k in (-2, -1, 1, 2)]
+        return np.tensordot(_WEIGHTS[0][[0, 1, 3, 4]], around, 1) / _STEP
+
+    def _covariance(self, quantity: str, there: Array, here: Array) -> Array:
+        """Covariance of a sum at some separations with the load at others, in the shape of both."""
+        scale = quantity_of(quantity).scale(self.surface) * quantity_of("load").scale(self.surface)
+        found = []
+        for pair in zip(there.ravel(), here.ravel(), strict=True):
+            products = self.alone.fluctuations([quantity, "load"], np.array(pair)).products()
+            found.append(products[0, 3])
+        return self.number * scale * np.reshape(found, here.shape)
+
+    def _check_separation(self, name: str) -> None:
+        if name.startswith("nominal") == self.interaction.nominal:
+            raise KeyError(f"{name!r}: the separations of the model are those; it has the other ones")
+
+
+def _values(model: Model) -> dict[str, Any]:
+    return {each.name: getattr(model, each.name) for each in fields(Model)}
+
+
+def _load_of(quantity: str) -> str:
+    return "load_unloading" if quantity_of(quantity).unloading else "load"

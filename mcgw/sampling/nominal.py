@@ -1,0 +1,186 @@
+"""Surfaces at nominal separations, where each of them finds a balance of its own: under Hertz's law."""
+
+import math
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from analytic import quantity_of
+from mcgw.sampling.balance import FAILED, POINTS, balance_surfaces
+from mcgw.sampling.block import Block
+from mcgw.sampling.cells import NODES, TO_COEFFICIENTS, Mesh, mesh_of
+from mcgw.sampling.counts import counts_of
+from mcgw.sampling.layout import Layout
+from mcgw.sampling.moments import cell_moments
+from mcgw.sampling.outside import extra_heights
+from mcgw.sampling.rules import chebyshev_points, chebyshev_transform, product
+from mcgw.scene.scene import Scene
+
+__all__ = ["CellsAtNominal"]
+
+Array = NDArray[np.float64]
+
+_POINTS = chebyshev_points(POINTS)
+_TRANSFORM = chebyshev_transform(_POINTS)
+_FEW = 2 * POINTS  # asperities of a cell that are rather taken one by one
+_WIDEST, _NARROWEST = 2.0**-2, 2.0**-12  # of a cell
+_WEIGHTED = 8.0 * POINTS  # over the asperities: width of a cell squared
+_NOTHING = 1e-17  # of a series
+_GUESSES, _COARSE = 512, 2.0**10  # separations at which the mean surface is looked at, and their rounding
+_PLACES = {"load": 1, "stiffness": 2, "load_slope": 2, "area": 3, "conductance": 4, "contacts": 5}
+
+
+@dataclass(frozen=True, eq=False)
+class CellsAtNominal:
+    """Surfaces drawn in cells, whose width is a compromise (`mcgw.sampling.balance`).
+
+    The narrower the cells are, the fewer asperities are near a separation, and the more cells are above it.
+
+    Parameters
+    ----------
+    scene : Scene
+        At nominal separations, with one radius and Hertz's law.
+    mesh : Mesh
+        Its cells.
+    """
+
+    scene: Scene
+    mesh: Mesh
+    name: str = "cells"
+    seconds_per_draw: float = 2e-9
+
+    @classmethod
+    def of(cls, scene: Scene) -> "CellsAtNominal":
+        """Prepare it."""
+        width = math.sqrt(_WEIGHTED / scene.n_asperities)
+        width = min(max(2.0 ** round(math.log2(width)), _NARROWEST), _WIDEST)
+        steps = max(math.ceil((scene.highest - scene.lowest) / width), 1)
+        grid = scene.lowest + width * np.arange(steps)
+        plain = replace(scene, interaction=None, separations=tuple(grid.tolist()))
+        return cls(scene, mesh_of(plain, split=False))
+
+    @property
+    def cells(self) -> int:
+        """Number of its cells."""
+        return self.mesh.size
+
+    @property
+    def moments(self) -> int:
+        """None that it keeps."""
+        return 0
+
+    @property
+    def words(self) -> int:
+        """Numbers in memory for a surface, besides its results."""
+        return 4 * POINTS * self.cells + 12 * int(min(self._outside, 1e12))
+
+    @property
+    def draws(self) -> float:
+        """Numbers that are expected to be drawn for a surface."""
+        return self._outside + self.scene.n_asperities * float(self.mesh.probability.sum())
+
+    @property
+    def _outside(self) -> float:
+        return self.scene.n_asperities * (self.mesh.low_extras + self.mesh.high_extras)
+
+    def with_seed(self, seed: int) -> "CellsAtNominal":
+        """The same cells with other draws."""
+        return replace(self, scene=replace(self.scene, seed=seed))
+
+    def block(self, first: int, n: int) -> Block:
+        """Results of surfaces `first` ... `first + n - 1`.
+
+        Raises
+        ------
+        ValueError
+            If a surface has no balance at a separation.
+        """
+        scene = self.scene
+        counts = counts_of(scene, self.mesh, first, n)
+        crowded = np.where(counts.cells > _FEW, counts.cells, 0)
+        moments = cell_moments(scene.seed, first, crowded, self._layout)
+        weights = product(
+            np.ascontiguousarray(moments.reshape(self.cells, POINTS, n).transpose(2, 0, 1)), _TRANSFORM
+        )
+        heights, moduli = self._points
+        rows = extra_heights(scene, self.mesh, first, counts, None)
+        own = np.ascontiguousarray(rows[:, 1])
+        begins = np.searchsorted(rows[:, 0], first + np.arange(n + 1))
+        found = balance_surfaces(
+            np.uint64(scene.seed),
+            first,
+            self._series,
+            (heights.ravel(), (weights * moduli).reshape(n, -1), weights.reshape(n, -1)),
+            np.ascontiguousarray(counts.cells.T),
+            _FEW,
+            (own, scene.modulus(own), begins),
+            (np.array(scene.separations), self._guess, self._compliance),
+        )
+        self._check(first, found)
+        sums = {
+            name: found[:, :, _PLACES[name]] * quantity_of(name).scale(scene.surface)
+            for name in scene.quantities
+        }
+        return Block({**sums, "effective_separation": np.ascontiguousarray(found[:, :, 0])})
+
+    def _check(self, first: int, found: Array) -> None:
+        """Refuse surfaces without a balance, or one below what is drawn."""
+        failed = (found[:, :, 5] == FAILED) | (found[:, :, 0] < self.scene.lowest)
+        if failed.any():
+            surface, k = (int(x[0]) for x in np.nonzero(failed))
+            raise ValueError(
+                f"interaction: surface {first + surface} has no balance at d/sigma = "
+                f"{self.scene.separations[k]:g} from the mean plane; give higher separations"
+            )
+
+    @property
+    def _layout(self) -> Layout:
+        return Layout(np.full(self.cells, POINTS), np.zeros(self.cells, dtype=np.int64))
+
+    @property
+    def _compliance(self) -> float:
+        """Of the interaction, d/sigma for a reduced load of 1."""
+        surface, interaction = self.scene.surface, self.scene.interaction
+        assert interaction is not None
+        c = interaction.compliance(surface, float(self.scene.n_asperities)) / surface.sigma
+        return c * quantity_of("load").scale(surface)
+
+    @cached_property
+    def _points(self) -> tuple[Array, Array]:
+        """Heights and moduli at the Chebyshev points of each cell, shape (cells, POINTS)."""
+        heights = self._heights(_POINTS)
+        return heights, np.asarray(self.scene.modulus(heights))
+
+    def _heights(self, x: Array) -> Array:
+        """Those at x = 2u - 1 in each cell, shape (cells, x.size)."""
+        steps = [self.mesh.offsets(np.arange(self.cells), np.full(self.cells, u)) for u in (1 + x) / 2]
+        return np.asarray(self.mesh.edges[:-1, None] + np.stack(steps, axis=1))
+
+    @cached_property
+    def _series(self) -> tuple[Array, Array, Array]:
+        """Edges, and coefficients by which asperities are drawn: no more than count."""
+        moduli = product(TO_COEFFICIENTS, np.asarray(self.scene.modulus(self._heights(NODES))).T)
+        return self.mesh.edges, _short(self.mesh.stretch), _short(moduli)
+
+    @cached_property
+    def _guess(self) -> Array:
+        """Effective separations of the mean surface, roughly, and rounded: they begin the search alone."""
+        scene, mesh, c = self.scene, self.mesh, self._compliance
+        s, e = (part[:, POINTS // 2] for part in self._points)
+        forces = scene.n_asperities * mesh.probability * e
+        x = np.linspace(scene.lowest, scene.highest + 1, _GUESSES)
+        load = np.array([forces @ np.maximum(s - at, 0.0) ** 1.5 for at in x])
+        nominal = x - c * load
+        falling = np.flatnonzero(np.diff(nominal) <= 0)
+        usable = slice(int(falling[-1]) + 1 if falling.size else 0, None)
+        guess = np.interp(scene.separations, nominal[usable], x[usable])
+        return np.asarray(np.round(guess * _COARSE) / _COARSE)
+
+
+def _short(coefficients: Array) -> Array:
+    """Without the orders that are rounding errors in every cell."""
+    size = np.abs(coefficients) / np.abs(coefficients[0])
+    last = int(np.max(np.nonzero((size > _NOTHING).any(axis=1))[0], initial=0))
+    return np.ascontiguousarray(coefficients[: last + 1])

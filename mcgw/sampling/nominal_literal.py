@@ -1,0 +1,151 @@
+"""Surfaces at nominal separations under any law: by the formula of each contact at each step of a search.
+
+Slow, literal, trusted: the witness against `mcgw.sampling.nominal`, and the way in for other laws than
+Hertz's and for summits with radii of their own.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import partial
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import brentq
+
+from analytic import quantity_of
+from analytic.laws import term_of
+from mcgw.sampling.block import Block
+from mcgw.sampling.counted import Counted
+from mcgw.sampling.counts import counts_of
+from mcgw.sampling.outside import extra_heights
+from mcgw.scene.scene import Scene
+
+__all__ = ["TailAtNominal", "balanced_sums"]
+
+Array = NDArray[np.float64]
+
+_CLOSE = 4e-15
+_MOST_STEPS = 10_000
+
+
+def balanced_sums(scene: Scene, number: int, heights: Array, ratios: Array | None) -> dict[str, Array]:
+    """Quantities of one surface at its effective separations, and these.
+
+    Parameters
+    ----------
+    scene : Scene
+        At nominal separations.
+    number : int
+        Of the surface, for messages.
+    heights : ndarray
+        Reduced heights of its asperities, shape (n,).
+    ratios : ndarray or None
+        Radius of each over that of the surface, where summits have their own.
+
+    Returns
+    -------
+    dict of str to ndarray
+        Each quantity in SI units, shape (1, separations).
+
+    Raises
+    ------
+    ValueError
+        If it has no balance at a separation.
+    """
+    assert scene.interaction is not None
+    c = scene.interaction.compliance(scene.surface, float(scene.n_asperities)) / scene.surface.sigma
+    e = scene.modulus(heights)
+
+    def total(name: str, x: float) -> float:
+        q = quantity_of(name)
+        if ratios is None:
+            terms = term_of(q.base, scene.branch_of(name), x, heights, e)
+        else:
+            terms = scene.ways.term(name, x, heights, e, ratios)
+        return float(q.scale(scene.surface) * np.sum(terms))
+
+    load = partial(total, "load")
+    felt = []
+    for h in scene.separations:
+        x = _from_below(h, c, load) if c > 0 else _from_above(h, c, load, scene.lowest)
+        if x is None:
+            raise ValueError(
+                f"interaction: surface {number} has no balance at d/sigma = {h:g} from the mean plane; give "
+                "higher separations"
+            )
+        felt.append(x)
+    found = {name: np.array([[total(name, x) for x in felt]]) for name in scene.quantities}
+    return {**found, "effective_separation": np.array([felt])}
+
+
+def _from_below(h: float, c: float, load: Callable[[float], float]) -> float:
+    """Balance of a surface that sinks away: between none of its loads sinking, and all of that at h."""
+    most = h + c * load(h)
+    if most <= h:
+        return h
+    return float(brentq(lambda x: x - h - c * load(x), h, most, xtol=1e-15, rtol=_CLOSE))
+
+
+def _from_above(h: float, c: float, load: Callable[[float], float], lowest: float) -> float | None:
+    """The first balance from the side of no load, where loads pull the plane down; None if there is none.
+
+    The load falls with the separation: so each step goes down, and none beyond the balance.
+    """
+    x = h
+    for _ in range(_MOST_STEPS):
+        last, x = x, h + c * load(x)
+        if x < lowest:
+            return None
+        if abs(x - last) <= _CLOSE * max(abs(x), 1.0):
+            return x
+    return None
+
+
+@dataclass(frozen=True)
+class TailAtNominal:
+    """Every asperity that may touch drawn by itself.
+
+    Parameters
+    ----------
+    scene : Scene
+        At nominal separations.
+    tail : Counted
+        What draws its surfaces: without any cell.
+    """
+
+    scene: Scene
+    tail: Counted
+    name: str = "tail"
+    cells: int = 0
+    moments: int = 0
+    seconds_per_draw: float = 1e-6
+
+    @property
+    def mesh(self) -> object:
+        """That of the sampler that draws."""
+        return self.tail.mesh
+
+    @property
+    def words(self) -> int:
+        """Numbers in memory for a surface, besides its results."""
+        return self.tail.words
+
+    @property
+    def draws(self) -> float:
+        """Numbers that are expected to be drawn for a surface."""
+        return self.tail.draws
+
+    def with_seed(self, seed: int) -> "TailAtNominal":
+        """The same with other draws."""
+        return replace(self, scene=replace(self.scene, seed=seed), tail=self.tail.with_seed(seed))
+
+    def block(self, first: int, n: int) -> Block:
+        """Results of surfaces `first` ... `first + n - 1`."""
+        mesh, table = self.tail.mesh, self.tail.table
+        rows = extra_heights(self.scene, mesh, first, counts_of(self.scene, mesh, first, n), table)
+        found = []
+        for number in range(first, first + n):
+            mine = rows[rows[:, 0] == number]
+            ratios = np.ascontiguousarray(mine[:, 3]) if table else None
+            found.append(balanced_sums(self.scene, number, np.ascontiguousarray(mine[:, 1]), ratios))
+        return Block({name: np.concatenate([row[name] for row in found]) for name in found[0]})

@@ -1,0 +1,86 @@
+"""What is wrong with a scene whose asperities press each other down."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from analytic import InteractingModel
+from mcgw.scene.fields import Fields
+from mcgw.scene.samplers import promise_of
+from mcgw.scene.theory import model_of
+
+__all__ = ["interaction_mistakes"]
+
+
+def interaction_mistakes(scene: Fields) -> Iterator[str]:
+    """A line for each."""
+    assert scene.interaction is not None
+    promise, found = promise_of(scene.sampler), False
+    for line in _together(scene):
+        found = True
+        yield line
+    if not promise.real_surfaces:
+        found = True
+        yield (
+            f'ensemble.sampler = "{scene.sampler}": it draws means, and each surface sinks by its own load; '
+            'take "cells"'
+        )
+    if scene.interaction.nominal:
+        for line in _nominal(scene):
+            found = True
+            yield line
+    if not found:
+        yield from _balance(scene)
+
+
+def _together(scene: Fields) -> Iterator[str]:
+    if "load" not in scene.quantities:
+        yield 'interaction: separations differ by the load; add "load" to contact.quantities'
+    if scene.unload_from is not None and "load_unloading" not in scene.quantities:
+        yield 'interaction: separations differ by the load; add "load_unloading" to contact.quantities'
+    if scene.tangential is not None:
+        yield "contact.tangential: loads sideways press no asperity down here; leave out it or [interaction]"
+
+
+def _nominal(scene: Fields) -> Iterator[str]:
+    """What a search for the balance of each surface does not know."""
+    key = 'interaction.at = "nominal"'
+    promise = promise_of(scene.sampler)
+    if not promise.finds_balance:
+        yield (
+            f'ensemble.sampler = "{scene.sampler}": it draws no asperities, and {key} needs them; take '
+            '"cells", or at = "effective"'
+        )
+    if scene.sampler == "cells" and (scene.curvature is not None or not scene.hertzian):
+        what = "a film" if scene.film is not None else f'contact.law = "{scene.law.name}"'
+        what = what if scene.curvature is None else "summits with radii of their own"
+        yield f'ensemble.sampler = "cells": with {what} {key} is found asperity by asperity; take "tail"'
+    if scene.keep == "moments":
+        yield f'ensemble.keep = "moments": {key} keeps none; take "sums", or at = "effective"'
+    if scene.unload_from is not None:
+        yield f'contact.unload_from: {key} has no way back; leave it out, or take at = "effective"'
+    if scene.negative == "allow":
+        yield f'grading.negative = "allow": {key} needs loads that fall with the separation; say "clip"'
+    if float(np.min(scene.contact.load(0, np.zeros(1), np.ones(1)))) < 0:  # at first touch
+        yield (
+            f'contact.law = "{scene.law.name}": its load does not fall with the separation alone, and {key} '
+            'would have several balances; take at = "effective"'
+        )
+
+
+def _balance(scene: Fields) -> Iterator[str]:
+    """Separations at which the plane sinks faster than it is pressed."""
+    theory = model_of(scene)
+    assert isinstance(theory, InteractingModel)
+    h = np.unique(scene.separations)
+    try:
+        x = theory.effective(h)
+    except ValueError as error:
+        yield str(error)
+        return
+    rate = 1 + theory.compliance * theory.alone.slope("load", x)
+    if np.any(rate <= 0):
+        yield (
+            f"interaction: at d/sigma = {h[rate <= 0].max():g} the mean plane sinks faster than it is "
+            "pressed, and no nominal separation belongs to it alone; give higher separations"
+        )
