@@ -106,19 +106,21 @@ SHARED = {
     "first_negative", "is_data", "quantity_of", "resolved", "resolved_breaks",
     "ChangEtsionBogy", "Coated", "ContactLaw", "CustomLaw", "DerjaguinMullerToporov", "Hertz",
     "JacksonGreen", "JohnsonKendallRoberts", "KogutEtsion", "PowerLawGraded", "ZhaoMaiettaChang",
-    "Film", "Tangential", "masing",
+    "Film", "Interaction", "Tangential", "masing", "SEPARATIONS",
 }  # fmt: skip
 LAW_FILES = {
     "adhesion", "bridge", "chang_etsion_bogy", "coated", "custom", "elastic_plastic",
     "etsion_kligerman_kadin", "hardness", "jackson_green", "kogut_etsion", "law_rows",
     "power_law_graded", "root_series", "zhao_maietta_chang",
+    "balance", "interacting", "interaction", "interaction_mistakes", "interaction_section", "lowest_felt",
+    "nominal", "nominal_literal",
 }  # fmt: skip
 GAUSSIAN_FIGURES = {"figures/paper.py", "figures/equal_load.py", "figures/summits.py"}  # those of the paper
 
 
 def test_the_simulator_takes_no_integral_from_theory():
     """It shares the surface and its laws with the theory; what a scene's theory says it never asks."""
-    besides = {"scene/scene.py": {"Model"}, "statistics/comparison.py": {"Fluctuations"}}
+    besides = {"scene/fields.py": {"Model", "InteractingModel"}, "statistics/comparison.py": {"Fluctuations"}}
     besides["statistics/bounded.py"] = {"Model"}
     besides |= {f"figures/{name}.py": {"Model"} for name in ("listed", "yielding", "histories")}
     whole = GAUSSIAN_FIGURES | {"statistics/methods.py"}  # the quadratures that tradeoff measures
@@ -158,7 +160,7 @@ def test_nothing_heavy_is_imported_early(code):
 
 
 def test_who_asks_for_hertz_loads_no_other_law(tmp_path):
-    """Neither a law's own file nor the rows of other laws, for a run and its comparison with theory."""
+    """Neither files of other laws nor of interaction, for a run and its comparison with theory."""
     scene = ROOT.parent / "runs" / "quick.toml"
     code = "import sys, mcgw.cli\n"
     for words in (["run", scene, "-o", tmp_path / "q.h5"], ["compare", tmp_path / "q.h5"]):
@@ -168,7 +170,7 @@ def test_who_asks_for_hertz_loads_no_other_law(tmp_path):
     )
     code += f"assert not found & {LAW_FILES!r}, found & {LAW_FILES!r}\n"
     subprocess.run([sys.executable, "-c", code], capture_output=True, check=True)
-    assert {path.stem for path in (*ROOT.rglob("*.py"), *ROOT.parent.glob("analytic/laws/*.py"))} >= LAW_FILES
+    assert {path.stem for path in (*ROOT.rglob("*.py"), *ROOT.parent.glob("analytic/**/*.py"))} >= LAW_FILES
 
 
 def test_run_and_show_need_no_scipy_stats(tmp_path):

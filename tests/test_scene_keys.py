@@ -53,6 +53,9 @@ COMPANY = {
     ("heights", "name"): ("'gamma'", {"shape": None, "law": "'scipy'", "shapes": "{a = 4.0}"}),
     ("heights", "shapes"): ("{a = 4.0}", {"shape": None, "law": "'scipy'", "name": "'gamma'"}),
     ("heights", "alpha"): ("5.0", {"shape": None, "law": "'nayak'"}),
+    ("interaction", "reference"): ("'body'", {}),
+    ("interaction", "at"): ("'nominal'", {"reference": "'body'"}),
+    ("interaction", "bulk_modulus"): ("1e11", {"reference": "'body'"}),
     ("surface", "m0"): ("1e-12", SPECTRAL),
     ("surface", "m2"): ("1e-3", SPECTRAL),
     ("surface", "m4"): ("5e6", SPECTRAL),
@@ -91,6 +94,7 @@ COMPANY = {
 WRONG = {
     "title": ["1"], "sigma": ["0.0", "-1e-6", "nan", "true", "[1.0]"], "radius": ["0", "-1", "inf", "'x'"],
     "eta": ["0", "-1", "{}"], "nominal_area": ["0", "-1", "'1 m'"], "E_star": ["0", "-1", "'1 N'"],
+    "reference": ["'plane'", "1"], "at": ["'both'", "1"], "bulk_modulus": ["0", "-1", "'1 N'"],
     "bodies": ["[]", "[{E = 7e10}]", "[{E = -1}, {E = 1}]", "[{E = 1, nu = 2}, {E = 1}]",
                "[{e = 1}, {E = 1}]",
                "3", "[{E = true}, {E = 1}]", "[{E = 1, nu = '0.3'}, {E = 1}]", "[{E = '1 m'}, {E = 1}]"],
@@ -192,7 +196,7 @@ def test_the_list_of_keys_is_whole(monkeypatch):
         mcgw.scene_from(text_of(table, key, good(table, key)))
     inner = {("contact.separations", name) for name in ("start", "stop", "num")}
     inner |= {("contact.tangential", name) for name in ("friction", "poisson", "displacements")}
-    tables = {("", name) for name in (*GOOD, "summits") if name}
+    tables = {("", name) for name in (*GOOD, "summits", "interaction") if name}
     assert asked - inner - tables == set(keys())
 
 

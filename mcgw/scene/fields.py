@@ -13,6 +13,7 @@ from analytic import (
     HeightLaw,
     MeasuredHeights,
     MeasuredRadii,
+    Model,
     RandomCurvature,
     Surface,
     first_negative,
@@ -57,6 +58,26 @@ class Fields:
     def modulus(self) -> Grading:
         """The grading as used: clipped if the scene says so."""
         return Clipped.of(self.grading) if self.negative == "clip" else self.grading
+
+    @property
+    def theory(self) -> Model:
+        """The exact model of this very scene: its modulus, height law, contact law, history, asperities."""
+        model = Model(
+            self.surface,
+            grading=self.modulus,
+            heights=self.heights,
+            curvature=self.curvature,
+            law=self.law,
+            unload_from=self.unload_from,
+            film=self.film,
+            n_asperities=float(self.n_asperities),
+            count=self.count,
+        )
+        if self.interaction is None:
+            return model
+        from analytic import InteractingModel  # for those scenes alone
+
+        return InteractingModel.of(model, self.interaction)
 
     @property
     def as_measured(self) -> bool:
@@ -129,7 +150,7 @@ class Fields:
             return None
         from mcgw.scene.lowest_felt import lowest_felt  # for those scenes alone
 
-        return lowest_felt(self)
+        return lowest_felt(self.theory, min(self.separations))
 
     @property
     def highest(self) -> float:

@@ -1,13 +1,12 @@
 """What is wrong with a scene whose asperities press each other down."""
 
 from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 
-from analytic import InteractingModel
 from mcgw.scene.fields import Fields
 from mcgw.scene.samplers import promise_of
-from mcgw.scene.theory import model_of
 
 __all__ = ["interaction_mistakes"]
 
@@ -70,8 +69,7 @@ def _nominal(scene: Fields) -> Iterator[str]:
 
 def _balance(scene: Fields) -> Iterator[str]:
     """Separations at which the plane sinks faster than it is pressed."""
-    theory = model_of(scene)
-    assert isinstance(theory, InteractingModel)
+    theory: Any = scene.theory
     h = np.unique(scene.separations)
     try:
         x = theory.effective(h)

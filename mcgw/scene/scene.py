@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from analytic import Grading, MeasuredRadii, Model, RandomCurvature, Surface
+from analytic import Grading, MeasuredRadii, RandomCurvature, Surface
 from analytic.laws import ContactLaw, Film, Tangential
 from mcgw.formats.sheet import Sheet, Shown
 from mcgw.scene.contact_text import contact_facts
@@ -20,7 +20,6 @@ from mcgw.scene.reading import read_values
 from mcgw.scene.section import SceneError, nearest
 from mcgw.scene.summits_section import Spectral
 from mcgw.scene.surface import SURFACE_UNITS, surface_of
-from mcgw.scene.theory import model_of
 
 if TYPE_CHECKING:
     from analytic import Interaction
@@ -234,11 +233,6 @@ class Scene(Fields, Shown):
             ),
         ]
         return Sheet(f"Scene: {self.title}" if self.title else "Scene", facts)
-
-    @property
-    def theory(self) -> Model:
-        """The exact model of this very scene: its modulus, height law, contact law, history, asperities."""
-        return model_of(self)
 
     @property
     def touching(self) -> float:
