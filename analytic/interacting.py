@@ -38,6 +38,7 @@ _STEP = 0.01  # of the differences that give derivatives by h, whose error is it
 _WEIGHTS = np.array([[1, -8, 0, 8, -1], [-1, 16, -30, 16, -1]]) / 12.0
 _SERIES = ("stiffness", "load_slope")
 _MOST_STEPS = 200
+_TOGETHER = 8  # separations that share a rule of heights
 _CLOSE = 4e-15  # of a separation
 
 
@@ -136,6 +137,12 @@ class InteractingModel(Model):
         variance = self.alone.cumulants(quantity, h).variance
         return mean / (1 + c * mean) - c * variance / (1 + c * mean) ** 3
 
+    def balanced(self, quantity: str, h: ArrayLike) -> Array:
+        """The mean to first order: that of the mean surface at its own balance."""
+        h = np.asarray(h, dtype=np.float64)
+        mean = self.alone.mean(quantity, self.effective(h))
+        return mean / (1 + self.compliance * self.surface.sigma * mean) if in_series(quantity) else mean
+
     def slope(self, quantity: str, h: ArrayLike) -> Array:
         """How fast the mean falls with the separation, of the mean surface."""
         h = np.asarray(h, dtype=np.float64)
@@ -212,7 +219,18 @@ class InteractingModel(Model):
         return factor, press
 
     def _nominal_mean(self, quantity: str, h: Array) -> Array:
-        """To second order in what surfaces differ by; the formulas are in the module's text."""
+        """To second order in what surfaces differ by; computed once, since a comparison asks again."""
+        key = quantity, h.shape, h.tobytes()
+        if key not in self._known:
+            self._known[key] = self._second_order(quantity, h)
+        return self._known[key].copy()
+
+    @cached_property
+    def _known(self) -> dict[Any, Array]:
+        return {}
+
+    def _second_order(self, quantity: str, h: Array) -> Array:
+        """The formulas of the module's text."""
         x, c = self.effective(h), self.compliance
         rate = 1 + c * self.alone.slope("load", x)
         _, load2 = self._derivatives("load", x)
@@ -228,7 +246,7 @@ class InteractingModel(Model):
             return np.asarray(mean)
         stiff = c * self.surface.sigma
         press = first * c / rate
-        both = self._covariance(quantity, x, x)
+        both = self._covariance(quantity, x)
         own = self.alone.cumulants(quantity, x).variance
         variance = own + 2 * press * both + press**2 * spread * rate**2
         return np.asarray(mean / (1 + stiff * mean) - stiff * variance / (1 + stiff * mean) ** 3)
@@ -241,17 +259,22 @@ class InteractingModel(Model):
 
     def _changing(self, quantity: str, x: Array) -> Array:
         """Covariance of the derivative of a sum by the separation with the load."""
-        around = [self._covariance(quantity, x + k * _STEP, x) for k in (-2, -1, 1, 2)]
+        around = [self._covariance(quantity, x, k * _STEP) for k in (-2, -1, 1, 2)]
         return np.tensordot(_WEIGHTS[0][[0, 1, 3, 4]], around, 1) / _STEP
 
-    def _covariance(self, quantity: str, there: Array, here: Array) -> Array:
-        """Covariance of a sum at some separations with the load at others, in the shape of both."""
+    def _covariance(self, quantity: str, x: Array, apart: float = 0.0) -> Array:
+        """Covariance of a sum with the load at separations x, the sum's farther up by `apart`."""
         scale = quantity_of(quantity).scale(self.surface) * quantity_of("load").scale(self.surface)
-        found = []
-        for pair in zip(there.ravel(), here.ravel(), strict=True):
-            products = self.alone.fluctuations([quantity, "load"], np.array(pair)).products()
-            found.append(products[0, 3])
-        return self.number * scale * np.reshape(found, here.shape)
+        parts = np.array_split(x.ravel(), -(-x.size // _TOGETHER)) if x.size else []
+        found = [self._product(quantity, part, apart) for part in parts]
+        return self.number * scale * np.reshape(np.concatenate(found), x.shape)
+
+    def _product(self, quantity: str, x: Array, apart: float) -> Array:
+        """Mean product of what one asperity adds to a sum and to the load, over their scales."""
+        one = self.alone.fluctuations([quantity, "load"], np.concatenate([x + apart, x]))
+        a, b = slice(0, x.size), slice(3 * x.size, 4 * x.size)
+        at_heights = one.rule.probabilities @ (one.at_heights[:, a] * one.at_heights[:, b])
+        return np.asarray(at_heights + one.rule.below * one.below[a] * one.below[b])
 
     def _check_separation(self, name: str) -> None:
         if name.startswith("nominal") == self.interaction.nominal:

@@ -32,6 +32,7 @@ Laws of contact of one asperity, in place of Hertz's, and what else the contacts
 `JohnsonKendallRoberts`  contacts that stick, as `DerjaguinMullerToporov`
 `Film`                   resistivity, and a film on the spots: conductance in S
 `Tangential`             friction, and displacements sideways; `masing`: the way back
+`Interaction`            asperities that press each other down: nominal and effective separations
 =======================  =========================================================================
 
 Draw surfaces:
@@ -84,6 +85,7 @@ if TYPE_CHECKING:
         HeightTable,
         Hertz,
         Homogeneous,
+        Interaction,
         JacksonGreen,
         JohnsonKendallRoberts,
         KogutEtsion,
@@ -136,6 +138,7 @@ __all__ = [
     "HeightTable",
     "Hertz",
     "Homogeneous",
+    "Interaction",
     "JacksonGreen",
     "JohnsonKendallRoberts",
     "KogutEtsion",

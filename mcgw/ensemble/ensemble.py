@@ -113,7 +113,10 @@ class Ensemble(Shown):
 
     @property
     def stiffness(self) -> Array:
-        """Stiffness of the spots, N/m, shape (surfaces, separations): -dP/dd where nothing yields."""
+        """Stiffness of the spots, N/m, shape (surfaces, separations): -dP/dd where nothing yields.
+
+        Where asperities press each other down, in series with the half-space: ``1/K = 1/K_asp + compliance``.
+        """
         return self.values("stiffness")
 
     @property
@@ -184,7 +187,10 @@ class Ensemble(Shown):
             raise ValueError("stratified surfaces have no interval: their fluctuations are not those of any")
         if scene.as_measured:
             return self.mean(quantity), self.mean(quantity)
-        if quantity_of(name).counts:
+        if name in scene.other_separations:
+            return self._separation_interval(name, level)
+        balanced = scene.interaction is not None and scene.interaction.nominal
+        if quantity_of(name).counts and not balanced:
             ends = count_interval(
                 self._number(name),
                 float(scene.n_asperities) * m,
@@ -195,6 +201,16 @@ class Ensemble(Shown):
         if name == TANGENTIAL.name:
             raise ValueError(f"{name} has no interval, as a difference of normal loads; ask for its stderr")
         return mean_interval(self.mean(quantity), spread_of(scene, quantity), m, level)
+
+    def _separation_interval(self, name: str, level: float) -> tuple[Array, Array]:
+        """Of the other separation, which differs from the scene's by a multiple of the load."""
+        load = "load_unloading" if quantity_of(name).unloading else "load"
+        mean, (low, high) = self.mean(load), self.interval(load, level)
+        here = self.mean(name)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            sunk = (here - self.separations) / mean  # d/sigma for a newton; nan where nothing touches
+        ends = self.separations + sunk * low, self.separations + sunk * high
+        return np.fmin(*ends), np.fmax(*ends)
 
     def _number(self, name: str) -> Array:
         """Contacts of all surfaces that count: exact but for the rounding to double precision."""

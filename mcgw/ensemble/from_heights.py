@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.same_surfaces import check_same
+from mcgw.ensemble.simulation import answered
 from mcgw.sampling.asperities import listing_sampler, summits_drawn
 from mcgw.sampling.law_sums import asperity_sums
 from mcgw.scene.scene import Scene
@@ -45,5 +46,5 @@ def sums_of_heights(ensemble: Ensemble, scene: Scene) -> Iterator[dict[str, NDAr
         heights, own = np.concatenate([s for s, _ in listed]), [c for _, c in listed if c is not None]
         drawn = numbers, heights, np.ones(heights.size), np.concatenate(own) if own else None
         again = asperity_sums(lowest, *drawn)
-        check_same(ensemble, first, again, slice(where, where + 1))
+        check_same(ensemble, first, answered(lowest, again), slice(where, where + 1))
         yield asperity_sums(scene, *drawn)

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from analytic.interacting import in_series
 from mcgw.scene.scene import Scene
 
-__all__ = ["with_interaction"]
+__all__ = ["at_loads", "with_interaction"]
 
 
 def with_interaction(scene: Scene, sums: dict[str, NDArray[Any]]) -> dict[str, Any]:
@@ -36,3 +36,16 @@ def with_interaction(scene: Scene, sums: dict[str, NDArray[Any]]) -> dict[str, A
             load = sums["load_unloading" if name.endswith("_unloading") else "load"]
             found[name] = h - sunk * load
     return found
+
+
+def at_loads(scene: Scene, found: dict[str, Any]) -> dict[str, Any]:
+    """The same of what holds at given loads: with "nominal_separation" after the separation that is felt."""
+    assert scene.interaction is not None
+    compliance = scene.interaction.compliance(scene.surface, float(scene.n_asperities))
+    with_it: dict[str, Any] = {}
+    for name, value in found.items():
+        stiff = name != "separation" and in_series(name)
+        with_it[name] = value / (1 + compliance * value) if stiff else value
+        if name == "separation":
+            with_it["nominal_separation"] = value - compliance / scene.surface.sigma * found["load"]
+    return with_it

@@ -9,11 +9,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from analytic import Grading, quantity_of
 from analytic.laws import ContactLaw, half_spaces
+from mcgw.ensemble.asperities_alone import scene_alone
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.from_heights import sums_of_heights
 from mcgw.ensemble.results import MemoryResults, joined
 from mcgw.ensemble.same_surfaces import check_same
-from mcgw.ensemble.simulation import blocks, kept
+from mcgw.ensemble.simulation import answered, blocks, kept
 from mcgw.sampling.block import Block
 from mcgw.sampling.counted import Counted
 from mcgw.sampling.samplers import regraded, sampler_of
@@ -29,7 +30,7 @@ Drawn = tuple[Array, Array, Array]  # moments, counts and single asperities of s
 Tables = dict[str, NDArray[Any]]
 
 _ROWS = 1024  # surfaces at a time
-_CONTACT = ("unload_from", "film", "tangential")
+_CONTACT = ("unload_from", "film", "tangential", "interaction")
 
 
 def regrade(
@@ -65,8 +66,8 @@ def regrade(
         From kept moments edges of the cells, such as the ensemble's own separations; else any that is not
         lower than these. Default: these.
     **contact
-        ``unload_from``, ``film`` or ``tangential``, where they are to change; None leaves them out. By
-        default they stay, where the law has them.
+        ``unload_from``, ``film``, ``tangential`` or ``interaction``, where they are to change; None leaves
+        them out. By default they stay, where the law has them.
 
     Returns
     -------
@@ -77,9 +78,10 @@ def regrade(
     Raises
     ------
     ValueError
-        If the ensemble has no cells, a separation or break is not an edge of them, the moments kept do not
-        resolve what is asked, or the surfaces that are drawn again are not those of the ensemble (of
-        another version, or of a run that is not finished).
+        If each surface finds its own balance (``interaction.at = "nominal"``), the ensemble has no cells, a
+        separation or break is not an edge of them, the moments kept do not resolve what is asked, or the
+        surfaces that are drawn again are not those of the ensemble (of another version, or of a run that is
+        not finished).
     SceneError, TypeError
         As from `mcgw.Scene.replace`.
 
@@ -95,7 +97,9 @@ def regrade(
     >>> mcgw.paired_ratio(metal, e, "load").ratio.round(1)
     array([0.7, 0.7, 0.8])
     """
+    scene_alone(ensemble.scene, "regrade")
     scene = storable(regraded_scene(ensemble, grading, law, quantities, separations, contact))
+    scene_alone(scene, "regrade")
     cells = _fitting(ensemble, scene)
     parts = list(_of_moments(ensemble, scene, cells) if cells else _of_heights(ensemble, scene))
     return Ensemble(scene, ensemble.sampler, MemoryResults(joined(parts)), ensemble.surfaces_of)
@@ -213,7 +217,8 @@ def _again(ensemble: Ensemble) -> Iterator[Drawn]:
         if block.moments is None or block.counts is None or block.extras is None:
             raise AssertionError("a sampler that keeps moments gives them")
         drawn = block.moments, block.counts, block.extras
-        check_same(ensemble, first, _sums(other, first, drawn) if other else block.sums)
+        sums = _sums(other, first, drawn) if other else block.sums
+        check_same(ensemble, first, answered(ensemble.scene, sums))
         yield drawn
         first += len(block.moments)
 

@@ -24,6 +24,7 @@ from mcgw.scene.scene import Scene
 from mcgw.scene.storable import storable
 
 __all__ = [
+    "answered",
     "at_a_time",
     "block_size",
     "blocks",
@@ -133,17 +134,22 @@ def _check_memory(scene: Scene, n_surfaces: int) -> None:
 
 def kept(scene: Scene, block: Block) -> dict[str, Any]:
     """What of a block is kept: its sums, and its moments if the scene says so."""
-    arrays: dict[str, Any] = dict(block.sums)
-    if scene.interaction is not None:
-        from mcgw.ensemble.interacting import with_interaction  # for those scenes alone
-
-        arrays = with_interaction(scene, arrays)
+    arrays = answered(scene, block.sums)
     if promise_of(scene.sampler).real_surfaces:
         for name in filter(lambda name: quantity_of(name).counts, scene.quantities):
             arrays[name] = np.rint(arrays[name]).astype(np.int64)
     if scene.keep == "moments":
         arrays |= {"moments": block.moments, "cells": block.counts, "extras": block.extras}
     return arrays
+
+
+def answered(scene: Scene, sums: dict[str, Any]) -> dict[str, Any]:
+    """What surfaces answer with these sums of their asperities."""
+    if scene.interaction is None:
+        return dict(sums)
+    from mcgw.ensemble.interacting import with_interaction  # for those scenes alone
+
+    return with_interaction(scene, sums)
 
 
 def block_size(scene: Scene, sampler: Sampler) -> int:

@@ -12,7 +12,7 @@ from analytic.laws import LoadingBranch, term_of
 from analytic.laws.elastic_plastic import ElasticPlastic
 from mcgw.ensemble.law_separation import LawSum
 from mcgw.ensemble.separation import LOWEST, crossing, separation_on
-from mcgw.ensemble.solved import Solution
+from mcgw.ensemble.solved import Solution, with_half_space
 from mcgw.sampling.asperities import summits, touching_summits
 from mcgw.scene.reading import argument, as_toml
 from mcgw.scene.scene import Scene
@@ -109,6 +109,9 @@ def solutions(scene: Scene, given: str, values: Sequence[float]) -> list[Solutio
         If a value is not reached, or only with contacts of negative modulus where the scene does not allow
         them, if there are too many asperities to draw, or if a surface has none.
     """
+    if scene.interaction is not None:
+        alone = solutions(replace(scene, interaction=None), given, values)
+        return [with_half_space(scene, found) for found in alone]
     if isinstance(scene.heights, MeasuredHeights):
         raise ValueError(
             "heights: surfaces of measured ones are not solved one by one; their mean is, in Python, by "

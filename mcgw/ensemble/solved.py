@@ -1,19 +1,19 @@
 """What holds on surfaces at one given load or area: what `mcgw.solve` finds."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.special import stdtrit
 
-from analytic import quantity_of
+from analytic import SEPARATIONS, quantity_of
 from mcgw.ensemble.intervals import FEWEST, interval_text
 from mcgw.formats.sheet import Sheet, Shown
 from mcgw.machine.late import plotted
 from mcgw.scene.scene import Scene
 
-__all__ = ["Solution"]
+__all__ = ["Solution", "with_half_space"]
 
 Array = NDArray[np.float64]
 
@@ -31,7 +31,8 @@ class Solution(Shown):
     value : float
         Its value, N or m^2.
     theory : dict of str to float
-        "separation" (d/sigma) and every quantity (SI) of the mean surface, on loading.
+        "separation" (d/sigma) and every quantity (SI) of the mean surface, on loading. Where asperities press
+        each other down the separation is what they feel, and "nominal_separation" there besides.
     surfaces : dict of str to ndarray
         The same on every surface at its own separation, shape (surfaces,).
     """
@@ -63,9 +64,18 @@ class Solution(Shown):
             title = f"At the real area {self.value:.6g} m^2 = {share:.4%} of the nominal area"
         rows = []
         for name in (name for name in self.theory if name != self.given):
-            unit = "d/sigma" if name == "separation" else quantity_of(name).unit
+            unit = "d/sigma" if name in ("separation", *SEPARATIONS) else quantity_of(name).unit
             x, (low, high) = self.surfaces[name], self.interval(name)
             cells = (f"{self.theory[name]:.6g}", f"{x.mean():.6g}", interval_text(low, high))
             rows.append([f"{name} ({unit})", *cells, f"{x.std(ddof=1):.3g}"])
         many = f"{len(self.surfaces['separation'])} surfaces of {self.scene.n_asperities} asperities"
         return Sheet(title, [("over", many)], ["", "theory", "mean", "95 % interval", "std"], rows)
+
+
+def with_half_space(scene: Scene, alone: Solution) -> Solution:
+    """What holds where the asperities press each other down: all but the separation and stiffnesses alike."""
+    from mcgw.ensemble.interacting import at_loads  # for those scenes alone
+
+    return replace(
+        alone, scene=scene, theory=at_loads(scene, alone.theory), surfaces=at_loads(scene, alone.surfaces)
+    )

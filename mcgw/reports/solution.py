@@ -16,7 +16,12 @@ __all__ = ["SOLUTION_HEADER", "solution_rows", "solution_table"]
 SOLUTION_HEADER = (
     "pressure_Pa", "load_or_area_SI", "quantity", "unit", "theory", "mean", "low_95", "high_95", "std"
 )  # fmt: skip
-_LABELS = {"separation": "separation d/sigma", "conductance": "conductance x rho"}
+_LABELS = {
+    "separation": "separation d/sigma",
+    "nominal_separation": "nominal d/sigma",
+    "conductance": "conductance x rho",
+}
+_SHOWN = ("contact law", "film", "interaction")  # what of the contacts counts at a given load
 
 
 def solution_table(scene: Scene, solutions: Sequence[Solution]) -> str:
@@ -42,7 +47,7 @@ def solution_table(scene: Scene, solutions: Sequence[Solution]) -> str:
         lines.append(
             "Few contacts: finite surfaces differ from theory, whose surface is infinite, by more than noise."
         )
-    lines += [f"{word}: {what}" for word, what in contact_facts(scene) if word in ("contact law", "film")]
+    lines += [f"{word}: {what}" for word, what in contact_facts(scene) if word in _SHOWN]
     if scene.unload_from is not None:
         lines.append("each surface is loaded from far away; nothing of it is on the way back")
     lines.append(

@@ -68,8 +68,8 @@ class CellsAtNominal:
 
     @property
     def moments(self) -> int:
-        """None that it keeps."""
-        return 0
+        """Moments of a surface, by which its cells are weighted; none is kept."""
+        return POINTS * self.cells
 
     @property
     def words(self) -> int:

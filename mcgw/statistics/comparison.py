@@ -1,19 +1,21 @@
 """Monte Carlo against theory: where both meet."""
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.special import chdtrc
 
 from analytic import Fluctuations, quantity_of
+from mcgw.ensemble.asperities_alone import asperities_alone
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.intervals import interval_text
 from mcgw.formats.evenly import evenly
 from mcgw.formats.sheet import Sheet, Shown
 from mcgw.machine.late import plotted
 from mcgw.scene.samplers import promise_of
+from mcgw.scene.scene import Scene
 from mcgw.statistics.bounded import bounded_theory
 
 __all__ = ["FALSE_ALARM", "Comparison", "Curve", "Verdict", "compare", "verdict"]
@@ -23,6 +25,8 @@ Array = NDArray[np.float64]
 FALSE_ALARM = 1e-3
 _MOST_SEPARATIONS = 48
 _SKEW, _KURTOSIS = 0.1, 0.1  # so nearly Gaussian must a combination of means be to count
+_SMALL, _THIRD = 0.2, 3.0  # standard errors that theory may be off by, and what it leaves out, at most
+_COMING_AND_GOING = 20.0  # over a separation: a twentieth of the variance comes and goes
 _INDEPENDENT = 1e-9  # variance of a combination that is not a rounding error
 
 
@@ -170,9 +174,13 @@ def verdict(ensemble: Ensemble) -> Verdict:
 
     The means are turned to the principal axes of their exact correlation. Of these, those count
     along which the mean of all asperities is Gaussian, which its exact skewness and kurtosis tell:
-    so the false-alarm rate is the stated one also where few asperities touch.
+    so the false-alarm rate is the stated one also where few asperities touch. Of asperities that press each
+    other down the sums are tested, without the half-space; where each surface finds its own balance, those
+    means that theory knows well enough.
     """
     scene = ensemble.scene
+    if scene.interaction is not None and not scene.interaction.nominal:
+        return verdict(asperities_alone(ensemble))
     h = np.unique(scene.separations)
     h = h[evenly(len(h), _MOST_SEPARATIONS)]
     parts = bounded_theory(scene, ensemble.n_surfaces).fluctuations(scene.quantities, h)
@@ -185,14 +193,43 @@ def verdict(ensemble: Ensemble) -> Verdict:
     varies = np.flatnonzero(variance > 0)
     unit = np.sqrt(variance[varies])
     parts = parts.take(varies, unit)
-    z = difference[varies] / unit * np.sqrt(ensemble.n_surfaces / scene.n_asperities)
-    usable = _gaussian(parts, asperities)
+    errors = np.sqrt(ensemble.n_surfaces / scene.n_asperities) / unit
+    z = difference[varies] * errors
+    usable = _gaussian(parts, asperities) & (_left_out(scene, h)[varies] * errors < _SMALL)
     parts, z = parts.take(usable), z[usable]
-    axes = parts.whitening(_INDEPENDENT)
+    axes = parts.whitening(_resolved(scene, h))
     axes = axes[:, _gaussian(parts.turned(axes), asperities)]
     chi_square = float(np.sum((z @ axes) ** 2))
     degrees = axes.shape[1]
     return Verdict(chi_square, degrees, float(chdtrc(degrees, chi_square)) if degrees else 1.0)
+
+
+def _resolved(scene: Scene, h: Array) -> float:
+    """Variance of a combination from which theory knows it.
+
+    Where each surface has a separation of its own, single asperities come and go between it and that of the
+    mean surface. Theory is linear in what surfaces differ by, and knows nothing of that.
+    """
+    if scene.interaction is None:
+        return _INDEPENDENT
+    widest = float(np.max(scene.theory.std("effective_separation", h)))
+    return min(max(_INDEPENDENT, _COMING_AND_GOING * widest), 0.5)
+
+
+def _left_out(scene: Scene, h: Array) -> Array:
+    """What theory may be off by for each quantity and separation, over its scale: nothing, where it is exact.
+
+    Of means that it knows to second order, the third: as the second is to the mean, so it is to the second.
+    """
+    if scene.interaction is None:
+        return np.zeros(len(scene.quantities) * len(h))
+    found, theory = [], cast(Any, scene.theory)
+    for name in scene.quantities:
+        mean, first = theory.mean(name, h), theory.balanced(name, h)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            third = np.nan_to_num(_THIRD * (mean - first) ** 2 / np.abs(mean), nan=np.inf)
+        found.append(third / quantity_of(name).scale(scene.surface))
+    return np.concatenate(found)
 
 
 def _gaussian(parts: Fluctuations, asperities: float) -> NDArray[np.bool_]:

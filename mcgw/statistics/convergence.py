@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from scipy.stats import binom, poisson
 
 from analytic import quantity_of
+from mcgw.ensemble.asperities_alone import scene_alone
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.results import MemoryResults, joined
 from mcgw.ensemble.simulation import blocks
@@ -120,7 +121,8 @@ def converge(
     Raises
     ------
     ValueError
-        If the sampler is ``stratified``, which draws no ensemble, or nothing touches.
+        If the sampler is ``stratified``, which draws no ensemble, if nothing touches, or each surface finds
+        its own balance (``interaction.at = "nominal"``).
     SceneError, TypeError
         As from `mcgw.Scene.replace`.
 
@@ -141,7 +143,7 @@ def converge(
             "there is nothing to test; give lower ones"
         )
     draw = draw or _own
-    scene = _tested(scene)
+    scene = _tested(scene_alone(scene, "converge"))
     parts = []
     with told(progress, "ensembles") as tell:
         for k in range(seeds):

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from mcgw.ensemble.asperities_alone import scene_alone
 from mcgw.ensemble.forecast import relative_spread
 from mcgw.formats.sheet import Sheet, Shown
 from mcgw.machine.late import plotted
@@ -203,6 +204,8 @@ def tradeoff(
     ------
     SceneError, TypeError
         If `seconds` is not positive; and as from `mcgw.Scene.replace`.
+    ValueError
+        If each surface finds its own balance (``interaction.at = "nominal"``).
 
     Examples
     --------
@@ -214,7 +217,7 @@ def tradeoff(
     """
     limit = argument("seconds", SECONDS if seconds is None else seconds, "s")
     started = monotonic()
-    scene = replace(scene.replace(**changes), rel_err=None, max_seconds=None)
+    scene = scene_alone(replace(scene.replace(**changes), rel_err=None, max_seconds=None), "tradeoff")
     chosen = _chosen(scene)
     methods = methods_for(scene, chosen)
     with told(progress, "s") as tell:

@@ -1,0 +1,76 @@
+"""The asperities of interacting surfaces by themselves: at effective separations nothing else is random."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from analytic.interacting import in_series
+from mcgw.ensemble.ensemble import Ensemble
+from mcgw.ensemble.results import Results
+from mcgw.scene.scene import Scene
+
+__all__ = ["asperities_alone", "scene_alone"]
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class _Alone:
+    """Results without the half-space that stiffnesses are in series with."""
+
+    whole: Results
+    compliance: float
+    names: tuple[str, ...]
+
+    def read(self, name: str, start: int, stop: int | None) -> Array:
+        """Rows `start` to `stop` (None: to the end) of a dataset."""
+        values = self.whole.read(name, start, stop)
+        if name in self.names and in_series(name):
+            return np.asarray(values / (1 - self.compliance * values))
+        return values
+
+    def rows(self) -> int:
+        """Number of surfaces there are."""
+        return self.whole.rows()
+
+
+def scene_alone(scene: Scene, what: str) -> Scene:
+    """The scene without interaction.
+
+    Parameters
+    ----------
+    scene : Scene
+        Any.
+    what : str
+        What is asked of it, for the message.
+
+    Raises
+    ------
+    ValueError
+        If its surfaces each find their own balance: then no sum is one of independent asperities.
+    """
+    if scene.interaction is None:
+        return scene
+    if scene.interaction.nominal:
+        raise ValueError(
+            f'interaction.at = "nominal": {what} takes sums of independent asperities, and here each surface '
+            'has a separation of its own; take at = "effective"'
+        )
+    return replace(scene, interaction=None)
+
+
+def asperities_alone(ensemble: Ensemble) -> Ensemble:
+    """The ensemble of the sums of the asperities, where its separations are effective ones.
+
+    Raises
+    ------
+    ValueError
+        As from `scene_alone`.
+    """
+    scene = ensemble.scene
+    if scene.interaction is None:
+        return ensemble
+    compliance = scene.interaction.compliance(scene.surface, float(scene.n_asperities))
+    sums = _Alone(ensemble.sums, compliance, scene.quantities)
+    return replace(ensemble, scene=scene_alone(scene, "this"), sums=sums)
