@@ -17,7 +17,7 @@ Means are to second order, so what is left out is of the order N^-2 of the mean:
 The mean of the balances is not the balance of the means: the load of a finite surface is smaller.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import KW_ONLY, dataclass, fields
 from functools import cached_property
 from typing import Any
@@ -27,7 +27,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from analytic.height_rule import Fluctuations, HeightRule
 from analytic.interaction import Interaction
-from analytic.model import Model
+from analytic.model import Cumulants, Model
 from analytic.quantities import SEPARATIONS, quantity_of
 
 __all__ = ["InteractingModel", "in_series"]
@@ -100,7 +100,7 @@ class InteractingModel(Model):
         h = np.asarray(h, dtype=np.float64)
         if not self.interaction.nominal:
             return h
-        return self._balance(h)
+        return self._once("separation", h, self._balance)
 
     def _balance(self, h: Array) -> Array:
         """By Newton from the side of no load, where the balance is monotone and convex or concave."""
@@ -142,6 +142,11 @@ class InteractingModel(Model):
         h = np.asarray(h, dtype=np.float64)
         mean = self.alone.mean(quantity, self.effective(h))
         return mean / (1 + self.compliance * self.surface.sigma * mean) if in_series(quantity) else mean
+
+    def cumulants(self, quantity: str, h: ArrayLike) -> Cumulants:
+        """As `Model.cumulants`; skewness and kurtosis are those of the linear part."""
+        self.mean(quantity, h)  # of all separations together, which is faster
+        return super().cumulants(quantity, h)
 
     def slope(self, quantity: str, h: ArrayLike) -> Array:
         """How fast the mean falls with the separation, of the mean surface."""
@@ -219,37 +224,52 @@ class InteractingModel(Model):
         return factor, press
 
     def _nominal_mean(self, quantity: str, h: Array) -> Array:
-        """To second order in what surfaces differ by; computed once, since a comparison asks again."""
-        key = quantity, h.shape, h.tobytes()
-        if key not in self._known:
-            self._known[key] = self._second_order(quantity, h)
-        return self._known[key].copy()
-
-    @cached_property
-    def _known(self) -> dict[Any, Array]:
-        return {}
+        """To second order in what surfaces differ by; each computed once, since a comparison asks again."""
+        return self._once(quantity, h, lambda some: self._second_order(quantity, some))
 
     def _second_order(self, quantity: str, h: Array) -> Array:
         """The formulas of the module's text."""
         x, c = self.effective(h), self.compliance
         rate = 1 + c * self.alone.slope("load", x)
-        _, load2 = self._derivatives("load", x)
-        spread = self.alone.cumulants("load", x).variance / rate**2
-        bias = (load2 * c**2 * spread / 2 + c * self._changing("load", x) / rate) / rate
-        if quantity == "load":
-            return np.asarray(self.alone.mean("load", x) + bias)
-        first, second = self._derivatives(quantity, x)
+        variance = self._once("variance", h, lambda some: self._load_variance(some))
+        bias = self._once("bias", h, lambda some: self._load_bias(some))
         value = self.alone.mean(quantity, x)
-        mean = value + first * c * bias + second * (c**2 * spread / 2)
+        if quantity == "load":
+            return np.asarray(value + bias)
+        first, second = self._derivatives(quantity, x)
+        mean = value + first * c * bias + second * (c**2 * variance / 2)
         mean = mean + c * self._changing(quantity, x) / rate
         if not in_series(quantity):
             return np.asarray(mean)
-        stiff = c * self.surface.sigma
-        press = first * c / rate
-        both = self._covariance(quantity, x)
-        own = self.alone.cumulants(quantity, x).variance
-        variance = own + 2 * press * both + press**2 * spread * rate**2
-        return np.asarray(mean / (1 + stiff * mean) - stiff * variance / (1 + stiff * mean) ** 3)
+        stiff, press = c * self.surface.sigma, first * c / rate
+        both, own = self._covariance(quantity, x), self.alone.cumulants(quantity, x).variance
+        spread = own + 2 * press * both + (press * rate) ** 2 * variance
+        return np.asarray(mean / (1 + stiff * mean) - stiff * spread / (1 + stiff * mean) ** 3)
+
+    def _load_variance(self, h: Array) -> Array:
+        x = self.effective(h)
+        rate = 1 + self.compliance * self.alone.slope("load", x)
+        return np.asarray(self.alone.cumulants("load", x).variance / rate**2)
+
+    def _load_bias(self, h: Array) -> Array:
+        """Of the load, by which the mean of the balances is not the balance of the means."""
+        x, c = self.effective(h), self.compliance
+        rate = 1 + c * self.alone.slope("load", x)
+        variance = self._once("variance", h, lambda some: self._load_variance(some))
+        bent = self._derivatives("load", x)[1] * c**2 * variance / 2
+        return np.asarray((bent + c * self._changing("load", x) / rate) / rate)
+
+    @cached_property
+    def _known(self) -> dict[tuple[str, float], float]:
+        return {}
+
+    def _once(self, what: str, h: Array, found: Callable[[Array], Array]) -> Array:
+        """Something at separations, of which only those are computed that are not known yet."""
+        new = np.array([x for x in np.unique(h).tolist() if (what, x) not in self._known])
+        if new.size:
+            keys = [(what, x) for x in new.tolist()]
+            self._known.update(zip(keys, found(new).tolist(), strict=True))
+        return np.array([self._known[what, x] for x in h.ravel().tolist()]).reshape(h.shape)
 
     def _derivatives(self, quantity: str, x: Array) -> tuple[Array, Array]:
         """First and second derivative of the mean of a sum by the separation."""

@@ -62,7 +62,11 @@ class Fields:
     @property
     def theory(self) -> Model:
         """The exact model of this very scene: its modulus, height law, contact law, history, asperities."""
-        model = Model(
+        return self._alone if self.interaction is None else self._interacting
+
+    @property
+    def _alone(self) -> Model:
+        return Model(
             self.surface,
             grading=self.modulus,
             heights=self.heights,
@@ -73,11 +77,14 @@ class Fields:
             n_asperities=float(self.n_asperities),
             count=self.count,
         )
-        if self.interaction is None:
-            return model
+
+    @cached_property
+    def _interacting(self) -> Model:
+        """Kept, for it keeps what it has computed."""
         from analytic import InteractingModel  # for those scenes alone
 
-        return InteractingModel.of(model, self.interaction)
+        assert self.interaction is not None
+        return InteractingModel.of(self._alone, self.interaction)
 
     @property
     def as_measured(self) -> bool:
