@@ -12,6 +12,7 @@ A file appears whole or not at all. Its schema (``filetype = "mcgw-ensemble"``, 
     /stiffness            float64 (surfaces, separations) N/m
     /contacts             int64   (surfaces, separations) 1   (float64 expectation if stratified)
     /conductance          float64 (surfaces, separations) m   (times 1/rho)
+    /nominal_separation   float64 (surfaces, separations) 1   (or effective_separation: interaction)
 
 and, if the scene says ``keep = "moments"``, what `mcgw.ensemble.regrading` starts from::
 
