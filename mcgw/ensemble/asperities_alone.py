@@ -5,7 +5,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from analytic.interacting import in_series
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.results import Results
 from mcgw.scene.scene import Scene
@@ -25,6 +24,8 @@ class _Alone:
 
     def read(self, name: str, start: int, stop: int | None) -> Array:
         """Rows `start` to `stop` (None: to the end) of a dataset."""
+        from analytic.interacting import in_series  # every comparison imports this file
+
         values = self.whole.read(name, start, stop)
         if name in self.names and in_series(name):
             return np.asarray(values / (1 - self.compliance * values))
