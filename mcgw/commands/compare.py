@@ -22,6 +22,7 @@ def execute(args: argparse.Namespace) -> int:
     from mcgw.commands.outputs import Output, check_outputs, figure_format
     from mcgw.commands.table_option import table_output, write_table
     from mcgw.figures.comparison import save_comparison
+    from mcgw.reports.elasticity import against_elasticity
     from mcgw.reports.text import COMPARISON_HEADER, comparison_rows, comparison_table, verdict_line
     from mcgw.statistics.comparison import compare
     from mcgw.store.ensembles import open_ensemble
@@ -34,5 +35,6 @@ def execute(args: argparse.Namespace) -> int:
     save_comparison(comparison, path)
     print(comparison_table(comparison))
     write_table(args.csv, COMPARISON_HEADER, comparison_rows(comparison))
-    print(f"\n{verdict_line(comparison.verdict)}\n{path}: figure")
+    known = against_elasticity(ensemble.scene.validity())
+    print("", verdict_line(comparison.verdict), *known, f"{path}: figure", sep="\n")
     return 0 if comparison.verdict.agrees else 1

@@ -49,6 +49,7 @@ def _execute(args: argparse.Namespace) -> int:
     from mcgw.ensemble.forecast import forecast
     from mcgw.jobs.from_python import part_of, run
     from mcgw.machine.progress import bar
+    from mcgw.reports.elasticity import two_questions
     from mcgw.scene.scene_file import files_of, load_scene
     from mcgw.store.ensembles import recorded_seed
 
@@ -81,6 +82,7 @@ def _execute(args: argparse.Namespace) -> int:
 
         for line in after(ensemble, scene.rel_err or 1.0):
             print(line)
+    print(*two_questions(scene.validity(), path), sep="\n")
     return 0
 
 

@@ -53,11 +53,12 @@ class Ensemble(Shown):
     >>> e = mcgw.simulate(mcgw.Scene(surface, separations=[0, 1, 2], n_surfaces=100, seed=1))
     >>> e["load"].shape, e.mean("pressure").shape
     ((100, 3), (3,))
-    >>> e
+    >>> e  # doctest: +ELLIPSIS
     Ensemble of 100 surfaces of 300 asperities
-      grading  Homogeneous()
-      heights  Gaussian()
-      drawn    by cells, seed 1
+      grading     Homogeneous()
+      heights     Gaussian()
+      drawn       by cells, seed 1
+      elasticity  ...
       mean +- stderr, d/sigma =                    0                    1                    2
       load (N)                         77.818 +- 0.8        13.536 +- 0.3       1.1153 +- 0.07
       area (m^2)                 6.6821e-09 +- 6e-11   1.387e-09 +- 2e-11  1.3526e-10 +- 7e-12
@@ -272,6 +273,7 @@ class Ensemble(Shown):
             ("heights", law_text(scene.heights)),
             *contact_facts(scene),
             ("drawn", f"by {self.sampler}, seed {scene.seed}"),
+            ("elasticity", scene.validity().brief),
         ]
         head = f"Ensemble of {m} surfaces of {scene.n_asperities} asperities{title}"
         if m * len(scene.separations) * len(scene.quantities) > _MOST_SHOWN:

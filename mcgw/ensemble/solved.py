@@ -69,7 +69,8 @@ class Solution(Shown):
             cells = (f"{self.theory[name]:.6g}", f"{x.mean():.6g}", interval_text(low, high))
             rows.append([f"{name} ({unit})", *cells, f"{x.std(ddof=1):.3g}"])
         many = f"{len(self.surfaces['separation'])} surfaces of {self.scene.n_asperities} asperities"
-        return Sheet(title, [("over", many)], ["", "theory", "mean", "95 % interval", "std"], rows)
+        facts = [("over", many), ("elasticity", self.scene.validity(self.theory["separation"]).brief)]
+        return Sheet(title, facts, ["", "theory", "mean", "95 % interval", "std"], rows)
 
 
 def with_half_space(scene: Scene, alone: Solution) -> Solution:

@@ -65,7 +65,7 @@ def save_comparison(comparison: Comparison, path: str | Path) -> None:
         verdict = comparison.verdict
         word = "agree" if verdict.agrees else "DISAGREE"
         figure.suptitle(
-            f"{shown_title(scene, 'Ensemble')}\nMonte Carlo and theory {word}: "
+            f"{shown_title(scene, 'Ensemble')}\nMonte Carlo and theory of this model {word}: "
             f"χ² = {verdict.chi_square:.1f} for {verdict.degrees} degrees of freedom, p = {verdict.p:.3g}",
             fontsize=10,
         )

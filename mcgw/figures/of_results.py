@@ -87,7 +87,7 @@ def _(result: Comparison, ax: Any, *, quantity: str) -> None:
     draw_curve(ax, result.ensemble.separations, result.curves[quantity])
     word = "agree" if result.verdict.agrees else "DISAGREE"
     ax.set(xlabel=_SEPARATION, ylabel=title_of(quantity))
-    ax.set_title(f"Monte Carlo and theory {word}: p = {result.verdict.p:.3g} over all means")
+    ax.set_title(f"Monte Carlo and theory of this model {word}: p = {result.verdict.p:.3g} over all means")
     ax.legend()
 
 

@@ -19,6 +19,7 @@ from mcgw.figures.drawing import draw
 from mcgw.figures.style import STYLE, grading_label
 from mcgw.formats.evenly import evenly
 from mcgw.machine.terminal import one_line, plain_text
+from mcgw.reports.elasticity import elasticity_section
 from mcgw.reports.laws_section import contacts_sentence, laws_section, yielding_item
 from mcgw.reports.text import verdict_line
 from mcgw.scene.cautions import cautions
@@ -68,7 +69,8 @@ _PAGE = Template("""<!DOCTYPE html>
 <body>
 <h1>$title</h1>
 <p>$words</p>
-<p class="verdict$bad">$verdict</p>
+<p class="verdict$bad">$verdict<br>
+$elastic</p>
 <h2>Means and theory</h2>
 <p>Markers: mean over the surfaces with its 95 % interval. Line: exact mean. Below: their difference in exact
 standard errors of the mean; the grey band is ±2.</p>
@@ -77,7 +79,7 @@ standard errors of the mean; the grey band is ±2.</p>
 <p>In brackets: half of the 95 % interval of the mean, in its last digits;
 residual in standard errors.</p>
 <div class="grid">$tables</div>
-<h2>The surface</h2>
+$elasticity<h2>The surface</h2>
 <table class="facts">$facts</table>
 $laws<h2>Before you trust it</h2>
 <ul>$cautions
@@ -103,7 +105,7 @@ def report_html(ensemble: Ensemble, attributes: dict[str, Any]) -> str:
     ValueError
         If the surfaces are stratified, which are no ensemble.
     """
-    comparison = compare(ensemble)
+    comparison, against = compare(ensemble), ensemble.scene.validity()
     names = ensemble.scene.quantities
     figures = [_svg(quantity_figure(comparison, name), quantity_of(name).long_name) for name in names]
     if ensemble.n_surfaces > 1:
@@ -114,6 +116,8 @@ def report_html(ensemble: Ensemble, attributes: dict[str, Any]) -> str:
         words=_words(ensemble),
         bad="" if comparison.verdict.agrees else " bad",
         verdict=escape(verdict_line(comparison.verdict)),
+        elastic=escape(against.verdict),
+        elasticity=elasticity_section(against),
         figures="\n".join(f"<figure>{figure}</figure>" for figure in figures),
         tables="\n".join(_table(comparison, name) for name in names),
         facts=_facts(ensemble),

@@ -6,6 +6,7 @@ from analytic import QUANTITIES
 from mcgw.ensemble.forecast import forecast
 from mcgw.jobs.duration import in_words, seconds_for
 from mcgw.machine.terminal import one_line
+from mcgw.reports.elasticity import two_questions
 from mcgw.sampling.samplers import sampler_of
 from mcgw.scene.contact_text import contact_facts
 from mcgw.scene.samplers import promise_of
@@ -81,6 +82,7 @@ def plan_text(scene: Scene, plan: Plan) -> str:
         *(f"  {word:13} {what}" for word, what in contact_facts(scene)),
         f"  results       {plan.bytes / 1e6:.4g} MB before compression",
         f"  time          about {in_words(plan.seconds)} on this machine",
+        *(f"  {line}" for line in two_questions(scene.validity())),
         "not done:",
     ]
     spared = plan.asperities - plan.touching

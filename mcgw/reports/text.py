@@ -12,6 +12,7 @@ from mcgw.ensemble.paired import Paired, paired_ratio
 from mcgw.formats.csv_table import Row
 from mcgw.formats.evenly import evenly
 from mcgw.machine.terminal import one_line
+from mcgw.reports.elasticity import two_questions
 from mcgw.scene.contact_text import contact_facts
 from mcgw.statistics.comparison import FALSE_ALARM, Comparison, Verdict
 
@@ -59,6 +60,7 @@ def summary(ensemble: Ensemble, attributes: dict[str, Any]) -> str:
         f"  digest        {attributes['digest']}",
         f"  made          {attributes['date']} in {attributes['wall_seconds']:.2f} s on {attributes['cpu']}",
         f"  with          {attributes['versions']}; commit {attributes['commit']}",
+        *(f"  {line}" for line in two_questions(scene.validity())),
     ]
     for name in scene.quantities:
         mean, std, stderr = ensemble.mean(name), ensemble.std(name), ensemble.stderr(name)
@@ -146,7 +148,8 @@ def ratio_table(new: Ensemble, old: Ensemble) -> str:
 def verdict_line(verdict: Verdict) -> str:
     """One line: do they agree, and how sure is that."""
     word = "agree" if verdict.agrees else "DISAGREE"
+    seen = f"chi-square {verdict.chi_square:.1f} for {verdict.degrees} degrees of freedom"
     return (
-        f"Monte Carlo and theory {word}: chi-square {verdict.chi_square:.1f} for {verdict.degrees} "
-        f"degrees of freedom, p = {verdict.p:.3g} (false alarms: 1 in {1 / FALSE_ALARM:.0f})"
+        f"Monte Carlo and theory of this model {word}: {seen}, p = {verdict.p:.3g} (false alarms: 1 in "
+        f"{1 / FALSE_ALARM:.0f})"
     )

@@ -24,6 +24,9 @@ from mcgw.scene.surface import SURFACE_UNITS, surface_of
 if TYPE_CHECKING:
     from analytic import Interaction
 
+if TYPE_CHECKING:
+    from mcgw.scene.validity import Validity
+
 __all__ = ["LeftOut", "Scene", "SceneError"]
 
 _SURFACES, _MOST_SURFACES = 1000, 10**9  # where n_surfaces is left out; where rel_err is to decide
@@ -233,6 +236,30 @@ class Scene(Fields, Shown):
             ),
         ]
         return Sheet(f"Scene: {self.title}" if self.title else "Scene", facts)
+
+    def validity(self, separations: ArrayLike | None = None) -> "Validity":
+        """How far this model is expected to be from elasticity: area, gap, stiffness and load.
+
+        Parameters
+        ----------
+        separations : array_like, optional
+            Reduced separations, d/sigma. Default: those of the scene, or 64 of them.
+
+        Returns
+        -------
+        Validity
+            Errors against boundary elements, with where they were measured; nan where they were not.
+
+        Examples
+        --------
+        >>> import mcgw
+        >>> surface = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "1 cm^2", "78.6 GPa")
+        >>> bool(mcgw.Scene(surface, separations=[0.0, 1.0]).validity().error["area"][0] < 0.1)
+        True
+        """
+        from mcgw.scene.validity import validity_of  # reads a table, which not every scene needs
+
+        return validity_of(self, separations)
 
     @property
     def touching(self) -> float:

@@ -126,7 +126,8 @@ class Comparison(Shown):
         seen = f"chi-square {v.chi_square:.1f} for {v.degrees} degrees of freedom, p = {v.p:.3g}"
         head = ["farthest off", "d/sigma", "mean", "95 % interval", "theory", "residual"]
         word = "agree" if v.agrees else "DISAGREE"
-        return Sheet(f"Monte Carlo and theory {word}", [("all means", seen)], head, rows)
+        facts = [("all means", seen), ("elasticity", self.ensemble.scene.validity().brief)]
+        return Sheet(f"Monte Carlo and theory of this model {word}", facts, head, rows)
 
 
 def compare(ensemble: Ensemble) -> Comparison:

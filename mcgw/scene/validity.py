@@ -1,0 +1,132 @@
+"""How far the model of a scene is from elasticity, as it was measured: a number, or that there is none."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from analytic import Homogeneous
+from mcgw.formats.evenly import evenly
+from mcgw.formats.sheet import Sheet, Shown
+from mcgw.scene.fields import Fields
+from mcgw.scene.validity_errors import ModelErrors
+from mcgw.scene.validity_place import Place, not_on_the_map, place_of, reduced_pressure
+from mcgw.scene.validity_table import COLUMNS, Expected, Grid, grid_of
+from mcgw.scene.validity_text import details, short_verdict, table_of, verdict
+
+__all__ = ["Validity", "validity_of"]
+
+Array = NDArray[np.float64]
+
+_MOST_SEPARATIONS = 64
+
+
+@dataclass(frozen=True, repr=False)
+class Validity(ModelErrors, Shown):
+    """Expected errors of a scene's model against elasticity; how they are told."""
+
+    @property
+    def verdict(self) -> str:
+        """One sentence: how far from elasticity, where, and where that was not measured."""
+        return verdict(self)
+
+    @property
+    def details(self) -> str:
+        """What has which error, and where it was measured; empty where nothing was."""
+        return details(self)
+
+    @property
+    def brief(self) -> str:
+        """The same in 88 characters."""
+        return short_verdict(self)
+
+    def sheet(self) -> Sheet:
+        """The verdict, and the errors at some separations: mean and scatter over maps."""
+        where = [("measured", self.where)] if self.where else []
+        return Sheet("Against elasticity", [("verdict", self.brief), *where], *table_of(self))
+
+
+def validity_of(scene: Fields, separations: ArrayLike | None = None) -> Validity:
+    """Look up how far a scene's model is from elasticity.
+
+    Parameters
+    ----------
+    scene : Fields
+        Whose geometry counts: a grading, a film and friction do not.
+    separations : array_like, optional
+        Reduced separations. Default: those of the scene, or 64 of them.
+
+    Returns
+    -------
+    Validity
+        At the separations, each once.
+    """
+    given = scene.separations if separations is None else separations
+    h = np.unique(np.asarray(given, dtype=np.float64))
+    h = h[evenly(len(h), _MOST_SEPARATIONS)]
+    reason = not_on_the_map(scene)
+    if reason is not None:
+        return _nothing(h, f"not measured: {reason}")
+    place = place_of(scene)
+    grid = grid_of(place.kind, place.model, place.interaction)
+    if grid is None:
+        return _nothing(h, f"not measured: the table has no {place.kind} maps with {place.model}")
+    if not grid.holds(place.x):
+        return _nothing(
+            h, f"outside of what was measured ({_coordinate(place)} = {place.x:.4g}; {_span(grid)})"
+        )
+    return _looked_up(scene, place, grid, h)
+
+
+def _nothing(h: Array, why: str) -> Validity:
+    none = np.full(len(h), np.nan)
+    empty = dict.fromkeys(COLUMNS, none)
+    return Validity(h, none, empty, empty, unknown=why)
+
+
+def _looked_up(scene: Fields, place: Place, grid: Grid, h: Array) -> Validity:
+    p = reduced_pressure(scene, h) / place.slope
+    found = grid.expected(place.x, p)
+    contacts = scene.n_asperities * scene.heights.above(h)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        wider = np.sqrt(np.maximum(found.contacts / contacts, 1.0))
+    unit = {name: place.rms if name == "separation" else 1.0 for name in COLUMNS}
+    bias = {name: unit[name] * found.bias[name] for name in COLUMNS}
+    error = {name: np.abs(bias[name]) + unit[name] * found.scatter[name] * wider for name in COLUMNS}
+    loads = _loads(place, found, p)
+    found_at = Validity(h, p, error, bias, _load_axis(place), _where(scene, place, grid, found.maps, loads))
+    if found_at.measured.all():
+        return found_at
+    why = f" ({loads})" if not found_at.measured.any() else ""
+    return replace(found_at, unknown=f"outside of what was measured{why}")
+
+
+def _coordinate(place: Place) -> str:
+    return "alpha" if place.kind == "gaussian" else "eta R sigma"
+
+
+def _load_axis(place: Place) -> str:
+    return "p/(E* g)" if place.kind == "gaussian" else "p/(E* sqrt(sigma/R))"
+
+
+def _span(grid: Grid) -> str:
+    return f"measured: {grid.x[0]:g} to {grid.x[-1]:g}"
+
+
+def _loads(place: Place, found: Expected, p: Array) -> str:
+    low, high = found.loads
+    told = f"{low:.2g} to {high:.2g}" if low <= high else "nothing in common"
+    here = " to ".join(dict.fromkeys(f"{x:.2g}" for x in (p.min(), p.max())))
+    return f"{_load_axis(place)} = {here}; measured: {told}"
+
+
+def _where(scene: Fields, place: Place, grid: Grid, maps: int, loads: str) -> str:
+    what = "Gaussian maps" if place.kind == "gaussian" else "maps of separate caps"
+    by = ""
+    if place.kind == "gaussian" and place.model == "one radius":
+        by = f" as eta R sigma = {scene.surface.eta * scene.surface.radius * scene.surface.sigma:.3g} says"
+    graded = "" if isinstance(scene.modulus, Homogeneous) else "; says nothing of the grading"
+    return (
+        f"boundary elements on homogeneous half-spaces, {maps} {what} a point: {_coordinate(place)} = "
+        f"{place.x:.3g}{by} ({_span(grid)}), {loads}{graded}"
+    )

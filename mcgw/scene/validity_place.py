@@ -1,0 +1,123 @@
+"""Where a scene lies on the map of validity: which surfaces, which model of them, which load."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from analytic import Gaussian, Hertz, Nayak, RandomCurvature, SpectralMoments, Surface
+from analytic.spectral_moments import LEAST_ALPHA, SUMMIT_SPREAD
+from mcgw.scene.fields import Fields
+from mcgw.scene.law_text import law_text
+
+__all__ = ["LEAST_CROWDING", "Place", "moments_of", "not_on_the_map", "place_of", "reduced_pressure"]
+
+Array = NDArray[np.float64]
+
+_CROWDING = 1 / (16 * math.sqrt(3 * math.pi))  # eta R sigma over sqrt(alpha - SUMMIT_SPREAD)
+LEAST_CROWDING = _CROWDING * math.sqrt(LEAST_ALPHA - SUMMIT_SPREAD)  # 0.0158: all waves have one length
+_SAME = 0.05  # by which eta R sigma may differ from that of alpha
+_ROUND = 10.0  # bound on the ratio of radii from which on it changes areas by less than 1 %
+_NODES = 48
+
+
+@dataclass(frozen=True)
+class Place:
+    """Where on the map a scene lies.
+
+    Parameters
+    ----------
+    kind : {"gaussian", "caps"}
+        Kind of the maps: isotropic Gaussian surfaces, or separate spherical caps.
+    model : {"one radius", "nayak", "own radii"}
+        What the scene says of its summits.
+    interaction : {"none", "summits", "contacts"}
+        How asperities feel each other.
+    x : float
+        Nayak's alpha of Gaussian surfaces, eta R sigma of caps.
+    slope : float
+        By which pressures over E* are taken: the rms slope g, or sqrt(sigma/R) of caps.
+    rms : float
+        By which gaps of the table are taken, over sigma: sqrt(m0), or 1 for caps.
+    """
+
+    kind: str
+    model: str
+    interaction: str
+    x: float
+    slope: float
+    rms: float
+
+
+def moments_of(surface: Surface) -> SpectralMoments | None:
+    """The Gaussian surface with this density, curvature and spread of summits; None if there is none.
+
+    ``eta R sigma = sqrt((alpha - 0.8968)/(3 pi))/16``, as `analytic.SpectralMoments` has it.
+    """
+    crowding = surface.eta * surface.radius * surface.sigma
+    if crowding < LEAST_CROWDING:
+        return None
+    return _moments(surface, SUMMIT_SPREAD + (crowding / _CROWDING) ** 2)
+
+
+def _moments(surface: Surface, alpha: float) -> SpectralMoments:
+    """From sigma, R and alpha."""
+    m0, m4 = surface.sigma**2 / (1 - SUMMIT_SPREAD / alpha), 9 * math.pi / (64 * surface.radius**2)
+    return SpectralMoments(m0, math.sqrt(m0 * m4 / alpha), m4)
+
+
+def not_on_the_map(scene: Fields) -> str | None:
+    """Why the model of a scene was never held to elasticity, in words; None if it was somewhere."""
+    if type(scene.law) is not Hertz:
+        return f'it was for Hertz\'s contacts, not for contact.law = "{scene.law.name}"'
+    if type(scene.heights) not in (Gaussian, Nayak):
+        return f"it was for Gaussian heights and Nayak's, not for {law_text(scene.heights):.60}"
+    if isinstance(scene.heights, Nayak):
+        found, told = (s.eta * s.radius * s.sigma for s in (_of_alpha(scene), scene.surface))
+        if abs(told / found - 1) > _SAME:
+            return (
+                f"Gaussian surfaces of alpha = {scene.heights.alpha:.4g} have eta R sigma = {found:.3g}, and "
+                f"this one {told:.3g}"
+            )
+    if isinstance(scene.curvature, RandomCurvature) and scene.curvature.largest < _ROUND:
+        return f"radii were unbounded there, here they end at {scene.curvature.largest:.3g} R"
+    return None
+
+
+def _of_alpha(scene: Fields) -> Surface:
+    assert isinstance(scene.heights, Nayak)
+    return _moments(scene.surface, scene.heights.alpha).surface(1.0, 1.0)
+
+
+def place_of(scene: Fields) -> Place:
+    """Where a scene lies that is `not_on_the_map` for no reason."""
+    surface = scene.surface
+    if isinstance(scene.heights, Nayak):
+        moments: SpectralMoments | None = _moments(surface, scene.heights.alpha)
+        model = "nayak" if scene.curvature is None else "own radii"
+    else:
+        moments, model = moments_of(surface), "one radius"
+    if moments is None:
+        crowding = surface.eta * surface.radius * surface.sigma
+        return Place("caps", model, "none", crowding, math.sqrt(surface.sigma / surface.radius), 1.0)
+    g, rms = math.sqrt(2 * moments.m2), math.sqrt(moments.m0) / surface.sigma
+    return Place("gaussian", model, "none", moments.alpha, g, rms)
+
+
+def reduced_pressure(scene: Fields, h: Array) -> Array:
+    """Load over E* and the area that the asperities stand on, by Hertz's law without a grading, shape of `h`.
+
+    Gauss's rule over the heights above h, which are smooth for the laws of the map: to 1e-9.
+    """
+    x, w = np.polynomial.legendre.leggauss(_NODES)
+    v, w = (x + 1) / 2, w / 2
+    start = np.maximum(h, scene.least)[:, None]
+    reach = np.maximum(scene.highest - start, 1.0)
+    s = start + reach * v**2  # the integrand begins as a root
+    weight = scene.heights.density(s)
+    if isinstance(scene.curvature, RandomCurvature):
+        weight = weight * scene.curvature.mean(0.5, s)
+    mean = np.sum(weight * (s - h[:, None]) ** 1.5 * 2 * v * w * reach, axis=1)
+    surface = scene.surface
+    return np.asarray(4 / 3 * surface.eta * surface.radius**0.5 * surface.sigma**1.5 * mean)

@@ -1,0 +1,112 @@
+"""How far a model is from elasticity, in words and as a table."""
+
+import math
+from collections.abc import Sequence
+from itertools import groupby
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mcgw.formats.evenly import evenly
+from mcgw.scene.validity_errors import ModelErrors
+
+__all__ = ["details", "percent", "rounded_up", "short_verdict", "span", "table_of", "verdict"]
+
+_MOST_ROWS = 9
+_AT_LOAD = {"area": "area", "stiffness": "stiffness", "separation": "gap"}  # columns at a given load
+_HEADER = ("d/sigma", "pressure", "area", "stiffness", "gap/sigma", "load at d")
+
+
+def verdict(v: ModelErrors) -> str:
+    """One sentence: how far from elasticity, where, and where that was not measured."""
+    if not v.measured.any():
+        subject = "This model" if v.unknown.startswith("outside") else "How far this model is from elasticity"
+        return f"{subject} is {v.unknown}"
+    parts, at_load, at_gap = [], v.known("area", "stiffness"), v.known("load")
+    if at_load.any():
+        worst = percent(v.worst("area", "stiffness"))
+        parts.append(f"at a given load this model is within {worst} of elasticity {_here(v, at_load)}")
+    if at_gap.any():
+        where = "" if np.array_equal(at_gap, at_load) else f" {_here(v, at_gap)}"
+        parts.append(f"its load at a given mean gap is within {percent(v.worst('load'))}{where}")
+    if not v.measured.all():
+        parts.append(f"at d/sigma = {span(v.separations, ~v.measured)} the model is {v.unknown}")
+    line = "; ".join(parts)
+    return line[0].upper() + line[1:]
+
+
+def details(v: ModelErrors) -> str:
+    """What has which error, and where it was measured; empty where nothing was."""
+    if not v.measured.any():
+        return ""
+    known = {word: v.worst(name) for name, word in _AT_LOAD.items() if not math.isnan(v.worst(name))}
+    told = [
+        f"{word} {rounded_up(worst):g} sigma" if word == "gap" else f"{word} {percent(worst)}"
+        for word, worst in known.items()
+    ]
+    lacking = [word for word in _AT_LOAD.values() if word not in known]
+    each = ", ".join(told) + (f"; {', '.join(lacking)}: not measured" if lacking else "")
+    return f"{each}; by {v.where}"
+
+
+def short_verdict(v: ModelErrors) -> str:
+    """The same in 88 characters."""
+    if not v.measured.any():
+        return v.unknown
+    parts = [
+        f"within {percent(error)} {of}"
+        for error, of in (
+            (v.worst("area", "stiffness"), "at a given load"),
+            (v.worst("load"), "in load at a given gap"),
+        )
+        if not math.isnan(error)
+    ]
+    if not v.measured.all():
+        parts.append(f"for d/sigma = {span(v.separations, v.measured)}")
+    return ", ".join(parts)
+
+
+def table_of(v: ModelErrors) -> tuple[Sequence[str], Sequence[Sequence[str]]]:
+    """Header and rows at some of the separations: bias and scatter of each quantity."""
+    if not v.measured.any():
+        return (), ()
+    rows = []
+    for k in evenly(len(v.separations), _MOST_ROWS):
+        cells = [_cell(v, name, int(k)) for name in ("area", "stiffness", "separation", "load")]
+        rows.append([f"{v.separations[k]:g}", f"{v.loads[k]:.2g}", *cells])
+    return _HEADER, rows
+
+
+def percent(x: float) -> str:
+    """A share, rounded up: what is said holds."""
+    return f"{100 * rounded_up(x):.0f} %"
+
+
+def rounded_up(x: float) -> float:
+    """To two decimals."""
+    return math.ceil(100 * x - 1e-9) / 100
+
+
+def span(h: NDArray[np.float64], where: NDArray[np.bool_]) -> str:
+    """Separations of one kind: from where to where, perhaps twice."""
+    runs = []
+    for wanted, group in groupby(range(len(h)), key=lambda k: bool(where[k])):
+        members = list(group)
+        if wanted:
+            ends = dict.fromkeys(f"{h[k]:.3g}" for k in (members[0], members[-1]))
+            runs.append(" to ".join(ends))
+    return " and ".join(runs)
+
+
+def _here(v: ModelErrors, where: NDArray[np.bool_]) -> str:
+    return "here" if where.all() else f"at d/sigma = {span(v.separations, where)}"
+
+
+def _cell(v: ModelErrors, name: str, k: int) -> str:
+    bias, error = float(v.bias[name][k]), float(v.error[name][k])
+    if math.isnan(error):
+        return "not measured"
+    scatter = error - abs(bias)
+    if name == "separation":
+        return f"{bias:+.2f} ± {scatter:.2f}"
+    return f"{100 * bias:+.0f} ± {100 * scatter:.0f} %"
