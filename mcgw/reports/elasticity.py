@@ -27,9 +27,10 @@ def elasticity_section(found: Validity) -> str:
     body = "".join(f"<tr>{''.join(f'<td>{escape(x)}</td>' for x in row)}</tr>" for row in sheet.rows)
     table = f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>\n" if body else ""
     words = (
-        "<p>Model over elasticity, less 1: mean over the maps ± their standard deviation, wider for fewer "
-        "contacts. Area, stiffness and gap are those at the load of that separation; the load is that at the "
-        f"separation itself, taken for the mean gap of a periodic cell. Pressure: {escape(found.axis)}.</p>\n"
+        "<p>Model over elasticity, less 1: mean over the maps ± scatter, that of surfaces with so many "
+        "contacts, or twice the standard error of the mean. Area, stiffness and gap are those at the load of "
+        "that separation; the load is that at the separation itself, taken for the mean gap of a periodic "
+        f"cell. Pressure: {escape(found.axis)}.</p>\n"
     )
-    lines = "".join(f"<p>{escape(line)}</p>\n" for line in against_elasticity(found))
-    return f"<h2>Against elasticity</h2>\n{lines}{words + table if table else ''}"
+    known = f"{escape(found.details)}.</p>\n{words}{table}" if table else f"{escape(found.verdict)}.</p>\n"
+    return f"<h2>Against elasticity</h2>\n<p>{known[0].upper()}{known[1:]}"

@@ -7,19 +7,23 @@ import numpy as np
 from analytic import Hertz
 from mcgw.scene.plausible import perhaps_other_units
 from mcgw.scene.scene import Scene
+from mcgw.scene.validity_cautions import off_elasticity
 
 __all__ = ["cautions"]
 
 _DEEP = 1e-3  # share of the contacts compressed by more than their radius
-_CROWDED = 0.05  # real over nominal area from which neighbouring asperities feel each other
+_CROWDED = 0.05  # real over nominal area: Gaussian maps and caps are far beyond 10 % of load there
 _STEEP = 0.3  # contact radius over summit radius from which a paraboloid is not a sphere and strain is large
 _FEW = 30.0  # contacts a surface, below which single surfaces are far from Gaussian
 
 
 def cautions(scene: Scene) -> list[str]:
     """What a reader should know before trusting the numbers of a scene, a line each."""
-    found = [_crowd, _half, _depth, _slope, _few_contacts, _other_number, _negative_modulus]
-    lines = [line for caution in found for line in caution(scene)]
+    known = scene.validity()
+    lines = [*off_elasticity(known)]
+    unmeasured = [] if known.measured.any() else [_crowd, _half]
+    found = [*unmeasured, _depth, _slope, _few_contacts, _other_number, _negative_modulus]
+    lines += [line for caution in found for line in caution(scene)]
     return [*perhaps_other_units(scene), *lines, *_of_law(scene)]
 
 
@@ -37,7 +41,9 @@ def _crowd(scene: Scene) -> Iterator[str]:
     if low >= 0:
         yield (
             f"up to d/sigma = {separations[low]:.3g} more than {_CROWDED:.0%} of the nominal area touches: "
-            "asperities are no longer independent, and the load at that separation is overestimated"
+            "asperities are not independent. By itself that makes the load too large where d counts from the "
+            "undeformed body of a punch, too small where d is the mean gap of a periodic cell; by how much "
+            "was not measured for this model"
         )
 
 

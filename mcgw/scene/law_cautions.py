@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from analytic import Coated, JacksonGreen, KogutEtsion
+from analytic import Coated, DerjaguinMullerToporov, JacksonGreen, JohnsonKendallRoberts, KogutEtsion
 from analytic.laws.elastic_plastic import ElasticPlastic
 from mcgw.scene.other_laws import other_laws
 from mcgw.scene.scene import Scene
@@ -16,12 +16,15 @@ _DEEP = 1e-3  # share of the contacts beyond the range of a fit
 _FITTED, _UNLOADED = 110.0, 170.0  # delta/delta_c up to which Kogut-Etsion, and its unloading, were fitted
 _STRAINS, _WIDEST = (1e-3, 1e-2), 0.4  # S_y/E* and a/R of Jackson and Green's finite elements
 _QUANTILES = 10_000
+_REACH = 3e-10  # m, distance over which surfaces attract: about that of neighbouring atoms
+_MAUGIS = 2 * 16 / (9 * np.sqrt(3)) * (9 / (16 * np.pi)) ** (1 / 3)  # his number over Tabor's: 1.157
+_STICKY, _STIFF = 5.0, 0.1  # Tabor's number from which JKR holds, and up to which DMT does
 _RATIOS = (1 / 3, 3.0)  # of moduli for which a coating's perturbation is good
 
 
 def law_cautions(scene: Scene) -> list[str]:
     """What a reader should know of the contact law, a line each; none under Hertz's."""
-    found = [_choice, _jumps, _gain, _fitted, _strain, _radius, _coating]
+    found = [_choice, _yielded, _jumps, _gain, _fitted, _strain, _radius, _coating, _adhesion]
     return [line for caution in found for line in caution(scene)]
 
 
@@ -37,6 +40,19 @@ def _choice(scene: Scene) -> Iterator[str]:
         f"at d/sigma = {others.separation:.3g}; over this one's, with the same critical penetration of "
         f"{others.critical:.3g} sigma: {ratios}"
     )
+
+
+def _yielded(scene: Scene) -> Iterator[str]:
+    """Contacts of which elasticity says nothing."""
+    h = _deepest(scene)
+    if not isinstance(scene.law, ElasticPlastic) or not scene.heights.above(np.array(h)) > 0:
+        return
+    share = 1 - float(scene.theory.share(0, h))
+    if share > _DEEP:
+        yield (
+            f"a share of {share:.3g} of the contacts has yielded at the lowest separation, d/sigma = {h:g}: "
+            "no elastic solution tells how good their loads and areas are"
+        )
 
 
 def _jumps(scene: Scene) -> Iterator[str]:
@@ -132,4 +148,20 @@ def _coating(scene: Scene) -> Iterator[str]:
         yield (
             f"contact.ratio = {law.ratio:g}: the coating is a first-order perturbation, good for ratios from "
             "1/3 to 3"
+        )
+
+
+def _adhesion(scene: Scene) -> Iterator[str]:
+    """Tabor's number ``(R w^2/(E*^2 z0^3))^(1/3)``; Maugis's (1992) is a multiple of it."""
+    law = scene.contact  # in reduced units: it has its pull_off
+    if not isinstance(law, JohnsonKendallRoberts | DerjaguinMullerToporov):
+        return
+    tabor = (law.pull_off or 0.0) * scene.surface.sigma / (0.75 * np.pi ** (2 / 3) * _REACH)
+    sticks = isinstance(law, JohnsonKendallRoberts)
+    if tabor < _STICKY if sticks else tabor > _STIFF:
+        holds = f"above {_STICKY:g}" if sticks else f"below {_STIFF:g}"
+        yield (
+            f'contact.law = "{law.name}" is for a Tabor number {holds}, at every separation; for forces that '
+            f"reach z0 = {_REACH * 1e9:g} nm, as atoms are apart, it is {tabor:.3g} (Maugis's: "
+            f"{_MAUGIS * tabor:.3g}), and it goes as 1/z0"
         )

@@ -19,6 +19,7 @@ __all__ = ["Validity", "validity_of"]
 Array = NDArray[np.float64]
 
 _MOST_SEPARATIONS = 64
+_SURE = 2.0  # standard errors of a mean over maps
 
 
 @dataclass(frozen=True, repr=False)
@@ -89,15 +90,17 @@ def _looked_up(scene: Fields, place: Place, grid: Grid, h: Array) -> Validity:
     found = grid.expected(place.x, p)
     contacts = scene.n_asperities * scene.heights.above(h)
     with np.errstate(divide="ignore", invalid="ignore"):
-        wider = np.sqrt(np.maximum(found.contacts / contacts, 1.0))
+        share = np.maximum(np.sqrt(found.contacts / contacts), _SURE / np.sqrt(found.maps))
     unit = {name: place.rms if name == "separation" else 1.0 for name in COLUMNS}
     bias = {name: unit[name] * found.bias[name] for name in COLUMNS}
-    error = {name: np.abs(bias[name]) + unit[name] * found.scatter[name] * wider for name in COLUMNS}
+    error = {name: np.abs(bias[name]) + unit[name] * found.scatter[name] * share for name in COLUMNS}
     loads = _loads(place, found, p)
-    found_at = Validity(h, p, error, bias, _load_axis(place), _where(scene, place, grid, found.maps, loads))
+    graded = not isinstance(scene.modulus, Homogeneous)
+    where = _where(scene, place, grid, found.maps, loads)
+    found_at = Validity(h, p, error, bias, graded, _load_axis(place), where)
     if found_at.measured.all():
         return found_at
-    why = f" ({loads})" if not found_at.measured.any() else ""
+    why = f": {loads}" if not found_at.measured.any() else ""
     return replace(found_at, unknown=f"outside of what was measured{why}")
 
 
@@ -117,16 +120,16 @@ def _loads(place: Place, found: Expected, p: Array) -> str:
     low, high = found.loads
     told = f"{low:.2g} to {high:.2g}" if low <= high else "nothing in common"
     here = " to ".join(dict.fromkeys(f"{x:.2g}" for x in (p.min(), p.max())))
-    return f"{_load_axis(place)} = {here}; measured: {told}"
+    return f"{_load_axis(place)} = {here} (measured: {told})"
 
 
 def _where(scene: Fields, place: Place, grid: Grid, maps: int, loads: str) -> str:
-    what = "Gaussian maps" if place.kind == "gaussian" else "maps of separate caps"
+    what = "Gaussian" if place.kind == "gaussian" else "separate caps"
+    many = f"{maps} maps" if maps > 1 else "one map"
     by = ""
     if place.kind == "gaussian" and place.model == "one radius":
         by = f" as eta R sigma = {scene.surface.eta * scene.surface.radius * scene.surface.sigma:.3g} says"
-    graded = "" if isinstance(scene.modulus, Homogeneous) else "; says nothing of the grading"
     return (
-        f"boundary elements on homogeneous half-spaces, {maps} {what} a point: {_coordinate(place)} = "
-        f"{place.x:.3g}{by} ({_span(grid)}), {loads}{graded}"
+        f"boundary elements on homogeneous half-spaces, {many} ({what}) a point: {_coordinate(place)} = "
+        f"{place.x:.3g}{by} ({_span(grid)}), {loads}"
     )

@@ -29,10 +29,13 @@ class ModelErrors:
         caps: of Hertz's law without a grading at each separation; nan where the model was not measured.
     error : dict of str to ndarray
         How far to be off is expected: ``|bias| + scatter``, over the right value, or over sigma for
-        "separation". The scatter is the standard deviation over maps, and grows with the inverse root of the
-        contacts where a surface has fewer of them than the maps had. nan where nothing was measured.
+        "separation". The scatter is the standard deviation over maps, as of surfaces with so many contacts
+        as one of the scene has (it goes as one over their root), but at least two standard errors of the
+        bias. nan where nothing was measured.
     bias : dict of str to ndarray
         Mean over maps of model/elasticity - 1, or of the difference over sigma.
+    graded : bool
+        Whether the scene has a grading, of which these errors say nothing: they are the geometry's share.
     axis : str
         What the loads are, as "p/(E* g)".
     where : str
@@ -45,6 +48,7 @@ class ModelErrors:
     loads: Array
     error: dict[str, Array]
     bias: dict[str, Array]
+    graded: bool = False
     axis: str = ""
     where: str = ""
     unknown: str = ""

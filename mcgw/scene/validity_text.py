@@ -25,7 +25,8 @@ def verdict(v: ModelErrors) -> str:
     parts, at_load, at_gap = [], v.known("area", "stiffness"), v.known("load")
     if at_load.any():
         worst = percent(v.worst("area", "stiffness"))
-        parts.append(f"at a given load this model is within {worst} of elasticity {_here(v, at_load)}")
+        what = "the geometry of this model" if v.graded else "this model"
+        parts.append(f"at a given load {what} is within {worst} of elasticity {_here(v, at_load)}")
     if at_gap.any():
         where = "" if np.array_equal(at_gap, at_load) else f" {_here(v, at_gap)}"
         parts.append(f"its load at a given mean gap is within {percent(v.worst('load'))}{where}")
@@ -46,7 +47,8 @@ def details(v: ModelErrors) -> str:
     ]
     lacking = [word for word in _AT_LOAD.values() if word not in known]
     each = ", ".join(told) + (f"; {', '.join(lacking)}: not measured" if lacking else "")
-    return f"{each}; by {v.where}"
+    graded = "; of the grading that says nothing" if v.graded else ""
+    return f"{each}; by {v.where}{graded}"
 
 
 def short_verdict(v: ModelErrors) -> str:
@@ -61,6 +63,8 @@ def short_verdict(v: ModelErrors) -> str:
         )
         if not math.isnan(error)
     ]
+    if v.graded:
+        parts[0] = f"geometry {parts[0]}"
     if not v.measured.all():
         parts.append(f"for d/sigma = {span(v.separations, v.measured)}")
     return ", ".join(parts)
