@@ -20,11 +20,26 @@ _FEW = 30.0  # contacts a surface, below which single surfaces are far from Gaus
 def cautions(scene: Scene) -> list[str]:
     """What a reader should know before trusting the numbers of a scene, a line each."""
     known = scene.validity()
-    lines = [*off_elasticity(known)]
+    lines = [*off_elasticity(known, _cause(scene))]
     unmeasured = [] if known.measured.any() else [_crowd, _half]
     found = [*unmeasured, _depth, _slope, _few_contacts, _other_number, _negative_modulus]
     lines += [line for caution in found for line in caution(scene)]
     return [*perhaps_other_units(scene), *lines, *_of_law(scene)]
+
+
+def _cause(scene: Scene) -> str:
+    if scene.interaction is None:
+        return "its asperities feel nothing of each other, and do not merge"
+    return "its asperities feel the mean of all others, and do not merge"
+
+
+def _direction(scene: Scene) -> str:
+    if scene.interaction is not None:
+        return ""
+    return (
+        ", which by itself makes the load too large where d counts from the undeformed body of a punch, and "
+        "too small where d is the mean gap of a periodic cell"
+    )
 
 
 def _crowd(scene: Scene) -> Iterator[str]:
@@ -41,9 +56,7 @@ def _crowd(scene: Scene) -> Iterator[str]:
     if low >= 0:
         yield (
             f"up to d/sigma = {separations[low]:.3g} more than {_CROWDED:.0%} of the nominal area touches: "
-            "asperities are not independent. By itself that makes the load too large where d counts from the "
-            "undeformed body of a punch, too small where d is the mean gap of a periodic cell; by how much "
-            "was not measured for this model"
+            f"asperities are not independent{_direction(scene)}; how far off this model is was not measured"
         )
 
 

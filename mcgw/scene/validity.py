@@ -5,10 +5,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from analytic import Homogeneous
+from analytic import Homogeneous, InteractingModel
 from mcgw.formats.evenly import evenly
 from mcgw.formats.sheet import Sheet, Shown
 from mcgw.scene.fields import Fields
+from mcgw.scene.theory import model_of
 from mcgw.scene.validity_errors import ModelErrors
 from mcgw.scene.validity_place import Place, not_on_the_map, place_of, reduced_pressure
 from mcgw.scene.validity_table import COLUMNS, Expected, Grid, grid_of
@@ -71,7 +72,9 @@ def validity_of(scene: Fields, separations: ArrayLike | None = None) -> Validity
     place = place_of(scene)
     grid = grid_of(place.kind, place.model, place.interaction)
     if grid is None:
-        return _nothing(h, f"not measured: the table has no {place.kind} maps with {place.model}")
+        return _nothing(
+            h, f"not measured: no {place.kind} maps were solved for {place.model}{_shared(place)}"
+        )
     if not grid.holds(place.x):
         return _nothing(
             h, f"outside of what was measured ({_coordinate(place)} = {place.x:.4g}; {_span(grid)})"
@@ -86,12 +89,15 @@ def _nothing(h: Array, why: str) -> Validity:
 
 
 def _looked_up(scene: Fields, place: Place, grid: Grid, h: Array) -> Validity:
-    p = reduced_pressure(scene, h) / place.slope
+    felt = _felt(scene, h)
+    p = reduced_pressure(scene, felt) / place.slope
     found = grid.expected(place.x, p)
-    contacts = scene.n_asperities * scene.heights.above(h)
+    contacts = scene.n_asperities * scene.heights.above(felt)
     with np.errstate(divide="ignore", invalid="ignore"):
         share = np.maximum(np.sqrt(found.contacts / contacts), _SURE / np.sqrt(found.maps))
     unit = {name: place.rms if name == "separation" else 1.0 for name in COLUMNS}
+    for name in COLUMNS[1:] if place.area_only else ():
+        unit[name] = np.nan
     bias = {name: unit[name] * found.bias[name] for name in COLUMNS}
     error = {name: np.abs(bias[name]) + unit[name] * found.scatter[name] * share for name in COLUMNS}
     loads = _loads(place, found, p)
@@ -102,6 +108,15 @@ def _looked_up(scene: Fields, place: Place, grid: Grid, h: Array) -> Validity:
         return found_at
     why = f": {loads}" if not found_at.measured.any() else ""
     return replace(found_at, unknown=f"outside of what was measured{why}")
+
+
+def _felt(scene: Fields, h: Array) -> Array:
+    """Separations that the asperities of the mean surface feel."""
+    if scene.interaction is None or not scene.interaction.nominal:
+        return h
+    model = model_of(scene)
+    assert isinstance(model, InteractingModel)
+    return model.effective(h)
 
 
 def _coordinate(place: Place) -> str:
@@ -124,12 +139,19 @@ def _loads(place: Place, found: Expected, p: Array) -> str:
 
 
 def _where(scene: Fields, place: Place, grid: Grid, maps: int, loads: str) -> str:
-    what = "Gaussian" if place.kind == "gaussian" else "separate caps"
     many = f"{maps} maps" if maps > 1 else "one map"
     by = ""
     if place.kind == "gaussian" and place.model == "one radius":
         by = f" as eta R sigma = {scene.surface.eta * scene.surface.radius * scene.surface.sigma:.3g} says"
     return (
-        f"boundary elements on homogeneous half-spaces, {many} ({what}) a point: {_coordinate(place)} = "
-        f"{place.x:.3g}{by} ({_span(grid)}), {loads}"
+        f"boundary elements on homogeneous half-spaces, {many} ({_maps(place)}) a point: {_coordinate(place)} = "
+        f"{place.x:.3g}{by} ({_span(grid)}), {loads}{_reason(place)}"
     )
+
+
+def _reason(place: Place) -> str:
+    return f"; else nothing: {place.area_only}" if place.area_only else ""
+
+
+def _maps(place: Place) -> str:
+    return "Gaussian" if place.kind == "gaussian" else "separate caps"

@@ -17,13 +17,13 @@ _AT_LOAD = ("area", "stiffness")
 _QUANTITIES = (*_AT_LOAD, "load")
 
 
-def off_elasticity(v: ModelErrors) -> Iterator[str]:
+def off_elasticity(v: ModelErrors, why: str) -> Iterator[str]:
     """Errors above 10 % by their size, and loads above those that were measured."""
     biased = {name: _above(v, name) & ~_scatters(v, name) for name in _QUANTITIES}
     if (off := _any(biased)).any():
         yield (
             f"at d/sigma = {span(v.separations, off)} the model is off elasticity: "
-            f"{'; '.join(_told(v, biased))} (its asperities feel nothing of each other, and do not merge)"
+            f"{'; '.join(_told(v, biased))} ({why})"
         )
     loose = {name: _above(v, name) & _scatters(v, name) for name in _QUANTITIES}
     if (off := _any(loose)).any():

@@ -40,6 +40,8 @@ class Place:
         By which pressures over E* are taken: the rms slope g, or sqrt(sigma/R) of caps.
     rms : float
         By which gaps of the table are taken, over sigma: sqrt(m0), or 1 for caps.
+    area_only : str
+        Why only the area at a given load is known, in words; else empty.
     """
 
     kind: str
@@ -48,6 +50,7 @@ class Place:
     x: float
     slope: float
     rms: float
+    area_only: str = ""
 
 
 def moments_of(surface: Surface) -> SpectralMoments | None:
@@ -98,11 +101,28 @@ def place_of(scene: Fields) -> Place:
         model = "nayak" if scene.curvature is None else "own radii"
     else:
         moments, model = moments_of(surface), "one radius"
+    area_only = _apart(scene)
+    interaction = "none" if scene.interaction is None or area_only else "summits"
     if moments is None:
         crowding = surface.eta * surface.radius * surface.sigma
-        return Place("caps", model, "none", crowding, math.sqrt(surface.sigma / surface.radius), 1.0)
+        slope = math.sqrt(surface.sigma / surface.radius)
+        return Place("caps", model, interaction, crowding, slope, 1.0, area_only)
     g, rms = math.sqrt(2 * moments.m2), math.sqrt(moments.m0) / surface.sigma
-    return Place("gaussian", model, "none", moments.alpha, g, rms)
+    return Place("gaussian", model, interaction, moments.alpha, g, rms, area_only)
+
+
+def _apart(scene: Fields) -> str:
+    """Why an interaction is not that of the periodic cells, empty if it is; areas are the same under all."""
+    found, surface = scene.interaction, scene.surface
+    if found is None:
+        return ""
+    if found.reference == "body":
+        return "periodic cells know no distance of an undeformed body"
+    if found.bulk_modulus not in (None, surface.E_star):
+        return "the bulk had the modulus of the asperities there"
+    if abs(scene.n_asperities / surface.n_asperities - 1) > _SAME:
+        return "a cell had eta nominal_area asperities there"
+    return ""
 
 
 def reduced_pressure(scene: Fields, h: Array) -> Array:
