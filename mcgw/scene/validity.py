@@ -72,9 +72,8 @@ def validity_of(scene: Fields, separations: ArrayLike | None = None) -> Validity
     place = place_of(scene)
     grid = grid_of(place.kind, place.model, place.interaction)
     if grid is None:
-        return _nothing(
-            h, f"not measured: no {place.kind} maps were solved for {place.model}{_shared(place)}"
-        )
+        shared = "" if place.interaction == "none" else " with an interaction"
+        return _nothing(h, f"not measured: {place.model} on maps ({_maps(place)}){shared}")
     if not grid.holds(place.x):
         return _nothing(
             h, f"outside of what was measured ({_coordinate(place)} = {place.x:.4g}; {_span(grid)})"
@@ -144,8 +143,8 @@ def _where(scene: Fields, place: Place, grid: Grid, maps: int, loads: str) -> st
     if place.kind == "gaussian" and place.model == "one radius":
         by = f" as eta R sigma = {scene.surface.eta * scene.surface.radius * scene.surface.sigma:.3g} says"
     return (
-        f"boundary elements on homogeneous half-spaces, {many} ({_maps(place)}) a point: {_coordinate(place)} = "
-        f"{place.x:.3g}{by} ({_span(grid)}), {loads}{_reason(place)}"
+        f"boundary elements on homogeneous half-spaces, {many} ({_maps(place)}) a point: "
+        f"{_coordinate(place)} = {place.x:.3g}{by} ({_span(grid)}), {loads}{_reason(place)}"
     )
 
 
