@@ -84,7 +84,7 @@ def test_compare_agrees_and_draws(file, tmp_path):
     picture = tmp_path / "quick.png"
     done = call("compare", file, "-o", picture)
     assert done.returncode == 0, done.stderr
-    assert "Monte Carlo and theory agree" in done.stdout
+    assert "Monte Carlo and theory of this model agree" in done.stdout
     assert picture.read_bytes().startswith(b"\x89PNG")
 
 

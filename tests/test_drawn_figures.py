@@ -119,8 +119,8 @@ def test_comparison(comparison, kept, tmp_path):
     assert legend == ["theory", "Monte Carlo, 95 %"]
     verdict = comparison.verdict
     assert figure.get_suptitle() == (
-        f"A title\nMonte Carlo and theory agree: χ² = {verdict.chi_square:.1f} for {verdict.degrees} degrees "
-        f"of freedom, p = {verdict.p:.3g}"
+        f"A title\nMonte Carlo and theory of this model agree: χ² = {verdict.chi_square:.1f} for "
+        f"{verdict.degrees} degrees of freedom, p = {verdict.p:.3g}"
     )
     assert figure.get_supxlabel() == (
         "separation $d/\\sigma$\n60 surfaces of 3000 asperities, exponential grading, γ = 2; "
@@ -131,7 +131,7 @@ def test_comparison(comparison, kept, tmp_path):
 def test_comparison_that_fails_says_so(comparison, kept, tmp_path):
     wrong = dataclasses.replace(comparison, verdict=Verdict(99.0, 15, 1e-9))
     save_comparison(wrong, tmp_path / "x.png")
-    assert "theory DISAGREE: χ² = 99.0 for 15" in kept[0].get_suptitle()
+    assert "theory of this model DISAGREE: χ² = 99.0 for 15" in kept[0].get_suptitle()
 
 
 @pytest.mark.parametrize("name", QUANTITIES)

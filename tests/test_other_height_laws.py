@@ -120,7 +120,7 @@ ATTRIBUTES = dict.fromkeys(("digest", "seed", "sampler", "date", "versions", "co
 def test_report(scene, ensemble):
     """The contacts that it expects, and theory in every table."""
     page = report_html(ensemble, ATTRIBUTES)
-    assert "Monte Carlo and theory agree" in page
+    assert "Monte Carlo and theory of this model agree" in page
     (said,) = re.findall(r"contacts expected at the lowest separation</td><td>([^<]*)<", page)
     assert float(said) == pytest.approx(3000 * exact.share_above(scene, 0.0), rel=5e-4)
     tables = page[page.index("<h2>Tables") : page.index("<h2>The surface")]

@@ -128,7 +128,7 @@ def test_words_and_verdict(ensemble, page):
         "4 separations from d/σ = 0 to 2. Every asperity is a Hertz contact."
     ) in page
     verdict = compare(ensemble).verdict
-    line = f"theory agree: chi-square {verdict.chi_square:.1f} for {verdict.degrees} degrees of freedom"
+    line = f"theory of this model agree: chi-square {verdict.chi_square:.1f} for {verdict.degrees} degrees of freedom"
     assert line in page
     assert f"p = {verdict.p:.3g} (false alarms: 1 in 1000)" in page
     assert '<p class="verdict">' in page

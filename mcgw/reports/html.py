@@ -79,9 +79,9 @@ standard errors of the mean; the grey band is ±2.</p>
 <p>In brackets: half of the 95 % interval of the mean, in its last digits;
 residual in standard errors.</p>
 <div class="grid">$tables</div>
-$elasticity<h2>The surface</h2>
+<h2>The surface</h2>
 <table class="facts">$facts</table>
-$laws<h2>Before you trust it</h2>
+$laws$elasticity<h2>Before you trust it</h2>
 <ul>$cautions
 $yielding</ul>
 <h2>Provenance</h2>
