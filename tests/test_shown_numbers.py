@@ -162,7 +162,9 @@ def test_compare_ends_with_1_and_says_so_where_they_disagree(file, tmp_path, cap
     wrong = dataclasses.replace(opened, sums=MemoryResults(arrays))
     assert "theory of this model agree" in out_of(["compare", file, "-o", tmp_path / "c.png"], capsys)
     monkeypatch.setattr(ensembles, "open_ensemble", lambda path: wrong)
-    assert "theory of this model DISAGREE" in out_of(["compare", file, "-o", tmp_path / "c.png"], capsys, code=1)
+    assert "theory of this model DISAGREE" in out_of(
+        ["compare", file, "-o", tmp_path / "c.png"], capsys, code=1
+    )
 
 
 def rows_of(path):

@@ -128,8 +128,8 @@ def test_words_and_verdict(ensemble, page):
         "4 separations from d/σ = 0 to 2. Every asperity is a Hertz contact."
     ) in page
     verdict = compare(ensemble).verdict
-    line = f"theory of this model agree: chi-square {verdict.chi_square:.1f} for {verdict.degrees} degrees of freedom"
-    assert line in page
+    seen = f"chi-square {verdict.chi_square:.1f} for {verdict.degrees} degrees of freedom"
+    assert f"theory of this model agree: {seen}" in page
     assert f"p = {verdict.p:.3g} (false alarms: 1 in 1000)" in page
     assert '<p class="verdict">' in page
     poisson = dataclasses.replace(ensemble.scene, count="poisson", separations=(1.0,), quantities=("load",))

@@ -71,11 +71,11 @@ class _Surface:
         at, numbers = {}, {}
         for name in COLUMNS:
             bias, scatter = (np.array([float(row[key]) for row in ordered]) for key in (name, f"{name}_std"))
-            known = np.isfinite(bias) & np.isfinite(scatter)
             # The table's load is the right one; at a given gap the model is known by its own.
             own = p * (1 + bias) if name == "load" else p
+            known = np.isfinite(own)
             at[name] = np.log(own[known] / unit)
-            numbers[name] = np.array([bias[known], scatter[known], np.log(contacts[known])])
+            numbers[name] = np.array([bias, scatter, np.log(contacts)])[:, known]
         return cls(at, numbers, min(int(row["maps"]) for row in ordered))
 
     def __call__(self, name: str, at: Array) -> Array:
@@ -83,9 +83,9 @@ class _Surface:
         points = self.at[name]
         if not points.size:
             return np.full((3, *at.shape), np.nan)
-        inside = np.clip(at, points[0], points[-1])
-        inside = np.where(np.abs(inside - at) <= _ROUNDING, inside, np.nan)
-        return np.array([np.interp(inside, points, values) for values in self.numbers[name]])
+        nearest = points[np.argmin(np.abs(points - at[:, None]), axis=1)]
+        at = np.where(np.abs(nearest - at) <= _ROUNDING, nearest, at)
+        return np.array([np.interp(at, points, y, np.nan, np.nan) for y in self.numbers[name]])
 
 
 @dataclass(frozen=True)

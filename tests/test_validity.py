@@ -1,0 +1,353 @@
+"""How far a scene says its model is from elasticity: recomputed from the packaged table by other means.
+
+The numbers are read from the table, whatever it holds: nothing here knows one of them.
+"""
+
+import csv
+import dataclasses
+import math
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+from scipy.interpolate import RegularGridInterpolator
+from scipy.stats import norm
+
+import analytic
+import mcgw
+from mcgw.commands.init import PRESETS
+from mcgw.scene import validity, validity_table
+from mcgw.scene.validity_place import LEAST_CROWDING, moments_of, reduced_pressure
+from mcgw.scene.validity_table import COLUMNS, grid_of
+
+TABLE = Path(mcgw.__file__).parent / "scene" / "validity.csv"
+HERE = TABLE.parent / "presets"
+HEAD = ["map", "model", "interaction", "x", "p"]
+HEAD += [f"{name}{end}" for name in COLUMNS for end in ("", "_std")] + ["maps", "contacts"]
+
+
+def packaged():
+    lines = [line for line in TABLE.read_text().splitlines() if not line.startswith("#")]
+    for row in csv.DictReader(lines):
+        words = {key: row[key] for key in HEAD[:3]}
+        yield words | {key: float(row[key]) for key in HEAD[3:]}
+
+
+ROWS = list(packaged())
+MODELS = sorted({(row["map"], row["model"], row["interaction"]) for row in ROWS})
+
+
+def test_the_table_is_as_its_readers_take_it():
+    """Errors with a scatter, positive axes, no point twice; a model's own loads rise with the right ones."""
+    lines = TABLE.read_text().splitlines()
+    assert next(line for line in lines if not line.startswith("#")).split(",") == HEAD
+    keys = [tuple(row[key] for key in HEAD[:5]) for row in ROWS]
+    assert len(set(keys)) == len(keys)
+    for row in ROWS:
+        assert row["map"] in ("gaussian", "caps")
+        assert row["model"] in ("one radius", "nayak", "own radii")
+        assert row["interaction"] in ("none", "summits", "contacts")
+        assert min(row["x"], row["p"], row["maps"], row["contacts"]) > 0
+        for name in COLUMNS:
+            assert math.isnan(row[name]) or row[name] > -1 or name == "separation"
+            assert not row[f"{name}_std"] < 0
+    for model in MODELS:
+        rows = [row for row in ROWS if tuple(row[key] for key in HEAD[:3]) == model]
+        for x in {row["x"] for row in rows}:
+            here = sorted((row["p"], row["p"] * (1 + row["load"])) for row in rows if row["x"] == x)
+            own = [load for _, load in here if not math.isnan(load)]
+            assert own == sorted(own), (model, x)
+
+
+@pytest.mark.parametrize("model", MODELS, ids="-".join)
+def test_at_a_row_of_the_table_no_less_is_said_than_its_error(model):
+    """With as many contacts as the maps had: |bias| and at least their scatter, bit for bit the bias."""
+    grid = grid_of(*model)
+    for row in ROWS:
+        if tuple(row[key] for key in HEAD[:3]) != model:
+            continue
+        for name in COLUMNS:
+            p = row["p"] * (1 + row["load"]) if name == "load" else row["p"]
+            if math.isnan(p):
+                continue
+            found = grid.expected(row["x"], np.array([p]))
+            np.testing.assert_allclose(found.bias[name], row[name], rtol=1e-7, atol=1e-12)
+            np.testing.assert_allclose(found.scatter[name], row[f"{name}_std"], rtol=1e-7, atol=1e-12)
+
+
+def interpolated(model, name, x, p, end=""):
+    """Bilinear in logarithms by SciPy, over surfaces with the same loads; nan outside."""
+    rows = [row for row in ROWS if tuple(row[key] for key in HEAD[:3]) == model]
+    xs = sorted({row["x"] for row in rows})
+    beside = {max(a for a in xs if a <= x), min(a for a in xs if a >= x)}
+    unit = {a: a if model[0] == "caps" else 1.0 for a in beside}
+    columns = {}
+    for a in beside:
+        mine = sorted((row["p"], row[f"{name}{end}"]) for row in rows if row["x"] == a)
+        known = np.array([pair for pair in mine if not math.isnan(pair[1])])
+        if not known.size:
+            return math.nan
+        q = math.log(p / (x if model[0] == "caps" else 1.0))
+        at = np.log(known[:, 0] / unit[a])
+        if not at[0] <= q <= at[-1]:
+            return math.nan
+        columns[a] = float(RegularGridInterpolator((at,), known[:, 1])([[q]])[0])
+    low, high = min(columns), max(columns)
+    if low == high:
+        return columns[low]
+    share = math.log(x / low) / math.log(high / low)
+    return columns[low] + share * (columns[high] - columns[low])
+
+
+def alpha_of(surface):
+    """Solved from Nayak's summits, not from a formula of their density."""
+    from scipy.optimize import brentq
+
+    def crowding(alpha):
+        found = analytic.SpectralMoments(1.0, 1.0, alpha).surface(1.0, 1.0)
+        return found.eta * found.radius * found.sigma
+
+    wanted = surface.eta * surface.radius * surface.sigma
+    alpha = brentq(lambda a: crowding(a) - wanted, 1.5, 1e4, xtol=1e-13, rtol=1e-13)
+    # sigma and R tell m0 and m4 of that alpha; alpha tells m2
+    unit = analytic.SpectralMoments(1.0, 1.0, alpha).surface(1.0, 1.0)
+    m0 = (surface.sigma / unit.sigma) ** 2
+    m4 = alpha * (unit.radius / surface.radius) ** 2
+    return alpha, math.sqrt(2 * math.sqrt(m0 * m4 / alpha)), math.sqrt(m0) / surface.sigma
+
+
+def surface_of(alpha):
+    return analytic.SpectralMoments(1e-12, 1e-3, 1e6 * alpha).surface(1e-6, 1e9)
+
+
+def reduced_by_quadrature(scene, h):
+    """Load over E* and nominal area, of Gaussian heights of one radius."""
+    s = scene.surface
+    mean, _ = quad(lambda t: (t - h) ** 1.5 * norm.pdf(t), h, max(h, 0) + 12, epsabs=0, epsrel=1e-9)
+    return 4 / 3 * s.eta * math.sqrt(s.radius) * s.sigma**1.5 * mean
+
+
+def test_a_gaussian_surface_by_its_own_interpolation():
+    """alpha, g and m0 solved anew; load by quadrature; SciPy between the rows; scatter by the contacts."""
+    middle = math.sqrt(2.6 * 4.3)
+    scene = mcgw.Scene(surface_of(middle), separations=np.linspace(-1, 4, 26), seed=1)
+    alpha, g, rms = alpha_of(scene.surface)
+    assert alpha == pytest.approx(middle, rel=1e-10)
+    found, model = scene.validity(), ("gaussian", "one radius", "none")
+    assert found.measured.any()
+    assert not found.measured.all()
+    for k, h in enumerate(found.separations):
+        p = reduced_by_quadrature(scene, h) / g
+        assert found.loads[k] == pytest.approx(p, rel=1e-7)
+        for name, unit in (("area", 1.0), ("stiffness", 1.0), ("separation", rms)):
+            wanted = unit * interpolated(model, name, alpha, p)
+            np.testing.assert_allclose(found.bias[name][k], wanted, rtol=1e-5, atol=1e-9)
+        area, scatter = (interpolated(model, "area", alpha, p, end) for end in ("", "_std"))
+        if not math.isnan(area):
+            contacts = scene.n_asperities * norm.sf(h)
+            of_map = math.exp(logarithmic(model, alpha, p))
+            share = max(math.sqrt(of_map / contacts), 2 / math.sqrt(fewest(model, alpha)))
+            assert found.error["area"][k] == pytest.approx(abs(area) + share * scatter, rel=1e-5)
+    assert (found.error["area"] >= np.abs(found.bias["area"]))[found.measured].all()
+
+
+def logarithmic(model, x, p):
+    """Log of the contacts of a map, in between."""
+    rows = [row | {"log": math.log(row["contacts"])} for row in ROWS]
+    before, ROWS[:] = ROWS[:], rows
+    try:
+        return interpolated(model, "log", x, p)
+    finally:
+        ROWS[:] = before
+
+
+def fewest(model, x):
+    rows = [row for row in ROWS if tuple(row[key] for key in HEAD[:3]) == model]
+    xs = sorted({row["x"] for row in rows})
+    beside = (max(a for a in xs if a <= x), min(a for a in xs if a >= x))
+    return min(row["maps"] for row in rows if row["x"] in beside)
+
+
+def test_the_load_is_looked_up_by_the_load_of_the_model():
+    """At the gap of a row the model has (1 + error) times the right load, and that is what a scene knows."""
+    model = ("gaussian", "one radius", "none")
+    rows = [row for row in ROWS if tuple(row[key] for key in HEAD[:3]) == model and abs(row["load"]) > 0.2]
+    row = max((row for row in rows if row["x"] < 10), key=lambda row: row["p"])
+    surface = surface_of(row["x"])
+    model_has = row["p"] * (1 + row["load"]) * math.sqrt(2e-3) * surface.E_star * surface.nominal_area
+    h = float(analytic.Model(surface).separation_at("load", model_has))
+    found = mcgw.Scene(surface, separations=[h], seed=1).validity()
+    assert found.bias["load"][0] == pytest.approx(row["load"], rel=1e-5)
+
+
+@pytest.mark.parametrize("heights", ["gaussian", "nayak", "own radii"])
+def test_pressure_is_that_of_theory_without_its_grading(heights):
+    h = np.array([-3.0, 0.0, 1.5, 4.0])
+    surface = mcgw.SpectralSurface(1e-12, 1e-3, 5e6, "1 mm^2", "1 GPa")
+    more = {"gaussian": {}, "nayak": {"curvature": "mean"}, "own radii": {"curvature": "random"}}[heights]
+    given = surface.surface if heights == "gaussian" else surface
+    scene = mcgw.Scene(given, separations=h, seed=1, **more)
+    graded = scene.replace(grading=analytic.Exponential(0.5))
+    wanted = scene.theory.mean("load", h) / 1e9 / (scene.n_asperities / scene.surface.eta)
+    np.testing.assert_allclose(reduced_pressure(scene, h), wanted, rtol=1e-8)
+    np.testing.assert_array_equal(reduced_pressure(graded, h), reduced_pressure(scene, h))
+
+
+def test_caps_stand_below_where_no_gaussian_surface_is():
+    least = analytic.SpectralMoments(1.0, 1.0, 1.5).surface(1.0, 1.0)
+    assert least.eta * least.radius * least.sigma == pytest.approx(LEAST_CROWDING, rel=1e-12)
+    for crowding, kind in ((0.999 * LEAST_CROWDING, "caps"), (1.001 * LEAST_CROWDING, "gaussian")):
+        surface = analytic.Surface(1e-6, 1e-5, crowding * 1e11, 1e-6, 1e9)
+        assert (moments_of(surface) is None) == (kind == "caps")
+    scene = mcgw.Scene(
+        analytic.Surface(1e-6, 1e-5, 5e8, 1e-4, 1e9), separations=np.linspace(-1, 3, 9), seed=1
+    )
+    found = scene.validity()
+    assert found.axis == "p/(E* sqrt(sigma/R))"
+    for k, h in enumerate(found.separations):
+        p = reduced_by_quadrature(scene, h) / math.sqrt(0.1)
+        assert found.loads[k] == pytest.approx(p, rel=1e-7)
+        wanted = interpolated(("caps", "one radius", "none"), "area", crowding, p)
+        np.testing.assert_allclose(found.bias["area"][k], wanted, rtol=1e-5, atol=1e-9)
+
+
+OFF_THE_MAP = {
+    "another law": ({"law": mcgw.KogutEtsion(critical=0.05)}, "kogut-etsion"),
+    "other heights": ({"heights": analytic.Weibull(3.0)}, "Weibull"),
+    "measured heights": (
+        {"heights": mcgw.MeasuredHeights(np.linspace(-2, 2, 99)), "n_asperities": 99, "n_surfaces": 1},
+        "99 measured ones",
+    ),
+    "another density": ({"heights": analytic.Nayak(5.0)}, "alpha = 5"),
+    "too broad a spectrum": ({"surface": surface_of(1e4)}, "outside of what was measured"),
+}
+
+
+@pytest.mark.parametrize("name", OFF_THE_MAP)
+def test_nothing_is_said_of_what_was_not_measured(make_scene, name):
+    changes, word = OFF_THE_MAP[name]
+    found = make_scene(grading=analytic.Homogeneous(), **changes).validity()
+    assert not found.measured.any()
+    assert all(np.isnan(values).all() for values in found.error.values())
+    assert word in found.verdict
+    assert "not measured" in found.verdict or "outside of what was measured" in found.verdict
+    assert "%" not in found.verdict + found.brief
+
+
+def test_radii_that_end_early_are_not_those_of_the_maps():
+    surface = mcgw.SpectralSurface(1e-12, 1e-3, 5e6, "1 mm^2", "1 GPa")
+    for bound, known in ((9.0, False), (11.0, True)):
+        curvature = mcgw.RandomCurvature(surface.moments.alpha, bound)
+        scene = mcgw.Scene(surface, separations=[1.0], curvature=curvature, seed=1)
+        assert scene.validity().measured.all() == known
+
+
+def test_far_away_and_far_down_are_outside():
+    scene = mcgw.Scene(surface_of(4.0), separations=[-30.0, 0.5, 8.0], seed=1)
+    found = scene.validity()
+    np.testing.assert_array_equal(found.measured, [False, True, False])
+    assert "at d/sigma = -30 and 8 the model is outside of what was measured" in found.verdict
+    lone = scene.validity(8.0)
+    assert lone.verdict.startswith("This model is outside of what was measured: p/(E* g) = ")
+
+
+def test_a_grading_leaves_the_share_of_the_geometry():
+    plain = mcgw.Scene(surface_of(4.0), separations=[0.5], seed=1)
+    graded = plain.replace(grading=analytic.Exponential(1.2))
+    for name in COLUMNS:
+        np.testing.assert_array_equal(plain.validity().error[name], graded.validity().error[name])
+    assert "the geometry of this model is within" in graded.validity().verdict
+    assert "of the grading that says nothing" in graded.validity().details
+    assert "geometry" not in plain.validity().verdict
+    for each in (plain, graded):
+        assert "on homogeneous half-spaces" in each.validity().details
+
+
+def test_few_contacts_widen_and_many_do_not_hide_how_few_maps_there_were(monkeypatch):
+    """A table of one surface, four maps: error .1 + .02 sqrt(contacts), no less than the error of a mean."""
+    monkeypatch.setattr(validity_table, "rows", lambda: tuple(flat_table()))
+    validity_table.grid_of.cache_clear()
+    monkeypatch.setattr(validity, "grid_of", validity_table.grid_of.__wrapped__)
+    scene = mcgw.Scene(surface_of(4.0), separations=[1.0], seed=1)
+    for contacts, share in ((1.0, 10.0), (25.0, 2.0), (100.0, 1.0), (1e4, 1.0)):
+        few = scene.replace(n_asperities=round(contacts * 1e6 / norm.sf(1.0)))
+        few = dataclasses.replace(few, n_asperities=max(round(contacts / norm.sf(1.0)), 1))
+        actual = few.n_asperities * norm.sf(1.0)
+        wanted = 0.1 + 0.02 * max(math.sqrt(100 / actual), 1.0)
+        assert few.validity().error["area"][0] == pytest.approx(wanted, rel=1e-9)
+        assert wanted == pytest.approx(0.1 + 0.02 * share, rel=0.05)
+    assert few.validity().bias["area"][0] == pytest.approx(-0.1)
+    assert np.isnan(few.validity().error["stiffness"][0])
+    assert "area 12 %; stiffness, gap: not measured" in few.validity().details
+
+
+def flat_table():
+    for x in (2, 50):
+        for p in (1e-6, 1.0):
+            numbers = dict.fromkeys(HEAD, "nan") | {"area": "-0.1", "area_std": "0.02"}
+            yield numbers | {
+                "map": "gaussian", "model": "one radius", "interaction": "none",
+                "x": str(x), "p": str(p), "maps": "4", "contacts": "100",
+            }  # fmt: skip
+
+
+@pytest.mark.parametrize("name", PRESETS)
+def test_every_preset_has_a_number_or_the_words(name):
+    found = mcgw.load_scene(HERE / f"{name}.toml").validity()
+    if found.measured.any():
+        assert "% of elasticity" in found.verdict
+        assert found.where
+    else:
+        assert "not measured" in found.verdict or "outside of what was measured" in found.verdict
+
+
+def test_an_interaction_has_its_own_rows_and_a_body_the_area_alone():
+    plain = mcgw.Scene(surface_of(4.0), separations=[1.2, 1.6], seed=1)
+    body = plain.replace(interaction="body").validity()
+    np.testing.assert_array_equal(body.error["area"], plain.validity().error["area"])
+    for name in COLUMNS[1:]:
+        assert np.isnan(body.error[name]).all()
+    assert "undeformed body" in body.details
+    assert "load at a given" not in body.verdict
+    cell = plain.replace(interaction="mean-plane")
+    model = ("gaussian", "one radius", "summits")
+    if model not in MODELS:
+        assert "not measured" in cell.validity().verdict
+        return
+    alpha, _, rms = alpha_of(plain.surface)
+    for k in range(2):
+        wanted = interpolated(
+            ("gaussian", "one radius", "summits"), "separation", alpha, cell.validity().loads[k]
+        )
+        assert cell.validity().bias["separation"][k] == pytest.approx(rms * wanted, rel=1e-5)
+    other = plain.replace(interaction={"reference": "mean-plane", "bulk_modulus": 1e8}).validity()
+    assert np.isnan(other.error["stiffness"]).all()
+    assert np.isfinite(other.error["area"]).all()
+
+
+def test_a_nominal_separation_is_looked_up_by_the_felt_one():
+    scene = mcgw.Scene(
+        surface_of(4.0), separations=[1.5], interaction={"reference": "body", "at": "nominal"}, seed=1
+    )
+    felt = float(scene.theory.effective(1.5))
+    alone = scene.replace(interaction=None, separations=[felt])
+    assert felt > 1.5
+    assert scene.validity().loads[0] == pytest.approx(alone.validity().loads[0], rel=1e-9)
+
+
+def test_many_separations_are_looked_at_from_the_first_to_the_last():
+    scene = mcgw.Scene(surface_of(4.0), separations=np.linspace(3, -1, 5000), seed=1)
+    found = scene.validity()
+    assert len(found.separations) <= 64
+    assert (found.separations[0], found.separations[-1]) == (-1.0, 3.0)
+
+
+def test_the_table_is_read_by_who_asks():
+    code = (
+        "import sys, mcgw\nfrom mcgw.scene.scene import Scene\n"
+        "assert not [name for name in sys.modules if name.startswith('mcgw.scene.validity')]"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True)
