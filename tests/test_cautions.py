@@ -28,8 +28,12 @@ def test_a_calm_scene_has_no_caution(make_scene, shallow):
 
 
 @pytest.mark.parametrize(("h", "given"), [(0.0, False), (0.05, False), (-0.05, True), (-2.0, True)])
-def test_more_than_half_of_all_summits(make_scene, h, given):
-    assert bool(about(cautions(make_scene(separations=(h, 1.0), negative="clip")), "more than half")) == given
+def test_more_than_half_of_all_summits_of_a_model_that_was_not_measured(make_scene, h, given):
+    scene = make_scene(separations=(h, 1.0), law=mcgw.Coated(ratio=2.0, thickness=1e-6), negative="clip")
+    assert bool(about(cautions(scene), "more than half")) == given
+    measured = of_alpha(4.0, separations=[-0.05, 1.0])
+    assert measured.validity().measured.any()
+    assert not about(cautions(measured), "more than half")  # the map says how far off it is
 
 
 @pytest.mark.parametrize(("h", "given"), [(-0.25, False), (-0.35, True)])
@@ -39,16 +43,26 @@ def test_more_than_half_of_exponential_heights(make_scene, h, given):
     assert bool(about(told, "more than half")) == given
 
 
-@pytest.mark.parametrize("heights", [analytic.Gaussian(), analytic.ExponentialHeights()])
-def test_a_crowd_is_said_up_to_the_last_separation_where_it_is_one(make_scene, shallow, heights):
-    """5 % of the nominal area, by quadrature at each of the separations."""
+@pytest.mark.parametrize(
+    "changes",
+    [{"law": mcgw.Coated(ratio=1.0001, thickness=1e-6)}, {"heights": analytic.ExponentialHeights()}],
+)
+def test_a_crowd_that_was_not_measured_up_to_the_last_separation(make_scene, shallow, changes):
+    """5 % of the nominal area, by quadrature at each of the separations; a coating changes no area."""
     surface = dataclasses.replace(shallow, eta=1e8, radius=5e-4)
     h = (0.0, 0.25, 0.5, 0.75, 1.0, 1.5, 2.0)
-    scene = make_scene(surface=surface, separations=h, n_asperities=10_000, heights=heights)
-    share = exact.mean(scene, "area") / surface.nominal_area
+    scene = make_scene(surface=surface, separations=h, n_asperities=10_000, **changes)
+    plain = dataclasses.replace(scene, law=analytic.Hertz())
+    share = exact.mean(plain, "area") / surface.nominal_area
     assert share[0] > 0.05 > share[-1]
     (line,) = about(cautions(scene), "nominal area touches")
     assert f"up to d/sigma = {max(x for x, part in zip(h, share, strict=True) if part > 0.05):.3g} " in line
+    assert (
+        "too large where d counts from the undeformed body of a punch, and too small where d is the mean"
+        in line
+    )
+    pressed = about(cautions(scene.replace(interaction="body")), "nominal area touches")
+    assert "punch" not in pressed[0]
     sparse = dataclasses.replace(scene, n_asperities=500, n_surfaces=2)
     assert not about(cautions(sparse), "nominal area touches")
 
@@ -158,6 +172,95 @@ def test_what_was_not_reached_is_said_after(make_scene):
         assert float(width) == pytest.approx((high[1] - mean) / mean, rel=0.06)
         assert low[1] < mean
     assert len(after(ensemble, 1.0)) == 1
+
+
+def of_alpha(alpha, **changes):
+    surface = analytic.SpectralMoments(1e-12, 1e-3, 1e6 * alpha).surface(1e-2, 1e9)  # blunt, and many summits
+    return mcgw.Scene(surface, seed=1, **changes)
+
+
+SIZE = re.compile(r"(area|stiffness|load) up to (\d+) % (too small|too large|either way)")
+
+
+def off(scene):
+    """Largest size that the cautions name of each quantity, and the separations where none is above 10 %."""
+    found = {}
+    for line in cautions(scene):
+        for name, size, _ in SIZE.findall(line):
+            found[name] = max(found.get(name, 0), int(size))
+    return found
+
+
+@pytest.mark.parametrize("alpha", [2.0, 3.0, 4.5])
+@pytest.mark.parametrize("heights", ["gaussian", "nayak", "own radii"])
+def test_no_error_above_ten_percent_goes_without_its_size(alpha, heights):
+    """At single separations, each alone: by the errors of the map, rounded up."""
+    seen = set()
+    for h in np.linspace(-0.5, 3, 15):
+        scene = of_alpha(alpha, separations=[h])
+        if heights != "gaussian":
+            curvature = mcgw.RandomCurvature(alpha) if heights == "own radii" else None
+            scene = scene.replace(heights=analytic.Nayak(alpha), curvature=curvature)
+        known, told = scene.validity(), off(scene)
+        for name in ("area", "stiffness", "load"):
+            error = known.error[name][0]
+            assert (name in told) == (error > 0.1), (h, name)
+            if name in told:
+                assert error <= told[name] / 100 <= error + 0.01
+            seen.add(name in told)
+    assert seen == {True, False} or heights != "gaussian"
+
+
+def test_the_direction_of_an_error_and_whose_separation_it_is():
+    """Crowded summits lean on each other: at the mean gap of a cell the right load is larger."""
+    h = [0.5, 3.0]
+    scene = of_alpha(4.5, separations=h)
+    assert scene.validity().bias["load"][0] < -0.1
+    (line,) = about(cautions(scene), "is off elasticity")
+    size = re.search(r"load up to (\d+) % too small if d is the mean gap of a periodic cell", line)
+    assert int(size[1]) / 100 == pytest.approx(scene.validity().error["load"][0], abs=0.01)
+    assert line.startswith("at d/sigma = 0.5 ")
+    assert "feel nothing of each other" in line
+
+
+def test_loads_above_all_that_were_measured():
+    scene = of_alpha(4.0, separations=[-30.0, -20.0, 0.5])
+    (line,) = about(cautions(scene), "above all that were measured")
+    assert line.startswith("at d/sigma = -30 to -20 loads")
+    assert not about(cautions(scene.replace(separations=[0.5, 6.0])), "above all that were measured")
+
+
+def test_who_yields(make_scene, shallow):
+    """Beyond the critical penetration: the share above h + 0.05 of that above h."""
+    for critical, given in ((0.05, True), (4.5, False)):
+        law = mcgw.KogutEtsion(critical=critical)
+        told = about(told_of(make_scene, shallow, law, separations=(0.5, 1.0)), "has yielded")
+        scene = make_scene(separations=(0.5, 1.0))
+        share = exact.share_above(scene, 0.5 + critical) / exact.share_above(scene, 0.5)
+        assert bool(told) == given == (share > 1e-3)
+        if told:
+            assert float(re.search(r"a share of (\S+) of", told[0])[1]) == pytest.approx(share, rel=2e-3)
+            assert "d/sigma = 0.5" in told[0]
+
+
+@pytest.mark.parametrize(
+    ("law", "tabor", "given"),
+    [
+        (mcgw.JohnsonKendallRoberts, 4.9, True),
+        (mcgw.JohnsonKendallRoberts, 5.1, False),
+        (mcgw.DerjaguinMullerToporov, 0.09, False),
+        (mcgw.DerjaguinMullerToporov, 0.11, True),
+    ],
+)
+def test_adhesion_by_tabors_number(make_scene, shallow, law, tabor, given):
+    """(R w^2/(E*^2 z0^3))^(1/3) at z0 = 0.3 nm, by work of adhesion or by the pull-off that it gives."""
+    work = np.sqrt((tabor * 3e-10) ** 3 / shallow.radius) * shallow.E_star
+    stretch = 0.75 * (np.pi**2 * work**2 * shallow.radius / shallow.E_star**2) ** (1 / 3) / shallow.sigma
+    for constant in ({"work": work}, {"pull_off": stretch}):
+        told = about(told_of(make_scene, shallow, law(**constant), separations=(1.0, 2.0)), "Tabor")
+        assert bool(told) == given
+        if told:
+            assert f"it is {tabor:.3g} (Maugis's: {1.157 * tabor:.3g})" in told[0]
 
 
 METAL = mcgw.KogutEtsion(critical=0.05)

@@ -55,19 +55,10 @@ def short_verdict(v: ModelErrors) -> str:
     """The same in 88 characters."""
     if not v.measured.any():
         return v.unknown
-    parts = [
-        f"within {percent(error)} {of}"
-        for error, of in (
-            (v.worst("area", "stiffness"), "at a given load"),
-            (v.worst("load"), "in load at a given gap"),
-        )
-        if not math.isnan(error)
-    ]
-    if v.graded:
-        parts[0] = f"geometry {parts[0]}"
-    if not v.measured.all():
-        parts.append(f"for d/sigma = {span(v.separations, v.measured)}")
-    return ", ".join(parts)
+    errors = {"at a given load": v.worst("area", "stiffness"), "in load at a given gap": v.worst("load")}
+    told = [f"{percent(error)} {of}" for of, error in errors.items() if not math.isnan(error)]
+    where = "" if v.measured.all() else f"; d/sigma = {span(v.separations, v.measured)}"
+    return f"{'geometry ' if v.graded else ''}within {', '.join(told)}{where}"
 
 
 def table_of(v: ModelErrors) -> tuple[Sequence[str], Sequence[Sequence[str]]]:
