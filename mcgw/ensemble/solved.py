@@ -1,5 +1,6 @@
 """What holds on surfaces at one given load or area: what `mcgw.solve` finds."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -12,8 +13,9 @@ from mcgw.ensemble.intervals import FEWEST, interval_text
 from mcgw.formats.sheet import Sheet, Shown
 from mcgw.machine.late import plotted
 from mcgw.scene.scene import Scene
+from mcgw.scene.validity import Validity, validity_of
 
-__all__ = ["Solution", "with_half_space"]
+__all__ = ["Solution", "against_elasticity", "with_half_space"]
 
 Array = NDArray[np.float64]
 
@@ -69,8 +71,13 @@ class Solution(Shown):
             cells = (f"{self.theory[name]:.6g}", f"{x.mean():.6g}", interval_text(low, high))
             rows.append([f"{name} ({unit})", *cells, f"{x.std(ddof=1):.3g}"])
         many = f"{len(self.surfaces['separation'])} surfaces of {self.scene.n_asperities} asperities"
-        facts = [("over", many), ("elasticity", self.scene.validity(self.theory["separation"]).brief)]
+        facts = [("over", many), ("elasticity", against_elasticity([self]).brief)]
         return Sheet(title, facts, ["", "theory", "mean", "95 % interval", "std"], rows)
+
+
+def against_elasticity(solutions: Sequence[Solution]) -> Validity:
+    """How far the model is from elasticity at solutions of one scene, by what the asperities feel there."""
+    return validity_of(solutions[0].scene, [each.theory["separation"] for each in solutions], felt=True)
 
 
 def with_half_space(scene: Scene, alone: Solution) -> Solution:

@@ -6,7 +6,7 @@ import numpy as np
 
 from analytic import quantity_of
 from mcgw.ensemble.intervals import interval_text
-from mcgw.ensemble.solved import Solution
+from mcgw.ensemble.solved import Solution, against_elasticity
 from mcgw.formats.csv_table import Row
 from mcgw.reports.elasticity import two_questions
 from mcgw.scene.contact_text import contact_facts
@@ -55,8 +55,7 @@ def solution_table(scene: Scene, solutions: Sequence[Solution]) -> str:
         f"std: over {scene.n_surfaces} surfaces of {scene.n_asperities:g} asperities, each at its own d;"
         f" heights drawn one by one, seed {scene.seed}"
     )
-    at = [solution.theory["separation"] for solution in solutions]
-    return "\n".join([*lines, "", *two_questions(scene.validity(at))])
+    return "\n".join([*lines, "", *two_questions(against_elasticity(solutions))])
 
 
 def solution_rows(scene: Scene, solutions: Sequence[Solution]) -> Iterator[Row]:

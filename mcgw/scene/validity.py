@@ -9,7 +9,6 @@ from analytic import Homogeneous, InteractingModel
 from mcgw.formats.evenly import evenly
 from mcgw.formats.sheet import Sheet, Shown
 from mcgw.scene.fields import Fields
-from mcgw.scene.theory import model_of
 from mcgw.scene.validity_errors import ModelErrors
 from mcgw.scene.validity_place import Place, not_on_the_map, place_of, reduced_pressure
 from mcgw.scene.validity_table import COLUMNS, Expected, Grid, grid_of
@@ -48,7 +47,7 @@ class Validity(ModelErrors, Shown):
         return Sheet("Against elasticity", [("verdict", self.brief), *where], *table_of(self))
 
 
-def validity_of(scene: Fields, separations: ArrayLike | None = None) -> Validity:
+def validity_of(scene: Fields, separations: ArrayLike | None = None, *, felt: bool = False) -> Validity:
     """Look up how far a scene's model is from elasticity.
 
     Parameters
@@ -57,6 +56,8 @@ def validity_of(scene: Fields, separations: ArrayLike | None = None) -> Validity
         Whose geometry counts: a grading, a film and friction do not.
     separations : array_like, optional
         Reduced separations. Default: those of the scene, or 64 of them.
+    felt : bool, optional
+        Whether they are what the asperities feel, also where those of the scene are nominal.
 
     Returns
     -------
@@ -78,7 +79,7 @@ def validity_of(scene: Fields, separations: ArrayLike | None = None) -> Validity
         return _nothing(
             h, f"outside of what was measured ({_coordinate(place)} = {place.x:.4g}; {_span(grid)})"
         )
-    return _looked_up(scene, place, grid, h)
+    return _looked_up(scene, place, grid, h, h if felt else _felt(scene, h))
 
 
 def _nothing(h: Array, why: str) -> Validity:
@@ -87,8 +88,7 @@ def _nothing(h: Array, why: str) -> Validity:
     return Validity(h, none, empty, empty, unknown=why)
 
 
-def _looked_up(scene: Fields, place: Place, grid: Grid, h: Array) -> Validity:
-    felt = _felt(scene, h)
+def _looked_up(scene: Fields, place: Place, grid: Grid, h: Array, felt: Array) -> Validity:
     p = reduced_pressure(scene, felt) / place.slope
     found = grid.expected(place.x, p)
     contacts = scene.n_asperities * scene.heights.above(felt)
@@ -113,7 +113,7 @@ def _felt(scene: Fields, h: Array) -> Array:
     """Separations that the asperities of the mean surface feel."""
     if scene.interaction is None or not scene.interaction.nominal:
         return h
-    model = model_of(scene)
+    model = scene.theory
     assert isinstance(model, InteractingModel)
     return model.effective(h)
 
