@@ -49,6 +49,7 @@ Ask:
 
 =======================  =========================================================================
 `compare`                Monte Carlo against theory; the theory itself: ``scene.theory``
+``scene.validity()``     how far the model is from elasticity, as it was measured
 `regrade`                another grading or contact law, same surfaces; `paired_ratio` of the two
 `solve`                  the separation at a load, pressure or area
 `converge`, `tradeoff`   the statistical convergence test; error against time on this machine
