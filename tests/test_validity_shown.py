@@ -37,7 +37,7 @@ COMMANDS = {
     "compare": ["compare", "s.h5", "-o", "s.png"],
     "show": ["show", "s.h5"],
     "plan": ["show", "--plan", "s.toml"],
-    "solve": ["solve", "s.toml", "--pressure", "3 MPa", "--surfaces", "5"],
+    "solve": ["solve", "s.toml", "--pressure", "1 MPa", "--surfaces", "5"],
 }
 
 
@@ -49,7 +49,7 @@ def test_a_command_says_both_sentences(scene, paths, name, capsys, monkeypatch, 
     first = "Monte Carlo and theory of this model agree"
     assert (f"{first}: chi-square" if name == "compare" else f"Whether {first}: mcgw compare") in out
     if name == "solve":
-        scene = scene.replace(separations=[mcgw.solve(scene, pressure="3 MPa").theory["separation"]])
+        scene = scene.replace(separations=[mcgw.solve(scene, pressure="1 MPa").theory["separation"]])
     known = scene.validity()
     assert f"{known.verdict}\n" in out
     assert f"  {known.details}\n" in out
@@ -92,7 +92,7 @@ def test_results_in_python_say_it(scene):
     assert known.brief in repr(ensemble)
     assert known.brief in repr(mcgw.compare(ensemble))
     assert known.brief in ensemble._repr_html_()
-    solved = mcgw.solve(scene, pressure="3 MPa", n_surfaces=5)
+    solved = mcgw.solve(scene, pressure="1 MPa", n_surfaces=5)
     assert scene.validity(solved.theory["separation"]).brief in repr(solved)
     shown = repr(known).splitlines()
     assert shown[0] == "Against elasticity"

@@ -1,11 +1,12 @@
 """How far the model of a scene is from elasticity, as it was measured: a number, or that there is none."""
 
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from analytic import Homogeneous, InteractingModel
+from analytic import Homogeneous
 from mcgw.formats.evenly import evenly
 from mcgw.formats.sheet import Sheet, Shown
 from mcgw.scene.fields import Fields
@@ -113,9 +114,8 @@ def _felt(scene: Fields, h: Array) -> Array:
     """Separations that the asperities of the mean surface feel."""
     if scene.interaction is None or not scene.interaction.nominal:
         return h
-    model = scene.theory
-    assert isinstance(model, InteractingModel)
-    return model.effective(h)
+    theory: Any = scene.theory  # an `InteractingModel`, loaded for those scenes alone
+    return np.asarray(theory.effective(h))
 
 
 def _coordinate(place: Place) -> str:
