@@ -1,0 +1,80 @@
+"""Which maps are solved, at which loads, in which order: cheap ones first.
+
+Loads are p/(E* g), g the rms slope of the map, and p/(E* sqrt(sigma/R)) of caps: both are p/E*, as maps have
+g = 1 and sigma = R.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from rough_maps import CapsMap, GaussianMap
+
+LOADS = (1e-4, 3e-4, 1e-3, 3e-3, 1e-2, 3e-2, 1e-1)
+FEWER = (1e-4, 1e-3, 1e-2, 1e-1)
+FRESH_LOADS = (3e-4, 3e-3, 1e-2, 3e-2)
+SHORTEST = {2: 64, 3: 64, 5: 64, 7: 64, 10: 80, 15: 96, 20: 96, 30: 112, 50: 140, 100: 216}
+CROWDING = {0.002: 1792, 0.006: 1024, 0.02: 768, 0.06: 512, 0.2: 512}  # and points along a side
+CAP_LOADS = {
+    0.002: (3e-5, 1e-4, 3e-4, 1e-3, 3e-3),
+    0.006: (1e-4, 3e-4, 1e-3, 3e-3, 1e-2),
+    0.02: (3e-4, 1e-3, 3e-3, 1e-2, 3e-2),
+    0.06: (1e-3, 3e-3, 1e-2, 3e-2, 1e-1),
+    0.2: (3e-3, 1e-2, 3e-2, 1e-1, 3e-1),
+}
+STUDY, OTHER, TWIN, FRESH = 8, 4, 2, 3  # maps of a spectrum
+FRESH_SEEDS = 1000
+STEP = 1.02  # stiffness is that of the step from a load to this times the load: at 1.01 times the load
+
+
+@dataclass(frozen=True)
+class Job:
+    """A map and its loads; what for: "study", "mesh", "size", "caps", "fresh"."""
+
+    purpose: str
+    map: GaussianMap | CapsMap
+    loads: tuple[float, ...]
+
+    def solves(self) -> Iterator[tuple[str, float]]:
+        """Name of each solve, and its load."""
+        for p in self.loads:
+            yield f"{self.map.name}-p{p:g}", p
+
+
+def study(alpha: int, seeds: range) -> list[Job]:
+    """Maps of H = 0.8."""
+    return [Job("study", GaussianMap(0.8, alpha, seed, SHORTEST[alpha]), LOADS) for seed in seeds]
+
+
+def refined(alpha: int, seeds: range) -> list[Job]:
+    """The same maps with twice the points."""
+    return [Job("mesh", GaussianMap(0.8, alpha, seed, SHORTEST[alpha], 16), FEWER) for seed in seeds]
+
+
+def enlarged(alpha: int, seeds: range) -> list[Job]:
+    """Maps of cells with twice the waves."""
+    return [Job("size", GaussianMap(0.8, alpha, seed, 2 * SHORTEST[alpha]), FEWER) for seed in seeds]
+
+
+def caps(crowding: float) -> list[Job]:
+    """Random caps."""
+    loads = CAP_LOADS[crowding]
+    return [Job("caps", CapsMap(crowding, seed, CROWDING[crowding]), loads) for seed in range(1, OTHER + 1)]
+
+
+def fresh(alpha: int, hurst: float) -> list[Job]:
+    """Maps that nothing was chosen by: other seeds, exponents and bandwidths."""
+    first = FRESH_SEEDS + 1
+    maps = (GaussianMap(hurst, alpha, seed, SHORTEST[alpha]) for seed in range(first, first + FRESH))
+    return [Job("fresh", each, FRESH_LOADS) for each in maps]
+
+
+def jobs() -> list[Job]:
+    """All, in the order in which they are solved."""
+    every, few = range(1, STUDY + 1), range(1, TWIN + 1)
+    listed = [job for alpha in (2, 5, 10) for job in study(alpha, every)]
+    listed += refined(2, few) + refined(5, few) + enlarged(2, few) + enlarged(5, few)
+    listed += [job for crowding in reversed(CROWDING) for job in caps(crowding)]
+    listed += [job for alpha in (3, 7, 15) for hurst in (0.5, 1.0) for job in fresh(alpha, hurst)]
+    listed += study(20, every) + study(50, range(1, 5)) + refined(10, few)
+    listed += study(100, range(1, 4)) + fresh(30, 0.5) + study(50, range(5, STUDY + 1)) + enlarged(20, few)
+    return listed + study(100, range(4, STUDY + 1))
