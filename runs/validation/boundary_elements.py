@@ -10,11 +10,10 @@ from numpy.typing import NDArray
 from scipy import ndimage
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
-from solve_list import STEP
+from solve_list import STEP, TOLERANCE
 
 Array = NDArray[np.float64]
 
-TOLERANCE = 1e-6
 OVERHANG = (math.pi - 1 + math.log(2)) / 24  # of pixels at the rim (Yastrebov, Anciaux and Molinari 2017)
 
 
@@ -39,17 +38,19 @@ class Solver:
     heights : ndarray
         Periodic map, shape (n, n), in sides of the cell.
     tolerance : float, optional
-        Of Tamaas: the least pressure times gap.
+        At which Tamaas stops, by its own measure.
+    step : float, optional
+        From a load to the next, for stiffness.
     """
 
-    def __init__(self, heights: Array, tolerance: float = TOLERANCE) -> None:
+    def __init__(self, heights: Array, tolerance: float = TOLERANCE, step: float = STEP) -> None:
         tamaas.set_log_level(tamaas.LogLevel.error)
         self.heights = np.ascontiguousarray(heights)
         self.model = tamaas.Model(tamaas.model_type.basic_2d, [1.0, 1.0], list(heights.shape))
         self.model.E, self.model.nu = 1.0, 0.0
         self.solver = tamaas.PolonskyKeerRey(self.model, self.heights, tolerance)
-        self.solver.setMaxIterations(20000)
-        self.tolerance = tolerance
+        self.solver.max_iter = 20000
+        self.tolerance, self.step = tolerance, step
 
     def at(self, pressure: float) -> Solution:
         """Contact under a mean pressure over E*.
@@ -62,8 +63,8 @@ class Solver:
         begun = time.perf_counter()
         error = self._press(pressure)
         touching, gap = self.model.traction[...] > 0, self._gap()
-        self._press(STEP * pressure)
-        stiffness = (STEP - 1) * pressure / (gap - self._gap())
+        self._press(self.step * pressure)
+        stiffness = (self.step - 1) * pressure / (gap - self._gap())
         return Solution(
             area_raw=float(touching.mean()),
             area=corrected_area(touching),

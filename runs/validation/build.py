@@ -9,17 +9,38 @@ mcgw/scene/validity.csv. Takes a few minutes and needs no boundary-element solve
 from pathlib import Path
 
 import solve_table
-from deviations import condensed, write_table
+from deviations import Condensed, condensed, write_table
+from page import page
+from solve_table import Row
+from validity_figures import chart, one_map
 
 HERE = Path(__file__).resolve().parent
 CONDENSED = HERE.parents[1] / "mcgw" / "scene" / "validity.csv"
+SHOWN_MAP = {"hurst": 0.8, "x": 5.0, "seed": 1.0, "purpose": "study"}
+
+
+def charted_rows(rows: list[Row]) -> list[Row]:
+    """Those that the condensed table is made of."""
+    return [row for row in rows if row["purpose"] in ("study", "caps")]
+
+
+def pictures(lines: list[Condensed], rows: list[Row]) -> None:
+    """Draw all."""
+    one, own = ("one radius", "none"), ("own radii", "none")
+    chart(lines, "area", [one, own], HERE / "area.png")
+    chart(lines, "stiffness", [one, own, ("own radii", "summits")], HERE / "stiffness.png")
+    shown = [row for row in rows if all(row[key] == value for key, value in SHOWN_MAP.items())]
+    one_map(sorted(shown, key=lambda row: float(row["p"])), HERE / "one_map.png")
 
 
 def main() -> None:
     """Rebuild."""
     rows = solve_table.read()
-    charted = [row for row in rows if row["purpose"] in ("study", "caps")]
-    write_table(condensed(charted), solve_table.PATH, len(charted), CONDENSED)
+    charted = charted_rows(rows)
+    lines = condensed(charted)
+    write_table(lines, solve_table.PATH, len(charted), CONDENSED)
+    pictures(lines, rows)
+    (HERE / "README.md").write_text(page(lines, rows))
 
 
 if __name__ == "__main__":

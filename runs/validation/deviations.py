@@ -131,13 +131,14 @@ def _of_group(key: Key, rows: list[Row]) -> Iterable[Condensed]:
 
 def table_text(lines: list[Condensed], source: bytes, solves: int) -> str:
     """The condensed table as it is written: four digits after the point."""
-    text = io.StringIO()
+    text, digest = io.StringIO(), hashlib.sha256(source).hexdigest()[:16]
     text.write(
         "# Models of asperities against boundary elements (runs/validation/README.md), made by build.py\n"
-        f"# from {solves} solves of runs/validation/solves.csv, sha256 {hashlib.sha256(source).hexdigest()[:16]}\n"
-        "# x: Nayak's alpha (gaussian), eta R sigma (caps); p: p/(E* g), g the rms slope, or p/(E* sqrt(sigma/R))\n"
-        "# area, stiffness: model/BEM - 1 at p; load: the same at the gap of BEM; separation: (model - BEM)/rms\n"
-        "# height at p; *_std: deviation between maps, not of their mean; nan: the model has no such state\n"
+        f"# from {solves} solves of runs/validation/solves.csv, sha256 {digest}\n"
+        "# x: Nayak's alpha (gaussian), eta R sigma (caps); p: p/(E* g), g rms slope; p/(E* sqrt(sigma/R))\n"
+        "# area, stiffness: model/BEM - 1 at p; load: the same at the gap of BEM\n"
+        "# separation: (model - BEM) at p, over the rms height of the map (gaussian), sigma (caps)\n"
+        "# *_std: deviation between maps, not of their mean; nan: the model has no such state\n"
     )
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(COLUMNS)

@@ -71,12 +71,15 @@ class Summits:
         first = int(np.searchsorted(self.heights, x, side="right"))
         weights, depth = self.weights[first:], self.heights[first:] - x
         bearing = weights * self.root_radius[first:] * np.sqrt(depth)
-        slope = float(np.interp(x, self.heights, self.weights)) / self.step if self.step else 0.0
+        spots, slope = float(weights.sum()), 0.0
+        if self.step and weights.size:  # each weight is spread over a step
+            slope = float(weights[0]) / self.step
+            spots += slope * (min(float(depth[0]), self.step) - self.step / 2)
         return Contact(
             load=float(4 / 3 * bearing @ depth),
             area=float(math.pi * (weights * self.radius[first:]) @ depth),
             stiffness=float(2 * bearing.sum()),
-            spots=float(weights.sum()),
+            spots=spots,
             spots_slope=slope,
         )
 

@@ -1,4 +1,4 @@
-"""The periodic height maps that are solved: Gaussian ones of a power law, and random caps. The cell has side 1."""
+"""Periodic height maps to be solved, in cells of side 1: Gaussian ones of a power law, and random caps."""
 
 import math
 from dataclasses import dataclass
@@ -81,6 +81,11 @@ class GaussianMap:
         """Tells this map from all others."""
         return f"gaussian-H{self.hurst:g}-a{self.alpha:g}-s{self.seed}-k{self.shortest}-x{self.pixels}"
 
+    @property
+    def group(self) -> str:
+        """Its spectrum, for people."""
+        return f"α = {self.alpha:g}, H = {self.hurst:g}"
+
     def _series(self) -> Array:
         """Fourier series of the heights on the grid that is drawn, at rms slope 1 of the surface."""
         n = DRAWN_PIXELS * self.shortest
@@ -137,6 +142,11 @@ class CapsMap:
     def name(self) -> str:
         """Tells this map from all others."""
         return f"caps-{self.crowding:g}-s{self.seed}-N{self.caps}-n{self.n}"
+
+    @property
+    def group(self) -> str:
+        """Its crowding, for people."""
+        return f"η R σ = {self.crowding:g}"
 
     @property
     def sigma(self) -> float:

@@ -13,7 +13,7 @@ LOADS = (1e-4, 3e-4, 1e-3, 3e-3, 1e-2, 3e-2, 1e-1)
 FEWER = (1e-4, 1e-3, 1e-2, 1e-1)
 FRESH_LOADS = (3e-4, 3e-3, 1e-2, 3e-2)
 SHORTEST = {2: 64, 3: 64, 5: 64, 7: 64, 10: 80, 15: 96, 20: 96, 30: 112, 50: 140, 100: 216}
-CROWDING = {0.002: 1792, 0.006: 1024, 0.02: 768, 0.06: 512, 0.2: 512}  # and points along a side
+CROWDING = {0.002: 1024, 0.006: 768, 0.02: 768, 0.06: 512, 0.2: 512}  # and points along a side
 CAP_LOADS = {
     0.002: (3e-5, 1e-4, 3e-4, 1e-3, 3e-3),
     0.006: (1e-4, 3e-4, 1e-3, 3e-3, 1e-2),
@@ -23,21 +23,37 @@ CAP_LOADS = {
 }
 STUDY, OTHER, TWIN, FRESH = 8, 4, 2, 3  # maps of a spectrum
 FRESH_SEEDS = 1000
+TOLERANCE = 1e-6  # of the solver, by its own measure
 STEP = 1.02  # stiffness is that of the step from a load to this times the load: at 1.01 times the load
+HALF_STEP = (1.005, 1.015)  # steps of half the width around the same load
 
 
 @dataclass(frozen=True)
 class Job:
-    """A map and its loads; what for: "study", "mesh", "size", "caps", "fresh"."""
+    """Solves of one map.
+
+    Parameters
+    ----------
+    purpose : str
+        "study", "caps", "fresh", or what is tried: "mesh", "size", "tolerance", "step".
+    map : GaussianMap or CapsMap
+    loads : tuple of float
+        From light to heavy.
+    tolerance, step : float
+        Of the solver; from one load to the next for stiffness, which is that of their mean.
+    """
 
     purpose: str
     map: GaussianMap | CapsMap
     loads: tuple[float, ...]
+    tolerance: float = TOLERANCE
+    step: float = STEP
 
     def solves(self) -> Iterator[tuple[str, float]]:
         """Name of each solve, and its load."""
+        closer = "" if self.tolerance == TOLERANCE else f"-t{self.tolerance:g}"
         for p in self.loads:
-            yield f"{self.map.name}-p{p:g}", p
+            yield f"{self.map.name}-p{p:g}{closer}", p
 
 
 def study(alpha: int, seeds: range) -> list[Job]:
@@ -68,13 +84,24 @@ def fresh(alpha: int, hurst: float) -> list[Job]:
     return [Job("fresh", each, FRESH_LOADS) for each in maps]
 
 
+def tightened(alpha: int) -> list[Job]:
+    """A map with a tolerance a thousand times smaller, and with half the step."""
+    surface = GaussianMap(0.8, alpha, 1, SHORTEST[alpha])
+    first, last = HALF_STEP
+    halved = tuple(first * p for p in FEWER)
+    return [
+        Job("tolerance", surface, FEWER, tolerance=TOLERANCE / 1000),
+        Job("step", surface, halved, step=last / first),
+    ]
+
+
 def jobs() -> list[Job]:
     """All, in the order in which they are solved."""
     every, few = range(1, STUDY + 1), range(1, TWIN + 1)
     listed = [job for alpha in (2, 5, 10) for job in study(alpha, every)]
-    listed += refined(2, few) + refined(5, few) + enlarged(2, few) + enlarged(5, few)
-    listed += [job for crowding in reversed(CROWDING) for job in caps(crowding)]
+    listed += tightened(2) + tightened(10) + refined(2, few) + study(20, every)
+    listed += [job for crowding in (0.2, 0.06, 0.02, 0.006) for job in caps(crowding)]
     listed += [job for alpha in (3, 7, 15) for hurst in (0.5, 1.0) for job in fresh(alpha, hurst)]
-    listed += study(20, every) + study(50, range(1, 5)) + refined(10, few)
-    listed += study(100, range(1, 4)) + fresh(30, 0.5) + study(50, range(5, STUDY + 1)) + enlarged(20, few)
-    return listed + study(100, range(4, STUDY + 1))
+    listed += study(50, range(1, 5)) + study(100, range(1, 4)) + enlarged(2, few)
+    listed += caps(0.002) + study(50, range(5, STUDY + 1)) + fresh(30, 0.5) + refined(5, few)
+    return listed + enlarged(5, few) + refined(10, few) + study(100, range(4, STUDY + 1)) + enlarged(20, few)

@@ -30,7 +30,7 @@ def about(surface: GaussianMap | CapsMap) -> solve_table.Row:
 def solved(job: Job, loads: Iterable[tuple[str, float]]) -> Iterable[solve_table.Row]:
     """One row for each load, from light to heavy: the one before is where the next begins."""
     heights = job.map.heights()
-    solver, what = Solver(heights), about(job.map)
+    solver, what = Solver(heights, job.tolerance, job.step), about(job.map)
     for name, p in loads:
         found = solver.at(p)
         row = {"job": name, "purpose": job.purpose, "p": p, **what}
