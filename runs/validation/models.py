@@ -19,13 +19,14 @@ from rough_maps import CapsMap
 from scipy.optimize import brentq
 
 from analytic import Nayak, RandomCurvature, SpectralMoments
+from analytic.interaction import LATTICE
 
 Array = NDArray[np.float64]
 Interaction = Literal["none", "summits", "contacts"]
 
 MODELS = ("one radius", "nayak", "own radii")
 INTERACTIONS: tuple[Interaction, ...] = ("none", "summits", "contacts")
-SQUARE_LATTICE = 3.900264920001956 / math.pi
+SQUARE_LATTICE = LATTICE / math.pi
 LOWEST, HIGHEST, HEIGHTS = -6.0, 8.0, 7000  # heights over their deviation; how many
 _STEPS = 100  # in which the first root is looked for
 
@@ -71,17 +72,20 @@ class Summits:
         first = int(np.searchsorted(self.heights, x, side="right"))
         weights, depth = self.weights[first:], self.heights[first:] - x
         bearing = weights * self.root_radius[first:] * np.sqrt(depth)
-        spots, slope = float(weights.sum()), 0.0
-        if self.step and weights.size:  # each weight is spread over a step
-            slope = float(weights[0]) / self.step
-            spots += slope * (min(float(depth[0]), self.step) - self.step / 2)
-        return Contact(
-            load=float(4 / 3 * bearing @ depth),
-            area=float(math.pi * (weights * self.radius[first:]) @ depth),
-            stiffness=float(2 * bearing.sum()),
-            spots=spots,
-            spots_slope=slope,
-        )
+        load, stiffness = float(4 / 3 * bearing @ depth), float(2 * bearing.sum())
+        spots, slope = self._spots(x, load / stiffness if stiffness else 0.0)
+        area = float(math.pi * (weights * self.radius[first:]) @ depth)
+        return Contact(load=load, area=area, stiffness=stiffness, spots=spots, spots_slope=slope)
+
+    def _spots(self, x: float, width: float) -> tuple[float, float]:
+        """How many summits are higher, and the slope; of a list, which jumps, that over some width."""
+        if self.step:  # each weight is spread over a step
+            edge = (x - self.heights[0]) / self.step + 0.5
+            cell = min(max(int(edge), 0), self.heights.size - 1)
+            share, weight = min(max(edge - cell, 0.0), 1.0), float(self.weights[cell])
+            return float(self.weights[cell:].sum()) - share * weight, weight / self.step
+        above = [float(self.weights[self.heights > level].sum()) for level in (x - width, x, x + width)]
+        return above[1], (above[0] - above[2]) / (2 * width) if width else 0.0
 
     def separation(self, load: float) -> float:
         """Where they bear a load."""
