@@ -4,6 +4,7 @@ import csv
 import hashlib
 import math
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -197,10 +198,13 @@ def test_fresh_maps_are_as_the_table_says():
         for x in lines
     ]  # fmt: skip
     found = charted.fresh(chart, fresh)
-    valid = charted.claimed(found)
+    valid = [one for one in found if one.claimed]
     assert len(valid) > 20
     assert all(one.holds for one in valid)
     assert not all(one.holds for one in found)  # elsewhere they are beyond it
+    assert np.mean([one.z**2 for one in found]) < 2.0
+    wrong = [replace(one, measured=one.measured + 0.15) for one in found]
+    assert np.mean([one.z**2 for one in wrong]) > 4.0
 
 
 def test_nothing_of_it_needs_the_simulator():

@@ -1,6 +1,7 @@
 """The condensed table as a map: its errors between the measured points, and how fresh maps meet it."""
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -8,6 +9,8 @@ from as_markdown import load, percent, table
 from deviations import Condensed, condensed
 from model_tables import SHOWN
 from solve_table import Row
+
+Value = Callable[[Condensed], float]
 
 VALID = 0.10  # relative error within which a model calls itself valid
 CLAIMED = (
@@ -22,11 +25,11 @@ CLAIMED = (
 
 
 def interpolated(
-    lines: list[Condensed], model: str, interaction: str, quantity: str, x: float, p: float
+    lines: list[Condensed], model: str, interaction: str, value: Value, x: float, p: float
 ) -> float:
-    """Error of a model on a Gaussian surface: linear in the logarithms of alpha and load; nan outside."""
+    """Something of a model on Gaussian surfaces, linear in the logarithms of alpha and load; nan outside."""
     own = {
-        (line.x, line.p): line.mean[quantity]
+        (line.x, line.p): value(line)
         for line in lines
         if (line.map, line.model, line.interaction) == ("gaussian", model, interaction)
     }
@@ -42,7 +45,19 @@ def interpolated(
 
 @dataclass(frozen=True)
 class Fresh:
-    """A model on fresh maps of one spectrum at one load: charted error, measured one and its own error."""
+    """A model on fresh maps of one spectrum at one load.
+
+    Parameters
+    ----------
+    hurst, alpha, p, model, interaction, quantity
+        What and where.
+    charted, charted_error : float
+        Relative error that the chart tells, and its standard error.
+    measured, error : float
+        Relative error found, mean over maps, and its standard error: by the scatter that the chart tells of
+        maps with so many spots, as that of three maps is hardly known from themselves.
+    maps : int
+    """
 
     hurst: float
     alpha: float
@@ -51,14 +66,25 @@ class Fresh:
     interaction: str
     quantity: str
     charted: float
+    charted_error: float
     measured: float
     error: float
     maps: int
 
     @property
+    def claimed(self) -> bool:
+        """Whether the chart is sure that the model is within 10 %."""
+        return abs(self.charted) + 2 * self.charted_error <= VALID
+
+    @property
     def holds(self) -> bool:
-        """Whether the error is within 10 %, as charted, or not beyond by more than twice its own error."""
+        """Whether the fresh maps are within 10 %, but for twice the standard error."""
         return abs(self.measured) <= VALID + 2 * self.error
+
+    @property
+    def z(self) -> float:
+        """Measured less charted over the standard error of both."""
+        return (self.measured - self.charted) / math.hypot(self.error, self.charted_error)
 
 
 def fresh(lines: list[Condensed], rows: list[Row]) -> list[Fresh]:
@@ -67,17 +93,30 @@ def fresh(lines: list[Condensed], rows: list[Row]) -> list[Fresh]:
     for hurst in sorted({float(row["hurst"]) for row in rows if row["purpose"] == "fresh"}):
         mine = condensed([row for row in rows if row["purpose"] == "fresh" and row["hurst"] == hurst])
         for one in mine:
-            for where in (x for x in CLAIMED if x[:2] == (one.model, one.interaction)):
-                chart, measured = interpolated(lines, *where, one.x, one.p), one.mean[where[2]]
-                found.append(
-                    Fresh(hurst, one.x, one.p, *where, chart, measured, one.error(where[2]), one.maps)
-                )
+            for model, interaction, quantity in CLAIMED:
+                if (one.model, one.interaction) == (model, interaction):
+                    found.append(_against(lines, one, quantity, hurst))
     return found
 
 
-def claimed(found: list[Fresh]) -> list[Fresh]:
-    """Those where the chart says that a model is within 10 %."""
-    return [one for one in found if abs(one.charted) <= VALID]
+def _against(lines: list[Condensed], one: Condensed, quantity: str, hurst: float) -> Fresh:
+    def chart(value: Value) -> float:
+        return interpolated(lines, one.model, one.interaction, value, one.x, one.p)
+
+    scatter = chart(lambda line: line.std[quantity] * math.sqrt(line.contacts))
+    return Fresh(
+        hurst=hurst,
+        alpha=one.x,
+        p=one.p,
+        model=one.model,
+        interaction=one.interaction,
+        quantity=quantity,
+        charted=chart(lambda line: line.mean[quantity]),
+        charted_error=chart(lambda line: line.error(quantity)),
+        measured=one.mean[quantity],
+        error=scatter / math.sqrt(one.contacts * one.maps),
+        maps=one.maps,
+    )
 
 
 def fresh_table(found: list[Fresh]) -> str:

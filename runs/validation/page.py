@@ -6,14 +6,15 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
-from charted import VALID, Fresh, claimed, fresh, fresh_table
+from charted import CLAIMED, VALID, Fresh, fresh, fresh_table
 from density import density_table, verdict
 from deviations import Condensed
-from model_tables import by_load, maps_table
+from model_tables import SHOWN, by_load, maps_table
 from resolution import mesh_table, size_table, tolerance_table
 from rough_maps import DRAWN_PIXELS
 from solve_list import jobs
 from solve_table import Row
+from within import within_table
 
 TEMPLATE = Path(__file__).with_name("README.template.md")
 
@@ -30,6 +31,7 @@ def page(lines: list[Condensed], rows: list[Row]) -> str:
     text = TEMPLATE.read_text().format(
         amount=amount(rows),
         pixels=DRAWN_PIXELS,
+        within=within_table(gaussian),
         maps=maps_table(lines),
         density=density_table(gaussian),
         verdict=verdict(gaussian),
@@ -58,20 +60,17 @@ def amount(rows: list[Row]) -> str:
 
 
 def claims(found: list[Fresh]) -> Iterable[str]:
-    """Of each model, where the chart calls it within 10 %, whether fresh maps agree."""
-    for model, interaction, quantity in dict.fromkeys((x.model, x.interaction, x.quantity) for x in found):
-        valid = [
-            x
-            for x in claimed(found)
-            if (x.model, x.interaction, x.quantity) == (model, interaction, quantity)
-        ]
-        beyond = [x for x in valid if abs(x.measured) > VALID]
-        worst = max((abs(x.measured) for x in valid), default=0.0)
-        significant = sum(not x.holds for x in valid)
+    """Of each model, where the chart is sure that it is within 10 %, whether fresh maps agree."""
+    for model, interaction, quantity in CLAIMED:
+        own = [x for x in found if (x.model, x.interaction, x.quantity) == (model, interaction, quantity)]
+        valid = [x for x in own if x.claimed]
+        beyond = [abs(x.measured) for x in valid if abs(x.measured) > VALID]
+        said = f"beyond it at {len(beyond)}, the most {max(beyond):.1%}" if beyond else "nowhere beyond it"
         yield (
-            f"- {quantity}, {model}, interaction {interaction}: expected within {VALID:.0%} at {len(valid)} "
-            f"of the points; measured beyond it at {len(beyond)} of these, the most {worst:.1%}; beyond it "
-            f"by more than twice the standard error at {significant}."
+            f"- {quantity}, {model}{SHOWN[interaction]}: sure to be within {VALID:.0%} at {len(valid)} of "
+            f"{len(own)} points; there fresh maps are {said}; beyond it by more than twice the standard "
+            f"error at {sum(not x.holds for x in valid)}. Of all points {sum(abs(x.z) > 2 for x in own)} differ "
+            f"from what was expected by more than twice the standard error of both."
         )
 
 
