@@ -158,7 +158,8 @@ def test_a_torn_line_does_not_count(tmp_path):
     path.write_bytes(whole + whole.splitlines()[1][:20])
     assert [x["job"] for x in solve_table.read(path)] == ["a"]
     solve_table.append(row | {"job": "b"}, path)
-    assert [x["job"] for x in solve_table.read(path)] == ["a", "b"]
+    solve_table.append(row | {"p": 2.5}, path)  # by two who did not know of each other
+    assert [(x["job"], x["p"]) for x in solve_table.read(path)] == [("a", 1.5), ("b", 1.5)]
 
 
 def test_the_solver_finds_hertz_and_the_square_lattice():
@@ -183,6 +184,7 @@ def test_the_solver_finds_hertz_and_the_square_lattice():
     assert abs(plane + a**2 / radius) > 0.02 * a**2 / radius  # without images it would be seen
 
 
+@pytest.mark.slow
 def test_fresh_maps_are_as_the_table_says():
     """Where a model calls itself within 10 %, maps of other seeds, alpha and H are, but for their scatter."""
     fresh = [row for row in ROWS if row["purpose"] == "fresh"]

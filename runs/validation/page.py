@@ -66,11 +66,12 @@ def claims(found: list[Fresh]) -> Iterable[str]:
         valid = [x for x in own if x.claimed]
         beyond = [abs(x.measured) for x in valid if abs(x.measured) > VALID]
         said = f"beyond it at {len(beyond)}, the most {max(beyond):.1%}" if beyond else "nowhere beyond it"
+        off = sum(abs(x.z) > 2 for x in own)
         yield (
             f"- {quantity}, {model}{SHOWN[interaction]}: sure to be within {VALID:.0%} at {len(valid)} of "
             f"{len(own)} points; there fresh maps are {said}; beyond it by more than twice the standard "
-            f"error at {sum(not x.holds for x in valid)}. Of all points {sum(abs(x.z) > 2 for x in own)} differ "
-            f"from what was expected by more than twice the standard error of both."
+            f"error at {sum(not x.holds for x in valid)}. Of all points {off} differ from what was "
+            f"expected by more than twice the standard error of both."
         )
 
 

@@ -18,12 +18,14 @@ Row = dict[str, str | float]
 
 
 def read(path: Path = PATH) -> list[Row]:
-    """Every whole line: words as they are, numbers as floats."""
+    """Every whole line, of each job the first: words as they are, numbers as floats."""
     if not path.exists():
         return []
     whole = path.read_bytes().rpartition(b"\n")[0].decode()
-    rows = csv.DictReader(io.StringIO(whole))
-    return [{key: text if key in TEXT else float(text) for key, text in row.items()} for row in rows]
+    found: dict[str, Row] = {}
+    for row in csv.DictReader(io.StringIO(whole)):
+        found.setdefault(row["job"], {key: text if key in TEXT else float(text) for key, text in row.items()})
+    return list(found.values())
 
 
 def append(row: Row, path: Path = PATH) -> None:
