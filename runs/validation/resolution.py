@@ -23,17 +23,17 @@ def same_map(rows: list[Row], purpose: str, p_factor: float = 1.0) -> Pairs:
 
 
 def mesh_table(rows: list[Row]) -> str:
-    """Twice the points a wave: change of what is compared, mean over maps."""
-    groups: dict[tuple[float, float], Pairs] = {}
-    for fine, coarse in same_map(rows, "mesh"):
-        groups.setdefault((number(coarse, "x"), number(coarse, "p")), []).append((fine, coarse))
+    """More points a wave, or fewer: change of what is compared, mean over maps."""
+    groups: dict[tuple[float, float, float], Pairs] = {}
+    for tried, usual in same_map(rows, "mesh"):
+        key = (number(tried, "pixels"), number(tried, "x"), number(tried, "p"))
+        groups.setdefault(key, []).append((tried, usual))
     lines = []
-    for (alpha, p), pairs in sorted(groups.items()):
-        raw, *others = (mean_change(pairs, q) for q in ("area_raw", *QUANTITIES))
-        lines.append([f"{alpha:g}", load(p), str(len(pairs)), percent(raw), *(percent(x) for x in others)])
-    return table(
-        ["α", "p/(E* g)", "maps", "area, not corrected, %", "area, %", "gap, %", "stiffness, %"], lines
-    )
+    for (pixels, alpha, p), pairs in sorted(groups.items()):
+        changes = [percent(mean_change(pairs, q)) for q in ("area_raw", *QUANTITIES)]
+        lines.append([f"{pixels:g}", f"{alpha:g}", load(p), str(len(pairs)), *changes])
+    head = ["points a wave", "α", "p/(E* g)", "maps", "area, not corrected, %", "area, %", "gap, %"]
+    return table([*head, "stiffness, %"], lines)
 
 
 def mean_change(pairs: Pairs, quantity: str) -> float:
@@ -54,7 +54,7 @@ def size_table(rows: list[Row]) -> str:
             cells = [model_error(group[each], q) for q in ("area", "stiffness") for each in ("study", "size")]
             lines.append([f"{alpha:g}", load(p), *cells])
     head = [
-        "alpha",
+        "α",
         "p/(E* g)",
         "area, %",
         "area, twice the side, %",

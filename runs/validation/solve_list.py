@@ -7,12 +7,13 @@ g = 1 and sigma = R.
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from rough_maps import CapsMap, GaussianMap
+from rough_maps import DRAWN_PIXELS, CapsMap, GaussianMap
 
 LOADS = (1e-4, 3e-4, 1e-3, 3e-3, 1e-2, 3e-2, 1e-1)
 FEWER = (1e-4, 1e-3, 1e-2, 1e-1)
 FRESH_LOADS = (3e-4, 3e-3, 1e-2, 3e-2)
 SHORTEST = {2: 64, 3: 64, 5: 64, 7: 64, 10: 80, 15: 96, 20: 96, 30: 112, 50: 140, 100: 216}
+COARSER = {100: 6}  # points a shortest wave, where the usual ones took too long; how much it matters is tried
 CROWDING = {0.002: 1024, 0.006: 768, 0.02: 768, 0.06: 512, 0.2: 512}  # and points along a side
 CAP_LOADS = {
     0.002: (3e-5, 1e-4, 3e-4, 1e-3, 3e-3),
@@ -58,17 +59,18 @@ class Job:
 
 def study(alpha: int, seeds: range) -> list[Job]:
     """Maps of H = 0.8."""
-    return [Job("study", GaussianMap(0.8, alpha, seed, SHORTEST[alpha]), LOADS) for seed in seeds]
+    pixels = COARSER.get(alpha, DRAWN_PIXELS)
+    return [Job("study", GaussianMap(0.8, alpha, seed, SHORTEST[alpha], pixels), LOADS) for seed in seeds]
 
 
-def refined(alpha: int, seeds: range) -> list[Job]:
-    """The same maps with twice the points."""
-    return [Job("mesh", GaussianMap(0.8, alpha, seed, SHORTEST[alpha], 16), FEWER) for seed in seeds]
+def meshed(alpha: int, seeds: range, pixels: int = 2 * DRAWN_PIXELS) -> list[Job]:
+    """The same maps with more points, or fewer."""
+    return [Job("mesh", GaussianMap(0.8, alpha, seed, SHORTEST[alpha], pixels), FEWER) for seed in seeds]
 
 
 def enlarged(alpha: int, seeds: range) -> list[Job]:
     """Maps of cells with twice the waves."""
-    return [Job("size", GaussianMap(0.8, alpha, seed, 2 * SHORTEST[alpha]), FEWER) for seed in seeds]
+    return [Job("size", GaussianMap(0.8, alpha, seed, 2 * SHORTEST[alpha]), FEWER[:-1]) for seed in seeds]
 
 
 def caps(crowding: float) -> list[Job]:
@@ -99,9 +101,11 @@ def jobs() -> list[Job]:
     """All, in the order in which they are solved."""
     every, few = range(1, STUDY + 1), range(1, TWIN + 1)
     listed = [job for alpha in (2, 5, 10) for job in study(alpha, every)]
-    listed += tightened(2) + tightened(10) + refined(2, few) + study(20, every)
+    listed += tightened(2) + tightened(10) + meshed(2, few) + study(20, every)
     listed += [job for crowding in (0.2, 0.06, 0.02, 0.006) for job in caps(crowding)]
     listed += [job for alpha in (3, 7, 15) for hurst in (0.5, 1.0) for job in fresh(alpha, hurst)]
     listed += study(50, range(1, 5)) + study(100, range(1, 4)) + enlarged(2, few)
-    listed += caps(0.002) + study(50, range(5, STUDY + 1)) + fresh(30, 0.5) + refined(5, few)
-    return listed + enlarged(5, few) + refined(10, few) + study(100, range(4, STUDY + 1)) + enlarged(20, few)
+    listed += (
+        caps(0.002) + meshed(10, few, 6) + study(50, range(5, STUDY + 1)) + fresh(30, 0.5) + meshed(5, few)
+    )
+    return listed + enlarged(5, few) + meshed(10, few) + study(100, range(4, STUDY + 1)) + enlarged(20, few)
