@@ -48,7 +48,7 @@ def _panel(ax: Axes, lines: Lines, quantity: str) -> None:
     ax.pcolormesh(np.arange(len(loads) + 1), np.arange(len(alphas) + 1), error, norm=NORM, cmap=COLOURS)
     for (row, column), value in np.ndenumerate(error):
         if math.isfinite(value):
-            shade = "white" if abs(value) > 45 else "black"
+            shade = "white" if abs(value) > 38 else "black"
             ax.text(
                 column + 0.5,
                 row + 0.5,
@@ -81,7 +81,7 @@ def one_map(rows: list[Row], path: Path) -> None:
     row, unit = rows[0], math.sqrt(number(rows[0], "m0"))
     p, area, gap = (np.array([number(one, key) for one in rows]) for key in ("p", "area", "gap"))
     with mpl.rc_context(STYLE):
-        figure = Figure(figsize=(10.8, 3.6), layout="constrained")
+        figure = Figure(figsize=(9.6, 3.5), layout="constrained")
         areas, gaps, missed = figure.subplots(1, 3, sharex=True)
         areas.plot(p, area / p, "o", color="black", ms=4.5, label="boundary elements")
         gaps.plot(p, gap / unit, "o", color="black", ms=4.5)
