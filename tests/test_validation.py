@@ -54,7 +54,7 @@ def test_the_table_has_what_was_agreed():
         assert line["model"] in (models.MODELS if line["map"] == "gaussian" else ("one radius",))
         assert line["interaction"] in models.INTERACTIONS
         assert float(line["x"]) > 0 < float(line["p"])
-        assert int(line["maps"]) >= 2
+        assert int(line["maps"]) >= 3
         assert float(line["contacts"]) > 0
         assert float(line["area"]) > -1 < float(line["stiffness"]) or line["interaction"] != "none"
 
