@@ -214,8 +214,7 @@ class InteractingModel(Model):
         if quantity in SEPARATIONS:
             return np.zeros_like(x), sign * c / rate
         if self.interaction.nominal:
-            first = self._derivatives(quantity, x)[0]
-            factor, press = np.ones_like(x), first * c / rate
+            factor, press = np.ones_like(x), self._first(quantity, x) * c / rate
         else:
             factor, press = np.ones_like(x), np.zeros_like(x)
         if in_series(quantity):
@@ -236,7 +235,7 @@ class InteractingModel(Model):
         value = self.alone.mean(quantity, x)
         if quantity == "load":
             return np.asarray(value + bias)
-        first, second = self._derivatives(quantity, x)
+        first, second = self._first(quantity, x), self._second(quantity, x)
         mean = value + first * c * bias + second * (c**2 * variance / 2)
         mean = mean + c * self._changing(quantity, x) / rate
         if not in_series(quantity):
@@ -256,7 +255,7 @@ class InteractingModel(Model):
         x, c = self.effective(h), self.compliance
         rate = 1 + c * self.alone.slope("load", x)
         variance = self._once("variance", h, lambda some: self._load_variance(some))
-        bent = self._derivatives("load", x)[1] * c**2 * variance / 2
+        bent = self._second("load", x) * c**2 * variance / 2
         return np.asarray((bent + c * self._changing("load", x) / rate) / rate)
 
     @cached_property
@@ -271,11 +270,19 @@ class InteractingModel(Model):
             self._known.update(zip(keys, found(new).tolist(), strict=True))
         return np.array([self._known[what, x] for x in h.ravel().tolist()]).reshape(h.shape)
 
-    def _derivatives(self, quantity: str, x: Array) -> tuple[Array, Array]:
-        """First and second derivative of the mean of a sum by the separation."""
-        around = np.stack([self.alone.mean(quantity, x + k * _STEP) for k in range(-2, 3)])
-        first, second = np.tensordot(_WEIGHTS, around, 1)
-        return first / _STEP, second / _STEP**2
+    def _first(self, quantity: str, x: Array) -> Array:
+        """Derivative of the mean of a sum by the separation: its slope, where that is known."""
+        if quantity_of(quantity).base != "load_slope":
+            return -self.alone.slope(quantity, x)
+        return np.asarray(np.tensordot(_WEIGHTS[0], self._around(quantity, x), 1) / _STEP)
+
+    def _second(self, quantity: str, x: Array) -> Array:
+        """Second derivative of the mean of a sum by the separation."""
+        return np.asarray(np.tensordot(_WEIGHTS[1], self._around(quantity, x), 1) / _STEP**2)
+
+    def _around(self, quantity: str, x: Array) -> Array:
+        """Means of a sum at five separations about each."""
+        return np.stack([self.alone.mean(quantity, x + k * _STEP) for k in range(-2, 3)])
 
     def _changing(self, quantity: str, x: Array) -> Array:
         """Covariance of the derivative of a sum by the separation with the load."""
