@@ -12,6 +12,7 @@ from mcgw.scene.section import SceneError
 __all__ = ["storable"]
 
 _LOOKED_AT, _BEYOND = 4001, 1.1  # heights for the stiffest; and how much farther series reach
+_MARGIN = 1 / 16  # the lowest that is felt is a multiple of this, and may change by one with the series
 
 
 def storable(scene: Scene) -> Scene:
@@ -30,7 +31,7 @@ def storable(scene: Scene) -> Scene:
     if is_data(scene.grading):
         return scene
     try:
-        low, high = extent(scene.grading, scene.heights, scene.separations)
+        low, high = _extent(scene)
         return replace(scene, grading=resolved(scene.grading, low, high))
     except SceneError:
         raise
@@ -38,9 +39,18 @@ def storable(scene: Scene) -> Scene:
         raise SceneError([str(error)]) from None
 
 
+def _extent(scene: Scene) -> tuple[float, float]:
+    """Lowest and highest height that count; asperities may feel lower separations than those asked."""
+    asked = scene.separations
+    nominal = scene.interaction is not None and scene.interaction.nominal
+    if nominal and scene.lowest < min(asked):
+        asked = (*asked, scene.lowest - _MARGIN)
+    return extent(scene.grading, scene.heights, asked)
+
+
 def _resolved_law(scene: Scene) -> ContactLaw:
     """The series of a law up to the deepest penetration of the stiffest asperity."""
-    low, high = extent(scene.grading, scene.heights, scene.separations)
+    low, high = _extent(scene)
     deepest = high - min(scene.lowest, low if scene.unload_from is None else scene.unload_from)
     stiffest = float(np.max(np.abs(scene.modulus(np.linspace(low, high, _LOOKED_AT)))))
     try:
