@@ -35,8 +35,6 @@ def interaction_mistakes(scene: Fields) -> Iterator[str]:
 def _together(scene: Fields) -> Iterator[str]:
     if "load" not in scene.quantities:
         yield 'interaction: separations differ by the load; add "load" to contact.quantities'
-    if scene.unload_from is not None and "load_unloading" not in scene.quantities:
-        yield 'interaction: separations differ by the load; add "load_unloading" to contact.quantities'
     if scene.tangential is not None:
         yield "contact.tangential: loads sideways press no asperity down here; leave out it or [interaction]"
 
