@@ -1,0 +1,67 @@
+"""Surfaces whose asperities press each other down, written as on paper: for tests of those.
+
+``strength`` is what the sunk plane feels of the mean load p of an asperity, in reduced units:
+``x = h + strength p``, positive where the body is the reference, negative where the mean plane is.
+"""
+
+import math
+from types import SimpleNamespace
+
+import numpy as np
+from oracles import factor, sums_of_heights
+
+import analytic
+
+# Of a square under uniform pressure, at its mean and at its centre; and of a square lattice of point loads.
+MEAN_SINKING, SINKING_OF_THE_CENTRE = 0.9464020088186771, 1.12219970467836
+LATTICE = 3.900264920001956
+
+
+def interaction(strength, surface, n, at="nominal"):
+    """The interaction that is so strong on a surface with `n` asperities, by its bulk modulus."""
+    alone = n * factor(surface, "load") / (abs(strength) * surface.sigma)
+    if strength > 0:
+        modulus = MEAN_SINKING * alone / math.sqrt(surface.nominal_area)
+        return analytic.Interaction("body", at=at, bulk_modulus=modulus)
+    modulus = LATTICE / math.pi * alone / math.sqrt(n * surface.nominal_area)
+    return analytic.Interaction("mean-plane", at=at, bulk_modulus=modulus)
+
+
+def literal_sums(scene, heights, felt, quantity):
+    """Exactly rounded sums over the asperities of one surface at what they feel."""
+    asked = SimpleNamespace(separations=felt, modulus=scene.modulus, surface=scene.surface)
+    return sums_of_heights(asked, heights, quantity)
+
+
+def drawn(n, surfaces, grading, seed, highest):
+    """The highest of n Gaussian heights, and their moduli, of many surfaces: shape (surfaces, highest)."""
+    s = np.random.default_rng(seed).standard_normal((surfaces, n))
+    s = np.partition(s, n - highest, axis=1)[:, -highest:].copy()
+    return s, grading(s)
+
+
+def sums_at(s, e, x):
+    """Reduced load, stiffness, area, conductance and contacts of each surface at its own separation."""
+    d = np.maximum(s - x[:, None], 0.0)
+    root = np.sqrt(d)
+    return {
+        "load": (e * d * root).sum(axis=1),
+        "stiffness": (e * root).sum(axis=1),
+        "area": d.sum(axis=1),
+        "conductance": root.sum(axis=1),
+        "contacts": (d > 0).sum(axis=1).astype(float),
+    }
+
+
+def balances(s, e, h, c):
+    """What each surface feels, ``x = h + c P(x)``, by Newton's steps from h: the highest such x.
+
+    Loads are convex in x, so from the side of no load the steps never pass it.
+    """
+    x = np.full(len(s), float(h))
+    for _ in range(12):
+        sums = sums_at(s, e, x)
+        x -= (x - h - c * sums["load"]) / (1 + 1.5 * c * sums["stiffness"])
+    assert np.abs(x - h - c * sums_at(s, e, x)["load"]).max() < 1e-12
+    assert (x > s.min(axis=1)).all()  # those left out do not touch
+    return x
