@@ -171,7 +171,8 @@ class CellsAtNominal:
         s, e = (part[:, POINTS // 2] for part in self._points)
         forces = scene.n_asperities * mesh.probability * e
         x = np.linspace(scene.lowest, scene.highest + 1, _GUESSES)
-        load = np.array([forces @ np.maximum(s - at, 0.0) ** 1.5 for at in x])
+        depths = (np.maximum(s - at, 0.0) for at in x)
+        load = np.array([float(product(d * np.sqrt(d), forces)) for d in depths])
         nominal = x - c * load
         falling = np.flatnonzero(np.diff(nominal) <= 0)
         usable = slice(int(falling[-1]) + 1 if falling.size else 0, None)
