@@ -1,16 +1,22 @@
 """Surfaces whose asperities press each other down: against literal sums, each other, and their own bits."""
 
 import dataclasses
+import hashlib
+import json
+import os
 import subprocess
 import sys
+from pathlib import Path
 
 import interacting_by_hand as hand
 import numpy as np
 import pytest
 import scipy.stats
+from conftest import SURFACE
 from interacting_by_hand import interaction, literal_sums
 from oracles import factor
 from scipy.stats import ks_2samp
+from test_same_bits_everywhere import OLD_BLAS, OLD_C, OLD_NUMPY
 
 import analytic
 import mcgw
@@ -159,7 +165,6 @@ SAME = 1e-7  # false alarm of each comparison of two samples
 @pytest.fixture(scope="module")
 def laws_by_sampler():
     """Small surfaces of strength 3 drawn by every sampler that finds balances; and wrong strengths."""
-    from conftest import SURFACE
 
     def drawn(sampler, seed, strength=3.0, n_surfaces=1200):
         scene = mcgw.Scene(
@@ -238,7 +243,9 @@ def test_laws_with_breaks_and_own_radii(make_scene):
             ensemble[name][2], factor(scene.surface, name) * np.array(terms), rtol=1e-12
         )
     sunk = 2.0 / 3000 * ensemble["load"] / factor(scene.surface, "load")
-    np.testing.assert_allclose(ensemble["effective_separation"], (0.3, 1.0, *sunk), rtol=0, atol=1e-13)
+    np.testing.assert_allclose(
+        ensemble["effective_separation"], np.array([0.3, 1.0]) + sunk, rtol=0, atol=1e-13
+    )
 
 
 def test_own_radii():
@@ -254,7 +261,7 @@ def test_own_radii():
     np.testing.assert_allclose(ensemble["load"][1], load, rtol=1e-12)
     np.testing.assert_allclose(ensemble["area"][1], np.pi * (radius * depth).sum(axis=1), rtol=1e-12)
     sunk = 2.0 / 2000 * load / factor(scene.surface, "load")
-    np.testing.assert_allclose(x, (0.3, 1.0, *sunk), rtol=0, atol=1e-13)
+    np.testing.assert_allclose(x, np.array([0.3, 1.0]) + sunk, rtol=0, atol=1e-13)
 
 
 @pytest.mark.parametrize("sampler", ["direct", "tail", "cells"])
@@ -311,3 +318,29 @@ def test_scenes_without_interaction_know_nothing_of_it():
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "[]"
+
+
+def digests():
+    """Of surfaces of both references by `cells`."""
+    found = {}
+    for name, strength in STRENGTHS.items():
+        values = {"grading": analytic.Exponential(1.5), "separations": SEPARATIONS, "n_asperities": 5000}
+        scene = mcgw.Scene(SURFACE, seed=1, interaction=interaction(strength, SURFACE, 5000), **values)
+        sums = sampler_of(scene).block(0, 5).sums
+        found[name] = hashlib.sha256(b"".join(sums[key].tobytes() for key in sorted(sums))).hexdigest()
+    return found
+
+
+def test_older_processors_find_the_same_balances():
+    """Their libraries round otherwise (`test_same_bits_everywhere`)."""
+    code = "import json, test_interaction_surfaces as t; print(json.dumps(t.digests()))"
+    folder = Path(__file__).parent
+    older = {
+        **OLD_BLAS,
+        **OLD_C,
+        **OLD_NUMPY,
+        "PYTHONPATH": os.pathsep.join(map(str, (folder, folder.parent))),
+    }
+    call = [sys.executable, "-W", "ignore", "-c", code]
+    done = subprocess.run(call, env=os.environ | older, capture_output=True, check=True)
+    assert json.loads(done.stdout) == digests()
