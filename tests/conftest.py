@@ -2,6 +2,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from interacting_by_hand import QUANTITIES, SEPARATIONS, interaction
 from matplotlib.figure import Figure
 
 import analytic
@@ -28,6 +29,18 @@ def make_scene():
             "seed": 1,
         }
         return Scene(**(values | changes))
+
+    return make
+
+
+@pytest.fixture
+def pressed(make_scene):
+    """The same whose asperities press each other down, by an interaction of some strength."""
+
+    def make(strength, at="nominal", **changes):
+        values = {"separations": SEPARATIONS, "quantities": QUANTITIES, "n_surfaces": 4}
+        scene = make_scene(**(values | changes))
+        return scene.replace(interaction=interaction(strength, scene.surface, scene.n_asperities, at))
 
     return make
 

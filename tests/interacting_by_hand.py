@@ -16,6 +16,10 @@ import analytic
 MEAN_SINKING, SINKING_OF_THE_CENTRE = 0.9464020088186771, 1.12219970467836
 LATTICE = 3.900264920001956
 
+QUANTITIES = ("load", "area", "stiffness", "contacts", "conductance")
+SEPARATIONS = (0.0, 0.8, 1.7, 3.0)
+STRENGTHS = {"body": 3.0, "mean-plane": -0.25}
+
 
 def interaction(strength, surface, n, at="nominal"):
     """The interaction that is so strong on a surface with `n` asperities, by its bulk modulus."""
