@@ -30,7 +30,7 @@ Reference = Literal["body", "mean-plane"]
 
 # Mean sinking of a square of side L under the pressure p, over p L/E*: (4 asinh 1 - 4/3 (sqrt 2 - 1))/pi.
 BOWL = (4 * math.asinh(1) - 4 / 3 * (math.sqrt(2) - 1)) / math.pi
-# Potential at a point of a square lattice in a neutral background, over charge/side: 4 zeta(1/2) beta(1/2).
+# Potential at a point of a square lattice in a neutral background, over charge/side: -4 zeta(1/2) beta(1/2).
 LATTICE = 3.900264920001956
 
 
