@@ -147,14 +147,15 @@ class Fields:
     @property
     def lowest(self) -> float:
         """The lowest separation there is or was that asperities feel: what lies below it never touches."""
-        lowest = min(self.separations) if self._felt is None else self._felt
+        sinking = self.interaction is not None and self.interaction.nominal
+        lowest = self._felt if sinking else min(self.separations)
         return lowest if self.unload_from is None else min(lowest, self.unload_from)
 
     @cached_property
-    def _felt(self) -> float | None:
-        """The same where each surface finds its own and may go down farther than asked; else None."""
-        if self.interaction is None or not self.interaction.nominal or self.interaction.reference == "body":
-            return None
+    def _felt(self) -> float:
+        """The same where each surface finds its own, and from the mean plane goes down farther than asked."""
+        if self.interaction is None or self.interaction.reference == "body":
+            return min(self.separations)
         from mcgw.scene.lowest_felt import lowest_felt  # for those scenes alone
 
         return lowest_felt(self.theory, min(self.separations))
