@@ -113,7 +113,7 @@ LAW_FILES = {
     "etsion_kligerman_kadin", "hardness", "jackson_green", "kogut_etsion", "law_rows",
     "power_law_graded", "root_series", "zhao_maietta_chang",
     "balance", "interacting", "interaction", "interaction_mistakes", "interaction_section", "lowest_felt",
-    "nominal", "nominal_literal",
+    "nominal", "nominal_literal", "own_balance",
 }  # fmt: skip
 GAUSSIAN_FIGURES = {"figures/paper.py", "figures/equal_load.py", "figures/summits.py"}  # those of the paper
 
