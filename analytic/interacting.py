@@ -15,19 +15,19 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from analytic.height_rule import Fluctuations, HeightRule
-from analytic.interaction import Interaction
+from analytic.interaction import Interaction, in_series
 from analytic.model import Cumulants, Model
-from analytic.own_balance import STEP, WEIGHTS, OwnBalance
+from analytic.own_balance import OwnBalance, derivative
 from analytic.quantities import SEPARATIONS, quantity_of
 
-__all__ = ["InteractingModel", "in_series"]
+__all__ = ["InteractingModel", "is_stiffness"]
 
 Array = NDArray[np.float64]
 
 _SERIES = ("stiffness", "load_slope")
 
 
-def in_series(quantity: str) -> bool:
+def is_stiffness(quantity: str) -> bool:
     """Whether a quantity is a stiffness, which the half-space is in series with."""
     q = quantity_of(quantity)
     return q.base in _SERIES
@@ -102,17 +102,18 @@ class InteractingModel(Model):
         self._asked(quantity, h)
         nominal = self.interaction.nominal
         mean = self._own.mean(quantity, h) if nominal else self.alone.mean(quantity, h)
-        if not in_series(quantity):
+        if not is_stiffness(quantity):
             return mean
         c = self.compliance * self.surface.sigma
         exact = self._own.variance if nominal else lambda name, at: self.alone.cumulants(name, at).variance
-        return mean / (1 + c * mean) - c * exact(quantity, h) / (1 + c * mean) ** 3
+        return np.asarray(in_series(mean, c)) - c * exact(quantity, h) / (1 + c * mean) ** 3
 
     def balanced(self, quantity: str, h: ArrayLike) -> Array:
         """The mean to first order: that of the mean surface at its own balance."""
         h = np.asarray(h, dtype=np.float64)
         mean = self.alone.mean(quantity, self.effective(h))
-        return mean / (1 + self.compliance * self.surface.sigma * mean) if in_series(quantity) else mean
+        stiff = is_stiffness(quantity)
+        return np.asarray(in_series(mean, self.compliance * self.surface.sigma)) if stiff else mean
 
     def cumulants(self, quantity: str, h: ArrayLike) -> Cumulants:
         """As `Model.cumulants`; skewness and kurtosis are those of the linear part."""
@@ -122,10 +123,9 @@ class InteractingModel(Model):
     def slope(self, quantity: str, h: ArrayLike) -> Array:
         """How fast the mean falls with the separation, of the mean surface."""
         h = np.asarray(h, dtype=np.float64)
-        if not self.interaction.nominal and not in_series(quantity) and quantity not in SEPARATIONS:
+        if not self.interaction.nominal and not is_stiffness(quantity) and quantity not in SEPARATIONS:
             return self.alone.slope(quantity, h)
-        around = [self.mean(quantity, h + k * STEP) for k in range(-2, 3)]
-        return -np.tensordot(WEIGHTS[0], around, 1) / STEP
+        return -derivative(lambda at: self.mean(quantity, at), h)
 
     def share(self, piece: int, h: ArrayLike) -> Array:
         """As `Model.share`, at what the asperities of the mean surface feel."""
@@ -137,7 +137,7 @@ class InteractingModel(Model):
 
     def separation_at(self, quantity: str, value: ArrayLike) -> Array:
         """As `Model.separation_at`, of the mean surface: at a given load only the separation differs."""
-        if quantity in SEPARATIONS or in_series(quantity):
+        if quantity in SEPARATIONS or is_stiffness(quantity):
             raise ValueError(
                 f"quantity = {quantity!r}: give a load, an area, or another sum of the asperities"
             )
@@ -184,7 +184,7 @@ class InteractingModel(Model):
         if quantity in SEPARATIONS:
             return np.zeros_like(x), c / self._own.rate(x) if nominal else np.full_like(x, -c)
         factor, press = np.ones_like(x), self._own.press(quantity, x) if nominal else np.zeros_like(x)
-        if in_series(quantity):
+        if is_stiffness(quantity):
             series = (1 + c * self.surface.sigma * self.alone.mean(quantity, x)) ** -2.0
             factor, press = factor * series, press * series
         return factor, press

@@ -20,11 +20,11 @@ the sign:
 
 import math
 from dataclasses import KW_ONLY, dataclass
-from typing import Literal
+from typing import Any, Literal
 
 from analytic.surface import Surface
 
-__all__ = ["Interaction"]
+__all__ = ["Interaction", "in_series"]
 
 Reference = Literal["body", "mean-plane"]
 
@@ -32,6 +32,11 @@ Reference = Literal["body", "mean-plane"]
 BOWL = (4 * math.asinh(1) - 4 / 3 * (math.sqrt(2) - 1)) / math.pi
 # Potential at a point of a square lattice in a neutral background, over charge/side: -4 zeta(1/2) beta(1/2).
 LATTICE = 3.900264920001956
+
+
+def in_series(stiffness: Any, compliance: float) -> Any:
+    """Stiffness of asperities, N/m, in series with a compliance, m/N; back again with the opposite one."""
+    return stiffness / (1 + compliance * stiffness)
 
 
 @dataclass(frozen=True, slots=True)

@@ -25,15 +25,21 @@ from numpy.typing import NDArray
 from analytic.model import Model
 from analytic.quantities import quantity_of
 
-__all__ = ["STEP", "WEIGHTS", "OwnBalance"]
+__all__ = ["OwnBalance", "derivative"]
 
 Array = NDArray[np.float64]
 
-STEP = 0.01  # of the differences that give derivatives by h, whose error is its fourth power
-WEIGHTS = np.array([[1, -8, 0, 8, -1], [-1, 16, -30, 16, -1]]) / 12.0  # first and second derivative
+_STEP = 0.01  # of the differences that give derivatives by h, whose error is its fourth power
+_WEIGHTS = np.array([[1, -8, 0, 8, -1], [-1, 16, -30, 16, -1]]) / 12.0  # first and second derivative
 _MOST_STEPS = 200
 _TOGETHER = 8  # separations that share a rule of heights
 _CLOSE = 4e-15  # of a separation
+
+
+def derivative(found: Callable[[Array], Array], x: Array, order: int = 1) -> Array:
+    """First or second derivative of a function at x, by its values at five points about each."""
+    around = np.stack([found(x + k * _STEP) for k in range(-2, 3)])
+    return np.asarray(np.tensordot(_WEIGHTS[order - 1], around, 1) / _STEP**order)
 
 
 @dataclass(frozen=True)
@@ -142,20 +148,16 @@ class OwnBalance:
         """Derivative of the mean of a sum by the separation: its slope, where that is known."""
         if quantity_of(quantity).base != "load_slope":
             return -self.alone.slope(quantity, x)
-        return np.asarray(np.tensordot(WEIGHTS[0], self._around(quantity, x), 1) / STEP)
+        return derivative(lambda at: self.alone.mean(quantity, at), x)
 
     def _second(self, quantity: str, x: Array) -> Array:
         """Second derivative of the mean of a sum by the separation."""
-        return np.asarray(np.tensordot(WEIGHTS[1], self._around(quantity, x), 1) / STEP**2)
-
-    def _around(self, quantity: str, x: Array) -> Array:
-        """Means of a sum at five separations about each."""
-        return np.stack([self.alone.mean(quantity, x + k * STEP) for k in range(-2, 3)])
+        return derivative(lambda at: self.alone.mean(quantity, at), x, order=2)
 
     def _changing(self, quantity: str, x: Array) -> Array:
         """Covariance of the derivative of a sum by the separation with the load."""
-        around = [self._covariance(quantity, x, k * STEP) for k in (-2, -1, 1, 2)]
-        return np.tensordot(WEIGHTS[0][[0, 1, 3, 4]], around, 1) / STEP
+        around = [self._covariance(quantity, x, k * _STEP) for k in (-2, -1, 1, 2)]
+        return np.tensordot(_WEIGHTS[0][[0, 1, 3, 4]], around, 1) / _STEP
 
     def _covariance(self, quantity: str, x: Array, apart: float = 0.0) -> Array:
         """Covariance of a sum with the load at separations x, the sum's farther up by `apart`."""

@@ -24,11 +24,12 @@ class _Alone:
 
     def read(self, name: str, start: int, stop: int | None) -> Array:
         """Rows `start` to `stop` (None: to the end) of a dataset."""
-        from analytic.interacting import in_series  # every comparison imports this file
+        from analytic.interacting import is_stiffness  # every comparison imports this file
+        from analytic.interaction import in_series
 
         values = self.whole.read(name, start, stop)
-        if name in self.names and in_series(name):
-            return np.asarray(values / (1 - self.compliance * values))
+        if name in self.names and is_stiffness(name):
+            return np.asarray(in_series(values, -self.compliance))
         return values
 
     def rows(self) -> int:
@@ -70,8 +71,5 @@ def asperities_alone(ensemble: Ensemble) -> Ensemble:
         As from `scene_alone`.
     """
     scene = ensemble.scene
-    if scene.interaction is None:
-        return ensemble
-    compliance = scene.interaction.compliance(scene.surface, float(scene.n_asperities))
-    sums = _Alone(ensemble.sums, compliance, scene.quantities)
+    sums = _Alone(ensemble.sums, scene.compliance, scene.quantities)
     return replace(ensemble, scene=scene_alone(scene, "this"), sums=sums)

@@ -5,7 +5,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from analytic.interacting import in_series
+from analytic.interacting import is_stiffness
+from analytic.interaction import in_series
 from mcgw.scene.scene import Scene
 
 __all__ = ["at_loads", "with_interaction"]
@@ -24,13 +25,8 @@ def with_interaction(scene: Scene, sums: dict[str, NDArray[Any]]) -> dict[str, A
     sums : dict of str to ndarray
         Of the asperities, SI, shape (surfaces, separations).
     """
-    assert scene.interaction is not None
-    compliance = scene.interaction.compliance(scene.surface, float(scene.n_asperities))
-    found: dict[str, Any] = {}
-    for name, values in sums.items():
-        stiff = name not in scene.other_separations and in_series(name)
-        found[name] = values / (1 + compliance * values) if stiff else values
-    h, sunk = np.array(scene.separations), compliance / scene.surface.sigma
+    found = {name: _answer(scene, name, values) for name, values in sums.items()}
+    h, sunk = np.array(scene.separations), scene.compliance / scene.surface.sigma
     for name in scene.other_separations:
         if name not in sums:
             load = sums["load_unloading" if name.endswith("_unloading") else "load"]
@@ -40,12 +36,12 @@ def with_interaction(scene: Scene, sums: dict[str, NDArray[Any]]) -> dict[str, A
 
 def at_loads(scene: Scene, found: dict[str, Any]) -> dict[str, Any]:
     """The same of what holds at given loads: with "nominal_separation" after the separation that is felt."""
-    assert scene.interaction is not None
-    compliance = scene.interaction.compliance(scene.surface, float(scene.n_asperities))
-    with_it: dict[str, Any] = {}
-    for name, value in found.items():
-        stiff = name != "separation" and in_series(name)
-        with_it[name] = value / (1 + compliance * value) if stiff else value
-        if name == "separation":
-            with_it["nominal_separation"] = value - compliance / scene.surface.sigma * found["load"]
-    return with_it
+    felt = found["separation"]
+    nominal = felt - scene.compliance / scene.surface.sigma * found["load"]
+    rest = {name: _answer(scene, name, value) for name, value in found.items() if name != "separation"}
+    return {"separation": felt, "nominal_separation": nominal, **rest}
+
+
+def _answer(scene: Scene, name: str, value: Any) -> Any:
+    """What becomes of a sum of the asperities."""
+    return in_series(value, scene.compliance) if is_stiffness(name) else value

@@ -18,7 +18,7 @@ from mcgw.machine.compiling import njit
 from mcgw.sampling.lanes import LANES, alike, fused, load, roots, total
 from mcgw.sampling.philox import CELLS, centred, made_for
 
-__all__ = ["FAILED", "POINTS", "SUMS", "balance_surfaces"]
+__all__ = ["FAILED", "POINTS", "SUMS", "balance_surfaces", "no_balance"]
 
 POINTS = 16  # of a cell; the error falls as 5.8 to their number
 SUMS = 5  # load, slope of the load, area, conductance (all reduced) and contacts
@@ -27,6 +27,14 @@ FAILED = -1.0  # in place of the contacts: the surface has no balance
 _CLOSE = 4e-15  # of a separation
 _ROUGHLY, _ROUGH_STEPS = 1e-3, 3  # a step after which cells are drawn, and how many without them
 _MOST_STEPS = 100
+
+
+def no_balance(surface: int, h: float) -> ValueError:
+    """The error of a surface without a balance at a nominal separation, to be raised."""
+    return ValueError(
+        f"interaction: surface {surface} has no balance at d/sigma = {h:g} from the mean plane; give higher "
+        "separations"
+    )
 
 
 @njit(nogil=True, cache=True)
@@ -48,6 +56,12 @@ def _add_weighted(s: Any, graded: Any, weight: Any, first: Any, stop: Any, x: An
     sums[3] += total(widths)
 
 
+@njit(inline="always")
+def _padded(n: Any) -> Any:
+    """How many numbers fill whole registers."""
+    return (n + LANES - 1) // LANES * LANES
+
+
 @njit(nogil=True, cache=True)
 def _add_single(s: Any, modulus: Any, first: Any, stop: Any, x: Any, room: Any, sums: Any) -> None:
     """Add the sums over single asperities, those above x."""
@@ -57,7 +71,7 @@ def _add_single(s: Any, modulus: Any, first: Any, stop: Any, x: Any, room: Any, 
         d = s[first + i] - x
         contacts += d > 0.0
         room[i] = max(d, 0.0)
-    filled = (n + LANES - 1) // LANES * LANES
+    filled = _padded(n)
     for i in range(n, filled):
         room[i] = 0.0
     forces = slopes = areas = widths = alike(0.0)
@@ -108,7 +122,7 @@ def _draw(
     _series(moduli, cell, x, n, value, last)
     for i in range(n):
         modulus[at + i] = value[i]
-    for i in range(n, (n + LANES - 1) // LANES * LANES):
+    for i in range(n, _padded(n)):
         s[at + i] = edges[cell]
         modulus[at + i] = 0.0
 
@@ -153,17 +167,17 @@ def _singles(who: Any, mesh: Any, counts: Any, few: Any, own: Any, first: Any, s
     n = stop - first
     for cell in range(counts.size):
         if counts[cell] <= few:
-            n += (counts[cell] + LANES - 1) // LANES * LANES
+            n += _padded(counts[cell])
     s, modulus = np.full(n + LANES, -np.inf), np.zeros(n + LANES)
     _copy(own[0], first, stop, s)
     _copy(own[1], first, stop, modulus)
-    at = (stop - first + LANES - 1) // LANES * LANES
+    at = _padded(stop - first)
     for cell in range(counts.size):
         if 0 < counts[cell] <= few:
             _draw(who[0], who[1], cell, counts[cell], mesh, s, modulus, at, room)
-            for i in range(at + counts[cell], at + (counts[cell] + LANES - 1) // LANES * LANES):
+            for i in range(at + counts[cell], at + _padded(counts[cell])):
                 s[i] = -np.inf  # it fills a register, and is nobody
-            at += (counts[cell] + LANES - 1) // LANES * LANES
+            at += _padded(counts[cell])
     return s, modulus, at
 
 
@@ -194,10 +208,9 @@ def _balance(
                     continue
                 if starts[near] < 0:
                     starts[near] = filled
-                    padded = (n + LANES - 1) // LANES * LANES
-                    s, modulus = _grown(s, modulus, filled + padded)
+                    s, modulus = _grown(s, modulus, filled + _padded(n))
                     _draw(who[0], who[1], near, n, mesh, s, modulus, starts[near], room)
-                    filled += padded
+                    filled += _padded(n)
                 _add_single(s, modulus, starts[near], starts[near] + n, x, room[0], sums)
             _add_weighted(heights, graded, weight, far * POINTS, cells * POINTS, x, sums)
             sums[4] += above[far]

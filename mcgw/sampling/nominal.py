@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analytic import quantity_of
-from mcgw.sampling.balance import FAILED, POINTS, balance_surfaces
+from mcgw.sampling.balance import FAILED, POINTS, balance_surfaces, no_balance
 from mcgw.sampling.block import Block
 from mcgw.sampling.cells import NODES, TO_COEFFICIENTS, Mesh, mesh_of
 from mcgw.sampling.counts import counts_of
@@ -130,10 +130,7 @@ class CellsAtNominal:
         failed = (found[:, :, 5] == FAILED) | (found[:, :, 0] < self.scene.lowest)
         if failed.any():
             surface, k = (int(x[0]) for x in np.nonzero(failed))
-            raise ValueError(
-                f"interaction: surface {first + surface} has no balance at d/sigma = "
-                f"{self.scene.separations[k]:g} from the mean plane; give higher separations"
-            )
+            raise no_balance(first + surface, self.scene.separations[k])
 
     @property
     def _layout(self) -> Layout:
@@ -142,10 +139,8 @@ class CellsAtNominal:
     @property
     def _compliance(self) -> float:
         """Of the interaction, d/sigma for a reduced load of 1."""
-        surface, interaction = self.scene.surface, self.scene.interaction
-        assert interaction is not None
-        c = interaction.compliance(surface, float(self.scene.n_asperities)) / surface.sigma
-        return c * quantity_of("load").scale(surface)
+        surface = self.scene.surface
+        return self.scene.compliance / surface.sigma * quantity_of("load").scale(surface)
 
     @cached_property
     def _points(self) -> tuple[Array, Array]:

@@ -14,6 +14,7 @@ from scipy.optimize import brentq
 
 from analytic import quantity_of
 from analytic.laws import term_of
+from mcgw.sampling.balance import no_balance
 from mcgw.sampling.block import Block
 from mcgw.sampling.counted import Counted
 from mcgw.sampling.counts import counts_of
@@ -52,8 +53,7 @@ def balanced_sums(scene: Scene, number: int, heights: Array, ratios: Array | Non
     ValueError
         If it has no balance at a separation.
     """
-    assert scene.interaction is not None
-    c = scene.interaction.compliance(scene.surface, float(scene.n_asperities)) / scene.surface.sigma
+    c = scene.compliance / scene.surface.sigma
     e = scene.modulus(heights)
 
     def total(name: str, x: float) -> float:
@@ -69,10 +69,7 @@ def balanced_sums(scene: Scene, number: int, heights: Array, ratios: Array | Non
     for h in scene.separations:
         x = _from_below(h, c, load) if c > 0 else _from_above(h, c, load, scene.lowest)
         if x is None:
-            raise ValueError(
-                f"interaction: surface {number} has no balance at d/sigma = {h:g} from the mean plane; give "
-                "higher separations"
-            )
+            raise no_balance(number, h)
         felt.append(x)
     found = {name: np.array([[total(name, x) for x in felt]]) for name in scene.quantities}
     return {**found, "effective_separation": np.array([felt])}

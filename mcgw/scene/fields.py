@@ -87,6 +87,13 @@ class Fields:
         return InteractingModel.of(self._alone, self.interaction)
 
     @property
+    def compliance(self) -> float:
+        """How much farther down the asperities feel the plane for each newton on the surface, m/N."""
+        if self.interaction is None:
+            return 0.0
+        return self.interaction.compliance(self.surface, float(self.n_asperities))
+
+    @property
     def as_measured(self) -> bool:
         """Whether its one surface has the measured heights as they are, and nothing is drawn."""
         return isinstance(self.heights, MeasuredHeights) and not self.heights.resampled
