@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import Any
 
 import numba
+from numba.core.runtime import rtsys
 
 from mcgw.errors import RunError
 
@@ -56,6 +57,7 @@ def njit(*, version: str = "", **options: Any) -> Callable[[Any], Any]:
             kept._source_stamp = _stamp_of_package(function.__module__) or kept._source_stamp
             _name_by_contents(kept)
             _go_on_when_full(compiled._cache)
+            _load_without_compiler(compiled._cache)
         return compiled
 
     return decorate
@@ -98,6 +100,21 @@ def _go_on_when_full(kept: Any) -> None:
             _say(kept.cache_path, error.strerror or str(error))
 
     kept.save_overload = try_to_save
+
+
+def _load_without_compiler(kept: Any) -> None:
+    """Let machine code that is there run without all that only compiling needs: some 0.4 s a process.
+
+    Numba makes its compiler ready before it looks for what it kept, with the types and functions of all
+    of NumPy. To load needs none of them, and to compile makes it ready anyway.
+    """
+
+    def load(signature: Any, context: Any) -> Any:
+        rtsys.initialize(context)  # what allocates arrays
+        with kept._guard_against_spurious_io_errors():
+            return kept._load_overload(signature, context)
+
+    kept.load_overload = load
 
 
 _SAID: set[str] = set()
