@@ -19,11 +19,11 @@ Array = NDArray[np.float64]
 
 _PIECE = 2048  # numbers at a time: they stay in the innermost cache
 _LOG2_HIGH, _LOG2_LOW = 0.693147180369123816490, 1.90821492927058770002e-10  # the first has 33 bits
-_TAYLOR = [1.0]
+TAYLOR = [1.0]
 for _k in range(1, 14):
-    _TAYLOR.append(_TAYLOR[-1] / _k)
-_BACKWARDS, _PER_LOG2 = _TAYLOR[::-1], 1 / (_LOG2_HIGH + _LOG2_LOW)
-_PLAIN = 700.0  # up to here neither exp nor its steps overflow or lose a digit
+    TAYLOR.insert(0, TAYLOR[0] / _k)  # of exp, the highest power first
+_PER_LOG2 = 1 / (_LOG2_HIGH + _LOG2_LOW)
+PLAIN = 700.0  # up to here neither exp nor its steps overflow or lose a digit
 _SMALLEST, _LARGEST = -745.2, 709.79  # beyond, exp is 0 or infinite
 _HALF = np.sqrt(0.5)
 _FAR = 1e4  # beyond, a density is 0
@@ -74,16 +74,16 @@ def exp(x: Array) -> Array:
     ndarray
         In their shape.
     """
-    if x.size and np.abs(x).max() < _PLAIN:
+    if x.size and np.abs(x).max() < PLAIN:
         k = np.rint(x * _PER_LOG2)
-        return _polynomial(_BACKWARDS, (x - k * _LOG2_HIGH) - k * _LOG2_LOW) * _power_of_two(k)
+        return _polynomial(TAYLOR, (x - k * _LOG2_HIGH) - k * _LOG2_LOW) * _power_of_two(k)
     with np.errstate(over="ignore", under="ignore"):
         inside = np.clip(x, _SMALLEST, _LARGEST)
         inside[np.isnan(x)] = 0.0
         k = np.rint(inside * _PER_LOG2)
         r = (inside - k * _LOG2_HIGH) - k * _LOG2_LOW
         half = np.floor(k / 2)  # in two steps, the first of which is exact
-        value = _polynomial(_BACKWARDS, r) * _power_of_two(half) * _power_of_two(k - half)
+        value = _polynomial(TAYLOR, r) * _power_of_two(half) * _power_of_two(k - half)
     value[x < _SMALLEST] = 0.0
     value[x > _LARGEST] = np.inf
     value[np.isnan(x)] = np.nan

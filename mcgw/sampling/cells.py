@@ -12,8 +12,8 @@ cells: those few are the extras.
 """
 
 import math
+from bisect import bisect_left
 from dataclasses import dataclass
-from itertools import pairwise
 
 import numpy as np
 from numpy.polynomial import chebyshev
@@ -21,8 +21,9 @@ from numpy.typing import NDArray
 
 from analytic import Grading, HeightLaw, PiecewiseSeries, bends
 from analytic.elementary import exp
+from mcgw.sampling.exp_log import weigh_exponentials
 from mcgw.sampling.rules import chebyshev_points, chebyshev_transform, gauss_legendre, product
-from mcgw.sampling.spacing import Gap, cuts
+from mcgw.sampling.spacing import Gaps, cuts
 from mcgw.sampling.stretches import begins_and_breaks
 from mcgw.scene.scene import Scene
 
@@ -36,6 +37,7 @@ _SHORT, _MOST_HALVINGS = 16, 60  # terms for a grading on a cell, and how often 
 _FAR, _NARROWER = 2.0, 0.75  # spans from a root of the laws of contact, and what is left of one nearer by
 _DIGITS = 4.0  # of a height that coefficients without meaning may seem to be worth
 _EVEN, _LEAST = 4.0, 1 / 16  # see `evenness`
+_TOGETHER = 64  # cells whose densities stay in the cache
 _CLOSEST = 2.0**-40  # of a cell to an end of the support that is a broken power
 
 _ORDER = 20
@@ -159,23 +161,22 @@ def _widest(law: HeightLaw, a: float, distance: float) -> float:
 
 def _spaced(law: HeightLaw, n: int, begins: Array, breaks: Array, marks: Array) -> Array:
     """Marks, and cells where contacts begin or change their law such that drawing costs the least."""
-    before, gaps = np.diff(begins, prepend=-np.inf), []
-    for low, high in pairwise(marks.tolist()):
-        k = np.searchsorted(begins, low)
-        if k < len(begins) and begins[k] == low:
-            gaps.append(Gap(low, high, float(before[k])))
-        elif k > 0 and low in breaks:
-            gaps.append(Gap(low, high, float(low - begins[k - 1]), root=False))
-    return np.unique(np.concatenate([marks, *cuts(law, n, gaps)]))
+    low = marks[:-1]
+    k = np.searchsorted(begins, low)
+    root = begins[np.minimum(k, len(begins) - 1)] == low
+    before = low - np.concatenate([[-np.inf], begins])[k]
+    some = root | (np.isin(low, breaks) & np.isfinite(before))
+    gaps = Gaps(low[some], marks[1:][some], before[some], root[some])
+    return np.unique(np.concatenate([marks, cuts(law, n, gaps)]))
 
 
 def _refined(law: HeightLaw, begins: Array, marks: Array) -> Array:
     """Edges from mark to mark, each cell as wide as the law and the contacts that begin below let it be."""
-    edges = [marks[0]]
-    for mark in marks[1:]:
+    lows, edges = [-np.inf, *begins.tolist()], marks[:1].tolist()
+    for mark in marks[1:].tolist():
         while (a := edges[-1]) < mark:
-            below = begins[np.searchsorted(begins, a) - 1] if begins[0] < a else -np.inf
-            widest, room = min(a - below, _widest(law, a, a - below)), mark - a
+            distance, room = a - lows[bisect_left(lows, a) - 1], mark - a
+            widest = min(distance, _widest(law, a, distance))
             if room <= widest * (1 + _ROUNDING):
                 edges.append(mark)
             else:
@@ -222,9 +223,16 @@ def evenness(grading: Grading, e: Array) -> Array:
 
 
 def _mass(law: HeightLaw, a: Array, t: Array) -> Array:
-    """Probability between a and a + t, relative to the density at a: `t` has shape (cells, ...)."""
-    tau = t[..., None] * _X
-    return t * product(exp(law.log_ratio(a[:, None, None], tau)), _W)
+    """Probability between a and a + t, relative to the density at a: `t` has shape (cells, points)."""
+    mass = np.empty(t.shape)
+    for first in range(0, len(a), _TOGETHER):
+        some = slice(first, first + _TOGETHER)
+        heights = law.log_ratio(a[some, None, None], t[some, :, None] * _X).reshape(-1, len(_X))
+        sums = np.empty(len(heights))
+        if not weigh_exponentials(heights, _W, sums):
+            sums = product(exp(heights), _W)
+        mass[some] = sums.reshape(-1, t.shape[1])
+    return t * mass
 
 
 def _stretch(law: HeightLaw, a: Array, width: Array, mass: Array) -> Array:

@@ -9,13 +9,16 @@ from typing import Any
 
 import numpy as np
 
-from analytic.elementary import MIDDLE, NEAR, OUT
+from analytic.elementary import MIDDLE, NEAR, OUT, PLAIN, TAYLOR
 from mcgw.machine.compiling import njit
+from mcgw.sampling.lanes import bits, fused, number
 
-__all__ = ["exp_minus", "log", "log_one_minus", "make_normal"]
+__all__ = ["exp_minus", "log", "log_one_minus", "make_normal", "weigh_exponentials"]
 
 _LOG2_HIGH, _LOG2_LOW = 0.693147180369123816490, 1.90821492927058770002e-10  # the first has 33 bits
 _HALF = math.sqrt(0.5)
+_TAYLOR = np.array(TAYLOR)
+_LAST_DIGIT = 1.5 * 2.0**52  # added to a whole number, this leaves it in the last bits
 _MIDDLE, _NEAR, _OUT = (np.array(table) for table in (MIDDLE, NEAR, OUT))  # compiled as constants
 
 
@@ -83,3 +86,36 @@ def make_normal(x: Any) -> None:
                 far = _ratio(_NEAR, r - 1.6) if r <= 5.0 else _ratio(_OUT, r - 5.0)
                 middle[i] = math.copysign(far, q)
         row[:] = middle
+
+
+@njit(nogil=True, cache=True, error_model="numpy")
+def weigh_exponentials(x: Any, weights: Any, result: Any) -> Any:
+    """Weighted sums of exponentials, as `analytic.elementary.exp` has them.
+
+    Parameters
+    ----------
+    x, weights : ndarray
+        Shape (n, m) and (m,).
+    result : ndarray
+        Where the sums are written, shape (n,).
+
+    Returns
+    -------
+    bool
+        Whether they are right: not if a number is beyond `analytic.elementary.PLAIN`.
+    """
+    e, plain = np.empty(weights.size), True
+    for i in range(x.shape[0]):
+        for j in range(weights.size):
+            plain &= abs(x[i, j]) < PLAIN
+            k = np.rint(x[i, j] * (1 / (_LOG2_HIGH + _LOG2_LOW)))
+            r = (x[i, j] - k * _LOG2_HIGH) - k * _LOG2_LOW
+            value = r * _TAYLOR[0] + _TAYLOR[1]
+            for c in range(2, 14):
+                value = value * r + _TAYLOR[c]
+            e[j] = value * number((bits(k + _LAST_DIGIT) + 1023) << 52)
+        total = 0.0
+        for j in range(weights.size):
+            total = fused(e[j], weights[j], total)
+        result[i] = total
+    return plain

@@ -16,7 +16,7 @@ from numba.core import cgutils
 from numba.core.typing.templates import ConcreteTemplate, infer_global, signature
 from numba.extending import intrinsic, lower_builtin, models, register_model
 
-__all__ = ["LANES", "alike", "bits", "fused", "load", "roots", "store", "total"]
+__all__ = ["LANES", "alike", "bits", "fused", "load", "number", "roots", "store", "total"]
 
 LANES = 4
 
@@ -152,3 +152,13 @@ def bits(_typing: Any, a: Any) -> Any:
         return builder.bitcast(args[0], ir.IntType(64))
 
     return types.int64(a), code
+
+
+@_intrinsic
+def number(_typing: Any, _word: Any) -> Any:
+    """The number that a word holds: the way back."""
+
+    def code(_context: Any, builder: Any, _sig: Any, args: Any) -> Any:
+        return builder.bitcast(args[0], _DOUBLE)
+
+    return types.float64(types.int64), code

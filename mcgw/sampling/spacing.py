@@ -6,17 +6,15 @@ distance to the next separation below need about fifteen, cells half as wide ten
 geometrically from a separation upwards, and how fast, and to how many, is chosen for each gap.
 """
 
-import math
-from collections.abc import Sequence
+from dataclasses import dataclass
 from functools import cache
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from analytic import HeightLaw
 
-__all__ = ["SURE", "Gap", "cuts", "price"]
+__all__ = ["SURE", "Gaps", "cuts", "price"]
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -25,6 +23,7 @@ SURE = 400  # so many expected contacts are never fewer than half
 _DIGITS = 11.4  # that the moments must give, of a law or of the sum of a surface
 _GROWTHS = (2.0, 1.8, 1.6, 1.5, 1.45, 1.4, 1.3, 1.2)  # with 2 each cell is as wide as it may be
 _MORE = 8  # cells than the fewest possible
+_TIE = 1e-9  # share of a price that is no difference
 
 # Prices, in asperities that give ten moments; found when the loops took eight numbers at a time. They
 # take four now, and `runs/bench/prices.py` finds cells cheaper and many moments dearer, by up to a half.
@@ -32,31 +31,53 @@ _MORE = 8  # cells than the fewest possible
 _CELL, _TWO_MORE, _FIVE_MORE, _ROOT, _FIVE_ROOTS_MORE = 250.0, 0.1, 0.25, 0.3, 0.2
 
 
-class Gap(NamedTuple):
-    """Heights from a separation, or from a break of the contact law, to the next one.
+@dataclass(frozen=True)
+class Gaps:
+    """Heights from separations, or from breaks of the contact law, to the next ones: one an array element.
 
-    Attributes
+    Parameters
     ----------
-    low, high : float
-        Its ends.
-    before : float
+    low, high : ndarray
+        Their ends.
+    before : ndarray
         Distance from `low` to the separation below, infinite if there is none.
-    root : bool
+    root : ndarray of bool
         Whether contacts begin at `low`.
     """
 
-    low: float
-    high: float
-    before: float
-    root: bool = True
+    low: Array
+    high: Array
+    before: Array
+    root: NDArray[np.bool_]
 
     @property
-    def fewest(self) -> int:
-        """Cells that it takes if each is as wide as it may be."""
-        return 1 + math.ceil(max(math.log2(self.high - self.low) - math.log2(self.before), 0.0) - 1e-9)
+    def fewest(self) -> Ints:
+        """Cells that each takes if they are as wide as they may be."""
+        halvings = np.log2(self.high - self.low) - np.log2(self.before)
+        return np.asarray(1 + np.ceil(np.maximum(halvings, 0.0) - 1e-9), dtype=np.int64)
+
+    def take(self, which: NDArray[np.bool_]) -> "Gaps":
+        """Some of them."""
+        return Gaps(self.low[which], self.high[which], self.before[which], self.root[which])
 
 
-def cuts(law: HeightLaw, n: int, gaps: Sequence[Gap]) -> list[Array]:
+@dataclass(frozen=True)
+class _Cells:
+    """Cells that might be: heights where they start, widths, distances to the root below, and who is above."""
+
+    start: Array
+    width: Array
+    distance: Array
+    above: Array
+    beyond: Array
+
+    @property
+    def allowed(self) -> NDArray[np.bool_]:
+        """Whether they are no wider than their distance to the next separation below."""
+        return np.asarray(self.width <= self.distance * (1 + 1e-9))
+
+
+def cuts(law: HeightLaw, n: int, gaps: Gaps) -> Array:
     """Cut gaps into cells.
 
     Parameters
@@ -65,70 +86,74 @@ def cuts(law: HeightLaw, n: int, gaps: Sequence[Gap]) -> list[Array]:
         Of the heights.
     n : int
         Asperities of a surface; none asks for the fewest cells.
-    gaps : sequence of Gap
+    gaps : Gaps
         What to cut.
 
     Returns
     -------
-    list of ndarray
-        Edges from `low` to `high` of each gap, those that need as many cells together. No cell is wider than
-        its distance to the nearest separation below.
+    ndarray
+        Where, inside the gaps. No cell is wider than its distance to the nearest separation below.
     """
-    alike: dict[int, list[Gap]] = {}
-    for gap in gaps:
-        alike.setdefault(gap.fewest, []).append(gap)
-    return [edges for fewest, some in alike.items() for edges in _cut(law, n, some, _ladders(fewest))]
+    found, fewest = [np.empty(0)], gaps.fewest
+    for number in np.unique(fewest).tolist():
+        some = gaps.take(fewest == number)
+        if number == 1:
+            some = some.take(_worth_cutting(law, n, some))
+        found.append(_cut(law, n, some, number))
+    return np.concatenate(found)
 
 
-def _cut(law: HeightLaw, n: int, gaps: list[Gap], upper: Array) -> list[Array]:
-    """Cut gaps, each by the cheapest of the ladders: arrays are (gaps, ladders, cells)."""
-    low, high, before, root = (np.array(part)[:, None, None] for part in zip(*gaps, strict=True))
-    length = high - low
-    width = np.diff(upper, axis=1, prepend=0.0)
-    first = np.where(root, before / length, upper - width + before / length)
-    distance = np.where(root & (upper > width), upper - width, first)
-    allowed = (width <= distance * (1 + 1e-9)).all(axis=2)
-    prices = np.where(allowed, _prices(law, n, low, length, upper, distance, root), np.inf)
-    cheapest = np.argmax(prices <= prices.min(axis=1, keepdims=True) * (1 + 1e-9), axis=1)
-    found = []  # the first one of the cheapest: rounding breaks no tie
-    for gap, best in zip(gaps, cheapest.tolist(), strict=True):
-        inner = upper[best][width[best] > 0][:-1]
-        found.append(np.concatenate([[gap.low], gap.low + (gap.high - gap.low) * inner, [gap.high]]))
-    return found
+def _worth_cutting(law: HeightLaw, n: int, gaps: Gaps) -> NDArray[np.bool_]:
+    """Whether two cells might cost less than one, if an asperity in them cost the least there is."""
+    above, beyond = law.above(gaps.low), law.above(gaps.high)
+    whole = _Cells(gaps.low, gaps.high - gaps.low, gaps.before, above, beyond)
+    two = 2 * _CELL + n * (above - beyond)
+    return np.asarray(_prices(law, n, whole, gaps.root) > two * (1 - _TIE))
+
+
+def _cut(law: HeightLaw, n: int, gaps: Gaps, fewest: int) -> Array:
+    """Cut gaps that need so many cells: arrays are (gaps, growths, cells), the highest cell first."""
+    low, high, before, root = (
+        part[:, None, None] for part in (gaps.low, gaps.high, gaps.before, gaps.root)
+    )
+    length, rungs = high - low, _rungs(fewest + _MORE)
+    heights = low + length * rungs
+    above, least = law.above(heights), law.above(low)
+    upper = _Cells(
+        start=heights[..., 1:],
+        width=length * -np.diff(rungs),
+        distance=length * rungs[:, 1:] + np.where(root, 0.0, before),
+        above=above[..., 1:],
+        beyond=above[..., :-1],
+    )
+    lowest = _Cells(low, length * rungs[:, fewest - 1 :], before, least, above[..., fewest - 1 :])
+    uppers = np.cumsum(np.where(upper.allowed, _prices(law, n, upper, np.False_), np.inf), axis=2)
+    uppers = np.concatenate([np.zeros((*uppers.shape[:2], 1)), uppers], axis=2)[..., fewest - 1 :]
+    prices = uppers + np.where(lowest.allowed, _prices(law, n, lowest, root), np.inf)
+    prices = prices.reshape(len(prices), len(_GROWTHS) * (_MORE + 1))
+    cheapest = np.argmax(prices <= prices.min(axis=1, keepdims=True, initial=np.inf) * (1 + _TIE), axis=1)
+    growth, more = np.divmod(cheapest, _MORE + 1)  # the first one of the cheapest: rounding breaks no tie
+    chosen = heights[np.arange(len(prices)), growth]
+    return np.asarray(chosen[:, 1:][np.arange(1, fewest + _MORE) < (fewest + more)[:, None]])
 
 
 @cache
-def _ladders(fewest: int) -> Array:
-    """Upper edges of the cells of a gap of length 1: each row a choice, unused cells first and empty."""
-    most = fewest + _MORE
-    rows = []
-    for growth in _GROWTHS:
-        rungs = np.cumprod([1.0, *[1 / growth] * (most - 1)])[::-1]  # the same bits on every processor
-        for parts in range(fewest, most + 1):
-            rows.append(np.where(np.arange(most) >= most - parts, rungs, 0.0))
-    return np.array(rows)
+def _rungs(most: int) -> Array:
+    """Upper edges of so many cells in a gap of length 1 for each growth, the highest first."""
+    return np.array([np.cumprod([1.0, *[1 / growth] * (most - 1)]) for growth in _GROWTHS])
 
 
-def _prices(
-    law: HeightLaw, n: int, low: Array, length: Array, upper: Array, distance: Array, root: NDArray[np.bool_]
-) -> Array:
-    """What the asperities of a surface cost for each choice of cells."""
-    width = np.diff(upper, axis=1, prepend=0.0)
-    edges, used = low + length * np.insert(upper, 0, 0.0, axis=1), width > 0
-    beyond = law.above(edges)
-    start, above = edges[..., :-1], beyond[..., :-1]
-    expected = n * np.where(used, above - beyond[..., 1:], 0.0)
+def _prices(law: HeightLaw, n: int, cells: _Cells, root: NDArray[np.bool_] | np.bool_) -> Array:
+    """What the asperities of a surface cost in each cell; contacts begin where it starts, or not."""
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-        bend = np.nan_to_num(np.abs(law.log_ratio(start, length * width)), nan=np.inf)
+        bend = np.nan_to_num(np.abs(law.log_ratio(cells.start, cells.width)), nan=np.inf)
         # Of a surface's sum, rather than of the law, where so many touch that it is sure to be large.
-        reach = length * (np.where(np.isfinite(distance), distance, 0.0) + width)
-        part = np.where(n * above > SURE, expected / (n * above) * np.sqrt(reach), 1.0)
-        digits = _DIGITS + np.log10(part)
-        plain = digits / _rate(np.minimum(1 + 2 * distance / width, 2 / bend))
-        rooted = 1 + digits / _rate(2 / bend)
-    first = used & (upper == width) & root
-    each = price(plain, np.where(first, rooted, 0.0))
-    return np.asarray((np.where(used, _CELL + expected * each, 0.0)).sum(axis=2))
+        touching, expected = n * cells.above, n * (cells.above - cells.beyond)
+        reach = np.where(np.isfinite(cells.distance), cells.distance, 0.0) + cells.width
+        digits = _DIGITS + np.log10(np.where(touching > SURE, expected / touching * np.sqrt(reach), 1.0))
+        plain = digits / _rate(np.minimum(1 + 2 * cells.distance / cells.width, 2 / bend))
+        rooted = np.where(root, 1 + digits / _rate(2 / bend), 0.0)
+    return np.asarray(_CELL + expected * price(plain, rooted))
 
 
 def price(plain: Array | Ints, rooted: Array | Ints) -> Array:
