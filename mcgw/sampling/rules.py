@@ -12,11 +12,13 @@ from numpy.polynomial import chebyshev
 from numpy.typing import NDArray
 
 from mcgw.machine.compiling import njit
-from mcgw.sampling.lanes import fused
+from mcgw.sampling.lanes import LANES, alike, fused, load, store
 
 __all__ = ["chebyshev_points", "chebyshev_transform", "gauss_legendre", "product", "triangle"]
 
 Array = NDArray[np.float64]
+
+_TOGETHER = 4 * LANES  # columns
 
 
 def _sine(x: Any) -> Array:
@@ -81,16 +83,32 @@ def product(a: Array, b: Array) -> Array:
         np.ascontiguousarray(a.reshape(-1, a.shape[-1])),
         np.ascontiguousarray(b.reshape(len(b), math.prod(b.shape[1:]))),
     )
-    result = np.zeros((len(rows), columns.shape[1]))
-    _add_product(rows, columns, result)
+    result = np.empty((len(rows), columns.shape[1]))
+    _multiply(rows, columns, result)
     return result.reshape(a.shape[:-1] + b.shape[1:])
 
 
 @njit(nogil=True, cache=True)
-def _add_product(a: Any, b: Any, result: Any) -> None:
-    for i in range(a.shape[0]):
-        for k in range(a.shape[1]):
-            for j in range(b.shape[1]):
+def _multiply(a: Any, b: Any, result: Any) -> None:
+    """Sixteen columns at a time, whose sums stay in registers; the last ones one by one."""
+    columns = b.shape[1]
+    whole = columns // _TOGETHER * _TOGETHER
+    for j in range(0, whole, _TOGETHER):
+        for i in range(a.shape[0]):
+            s = t = u = v = alike(0.0)
+            for k in range(a.shape[1]):
+                x, at = alike(a[i, k]), k * columns + j
+                s, t = fused(x, load(b, at), s), fused(x, load(b, at + LANES), t)
+                u, v = fused(x, load(b, at + 2 * LANES), u), fused(x, load(b, at + 3 * LANES), v)
+            at = i * columns + j
+            store(result, at, s)
+            store(result, at + LANES, t)
+            store(result, at + 2 * LANES, u)
+            store(result, at + 3 * LANES, v)
+    for j in range(whole, columns):
+        for i in range(a.shape[0]):
+            result[i, j] = 0.0
+            for k in range(a.shape[1]):
                 result[i, j] = fused(a[i, k], b[k, j], result[i, j])
 
 

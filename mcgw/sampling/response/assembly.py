@@ -7,7 +7,8 @@ from numpy.typing import NDArray
 
 from mcgw.sampling.cells import NODES
 from mcgw.sampling.response.dense import Parts
-from mcgw.sampling.response.product import FOUR, Blocks, Tiles, in_fours
+from mcgw.sampling.response.gathering import FOUR, Lines, in_fours
+from mcgw.sampling.response.product import Tiles
 from mcgw.sampling.response.tree import transfers
 
 __all__ = ["tiles_of"]
@@ -34,9 +35,8 @@ def tiles_of(parts: Parts, order: Ints) -> Tiles:
         To apply to moments as `Layout` has them.
     """
     rows = _Rows.of(parts)
-    return Tiles.of(
-        [_transfers(parts, rows), _answers(parts, rows, np.argsort(order))], rows.given, rows.answers(order)
-    )
+    both = zip(_transfers(parts, rows), _answers(parts, rows, np.argsort(order)), strict=True)
+    return Tiles.of(Lines(*(np.concatenate(part) for part in both)), rows.given, rows.answers(order))
 
 
 @dataclass(frozen=True)
@@ -70,30 +70,20 @@ class _Rows:
         return answers.reshape(-1, FOUR)
 
 
-def _transfers(parts: Parts, rows: _Rows) -> Blocks:
-    """Blocks that make the moments of the parents."""
+def _transfers(parts: Parts, rows: _Rows) -> Lines:
+    """What makes the moments of the parents."""
     parent, child, matrices = transfers(parts.mesh, parts.tree)
     j = np.arange(_ORDER)
-    wanted = j < parts.plain[parent][:, None]
-    pair, moment = np.nonzero(wanted)
+    pair, moment = np.nonzero(j < parts.plain[parent][:, None])
     coefficients = np.where(j < parts.plain[child[pair]][:, None], matrices[pair, moment], 0.0)
-    return _blocks(rows.plain[parent[pair]] + moment, rows.plain[child[pair]], coefficients)
+    return Lines(rows.plain[parent[pair]] + moment, rows.plain[child[pair]], coefficients)
 
 
-def _answers(parts: Parts, rows: _Rows, places: Ints) -> Blocks:
-    """Blocks that make the answers."""
+def _answers(parts: Parts, rows: _Rows, places: Ints) -> Lines:
+    """What makes the answers."""
     node, rooted, entries = parts.entries.node, parts.entries.rooted, parts.entries
     cell = np.where(rooted, node, 0)
     start = np.where(rooted, rows.rooted[cell], rows.plain[node]) if len(node) else node
     size = np.where(rooted, parts.rooted[cell], parts.plain[node]) if len(node) else node
     coefficients = np.where(np.arange(_ORDER) < size[:, None], entries.coefficients.T, 0.0)
-    return _blocks(rows.end + places[parts.answer[entries.row]], start, coefficients)
-
-
-def _blocks(row: Ints, start: Ints, coefficients: Array) -> Blocks:
-    """Coefficients of rows, of neighbouring columns from `start` on, without blocks of zeros."""
-    filled = np.zeros((len(row), in_fours(_ORDER)))
-    filled[:, :_ORDER] = coefficients
-    blocks = filled.reshape(len(row), in_fours(_ORDER) // FOUR, FOUR)
-    which, block = np.nonzero(blocks.any(axis=2))
-    return row[which], start[which] + FOUR * block, blocks[which, block]
+    return Lines(rows.end + places[parts.answer[entries.row]], start, coefficients)

@@ -6,9 +6,7 @@ computed row needs those of a range of heights: so groups are computed in one sw
 down, and the table is small enough to stay in the cache.
 """
 
-from collections.abc import Sequence
 from dataclasses import dataclass
-from heapq import heappop, heappush
 from typing import Any
 
 import numpy as np
@@ -18,20 +16,14 @@ from mcgw.machine.aligned import aligned
 from mcgw.machine.compiling import njit
 from mcgw.machine.in_threads import in_threads, pieces
 from mcgw.sampling.lanes import fused
+from mcgw.sampling.response.gathering import FOUR, Lines, gathered
 
-__all__ = ["FOUR", "Blocks", "Tiles", "in_fours"]
+__all__ = ["Tiles"]
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
-Blocks = tuple[Ints, Ints, Array]  # rows, first columns, values of shape (blocks, 4)
 
-FOUR = 4  # rows and columns of a tile
 _WIDTH = 64  # surfaces at a time: what they need of the table stays in the innermost cache
-
-
-def in_fours(rows: Any) -> Any:
-    """Rounded up."""
-    return (rows + FOUR - 1) // FOUR * FOUR
 
 
 @dataclass(frozen=True)
@@ -62,12 +54,12 @@ class Tiles:
     answers: Ints
 
     @classmethod
-    def of(cls, blocks: Sequence[Blocks], given: Ints, answers: Ints) -> "Tiles":
-        """Gather blocks of single rows, each of which needs given rows and rows of earlier groups.
+    def of(cls, lines: Lines, given: Ints, answers: Ints) -> "Tiles":
+        """Gather the lines of rows, each of which needs given rows and rows of earlier groups.
 
         Parameters
         ----------
-        blocks : sequence of Blocks
+        lines : Lines
             Their rows and columns count the rows of `given`, then those of `answers`.
         given : ndarray of int
             The given row that each one is, -1 for zeros; shape (groups, 4).
@@ -79,32 +71,8 @@ class Tiles:
         Tiles
             In the order of the sweep.
         """
-        row, column, value = (np.concatenate(part) for part in zip(*(_NOTHING, *blocks), strict=True))
-        group, place = np.divmod(row, FOUR)
-        (group, source), tile = np.unique(np.stack([group, column // FOUR]), axis=1, return_inverse=True)
-        values = np.zeros((len(group), FOUR, FOUR))
-        values[tile, place] = value
-        order = _sweep_down(group, source, len(given), len(answers))
-        steps = np.full(len(given) + len(answers), len(order))  # when a group comes into the table
-        steps[len(given) + order] = np.arange(len(order))
-        step = steps[group]
-        np.minimum.at(steps, source, step)  # of the given ones when first needed: others are there before
-        last = steps.copy()
-        np.maximum.at(last, source, step)
-        places = FOUR * _places(steps, last)
-        asked = np.flatnonzero(steps[: len(given)] < len(order))
-        fetches = asked[np.argsort(steps[asked], kind="stable")]
-        turn = np.argsort(step, kind="stable")
-        return cls(
-            fetches=given[fetches],
-            fetch_ends=np.cumsum(np.bincount(steps[fetches], minlength=len(order))),
-            fetched=places[fetches],
-            tile_ends=np.cumsum(np.bincount(step, minlength=len(order))),
-            used=places[source[turn]].astype(np.uint64),
-            values=values[turn],
-            computed=places[len(given) + order],
-            answers=answers[order],
-        )
+        order, fetches, *program = gathered(lines, len(given), len(answers))
+        return cls(given[fetches], *program, answers[order])
 
     def apply(self, given: Array, shape: tuple[int, int]) -> Array:
         """Answers.
@@ -133,33 +101,6 @@ class Tiles:
 
         in_threads(share, pieces(given.shape[1], _WIDTH))
         return result
-
-
-_NOTHING: Blocks = (np.empty(0, np.int64), np.empty(0, np.int64), np.empty((0, FOUR)))
-
-
-def _sweep_down(group: Ints, source: Ints, given: int, computed: int) -> Ints:
-    """Computed groups in the order of the lowest given group that each needs, by way of the others too."""
-    lowest = np.concatenate([np.arange(given), np.full(computed, given)])
-    while True:  # as often as the tree has levels
-        reached = lowest.copy()
-        np.minimum.at(reached, group, lowest[source])
-        if np.array_equal(reached, lowest):
-            return np.lexsort((np.arange(computed), -lowest[given:]))
-        lowest = reached
-
-
-def _places(first: Ints, last: Ints) -> Ints:
-    """Places, as few as can be, for what is there from one step to another."""
-    places = np.empty_like(first)
-    taken: list[tuple[int, int]] = []
-    free: list[int] = []
-    for item in np.argsort(first, kind="stable").tolist():
-        while taken and taken[0][0] < first[item]:
-            free.append(heappop(taken)[1])
-        places[item] = free.pop() if free else len(taken)
-        heappush(taken, (int(last[item]), int(places[item])))
-    return places
 
 
 @njit(nogil=True, cache=True)

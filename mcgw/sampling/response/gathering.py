@@ -1,0 +1,211 @@
+"""From rows of a matrix, each a few runs of neighbouring columns, to tiles in the order of one sweep."""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mcgw.machine.compiling import njit
+
+__all__ = ["FOUR", "Gathered", "Lines", "gathered", "in_fours"]
+
+Array = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+FOUR = 4  # rows and columns of a tile
+
+
+def in_fours(rows: Any) -> Any:
+    """Rounded up."""
+    return (rows + FOUR - 1) // FOUR * FOUR
+
+
+class Lines(NamedTuple):
+    """Pieces of rows, one an array element; a row may have several.
+
+    Attributes
+    ----------
+    row : ndarray of int
+        Whose they are.
+    start : ndarray of int
+        First column, a multiple of four.
+    values : ndarray
+        Of the columns from there on, shape (lines, columns): as many as a multiple of four.
+    """
+
+    row: Ints
+    start: Ints
+    values: Array
+
+
+class Gathered(NamedTuple):
+    """Tiles in the order of their steps, as `mcgw.sampling.response.product.Tiles` has them.
+
+    Attributes
+    ----------
+    order : ndarray of int
+        Which computed group each step computes.
+    fetches, fetch_ends, fetched, tile_ends, used, values, computed
+        As there; `fetches` are groups.
+    """
+
+    order: Ints
+    fetches: Ints
+    fetch_ends: Ints
+    fetched: Ints
+    tile_ends: Ints
+    used: NDArray[np.uint64]
+    values: Array
+    computed: Ints
+
+
+def gathered(lines: Lines, given: int, computed: int) -> Gathered:
+    """Gather lines into tiles.
+
+    Parameters
+    ----------
+    lines : Lines
+        Of rows that are computed, of given rows and rows of earlier groups.
+    given, computed : int
+        How many groups of rows are given, and how many are computed after them.
+
+    Returns
+    -------
+    Gathered
+        Groups are computed in one sweep from the highest given ones that they need down, so that each has a
+        place in the table for a short time; tiles of a group in the order of their columns.
+    """
+    return Gathered(*_gather(*lines, given, computed))
+
+
+@njit(nogil=True, cache=True)
+def _filled(values: Any) -> Any:
+    """Which fours of the values of each line are not all zeros, as bits."""
+    filled = np.zeros(values.shape[0], dtype=np.uint32)
+    for line in range(values.shape[0]):
+        for column in range(values.shape[1]):
+            if values[line, column] != 0.0:
+                filled[line] |= np.uint32(1) << np.uint32(column // FOUR)
+    return filled
+
+
+@njit(nogil=True, cache=True)
+def _sorted_by(keys: Any, kinds: Any) -> Any:
+    """Where each kind of key begins, and all places in order of their keys; alike ones in their own order."""
+    starts = np.zeros(kinds + 1, dtype=np.int64)
+    for i in range(keys.size):
+        starts[keys[i] + 1] += 1
+    for kind in range(kinds):
+        starts[kind + 1] += starts[kind]
+    at, order = starts.copy(), np.empty(keys.size, dtype=np.int64)
+    for i in range(keys.size):
+        order[at[keys[i]]] = i
+        at[keys[i]] += 1
+    return starts, order
+
+
+@njit(nogil=True, cache=True)
+def _sources(group: Any, start: Any, filled: Any, given: Any, computed: Any) -> Any:
+    """Groups that each computed group needs, increasing; and its lines."""
+    firsts, lines = _sorted_by(group, computed)
+    most = 0
+    for bits in filled:
+        while bits:
+            most += bits & np.uint32(1)
+            bits >>= np.uint32(1)
+    seen = np.full(given + computed, -1)
+    ends, sources, n = np.empty(computed, dtype=np.int64), np.empty(most, dtype=np.int64), 0
+    for g in range(computed):
+        first = n
+        for line in lines[firsts[g] : firsts[g + 1]]:
+            source, bits = start[line] // FOUR, filled[line]
+            while bits:
+                if bits & np.uint32(1) and seen[source] != g:
+                    seen[source] = g
+                    i = n
+                    while i > first and sources[i - 1] > source:
+                        sources[i] = sources[i - 1]
+                        i -= 1
+                    sources[i] = source
+                    n += 1
+                bits >>= np.uint32(1)
+                source += 1
+        ends[g] = n
+    return firsts, lines, ends, sources[:n]
+
+
+@njit(nogil=True, cache=True)
+def _sweep_down(ends: Any, sources: Any, given: Any) -> Any:
+    """Computed groups in the order of the lowest given group that each needs, by way of the others too."""
+    lowest, highest, first = np.full(ends.size, given), np.empty(ends.size, dtype=np.int64), 0
+    for g in range(ends.size):
+        for source in sources[first : ends[g]]:
+            lowest[g] = min(lowest[g], source if source < given else lowest[source - given])
+        highest[g], first = given - lowest[g], ends[g]
+    return _sorted_by(highest, given + 1)[1]
+
+
+@njit(nogil=True, cache=True)
+def _last_steps(order: Any, ends: Any, sources: Any, given: Any) -> Any:
+    """The step at which each group is needed for the last time, or computed."""
+    last = np.full(given + order.size, -1)
+    for step in range(order.size):
+        g = order[step]
+        last[given + g] = max(last[given + g], step)
+        for source in sources[(ends[g - 1] if g else 0) : ends[g]]:
+            last[source] = max(last[source], step)
+    return last
+
+
+@njit(nogil=True, cache=True)
+def _fill(tiles: Any, start: Any, row: Any, filled: Any, values: Any, lines: Any, tile_of: Any) -> None:
+    """Write the values of the lines of a group into its tiles."""
+    for line in lines:
+        for four in range(values.shape[1] // FOUR):
+            if filled[line] >> np.uint32(four) & np.uint32(1):
+                tile = tile_of[start[line] // FOUR + four]
+                for column in range(FOUR):
+                    tiles[tile, row[line] % FOUR, column] = values[line, FOUR * four + column]
+
+
+@njit(nogil=True, cache=True)
+def _gather(row: Any, start: Any, values: Any, given: Any, computed: Any) -> Any:
+    filled = _filled(values)
+    firsts, lines, ends, sources = _sources(row // FOUR - given, start, filled, given, computed)
+    order = _sweep_down(ends, sources, given)
+    last = _last_steps(order, ends, sources, given)
+    place, tile_of = np.full(given + computed, -1), np.empty(given + computed, dtype=np.int64)
+    leaving, after = np.full(computed, -1), np.empty(given + computed, dtype=np.int64)  # lists of groups
+    free, n_free, places = np.empty(given + computed, dtype=np.int64), 0, 0
+    fetches, n_fetches, n_tiles = np.empty(given, dtype=np.int64), 0, 0
+    fetch_ends, tile_ends = np.empty(computed, dtype=np.int64), np.empty(computed, dtype=np.int64)
+    used, tiles = np.empty(sources.size, dtype=np.uint64), np.zeros((sources.size, FOUR, FOUR))
+    for step in range(computed):
+        group = leaving[step - 1] if step else -1
+        while group >= 0:
+            free[n_free] = place[group]
+            n_free += 1
+            group = after[group]
+        g = order[step]
+        first = ends[g - 1] if g else 0
+        for i in range(first, ends[g] + 1):  # what it needs, then the group itself
+            group = sources[i] if i < ends[g] else given + g
+            if place[group] < 0:
+                if group < given:
+                    fetches[n_fetches] = group
+                    n_fetches += 1
+                if n_free:
+                    n_free -= 1
+                    place[group] = free[n_free]
+                else:
+                    place[group] = places
+                    places += 1
+                after[group], leaving[last[group]] = leaving[last[group]], group
+            if i < ends[g]:
+                tile_of[group] = n_tiles
+                used[n_tiles] = FOUR * place[group]
+                n_tiles += 1
+        _fill(tiles, start, row, filled, values, lines[firsts[g] : firsts[g + 1]], tile_of)
+        fetch_ends[step], tile_ends[step] = n_fetches, n_tiles
+    fetches = fetches[:n_fetches]
+    return order, fetches, fetch_ends, FOUR * place[fetches], tile_ends, used, tiles, FOUR * place[given + order]
