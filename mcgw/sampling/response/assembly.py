@@ -85,5 +85,5 @@ def _answers(parts: Parts, rows: _Rows, places: Ints) -> Lines:
     cell = np.where(rooted, node, 0)
     start = np.where(rooted, rows.rooted[cell], rows.plain[node]) if len(node) else node
     size = np.where(rooted, parts.rooted[cell], parts.plain[node]) if len(node) else node
-    coefficients = np.where(np.arange(_ORDER) < size[:, None], entries.coefficients.T, 0.0)
+    coefficients = np.where(np.arange(_ORDER) < size[:, None], entries.coefficients, 0.0)
     return Lines(rows.end + places[parts.answer[entries.row]], start, coefficients)

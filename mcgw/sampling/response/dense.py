@@ -54,7 +54,7 @@ class Parts:
         plain, rooted = self._moments_of_nodes()
         matrix, entries = np.zeros((answers, int(self.layout.starts[-1]))), self.entries
         for node, row, root, c in zip(
-            entries.node, entries.row, entries.rooted, entries.coefficients.T, strict=True
+            entries.node, entries.row, entries.rooted, entries.coefficients, strict=True
         ):
             moments = (rooted if root else plain)[node]
             matrix[self.answer[row]] += product(c[: len(moments)], moments)

@@ -1,11 +1,13 @@
 """Rows of Hertz's law: ``scale (s - h)^exponent e(s)^modulus``, one for each quantity and separation."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from analytic import quantity_of
+from analytic import Quantity, quantity_of
+from mcgw.machine.compiling import njit
 from mcgw.sampling.response.rows import Rows, Start
 from mcgw.sampling.spacing import SURE
 from mcgw.scene.scene import Scene
@@ -34,8 +36,7 @@ class _Powers:
 
     def values(self, rows: Ints, above: Array, e: Array) -> Array:
         """As `Formulas.values`."""
-        modulus = np.where(self.graded[rows], e, 1.0)
-        return np.asarray(self.scale[rows] * modulus * _power(above, self.exponent[rows]))
+        return np.asarray(_values(self.exponent[rows], self.scale[rows], self.graded[rows], above, e))
 
     def at_start(self, rows: Ints, above: Array, e: Array, u: Array) -> list[Start]:
         """With ``s - h = u q(u)`` a row is ``u^n q^n e``, and q^n e is accurate down to u = 0."""
@@ -53,11 +54,11 @@ def hertz_rows(scene: Scene, quantities: tuple[str, ...], *, lasting: bool) -> R
 
     If they are to be lasting, they are resolved as if every surface could have a single contact.
     """
-    chosen = [quantity_of(name) for name in quantities]
-    h = np.tile(scene.separations, len(chosen))
-    exponent = _of_each([q.exponent for q in chosen], scene)
-    graded = _of_each([bool(q.modulus) for q in chosen], scene).astype(bool)
-    scale = _of_each([q.scale(scene.surface) for q in chosen], scene)
+    chosen, once = [quantity_of(name) for name in quantities], np.array(scene.all_separations)
+    h = np.tile(once, len(chosen))
+    exponent = _of_each([q.exponent for q in chosen], once)
+    graded = _of_each([bool(q.modulus) for q in chosen], once).astype(bool)
+    scale = _of_each([q.scale(scene.surface) for q in chosen], once)
     return Rows(
         h=h,
         low=h,
@@ -66,37 +67,47 @@ def hertz_rows(scene: Scene, quantities: tuple[str, ...], *, lasting: bool) -> R
         rooted=exponent % 1 != 0,
         rough=np.zeros(len(h), dtype=bool),
         graded=graded,
-        kind=np.repeat(np.arange(len(chosen)), len(scene.separations)),
+        kind=np.repeat(np.arange(len(chosen)), len(once)),
         answer=np.arange(len(h)),
-        total=np.zeros(len(h)) if lasting else _totals(scene, h, exponent, graded, scale),
+        total=np.zeros(len(h)) if lasting else _totals(scene, chosen, once),
         formulas=_Powers(exponent, scale, graded),
     )
 
 
-def _of_each(values: list[float], scene: Scene) -> Array:
-    return np.repeat(np.array(values, dtype=np.float64), len(scene.separations))
+def _of_each(values: list[float], separations: Array) -> Array:
+    return np.repeat(np.array(values, dtype=np.float64), len(separations))
 
 
-def _power(base: Array, exponent: Array) -> Array:
-    """``base**exponent`` for whole and half-integer exponents, by products and roots."""
-    power = np.where(exponent % 1 == 0, 1.0, np.sqrt(base))
-    for whole in range(int(exponent.max(initial=0))):
-        power = np.where(exponent >= whole + 1, power * base, power)
-    return power
+@njit(nogil=True, cache=True)
+def _values(exponent: Any, scale: Any, graded: Any, above: Any, e: Any) -> Any:
+    """``scale e above^exponent`` for whole and half-integer exponents, by products and roots."""
+    values, power = np.empty(above.shape), np.empty(exponent.size)
+    whole, half = np.floor(exponent), exponent % 1 != 0
+    most = int(np.max(whole)) if exponent.size else 0
+    for i in range(above.shape[0]):
+        for j in range(exponent.size):
+            root = np.sqrt(above[i, j])
+            power[j] = root if half[j] else 1.0
+        for times in range(most):
+            for j in range(exponent.size):
+                power[j] = power[j] * above[i, j] if whole[j] > times else power[j]
+        for j in range(exponent.size):
+            values[i, j] = scale[j] * (e[i, j] if graded[j] else 1.0) * power[j]
+    return values
 
 
-def _totals(scene: Scene, h: Array, exponent: Array, graded: NDArray[np.bool_], scale: Array) -> Array:
-    """Mean sums from 16 quantiles: the order of magnitude is all it takes."""
-    if not h.size:
-        return np.empty(0)
+def _totals(scene: Scene, chosen: list[Quantity], h: Array) -> Array:
+    """Mean sums from 16 quantiles, quantity by quantity: the order of magnitude is all it takes."""
     share = (np.arange(16) + 0.5) / 16
-    once, row = np.unique(h, return_inverse=True)
-    touching = scene.heights.above(once)
+    touching = scene.heights.above(h)
     rank = np.maximum(touching[:, None] * share, np.finfo(float).tiny)
-    approach = np.maximum(scene.heights.from_above(rank, -np.inf) - once[:, None], 0.0)[row]
-    modulus = np.where(graded[:, None], scene.modulus(approach + h[:, None]), 1.0)
-    mean = np.mean(modulus * _power(approach, exponent[:, None]), axis=1)
-    contacts = scene.n_asperities * touching[row]
-    with np.errstate(over="ignore"):
-        total = np.minimum(np.abs(scale * mean) * contacts, np.finfo(float).max)
-    return np.asarray(np.where(contacts > SURE, total, 0.0))
+    approach = np.maximum(scene.heights.from_above(rank, -np.inf) - h[:, None], 0.0)
+    modulus, contacts = scene.modulus(approach + h[:, None]), scene.n_asperities * touching
+    totals = [np.empty(0)]
+    for q in chosen:
+        exponent, one = np.full(16, q.exponent), np.ones(16)
+        terms = _values(exponent, one, np.full(16, bool(q.modulus)), approach, modulus)
+        with np.errstate(over="ignore"):
+            total = np.minimum(np.abs(q.scale(scene.surface) * terms.mean(axis=1)) * contacts, np.finfo(float).max)
+        totals.append(np.where(contacts > SURE, total, 0.0))
+    return np.concatenate(totals)

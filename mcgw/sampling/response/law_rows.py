@@ -89,7 +89,7 @@ def law_rows(scene: Scene, quantities: tuple[str, ...], mesh: Mesh, *, lasting: 
     Rows
         Quantity by quantity, at increasing separations, piece by piece.
     """
-    separations = np.array(scene.separations)
+    separations = np.array(scene.all_separations)
     parts: list[tuple[NDArray[Any], ...]] = []
     stretches: dict[Branch, Stretches] = {}
     kinds: list[tuple[Branch, str, int, float]] = []
@@ -125,7 +125,7 @@ def law_rows(scene: Scene, quantities: tuple[str, ...], mesh: Mesh, *, lasting: 
 
 def _totals(scene: Scene, name: str, branch: Branch) -> Array:
     """Mean sums from 16 quantiles: the order of magnitude is all it takes."""
-    share, h = (np.arange(16) + 0.5) / 16, np.array(scene.separations)
+    share, h = (np.arange(16) + 0.5) / 16, np.array(scene.all_separations)
     touching = scene.heights.above(h)
     rank = np.maximum(touching[:, None] * share, np.finfo(float).tiny)
     s = np.maximum(scene.heights.from_above(rank, -np.inf), h[:, None])

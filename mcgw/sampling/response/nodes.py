@@ -1,11 +1,13 @@
 """The nodes of the tree as the rows see them: heights, moduli, and how accurate a series must be there."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from analytic import Grading, resolved_breaks
+from mcgw.machine.compiling import njit
 from mcgw.sampling.cells import Mesh, evenness, height_noise
 from mcgw.sampling.response.rows import Rows
 from mcgw.sampling.response.tree import Tree, heights_above
@@ -18,6 +20,7 @@ Ints = NDArray[np.int64]
 _SCATTER = 8  # asperities more than expected
 _DIGITS = 8.0  # last digits of a height that a formula may lose
 _NODES = 32  # that add to one sum, with errors of their own
+_COLUMNS = 64  # series at a time
 
 
 @dataclass(frozen=True)
@@ -96,17 +99,11 @@ class Nodes:
             For this node, so many moments it must have; and in a sum over many nodes, whose errors add up:
             what lies beyond is nothing, what is in between is used if others need the moments.
         """
-        tail = np.cumsum(np.abs(c)[::-1], axis=0)[::-1]
         graded = rows.graded[row]
-        least = np.where(graded, self.even[node], 1.0) * tail[0]
-        enough = np.maximum(least, rows.total[row] / self.crowd[node])
-        noise = np.maximum(np.where(graded, self.noise[node], 0.0), self._rough_noise(node, row, rows))
-        noise *= tail[0]
-        alone, of_many = (
-            (tail > np.maximum(accuracy * enough, noise)).sum(axis=0)
-            for accuracy in (self.accuracy, self.accuracy / _NODES)
-        )
-        return alone, of_many
+        share, noise = np.where(graded, self.even[node], 1.0), np.where(graded, self.noise[node], 0.0)
+        if rows.rough.any():
+            noise = np.maximum(noise, self._rough_noise(node, row, rows))
+        return _counted(c, share, rows.total[row] / self.crowd[node], noise, self.accuracy)
 
     def _rough_noise(self, node: Ints, row: Ints, rows: Rows) -> Array:
         """What the last digit of a height makes of a power of its small distance from where a row begins."""
@@ -117,3 +114,27 @@ class Nodes:
         share = np.spacing(np.abs(start[near])) / (start[near] - low[near])
         noise[np.flatnonzero(rough)[near]] = np.minimum(_DIGITS * share, 1.0)
         return noise
+
+
+@njit(nogil=True, cache=True)
+def _counted(c: Any, share: Any, total: Any, noise: Any, accuracy: Any) -> Any:
+    """Coefficients up to the last one from which on all together are more than the error that is let."""
+    order, series = c.shape
+    alone, of_many = np.zeros(series, dtype=np.int64), np.zeros(series, dtype=np.int64)
+    tails, tail = np.empty((order, _COLUMNS)), np.empty(_COLUMNS)
+    for first in range(0, series, _COLUMNS):
+        n = min(_COLUMNS, series - first)
+        tail[:] = 0.0
+        for i in range(order - 1, -1, -1):
+            for j in range(n):
+                tail[j] += abs(c[i, first + j])
+                tails[i, j] = tail[j]
+        for j in range(n):
+            at = first + j
+            enough = max(share[at] * tail[j], total[at])
+            least = noise[at] * tail[j]
+            lone, shared = max(accuracy * enough, least), max(accuracy / _NODES * enough, least)
+            for i in range(order):
+                alone[at] += tails[i, j] > lone
+                of_many[at] += tails[i, j] > shared
+    return alone, of_many

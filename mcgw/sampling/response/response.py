@@ -140,7 +140,6 @@ def layout_of(
 
 def _rows(scene: Scene, mesh: Mesh, quantities: tuple[str, ...], *, lasting: bool) -> Rows:
     """What is asked, each separation once, in increasing order."""
-    scene = replace(scene, separations=scene.all_separations, tangential=None)
     if scene.hertzian:
         return hertz_rows(scene, quantities, lasting=lasting)
     from mcgw.sampling.response.law_rows import law_rows

@@ -19,6 +19,7 @@ Ints = NDArray[np.int64]
 
 _MOST, _MOST_IN_CELL = 12, 19  # moments: what is not resolved by so many is left to the children, or refused
 _U = (1 + NODES) / 2
+_PAIRS = 1024  # of a row and a node, at a time
 
 
 @dataclass(frozen=True)
@@ -32,7 +33,7 @@ class Entries:
     rooted : ndarray of bool
         Whether they multiply the R_j of a cell, or the T_j of a node.
     coefficients : ndarray
-        Shape (order, entries).
+        Shape (entries, order).
     """
 
     node: Ints
@@ -42,7 +43,7 @@ class Entries:
 
     def take(self, which: NDArray[np.bool_]) -> "Entries":
         """Some of them."""
-        return Entries(self.node[which], self.row[which], self.rooted[which], self.coefficients[:, which])
+        return Entries(self.node[which], self.row[which], self.rooted[which], self.coefficients[which])
 
     @classmethod
     def joined(cls, parts: list["Entries"]) -> "Entries":
@@ -51,7 +52,7 @@ class Entries:
             np.concatenate([_NO_INDEX, *(part.node for part in parts)]),
             np.concatenate([_NO_INDEX, *(part.row for part in parts)]),
             np.concatenate([_NO_INDEX.astype(bool), *(part.rooted for part in parts)]),
-            np.concatenate([np.empty((len(NODES), 0)), *(part.coefficients for part in parts)], axis=1),
+            np.concatenate([np.empty((0, len(NODES))), *(part.coefficients for part in parts)]),
         )
 
 
@@ -86,17 +87,17 @@ def walk(mesh: Mesh, tree: Tree, rows: Rows, nodes: Nodes) -> tuple[Entries, Int
     while level.size:
         here = (rows.low[row] < nodes.end[node]) & (rows.high[row] > nodes.start[node])
         node, row = node[here], row[here]
-        smooth = np.flatnonzero(_smooth(rows, nodes, node, row))
-        series, needed = _smooth_series(rows, nodes, node[smooth], row[smooth])
-        parent = nodes.parent[node[smooth]]
-        begins = rows.rough[row[smooth]] & (rows.low[row[smooth]] == nodes.start[node[smooth]]) & ~parent
-        needed[begins] = np.minimum(needed[begins], _MOST_IN_CELL)
-        done = needed <= np.where(parent, _MOST, _MOST_IN_CELL)
-        _refuse(nodes, node[smooth][~done & ~parent])
-        found.append(series.take(done))
-        np.maximum.at(plain, node[smooth[done]], needed[done])
-        left = np.ones(len(node), dtype=bool)
-        left[smooth[done]] = False
+        smooth, left = np.flatnonzero(_smooth(rows, nodes, node, row)), np.ones(len(node), dtype=bool)
+        for some in _together(smooth):
+            series, needed = _smooth_series(rows, nodes, node[some], row[some])
+            parent = nodes.parent[node[some]]
+            begins = rows.rough[row[some]] & (rows.low[row[some]] == nodes.start[node[some]]) & ~parent
+            needed[begins] = np.minimum(needed[begins], _MOST_IN_CELL)
+            done = needed <= np.where(parent, _MOST, _MOST_IN_CELL)
+            _refuse(nodes, node[some][~done & ~parent])
+            found.append(series.take(done))
+            np.maximum.at(plain, node[some[done]], needed[done])
+            left[some[done]] = False
         begins = left & ~nodes.parent[node]
         for some, needed in _begun_series(rows, nodes, node[begins], row[begins]):
             found.append(some)
@@ -111,6 +112,11 @@ def walk(mesh: Mesh, tree: Tree, rows: Rows, nodes: Nodes) -> tuple[Entries, Int
     cells = slice(0, mesh.size)
     plain[cells] = np.maximum(plain[cells], _of_parents(rows, nodes, for_parents[cells]))
     return Entries.joined(found), plain, rooted
+
+
+def _together(pairs: Ints) -> list[Ints]:
+    """A few at a time, whose series stay in the cache."""
+    return [pairs[first : first + _PAIRS] for first in range(0, len(pairs), _PAIRS)]
 
 
 def _smooth(rows: Rows, nodes: Nodes, node: Ints, row: Ints) -> NDArray[np.bool_]:
@@ -139,7 +145,7 @@ def _smooth_series(rows: Rows, nodes: Nodes, node: Ints, row: Ints) -> tuple[Ent
     begins = np.flatnonzero(rows.begins[row] & (rows.low[row] == nodes.start[node]))
     for _, which, begun, count in _starts(rows, nodes, node[begins], row[begins]):
         c[:, begins[which]], needed[begins[which]] = begun, count
-    return Entries(node, row, np.zeros(len(node), dtype=bool), c), needed
+    return Entries(node, row, np.zeros(len(node), dtype=bool), c.T), needed
 
 
 def _begun_series(rows: Rows, nodes: Nodes, node: Ints, row: Ints) -> Iterator[tuple[Entries, Ints]]:
@@ -148,7 +154,7 @@ def _begun_series(rows: Rows, nodes: Nodes, node: Ints, row: Ints) -> Iterator[t
         s = rows.low[row][rows.low[row] != nodes.start[node]][0]
         raise ValueError(f"a break of the contact law at s = {s:.6g} is not an edge of the cells")
     for root, which, c, needed in _starts(rows, nodes, node, row):
-        yield Entries(node[which], row[which], np.full(len(which), root), c), needed
+        yield Entries(node[which], row[which], np.full(len(which), root), c.T), needed
 
 
 def _starts(rows: Rows, nodes: Nodes, node: Ints, row: Ints) -> Iterator[tuple[bool, Ints, Array, Ints]]:
@@ -186,7 +192,8 @@ def _of_parents(rows: Rows, nodes: Nodes, inherited: Ints) -> Ints:
     more of its moments count than those would need. One of them counts the asperities.
     """
     cell, row = rows.nearest(nodes.start[: len(inherited)])
-    _, needed = _smooth_series(rows, nodes, cell, row)
     nearest = np.ones(len(inherited), dtype=np.int64)
-    np.maximum.at(nearest, cell, needed)
+    for some in _together(np.arange(len(cell))):
+        _, needed = _smooth_series(rows, nodes, cell[some], row[some])
+        np.maximum.at(nearest, cell[some], needed)
     return np.where(inherited > 1, nearest, inherited)
