@@ -7,7 +7,7 @@ import pytest
 import analytic
 from mcgw.sampling.cells import mesh_of, no_cells
 from mcgw.sampling.samplers import sampler_of
-from mcgw.sampling.spacing import Gap, cuts
+from mcgw.sampling.spacing import Gaps, cuts
 
 
 def mass(a, b):
@@ -65,8 +65,8 @@ def test_cells_are_no_wider_than_their_distance_to_a_root(make_scene, gap):
 
 def cut(law, n, low, high, before):
     """Edges of one gap."""
-    (edges,) = cuts(law, n, [Gap(low, high, before)])
-    return edges
+    gap = Gaps(*np.array([[low], [high], [before]]), np.array([True]))
+    return np.array(sorted([low, *cuts(law, n, gap), high]))
 
 
 @pytest.mark.parametrize("gap", [1e-9, 0.01, 0.1, 3.0])

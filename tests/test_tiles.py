@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from mcgw.machine.aligned import aligned
-from mcgw.sampling.response.product import FOUR, Tiles, in_fours
+from mcgw.sampling.response.gathering import FOUR, Lines, in_fours
+from mcgw.sampling.response.product import Tiles
 
 
 def random_blocks(rng, given, computed):
@@ -17,6 +18,21 @@ def random_blocks(rng, given, computed):
             columns = FOUR * np.unique(np.concatenate([own, earlier]).astype(np.int64))
             blocks.append((np.full(len(columns), row), columns, rng.normal(0, 0.3, (len(columns), FOUR))))
     return blocks
+
+
+def lines(blocks):
+    """A block a line, in two halves."""
+    if not blocks:
+        return NONE, NONE
+    row, start, values = (np.concatenate(part) for part in zip(*blocks, strict=True))
+    half = len(row) // 2
+    return [
+        Lines(row[x], start[x], np.full(len(row[x]), FOUR), values[x])
+        for x in (slice(half), slice(half, None))
+    ]
+
+
+NONE = Lines(*np.empty((3, 0), dtype=np.int64), np.empty((0, FOUR)))
 
 
 def gaps(rng, groups):
@@ -48,7 +64,7 @@ def test_every_row_is_that_of_a_dense_product(groups, computed, surfaces):
     )
     exact = np.empty((2 * computed, surfaces))
     exact[answers[answers >= 0]] = dense(blocks, given, computed, moments)[answers >= 0]
-    tiles = Tiles.of(blocks, given, answers.reshape(-1, FOUR))
+    tiles = Tiles.of(*lines(blocks), given, answers.reshape(-1, FOUR))
     found = tiles.apply(moments, (2, computed))
     scale = np.abs(exact).max(axis=1, keepdims=True) + 1
     assert np.abs((found.transpose(0, 2, 1).reshape(-1, surfaces) - exact) / scale).max() < 1e-13
@@ -65,7 +81,7 @@ def test_the_table_holds_what_is_needed_and_no_more():
                 (FOUR * (n + np.full(FOUR, k)) + np.arange(FOUR), np.full(FOUR, FOUR * source), np.eye(FOUR))
             )
     answers = np.where(np.arange(n)[:, None] == n - 1, np.arange(FOUR), -1)
-    tiles = Tiles.of(blocks, np.arange(FOUR * n).reshape(-1, FOUR), answers)
+    tiles = Tiles.of(*lines(blocks), np.arange(FOUR * n).reshape(-1, FOUR), answers)
     assert max(tiles.fetched.max(), tiles.computed.max()) == 2 * FOUR
     assert tiles.fetches[:, 0].tolist() == [FOUR * (n - 1 - k) for k in range(n)]
     moments = np.random.default_rng(3).integers(0, 1000, (FOUR * n, 5)).astype(float)
@@ -76,10 +92,10 @@ def test_the_table_holds_what_is_needed_and_no_more():
 
 def test_nothing_asked():
     none = np.empty((0, FOUR), dtype=np.int64)
-    tiles = Tiles.of([], np.array([[0, 1, 2, 3], [4, -1, -1, -1]]), none)
+    tiles = Tiles.of(NONE, NONE, np.array([[0, 1, 2, 3], [4, -1, -1, -1]]), none)
     assert tiles.apply(np.ones((5, 3)), (0, 4)).shape == (0, 3, 4)
     assert [int(in_fours(n)) for n in (0, 1, 4, 5)] == [0, 4, 4, 8]
-    silent = Tiles.of([], none, np.arange(8).reshape(-1, FOUR))  # a separation above all cells
+    silent = Tiles.of(NONE, NONE, none, np.arange(8).reshape(-1, FOUR))  # a separation above all cells
     np.testing.assert_array_equal(silent.apply(np.ones((5, 3)), (2, 4)), np.zeros((2, 3, 4)))
 
 

@@ -63,7 +63,7 @@ class Gaps:
 
 @dataclass(frozen=True)
 class _Cells:
-    """Cells that might be: heights where they start, widths, distances to the root below, and who is above."""
+    """Cells that might be: starts, widths, distances to the root below, shares of heights above either end."""
 
     start: Array
     width: Array
@@ -113,9 +113,8 @@ def _worth_cutting(law: HeightLaw, n: int, gaps: Gaps) -> NDArray[np.bool_]:
 
 def _cut(law: HeightLaw, n: int, gaps: Gaps, fewest: int) -> Array:
     """Cut gaps that need so many cells: arrays are (gaps, growths, cells), the highest cell first."""
-    low, high, before, root = (
-        part[:, None, None] for part in (gaps.low, gaps.high, gaps.before, gaps.root)
-    )
+    low, high, before = (part[:, None, None] for part in (gaps.low, gaps.high, gaps.before))
+    root = gaps.root[:, None, None]
     length, rungs = high - low, _rungs(fewest + _MORE)
     heights = low + length * rungs
     above, least = law.above(heights), law.above(low)

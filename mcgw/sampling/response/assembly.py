@@ -5,7 +5,6 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from mcgw.sampling.cells import NODES
 from mcgw.sampling.response.dense import Parts
 from mcgw.sampling.response.gathering import FOUR, Lines, in_fours
 from mcgw.sampling.response.product import Tiles
@@ -13,10 +12,7 @@ from mcgw.sampling.response.tree import transfers
 
 __all__ = ["tiles_of"]
 
-Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
-
-_ORDER = len(NODES)
 
 
 def tiles_of(parts: Parts, order: Ints) -> Tiles:
@@ -35,8 +31,7 @@ def tiles_of(parts: Parts, order: Ints) -> Tiles:
         To apply to moments as `Layout` has them.
     """
     rows = _Rows.of(parts)
-    both = zip(_transfers(parts, rows), _answers(parts, rows, np.argsort(order)), strict=True)
-    return Tiles.of(Lines(*(np.concatenate(part) for part in both)), rows.given, rows.answers(order))
+    return Tiles.of(_transfers(parts, rows), _answers(parts, rows, order), rows.given, rows.answers(order))
 
 
 @dataclass(frozen=True)
@@ -72,18 +67,15 @@ class _Rows:
 
 def _transfers(parts: Parts, rows: _Rows) -> Lines:
     """What makes the moments of the parents."""
-    parent, child, matrices = transfers(parts.mesh, parts.tree)
-    j = np.arange(_ORDER)
-    pair, moment = np.nonzero(j < parts.plain[parent][:, None])
-    coefficients = np.where(j < parts.plain[child[pair]][:, None], matrices[pair, moment], 0.0)
-    return Lines(rows.plain[parent[pair]] + moment, rows.plain[child[pair]], coefficients)
+    parent, child, moment, coefficients = transfers(parts.mesh, parts.tree, parts.plain)
+    return Lines(rows.plain[parent] + moment, rows.plain[child], parts.plain[child], coefficients)
 
 
-def _answers(parts: Parts, rows: _Rows, places: Ints) -> Lines:
+def _answers(parts: Parts, rows: _Rows, order: Ints) -> Lines:
     """What makes the answers."""
     node, rooted, entries = parts.entries.node, parts.entries.rooted, parts.entries
-    cell = np.where(rooted, node, 0)
-    start = np.where(rooted, rows.rooted[cell], rows.plain[node]) if len(node) else node
-    size = np.where(rooted, parts.rooted[cell], parts.plain[node]) if len(node) else node
-    coefficients = np.where(np.arange(_ORDER) < size[:, None], entries.coefficients, 0.0)
-    return Lines(rows.end + places[parts.answer[entries.row]], start, coefficients)
+    places = np.empty_like(order)
+    places[order] = np.arange(len(order))
+    start, size = rows.plain[node], parts.plain[node]
+    start[rooted], size[rooted] = rows.rooted[node[rooted]], parts.rooted[node[rooted]]
+    return Lines(rows.end + places[parts.answer[entries.row]], start, size, entries.coefficients)

@@ -68,6 +68,6 @@ class Parts:
             itself[b - n : b] for b, n in zip(starts[1:], self.layout.rooted, strict=True)
         ]  # after the plain ones
         plain += [np.zeros((n, len(itself))) for n in self.plain[self.mesh.size :]]
-        for parent, child, matrix in zip(*transfers(self.mesh, self.tree), strict=True):
-            plain[parent] += product(matrix[: len(plain[parent]), : len(plain[child])], plain[child])
+        for parent, child, j, c in zip(*transfers(self.mesh, self.tree, self.plain), strict=True):
+            plain[parent][j] += product(c[: len(plain[child])], plain[child])
         return plain, rooted

@@ -27,14 +27,15 @@ class Lines(NamedTuple):
     ----------
     row : ndarray of int
         Whose they are.
-    start : ndarray of int
-        First column, a multiple of four.
+    start, length : ndarray of int
+        First column, a multiple of four, and number of columns.
     values : ndarray
-        Of the columns from there on, shape (lines, columns): as many as a multiple of four.
+        Of the columns from there on, shape (lines, columns or more).
     """
 
     row: Ints
     start: Ints
+    length: Ints
     values: Array
 
 
@@ -59,13 +60,13 @@ class Gathered(NamedTuple):
     computed: Ints
 
 
-def gathered(lines: Lines, given: int, computed: int) -> Gathered:
+def gathered(first: Lines, second: Lines, given: int, computed: int) -> Gathered:
     """Gather lines into tiles.
 
     Parameters
     ----------
-    lines : Lines
-        Of rows that are computed, of given rows and rows of earlier groups.
+    first, second : Lines
+        Of rows that are computed, of given rows and rows of earlier groups; the first ones go before.
     given, computed : int
         How many groups of rows are given, and how many are computed after them.
 
@@ -75,18 +76,19 @@ def gathered(lines: Lines, given: int, computed: int) -> Gathered:
         Groups are computed in one sweep from the highest given ones that they need down, so that each has a
         place in the table for a short time; tiles of a group in the order of their columns.
     """
-    return Gathered(*_gather(*lines, given, computed))
+    row, start, length = (np.concatenate(both) for both in zip(first[:3], second[:3], strict=True))
+    return Gathered(*_gather(row, start, length, first.values, second.values, given, computed))
 
 
 @njit(nogil=True, cache=True)
-def _filled(values: Any) -> Any:
+def _find_filled(length: Any, values: Any, filled: Any) -> None:
     """Which fours of the values of each line are not all zeros, as bits."""
-    filled = np.zeros(values.shape[0], dtype=np.uint32)
     for line in range(values.shape[0]):
-        for column in range(values.shape[1]):
+        bits = np.uint32(0)
+        for column in range(length[line]):
             if values[line, column] != 0.0:
-                filled[line] |= np.uint32(1) << np.uint32(column // FOUR)
-    return filled
+                bits |= np.uint32(1) << np.uint32(column // FOUR)
+        filled[line] = bits
 
 
 @njit(nogil=True, cache=True)
@@ -158,19 +160,19 @@ def _last_steps(order: Any, ends: Any, sources: Any, given: Any) -> Any:
 
 
 @njit(nogil=True, cache=True)
-def _fill(tiles: Any, start: Any, row: Any, filled: Any, values: Any, lines: Any, tile_of: Any) -> None:
-    """Write the values of the lines of a group into its tiles."""
-    for line in lines:
-        for four in range(values.shape[1] // FOUR):
-            if filled[line] >> np.uint32(four) & np.uint32(1):
-                tile = tile_of[start[line] // FOUR + four]
-                for column in range(FOUR):
-                    tiles[tile, row[line] % FOUR, column] = values[line, FOUR * four + column]
+def _fill(tiles: Any, at: Any, length: Any, values: Any, filled: Any, row: Any) -> None:
+    """Write the values of a line into its tiles, which are at these places."""
+    for column in range(length):
+        four = column // FOUR
+        if filled >> np.uint32(four) & np.uint32(1):
+            tiles[at[four], row, column % FOUR] = values[column]
 
 
 @njit(nogil=True, cache=True)
-def _gather(row: Any, start: Any, values: Any, given: Any, computed: Any) -> Any:
-    filled = _filled(values)
+def _gather(row: Any, start: Any, length: Any, first: Any, second: Any, given: Any, computed: Any) -> Any:
+    n_first, filled = first.shape[0], np.empty(row.size, dtype=np.uint32)
+    _find_filled(length[:n_first], first, filled[:n_first])
+    _find_filled(length[n_first:], second, filled[n_first:])
     firsts, lines, ends, sources = _sources(row // FOUR - given, start, filled, given, computed)
     order = _sweep_down(ends, sources, given)
     last = _last_steps(order, ends, sources, given)
@@ -187,8 +189,7 @@ def _gather(row: Any, start: Any, values: Any, given: Any, computed: Any) -> Any
             n_free += 1
             group = after[group]
         g = order[step]
-        first = ends[g - 1] if g else 0
-        for i in range(first, ends[g] + 1):  # what it needs, then the group itself
+        for i in range(ends[g - 1] if g else 0, ends[g] + 1):  # what it needs, then the group itself
             group = sources[i] if i < ends[g] else given + g
             if place[group] < 0:
                 if group < given:
@@ -205,7 +206,18 @@ def _gather(row: Any, start: Any, values: Any, given: Any, computed: Any) -> Any
                 tile_of[group] = n_tiles
                 used[n_tiles] = FOUR * place[group]
                 n_tiles += 1
-        _fill(tiles, start, row, filled, values, lines[firsts[g] : firsts[g + 1]], tile_of)
+        for line in lines[firsts[g] : firsts[g + 1]]:
+            values = first[line] if line < n_first else second[line - n_first]
+            _fill(tiles, tile_of[start[line] // FOUR :], length[line], values, filled[line], row[line] % FOUR)
         fetch_ends[step], tile_ends[step] = n_fetches, n_tiles
     fetches = fetches[:n_fetches]
-    return order, fetches, fetch_ends, FOUR * place[fetches], tile_ends, used, tiles, FOUR * place[given + order]
+    return (
+        order,
+        fetches,
+        fetch_ends,
+        FOUR * place[fetches],
+        tile_ends,
+        used,
+        tiles,
+        FOUR * place[given + order],
+    )

@@ -108,6 +108,8 @@ def _totals(scene: Scene, chosen: list[Quantity], h: Array) -> Array:
         exponent, one = np.full(16, q.exponent), np.ones(16)
         terms = _values(exponent, one, np.full(16, bool(q.modulus)), approach, modulus)
         with np.errstate(over="ignore"):
-            total = np.minimum(np.abs(q.scale(scene.surface) * terms.mean(axis=1)) * contacts, np.finfo(float).max)
+            total = np.minimum(
+                np.abs(q.scale(scene.surface) * terms.mean(axis=1)) * contacts, np.finfo(float).max
+            )
         totals.append(np.where(contacts > SURE, total, 0.0))
     return np.concatenate(totals)

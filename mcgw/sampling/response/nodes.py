@@ -81,6 +81,11 @@ class Nodes:
             accuracy=accuracy,
         )
 
+    def at(self, node: Ints, h: Array) -> tuple[Array, Array]:
+        """Heights above separations at the points of some nodes, and the moduli there: (points, nodes)."""
+        above, e = _taken(self.above, self.moduli, node, self.start[node] - h)
+        return above, e
+
     def needed(self, c: Array, node: Ints, row: Ints, rows: Rows) -> tuple[Ints, Ints]:
         """How many leading coefficients of a series count.
 
@@ -103,7 +108,8 @@ class Nodes:
         share, noise = np.where(graded, self.even[node], 1.0), np.where(graded, self.noise[node], 0.0)
         if rows.rough.any():
             noise = np.maximum(noise, self._rough_noise(node, row, rows))
-        return _counted(c, share, rows.total[row] / self.crowd[node], noise, self.accuracy)
+        alone, of_many = _counted(c, share, rows.total[row] / self.crowd[node], noise, self.accuracy)
+        return alone, of_many
 
     def _rough_noise(self, node: Ints, row: Ints, rows: Rows) -> Array:
         """What the last digit of a height makes of a power of its small distance from where a row begins."""
@@ -114,6 +120,17 @@ class Nodes:
         share = np.spacing(np.abs(start[near])) / (start[near] - low[near])
         noise[np.flatnonzero(rough)[near]] = np.minimum(_DIGITS * share, 1.0)
         return noise
+
+
+@njit(nogil=True, cache=True)
+def _taken(above: Any, moduli: Any, node: Any, more: Any) -> Any:
+    """Columns of both, the first with something added to each."""
+    heights, e = np.empty((above.shape[0], node.size)), np.empty((above.shape[0], node.size))
+    for i in range(above.shape[0]):
+        for j in range(node.size):
+            heights[i, j] = more[j] + above[i, node[j]]
+            e[i, j] = moduli[i, node[j]]
+    return heights, e
 
 
 @njit(nogil=True, cache=True)

@@ -54,12 +54,12 @@ class Tiles:
     answers: Ints
 
     @classmethod
-    def of(cls, lines: Lines, given: Ints, answers: Ints) -> "Tiles":
+    def of(cls, first: Lines, second: Lines, given: Ints, answers: Ints) -> "Tiles":
         """Gather the lines of rows, each of which needs given rows and rows of earlier groups.
 
         Parameters
         ----------
-        lines : Lines
+        first, second : Lines
             Their rows and columns count the rows of `given`, then those of `answers`.
         given : ndarray of int
             The given row that each one is, -1 for zeros; shape (groups, 4).
@@ -71,8 +71,17 @@ class Tiles:
         Tiles
             In the order of the sweep.
         """
-        order, fetches, *program = gathered(lines, len(given), len(answers))
-        return cls(given[fetches], *program, answers[order])
+        found = gathered(first, second, len(given), len(answers))
+        return cls(
+            fetches=given[found.fetches],
+            fetch_ends=found.fetch_ends,
+            fetched=found.fetched,
+            tile_ends=found.tile_ends,
+            used=found.used,
+            values=found.values,
+            computed=found.computed,
+            answers=answers[found.order],
+        )
 
     def apply(self, given: Array, shape: tuple[int, int]) -> Array:
         """Answers.

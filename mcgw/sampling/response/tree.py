@@ -7,13 +7,14 @@ uniform, so its moments follow from theirs: the upward pass of a fast multipole 
 """
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
-from numpy.polynomial import chebyshev
 from numpy.typing import NDArray
 
+from mcgw.machine.compiling import njit
 from mcgw.sampling.cells import NODES, TO_COEFFICIENTS, Mesh
-from mcgw.sampling.rules import product
+from mcgw.sampling.rules import multiply
 
 __all__ = ["Tree", "heights_above", "transfers", "tree_over"]
 
@@ -77,20 +78,48 @@ def heights_above(mesh: Mesh, tree: Tree, nodes: Ints) -> Array:
     return above
 
 
-def transfers(mesh: Mesh, tree: Tree) -> tuple[Ints, Ints, Array]:
-    """Matrices from the moments T_k of each child to its part of the moments T_j of its parent.
+def transfers(mesh: Mesh, tree: Tree, moments: Ints) -> tuple[Ints, Ints, Ints, Array]:
+    """What the moments T_k of each child add to the moments T_j of its parent.
+
+    Parameters
+    ----------
+    mesh, tree : Mesh, Tree
+        Cells, and the nodes over them.
+    moments : ndarray of int
+        How many T_j each node has.
 
     Returns
     -------
-    (ndarray, ndarray, ndarray)
-        Parents, children, and matrices of shape (pairs, order, order): j, then k.
+    (ndarray, ndarray, ndarray, ndarray)
+        Parents, children, j, and coefficients of T_0, T_1, ... of the child, shape (lines, order).
     """
     parent = np.repeat(np.arange(mesh.size, tree.size), 2)
     child = np.stack([tree.left, tree.right], axis=1)[mesh.size :].ravel()
     start, end = mesh.edges[tree.first[parent]], mesh.edges[tree.last[parent]]
     s = (mesh.edges[tree.first[child]] - start) + heights_above(mesh, tree, child)
-    powers = np.asarray(chebyshev.chebvander(2 * s / (end - start) - 1, len(NODES) - 1), dtype=np.float64)
-    matrices = product(TO_COEFFICIENTS, powers).transpose(1, 2, 0)
-    of_parents = tree.left[child] >= 0
-    matrices[of_parents] = np.tril(matrices[of_parents])  # no degree is raised
-    return parent, child, matrices
+    wanted = moments[parent]
+    pair = np.repeat(np.arange(len(parent)), wanted)
+    moment = np.arange(len(pair)) - np.repeat(np.cumsum(wanted) - wanted, wanted)
+    coefficients = np.empty((len(pair), len(NODES)))
+    _transfer(2 * s / (end - start) - 1, wanted, tree.left[child] >= 0, TO_COEFFICIENTS, coefficients)
+    return parent[pair], child[pair], moment, coefficients
+
+
+@njit(nogil=True, cache=True)
+def _transfer(x: Any, moments: Any, of_parent: Any, to_coefficients: Any, coefficients: Any) -> None:
+    """Series in the variable of each child of T_j(x), x the variable of its parent at the child's points."""
+    order, most = x.shape[0], max(np.max(moments), 2) if moments.size else 2
+    powers, series = np.zeros((order, most)), np.empty((order, most))
+    line = 0
+    for pair in range(moments.size):
+        for i in range(order):
+            powers[i, 0], powers[i, 1] = 1.0, x[i, pair]
+        for j in range(2, moments[pair]):
+            for i in range(order):
+                powers[i, j] = powers[i, j - 1] * (2 * x[i, pair]) - powers[i, j - 2]
+        multiply(to_coefficients, powers, series)
+        for j in range(moments[pair]):
+            for k in range(order):
+                raised = of_parent[pair] and k > j  # no degree is, but for rounding
+                coefficients[line, k] = 0.0 if raised else series[k, j]
+            line += 1

@@ -88,16 +88,16 @@ def walk(mesh: Mesh, tree: Tree, rows: Rows, nodes: Nodes) -> tuple[Entries, Int
         here = (rows.low[row] < nodes.end[node]) & (rows.high[row] > nodes.start[node])
         node, row = node[here], row[here]
         smooth, left = np.flatnonzero(_smooth(rows, nodes, node, row)), np.ones(len(node), dtype=bool)
-        for some in _together(smooth):
-            series, needed = _smooth_series(rows, nodes, node[some], row[some])
-            parent = nodes.parent[node[some]]
-            begins = rows.rough[row[some]] & (rows.low[row[some]] == nodes.start[node[some]]) & ~parent
+        for few in _together(smooth):
+            series, needed = _smooth_series(rows, nodes, node[few], row[few])
+            parent = nodes.parent[node[few]]
+            begins = rows.rough[row[few]] & (rows.low[row[few]] == nodes.start[node[few]]) & ~parent
             needed[begins] = np.minimum(needed[begins], _MOST_IN_CELL)
             done = needed <= np.where(parent, _MOST, _MOST_IN_CELL)
-            _refuse(nodes, node[some][~done & ~parent])
+            _refuse(nodes, node[few][~done & ~parent])
             found.append(series.take(done))
-            np.maximum.at(plain, node[some[done]], needed[done])
-            left[some[done]] = False
+            np.maximum.at(plain, node[few[done]], needed[done])
+            left[few[done]] = False
         begins = left & ~nodes.parent[node]
         for some, needed in _begun_series(rows, nodes, node[begins], row[begins]):
             found.append(some)
@@ -138,8 +138,7 @@ def _smooth_series(rows: Rows, nodes: Nodes, node: Ints, row: Ints) -> tuple[Ent
 
     What no sum over many nodes can show is zero.
     """
-    above = (nodes.start[node] - rows.h[row]) + nodes.above[:, node]
-    c = product(TO_COEFFICIENTS, rows.formulas.values(row, above, nodes.moduli[:, node]))
+    c = product(TO_COEFFICIENTS, rows.formulas.values(row, *nodes.at(node, rows.h[row])))
     needed, of_many = nodes.needed(c, node, row, rows)
     c[np.arange(len(c))[:, None] >= of_many] = 0.0
     begins = np.flatnonzero(rows.begins[row] & (rows.low[row] == nodes.start[node]))
@@ -165,7 +164,7 @@ def _starts(rows: Rows, nodes: Nodes, node: Ints, row: Ints) -> Iterator[tuple[b
     """
     if not row.size:
         return
-    for start in rows.formulas.at_start(row, nodes.above[:, node], nodes.moduli[:, node], _U):
+    for start in rows.formulas.at_start(row, *nodes.at(node, nodes.start[node]), _U):
         which = start.rows
         c = product(TO_COEFFICIENTS, start.values)
         needed, _ = nodes.needed(c, node[which], row[which], rows)
@@ -193,7 +192,7 @@ def _of_parents(rows: Rows, nodes: Nodes, inherited: Ints) -> Ints:
     """
     cell, row = rows.nearest(nodes.start[: len(inherited)])
     nearest = np.ones(len(inherited), dtype=np.int64)
-    for some in _together(np.arange(len(cell))):
-        _, needed = _smooth_series(rows, nodes, cell[some], row[some])
-        np.maximum.at(nearest, cell[some], needed)
+    for few in _together(np.arange(len(cell))):
+        _, needed = _smooth_series(rows, nodes, cell[few], row[few])
+        np.maximum.at(nearest, cell[few], needed)
     return np.where(inherited > 1, nearest, inherited)
