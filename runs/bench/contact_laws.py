@@ -1,32 +1,32 @@
 """What a contact law costs, beside Hertz's and beside a NumPy script: ``python runs/bench/contact_laws.py``.
 
 10^6 asperities, 41 separations from 0 to 4, one core: time of set-up and of one surface, of Hertz's law alone
-and as a multiple of it; medians of nine rounds, all cases in turn. Then what a user would write: all heights
-by NumPy, Kogut and Etsion's pieces with `numpy.select`, separation by separation, with sums of load, area
-and contacts.
+and as a multiple of it, all cases in turn. Then what a user would write: all heights by NumPy, Kogut and
+Etsion's pieces with `numpy.select`, separation by separation, with sums of load, area and contacts.
 """
 
-from statistics import median
-from time import perf_counter
-
-import numba
 import numpy as np
+from scenes import drawing, set_up
+from timing import Job, Times, against, job, parser_of, ratio, timed
 
 import mcgw
 from analytic import laws
+from mcgw.ensemble.simulation import use_threads
 from mcgw.sampling.samplers import cells_of
+from mcgw.scene.scene import Scene
 
-ASPERITIES, SEPARATIONS, SURFACES, ROUNDS = 10**6, np.linspace(0, 4, 41), 64, 9
+ASPERITIES, SEPARATIONS, SURFACES = 10**6, np.linspace(0, 4, 41), 64
 SURFACE = mcgw.Surface("1.37 um", "13 um", "300/mm^2", ASPERITIES / 300e6, "78.6 GPa")
 KE = laws.KogutEtsion(critical=0.05)
+PEER = "NumPy script of Kogut"
 
 
-def scene_of(**changes):
+def scene_of(**changes) -> Scene:
     """The scene of all cases."""
     return mcgw.Scene(SURFACE, separations=SEPARATIONS, n_asperities=ASPERITIES, seed=1, **changes)
 
 
-def cases():
+def cases() -> dict[str, Scene]:
     """What is compared, Hertz's law first."""
     found = {"Hertz": scene_of(), "Hertz, gamma 2": scene_of(grading=mcgw.Exponential(2.0))}
     for critical in (0.003, 0.047, 0.05):
@@ -40,7 +40,7 @@ def cases():
     return found
 
 
-def by_numpy(seed):
+def by_numpy(seed: int) -> np.ndarray:
     """One surface as a script does it."""
     rng = np.random.default_rng(seed)
     s = rng.standard_normal(ASPERITIES)
@@ -55,37 +55,31 @@ def by_numpy(seed):
     return np.array(rows)
 
 
-def main():
+def measured(rounds: int) -> Times:
+    """Set-up and drawing of all cases, and the peer, on one core."""
+    jobs: dict[str, Job] = {PEER: job(lambda: by_numpy(0))}
+    for name, scene in cases().items():
+        jobs |= {f"{name}: set-up": set_up(scene), f"{name}: drawing": drawing(scene, SURFACES)}
+    with use_threads(1):
+        return timed(jobs, rounds)
+
+
+def ratios(rounds: int) -> dict[str, float]:
+    """Seconds of a set-up or of a surface, to those of the script: lower is better."""
+    times = measured(rounds)
+    return against(times, PEER, [name for name in times if name != PEER])
+
+
+def main() -> None:
     """Measure and print."""
-    numba.set_num_threads(1)
-    scenes = cases()
-    samplers = {name: cells_of(scene) for name, scene in scenes.items()}
-    for sampler in samplers.values():
-        sampler.block(0, SURFACES)
-    setup, drawing = ({name: [] for name in scenes} for _ in range(2))
-    for k in range(1, ROUNDS + 1):
-        for name, sampler in samplers.items():
-            start = perf_counter()
-            cells_of(scenes[name])
-            drawn = perf_counter()
-            sampler.block(k * SURFACES, SURFACES)
-            setup[name].append(drawn - start)
-            drawing[name].append((perf_counter() - drawn) / SURFACES)
-    first = {what: median(times["Hertz"]) for what, times in (("setup", setup), ("drawing", drawing))}
-    print(f"Hertz: set-up {1e3 * first['setup']:.0f} ms, one surface {1e3 * first['drawing']:.2f} ms")
+    times = measured(parser_of(__doc__).parse_args().rounds)
+    hertz = {what: np.median(times[f"Hertz: {what}"]) for what in ("set-up", "drawing")}
+    print(f"Hertz: set-up {1e3 * hertz['set-up']:.0f} ms, one surface {1e3 * hertz['drawing']:.2f} ms")
     print(f"{'':>24} {'cells':>6} {'set-up':>7} {'drawing':>8}")
-    for name, sampler in samplers.items():
-        ratios = median(setup[name]) / first["setup"], median(drawing[name]) / first["drawing"]
-        print(f"{name:>24} {sampler.cells:6d} {ratios[0]:7.2f} {ratios[1]:8.2f}")
-    by_numpy(0)
-    times = []
-    for seed in range(3):
-        start = perf_counter()
-        by_numpy(seed)
-        times.append(perf_counter() - start)
-    print(
-        f"NumPy script of Kogut: {median(times) / median(drawing['Kogut, 0.05, gamma 1']):.0f} times as long"
-    )
+    for name, scene in cases().items():
+        both = [ratio(times, f"{name}: {what}", f"Hertz: {what}") for what in hertz]
+        print(f"{name:>24} {cells_of(scene).cells:6d} {both[0]:7.2f} {both[1]:8.2f}")
+    print(f"{PEER}: {ratio(times, PEER, 'Kogut, 0.05, gamma 1: drawing'):.0f} times as long")
 
 
 if __name__ == "__main__":

@@ -1,6 +1,6 @@
-"""What it costs that asperities press each other down: ``python interaction.py [--quick] [--first]``.
+"""What it costs that asperities press each other down: ``python interaction.py [--rounds 7] [--first]``.
 
-Scene S1 (`samplers.py`) and the same with 10^4 asperities, timed in turn without interaction, with it at
+Scene S1 (`scenes.py`) and the same with 10^4 asperities, timed in turn without interaction, with it at
 effective separations, and at nominal ones, where each surface finds its own balance; ratios are medians over
 rounds. The half-space is so soft that the interaction matters: sunk by the mean load at h = 0, asperities
 feel 1 more where the body is the reference, and 0.3 less where the mean plane is. With ``--first``: seconds
@@ -8,22 +8,25 @@ of the processor until the first block of a new process, its loops compiled or, 
 """
 
 import argparse
+import math
 import os
 import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 
-import numpy as np
-from samplers import S1, compare
+from scenes import S1, block, script
+from timing import Job, against, parser_of, show, timed
 
 from analytic import InteractingModel, Interaction
-from mcgw.ensemble.simulation import at_a_time, block_size, drawn_blocks, kept
+from mcgw.ensemble.simulation import kept
 from mcgw.sampling.samplers import sampler_of
 from mcgw.scene.scene import Scene
 
+SIZES = (10**6, 10**4)
+PEER = "NumPy script"
 FELT = {"body": 1.0, "mean-plane": -0.3}  # at h = 0, d/sigma
 
 
@@ -46,12 +49,10 @@ def cases(scene: Scene) -> dict[str, Scene]:
     }
 
 
-def block(scene: Scene) -> tuple[Callable[[], object], int]:
-    """Blocks as a run draws and keeps them, all that is prepared made beforehand."""
-    sampler = sampler_of(scene)
-    size = block_size(scene, sampler)
-    surfaces = at_a_time(size)
-    return (lambda: [kept(scene, part) for part in drawn_blocks(sampler, 0, surfaces, size)]), surfaces
+def jobs(n: int) -> dict[str, Job]:
+    """Surfaces of so many asperities drawn and kept as a run does, and by the script without interaction."""
+    scenes = cases(replace(S1, n_asperities=n))
+    return {name: block(scene, partial(kept, scene)) for name, scene in scenes.items()} | {PEER: script(n)}
 
 
 def first_block() -> None:
@@ -71,20 +72,27 @@ def first_uses() -> None:
             subprocess.run([sys.executable, __file__, "--first-block"], env=environment, check=True)
 
 
+def ratios(rounds: int) -> dict[str, float]:
+    """Seconds a surface, to those of the script: lower is better."""
+    found = {}
+    for n in SIZES:
+        *names, peer = jobs(n)
+        new = against(timed(jobs(n), rounds), peer, names)
+        found |= {f"{name}, N = 1e{round(math.log10(n))}": value for name, value in new.items()}
+    return found
+
+
 def main() -> None:
     """Print every ratio."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--quick", action="store_true", help="three rounds in place of seven")
+    parser = parser_of(__doc__)
     parser.add_argument("--first", action="store_true", help="also the first use, which compiles")
     parser.add_argument("--first-block", action="store_true", help=argparse.SUPPRESS)
     asked = parser.parse_args()
     if asked.first_block:
         first_block()
         return
-    for n in (10**6, 10**4):
-        scenes = cases(replace(S1, n_asperities=n))
-        jobs = {name: block(scene) for name, scene in scenes.items()}
-        compare(f"N = 1e{round(np.log10(n))}, 41 separations", jobs, "without", 3 if asked.quick else 7)
+    for n in SIZES:
+        show(f"N = 1e{round(math.log10(n))}, 41 separations", timed(jobs(n), asked.rounds), "without")
     if asked.first:
         first_uses()
 

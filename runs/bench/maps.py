@@ -7,16 +7,20 @@ the time it takes. Run: ``python runs/bench/maps.py``.
 
 import math
 import resource
-import time
+from functools import cache
 
 import numpy as np
+from timing import Job, Times, against, parser_of, seconds, timed
 
 import analytic
 from mcgw.maps.asperities import Asperities, asperities_of
 from mcgw.maps.envelope import envelope
 from mcgw.scene.scene import Scene
 
+LOOP = "NumPy loop"
 
+
+@cache
 def field_of(number: int) -> Asperities:
     """So many asperities at one density."""
     surface = analytic.Surface(sigma=1e-6, radius=1e-5, eta=1e10, nominal_area=number / 1e10, E_star=1e9)
@@ -37,25 +41,28 @@ def numpy_loop(field: Asperities, pixels: int) -> np.ndarray:
     return heights
 
 
-def seconds(call: object, *arguments: object) -> float:
-    """Wall time of one call."""
-    start = time.perf_counter()
-    call(*arguments)
-    return time.perf_counter() - start
+def measured(rounds: int) -> Times:
+    """Seconds a pixel of both."""
+    jobs: dict[str, Job] = {
+        LOOP: lambda: seconds(lambda: numpy_loop(field_of(10**4), 316), 316**2),
+        "envelope": lambda: seconds(lambda: envelope(field_of(10**6), (3162, 3162)), 3162**2),
+    }
+    return timed(jobs, rounds)
+
+
+def ratios(rounds: int) -> dict[str, float]:
+    """Seconds a pixel, to those of the loop: lower is better."""
+    return against(measured(rounds), LOOP, ["envelope"])
 
 
 def main() -> None:
     """Print the ratio, and what the largest map takes."""
     small, large = field_of(10**4), field_of(10**6)
     np.testing.assert_allclose(numpy_loop(small, 316), envelope(small, (316, 316)).heights, atol=1e-12)
-    ratios = []
-    for _ in range(5):
-        loop = seconds(numpy_loop, small, 316) / 316**2
-        ratios.append(loop / (seconds(envelope, large, (3162, 3162)) / 3162**2))
-    print(
-        f"NumPy loop / envelope, a pixel: {np.median(ratios):.3g} x ({min(ratios):.3g} ... {max(ratios):.3g})"
-    )
-    took = seconds(envelope, large, (4096, 4096))
+    times = measured(parser_of(__doc__).parse_args().rounds)
+    low, middle, high = np.quantile(times[LOOP] / times["envelope"], [0, 0.5, 1])
+    print(f"NumPy loop / envelope, a pixel: {middle:.3g} x ({low:.3g} ... {high:.3g})")
+    took = seconds(lambda: envelope(large, (4096, 4096)))
     memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 2**20
     print(f"4096 x 4096 points of 1e6 asperities: {took:.1f} s, {memory:.2f} GiB at most")
 

@@ -1,15 +1,13 @@
 """What a cell costs: the prices by which `mcgw.sampling.spacing` cuts the heights.
 
 Run: ``python runs/bench/prices.py``. Prints, beside the price in use, what is measured here on one core, in
-asperities that give ten moments: medians of nine rounds, all sizes in turn.
+asperities that give ten moments: medians over rounds, all sizes in turn.
 """
 
-from statistics import median
-from time import perf_counter
-
-import numba
 import numpy as np
+from timing import Job, job, parser_of, timed
 
+from mcgw.ensemble.simulation import use_threads
 from mcgw.sampling import spacing
 from mcgw.sampling.layout import Layout
 from mcgw.sampling.moments import cell_moments
@@ -18,21 +16,19 @@ SURFACES, CELLS, MANY = 64, 20, 4000
 ORDERS = [(10, 0), (12, 0), (15, 0), (20, 0), (10, 6), (10, 11), (10, 16)]
 
 
-def seconds(asperities, plain, rooted):
-    """Of drawing one cell of one surface."""
+def cell(asperities: int, plain: int, rooted: int) -> Job:
+    """Drawing one cell of one surface."""
     layout = Layout(np.full(CELLS, plain), np.full(CELLS, rooted))
     counts = np.full((CELLS, SURFACES), asperities)
-    start = perf_counter()
-    cell_moments(1, 0, counts, layout)
-    return (perf_counter() - start) / (SURFACES * CELLS)
+    return job(lambda: cell_moments(1, 0, counts, layout), SURFACES * CELLS)
 
 
-def main():
+def main() -> None:
     """Measure and print."""
-    numba.set_num_threads(1)
     sizes = [(MANY, *orders) for orders in ORDERS] + [(16, 10, 0)]
-    rounds = [[seconds(*size) for size in sizes] for _ in range(10)][1:]
-    *many, few = (median(column) for column in zip(*rounds, strict=True))
+    with use_threads(1):
+        times = timed({str(size): cell(*size) for size in sizes}, parser_of(__doc__).parse_args().rounds)
+    *many, few = (np.median(column) for column in times.values())
     one = (many[0] - few) / (MANY - 16)
     print(f"an asperity that gives ten moments: {1e9 * one:.3g} ns")
     print(f"{'a cell':>24} {spacing._CELL:8.2f} {few / one - 16:8.2f}")
