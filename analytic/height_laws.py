@@ -270,9 +270,12 @@ class ScipyHeights:
 
     @property
     def _key(self) -> tuple[Any, ...]:
+        from scipy import stats  # loaded with the distribution
+
         law = self.distribution
-        own = type(law.dist) if hasattr(law, "dist") else law
-        return own, self._name, tuple(sorted(self.shapes.items()))
+        kind = getattr(law, "dist", law)
+        named = type(kind) is type(getattr(stats, self._name, None))
+        return type(kind) if named else kind, self._name, tuple(sorted(self.shapes.items()))
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, ScipyHeights) and self._key == other._key

@@ -20,7 +20,7 @@ from mcgw.sampling.block import Block, Sampler
 from mcgw.sampling.counts import GROUP
 from mcgw.sampling.samplers import sampler_of
 from mcgw.scene.samplers import promise_of
-from mcgw.scene.scene import Scene
+from mcgw.scene.scene import LeftOut, Scene
 from mcgw.scene.storable import storable
 
 __all__ = [
@@ -78,7 +78,7 @@ def simulate(
     >>> mcgw.simulate(scene, n_surfaces=20).load.shape
     (20, 3)
     """
-    scene = scene.replace(**changes)
+    scene = scene.replace(**changes) if changes else scene
     until = None if scene.max_seconds is None else monotonic() + scene.max_seconds
     scene = storable(scene)
     if scene.rel_err is not None or scene.max_seconds is not None:
@@ -97,7 +97,9 @@ def simulate(
             tell(drawn, scene.n_surfaces)
             if until is not None and monotonic() > until:
                 break
-    return Ensemble(replace(scene, n_surfaces=drawn), sampler.name, MemoryResults(joined(parts)))
+    if drawn != scene.n_surfaces or isinstance(scene.n_surfaces, LeftOut):
+        scene = replace(scene, n_surfaces=drawn)
+    return Ensemble(scene, sampler.name, MemoryResults(joined(parts)))
 
 
 def blocks(scene: Scene, sampler: Sampler) -> Iterator[Block]:

@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 
 from analytic import Grading, HeightLaw, PiecewiseSeries, bends
 from analytic.elementary import exp
+from mcgw.machine.kept import kept
 from mcgw.sampling.exp_log import weigh_exponentials
 from mcgw.sampling.rules import chebyshev_points, chebyshev_transform, gauss_legendre, product
 from mcgw.sampling.spacing import Gaps, cuts
@@ -107,13 +108,27 @@ def mesh_of(scene: Scene, *, split: bool = True, rare: float = 0.1) -> Mesh:
     begins, breaks = begins_and_breaks(scene, low, high)
     marks = np.unique([low, *begins, *breaks, *bends(scene.modulus, low, high), *law.breaks, high])
     marks = marks[(low <= marks) & (marks <= high)]
-    spaced = _spaced(law, scene.n_asperities if split else 0, begins, breaks, marks)
-    edges = _resolving(scene.modulus, law, _refined(law, begins, spaced))
+    asked = (part.tobytes() for part in (begins, breaks, marks))
+    edges = _resolving(scene.modulus, law, _edges(law, scene.n_asperities if split else 0, *asked))
+    return _mesh(law, float(scene.lowest), edges.tobytes())
+
+
+@kept(8)
+def _edges(law: HeightLaw, n: int, *asked: bytes) -> Array:
+    """Edges that suit the height law and the contact law, whatever the grading."""
+    begins, breaks, marks = (np.frombuffer(part) for part in asked)
+    return _refined(law, begins, _spaced(law, n, begins, breaks, marks))
+
+
+@kept(8)  # another grading asks for the same, and so does the number in each cell
+def _mesh(law: HeightLaw, lowest: float, asked: bytes) -> Mesh:
+    """The mesh on these edges."""
+    edges = np.frombuffer(asked)
     mass = _mass(law, edges[:-1], np.diff(edges)[:, None])[:, 0]
     probability = law.density(edges[:-1]) * mass
     stretch = _stretch(law, edges[:-1], np.diff(edges), mass)
-    below = float(law.below(np.array(low)) - law.below(np.array(scene.lowest))) if low > scene.lowest else 0.0
-    return Mesh(edges, probability, stretch, below, _above(law, high))
+    below = float(law.below(np.array(edges[0])) - law.below(np.array(lowest))) if edges[0] > lowest else 0.0
+    return Mesh(edges, probability, stretch, below, _above(law, float(edges[-1])))
 
 
 def no_cells(scene: Scene) -> Mesh:

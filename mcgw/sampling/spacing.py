@@ -63,7 +63,7 @@ class Gaps:
 
 @dataclass(frozen=True)
 class _Cells:
-    """Cells that might be: starts, widths, distances to the root below, shares of heights above either end."""
+    """Cells that might be: starts, widths, distances to the root below, shares of heights above both ends."""
 
     start: Array
     width: Array

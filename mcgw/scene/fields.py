@@ -19,6 +19,7 @@ from analytic import (
     first_negative,
 )
 from analytic.laws import Branch, ContactLaw, Film, Hertz, Tangential, Ways
+from mcgw.machine.kept import kept
 
 if TYPE_CHECKING:
     from analytic import Interaction
@@ -170,13 +171,13 @@ class Fields:
     @property
     def highest(self) -> float:
         """Height that hardly an asperity exceeds, above every separation."""
-        top = float(self.heights.from_above(np.array(_BEYOND), -math.inf))
+        top = _ends(self.heights)[1]
         return min(max(top, max(self.separations) + 1), self.heights.support[1])
 
     @property
     def least(self) -> float:
         """Height that hardly an asperity falls below."""
-        return float(self.heights.from_below(np.array(_BEYOND), math.inf))
+        return _ends(self.heights)[0]
 
     def negative_above(self, h: float) -> float | None:
         """First height that touches at `h` where the grading is negative, clipped or not; or None."""
@@ -184,3 +185,10 @@ class Fields:
         high = min(max(self.highest, h + 1), end)
         start = max(h, self.least - 1, bottom)
         return first_negative(self.grading, start, high) if start < high else None
+
+
+@kept(64)  # every scene asks, a few times
+def _ends(heights: HeightLaw) -> tuple[float, float]:
+    """Heights that hardly an asperity of a law falls below, or exceeds."""
+    share = np.array(_BEYOND)
+    return float(heights.from_below(share, math.inf)), float(heights.from_above(share, -math.inf))
