@@ -12,6 +12,7 @@ from mcgw.machine.child_process import memory_limit
 __all__ = ["check_memory", "gibibytes", "keep_freed_memory", "memory_available", "peak_growth"]
 
 _MOST = 2**63 - 1
+_SMALL = 2**24  # bytes; to look how many there are takes half a millisecond
 _LARGE = 31 * 2**20  # bytes; at 32 MiB the GNU C library learns no more
 
 
@@ -23,6 +24,8 @@ def check_memory(what: str, size: int) -> None:
     StoreError
         With both numbers.
     """
+    if size < _SMALL:
+        return
     memory = memory_available()
     if size > memory:
         raise StoreError(

@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 
 from analytic import Grading, HeightLaw, PiecewiseSeries, bends
 from analytic.elementary import exp
+from mcgw.machine.in_threads import in_threads
 from mcgw.machine.kept import kept
 from mcgw.sampling.exp_log import weigh_exponentials
 from mcgw.sampling.rules import chebyshev_points, chebyshev_transform, gauss_legendre, product
@@ -39,6 +40,7 @@ _FAR, _NARROWER = 2.0, 0.75  # spans from a root of the laws of contact, and wha
 _DIGITS = 4.0  # of a height that coefficients without meaning may seem to be worth
 _EVEN, _LEAST = 4.0, 1 / 16  # see `evenness`
 _TOGETHER = 64  # cells whose densities stay in the cache
+_SOON_DONE = 512  # cells that are not worth waking a thread
 _CLOSEST = 2.0**-40  # of a cell to an end of the support that is a broken power
 
 _ORDER = 20
@@ -140,6 +142,7 @@ def _above(law: HeightLaw, s: float) -> float:
     return float(law.above(np.array(s)))
 
 
+@kept(8)
 def _range(law: HeightLaw, share: float, lowest: float) -> tuple[float, float]:
     """Where the cells lie: at most this share of all heights on either side of them.
 
@@ -240,13 +243,20 @@ def evenness(grading: Grading, e: Array) -> Array:
 def _mass(law: HeightLaw, a: Array, t: Array) -> Array:
     """Probability between a and a + t, relative to the density at a: `t` has shape (cells, points)."""
     mass = np.empty(t.shape)
-    for first in range(0, len(a), _TOGETHER):
+
+    def weigh(first: int) -> None:
         some = slice(first, first + _TOGETHER)
         heights = law.log_ratio(a[some, None, None], t[some, :, None] * _X).reshape(-1, len(_X))
         sums = np.empty(len(heights))
         if not weigh_exponentials(heights, _W, sums):
             sums = product(exp(heights), _W)
         mass[some] = sums.reshape(-1, t.shape[1])
+
+    if len(a) < _SOON_DONE:
+        for first in range(0, len(a), _TOGETHER):
+            weigh(first)
+    else:
+        in_threads(weigh, range(0, len(a), _TOGETHER))
     return t * mass
 
 

@@ -132,6 +132,8 @@ class Counted:
                 sums[name] = everywhere[:, columns]
                 if name == "load" and scene.tangential:
                     sums["tangential_load"] = tangential_loads(scene, everywhere)
+        if not len(extras):
+            return sums
         where, numbers = np.unique(extras[:, 0].astype(np.int64) - first, return_counts=True)
         heights, weights, *ratios = np.ascontiguousarray(extras[:, 1:].T)
         with np.errstate(over="ignore"):  # as in the product: what is too large is infinite

@@ -5,7 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from analytic import Grading
 from analytic.laws import Branch
+from mcgw.machine.kept import kept
 from mcgw.scene.scene import Scene
 
 __all__ = ["Stretches", "begins_and_breaks", "stretches_of"]
@@ -46,12 +48,17 @@ class Stretches:
 
 def stretches_of(scene: Scene, branch: Branch, low: float, high: float) -> Stretches:
     """Stretches between two heights."""
-    h = np.array(scene.all_separations)
-    found = branch.regimes(scene.modulus, h, low, high)
+    return _stretches(branch, scene.modulus, np.array(scene.all_separations).tobytes(), low, high)
+
+
+@kept(8)  # the cells and the rows on them ask for the same
+def _stretches(branch: Branch, grading: Grading, separations: bytes, low: float, high: float) -> Stretches:
+    h = np.frombuffer(separations)
+    found = branch.regimes(grading, h, low, high)
     goes_on = np.append(False, (found.low[1:] <= found.high[:-1]) & (np.diff(found.separation) == 0))
     inside = (found.low > low) | (h[found.separation] >= low)
     at = h[found.separation]
-    left = branch.left(at, found.low - at, scene.modulus(found.low))
+    left = branch.left(at, found.low - at, grading(found.low))
     nothing = np.abs(left) <= _NOTHING
     return Stretches(
         separation=found.separation,

@@ -6,8 +6,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from analytic import Quantity, quantity_of
+from analytic import HeightLaw, Quantity, quantity_of
 from mcgw.machine.compiling import njit
+from mcgw.machine.kept import kept
 from mcgw.sampling.response.rows import Rows, Start
 from mcgw.sampling.spacing import SURE
 from mcgw.scene.scene import Scene
@@ -96,12 +97,18 @@ def _values(exponent: Any, scale: Any, graded: Any, above: Any, e: Any) -> Any:
     return values
 
 
+@kept(8)
+def _quantiles(law: HeightLaw, separations: bytes) -> tuple[Array, Array]:
+    """Share of heights above each separation, and 16 equally likely distances of those from it."""
+    h, share = np.frombuffer(separations), (np.arange(16) + 0.5) / 16
+    touching = law.above(h)
+    rank = np.maximum(touching[:, None] * share, np.finfo(float).tiny)
+    return touching, np.maximum(law.from_above(rank, -np.inf) - h[:, None], 0.0)
+
+
 def _totals(scene: Scene, chosen: list[Quantity], h: Array) -> Array:
     """Mean sums from 16 quantiles, quantity by quantity: the order of magnitude is all it takes."""
-    share = (np.arange(16) + 0.5) / 16
-    touching = scene.heights.above(h)
-    rank = np.maximum(touching[:, None] * share, np.finfo(float).tiny)
-    approach = np.maximum(scene.heights.from_above(rank, -np.inf) - h[:, None], 0.0)
+    touching, approach = _quantiles(scene.heights, h.tobytes())
     modulus, contacts = scene.modulus(approach + h[:, None]), scene.n_asperities * touching
     totals = [np.empty(0)]
     for q in chosen:

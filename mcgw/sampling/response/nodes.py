@@ -10,7 +10,7 @@ from analytic import Grading, resolved_breaks
 from mcgw.machine.compiling import njit
 from mcgw.sampling.cells import Mesh, evenness, height_noise
 from mcgw.sampling.response.rows import Rows
-from mcgw.sampling.response.tree import Tree, heights_above
+from mcgw.sampling.response.tree import Tree
 
 __all__ = ["Nodes"]
 
@@ -37,7 +37,7 @@ class Nodes:
     parent : ndarray of bool
         Whether it has children.
     broken : ndarray of bool
-        Whether the grading has a break inside, which its values at 20 heights may not show.
+        Whether the grading has a break inside a parent, which its values at 20 heights may not show.
     crowd : ndarray
         Asperities of a surface there, at most.
     even, noise : ndarray
@@ -62,7 +62,7 @@ class Nodes:
     def of(cls, mesh: Mesh, tree: Tree, grading: Grading, n_asperities: int, accuracy: float) -> "Nodes":
         """The nodes of a tree, for surfaces of so many asperities."""
         start, end = mesh.edges[tree.first], mesh.edges[tree.last]
-        above = heights_above(mesh, tree, np.arange(tree.size))
+        above = tree.above
         moduli = grading(start + above)
         kinks = np.array(resolved_breaks(grading, *mesh.range))
         inside = np.searchsorted(kinks, end) > np.searchsorted(kinks, start, side="right")
@@ -74,7 +74,7 @@ class Nodes:
             above=above,
             moduli=moduli,
             parent=tree.left >= 0,
-            broken=inside,
+            broken=inside & (tree.left >= 0),
             crowd=n_asperities * tree.probability + _SCATTER,
             even=evenness(grading, e),
             noise=height_noise(start, t, e) / largest,

@@ -17,7 +17,7 @@ from mcgw.machine.compiling import njit
 from mcgw.sampling.cells import NODES, TO_COEFFICIENTS, Mesh
 from mcgw.sampling.rules import multiply
 
-__all__ = ["Tree", "heights_above", "transfers", "tree_over"]
+__all__ = ["Tree", "transfers", "tree_over"]
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -35,6 +35,8 @@ class Tree:
         Children of each node, -1 for a cell.
     probability : ndarray
         Of a height in each node, shape (nodes,).
+    above : ndarray
+        Heights above the lower edges of nodes, at the Chebyshev points of their variables: (points, nodes).
     """
 
     first: NDArray[np.int64]
@@ -42,6 +44,7 @@ class Tree:
     left: NDArray[np.int64]
     right: NDArray[np.int64]
     probability: Array
+    above: Array
 
     @property
     def size(self) -> int:
@@ -67,16 +70,15 @@ def tree_over(mesh: Mesh) -> Tree:
             probability.append(probability[a] + probability[b])
         level = above + level[len(level) - len(level) % 2 :]
     links = [np.array(column, dtype=np.int64) for column in (first, last, left, right)]
-    return Tree(links[0], links[1], links[2], links[3], np.array(probability, dtype=np.float64))
+    heights = _heights_above(mesh, mesh.edges[links[0]], mesh.edges[links[1]])
+    return Tree(links[0], links[1], links[2], links[3], np.array(probability, dtype=np.float64), heights)
 
 
-def heights_above(mesh: Mesh, tree: Tree, nodes: Ints) -> Array:
-    """Heights above the lower edges of nodes, at the Chebyshev points of their variables: (points, nodes)."""
+def _heights_above(mesh: Mesh, start: Array, end: Array) -> Array:
     u = ((1 + NODES) / 2)[:, None]
-    width = mesh.edges[tree.last[nodes]] - mesh.edges[tree.first[nodes]]
-    cells = nodes < mesh.size
-    above = width * u
-    above[:, cells] = mesh.offsets(nodes[cells], np.repeat(u, np.count_nonzero(cells), axis=1))
+    above = (end - start) * u
+    cells = np.arange(mesh.size)
+    above[:, cells] = mesh.offsets(cells, np.repeat(u, mesh.size, axis=1))
     return above
 
 
@@ -98,7 +100,7 @@ def transfers(mesh: Mesh, tree: Tree, moments: Ints) -> tuple[Ints, Ints, Ints, 
     parent = np.repeat(np.arange(mesh.size, tree.size), 2)
     child = np.stack([tree.left, tree.right], axis=1)[mesh.size :].ravel()
     start, end = mesh.edges[tree.first[parent]], mesh.edges[tree.last[parent]]
-    s = (mesh.edges[tree.first[child]] - start) + heights_above(mesh, tree, child)
+    s = (mesh.edges[tree.first[child]] - start) + tree.above[:, child]
     wanted = moments[parent]
     pair = np.repeat(np.arange(len(parent)), wanted)
     moment = np.arange(len(pair)) - np.repeat(np.cumsum(wanted) - wanted, wanted)

@@ -2,10 +2,13 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from mcgw.machine.compiling import njit
+from mcgw.machine.in_threads import in_threads
 from mcgw.sampling.cells import NODES, TO_COEFFICIENTS, Mesh
 from mcgw.sampling.response.nodes import Nodes
 from mcgw.sampling.response.rows import Rows
@@ -19,6 +22,9 @@ Ints = NDArray[np.int64]
 
 _MOST, _MOST_IN_CELL = 12, 19  # moments: what is not resolved by so many is left to the children, or refused
 _U = (1 + NODES) / 2
+# Multiplies a Chebyshev series by u = (1 + x)/2, and leaves zeros where they are.
+_TIMES_U = np.eye(len(NODES)) / 2 + np.eye(len(NODES), k=1) / 4 + np.eye(len(NODES), k=-1) / 4
+_TIMES_U[1, 0] = 0.5
 _PAIRS = 1024  # of a row and a node, at a time
 
 
@@ -80,38 +86,51 @@ def walk(mesh: Mesh, tree: Tree, rows: Rows, nodes: Nodes) -> tuple[Entries, Int
         If a row begins or ends inside a cell, or is not resolved on one.
     """
     plain, rooted = np.zeros(tree.size, dtype=np.int64), np.zeros(mesh.size, dtype=np.int64)
-    for_parents = np.zeros(tree.size, dtype=np.int64)
     found: list[Entries] = []
-    level = np.array([tree.size - 1] if tree.size else [], dtype=np.int64)
-    node, row = np.repeat(level, len(rows.h)), np.tile(np.arange(len(rows.h)), len(level))
-    while level.size:
-        here = (rows.low[row] < nodes.end[node]) & (rows.high[row] > nodes.start[node])
-        node, row = node[here], row[here]
-        smooth, left = np.flatnonzero(_smooth(rows, nodes, node, row)), np.ones(len(node), dtype=bool)
-        for few in _together(smooth):
-            series, needed = _smooth_series(rows, nodes, node[few], row[few])
-            parent = nodes.parent[node[few]]
-            begins = rows.rough[row[few]] & (rows.low[row[few]] == nodes.start[node[few]]) & ~parent
-            needed[begins] = np.minimum(needed[begins], _MOST_IN_CELL)
-            done = needed <= np.where(parent, _MOST, _MOST_IN_CELL)
-            _refuse(nodes, node[few][~done & ~parent])
-            found.append(series.take(done))
-            np.maximum.at(plain, node[few[done]], needed[done])
+    row = np.arange(len(rows.h) if tree.size else 0)
+    node = np.full(len(row), tree.size - 1)
+    while len(node):
+        node, row, smooth = _met(node, row, rows, nodes)
+        left = np.ones(len(node), dtype=bool)
+        together = _together(np.flatnonzero(smooth))
+        resolved = in_threads(lambda few: _resolved(rows, nodes, node[few], row[few]), together)  # noqa: B023
+        for few, (series, needed, done) in zip(together, resolved, strict=True):
+            found.append(series)
+            np.maximum.at(plain, series.node, needed)
             left[few[done]] = False
         begins = left & ~nodes.parent[node]
-        for some, needed in _begun_series(rows, nodes, node[begins], row[begins]):
-            found.append(some)
-            np.maximum.at(rooted if some.rooted.any() else plain, some.node, needed)
-        level, left = level[nodes.parent[level]], left & nodes.parent[node]
-        children = tree.left, tree.right
-        for child in children:
-            for_parents[child[level]] = plain[level]
-            plain[child[level]] = np.where(nodes.parent[child[level]], plain[level], 0)
-        node, row = np.concatenate([child[node[left]] for child in children]), np.tile(row[left], 2)
-        level = np.concatenate([child[level] for child in children])
+        for series, needed in _begun_series(rows, nodes, node[begins], row[begins]):
+            found.append(series)
+            np.maximum.at(rooted if series.rooted.any() else plain, series.node, needed)
+        left &= nodes.parent[node]
+        node, row = node[left], row[left]
+        node, row = np.concatenate([tree.left[node], tree.right[node]]), np.concatenate([row, row])
+    for_parents = _inherited(plain, tree.left, tree.right)[: mesh.size]
     cells = slice(0, mesh.size)
-    plain[cells] = np.maximum(plain[cells], _of_parents(rows, nodes, for_parents[cells]))
+    plain[cells] = np.maximum(plain[cells], _of_parents(rows, nodes, for_parents))
     return Entries.joined(found), plain, rooted
+
+
+def _met(node: Ints, row: Ints, rows: Rows, nodes: Nodes) -> tuple[Ints, Ints, NDArray[np.bool_]]:
+    """Those nodes and rows that have heights in common, and whether the row is one smooth function there."""
+    start, end, low, high = nodes.start[node], nodes.end[node], rows.low[row], rows.high[row]
+    whole = (low < start) | ((low == start) & ~rows.rooted[row])
+    whole &= (end <= high) & ~(nodes.broken[node] & rows.graded[row])
+    here = (low < end) & (high > start)
+    return node[here], row[here], whole[here]
+
+
+@njit(nogil=True, cache=True)
+def _inherited(plain: Any, left: Any, right: Any) -> Any:
+    """Moments that each node needs for its parent; parents need as many as theirs."""
+    inherited = np.zeros_like(plain)
+    for node in range(plain.size - 1, -1, -1):  # parents come after their children
+        if left[node] >= 0:
+            for child in (left[node], right[node]):
+                inherited[child] = plain[node]
+                if left[child] >= 0:
+                    plain[child] = max(plain[child], plain[node])
+    return inherited
 
 
 def _together(pairs: Ints) -> list[Ints]:
@@ -119,12 +138,16 @@ def _together(pairs: Ints) -> list[Ints]:
     return [pairs[first : first + _PAIRS] for first in range(0, len(pairs), _PAIRS)]
 
 
-def _smooth(rows: Rows, nodes: Nodes, node: Ints, row: Ints) -> NDArray[np.bool_]:
-    """Whether a row is one smooth function on a node."""
-    start, low = nodes.start[node], rows.low[row]
-    whole = (low < start) | ((low == start) & ~rows.rooted[row])
-    whole &= nodes.end[node] <= rows.high[row]
-    return np.asarray(whole & ~(nodes.parent[node] & nodes.broken[node] & rows.graded[row]))
+def _resolved(rows: Rows, nodes: Nodes, node: Ints, row: Ints) -> tuple[Entries, Ints, NDArray[np.bool_]]:
+    """Series of rows that are smooth on nodes, where resolved; how many coefficients count; and which."""
+    series, needed = _smooth_series(rows, nodes, node, row)
+    parent = nodes.parent[node]
+    if rows.rough.any():
+        begins = rows.rough[row] & (rows.low[row] == nodes.start[node]) & ~parent
+        needed[begins] = np.minimum(needed[begins], _MOST_IN_CELL)
+    done = needed <= np.where(parent, _MOST, _MOST_IN_CELL)
+    _refuse(nodes, node[~(done | parent)])
+    return series.take(done), needed[done], done
 
 
 def _refuse(nodes: Nodes, unresolved: Ints) -> None:
@@ -171,16 +194,9 @@ def _starts(rows: Rows, nodes: Nodes, node: Ints, row: Ints) -> Iterator[tuple[b
         c[np.arange(len(c))[:, None] >= needed] = 0.0
         for power in range(int(start.power.max(initial=0))):
             more = start.power >= power + 1
-            c[:, more] = product(_times_u(len(c)), c[:, more])
+            c[:, more] = product(_TIMES_U, c[:, more])
             needed = needed + more
         yield start.rooted, which, c, needed
-
-
-def _times_u(order: int) -> Array:
-    """Matrix that multiplies a Chebyshev series by u = (1 + x)/2, leaving zeros where they are."""
-    matrix = np.eye(order) / 2 + np.eye(order, k=1) / 4 + np.eye(order, k=-1) / 4
-    matrix[1, 0] = 0.5
-    return matrix
 
 
 def _of_parents(rows: Rows, nodes: Nodes, inherited: Ints) -> Ints:
