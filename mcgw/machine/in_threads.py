@@ -39,6 +39,8 @@ def in_threads(call: Callable[[_Item], _Result], items: Sequence[_Item]) -> list
         finally:
             set_num_threads(before)
 
+    if len(items) == 1:
+        return [call(items[0])]
     own, *others = np.array_split(np.arange(len(items)), min(get_num_threads(), max(len(items), 1)))
     if not others:
         return run(own)

@@ -75,7 +75,9 @@ def _called(builder: Any, name: str, *args: Any) -> Any:
 
 
 def _element(context: Any, builder: Any, array_type: Any, array: Any, index: Any) -> Any:
-    """Pointer to the vector that begins at a number of a contiguous array."""
+    """Pointer to the vector that begins at a number of an array in C's order, counted through all rows."""
+    if array_type.layout != "C":
+        raise TypeError(f"lanes are neighbours: not of {array_type}")
     data = context.make_array(array_type)(context, builder, array).data
     return builder.bitcast(builder.gep(data, [index]), _VECTOR.as_pointer())
 

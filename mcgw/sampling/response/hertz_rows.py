@@ -43,11 +43,12 @@ class _Powers:
         """With ``s - h = u q(u)`` a row is ``u^n q^n e``, and q^n e is accurate down to u = 0."""
         values = self.values(rows, above / u[:, None], e)
         rooted = self.exponent[rows] % 1 != 0
-        return [
-            Start(root, which, values[:, which], self.exponent[rows][which] // 1)
-            for root in (False, True)
-            if (which := np.flatnonzero(rooted == root)).size
-        ]
+        starts = []
+        for root in (False, True):
+            which = np.flatnonzero(rooted == root)
+            if which.size:
+                starts.append(Start(root, which, values[:, which], self.exponent[rows][which] // 1))
+        return starts
 
 
 def hertz_rows(scene: Scene, quantities: tuple[str, ...], *, lasting: bool) -> Rows:

@@ -8,9 +8,10 @@ from numpy.typing import NDArray
 
 from analytic import Grading, resolved_breaks
 from mcgw.machine.compiling import njit
-from mcgw.sampling.cells import Mesh, evenness, height_noise
+from mcgw.sampling.cells import TO_COEFFICIENTS, Mesh, evenness, height_noise
 from mcgw.sampling.response.rows import Rows
 from mcgw.sampling.response.tree import Tree
+from mcgw.sampling.rules import multiply
 
 __all__ = ["Nodes"]
 
@@ -86,30 +87,35 @@ class Nodes:
         above, e = _taken(self.above, self.moduli, node, self.start[node] - h)
         return above, e
 
-    def needed(self, c: Array, node: Ints, row: Ints, rows: Rows) -> tuple[Ints, Ints]:
-        """How many leading coefficients of a series count.
+    def series(
+        self, values: Array, node: Ints, row: Ints, rows: Rows, *, of_many: bool
+    ) -> tuple[Array, Ints]:
+        """Chebyshev series of rows on nodes, and how many leading coefficients of each count.
 
         Parameters
         ----------
-        c : ndarray
-            Coefficients, shape (order, pairs).
+        values : ndarray
+            At the points of the nodes, shape (points, pairs).
         node, row : ndarray of int
             Whose they are, shape (pairs,).
         rows : Rows
             All rows.
+        of_many : bool
+            Keep what counts in a sum over many nodes, whose errors add up: it is used if others need the
+            moments.
 
         Returns
         -------
         (ndarray, ndarray)
-            For this node, so many moments it must have; and in a sum over many nodes, whose errors add up:
-            what lies beyond is nothing, what is in between is used if others need the moments.
+            Coefficients, shape (order, pairs), zero beyond those kept; and how many moments each node must
+            have.
         """
-        graded = rows.graded[row]
-        share, noise = np.where(graded, self.even[node], 1.0), np.where(graded, self.noise[node], 0.0)
-        if rows.rough.any():
-            noise = np.maximum(noise, self._rough_noise(node, row, rows))
-        alone, of_many = _counted(c, share, rows.total[row] / self.crowd[node], noise, self.accuracy)
-        return alone, of_many
+        rough = self._rough_noise(node, row, rows) if rows.rough.any() else np.zeros(len(row))
+        limits = self.even, self.noise, self.crowd, rows.graded, rows.total
+        share = _NODES if of_many else 1
+        values = np.ascontiguousarray(values)
+        c, count = _series(values, TO_COEFFICIENTS, node, row, limits, rough, self.accuracy, share)
+        return c, count
 
     def _rough_noise(self, node: Ints, row: Ints, rows: Rows) -> Array:
         """What the last digit of a height makes of a power of its small distance from where a row begins."""
@@ -134,10 +140,14 @@ def _taken(above: Any, moduli: Any, node: Any, more: Any) -> Any:
 
 
 @njit(nogil=True, cache=True)
-def _counted(c: Any, share: Any, total: Any, noise: Any, accuracy: Any) -> Any:
-    """Coefficients up to the last one from which on all together are more than the error that is let."""
-    order, series = c.shape
-    alone, of_many = np.zeros(series, dtype=np.int64), np.zeros(series, dtype=np.int64)
+def _series(
+    values: Any, to_coefficients: Any, node: Any, row: Any, limits: Any, rough: Any, accuracy: Any, share: Any
+) -> Any:
+    """Coefficients, up to the last from which on all together are more than the error that is let."""
+    even, noise, crowd, graded, total = limits
+    order, series = values.shape
+    c, count = np.empty(values.shape), np.zeros(series, dtype=np.int64)
+    multiply(to_coefficients, values, c)
     tails, tail = np.empty((order, _COLUMNS)), np.empty(_COLUMNS)
     for first in range(0, series, _COLUMNS):
         n = min(_COLUMNS, series - first)
@@ -148,10 +158,13 @@ def _counted(c: Any, share: Any, total: Any, noise: Any, accuracy: Any) -> Any:
                 tails[i, j] = tail[j]
         for j in range(n):
             at = first + j
-            enough = max(share[at] * tail[j], total[at])
-            least = noise[at] * tail[j]
-            lone, shared = max(accuracy * enough, least), max(accuracy / _NODES * enough, least)
+            by_modulus = graded[row[at]]
+            enough = even[node[at]] * tail[j] if by_modulus else tail[j]
+            enough = max(enough, total[row[at]] / crowd[node[at]])
+            least = max(noise[node[at]] if by_modulus else 0.0, rough[at]) * tail[j]
+            alone, kept = max(accuracy * enough, least), max(accuracy / share * enough, least)
             for i in range(order):
-                alone[at] += tails[i, j] > lone
-                of_many[at] += tails[i, j] > shared
-    return alone, of_many
+                count[at] += tails[i, j] > alone
+                if not tails[i, j] > kept:
+                    c[i, at] = 0.0
+    return c, count

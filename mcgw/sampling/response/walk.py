@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from mcgw.machine.compiling import njit
 from mcgw.machine.in_threads import in_threads
-from mcgw.sampling.cells import NODES, TO_COEFFICIENTS, Mesh
+from mcgw.sampling.cells import NODES, Mesh
 from mcgw.sampling.response.nodes import Nodes
 from mcgw.sampling.response.rows import Rows
 from mcgw.sampling.response.tree import Tree
@@ -161,9 +161,8 @@ def _smooth_series(rows: Rows, nodes: Nodes, node: Ints, row: Ints) -> tuple[Ent
 
     What no sum over many nodes can show is zero.
     """
-    c = product(TO_COEFFICIENTS, rows.formulas.values(row, *nodes.at(node, rows.h[row])))
-    needed, of_many = nodes.needed(c, node, row, rows)
-    c[np.arange(len(c))[:, None] >= of_many] = 0.0
+    values = rows.formulas.values(row, *nodes.at(node, rows.h[row]))
+    c, needed = nodes.series(values, node, row, rows, of_many=True)
     begins = np.flatnonzero(rows.begins[row] & (rows.low[row] == nodes.start[node]))
     for _, which, begun, count in _starts(rows, nodes, node[begins], row[begins]):
         c[:, begins[which]], needed[begins[which]] = begun, count
@@ -189,9 +188,7 @@ def _starts(rows: Rows, nodes: Nodes, node: Ints, row: Ints) -> Iterator[tuple[b
         return
     for start in rows.formulas.at_start(row, *nodes.at(node, nodes.start[node]), _U):
         which = start.rows
-        c = product(TO_COEFFICIENTS, start.values)
-        needed, _ = nodes.needed(c, node[which], row[which], rows)
-        c[np.arange(len(c))[:, None] >= needed] = 0.0
+        c, needed = nodes.series(start.values, node[which], row[which], rows, of_many=False)
         for power in range(int(start.power.max(initial=0))):
             more = start.power >= power + 1
             c[:, more] = product(_TIMES_U, c[:, more])
