@@ -6,11 +6,7 @@ from interacting_by_hand import QUANTITIES, SEPARATIONS, interaction
 from matplotlib.figure import Figure
 
 import analytic
-from mcgw.errors import StoreError
-from mcgw.jobs import merging
-from mcgw.machine.child_process import ChildError
 from mcgw.scene.scene import Scene
-from mcgw.store import merged_file
 
 SURFACE = analytic.Surface(sigma=1.37e-6, radius=13e-6, eta=3.0e8, nominal_area=1e-4, E_star=78.6e9)
 
@@ -43,24 +39,6 @@ def pressed(make_scene):
         return scene.replace(interaction=interaction(strength, scene.surface, scene.n_asperities, at))
 
     return make
-
-
-@pytest.fixture(scope="session", autouse=True)
-def _merged_here():
-    """Runs are merged in this process: to start another takes longer than the rest of a small run.
-
-    Commands that a test starts in a process of their own merge as everywhere.
-    """
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(merging, "_merge_in_child", merged_here)
-        yield
-
-
-def merged_here(folder, path, temporary):
-    try:
-        merged_file.merge_into(folder, path, temporary)
-    except StoreError as error:
-        raise ChildError("exit code 3", str(error)) from None
 
 
 @pytest.fixture

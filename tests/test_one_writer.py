@@ -163,14 +163,14 @@ def test_drawn_surfaces_are_kept_when_fewer_are_asked_for(scene, path):
 
 def test_a_file_that_changes_while_it_is_extended_is_left_alone(scene, path, monkeypatch):
     run(scene, path)
-    merged = merging._merge_in_child
+    merged = merging.merge_into
 
     def replaced(*words):
         merged(*words)
         path.unlink()
         path.write_bytes(b"precious")
 
-    monkeypatch.setattr(merging, "_merge_in_child", replaced)
+    monkeypatch.setattr(merging, "merge_into", replaced)
     with pytest.raises(RunError, match="another file has taken this name meanwhile"):
         run(replace(scene, n_surfaces=3 * SIZE), path)
     assert path.read_bytes() == b"precious"

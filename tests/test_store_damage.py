@@ -45,6 +45,10 @@ def larger(scene):
     return replace(scene, n_surfaces=SURFACES + 30)
 
 
+def nobody():
+    """Asks for an end."""
+
+
 def flip(path, place):
     data = bytearray(path.read_bytes())
     data[place] ^= 4
@@ -176,7 +180,8 @@ def begun(scene, path, jobs=1):
 def make_trailer_anew(path, change):
     """Other numbers under a good trailer: only the digest of the contents is as before."""
     trailer, body = read_checked(path)
-    arrays = shards._unpack(body, path)
+    with shards.tables_in(body, path) as tables:
+        arrays = {name: table[()] for name, table in tables.items()}
     change(arrays)
     body = shards.pack(arrays)
     path.write_bytes(body + trailer_of(body, **trailer.notes))
@@ -227,25 +232,24 @@ def test_what_was_written_is_read_again_before_it_is_sealed(scene, tmp_path, mon
 
     monkeypatch.setattr(layout, "_put", slip)
     with pytest.raises(OSError, match="reads otherwise than written"):
-        merged_file.merge_into(parts_of(path), path, tmp_path / "x.tmp")
+        merged_file.merge_into(parts_of(path), path, tmp_path / "x.tmp", nobody)
     monkeypatch.setattr(layout, "_put", put)
-    merged_file.merge_into(parts_of(path), path, tmp_path / "y.tmp")
+    merged_file.merge_into(parts_of(path), path, tmp_path / "y.tmp", nobody)
     assert ensembles.verify(tmp_path / "y.tmp")[0] == ""
 
 
 def test_a_digest_that_is_written_wrong_is_seen(scene, tmp_path, monkeypatch):
     path = tmp_path / "e.h5"
     begun(scene, path)
-    build = merged_file.build
+    describe = merged_file.describe
 
     def forged(file, *arguments, **options):
-        digest = build(file, *arguments, **options)
+        describe(file, *arguments, **options)
         file.attrs["digest"] = "0" * 64
-        return digest
 
-    monkeypatch.setattr(merged_file, "build", forged)
+    monkeypatch.setattr(merged_file, "describe", forged)
     with pytest.raises(OSError, match="reads otherwise than written"):
-        merged_file.merge_into(parts_of(path), path, tmp_path / "x.tmp")
+        merged_file.merge_into(parts_of(path), path, tmp_path / "x.tmp", nobody)
 
 
 @pytest.mark.parametrize("gone", [0, 3, 6])
@@ -253,7 +257,7 @@ def test_a_shard_that_is_gone_is_missing(scene, tmp_path, gone):
     path = tmp_path / "e.h5"
     begun(scene, path, jobs=2)[gone].unlink()
     with pytest.raises(StoreError):
-        merged_file.merge_into(parts_of(path), path, tmp_path / "x.tmp")
+        merged_file.merge_into(parts_of(path), path, tmp_path / "x.tmp", nobody)
     with pytest.raises(RunError, match=f"surfaces are missing, from {16 * gone} on"):
         merge(path)
     assert not path.exists()

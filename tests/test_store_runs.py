@@ -208,15 +208,15 @@ def test_damage_is_put_aside_and_drawn_again(small_blocks, scene, tmp_path, expe
 
 
 def test_damage_found_while_merging_is_mended(small_blocks, scene, tmp_path, expected, monkeypatch):
-    path, merged = tmp_path / "e.h5", merging._merge_in_child
+    path, merged = tmp_path / "e.h5", merging.merge_into
 
     def damage_first(folder, *rest):
-        monkeypatch.setattr(merging, "_merge_in_child", merged)
+        monkeypatch.setattr(merging, "merge_into", merged)
         shard = min(folder.glob("shards/*.h5"))
         shard.write_bytes(shard.read_bytes()[:-1])
         merged(folder, *rest)
 
-    monkeypatch.setattr(merging, "_merge_in_child", damage_first)
+    monkeypatch.setattr(merging, "merge_into", damage_first)
     run(scene, path)
     assert digest(path) == expected
 

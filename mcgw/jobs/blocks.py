@@ -1,5 +1,6 @@
 """What a worker does: draw a block of surfaces. The same, whoever asks and however often."""
 
+from collections.abc import Callable
 from functools import lru_cache
 from pathlib import Path
 from time import perf_counter
@@ -13,19 +14,25 @@ from mcgw.store.identity import difference, identity_of
 from mcgw.store.run_folder import RunFolder
 from mcgw.store.shards import Span, commit_shard
 
-__all__ = ["commit_block"]
+__all__ = ["commit_block", "draw_block"]
 
 
 def commit_block(folder: str, first: int, n: int, threads: int | None = 1) -> str:
     """Draw a block of a run into its folder, unless a valid shard is there; returns its digest."""
+    return draw_block(folder, first, n, threads)()
+
+
+def draw_block(folder: str, first: int, n: int, threads: int | None = 1) -> Callable[[], str]:
+    """The first half of `commit_block`; what it returns is the second, which another thread may do."""
     run, job = _prepared(folder, state_of(Path(folder) / "run.toml"))
     span = Span(first, n)
     if shard := run.held(span):
-        return shard.digest
+        digest = shard.digest
+        return lambda: digest
     started = perf_counter()
     tables = job.draw(span, threads)
-    path = run.shards_folder / span.file_name
-    return commit_shard(path, run.identity, span, tables, perf_counter() - started).digest
+    path, seconds = run.shards_folder / span.file_name, perf_counter() - started
+    return lambda: commit_shard(path, run.identity, span, tables, seconds).digest
 
 
 @lru_cache(maxsize=1)

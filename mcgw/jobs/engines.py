@@ -10,6 +10,7 @@ import threading
 from collections.abc import Callable
 from concurrent.futures import Future, ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
+from functools import partial
 from queue import SimpleQueue
 from typing import Any, Protocol
 
@@ -46,33 +47,46 @@ class Engine(Protocol):
 class Threads:
     """All threads of this process on one block after the other.
 
-    The caller's thread stays free, so that signals are heeded while a block is drawn.
+    A task may return a function of no arguments for the rest of its work, which gives the answer: another
+    thread calls it, in the order of the tasks, while the next task is begun. The caller's thread stays free,
+    so that signals are heeded while a block is drawn.
     """
 
-    width = 2  # the next one waits while one is drawn
+    width = 3  # one waits, one is drawn, one is written
 
     def __init__(self) -> None:
-        self._queue: SimpleQueue[Any] = SimpleQueue()
-        # A daemon: a block that takes hours does not keep an interrupted program alive.
-        threading.Thread(target=self._work, daemon=True, name="mcgw-blocks").start()
+        self._tasks: SimpleQueue[Any] = SimpleQueue()
+        self._begun: SimpleQueue[Any] = SimpleQueue()
+        for work in (self._begin, self._finish):
+            # A daemon: a block that takes hours does not keep an interrupted program alive.
+            threading.Thread(target=work, daemon=True, name="mcgw-blocks").start()
 
     def submit(self, task: Callable[..., Any], *arguments: Any) -> "Future[Any]":
         """Queue a task."""
         future: Future[Any] = Future()
-        self._queue.put((future, task, arguments))
+        self._tasks.put((future, partial(task, *arguments)))
         return future
 
     def close(self) -> None:
         """Let the running task be the last."""
-        while not self._queue.empty():
-            self._queue.get()
-        self._queue.put(None)
+        while not self._tasks.empty():
+            self._tasks.get()
+        self._tasks.put(None)
 
-    def _work(self) -> None:
-        while (item := self._queue.get()) is not None:
-            future, task, arguments = item
+    def _begin(self) -> None:
+        while (item := self._tasks.get()) is not None:
+            future, task = item
             try:
-                future.set_result(task(*arguments))
+                self._begun.put((future, task()))
+            except BaseException as error:
+                future.set_exception(error)
+        self._begun.put(None)
+
+    def _finish(self) -> None:
+        while (item := self._begun.get()) is not None:
+            future, answer = item
+            try:
+                future.set_result(answer() if callable(answer) else answer)
             except BaseException as error:
                 future.set_exception(error)
 

@@ -14,6 +14,7 @@ from mcgw.sampling.samplers import Sampler, sampler_of
 from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_from
 from mcgw.scene.storable import storable
+from mcgw.store.chunks import CHUNK_ROWS
 from mcgw.store.ensembles import finished, recorded_scene
 from mcgw.store.layout import stored_text
 from mcgw.store.run_folder import RunFolder, parts_of
@@ -68,10 +69,11 @@ class Job:
 
     @cached_property
     def rows(self) -> int:
-        """Surfaces a block: a function of the scene alone, however many of them are asked."""
+        """Surfaces a block: a function of the scene alone, however many of them are asked; whole chunks."""
         size, row = block_size(self.scene, self.sampler), 8 * self.columns
         fitting = min(_BYTES / (size * row), _DRAWS / (size * (self.sampler.draws + 1)))
-        return size * int(max(fitting, 1))
+        rows = size * int(max(fitting, 1))
+        return rows - rows % CHUNK_ROWS if rows > CHUNK_ROWS else rows
 
     @property
     def columns(self) -> int:

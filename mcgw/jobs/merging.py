@@ -7,10 +7,10 @@ from mcgw.ensemble.ensemble import Ensemble
 from mcgw.errors import RunError, StoreError
 from mcgw.formats.files import rename_over, state_of, sync, temporary_beside
 from mcgw.jobs.driver import Signals, heed_signals
-from mcgw.machine.child_process import ChildError, run_child
 from mcgw.store.ensembles import finished, open_ensemble
 from mcgw.store.leftovers import tidy
 from mcgw.store.lock import locked
+from mcgw.store.merged_file import merge_into
 from mcgw.store.run_folder import RunFolder, parts_of
 
 __all__ = ["merge", "merge_once"]
@@ -69,21 +69,26 @@ def merge_once(started: RunFolder, path: Path, signals: Signals) -> bool:
     """Make the file and remove the shards; False if a shard turned out damaged. Only with the lock."""
     temporary, before = temporary_beside(started.folder / path.name), state_of(path)
     finished(path, started.scene, started.sampler)
+
+    def check() -> None:
+        signals.check(f"all blocks are kept in {started.folder}; the same command merges them")
+
     try:
-        _merge_in_child(started.folder, path, temporary)
+        merge_into(started.folder, path, temporary, check)
         rename_over(temporary, path, before)
         sync(path.parent)
+    except StoreError:
+        return False
+    except RunError:
+        raise
     except FileExistsError as error:
         raise RunError(
             f"{path}: {error.strerror}; it is left as it is. All blocks are kept in {started.folder}: move "
             "that file away, the same command goes on"
         ) from None
-    except ChildError as error:
-        signals.check(f"all blocks are kept in {started.folder}; the same command merges them")
-        if error.how == "exit code 3":
-            return False
+    except (OSError, RuntimeError) as error:
         raise RunError(
-            f"{path}: cannot be merged ({error}); is the disk full? All blocks are kept in "
+            f"{path}: cannot be merged ({_why(error)}); is the disk full? All blocks are kept in "
             f"{started.folder}, the same command goes on"
         ) from None
     finally:
@@ -93,5 +98,6 @@ def merge_once(started: RunFolder, path: Path, signals: Signals) -> bool:
     return True
 
 
-def _merge_in_child(folder: Path, path: Path, temporary: Path) -> None:
-    run_child("mcgw.store.merged_file", str(folder), str(path), str(temporary))
+def _why(error: OSError | RuntimeError) -> str:
+    said = error.strerror if isinstance(error, OSError) else None
+    return said or next(iter(str(error).splitlines()), type(error).__name__)

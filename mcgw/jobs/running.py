@@ -11,7 +11,7 @@ from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.forecast import checkpoints, without_rule
 from mcgw.ensemble.results import MemoryResults
 from mcgw.errors import RunError, StoreError
-from mcgw.jobs.blocks import commit_block
+from mcgw.jobs.blocks import commit_block, draw_block
 from mcgw.jobs.driver import Signals, drive, heed_signals
 from mcgw.jobs.engines import Engine, Threads
 from mcgw.jobs.job import Job, as_recorded
@@ -117,10 +117,10 @@ class _By:
         """The engine given, left open; or threads of this process."""
         with heed_signals() as signals:
             if self.engine is not None:
-                yield _Session(self.engine, 1, self.progress, signals)
+                yield _Session(self.engine, commit_block, 1, self.progress, signals)
                 return
             with closing(Threads()) as own:
-                yield _Session(own, self.threads, self.progress, signals)
+                yield _Session(own, draw_block, self.threads, self.progress, signals)
 
 
 @dataclass(frozen=True)
@@ -128,6 +128,7 @@ class _Session:
     """Blocks are given to an engine until a signal comes."""
 
     engine: Engine
+    task: Callable[..., Any]
     threads: int | None
     progress: Progress
     signals: Signals
@@ -249,7 +250,7 @@ def _draw_missing(started: RunFolder, spans: list[Span], session: _Session, part
     drive(
         session.engine,
         spans,
-        commit_block,
+        session.task,
         lambda span: (folder, span.first, span.n, session.threads),
         note,
         session.signals,

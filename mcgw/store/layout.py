@@ -2,7 +2,7 @@
 
 import hashlib
 import math
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
 import h5py
@@ -13,6 +13,7 @@ from analytic import ALL_QUANTITIES
 from mcgw.errors import StoreError
 from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_text
+from mcgw.store.chunks import PACKED, add_rows, empty_table
 from mcgw.store.head import MOST_TEXT, head_digest
 from mcgw.store.provenance import now, provenance
 from mcgw.store.shards import DRAWN, RAGGED, Span, Tables
@@ -20,9 +21,13 @@ from mcgw.store.shards import DRAWN, RAGGED, Span, Tables
 __all__ = [
     "FILETYPE",
     "FORMAT",
-    "build",
+    "describe",
+    "digest_of",
     "file_pieces",
+    "fill",
+    "rows_of",
     "scales_of",
+    "stored_tables",
     "stored_text",
     "trailer_notes",
     "values_digest",
@@ -30,6 +35,8 @@ __all__ = [
 ]
 
 FILETYPE, FORMAT = "mcgw-ensemble", (1, 1)
+
+Stored = Mapping[str, NDArray[Any] | h5py.Dataset]
 
 _LONG_NAMES = {
     "moments": "sums of Chebyshev polynomials of the uniforms in each cell",
@@ -42,51 +49,43 @@ _SCALES = {  # of the axes of tables, in their order: unit and long name
     "displacement": ("m", "tangential displacement"),
 }
 _PIECE = 2**23  # bytes read at a time
-_CHUNK, _CHUNK_ROWS = 2**20, 256
-# A checksum makes a changed chunk an error, not a number; writing takes no longer, reading 6 %.
-_STORED: Any = {"compression": "gzip", "compression_opts": 1, "shuffle": True, "fletcher32": True}
+_SCALE_CHUNK = 2**17  # numbers
 
 
-def build(
-    file: h5py.File, scene: Scene, sampler: str, pieces: Iterable[tuple[Span, Tables]], **attributes: Any
-) -> str:
-    """Fill an empty HDF5 file with all surfaces of a scene, in order, and with more root attributes.
-
-    Returns the digest of scene and data, computed from the pieces; it is also an attribute.
+def fill(file: h5py.File, scene: Scene, pieces: Iterable[tuple[Span, Stored]]) -> None:
+    """Fill an empty HDF5 file with the tables of all surfaces of a scene, that come in order.
 
     Raises
     ------
     StoreError
         If the pieces are not all surfaces of the scene in order.
     """
-    text = stored_text(scene)
-    stop, digest = 0, _Digest(scene)
-    for span, arrays in pieces:
+    stop = 0
+    for span, tables in pieces:
         if span.first != stop:
             raise StoreError(f"surfaces {stop} ... {span.first - 1} are missing")
         if not stop:
-            _lay_out(file, scene, arrays)
-            for name, scale in scales_of(scene).items():
-                digest.add(name, np.array(scale))
-        for name, values in arrays.items():
-            digest.add(name, values)
-        _put(file, span, arrays)
+            _lay_out(file, scene, tables)
+        _put(file, span, tables)
         stop = span.stop
     if stop != scene.n_surfaces:
         raise StoreError(f"{stop} surfaces, not {scene.n_surfaces}")
+
+
+def describe(file: h5py.File, scene: Scene, sampler: str, digest: str, **attributes: Any) -> None:
+    """Give a file that is filled its root attributes, and more of them."""
     file.attrs.update(
         filetype=FILETYPE,
         format=FORMAT,
         title=scene.title,
-        scene=text,
+        scene=stored_text(scene),
         seed=np.uint64(scene.seed),
         sampler=sampler,
         complete=True,
-        digest=digest.hexdigest(),
+        digest=digest,
         date=now(),
         **{**provenance(), **attributes},
     )
-    return digest.hexdigest()
 
 
 def where(name: str) -> str:
@@ -94,9 +93,9 @@ def where(name: str) -> str:
     return f"drawn/{name}" if name in DRAWN else name
 
 
-def tables(file: h5py.File) -> list[str]:
-    """Names of the tables of results, in order."""
-    return sorted(name for name in (*ALL_QUANTITIES, *DRAWN) if where(name) in file)
+def stored_tables(file: h5py.File) -> dict[str, h5py.Dataset]:
+    """The tables of results by their names, in order."""
+    return {name: file[where(name)] for name in sorted((*ALL_QUANTITIES, *DRAWN)) if where(name) in file}
 
 
 def stored_text(scene: Scene) -> str:
@@ -139,7 +138,7 @@ class _Digest:
         if name not in self._tables:
             self._tables[name] = [hashlib.sha256(f"{plain.dtype.str} {plain.shape[1:]}".encode()), 0]
         table = self._tables[name]
-        table[0].update(plain.tobytes())
+        table[0].update(plain.reshape(-1))
         table[1] += len(plain)
 
     def hexdigest(self) -> str:
@@ -150,28 +149,41 @@ class _Digest:
 
 def trailer_notes(file: h5py.File) -> dict[str, str]:
     """What the trailer of an ensemble file says besides its length and digest."""
-    names = [*_scales(file), *(where(name) for name in tables(file))]
+    names = [*_scales(file), *(where(name) for name in stored_tables(file))]
     return {"head": head_digest(file, names)}
+
+
+def digest_of(file: h5py.File, scene: Scene, pieces: Iterable[Tables]) -> str:
+    """Digest of a scene, of the scales in its file, and of tables that come in pieces, in order."""
+    digest = _Digest(scene)
+    for name in _scales(file):
+        for start, stop in _steps(file[name]):
+            digest.add(name, file[name][start:stop])
+    for arrays in pieces:
+        for name, values in arrays.items():
+            digest.add(name, values)
+    return digest.hexdigest()
 
 
 def values_digest(file: h5py.File, scene: Scene) -> str:
     """Digest of what a file holds, read piece by piece."""
-    digest = _Digest(scene)
-    for name in (*_scales(file), *tables(file)):
-        for start, stop in _steps(file[where(name)]):
-            digest.add(name, file[where(name)][start:stop])
-    return digest.hexdigest()
+    return digest_of(file, scene, (arrays for _, arrays in file_pieces(file)))
 
 
 def file_pieces(file: h5py.File) -> Iterator[tuple[Span, Tables]]:
     """The surfaces of an ensemble file, some at a time."""
-    data = {name: file[where(name)] for name in tables(file)}
-    outside = data.pop(RAGGED)[()] if RAGGED in data else None
-    rows = len(file["surface"])
-    width = sum(8 * math.prod(table.shape[1:]) for table in data.values())
+    rows, width = len(file["surface"]), 0
+    for name, table in stored_tables(file).items():
+        width += 0 if name == RAGGED else 8 * math.prod(table.shape[1:])
     step = max(_PIECE // max(width, 1), 1)
-    for first in range(0, rows, step):
-        span = Span(first, min(step, rows - first))
+    return rows_of(file, (Span(first, min(step, rows - first)) for first in range(0, rows, step)))
+
+
+def rows_of(file: h5py.File, spans: Iterable[Span]) -> Iterator[tuple[Span, Tables]]:
+    """Some surfaces of an ensemble file after the other."""
+    data = stored_tables(file)
+    outside = data.pop(RAGGED)[()] if RAGGED in data else None
+    for span in spans:
         arrays = {name: table[span.first : span.stop] for name, table in data.items()}
         if outside is not None:
             arrays[RAGGED] = outside[(outside[:, 0] >= span.first) & (outside[:, 0] < span.stop)]
@@ -185,46 +197,29 @@ def _steps(data: h5py.Dataset) -> Iterator[tuple[int, int]]:
         yield start, min(start + step, data.shape[0])
 
 
-def _lay_out(file: h5py.File, scene: Scene, arrays: Tables) -> None:
+def _lay_out(file: h5py.File, scene: Scene, like: Stored) -> None:
     """Empty datasets with their scales, units and names."""
     for name, scale in scales_of(scene).items():
         _scale(file, name, np.array(scale), *_SCALES[name])
-    for name in sorted(arrays):
-        values = arrays[name]
+    for name in sorted(like):
         q = ALL_QUANTITIES.get(name)
-        ragged = name == RAGGED
-        rows, shape = 0 if ragged else scene.n_surfaces, values.shape[1:]
-        columns = math.prod(shape)
-        data = file.create_dataset(
-            where(name),
-            (rows, *shape),
-            values.dtype.newbyteorder("<"),
-            maxshape=(None, *shape) if ragged else None,
-            chunks=(_chunk_rows(rows, columns), *(max(size, 1) for size in shape)),
-            **_STORED,
-        )
+        data = empty_table(file, where(name), None if name == RAGGED else scene.n_surfaces, like[name])
         data.attrs.update(units=q.unit if q else "1", long_name=q.long_name if q else _LONG_NAMES[name])
-        for axis, name_of_scale in enumerate(tuple(_SCALES)[: values.ndim] if q else ()):
+        for axis, name_of_scale in enumerate(tuple(_SCALES)[: data.ndim] if q else ()):
             data.dims[axis].attach_scale(file[name_of_scale])
 
 
-def _chunk_rows(rows: int, columns: int) -> int:
-    fitting = max(_CHUNK // (8 * max(columns, 1)), 1)
-    return min(_CHUNK_ROWS, fitting, rows or _CHUNK_ROWS)
-
-
 def _scale(file: h5py.File, name: str, values: NDArray[Any], unit: str, long_name: str) -> None:
-    chunks = (min(len(values), _CHUNK // 8),)
-    scale = file.create_dataset(name, data=values, chunks=chunks, **_STORED)
+    chunks = (min(len(values), _SCALE_CHUNK),)
+    scale = file.create_dataset(name, data=values, chunks=chunks, **PACKED)
     scale.attrs.update(units=unit, long_name=long_name)
     scale.make_scale(name)
 
 
-def _put(file: h5py.File, span: Span, arrays: Tables) -> None:
-    for name, values in arrays.items():
+def _put(file: h5py.File, span: Span, tables: Stored) -> None:
+    for name, table in tables.items():
         data, first = file[where(name)], span.first
         if name == RAGGED:
             first = len(data)
-            data.resize(first + len(values), axis=0)
-        if len(values):
-            data[first : first + len(values)] = values
+            data.resize(first + len(table), axis=0)
+        add_rows(data, first, table)

@@ -1,81 +1,135 @@
-"""From shards to the file, in a process of its own: the HDF5 library may crash on a full disk.
+"""From shards to the file: written under a temporary name, read back, and given its trailer.
 
-Run as a script: ``python -m mcgw.store.merged_file FOLDER TARGET TEMPORARY``. The file is written under the
-temporary name, read back, compared with the digest of the shards, given its trailer and flushed; the
-caller gives it its name. Exit code 3: a shard is damaged.
+Chunks go from the shards into the file as they are, packed, where they line up (`mcgw.store.chunks`). What
+the file then holds is read through HDF5, compared with the digest that each shard got from the numbers as
+they were drawn, and gives the digest of the whole.
 """
 
-import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import closing
 from pathlib import Path
 
 import h5py
 
-from mcgw.errors import StoreError
+from mcgw.errors import RunError, StoreError
+from mcgw.machine.one_ahead import one_ahead
+from mcgw.scene.scene import Scene
 from mcgw.store.disk import SteadyFile
-from mcgw.store.layout import build, file_pieces, trailer_notes, values_digest
+from mcgw.store.layout import describe, digest_of, file_pieces, fill, rows_of, stored_tables, trailer_notes
 from mcgw.store.run_folder import RunFolder
-from mcgw.store.shards import LIBVER, Shard, Span, Tables
+from mcgw.store.shards import LIBVER, Shard, Span, Tables, content_digest, tables_in
 from mcgw.store.trailer import Trailer, sha256_of
 
-__all__ = ["DAMAGED", "merge_into"]
+__all__ = ["merge_into"]
 
-DAMAGED = 3
 _CACHE = 2**25  # of chunks that a shard fills only in part
 
 
-def merge_into(folder: Path, target: Path, temporary: Path) -> None:
+def merge_into(folder: Path, target: Path, temporary: Path, check: Callable[[], None]) -> None:
     """Write the ensemble of a run under a temporary name: the surfaces of `target`, then those of the shards.
+
+    `check` is called often, and raises if this is to end.
 
     Raises
     ------
     StoreError
-        If a shard is missing or damaged, or if what was written reads otherwise.
-    OSError
-        If the disk does not take it.
+        If a shard is missing or damaged.
+    OSError, RuntimeError
+        If the disk does not take it, or what was written reads otherwise.
     """
     run = RunFolder.open(folder)
-    shards = run.shards()
-    seconds = sum(shard.seconds for shard in shards) + _seconds_of(target)
+    held = _held(target)
+    shards = [shard for shard in run.shards(bodies=False) if shard.span.first >= held]
     with closing(SteadyFile(temporary)) as raw:
-        with h5py.File(raw, "w", libver=LIBVER, rdcc_nbytes=_CACHE) as file:
-            digest = build(
-                file,
-                run.scene,
-                run.sampler,
-                _checked(raw, _pieces(shards, target)),
-                run=run.identity,
-                draws=run.drawn_with,
-                wall_seconds=seconds,
-            )
-        raw.check()
-        with h5py.File(temporary, "r") as file:
-            if file.attrs["digest"] != digest or values_digest(file, run.scene) != digest:
-                raise OSError(f"{temporary}: reads otherwise than written")
-            notes = trailer_notes(file)
-        length = temporary.stat().st_size
-        raw.trailer(Trailer(length, sha256_of(temporary, length), notes).to_bytes())
+
+        def go_on() -> None:
+            check()
+            raw.check()
+
+        try:
+            _write(raw, temporary, run, target, shards, go_on)
+        except (StoreError, RunError):
+            raise
+        except Exception:  # HDF5 reports a full disk as any of a dozen
+            raw.check()
+            for shard in shards:
+                shard.arrays()
+            raise
 
 
-def _checked(raw: SteadyFile, pieces: Iterator[tuple[Span, Tables]]) -> Iterator[tuple[Span, Tables]]:
-    """End with the first error of the disk, not after all shards."""
-    for piece in pieces:
-        raw.check()
-        yield piece
+def _write(
+    raw: SteadyFile, path: Path, run: RunFolder, target: Path, shards: list[Shard], go_on: Callable[[], None]
+) -> None:
+    with h5py.File(raw, "w", libver=LIBVER, rdcc_nbytes=_CACHE) as file:
+        fill(file, run.scene, _pieces(target, shards, go_on))
+    raw.check()
+    digest = _read_back(path, run.scene, _expected(target, shards), go_on)
+    with h5py.File(raw, "r+", libver=LIBVER) as file:
+        seconds = sum(shard.seconds for shard in shards) + _seconds_of(target)
+        of_run = {"run": run.identity, "draws": run.drawn_with, "wall_seconds": seconds}
+        describe(file, run.scene, run.sampler, digest, **of_run)
+    raw.check()
+    with h5py.File(path, "r") as file:
+        if file.attrs["digest"] != digest:
+            raise OSError(f"{path}: reads otherwise than written")
+        notes = trailer_notes(file)
+    length = path.stat().st_size
+    raw.trailer(Trailer(length, sha256_of(path, length), notes).to_bytes())
 
 
-def _pieces(shards: list[Shard], target: Path) -> Iterator[tuple[Span, Tables]]:
-    """All surfaces in order: first those of the finished file, then those of the shards."""
-    stop = 0
+def _pieces(
+    target: Path, shards: list[Shard], go_on: Callable[[], None]
+) -> Iterator[tuple[Span, Mapping[str, h5py.Dataset]]]:
+    """All surfaces in order, packed: first those of the finished file, then those of the shards."""
+    if target.exists():
+        with h5py.File(target, "r") as old:
+            yield Span(0, len(old["surface"])), stored_tables(old)
+    for shard, body in one_ahead((shard, shard.body()) for shard in shards):
+        go_on()
+        with tables_in(body, shard.path) as tables:
+            yield shard.span, tables
+
+
+def _expected(target: Path, shards: list[Shard]) -> Iterator[tuple[Span, str]]:
+    """What the numbers of all surfaces, in order, give if they are the right ones."""
     if target.exists():
         with h5py.File(target, "r") as old:
             for span, arrays in file_pieces(old):
-                yield span, arrays
-                stop = span.stop
+                yield span, content_digest(arrays)
     for shard in shards:
-        if shard.span.first >= stop:
-            yield shard.span, shard.arrays()
+        yield shard.span, shard.digest
+
+
+def _read_back(
+    path: Path, scene: Scene, expected: Iterator[tuple[Span, str]], go_on: Callable[[], None]
+) -> str:
+    """Digest of the file as HDF5 reads it, if all its numbers are as they should be.
+
+    One thread reads, one compares, and this one adds up the digest of the whole.
+    """
+    with h5py.File(path, "r") as file:
+
+        def read() -> Iterator[tuple[str, Tables]]:
+            for span, digest in expected:
+                go_on()
+                for _, arrays in rows_of(file, [span]):
+                    yield digest, arrays
+
+        def compared() -> Iterator[Tables]:
+            for digest, arrays in one_ahead(read()):
+                if content_digest(arrays) != digest:
+                    raise OSError(f"{path}: reads otherwise than written")
+                yield arrays
+
+        return digest_of(file, scene, one_ahead(compared()))
+
+
+def _held(target: Path) -> int:
+    """Surfaces of the finished file."""
+    if not target.exists():
+        return 0
+    with h5py.File(target, "r") as old:
+        return len(old["surface"])
 
 
 def _seconds_of(target: Path) -> float:
@@ -83,19 +137,3 @@ def _seconds_of(target: Path) -> float:
         return 0.0
     with h5py.File(target, "r") as old:
         return float(old.attrs["wall_seconds"])
-
-
-def _main(folder: str, target: str, temporary: str) -> int:
-    try:
-        merge_into(Path(folder), Path(target), Path(temporary))
-    except StoreError as error:
-        sys.stderr.write(f"{error}\n")
-        return DAMAGED
-    except (OSError, RuntimeError) as error:  # HDF5 reports a full disk as either
-        sys.stderr.write(f"{error}".splitlines()[0] + "\n")
-        return 1
-    return 0
-
-
-if __name__ == "__main__":
-    sys.exit(_main(*sys.argv[1:]))

@@ -150,9 +150,9 @@ class RunFolder:
             what = "checksum mismatch" if isinstance(error, _ChangedError) else "it cannot be read"
             raise StoreError(f"{file}: damaged ({what}); remove {folder} to start again") from None
 
-    def shards(self) -> list[Shard]:
-        """Valid shards in order, each checked bit by bit."""
-        return [shard for shard, _ in self._looked_at() if shard]
+    def shards(self, *, bodies: bool = True) -> list[Shard]:
+        """Valid shards in order, each checked bit by bit; or by its trailer alone, without the `bodies`."""
+        return [shard for shard, _ in self._looked_at(bodies=bodies) if shard]
 
     def sweep(self) -> list[Shard]:
         """As `shards`; whatever else lies there is put aside. Only with the lock."""
@@ -166,12 +166,12 @@ class RunFolder:
                 path.rename(path.with_name(f"{path.name}.bad"))
         return valid
 
-    def _looked_at(self) -> Iterator[tuple[Shard | None, Path]]:
+    def _looked_at(self, *, bodies: bool = True) -> Iterator[tuple[Shard | None, Path]]:
         if not self.shards_folder.is_dir():
             raise RunError(f"{self.folder}: is gone, or not complete; run the command again")
         for path in sorted(self.shards_folder.glob("block-*.h5")):
             try:
-                yield (None if path.is_symlink() else open_shard(path, self.identity)), path
+                yield (None if path.is_symlink() else open_shard(path, self.identity, body=bodies)), path
             except StoreError:
                 yield None, path
 

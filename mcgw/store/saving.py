@@ -13,7 +13,7 @@ from mcgw.store.arithmetic import drawn_with
 from mcgw.store.disk import parts_of
 from mcgw.store.ensembles import finished, open_ensemble
 from mcgw.store.identity import identity_of
-from mcgw.store.layout import build, trailer_notes
+from mcgw.store.layout import describe, digest_of, fill, trailer_notes
 from mcgw.store.lock import locked
 from mcgw.store.shards import DRAWN, Span, in_memory
 from mcgw.store.trailer import trailer_of
@@ -82,18 +82,18 @@ def write_ensemble(ensemble: Ensemble, path: Path, *, wall_seconds: float) -> No
     finished(path, scene, ensemble.sampler)
     names = [*scene.shapes, *(DRAWN if scene.keep == "moments" else ())]
     arrays = {name: ensemble.sums.read(name, 0, None) for name in names}
-    body = in_memory(
-        lambda file: build(
-            file,
-            scene,
-            ensemble.sampler,
-            [(Span(0, ensemble.n_surfaces), arrays)],
-            run=identity_of(scene, ensemble.sampler),
-            draws=drawn_with(scene, ensemble.sampler),
-            wall_seconds=wall_seconds,
-            **({} if ensemble.drawn_for is None else {"drawn_for": scene_text(ensemble.drawn_for)}),
-        )
-    )
+    more = {
+        "run": identity_of(scene, ensemble.sampler),
+        "draws": drawn_with(scene, ensemble.sampler),
+        "wall_seconds": wall_seconds,
+        **({} if ensemble.drawn_for is None else {"drawn_for": scene_text(ensemble.drawn_for)}),
+    }
+
+    def make(file: h5py.File) -> None:
+        fill(file, scene, [(Span(0, ensemble.n_surfaces), arrays)])
+        describe(file, scene, ensemble.sampler, digest_of(file, scene, [arrays]), **more)
+
+    body = in_memory(make)
     with h5py.File(io.BytesIO(body), "r") as file:
         notes = trailer_notes(file)
     try:

@@ -8,7 +8,8 @@ values), which does not depend on how HDF5 laid out the file.
 
 import hashlib
 import io
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -19,7 +20,8 @@ from numpy.typing import NDArray
 
 from mcgw.errors import StoreError
 from mcgw.formats.files import write_whole
-from mcgw.store.trailer import Trailer, read_checked, trailer_of
+from mcgw.store.chunks import stored
+from mcgw.store.trailer import Trailer, read_checked, read_trailer, trailer_of
 
 __all__ = [
     "DRAWN",
@@ -33,6 +35,7 @@ __all__ = [
     "in_memory",
     "open_shard",
     "pack",
+    "tables_in",
 ]
 
 Tables = dict[str, NDArray[Any]]
@@ -93,12 +96,25 @@ class Shard:
         StoreError
             If it was damaged or replaced since.
         """
-        _, body = read_checked(self.path)
-        arrays = _unpack(body, self.path)
+        with tables_in(self.body(), self.path) as tables:
+            try:
+                arrays = {name: table[()] for name, table in tables.items()}
+            except (OSError, RuntimeError) as error:
+                raise StoreError(f"{self.path}: damaged ({error})") from None
         if content_digest(arrays) != self.digest:
             raise StoreError(f"{self.path}: damaged (checksum mismatch of its contents)")
         _check_rows(self, arrays)
         return arrays
+
+    def body(self) -> bytes:
+        """Its HDF5 file, read and checked again, bit by bit.
+
+        Raises
+        ------
+        StoreError
+            If it was damaged or replaced since.
+        """
+        return read_checked(self.path)[1]
 
 
 def in_memory(fill: Callable[[h5py.File], Any]) -> bytes:
@@ -118,7 +134,7 @@ def pack(arrays: Tables) -> bytes:
 
     def fill(file: h5py.File) -> None:
         for name in sorted(arrays):
-            file.create_dataset(name, data=arrays[name])
+            stored(file, name, arrays[name])
 
     return in_memory(fill)
 
@@ -141,15 +157,15 @@ def commit_shard(path: Path, run: str, span: Span, arrays: Tables, seconds: floa
     return shard
 
 
-def open_shard(path: Path, run: str) -> Shard:
-    """A shard of this run, checked bit by bit; HDF5 is not asked.
+def open_shard(path: Path, run: str, *, body: bool = True) -> Shard:
+    """A shard of this run, its body checked bit by bit unless that is left out; HDF5 is not asked.
 
     Raises
     ------
     StoreError
         If it is not there, damaged, or belongs elsewhere.
     """
-    shard, identity = _described(path, read_checked(path)[0])
+    shard, identity = _described(path, read_checked(path)[0] if body else read_trailer(path))
     if identity != run:
         raise StoreError(f"{path}: belongs to another run")
     if path.name != shard.span.file_name:
@@ -180,16 +196,24 @@ def _described(path: Path, trailer: Trailer) -> tuple[Shard, str]:
     return shard, identity
 
 
-def _unpack(body: bytes, path: Path) -> Tables:
-    """Tables of an HDF5 file in memory that must be as `pack` makes it."""
+@contextmanager
+def tables_in(body: bytes, path: Path) -> Iterator[dict[str, h5py.Dataset]]:
+    """Tables of an HDF5 file in memory that must be as `pack` makes it; errors name `path`.
+
+    Raises
+    ------
+    StoreError
+        If it is not.
+    """
     from mcgw.store.structure import RefusedError, check_plain
 
-    try:
-        with h5py.File(h5py.h5f.open_file_image(body), "r") as file:
-            names = check_plain(file, most=_MOST_DATASETS)
-            return {name: file[name][()] for name in names}
-    except (OSError, RuntimeError, ValueError, RefusedError) as error:
-        raise StoreError(f"{path}: is not a shard ({error})") from None
+    with ExitStack() as opened:
+        try:
+            file = opened.enter_context(h5py.File(h5py.h5f.open_file_image(body), "r"))
+            tables = {name: file[name] for name in check_plain(file, most=_MOST_DATASETS)}
+        except (OSError, RuntimeError, ValueError, RefusedError) as error:
+            raise StoreError(f"{path}: is not a shard ({error})") from None
+        yield tables
 
 
 def _check_rows(shard: Shard, arrays: Tables) -> None:

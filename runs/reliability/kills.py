@@ -3,11 +3,9 @@
 Runs that are one block, runs in blocks, extensions, jobs that share a run, and merges: each is killed at
 random moments, several times in a row, and repeated at once. Prints one JSON line: kills of each kind; blocks
 that were committed and are gone (lost), files with another digest than the undisturbed run's (wrong) or with
-anything beside them (left), children that outlived their parent, and commands that did not go on (stuck). All
-but the kills should be 0.
+anything beside them (left), and commands that did not go on (stuck). All but the kills should be 0.
 
-The surfaces are made up: what is tried here is the store. Merging is done by a process of its own, as always;
-in nine trials of ten it is forked, with the same pipe to its parent, which saves the start of a Python.
+The surfaces are made up: what is tried here is the store.
 """
 
 import json
@@ -18,7 +16,6 @@ import signal
 import sys
 import tempfile
 import time
-from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 
@@ -28,17 +25,13 @@ import harness
 
 from mcgw.errors import RunError, StoreError
 from mcgw.jobs import merging, running
-from mcgw.machine.child_process import ChildError
-from mcgw.machine.lifeline import end_with
-from mcgw.store import ensembles, lock, merged_file
+from mcgw.store import ensembles, lock
 from mcgw.store.run_folder import RunFolder, parts_of
 
 BLOCKS = 12
 WANTED = harness.scene_of(BLOCKS)
 ONE = replace(WANTED, n_surfaces=harness.ROWS)
 HALF = replace(WANTED, n_surfaces=harness.ROWS * BLOCKS // 2 + 3)
-_STARTED = merging._merge_in_child
-_DYING = 30.0  # seconds that a child has to follow its parent: a machine may be busy
 
 
 def run(scene):
@@ -62,26 +55,6 @@ KINDS = {
 }
 
 
-def merged_by_fork(folder, path, temporary):
-    """Merge in a child that ends with its parent."""
-    pipe, ours = os.pipe()
-    pid = os.fork()
-    if not pid:
-        code = 1
-        try:
-            os.close(ours)
-            end_with(pipe)
-            merged_file.merge_into(folder, path, temporary)
-            code = 0
-        finally:
-            os._exit(code)
-    os.close(pipe)
-    code = os.waitstatus_to_exitcode(os.waitpid(pid, 0)[1])
-    os.close(ours)
-    if code:
-        raise ChildError(f"exit code {code}", "")
-
-
 def forked(action, file):
     """Begin an action in a process of its own."""
     pid = os.fork()
@@ -102,35 +75,6 @@ def done(action, file):
     return os.waitstatus_to_exitcode(os.waitpid(forked(action, file), 0)[1])
 
 
-def children(pid):
-    """Processes that a process has begun."""
-    try:
-        return [int(word) for word in Path(f"/proc/{pid}/task/{pid}/children").read_text().split()]
-    except OSError:
-        return []
-
-
-def lives(pid):
-    """Whether a process is there and not only waits to be counted out."""
-    try:
-        return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] not in "ZX"
-    except OSError:
-        return False
-
-
-def outlived(pids):
-    """How many processes are still there after a while; these are then killed."""
-    until = time.monotonic() + _DYING
-    alive = list(pids)
-    while alive and time.monotonic() < until:
-        alive = [pid for pid in alive if lives(pid)]
-        time.sleep(0.005)
-    for pid in alive:
-        with suppress(ProcessLookupError):
-            os.kill(pid, signal.SIGKILL)
-    return len(alive)
-
-
 def committed(file):
     """Surfaces that lie there, in the file or in shards of its run."""
     held = set()
@@ -142,16 +86,13 @@ def committed(file):
     return held
 
 
-def struck(action, file, after, count, *, wait):
+def struck(action, file, after, count):
     """Kill an action; whether it was still at work."""
     before = committed(file)
     pid = forked(action, file)
     time.sleep(after)
-    begun = children(pid)
     os.kill(pid, signal.SIGKILL)
     killed = os.waitpid(pid, 0)[1] == signal.SIGKILL
-    if wait:  # else the next command comes while a child may still be dying
-        count["outlived"] += outlived(begun)
     count["lost"] += len(before - committed(file))
     return killed
 
@@ -162,25 +103,20 @@ def trial(kind, folder, dice, count, expected):
     folder.mkdir()
     file = folder / "e.h5"
     before, steps = KINDS[kind]
-    merging = dice.choices(list(expected), weights=[9, 1])[0]
-    merging._merge_in_child = merging
-    span, right = expected[merging]
+    span, right = expected
     for action in before:
         count["stuck"] += done(action, file) != 0
     for action in steps:
         while dice.random() < 0.7:
-            after, wait = dice.uniform(0, span), dice.random() < 0.5
-            if struck(action, file, after, count, wait=wait):
-                count[kind] += 1
+            count[kind] += struck(action, file, dice.uniform(0, span), count)
         count["stuck"] += done(action, file) != 0  # the same command, repeated at once
     problem, digest = ensembles.verify(file) if file.exists() else ("none", "")
     count["wrong"] += bool(problem) or digest != right
     count["left"] += [path.name for path in folder.iterdir()] != ["e.h5"]
 
 
-def undisturbed(kind, merging, folder):
+def undisturbed(kind, folder):
     """Time of the last step of a kind, and its digest."""
-    merging._merge_in_child = merging
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
     file = folder / "e.h5"
@@ -197,9 +133,8 @@ def main(kills, seed, folder):
     harness.prepare()
     lock.PATIENCE = 1.0
     dice = random.Random(seed)
-    count = {"lost": 0, "wrong": 0, "left": 0, "outlived": 0, "stuck": 0, **dict.fromkeys(KINDS, 0)}
-    ways = (merged_by_fork, _STARTED)
-    expected = {kind: {way: undisturbed(kind, way, folder / "whole") for way in ways} for kind in KINDS}
+    count = {"lost": 0, "wrong": 0, "left": 0, "stuck": 0, **dict.fromkeys(KINDS, 0)}
+    expected = {kind: undisturbed(kind, folder / "whole") for kind in KINDS}
     while sum(count[kind] for kind in KINDS) < kills:
         least = min(KINDS, key=lambda kind: count[kind])
         trial(least, folder / "trial", dice, count, expected[least])

@@ -18,11 +18,10 @@ import numpy as np
 
 import analytic
 from mcgw.errors import RunError, StoreError
-from mcgw.jobs import merging, running
+from mcgw.jobs import running
 from mcgw.jobs.job import Job
-from mcgw.machine.child_process import ChildError
 from mcgw.scene.scene import Scene
-from mcgw.store import ensembles, lock, merged_file, shards, structure
+from mcgw.store import ensembles, lock, shards, structure
 from mcgw.store.run_folder import RunFolder, parts_of
 
 MODES = {"kill": 1, "torn": 2, "ENOSPC": 3, "EIO": 4}
@@ -46,22 +45,11 @@ def made_up(job, span, threads):
     return {"load": np.sqrt(i + 2), "contacts": np.floor(i**2).astype(np.int64)}
 
 
-def merged_here(folder, path, temporary):
-    """In this process, which is expendable as it is; a fork saves the start of a Python."""
-    try:
-        merged_file.merge_into(folder, path, temporary)
-    except StoreError as error:
-        raise ChildError("exit code 3", str(error)) from None
-    except (OSError, RuntimeError) as error:
-        raise ChildError("exit code 1", str(error)) from None
-
-
 def prepare():
     Job.draw = made_up
     lock.PATIENCE = 0.0  # a second driver is refused at once
     Job.rows = ROWS
     Job.columns = 6
-    merging._merge_in_child = merged_here
     ensembles.examine = lambda path: structure.describe(str(path))
     if "MCGW_IN_PLACE" in os.environ:  # the wrong way, which the harness must notice
         shards.write_whole = written_in_place
