@@ -5,7 +5,9 @@ import signal
 import socket
 import subprocess
 import sys
+import threading
 import time
+from contextlib import closing
 from pathlib import Path
 
 import pytest
@@ -131,6 +133,38 @@ def test_a_word_or_an_address_asks_for_dask(word, address, make_scene, tmp_path,
     monkeypatch.setattr("mcgw.jobs.dask_engine.Dask", Recorded)
     mcgw.run(make_scene(n_surfaces=3 * SIZE), tmp_path / "e.h5", engine=word, threads=3)
     assert asked == [((address,), {"workers": 3}), "closed"]
+
+
+def test_the_rest_of_a_task_is_done_beside_the_next_one_in_order():
+    """Each rest waits until the next task has begun; with one thread for both this would wait for ever."""
+    begun, finished = [threading.Event() for _ in range(4)], []
+
+    def task(i):
+        begun[i].set()
+
+        def rest():
+            assert i == 3 or begun[i + 1].wait(timeout=30)
+            finished.append(i)
+            return -i
+
+        return rest
+
+    with closing(Threads()) as engine:
+        answers = [engine.submit(task, i) for i in range(4)]
+        assert [answer.result(timeout=60) for answer in answers] == [0, -1, -2, -3]
+    assert finished == [0, 1, 2, 3]
+
+
+def test_an_error_in_either_half_is_the_task_s():
+    def fail():
+        raise OSError("full")
+
+    with closing(Threads()) as engine:
+        answers = [engine.submit(lambda: fail), engine.submit(fail), engine.submit(lambda: 3)]
+        for answer in answers[:2]:
+            with pytest.raises(OSError, match="full"):
+                answer.result(timeout=30)
+        assert answers[2].result(timeout=30) == 3
 
 
 def free_port():

@@ -23,7 +23,7 @@ from mcgw.jobs import merging
 from mcgw.jobs.job import Job
 from mcgw.jobs.merging import merge
 from mcgw.jobs.running import Part, run, run_part
-from mcgw.store import ensembles, layout, structure
+from mcgw.store import chunks, ensembles, layout, structure
 from mcgw.store.lock import LockedError, locked
 from mcgw.store.run_folder import missing, parts_of
 from mcgw.store.shards import Span
@@ -40,6 +40,7 @@ class HaltError(Exception):
 def small_blocks(monkeypatch):
     """A run of seven blocks, the last one short."""
     monkeypatch.setattr(Job, "rows", SIZE)
+    monkeypatch.setattr(chunks, "CHUNK_ROWS", SIZE // 2)
 
 
 @pytest.fixture(autouse=True)

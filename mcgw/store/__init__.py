@@ -21,22 +21,23 @@ and, if the scene says ``keep = "moments"``, what `mcgw.ensemble.regrading` star
     /drawn/extras         float64 (extras, 3)             surface, height, weight of those outside
 
 Every dataset has the attributes `units` and `long_name`; only quantities that the scene asks for are
-there. Chunked, shuffled, compressed with gzip, each chunk with a checksum (Fletcher). `digest` is over
-scene and data, `run` over what the numbers of a surface depend on (scene but for the number of surfaces,
-sampler, and the versions in `draws`). After the HDF5 data stand 512 bytes, the trailer (`trailer`), with the
-digest of the file's bytes and that of its head (`head`: attributes, types, shapes, scales). That of the
-head is checked on every opening, that of all bytes by ``mcgw show --verify``; files of format 1.0 have
-none of the head.
+there. Chunked, each chunk with a checksum (Fletcher); a table is shuffled and compressed with gzip if that
+saves half of it (`chunks`; in older files every one is). `digest` is over scene and data, `run` over what the
+numbers of a surface depend on (scene but for the number of surfaces, sampler, and the versions in `draws`).
+After the HDF5 data stand 512 bytes, the trailer (`trailer`), with the digest of the file's bytes and that of
+its head (`head`: attributes, types, shapes, scales). That of the head is checked on every opening, that of
+all bytes by ``mcgw show --verify``; files of format 1.0 have none of the head.
 
 A run that fits one block is written in one atomic step. Any other grows as shards in ``FILE.parts/``, which
 are merged at the end and then removed. What each mechanism is for:
 
 ``layout``       the schema above, written and read back
+``chunks``       a table is compressed where that pays; packed chunks are copied as they are
 ``shards``       a killed run loses at most the blocks in hand; workers elsewhere share no open file
 ``run_folder``   a run goes on only with what it was begun with: scene, sampler, versions
 ``identity``     which scenes, samplers and versions those are
-``merged_file``  the file is made beside its place, in a child, for HDF5 may crash on a full disk
-``disk``         that crash: the library never sees an error of the disk
+``merged_file``  the file is made under another name, and read back before it gets its own
+``disk``         HDF5 may crash on a full disk: it never sees an error of it
 ``trailer``      whether a file is whole and unchanged, without HDF5
 ``head``         whether scene, units and scales are as written, on every opening
 ``untrusted``    a file of a stranger is looked at by a child first, as `structure` says what it may hold

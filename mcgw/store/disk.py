@@ -80,6 +80,10 @@ class SteadyFile:
     def flush(self) -> None:
         """Nothing is held back."""
 
+    def sync(self) -> None:
+        """Flush to the disk what was written."""
+        os.fsync(self._file.fileno())
+
     def trailer(self, data: bytes) -> None:
         """Append the last bytes and flush to the disk.
 
@@ -91,7 +95,7 @@ class SteadyFile:
         self._file.seek(0, os.SEEK_END)
         self.write(data)
         self.check()
-        os.fsync(self._file.fileno())
+        self.sync()
 
     def close(self) -> None:
         """Close it, whatever became of it."""

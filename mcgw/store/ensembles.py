@@ -12,7 +12,7 @@ from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_from, scene_text
 from mcgw.store.head import MOST_SCALE
 from mcgw.store.identity import difference, identity_of
-from mcgw.store.layout import FILETYPE, FORMAT, scales_of, values_digest
+from mcgw.store.layout import FILETYPE, FORMAT, numbers, scales_of, values_digest
 from mcgw.store.run_folder import RunFolder, parts_of
 from mcgw.store.stored import FileResults, ShardResults
 from mcgw.store.trailer import check_trailer, read_trailer
@@ -148,7 +148,7 @@ def _check_tables(path: Path, scene: Scene, datasets: dict[str, Any]) -> None:
             raise StoreError(f"{path}: {name} has shape {found}, its scene declares {shape}")
     with h5py.File(path, "r") as file:
         for name, values in scales.items():
-            if not np.array_equal(file[name][:MOST_SCALE], values[:MOST_SCALE]):
+            if not np.array_equal(file[name][:MOST_SCALE], numbers(values, MOST_SCALE)):
                 raise StoreError(f"{path}: {name} does not hold the values that its scene declares")
 
 

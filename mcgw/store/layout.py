@@ -25,6 +25,7 @@ __all__ = [
     "digest_of",
     "file_pieces",
     "fill",
+    "numbers",
     "rows_of",
     "scales_of",
     "stored_tables",
@@ -121,6 +122,12 @@ def scales_of(scene: Scene) -> dict[str, Sequence[float]]:
     return scales if scene.tangential is None else {**scales, "displacement": scene.tangential.displacements}
 
 
+def numbers(scale: Sequence[float], most: int | None = None) -> NDArray[Any]:
+    """The values of a scale, or the first of them."""
+    first = scale[:most]
+    return np.arange(first.start, first.stop) if isinstance(first, range) else np.array(first)
+
+
 def _scales(file: h5py.File) -> list[str]:
     return [name for name in _SCALES if name in file]
 
@@ -200,7 +207,7 @@ def _steps(data: h5py.Dataset) -> Iterator[tuple[int, int]]:
 def _lay_out(file: h5py.File, scene: Scene, like: Stored) -> None:
     """Empty datasets with their scales, units and names."""
     for name, scale in scales_of(scene).items():
-        _scale(file, name, np.array(scale), *_SCALES[name])
+        _scale(file, name, numbers(scale), *_SCALES[name])
     for name in sorted(like):
         q = ALL_QUANTITIES.get(name)
         data = empty_table(file, where(name), None if name == RAGGED else scene.n_surfaces, like[name])

@@ -6,13 +6,14 @@ they were drawn, and gives the digest of the whole.
 """
 
 from collections.abc import Callable, Iterator, Mapping
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import closing
 from pathlib import Path
 
 import h5py
 
 from mcgw.errors import RunError, StoreError
-from mcgw.machine.one_ahead import one_ahead
+from mcgw.machine.one_ahead import Items, one_ahead
 from mcgw.scene.scene import Scene
 from mcgw.store.disk import SteadyFile
 from mcgw.store.layout import describe, digest_of, file_pieces, fill, rows_of, stored_tables, trailer_notes
@@ -60,10 +61,16 @@ def merge_into(folder: Path, target: Path, temporary: Path, check: Callable[[], 
 def _write(
     raw: SteadyFile, path: Path, run: RunFolder, target: Path, shards: list[Shard], go_on: Callable[[], None]
 ) -> None:
-    with h5py.File(raw, "w", libver=LIBVER, rdcc_nbytes=_CACHE) as file:
-        fill(file, run.scene, _pieces(target, shards, go_on))
+    with (
+        h5py.File(raw, "w", libver=LIBVER, rdcc_nbytes=_CACHE) as file,
+        closing(_pieces(target, shards, go_on)) as pieces,
+    ):
+        fill(file, run.scene, pieces)
     raw.check()
-    digest = _read_back(path, run.scene, _expected(target, shards), go_on)
+    with ThreadPoolExecutor(1) as thread:
+        flushed = thread.submit(raw.sync)  # the disk is busy with it while this process reads
+        digest = _read_back(path, run.scene, _expected(target, shards), go_on)
+        flushed.result()
     with h5py.File(raw, "r+", libver=LIBVER) as file:
         seconds = sum(shard.seconds for shard in shards) + _seconds_of(target)
         of_run = {"run": run.identity, "draws": run.drawn_with, "wall_seconds": seconds}
@@ -79,15 +86,16 @@ def _write(
 
 def _pieces(
     target: Path, shards: list[Shard], go_on: Callable[[], None]
-) -> Iterator[tuple[Span, Mapping[str, h5py.Dataset]]]:
+) -> Items[tuple[Span, Mapping[str, h5py.Dataset]]]:
     """All surfaces in order, packed: first those of the finished file, then those of the shards."""
     if target.exists():
         with h5py.File(target, "r") as old:
             yield Span(0, len(old["surface"])), stored_tables(old)
-    for shard, body in one_ahead((shard, shard.body()) for shard in shards):
-        go_on()
-        with tables_in(body, shard.path) as tables:
-            yield shard.span, tables
+    with closing(one_ahead((shard, shard.body()) for shard in shards)) as bodies:
+        for shard, body in bodies:
+            go_on()
+            with tables_in(body, shard.path) as tables:
+                yield shard.span, tables
 
 
 def _expected(target: Path, shards: list[Shard]) -> Iterator[tuple[Span, str]]:
@@ -109,19 +117,21 @@ def _read_back(
     """
     with h5py.File(path, "r") as file:
 
-        def read() -> Iterator[tuple[str, Tables]]:
+        def read() -> Items[tuple[str, Tables]]:
             for span, digest in expected:
                 go_on()
                 for _, arrays in rows_of(file, [span]):
                     yield digest, arrays
 
-        def compared() -> Iterator[Tables]:
-            for digest, arrays in one_ahead(read()):
-                if content_digest(arrays) != digest:
-                    raise OSError(f"{path}: reads otherwise than written")
-                yield arrays
+        def compared() -> Items[Tables]:
+            with closing(one_ahead(read())) as pieces:
+                for digest, arrays in pieces:
+                    if content_digest(arrays) != digest:
+                        raise OSError(f"{path}: reads otherwise than written")
+                    yield arrays
 
-        return digest_of(file, scene, one_ahead(compared()))
+        with closing(one_ahead(compared())) as pieces:
+            return digest_of(file, scene, pieces)
 
 
 def _held(target: Path) -> int:

@@ -12,9 +12,9 @@ import tempfile
 import time
 from pathlib import Path
 
-import h5py
 import numpy as np
 
+import mcgw
 from mcgw.jobs.dask_engine import Dask
 from mcgw.jobs.driver import Signals, drive
 from mcgw.jobs.engines import Processes, Threads
@@ -52,7 +52,7 @@ def wall(engine, blocks, seconds, task=wait_and_commit):
 
 
 def commit_seconds():
-    """Median cost of a commit, by size in MiB; and of reading back, checking and compressing it."""
+    """Median cost of a commit, by size in MiB."""
     found = {}
     with tempfile.TemporaryDirectory() as folder:
         for mib in (1, 4, 8, 16):
@@ -62,24 +62,29 @@ def commit_seconds():
                 commit(folder, i * ROWS * mib, ROWS * mib)
                 times.append(time.perf_counter() - begin)
             found[mib] = float(np.median(times))
-        load = np.random.default_rng(1).random((8 * ROWS, COLUMNS))
-        begin = time.perf_counter()
-        with h5py.File(Path(folder) / "merged.h5", "w") as file:
-            options = {
-                "chunks": (256, COLUMNS),
-                "compression": "gzip",
-                "compression_opts": 1,
-                "shuffle": True,
-            }
-            file.create_dataset("load", data=load, **options)
-        merge = (time.perf_counter() - begin) / 8
-    return found, merge
+    return found
+
+
+def merge_seconds():
+    """Cost of merging, reading back and sealing a MiB of results; median of three runs of some shards."""
+    surface = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "1 mm^2", "78.6 GPa")
+    scene = mcgw.Scene(surface, separations=np.linspace(0, 4, 41), n_surfaces=40_000, seed=1)
+    times = []
+    for _ in range(3):
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "e.h5"
+            mcgw.run(scene, path, shard="1/1")
+            begin = time.perf_counter()
+            results = mcgw.merge(path)
+            times.append(time.perf_counter() - begin)
+            size = 8 * results.scene.width * results.n_surfaces
+    return float(np.median(times)) / (size / 2**20)
 
 
 def measure():
     """All figures."""
     result = {}
-    result["commit"], result["merge_per_mib"] = commit_seconds()
+    result["commit"], result["merge_per_mib"] = commit_seconds(), merge_seconds()
     for name, engine, workers, blocks in (
         ("threads", Threads(), 1, 8),
         ("processes", Processes(2), 2, 16),

@@ -21,7 +21,7 @@ from mcgw.errors import RunError, StoreError
 from mcgw.jobs import running
 from mcgw.jobs.job import Job
 from mcgw.scene.scene import Scene
-from mcgw.store import ensembles, lock, shards, structure
+from mcgw.store import chunks, ensembles, lock, shards, structure
 from mcgw.store.run_folder import RunFolder, parts_of
 
 MODES = {"kill": 1, "torn": 2, "ENOSPC": 3, "EIO": 4}
@@ -48,7 +48,7 @@ def made_up(job, span, threads):
 def prepare():
     Job.draw = made_up
     lock.PATIENCE = 0.0  # a second driver is refused at once
-    Job.rows = ROWS
+    Job.rows = chunks.CHUNK_ROWS = ROWS  # blocks are merged by their packed chunks
     Job.columns = 6
     ensembles.examine = lambda path: structure.describe(str(path))
     if "MCGW_IN_PLACE" in os.environ:  # the wrong way, which the harness must notice
