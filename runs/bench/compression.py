@@ -3,7 +3,7 @@
 Surfaces of 1e4 asperities, gamma = 2, 41 separations 0 ... 4: their loads, which are noise but for the first
 digits (areas and stiffnesses are alike), and their numbers of contacts. Chunks as in an ensemble file, each
 with a checksum; one thread, all in memory, seconds of the processor, the least of some rounds. The two last
-lines are a file of load, area, stiffness and contacts: all of it compressed, and as `mcgw.store.chunks` has it.
+lines are a file of load, area, stiffness and contacts: all compressed, and as `mcgw.store.chunks` has it.
 
 Run: ``python runs/bench/compression.py [SURFACES]``.
 """
