@@ -1,6 +1,6 @@
 """Bytes against seconds for every way plain HDF5 has to pack the results of a run.
 
-Surfaces of 1e4 asperities, gamma = 2, 41 separations 0 ... 4: their loads, which are noise but for the first
+Surfaces of S1 with 1e4 asperities: their loads, which are noise but for the first
 digits (areas and stiffnesses are alike), and their numbers of contacts. Chunks as in an ensemble file, each
 with a checksum; one thread, all in memory, seconds of the processor, the least of some rounds. The two last
 lines are a file of load, area, stiffness and contacts: all compressed, and as `mcgw.store.chunks` has it.
@@ -14,13 +14,12 @@ import time
 
 import h5py
 import numpy as np
+from scenes import S1
 
-import analytic
 import mcgw
 from mcgw.store.chunks import PACKED, chunk_rows, stored
 
 ROUNDS = 5
-SURFACE = analytic.Surface(sigma=1.37e-6, radius=13e-6, eta=3.0e8, nominal_area=1e-4, E_star=78.6e9)
 WAYS = {
     "as it is": {},
     "shuffle + LZF": {"shuffle": True, "compression": "lzf"},
@@ -78,15 +77,7 @@ def by(options):
 
 def main(surfaces):
     """Print the table."""
-    scene = mcgw.Scene(
-        SURFACE,
-        separations=np.linspace(0, 4, 41),
-        grading=mcgw.Exponential(2.0),
-        quantities=("load", "area", "stiffness", "contacts"),
-        n_asperities=10**4,
-        n_surfaces=surfaces,
-        seed=1,
-    )
+    scene = S1.replace(n_asperities=10**4, n_surfaces=surfaces)
     drawn = mcgw.simulate(scene)
     tables = {name: np.ascontiguousarray(getattr(drawn, name)) for name in scene.quantities}
     for name in ("load", "contacts"):
