@@ -1,9 +1,9 @@
 """Bytes against seconds for every way plain HDF5 has to pack the results of a run.
 
-Surfaces of S1 with 1e4 asperities: their loads, which are noise but for the first
-digits (areas and stiffnesses are alike), and their numbers of contacts. Chunks as in an ensemble file, each
-with a checksum; one thread, all in memory, seconds of the processor, the least of some rounds. The two last
-lines are a file of load, area, stiffness and contacts: all compressed, and as `mcgw.store.chunks` has it.
+Surfaces of S1 with 1e4 asperities: their loads, which are noise but for the first digits (areas and
+stiffnesses are alike), and their numbers of contacts. Chunks as in an ensemble file, each with a checksum;
+one thread, all in memory, seconds of the processor, the least of some rounds. The two last lines are a file
+of load, area, stiffness and contacts: all compressed, and as `mcgw.store.chunks` has it.
 
 Run: ``python runs/bench/compression.py [SURFACES]``.
 """
