@@ -5,7 +5,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import brentq
 
 from analytic.gradings import Grading
 from analytic.height_rule import HeightRule
@@ -114,6 +113,8 @@ class MeanContact:
         left, right = grid[max(k - 1, 0)], grid[min(k + 2, grid.size - 1)]
         if not self._excess(left, quantity, value) > 0 > self._excess(right, quantity, value):
             left, right = self._bracket(grid, quantity, value)
+        from scipy.optimize import brentq  # imports half of SciPy, which few separations are asked for
+
         return float(brentq(self._excess, left, right, (quantity, value), xtol=1e-15, rtol=_LAST_DIGITS))
 
     def _bracket(self, grid: Array, quantity: str, value: float) -> tuple[float, float]:

@@ -10,7 +10,6 @@ from mcgw.ensemble.ensemble import Ensemble
 from mcgw.formats.evenly import evenly
 from mcgw.formats.sheet import Sheet, Shown
 from mcgw.machine.late import plotted
-from mcgw.sampling.asperities import same_heights
 
 __all__ = ["Paired", "paired_ratio"]
 
@@ -118,4 +117,6 @@ def _same_asperities(one: Ensemble, other: Ensemble) -> bool:
     scenes = [replace(e.surfaces_of, sampler=e.sampler, n_surfaces=1) for e in (one, other)]
     if scenes[0] == scenes[1] or all(s.hertzian and s.tangential is None for s in scenes):
         return True
+    from mcgw.sampling.asperities import same_heights  # compiled loops, which few pairs need
+
     return same_heights(*scenes)
