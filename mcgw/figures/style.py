@@ -15,6 +15,7 @@ __all__ = ["STYLE", "contact_label", "grading_label", "shown_title"]
 STYLE: Any = {
     "font.size": 9,
     "axes.titlesize": 10,
+    "axes.titley": 1.0,  # told, for it is looked for by measuring all ticks, at each drawing
     "axes.spines.top": False,
     "axes.spines.right": False,
     "axes.prop_cycle": cycler(color=["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9"]),

@@ -18,6 +18,7 @@ from mcgw.figures.data import FigureData, Panel, Points, Series
 from mcgw.figures.drawing import draw
 from mcgw.figures.style import STYLE, grading_label
 from mcgw.formats.evenly import evenly
+from mcgw.formats.pictures import write_figure
 from mcgw.machine.terminal import one_line, plain_text
 from mcgw.reports.elasticity import elasticity_section
 from mcgw.reports.laws_section import contacts_sentence, laws_section, yielding_item
@@ -145,7 +146,7 @@ def _svg(figure: Figure, label: str) -> str:
     """An SVG element that takes the width it is given."""
     buffer = io.StringIO()
     with mpl.rc_context(STYLE | {"svg.hashsalt": label}):
-        figure.savefig(buffer, format="svg", metadata={"Date": None, "Creator": None})
+        write_figure(figure, buffer, format="svg", metadata={"Date": None, "Creator": None})
     text = buffer.getvalue()
     text = re.sub(r"<metadata>.*?</metadata>", "", text[text.index("<svg") :], flags=re.DOTALL)
     head, rest = text.split(">", 1)

@@ -1,0 +1,106 @@
+"""Figures are written faster than matplotlib does, and are the same."""
+
+import matplotlib as mpl
+import numpy as np
+import pytest
+from matplotlib.colors import LogNorm
+from matplotlib.figure import Figure
+from matplotlib.ticker import NullLocator
+from PIL import Image
+
+from mcgw.figures.style import STYLE
+from mcgw.formats.pictures import save_figure
+
+X = np.linspace(0.0, 4.0, 9)
+
+
+def decades():
+    """Panels that share a linear axis, logarithmic over several decades."""
+    figure = Figure(figsize=(6, 4), layout="constrained")
+    for k, row in enumerate(figure.subplots(2, 2, sharex=True)):
+        for axis in row:
+            axis.semilogy(X, 10.0 ** (-(1 + k) * X), label=r"$10^{-d}$")
+            axis.set_title("A title")
+    figure.supxlabel("separation")
+    return figure
+
+
+def shared():
+    """Panels that share logarithmic axes in both directions; the inner ones have no labels."""
+    figure = Figure(figsize=(7, 3), layout="constrained")
+    for k, axis in enumerate(figure.subplots(1, 3, sharex=True, sharey=True)):
+        axis.loglog(10.0**X, 10.0 ** (-k * X), "o-")
+    return figure
+
+
+def labelled():
+    """Less than a decade: the minor ticks have labels."""
+    figure = Figure(figsize=(4, 3), layout="constrained")
+    figure.subplots().loglog([2.0, 3.0, 7.0], [0.03, 0.05, 0.08])
+    return figure
+
+
+def sides():
+    """Ticks on both sides, at the right alone, within an axis turned round, on a bar of colours, and none."""
+    figure = Figure(figsize=(9, 3), layout="constrained")
+    both, right, falling, coloured, off = figure.subplots(1, 5)
+    both.tick_params(which="both", right=True)
+    right.yaxis.tick_right()
+    falling.invert_yaxis()
+    off.set_axis_off()
+    for axis in (both, right, falling, off):
+        axis.semilogy(X, 10.0**X)
+    points = coloured.scatter(X, X, c=10.0**X, norm=LogNorm())
+    figure.colorbar(points, ax=coloured)
+    return figure
+
+
+def in_parts():
+    """Figures within the figure."""
+    figure = Figure(figsize=(6, 5), layout="constrained")
+    top, bottom = figure.subfigures(2, 1)
+    for axis in (*top.subplots(1, 2), bottom.subplots()):
+        axis.loglog(10.0**X, 10.0**-X)
+    figure.suptitle("All")
+    return figure
+
+
+def pixels(path):
+    return np.asarray(Image.open(path).convert("RGB")).astype(int)
+
+
+@pytest.mark.parametrize("make", [decades, shared, labelled, sides, in_parts])
+def test_pictures_are_those_of_matplotlib(make, tmp_path):
+    with mpl.rc_context({**STYLE, "axes.titley": None}):  # its search for a place ends where we put the title
+        make().savefig(tmp_path / "plain.png")
+    with mpl.rc_context(STYLE):
+        save_figure(make(), tmp_path / "ours.png")
+    plain, ours = pixels(tmp_path / "plain.png"), pixels(tmp_path / "ours.png")
+    assert plain.shape == ours.shape
+    assert np.array_equal(plain, ours)
+
+
+def test_a_lost_tick_would_be_seen(tmp_path):
+    figure = decades()
+    decades().savefig(tmp_path / "plain.png")
+    figure.axes[0].yaxis.set_minor_locator(NullLocator())
+    save_figure(figure, tmp_path / "ours.png")
+    assert not np.array_equal(pixels(tmp_path / "plain.png"), pixels(tmp_path / "ours.png"))
+
+
+def test_minor_ticks_are_one_line_where_they_may_be(tmp_path):
+    """That is what makes it fast."""
+    few, as_they_are = decades(), labelled()
+    for figure in (few, as_they_are):
+        save_figure(figure, tmp_path / "x.png")
+    assert all(isinstance(axis.yaxis.get_minor_locator(), NullLocator) for axis in few.axes)
+    assert not isinstance(as_they_are.axes[0].yaxis.get_minor_locator(), NullLocator)
+
+
+def test_a_figure_is_drawn_once_for_each_file(tmp_path, monkeypatch):
+    drawn, draw = [], Figure.draw
+    monkeypatch.setattr(Figure, "draw", lambda self, renderer: (drawn.append(self), draw(self, renderer)))
+    figure = decades()
+    save_figure(figure, tmp_path / "x.png")
+    save_figure(figure, tmp_path / "x.svg")
+    assert len(drawn) == 2
