@@ -5,7 +5,6 @@ import sys
 import warnings
 from collections.abc import Sequence
 from importlib import import_module
-from importlib.metadata import PackageNotFoundError, version
 from typing import Any
 
 from mcgw.errors import RunError
@@ -85,7 +84,7 @@ def _parser() -> argparse.ArgumentParser:
         description="Monte-Carlo simulation of rough contacts with graded elasticity. SI units; "
         "separations and heights in units of sigma.",
     )
-    parser.add_argument("--version", action="version", version=f"mcgw {_version()}")
+    parser.add_argument("--version", action=_Version, nargs=0, help="show program's version number and exit")
     commands = parser.add_subparsers(metavar="COMMAND", required=True)
     for name in COMMANDS:
         command = import_module(f"mcgw.commands.{name}")
@@ -97,11 +96,18 @@ def _parser() -> argparse.ArgumentParser:
     return parser
 
 
-def _version() -> str:
-    try:
-        return version("mcgw")
-    except PackageNotFoundError:
-        return "unknown"
+class _Version(argparse.Action):
+    """As the action "version", but looked up when it is asked for."""
+
+    def __call__(self, parser: argparse.ArgumentParser, *_: Any) -> None:
+        from importlib.metadata import PackageNotFoundError, version
+
+        try:
+            found = version("mcgw")
+        except PackageNotFoundError:
+            found = "unknown"
+        print(f"mcgw {found}")
+        parser.exit()
 
 
 if __name__ == "__main__":

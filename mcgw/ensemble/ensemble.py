@@ -301,16 +301,18 @@ class Ensemble(Shown):
         return name, divisor
 
     def _chunks(self, name: str, kind: type = np.float64) -> Iterator[NDArray[Any]]:
-        for start in range(0, self.n_surfaces, _ROWS):
-            yield self.sums.read(name, start, min(start + _ROWS, self.n_surfaces)).astype(kind)
+        m = self.n_surfaces
+        for start in range(0, m, _ROWS):
+            yield self.sums.read(name, start, min(start + _ROWS, m)).astype(kind)
 
     def _moments(self, quantity: str) -> tuple[Array, Array]:
         """Mean and standard deviation; shifted by the first row, so nothing cancels."""
         name, divisor = self._held(quantity)
         shift = self.sums.read(name, 0, 1)[0].astype(np.float64)
         m = self.n_surfaces
-        mean = sum((chunk - shift).sum(axis=0) for chunk in self._chunks(name)) / m + shift
-        squares = sum(((chunk - mean) ** 2).sum(axis=0) for chunk in self._chunks(name))
+        few = [*self._chunks(name)] if m <= _ROWS else None  # read once
+        mean = sum((chunk - shift).sum(axis=0) for chunk in few or self._chunks(name)) / m + shift
+        squares = sum(((chunk - mean) ** 2).sum(axis=0) for chunk in few or self._chunks(name))
         std = np.sqrt(squares / (m - 1)) if m > 1 else np.full(np.shape(mean), np.nan)
         return np.asarray(mean / (divisor or 1.0)), np.asarray(std / (divisor or 1.0))
 
