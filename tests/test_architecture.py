@@ -173,18 +173,28 @@ def test_who_asks_for_hertz_loads_no_other_law(tmp_path):
     assert {path.stem for path in (*ROOT.rglob("*.py"), *ROOT.parent.glob("analytic/**/*.py"))} >= LAW_FILES
 
 
-def test_run_and_show_need_no_scipy_stats(tmp_path):
-    """Its import takes as long as all else that they do."""
-    scene = ROOT.parent / "runs" / "quick.toml"
-    code = "import sys, mcgw.cli\n"
-    for words in (
-        ["run", scene, "-o", tmp_path / "q.h5"],
-        ["show", tmp_path / "q.h5"],
-        ["show", "--plan", scene],
-    ):
-        code += f"assert mcgw.cli.main({list(map(str, words))}) == 0\n"
-        code += f"assert 'scipy.stats' not in sys.modules, {words[0]!r}\n"
-    subprocess.run([sys.executable, "-c", code], capture_output=True, check=True)
+# Each takes as long to import as much of what a command does: who needs it imports it in a function.
+NEEDLESS = {
+    "run": {"matplotlib", "scipy.optimize", "scipy.stats"},
+    "show": {"matplotlib", "numba", "scipy.optimize", "scipy.stats"},
+    "show --plan": {"matplotlib", "scipy.optimize", "scipy.stats"},
+    "compare": {"matplotlib.pyplot", "numba", "scipy.optimize", "scipy.stats"},
+}
+
+
+def test_commands_import_nothing_they_do_not_need(tmp_path):
+    scene, file = ROOT.parent / "runs" / "quick.toml", tmp_path / "q.h5"
+    seen = {}
+    for words, needless in NEEDLESS.items():
+        on = [scene, "-o", file] if words == "run" else [scene if "--plan" in words else file]
+        arguments = [*words.split(), *map(str, on)]
+        code = f"import sys, mcgw.cli\nassert mcgw.cli.main({arguments}) == 0\n"
+        code += "print(*sys.modules, file=sys.stderr)"
+        done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+        seen[words] = set(done.stderr.splitlines()[-1].split())
+        assert not needless & seen[words], words
+    assert "numba" in seen["run"]  # they would be seen
+    assert "matplotlib.figure" in seen["compare"]
 
 
 @pytest.mark.parametrize("command", ["surface", "fit"])

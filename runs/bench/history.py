@@ -19,6 +19,7 @@ from mcgw.store.provenance import processor
 
 BENCHES = (
     "bench_analytic",
+    "commands",
     "contact_laws",
     "file",
     "interaction",
