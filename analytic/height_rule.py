@@ -141,10 +141,10 @@ class HeightRule:
             start, stop = np.sqrt(left - anchor), np.sqrt(right - anchor)
             v = start + (stop - start) * x
             s = anchor + v * v
-            density = exp_minus_half_square(s) / np.sqrt(2 * np.pi)
-            pieces.append((s, 2 * v * (stop - start) * w * density))
-        s, probabilities = (np.concatenate(part) for part in zip(*pieces, strict=True))
-        return cls(s, probabilities, float(fn(0, -h[0])))
+            pieces.append((s, 2 * v * (stop - start) * w))
+        s, weights = (np.concatenate(part) for part in zip(*pieces, strict=True))
+        density = exp_minus_half_square(s) / np.sqrt(2 * np.pi)
+        return cls(s, weights * density, float(fn(0, -h[0])))
 
     @classmethod
     def of_summits(
