@@ -54,7 +54,8 @@ def njit(*, version: str = "", **options: Any) -> Callable[[Any], Any]:
             return numba.njit(**{**options, "cache": False})(function)
         if options.get("cache"):
             kept = compiled._cache._cache_file
-            kept._source_stamp = _stamp_of_package(function.__module__) or kept._source_stamp
+            layer = ".".join(function.__module__.split(".")[:2])
+            kept._source_stamp = _stamp_of_package(layer) or kept._source_stamp
             _name_by_contents(kept)
             _go_on_when_full(compiled._cache)
             _load_without_compiler(compiled._cache)
@@ -64,10 +65,10 @@ def njit(*, version: str = "", **options: Any) -> Callable[[Any], Any]:
 
 
 @lru_cache
-def _stamp_of_package(module: str) -> bytes:
+def _stamp_of_package(layer: str) -> bytes:
     """Of all files of the layer that a loop belongs to: Numba looks at none but the own file of the loop."""
-    layer = sys.modules[".".join(module.split(".")[:2])]
-    files = sorted(path for folder in getattr(layer, "__path__", ()) for path in Path(folder).rglob("*.py"))
+    folders = getattr(sys.modules[layer], "__path__", ())
+    files = sorted(path for folder in folders for path in Path(folder).rglob("*.py"))
     stamp = hashlib.sha256()
     for path in files:
         stamp.update(path.read_bytes())
