@@ -9,9 +9,8 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
-from scipy.stats import norm
 
-from analytic import Nayak
+from analytic import Gaussian, Nayak
 from mcgw.figures.style import STYLE
 from mcgw.formats.pictures import save_figure
 from mcgw.maps.estimates import moments_of
@@ -144,7 +143,7 @@ def _draw_heights(axis: Any, fit: Fit) -> None:
 
 def height_laws(fit: Fit) -> list[tuple[str, Any]]:
     """Densities of summit heights, mean 0 and standard deviation 1, that are drawn."""
-    laws: list[tuple[str, Any]] = [("Gaussian", norm.pdf)]
+    laws: list[tuple[str, Any]] = [("Gaussian", Gaussian().density)]
     with suppress(ValueError):  # no isotropic surface has such an alpha
         laws.append((f"Nayak, α = {fit.alpha.value:.3g}", Nayak(fit.alpha.value).density))
     return laws
