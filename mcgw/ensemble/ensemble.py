@@ -308,9 +308,9 @@ class Ensemble(Shown):
     def _moments(self, quantity: str) -> tuple[Array, Array]:
         """Mean and standard deviation; shifted by the first row, so nothing cancels."""
         name, divisor = self._held(quantity)
-        shift = self.sums.read(name, 0, 1)[0].astype(np.float64)
         m = self.n_surfaces
-        few = [*self._chunks(name)] if m <= _ROWS else None  # read once
+        few = [self.sums.read(name, 0, m).astype(np.float64)] if m <= _ROWS else None  # read once
+        shift = next(iter(few or self._chunks(name)))[0]
         mean = sum((chunk - shift).sum(axis=0) for chunk in few or self._chunks(name)) / m + shift
         squares = sum(((chunk - mean) ** 2).sum(axis=0) for chunk in few or self._chunks(name))
         std = np.sqrt(squares / (m - 1)) if m > 1 else np.full(np.shape(mean), np.nan)
