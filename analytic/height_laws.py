@@ -42,6 +42,10 @@ def narrowest(law: HeightLaw, s: float) -> float:
         if even.size:
             return float(widths[even[0]])
         width = float(widths[-1]) / 2
+    if np.isnan(change).all():  # there would be no end of ever smaller cells
+        raise ValueError(
+            f"heights: their density is 0 at s = {s:.6g}, inside the support; fill the gap, say by wider bins"
+        )
     return width
 
 

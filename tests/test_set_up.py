@@ -1,6 +1,5 @@
-"""What is made before anything is drawn: found by compiled steps, once, and never the result of another scene."""
+"""What is made before anything is drawn: by compiled steps, once, and never the result of another scene."""
 
-import itertools
 import math
 import subprocess
 import sys
@@ -128,9 +127,8 @@ def test_scenes_drawn_after_others_are_those_drawn_alone(make_scene):
     ]
     scenes = [make_scene(n_surfaces=3, **change) for change in changes]
     first = [mcgw.simulate(scene).load for scene in scenes]
-    for one, other in itertools.permutations(range(len(scenes)), 2):
-        np.testing.assert_array_equal(mcgw.simulate(scenes[one]).load, first[one])
-        np.testing.assert_array_equal(mcgw.simulate(scenes[other]).load, first[other])
+    for again in np.random.default_rng(4).integers(0, len(scenes), 30):
+        np.testing.assert_array_equal(mcgw.simulate(scenes[again]).load, first[again])
     assert len({load.tobytes() for load in first}) == len(scenes)
 
 
@@ -177,13 +175,21 @@ def test_two_histograms_are_two_height_laws(make_scene):
     rng = np.random.default_rng(1)
     laws = [
         analytic.ScipyHeights(scipy.stats.rv_histogram(np.histogram(x, bins=12), density=True))
-        for x in (rng.normal(size=1000), rng.exponential(size=1000))
+        for x in (rng.normal(size=1000), rng.uniform(size=1000))
     ]
     assert laws[0] != laws[1]
     assert analytic.ScipyHeights(scipy.stats.gamma(3.0)) == analytic.ScipyHeights(scipy.stats.gamma(3.0))
     assert analytic.ScipyHeights(scipy.stats.gamma(3.0)) != analytic.ScipyHeights(scipy.stats.gamma(4.0))
     edges = [mesh_of(make_scene(heights=law, separations=(0.5,))).edges for law in laws]
     assert not np.array_equal(*edges)
+
+
+def test_a_histogram_with_an_empty_bin_is_refused(make_scene):
+    """It would be cut into ever smaller cells, without an end."""
+    counts, edges = np.array([5.0, 9.0, 0.0, 2.0]), np.array([0.0, 1.0, 2.0, 3.0, 4.0])
+    law = analytic.ScipyHeights(scipy.stats.rv_histogram((counts, edges), density=False))
+    with pytest.raises(ValueError, match=r"density is 0 at s = .*; fill the gap"):
+        mcgw.simulate(make_scene(heights=law, grading=None, separations=(-1.0,)))
 
 
 def test_a_surface_without_extras_is_one_of_many(make_scene):

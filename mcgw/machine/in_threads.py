@@ -21,11 +21,11 @@ _Item = TypeVar("_Item")
 _Result = TypeVar("_Result")
 
 
-def in_threads(call: Callable[[_Item], _Result], items: Sequence[_Item]) -> list[_Result]:
+def in_threads(call: Callable[[_Item], _Result], items: Sequence[_Item], *, least: int = 2) -> list[_Result]:
     """Call for every item, on as many threads as numba has been told to use; results in their order.
 
     Items are shared out in runs of equal length. What is called lets go of Python's lock while it computes;
-    calls within a call run alone.
+    calls within a call run alone. Fewer than `least` items are not worth waking a thread.
     """
 
     def run(places: Iterable[int]) -> list[_Result]:
@@ -39,8 +39,8 @@ def in_threads(call: Callable[[_Item], _Result], items: Sequence[_Item]) -> list
         finally:
             set_num_threads(before)
 
-    if len(items) == 1:
-        return [call(items[0])]
+    if len(items) < least:
+        return [call(item) for item in items]
     own, *others = np.array_split(np.arange(len(items)), min(get_num_threads(), max(len(items), 1)))
     if not others:
         return run(own)

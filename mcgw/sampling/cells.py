@@ -40,7 +40,7 @@ _FAR, _NARROWER = 2.0, 0.75  # spans from a root of the laws of contact, and wha
 _DIGITS = 4.0  # of a height that coefficients without meaning may seem to be worth
 _EVEN, _LEAST = 4.0, 1 / 16  # see `evenness`
 _TOGETHER = 64  # cells whose densities stay in the cache
-_SOON_DONE = 512  # cells that are not worth waking a thread
+_MANY = 32  # times that many: worth another thread
 _CLOSEST = 2.0**-40  # of a cell to an end of the support that is a broken power
 
 _ORDER = 20
@@ -252,11 +252,7 @@ def _mass(law: HeightLaw, a: Array, t: Array) -> Array:
             sums = product(exp(heights), _W)
         mass[some] = sums.reshape(-1, t.shape[1])
 
-    if len(a) < _SOON_DONE:
-        for first in range(0, len(a), _TOGETHER):
-            weigh(first)
-    else:
-        in_threads(weigh, range(0, len(a), _TOGETHER))
+    in_threads(weigh, range(0, len(a), _TOGETHER), least=_MANY)
     return t * mass
 
 

@@ -85,7 +85,9 @@ def _values(exponent: Any, scale: Any, graded: Any, above: Any, e: Any) -> Any:
     """``scale e above^exponent`` for whole and half-integer exponents, by products and roots."""
     values, power = np.empty(above.shape), np.empty(exponent.size)
     whole, half = np.floor(exponent), exponent % 1 != 0
-    most = int(np.max(whole)) if exponent.size else 0
+    most = 0
+    for j in range(exponent.size):  # numba's np.max imports half of SciPy
+        most = max(most, int(whole[j]))
     for i in range(above.shape[0]):
         for j in range(exponent.size):
             root = np.sqrt(above[i, j])

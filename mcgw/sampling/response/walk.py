@@ -26,6 +26,7 @@ _U = (1 + NODES) / 2
 _TIMES_U = np.eye(len(NODES)) / 2 + np.eye(len(NODES), k=1) / 4 + np.eye(len(NODES), k=-1) / 4
 _TIMES_U[1, 0] = 0.5
 _PAIRS = 1024  # of a row and a node, at a time
+_MANY = 16  # times that many: worth another thread
 
 
 @dataclass(frozen=True)
@@ -93,7 +94,7 @@ def walk(mesh: Mesh, tree: Tree, rows: Rows, nodes: Nodes) -> tuple[Entries, Int
         node, row, smooth = _met(node, row, rows, nodes)
         left = np.ones(len(node), dtype=bool)
         together = _together(np.flatnonzero(smooth))
-        resolved = in_threads(lambda few: _resolved(rows, nodes, node[few], row[few]), together)  # noqa: B023
+        resolved = in_threads(lambda few: _resolved(rows, nodes, node[few], row[few]), together, least=_MANY)  # noqa: B023
         for few, (series, needed, done) in zip(together, resolved, strict=True):
             found.append(series)
             np.maximum.at(plain, series.node, needed)
