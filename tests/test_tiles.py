@@ -25,14 +25,12 @@ def lines(blocks):
     if not blocks:
         return NONE, NONE
     row, start, values = (np.concatenate(part) for part in zip(*blocks, strict=True))
-    half = len(row) // 2
-    return [
-        Lines(row[x], start[x], np.full(len(row[x]), FOUR), values[x])
-        for x in (slice(half), slice(half, None))
-    ]
+    at, length, half = FOUR * np.arange(len(row)), np.full(len(row), FOUR), len(row) // 2
+    cut = slice(half), slice(half, None)
+    return [Lines(row[x], start[x], length[x], at[x], values.ravel()) for x in cut]
 
 
-NONE = Lines(*np.empty((3, 0), dtype=np.int64), np.empty((0, FOUR)))
+NONE = Lines(*np.empty((4, 0), dtype=np.int64), np.empty(0))
 
 
 def gaps(rng, groups):

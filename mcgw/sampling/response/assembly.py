@@ -68,7 +68,8 @@ class _Rows:
 def _transfers(parts: Parts, rows: _Rows) -> Lines:
     """What makes the moments of the parents."""
     parent, child, moment, coefficients = transfers(parts.mesh, parts.tree, parts.plain)
-    return Lines(rows.plain[parent] + moment, rows.plain[child], parts.plain[child], coefficients)
+    at = np.arange(len(parent)) * coefficients.shape[1]
+    return Lines(rows.plain[parent] + moment, rows.plain[child], parts.plain[child], at, coefficients.ravel())
 
 
 def _answers(parts: Parts, rows: _Rows, order: Ints) -> Lines:
@@ -78,4 +79,5 @@ def _answers(parts: Parts, rows: _Rows, order: Ints) -> Lines:
     places[order] = np.arange(len(order))
     start, size = rows.plain[node], parts.plain[node]
     start[rooted], size[rooted] = rows.rooted[node[rooted]], parts.rooted[node[rooted]]
-    return Lines(rows.end + places[parts.answer[entries.row]], start, size, entries.coefficients)
+    row, length = rows.end + places[parts.answer[entries.row]], np.minimum(entries.length, size)
+    return Lines(row, start, length, entries.start, entries.coefficients)

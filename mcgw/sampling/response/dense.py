@@ -53,11 +53,11 @@ class Parts:
         """What each moment of the cells adds to each answer, shape (answers, moments)."""
         plain, rooted = self._moments_of_nodes()
         matrix, entries = np.zeros((answers, int(self.layout.starts[-1]))), self.entries
-        for node, row, root, c in zip(
-            entries.node, entries.row, entries.rooted, entries.coefficients, strict=True
+        for node, row, root, start, length in zip(
+            entries.node, entries.row, entries.rooted, entries.start, entries.length, strict=True
         ):
-            moments = (rooted if root else plain)[node]
-            matrix[self.answer[row]] += product(c[: len(moments)], moments)
+            moments = (rooted if root else plain)[node][:length]
+            matrix[self.answer[row]] += product(entries.coefficients[start:][: len(moments)], moments)
         return matrix
 
     def _moments_of_nodes(self) -> tuple[list[Array], list[Array]]:

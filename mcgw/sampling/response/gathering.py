@@ -29,13 +29,16 @@ class Lines(NamedTuple):
         Whose they are.
     start, length : ndarray of int
         First column, a multiple of four, and number of columns.
+    at : ndarray of int
+        Where their values begin.
     values : ndarray
-        Of the columns from there on, shape (lines, columns or more).
+        Of the columns of all lines.
     """
 
     row: Ints
     start: Ints
     length: Ints
+    at: Ints
     values: Array
 
 
@@ -76,17 +79,18 @@ def gathered(first: Lines, second: Lines, given: int, computed: int) -> Gathered
         Groups are computed in one sweep from the highest given ones that they need down, so that each has a
         place in the table for a short time; tiles of a group in the order of their columns.
     """
-    row, start, length = (np.concatenate(both) for both in zip(first[:3], second[:3], strict=True))
-    return Gathered(*_gather(row, start, length, first.values, second.values, given, computed))
+    row, start, length, at = (np.concatenate(both) for both in zip(first[:4], second[:4], strict=True))
+    values = first.values, second.values
+    return Gathered(*_gather(row, start, length, at, len(first.row), values, given, computed))
 
 
 @njit(nogil=True, cache=True)
-def _find_filled(length: Any, values: Any, filled: Any) -> None:
+def _find_filled(length: Any, at: Any, values: Any, filled: Any) -> None:
     """Which fours of the values of each line are not all zeros, as bits."""
-    for line in range(values.shape[0]):
+    for line in range(length.size):
         bits = np.uint32(0)
         for column in range(length[line]):
-            if values[line, column] != 0.0:
+            if values[at[line] + column] != 0.0:
                 bits |= np.uint32(1) << np.uint32(column // FOUR)
         filled[line] = bits
 
@@ -160,19 +164,22 @@ def _last_steps(order: Any, ends: Any, sources: Any, given: Any) -> Any:
 
 
 @njit(nogil=True, cache=True)
-def _fill(tiles: Any, at: Any, length: Any, values: Any, filled: Any, row: Any) -> None:
+def _fill(tiles: Any, at: Any, values: Any, filled: Any, row: Any) -> None:
     """Write the values of a line into its tiles, which are at these places."""
-    for column in range(length):
+    for column in range(values.size):
         four = column // FOUR
         if filled >> np.uint32(four) & np.uint32(1):
             tiles[at[four], row, column % FOUR] = values[column]
 
 
 @njit(nogil=True, cache=True)
-def _gather(row: Any, start: Any, length: Any, first: Any, second: Any, given: Any, computed: Any) -> Any:
-    n_first, filled = first.shape[0], np.empty(row.size, dtype=np.uint32)
-    _find_filled(length[:n_first], first, filled[:n_first])
-    _find_filled(length[n_first:], second, filled[n_first:])
+def _gather(
+    row: Any, start: Any, length: Any, at: Any, n_first: Any, values: Any, given: Any, computed: Any
+) -> Any:
+    first, second = values
+    filled = np.empty(row.size, dtype=np.uint32)
+    _find_filled(length[:n_first], at[:n_first], first, filled[:n_first])
+    _find_filled(length[n_first:], at[n_first:], second, filled[n_first:])
     firsts, lines, ends, sources = _sources(row // FOUR - given, start, filled, given, computed)
     order = _sweep_down(ends, sources, given)
     last = _last_steps(order, ends, sources, given)
@@ -207,8 +214,8 @@ def _gather(row: Any, start: Any, length: Any, first: Any, second: Any, given: A
                 used[n_tiles] = FOUR * place[group]
                 n_tiles += 1
         for line in lines[firsts[g] : firsts[g + 1]]:
-            values = first[line] if line < n_first else second[line - n_first]
-            _fill(tiles, tile_of[start[line] // FOUR :], length[line], values, filled[line], row[line] % FOUR)
+            own = (first if line < n_first else second)[at[line] : at[line] + length[line]]
+            _fill(tiles, tile_of[start[line] // FOUR :], own, filled[line], row[line] % FOUR)
         fetch_ends[step], tile_ends[step] = n_fetches, n_tiles
     fetches = fetches[:n_fetches]
     return (

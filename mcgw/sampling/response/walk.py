@@ -31,7 +31,7 @@ _MANY = 16  # times that many: worth another thread
 
 @dataclass(frozen=True)
 class Entries:
-    """Coefficients of rows on nodes, one an array element.
+    """Series of rows on nodes, one an array element.
 
     Parameters
     ----------
@@ -39,18 +39,28 @@ class Entries:
         Whose they are.
     rooted : ndarray of bool
         Whether they multiply the R_j of a cell, or the T_j of a node.
+    length : ndarray of int
+        How many coefficients each has; further ones are zero.
     coefficients : ndarray
-        Shape (entries, order).
+        Of all of them, one after the other.
     """
 
     node: Ints
     row: Ints
     rooted: NDArray[np.bool_]
+    length: Ints
     coefficients: Array
 
-    def take(self, which: NDArray[np.bool_]) -> "Entries":
-        """Some of them."""
-        return Entries(self.node[which], self.row[which], self.rooted[which], self.coefficients[which])
+    @classmethod
+    def of(cls, node: Ints, row: Ints, which: Ints, c: Array, *, rooted: bool = False) -> "Entries":
+        """Some of the series of these nodes and rows, whose coefficients have the shape (order, series)."""
+        length, coefficients = _packed(c, which)
+        return cls(node[which], row[which], np.full(len(which), rooted), length, coefficients)
+
+    @property
+    def start(self) -> Ints:
+        """Where the coefficients of each begin."""
+        return np.cumsum(self.length) - self.length
 
     @classmethod
     def joined(cls, parts: list["Entries"]) -> "Entries":
@@ -59,11 +69,30 @@ class Entries:
             np.concatenate([_NO_INDEX, *(part.node for part in parts)]),
             np.concatenate([_NO_INDEX, *(part.row for part in parts)]),
             np.concatenate([_NO_INDEX.astype(bool), *(part.rooted for part in parts)]),
-            np.concatenate([np.empty((0, len(NODES))), *(part.coefficients for part in parts)]),
+            np.concatenate([_NO_INDEX, *(part.length for part in parts)]),
+            np.concatenate([np.empty(0), *(part.coefficients for part in parts)]),
         )
 
 
 _NO_INDEX = np.empty(0, dtype=np.int64)
+
+
+@njit(nogil=True, cache=True)
+def _packed(c: Any, which: Any) -> Any:
+    """How many coefficients some series have, up to the last that is not zero, and all of these."""
+    length, total = np.empty(which.size, dtype=np.int64), 0
+    for k in range(which.size):
+        n = c.shape[0]
+        while n > 0 and c[n - 1, which[k]] == 0.0:
+            n -= 1
+        length[k] = n
+        total += n
+    coefficients, at = np.empty(total), 0
+    for k in range(which.size):
+        for i in range(length[k]):
+            coefficients[at] = c[i, which[k]]
+            at += 1
+    return length, coefficients
 
 
 def walk(mesh: Mesh, tree: Tree, rows: Rows, nodes: Nodes) -> tuple[Entries, Ints, Ints]:
@@ -139,16 +168,17 @@ def _together(pairs: Ints) -> list[Ints]:
     return [pairs[first : first + _PAIRS] for first in range(0, len(pairs), _PAIRS)]
 
 
-def _resolved(rows: Rows, nodes: Nodes, node: Ints, row: Ints) -> tuple[Entries, Ints, NDArray[np.bool_]]:
+def _resolved(rows: Rows, nodes: Nodes, node: Ints, row: Ints) -> tuple[Entries, Ints, Ints]:
     """Series of rows that are smooth on nodes, where resolved; how many coefficients count; and which."""
-    series, needed = _smooth_series(rows, nodes, node, row)
+    c, needed = _smooth_series(rows, nodes, node, row)
     parent = nodes.parent[node]
     if rows.rough.any():
         begins = rows.rough[row] & (rows.low[row] == nodes.start[node]) & ~parent
         needed[begins] = np.minimum(needed[begins], _MOST_IN_CELL)
     done = needed <= np.where(parent, _MOST, _MOST_IN_CELL)
     _refuse(nodes, node[~(done | parent)])
-    return series.take(done), needed[done], done
+    which = np.flatnonzero(done)
+    return Entries.of(node, row, which, c), needed[which], which
 
 
 def _refuse(nodes: Nodes, unresolved: Ints) -> None:
@@ -157,7 +187,7 @@ def _refuse(nodes: Nodes, unresolved: Ints) -> None:
         raise ValueError(f"grading: not resolved near s = {s:.6g}; give its breaks, or a smoother one")
 
 
-def _smooth_series(rows: Rows, nodes: Nodes, node: Ints, row: Ints) -> tuple[Entries, Ints]:
+def _smooth_series(rows: Rows, nodes: Nodes, node: Ints, row: Ints) -> tuple[Array, Ints]:
     """Series of rows that are smooth on nodes, and how many coefficients must count.
 
     What no sum over many nodes can show is zero.
@@ -167,7 +197,7 @@ def _smooth_series(rows: Rows, nodes: Nodes, node: Ints, row: Ints) -> tuple[Ent
     begins = np.flatnonzero(rows.begins[row] & (rows.low[row] == nodes.start[node]))
     for _, which, begun, count in _starts(rows, nodes, node[begins], row[begins]):
         c[:, begins[which]], needed[begins[which]] = begun, count
-    return Entries(node, row, np.zeros(len(node), dtype=bool), c.T), needed
+    return c, needed
 
 
 def _begun_series(rows: Rows, nodes: Nodes, node: Ints, row: Ints) -> Iterator[tuple[Entries, Ints]]:
@@ -176,7 +206,7 @@ def _begun_series(rows: Rows, nodes: Nodes, node: Ints, row: Ints) -> Iterator[t
         s = rows.low[row][rows.low[row] != nodes.start[node]][0]
         raise ValueError(f"a break of the contact law at s = {s:.6g} is not an edge of the cells")
     for root, which, c, needed in _starts(rows, nodes, node, row):
-        yield Entries(node[which], row[which], np.full(len(which), root), c.T), needed
+        yield Entries.of(node[which], row[which], np.arange(len(which)), c, rooted=root), needed
 
 
 def _starts(rows: Rows, nodes: Nodes, node: Ints, row: Ints) -> Iterator[tuple[bool, Ints, Array, Ints]]:
