@@ -86,7 +86,7 @@ def _values(exponent: Any, scale: Any, graded: Any, above: Any, e: Any) -> Any:
     values, power = np.empty(above.shape), np.empty(exponent.size)
     whole, half = np.floor(exponent), exponent % 1 != 0
     most = 0
-    for j in range(exponent.size):  # numba's np.max imports half of SciPy
+    for j in range(exponent.size):  # a reduction by NumPy's name imports half of SciPy
         most = max(most, int(whole[j]))
     for i in range(above.shape[0]):
         for j in range(exponent.size):

@@ -113,7 +113,7 @@ def transfers(mesh: Mesh, tree: Tree, moments: Ints) -> tuple[Ints, Ints, Ints, 
 def _transfer(x: Any, moments: Any, of_parent: Any, to_coefficients: Any, coefficients: Any) -> None:
     """Series in the variable of each child of T_j(x), x the variable of its parent at the child's points."""
     order, most = x.shape[0], 2
-    for wanted in moments:  # numba's np.max imports half of SciPy
+    for wanted in moments:  # a reduction by NumPy's name imports half of SciPy
         most = max(most, wanted)
     powers, series = np.zeros((order, most)), np.empty((order, most))
     line = 0
