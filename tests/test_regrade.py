@@ -10,6 +10,7 @@ import mcgw
 from mcgw.ensemble.paired import paired_ratio
 from mcgw.ensemble.regrading import regrade
 from mcgw.jobs.running import run
+from mcgw.sampling import cells
 from mcgw.store.saving import save
 
 H = tuple(np.linspace(0, 4, 21))
@@ -167,8 +168,10 @@ def test_a_ratio_of_the_same_surfaces_by_hand(make_scene):
 def test_moments_of_another_version(base, monkeypatch):
     """Cells priced otherwise are other cells: their moments must not be taken for these."""
     monkeypatch.setattr("mcgw.sampling.spacing._CELL", 4000.0)
+    cells._edges.cache_clear()
     with pytest.raises(ValueError, match="another version of mcgw"):
         regrade(base, analytic.Exponential(0.5))
+    cells._edges.cache_clear()
 
 
 def test_from_file_to_file(make_scene, tmp_path):

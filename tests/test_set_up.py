@@ -94,7 +94,7 @@ def test_compiled_exponentials_say_where_they_are_wrong(far):
     assert not weigh_exponentials(x, np.ones(20), np.empty(3))
 
 
-@pytest.mark.parametrize("shape", [(1, 1, 1), (20, 20, 3), (20, 20, 16), (7, 20, 37), (20, 5, 100)])
+@pytest.mark.parametrize("shape", [(1, 1, 1), (2, 0, 3), (20, 20, 3), (20, 20, 16), (7, 20, 37), (20, 5, 100)])
 def test_products_of_whole_numbers_are_exact(shape):
     """Whatever number of columns: in sixteens, in fours, and one by one; and rows in any order in memory."""
     rng = np.random.default_rng(sum(shape))
@@ -213,7 +213,7 @@ print(*{"numba.cpython.setobj", "scipy.linalg"} & set(sys.modules))
 
 
 def test_what_is_compiled_runs_without_the_compiler():
-    """In a second process, whatever the first one had to compile; and without what NumPy's reductions import."""
+    """In a second process, whatever the first one had to compile; nor what NumPy's reductions import."""
     found = [
         subprocess.run([sys.executable, "-c", PROBE], capture_output=True, text=True, check=True).stdout
         for _ in range(2)

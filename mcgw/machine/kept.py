@@ -22,6 +22,7 @@ def kept(most: int) -> Callable[[Callable[..., _Result]], Callable[..., _Result]
         def call(*arguments: Any) -> _Result:
             return (remembered if all(map(_never_changes, arguments)) else function)(*arguments)
 
+        call.cache_clear = remembered.cache_clear  # type: ignore[attr-defined]
         return call
 
     return decorate

@@ -80,7 +80,7 @@ def product(a: Array, b: Array) -> Array:
         Shape (..., m), or (...).
     """
     rows, columns = (
-        np.ascontiguousarray(a.reshape(-1, a.shape[-1])),
+        np.ascontiguousarray(a.reshape(math.prod(a.shape[:-1]), a.shape[-1])),
         np.ascontiguousarray(b.reshape(len(b), math.prod(b.shape[1:]))),
     )
     result = np.empty((len(rows), columns.shape[1]))
