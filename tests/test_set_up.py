@@ -94,7 +94,10 @@ def test_compiled_exponentials_say_where_they_are_wrong(far):
     assert not weigh_exponentials(x, np.ones(20), np.empty(3))
 
 
-@pytest.mark.parametrize("shape", [(1, 1, 1), (2, 0, 3), (20, 20, 3), (20, 20, 16), (7, 20, 37), (20, 5, 100)])
+SHAPES = [(1, 1, 1), (2, 0, 3), (20, 20, 3), (20, 20, 16), (7, 20, 37), (20, 5, 100)]
+
+
+@pytest.mark.parametrize("shape", SHAPES)
 def test_products_of_whole_numbers_are_exact(shape):
     """Whatever number of columns: in sixteens, in fours, and one by one; and rows in any order in memory."""
     rng = np.random.default_rng(sum(shape))
