@@ -142,14 +142,12 @@ def _above(law: HeightLaw, s: float) -> float:
     return float(law.above(np.array(s)))
 
 
-@kept(8)
 def _range(law: HeightLaw, share: float, lowest: float) -> tuple[float, float]:
     """Where the cells lie: at most this share of all heights on either side of them.
 
     Rounded to a sixteenth, so that it does not hang on the last digit of an inverse distribution.
     """
-    rare = np.array(min(share, 0.5))
-    bottom, top = float(law.from_below(rare, np.inf)), float(law.from_above(rare, -np.inf))
+    bottom, top = _rare_heights(law, min(share, 0.5))
     low, high = np.floor(16 * bottom) / 16, np.ceil(16 * top) / 16
     if low <= law.support[0]:
         low = law.support[0]
@@ -160,6 +158,13 @@ def _range(law: HeightLaw, share: float, lowest: float) -> tuple[float, float]:
         if high in law.singular:
             high -= _power_of_two_below(high - top)
     return max(lowest, low), high
+
+
+@kept(8)
+def _rare_heights(law: HeightLaw, share: float) -> tuple[float, float]:
+    """Heights that this share of all lies below, and above."""
+    rare = np.array(share)
+    return float(law.from_below(rare, np.inf)), float(law.from_above(rare, -np.inf))
 
 
 def _power_of_two_below(distance: float) -> float:
