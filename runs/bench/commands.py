@@ -53,7 +53,7 @@ def ratios(rounds: int) -> dict[str, float]:
     """Seconds of each command to those of the imports: lower is better."""
     with TemporaryDirectory() as folder:
         made = jobs(Path(folder))
-        return against(timed(made, rounds), PEER, [name for name in made if name != PEER])
+        return against(timed(made, rounds), PEER)
 
 
 def show(checkout: Path, times: Times, before: Times | None) -> None:

@@ -63,8 +63,7 @@ def measured(rounds: int) -> Times:
 
 def ratios(rounds: int) -> dict[str, float]:
     """Seconds of a set-up or of a surface, to those of NumPy: lower is better."""
-    times = measured(rounds)
-    return against(times, PEER, [name for name in times if name != PEER])
+    return against(measured(rounds), PEER)
 
 
 def main() -> None:

@@ -38,9 +38,10 @@ def ratio(times: Times, name: str, peer: str) -> float:
     return float(np.median(times[name] / times[peer]))
 
 
-def against(times: Times, peer: str, names: Iterable[str]) -> dict[str, float]:
-    """Ratios of some jobs to a peer, each by its name in the history: lower is better."""
-    return {f"{name} / {peer}": ratio(times, name, peer) for name in names}
+def against(times: Times, peer: str, names: Iterable[str] | None = None) -> dict[str, float]:
+    """Ratios of some jobs, or of all others, to a peer, by their names in the history: lower is better."""
+    chosen = [name for name in times if name != peer] if names is None else names
+    return {f"{name} / {peer}": ratio(times, name, peer) for name in chosen}
 
 
 def show(title: str, times: Times, base: str) -> None:

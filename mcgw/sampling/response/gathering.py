@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from mcgw.machine.compiling import njit
 
-__all__ = ["FOUR", "Gathered", "Lines", "gathered", "in_fours"]
+__all__ = ["FOUR", "Lines", "gathered", "in_fours"]
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -42,28 +42,7 @@ class Lines(NamedTuple):
     values: Array
 
 
-class Gathered(NamedTuple):
-    """Tiles in the order of their steps, as `mcgw.sampling.response.product.Tiles` has them.
-
-    Attributes
-    ----------
-    order : ndarray of int
-        Which computed group each step computes.
-    fetches, fetch_ends, fetched, tile_ends, used, values, computed
-        As there; `fetches` are groups.
-    """
-
-    order: Ints
-    fetches: Ints
-    fetch_ends: Ints
-    fetched: Ints
-    tile_ends: Ints
-    used: NDArray[np.uint64]
-    values: Array
-    computed: Ints
-
-
-def gathered(first: Lines, second: Lines, given: int, computed: int) -> Gathered:
+def gathered(first: Lines, second: Lines, given: int, computed: int) -> tuple[Any, ...]:
     """Gather lines into tiles.
 
     Parameters
@@ -75,13 +54,15 @@ def gathered(first: Lines, second: Lines, given: int, computed: int) -> Gathered
 
     Returns
     -------
-    Gathered
-        Groups are computed in one sweep from the highest given ones that they need down, so that each has a
-        place in the table for a short time; tiles of a group in the order of their columns.
+    tuple of ndarray
+        Which computed group each step computes; the given groups that are fetched; then `fetch_ends` to
+        `computed` of `mcgw.sampling.response.product.Tiles`. Groups are computed in one sweep from the
+        highest given ones that they need down, so that each has a place in the table for a short time; tiles
+        of a group in the order of their columns.
     """
     row, start, length, at = (np.concatenate(both) for both in zip(first[:4], second[:4], strict=True))
     values = first.values, second.values
-    return Gathered(*_gather(row, start, length, at, len(first.row), values, given, computed))
+    return tuple(_gather(row, start, length, at, len(first.row), values, given, computed))
 
 
 @njit(nogil=True, cache=True)

@@ -71,17 +71,10 @@ class Tiles:
         Tiles
             In the order of the sweep.
         """
-        found = gathered(first, second, len(given), len(answers))
-        return cls(
-            fetches=given[found.fetches],
-            fetch_ends=found.fetch_ends,
-            fetched=found.fetched,
-            tile_ends=found.tile_ends,
-            used=found.used,
-            values=found.values,
-            computed=found.computed,
-            answers=answers[found.order],
+        order, fetches, ends, fetched, tile_ends, used, values, computed = gathered(
+            first, second, len(given), len(answers)
         )
+        return cls(given[fetches], ends, fetched, tile_ends, used, values, computed, answers[order])
 
     def apply(self, given: Array, shape: tuple[int, int]) -> Array:
         """Answers.
