@@ -21,10 +21,11 @@ stream is word w of block 16 g + i.
 from typing import Any
 
 import numpy as np
-from numba import uint32, uint64
+from numba import int64, uint64
 from numpy.typing import NDArray
 
 from mcgw.machine.compiling import njit
+from mcgw.sampling.lanes import number
 
 __all__ = [
     "AT_ONCE",
@@ -52,23 +53,32 @@ CELLS, TAIL, EXTRAS, MOMENTS, REST, POSITIONS, COUNTS, RADII, RADII_LOW = range(
 _M0, _M1 = uint64(0xD2511F53), uint64(0xCD9E8D57)
 _W0, _W1 = uint64(0x9E3779B9), uint64(0xBB67AE85)
 _LOW, _32 = uint64(0xFFFFFFFF), uint64(32)
-_SIGN, _UNIT = uint32(0x80000000), 2.0**-31
+_UNIT = 2.0**-31
+# The words of the numbers from 2^20 on: their last digit is 2^-32, half of what tells two uniforms apart.
+_BASE = 2.0**20
+_WORD_OF_BASE = uint64(np.float64(_BASE).view(np.uint64))
 
 
 @njit(nogil=True, cache=True, inline="always")
 def philox(c0: Any, c1: Any, c2: Any, c3: Any, k0: Any, k1: Any) -> Any:
-    """Ten rounds: counter and key to four words, all 32-bit values in uint64."""
+    """Ten rounds: counter and key to four words, all 32-bit values in uint64.
+
+    High halves are dropped only where they would count: a vector unit multiplies low halves anyway.
+    """
     for _ in range(10):
-        p0, p1 = _M0 * c0, _M1 * c2
-        c0, c1, c2, c3 = (p1 >> _32) ^ c1 ^ k0, p1 & _LOW, (p0 >> _32) ^ c3 ^ k1, p0 & _LOW
-        k0, k1 = (k0 + _W0) & _LOW, (k1 + _W1) & _LOW
-    return c0, c1, c2, c3
+        p0, p1 = _M0 * (c0 & _LOW), _M1 * (c2 & _LOW)
+        c0, c1, c2, c3 = (p1 >> _32) ^ c1 ^ k0, p1, (p0 >> _32) ^ c3 ^ k1, p0
+        k0, k1 = k0 + _W0, k1 + _W1
+    return c0 & _LOW, c1 & _LOW, c2 & _LOW, c3 & _LOW
 
 
 @njit(nogil=True, cache=True, inline="always")
 def _to_centred(word: Any) -> Any:
-    """Give x = 2u - 1 for u at the centre of interval `word` of 2^32; exact."""
-    return (np.float64(np.int32(uint32(word) ^ _SIGN)) + 0.5) * _UNIT
+    """Give x = 2u - 1 for u at the centre of interval `word` of 2^32; exact.
+
+    Written into the digits of a number that is larger by 1 + 2^20, which costs less than to convert it.
+    """
+    return number(int64(word + word | _WORD_OF_BASE | uint64(1))) - (_BASE + 1.0)
 
 
 @njit(nogil=True, cache=True, inline="always")
