@@ -15,7 +15,7 @@ from mcgw.ensemble.results import MemoryResults
 from mcgw.sampling import samplers
 from mcgw.sampling.aggregate import _law_of_moments, _partly
 from mcgw.sampling.drawing import Crowds
-from mcgw.sampling.response.response import layout_of
+from mcgw.sampling.response.response import Precision, layout_of
 
 GATE = 5.0
 
@@ -162,7 +162,7 @@ def test_with_fewer_moments_the_variance_would_show(make_scene):
     """The companion: with an accuracy of 1e-2 in place of 1e-6 a thousandth is gone."""
     scene = make_scene(n_asperities=10**9, sampler="aggregate", count="poisson")
     sampler = samplers.sampler_of(scene)
-    few = layout_of(scene, sampler.mesh, ("load", "area", "stiffness"), accuracy=1e-2)
+    few = layout_of(scene, sampler.mesh, ("load", "area", "stiffness"), precision=Precision(1e-2))
     blunt = dataclasses.replace(sampler, drawing=Crowds(few, 256))
     assert np.abs(variance(blunt) / variance(sampler) - 1).max() > 1e-4
 

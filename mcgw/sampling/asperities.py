@@ -30,6 +30,7 @@ __all__ = [
 ]
 
 Array = NDArray[np.float64]
+Ints = NDArray[np.int64]
 Listed = tuple[Array, Array | None]  # reduced heights; radii over the surface's, where summits have their own
 
 
@@ -107,6 +108,11 @@ class Listing(Protocol):
 
     mesh: Mesh
 
+    @property
+    def bits(self) -> Ints | None:
+        """Of the uniforms of each cell; None: 32."""
+        ...
+
 
 def listing_sampler(scene: Scene) -> Listing:
     """The sampler of a scene, if it can tell the heights.
@@ -129,8 +135,13 @@ def same_heights(one: Scene, other: Scene) -> bool:
 
     Cells are edged by the breaks of contact laws, and each cell has uniforms of its own.
     """
-    first, second = (getattr(sampler_of(scene), "mesh", None) for scene in (one, other))
-    return not (first and second) or np.array_equal(first.edges, second.edges)
+    first, second = (sampler_of(scene) for scene in (one, other))
+    if not (hasattr(first, "mesh") and hasattr(second, "mesh")):
+        return True
+    if not np.array_equal(first.mesh.edges, second.mesh.edges):
+        return False
+    bits = [np.full(each.mesh.size, 32) if each.bits is None else each.bits for each in (first, second)]
+    return np.array_equal(*bits)
 
 
 def touching_summits(scene: Scene, surface: int) -> Listed:
@@ -160,13 +171,22 @@ def summits_drawn(scene: Scene, sampler: Listing, surface: int) -> Listed:
     heights, ratios = [], []
     for cell in np.flatnonzero(counts.cells[:, 0]).tolist():
         n = int(counts.cells[cell, 0])
-        u = uniforms(scene.seed, CELLS, surface, cell, n)
+        u = _uniforms(scene, sampler, surface, cell, n)
         heights.append(mesh.edges[cell] + mesh.offsets(cell, u))
         if table:
             words = (2 * uniforms(scene.seed, stream, surface, cell, n) - 1 for stream in (RADII, RADII_LOW))
             ratios.append(table.root_ratios(heights[-1], *words) ** 2)
     s = np.concatenate([*heights, outside[:, 1]])
     return s, np.concatenate([*ratios, outside[:, 3]]) if table else None
+
+
+def _uniforms(scene: Scene, sampler: Listing, surface: int, cell: int, n: int) -> Array:
+    """Those of a cell, of as many bits as it takes."""
+    if sampler.bits is None:
+        return uniforms(scene.seed, CELLS, surface, cell, n)
+    from mcgw.sampling.few_bits import few_bit_uniforms  # for those scenes alone
+
+    return few_bit_uniforms(scene.seed, surface, cell, n, int(sampler.bits[cell]))
 
 
 def _table(scene: Scene, lowest: float) -> "RadiusTable | None":

@@ -25,11 +25,21 @@ from mcgw.machine.in_threads import in_threads
 from mcgw.machine.kept import kept
 from mcgw.sampling.exp_log import weigh_exponentials
 from mcgw.sampling.rules import chebyshev_points, chebyshev_transform, gauss_legendre, product
-from mcgw.sampling.spacing import Gaps, cuts
+from mcgw.sampling.spacing import EXACTLY, Gaps, Pricing, cuts
 from mcgw.sampling.stretches import begins_and_breaks
+from mcgw.scene.fields import EXACT
 from mcgw.scene.scene import Scene
 
-__all__ = ["NODES", "TO_COEFFICIENTS", "Mesh", "evenness", "height_noise", "mesh_of", "no_cells"]
+__all__ = [
+    "NODES",
+    "TO_COEFFICIENTS",
+    "Mesh",
+    "evenness",
+    "height_noise",
+    "mesh_of",
+    "no_cells",
+    "series_accuracy",
+]
 
 Array = NDArray[np.float64]
 
@@ -39,6 +49,7 @@ _SHORT, _MOST_HALVINGS = 16, 60  # terms for a grading on a cell, and how often 
 _FAR, _NARROWER = 2.0, 0.75  # spans from a root of the laws of contact, and what is left of one nearer by
 _DIGITS = 4.0  # of a height that coefficients without meaning may seem to be worth
 _EVEN, _LEAST = 4.0, 1 / 16  # see `evenness`
+_ALONE = 1 / 2  # see `series_accuracy`
 _TOGETHER = 64  # cells whose densities stay in the cache
 _MANY = 32  # times that many: worth another thread
 _CLOSEST = 2.0**-40  # of a cell to an end of the support that is a broken power
@@ -111,15 +122,33 @@ def mesh_of(scene: Scene, *, split: bool = True, rare: float = 0.1) -> Mesh:
     marks = np.unique([low, *begins, *breaks, *bends(scene.modulus, low, high), *law.breaks, high])
     marks = marks[(low <= marks) & (marks <= high)]
     asked = (part.tobytes() for part in (begins, breaks, marks))
-    edges = _resolving(scene.modulus, law, _edges(law, scene.n_asperities if split else 0, *asked))
+    spaced = _edges(law, scene.n_asperities if split else 0, scene.accuracy, *asked)
+    edges = _resolving(scene.modulus, law, spaced, series_accuracy(scene.accuracy))
     return _mesh(law, float(scene.lowest), edges.tobytes())
 
 
 @kept(8)
-def _edges(law: HeightLaw, n: int, *asked: bytes) -> Array:
+def _edges(law: HeightLaw, n: int, accuracy: float, *asked: bytes) -> Array:
     """Edges that suit the height law and the contact law, whatever the grading."""
     begins, breaks, marks = (np.frombuffer(part) for part in asked)
-    return _refined(law, begins, _spaced(law, n, begins, breaks, marks))
+    return _refined(law, begins, _spaced(law, n, _pricing(accuracy), begins, breaks, marks))
+
+
+def _pricing(accuracy: float) -> Pricing:
+    if accuracy <= EXACT:
+        return EXACTLY
+    from mcgw.sampling.short_prices import short_pricing  # for those scenes alone
+
+    return short_pricing(series_accuracy(accuracy), accuracy)
+
+
+def series_accuracy(accuracy: float) -> float:
+    """How accurate series must be for values of single surfaces to be as accurate as is asked.
+
+    Every asperity may be off by so much in two ways, as it is itself and as part of a larger node. What is
+    asked by default is asked of the series.
+    """
+    return max(EXACT, _ALONE * accuracy)
 
 
 @kept(8)  # another grading asks for the same, and so does the number in each cell
@@ -182,7 +211,9 @@ def _widest(law: HeightLaw, a: float, distance: float) -> float:
     return width
 
 
-def _spaced(law: HeightLaw, n: int, begins: Array, breaks: Array, marks: Array) -> Array:
+def _spaced(
+    law: HeightLaw, n: int, pricing: Pricing, begins: Array, breaks: Array, marks: Array
+) -> Array:
     """Marks, and cells where contacts begin or change their law such that drawing costs the least."""
     low = marks[:-1]
     k = np.searchsorted(begins, low)
@@ -190,7 +221,7 @@ def _spaced(law: HeightLaw, n: int, begins: Array, breaks: Array, marks: Array) 
     before = low - np.concatenate([[-np.inf], begins])[k]
     some = root | (np.isin(low, breaks) & np.isfinite(before))
     gaps = Gaps(low[some], marks[1:][some], before[some], root[some])
-    return np.unique(np.concatenate([marks, cuts(law, n, gaps)]))
+    return np.unique(np.concatenate([marks, cuts(law, n, gaps, pricing)]))
 
 
 def _refined(law: HeightLaw, begins: Array, marks: Array) -> Array:
@@ -207,7 +238,7 @@ def _refined(law: HeightLaw, begins: Array, marks: Array) -> Array:
     return np.array(edges)
 
 
-def _resolving(grading: Grading, law: HeightLaw, edges: Array) -> Array:
+def _resolving(grading: Grading, law: HeightLaw, edges: Array, accuracy: float) -> Array:
     """Halve cells until a short series describes the grading: the law of contact has a root besides."""
     steep = isinstance(getattr(grading, "grading", grading), PiecewiseSeries)  # it may be, between its kinks
     if grading.smooth and not steep:
@@ -218,7 +249,7 @@ def _resolving(grading: Grading, law: HeightLaw, edges: Array) -> Array:
         t = (1 + NODES) / 2 * chebyshev.chebval(NODES, stretch)
         e = grading(a[:, None] + t)
         tail = np.abs(product(TO_COEFFICIENTS, e.T))[_SHORT:].sum(axis=0)
-        rough = tail > 1e-13 * evenness(grading, e) * np.abs(e).max(axis=1) + height_noise(a, t, e)
+        rough = tail > accuracy * evenness(grading, e) * np.abs(e).max(axis=1) + height_noise(a, t, e)
         if not rough.any():
             break
         edges = np.unique(np.concatenate([edges, (a + width / 2)[rough]]))

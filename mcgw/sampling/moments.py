@@ -22,7 +22,7 @@ from mcgw.sampling.layout import Layout
 from mcgw.sampling.spacing import price
 from mcgw.sampling.uniform_sums import PLAIN, ROOTED, WORDS, sum_uniforms, unfold
 
-__all__ = ["add_compensated", "cell_moments"]
+__all__ = ["add_compensated", "cell_moments", "shares"]
 
 _START = 80.0  # asperities that take as long to draw as a cell takes to begin
 _ALONE = 1e6  # asperities' work that a thread does before another one has begun
@@ -146,11 +146,11 @@ def cell_moments(
         """Every thread has a run of cells: no number of threads changes the order of a sum."""
         _sum_cells(np.uint64(seed), first, counts, starts, orders, bounds, stratified, moments)
 
-    in_threads(sum_share, list(pairwise(_shares(counts, layout).tolist())))
+    in_threads(sum_share, list(pairwise(shares(counts, layout).tolist())))
     return moments
 
 
-def _shares(counts: NDArray[np.int64], layout: Layout) -> NDArray[np.int64]:
+def shares(counts: NDArray[np.int64], layout: Layout) -> NDArray[np.int64]:
     """Where the work of each thread begins and ends, counted through the surfaces of each cell in turn."""
     each = price(layout.plain, layout.rooted)
     work = np.concatenate([[0.0], np.cumsum(_START * counts.shape[1] + counts.sum(axis=1) * each)])

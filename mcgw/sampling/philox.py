@@ -41,6 +41,7 @@ __all__ = [
     "centred",
     "made_for",
     "philox",
+    "stream_of",
     "two_wide",
     "uniforms",
 ]
@@ -82,7 +83,7 @@ def _to_centred(word: Any) -> Any:
 
 
 @njit(nogil=True, cache=True, inline="always")
-def _stream(seed: Any, purpose: Any, surface: Any) -> Any:
+def stream_of(seed: Any, purpose: Any, surface: Any) -> Any:
     """Counter words c2, c3 and key of a stream."""
     return surface & _LOW, (surface >> _32) | (uint64(purpose) << uint64(16)), seed & _LOW, seed >> _32
 
@@ -90,7 +91,7 @@ def _stream(seed: Any, purpose: Any, surface: Any) -> Any:
 @njit(nogil=True, cache=True, inline="always")
 def two_wide(seed: Any, purpose: Any, surface: Any, cell: Any, block: Any) -> Any:
     """Two uniforms of 64 bits from a block of a stream, less a half; all arguments but the purpose uint64."""
-    c2, c3, k0, k1 = _stream(seed, purpose, surface)
+    c2, c3, k0, k1 = stream_of(seed, purpose, surface)
     w0, w1, w2, w3 = philox(block, cell, c2, c3, k0, k1)
     low = 0.5 * _UNIT
     return (
@@ -112,7 +113,7 @@ def centred(out: Any, seed: Any, purpose: Any, surface: Any, cell: Any, first: A
     `out` must have room for `made_for(n)` of them.
     """
     seed, surface = uint64(seed), uint64(surface)
-    c2, c3, k0, k1 = _stream(seed, purpose, surface)
+    c2, c3, k0, k1 = stream_of(seed, purpose, surface)
     for group in range(made_for(n) // AT_ONCE):
         block = uint64(first // 4 + 16 * group)
         c0, c1 = block & _LOW, uint64(cell) | ((block >> _32) << uint64(20))

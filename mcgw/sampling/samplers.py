@@ -22,13 +22,13 @@ from analytic import QUANTITIES, UNLOADING, Exponential, Hertz, MeasuredHeights,
 from mcgw.machine.memory import keep_freed_memory
 from mcgw.sampling.aggregate import CROWDED, VARYING
 from mcgw.sampling.block import Sampler
-from mcgw.sampling.cells import Mesh, mesh_of, no_cells
+from mcgw.sampling.cells import Mesh, mesh_of, no_cells, series_accuracy
 from mcgw.sampling.counted import Counted
 from mcgw.sampling.counts import Counts, counts_of, strata_of
 from mcgw.sampling.direct import Direct
-from mcgw.sampling.drawing import Crowds, InStrata, OneByOne
+from mcgw.sampling.drawing import Crowds, InStrata, OneByOne, Shortly
 from mcgw.sampling.layout import Layout
-from mcgw.sampling.response.response import Response, layout_of, response_of
+from mcgw.sampling.response.response import Precision, Response, layout_of, response_of
 from mcgw.sampling.stretches import begins_and_breaks
 from mcgw.scene.scene import Scene
 from mcgw.scene.storable import storable
@@ -69,7 +69,13 @@ def tail_of(scene: Scene) -> Counted:
 
 def cells_of(scene: Scene) -> Counted:
     """Prepare ``cells``."""
-    return _counted("cells", scene, mesh_of(scene))
+    sampler = _counted("cells", scene, mesh_of(scene))
+    if scene.exact or scene.curvature:
+        return sampler
+    from mcgw.sampling.few_bits import bits_for  # for those scenes alone
+
+    expected = scene.n_asperities * sampler.mesh.probability
+    return replace(sampler, drawing=Shortly(bits_for(expected, scene.accuracy)))
 
 
 def stratified_of(scene: Scene) -> Counted:
@@ -114,7 +120,7 @@ def aggregate_of(scene: Scene, crowded: int = CROWDED) -> Counted:
     response = _response(scene, mesh)
     varying = response.layout
     if scene.keep == "sums":
-        varying = layout_of(scene, mesh, _summed(scene.quantities), accuracy=VARYING)
+        varying = layout_of(scene, mesh, _summed(scene.quantities), precision=Precision(VARYING))
     return Counted("aggregate", scene, mesh, response, drawing=Crowds(varying, crowded))
 
 
@@ -186,13 +192,15 @@ def _check_edges(what: str, wanted: Sequence[float], edges: NDArray[np.float64],
 def _response(scene: Scene, mesh: Mesh, drawn: "Response | Families | None" = None) -> "Response | Families":
     """Response for all that moments can tell, by those that were `drawn`; contacts are counted."""
 
+    precision = Precision(series_accuracy(scene.accuracy), not scene.exact)
+
     def response_to(power: float | None, names: tuple[str, ...]) -> Response:
         kept = None
         if drawn:
             kept = drawn.layout if isinstance(drawn, Response) else drawn.layout_of(power)
         elif scene.keep == "moments":
             kept = _lasting_layout(scene, mesh, power)
-        return response_of(scene, mesh, names, kept=kept)
+        return response_of(scene, mesh, names, kept=kept, precision=precision)
 
     names = _summed(scene.quantities)
     if scene.curvature is None or (not names and scene.keep == "sums"):
@@ -221,7 +229,10 @@ def _lasting_layout(scene: Scene, mesh: Mesh, power: float | None) -> Layout:
         negative="allow",
     )
     others = [replace(plainly, grading=Exponential(gamma)) for gamma in (2.0, 0.5, 0.0)]
-    layouts = [layout_of(x, mesh, _every_sum(x, power), lasting=True) for x in (scene, *others)]
+    precision = Precision(series_accuracy(scene.accuracy), not scene.exact)
+    layouts = [
+        layout_of(x, mesh, _every_sum(x, power), lasting=True, precision=precision) for x in (scene, *others)
+    ]
     plain = np.max([layout.plain for layout in layouts], axis=0)
     return Layout(plain + 1, np.max([layout.rooted for layout in layouts], axis=0) + 1)  # one in reserve
 

@@ -30,9 +30,9 @@ from mcgw.machine.compiling import njit
 from mcgw.sampling.lanes import LANES, alike, fused, load, roots, store, total
 from mcgw.sampling.philox import CELLS, centred
 
-__all__ = ["PLAIN", "ROOTED", "WORDS", "five", "five_more", "stratify", "sum_uniforms", "unfold"]
+__all__ = ["BUFFER", "PLAIN", "ROOTED", "WORDS", "add_uniforms", "five", "five_more", "stratify", "sum_uniforms", "unfold"]
 
-_BUFFER = 1024  # uniforms at a time: they stay in the innermost cache
+BUFFER = 1024  # uniforms at a time: they stay in the innermost cache
 _ROOT, _ONE, PLAIN, ROOTED, WORDS = 1024, 2048, 3072, 3104, 3136  # see above
 
 
@@ -125,7 +125,7 @@ _16_0, _16_6, _16_11 = _adder(16, 0), _adder(16, 6), _adder(16, 11)
 
 
 @njit(inline="always")
-def _add(w: Any, count: Any, plain: Any, rooted: Any) -> None:
+def add_uniforms(w: Any, count: Any, plain: Any, rooted: Any) -> None:
     """Add the sums of so many moments over `count` uniforms, by the shortest loop that will do."""
     n = (count + LANES - 1) // LANES * LANES
     filled = n - count
@@ -209,12 +209,12 @@ def sum_uniforms(
     plain, rooted = orders
     for k in range(PLAIN, WORDS):
         w[k] = 0.0
-    for first in range(start, stop, _BUFFER):
-        n = min(_BUFFER, stop - first)
+    for first in range(start, stop, BUFFER):
+        n = min(BUFFER, stop - first)
         centred(w, seed, CELLS, surface, cell, first, n)
         if strata:
             stratify(w, n, first, strata)
-        _add(w, n, plain, rooted)
+        add_uniforms(w, n, plain, rooted)
     w[PLAIN] = stop - start
 
 

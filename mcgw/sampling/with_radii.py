@@ -55,6 +55,7 @@ class WithRadii:
     table: RadiusTable
     families: Families
     strata: bool = False
+    bits = None
 
     def moments(self, seed: int, first: int, counts: Counts, layout: Layout) -> Array:
         """Sums over the uniforms of each cell, each with a power of its radius."""

@@ -5,6 +5,7 @@ from collections.abc import Callable
 from typing import Any
 
 from analytic import Surface
+from mcgw.scene.fields import EXACT
 from mcgw.scene.samplers import SAMPLERS
 from mcgw.scene.section import Section
 
@@ -21,6 +22,8 @@ def drawing_values(section: Section) -> dict[str, Any]:
         "count": section.choice("count", "fixed", ("fixed", "poisson")),
         "sampler": section.choice("sampler", "auto", SAMPLERS),
         "keep": section.choice("keep", "sums", ("sums", "moments")),
+        "accuracy": section.number("accuracy", EXACT, unit="1"),
+        "law_error": section.number("law_error", 0.0, unit="1", positive=False),
         "rel_err": section.number("rel_err", unit="1") if "rel_err" in section else None,
         "max_seconds": section.number("max_seconds", unit="s") if "max_seconds" in section else None,
     }

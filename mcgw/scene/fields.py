@@ -24,7 +24,9 @@ from mcgw.machine.kept import kept
 if TYPE_CHECKING:
     from analytic import Interaction
 
-__all__ = ["Fields"]
+__all__ = ["EXACT", "Fields"]
+
+EXACT = 1e-13  # accuracy where none is asked: the last digits
 
 _BEYOND = 1e-16  # share of the heights that lie above what is checked for negative moduli
 
@@ -52,6 +54,8 @@ class Fields:
     seed: int
     sampler: str
     keep: Literal["sums", "moments"]
+    accuracy: float
+    law_error: float
     rel_err: float | None
     max_seconds: float | None
 
@@ -103,6 +107,11 @@ class Fields:
     def hertzian(self) -> bool:
         """Whether every sum is one of powers of the penetration, as Hertz's law has them."""
         return type(self.law) is Hertz and self.film is None
+
+    @property
+    def exact(self) -> bool:
+        """Whether every value is asked to its last digits, as it is where nothing else is said."""
+        return self.accuracy <= EXACT
 
     @property
     def contact(self) -> ContactLaw:

@@ -19,13 +19,14 @@ from analytic import (
 )
 from analytic.laws import half_spaces
 from mcgw.formats.sheet import brief
-from mcgw.scene.fields import Fields
+from mcgw.scene.fields import EXACT, Fields
 from mcgw.scene.samplers import promise_of
 
 __all__ = ["mistakes"]
 
 _LEAST = 1e-100  # next to it, powers of a distance are beyond double precision
 _MOST_ASPERITIES = 2**53  # counts are exact in double precision up to here
+_COARSEST, _FARTHEST = 1e-2, 0.1  # accuracy of a value, error of its law
 _SAFELY = 1e4  # factor by which the sum over all asperities stays below the largest number
 
 
@@ -73,6 +74,21 @@ def _values(scene: Fields) -> Iterator[str]:
         )
     if scene.rel_err is not None and not promise_of(sampler).real_surfaces:
         yield f'ensemble.rel_err: sampler = "{sampler}" has no variance to stop by; take another'
+    if not EXACT <= scene.accuracy <= _COARSEST:
+        yield (
+            f"ensemble.accuracy = {scene.accuracy:g}: give a number from {EXACT:g}, the last digits, to "
+            f"{_COARSEST:g}"
+        )
+    if not 0 <= scene.law_error <= _FARTHEST:
+        yield (
+            f"ensemble.law_error = {scene.law_error:g}: give a number from 0, exact samplers only, to "
+            f"{_FARTHEST:g}"
+        )
+    elif scene.law_error and sampler != "auto":
+        yield (
+            f'ensemble.law_error = {scene.law_error:g}: it is what sampler = "auto" may spend; leave it out, '
+            f'or sampler = "{sampler}"'
+        )
     if scene.seed >= 2**64:
         yield f"ensemble.seed = {scene.seed}: give a whole number from 0 to 2^64 - 1"
     listed = isinstance(scene.heights, MeasuredHeights)  # of which no sampler has moments

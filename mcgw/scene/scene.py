@@ -13,7 +13,7 @@ from analytic.laws import ContactLaw, Film, Tangential
 from mcgw.formats.sheet import Sheet, Shown
 from mcgw.scene.contact_text import contact_facts
 from mcgw.scene.ensemble_section import LeftOut
-from mcgw.scene.fields import Fields
+from mcgw.scene.fields import EXACT, Fields
 from mcgw.scene.law_text import law_text
 from mcgw.scene.mistakes import mistakes
 from mcgw.scene.reading import read_values
@@ -90,6 +90,14 @@ class Scene(Fields, Shown):
         How surfaces are drawn; "auto" takes the cheapest exact way.
     keep : {"sums", "moments"}, optional
         Whether the file also keeps the moments, from which `mcgw.regrade` starts.
+    accuracy : float, optional
+        How near every value of every surface comes to the exact sum over its heights, relative to that sum:
+        1e-13 to 0.01. Less than the default takes fewer moments, coarser cells, and uniforms of fewer bits
+        where their lattice changes the laws by no more. Default: 1e-13.
+    law_error : float, optional
+        How far from the exact law of each value, by the largest difference of distribution functions, the
+        sampler "auto" may go, 0 to 0.1: it may then take "aggregate" for crowded cells. Default: 0, exact
+        samplers only.
     rel_err : float or str, optional
         Draw so many surfaces that the 95 % interval of every mean reaches no farther than this share of
         it, 0 to 0.1 or as "1 %": as many as the exact theory of a finite surface says.
@@ -139,6 +147,8 @@ class Scene(Fields, Shown):
         seed: int | None = None,
         sampler: str = "auto",
         keep: Literal["sums", "moments"] = "sums",
+        accuracy: float = EXACT,
+        law_error: float = 0.0,
         rel_err: float | str | None = None,
         max_seconds: float | str | None = None,
     ) -> None:

@@ -222,7 +222,9 @@ def _contact_table(scene: Scene) -> dict[str, Any]:
 
 def _ensemble_table(scene: Scene, left_out: bool) -> dict[str, Any]:
     most = "n_surfaces" if scene.rel_err is None else "max_surfaces"
-    stops = {"rel_err": scene.rel_err, "max_seconds": scene.max_seconds}
+    # What is not asked for is not written: the text of a scene without it stays as it was.
+    spent = {"accuracy": None if scene.exact else scene.accuracy, "law_error": scene.law_error or None}
+    stops = {**spent, "rel_err": scene.rel_err, "max_seconds": scene.max_seconds}
     return {
         most: scene.n_surfaces,
         **{key: getattr(scene, key) for key in ("n_asperities", "count", "seed", "sampler", "keep")},

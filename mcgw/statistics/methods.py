@@ -19,7 +19,7 @@ from mcgw.sampling.asperities import touching_summits
 from mcgw.sampling.cells import mesh_of
 from mcgw.sampling.counted import Counted
 from mcgw.sampling.law_sums import asperity_sums
-from mcgw.sampling.response.response import response_of
+from mcgw.sampling.response.response import Precision, response_of
 from mcgw.sampling.samplers import Sampler, aggregate_of, sampler_of
 from mcgw.scene.scene import Scene
 from mcgw.statistics.reference import added, by_powers, formula_ends, lowest, quantiles, reference
@@ -178,7 +178,7 @@ class _ByMoments:
         scene, name = self.scene, self.scene.quantities[0]
         mesh = mesh_of(scene)
         summed = tuple(q for q in scene.quantities if not analytic.quantity_of(q).counts)
-        sampler = Counted("cells", scene, mesh, response_of(scene, mesh, summed, accuracy=1 / size))
+        sampler = Counted("cells", scene, mesh, response_of(scene, mesh, summed, precision=Precision(1 / size)))
         value, plain = sampler.block(0, 1).sums[name][0], self.plain
         pick = list(self.chosen)
         with np.errstate(divide="ignore", invalid="ignore"):  # no contact there: no relative error

@@ -1,7 +1,7 @@
 """The nodes of the tree as the rows see them: heights, moduli, and how accurate a series must be there."""
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,8 +12,9 @@ from mcgw.sampling.cells import TO_COEFFICIENTS, Mesh, evenness, height_noise
 from mcgw.sampling.response.rows import Rows
 from mcgw.sampling.response.tree import Tree
 from mcgw.sampling.rules import multiply
+from mcgw.scene.fields import EXACT
 
-__all__ = ["Nodes"]
+__all__ = ["Nodes", "Precision"]
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -22,6 +23,22 @@ _SCATTER = 8  # asperities more than expected
 _DIGITS = 8.0  # last digits of a height that a formula may lose
 _NODES = 32  # that add to one sum, with errors of their own
 _COLUMNS = 64  # series at a time
+_LAST_DIGITS, _SMALLEST = EXACT, 1 / 64  # see `Precision.of_least`
+
+
+class Precision(NamedTuple):
+    """How accurate a series must be.
+
+    Attributes
+    ----------
+    accuracy : float
+        Relative to a value on the node, or to the sum of a surface where that is sure to be larger.
+    of_least : bool
+        Whether to the least value, that a single asperity may have, or to the largest.
+    """
+
+    accuracy: float = EXACT
+    of_least: bool = False
 
 
 @dataclass(frozen=True)
@@ -44,8 +61,8 @@ class Nodes:
     even, noise : ndarray
         Share of the largest value that errors are held against, and share that the last digit of a height
         makes: of rows that depend on the modulus.
-    accuracy : float
-        Of a series, relative to the largest value on the node or to the sum of a surface.
+    precision : Precision
+        Of a series.
     """
 
     start: Array
@@ -57,10 +74,12 @@ class Nodes:
     crowd: Array
     even: Array
     noise: Array
-    accuracy: float
+    precision: Precision
 
     @classmethod
-    def of(cls, mesh: Mesh, tree: Tree, grading: Grading, n_asperities: int, accuracy: float) -> "Nodes":
+    def of(
+        cls, mesh: Mesh, tree: Tree, grading: Grading, n_asperities: int, precision: Precision
+    ) -> "Nodes":
         """The nodes of a tree, for surfaces of so many asperities."""
         start, end = mesh.edges[tree.first], mesh.edges[tree.last]
         above = tree.above
@@ -79,7 +98,7 @@ class Nodes:
             crowd=n_asperities * tree.probability + _SCATTER,
             even=evenness(grading, e),
             noise=height_noise(start, t, e) / largest,
-            accuracy=accuracy,
+            precision=precision,
         )
 
     def at(self, node: Ints, h: Array) -> tuple[Array, Array]:
@@ -114,7 +133,7 @@ class Nodes:
         limits = self.even, self.noise, self.crowd, rows.graded, rows.total
         share = _NODES if of_many else 1
         values = np.ascontiguousarray(values)
-        c, count = _series(values, TO_COEFFICIENTS, node, row, limits, rough, self.accuracy, share)
+        c, count = _series(values, TO_COEFFICIENTS, node, row, limits, rough, self.precision, share)
         return c, count
 
     def _rough_noise(self, node: Ints, row: Ints, rows: Rows) -> Array:
@@ -140,11 +159,21 @@ def _taken(above: Any, moduli: Any, node: Any, more: Any) -> Any:
 
 
 @njit(nogil=True, cache=True)
+def _share_of_least(values: Any) -> Any:
+    """The least of some values over the largest, but no less than a share: sums may change their sign."""
+    least, largest = np.inf, 0.0
+    for value in values:
+        least, largest = min(least, abs(value)), max(largest, abs(value))
+    return max(least, _SMALLEST * largest) / largest if largest > 0.0 else 1.0
+
+
+@njit(nogil=True, cache=True)
 def _series(
-    values: Any, to_coefficients: Any, node: Any, row: Any, limits: Any, rough: Any, accuracy: Any, share: Any
+    values: Any, to_coefficients: Any, node: Any, row: Any, limits: Any, rough: Any, precision: Any, share: Any
 ) -> Any:
     """Coefficients, up to the last from which on all together are more than the error that is let."""
     even, noise, crowd, graded, total = limits
+    accuracy, of_least = precision
     order, series = values.shape
     c, count = np.empty(values.shape), np.zeros(series, dtype=np.int64)
     multiply(to_coefficients, values, c)
@@ -160,7 +189,11 @@ def _series(
             at = first + j
             by_modulus = graded[row[at]]
             enough = even[node[at]] * tail[j] if by_modulus else tail[j]
+            if of_least:
+                enough = _share_of_least(values[:, at]) * tail[j]
             enough = max(enough, total[row[at]] / crowd[node[at]])
+            if of_least:
+                enough = max(enough, _LAST_DIGITS / accuracy * tail[j])
             least = max(noise[node[at]] if by_modulus else 0.0, rough[at]) * tail[j]
             alone, kept = max(accuracy * enough, least), max(accuracy / share * enough, least)
             for i in range(order):

@@ -17,18 +17,16 @@ from mcgw.sampling.layout import Layout
 from mcgw.sampling.response.assembly import tiles_of
 from mcgw.sampling.response.dense import Parts
 from mcgw.sampling.response.hertz_rows import hertz_rows
-from mcgw.sampling.response.nodes import Nodes
+from mcgw.sampling.response.nodes import Nodes, Precision
 from mcgw.sampling.response.product import Tiles
 from mcgw.sampling.response.rows import Rows
 from mcgw.sampling.response.tree import tree_over
 from mcgw.sampling.response.walk import walk
 from mcgw.scene.scene import Scene
 
-__all__ = ["Response", "layout_of", "response_of"]
+__all__ = ["Precision", "Response", "layout_of", "response_of"]
 
 Array = NDArray[np.float64]
-
-ACCURACY = 1e-13  # relative to the largest value of a row on a node, or to the sum of a surface
 
 
 @dataclass(frozen=True)
@@ -69,7 +67,7 @@ def response_of(
     quantities: tuple[str, ...],
     *,
     kept: Layout | None = None,
-    accuracy: float = ACCURACY,
+    precision: Precision = Precision(),
 ) -> Response:
     """Build the response of a mesh.
 
@@ -84,7 +82,7 @@ def response_of(
         permuted ones give the same bits.
     kept : Layout, optional
         The moments there are; default: as many as it takes.
-    accuracy : float, optional
+    precision : Precision, optional
         Take as many moments as this needs.
 
     Returns
@@ -99,7 +97,7 @@ def response_of(
         If the grading is not resolved on a cell, or not by the moments there are.
     """
     rows = _rows(scene, mesh, quantities, lasting=kept is not None)
-    parts = _parts(scene, mesh, rows, accuracy)
+    parts = _parts(scene, mesh, rows, precision)
     if kept:
         _check_kept(mesh, kept, parts.layout)
         plain = np.concatenate([kept.plain, parts.plain[mesh.size :]])
@@ -114,13 +112,13 @@ def layout_of(
     quantities: tuple[str, ...],
     *,
     lasting: bool = False,
-    accuracy: float = ACCURACY,
+    precision: Precision = Precision(),
 ) -> Layout:
     """Moments that a response would need, without making it.
 
     Parameters
     ----------
-    scene, mesh, quantities, accuracy
+    scene, mesh, quantities, precision
         As for a response.
     lasting : bool, optional
         Resolve the laws for surfaces of any number of contacts.
@@ -135,7 +133,7 @@ def layout_of(
     ValueError
         If the grading is not resolved on a cell.
     """
-    return _parts(scene, mesh, _rows(scene, mesh, quantities, lasting=lasting), accuracy).layout
+    return _parts(scene, mesh, _rows(scene, mesh, quantities, lasting=lasting), precision).layout
 
 
 def _rows(scene: Scene, mesh: Mesh, quantities: tuple[str, ...], *, lasting: bool) -> Rows:
@@ -147,9 +145,9 @@ def _rows(scene: Scene, mesh: Mesh, quantities: tuple[str, ...], *, lasting: boo
     return law_rows(scene, quantities, mesh, lasting=lasting)
 
 
-def _parts(scene: Scene, mesh: Mesh, rows: Rows, accuracy: float) -> Parts:
+def _parts(scene: Scene, mesh: Mesh, rows: Rows, precision: Precision) -> Parts:
     tree = tree_over(mesh)
-    nodes = Nodes.of(mesh, tree, scene.modulus, scene.n_asperities, accuracy)
+    nodes = Nodes.of(mesh, tree, scene.modulus, scene.n_asperities, precision)
     entries, plain, rooted = walk(mesh, tree, rows, nodes)
     return Parts(mesh, tree, entries, rows.answer, plain, rooted)
 
