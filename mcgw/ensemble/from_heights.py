@@ -11,6 +11,7 @@ from mcgw.ensemble.same_surfaces import check_same
 from mcgw.ensemble.simulation import answered
 from mcgw.sampling.asperities import listing_sampler, summits_drawn
 from mcgw.sampling.law_sums import asperity_sums
+from mcgw.scene.samplers import drawn_by
 from mcgw.scene.scene import Scene
 
 __all__ = ["sums_of_heights"]
@@ -29,7 +30,7 @@ def sums_of_heights(ensemble: Ensemble, scene: Scene) -> Iterator[dict[str, NDAr
         If the sampler keeps no heights, a separation is lower than all for which they were drawn, or they
         are not those of the ensemble.
     """
-    origin = replace(ensemble.surfaces_of, sampler=ensemble.sampler, n_surfaces=ensemble.n_surfaces)
+    origin = replace(drawn_by(ensemble.surfaces_of, ensemble.sampler), n_surfaces=ensemble.n_surfaces)
     sampler, old = listing_sampler(origin), ensemble.scene
     if scene.lowest < origin.lowest:
         raise ValueError(

@@ -10,6 +10,7 @@ from mcgw.ensemble.ensemble import Ensemble
 from mcgw.formats.evenly import evenly
 from mcgw.formats.sheet import Sheet, Shown
 from mcgw.machine.late import plotted
+from mcgw.scene.samplers import drawn_by
 
 __all__ = ["Paired", "paired_ratio"]
 
@@ -114,7 +115,7 @@ def _pair(quantity: str, separations: Array, b: Array, a: Array) -> Paired:
 
 def _same_asperities(one: Ensemble, other: Ensemble) -> bool:
     """Whether the surfaces are the same, where contact laws put edges between cells."""
-    scenes = [replace(e.surfaces_of, sampler=e.sampler, n_surfaces=1) for e in (one, other)]
+    scenes = [replace(drawn_by(e.surfaces_of, e.sampler), n_surfaces=1) for e in (one, other)]
     if scenes[0] == scenes[1] or all(s.hertzian and s.tangential is None for s in scenes):
         return True
     from mcgw.sampling.asperities import same_heights  # compiled loops, which few pairs need

@@ -20,6 +20,7 @@ from mcgw.sampling.counted import Counted
 from mcgw.sampling.samplers import regraded, sampler_of
 from mcgw.scene.law_section import read_law
 from mcgw.scene.reading import as_toml
+from mcgw.scene.samplers import drawn_by
 from mcgw.scene.scene import Scene
 from mcgw.scene.storable import storable
 
@@ -185,9 +186,8 @@ def _of_heights(ensemble: Ensemble, scene: Scene) -> Iterator[Tables]:
 
 def _with_moments(ensemble: Ensemble) -> Scene:
     """The scene that gives the surfaces of an ensemble, and their moments."""
-    return replace(
-        ensemble.surfaces_of, sampler=ensemble.sampler, keep="moments", n_surfaces=ensemble.n_surfaces
-    )
+    scene = drawn_by(ensemble.surfaces_of, ensemble.sampler)
+    return replace(scene, keep="moments", n_surfaces=ensemble.n_surfaces)
 
 
 def _sums(cells: Counted, first: int, drawn: Drawn) -> dict[str, Array]:

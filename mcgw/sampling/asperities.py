@@ -1,6 +1,6 @@
 """The heights themselves: the very asperities whose sums the samplers ``tail`` and ``cells`` give."""
 
-from typing import TYPE_CHECKING, Protocol, cast
+from typing import TYPE_CHECKING, Any, Protocol, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -135,13 +135,17 @@ def same_heights(one: Scene, other: Scene) -> bool:
 
     Cells are edged by the breaks of contact laws, and each cell has uniforms of its own.
     """
-    first, second = (sampler_of(scene) for scene in (one, other))
-    if not (hasattr(first, "mesh") and hasattr(second, "mesh")):
-        return True
-    if not np.array_equal(first.mesh.edges, second.mesh.edges):
-        return False
-    bits = [np.full(each.mesh.size, 32) if each.bits is None else each.bits for each in (first, second)]
-    return np.array_equal(*bits)
+    first, second = (_cells_and_bits(sampler_of(scene)) for scene in (one, other))
+    return not (first and second) or all(np.array_equal(*pair) for pair in zip(first, second, strict=True))
+
+
+def _cells_and_bits(sampler: Any) -> tuple[Array, Ints] | None:
+    """Edges of its cells and bits of the uniforms in them; None if it has none."""
+    mesh: Mesh | None = getattr(sampler, "mesh", None)
+    if mesh is None:
+        return None
+    bits = getattr(sampler, "bits", None)
+    return mesh.edges, np.full(mesh.size, 32) if bits is None else bits
 
 
 def touching_summits(scene: Scene, surface: int) -> Listed:

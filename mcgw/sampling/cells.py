@@ -211,9 +211,7 @@ def _widest(law: HeightLaw, a: float, distance: float) -> float:
     return width
 
 
-def _spaced(
-    law: HeightLaw, n: int, pricing: Pricing, begins: Array, breaks: Array, marks: Array
-) -> Array:
+def _spaced(law: HeightLaw, n: int, pricing: Pricing, begins: Array, breaks: Array, marks: Array) -> Array:
     """Marks, and cells where contacts begin or change their law such that drawing costs the least."""
     low = marks[:-1]
     k = np.searchsorted(begins, low)

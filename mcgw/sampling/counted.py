@@ -74,6 +74,11 @@ class Counted:
         return int(self.response.layout.starts[-1])
 
     @property
+    def law_error(self) -> float:
+        """Distance of the laws of its values from the exact ones; nan if nobody knows."""
+        return self.drawing.distance
+
+    @property
     def bits(self) -> Ints | None:
         """Of the uniforms of each cell; None: 32."""
         return self.drawing.bits

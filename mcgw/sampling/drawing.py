@@ -36,6 +36,11 @@ class Drawing(Protocol):
         """Of the uniforms of each cell; None: 32."""
         ...
 
+    @property
+    def distance(self) -> float:
+        """Of the laws of values from the exact ones; nan if nobody knows."""
+        ...
+
     def moments(self, seed: int, first: int, counts: Counts, layout: Layout) -> Array:
         """Moments of surfaces `first` ..., shape (moments, surfaces)."""
         ...
@@ -49,7 +54,7 @@ class Drawing(Protocol):
 class OneByOne:
     """A uniform for each asperity."""
 
-    bits = None
+    bits, distance = None, 0.0
 
     def moments(self, seed: int, first: int, counts: Counts, layout: Layout) -> Array:
         """Sums over the uniforms of each cell."""
@@ -71,6 +76,7 @@ class Shortly:
     """
 
     bits: Ints
+    distance = 0.0
 
     def moments(self, seed: int, first: int, counts: Counts, layout: Layout) -> Array:
         """Sums over the uniforms of each cell."""
@@ -87,7 +93,7 @@ class Shortly:
 class InStrata:
     """A uniform in each of as many equal strata of the cell."""
 
-    bits = None
+    bits, distance = None, 0.0
 
     def moments(self, seed: int, first: int, counts: Counts, layout: Layout) -> Array:
         """Sums over the uniforms of each cell, with the weight that each of them stands for."""
@@ -110,10 +116,13 @@ class Crowds:
         Moments that vary; the others stay at their means.
     threshold : int
         Asperities in a cell, from which its moments count as Gaussian.
+    distance : float, optional
+        What is known of the distance from the exact laws: largest difference of distribution functions.
     """
 
     varying: Layout
     threshold: int
+    distance: float = np.nan
 
     bits = None
 

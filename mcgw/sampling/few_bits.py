@@ -3,13 +3,14 @@
 They are the centres of ``M = 2^bits`` equal intervals of (0, 1). What they change in the law of a surface,
 for n asperities of a cell whose quantities are smooth functions of u, or the root of u times such a one:
 
-============  ==================================================================================================
-mean          of the root off by ``0.0914 M^(-3/2)``, its share (the midpoint rule, ``3/2 zeta(-1/2, 1/2)``);
-              of a smooth function by less than ``2 M^-2`` where its series falls as those of contact laws do
-variance      of the root off by 18 times the change of ``(E sqrt(u))^2``, so ``1.46 M^(-3/2)``; of u by ``M^-2``
-distribution  has steps: sums of n alike lie 1/M apart with a spread of ``sqrt(n/12)``, so that a step has the
-              probability ``sqrt(6/pi) / (M sqrt(n))``, and nowhere is more than half of it wrong
-============  ==================================================================================================
+============  ==========================================================================================
+mean          of the root off by the share ``0.0914 M^(-3/2)`` (the midpoint rule, by zeta(-1/2)); of a
+              smooth function by less than ``2 M^-2``, where its series falls as those of contact laws
+variance      of the root off by 18 times the change of ``(E sqrt(u))^2``, so the share
+              ``1.46 M^(-3/2)``; of u by ``M^-2``
+distribution  has steps: sums of n alike lie 1/M apart with a spread of ``sqrt(n/12)``, so that a step
+              has the probability ``sqrt(6/pi) / (M sqrt(n))``, and nowhere is more than half of it wrong
+============  ==========================================================================================
 
 These are bounds for a surface: its variance comes mostly from the numbers in the cells, and other cells
 smooth the steps.

@@ -36,8 +36,9 @@ from mcgw.scene.storable import storable
 if TYPE_CHECKING:
     from mcgw.sampling.families import Families
 
-__all__ = ["Sampler", "aggregate_of", "cells_of", "regraded", "sampler_of"]
+__all__ = ["Sampler", "aggregate_of", "cells_of", "law_error_of", "regraded", "sampler_of"]
 
+_GAUSSIAN, _WORTH = 300, 1.5  # asperities that a crowded cell takes as long as; times that much faster
 _SAME = 1e-10  # a kink so near to an edge was found, not told: no value is off by more
 
 
@@ -59,7 +60,26 @@ def sampler_of(scene: Scene) -> Sampler:
     name = _cheapest(scene) if scene.sampler == "auto" else scene.sampler
     if scene.interaction and scene.interaction.nominal:
         return _at_nominal(name, scene)
+    if scene.law_error and scene.sampler == "auto" and name == "cells" and scene.curvature is None:
+        return _perhaps_crowded(scene)
     return _MAKERS[name](scene)
+
+
+def law_error_of(scene: Scene) -> float:
+    """Distance of the laws of its values from the exact ones that its sampler was chosen with."""
+    return float(getattr(sampler_of(scene), "law_error", 0.0)) if scene.law_error else 0.0
+
+
+def _perhaps_crowded(scene: Scene) -> Counted:
+    """Crowds, if what they may cost in the laws buys enough; else ``cells``."""
+    from mcgw.sampling.crowding import crowding  # for those scenes alone
+
+    mesh = mesh_of(scene, split=False)
+    found = crowding(scene, mesh)
+    inside = scene.n_asperities * float(mesh.probability.sum())
+    if found is None or found.alone + _GAUSSIAN * mesh.size > inside / _WORTH:
+        return cells_of(scene)
+    return aggregate_of(scene, found.threshold, found.distance)
 
 
 def tail_of(scene: Scene) -> Counted:
@@ -101,7 +121,7 @@ def _counted(
     return Counted(name, scene, mesh, response, counting, InStrata() if strata else OneByOne())
 
 
-def aggregate_of(scene: Scene, crowded: int = CROWDED) -> Counted:
+def aggregate_of(scene: Scene, crowded: int = CROWDED, distance: float = np.nan) -> Counted:
     """Prepare ``aggregate``, perhaps with a threshold of one's own.
 
     Parameters
@@ -110,6 +130,8 @@ def aggregate_of(scene: Scene, crowded: int = CROWDED) -> Counted:
         What is asked.
     crowded : int, optional
         Asperities in a cell, from which its moments count as Gaussian.
+    distance : float, optional
+        What is known of its distance from the exact laws.
 
     Returns
     -------
@@ -121,7 +143,7 @@ def aggregate_of(scene: Scene, crowded: int = CROWDED) -> Counted:
     varying = response.layout
     if scene.keep == "sums":
         varying = layout_of(scene, mesh, _summed(scene.quantities), precision=Precision(VARYING))
-    return Counted("aggregate", scene, mesh, response, drawing=Crowds(varying, crowded))
+    return Counted("aggregate", scene, mesh, response, drawing=Crowds(varying, crowded, distance))
 
 
 _MAKERS: dict[str, Callable[[Scene], Sampler]] = {
@@ -191,7 +213,6 @@ def _check_edges(what: str, wanted: Sequence[float], edges: NDArray[np.float64],
 
 def _response(scene: Scene, mesh: Mesh, drawn: "Response | Families | None" = None) -> "Response | Families":
     """Response for all that moments can tell, by those that were `drawn`; contacts are counted."""
-
     precision = Precision(series_accuracy(scene.accuracy), not scene.exact)
 
     def response_to(power: float | None, names: tuple[str, ...]) -> Response:

@@ -1,8 +1,8 @@
 """Moments of cells where less than the last digit is asked: shorter sums, of uniforms of fewer bits.
 
-The sums are those of `mcgw.sampling.moments`. Of a few orders each is taken by a loop of its own: T_1 ... T_4
-as they are, T_5 ... T_7 from the products T_3 T_2, T_3 T_3 and T_4 T_3. The shortest loop takes T_3 and T_4 from
-the products T_2 T_1 and T_2 T_2 as well, and eight uniforms at a time, for a sum is slower than its terms. More
+The sums are those of `mcgw.sampling.moments`. Few orders have loops of their own: T_1 ... T_4 as they are,
+then T_5 ... T_7 from the products T_3 T_2, T_3 T_3 and T_4 T_3. The shortest loop takes T_3 and T_4 from the
+products T_2 T_1 and T_2 T_2 as well, and eight uniforms at a time, for a sum is slower than its terms. More
 orders are summed by the loops of `mcgw.sampling.uniform_sums`.
 """
 
@@ -171,9 +171,7 @@ def _sum_cells(
             moments[row + plain + j, surface] = w[ROOTED + j]
 
 
-def short_moments(
-    seed: int, first: int, counts: Ints, layout: Layout, bits: Ints
-) -> NDArray[np.float64]:
+def short_moments(seed: int, first: int, counts: Ints, layout: Layout, bits: Ints) -> NDArray[np.float64]:
     """Moments of all cells of a block of surfaces.
 
     Parameters

@@ -30,7 +30,18 @@ from mcgw.machine.compiling import njit
 from mcgw.sampling.lanes import LANES, alike, fused, load, roots, store, total
 from mcgw.sampling.philox import CELLS, centred
 
-__all__ = ["BUFFER", "PLAIN", "ROOTED", "WORDS", "add_uniforms", "five", "five_more", "stratify", "sum_uniforms", "unfold"]
+__all__ = [
+    "BUFFER",
+    "PLAIN",
+    "ROOTED",
+    "WORDS",
+    "add_uniforms",
+    "five",
+    "five_more",
+    "stratify",
+    "sum_uniforms",
+    "unfold",
+]
 
 BUFFER = 1024  # uniforms at a time: they stay in the innermost cache
 _ROOT, _ONE, PLAIN, ROOTED, WORDS = 1024, 2048, 3072, 3104, 3136  # see above

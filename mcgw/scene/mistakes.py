@@ -84,11 +84,6 @@ def _values(scene: Fields) -> Iterator[str]:
             f"ensemble.law_error = {scene.law_error:g}: give a number from 0, exact samplers only, to "
             f"{_FARTHEST:g}"
         )
-    elif scene.law_error and sampler != "auto":
-        yield (
-            f'ensemble.law_error = {scene.law_error:g}: it is what sampler = "auto" may spend; leave it out, '
-            f'or sampler = "{sampler}"'
-        )
     if scene.seed >= 2**64:
         yield f"ensemble.seed = {scene.seed}: give a whole number from 0 to 2^64 - 1"
     listed = isinstance(scene.heights, MeasuredHeights)  # of which no sampler has moments

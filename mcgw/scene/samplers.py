@@ -1,8 +1,12 @@
 """The samplers that a scene can ask for by name, and what each of them promises."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
-__all__ = ["SAMPLERS", "Promise", "promise_of"]
+if TYPE_CHECKING:
+    from mcgw.scene.scene import Scene
+
+__all__ = ["SAMPLERS", "Promise", "drawn_by", "promise_of"]
 
 
 @dataclass(frozen=True)
@@ -72,3 +76,10 @@ SAMPLERS = ("auto", *_PROMISES)
 def promise_of(sampler: str) -> Promise:
     """What a sampler promises; ``auto`` takes one that promises all."""
     return _PROMISES.get(sampler, Promise(own_laws=True))
+
+
+def drawn_by(scene: "Scene", sampler: str) -> "Scene":
+    """The scene that says by which sampler it was drawn, where it left the choice to ``auto``."""
+    if scene.sampler == "auto" and scene.law_error and sampler == "aggregate":
+        return scene  # its crowds follow from what may be spent
+    return replace(scene, sampler=sampler)

@@ -17,6 +17,7 @@ from mcgw.machine.late import plotted
 from mcgw.scene.samplers import promise_of
 from mcgw.scene.scene import Scene
 from mcgw.statistics.bounded import bounded_theory
+from mcgw.statistics.within_accuracy import allowance, beyond, farthest, told_apart
 
 __all__ = ["FALSE_ALARM", "Comparison", "Curve", "Verdict", "compare", "verdict"]
 
@@ -177,7 +178,8 @@ def verdict(ensemble: Ensemble) -> Verdict:
     along which the mean of all asperities is Gaussian, which its exact skewness and kurtosis tell:
     so the false-alarm rate is the stated one also where few asperities touch. Of asperities that press each
     other down the sums are tested, without the half-space; where each surface finds its own balance, those
-    means that theory knows well enough.
+    means that theory knows well enough. Of a scene that asks for less than the last digits, what is beyond
+    its accuracy counts, of the means one by one and of their combinations in which it cannot be seen.
     """
     scene = ensemble.scene
     if scene.interaction is not None and not scene.interaction.nominal:
@@ -187,7 +189,8 @@ def verdict(ensemble: Ensemble) -> Verdict:
     parts = bounded_theory(scene, ensemble.n_surfaces).fluctuations(scene.quantities, h)
     index = [scene.separations.index(x) for x in h]
     means = [ensemble.mean(q)[index] / quantity_of(q).scale(scene.surface) for q in scene.quantities]
-    difference = np.concatenate(means) - scene.n_asperities * parts.mean
+    exact = scene.n_asperities * parts.mean
+    difference = np.concatenate(means) - exact
     asperities = float(scene.n_asperities) * ensemble.n_surfaces
 
     variance = parts.moment(2)
@@ -197,12 +200,14 @@ def verdict(ensemble: Ensemble) -> Verdict:
     errors = np.sqrt(ensemble.n_surfaces / scene.n_asperities) / unit
     z = difference[varies] * errors
     usable = _gaussian(parts, asperities) & (_left_out(scene, h)[varies] * errors < _SMALL)
-    parts, z = parts.take(usable), z[usable]
-    axes = parts.whitening(_resolved(scene, h))
+    allowed = allowance(scene, exact[varies], 1 / errors)[usable]
+    parts, z = parts.take(usable), beyond(z[usable], allowed)
+    axes = parts.whitening(max(_resolved(scene, h), told_apart(allowed)))
     axes = axes[:, _gaussian(parts.turned(axes), asperities)]
     chi_square = float(np.sum((z @ axes) ** 2))
     degrees = axes.shape[1]
-    return Verdict(chi_square, degrees, float(chdtrc(degrees, chi_square)) if degrees else 1.0)
+    p = float(chdtrc(degrees, chi_square)) if degrees else 1.0
+    return Verdict(chi_square, degrees, p if scene.exact else min(1.0, 2 * min(p, farthest(z))))
 
 
 def _resolved(scene: Scene, h: Array) -> float:

@@ -121,8 +121,8 @@ def converge(
     Raises
     ------
     ValueError
-        If the sampler is ``stratified``, which draws no ensemble, if nothing touches, or each surface finds
-        its own balance (``interaction.at = "nominal"``).
+        If the sampler is ``stratified``, which draws no ensemble, if nothing touches, each surface finds
+        its own balance (``interaction.at = "nominal"``), or means are known better than values.
     SceneError, TypeError
         As from `mcgw.Scene.replace`.
 
@@ -151,7 +151,7 @@ def converge(
             parts.append(draw(replace(scene, seed=(scene.seed + k) % 2**64)))
         tell(seeds, seeds)
     sums = joined([{name: part[name] for name in scene.quantities} for part in parts])
-    exact = PrincipalComponents.of(scene)
+    exact = _axes(scene, seeds * scene.n_surfaces)
     y = exact.turn(sums)
     whole = replace(scene, n_surfaces=len(y))
     means = verdict(Ensemble(whole, "drawn", MemoryResults(sums)))
@@ -176,6 +176,17 @@ def converge(
         slopes = [*_slope_in_surfaces(exact, y, scene.n_surfaces), *_slope_in_asperities(scene, draw)]
         checks += [found.check for found in slopes]
     return Convergence(scene, tuple(checks), tuple(slopes), z)
+
+
+def _axes(scene: Scene, surfaces: int) -> PrincipalComponents:
+    """What is tested, in which the accuracy of the values cannot be seen."""
+    exact = PrincipalComponents.of(scene, surfaces=surfaces)
+    if not scene.exact and exact.columns and not exact.axes.size:
+        raise ValueError(
+            f"ensemble.accuracy = {scene.accuracy:g}: means of {surfaces} surfaces are known better than "
+            "that; converge with fewer surfaces, or a finer accuracy"
+        )
+    return exact
 
 
 def _own(scene: Scene) -> Sums:
@@ -259,7 +270,7 @@ def _slope_in_asperities(scene: Scene, draw: Draw) -> list[Slope]:
             quantities=(name,),
             seed=(scene.seed + 10**6 + divisor) % 2**64,
         )
-        exact = PrincipalComponents.of(small, (name,))
+        exact = PrincipalComponents.of(small, (name,), surfaces=small.n_surfaces)
         if exact.axes.size:
             y = exact.turn(draw(small))[:, 0]
             sizes.append(float(n))

@@ -178,7 +178,9 @@ class _ByMoments:
         scene, name = self.scene, self.scene.quantities[0]
         mesh = mesh_of(scene)
         summed = tuple(q for q in scene.quantities if not analytic.quantity_of(q).counts)
-        sampler = Counted("cells", scene, mesh, response_of(scene, mesh, summed, precision=Precision(1 / size)))
+        sampler = Counted(
+            "cells", scene, mesh, response_of(scene, mesh, summed, precision=Precision(1 / size))
+        )
         value, plain = sampler.block(0, 1).sums[name][0], self.plain
         pick = list(self.chosen)
         with np.errstate(divide="ignore", invalid="ignore"):  # no contact there: no relative error

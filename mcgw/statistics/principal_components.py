@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from analytic import Quantity, quantity_of
 from mcgw.scene.scene import Scene
 from mcgw.statistics.bounded import bounded_theory
+from mcgw.statistics.within_accuracy import allowance, told_apart
 
 __all__ = ["PrincipalComponents"]
 
@@ -48,10 +49,13 @@ class PrincipalComponents:
     kurtosis: Array
 
     @classmethod
-    def of(cls, scene: Scene, quantities: tuple[str, ...] = ()) -> "PrincipalComponents":
+    def of(
+        cls, scene: Scene, quantities: tuple[str, ...] = (), *, surfaces: int = 1
+    ) -> "PrincipalComponents":
         """The axes of a scene: of those separations where single surfaces are nearly Gaussian.
 
-        Of all its quantities, unless some are named.
+        Of all its quantities, unless some are named; and of those combinations in which means over so many
+        surfaces do not show how accurate values are.
         """
         n, h, quantities = scene.n_asperities, np.array(scene.separations), quantities or scene.quantities
         parts = bounded_theory(scene, scene.n_surfaces).fluctuations(quantities, h)
@@ -60,7 +64,8 @@ class PrincipalComponents:
         touching = n * np.minimum(share, 1 - share + (scene.count == "poisson"))
         chosen = np.flatnonzero((touching > _TOUCHING) & (variance > 0))
         unit = np.sqrt(variance[chosen])
-        axes = parts.take(chosen, unit).whitening(_INDEPENDENT)
+        allowed = allowance(scene, n * parts.mean[chosen], np.sqrt(n / surfaces) * unit)
+        axes = parts.take(chosen, unit).whitening(max(_INDEPENDENT, told_apart(allowed)))
         along = parts.take(chosen, unit).turned(axes)
         third, fourth = along.moment(3), along.moment(4) - 3 * (scene.count == "fixed")
         good = np.abs(fourth) / n < _MOST_KURTOSIS

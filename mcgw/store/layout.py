@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from analytic import ALL_QUANTITIES
 from mcgw.errors import StoreError
+from mcgw.sampling.samplers import law_error_of
 from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_text
 from mcgw.store.chunks import PACKED, add_rows, empty_table
@@ -85,6 +86,7 @@ def describe(file: h5py.File, scene: Scene, sampler: str, digest: str, **attribu
         complete=True,
         digest=digest,
         date=now(),
+        **({"law_error_spent": law_error_of(scene)} if scene.law_error else {}),
         **{**provenance(), **attributes},
     )
 

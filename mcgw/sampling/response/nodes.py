@@ -14,7 +14,7 @@ from mcgw.sampling.response.tree import Tree
 from mcgw.sampling.rules import multiply
 from mcgw.scene.fields import EXACT
 
-__all__ = ["Nodes", "Precision"]
+__all__ = ["LAST_DIGITS", "Nodes", "Precision"]
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -23,7 +23,7 @@ _SCATTER = 8  # asperities more than expected
 _DIGITS = 8.0  # last digits of a height that a formula may lose
 _NODES = 32  # that add to one sum, with errors of their own
 _COLUMNS = 64  # series at a time
-_LAST_DIGITS, _SMALLEST = EXACT, 1 / 64  # see `Precision.of_least`
+_SMALLEST = 1 / 64  # see `Precision.of_least`
 
 
 class Precision(NamedTuple):
@@ -39,6 +39,9 @@ class Precision(NamedTuple):
 
     accuracy: float = EXACT
     of_least: bool = False
+
+
+LAST_DIGITS = Precision()
 
 
 @dataclass(frozen=True)
@@ -77,9 +80,7 @@ class Nodes:
     precision: Precision
 
     @classmethod
-    def of(
-        cls, mesh: Mesh, tree: Tree, grading: Grading, n_asperities: int, precision: Precision
-    ) -> "Nodes":
+    def of(cls, mesh: Mesh, tree: Tree, grading: Grading, n_asperities: int, precision: Precision) -> "Nodes":
         """The nodes of a tree, for surfaces of so many asperities."""
         start, end = mesh.edges[tree.first], mesh.edges[tree.last]
         above = tree.above
@@ -169,7 +170,14 @@ def _share_of_least(values: Any) -> Any:
 
 @njit(nogil=True, cache=True)
 def _series(
-    values: Any, to_coefficients: Any, node: Any, row: Any, limits: Any, rough: Any, precision: Any, share: Any
+    values: Any,
+    to_coefficients: Any,
+    node: Any,
+    row: Any,
+    limits: Any,
+    rough: Any,
+    precision: Any,
+    share: Any,
 ) -> Any:
     """Coefficients, up to the last from which on all together are more than the error that is let."""
     even, noise, crowd, graded, total = limits
@@ -193,7 +201,7 @@ def _series(
                 enough = _share_of_least(values[:, at]) * tail[j]
             enough = max(enough, total[row[at]] / crowd[node[at]])
             if of_least:
-                enough = max(enough, _LAST_DIGITS / accuracy * tail[j])
+                enough = max(enough, EXACT / accuracy * tail[j])
             least = max(noise[node[at]] if by_modulus else 0.0, rough[at]) * tail[j]
             alone, kept = max(accuracy * enough, least), max(accuracy / share * enough, least)
             for i in range(order):

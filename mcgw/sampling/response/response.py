@@ -17,7 +17,7 @@ from mcgw.sampling.layout import Layout
 from mcgw.sampling.response.assembly import tiles_of
 from mcgw.sampling.response.dense import Parts
 from mcgw.sampling.response.hertz_rows import hertz_rows
-from mcgw.sampling.response.nodes import Nodes, Precision
+from mcgw.sampling.response.nodes import LAST_DIGITS, Nodes, Precision
 from mcgw.sampling.response.product import Tiles
 from mcgw.sampling.response.rows import Rows
 from mcgw.sampling.response.tree import tree_over
@@ -67,7 +67,7 @@ def response_of(
     quantities: tuple[str, ...],
     *,
     kept: Layout | None = None,
-    precision: Precision = Precision(),
+    precision: Precision = LAST_DIGITS,
 ) -> Response:
     """Build the response of a mesh.
 
@@ -112,7 +112,7 @@ def layout_of(
     quantities: tuple[str, ...],
     *,
     lasting: bool = False,
-    precision: Precision = Precision(),
+    precision: Precision = LAST_DIGITS,
 ) -> Layout:
     """Moments that a response would need, without making it.
 

@@ -144,7 +144,7 @@ def walk(mesh: Mesh, tree: Tree, rows: Rows, nodes: Nodes) -> tuple[Entries, Int
 def _met(node: Ints, row: Ints, rows: Rows, nodes: Nodes) -> tuple[Ints, Ints, NDArray[np.bool_]]:
     """Those nodes and rows that have heights in common, and whether the row is one smooth function there."""
     start, end, low, high = nodes.start[node], nodes.end[node], rows.low[row], rows.high[row]
-    # The moments of a parent are good to a share of its width, and a lone asperity may be nearer to its start.
+    # The moments of a parent are good to a share of its width: a lone asperity may be nearer to its start.
     beyond = rows.rooted[row] | (nodes.parent[node] & nodes.precision.of_least)
     whole = (low < start) | ((low == start) & ~beyond)
     whole &= (end <= high) & ~(nodes.broken[node] & rows.graded[row])
