@@ -1,7 +1,5 @@
 """``python -m mcgw``."""
 
-import sys
+from mcgw.cli import process
 
-from mcgw.cli import main
-
-sys.exit(main())
+process()

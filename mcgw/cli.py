@@ -5,9 +5,10 @@ import sys
 import warnings
 from collections.abc import Sequence
 from importlib import import_module
-from typing import Any
+from typing import Any, NoReturn
 
 from mcgw.errors import RunError
+from mcgw.machine.leaving import leave
 from mcgw.machine.terminal import drop_output, one_line, plain_output
 
 COMMANDS = (
@@ -110,5 +111,10 @@ class _Version(argparse.Action):
         parser.exit()
 
 
+def process() -> NoReturn:
+    """Run the command of this process, and end it."""
+    leave(main())
+
+
 if __name__ == "__main__":
-    sys.exit(main())
+    process()

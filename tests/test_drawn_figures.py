@@ -1,11 +1,13 @@
 """What is drawn is what was computed: lines, error bars, labels and legends, read from the axes."""
 
 import dataclasses
+import itertools
 import math
 
 import exact
 import numpy as np
 import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.collections import LineCollection, PathCollection
 from matplotlib.figure import Figure
 from scipy.stats import norm
@@ -23,11 +25,11 @@ from mcgw.statistics.comparison import Comparison, Curve, Verdict, compare
 from mcgw.statistics.convergence import Convergence
 
 TITLES = {
-    "load": "Load $P$ (N)",
-    "area": "Real area $A$ (m²)",
-    "stiffness": "Stiffness $K$ (N/m)",
+    "load": "Load P (N)",
+    "area": "Real area A (m²)",
+    "stiffness": "Stiffness K (N/m)",
     "contacts": "Contacts",
-    "conductance": r"Conductance $C\rho$ (m)",
+    "conductance": "Conductance Cρ (m)",
 }
 QUANTITIES = tuple(TITLES)
 H = (1.0, 0.0, 2.0)
@@ -110,7 +112,7 @@ def test_comparison(comparison, kept, tmp_path):
     save_comparison(comparison, tmp_path / "x.png")
     (figure,) = kept
     assert len(figure.axes) == 2 * len(QUANTITIES)
-    above, below = figure.axes[: len(QUANTITIES)], figure.axes[len(QUANTITIES) :]
+    below, above = figure.axes[::2], figure.axes[1::2]
     for k, name in enumerate(QUANTITIES):
         check_curve(above[k], comparison.curves[name], TITLES[name])
         check_residual(below[k], comparison.curves[name])
@@ -123,9 +125,41 @@ def test_comparison(comparison, kept, tmp_path):
         f"{verdict.degrees} degrees of freedom, p = {verdict.p:.3g}"
     )
     assert figure.get_supxlabel() == (
-        "separation $d/\\sigma$\n60 surfaces of 3000 asperities, exponential grading, γ = 2; "
+        "separation d/σ\n60 surfaces of 3000 asperities, exponential grading, γ = 2; "
         f"sampler {comparison.ensemble.sampler}, seed 4"
     )
+
+
+def crowded(figure):
+    """What runs out of a figure or into a neighbour, as matplotlib measures all of each panel."""
+    canvas = FigureCanvasAgg(figure)
+    canvas.draw()
+    texts = [text for text in (figure._suptitle, figure._supxlabel) if text]
+    boxes = [part.get_tightbbox(canvas.get_renderer()) for part in (*figure.axes, *texts)]
+    out = [
+        box for box in boxes if box.x0 < 0 or box.y0 < 0 or box.x1 > figure.bbox.x1 or box.y1 > figure.bbox.y1
+    ]
+    return out + [pair for pair in itertools.combinations(boxes, 2) if pair[0].overlaps(pair[1])]
+
+
+@pytest.mark.parametrize("size", [1.0, 1e6])
+@pytest.mark.parametrize("sign", [1, -1])
+@pytest.mark.parametrize("panels", [1, 2, 5, 6, 7])
+def test_panels_of_a_comparison_have_room(comparison, kept, tmp_path, panels, sign, size):
+    """Also those of a pull, on linear axes, and far from theory."""
+    names = (*QUANTITIES, "yielded", "load_slope")[:panels]
+    one = comparison.curves["load"]
+    mean, error = sign * 1e-12 * one.mean, 1e-13 * one.mean
+    curve = Curve(mean, mean - error, mean + error, mean * (1 + 0.01 * size), 1e-13 * one.stderr)
+    save_comparison(dataclasses.replace(comparison, curves=dict.fromkeys(names, curve)), tmp_path / "x.png")
+    assert len(kept[0].axes) == 2 * panels
+    assert not crowded(kept[0])
+
+
+def test_crowding_would_be_seen(comparison, kept, tmp_path):
+    save_comparison(comparison, tmp_path / "x.png")
+    kept[0].axes[3].set_ylabel("A label for which there is no room")
+    assert crowded(kept[0])
 
 
 def test_comparison_that_fails_says_so(comparison, kept, tmp_path):

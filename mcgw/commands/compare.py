@@ -21,7 +21,6 @@ def execute(args: argparse.Namespace) -> int:
     from mcgw.commands.notes import tell_notes
     from mcgw.commands.outputs import Output, check_outputs, figure_format
     from mcgw.commands.table_option import table_output, write_table
-    from mcgw.figures.comparison import save_comparison
     from mcgw.reports.elasticity import against_elasticity
     from mcgw.reports.text import COMPARISON_HEADER, comparison_rows, comparison_table, verdict_line
     from mcgw.statistics.comparison import compare
@@ -30,6 +29,8 @@ def execute(args: argparse.Namespace) -> int:
     path = args.output or args.file.with_suffix(".png")
     ensemble = open_ensemble(args.file)
     check_outputs([Output(path, figure_format()), *table_output(args.csv)], inputs=[args.file])
+    from mcgw.figures.comparison import save_comparison
+
     tell_notes(ensemble.scene)
     comparison = compare(ensemble)
     save_comparison(comparison, path)

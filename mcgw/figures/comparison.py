@@ -9,20 +9,25 @@ from matplotlib.figure import Figure
 
 from analytic import quantity_of
 from mcgw.ensemble.intervals import TOO_FEW
-from mcgw.figures.style import STYLE, contact_label, shown_title
+from mcgw.figures.style import STYLE, contact_label, power_of_ten, shown_title
 from mcgw.formats.pictures import save_figure
 from mcgw.statistics.comparison import Comparison, Curve
 
 __all__ = ["draw_curve", "quantity_figure", "save_comparison", "title_of"]
 
 _MOST_COLUMNS = 6
+# Inches: from column to column, the least width, the label at the left, ticks with labels; a band of panels.
+_PITCH, _NARROWEST, _LABEL, _TICKS, _EDGE = 3.1, 7.0, 0.3, 0.6, 0.08
+_TITLE, _CURVE, _BETWEEN, _RESIDUAL, _UNDER = 0.3, 2.83, 0.21, 0.93, 0.3
+_BAND = _TITLE + _CURVE + _BETWEEN + _RESIDUAL + _UNDER
+_HEAD, _FOOT = 0.36, 0.36  # two lines each
 _BELOW = 0.01  # of the smallest mean that is drawn: how far down its axis goes
 _TITLES = {
-    "load": "Load $P$ (N)",
-    "area": "Real area $A$ (m²)",
-    "stiffness": "Stiffness $K$ (N/m)",
+    "load": "Load P (N)",
+    "area": "Real area A (m²)",
+    "stiffness": "Stiffness K (N/m)",
     "contacts": "Contacts",
-    "conductance": r"Conductance $C\rho$ (m)",
+    "conductance": "Conductance Cρ (m)",
     "load_slope": "Slope of the loads (N/m)",
     "conductance_si": "Conductance (S or W/K)",
     "yielded": "Yielded contacts",
@@ -46,35 +51,55 @@ def save_comparison(comparison: Comparison, path: str | Path) -> None:
         The ending chooses the format: .png, .pdf, .svg.
     """
     ensemble, scene = comparison.ensemble, comparison.ensemble.scene
-    columns = min(len(comparison.curves), _MOST_COLUMNS)
-    bands = -(-len(comparison.curves) // columns)
     with mpl.rc_context(STYLE):
-        figure = Figure(figsize=(max(3.1 * columns, 6.2), 4.6 * bands + 0.6), layout="constrained")
-        axes = figure.subplots(2 * bands, columns, sharex=True, squeeze=False, height_ratios=[3, 1] * bands)
-        for k, (name, curve) in enumerate(comparison.curves.items()):
-            above, below = axes[2 * (k // columns) :, k % columns][:2]
-            draw_curve(above, ensemble.separations, curve)
-            above.set_title(title_of(name))
-            _draw_residual(below, ensemble.separations, curve)
-        for k in range(len(comparison.curves), bands * columns):
-            for axis in axes[2 * (k // columns) :, k % columns][:2]:
-                axis.remove()
-        for below in axes[1::2, 0]:
-            below.set_ylabel("residual\n(standard errors)")
-        axes[0, 0].legend(loc="lower left")
+        figure = _with_panels(comparison)
         verdict = comparison.verdict
         word = "agree" if verdict.agrees else "DISAGREE"
         figure.suptitle(
             f"{shown_title(scene, 'Ensemble')}\nMonte Carlo and theory of this model {word}: "
             f"χ² = {verdict.chi_square:.1f} for {verdict.degrees} degrees of freedom, p = {verdict.p:.3g}",
             fontsize=10,
+            y=1 - _EDGE / figure.get_figheight(),
         )
         caption = (
             f"{ensemble.n_surfaces} surfaces of {scene.n_asperities:g} asperities, "
             f"{contact_label(scene)}; sampler {ensemble.sampler}, seed {scene.seed}"
         )
-        figure.supxlabel(f"separation $d/\\sigma$\n{caption}", fontsize=9)
+        figure.supxlabel(f"separation d/σ\n{caption}", fontsize=9, y=_EDGE / figure.get_figheight())
         save_figure(figure, path)
+
+
+def _with_panels(comparison: Comparison) -> Figure:
+    """A pair of panels for each quantity, at given places: to look for them takes as long as to draw."""
+    h = comparison.ensemble.separations
+    columns = min(len(comparison.curves), _MOST_COLUMNS)
+    bands = -(-len(comparison.curves) // columns)
+    width, height = max(_PITCH * columns, _NARROWEST), _BAND * bands + _HEAD + _FOOT
+    pitch = (width - _LABEL) / columns
+    figure = Figure(figsize=(width, height))
+
+    def panel(left: float, bottom: float, tall: float, beside: Any = None) -> Any:
+        inches = left / width, bottom / height, (pitch - _TICKS - _EDGE) / width, tall / height
+        axis = figure.add_axes(inches, sharex=beside)
+        axis.ticklabel_format(axis="y", scilimits=(-3, 4))  # for which there is room
+        return axis
+
+    first = None
+    for k, (name, curve) in enumerate(comparison.curves.items()):
+        left = _LABEL + _TICKS + pitch * (k % columns)
+        bottom = _FOOT + _BAND * (bands - 1 - k // columns) + _UNDER
+        below = panel(left, bottom, _RESIDUAL, first)
+        above = panel(left, bottom + _RESIDUAL + _BETWEEN, _CURVE, below)
+        first = first or below
+        draw_curve(above, h, curve)
+        above.set_title(title_of(name))
+        above.tick_params(labelbottom=False)
+        _draw_residual(below, h, curve)
+        if k % columns == 0:
+            below.set_ylabel("residual\n(standard errors)")
+        if k == 0:
+            above.legend(loc="lower left")
+    return figure
 
 
 def quantity_figure(comparison: Comparison, name: str) -> Figure:
@@ -121,6 +146,7 @@ def draw_curve(axis: Any, h: np.ndarray, curve: Curve) -> None:
         axis.axhline(0, color="0.55", lw=0.8, zorder=1)
     elif np.any(seen) or np.any(curve.theory > 0):
         axis.set_yscale("log")
+        axis.yaxis.set_major_formatter(power_of_ten)
         if np.any(seen) and np.any(~seen):  # theory goes on falling where nothing touches any more
             axis.set_ylim(bottom=_BELOW * curve.mean[seen].min())
 

@@ -51,16 +51,16 @@ def write_figure(figure: Figure, file: str | Path | IO[Any], **options: Any) -> 
     none: it keeps its layout, and is not to be drawn on any more.
     """
     engine = figure.get_layout_engine()
+    minor_ticks = _take_minor_ticks(figure)
     if engine is not None:
         dpi = options.get("dpi", mpl.rcParams["savefig.dpi"])  # texts are measured in whole dots
         if dpi != "figure":
             figure.set_dpi(dpi)
         FigureCanvasAgg(figure)  # one for both: each reads and measures the formulas anew
-        minor_ticks = _take_minor_ticks(figure)
         engine.execute(figure)
         figure.set_layout_engine(None)
-        for axes, which, locator in minor_ticks:  # how many there are depends on the length of the axis
-            axes.add_artist(_as_line(axes, which, locator))
+    for axes, which, locator in minor_ticks:  # how many there are depends on the length of the axis
+        axes.add_artist(_as_line(axes, which, locator))
     figure.savefig(file, **options)
 
 
