@@ -39,7 +39,7 @@ with without_help():
     import matplotlib.figure
 from matplotlib.artist import kwdoc
 from matplotlib.lines import Line2D
-print("linewidth" in Line2D.set.__doc__, "linewidth" in kwdoc(Line2D), Line2D([0], [0], lw=3).get_linewidth())
+print("antialiased" in Line2D.set.__doc__, "antialiased" in kwdoc(Line2D), Line2D([0], [0], lw=3).get_lw())
 """
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert done.stdout == "False True 3\n"
+    assert done.stdout == "False True 3.0\n"
