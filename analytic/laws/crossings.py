@@ -20,9 +20,11 @@ __all__ = ["Bound", "Crossings", "crossings_of"]
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 Bound = Callable[[Array], Array]
+Excess = Callable[[Array, Array], Array]  # penetration beyond the bound, of heights and separations
 
 _STEP, _POINTS = 0.5, np.linspace(0, 1, 33)  # heights at which a bound is looked at, between its breaks
 _GOLDEN, _SECTIONS = (math.sqrt(5) - 1) / 2, 45
+_SECANTS, _NEAR = 12, 64  # how many at most; spacings of floating-point numbers, more than rounding errors
 
 
 @dataclass(frozen=True)
@@ -75,13 +77,13 @@ def crossings_of(bound: Bound, grading: Grading, separations: Array, low: float,
     starts = _stretches(bound, grading, low, high)
     ends = np.append(np.nextafter(starts[1:], -np.inf), high)
 
-    def holds(s: Array, level: Array) -> NDArray[np.bool_]:
+    def excess(s: Array, level: Array) -> Array:
         with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
-            return np.asarray(s - level >= bound(s))
+            return np.asarray(s - level - bound(s))
 
-    at_start, at_end = holds(starts, h[:, None]), holds(ends, h[:, None])
+    at_start, at_end = excess(starts, h[:, None]) >= 0, excess(ends, h[:, None]) >= 0
     inner, stretch = np.nonzero(at_start != at_end)
-    found = _halved(holds, h[inner], starts[stretch], ends[stretch])
+    found = _halved(excess, h[inner], starts[stretch], ends[stretch])
     jump, before = np.nonzero(at_end[:, :-1] != at_start[:, 1:])
     separation, height = np.append(inner, jump), np.append(found, starts[before + 1])
     begins = np.append(at_end[inner, stretch], at_start[jump, before + 1])
@@ -122,13 +124,41 @@ def _turns(curve: Callable[[Array], Array], left: Array, right: Array, peak: NDA
     return np.asarray((left + right) / 2)
 
 
-def _halved(holds: Callable[[Array, Array], NDArray[np.bool_]], h: Array, left: Array, right: Array) -> Array:
-    """First height at which it is as at `right`, by halving down to neighbouring numbers."""
-    behind = holds(right, h)
+def _halved(excess: Excess, h: Array, left: Array, right: Array) -> Array:
+    """First height at which the excess has the sign that it has at `right`, by halving down to neighbours.
+
+    Signs are asked for only next to where secants meet: what is left of that or right of it is known.
+    """
+    behind = excess(right, h) >= 0
+    low, high = _around(excess, h, left, right, behind)
     while True:
         middle = left + (right - left) / 2
         inner = (middle > left) & (middle < right)
         if not inner.any():
             return right
-        same = holds(middle, h) == behind
+        same = middle >= high
+        asked = np.flatnonzero(inner & (low < middle) & (middle < high))
+        if asked.size:
+            same[asked] = (excess(middle[asked], h[asked]) >= 0) == behind[asked]
         right, left = np.where(inner & same, middle, right), np.where(inner & ~same, middle, left)
+
+
+def _around(
+    excess: Excess, h: Array, left: Array, right: Array, behind: NDArray[np.bool_]
+) -> tuple[Array, Array]:
+    """Two heights next to where secants meet, or the ends given where the sign does not change in between."""
+    before, x = left, right
+    of_before, of_x = excess(before, h), excess(x, h)
+    room = _NEAR * np.spacing(np.maximum(np.maximum(np.abs(left), np.abs(right)), np.abs(h)))
+    for _ in range(_SECANTS):
+        with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
+            found = x - of_x * ((x - before) / (of_x - of_before))
+        stay = np.where(np.isfinite(of_x), x, (left + right) / 2)  # there already, or where nothing begins
+        before, x = x, np.clip(np.where(np.isfinite(found), found, stay), left, right)
+        if np.all(np.abs(x - before) < room):
+            break
+        of_before, of_x = of_x, excess(x, h)
+    low, high = x - room, x + room
+    sure = (left < low) & (high < right)
+    sure &= ((excess(low, h) >= 0) != behind) & ((excess(high, h) >= 0) == behind)
+    return np.where(sure, low, left), np.where(sure, high, right)
