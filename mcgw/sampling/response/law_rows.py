@@ -93,13 +93,14 @@ def law_rows(scene: Scene, quantities: tuple[str, ...], mesh: Mesh, *, lasting: 
     parts: list[tuple[NDArray[Any], ...]] = []
     stretches: dict[Branch, Stretches] = {}
     kinds: list[tuple[Branch, str, int, float]] = []
+    sixteen = None if lasting else _Sixteen.of(scene)
     for number, name in enumerate(quantities):
         q, branch = quantity_of(name), scene.branch_of(name)
         if branch not in stretches:
             stretches[branch] = stretches_of(scene, branch, *mesh.range)
         found = stretches[branch]
         roots = np.array([branch.root(int(piece)) for piece in found.piece], dtype=bool)
-        total = np.zeros(len(separations)) if lasting else _totals(scene, name, branch)
+        total = np.zeros(len(separations)) if sixteen is None else sixteen.totals(scene, name, branch)
         parts.append(
             (
                 separations[found.separation],
@@ -123,15 +124,37 @@ def law_rows(scene: Scene, quantities: tuple[str, ...], mesh: Mesh, *, lasting: 
     return Rows(h, low, high, begins, rooted, rough, graded, kind, answer, total, formulas)
 
 
-def _totals(scene: Scene, name: str, branch: Branch) -> Array:
-    """Mean sums from 16 quantiles: the order of magnitude is all it takes."""
-    share, h = (np.arange(16) + 0.5) / 16, np.array(scene.all_separations)
-    touching = scene.heights.above(h)
-    rank = np.maximum(touching[:, None] * share, np.finfo(float).tiny)
-    s = np.maximum(scene.heights.from_above(rank, -np.inf), h[:, None])
-    q = quantity_of(name)
-    mean = np.mean(term_of(q.base, branch, h[:, None], s, scene.modulus(s)), axis=1)
-    contacts = scene.n_asperities * touching
-    with np.errstate(over="ignore"):
-        total = np.minimum(np.abs(q.scale(scene.surface) * mean) * contacts, np.finfo(float).max)
-    return np.asarray(np.where(contacts > SURE, total, 0.0))
+@dataclass(frozen=True)
+class _Sixteen:
+    """Quantiles of the heights in contact at each separation: for the order of magnitude of a sum.
+
+    Parameters
+    ----------
+    h, touching : ndarray
+        Separations, and the probability to reach them; shape (separations,).
+    s, e : ndarray
+        Heights, and E*(s)/E* there; shape (separations, 16).
+    """
+
+    h: Array
+    touching: Array
+    s: Array
+    e: Array
+
+    @classmethod
+    def of(cls, scene: Scene) -> "_Sixteen":
+        """Of the separations of a scene."""
+        share, h = (np.arange(16) + 0.5) / 16, np.array(scene.all_separations)
+        touching = scene.heights.above(h)
+        rank = np.maximum(touching[:, None] * share, np.finfo(float).tiny)
+        s = np.maximum(scene.heights.from_above(rank, -np.inf), h[:, None])
+        return cls(h, touching, s, scene.modulus(s))
+
+    def totals(self, scene: Scene, name: str, branch: Branch) -> Array:
+        """Mean sums of a quantity."""
+        q = quantity_of(name)
+        mean = np.mean(term_of(q.base, branch, self.h[:, None], self.s, self.e), axis=1)
+        contacts = scene.n_asperities * self.touching
+        with np.errstate(over="ignore"):
+            total = np.minimum(np.abs(q.scale(scene.surface) * mean) * contacts, np.finfo(float).max)
+        return np.asarray(np.where(contacts > SURE, total, 0.0))
