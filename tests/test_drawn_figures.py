@@ -18,6 +18,7 @@ from mcgw.figures.comparison import quantity_figure, save_comparison
 from mcgw.figures.convergence import save_convergence
 from mcgw.figures.data import FigureData, Panel, Points, Series
 from mcgw.figures.drawing import draw
+from mcgw.figures.style import power_of_ten
 from mcgw.figures.tradeoff import save_tradeoff
 from mcgw.reports.html import _spread
 from mcgw.statistics.checks import Check, Slope
@@ -402,3 +403,8 @@ def test_contact_map(make_scene, kept, tmp_path):
         assert image.get_extent() == pytest.approx([0, 60, 0, 40])
         assert np.max(image.get_array()) == pytest.approx(1e6 * sigma * 2, rel=1e-2)
         assert image.origin == "lower"
+
+
+@pytest.mark.parametrize(("x", "label"), [(1e-12, "10⁻¹²"), (1.0, "10⁰"), (1e308, "10³⁰⁸"), (30.0, "30")])
+def test_labels_of_decades_are_plain_text(x, label):
+    assert power_of_ten(x) == label
