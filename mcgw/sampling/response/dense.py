@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from mcgw.sampling.cells import Mesh
 from mcgw.sampling.layout import Layout
+from mcgw.sampling.response.entries import Entries
 from mcgw.sampling.response.tree import Tree, transfers
-from mcgw.sampling.response.walk import Entries
 from mcgw.sampling.rules import product
 
 __all__ = ["Parts"]

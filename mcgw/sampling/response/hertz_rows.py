@@ -1,6 +1,5 @@
 """Rows of Hertz's law: ``scale (s - h)^exponent e(s)^modulus``, one for each quantity and separation."""
 
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -9,46 +8,14 @@ from numpy.typing import NDArray
 from analytic import HeightLaw, Quantity, quantity_of
 from mcgw.machine.compiling import njit
 from mcgw.machine.kept import kept
-from mcgw.sampling.response.rows import Rows, Start
+from mcgw.sampling.response.rows import Powers, Rows
 from mcgw.sampling.spacing import SURE
 from mcgw.scene.scene import Scene
 
-__all__ = ["hertz_rows"]
+__all__ = ["hertz_rows", "raise_to"]
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
-
-
-@dataclass(frozen=True)
-class _Powers:
-    """Formulas of Hertz's law.
-
-    Parameters
-    ----------
-    exponent, scale : ndarray
-        Of each row.
-    graded : ndarray of bool
-        Whether the modulus counts.
-    """
-
-    exponent: Array
-    scale: Array
-    graded: NDArray[np.bool_]
-
-    def values(self, rows: Ints, above: Array, e: Array) -> Array:
-        """As `Formulas.values`."""
-        return np.asarray(_values(self.exponent[rows], self.scale[rows], self.graded[rows], above, e))
-
-    def at_start(self, rows: Ints, above: Array, e: Array, u: Array) -> list[Start]:
-        """With ``s - h = u q(u)`` a row is ``u^n q^n e``, and q^n e is accurate down to u = 0."""
-        values = self.values(rows, above / u[:, None], e)
-        rooted = self.exponent[rows] % 1 != 0
-        starts = []
-        for root in (False, True):
-            which = np.flatnonzero(rooted == root)
-            if which.size:
-                starts.append(Start(root, which, values[:, which], self.exponent[rows][which] // 1))
-        return starts
 
 
 def hertz_rows(scene: Scene, quantities: tuple[str, ...], *, lasting: bool) -> Rows:
@@ -72,7 +39,7 @@ def hertz_rows(scene: Scene, quantities: tuple[str, ...], *, lasting: bool) -> R
         kind=np.repeat(np.arange(len(chosen)), len(once)),
         answer=np.arange(len(h)),
         total=np.zeros(len(h)) if lasting else _totals(scene, chosen, once),
-        formulas=_Powers(exponent, scale, graded),
+        formulas=Powers(exponent, scale),
     )
 
 
@@ -81,23 +48,14 @@ def _of_each(values: list[float], separations: Array) -> Array:
 
 
 @njit(nogil=True, cache=True)
-def _values(exponent: Any, scale: Any, graded: Any, above: Any, e: Any) -> Any:
-    """``scale e above^exponent`` for whole and half-integer exponents, by products and roots."""
-    values, power = np.empty(above.shape), np.empty(exponent.size)
-    whole, half = np.floor(exponent), exponent % 1 != 0
-    most = 0
-    for j in range(exponent.size):  # a reduction by NumPy's name imports half of SciPy
-        most = max(most, int(whole[j]))
-    for i in range(above.shape[0]):
-        for j in range(exponent.size):
-            root = np.sqrt(above[i, j])
-            power[j] = root if half[j] else 1.0
-        for times in range(most):
-            for j in range(exponent.size):
-                power[j] = power[j] * above[i, j] if whole[j] > times else power[j]
-        for j in range(exponent.size):
-            values[i, j] = scale[j] * (e[i, j] if graded[j] else 1.0) * power[j]
-    return values
+def raise_to(exponent: Any, x: Any, result: Any) -> None:
+    """Write ``x^exponent`` for a whole or half-integer exponent, by products and roots."""
+    half = exponent % 1 != 0
+    for i in range(x.size):
+        result[i] = np.sqrt(x[i]) if half else 1.0
+    for _ in range(int(exponent)):
+        for i in range(x.size):
+            result[i] *= x[i]
 
 
 @kept(8)
@@ -115,8 +73,10 @@ def _totals(scene: Scene, chosen: list[Quantity], h: Array) -> Array:
     modulus, contacts = scene.modulus(approach + h[:, None]), scene.n_asperities * touching
     totals = [np.empty(0)]
     for q in chosen:
-        exponent, one = np.full(16, q.exponent), np.ones(16)
-        terms = _values(exponent, one, np.full(16, bool(q.modulus)), approach, modulus)
+        terms = np.empty(approach.shape)
+        raise_to(float(q.exponent), approach.ravel(), terms.reshape(-1))
+        if q.modulus:
+            terms *= modulus
         with np.errstate(over="ignore"):
             total = np.minimum(
                 np.abs(q.scale(scene.surface) * terms.mean(axis=1)) * contacts, np.finfo(float).max

@@ -10,7 +10,7 @@ from typing import NamedTuple, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["Formulas", "Rows", "Start"]
+__all__ = ["Formulas", "Powers", "Rows", "Start"]
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -38,7 +38,7 @@ class Start(NamedTuple):
 
 
 class Formulas(Protocol):
-    """The formulas of all rows."""
+    """The formulas of all rows, of any law."""
 
     def values(self, rows: Ints, above: Array, e: Array) -> Array:
         """Values at heights `above` the separation of each row, of modulus `e`: shape (points, rows)."""
@@ -50,6 +50,19 @@ class Formulas(Protocol):
         `u` is the variable of the cell or node, from 0 to 1.
         """
         ...
+
+
+class Powers(NamedTuple):
+    """Formulas of Hertz's law: ``scale (s - h)^exponent e(s)``, the modulus only where the row is graded.
+
+    Attributes
+    ----------
+    exponent, scale : ndarray
+        Of each row.
+    """
+
+    exponent: Array
+    scale: Array
 
 
 @dataclass(frozen=True)
@@ -76,7 +89,7 @@ class Rows:
         Which answer it adds to: quantity by quantity, at increasing separations.
     total : ndarray
         Mean sum over a surface of the answer, where so many touch that it is sure to be of that size; else 0.
-    formulas : Formulas
+    formulas : Formulas or Powers
         What holds.
     """
 
@@ -90,7 +103,7 @@ class Rows:
     kind: Ints
     answer: Ints
     total: Array
-    formulas: Formulas
+    formulas: Formulas | Powers
 
     def order(self, answers: int) -> Ints:
         """So many answers in an order in which neighbours need the same cells."""

@@ -36,7 +36,7 @@ class Tree:
     probability : ndarray
         Of a height in each node, shape (nodes,).
     above : ndarray
-        Heights above the lower edges of nodes, at the Chebyshev points of their variables: (points, nodes).
+        Heights above the lower edges of nodes, at the Chebyshev points of their variables: (nodes, points).
     """
 
     first: NDArray[np.int64]
@@ -75,10 +75,10 @@ def tree_over(mesh: Mesh) -> Tree:
 
 
 def _heights_above(mesh: Mesh, start: Array, end: Array) -> Array:
-    u = ((1 + NODES) / 2)[:, None]
-    above = (end - start) * u
+    u = (1 + NODES) / 2
+    above = (end - start)[:, None] * u
     cells = np.arange(mesh.size)
-    above[:, cells] = mesh.offsets(cells, np.repeat(u, mesh.size, axis=1))
+    above[: mesh.size] = mesh.offsets(cells, np.repeat(u[:, None], mesh.size, axis=1)).T
     return above
 
 
@@ -100,29 +100,31 @@ def transfers(mesh: Mesh, tree: Tree, moments: Ints) -> tuple[Ints, Ints, Ints, 
     parent = np.repeat(np.arange(mesh.size, tree.size), 2)
     child = np.stack([tree.left, tree.right], axis=1)[mesh.size :].ravel()
     start, end = mesh.edges[tree.first[parent]], mesh.edges[tree.last[parent]]
-    s = (mesh.edges[tree.first[child]] - start) + tree.above[:, child]
+    s = (mesh.edges[tree.first[child]] - start)[:, None] + tree.above[child]
     wanted = moments[parent]
     pair = np.repeat(np.arange(len(parent)), wanted)
     moment = np.arange(len(pair)) - np.repeat(np.cumsum(wanted) - wanted, wanted)
     coefficients = np.empty((len(pair), len(NODES)))
-    _transfer(2 * s / (end - start) - 1, wanted, tree.left[child] >= 0, TO_COEFFICIENTS, coefficients)
+    _transfer(
+        2 * s / (end - start)[:, None] - 1, wanted, tree.left[child] >= 0, TO_COEFFICIENTS, coefficients
+    )
     return parent[pair], child[pair], moment, coefficients
 
 
 @njit(nogil=True, cache=True)
 def _transfer(x: Any, moments: Any, of_parent: Any, to_coefficients: Any, coefficients: Any) -> None:
     """Series in the variable of each child of T_j(x), x the variable of its parent at the child's points."""
-    order, most = x.shape[0], 2
+    order, most = x.shape[1], 2
     for wanted in moments:  # a reduction by NumPy's name imports half of SciPy
         most = max(most, wanted)
     powers, series = np.zeros((order, most)), np.empty((order, most))
     line = 0
     for pair in range(moments.size):
         for i in range(order):
-            powers[i, 0], powers[i, 1] = 1.0, x[i, pair]
+            powers[i, 0], powers[i, 1] = 1.0, x[pair, i]
         for j in range(2, moments[pair]):
             for i in range(order):
-                powers[i, j] = powers[i, j - 1] * (2 * x[i, pair]) - powers[i, j - 2]
+                powers[i, j] = powers[i, j - 1] * (2 * x[pair, i]) - powers[i, j - 2]
         multiply(to_coefficients, powers, series)
         for j in range(moments[pair]):
             for k in range(order):

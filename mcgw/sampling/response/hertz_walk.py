@@ -1,0 +1,166 @@
+"""The walk for rows of Hertz's law, compiled as a whole: row by row, from the root down."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mcgw.machine.compiling import njit
+from mcgw.machine.in_threads import in_threads, pieces
+from mcgw.sampling.response.entries import Entries
+from mcgw.sampling.response.hertz_rows import raise_to
+from mcgw.sampling.response.nodes import Nodes
+from mcgw.sampling.response.rows import Powers, Rows
+from mcgw.sampling.response.series import (
+    APART,
+    MOST,
+    MOST_IN_CELL,
+    TABLES,
+    WHOLE,
+    length_of,
+    meeting,
+    raised,
+    series_of,
+)
+from mcgw.sampling.response.tree import Tree
+
+__all__ = ["HertzWalk"]
+
+Array = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+_ROWS = 512  # worth another thread
+_DEEPEST = 128  # nodes that wait: one a level, and a tree has no more than 64
+
+
+class HertzWalk:
+    """Series of rows whose formulas are `Powers`, which begin at their separations and never end.
+
+    Parameters
+    ----------
+    tree, nodes : Tree, Nodes
+        Nodes over the cells.
+    rows : Rows
+        What is asked.
+    formulas : Powers
+        Theirs.
+    """
+
+    def __init__(self, tree: Tree, nodes: Nodes, rows: Rows, formulas: Powers) -> None:
+        self._links = tree.left, tree.right, nodes.broken, nodes.end
+        self._nodes = nodes.start, nodes.above, nodes.moduli
+        self._rows = rows.h, rows.rooted, rows.graded, formulas.exponent, formulas.scale
+        self._limits = nodes.limits(rows)
+
+    def entries(self) -> tuple[Entries, Ints, Ints, float, float]:
+        """What each node gives; how many T_j and R_j it must have; where that fails.
+
+        The last two are the lowest start of a cell on which a row is not resolved, and the lowest separation
+        that is not an edge; infinite if there is none.
+        """
+        left = self._links[0]
+
+        def share(ends: tuple[int, int]) -> tuple[Any, ...]:
+            return tuple(_walk(ends, self._rows, self._links, self._nodes, self._limits, TABLES))
+
+        parts = in_threads(share, pieces(len(self._rows[0]) if left.size else 0, _ROWS))
+        found, coefficients, plain, rooted, unresolved, inside = zip(*parts, strict=True)
+        node, row, root, length = np.concatenate(found).T.copy()
+        entries = Entries(node, row, root.astype(bool), length, np.concatenate(coefficients))
+        return entries, np.max(plain, axis=0), np.max(rooted, axis=0), min(unresolved), min(inside)
+
+    def needed(self, node: Ints, row: Ints) -> Ints:
+        """Moments that each of these nodes needs for a row that is smooth on it."""
+        return np.asarray(_needed(node, row, self._rows, self._nodes, self._limits, TABLES))
+
+
+@njit(inline="always")
+def _series(row: Any, node: Any, rows: Any, nodes: Any, limits: Any, tables: Any, work: Any) -> Any:
+    """Series of a row on a node, the last one of `work`, and how many coefficients of it count.
+
+    Where the row begins, ``s - h = u q(u)`` and it is ``u^n q^n e``: cut as q^n e, whose root of u is left.
+    """
+    h, _, graded, exponent, scale = rows
+    start, above, moduli = nodes
+    transform, times_u, u = tables
+    x, values, c = work
+    begins, more = h[row] == start[node], start[node] - h[row]
+    if begins:
+        for i in range(x.size):
+            x[i] = above[node, i] / u[i]
+    else:
+        for i in range(x.size):
+            x[i] = more + above[node, i]
+    raise_to(exponent[row], x, values[0])
+    for i in range(x.size):
+        values[0, i] = scale[row] * (moduli[node, i] if graded[row] else 1.0) * values[0, i]
+    count = series_of(values, node, row, limits, 0.0, not begins, transform, c)
+    if begins:
+        raised(c, int(exponent[row]), times_u)
+        count += int(exponent[row])
+    return count
+
+
+@njit(nogil=True, cache=True)
+def _walk(ends: Any, rows: Any, links: Any, nodes: Any, limits: Any, tables: Any) -> Any:
+    """Node, row, root and length of each series, their coefficients, and the end of `HertzWalk.entries`."""
+    h, with_root, graded = rows[:3]
+    left, right, broken, node_ends = links
+    starts, order = nodes[0], nodes[1].shape[1]
+    plain, rooted = np.zeros(left.size, dtype=np.int64), np.zeros(left.size, dtype=np.int64)
+    c = np.empty((1, order))
+    work = np.empty(order), np.empty((1, order)), c
+    unresolved = inside = np.inf
+    found, coefficients, n, used = np.empty(4096, dtype=np.int64), np.empty(16384), 0, 0
+    waiting = np.empty(_DEEPEST, dtype=np.int64)
+    for row in range(ends[0], ends[1]):
+        waiting[0], many = left.size - 1, 1
+        while many:
+            many -= 1
+            node = waiting[many]
+            parent, split = left[node] >= 0, broken[node] and graded[row]
+            how = meeting(
+                h[row], np.inf, with_root[row], split, starts[node], node_ends[node], parent, limits[-1]
+            )
+            if how == APART:
+                continue
+            if how == WHOLE or not parent:
+                needed = _series(row, node, rows, nodes, limits, tables, work)
+                if how != WHOLE:
+                    rooted[node] = max(rooted[node], needed)
+                    inside = min(inside, h[row] if h[row] != starts[node] else np.inf)
+                elif needed <= (MOST if parent else MOST_IN_CELL):
+                    plain[node] = max(plain[node], needed)
+                elif not parent:
+                    unresolved = min(unresolved, starts[node])
+                if not parent or needed <= MOST:
+                    found, coefficients = _with_room(found, n, 4), _with_room(coefficients, used, order)
+                    length = length_of(c)
+                    found[n], found[n + 1], found[n + 2], found[n + 3] = node, row, how != WHOLE, length
+                    coefficients[used : used + length] = c[0, :length]
+                    n, used = n + 4, used + length
+                    continue
+            waiting[many], waiting[many + 1] = right[node], left[node]
+            many += 2
+    return found[:n].reshape(-1, 4), coefficients[:used], plain, rooted, unresolved, inside
+
+
+@njit(nogil=True, cache=True)
+def _with_room(numbers: Any, used: Any, more: Any) -> Any:
+    """The same numbers in an array that more go into."""
+    if used + more <= numbers.size:
+        return numbers
+    longer = np.empty(2 * numbers.size + more, numbers.dtype)
+    longer[:used] = numbers[:used]
+    return longer
+
+
+@njit(nogil=True, cache=True)
+def _needed(node: Any, row: Any, rows: Any, nodes: Any, limits: Any, tables: Any) -> Any:
+    """As `HertzWalk.needed`."""
+    order = nodes[1].shape[1]
+    work = np.empty(order), np.empty((1, order)), np.empty((1, order))
+    needed = np.empty(node.size, dtype=np.int64)
+    for k in range(node.size):
+        needed[k] = _series(row[k], node[k], rows, nodes, limits, tables, work)
+    return needed

@@ -1,0 +1,144 @@
+"""Rules of the walk, one row on one node at a time: where a row holds, and where its series is cut."""
+
+from typing import Any
+
+import numpy as np
+
+from mcgw.machine.compiling import njit
+from mcgw.sampling.cells import NODES, TO_COEFFICIENTS
+from mcgw.sampling.rules import multiply
+from mcgw.scene.fields import EXACT
+
+__all__ = [
+    "APART",
+    "MOST",
+    "MOST_IN_CELL",
+    "TABLES",
+    "WHOLE",
+    "U",
+    "length_of",
+    "meeting",
+    "raised",
+    "series_of",
+]
+
+MOST, MOST_IN_CELL = 12, 19  # moments: what is not resolved by so many is left to the children, or refused
+APART, _PARTLY, WHOLE = 0, 1, 2
+U = (1 + NODES) / 2
+_SMALLEST = 1 / 64  # see `Precision.of_least`
+_NODES = 32  # that add to one sum, with errors of their own
+
+
+def _times_u(order: int) -> Any:
+    """Multiplies coefficients, from their right, by u = (1 + x)/2, and leaves zeros where they are."""
+    matrix = np.eye(order) / 2 + np.eye(order, k=1) / 4 + np.eye(order, k=-1) / 4
+    matrix[0, 1] = 0.5
+    return matrix
+
+
+TABLES = np.ascontiguousarray(TO_COEFFICIENTS.T), _times_u(len(NODES)), U
+
+
+@njit(nogil=True, cache=True)
+def meeting(
+    low: Any, high: Any, rooted: Any, split: Any, start: Any, end: Any, parent: Any, of_least: Any
+) -> Any:
+    """Whether a row and a node have no heights in common, some, or the row is one smooth function there.
+
+    Parameters
+    ----------
+    low, high : float
+        Between which the formula of the row holds.
+    rooted : bool
+        Whether the row begins with a root.
+    split : bool
+        Whether a modulus that it depends on has a break inside the node.
+    start, end : float
+        Of the node.
+    parent : bool
+        Whether the node has children. Their moments are good to a share of its width, and a lone asperity may
+        be nearer to its start.
+    of_least : bool
+        As `Precision.of_least`.
+    """
+    if not (low < end and high > start):
+        return APART
+    begun = low < start or (low == start and not rooted and not (parent and of_least))
+    return WHOLE if begun and end <= high and not split else _PARTLY
+
+
+@njit(nogil=True, cache=True)
+def _share_of_least(values: Any) -> Any:
+    """The least of some values over the largest, but no less than a share: sums may change their sign."""
+    least, largest = np.inf, 0.0
+    for value in values:
+        least, largest = min(least, abs(value)), max(largest, abs(value))
+    return max(least, _SMALLEST * largest) / largest if largest > 0.0 else 1.0
+
+
+@njit(inline="always")
+def series_of(
+    values: Any, node: Any, row: Any, limits: Any, rough: Any, of_many: Any, transform: Any, c: Any
+) -> Any:
+    """Chebyshev series of a row on a node.
+
+    Parameters
+    ----------
+    values : ndarray
+        At the points of the node, shape (1, points); overwritten.
+    node, row : int
+        Whose they are.
+    limits : tuple
+        `Nodes.limits`.
+    rough : float
+        Share of the values that the last digit of a height makes, besides that of the modulus.
+    of_many : bool
+        Keep what counts in a sum over many nodes, whose errors add up: it is used if others need the moments.
+    transform : ndarray
+        Of values to coefficients, from their right.
+    c : ndarray
+        Where the coefficients are written, shape (1, order): zero beyond those kept.
+
+    Returns
+    -------
+    int
+        How many leading coefficients count: so many moments the node must have.
+    """
+    even, noise, crowd, graded, total, accuracy, of_least = limits
+    of_largest = even[node] if graded[row] else 1.0
+    if of_least:
+        of_largest = _share_of_least(values[0])
+    multiply(values, transform, c)
+    tail = 0.0
+    for i in range(c.shape[1] - 1, -1, -1):
+        tail += abs(c[0, i])
+        values[0, i] = tail
+    enough = max(of_largest * tail, total[row] / crowd[node])
+    if of_least:
+        enough = max(enough, EXACT / accuracy * tail)
+    least = max(noise[node] if graded[row] else 0.0, rough) * tail
+    alone, kept = max(accuracy * enough, least), max(accuracy / (_NODES if of_many else 1) * enough, least)
+    count = c.shape[1]
+    while count > 0 and not values[0, count - 1] > alone:
+        count -= 1
+        if not values[0, count] > kept:
+            c[0, count] = 0.0
+    return count
+
+
+@njit(nogil=True, cache=True)
+def raised(c: Any, power: Any, times_u: Any) -> None:
+    """Put a whole power of u into a series that was cut without it: accurate to the row down to u = 0."""
+    before = np.empty(c.shape)
+    for _ in range(power):
+        before[:] = c
+        multiply(before, times_u, c)
+
+
+@njit(nogil=True, cache=True)
+def length_of(c: Any) -> Any:
+    """How many coefficients there are up to the last that is not zero."""
+    n = c.shape[1]
+    while n > 0 and c[0, n - 1] == 0.0:
+        n -= 1
+    return n
