@@ -1,7 +1,7 @@
 """Laws of the summit heights, reduced to mean 0 and standard deviation 1."""
 
 from dataclasses import dataclass
-from typing import ClassVar, Protocol
+from typing import Any, ClassVar, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -67,6 +67,11 @@ class HeightLaw(Protocol):
         ...
 
 
+def normal_log_ratio(s: Any, t: Any) -> Any:
+    """``log(density(s + t)/density(s))`` of the normal law, of arrays or of numbers: it may be compiled."""
+    return -t * (s + t / 2)
+
+
 @dataclass(frozen=True)
 class Gaussian:
     """The normal law of Greenwood and Williamson.
@@ -96,7 +101,7 @@ class Gaussian:
 
     def log_ratio(self, s: Array, t: Array) -> Array:
         """``-t (s + t/2)``."""
-        return -t * (s + t / 2)
+        return np.asarray(normal_log_ratio(s, t))
 
     def below(self, s: Array) -> Array:
         """``Phi(s)``."""

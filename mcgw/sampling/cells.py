@@ -19,11 +19,11 @@ import numpy as np
 from numpy.polynomial import chebyshev
 from numpy.typing import NDArray
 
-from analytic import Grading, HeightLaw, PiecewiseSeries, bends
+from analytic import Gaussian, Grading, HeightLaw, PiecewiseSeries, bends
 from analytic.elementary import exp
 from mcgw.machine.in_threads import in_threads
 from mcgw.machine.kept import kept
-from mcgw.sampling.exp_log import weigh_exponentials
+from mcgw.sampling.exp_log import weigh_exponentials, weigh_normal_densities
 from mcgw.sampling.rules import chebyshev_points, chebyshev_transform, gauss_legendre, product
 from mcgw.sampling.spacing import EXACTLY, Gaps, Pricing, cuts
 from mcgw.sampling.stretches import begins_and_breaks
@@ -58,6 +58,7 @@ _ORDER = 20
 NODES = chebyshev_points(_ORDER)
 TO_COEFFICIENTS = chebyshev_transform(NODES)
 _X, _W = gauss_legendre(20)
+_ONE = np.ones(1)
 
 
 @dataclass(frozen=True, eq=False)
@@ -276,18 +277,24 @@ def evenness(grading: Grading, e: Array) -> Array:
 
 def _mass(law: HeightLaw, a: Array, t: Array) -> Array:
     """Probability between a and a + t, relative to the density at a: `t` has shape (cells, points)."""
-    mass = np.empty(t.shape)
+    return t * _densities(law, a, t, _X, _W)
+
+
+def _densities(law: HeightLaw, a: Array, t: Array, points: Array, weights: Array) -> Array:
+    """Weighted sums of the densities at a + points t, relative to that at a."""
+    sums, normal = np.empty(t.shape), isinstance(law, Gaussian)
+    low = a.copy()  # compiled loops are made once more for what cannot be written to
 
     def weigh(first: int) -> None:
         some = slice(first, first + _TOGETHER)
-        heights = law.log_ratio(a[some, None, None], t[some, :, None] * _X).reshape(-1, len(_X))
-        sums = np.empty(len(heights))
-        if not weigh_exponentials(heights, _W, sums):
-            sums = product(exp(heights), _W)
-        mass[some] = sums.reshape(-1, t.shape[1])
+        if normal and weigh_normal_densities(low[some], t[some], points, weights, sums[some]):
+            return
+        logs = law.log_ratio(a[some, None, None], t[some, :, None] * points).reshape(-1, len(points))
+        if not weigh_exponentials(logs, weights, sums[some].reshape(-1)):
+            sums[some] = product(exp(logs), weights).reshape(-1, t.shape[1])
 
     in_threads(weigh, range(0, len(a), _TOGETHER), least=_MANY)
-    return t * mass
+    return sums
 
 
 def _stretch(law: HeightLaw, a: Array, width: Array, mass: Array) -> Array:
@@ -295,7 +302,7 @@ def _stretch(law: HeightLaw, a: Array, width: Array, mass: Array) -> Array:
     u = (1 + NODES) / 2
     t = width[:, None] * u
     for _ in range(8):  # the mass is nearly linear in t: quadratic convergence from the first step
-        step = (_mass(law, a, t) - u * mass[:, None]) / exp(law.log_ratio(a[:, None], t))
+        step = (_mass(law, a, t) - u * mass[:, None]) / _densities(law, a, t, _ONE, _ONE)
         t = t - step
         if np.all(np.abs(step) < _CONVERGED * t):
             break
