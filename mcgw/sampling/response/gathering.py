@@ -62,7 +62,10 @@ def gathered(first: Lines, second: Lines, given: int, computed: int) -> tuple[An
     """
     row, start, length, at = (np.concatenate(both) for both in zip(first[:4], second[:4], strict=True))
     values = first.values, second.values
-    return tuple(_gather(row, start, length, at, len(first.row), values, given, computed))
+    lines = row, start, length, at, len(first.row), values
+    needed = _needed(lines, given, computed)
+    tiles = np.zeros((len(needed[-1]), FOUR, FOUR))  # here: NumPy asks for large pages, compiled loops do not
+    return tuple(_gather(lines, needed, given, computed, tiles))
 
 
 @njit(nogil=True, cache=True)
@@ -145,23 +148,32 @@ def _last_steps(order: Any, ends: Any, sources: Any, given: Any) -> Any:
 
 
 @njit(nogil=True, cache=True)
-def _fill(tiles: Any, at: Any, values: Any, filled: Any, row: Any) -> None:
-    """Write the values of a line into its tiles, which are at these places."""
-    for column in range(values.size):
-        four = column // FOUR
-        if filled >> np.uint32(four) & np.uint32(1):
-            tiles[at[four], row, column % FOUR] = values[column]
+def _fill(tiles: Any, tile_of: Any, source: Any, row: Any, values: Any, at: Any, n: Any, filled: Any) -> None:
+    """Write the `n` values of a line, from `at` on, into the tiles of its groups, from `source` on."""
+    for first in range(0, n, FOUR):
+        if filled & np.uint32(1):
+            tile = tile_of[source]
+            for column in range(min(FOUR, n - first)):
+                tiles[tile, row, column] = values[at + first + column]
+        filled >>= np.uint32(1)
+        source += 1
 
 
 @njit(nogil=True, cache=True)
-def _gather(
-    row: Any, start: Any, length: Any, at: Any, n_first: Any, values: Any, given: Any, computed: Any
-) -> Any:
-    first, second = values
+def _needed(all_lines: Any, given: Any, computed: Any) -> Any:
+    """What is not zero in each line, then as `_sources`."""
+    row, start, length, at, n_first, (first, second) = all_lines
     filled = np.empty(row.size, dtype=np.uint32)
     _find_filled(length[:n_first], at[:n_first], first, filled[:n_first])
     _find_filled(length[n_first:], at[n_first:], second, filled[n_first:])
     firsts, lines, ends, sources = _sources(row // FOUR - given, start, filled, given, computed)
+    return filled, firsts, lines, ends, sources
+
+
+@njit(nogil=True, cache=True)
+def _gather(all_lines: Any, needed: Any, given: Any, computed: Any, tiles: Any) -> Any:
+    row, start, length, at, n_first, (first, second) = all_lines
+    filled, firsts, lines, ends, sources = needed
     order = _sweep_down(ends, sources, given)
     last = _last_steps(order, ends, sources, given)
     place, tile_of = np.full(given + computed, -1), np.empty(given + computed, dtype=np.int64)
@@ -169,7 +181,7 @@ def _gather(
     free, n_free, places = np.empty(given + computed, dtype=np.int64), 0, 0
     fetches, n_fetches, n_tiles = np.empty(given, dtype=np.int64), 0, 0
     fetch_ends, tile_ends = np.empty(computed, dtype=np.int64), np.empty(computed, dtype=np.int64)
-    used, tiles = np.empty(sources.size, dtype=np.uint64), np.zeros((sources.size, FOUR, FOUR))
+    used = np.empty(sources.size, dtype=np.uint64)
     for step in range(computed):
         group = leaving[step - 1] if step else -1
         while group >= 0:
@@ -195,8 +207,11 @@ def _gather(
                 used[n_tiles] = FOUR * place[group]
                 n_tiles += 1
         for line in lines[firsts[g] : firsts[g + 1]]:
-            own = (first if line < n_first else second)[at[line] : at[line] + length[line]]
-            _fill(tiles, tile_of[start[line] // FOUR :], own, filled[line], row[line] % FOUR)
+            where, own = start[line] // FOUR, row[line] % FOUR
+            if line < n_first:
+                _fill(tiles, tile_of, where, own, first, at[line], length[line], filled[line])
+            else:
+                _fill(tiles, tile_of, where, own, second, at[line], length[line], filled[line])
         fetch_ends[step], tile_ends[step] = n_fetches, n_tiles
     fetches = fetches[:n_fetches]
     return (

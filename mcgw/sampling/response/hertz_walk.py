@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mcgw.machine.compiling import njit
-from mcgw.machine.in_threads import in_threads, pieces
+from mcgw.machine.in_threads import in_threads
 from mcgw.sampling.response.entries import Entries
 from mcgw.sampling.response.hertz_rows import raise_to
 from mcgw.sampling.response.nodes import Nodes
@@ -29,7 +29,7 @@ __all__ = ["HertzWalk"]
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
-_ROWS = 512  # worth another thread
+_ROWS = 512  # worth another thread; what is found of them stays in memory that the process has
 _DEEPEST = 128  # nodes that wait: one a level, and a tree has no more than 64
 
 
@@ -58,12 +58,13 @@ class HertzWalk:
         The last two are the lowest start of a cell on which a row is not resolved, and the lowest separation
         that is not an edge; infinite if there is none.
         """
-        left = self._links[0]
+        rows = len(self._rows[0]) if self._links[0].size else 0
 
-        def share(ends: tuple[int, int]) -> tuple[Any, ...]:
+        def share(first: int) -> tuple[Any, ...]:
+            ends = first, min(first + _ROWS, rows)
             return tuple(_walk(ends, self._rows, self._links, self._nodes, self._limits, TABLES))
 
-        parts = in_threads(share, pieces(len(self._rows[0]) if left.size else 0, _ROWS))
+        parts = in_threads(share, range(0, max(rows, 1), _ROWS))
         found, coefficients, plain, rooted, unresolved, inside = zip(*parts, strict=True)
         node, row, root, length = np.concatenate(found).T.copy()
         entries = Entries(node, row, root.astype(bool), length, np.concatenate(coefficients))

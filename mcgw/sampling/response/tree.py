@@ -55,23 +55,19 @@ class Tree:
 @lru_cache(maxsize=8)  # another grading asks for the same
 def tree_over(mesh: Mesh) -> Tree:
     """Pair neighbours, level by level, up to one root."""
-    first, last = list(range(mesh.size)), list(range(1, mesh.size + 1))
-    left, right = [-1] * mesh.size, [-1] * mesh.size
-    probability = [float(p) for p in mesh.probability]
-    level = list(range(mesh.size))
+    cells, size = mesh.size, max(2 * mesh.size - 1, 0)
+    (first, last, left, right), probability = np.full((4, size), -1), np.empty(size)
+    level = np.arange(cells)
+    first[:cells], last[:cells], probability[:cells] = level, level + 1, mesh.probability
+    end = cells
     while len(level) > 1:
-        above = []
-        for a, b in zip(level[::2], level[1::2], strict=False):
-            above.append(len(first))
-            first.append(first[a])
-            last.append(last[b])
-            left.append(a)
-            right.append(b)
-            probability.append(probability[a] + probability[b])
-        level = above + level[len(level) - len(level) % 2 :]
-    links = [np.array(column, dtype=np.int64) for column in (first, last, left, right)]
-    heights = _heights_above(mesh, mesh.edges[links[0]], mesh.edges[links[1]])
-    return Tree(links[0], links[1], links[2], links[3], np.array(probability, dtype=np.float64), heights)
+        a, b = level[: len(level) // 2 * 2].reshape(-1, 2).T
+        above = np.arange(end, end + len(a))
+        first[above], last[above], left[above], right[above] = first[a], last[b], a, b
+        probability[above] = probability[a] + probability[b]
+        level, end = np.concatenate([above, level[2 * len(a) :]]), end + len(a)
+    heights = _heights_above(mesh, mesh.edges[first], mesh.edges[last])
+    return Tree(first, last, left, right, probability, heights)
 
 
 def _heights_above(mesh: Mesh, start: Array, end: Array) -> Array:
