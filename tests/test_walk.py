@@ -9,13 +9,12 @@ import analytic
 import mcgw
 from mcgw.sampling.cells import mesh_of
 from mcgw.sampling.response.hertz_rows import hertz_rows
-from mcgw.sampling.response.nodes import Nodes, Precision
+from mcgw.sampling.response.nodes import LAST_DIGITS, Nodes, Precision
 from mcgw.sampling.response.rows import Start
 from mcgw.sampling.response.tree import tree_over
 from mcgw.sampling.response.walk import walk
 
 SURFACE = analytic.Surface(sigma=1.37e-6, radius=1.3e-5, eta=3e8, nominal_area=1e-4, E_star=78.6e9)
-EXACTLY = Precision()
 QUANTITIES = ("load", "area", "stiffness", "conductance")
 GRADINGS = {
     "homogeneous": analytic.Homogeneous(),
@@ -45,7 +44,7 @@ class InNumpy:
         ]
 
 
-def asked(grading, number, precision=EXACTLY):
+def asked(grading, number, precision=LAST_DIGITS):
     h = tuple(np.linspace(0, 4, number))
     scene = mcgw.Scene(
         SURFACE,
@@ -77,7 +76,7 @@ def found(mesh, tree, rows, nodes):
 
 @pytest.mark.parametrize("grading", GRADINGS.values(), ids=GRADINGS)
 @pytest.mark.parametrize("number", [1, 7, 301])
-@pytest.mark.parametrize("precision", [EXACTLY, Precision(1e-4, of_least=True)])
+@pytest.mark.parametrize("precision", [LAST_DIGITS, Precision(1e-4, of_least=True)])
 def test_both_walks_find_the_same(grading, number, precision):
     """The same nodes for every row, and the same bits of every coefficient."""
     mesh, tree, rows, nodes = asked(grading, number, precision)
