@@ -335,38 +335,61 @@ def test_convergence_without_slopes(make_scene, kept, tmp_path):
 def test_tradeoff(make_scene, kept, tmp_path):
     from mcgw.statistics.methods import Method
     from mcgw.statistics.tradeoff import Point, Tradeoff
+    from mcgw.statistics.ways import Way
+    from mcgw.statistics.wishes import Advice, Wish
 
     def none(size, seed):
         return np.zeros(2)
 
     methods = (
         Method("tail", "surfaces", (1.0, 4.0), -0.5, none),
-        Method("strata", "strata", (1.0,), -1.5, none),
+        Method("stratified", "strata", (1.0,), -1.5, none),
         Method("theory", "points", (64.0,), None, none),
     )
     points = (
         Point("tail", "surfaces", 1.0, np.array([0.2, 0.4]), 0.25, 1e-3, 9.0, 0.0, 4),
         Point("tail", "surfaces", 4.0, np.array([0.1, 0.2]), 0.125, 4e-3, 9.0, 0.0, 4),
-        Point("strata", "strata", 1.0, np.array([0.01, 0.03]), 0.5, 2e-3, 9.0, 0.0, 4),
+        Point("stratified", "strata", 1.0, np.array([0.01, 0.03]), 0.5, 2e-3, 9.0, 0.0, 4),
         Point("theory", "points", 64.0, np.array([0.0, 1e-15]), 0.0, 5e-3, 9.0, 0.0, 1),
     )
     scene = make_scene(title="T", quantities=("area", "load"))
-    save_tradeoff(Tradeoff(scene, (0.0, 2.0), points, methods, (), 1.0), tmp_path / "x.png")
+    each = [(1e-13, 8e-14, 9e-5), (1e-6, 3e-7, 5e-5)]
+    ways = [Way(scene.replace(sampler="cells", accuracy=a), "cells", e, 0.0, t) for a, e, t in each]
+    ways += [
+        Way(scene.replace(sampler="tail"), "tail", 0.0, 0.0, 0.015),
+        Way(scene.replace(sampler="auto", law_error=1e-3), "aggregate", np.nan, 0.0, 2e-6),
+    ]
+    advice = (
+        Advice(Wish("mean", 0.02), scene, "cells", 0.5),
+        Advice(Wish("surfaces", 1e-6), scene, "cells", 0.7),
+    )
+    found = Tradeoff(scene, (0.0, 2.0), points, methods, tuple(ways), advice, 1.0)
+    save_tradeoff(found, tmp_path / "x.png")
     (figure,) = kept
+    left, right = figure.axes
     assert figure.get_suptitle() == "T"
-    assert figure.axes[0].get_ylabel() == "rms relative error of the mean area"
-    labels = [text.get_text() for text in figure.legends[0].get_texts()]
-    assert labels == ["tail, size$^{-1/2}$", "strata, size$^{-3/2}$", "theory"]
-    for k, (axis, h) in enumerate(zip(figure.axes, (0, 2), strict=True)):
-        assert (axis.get_title(), axis.get_xlabel()) == (f"$d/\\sigma$ = {h}", "CPU time (s)")
-        assert (axis.get_xscale(), axis.get_yscale()) == ("log", "log")
-        for line, method in zip(markers_of(axis), methods, strict=True):
-            own = [p for p in points if p.method == method.name]
-            np.testing.assert_array_equal(line.get_xdata(), [p.cpu for p in own])
-            np.testing.assert_array_equal(line.get_ydata(), [max(p.rms[k], 1e-16) for p in own])
-        bars = bars_of(axis)
-        own = points[:2]
-        np.testing.assert_allclose(bars[:2, 2], [p.rms[k] * (1 + p.rms_stderr) for p in own])
+    assert [axis.get_xlabel() for axis in (left, right)] == ["time of a surface (ms)", "time (s)"]
+    assert right.get_ylabel() == "rms relative error of the mean area"
+    assert right.get_title() == "Its mean at $d/\\sigma$ = 2"
+    said = [text.get_text() for text in left.get_legend().get_texts()]
+    assert said[0] == "cells: accuracy asked"
+    assert "tail: to the last digit, 15 ms" in said
+    asked, seen, *others = left.get_lines()
+    spent = next(line for line in others if line.get_marker() == "^")
+    np.testing.assert_allclose(asked.get_xydata(), [(0.09, 1e-13), (0.05, 1e-6)])
+    np.testing.assert_allclose(seen.get_ydata(), [8e-14, 3e-7])
+    np.testing.assert_allclose(spent.get_xydata(), [(0.002, 1e-3)])
+    assert left.get_xscale() == "log"
+    named = [text.get_text() for text in right.get_legend().get_texts()]
+    assert {"tail (size$^{-1/2}$)", "stratified (size$^{-3/2}$)", "theory"} <= set(named)
+    for line, method in zip(markers_of(right), methods, strict=False):
+        own = [p for p in points if p.method == method.name]
+        np.testing.assert_array_equal(line.get_xdata(), [p.wall for p in own])
+        np.testing.assert_array_equal(line.get_ydata(), [max(p.rms[1], 1e-16) for p in own])
+    star = next(line for line in right.get_lines() if line.get_marker() == "*")
+    np.testing.assert_allclose(star.get_xydata(), [(0.5, 0.02 / 1.96)])  # values of surfaces are on the left
+    bars = bars_of(right)
+    np.testing.assert_allclose(bars[:2, 2], [p.rms[1] * (1 + p.rms_stderr) for p in points[:2]])
 
 
 def test_contact_map(make_scene, kept, tmp_path):

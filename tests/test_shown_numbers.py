@@ -334,16 +334,23 @@ def test_few_contacts_are_said(scene, tmp_path, capsys):
 @pytest.fixture(scope="module")
 def study(scene):
     from mcgw.statistics.methods import methods_for
-    from mcgw.statistics.tradeoff import Advice, Point, Tradeoff
+    from mcgw.statistics.tradeoff import Point, Tradeoff
+    from mcgw.statistics.ways import Way
+    from mcgw.statistics.wishes import Advice, Wish
 
     small = dataclasses.replace(scene, keep="sums", quantities=("load", "area"))
     points = (
         Point("direct", "surfaces", 4.0, np.array([0.11, 0.22]), 0.25, 0.5, 0.125, 4096.0, 8),
         Point("tail", "surfaces", 16.0, np.array([0.033, 0.044]), 0.125, 2.0, 1.0, 8192.0, 6),
     )
-    advice = (Advice(0.01, dataclasses.replace(small, sampler="tail", n_surfaces=77), 3.5),)
+    ways = (
+        Way(dataclasses.replace(small, sampler="cells", accuracy=1e-6), "cells", 3e-7, 0.02, 5e-5),
+        Way(dataclasses.replace(small, sampler="auto", law_error=1e-4), "aggregate", math.nan, 0.04, 6e-6),
+    )
+    asked = dataclasses.replace(small, sampler="cells", accuracy=1e-6, n_surfaces=77)
+    advice = (Advice(Wish("mean", 0.01), asked, "cells", 3.5),)
     methods = tuple(m for m in methods_for(small, (1, 2)) if m.name in ("direct", "tail"))
-    return Tradeoff(small, (0.0, 2.0), points, methods, advice, 12.4)
+    return Tradeoff(small, (0.0, 2.0), points, methods, ways, advice, 12.4)
 
 
 def test_tradeoff(study, tmp_path, capsys, monkeypatch):
@@ -358,8 +365,22 @@ def test_tradeoff(study, tmp_path, capsys, monkeypatch):
         spread, cpu = line.rpartition("+-")[2].replace("%", " ").split()[:2]
         assert float(spread) == pytest.approx(100 * point.rms_stderr, abs=0.6)
         assert float(cpu) == point.cpu
-    assert 'sampler = "tail", n_surfaces = 77, 3.5 s of CPU' in out[5]
-    assert out[5].strip().startswith("0.01: ")
+    assert out[5].split() == [
+        "cells,",
+        "accuracy",
+        "1e-06",
+        "3.0e-07",
+        "5.00e-05",
+        "s",
+        "a",
+        "surface,",
+        "0.02",
+        "s",
+        "before",
+    ]
+    spent = "aggregate, accuracy 1e-13, law_error 0.0001 nan 6.00e-06 s a surface, 0.04 s before"
+    assert out[6].split() == spent.split()
+    assert ["a", "mean", "to", "0.01", "cells", "1e-06", "0", "77", "3.5"] in [line.split() for line in out]
     assert out[-1] == "study: 12 s"
     rows = rows_of(tmp_path / "s-tradeoff.csv")
     assert len(rows) == 2
@@ -385,24 +406,6 @@ def test_points_of_a_study_are_the_runs(scene):
     np.testing.assert_allclose(point.rms, np.sqrt([(0.01 + 0.09) / 2, (0.04 + 0.16) / 2]))
     assert (point.size, point.peak, point.seeds) == (5.0, 9.0, 2)
     assert point.rms_stderr == pytest.approx(1 / math.sqrt(4))
-
-
-def test_advice_is_from_the_exact_spread(scene):
-    from mcgw.statistics.tradeoff import Point, _advice
-
-    plain = dataclasses.replace(scene, keep="sums", quantities=("load", "area"))
-    points = [
-        Point("direct", "surfaces", 1.0, np.array([1.0]), 0.0, 1.0, 1.0, 0.0, 2),
-        Point("direct", "surfaces", 11.0, np.array([1.0]), 0.0, 6.0, 1.0, 0.0, 2),
-        Point("tail", "surfaces", 1.0, np.array([1.0]), 0.0, 0.5, 1.0, 0.0, 2),
-        Point("tail", "surfaces", 11.0, np.array([1.0]), 0.0, 2.5, 1.0, 0.0, 2),
-        Point("stratified", "strata", 1.0, np.array([1.0]), 0.0, 0.0, 0.0, 0.0, 2),
-    ]
-    found = _advice(plain, 2, points, 1e-3)
-    spread = exact.std(plain, "load")[2] / exact.mean(plain, "load")[2]
-    needed = math.ceil((spread / 1e-3) ** 2)
-    assert (found.scene.sampler, found.scene.n_surfaces) == ("tail", needed)
-    assert found.cpu == pytest.approx(2.5 + 0.2 * (needed - 11), rel=1e-9)
 
 
 def test_run_says_how_many_and_what_is_not_known(scene, tmp_path, capsys):

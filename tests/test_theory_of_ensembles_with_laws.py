@@ -104,11 +104,8 @@ def test_ways_to_a_mean_agree(values):
     for name, size in (
         ("theory: analytic.Model", 64.0),
         ("scipy.integrate.quad", 1e10),
-        ("order of moments (same asperities)", 1e13),
     ):
         assert np.abs(ways[name].errors(size, 0)).max() < 1e-9
-    rough = ways["order of moments (same asperities)"].errors(1e3, 0)
-    assert np.abs(rough).max() > 1e-7
 
 
 @pytest.mark.parametrize("sampler", ["tail", "aggregate", "stratified"])
@@ -124,7 +121,7 @@ def test_samplers_that_are_traded_off_have_the_right_mean(sampler):
 @pytest.mark.slow
 def test_tradeoff_of_a_loop():
     found = mcgw.tradeoff(scene_of(SCENES["Kogut, there and back"]), seconds=1)
-    assert {a.target for a in found.advice} >= {0.1, 0.01}
+    assert {a.wish.within for a in found.advice if a.wish.of == "mean"} >= {0.1, 0.01}
 
 
 # The convergence test

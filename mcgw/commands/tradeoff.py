@@ -44,11 +44,12 @@ def execute(args: argparse.Namespace) -> int:
     for p in found.points:
         errors = " ".join(f"{e:9.2e}" for e in p.rms)
         print(f"  {p.method:36} {p.size:9.3g} {p.unit:11} {errors}  +-{p.rms_stderr:4.0%}  {p.cpu:9.2e} s")
-    last = f"{found.separations[-1]:g}"
-    print(f"\nfor an ensemble (one standard error of the mean {quantity} at d/sigma = {last}):")
-    for a in found.advice:
-        run = f'sampler = "{a.scene.sampler}", n_surfaces = {a.scene.n_surfaces}'
-        print(f"  {a.target:g}: {run}, {a.cpu:.2g} s of CPU")
+    print("\nvalues of single surfaces (largest relative error of a few surfaces, seconds by the clock):")
+    for way in found.ways:
+        spent = f", law_error {way.scene.law_error:g}" if way.scene.law_error else ""
+        asked = f"{way.sampler}, accuracy {way.scene.accuracy:g}{spent}"
+        print(f"  {asked:40} {way.error:9.1e} {way.each:9.2e} s a surface, {way.set_up:.2g} s before")
+    print(f"\n{found}")
     print("for the mean alone: the theory, `analytic`, is exact; by samples, stratified")
     print(f"{table}: record\n{figure}: figure\nstudy: {found.seconds:.0f} s")
     return 0

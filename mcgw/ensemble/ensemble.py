@@ -13,7 +13,7 @@ from mcgw.ensemble.results import Results
 from mcgw.ensemble.tables import dataframe, dataset
 from mcgw.formats.sheet import Sheet, Shown
 from mcgw.machine.late import plotted
-from mcgw.scene.contact_text import contact_facts
+from mcgw.scene.contact_text import accuracy_facts, contact_facts
 from mcgw.scene.law_text import law_text
 from mcgw.scene.samplers import promise_of
 from mcgw.scene.scene import Scene
@@ -273,6 +273,7 @@ class Ensemble(Shown):
             ("heights", law_text(scene.heights)),
             *contact_facts(scene),
             ("drawn", f"by {self.sampler}, seed {scene.seed}"),
+            *accuracy_facts(scene),
             ("elasticity", scene.validity().brief),
         ]
         head = f"Ensemble of {m} surfaces of {scene.n_asperities} asperities{title}"

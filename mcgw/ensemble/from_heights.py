@@ -11,7 +11,7 @@ from mcgw.ensemble.same_surfaces import check_same
 from mcgw.ensemble.simulation import answered
 from mcgw.sampling.asperities import listing_sampler, summits_drawn
 from mcgw.sampling.law_sums import asperity_sums
-from mcgw.scene.samplers import drawn_by
+from mcgw.scene.drawn_by import drawn_by
 from mcgw.scene.scene import Scene
 
 __all__ = ["sums_of_heights"]

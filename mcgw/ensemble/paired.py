@@ -10,7 +10,7 @@ from mcgw.ensemble.ensemble import Ensemble
 from mcgw.formats.evenly import evenly
 from mcgw.formats.sheet import Sheet, Shown
 from mcgw.machine.late import plotted
-from mcgw.scene.samplers import drawn_by
+from mcgw.scene.drawn_by import drawn_by
 
 __all__ = ["Paired", "paired_ratio"]
 

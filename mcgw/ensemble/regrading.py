@@ -18,9 +18,9 @@ from mcgw.ensemble.simulation import answered, blocks, kept
 from mcgw.sampling.block import Block
 from mcgw.sampling.counted import Counted
 from mcgw.sampling.samplers import regraded, sampler_of
+from mcgw.scene.drawn_by import drawn_by
 from mcgw.scene.law_section import read_law
 from mcgw.scene.reading import as_toml
-from mcgw.scene.samplers import drawn_by
 from mcgw.scene.scene import Scene
 from mcgw.scene.storable import storable
 

@@ -123,7 +123,7 @@ def _(result: Convergence, ax: Any) -> None:
 @_draw.register
 def _(result: Tradeoff, ax: Any, *, k: int) -> None:
     draw_methods(ax, result, k)
-    ax.set(xlabel="CPU time (s)", ylabel=f"rms relative error of the mean {result.scene.quantities[0]}")
+    ax.set_ylabel(f"rms relative error of the mean {result.scene.quantities[0]}")
     ax.set_title(f"$d/\\sigma$ = {result.separations[k]:g}")
     ax.legend(fontsize=7)
 

@@ -1,4 +1,4 @@
-"""Figure of a work-precision study: error against time, one panel a separation."""
+"""Figure of a work-precision study: error of values of surfaces, and of a mean, against their time."""
 
 from pathlib import Path
 from typing import Any
@@ -11,9 +11,14 @@ from mcgw.figures.style import STYLE, shown_title
 from mcgw.formats.pictures import save_figure
 from mcgw.statistics.tradeoff import Tradeoff
 
-__all__ = ["draw_methods", "save_tradeoff"]
+__all__ = ["draw_methods", "draw_ways", "save_tradeoff"]
 
 _FLOOR = 1e-16
+_WIDE = 20  # times that are better told apart by their logarithms
+_TWO = 1.96  # standard errors that 95 of 100 keep
+_CELLS, _TAIL, _CROWDS, _DIRECT, _STRATA, _RULE = "C0", "C1", "C2", "C3", "C4", "0.35"
+_COLOURS = {"cells": _CELLS, "tail": _TAIL, "aggregate": _CROWDS, "direct": _DIRECT, "stratified": _STRATA}
+_MARKERS = {"cells": "o", "tail": "s", "aggregate": "^", "direct": "v", "stratified": "D"}
 
 
 def save_tradeoff(found: Tradeoff, path: str | Path) -> None:
@@ -27,37 +32,69 @@ def save_tradeoff(found: Tradeoff, path: str | Path) -> None:
         The ending chooses the format: .png, .pdf, .svg.
     """
     with mpl.rc_context(STYLE):
-        columns = len(found.separations)
-        figure = Figure(figsize=(3.6 * columns + 1, 5.6), layout="constrained")
-        axes: Any = figure.subplots(1, columns, sharex=True, sharey=True, squeeze=False)[0]
-        for k, (axis, h) in enumerate(zip(axes, found.separations, strict=True)):
-            draw_methods(axis, found, k)
-            axis.set_title(f"$d/\\sigma$ = {h:g}")
-            axis.set_xlabel("CPU time (s)")
-        axes[0].set_ylabel(f"rms relative error of the mean {found.scene.quantities[0]}")
-        figure.suptitle(shown_title(found.scene, "Work and precision"), fontsize=10)
-        handles, labels = axes[0].get_legend_handles_labels()
-        figure.legend(handles, labels, loc="outside lower center", ncols=3, fontsize=8)
+        figure = Figure(figsize=(9.6, 5.6), layout="constrained")
+        left, right = figure.subplots(1, 2)
+        draw_ways(left, found)
+        draw_methods(right, found, len(found.separations) - 1)
+        figure.suptitle(shown_title(found.scene, "Work and precision"), fontsize=11)
         save_figure(figure, path)
 
 
+def draw_ways(axis: Any, found: Tradeoff) -> None:
+    """Accuracy of the values of a surface against the time of one."""
+    cells = [way for way in found.ways if way.sampler == "cells"]
+    if cells:
+        times, asked = [1e3 * way.each for way in cells], [way.scene.accuracy for way in cells]
+        axis.plot(times, asked, "o-", color=_CELLS, label="cells: accuracy asked")
+        seen = [max(way.error, _FLOOR) for way in cells]
+        axis.plot(times, seen, "o", color=_CELLS, mfc="none", label="cells: worst of a few surfaces")
+    crowds = [way for way in found.ways if way.scene.law_error]
+    for way in found.ways:
+        if way not in (*cells, *crowds):  # far off to the right
+            look = {"color": _COLOURS[way.sampler], "marker": _MARKERS[way.sampler], "ls": ""}
+            axis.plot([], [], **look, label=f"{way.sampler}: to the last digit, {1e3 * way.each:.2g} ms")
+    if crowds:
+        times, spent = [1e3 * way.each for way in crowds], [way.scene.law_error for way in crowds]
+        axis.plot(times, spent, "^--", color=_CROWDS, label="crowds: error of the law allowed")
+    axis.set(yscale="log", ylim=(1e-15, 1))
+    every = [1e3 * way.each for way in (*cells, *crowds)]
+    if every and max(every) > _WIDE * min(every):
+        axis.set_xscale("log")
+    else:
+        axis.set_xlim(0, 1.1 * max(every, default=1.0))
+    axis.set_xlabel("time of a surface (ms)")
+    axis.set_ylabel("relative error of a value of a surface")
+    axis.set_title("Values of surfaces")
+    _legend(axis, 1)
+
+
 def draw_methods(axis: Any, found: Tradeoff, k: int) -> None:
-    """Error against time of every method at one of the separations."""
-    for i, method in enumerate(found.methods):
+    """Error of the mean against time of every method at one of the separations, each named at its end."""
+    others = iter((("-", "P"), ("--", "X"), (":", "*")))
+    for method in found.methods:
         points = found.of(method.name)
-        time = np.array([p.cpu for p in points])
+        time = np.array([p.wall for p in points])
         error = np.maximum([p.rms[k] for p in points], _FLOOR)
-        law = {-0.5: ", size$^{-1/2}$", -1.5: ", size$^{-3/2}$"}.get(method.slope or 0.0, "")
+        kind = method.name.split(",")[0]
+        line, marker = ("-", _MARKERS[kind]) if kind in _MARKERS else next(others, ("-", "."))
+        law = {-0.5: r" (size$^{-1/2}$)", -1.5: r" (size$^{-3/2}$)"}.get(method.slope or 0.0, "")
         axis.errorbar(
-            time, error, error * np.array([p.rms_stderr for p in points]), color=f"C{i % 6}",
-            marker="os^"[i // 6 % 3], ms=4, mfc="none", lw=1, ls="-" if i < 6 else "--",
-            label=f"{method.name}{law}",
+            time, error, error * np.array([p.rms_stderr for p in points]), color=_COLOURS.get(kind, _RULE),
+            marker=marker, ms=4.5, lw=1.2, ls=line, label=f"{method.name}{law}",
         )  # fmt: skip
-    low, high = 1e-2, 1e1
-    for slope, start in ((-0.5, 3e-3), (-1.5, 1e-5)):
-        axis.plot([low, high], [start, start * (high / low) ** slope], ":", color="0.5", lw=1)
-        end = (high, start * (high / low) ** slope)
-        axis.annotate(f"slope {slope:g}", end, fontsize=7, color="0.4", ha="right", va="bottom")
-    axis.set_xscale("log")
-    axis.set_yscale("log")
-    axis.set_ylim(_FLOOR / 3, 10)
+    axis.set(xscale="log", yscale="log", ylim=(_FLOOR / 5, 10))
+    advised = [advice for advice in found.advice if advice.wish.of == "mean"]
+    if k == len(found.separations) - 1 and advised:
+        axis.plot(
+            [a.seconds for a in advised], [a.wish.within / _TWO for a in advised], "*", ms=11, mfc="none",
+            color="k", label="advised for the next decades",
+        )  # fmt: skip
+    axis.set_xlabel("time (s)")
+    axis.set_ylabel(f"rms relative error of the mean {found.scene.quantities[0]}")
+    axis.set_title(f"Its mean at $d/\\sigma$ = {found.separations[k]:g}")
+    _legend(axis, 2)
+
+
+def _legend(axis: Any, columns: int) -> None:
+    """Below the panel, where nothing is drawn."""
+    axis.legend(fontsize=8, loc="upper center", bbox_to_anchor=(0.5, -0.14), ncols=columns)

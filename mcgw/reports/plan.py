@@ -2,13 +2,19 @@
 
 from dataclasses import dataclass
 
+import numpy as np
+
 from analytic import QUANTITIES
 from mcgw.ensemble.forecast import forecast
 from mcgw.jobs.duration import in_words, seconds_for
 from mcgw.machine.terminal import one_line
 from mcgw.reports.elasticity import two_questions
+from mcgw.sampling.block import Sampler
+from mcgw.sampling.counted import Counted
 from mcgw.sampling.samplers import sampler_of
 from mcgw.scene.contact_text import contact_facts
+from mcgw.scene.fields import EXACT
+from mcgw.scene.mistakes import COARSEST
 from mcgw.scene.samplers import promise_of
 from mcgw.scene.scene import Scene
 
@@ -37,6 +43,12 @@ class Plan:
         Of the results of all surfaces, before compression.
     seconds : float
         Expected for all surfaces on this machine.
+    bits : dict of int to float
+        Share of the asperities in cells that are drawn from uniforms of so many bits.
+    law_error : float
+        Distance from the exact laws that was spent, of what `Scene.law_error` allows.
+    at : dict of float to float
+        Seconds at other accuracies, where they would change.
     """
 
     sampler: str
@@ -48,6 +60,9 @@ class Plan:
     moments: int
     bytes: int
     seconds: float
+    bits: dict[int, float]
+    law_error: float
+    at: dict[float, float]
 
 
 def plan_of(scene: Scene) -> Plan:
@@ -66,7 +81,32 @@ def plan_of(scene: Scene) -> Plan:
         sampler.moments,
         8 * columns * surfaces,
         seconds_for(scene, sampler, surfaces),
+        _bits(sampler),
+        float(getattr(sampler, "law_error", 0.0)) if scene.law_error else 0.0,
+        _at_others(scene, sampler, surfaces),
     )
+
+
+def _bits(sampler: Sampler) -> dict[int, float]:
+    """Share of the asperities in cells by the bits of their uniforms; none where all have a whole word."""
+    bits = getattr(sampler, "bits", None)
+    if bits is None or not isinstance(sampler, Counted):
+        return {}
+    share = sampler.mesh.probability / sampler.mesh.probability.sum()
+    return {int(number): float(share[bits == number].sum()) for number in np.unique(bits)}
+
+
+def _at_others(scene: Scene, sampler: Sampler, surfaces: int) -> dict[float, float]:
+    """Seconds at the next decades of accuracy; of a scene to its last digits, at two that are coarser."""
+    if not isinstance(sampler, Counted) or not sampler.cells or sampler.law_error:
+        return {}  # to it, or to its law, accuracy means nothing
+    others = (1e-6, 1e-3) if scene.exact else (scene.accuracy / 10, scene.accuracy * 10)
+    found = {}
+    for accuracy in others:
+        if EXACT <= accuracy <= COARSEST:
+            asked = scene.replace(accuracy=accuracy, sampler=sampler.name)
+            found[accuracy] = seconds_for(asked, sampler_of(asked), surfaces)
+    return found
 
 
 def plan_text(scene: Scene, plan: Plan) -> str:
@@ -82,6 +122,7 @@ def plan_text(scene: Scene, plan: Plan) -> str:
         *(f"  {word:13} {what}" for word, what in contact_facts(scene)),
         f"  results       {plan.bytes / 1e6:.4g} MB before compression",
         f"  time          about {in_words(plan.seconds)} on this machine",
+        *_accuracy_lines(scene, plan),
         *(f"  {line}" for line in two_questions(scene.validity())),
         "not done:",
     ]
@@ -93,3 +134,20 @@ def plan_text(scene: Scene, plan: Plan) -> str:
     if left_out:
         lines.append(f"  {', '.join(left_out)}: not asked for")
     return "\n".join(lines)
+
+
+def _accuracy_lines(scene: Scene, plan: Plan) -> list[str]:
+    """What was chosen of the accuracy, and what others would cost."""
+    drawn = ", ".join(f"{share:.0%} from {bits} bits" for bits, share in plan.bits.items())
+    lines = [
+        f"  accuracy      {scene.accuracy:g} of every value" + (f"; asperities: {drawn}" if drawn else "")
+    ]
+    if plan.at:
+        ratios = ", ".join(f"{a:g}: {t / plan.seconds:.2g} x" for a, t in plan.at.items())
+        lines.append(f"                time at others: {ratios}")
+    if scene.law_error:
+        what = (
+            f"{plan.law_error:.2g} of {scene.law_error:g} spent" if plan.law_error else "nothing of it spent"
+        )
+        lines.append(f"  law_error     {what}")
+    return lines

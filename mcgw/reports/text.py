@@ -13,7 +13,7 @@ from mcgw.formats.csv_table import Row
 from mcgw.formats.evenly import evenly
 from mcgw.machine.terminal import one_line
 from mcgw.reports.elasticity import two_questions
-from mcgw.scene.contact_text import contact_facts
+from mcgw.scene.contact_text import accuracy_facts, contact_facts
 from mcgw.statistics.comparison import FALSE_ALARM, Comparison, Verdict
 
 __all__ = [
@@ -56,6 +56,7 @@ def summary(ensemble: Ensemble, attributes: dict[str, Any]) -> str:
         f"  grading       {scene.grading}",
         *(f"  {word:13} {what}" for word, what in contact_facts(scene)),
         f"  sampler       {ensemble.sampler}, seed {scene.seed}",
+        *(f"  {word:13} {what}{_spent(word, attributes)}" for word, what in accuracy_facts(scene)),
         f"  complete      {'yes' if attributes['complete'] else 'no'}",
         f"  digest        {attributes['digest']}",
         f"  made          {attributes['date']} in {attributes['wall_seconds']:.2f} s on {attributes['cpu']}",
@@ -73,6 +74,12 @@ def summary(ensemble: Ensemble, attributes: dict[str, Any]) -> str:
         for k in evenly(len(ensemble.separations), _MOST_ROWS):
             lines.append(f"  {scene.separations[k]:8.3f} {mean[k]:13.6g} {std[k]:11.3g} {stderr[k]:11.3g}")
     return "\n".join(lines)
+
+
+def _spent(word: str, attributes: dict[str, Any]) -> str:
+    """How much of what was allowed was spent."""
+    spent = attributes.get(f"{word}_spent")
+    return "" if spent is None else f", {spent:.2g} of it spent"
 
 
 def comparison_table(comparison: Comparison) -> str:

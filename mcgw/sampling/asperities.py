@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from mcgw.sampling.radius_table import RadiusTable
 
 __all__ = [
+    "Listing",
     "heights",
     "listing_sampler",
     "radii",

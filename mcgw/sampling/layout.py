@@ -30,3 +30,7 @@ class Layout:
     def starts(self) -> NDArray[np.int64]:
         """First row of each cell, and the number of all rows."""
         return np.concatenate([[0], np.cumsum(self.sizes)])
+
+    def at_most(self, other: "Layout") -> "Layout":
+        """No more than another one has."""
+        return Layout(np.minimum(self.plain, other.plain), np.minimum(self.rooted, other.rooted))

@@ -143,6 +143,7 @@ def aggregate_of(scene: Scene, crowded: int = CROWDED, distance: float = np.nan)
     varying = response.layout
     if scene.keep == "sums":
         varying = layout_of(scene, mesh, _summed(scene.quantities), precision=Precision(VARYING))
+        varying = varying.at_most(response.layout)
     return Counted("aggregate", scene, mesh, response, drawing=Crowds(varying, crowded, distance))
 
 

@@ -4,7 +4,7 @@ from analytic import Hertz
 from mcgw.scene.fields import Fields
 from mcgw.scene.law_text import law_text
 
-__all__ = ["contact_facts"]
+__all__ = ["accuracy_facts", "contact_facts"]
 
 _PLANES = {"body": "undeformed body", "mean-plane": "mean deformed plane"}
 
@@ -31,4 +31,14 @@ def contact_facts(scene: Fields) -> list[tuple[str, str]]:
     if scene.interaction is not None:
         felt = "as nominal ones" if scene.interaction.nominal else "as asperities feel them"
         facts.append(("interaction", f"from the {_PLANES[scene.interaction.reference]}, separations {felt}"))
+    return facts
+
+
+def accuracy_facts(scene: Fields) -> list[tuple[str, str]]:
+    """A word and what holds, only for what is not exact; for reports of any kind."""
+    facts = []
+    if not scene.exact:
+        facts.append(("accuracy", f"{scene.accuracy:g} of every value of a surface"))
+    if scene.law_error:
+        facts.append(("law_error", f"up to {scene.law_error:g} from the exact laws"))
     return facts

@@ -22,11 +22,11 @@ from mcgw.formats.sheet import brief
 from mcgw.scene.fields import EXACT, Fields
 from mcgw.scene.samplers import promise_of
 
-__all__ = ["mistakes"]
+__all__ = ["COARSEST", "mistakes"]
 
 _LEAST = 1e-100  # next to it, powers of a distance are beyond double precision
 _MOST_ASPERITIES = 2**53  # counts are exact in double precision up to here
-_COARSEST, _FARTHEST = 1e-2, 0.1  # accuracy of a value, error of its law
+COARSEST, _FARTHEST = 1e-2, 0.1  # accuracy of a value, error of its law
 _SAFELY = 1e4  # factor by which the sum over all asperities stays below the largest number
 
 
@@ -74,10 +74,10 @@ def _values(scene: Fields) -> Iterator[str]:
         )
     if scene.rel_err is not None and not promise_of(sampler).real_surfaces:
         yield f'ensemble.rel_err: sampler = "{sampler}" has no variance to stop by; take another'
-    if not EXACT <= scene.accuracy <= _COARSEST:
+    if not EXACT <= scene.accuracy <= COARSEST:
         yield (
             f"ensemble.accuracy = {scene.accuracy:g}: give a number from {EXACT:g}, the last digits, to "
-            f"{_COARSEST:g}"
+            f"{COARSEST:g}"
         )
     if not 0 <= scene.law_error <= _FARTHEST:
         yield (

@@ -1,12 +1,8 @@
 """The samplers that a scene can ask for by name, and what each of them promises."""
 
-from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from dataclasses import dataclass
 
-if TYPE_CHECKING:
-    from mcgw.scene.scene import Scene
-
-__all__ = ["SAMPLERS", "Promise", "drawn_by", "promise_of"]
+__all__ = ["SAMPLERS", "Promise", "promise_of"]
 
 
 @dataclass(frozen=True)
@@ -32,6 +28,8 @@ class Promise:
         It has the asperities of each surface, which finds its own balance where they press each other down.
     needs_density : bool, optional
         It draws from the density of the heights, which a list of measured ones has not.
+    spends : bool, optional
+        Its laws are a little off the exact ones: ``auto`` takes it where a scene allows that.
     not_done : tuple of str, optional
         What it spares, for people; ``{spared}`` stands for the asperities that do not touch.
     """
@@ -44,6 +42,7 @@ class Promise:
     own_laws: bool = False
     finds_balance: bool = True
     needs_density: bool = False
+    spends: bool = False
     not_done: tuple[str, ...] = ()
 
 
@@ -59,6 +58,7 @@ _PROMISES = {
         own_radii=False,
         finds_balance=False,
         needs_density=True,
+        spends=True,
         not_done=(_UNTOUCHED, _CROWDED),
     ),
     "stratified": Promise(
@@ -76,10 +76,3 @@ SAMPLERS = ("auto", *_PROMISES)
 def promise_of(sampler: str) -> Promise:
     """What a sampler promises; ``auto`` takes one that promises all."""
     return _PROMISES.get(sampler, Promise(own_laws=True))
-
-
-def drawn_by(scene: "Scene", sampler: str) -> "Scene":
-    """The scene that says by which sampler it was drawn, where it left the choice to ``auto``."""
-    if scene.sampler == "auto" and scene.law_error and sampler == "aggregate":
-        return scene  # its crowds follow from what may be spent
-    return replace(scene, sampler=sampler)

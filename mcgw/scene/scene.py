@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 from analytic import Grading, MeasuredRadii, RandomCurvature, Surface
 from analytic.laws import ContactLaw, Film, Tangential
 from mcgw.formats.sheet import Sheet, Shown
-from mcgw.scene.contact_text import contact_facts
+from mcgw.scene.contact_text import accuracy_facts, contact_facts
 from mcgw.scene.ensemble_section import LeftOut
 from mcgw.scene.fields import EXACT, Fields
 from mcgw.scene.law_text import law_text
@@ -244,6 +244,7 @@ class Scene(Fields, Shown):
                 f"{stop} {self.n_surfaces} surfaces of {self.n_asperities} asperities ({self.count}), "
                 f"seed {self.seed}, sampler {self.sampler}".strip(),
             ),
+            *accuracy_facts(self),
         ]
         return Sheet(f"Scene: {self.title}" if self.title else "Scene", facts)
 

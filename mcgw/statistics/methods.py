@@ -15,12 +15,7 @@ from scipy.integrate import quad
 import analytic
 from mcgw.ensemble.simulation import blocks
 from mcgw.errors import RunError
-from mcgw.sampling.asperities import touching_summits
-from mcgw.sampling.cells import mesh_of
-from mcgw.sampling.counted import Counted
-from mcgw.sampling.law_sums import asperity_sums
-from mcgw.sampling.response.response import Precision, response_of
-from mcgw.sampling.samplers import Sampler, aggregate_of, sampler_of
+from mcgw.sampling.samplers import Sampler, sampler_of
 from mcgw.scene.scene import Scene
 from mcgw.statistics.reference import added, by_powers, formula_ends, lowest, quantiles, reference
 
@@ -103,14 +98,10 @@ def _of_one_radius(
 ) -> list[Method]:
     """Ways that need all summits to have one radius."""
     found = []
-    for crowd in (1, 16, 256, 4096):
-        errors = partial(_by_aggregate, scene, chosen, exact, crowd)
-        found.append(Method(f"aggregate, crowds from {crowd}", "surfaces", surfaces, -0.5, errors))
+    errors = partial(_by_sampler, scene, chosen, exact, "aggregate")
+    found.append(Method("aggregate", "surfaces", surfaces, -0.5, errors))
     strata = tuple(float(10**3 * 4**k) for k in range(10))
     found.append(Method("stratified", "strata", strata, -1.5, partial(_by_strata, scene, chosen, exact)))
-    orders = tuple(10.0**k for k in range(1, 14, 2))
-    by_moments = _ByMoments.of(scene, chosen)
-    found.append(Method("order of moments (same asperities)", "1/accuracy", orders, None, by_moments))
     return found
 
 
@@ -145,46 +136,9 @@ def _by_sampler(
     return _mean(asked, chosen, sampler_of(asked)) / exact - 1
 
 
-def _by_aggregate(
-    scene: Scene, chosen: tuple[int, ...], exact: Array, crowd: int, size: float, seed: int
-) -> Array:
-    asked = replace(scene, sampler="aggregate", n_surfaces=int(size), seed=seed, keep="sums")
-    return _mean(asked, chosen, aggregate_of(asked, crowd)) / exact - 1
-
-
 def _by_strata(scene: Scene, chosen: tuple[int, ...], exact: Array, size: float, seed: int) -> Array:
     asked = replace(scene, sampler="stratified", n_surfaces=1, n_asperities=int(size), seed=seed, keep="sums")
     return _mean(asked, chosen, sampler_of(asked)) / (exact / scene.n_asperities * int(size)) - 1
-
-
-@dataclass(frozen=True)
-class _ByMoments:
-    """Moments cut at an accuracy, against a plain sum over the same asperities of one surface."""
-
-    scene: Scene
-    chosen: tuple[int, ...]
-    plain: Array
-
-    @classmethod
-    def of(cls, scene: Scene, chosen: tuple[int, ...]) -> "_ByMoments":
-        n = min(scene.n_asperities, 10**5)
-        name = scene.quantities[0]
-        scene = replace(scene, sampler="cells", n_asperities=n, quantities=(name,), n_surfaces=1, keep="sums")
-        s, ratios = touching_summits(scene, 0)
-        plain = asperity_sums(scene, np.array([s.size]), s, np.ones(s.size), ratios)
-        return cls(scene, chosen, plain[name][0])
-
-    def __call__(self, size: float, _seed: int) -> Array:
-        scene, name = self.scene, self.scene.quantities[0]
-        mesh = mesh_of(scene)
-        summed = tuple(q for q in scene.quantities if not analytic.quantity_of(q).counts)
-        sampler = Counted(
-            "cells", scene, mesh, response_of(scene, mesh, summed, precision=Precision(1 / size))
-        )
-        value, plain = sampler.block(0, 1).sums[name][0], self.plain
-        pick = list(self.chosen)
-        with np.errstate(divide="ignore", invalid="ignore"):  # no contact there: no relative error
-            return np.asarray(value[pick] / plain[pick] - 1)
 
 
 def _integrand(scene: Scene, q: analytic.Quantity, h: float, v: Array | float) -> Array:

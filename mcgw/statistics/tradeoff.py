@@ -1,6 +1,9 @@
-"""Error against time and memory for one scene on this machine: a work-precision study in bounded time."""
+"""Error against time for one scene on this machine, and what to run: a work-precision study in bounded time.
 
-from collections.abc import Sequence
+Two frontiers: of the mean of its first quantity, by every method there is; and of the values of single
+surfaces, by every pair of sampler and accuracy (`mcgw.statistics.ways`).
+"""
+
 from dataclasses import dataclass, replace
 from functools import partial
 from time import monotonic, perf_counter, process_time
@@ -10,7 +13,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mcgw.ensemble.asperities_alone import scene_alone
-from mcgw.ensemble.forecast import relative_spread
 from mcgw.formats.sheet import Sheet, Shown
 from mcgw.machine.late import plotted
 from mcgw.machine.memory import peak_growth
@@ -18,13 +20,14 @@ from mcgw.machine.progress import Progress, told
 from mcgw.scene.reading import argument
 from mcgw.scene.scene import Scene
 from mcgw.statistics.methods import Method, methods_for
+from mcgw.statistics.ways import Way, ways_for
+from mcgw.statistics.wishes import Advice, advise
 
-__all__ = ["Advice", "Point", "Tradeoff", "tradeoff"]
+__all__ = ["ADVICE_HEAD", "Advice", "Point", "Tradeoff", "advice_row", "tradeoff"]
 
 Array = NDArray[np.float64]
 
 SECONDS = 60.0
-TARGETS = (1e-1, 1e-2, 1e-3, 1e-4)
 _MOST_ROUNDS, _ROUNDS = 24, 6
 _FEWEST_SIZES = 3
 _SHORTEST = 2e-3  # what is faster is repeated until it takes this long
@@ -63,25 +66,6 @@ class Point:
     seeds: int
 
 
-@dataclass(frozen=True)
-class Advice:
-    """What to run for a mean of a given relative error (one standard error).
-
-    Parameters
-    ----------
-    target : float
-        The error.
-    scene : Scene
-        The one to run: its sampler and number of surfaces are the advice.
-    cpu : float
-        Seconds it takes, of all cores together.
-    """
-
-    target: float
-    scene: Scene
-    cpu: float
-
-
 @dataclass(frozen=True, repr=False)
 class Tradeoff(Shown):
     """What the study found.
@@ -96,8 +80,10 @@ class Tradeoff(Shown):
         Every method at every size.
     methods : tuple of Method
         All of them.
+    ways : tuple of Way
+        Pairs of sampler and accuracy: what values of surfaces cost, and how good they are.
     advice : tuple of Advice
-        For each target, at the last of the separations.
+        What to run for a mean, a quantile, or values; the first two at the last of the separations.
     seconds : float
         How long the study took.
     """
@@ -106,6 +92,7 @@ class Tradeoff(Shown):
     separations: tuple[float, ...]
     points: tuple[Point, ...]
     methods: tuple[Method, ...]
+    ways: tuple[Way, ...]
     advice: tuple[Advice, ...]
     seconds: float
 
@@ -141,13 +128,27 @@ class Tradeoff(Shown):
         return plotted(self, ax, k=self.separations.index(h))
 
     def sheet(self) -> Sheet:
-        """What to run for each error of the mean."""
+        """What to run for each wish."""
         quantity, h = self.scene.quantities[0], f"{self.separations[-1]:g}"
-        rows = [
-            [f"{a.target:g}", a.scene.sampler, str(a.scene.n_surfaces), f"{a.cpu:.2g}"] for a in self.advice
-        ]
-        head = ["relative error", "sampler", "n_surfaces", "seconds of CPU"]
-        return Sheet(f"What to run for the mean {quantity} at d/sigma = {h}", (), head, rows)
+        facts = [("mean, quantile", f"of the {quantity} at d/sigma = {h}, in 95 of 100 ensembles")]
+        return Sheet("What to run", facts, list(ADVICE_HEAD), [advice_row(a) for a in self.advice])
+
+
+ADVICE_HEAD = ("wish, relative error", "sampler", "accuracy", "law_error", "n_surfaces", "seconds")
+
+
+def advice_row(advice: Advice) -> list[str]:
+    """What to run, in words under `ADVICE_HEAD`."""
+    asked = advice.scene
+    spent = f"{asked.law_error:g}" if asked.law_error else "0"
+    return [
+        advice.wish.text,
+        asked.sampler if asked.sampler == advice.sampler else f"{asked.sampler}: {advice.sampler}",
+        f"{asked.accuracy:g}",
+        spent,
+        str(asked.n_surfaces),
+        f"{advice.seconds:.2g}",
+    ]
 
 
 class _Task:
@@ -212,8 +213,8 @@ def tradeoff(
     >>> import mcgw
     >>> surface = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "1 mm^2", "78.6 GPa")
     >>> study = mcgw.tradeoff(mcgw.Scene(surface, separations=[0, 1], seed=1), seconds=0.1)
-    >>> study.advice[0].target
-    0.1
+    >>> study.advice[0].wish.text
+    'a mean to 0.1'
     """
     limit = argument("seconds", SECONDS if seconds is None else seconds, "s")
     started = monotonic()
@@ -225,6 +226,12 @@ def tradeoff(
         def note() -> None:
             tell(min(monotonic() - started, limit), limit)
 
+        ways = []
+        for way in ways_for(scene):
+            ways.append(way)
+            note()
+            if monotonic() - started > limit / 2:
+                break
         tasks: list[_Task] = []
         for method in methods:
             note()
@@ -235,9 +242,10 @@ def tradeoff(
                     task.run((scene.seed + 7919 * number + 104729) % 2**64)
             note()
     points = tuple(task.point() for task in tasks)
-    advice = tuple(a for t in TARGETS if (a := _advice(scene, chosen[-1], points, t)))
     h = tuple(scene.separations[k] for k in chosen)
-    return Tradeoff(scene, h, points, methods, advice, monotonic() - started)
+    advice = advise(scene, h[-1], ways)
+    ways.sort(key=lambda way: (way.sampler, way.scene.accuracy, way.scene.law_error))
+    return Tradeoff(scene, h, points, methods, tuple(ways), advice, monotonic() - started)
 
 
 def _chosen(scene: Scene) -> tuple[int, ...]:
@@ -261,25 +269,3 @@ def _sized(method: Method, longest: float, seed: int) -> list[_Task]:
         before = perf_counter() - start
         tasks.append(_Task(method, size, peak, max(1, min(100, int(_SHORTEST / before)))))
     return tasks
-
-
-def _advice(scene: Scene, k: int, points: Sequence[Point], target: float) -> Advice | None:
-    """The fastest exact sampler for this error, with its cost extended in the number of surfaces."""
-    spread = float(
-        relative_spread(replace(scene, separations=(scene.separations[k],)), scene.quantities[0])[0]
-    )
-    needed = max(int(np.ceil((spread / target) ** 2)), 1)
-    best: tuple[float, str] | None = None
-    for name in ("direct", "tail", "cells"):
-        own = [point for point in points if point.method == name]
-        if not own:
-            continue
-        first, last = own[0], own[-1]
-        each = max(last.cpu - first.cpu, 0.0) / max(last.size - first.size, 1.0)
-        inside = float(np.interp(needed, [p.size for p in own], [p.cpu for p in own]))
-        cost = inside if needed <= last.size else last.cpu + each * (needed - last.size)
-        if best is None or cost < best[0]:
-            best = (cost, name)
-    if best is None or needed > 10**12:
-        return None
-    return Advice(target, replace(scene, sampler=best[1], n_surfaces=needed), best[0])

@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 
 from analytic import ALL_QUANTITIES
 from mcgw.errors import StoreError
-from mcgw.sampling.samplers import law_error_of
 from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_text
 from mcgw.store.chunks import PACKED, add_rows, empty_table
@@ -86,9 +85,18 @@ def describe(file: h5py.File, scene: Scene, sampler: str, digest: str, **attribu
         complete=True,
         digest=digest,
         date=now(),
-        **({"law_error_spent": law_error_of(scene)} if scene.law_error else {}),
+        **_spent(scene),
         **{**provenance(), **attributes},
     )
+
+
+def _spent(scene: Scene) -> dict[str, float]:
+    """How far from the exact laws a scene went that allowed it."""
+    if not scene.law_error:
+        return {}
+    from mcgw.sampling.samplers import law_error_of  # for those scenes alone
+
+    return {"law_error_spent": law_error_of(scene)}
 
 
 def where(name: str) -> str:

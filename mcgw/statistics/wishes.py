@@ -1,0 +1,167 @@
+"""What to run for what one wants: the pair of sampler and accuracy that takes the least time, and how many.
+
+A wish is kept in 95 of 100 ensembles: by the exact spread of a surface for a mean, by the order statistics of
+some surfaces for a quantile. For values of single surfaces it is kept in all of them.
+"""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+from math import ceil, inf
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.special import ndtri
+
+from mcgw.ensemble.forecast import relative_spread
+from mcgw.ensemble.simulation import simulate
+from mcgw.scene.scene import Scene
+from mcgw.statistics.ways import Way
+
+__all__ = ["WISHES", "Advice", "Wish", "advise"]
+
+Array = NDArray[np.float64]
+
+_SHARE = 0.1  # of a wish that the accuracy of values may take
+_PROBABILITY = 0.99  # whose quantile is wished for
+_SEEN, _FEWEST = 4000, 2000  # surfaces that show a quantile's spread; with fewer there are not 20 beyond it
+_SPREAD_OF_SPREAD = 1.3  # how much wider the spread may be than order statistics show it
+_LONGEST = 5.0  # seconds that it may take to see
+_MOST_SURFACES = 1e12
+
+
+@dataclass(frozen=True)
+class Wish:
+    """What somebody wants of an ensemble.
+
+    Parameters
+    ----------
+    of : {"mean", "quantile", "surfaces"}
+        A mean, a quantile of 99 %, or the values of single surfaces.
+    within : float
+        Relative error.
+    """
+
+    of: str
+    within: float
+
+    @property
+    def text(self) -> str:
+        """In words."""
+        what = {"mean": "a mean", "quantile": "the 99 % quantile", "surfaces": "every value of a surface"}
+        return f"{what[self.of]} to {self.within:g}"
+
+
+WISHES = (
+    *(Wish("mean", within) for within in (1e-1, 1e-2, 1e-3, 1e-4)),
+    *(Wish("quantile", within) for within in (1e-1, 1e-2)),
+    *(Wish("surfaces", within) for within in (1e-3, 1e-6, 1e-9)),
+)
+
+
+@dataclass(frozen=True)
+class Advice:
+    """What to run.
+
+    Parameters
+    ----------
+    wish : Wish
+        For what.
+    scene : Scene
+        The one to run: its sampler, accuracy, law_error and number of surfaces are the advice.
+    sampler : str
+        The one that draws.
+    seconds : float
+        That it takes on this machine by the clock.
+    """
+
+    wish: Wish
+    scene: Scene
+    sampler: str
+    seconds: float
+
+
+def advise(
+    scene: Scene, h: float, ways: Sequence[Way], wishes: Iterable[Wish] = WISHES
+) -> tuple[Advice, ...]:
+    """The fastest way to each wish that can be fulfilled.
+
+    Parameters
+    ----------
+    scene : Scene
+        What is asked.
+    h : float
+        Separation at which means and quantiles of its first quantity are wished for.
+    ways : sequence of Way
+        Those that were measured for the scene.
+    wishes : iterable of Wish, optional
+        Default: some of each kind.
+
+    Returns
+    -------
+    tuple of Advice
+        In the order of the wishes; those that no way fulfils are left out.
+    """
+    if not ways:
+        return ()
+    spread = float(relative_spread(replace(scene, separations=(h,)), scene.quantities[0])[0])
+    seen: _Quantile | None = None
+    found = []
+    for wish in wishes:
+        if wish.of == "quantile" and seen is None:
+            seen = _Quantile.of(scene, h, ways)
+        needed, law_error = _needed(wish, scene, spread, seen)
+        good = [way for way in ways if _serves(way, wish, law_error)]
+        if good and needed <= _MOST_SURFACES:
+            way = min(good, key=lambda way: way.seconds(needed))
+            asked = replace(way.scene, n_surfaces=ceil(needed))
+            found.append(Advice(wish, asked, way.sampler, way.seconds(needed)))
+    return tuple(found)
+
+
+def _needed(wish: Wish, scene: Scene, spread: float, seen: "_Quantile | None") -> tuple[float, float]:
+    """Surfaces that it takes, and how far from the exact law they may be."""
+    if wish.of == "mean":  # which is exact whatever the law
+        return max((float(ndtri(0.975)) * spread / wish.within) ** 2, 1.0), inf
+    if wish.of == "quantile" and seen:
+        return seen.surfaces(wish.within), _SHARE * wish.within * seen.density
+    return float(scene.n_surfaces), 0.0
+
+
+def _serves(way: Way, wish: Wish, law_error: float) -> bool:
+    if wish.of == "surfaces":
+        return way.scene.accuracy <= wish.within and not way.scene.law_error
+    return way.scene.accuracy <= _SHARE * wish.within and way.scene.law_error <= law_error
+
+
+@dataclass(frozen=True)
+class _Quantile:
+    """How well some surfaces know a quantile.
+
+    Parameters
+    ----------
+    half : float
+        Half of its 95 % interval over the quantile, for one surface: it falls with the root of their number.
+    density : float
+        Probability for a relative change of the value of one.
+    """
+
+    half: float
+    density: float
+
+    @classmethod
+    def of(cls, scene: Scene, h: float, ways: Sequence[Way]) -> "_Quantile":
+        """From the order statistics of an ensemble at one separation."""
+        fastest = min((way for way in ways if not way.scene.law_error), key=lambda way: way.each)
+        n = int(np.clip(_LONGEST / fastest.each, _FEWEST, _SEEN))
+        one = replace(fastest.scene, separations=(h,), quantities=(scene.quantities[0],), n_surfaces=n)
+        values = np.sort(simulate(one)[scene.quantities[0]][:, 0])
+        spread = float(ndtri(0.975)) * np.sqrt(n * _PROBABILITY * (1 - _PROBABILITY))
+        low, middle, high = (int(np.clip(n * _PROBABILITY + k * spread, 0, n - 1)) for k in (-1, 0, 1))
+        if not values[middle] > 0 or values[low] == values[high]:
+            return cls(inf, 0.0)
+        half = float(values[high] - values[low]) / 2 / float(values[middle])
+        return cls(half * np.sqrt(n), (high - low) / n / (2 * half))
+
+    def surfaces(self, within: float) -> float:
+        """How many it takes."""
+        return max((_SPREAD_OF_SPREAD * self.half / within) ** 2, _FEWEST)
