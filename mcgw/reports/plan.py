@@ -20,6 +20,8 @@ from mcgw.scene.scene import Scene
 
 __all__ = ["Plan", "plan_of", "plan_text"]
 
+_FEW = 0.005  # share of the asperities that is not worth a word
+
 
 @dataclass(frozen=True)
 class Plan:
@@ -138,16 +140,12 @@ def plan_text(scene: Scene, plan: Plan) -> str:
 
 def _accuracy_lines(scene: Scene, plan: Plan) -> list[str]:
     """What was chosen of the accuracy, and what others would cost."""
-    drawn = ", ".join(f"{share:.0%} from {bits} bits" for bits, share in plan.bits.items())
-    lines = [
-        f"  accuracy      {scene.accuracy:g} of every value" + (f"; asperities: {drawn}" if drawn else "")
-    ]
+    shares = (f"{share:.0%} from {bits} bits" for bits, share in plan.bits.items() if share > _FEW)
+    drawn = f"; asperities: {', '.join(shares)}" if plan.bits else ""
+    lines = [f"  accuracy      {scene.accuracy:g} of every value{drawn}"]
     if plan.at:
         ratios = ", ".join(f"{a:g}: {t / plan.seconds:.2g} x" for a, t in plan.at.items())
         lines.append(f"                time at others: {ratios}")
     if scene.law_error:
-        what = (
-            f"{plan.law_error:.2g} of {scene.law_error:g} spent" if plan.law_error else "nothing of it spent"
-        )
-        lines.append(f"  law_error     {what}")
+        lines.append(f"  law_error     {plan.law_error:.2g} of {scene.law_error:g} spent")
     return lines

@@ -85,7 +85,8 @@ def _spent(word: str, attributes: dict[str, Any]) -> str:
 def comparison_table(comparison: Comparison) -> str:
     """Monte Carlo beside theory at some separations."""
     h = comparison.ensemble.separations
-    lines = [f"{word}: {what}" for word, what in contact_facts(comparison.ensemble.scene)]
+    scene = comparison.ensemble.scene
+    lines = [f"{word}: {what}" for word, what in (*contact_facts(scene), *accuracy_facts(scene))]
     for name, curve in comparison.curves.items():
         q = quantity_of(name)
         lines += [
