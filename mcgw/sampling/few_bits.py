@@ -8,8 +8,9 @@ mean          of the root off by the share ``0.0914 M^(-3/2)`` (the midpoint rul
               smooth function by less than ``2 M^-2``, where its series falls as those of contact laws
 variance      of the root off by 18 times the change of ``(E sqrt(u))^2``, so the share
               ``1.46 M^(-3/2)``; of u by ``M^-2``
-distribution  has steps: sums of n alike lie 1/M apart with a spread of ``sqrt(n/12)``, so that a step
-              has the probability ``sqrt(6/pi) / (M sqrt(n))``, and nowhere is more than half of it wrong
+distribution  has steps: sums of n alike lie 1/M apart with a density of at most ``sqrt(2/n)`` (K. Ball,
+              "Cube slicing in R^n", 1986), so that a step has at most the probability
+              ``sqrt(2/n)/M``, and nowhere is more than half of it wrong
 ============  ==========================================================================================
 
 These are bounds for a surface: its variance comes mostly from the numbers in the cells, and other cells
@@ -66,9 +67,7 @@ def lattice_error(bits: int, asperities: Array) -> LatticeError:
     m, n = 2.0**bits, np.asarray(np.maximum(asperities, 1.0))
     alike = np.ones_like(n)
     root = m**-1.5
-    return LatticeError(
-        alike * (0.0914 * root + 2 / m**2), alike * (1.46 * root), np.sqrt(1.5 / np.pi / n) / m
-    )
+    return LatticeError(alike * (0.0914 * root + 2 / m**2), alike * (1.46 * root), np.sqrt(0.5 / n) / m)
 
 
 def bits_for(asperities: Array, accuracy: float) -> Ints:
