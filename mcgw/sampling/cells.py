@@ -31,6 +31,7 @@ from mcgw.scene.fields import EXACT
 from mcgw.scene.scene import Scene
 
 __all__ = [
+    "CHANGING",
     "NODES",
     "TO_COEFFICIENTS",
     "Mesh",
@@ -50,6 +51,7 @@ _FAR, _NARROWER = 2.0, 0.75  # spans from a root of the laws of contact, and wha
 _DIGITS = 4.0  # of a height that coefficients without meaning may seem to be worth
 _EVEN, _LEAST = 4.0, 1 / 16  # see `evenness`
 _ALONE = 1 / 2  # see `series_accuracy`
+CHANGING = 1 / 64  # share of the largest value that errors are held against where values change their sign
 _TOGETHER = 64  # cells whose densities stay in the cache
 _MANY = 32  # times that many: worth another thread
 _CLOSEST = 2.0**-40  # of a cell to an end of the support that is a broken power
@@ -124,7 +126,7 @@ def mesh_of(scene: Scene, *, split: bool = True, rare: float = 0.1) -> Mesh:
     marks = marks[(low <= marks) & (marks <= high)]
     asked = (part.tobytes() for part in (begins, breaks, marks))
     spaced = _edges(law, scene.n_asperities if split else 0, scene.accuracy, *asked)
-    edges = _resolving(scene.modulus, law, spaced, series_accuracy(scene.accuracy))
+    edges = _resolving(scene, spaced)
     return _mesh(law, float(scene.lowest), edges.tobytes())
 
 
@@ -237,8 +239,9 @@ def _refined(law: HeightLaw, begins: Array, marks: Array) -> Array:
     return np.array(edges)
 
 
-def _resolving(grading: Grading, law: HeightLaw, edges: Array, accuracy: float) -> Array:
+def _resolving(scene: Scene, edges: Array) -> Array:
     """Halve cells until a short series describes the grading: the law of contact has a root besides."""
+    grading, law, accuracy = scene.modulus, scene.heights, series_accuracy(scene.accuracy)
     steep = isinstance(getattr(grading, "grading", grading), PiecewiseSeries)  # it may be, between its kinks
     if grading.smooth and not steep:
         return edges
@@ -248,7 +251,8 @@ def _resolving(grading: Grading, law: HeightLaw, edges: Array, accuracy: float) 
         t = (1 + NODES) / 2 * chebyshev.chebval(NODES, stretch)
         e = grading(a[:, None] + t)
         tail = np.abs(product(TO_COEFFICIENTS, e.T))[_SHORT:].sum(axis=0)
-        rough = tail > accuracy * evenness(grading, e) * np.abs(e).max(axis=1) + height_noise(a, t, e)
+        share = evenness(grading, e) if scene.exact else _evenly(e, accuracy)
+        rough = tail > accuracy * share * np.abs(e).max(axis=1) + height_noise(a, t, e)
         if not rough.any():
             break
         edges = np.unique(np.concatenate([edges, (a + width / 2)[rough]]))
@@ -269,10 +273,21 @@ def evenness(grading: Grading, e: Array) -> Array:
     """
     if grading.smooth:
         return np.ones(e.shape[:-1])
+    least, changing = _least(e)
+    return np.asarray(np.where(changing, 1.0, np.clip(_EVEN * least, _LEAST, 1.0)))
+
+
+def _evenly(e: Array, accuracy: float) -> Array:
+    """The same where less than the last digits is asked: to the least modulus, as near as digits allow."""
+    least, changing = _least(e)
+    return np.where(changing, CHANGING, np.maximum(least, EXACT / accuracy))
+
+
+def _least(e: Array) -> tuple[Array, NDArray[np.bool_]]:
+    """Least modulus `e` on a cell over the largest, over the last axis; and whether it changes its sign."""
     low, high = e.min(axis=-1), e.max(axis=-1)
     small, large = np.minimum(np.abs(low), np.abs(high)), np.maximum(np.abs(low), np.abs(high))
-    share = np.clip(_EVEN * (small / np.maximum(large, np.finfo(float).tiny)), _LEAST, 1.0)
-    return np.asarray(np.where((low > 0) | (high < 0), share, 1.0))
+    return small / np.maximum(large, np.finfo(float).tiny), (low <= 0) & (high >= 0)
 
 
 def _mass(law: HeightLaw, a: Array, t: Array) -> Array:

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 from mcgw.machine.compiling import njit
-from mcgw.sampling.cells import NODES, TO_COEFFICIENTS
+from mcgw.sampling.cells import CHANGING, NODES, TO_COEFFICIENTS
 from mcgw.sampling.rules import multiply
 from mcgw.scene.fields import EXACT
 
@@ -25,7 +25,6 @@ __all__ = [
 MOST, MOST_IN_CELL = 12, 19  # moments: what is not resolved by so many is left to the children, or refused
 APART, _PARTLY, WHOLE = 0, 1, 2
 U = (1 + NODES) / 2
-_SMALLEST = 1 / 64  # see `Precision.of_least`
 _NODES = 32  # that add to one sum, with errors of their own
 
 
@@ -69,11 +68,14 @@ def meeting(
 
 @njit(nogil=True, cache=True)
 def _share_of_least(values: Any) -> Any:
-    """The least of some values over the largest, but no less than a share: sums may change their sign."""
-    least, largest = np.inf, 0.0
+    """The least of some values over the largest, but no less than a share where they change their sign."""
+    low, high = np.inf, -np.inf
     for value in values:
-        least, largest = min(least, abs(value)), max(largest, abs(value))
-    return max(least, _SMALLEST * largest) / largest if largest > 0.0 else 1.0
+        low, high = min(low, value), max(high, value)
+    least, largest = min(abs(low), abs(high)), max(abs(low), abs(high))
+    if low <= 0.0 <= high:
+        least = CHANGING * largest
+    return least / largest if largest > 0.0 else 1.0
 
 
 @njit(inline="always")
