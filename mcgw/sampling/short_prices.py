@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from mcgw.sampling.few_bits import bits_for
 from mcgw.sampling.spacing import EXACTLY, Pricing
 
-__all__ = ["short_price", "short_pricing"]
+__all__ = ["of_bits", "short_price", "short_pricing"]
 
 Array = NDArray[np.float64]
 
@@ -33,7 +33,11 @@ def short_pricing(accuracy: float, asked: float) -> Pricing:
 
 def short_price(plain: Array, rooted: Array, expected: Array, *, accuracy: float) -> Array:
     """Price of an asperity in cells that give so many moments and hold so many of them."""
-    bits = bits_for(expected, accuracy)
+    return of_bits(plain, rooted, bits_for(expected, accuracy))
+
+
+def of_bits(plain: Array, rooted: Array, bits: NDArray[np.int64]) -> Array:
+    """Price of an asperity of uniforms of so many bits."""
     word = np.select([bits == 8, bits == 16], [_BYTE, _HALF], _WORD)
     return np.asarray(word + _of_moments(plain, _PLAIN) + _of_moments(rooted, _ROOTED))
 

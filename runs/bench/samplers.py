@@ -12,7 +12,11 @@ from numba import njit, prange
 from scenes import S1, block, script
 from timing import Job, against, job, parser_of, show, timed
 
+from mcgw.sampling.counted import Counted
+from mcgw.sampling.drawing import Shortly
 from mcgw.sampling.philox import centred
+from mcgw.sampling.samplers import cells_of
+from mcgw.scene.scene import Scene
 
 
 @njit(parallel=True)
@@ -85,6 +89,19 @@ def aggregates() -> dict[str, Job]:
     return {name: block(scene) for name, scene in scenes.items()} | {"NumPy script, N = 1e4": script(10**4)}
 
 
+def words_alone(scene: Scene) -> Counted:
+    """Its sampler with a word of the generator for each uniform."""
+    sampler = cells_of(scene)
+    return replace(sampler, drawing=Shortly(np.full(sampler.cells, 32)))
+
+
+def accuracies() -> dict[str, Job]:
+    """Values of S1 to the last digits, and to fewer."""
+    asked = {"1e-13": 1e-13, "1e-10": 1e-10, "1e-6": 1e-6, "1e-3": 1e-3}
+    jobs = {f"accuracy {name}": block(replace(S1, accuracy=value)) for name, value in asked.items()}
+    return jobs | {"accuracy 1e-6, 32 bits": block(replace(S1, accuracy=1e-6), make=words_alone)}
+
+
 def ratios(rounds: int) -> dict[str, float]:
     """Seconds a surface, to those of the peer named last: lower is better."""
     large = timed(one_million(), rounds)
@@ -94,6 +111,7 @@ def ratios(rounds: int) -> dict[str, float]:
     found |= against(timed(ten_thousand(), rounds), "NumPy script, N = 1e4", ["cells, N = 1e4"])
     first, *others = separations()
     found |= against(timed(separations(), rounds), first, others)
+    found |= against(timed(accuracies(), rounds), "accuracy 1e-13")
     small, large_one = "aggregate, N = 1e4", "aggregate, N = 1e15"
     return found | against(timed(aggregates(), rounds), "NumPy script, N = 1e4", [small, large_one])
 
@@ -104,6 +122,7 @@ def main() -> None:
     show("N = 1e6, 41 separations", timed(one_million(), rounds), "cells")
     show("N = 1e4", timed(ten_thousand(), rounds), "cells, N = 1e4")
     show("separations (N = 1e6)", timed(separations(), rounds), "h = 0 ... 4, 41 separations")
+    show("accuracy (N = 1e6)", timed(accuracies(), rounds), "accuracy 1e-13")
     show("aggregate", timed(aggregates(), rounds), "aggregate, N = 1e8")
 
 

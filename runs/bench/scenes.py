@@ -12,7 +12,7 @@ from timing import Job, job, seconds
 
 import analytic
 from mcgw.ensemble.simulation import at_a_time, block_size, drawn_blocks
-from mcgw.sampling.block import Block
+from mcgw.sampling.block import Block, Sampler
 from mcgw.sampling.samplers import cells_of, sampler_of
 from mcgw.scene.scene import Scene
 
@@ -34,9 +34,13 @@ def fresh(scene: Scene) -> Scene:
     return scene.replace(separations=np.array(scene.separations) * (1 - 1e-6 * turn), seed=turn)
 
 
-def block(scene: Scene, then: Callable[[Block], object] = lambda drawn: drawn) -> Job:
+def block(
+    scene: Scene,
+    then: Callable[[Block], object] = lambda drawn: drawn,
+    make: Callable[[Scene], Sampler] = sampler_of,
+) -> Job:
     """Blocks as a run draws them, and what is done with each; prepared when first called."""
-    prepared = cache(lambda: sampler_of(scene))
+    prepared = cache(lambda: make(scene))
 
     def draw() -> float:
         sampler = prepared()
