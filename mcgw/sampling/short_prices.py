@@ -11,16 +11,25 @@ from numpy.typing import NDArray
 from mcgw.sampling.few_bits import bits_for
 from mcgw.sampling.spacing import EXACTLY, Pricing
 
-__all__ = ["of_bits", "short_price", "short_pricing"]
+__all__ = ["PLAIN", "ROOTED", "of_bits", "short_price", "short_pricing"]
 
 Array = NDArray[np.float64]
+Ints = NDArray[np.int64]
 
-_CELL = 260.0
-_WORD, _HALF, _BYTE = 0.70, 0.47, 0.27  # a uniform of 32, 16 and 8 bits
-# Up to so many moments cost so much; beyond, five more as `_FIVE_MORE`.
-_PLAIN = ((5, 0.18), (8, 0.25), (10, 0.33), (12, 0.47), (16, 0.62))
-_ROOTED = ((0, 0.0), (4, 0.37), (6, 0.45), (11, 0.75))
-_FIVE_MORE = 0.25
+_CELL = 290.0
+_WORDS = {32: 0.83, 16: 0.67, 8: 0.49}  # a uniform of so many bits, and its first five moments
+PLAIN, ROOTED = (5, 8, 10, 12, 16), (0, 4, 6, 11)
+# Up to so many plain moments (rows) and rooted ones (columns) cost so much; beyond, five more as below.
+_MOMENTS = np.array(
+    [
+        [0.00, 0.39, 0.70, 1.34],
+        [0.13, 0.42, 0.72, 1.31],
+        [0.25, 0.60, 0.69, 1.27],
+        [0.41, 0.96, 0.91, 1.46],
+        [0.67, 1.28, 1.34, 1.79],
+    ]
+)
+_FIVE_MORE, _FIVE_ROOTS_MORE = 0.33, 0.6
 _FEWEST_DIGITS = 0.3  # fewer would be no moment at all
 
 
@@ -36,13 +45,15 @@ def short_price(plain: Array, rooted: Array, expected: Array, *, accuracy: float
     return of_bits(plain, rooted, bits_for(expected, accuracy))
 
 
-def of_bits(plain: Array, rooted: Array, bits: NDArray[np.int64]) -> Array:
+def of_bits(plain: Array | Ints, rooted: Array | Ints, bits: Ints) -> Array:
     """Price of an asperity of uniforms of so many bits."""
-    word = np.select([bits == 8, bits == 16], [_BYTE, _HALF], _WORD)
-    return np.asarray(word + _of_moments(plain, _PLAIN) + _of_moments(rooted, _ROOTED))
+    word = np.select([bits == 8, bits == 16], [_WORDS[8], _WORDS[16]], _WORDS[32])
+    row, more = _place(plain, PLAIN)
+    column, more_roots = _place(rooted, ROOTED)
+    return np.asarray(word + _MOMENTS[row, column] + _FIVE_MORE * more + _FIVE_ROOTS_MORE * more_roots)
 
 
-def _of_moments(moments: Array, known: tuple[tuple[int, float], ...]) -> Array:
-    most, price = known[-1]
-    beyond = price + _FIVE_MORE * np.ceil(np.clip(moments - most, 0, 100) / 5)
-    return np.asarray(np.select([moments <= number for number, _ in known], [p for _, p in known], beyond))
+def _place(moments: Array | Ints, known: tuple[int, ...]) -> tuple[Ints, Array]:
+    """Where so many stand among those whose price is known, and how many fives there are beyond."""
+    place = np.minimum(np.searchsorted(known, moments), len(known) - 1)
+    return np.asarray(place), np.ceil(np.clip(moments - np.array(known[-1]), 0, 100) / 5)

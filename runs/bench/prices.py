@@ -3,7 +3,7 @@
 Run: ``python runs/bench/prices.py [--short]``. Prints, beside the price in use, what is measured here on one
 core, in asperities that give ten moments: medians over rounds, all sizes in turn. With ``--short``, what is
 paid where less than the last digit is asked (`mcgw.sampling.short_prices`): for each number of bits, and
-below them the parts of which these prices are made, fitted to all of them.
+below them the numbers of which these prices are made.
 """
 
 import numpy as np
@@ -17,7 +17,7 @@ from mcgw.sampling.short_sums import short_moments
 
 SURFACES, CELLS, MANY, FEW = 64, 20, 4000, 16
 ORDERS = [(10, 0), (12, 0), (15, 0), (20, 0), (10, 6), (10, 11), (10, 16)]
-PLAIN, ROOTED, BITS = (5, 8, 10, 12, 16), (0, 4, 6, 11), (32, 16, 8)
+BITS = (32, 16, 8)
 
 
 def cell(asperities: int, plain: int, rooted: int, bits: int | None = None) -> Job:
@@ -44,7 +44,12 @@ def long(rounds: int) -> None:
 
 def short(rounds: int) -> None:
     """Sums to fewer digits, in asperities that give ten moments of 32-bit uniforms to the last."""
-    sizes = [(plain, rooted, bits) for bits in BITS for plain in PLAIN for rooted in ROOTED]
+    sizes = [
+        (plain, rooted, bits)
+        for bits in BITS
+        for plain in short_prices.PLAIN
+        for rooted in short_prices.ROOTED
+    ]
     jobs = {"last digit": cell(MANY, 10, 0), "few, last digit": cell(FEW, 10, 0), "few": cell(FEW, 8, 4, 16)}
     times = timed({**jobs, **{str(size): cell(MANY, *size) for size in sizes}}, rounds)
     long_one, long_few, few, *many = (np.median(column) for column in times.values())
@@ -54,22 +59,11 @@ def short(rounds: int) -> None:
     for (plain, rooted, bits), price in zip(sizes, found, strict=True):
         known = short_prices.of_bits(np.array(plain), np.array(rooted), np.array(bits))
         print(f"{bits:>8} bits, {plain:>2} T and {rooted:>2} R {float(known):8.2f} {price:8.2f}")
-    for name, part in parts(sizes, found).items():
-        print(f"{name:>32} {'':8} {part:8.2f}")
-
-
-def parts(sizes: list[tuple[int, int, int]], found: np.ndarray) -> dict[str, float]:
-    """A word of each number of bits, plain moments and rooted ones, whose sums fit what was found.
-
-    A word and five plain moments come together always: the latter are taken to cost nothing more than they
-    do in use.
-    """
-    names = [f"{bits} bits" for bits in BITS] + [f"{p} T" for p in PLAIN[1:]] + [f"{r} R" for r in ROOTED[1:]]
-    matrix = [
-        [float(name in (f"{bits} bits", f"{plain} T", f"{rooted} R")) for name in names]
-        for plain, rooted, bits in sizes
-    ]
-    return dict(zip(names, np.linalg.lstsq(np.array(matrix), found)[0].tolist(), strict=True))
+    table = found.reshape(len(BITS), len(short_prices.PLAIN), len(short_prices.ROOTED))
+    words = table[:, 0, 0]
+    print("words with five plain moments:", dict(zip(BITS, words.round(2).tolist(), strict=True)))
+    print("more moments than these, over all bits:")
+    print((table - words[:, None, None]).mean(axis=0).round(2))
 
 
 def main() -> None:
