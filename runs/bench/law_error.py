@@ -18,7 +18,7 @@ from mcgw.sampling.crowding import crowding
 from mcgw.sampling.samplers import aggregate_of
 from mcgw.scene.scene import Scene
 
-ASPERITIES, ASKED = (10**3, 10**4, 10**5, 10**6), (1e-1, 1e-3, 3e-4, 1e-4)
+ASPERITIES, ASKED = (10**2, 10**3, 10**4, 10**6), (1e-1, 1e-3, 1e-4)
 DRAWN, MOST, AT_ONCE = 10**10, 100_000, 2000  # asperities and surfaces of a line of the table
 NOBODY = 2**60  # asperities in a cell: none is crowded
 QUANTILES = np.linspace(0.02, 0.98, 49)
