@@ -10,7 +10,6 @@ from mcgw.jobs.duration import in_words, seconds_for
 from mcgw.machine.terminal import one_line
 from mcgw.reports.elasticity import two_questions
 from mcgw.sampling.block import Sampler
-from mcgw.sampling.counted import Counted
 from mcgw.sampling.samplers import sampler_of
 from mcgw.scene.contact_text import contact_facts
 from mcgw.scene.fields import EXACT
@@ -91,16 +90,16 @@ def plan_of(scene: Scene) -> Plan:
 
 def _bits(sampler: Sampler) -> dict[int, float]:
     """Share of the asperities in cells by the bits of their uniforms; none where all have a whole word."""
-    bits = getattr(sampler, "bits", None)
-    if bits is None or not isinstance(sampler, Counted):
+    bits, mesh = getattr(sampler, "bits", None), getattr(sampler, "mesh", None)
+    if bits is None or mesh is None:
         return {}
-    share = sampler.mesh.probability / sampler.mesh.probability.sum()
+    share = mesh.probability / mesh.probability.sum()
     return {int(number): float(share[bits == number].sum()) for number in np.unique(bits)}
 
 
 def _at_others(scene: Scene, sampler: Sampler, surfaces: int) -> dict[float, float]:
     """Seconds at the next decades of accuracy; of a scene to its last digits, at two that are coarser."""
-    if not isinstance(sampler, Counted) or not sampler.cells or sampler.law_error:
+    if not sampler.cells or promise_of(sampler.name).spends or not hasattr(sampler, "response"):
         return {}  # to it, or to its law, accuracy means nothing
     others = (1e-6, 1e-3) if scene.exact else (scene.accuracy / 10, scene.accuracy * 10)
     found = {}
