@@ -52,6 +52,7 @@ Ask:
 ``scene.validity()``     how far the model is from elasticity, as it was measured
 `regrade`                another grading or contact law, same surfaces; `paired_ratio` of the two
 `solve`                  the separation at a load, pressure or area
+`sweep`                  many scenes at once, over the same surfaces: means, differences, slopes
 `converge`, `tradeoff`   the statistical convergence test; error against time on this machine
 `fit`, `fitted_scene`    the surface of a measured height map or of profiles, and a scene of it
 =======================  =========================================================================
@@ -123,6 +124,7 @@ if TYPE_CHECKING:
     from mcgw.statistics.tradeoff import tradeoff
     from mcgw.store.ensembles import open_ensemble
     from mcgw.store.saving import save
+    from mcgw.sweeps.from_python import sweep
 
 __all__ = [
     "Body",
@@ -178,6 +180,7 @@ __all__ = [
     "scene_text",
     "simulate",
     "solve",
+    "sweep",
     "tradeoff",
 ]
 
@@ -211,6 +214,7 @@ _HOME = {
     "scene_text": "scene.scene_file",
     "simulate": "ensemble.simulation",
     "solve": "ensemble.solution",
+    "sweep": "sweeps.from_python",
     "tradeoff": "statistics.tradeoff",
 }
 

@@ -21,6 +21,7 @@ LAYERS = (
     "ensemble",
     "store",
     "jobs",
+    "sweeps",
     "statistics",
     "maps",
     "figures",

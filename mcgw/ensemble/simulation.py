@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 from time import monotonic, perf_counter
-from typing import Any
+from typing import Any, TypeVar
 
 import numba
 import numpy as np
@@ -16,7 +16,7 @@ from mcgw.ensemble.results import MemoryResults, joined
 from mcgw.machine.in_threads import in_threads, pieces
 from mcgw.machine.memory import check_memory
 from mcgw.machine.progress import Progress, told
-from mcgw.sampling.block import Block, Sampler
+from mcgw.sampling.block import Block, Sampler, Source
 from mcgw.sampling.counts import GROUP
 from mcgw.sampling.samplers import sampler_of
 from mcgw.scene.samplers import promise_of
@@ -34,6 +34,8 @@ __all__ = [
     "simulate",
     "use_threads",
 ]
+
+_Drawn = TypeVar("_Drawn")
 
 _WORDS = 4_000_000  # numbers of a block that stay in the outer cache
 _MOST_WORDS = 20_000_000  # numbers a block may hold
@@ -107,14 +109,14 @@ def blocks(scene: Scene, sampler: Sampler) -> Iterator[Block]:
     yield from drawn_blocks(sampler, 0, scene.n_surfaces, block_size(scene, sampler))
 
 
-def drawn_blocks(sampler: Sampler, first: int, stop: int, size: int) -> Iterator[Block]:
+def drawn_blocks(sampler: Source[_Drawn], first: int, stop: int, size: int) -> Iterator[_Drawn]:
     """Results of surfaces `first` ... `stop - 1`, in order, in blocks of at most `size`.
 
     Each thread draws blocks of its own. To share the work within a block, and wake the others for each
     step of it, takes longer; that is left to a few, huge surfaces.
     """
 
-    def block(ends: tuple[int, int]) -> Block:
+    def block(ends: tuple[int, int]) -> _Drawn:
         return sampler.block(start + ends[0], ends[1] - ends[0])
 
     step = at_a_time(size)
@@ -154,7 +156,7 @@ def answered(scene: Scene, sums: dict[str, Any]) -> dict[str, Any]:
     return with_interaction(scene, sums)
 
 
-def block_size(scene: Scene, sampler: Sampler) -> int:
+def block_size(scene: Scene, sampler: Source[Any]) -> int:
     """Surfaces a block: bounded by memory and time, twice an odd number of `counts.GROUP` if it can be.
 
     Whole groups, so that no generator of the counts is made for two blocks; an odd number of pairs, since

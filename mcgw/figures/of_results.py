@@ -15,16 +15,20 @@ from mcgw.figures.comparison import draw_curve, title_of
 from mcgw.figures.convergence import draw_checks
 from mcgw.figures.style import STYLE, shown_title
 from mcgw.figures.tradeoff import draw_methods
+from mcgw.formats.evenly import evenly
 from mcgw.maps.fit import Fit
 from mcgw.maps.profile_fit import ProfileFit
 from mcgw.scene.samplers import promise_of
 from mcgw.statistics.comparison import Comparison
 from mcgw.statistics.convergence import Convergence
 from mcgw.statistics.tradeoff import Tradeoff
+from mcgw.sweeps.pairs import Slopes
+from mcgw.sweeps.sweep import Sweep
 
 __all__ = ["draw"]
 
 _SEPARATION = "separation $d/\\sigma$"
+_MOST_LINES = 7
 
 
 def draw(result: Any, ax: Any = None, **options: Any) -> Any:
@@ -97,6 +101,36 @@ def _(result: Paired, ax: Any) -> None:
     columns = (x[order] for x in (result.separations, result.ratio, 1.96 * result.stderr))
     ax.errorbar(*columns, fmt="o-", ms=3, mfc="none", label="same surfaces, 95 %")
     ax.set(xlabel=_SEPARATION, ylabel=f"ratio of the mean {result.quantity}")
+    ax.legend()
+
+
+@_draw.register
+def _(result: Sweep, ax: Any, *, quantity: str) -> None:
+    """A line a point, from the first to the last along all axes."""
+    order, points = np.argsort(result.separations, kind="stable"), list(result.axes.points())
+    means, errors = result.mean(quantity), result.stderr(quantity)
+    shown = evenly(len(points), _MOST_LINES)
+    for color, i in zip(mpl.colormaps["viridis"](np.linspace(0, 0.9, len(shown))), shown, strict=True):
+        columns = result.separations[order], means[points[i]][order], 1.96 * errors[points[i]][order]
+        ax.errorbar(*columns, fmt="o-", ms=3, color=color, label=result.axes.values_text(points[i]))
+    if np.any(means > 0):
+        ax.set_yscale("log")
+    ax.set(xlabel=_SEPARATION, ylabel=f"mean {quantity.replace('_', ' ')} ({quantity_of(quantity).unit})")
+    among = f"{len(shown)} of {len(points)} points" if len(shown) < len(points) else f"{len(points)} points"
+    ax.set_title(f"{', '.join(result.axes.keys)}: {among}, 95 %")
+    ax.legend(fontsize=7)
+
+
+@_draw.register
+def _(result: Slopes, ax: Any, *, k: int) -> None:
+    """At one separation, and at the first values of all other keys."""
+    value, error, theory = (
+        np.moveaxis(x, result.axis, 0)[..., k].reshape(len(result.at), -1)[:, 0]
+        for x in (result.value, result.stderr, result.theory)
+    )
+    ax.errorbar(result.at, value, 1.96 * error, fmt="o", ms=3, mfc="none", label="same surfaces, 95 %")
+    ax.plot(result.at, theory, label="theory")
+    ax.set(xlabel=result.key, ylabel=f"change of the mean {result.quantity.replace('_', ' ')}")
     ax.legend()
 
 

@@ -1,14 +1,15 @@
 """What a sampler is, seen from outside, and what it gives."""
 
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Protocol, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["Block", "Sampler"]
+__all__ = ["Block", "Sampler", "Source"]
 
 Array = NDArray[np.float64]
+Drawn = TypeVar("Drawn", covariant=True)
 
 
 @dataclass(frozen=True)
@@ -33,8 +34,26 @@ class Block:
     extras: Array | None = None
 
 
-class Sampler(Protocol):
-    """Draws surfaces by their numbers."""
+class Source(Protocol[Drawn]):
+    """Whatever draws surfaces by their numbers."""
+
+    @property
+    def words(self) -> int:
+        """Numbers in memory for a surface while it is drawn, besides the results of one scene."""
+        ...
+
+    @property
+    def draws(self) -> float:
+        """Numbers that are expected to be drawn for a surface."""
+        ...
+
+    def block(self, first: int, n: int) -> Drawn:
+        """Results of surfaces `first` ... `first + n - 1`: the same in any block."""
+        ...
+
+
+class Sampler(Source[Block], Protocol):
+    """Draws the surfaces of a scene."""
 
     @property
     def name(self) -> str:
@@ -52,24 +71,10 @@ class Sampler(Protocol):
         ...
 
     @property
-    def words(self) -> int:
-        """Numbers in memory for a surface while it is drawn, besides its results."""
-        ...
-
-    @property
-    def draws(self) -> float:
-        """Numbers that are expected to be drawn for a surface."""
-        ...
-
-    @property
     def seconds_per_draw(self) -> float:
         """Very roughly."""
         ...
 
     def with_seed(self, seed: int) -> "Sampler":
         """The same cells and physics with other draws."""
-        ...
-
-    def block(self, first: int, n: int) -> Block:
-        """Results of surfaces `first` ... `first + n - 1`: the same in any block."""
         ...

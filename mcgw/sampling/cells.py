@@ -122,10 +122,14 @@ def mesh_of(scene: Scene, *, split: bool = True, rare: float = 0.1) -> Mesh:
     if not low < high:
         return no_cells(scene)
     begins, breaks = begins_and_breaks(scene, low, high)
-    marks = np.unique([low, *begins, *breaks, *bends(scene.modulus, low, high), *law.breaks, high])
+    given = np.array(scene.edges)
+    marks = np.unique([low, *begins, *breaks, *bends(scene.modulus, low, high), *law.breaks, *given, high])
     marks = marks[(low <= marks) & (marks <= high)]
-    asked = (part.tobytes() for part in (begins, breaks, marks))
-    spaced = _edges(law, scene.n_asperities if split else 0, scene.accuracy, *asked)
+    if given.size:
+        spaced = _refined(law, begins, marks)
+    else:
+        asked = (part.tobytes() for part in (begins, breaks, marks))
+        spaced = _edges(law, scene.n_asperities if split else 0, scene.accuracy, *asked)
     edges = _resolving(scene, spaced)
     return _mesh(law, float(scene.lowest), edges.tobytes())
 

@@ -14,6 +14,7 @@ from mcgw.sampling.cells import Mesh
 from mcgw.sampling.counts import Counts, contacts_above, counts_of
 from mcgw.sampling.drawing import Drawing, OneByOne
 from mcgw.sampling.law_sums import asperity_sums
+from mcgw.sampling.layout import Layout
 from mcgw.sampling.outside import extra_heights
 from mcgw.sampling.response.response import Response
 from mcgw.sampling.sideways import tangential_loads
@@ -105,11 +106,15 @@ class Counted:
 
     def block(self, first: int, n: int) -> Block:
         """Results of surfaces `first` ... `first + n - 1`."""
-        counts = self.counting(self.scene, self.mesh, first, n)
-        moments = self.drawing.moments(self.scene.seed, first, counts, self.response.layout)
-        extras = extra_heights(self.scene, self.mesh, first, counts, self.table)
-        numbers = counts.cells * counts.weights[1:-1, None]
+        moments, numbers, extras = self.drawn(first, n, self.response.layout)
         return Block(self.sums(first, moments, numbers, extras), moments.T, numbers.T, extras)
+
+    def drawn(self, first: int, n: int, layout: Layout) -> tuple[Array, Array, Array]:
+        """Moments, numbers in the cells and heights outside of these surfaces: what `sums` takes."""
+        counts = self.counting(self.scene, self.mesh, first, n)
+        moments = self.drawing.moments(self.scene.seed, first, counts, layout)
+        extras = extra_heights(self.scene, self.mesh, first, counts, self.table)
+        return moments, counts.cells * counts.weights[1:-1, None], extras
 
     def sums(self, first: int, moments: Array, counts: Array, extras: Array) -> dict[str, Array]:
         """Quantities of surfaces `first` ... from what was drawn.

@@ -1,5 +1,6 @@
 """Which moments of each cell a surface keeps."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -34,3 +35,17 @@ class Layout:
     def at_most(self, other: "Layout") -> "Layout":
         """No more than another one has."""
         return Layout(np.minimum(self.plain, other.plain), np.minimum(self.rooted, other.rooted))
+
+    @classmethod
+    def covering(cls, layouts: Sequence["Layout"]) -> "Layout":
+        """The moments that any of some layouts of the same cells has."""
+        return cls(
+            np.max([layout.plain for layout in layouts], axis=0),
+            np.max([layout.rooted for layout in layouts], axis=0),
+        )
+
+    def rows_of(self, part: "Layout") -> NDArray[np.int64]:
+        """Where the rows of a layout lie in this one, which covers it."""
+        first = np.stack([self.starts[:-1], self.starts[:-1] + self.plain], axis=1).ravel()
+        size = np.stack([part.plain, part.rooted], axis=1).ravel()
+        return np.repeat(first - np.cumsum(size) + size, size) + np.arange(size.sum())

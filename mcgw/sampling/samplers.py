@@ -36,7 +36,7 @@ from mcgw.scene.storable import storable
 if TYPE_CHECKING:
     from mcgw.sampling.families import Families
 
-__all__ = ["Sampler", "aggregate_of", "cells_of", "law_error_of", "regraded", "sampler_of"]
+__all__ = ["Sampler", "aggregate_of", "cells_of", "law_error_of", "name_of", "regraded", "sampler_of"]
 
 _GAUSSIAN, _WORTH = 300, 1.5  # asperities that a crowded cell takes as long as; times that much faster
 _SAME = 1e-10  # a kink so near to an edge was found, not told: no value is off by more
@@ -57,12 +57,17 @@ def sampler_of(scene: Scene) -> Sampler:
     """
     scene = storable(scene)
     keep_freed_memory()
-    name = _cheapest(scene) if scene.sampler == "auto" else scene.sampler
+    name = name_of(scene)
     if scene.interaction and scene.interaction.nominal:
         return _at_nominal(name, scene)
     if scene.law_error and scene.sampler == "auto" and name == "cells" and scene.curvature is None:
         return _perhaps_crowded(scene)
     return _MAKERS[name](scene)
+
+
+def name_of(scene: Scene) -> str:
+    """The exact sampler that a scene asks for; `law_error` may buy another one than ``cells``."""
+    return _cheapest(scene) if scene.sampler == "auto" else scene.sampler
 
 
 def law_error_of(scene: Scene) -> float:

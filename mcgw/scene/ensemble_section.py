@@ -1,5 +1,6 @@
 """The table [ensemble] of a scene: how many surfaces, and how they are drawn."""
 
+import math
 import secrets
 from collections.abc import Callable
 from typing import Any
@@ -24,9 +25,24 @@ def drawing_values(section: Section) -> dict[str, Any]:
         "keep": section.choice("keep", "sums", ("sums", "moments")),
         "accuracy": section.number("accuracy", EXACT, unit="1"),
         "law_error": section.number("law_error", 0.0, unit="1", positive=False),
+        "edges": _edges(section),
         "rel_err": section.number("rel_err", unit="1") if "rel_err" in section else None,
         "max_seconds": section.number("max_seconds", unit="s") if "max_seconds" in section else None,
     }
+
+
+def _edges(section: Section) -> tuple[float, ...]:
+    """Heights, once each and increasing."""
+    given = section.take("edges")
+    values = [] if given is None else given
+    if not isinstance(values, list) or not all(map(_is_height, values)):
+        section.fail("edges", given, "give a list of finite heights s = z/sigma, or leave it out")
+        return ()
+    return tuple(sorted({float(s) + 0.0 for s in values}))  # -0.0 is 0.0
+
+
+def _is_height(value: Any) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
 
 
 def ensemble_values(

@@ -56,6 +56,7 @@ class Fields:
     keep: Literal["sums", "moments"]
     accuracy: float
     law_error: float
+    edges: tuple[float, ...]
     rel_err: float | None
     max_seconds: float | None
 

@@ -99,6 +99,10 @@ class Scene(Fields, Shown):
         How far from the exact law of each value, by the largest difference of distribution functions, the
         sampler "auto" may go, 0 to 0.1: it may then take "aggregate" for crowded cells. Default: 0, exact
         samplers only.
+    edges : array_like, optional
+        Heights where cells are cut besides those where the scene needs it; nothing is then cut for speed
+        alone. Scenes with the same cells and seed have the same surfaces: `mcgw.sweep` says which edges its
+        points share. Default: none.
     rel_err : float or str, optional
         Draw so many surfaces that the 95 % interval of every mean reaches no farther than this share of
         it, 0 to 0.1 or as "1 %": as many as the exact theory of a finite surface says.
@@ -150,6 +154,7 @@ class Scene(Fields, Shown):
         keep: Literal["sums", "moments"] = "sums",
         accuracy: float = EXACT,
         law_error: float = 0.0,
+        edges: ArrayLike | None = None,
         rel_err: float | str | None = None,
         max_seconds: float | str | None = None,
     ) -> None:

@@ -27,7 +27,7 @@ from mcgw.scene.tangential_section import tangential_table
 if TYPE_CHECKING:
     from analytic import Interaction
 
-__all__ = ["files_of", "load_scene", "scene_from", "scene_text"]
+__all__ = ["files_of", "load_scene", "scene_document", "scene_from", "scene_of", "scene_text"]
 
 _MOST_BYTES = 2**21
 
@@ -124,6 +124,13 @@ def scene_from(
     except (ValueError, RecursionError) as error:
         reason = str(error).splitlines()[0] if str(error) else "nested too deeply"
         raise SceneError([f"not a TOML scene: {reason}"]) from None
+    return scene_of(document, folder=folder, seed=seed)
+
+
+def scene_of(
+    document: dict[str, Any], *, folder: Path | None = None, seed: Callable[[], int | None] | None = None
+) -> Scene:
+    """Make a scene of the tables that its TOML text holds; arguments and errors as of `scene_from`."""
     top = Section("", document, [])
     sections = {
         name: top.section(name)
@@ -181,10 +188,15 @@ def scene_text(scene: Scene, *, heights_file: str | None = None, left_out: bool 
     >>> mcgw.scene_from(mcgw.scene_text(scene)) == scene
     True
     """
+    return tomli_w.dumps(scene_document(scene, heights_file=heights_file, left_out=left_out))
+
+
+def scene_document(scene: Scene, *, heights_file: str | None = None, left_out: bool = True) -> dict[str, Any]:
+    """The tables that `scene_text` writes; arguments and errors as there."""
     scene = storable(scene)
     summits = summits_table(scene.curvature, scene.surface, heights_file)
     listed = isinstance(scene.curvature, MeasuredRadii)  # whose heights stand there too
-    document = {
+    return {
         "title": scene.title,
         "surface": {key: float(getattr(scene.surface, key)) for key in SURFACE_UNITS},
         "grading": {**grading_table(scene.grading), "negative": scene.negative},
@@ -194,7 +206,6 @@ def scene_text(scene: Scene, *, heights_file: str | None = None, left_out: bool 
         **_interaction_table(scene),
         "ensemble": _ensemble_table(scene, left_out),
     }
-    return tomli_w.dumps(document)
 
 
 def _interaction(section: Section) -> "Interaction | None":
@@ -229,5 +240,6 @@ def _ensemble_table(scene: Scene, left_out: bool) -> dict[str, Any]:
         most: scene.n_surfaces,
         **{key: getattr(scene, key) for key in ("n_asperities", "count", "seed", "sampler", "keep")},
         **{key: float(value) for key, value in stops.items() if value is not None},
+        **({"edges": list(scene.edges)} if scene.edges else {}),
         **({"left_out": list(scene.left_out)} if left_out and scene.left_out else {}),
     }

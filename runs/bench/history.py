@@ -28,6 +28,7 @@ BENCHES = (
     "random_radii",
     "samplers",
     "setup",
+    "sweep",
 )
 PROJECT = Path(__file__).parents[2] / "pyproject.toml"
 

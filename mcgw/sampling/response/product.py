@@ -6,7 +6,7 @@ computed row needs those of a range of heights: so groups are computed in one sw
 down, and the table is small enough to stay in the cache.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -75,6 +75,10 @@ class Tiles:
             first, second, len(given), len(answers)
         )
         return cls(given[fetches], ends, fetched, tile_ends, used, values, computed, answers[order])
+
+    def taking(self, rows: Ints) -> "Tiles":
+        """The same of given rows that lie elsewhere: row i where ``rows[i]`` tells."""
+        return replace(self, fetches=np.append(rows, -1)[self.fetches])
 
     def apply(self, given: Array, shape: tuple[int, int]) -> Array:
         """Answers.

@@ -52,6 +52,10 @@ class Response:
         """The moments that each cell must have."""
         return self.parts.layout
 
+    def out_of(self, layout: Layout) -> "Response":
+        """The same, bit by bit, out of moments of which each cell may have more than this needs."""
+        return replace(self, tiles=self.tiles.taking(layout.rows_of(self.layout)))
+
     def __matmul__(self, moments: Array) -> Array:
         """Quantities of every surface: moments (rows, surfaces) to (quantities, surfaces, separations)."""
         return self.tiles.apply(moments, self.shape)

@@ -1,0 +1,126 @@
+"""Scenes of the same surfaces: each surface is drawn once and answers all of them.
+
+Where a height lies in its cell is drawn without a look at gradings or contact laws. So scenes whose heights
+have the same law, number, seed and cells have the same surfaces, and each has the bits that it has alone.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from mcgw.sampling.block import Block, Sampler
+from mcgw.sampling.cells import mesh_of
+from mcgw.sampling.counted import Counted
+from mcgw.sampling.layout import Layout
+from mcgw.sampling.response.response import Response
+from mcgw.sampling.samplers import cells_of, name_of, sampler_of, tail_of
+from mcgw.scene.scene import Scene
+
+__all__ = ["Alone", "Shared", "on_common_cells", "shared", "to_be_shared"]
+
+
+@dataclass(frozen=True)
+class Alone:
+    """A scene whose surfaces are shared with no other."""
+
+    sampler: Sampler
+
+    @property
+    def words(self) -> int:
+        """As of its sampler."""
+        return self.sampler.words
+
+    @property
+    def draws(self) -> float:
+        """As of its sampler."""
+        return self.sampler.draws
+
+    def block(self, first: int, n: int) -> tuple[Block, ...]:
+        """What surfaces `first` ... `first + n - 1` answer to each scene."""
+        return (self.sampler.block(first, n),)
+
+
+@dataclass(frozen=True)
+class Shared:
+    """Scenes of the same surfaces on the same cells.
+
+    Parameters
+    ----------
+    scenes : tuple of Counted
+        Each alone.
+    """
+
+    scenes: tuple[Counted, ...]
+
+    @cached_property
+    def layout(self) -> Layout:
+        """Moments that one of them needs."""
+        return Layout.covering([one.response.layout for one in self.scenes])
+
+    @cached_property
+    def _answering(self) -> tuple[Counted, ...]:
+        """All of them, out of the moments of all."""
+        return tuple(_out_of(self.layout, one) for one in self.scenes)
+
+    @property
+    def words(self) -> int:
+        """Numbers in memory for a surface, besides the results of one scene."""
+        more = sum(one.scene.width for one in self.scenes[1:])
+        return max(one.words for one in self.scenes) + more
+
+    @property
+    def draws(self) -> float:
+        """Numbers that are expected to be drawn for a surface."""
+        return self.scenes[0].draws
+
+    def block(self, first: int, n: int) -> tuple[Block, ...]:
+        """What surfaces `first` ... `first + n - 1` answer to each scene."""
+        drawn = self.scenes[0].drawn(first, n, self.layout)
+        return tuple(Block(one.sums(first, *drawn)) for one in self._answering)
+
+
+def _out_of(layout: Layout, one: Counted) -> Counted:
+    """The same scene out of more moments."""
+    assert isinstance(one.response, Response)  # summits with radii share nothing
+    return replace(one, response=one.response.out_of(layout))
+
+
+def to_be_shared(scene: Scene) -> tuple[Any, ...] | None:
+    """What other scenes must agree in to have the same surfaces; None if it shares them with none.
+
+    Crowds depend on what is asked, and summits with radii or balances of their own on more than a height.
+    """
+    name = name_of(scene)
+    nominal = scene.interaction is not None and scene.interaction.nominal
+    perhaps_crowded = scene.law_error > 0 and scene.sampler == "auto"
+    if name not in ("cells", "tail") or scene.curvature is not None or nominal or perhaps_crowded:
+        return None
+    drawn = scene.n_asperities, scene.seed, scene.count, scene.n_surfaces
+    return *drawn, name, scene.accuracy, scene.lowest, scene.heights
+
+
+def on_common_cells(scenes: Sequence[Scene]) -> list[Scene]:
+    """Scenes that are to be shared with such `edges` that all have the same cells.
+
+    They stay as they are if they have that already.
+    """
+    alike = list(scenes)
+    if name_of(alike[0]) != "cells":
+        return alike
+    while True:
+        edges = [mesh_of(scene).edges for scene in alike]
+        if all(np.array_equal(each, edges[0]) for each in edges):
+            return alike
+        common = np.unique(np.concatenate(edges))
+        alike = [scene.replace(edges=common) for scene in alike]
+
+
+def shared(scenes: Sequence[Scene]) -> Shared | Alone:
+    """Scenes on common cells, ready to draw; one alone may be any."""
+    if len(scenes) == 1:
+        return Alone(sampler_of(scenes[0]))
+    make = cells_of if name_of(scenes[0]) == "cells" else tail_of
+    return Shared(tuple(make(scene) for scene in scenes))

@@ -1,0 +1,1 @@
+"""Sweeps: many scenes as one question."""

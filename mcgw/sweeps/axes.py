@@ -1,0 +1,188 @@
+"""The axes of a sweep: which keys of a scene have which values."""
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import product
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from analytic import is_data
+from mcgw.formats.sheet import brief
+from mcgw.scene.grading_section import grading_table
+from mcgw.scene.reading import as_toml
+from mcgw.scene.section import SceneError
+
+__all__ = ["Axes", "Point", "axes_of", "label"]
+
+Point = tuple[int, ...]
+
+_SECTIONS = ("surface", "grading", "heights", "summits", "contact", "interaction", "ensemble")
+_LISTED = 6
+_FIXED = ("contact.separations", "contact.datum", "contact.quantities")  # of all points
+
+
+@dataclass(frozen=True)
+class Axes:
+    """Keys of a scene and their values.
+
+    Parameters
+    ----------
+    values : dict of str to tuple
+        The values of each key, as a scene file gives them.
+    zipped : bool
+        Whether the first values of all keys make one point, the second ones another; or every value of one
+        goes with every value of all others.
+    """
+
+    values: dict[str, tuple[Any, ...]]
+    zipped: bool
+
+    @property
+    def keys(self) -> tuple[str, ...]:
+        """Their keys."""
+        return tuple(self.values)
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Number of points along each dimension: one a key, or one for all of them if they are zipped."""
+        lengths = tuple(map(len, self.values.values()))
+        return lengths[:1] if self.zipped else lengths
+
+    @property
+    def dims(self) -> tuple[str, ...]:
+        """Names of the dimensions: the keys, or "point" for zipped ones."""
+        return ("point",) if self.zipped else self.keys
+
+    @property
+    def size(self) -> int:
+        """Number of points."""
+        return math.prod(self.shape)
+
+    def points(self) -> Iterator[Point]:
+        """The places of all points, the last dimension fastest."""
+        return product(*map(range, self.shape))
+
+    def at(self, point: Point) -> dict[str, Any]:
+        """The value of each key at a point."""
+        places = point * len(self.values) if self.zipped else point
+        return {key: values[i] for (key, values), i in zip(self.values.items(), places, strict=True)}
+
+    def text(self, point: Point) -> str:
+        """A point for people."""
+        return brief(", ".join(f"{key} = {_short(value)}" for key, value in self.at(point).items()))
+
+    def values_text(self, point: Point) -> str:
+        """The values alone, in the order of the keys."""
+        return brief(", ".join(map(_short, self.at(point).values())))
+
+    def dimension(self, key: str) -> int:
+        """The dimension that a key is along.
+
+        Raises
+        ------
+        ValueError
+            If it is no axis.
+        """
+        if key not in self.values:
+            raise ValueError(f"{key!r} is no axis of this sweep; it has {', '.join(self.keys)}")
+        return 0 if self.zipped else self.keys.index(key)
+
+    def numbers(self, key: str) -> NDArray[np.float64]:
+        """The values of an axis whose neighbours are compared.
+
+        Raises
+        ------
+        ValueError
+            If it is no axis, has one value alone, values that are no numbers, or the same twice in a row.
+        """
+        self.dimension(key)
+        values = self.values[key]
+        numbers = all(isinstance(x, int | float) for x in values)
+        if len(values) < 2 or not numbers or not np.diff(values).all():
+            raise ValueError(f"{key}: slopes need numbers, two at least and no neighbours alike")
+        return np.array(values, dtype=np.float64)
+
+    def summary(self, key: str) -> str:
+        """The values of a key for people: how many, from the first to the last."""
+        values = [_short(value) for value in self.values[key]]
+        if len(values) <= _LISTED:
+            return ", ".join(values)
+        return f"{len(values)} from {values[0]} to {values[-1]}"
+
+    def place(self, at: "Mapping[str, Any] | Sequence[int] | int") -> Point:
+        """The point that is meant by values of the keys, or by its place along each dimension.
+
+        Raises
+        ------
+        ValueError
+            If there is no such point, or more than one.
+        """
+        if isinstance(at, Mapping):
+            if unknown := [key for key in at if key not in self.values]:
+                raise ValueError(f"{unknown[0]!r} is no axis of this sweep; it has {', '.join(self.keys)}")
+            wanted = {key: _value(key, value) for key, value in at.items()}
+            found = [p for p in self.points() if all(self.at(p)[k] == v for k, v in wanted.items())]
+            if len(found) != 1:
+                raise ValueError(f"{len(found)} points have {dict(at)}; give one value of each axis")
+            return found[0]
+        point = (at,) if isinstance(at, int) else tuple(at)
+        if len(point) != len(self.shape) or not all(
+            -n <= i < n for i, n in zip(point, self.shape, strict=True)
+        ):
+            raise ValueError(f"no point lies at {point}; the sweep has the shape {self.shape}")
+        return tuple(i % n for i, n in zip(point, self.shape, strict=True))
+
+
+def axes_of(over: Mapping[str, Any], *, zipped: bool) -> Axes:
+    """Read the axes that are asked for.
+
+    Raises
+    ------
+    SceneError
+        With a line for each mistake.
+    """
+    problems = [] if over else ["sweep: give at least one key of a scene and its values"]
+    values: dict[str, tuple[Any, ...]] = {}
+    for key, given in over.items():
+        section, _, name = key.partition(".")
+        if section not in _SECTIONS or (not name and section in ("contact", "ensemble")):
+            problems.append(f'sweep: {key!r}: give "section.key" of a scene file, as "grading.gamma"')
+        if key in _FIXED:
+            problems.append(f"sweep: {key}: all points have the same; give it in the scene")
+        listed = list(given) if hasattr(given, "__iter__") and not isinstance(given, str | Mapping) else []
+        if not listed:
+            problems.append(f"sweep: {key} = {given!r}: give a list of at least one value")
+        values[key] = tuple(_value(key, value) for value in listed)
+    if zipped and len({len(each) for each in values.values()}) > 1:
+        lengths = ", ".join(f"{key} {len(each)}" for key, each in values.items())
+        problems.append(f"sweep: zipped axes have as many values each; these have {lengths}")
+    if problems:
+        raise SceneError(problems)
+    return Axes(values, zipped)
+
+
+def _value(key: str, value: Any) -> Any:
+    """A value as a scene file gives it; a whole grading may be an object."""
+    if key == "grading" and callable(value):
+        if not is_data(value):
+            raise SceneError(
+                ["sweep: grading: give tables, or gradings that are data, as mcgw.Exponential or mcgw.Table"]
+            )
+        return grading_table(value)
+    return as_toml(value)
+
+
+def label(value: Any) -> Any:
+    """A value as the coordinate of an axis: a number or a text."""
+    if isinstance(value, Mapping):
+        return brief(", ".join(f"{key} = {inner}" for key, inner in value.items()))
+    if isinstance(value, bool) or not isinstance(value, int | float | str):
+        return brief(str(value))
+    return value
+
+
+def _short(value: Any) -> str:
+    return f"{value:g}" if isinstance(value, float) else str(label(value))

@@ -1,0 +1,120 @@
+"""``mcgw.sweep``: a sweep as a notebook asks for it."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
+
+from mcgw.ensemble.forecast import without_rule
+from mcgw.ensemble.simulation import use_threads
+from mcgw.machine.memory import keep_freed_memory
+from mcgw.machine.progress import Progress, told
+from mcgw.scene.scene import Scene
+from mcgw.scene.section import SceneError
+from mcgw.sweeps.axes import axes_of
+from mcgw.sweeps.drawing import Drawn, drawn
+from mcgw.sweeps.groups import Group, groups_of
+from mcgw.sweeps.points import scenes_of
+from mcgw.sweeps.sweep import STATISTICS, Sweep
+
+__all__ = ["sweep"]
+
+
+def sweep(
+    scene: Scene,
+    over: Mapping[str, Iterable[Any]],
+    *,
+    statistics: Sequence[str] = STATISTICS,
+    zipped: bool = False,
+    threads: int | None = None,
+    progress: Progress = None,
+) -> Sweep:
+    """Means and standard deviations of many scenes, whose surfaces are the same wherever they can be.
+
+    Points whose heights have the same law, number and seed share their surfaces, whatever their surfaces'
+    parameters, gradings and contact laws are: these are drawn once, and differences between such points have
+    no noise of their own. A point that needs other cells gets the edges of all (`Scene.edges`); drawn alone
+    it has the same surfaces, and each the same bits. Of eight exponential
+    gradings or more under Hertz's law only the softest and the stiffest are computed, for sums are linear in
+    gamma: the others have the means and deviations of single runs to 1e-12.
+
+    Parameters
+    ----------
+    scene : Scene
+        What all points have in common, its seed too.
+    over : dict of str to sequence
+        Keys as in a scene file, as "grading.gamma" or "ensemble.n_asperities", and the values of each as
+        there; or a whole table, as "grading", whose values may also be gradings as `mcgw.Table`.
+    statistics : sequence of {"mean", "std"}, optional
+        What `Sweep.to_xarray` tells. Default: both.
+    zipped : bool, optional
+        The first values of all keys make one point, the second ones another. Default: every value of one key
+        goes with every value of all others.
+    threads : int, optional
+        Default: all there are. The result is the same, bit by bit, for any number.
+    progress : bool or callable, optional
+        True: a bar; a function: called with (done, total) surfaces.
+
+    Returns
+    -------
+    Sweep
+        With arrays of the shape of the axes and separations.
+
+    Raises
+    ------
+    SceneError
+        With the mistakes of all points at once, each with the point it is of.
+    StoreError
+        If the memory is too small.
+    ValueError
+        If another argument is wrong.
+
+    Examples
+    --------
+    >>> import mcgw
+    >>> surface = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "1 mm^2", "78.6 GPa")
+    >>> scene = mcgw.Scene(surface, separations=[0, 1, 2], n_surfaces=100, seed=1)
+    >>> sweep = mcgw.sweep(scene, {"grading.gamma": [0.5, 1.0, 2.0], "ensemble.count": ["fixed", "poisson"]})
+    >>> sweep.mean("load").shape
+    (3, 2, 3)
+    >>> alone = mcgw.simulate(sweep.scene((2, 0)))
+    >>> bool((alone.mean("load") == sweep.mean("load")[2, 0]).all())
+    True
+    >>> both = {"ensemble.count": "fixed"}
+    >>> stiffer = sweep.difference("load", {"grading.gamma": 2.0, **both}, {"grading.gamma": 1.0, **both})
+    >>> stiffer.gain.round()
+    array([30., 11.,  5.])
+    """
+    if not statistics or not set(statistics) <= set(STATISTICS):
+        raise ValueError(f"statistics = {statistics!r}: give one or both of {', '.join(STATISTICS)}")
+    axes = axes_of(over, zipped=zipped)
+    keep_freed_memory()
+    scenes = [_with_a_number(one) for one in scenes_of(scene, axes)]
+    groups = groups_of(scenes)
+    total = sum(group.scenes[0].n_surfaces for group in groups)
+    found, done = [], 0
+    with use_threads(threads), told(progress, "surfaces") as tell:
+        tell(0, total)
+        for group in groups:
+            before = done
+            found.append(drawn(group, lambda n: tell(before + n, total)))  # noqa: B023 - called at once
+            done += group.scenes[0].n_surfaces
+    return _put_together(axes, groups, found, tuple(statistics))
+
+
+def _with_a_number(scene: Scene) -> Scene:
+    """With a number of surfaces in the place of a rule."""
+    if scene.max_seconds is not None:
+        raise SceneError(["ensemble.max_seconds: a sweep draws the same again; give n_surfaces or rel_err"])
+    return scene if scene.rel_err is None else without_rule(scene)
+
+
+def _put_together(axes: Any, groups: list[Group], found: list[Drawn], statistics: tuple[str, ...]) -> Sweep:
+    """The points in their order."""
+    places = {n: (g, i) for g, group in enumerate(groups) for i, n in enumerate(group.numbers)}
+    points = [places[n] for n in range(axes.size)]
+    return Sweep(
+        axes=axes,
+        scenes=tuple(groups[g].scenes[i] for g, i in points),
+        places=tuple(points),
+        groups=tuple(found),
+        statistics=statistics,
+    )

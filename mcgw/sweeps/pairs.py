@@ -1,0 +1,104 @@
+"""Differences between points of a sweep over the same surfaces, and how they change with a key."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mcgw.formats.evenly import evenly
+from mcgw.formats.sheet import Sheet, Shown
+from mcgw.machine.late import plotted
+from mcgw.sweeps.drawing import Drawn
+
+__all__ = ["Difference", "Slopes"]
+
+Array = NDArray[np.float64]
+
+_SHOWN = 9
+
+
+@dataclass(frozen=True)
+class Difference:
+    """Difference of two means over the same surfaces; arrays over the separations.
+
+    Parameters
+    ----------
+    value, stderr : ndarray
+        In SI units, and its standard error; nan for a single surface.
+    gain : ndarray
+        Variance of the difference of two independent ensembles of this size over that of the pair.
+    """
+
+    value: Array
+    stderr: Array
+    gain: Array
+
+    @classmethod
+    def of(
+        cls, drawn: Drawn, points: tuple[int, int], quantity: str, areas: tuple[float, float]
+    ) -> "Difference":
+        """First point less second one, each per an area."""
+        (i, j), (a, b) = points, areas
+        value = drawn.mean(i, quantity) / a - drawn.mean(j, quantity) / b
+        apart = drawn.variance(i, quantity) / a**2 + drawn.variance(j, quantity) / b**2
+        paired = drawn.variance_of_difference(points, quantity, areas)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return cls(value, np.sqrt(paired / drawn.pooled.n), apart / paired)
+
+
+@dataclass(frozen=True, repr=False)
+class Slopes(Shown):
+    """Change of a mean with a key, between neighbouring points of a sweep.
+
+    Parameters
+    ----------
+    quantity, key : str
+        Of what, with what.
+    axis : int
+        Dimension of the arrays along which the key changes.
+    at : ndarray
+        Middle between two values of the key, shape (pairs,).
+    value, stderr : ndarray
+        Difference of the means over that of the key in SI units, and its standard error over the surfaces:
+        shape of the sweep and separations, one less along the key.
+    theory : ndarray
+        The same difference of the exact means.
+
+    Examples
+    --------
+    >>> import mcgw
+    >>> surface = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "1 mm^2", "78.6 GPa")
+    >>> scene = mcgw.Scene(surface, separations=[0, 1], n_surfaces=200, seed=1)
+    >>> sweep = mcgw.sweep(scene, {"grading.gamma": [1.0, 1.5, 2.0]})
+    >>> slopes = sweep.slopes("load", "grading.gamma")
+    >>> slopes.at
+    array([1.25, 1.75])
+    >>> bool((abs(slopes.value - slopes.theory) < 5 * slopes.stderr).all())
+    True
+    """
+
+    quantity: str
+    key: str
+    axis: int
+    at: Array
+    value: Array
+    stderr: Array
+    theory: Array
+
+    def plot(self, ax: Any = None, *, k: int = 0) -> Any:
+        """Draw the slopes at one separation, by number; returns the axes."""
+        return plotted(self, ax, k=k)
+
+    def sheet(self) -> Sheet:
+        """Slopes at the first separation, at some values of the key and the first ones of all others."""
+        flat = [
+            np.moveaxis(x, self.axis, 0).reshape(len(self.at), -1)[:, 0]
+            for x in (self.value, self.stderr, self.theory)
+        ]
+        rows = [
+            [f"{self.at[k]:g}", *(f"{x[k]:.{digits}g}" for x, digits in zip(flat, (6, 1, 6), strict=True))]
+            for k in evenly(len(self.at), _SHOWN)
+        ]
+        head = [self.key, "slope", "stderr", "theory"]
+        return Sheet(f"Change of the mean {self.quantity} with {self.key}", (), head, rows)

@@ -1,0 +1,74 @@
+"""Means, variances and covariances over surfaces of several scenes that share these."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["Pooled"]
+
+Array = NDArray[np.float64]
+Ints = NDArray[np.int64]
+Values = dict[str, Array]
+
+
+@dataclass(frozen=True)
+class Pooled:
+    """What is kept of some surfaces.
+
+    Parameters
+    ----------
+    n : int
+        How many.
+    means : dict of str to ndarray
+        Of each quantity, shape (scenes, separations).
+    products : dict of str to ndarray
+        Sums over the surfaces of products of two scenes' deviations from their means, shape (scenes, scenes,
+        separations).
+    """
+
+    n: int
+    means: Values
+    products: Values
+
+    @classmethod
+    def of(cls, values: Sequence[Values]) -> "Pooled":
+        """Of the values of some surfaces: for each scene arrays (surfaces, separations).
+
+        Shifted by the first surface, so that nothing cancels; of one scene the same bits as an ensemble's.
+        """
+        means, products = {}, {}
+        for name in values[0]:
+            rows = [one[name].astype(np.float64) for one in values]
+            means[name] = np.stack([(x - x[0]).sum(axis=0) / len(x) + x[0] for x in rows])
+            apart = [x - mean for x, mean in zip(rows, means[name], strict=True)]
+            products[name] = np.empty((len(rows), *means[name].shape))
+            for i, x in enumerate(apart):
+                for j in range(i + 1):
+                    products[name][i, j] = products[name][j, i] = (x * apart[j]).sum(axis=0)
+        return cls(len(next(iter(values[0].values()))), means, products)
+
+    def __add__(self, other: "Pooled") -> "Pooled":
+        """Of the surfaces of both."""
+        n, means, products = self.n + other.n, {}, {}
+        for name, mean in self.means.items():
+            step = other.means[name] - mean
+            means[name] = mean + step * (other.n / n)
+            between = step[:, None] * step[None] * (self.n * (other.n / n))
+            products[name] = self.products[name] + other.products[name] + between
+        return Pooled(n, means, products)
+
+    def mean(self, name: str, scenes: Ints, weights: Array) -> Array:
+        """Mean of a combination of some scenes."""
+        means = self.means[name]
+        return np.asarray(sum(w * means[i] for i, w in zip(scenes, weights, strict=True)))
+
+    def variance(self, name: str, scenes: Ints, weights: Array) -> Array:
+        """Variance of a combination over the surfaces (divisor n - 1); nan for one surface."""
+        products = self.products[name]
+        if self.n == 1:
+            return np.full(products.shape[2:], np.nan)
+        pairs = list(zip(scenes, weights, strict=True))
+        total = sum(v * w * products[i, j] for i, v in pairs for j, w in pairs)
+        return np.asarray(total / (self.n - 1))

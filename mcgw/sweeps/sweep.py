@@ -1,0 +1,247 @@
+"""A sweep: many scenes as one question, whose surfaces are the same wherever they can be."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from analytic import PER_AREA
+from mcgw.formats.evenly import evenly
+from mcgw.formats.sheet import Sheet, Shown
+from mcgw.machine.late import plotted
+from mcgw.scene.samplers import promise_of
+from mcgw.scene.scene import Scene
+from mcgw.sweeps.axes import Axes, Point
+from mcgw.sweeps.drawing import Drawn
+from mcgw.sweeps.pairs import Difference, Slopes
+from mcgw.sweeps.tables import sweep_dataset
+
+__all__ = ["STATISTICS", "Sweep"]
+
+Array = NDArray[np.float64]
+At = Mapping[str, Any] | Sequence[int] | int
+
+STATISTICS = ("mean", "std")
+_SHOWN = 7  # points of a sheet
+
+
+@dataclass(frozen=True, repr=False)
+class Sweep(Shown):
+    """Means and standard deviations over the surfaces of every point.
+
+    Parameters
+    ----------
+    axes : Axes
+        The keys and their values.
+    scenes : tuple of Scene
+        Of all points, the last axis fastest. Where points needed other cells they have the edges of all
+        (`edges`): drawn alone, each gives the same surfaces, and the same bits.
+    places : tuple of (int, int)
+        Of each point the group of those that share its surfaces, and its number among them.
+    groups : tuple of Drawn
+        What is kept of each group.
+    statistics : tuple of str
+        What `to_xarray` tells.
+    """
+
+    axes: Axes
+    scenes: tuple[Scene, ...]
+    places: tuple[tuple[int, int], ...]
+    groups: tuple[Drawn, ...]
+    statistics: tuple[str, ...]
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Number of points along each axis; along the one of zipped axes."""
+        return self.axes.shape
+
+    @property
+    def separations(self) -> Array:
+        """Reduced separations d/sigma, shape (separations,)."""
+        return np.array(self.scenes[0].separations)
+
+    @property
+    def quantities(self) -> tuple[str, ...]:
+        """What there is of each point."""
+        return tuple(self.scenes[0].shapes)
+
+    @property
+    def edges(self) -> tuple[float, ...]:
+        """Edges of cells that points got from others, as ``[ensemble] edges`` of their scenes has them."""
+        return tuple(sorted({s for scene in self.scenes for s in scene.edges}))
+
+    def mean(self, quantity: str) -> Array:
+        """Mean over the surfaces in SI units, shape (axes ..., separations)."""
+        return self._of_all(quantity, lambda group, i, name: group.mean(i, name))
+
+    def std(self, quantity: str) -> Array:
+        """Standard deviation over the surfaces (divisor M - 1), nan for one surface."""
+        return self._of_all(quantity, lambda group, i, name: np.sqrt(group.variance(i, name)))
+
+    def stderr(self, quantity: str) -> Array:
+        """Standard error of the mean, nan for one surface."""
+        m = np.array([scene.n_surfaces for scene in self.scenes]).reshape(self.shape)
+        std = self.std(quantity)
+        return np.asarray(std / np.sqrt(m.reshape(self.shape + (1,) * (std.ndim - m.ndim))))
+
+    def scene(self, at: At) -> Scene:
+        """The scene of a point, by values of the keys or by its place along each axis.
+
+        Raises
+        ------
+        ValueError
+            If there is no such point.
+        """
+        return self.scenes[self._number(self.axes.place(at))]
+
+    def difference(self, quantity: str, one: At, other: At) -> Difference:
+        """How much larger a mean is at the first point than at the second, over the same surfaces.
+
+        Parameters
+        ----------
+        quantity : str
+            Its name.
+        one, other : dict, tuple of int or int
+            Points, by values of the keys as ``{"grading.gamma": 2.0}``, or by places.
+
+        Returns
+        -------
+        Difference
+            With the standard error over the surfaces, in which what both share cancels.
+
+        Raises
+        ------
+        KeyError
+            If there is no such quantity.
+        ValueError
+            If there is no such point, or the two have other surfaces: the same seed makes them alike, and
+            how much is not known.
+        """
+        points = self.axes.place(one), self.axes.place(other)
+        return self._difference(quantity, *points)
+
+    def slopes(self, quantity: str, along: str) -> Slopes:
+        """How a mean changes with a key, from point to point over the same surfaces, and by theory.
+
+        Parameters
+        ----------
+        quantity : str
+            Its name.
+        along : str
+            An axis whose values are numbers.
+
+        Returns
+        -------
+        Slopes
+            Between neighbours along that axis, with standard errors over the surfaces.
+
+        Raises
+        ------
+        KeyError
+            If there is no such quantity.
+        ValueError
+            If there is no such axis, or neighbours have other surfaces.
+        """
+        x, axis = self.axes.numbers(along), self.axes.dimension(along)
+        step = np.diff(x).reshape(-1, *[1] * (len(self.shape) - axis))
+        shape = tuple(n - (i == axis) for i, n in enumerate(self.shape))
+        pairs = [(tuple(p + (np.arange(len(p)) == axis)), p) for p in map(np.array, np.ndindex(shape))]
+        errors = np.array([self._difference(quantity, after, tuple(p)).stderr for after, p in pairs])
+        return Slopes(
+            quantity=quantity,
+            key=along,
+            axis=axis,
+            at=(x[1:] + x[:-1]) / 2,
+            value=np.diff(self.mean(quantity), axis=axis) / step,
+            stderr=errors.reshape(*shape, -1) / np.abs(step),
+            theory=np.diff(self.theory(quantity), axis=axis) / step,
+        )
+
+    def theory(self, quantity: str) -> Array:
+        """Exact mean of each point (`Scene.theory`), shape (axes ..., separations)."""
+        name, per_area = self._held(quantity)
+        found = [np.asarray(scene.theory.mean(name, self.separations)) for scene in self.scenes]
+        if per_area:
+            found = [x / scene.surface.nominal_area for x, scene in zip(found, self.scenes, strict=True)]
+        return np.stack(found).reshape(*self.shape, -1)
+
+    def to_xarray(self) -> Any:
+        """The statistics as an `xarray.Dataset`, with a dimension for each axis: ``load_mean`` and so on.
+
+        Raises
+        ------
+        ImportError
+            If xarray is not installed.
+        """
+        values = {
+            (name, kind): getattr(self, kind)(name) for name in self.quantities for kind in self.statistics
+        }
+        return sweep_dataset(self.axes, self.scenes[0], values, self.edges)
+
+    def plot(self, ax: Any = None, *, quantity: str | None = None) -> Any:
+        """Draw the mean of a quantity against the separation, a line a point; returns the axes.
+
+        Parameters
+        ----------
+        ax : matplotlib Axes, optional
+            Where; default: new axes.
+        quantity : str, optional
+            Default: the scenes' first.
+        """
+        return plotted(self, ax, quantity=quantity or self.quantities[0])
+
+    def sheet(self) -> Sheet:
+        """The axes, and means of some points at the lowest separation."""
+        facts = [(key, self.axes.summary(key)) for key in self.axes.keys]
+        surfaces = sum(group.pooled.n for group in self.groups)
+        facts.append(("surfaces", f"{surfaces} drawn, in {len(self.groups)} groups that share theirs"))
+        k = int(np.argmin(self.separations))
+        names = [name for name in self.quantities if self.mean(name).ndim == len(self.shape) + 1]
+        means = {name: self.mean(name).reshape(self.axes.size, -1)[:, k] for name in names}
+        real = np.array([promise_of(scene.sampler).real_surfaces for scene in self.scenes])
+        errors = {
+            name: np.where(real, self.stderr(name).reshape(self.axes.size, -1)[:, k], np.nan)
+            for name in names
+        }
+        points = list(self.axes.points())
+        rows = [
+            [
+                self.axes.values_text(points[i]),
+                *(f"{means[name][i]:.5g} +- {errors[name][i]:.1g}" for name in names),
+            ]
+            for i in evenly(len(points), _SHOWN)
+        ]
+        head = [f"mean +- stderr at d/sigma = {self.separations[k]:g}", *names]
+        return Sheet(f"Sweep of {self.axes.size} scenes", facts, head, rows)
+
+    def _of_all(self, quantity: str, get: Any) -> Array:
+        """One array of all points, per area where that is asked."""
+        name, per_area = self._held(quantity)
+        found = [get(self.groups[group], i, name) for group, i in self.places]
+        if per_area:
+            found = [x / scene.surface.nominal_area for x, scene in zip(found, self.scenes, strict=True)]
+        return np.stack(found).reshape(*self.shape, *found[0].shape)
+
+    def _held(self, quantity: str) -> tuple[str, bool]:
+        """The quantity that is held, and whether that asked is per nominal area."""
+        name = PER_AREA[quantity].of if quantity in PER_AREA else quantity
+        if name not in self.quantities:
+            raise KeyError(f"{quantity!r} is not in this sweep; it has {', '.join(self.quantities)}")
+        return name, quantity in PER_AREA
+
+    def _number(self, point: Point) -> int:
+        return int(np.ravel_multi_index(point, self.shape))
+
+    def _difference(self, quantity: str, one: Point, other: Point) -> Difference:
+        name, per_area = self._held(quantity)
+        a, b = self._number(one), self._number(other)
+        (group, i), (its, j) = self.places[a], self.places[b]
+        if group != its:
+            raise ValueError(
+                f"sweep: {self.axes.text(one)} and {self.axes.text(other)} have other surfaces; there are no "
+                "pairs, and the same seed makes them alike: give the ensemble of each another seed"
+            )
+        area = (self.scenes[k].surface.nominal_area if per_area else 1.0 for k in (a, b))
+        return Difference.of(self.groups[group], (i, j), name, (next(area), next(area)))

@@ -1,0 +1,262 @@
+"""Sweeps: each point has the numbers that it has alone, and points over the same surfaces differ exactly."""
+
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+
+import mcgw
+from mcgw.sweeps import drawing
+
+SURFACE = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "1 mm^2", "78.6 GPa")
+SCENE = mcgw.Scene(SURFACE, separations=[0.0, 0.4, 1.0, 1.5, 2.5], n_surfaces=300, n_asperities=2000, seed=7)
+GAMMA = "grading.gamma"
+KINKED = [mcgw.Table((-1, kink, 6), (1.0, 1.5, 3.0)) for kink in (0.33, 0.7, 1.21)]
+
+
+def same_bits(sweep, at):
+    alone = mcgw.simulate(sweep.scene(at))
+    return all(
+        np.array_equal(sweep.mean(name)[at], alone.mean(name))
+        and np.array_equal(sweep.std(name)[at], alone.std(name))
+        for name in sweep.quantities
+    )
+
+
+def test_few_points_have_the_bits_of_single_runs():
+    sweep = mcgw.sweep(SCENE, {GAMMA: [0.5, 1.0, 2.0], "ensemble.n_asperities": [50, 2000]})
+    assert sweep.mean("load").shape == (3, 2, 5)
+    assert sweep.edges == ()
+    assert len(sweep.groups) == 2
+    assert all(same_bits(sweep, at) for at in np.ndindex(sweep.shape))
+    alone = mcgw.simulate(SCENE.replace(grading=mcgw.Exponential(2.0), n_asperities=50))
+    assert np.array_equal(sweep.std("load")[2, 0], alone.std("load"))
+
+
+@pytest.mark.parametrize("count", ["fixed", "poisson"])
+def test_many_exponential_gradings_have_the_numbers_of_single_runs(count):
+    gammas = np.linspace(0.2, 2.0, 12)
+    sweep = mcgw.sweep(
+        SCENE.replace(count=count, quantities=["load", "conductance", "contacts"]), {GAMMA: gammas}
+    )
+    assert len(sweep.groups[0].pooled.means["load"]) == 2  # of which all are weighted means
+    for i in range(12):
+        alone = mcgw.simulate(sweep.scene(i))
+        for name in sweep.quantities:
+            np.testing.assert_allclose(sweep.mean(name)[i], alone.mean(name), rtol=1e-12)
+            np.testing.assert_allclose(sweep.std(name)[i], alone.std(name), rtol=1e-12)
+
+
+def test_a_thousand_gradings_that_are_clipped_are_not_taken_for_combinations():
+    scene = SCENE.replace(separations=[-1.0, 0.0], negative="clip", n_surfaces=20)
+    sweep = mcgw.sweep(scene, {GAMMA: np.linspace(1.5, 3.0, 9)})
+    assert all(same_bits(sweep, (i,)) for i in range(9))
+
+
+def test_contact_laws_with_other_breaks_share_their_surfaces():
+    metal = SCENE.replace(law=mcgw.KogutEtsion(hardness=1.2e9, poisson=0.3))
+    sweep = mcgw.sweep(metal, {"contact.hardness": [1e9, "1.2 GPa", 3e9]})
+    assert len(sweep.groups) == 1
+    assert sweep.edges
+    assert all(same_bits(sweep, (i,)) for i in range(3))
+    contacts = [mcgw.simulate(sweep.scene(i)).contacts for i in range(3)]
+    assert all(np.array_equal(contacts[0], each) for each in contacts)
+    apart = mcgw.simulate(sweep.scene(0).replace(edges=None)).contacts  # what the edges are for
+    assert not np.array_equal(apart, mcgw.simulate(sweep.scene(1).replace(edges=None)).contacts)
+
+
+def test_edges_are_kept_by_a_scene_file():
+    sweep = mcgw.sweep(SCENE, {"grading": KINKED})
+    scene = sweep.scene(1)
+    assert 0.33 in scene.edges
+    assert 0.7 in scene.edges
+    assert 1.21 in scene.edges
+    again = mcgw.scene_from(mcgw.scene_text(scene))
+    assert again == scene
+    assert np.array_equal(mcgw.simulate(again).std("load"), sweep.std("load")[1])
+    assert "edges" not in mcgw.scene_text(SCENE)
+
+
+def test_any_edges_leave_the_exact_law_as_it_is():
+    """Cut elsewhere, other surfaces of the same law: fails by chance once in 2e6."""
+    cut = SCENE.replace(edges=[0.123, 2.2, 2.3, 99.0], n_surfaces=4000)
+    e = mcgw.simulate(cut)
+    z = (e.mean("load") - cut.theory.mean("load", e.separations)) / e.stderr("load")
+    assert np.abs(z).max() < 5
+    assert not np.array_equal(e.load[:300], mcgw.simulate(SCENE).load)
+
+
+def exact_difference(one, other, h):
+    """Variance and mean of one surface: each asperity adds the difference of two loads, independently."""
+    unit = 4 / 3 * SURFACE.E_star * np.sqrt(SURFACE.radius) * SURFACE.sigma**1.5
+    breaks = sorted(k for k in {*one.breaks, *other.breaks} if h < k < 9)
+
+    def weighted(s, power):
+        term = unit * (s - h) ** 1.5 * float(one(np.array(s)) - other(np.array(s)))
+        return term**power * np.exp(-s * s / 2) / np.sqrt(2 * np.pi)
+
+    first, second = (quad(weighted, h, 9, (k,), points=breaks, limit=400)[0] for k in (1, 2))
+    return SCENE.n_asperities * (second - first**2), SCENE.n_asperities * first
+
+
+def test_paired_differences_have_the_variance_that_theory_gives():
+    """Sample variances of 8000 surfaces are known to 2 %; fails by chance once in 1e5."""
+    m = 8000
+    sweep = mcgw.sweep(SCENE, {"grading": KINKED, "ensemble.n_surfaces": [m]})
+    found = sweep.difference("load", (2, 0), (0, 0))
+    exact = np.array([exact_difference(KINKED[2], KINKED[0], h) for h in SCENE.separations[:4]])
+    paired = found.stderr[:4] ** 2 * m
+    assert np.abs(paired / exact[:, 0] - 1).max() < 0.1
+    assert np.abs((found.value[:4] - exact[:, 1]) / found.stderr[:4]).max() < 5
+    assert found.gain[:4].min() > 3  # and so a variance without the pairs would fail
+    alone = [mcgw.simulate(sweep.scene((i, 0)))["load"] for i in (2, 0)]
+    difference = alone[0] - alone[1]
+    np.testing.assert_allclose(found.value, difference.mean(axis=0), rtol=1e-11)
+    np.testing.assert_allclose(found.stderr, difference.std(axis=0, ddof=1) / np.sqrt(m), rtol=1e-9)
+
+
+@pytest.mark.parametrize("gammas", [[1.0, 1.001, 1.5], np.linspace(0.5, 1.7, 9)])
+def test_slopes_from_pairs_are_those_of_theory(gammas):
+    slopes = mcgw.sweep(SCENE, {"ensemble.count": ["fixed", "poisson"], GAMMA: gammas}).slopes("load", GAMMA)
+    assert slopes.value.shape == (2, len(gammas) - 1, 5)
+    assert np.abs((slopes.value - slopes.theory) / slopes.stderr).max() < 5
+    assert (slopes.stderr < 0.05 * np.abs(slopes.value))[..., :3].all()  # so that a wrong sign would show
+    e = mcgw.simulate(SCENE, grading=mcgw.Exponential(float(gammas[0])))
+    other = mcgw.simulate(SCENE, grading=mcgw.Exponential(float(gammas[1])))
+    step = gammas[1] - gammas[0]
+    np.testing.assert_allclose(
+        slopes.stderr[0, 0], (other.load - e.load).std(axis=0, ddof=1) / 300**0.5 / step, rtol=1e-8
+    )
+    assert "theory" in repr(slopes)
+
+
+def test_quantities_that_the_modulus_does_not_enter_do_not_change():
+    sweep = mcgw.sweep(SCENE, {GAMMA: np.linspace(0.5, 1.7, 9)})
+    difference = sweep.difference("area", 0, 5)
+    assert not difference.value.any()
+    assert not difference.stderr.any()
+    per_area = sweep.difference("pressure", {GAMMA: 1.7}, {GAMMA: 0.5})
+    np.testing.assert_allclose(per_area.value * 1e-6, sweep.difference("load", 8, 0).value, rtol=1e-12)
+    np.testing.assert_allclose(sweep.mean("pressure") * 1e-6, sweep.mean("load"), rtol=1e-15)
+
+
+def test_neither_threads_nor_blocks_change_a_bit(monkeypatch):
+    over = {GAMMA: np.linspace(0.5, 1.7, 9), "surface.E_star": ["70 GPa", 8e10]}
+    one, two = (mcgw.sweep(SCENE, over, threads=n) for n in (1, 2))
+    for name in one.quantities:
+        assert np.array_equal(one.std(name), two.std(name))
+    monkeypatch.setattr(drawing, "_ROWS", 70)
+    parts = mcgw.sweep(SCENE, over)
+    np.testing.assert_allclose(parts.std("load"), one.std("load"), rtol=1e-13)
+    np.testing.assert_allclose(parts.mean("load"), one.mean("load"), rtol=1e-14)
+
+
+def test_scenes_that_share_nothing_are_simulated():
+    over = {"ensemble.sampler": ["direct", "tail", "cells", "aggregate", "stratified"]}
+    sweep = mcgw.sweep(SCENE, over)
+    assert len(sweep.groups) == 5
+    assert all(same_bits(sweep, (i,)) for i in range(5))
+    assert "nan" in repr(sweep) or repr(sweep).count("+-") >= 16
+    with pytest.raises(ValueError, match="have other surfaces"):
+        sweep.difference("load", 0, 1)
+
+
+def test_labels_and_zipped_axes():
+    over = {GAMMA: [1.0, 2.0], "surface.sigma": ["1 um", "2 um"]}
+    sweep = mcgw.sweep(SCENE, over, zipped=True, statistics=["mean"])
+    data = sweep.to_xarray()
+    assert data.load_mean.dims == ("point", "separation")
+    assert "load_std" not in data
+    assert data["surface.sigma"].values.tolist() == ["1 um", "2 um"]
+    assert sweep.scene({"surface.sigma": "2 um"}).surface.sigma == 2e-6
+    data = mcgw.sweep(SCENE, over).to_xarray()
+    assert data.load_std.sel({GAMMA: 2.0, "surface.sigma": "1 um"}).shape == (5,)
+    assert data.load_mean.attrs == {"units": "N", "long_name": "mean of the normal load"}
+
+
+def test_what_nobody_gave_follows():
+    follows = SCENE.replace(n_asperities=None)
+    sweep = mcgw.sweep(follows, {"surface.nominal_area": ["1 mm^2", "2 mm^2"]})
+    assert [scene.n_asperities for scene in sweep.scenes] == [300, 600]
+    assert len({scene.seed for scene in sweep.scenes}) == 1
+
+
+MISTAKES = [
+    ({GAMMA: [1, -3, 5]}, "negative from s = 0.2877.*at grading.gamma = -3"),
+    ({"grading.gama": [1]}, "grading.gama: unknown key.*at grading.gama = 1"),
+    ({"contact.separations": [[1]]}, "all points have the same"),
+    ({"foo": [1]}, "'foo': give \"section.key\""),
+    ({GAMMA: 2}, "grading.gamma = 2: give a list"),
+    ({GAMMA: []}, "give a list of at least one"),
+    ({"grading": [3]}, "grading = 3: must be a table"),
+    ({"grading": [np.sin]}, "gradings that are data"),
+    ({}, "at least one key"),
+    ({"contact.unload_from": [0, "x"]}, "contact.unload_from = 'x'"),
+    ({"ensemble.max_seconds": [3]}, "max_seconds: a sweep draws the same again"),
+    ({"ensemble.seed": [-k for k in range(1, 99)]}, r"and 78 more"),
+    (
+        {"contact.unload_from": [-1.0, 0.0], "contact.quantities": [["load"]]},
+        "contact.quantities: all points",
+    ),
+]
+
+
+@pytest.mark.parametrize(("over", "words"), MISTAKES)
+def test_mistakes_name_the_point(over, words):
+    with pytest.raises(mcgw.SceneError, match=words):
+        mcgw.sweep(SCENE, over)
+
+
+def test_all_mistakes_at_once():
+    with pytest.raises(mcgw.SceneError) as caught:
+        mcgw.sweep(SCENE, {GAMMA: [-3, 1, 5], "ensemble.seed": [1, "a"]})
+    lines = str(caught.value).splitlines()
+    assert len(lines) == 4
+    assert sum("ensemble.seed = 'a'" in line for line in lines) == 3
+
+
+@pytest.mark.parametrize("edges", ["1", [0.5, "a"], [np.inf], True])
+def test_edges_that_are_none(edges):
+    with pytest.raises(mcgw.SceneError, match=r"ensemble.edges = .*: give a list of finite heights"):
+        SCENE.replace(edges=edges)
+
+
+def test_points_that_are_none():
+    sweep = mcgw.sweep(SCENE, {GAMMA: [1.0, 2.0], "ensemble.seed": [1, 2]})
+    for at in ({GAMMA: 3.0}, {GAMMA: 1.0}, {"gamma": 1.0}, (0, 2), 0):
+        with pytest.raises(ValueError, match=r"point|axis"):
+            sweep.scene(at)
+    with pytest.raises(KeyError, match="'depth' is not in this sweep"):
+        sweep.mean("depth")
+    with pytest.raises(ValueError, match="slopes need numbers"):
+        mcgw.sweep(SCENE, {"ensemble.count": ["fixed", "poisson"]}).slopes("load", "ensemble.count")
+    with pytest.raises(ValueError, match="statistics = "):
+        mcgw.sweep(SCENE, {GAMMA: [1.0]}, statistics=["median"])
+
+
+def test_progress_ends_at_all_surfaces():
+    told = []
+    mcgw.sweep(SCENE, {"ensemble.seed": [1, 2]}, progress=lambda *pair: told.append(pair))
+    assert told[0] == (0, 600)
+    assert told[-1] == (600, 600)
+
+
+def test_pictures():
+    import matplotlib as mpl
+
+    mpl.use("agg")
+    sweep = mcgw.sweep(SCENE, {GAMMA: [1.0, 1.5, 2.0]})
+    assert len(sweep.plot().get_legend().get_texts()) == 3
+    assert sweep.slopes("load", GAMMA).plot().get_xlabel() == GAMMA
+
+
+def test_who_asks_for_no_sweep_loads_none():
+    code = (
+        "import mcgw, sys\n"
+        "s = mcgw.Surface(1e-6, 1e-5, 3e8, 1e-6, 8e10)\n"
+        "mcgw.simulate(mcgw.Scene(s, separations=[0, 1], n_surfaces=2))\n"
+        "assert not any('sweep' in name or name.endswith('shared') for name in sys.modules)"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True)
