@@ -52,7 +52,7 @@ Ask:
 ``scene.validity()``     how far the model is from elasticity, as it was measured
 `regrade`                another grading or contact law, same surfaces; `paired_ratio` of the two
 `solve`                  the separation at a load, pressure or area
-`sweep`                  many scenes at once, over the same surfaces: means, differences, slopes
+`sweep`, `open_sweep`    many scenes at once, over the same surfaces: means, differences, slopes
 `converge`, `tradeoff`   the statistical convergence test; error against time on this machine
 `fit`, `fitted_scene`    the surface of a measured height map or of profiles, and a scene of it
 =======================  =========================================================================
@@ -124,6 +124,7 @@ if TYPE_CHECKING:
     from mcgw.statistics.tradeoff import tradeoff
     from mcgw.store.ensembles import open_ensemble
     from mcgw.store.saving import save
+    from mcgw.sweeps.file import open_sweep
     from mcgw.sweeps.from_python import sweep
 
 __all__ = [
@@ -171,6 +172,7 @@ __all__ = [
     "masing",
     "merge",
     "open_ensemble",
+    "open_sweep",
     "paired_ratio",
     "radii",
     "regrade",
@@ -205,6 +207,7 @@ _HOME = {
     "load_scene": "scene.scene_file",
     "merge": "jobs.merging",
     "open_ensemble": "store.ensembles",
+    "open_sweep": "sweeps.file",
     "paired_ratio": "ensemble.paired",
     "radii": "sampling.asperities",
     "regrade": "ensemble.regrading",

@@ -14,6 +14,7 @@ from mcgw.machine.terminal import drop_output, one_line, plain_output
 COMMANDS = (
     "init",
     "run",
+    "sweep",
     "show",
     "compare",
     "converge",

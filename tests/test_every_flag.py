@@ -331,6 +331,7 @@ E = ["@e.h5"]
 LAW = [*E, "-o", "a.h5", "--law"]
 HERTZ, KE = [*LAW, "hertz"], [*LAW, "kogut-etsion"]
 RUN = ["@s.toml", "-o", "a.h5"]
+SWEEP = ["@s.toml", "--over", "grading.gamma=1,2", "-o", "a.h5"]
 MAP = ["@s.toml", "--shape", "200", "-o", "m.sdf"]
 HDF = [*MAP[:-1], "m.h5"]
 GAUSS = [*SPECTRUM, "-o", "m.sdf"]
@@ -358,6 +359,12 @@ ROWS = [
     row("run", "--scheduler", RUN, [*RUN, "--scheduler", "ftp://x"], refuses("ftp://x")),
     row("run", "--shard", RUN, [*RUN, "--shard", "1/2"], share_drawn),
     row("run", "--shard", RUN, [*RUN, "--shard", "3/2"], refuses("--shard 3/2: give i/n")),
+    row("sweep", "--output", SWEEP, [*SWEEP[:-1], "b.h5"], writes("b.h5", instead=["a.h5"])),
+    row("sweep", "--over", SWEEP, [*SWEEP, "--over", "ensemble.seed=1,2"], says("a.h5: 4 scenes")),
+    row("sweep", "--over", SWEEP, [*SWEEP, "--over", "ensemble.seed"], refuses("--over ensemble.seed: give")),
+    row("sweep", "--zip", SWEEP, [*SWEEP, "--zip", "--over", "ensemble.seed=1,2"], says("1, 1 ")),
+    row("sweep", "--threads", SWEEP, [*SWEEP, "--threads", "0"], refuses("threads = 0: give")),
+    row("sweep", "--plan", SWEEP, [*SWEEP, "--plan"], says("computed ")),
     row("show", "--scene", E, [*E, "--scene"], scene_alone),
     row("show", "--digest", E, [*E, "--digest"], digest_alone),
     row("show", "--verify", E, [*E, "--verify"], says("e.h5: intact (")),

@@ -27,7 +27,7 @@ def execute(args: argparse.Namespace) -> int:
     from mcgw.commands.notes import tell_notes
     from mcgw.commands.outputs import check_outputs
     from mcgw.commands.table_option import table_output, write_table
-    from mcgw.store.ensembles import open_ensemble, read_attributes, verify
+    from mcgw.store.ensembles import filetype_of, open_ensemble, read_attributes, verify
     from mcgw.store.leftovers import tidy
 
     if args.csv and (args.scene or args.digest or args.plan or args.verify):
@@ -41,6 +41,10 @@ def execute(args: argparse.Namespace) -> int:
         print(plan_text(scene, plan_of(scene)))
         return 0
     tidy(args.file)
+    if filetype_of(args.file) == "mcgw-sweep":
+        from mcgw.commands.show_sweep import show_sweep  # of which most files are none
+
+        return show_sweep(args)
     if args.verify:
         problem, found = verify(args.file)
         print(f"{args.file}: {f'DAMAGED, {problem}' if problem else 'intact'} ({found})")

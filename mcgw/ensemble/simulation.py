@@ -168,7 +168,7 @@ def block_size(scene: Scene, sampler: Source[Any]) -> int:
     return (size // GROUP // 4 * 4 + 2) * GROUP if size > GROUP else max(size, 1)
 
 
-def seconds_per_surface(scene: Scene, sampler: Sampler) -> float:
+def seconds_per_surface(scene: Scene, sampler: Source[Any]) -> float:
     """Median wall time of drawing one surface in a block, after a warm-up."""
     size = min(block_size(scene, sampler), 256)
     n = at_a_time(size)

@@ -20,6 +20,7 @@ from mcgw.store.untrusted import examine
 
 __all__ = [
     "StoreError",
+    "filetype_of",
     "finished",
     "open_ensemble",
     "read_attributes",
@@ -101,6 +102,11 @@ def read_attributes(path: Path) -> dict[str, Any]:
         "digest": "none before it is complete",
         "date": run.date,
     }
+
+
+def filetype_of(path: Path) -> str:
+    """What a file says it is; empty if there is none, or it says nothing."""
+    return str(examine(path)["attributes"].get("filetype", "")) if path.is_file() else ""
 
 
 def _run_of(path: Path) -> RunFolder:

@@ -1,5 +1,6 @@
 """The axes of a sweep: which keys of a scene have which values."""
 
+import json
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -39,6 +40,16 @@ class Axes:
 
     values: dict[str, tuple[Any, ...]]
     zipped: bool
+
+    @classmethod
+    def from_text(cls, text: str) -> "Axes":
+        """Those that `text_of_all` wrote."""
+        said = json.loads(text)
+        return cls({key: tuple(values) for key, values in said["values"].items()}, bool(said["zipped"]))
+
+    def text_of_all(self) -> str:
+        """All of it as JSON."""
+        return json.dumps({"values": self.values, "zipped": self.zipped})
 
     @property
     def keys(self) -> tuple[str, ...]:

@@ -1,18 +1,15 @@
 """``mcgw.sweep``: a sweep as a notebook asks for it."""
 
 from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
 from typing import Any
 
-from mcgw.ensemble.forecast import without_rule
 from mcgw.ensemble.simulation import use_threads
-from mcgw.machine.memory import keep_freed_memory
 from mcgw.machine.progress import Progress, told
 from mcgw.scene.scene import Scene
-from mcgw.scene.section import SceneError
+from mcgw.sweeps.asked import Asked
 from mcgw.sweeps.axes import axes_of
-from mcgw.sweeps.drawing import Drawn, drawn
-from mcgw.sweeps.groups import Group, groups_of
-from mcgw.sweeps.points import scenes_of
+from mcgw.sweeps.drawing import Memory, draw
 from mcgw.sweeps.sweep import STATISTICS, Sweep
 
 __all__ = ["sweep"]
@@ -24,6 +21,7 @@ def sweep(
     *,
     statistics: Sequence[str] = STATISTICS,
     zipped: bool = False,
+    path: str | Path | None = None,
     threads: int | None = None,
     progress: Progress = None,
 ) -> Sweep:
@@ -48,10 +46,13 @@ def sweep(
     zipped : bool, optional
         The first values of all keys make one point, the second ones another. Default: every value of one key
         goes with every value of all others.
+    path : str or Path, optional
+        A file for it, which appears when all is drawn (`mcgw.open_sweep`). The same call again draws nothing,
+        or goes on where it was interrupted; where nobody gave a seed it takes that of the file.
     threads : int, optional
         Default: all there are. The result is the same, bit by bit, for any number.
     progress : bool or callable, optional
-        True: a bar; a function: called with (done, total) surfaces.
+        True: a bar; a function: called with (done, total) surfaces, each weighted by what it takes.
 
     Returns
     -------
@@ -63,7 +64,9 @@ def sweep(
     SceneError
         With the mistakes of all points at once, each with the point it is of.
     StoreError
-        If the memory is too small.
+        If the memory is too small, the file cannot be written there, or the place belongs to something else.
+    RunError
+        If it was interrupted, with a file; what is done is kept.
     ValueError
         If another argument is wrong.
 
@@ -85,36 +88,11 @@ def sweep(
     """
     if not statistics or not set(statistics) <= set(STATISTICS):
         raise ValueError(f"statistics = {statistics!r}: give one or both of {', '.join(STATISTICS)}")
-    axes = axes_of(over, zipped=zipped)
-    keep_freed_memory()
-    scenes = [_with_a_number(one) for one in scenes_of(scene, axes)]
-    groups = groups_of(scenes)
-    total = sum(group.scenes[0].n_surfaces for group in groups)
-    found, done = [], 0
+    axes, chosen = axes_of(over, zipped=zipped), tuple(statistics)
     with use_threads(threads), told(progress, "surfaces") as tell:
-        tell(0, total)
-        for group in groups:
-            before = done
-            found.append(drawn(group, lambda n: tell(before + n, total)))  # noqa: B023 - called at once
-            done += group.scenes[0].n_surfaces
-    return _put_together(axes, groups, found, tuple(statistics))
+        if path is not None:
+            from mcgw.sweeps.in_file import sweep_in_file
 
-
-def _with_a_number(scene: Scene) -> Scene:
-    """With a number of surfaces in the place of a rule."""
-    if scene.max_seconds is not None:
-        raise SceneError(["ensemble.max_seconds: a sweep draws the same again; give n_surfaces or rel_err"])
-    return scene if scene.rel_err is None else without_rule(scene)
-
-
-def _put_together(axes: Any, groups: list[Group], found: list[Drawn], statistics: tuple[str, ...]) -> Sweep:
-    """The points in their order."""
-    places = {n: (g, i) for g, group in enumerate(groups) for i, n in enumerate(group.numbers)}
-    points = [places[n] for n in range(axes.size)]
-    return Sweep(
-        axes=axes,
-        scenes=tuple(groups[g].scenes[i] for g, i in points),
-        places=tuple(points),
-        groups=tuple(found),
-        statistics=statistics,
-    )
+            return sweep_in_file(scene, axes, Path(path), chosen, tell)
+        asked = Asked.of(scene, axes)
+        return asked.answered(draw(asked.groups, Memory(), tell), chosen)

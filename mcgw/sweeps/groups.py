@@ -12,7 +12,7 @@ from mcgw.sampling.shared import on_common_cells, to_be_shared
 from mcgw.scene.scene import Scene
 from mcgw.sweeps.exponentials import between_two
 
-__all__ = ["Group", "Mixture", "groups_of"]
+__all__ = ["Group", "Place", "groups_of"]
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -20,17 +20,20 @@ _Item = TypeVar("_Item")
 
 
 @dataclass(frozen=True)
-class Mixture:
-    """A point as a weighted mean of some that are computed.
+class Place:
+    """Where the statistics of a point are: a weighted mean of some scenes that are computed.
 
     Parameters
     ----------
+    group : int
+        Of points that share their surfaces.
     scenes : ndarray of int
         Which of them.
     weights : ndarray
         Of what the modulus enters; anything else is the same for all of them.
     """
 
+    group: int
     scenes: Ints
     weights: Array
 
@@ -51,46 +54,51 @@ class Group:
         Which points of the sweep.
     scenes : tuple of Scene
         Theirs, on common cells.
-    computed : tuple of int
+    computed : tuple of Scene
         Those whose sums are computed for every surface.
-    mixtures : tuple of Mixture
-        All points by these.
+    places : tuple of Place
+        Of all points.
     """
 
     numbers: tuple[int, ...]
     scenes: tuple[Scene, ...]
-    computed: tuple[int, ...]
-    mixtures: tuple[Mixture, ...]
+    computed: tuple[Scene, ...]
+    places: tuple[Place, ...]
+
+    @property
+    def n_surfaces(self) -> int:
+        """How many surfaces they share."""
+        return self.scenes[0].n_surfaces
 
 
 def groups_of(scenes: Sequence[Scene]) -> list[Group]:
     """Group the scenes of a sweep."""
     keys = [to_be_shared(scene) for scene in scenes]
     together = _alike(range(len(scenes)), lambda i: (i,) if keys[i] is None else keys[i])
-    return [_group(members, [scenes[i] for i in members]) for members in together]
+    return [_group(g, members, [scenes[i] for i in members]) for g, members in enumerate(together)]
 
 
-def _group(numbers: list[int], scenes: list[Scene]) -> Group:
+def _group(group: int, numbers: list[int], scenes: list[Scene]) -> Group:
     scenes = on_common_cells(scenes) if len(scenes) > 1 else scenes
     computed: list[int] = []
-    mixtures: dict[int, Mixture] = {}
+    places: dict[int, Place] = {}
     for members in _alike(range(len(scenes)), lambda i: _but_grading(scenes[i])):
         first, one = len(computed), np.ones(1)
         if (found := between_two([scenes[i] for i in members])) is None:
             computed += members
-            mixtures |= {i: Mixture(np.array([first + k]), one) for k, i in enumerate(members)}
+            places |= {i: Place(group, np.array([first + k]), one) for k, i in enumerate(members)}
             continue
         two, weights = found
         computed += [members[k] for k in two]
-        mixtures |= {i: _mixture(first, pair) for i, pair in zip(members, weights, strict=True)}
-    in_order = tuple(mixtures[i] for i in range(len(scenes)))
-    return Group(tuple(numbers), tuple(scenes), tuple(computed), in_order)
+        places |= {i: _between(group, first, pair) for i, pair in zip(members, weights, strict=True)}
+    in_order = tuple(places[i] for i in range(len(scenes)))
+    return Group(tuple(numbers), tuple(scenes), tuple(scenes[i] for i in computed), in_order)
 
 
-def _mixture(first: int, weights: Array) -> Mixture:
+def _between(group: int, first: int, weights: Array) -> Place:
     """Of two scenes, without one that does not count."""
     some = np.flatnonzero(weights)
-    return Mixture(first + some, weights[some])
+    return Place(group, first + some, weights[some])
 
 
 def _but_grading(scene: Scene) -> tuple[Any, ...]:

@@ -9,7 +9,8 @@ from numpy.typing import NDArray
 from mcgw.formats.evenly import evenly
 from mcgw.formats.sheet import Sheet, Shown
 from mcgw.machine.late import plotted
-from mcgw.sweeps.drawing import Drawn
+from mcgw.sweeps.groups import Place
+from mcgw.sweeps.pooled import Pooled
 
 __all__ = ["Difference", "Slopes"]
 
@@ -36,15 +37,23 @@ class Difference:
 
     @classmethod
     def of(
-        cls, drawn: Drawn, points: tuple[int, int], quantity: str, areas: tuple[float, float]
+        cls, pooled: Pooled, points: tuple[Place, Place], quantity: str, areas: tuple[float, float]
     ) -> "Difference":
-        """First point less second one, each per an area."""
-        (i, j), (a, b) = points, areas
-        value = drawn.mean(i, quantity) / a - drawn.mean(j, quantity) / b
-        apart = drawn.variance(i, quantity) / a**2 + drawn.variance(j, quantity) / b**2
-        paired = drawn.variance_of_difference(points, quantity, areas)
+        """First point less second one, each per an area.
+
+        The variance is that of one combination of scenes, so that nothing cancels.
+        """
+        (one, v), (other, w) = (point.of(quantity) for point in points)
+        a, b = areas
+        value = pooled.mean(quantity, one, v) / a - pooled.mean(quantity, other, w) / b
+        apart = pooled.variance(quantity, one, v) / a**2 + pooled.variance(quantity, other, w) / b**2
+        scenes = np.union1d(one, other)
+        weights = np.zeros(len(scenes))
+        weights[np.searchsorted(scenes, one)] += v / a
+        weights[np.searchsorted(scenes, other)] -= w / b
+        paired = np.maximum(pooled.variance(quantity, scenes, weights), 0.0)  # but for rounding
         with np.errstate(divide="ignore", invalid="ignore"):
-            return cls(value, np.sqrt(paired / drawn.pooled.n), apart / paired)
+            return cls(value, np.sqrt(paired / pooled.n), apart / paired)
 
 
 @dataclass(frozen=True, repr=False)

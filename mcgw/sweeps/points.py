@@ -1,26 +1,27 @@
 """The scene of each point of a sweep, checked as a scene file is."""
 
-from typing import Any
+from collections.abc import Sequence
+from typing import Any, overload
 
 from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_document, scene_of
 from mcgw.scene.section import SceneError
 from mcgw.sweeps.axes import Axes
 
-__all__ = ["scenes_of"]
+__all__ = ["Points", "document_of", "scenes_of"]
 
 _MOST_TOLD = 20  # mistakes: more say nothing new
 
 
-def scenes_of(scene: Scene, axes: Axes) -> list[Scene]:
-    """The scenes of all points.
+def scenes_of(document: dict[str, Any], axes: Axes) -> list[Scene]:
+    """The scenes of all points, out of the tables of the one that they come from.
 
     Raises
     ------
     SceneError
         With the mistakes of all points, each with the point it is of.
     """
-    document, found, problems = _document(scene), [], []
+    found, problems = [], []
     for point in axes.points():
         try:
             found.append(scene_of(_with(document, axes.at(point))))
@@ -35,7 +36,45 @@ def scenes_of(scene: Scene, axes: Axes) -> list[Scene]:
     return found
 
 
-def _document(scene: Scene) -> dict[str, Any]:
+class Points(Sequence[Scene]):
+    """The scenes of a sweep that was drawn before, each made when it is asked for.
+
+    Parameters
+    ----------
+    document : dict
+        The tables of the scene that they come from.
+    axes : Axes
+        What they differ in.
+    drawn : sequence of (int, tuple of float)
+        Of each point the number of surfaces, and the edges that it got from others.
+    """
+
+    def __init__(
+        self, document: dict[str, Any], axes: Axes, drawn: Sequence[tuple[int, tuple[float, ...]]]
+    ) -> None:
+        self._document, self._axes, self._drawn = document, axes, drawn
+        self._points = list(axes.points())
+
+    def __len__(self) -> int:
+        """Number of points."""
+        return len(self._points)
+
+    @overload
+    def __getitem__(self, i: int) -> Scene: ...
+    @overload
+    def __getitem__(self, i: slice) -> list[Scene]: ...
+    def __getitem__(self, i: int | slice) -> Scene | list[Scene]:
+        """One of them, or some."""
+        if isinstance(i, slice):
+            return [self[k] for k in range(*i.indices(len(self)))]
+        n, edges = self._drawn[i]
+        scene = scene_of(_with(self._document, self._axes.at(self._points[i])))
+        if scene.n_surfaces == n and scene.rel_err is None and not edges:
+            return scene
+        return scene.replace(n_surfaces=n, rel_err=None, edges=edges or scene.edges)
+
+
+def document_of(scene: Scene) -> dict[str, Any]:
     """The tables of the scene; what follows from others, or goes without saying, is left out."""
     document = scene_document(scene, left_out=False)
     if "n_asperities" in scene.left_out:

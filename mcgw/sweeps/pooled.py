@@ -1,7 +1,8 @@
 """Means, variances and covariances over surfaces of several scenes that share these."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,6 +12,8 @@ __all__ = ["Pooled"]
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 Values = dict[str, Array]
+
+_MEANS, _PRODUCTS = "_means", "_products"
 
 
 @dataclass(frozen=True)
@@ -49,6 +52,23 @@ class Pooled:
                     products[name][i, j] = products[name][j, i] = (x * apart[j]).sum(axis=0)
         return cls(len(next(iter(values[0].values()))), means, products)
 
+    @classmethod
+    def from_tables(cls, tables: Mapping[str, NDArray[Any]]) -> "Pooled":
+        """What `tables` gave."""
+        means = {k.removesuffix(_MEANS): v for k, v in tables.items() if k.endswith(_MEANS)}
+        products = {
+            name: tables[name + _PRODUCTS].reshape(len(mean), *mean.shape) for name, mean in means.items()
+        }
+        return cls(int(tables["n"][0]), means, products)
+
+    def tables(self) -> dict[str, NDArray[Any]]:
+        """As arrays of at most three axes: n, means (scenes, ...) and products (scenes^2, ...)."""
+        tables: dict[str, NDArray[Any]] = {"n": np.array([self.n])}
+        for name, mean in self.means.items():
+            tables[name + _MEANS] = mean
+            tables[name + _PRODUCTS] = self.products[name].reshape(len(mean) ** 2, *mean.shape[1:])
+        return tables
+
     def __add__(self, other: "Pooled") -> "Pooled":
         """Of the surfaces of both."""
         n, means, products = self.n + other.n, {}, {}
@@ -60,7 +80,7 @@ class Pooled:
         return Pooled(n, means, products)
 
     def mean(self, name: str, scenes: Ints, weights: Array) -> Array:
-        """Mean of a combination of some scenes."""
+        """Mean of a combination of some scenes, shape (separations,)."""
         means = self.means[name]
         return np.asarray(sum(w * means[i] for i, w in zip(scenes, weights, strict=True)))
 

@@ -14,8 +14,9 @@ from mcgw.machine.late import plotted
 from mcgw.scene.samplers import promise_of
 from mcgw.scene.scene import Scene
 from mcgw.sweeps.axes import Axes, Point
-from mcgw.sweeps.drawing import Drawn
+from mcgw.sweeps.groups import Place
 from mcgw.sweeps.pairs import Difference, Slopes
+from mcgw.sweeps.pooled import Pooled
 from mcgw.sweeps.tables import sweep_dataset
 
 __all__ = ["STATISTICS", "Sweep"]
@@ -35,21 +36,24 @@ class Sweep(Shown):
     ----------
     axes : Axes
         The keys and their values.
-    scenes : tuple of Scene
+    scenes : sequence of Scene
         Of all points, the last axis fastest. Where points needed other cells they have the edges of all
         (`edges`): drawn alone, each gives the same surfaces, and the same bits.
-    places : tuple of (int, int)
-        Of each point the group of those that share its surfaces, and its number among them.
-    groups : tuple of Drawn
-        What is kept of each group.
+    places : tuple of Place
+        Where the statistics of each point are.
+    groups : tuple of Pooled
+        What is kept of each group of points that share their surfaces.
+    edges : tuple of tuple of float
+        Of each group, the edges of cells that its points got from each other.
     statistics : tuple of str
         What `to_xarray` tells.
     """
 
     axes: Axes
-    scenes: tuple[Scene, ...]
-    places: tuple[tuple[int, int], ...]
-    groups: tuple[Drawn, ...]
+    scenes: Sequence[Scene]
+    places: tuple[Place, ...]
+    groups: tuple[Pooled, ...]
+    edges: tuple[tuple[float, ...], ...]
     statistics: tuple[str, ...]
 
     @property
@@ -67,22 +71,17 @@ class Sweep(Shown):
         """What there is of each point."""
         return tuple(self.scenes[0].shapes)
 
-    @property
-    def edges(self) -> tuple[float, ...]:
-        """Edges of cells that points got from others, as ``[ensemble] edges`` of their scenes has them."""
-        return tuple(sorted({s for scene in self.scenes for s in scene.edges}))
-
     def mean(self, quantity: str) -> Array:
         """Mean over the surfaces in SI units, shape (axes ..., separations)."""
-        return self._of_all(quantity, lambda group, i, name: group.mean(i, name))
+        return self._of_all(quantity, lambda pooled, *some: pooled.mean(*some))
 
     def std(self, quantity: str) -> Array:
         """Standard deviation over the surfaces (divisor M - 1), nan for one surface."""
-        return self._of_all(quantity, lambda group, i, name: np.sqrt(group.variance(i, name)))
+        return self._of_all(quantity, lambda pooled, *some: np.sqrt(pooled.variance(*some)))
 
     def stderr(self, quantity: str) -> Array:
         """Standard error of the mean, nan for one surface."""
-        m = np.array([scene.n_surfaces for scene in self.scenes]).reshape(self.shape)
+        m = np.array([self.groups[place.group].n for place in self.places]).reshape(self.shape)
         std = self.std(quantity)
         return np.asarray(std / np.sqrt(m.reshape(self.shape + (1,) * (std.ndim - m.ndim))))
 
@@ -178,7 +177,7 @@ class Sweep(Shown):
         values = {
             (name, kind): getattr(self, kind)(name) for name in self.quantities for kind in self.statistics
         }
-        return sweep_dataset(self.axes, self.scenes[0], values, self.edges)
+        return sweep_dataset(self.axes, self.scenes[0], values)
 
     def plot(self, ax: Any = None, *, quantity: str | None = None) -> Any:
         """Draw the mean of a quantity against the separation, a line a point; returns the axes.
@@ -195,21 +194,17 @@ class Sweep(Shown):
     def sheet(self) -> Sheet:
         """The axes, and means of some points at the lowest separation."""
         facts = [(key, self.axes.summary(key)) for key in self.axes.keys]
-        surfaces = sum(group.pooled.n for group in self.groups)
+        surfaces = sum(group.n for group in self.groups)
         facts.append(("surfaces", f"{surfaces} drawn, in {len(self.groups)} groups that share theirs"))
         k = int(np.argmin(self.separations))
         names = [name for name in self.quantities if self.mean(name).ndim == len(self.shape) + 1]
         means = {name: self.mean(name).reshape(self.axes.size, -1)[:, k] for name in names}
-        real = np.array([promise_of(scene.sampler).real_surfaces for scene in self.scenes])
-        errors = {
-            name: np.where(real, self.stderr(name).reshape(self.axes.size, -1)[:, k], np.nan)
-            for name in names
-        }
+        errors = {name: self.stderr(name).reshape(self.axes.size, -1)[:, k] for name in names}
         points = list(self.axes.points())
         rows = [
             [
                 self.axes.values_text(points[i]),
-                *(f"{means[name][i]:.5g} +- {errors[name][i]:.1g}" for name in names),
+                *(self._text(i, means[name][i], errors[name][i]) for name in names),
             ]
             for i in evenly(len(points), _SHOWN)
         ]
@@ -219,7 +214,7 @@ class Sweep(Shown):
     def _of_all(self, quantity: str, get: Any) -> Array:
         """One array of all points, per area where that is asked."""
         name, per_area = self._held(quantity)
-        found = [get(self.groups[group], i, name) for group, i in self.places]
+        found = [get(self.groups[place.group], name, *place.of(name)) for place in self.places]
         if per_area:
             found = [x / scene.surface.nominal_area for x, scene in zip(found, self.scenes, strict=True)]
         return np.stack(found).reshape(*self.shape, *found[0].shape)
@@ -237,11 +232,16 @@ class Sweep(Shown):
     def _difference(self, quantity: str, one: Point, other: Point) -> Difference:
         name, per_area = self._held(quantity)
         a, b = self._number(one), self._number(other)
-        (group, i), (its, j) = self.places[a], self.places[b]
-        if group != its:
+        places = self.places[a], self.places[b]
+        if places[0].group != places[1].group:
             raise ValueError(
                 f"sweep: {self.axes.text(one)} and {self.axes.text(other)} have other surfaces; there are no "
                 "pairs, and the same seed makes them alike: give the ensemble of each another seed"
             )
         area = (self.scenes[k].surface.nominal_area if per_area else 1.0 for k in (a, b))
-        return Difference.of(self.groups[group], (i, j), name, (next(area), next(area)))
+        return Difference.of(self.groups[places[0].group], places, name, (next(area), next(area)))
+
+    def _text(self, point: int, mean: float, error: float) -> str:
+        """A mean, and its error where surfaces fluctuate as real ones do."""
+        real = promise_of(self.scenes[point].sampler).real_surfaces
+        return f"{mean:.5g} +- {error:.1g}" if real else f"{mean:.5g}"

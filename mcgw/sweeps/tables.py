@@ -21,7 +21,6 @@ def sweep_dataset(
     axes: Axes,
     scene: Scene,
     values: Mapping[tuple[str, str], NDArray[np.float64]],
-    edges: tuple[float, ...],
 ) -> Any:
     """An `xarray.Dataset` with a dimension for each axis, or "point" for zipped ones.
 
@@ -33,8 +32,6 @@ def sweep_dataset(
         Of the first point.
     values : dict of (str, str) to ndarray
         By quantity and statistic, shape (axes ..., separations).
-    edges : tuple of float
-        That points got from others.
 
     Raises
     ------
@@ -56,5 +53,5 @@ def sweep_dataset(
     if scene.tangential is not None:
         about = {"units": "m", "long_name": "tangential displacement"}
         coordinates["displacement"] = ("displacement", np.array(scene.tangential.displacements), about)
-    attributes = {"title": scene.title, "first_scene": scene_text(scene), "edges": list(edges)}
+    attributes = {"title": scene.title, "first_scene": scene_text(scene)}
     return xarray.Dataset(variables, coordinates, attributes)

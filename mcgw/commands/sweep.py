@@ -1,0 +1,103 @@
+"""``mcgw sweep``: many scenes as one question."""
+
+import argparse
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from mcgw.scene.scene import Scene
+    from mcgw.sweeps.axes import Axes
+
+HELP = "draw many scenes at once, over the same surfaces, and keep means and deviations; goes on too"
+EXAMPLE = "mcgw sweep runs/demo.toml --over grading.gamma=0.2:2:10 -o gamma.h5"
+
+
+def arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of this command."""
+    parser.add_argument("scene", type=Path, metavar="SCENE", help="TOML file: what all points have in common")
+    parser.add_argument(
+        "--over",
+        action="append",
+        required=True,
+        metavar="KEY=VALUES",
+        help="a key of the scene and its values, as grading.gamma=0.2:2:10 (start:stop:number) or "
+        "ensemble.n_asperities=1e4,1e5; each further one is another axis",
+    )
+    parser.add_argument(
+        "--zip",
+        action="store_true",
+        help="the first values of all keys make one point, and so on",
+    )
+    parser.add_argument(
+        "-o", "--output", type=Path, metavar="FILE.h5", help="default: out/NAME.sweep.h5 beside the scene"
+    )
+    parser.add_argument("--threads", type=int, metavar="N", help="default: all cores; never changes a bit")
+    parser.add_argument(
+        "--plan", action="store_true", help="print what would be drawn and how long it takes; write nothing"
+    )
+
+
+def execute(args: argparse.Namespace) -> int:
+    """Draw and say where the file is."""
+    from mcgw.commands.outputs import HDF5, Output, check_outputs
+    from mcgw.machine.progress import bar
+    from mcgw.scene.scene_file import files_of, load_scene
+    from mcgw.sweeps.axes import axes_of
+    from mcgw.sweeps.from_python import sweep
+    from mcgw.sweeps.in_file import recorded_seed
+
+    path = args.output or args.scene.parent / "out" / f"{args.scene.stem}.sweep.h5"
+    over = dict(map(_axis, args.over))
+    scene = load_scene(args.scene, seed=lambda: recorded_seed(path))
+    if args.plan:
+        print(_plan(scene, axes_of(over, zipped=args.zip)))
+        return 0
+    check_outputs([Output(path, HDF5, grows=True)], inputs=files_of(args.scene))
+    with bar("surfaces", terminal=True) as show:
+        found = sweep(scene, over, zipped=args.zip, path=path, threads=args.threads, progress=show)
+    print(found)
+    print(f"{path}: {found.axes.size} scenes, seed {scene.seed}")
+    return 0
+
+
+def _plan(scene: "Scene", axes: "Axes") -> str:
+    from mcgw.sweeps.asked import Asked
+    from mcgw.sweeps.plan import plan_text
+
+    return plan_text(Asked.of(scene, axes))
+
+
+def _axis(text: str) -> tuple[str, list[Any]]:
+    """A key and its values.
+
+    Raises
+    ------
+    ValueError
+        If it is not one.
+    """
+    key, equals, values = text.partition("=")
+    if not (key and equals and values):
+        raise ValueError(f"--over {text}: give KEY=VALUES, as grading.gamma=0.2:2:10 or =0.5,1,2")
+    parts = values.split(":")
+    if len(parts) == 3 and all(_number(part) is not None for part in parts):
+        return key, _evenly(text, *map(float, parts))
+    found = [(value, _number(value)) for value in values.split(",")]
+    return key, [value if number is None else number for value, number in found]
+
+
+def _evenly(text: str, start: float, stop: float, number: float) -> list[float]:
+    import numpy as np
+
+    if number != int(number) or not 1 <= number <= 1e6:
+        raise ValueError(f"--over {text}: {number:g} values; give a whole number from 1 to 1e6")
+    return [float(x) for x in np.linspace(start, stop, int(number))]
+
+
+def _number(text: str) -> int | float | None:
+    """A number as TOML has it, whole or not; None for a text."""
+    for kind in (int, float):
+        try:
+            return kind(text)
+        except ValueError:
+            continue
+    return None
