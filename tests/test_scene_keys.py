@@ -22,7 +22,7 @@ GOOD = {
     "ensemble": {
         "n_surfaces": "10", "n_asperities": "100", "count": "'fixed'", "seed": "1", "sampler": "'cells'",
         "keep": "'sums'", "max_seconds": "1.0", "left_out": "['seed']", "accuracy": "1e-6",
-        "law_error": "1e-3",
+        "law_error": "1e-3", "edges": "[0.5, 2.0]",
     },
 }  # fmt: skip
 SERIES = {"law": "'series'", "edges": "[0.0, 5.0, 20.0]", "coefficients": "[[1.0, 0.5], [1.5]]"}
@@ -147,6 +147,7 @@ WRONG_HERE = {
     ("grading", "s"): ["[1.0]", "[1.0, 0.0]", "[0.0, nan]", "1"],
     ("heights", "s"): ["[1.0]", "[1.0, 0.0]", "1"],
     ("grading", "name"): ["1", "['x']"],
+    ("ensemble", "edges"): ["1.0", "'x'", "[1.0, 'x']", "[nan]", "[inf]", "[true]", "{a = 1.0}"],
     ("contact", "ratio"): ["0", "-1", "'x'"],
     ("summits", "heights"): ["[]", "[1.0]", "1", "[1.0, nan, 2.0]"],
 }  # fmt: skip
