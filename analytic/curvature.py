@@ -129,7 +129,7 @@ class RandomCurvature:
         Returns
         -------
         (ndarray, ndarray)
-            Ratios and their probabilities, shape (4, *s.shape): exact for ``c^(k/2)``, k = 0 ... 7; if
+            Ratios and their probabilities, shape ``(4, *s.shape)``: exact for ``c^(k/2)``, k = 0 ... 7; if
             `largest` is finite there are five, up to k = 9.
         """
         x = self._over_rms(s)

@@ -111,7 +111,7 @@ class ContactLaw:
         return law
 
     def limits(self, e: Array) -> Array:
-        """Penetrations at which the next piece begins, increasing; shape (pieces - 1, *e.shape)."""
+        """Penetrations at which the next piece begins, increasing; shape ``(pieces - 1, *e.shape)``."""
         return np.empty((0, *np.shape(e)))
 
     def load(self, piece: int, y: Any, e: Array) -> Any:
