@@ -56,7 +56,9 @@ def one_style(_: dict[str, Any], __: str) -> None:
 
     from mcgw.figures.style import STYLE
 
-    mpl.rcParams.update(STYLE | {"figure.figsize": (6.4, 3.8), "figure.constrained_layout.use": True})
+    mpl.rcParams.update(
+        STYLE | {"axes.axisbelow": True, "figure.figsize": (6.4, 3.8), "figure.constrained_layout.use": True}
+    )
 
 
 sphinx_gallery_conf = {

@@ -92,7 +92,7 @@ class Coated(ContactLaw):
 
     @property
     def finest(self) -> float:
-        """How far above first touch the formulas are analytic: arctan(a/t) up to |a| = t."""
+        """How far above first touch the formulas are analytic: arctan(a/t) up to ``|a|`` = t."""
         return float(self._t**2)
 
     def load(self, piece: int, y: Any, e: Array) -> Any:

@@ -1,0 +1,23 @@
+"""
+Is the real area proportional to the load?
+==========================================
+
+Nearly, which is why friction is nearly proportional to load: over five decades of pressure A/P falls by a
+factor of 1.5 (stiff tips) to 2.5 (soft ones).
+"""
+
+import matplotlib.pyplot as plt
+import numpy as np
+
+import mcgw
+
+surface = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "1 cm^2", "78.6 GPa")
+pressure = np.geomspace(1e3, 1e8, 41)
+fig, ax = plt.subplots()
+for gamma in (0.5, 1.0, 2.0):
+    theory = mcgw.Scene(surface, separations=0.0, grading=mcgw.Exponential(gamma)).theory
+    h = theory.separation_at("pressure", pressure)
+    area = theory.mean("area_fraction", h)
+    ax.semilogx(pressure / 1e6, area / pressure * 1e9, label=f"γ = {gamma:g}")
+ax.set(xlabel="pressure (MPa)", ylabel="real area share / pressure (1/GPa)", ylim=(0, None))
+ax.legend(title="E*(s)/E* = γ − (γ − 1) exp(−s)")

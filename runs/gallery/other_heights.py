@@ -1,0 +1,28 @@
+"""
+What if the heights are not Gaussian?
+=====================================
+
+Worn surfaces have lost their highest summits, cast ones may have more of them. All laws here have the same
+σ; at a given separation the loads differ by orders of magnitude, since only the upper tail touches.
+"""
+
+import matplotlib.pyplot as plt
+import numpy as np
+import scipy.stats
+
+import mcgw
+
+surface = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "1 cm^2", "78.6 GPa")
+h = np.linspace(0, 3, 31)
+laws = {
+    "worn: Weibull, shape 10": mcgw.Weibull(10.0),
+    "Gaussian": mcgw.Gaussian(),
+    "gamma, shape 4": scipy.stats.gamma(4),
+    "exponential": mcgw.ExponentialHeights(),
+}
+fig, ax = plt.subplots()
+for name, law in laws.items():
+    pressure = mcgw.Scene(surface, separations=h, heights=law).theory.mean("pressure", h) / 1e6
+    ax.semilogy(h, np.where(pressure > 0, pressure, np.nan), label=name)
+ax.set(xlabel="separation d/σ", ylabel="pressure (MPa)", ylim=(1e-3, None))
+ax.legend()

@@ -1,0 +1,24 @@
+"""
+Does it matter that summits have different radii?
+=================================================
+
+On a Gaussian surface high summits are sharper than low ones. The classical model gives all of them one
+radius, the inverse of the mean curvature: too blunt for the high ones, and the more so the narrower the
+spectrum (α).
+"""
+
+import matplotlib.pyplot as plt
+import numpy as np
+
+import mcgw
+
+h = np.linspace(0, 3.5, 29)
+fig, ax = plt.subplots()
+for alpha in (2, 5, 20):
+    surface = mcgw.SpectralSurface(1e-12, 1e-3, alpha * 1e6, "1 mm^2", "100 GPa")
+    own = mcgw.Scene(surface, separations=h)
+    mean = mcgw.Scene(surface, separations=h, curvature="mean")
+    ax.plot(h, mean.theory.mean("load", h) / own.theory.mean("load", h), label=f"α = {alpha}")
+ax.axhline(1, color="0.5", linewidth=0.8, linestyle=":")
+ax.set(xlabel="separation from the mean summit, d/σ", ylabel="load with one radius / with own radii")
+ax.legend()

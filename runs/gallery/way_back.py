@@ -1,0 +1,25 @@
+"""
+Does it come back the way it went?
+==================================
+
+Not where summits yielded: they stay flattened, and the plane loses contact sooner. The lines are means of
+100 surfaces pressed to d = 0.5 σ and let go.
+"""
+
+import matplotlib.pyplot as plt
+import numpy as np
+
+import mcgw
+
+surface = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "1 cm^2", "78.6 GPa")
+law = mcgw.KogutEtsion(hardness=1.2e9, poisson=0.33)
+h = np.linspace(0.5, 3.0, 51)
+scene = mcgw.Scene(surface, separations=h, law=law, unload_from="loop", n_surfaces=100, seed=1)
+e = mcgw.simulate(scene)
+elastic = mcgw.Scene(surface, separations=h).theory.mean("pressure", h) / 1e6
+fig, ax = plt.subplots()
+ax.plot(h, e.mean("load") / surface.nominal_area / 1e6, label="pressed on")
+ax.plot(h, e.mean("load_unloading") / surface.nominal_area / 1e6, "--", label="let go")
+ax.plot(h, elastic, color="0.6", linewidth=0.9, label="if nothing yielded (Hertz)")
+ax.set(xlabel="separation d/σ", ylabel="pressure (MPa)", ylim=(0, None))
+ax.legend()
