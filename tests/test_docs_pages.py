@@ -1,6 +1,7 @@
 """The pages of the site: their code runs and says what they say; all are reached, links lead somewhere."""
 
 import doctest
+import inspect
 import re
 import shlex
 from pathlib import Path
@@ -10,6 +11,8 @@ import numpy as np
 import pytest
 from docs_site import DOCS, ROOT, WRITTEN, blocks, file_name, pages
 
+import analytic
+import mcgw
 from mcgw.cli import COMMANDS, _parser, main
 
 LOOSE = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE
@@ -106,9 +109,6 @@ def test_every_command_and_flag_is_on_its_page():
 
 
 def test_every_public_name_is_on_its_page():
-    import analytic
-    import mcgw
-
     for package in (mcgw, analytic):
         page = pages()[f"copied/{package.__name__}.md"]
         listed = set(re.findall(r"^   (?:~analytic\.)?(\w+)$", page, flags=re.MULTILINE))
@@ -118,3 +118,12 @@ def test_every_public_name_is_on_its_page():
 def test_the_site_is_offered():
     assert "docs/index.md" in (ROOT / "README.md").read_text()
     assert len(WRITTEN) > 25
+
+
+def test_every_function_of_the_theory_has_an_example():
+    """In its own help, or on a page."""
+    shown = "".join(code for name in WRITTEN for kind, code in blocks(pages()[name]) if kind == "python")
+    for name in analytic.__all__:
+        thing = getattr(analytic, name)
+        if inspect.isfunction(thing):
+            assert f"analytic.{name}(" in shown or ">>> " in thing.__doc__, name
