@@ -17,6 +17,7 @@ ROOT = Path(__file__).parent.parent
 DOCUMENTS = {
     "CHANGELOG.md": "changes",
     "CONTRIBUTING.md": "contributing",
+    "runs/ACCURACY.md": "accuracy",
     "runs/ERRATA.md": "errata",
     "runs/EXTREMES.md": "extremes",
     "runs/INTERACTION.md": "interaction",
