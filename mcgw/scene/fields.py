@@ -9,6 +9,7 @@ import numpy as np
 
 from analytic import (
     Clipped,
+    Exponential,
     Grading,
     HeightLaw,
     MeasuredHeights,
@@ -24,10 +25,11 @@ from mcgw.machine.kept import kept
 if TYPE_CHECKING:
     from analytic import Interaction
 
-__all__ = ["EXACT", "Fields"]
+__all__ = ["EXACT", "Fields", "share_above"]
 
 EXACT = 1e-13  # accuracy where none is asked: the last digits
 
+_CLEARLY = 1e-6  # no rounding makes such a modulus negative
 _BEYOND = 1e-16  # share of the heights that lie above what is checked for negative moduli
 
 
@@ -194,7 +196,20 @@ class Fields:
         bottom, end = self.heights.support
         high = min(max(self.highest, h + 1), end)
         start = max(h, self.least - 1, bottom)
-        return first_negative(self.grading, start, high) if start < high else None
+        if not start < high or _clearly_positive(self.grading, start, high):
+            return None
+        return first_negative(self.grading, start, high)
+
+
+def _clearly_positive(grading: Grading, low: float, high: float) -> bool:
+    """Whether two heights tell that a grading is positive between them: it rises or falls all the way."""
+    return isinstance(grading, Exponential) and bool((grading(np.array([low, high])) > _CLEARLY).all())
+
+
+@kept(64)  # the same for all scenes of a sweep
+def share_above(heights: HeightLaw, h: float) -> float:
+    """Share of the heights of a law that lie above one."""
+    return float(heights.above(np.array(h)))
 
 
 @kept(64)  # every scene asks, a few times

@@ -5,7 +5,6 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal
 
-import numpy as np
 from numpy.typing import ArrayLike
 
 from analytic import Grading, MeasuredRadii, RandomCurvature, Surface
@@ -13,7 +12,7 @@ from analytic.laws import ContactLaw, Film, Tangential
 from mcgw.formats.sheet import Sheet, Shown
 from mcgw.scene.contact_text import accuracy_facts, contact_facts
 from mcgw.scene.ensemble_section import LeftOut
-from mcgw.scene.fields import EXACT, Fields
+from mcgw.scene.fields import EXACT, Fields, share_above
 from mcgw.scene.law_text import law_text
 from mcgw.scene.mistakes import mistakes
 from mcgw.scene.reading import read_values
@@ -281,4 +280,4 @@ class Scene(Fields, Shown):
     @property
     def touching(self) -> float:
         """Asperities of a surface that are expected above the lowest separation."""
-        return self.n_asperities * float(self.heights.above(np.array(self.lowest)))
+        return self.n_asperities * share_above(self.heights, float(self.lowest))
