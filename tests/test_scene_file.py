@@ -165,3 +165,16 @@ def test_files_that_are_none(tmp_path):
     (tmp_path / "binary.toml").write_bytes(bytes(range(256)))
     with pytest.raises(SceneError, match="not a TOML scene"):
         mcgw.load_scene(tmp_path / "binary.toml")
+
+
+@pytest.mark.parametrize("gamma", [-3.0, -0.01, 0.0, 0.4, 1.0, 1.000001, 2.0, 50.0])
+def test_a_negative_modulus_is_found_where_all_heights_are_looked_at(gamma):
+    """A grading that rises all the way is looked at its ends alone, and found the same."""
+    grading = analytic.Exponential(gamma)
+    scene = mcgw.scene_from(GOOD).replace(grading=grading, negative="allow")
+    found = []
+    for h in np.linspace(-3.0, 3.0, 61):
+        start, high = max(h, scene.least - 1), max(scene.highest, h + 1)
+        found.append(scene.negative_above(h))
+        assert found[-1] == analytic.first_negative(grading, start, high)
+    assert any(x is not None for x in found) == (gamma < 0 or gamma >= 2)  # elsewhere far below, or nowhere

@@ -55,6 +55,31 @@ def test_a_thousand_gradings_that_are_clipped_are_not_taken_for_combinations():
     assert all(same_bits(sweep, (i,)) for i in range(9))
 
 
+SEVERAL = {
+    "balance": (SCENE.replace(interaction="body"), {GAMMA: [1.0, 1.5]}),
+    "sideways": (
+        SCENE.replace(tangential=mcgw.Tangential(friction=0.3, poisson=0.3, displacements=[1e-8, 1e-7])),
+        {GAMMA: np.linspace(1.0, 2.0, 9)},
+    ),
+    "breaks where others begin": (
+        SCENE.replace(law=mcgw.KogutEtsion(critical=0.1), separations=[0.0, 0.1, 0.2, 0.3]),
+        {"contact.critical": [0.05, 0.1, 0.2]},
+    ),
+    "separations again and unsorted": (SCENE.replace(separations=[2.0, 0.0, 1.0, 1.0]), {GAMMA: [0.5, 2.0]}),
+    "without cells": (SCENE.replace(n_asperities=10), {GAMMA: [0.5, 2.0]}),
+    "laws of heights": (SCENE, {"heights": [{"law": "weibull", "shape": 2.0}, {}], GAMMA: [0.5, 2.0]}),
+    "a function": (SCENE.replace(grading=lambda s: 1 + 0.3 * np.tanh(s)), {"surface.E_star": [7e10, 8e10]}),
+}
+
+
+@pytest.mark.parametrize("name", SEVERAL)
+def test_any_kind_of_scene_has_its_bits(name):
+    scene, over = SEVERAL[name]
+    sweep = mcgw.sweep(scene, over)
+    assert len(sweep.groups) == (2 if name == "laws of heights" else 1)
+    assert all(same_bits(sweep, at) for at in np.ndindex(sweep.shape))
+
+
 def test_contact_laws_with_other_breaks_share_their_surfaces():
     metal = SCENE.replace(law=mcgw.KogutEtsion(hardness=1.2e9, poisson=0.3))
     sweep = mcgw.sweep(metal, {"contact.hardness": [1e9, "1.2 GPa", 3e9]})
@@ -86,6 +111,9 @@ def test_any_edges_leave_the_exact_law_as_it_is():
     z = (e.mean("load") - cut.theory.mean("load", e.separations)) / e.stderr("load")
     assert np.abs(z).max() < 5
     assert not np.array_equal(e.load[:300], mcgw.simulate(SCENE).load)
+    above = np.maximum(mcgw.heights(cut, 5)[:, None] - e.separations, 0.0)
+    unit = 4 / 3 * SURFACE.E_star * np.sqrt(SURFACE.radius) * SURFACE.sigma**1.5
+    np.testing.assert_allclose(unit * (above**1.5).sum(axis=0), e.load[5], rtol=1e-12)
 
 
 def exact_difference(one, other, h):
