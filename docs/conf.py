@@ -78,6 +78,16 @@ sphinx_gallery_conf = {
 }
 
 
+def of_the_theory(app: Any, env: Any, node: Any, shown: Any) -> Any:
+    """Names of `mcgw` that are those of `analytic` have their page there."""
+    name = f"analytic.{node['reftarget'].removeprefix('mcgw.')}"
+    python = env.domains["py"]
+    if node.get("refdomain") != "py" or name not in python.objects:
+        return None
+    return python.resolve_xref(env, node["refdoc"], app.builder, "obj", name, node, shown)
+
+
 def setup(app: Any) -> None:
     """Write the pages that the code itself tells before any page is read."""
     app.connect("config-inited", lambda *_: from_the_code.write(Path(__file__).parent))
+    app.connect("missing-reference", of_the_theory)

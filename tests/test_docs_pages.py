@@ -115,6 +115,15 @@ def test_every_public_name_is_on_its_page():
         assert listed == set(package.__all__)
 
 
+def test_what_the_questions_quote_is_said():
+    """Each message that the page quotes is one of the program."""
+    program = "".join(path.read_text() for path in (ROOT / "mcgw").rglob("*.py"))
+    quoted = re.findall(r'^\*\*"(?:\.\.\. )?(.+?)(?: \.\.\.)?"', pages()["faq.md"], flags=re.MULTILINE)
+    assert len(quoted) == 2
+    for message in quoted:
+        assert message.replace("\\", "") in program, message
+
+
 def test_the_site_is_offered():
     assert "docs/index.md" in (ROOT / "README.md").read_text()
     assert len(WRITTEN) > 25
