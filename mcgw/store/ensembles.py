@@ -105,8 +105,11 @@ def read_attributes(path: Path) -> dict[str, Any]:
 
 
 def filetype_of(path: Path) -> str:
-    """What a file says it is; empty if there is none, or it says nothing."""
-    return str(examine(path)["attributes"].get("filetype", "")) if path.is_file() else ""
+    """What a file says it is; empty if there is none, it says nothing, or cannot be read."""
+    try:
+        return str(examine(path)["attributes"].get("filetype", "")) if path.is_file() else ""
+    except (StoreError, OSError):
+        return ""
 
 
 def _run_of(path: Path) -> RunFolder:

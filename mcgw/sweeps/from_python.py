@@ -84,7 +84,7 @@ def sweep(
     >>> both = {"ensemble.count": "fixed"}
     >>> stiffer = sweep.difference("load", {"grading.gamma": 2.0, **both}, {"grading.gamma": 1.0, **both})
     >>> stiffer.gain.round()
-    array([30., 11.,  5.])
+    array([6., 6., 5.])
     """
     if not statistics or not set(statistics) <= set(STATISTICS):
         raise ValueError(f"statistics = {statistics!r}: give one or both of {', '.join(STATISTICS)}")
