@@ -66,8 +66,10 @@ def crowding(scene: Scene, mesh: Mesh) -> Crowding | None:
     Returns
     -------
     Crowding or None
-        None if no crowd is large enough.
+        None if no crowd is large enough, or there is no cell.
     """
+    if not mesh.size:
+        return None
     variance, third, fourth = _cumulants(scene, mesh)
     expected = scene.n_asperities * mesh.probability
     threshold = _FEWEST
@@ -87,7 +89,8 @@ def _cumulants(scene: Scene, mesh: Mesh) -> tuple[Array, Array, Array]:
     """
     u, w = (1 + _X) / 2, _W / 2
     first = second = np.zeros(1)
-    thirds, fourths = [np.empty((0, 1))], [np.empty((0, 1))]
+    thirds: list[Array] = []
+    fourths: list[Array] = []
     for start in range(0, mesh.size, _TOGETHER):
         cells = np.arange(start, min(start + _TOGETHER, mesh.size))
         heights = mesh.edges[cells] + np.stack([mesh.offsets(cells, np.full(len(cells), v)) for v in u])
@@ -100,9 +103,8 @@ def _cumulants(scene: Scene, mesh: Mesh) -> tuple[Array, Array, Array]:
         share = mesh.probability[cells]
         first = first + product(share, mean)
         second = second + product(share, square + mean**2)
-    n = max(len(thirds) - 1, 1)
     fixed = first**2 if scene.count == "fixed" else np.zeros(1)
-    return scene.n_asperities * (second - fixed), np.concatenate(thirds[-n:]), np.concatenate(fourths[-n:])
+    return scene.n_asperities * (second - fixed), np.concatenate(thirds), np.concatenate(fourths)
 
 
 def _values(scene: Scene, heights: Array) -> Array:

@@ -8,6 +8,7 @@ of Chebyshev polynomials determine every smooth law of the height, and every smo
 root of the distance from the cell's start (`mcgw.sampling.response.response`).
 """
 
+from collections.abc import Callable
 from itertools import pairwise
 from typing import Any
 
@@ -22,7 +23,7 @@ from mcgw.sampling.layout import Layout
 from mcgw.sampling.spacing import price
 from mcgw.sampling.uniform_sums import PLAIN, ROOTED, WORDS, sum_uniforms, unfold
 
-__all__ = ["add_compensated", "cell_moments", "shares"]
+__all__ = ["add_compensated", "cell_moments", "in_runs_of_cells"]
 
 _START = 80.0  # asperities that take as long to draw as a cell takes to begin
 _ALONE = 1e6  # asperities' work that a thread does before another one has begun
@@ -138,19 +139,30 @@ def cell_moments(
     ndarray
         Shape (moments, surfaces): the same bits for any number of threads and in any block.
     """
+
+    def sum_run(*cells: Any) -> None:
+        counts, starts, orders, bounds, moments = cells
+        _sum_cells(np.uint64(seed), first, counts, starts, orders, bounds, stratified, moments)
+
+    return in_runs_of_cells(counts, layout, sum_run)
+
+
+def in_runs_of_cells(
+    counts: NDArray[np.int64], layout: Layout, sum_run: Callable[..., None]
+) -> NDArray[np.float64]:
+    """Moments of all cells, of which every thread has a run: no number of threads changes a sum's order.
+
+    ``sum_run(counts, starts, orders, bounds, moments)`` writes those of the cells and surfaces within bounds.
+    """
     counts = np.where(layout.sizes[:, None] > 0, counts, 0)  # what nobody asks for is not drawn
     starts, orders = layout.starts, np.column_stack([layout.plain, layout.rooted])
     moments = aligned(int(starts[-1]), counts.shape[1])
-
-    def sum_share(bounds: tuple[int, int]) -> None:
-        """Every thread has a run of cells: no number of threads changes the order of a sum."""
-        _sum_cells(np.uint64(seed), first, counts, starts, orders, bounds, stratified, moments)
-
-    in_threads(sum_share, list(pairwise(shares(counts, layout).tolist())))
+    bounds = list(pairwise(_shares(counts, layout).tolist()))
+    in_threads(lambda some: sum_run(counts, starts, orders, some, moments), bounds)
     return moments
 
 
-def shares(counts: NDArray[np.int64], layout: Layout) -> NDArray[np.int64]:
+def _shares(counts: NDArray[np.int64], layout: Layout) -> NDArray[np.int64]:
     """Where the work of each thread begins and ends, counted through the surfaces of each cell in turn."""
     each = price(layout.plain, layout.rooted)
     work = np.concatenate([[0.0], np.cumsum(_START * counts.shape[1] + counts.sum(axis=1) * each)])

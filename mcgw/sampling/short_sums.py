@@ -6,26 +6,21 @@ products T_2 T_1 and T_2 T_2 as well, and eight uniforms at a time, for a sum is
 orders are summed by the loops of `mcgw.sampling.uniform_sums`.
 """
 
-from itertools import pairwise
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from mcgw.machine.aligned import aligned
 from mcgw.machine.compiling import njit
-from mcgw.machine.in_threads import in_threads
 from mcgw.sampling.few_bits import spread
 from mcgw.sampling.lanes import LANES, alike, fused, load, roots, total
 from mcgw.sampling.layout import Layout
-from mcgw.sampling.moments import add_compensated, shares
+from mcgw.sampling.moments import add_compensated, in_runs_of_cells
 from mcgw.sampling.uniform_sums import BUFFER, PLAIN, ROOTED, WORDS, add_uniforms
 
-__all__ = ["PLAINS", "ROOTS", "short_moments"]
+__all__ = ["short_moments"]
 
 Ints = NDArray[np.int64]
-
-PLAINS, ROOTS = (5, 8), (0, 4)  # orders for which there are loops
 
 
 def _adder(plain: int, rooted: int) -> Any:
@@ -192,12 +187,9 @@ def short_moments(seed: int, first: int, counts: Ints, layout: Layout, bits: Int
     ndarray
         Shape (moments, surfaces): the same bits for any number of threads and in any block.
     """
-    counts = np.where(layout.sizes[:, None] > 0, counts, 0)  # what nobody asks for is not drawn
-    starts, orders = layout.starts, np.column_stack([layout.plain, layout.rooted])
-    moments = aligned(int(starts[-1]), counts.shape[1])
 
-    def sum_share(bounds: tuple[int, int]) -> None:
+    def sum_run(*cells: Any) -> None:
+        counts, starts, orders, bounds, moments = cells
         _sum_cells(np.uint64(seed), first, counts, starts, orders, bits, bounds, moments)
 
-    in_threads(sum_share, list(pairwise(shares(counts, layout).tolist())))
-    return moments
+    return in_runs_of_cells(counts, layout, sum_run)

@@ -23,7 +23,7 @@ from mcgw.statistics.methods import Method, methods_for
 from mcgw.statistics.ways import Way, ways_for
 from mcgw.statistics.wishes import Advice, advise
 
-__all__ = ["ADVICE_HEAD", "Advice", "Point", "Tradeoff", "advice_row", "tradeoff"]
+__all__ = ["Advice", "Point", "Tradeoff", "tradeoff"]
 
 Array = NDArray[np.float64]
 
@@ -131,21 +131,20 @@ class Tradeoff(Shown):
         """What to run for each wish."""
         quantity, h = self.scene.quantities[0], f"{self.separations[-1]:g}"
         facts = [("mean, quantile", f"of the {quantity} at d/sigma = {h}, in 95 of 100 ensembles")]
-        return Sheet("What to run", facts, list(ADVICE_HEAD), [advice_row(a) for a in self.advice])
+        return Sheet("What to run", facts, list(_ADVICE_HEAD), [_advice_row(a) for a in self.advice])
 
 
-ADVICE_HEAD = ("wish, relative error", "sampler", "accuracy", "law_error", "n_surfaces", "seconds")
+_ADVICE_HEAD = ("wish, relative error", "sampler", "accuracy", "law_error", "n_surfaces", "seconds")
 
 
-def advice_row(advice: Advice) -> list[str]:
-    """What to run, in words under `ADVICE_HEAD`."""
+def _advice_row(advice: Advice) -> list[str]:
+    """What to run, in words under `_ADVICE_HEAD`."""
     asked = advice.scene
-    spent = f"{asked.law_error:g}" if asked.law_error else "0"
     return [
         advice.wish.text,
         asked.sampler if asked.sampler == advice.sampler else f"{asked.sampler}: {advice.sampler}",
         f"{asked.accuracy:g}",
-        spent,
+        f"{asked.law_error:g}",
         str(asked.n_surfaces),
         f"{advice.seconds:.2g}",
     ]
