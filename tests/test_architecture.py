@@ -3,6 +3,7 @@
 import ast
 import subprocess
 import sys
+import tomllib
 from graphlib import TopologicalSorter
 from pathlib import Path
 
@@ -232,3 +233,19 @@ def test_no_loop_of_the_sampler_has_threads_of_its_own():
     """It is called from several threads, which not every kind of numba's own threads allows."""
     for path in (ROOT / "sampling").rglob("*.py"):
         assert "prange" not in path.read_text(), path.name
+
+
+def test_the_wheel_holds_every_package_and_every_file_that_is_no_module():
+    project = ROOT.parent / "pyproject.toml"
+    if not project.is_file():
+        pytest.skip("the sources are not here")
+    said = tomllib.loads(project.read_text())["tool"]["setuptools"]
+    there = {path.parent for top in ("mcgw", "analytic") for path in (ROOT.parent / top).rglob("*.py")}
+    assert {path.relative_to(ROOT.parent).as_posix().replace("/", ".") for path in there} == set(
+        said["packages"]
+    )
+    for top, patterns in said["package-data"].items():
+        data = {file for pattern in patterns for file in (ROOT.parent / top).glob(pattern)}
+        kinds = (".py", ".pyc", ".nbi", ".nbc")
+        others = {f for f in (ROOT.parent / top).rglob("*") if f.is_file() and f.suffix not in kinds}
+        assert others == data
