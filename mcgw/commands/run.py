@@ -80,7 +80,7 @@ def _execute(args: argparse.Namespace) -> int:
     if ruled:
         from mcgw.reports.stop_rule import after
 
-        for line in after(ensemble, scene.rel_err or 1.0):
+        for line in after(ensemble, scene):
             print(line)
     print(*two_questions(scene.validity(), path), sep="\n")
     return 0

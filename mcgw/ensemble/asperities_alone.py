@@ -62,8 +62,23 @@ def scene_alone(scene: Scene, what: str) -> Scene:
     return replace(scene, interaction=None)
 
 
+def _without_stiffness(scene: Scene) -> Scene:
+    """Of which statistics are those of the asperities: of stiffnesses only each surface's would tell."""
+    from analytic.interacting import is_stiffness
+
+    rest = tuple(name for name in scene.quantities if not is_stiffness(name))
+    if not rest:
+        raise ValueError(
+            'keep = "statistics": of stiffnesses in series with the half-space theory gives no mean; ask for '
+            "another quantity besides"
+        )
+    return replace(scene, quantities=rest)
+
+
 def asperities_alone(ensemble: Ensemble) -> Ensemble:
     """The ensemble of the sums of the asperities, where its separations are effective ones.
+
+    Of one that keeps statistics alone those that are no stiffnesses.
 
     Raises
     ------
@@ -71,5 +86,7 @@ def asperities_alone(ensemble: Ensemble) -> Ensemble:
         As from `scene_alone`.
     """
     scene = ensemble.scene
+    if scene.keep == "statistics":
+        return replace(ensemble, scene=scene_alone(_without_stiffness(scene), "this"))
     sums = _Alone(ensemble.sums, scene.compliance, scene.quantities)
     return replace(ensemble, scene=scene_alone(scene, "this"), sums=sums)

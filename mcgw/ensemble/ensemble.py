@@ -1,6 +1,5 @@
 """An ensemble: the sums of every surface, and their statistics over surfaces."""
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -8,9 +7,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analytic import PER_AREA, TANGENTIAL, quantity_of
+from mcgw.ensemble import over_surfaces
 from mcgw.ensemble.intervals import CONFIDENCE, count_interval, mean_interval, spread_of
 from mcgw.ensemble.results import Results
-from mcgw.ensemble.tables import dataframe, dataset
+from mcgw.ensemble.tables import dataframe, dataset, statistics_dataframe, statistics_dataset
 from mcgw.formats.sheet import Sheet, Shown
 from mcgw.machine.late import plotted
 from mcgw.scene.contact_text import accuracy_facts, contact_facts
@@ -23,8 +23,6 @@ __all__ = ["Ensemble"]
 
 Array = NDArray[np.float64]
 
-_ROWS = 8192  # surfaces at a time, for ensembles larger than the memory
-_LOW = 2**32 - 1  # the lower half of an integer: sums of halves do not overflow
 _MOST_SHOWN = 20_000_000  # numbers that are read for a short look; of more, only how many there are
 
 
@@ -152,6 +150,53 @@ class Ensemble(Shown):
         """Standard error of the mean, nan for one surface."""
         return np.asarray(self.std(quantity) / np.sqrt(self.n_surfaces))
 
+    def covariance(self, quantity: str, other: str | None = None) -> Array:
+        """Covariance over the surfaces (divisor M - 1) of two quantities, or of one with itself.
+
+        Shape (separations, separations of the other); nan for one surface.
+        """
+        (name, divisor), (second, by) = self._held(quantity), self._held(other or quantity)
+        found = over_surfaces.covariance(self.scene, self.sums, name, second)
+        return np.asarray(found / (divisor or 1.0) / (by or 1.0))
+
+    def skewness(self, quantity: str) -> Array:
+        """Skewness over the surfaces (divisor M), shape (separations,); nan where nothing varies."""
+        return over_surfaces.skewness(self.scene, self.sums, self._held(quantity)[0])
+
+    def quantile(self, quantity: str, share: float) -> Array:
+        """Value that a share of the surfaces is below, as `numpy.quantile`, shape (separations,).
+
+        Where only statistics are kept, it is found by even spacing in one of the bins that values are counted
+        in: `quantile_range` says how far it may be off.
+
+        Raises
+        ------
+        KeyError
+            If the ensemble does not hold this quantity.
+        ValueError
+            If `share` is not from 0 to 1.
+        """
+        return self._quantile(quantity, share)[0]
+
+    def quantile_range(self, quantity: str, share: float) -> tuple[Array, Array]:
+        """Both ends of where the `quantile` of these surfaces lies: itself where values are kept.
+
+        With ``keep = "statistics"`` less than 1/64 of the distance from the mean and a standard deviation
+        more apart, beyond 16000 deviations up to the extremes. It says nothing of other surfaces.
+        """
+        return self._quantile(quantity, share)[1:]
+
+    def extremes(self, quantity: str) -> tuple[Array, Array]:
+        """Least and greatest value over the surfaces, each of shape (separations,)."""
+        name, divisor = self._held(quantity)
+        low, high, *_ = over_surfaces.extremes(self.scene, self.sums, name)
+        return np.asarray(low / (divisor or 1.0)), np.asarray(high / (divisor or 1.0))
+
+    def extreme_surfaces(self, quantity: str) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+        """Numbers of the first surfaces that have the `extremes`: `mcgw.heights` gives their asperities."""
+        *_, low, high = over_surfaces.extremes(self.scene, self.sums, self._held(quantity)[0])
+        return low, high
+
     def interval(self, quantity: str, level: float = CONFIDENCE) -> tuple[Array, Array]:
         """Confidence interval of the mean, from the exact spread and skewness of the scene.
 
@@ -193,7 +238,7 @@ class Ensemble(Shown):
         balanced = scene.interaction is not None and scene.interaction.nominal
         if quantity_of(name).counts and not balanced:
             ends = count_interval(
-                self._number(name),
+                over_surfaces.total_number(scene, self.sums, name),
                 float(scene.n_asperities) * m,
                 poisson=scene.count == "poisson",
                 level=level,
@@ -213,16 +258,11 @@ class Ensemble(Shown):
         ends = self.separations + sunk * low, self.separations + sunk * high
         return np.fmin(*ends), np.fmax(*ends)
 
-    def _number(self, name: str) -> Array:
-        """Contacts of all surfaces that count: exact but for the rounding to double precision."""
-        total = [0] * len(self.scene.separations)
-        for rows in self._chunks(name, np.int64):
-            halves = zip((rows >> 32).sum(axis=0).tolist(), (rows & _LOW).sum(axis=0).tolist(), strict=True)
-            total = [so_far + (high << 32) + low for so_far, (high, low) in zip(total, halves, strict=True)]
-        return np.array([float(x) for x in total])
-
     def to_xarray(self) -> Any:
         """All values as an `xarray.Dataset` with dimensions (surface, separation), as the file has them.
+
+        With ``keep = "statistics"``: ``load_mean``, ``load_std``, ``load_skewness`` and so on, dimension
+        (separation), and ``load_quantile``, dimensions (probability, separation).
 
         Raises
         ------
@@ -233,16 +273,22 @@ class Ensemble(Shown):
         about = {"title": scene.title, "scene": scene_text(scene), "sampler": self.sampler}
         pushed = scene.tangential
         displacements = None if pushed is None else np.array(pushed.displacements)
+        if scene.keep == "statistics":
+            return statistics_dataset(self, about, displacements)
         return dataset(self._all(), self.separations, about, displacements)
 
     def to_dataframe(self) -> Any:
         """All values as a `pandas.DataFrame`: rows (surface, separation), a column for each quantity.
+
+        With ``keep = "statistics"``: a row for each separation, a column for each mean, deviation, skewness.
 
         Raises
         ------
         ImportError
             If pandas is not installed.
         """
+        if self.scene.keep == "statistics":
+            return statistics_dataframe(self)
         return dataframe({name: self.values(name) for name in self.scene.quantities}, self.separations)
 
     def plot(self, ax: Any = None, *, quantity: str | None = None) -> Any:
@@ -289,6 +335,13 @@ class Ensemble(Shown):
         at = [f"{scene.separations[k]:g}" for k in shown]
         return Sheet(head, facts, ["mean +- stderr, d/sigma =", *at], rows)
 
+    def _quantile(self, quantity: str, share: float) -> tuple[Array, Array, Array]:
+        if not 0 <= share <= 1:
+            raise ValueError(f"share = {share!r}: give a share of the surfaces, 0 to 1")
+        name, divisor = self._held(quantity)
+        value, low, high = over_surfaces.quantile(self.scene, self.sums, name, float(share))
+        return value / (divisor or 1.0), low / (divisor or 1.0), high / (divisor or 1.0)
+
     def _all(self) -> dict[str, Array]:
         return {name: self.values(name) for name in self.scene.shapes}
 
@@ -301,20 +354,10 @@ class Ensemble(Shown):
             raise KeyError(f"{quantity!r} is not in this ensemble; it has {have}")
         return name, divisor
 
-    def _chunks(self, name: str, kind: type = np.float64) -> Iterator[NDArray[Any]]:
-        m = self.n_surfaces
-        for start in range(0, m, _ROWS):
-            yield self.sums.read(name, start, min(start + _ROWS, m)).astype(kind)
-
     def _moments(self, quantity: str) -> tuple[Array, Array]:
-        """Mean and standard deviation; shifted by the first row, so nothing cancels."""
+        """Mean and standard deviation."""
         name, divisor = self._held(quantity)
-        m = self.n_surfaces
-        few = [self.sums.read(name, 0, m).astype(np.float64)] if m <= _ROWS else None  # read once
-        shift = next(iter(few or self._chunks(name)))[0]
-        mean = sum((chunk - shift).sum(axis=0) for chunk in few or self._chunks(name)) / m + shift
-        squares = sum(((chunk - mean) ** 2).sum(axis=0) for chunk in few or self._chunks(name))
-        std = np.sqrt(squares / (m - 1)) if m > 1 else np.full(np.shape(mean), np.nan)
+        mean, std = over_surfaces.mean_and_std(self.scene, self.sums, name)
         return np.asarray(mean / (divisor or 1.0)), np.asarray(std / (divisor or 1.0))
 
 

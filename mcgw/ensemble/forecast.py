@@ -15,12 +15,14 @@ from numpy.typing import NDArray
 from mcgw.ensemble.intervals import MANY, Spread, chebyshev, spread_of
 from mcgw.sampling.counts import GROUP
 from mcgw.scene.scene import Scene
+from mcgw.scene.stop_rule import wanted
 
 __all__ = ["Forecast", "checkpoints", "forecast", "relative_spread", "without_rule"]
 
 Array = NDArray[np.float64]
 
 _STEP = 16  # numbers of surfaces lie 1/16 apart
+_ANY = 0.1  # in the place of a share that is not asked for
 _ROUNDS = 8  # each leaves a share of the skewness over the square root of the contacts, at most 0.1
 
 
@@ -62,14 +64,15 @@ def relative_spread(scene: Scene, quantity: str) -> Array:
 def forecast(scene: Scene) -> Forecast:
     """Number of surfaces of a scene, a function of the scene alone.
 
-    With `rel_err` it is the smallest of `checkpoints` with which the 95 % interval of every mean reaches no
-    farther than that share of it, but at most `n_surfaces`. A mean that would not be known to a factor of two
-    with that many is not waited for. Without, it is `n_surfaces`.
+    With `rel_err` it is the smallest of `checkpoints` with which the 95 % interval of every mean that is
+    asked for reaches no farther than that share of it, but at most `n_surfaces`. A mean that would not be
+    known to a factor of two with that many is not waited for. Without, it is `n_surfaces`.
     """
     if scene.rel_err is None:
         return Forecast({}, scene.n_surfaces, ())
-    limit, spreads = scene.n_surfaces, {name: spread_of(scene, name) for name in scene.quantities}
-    needed = {name: _needed(spread, scene.rel_err) for name, spread in spreads.items()}
+    asked = wanted(scene)
+    limit, spreads = scene.n_surfaces, {name: spread_of(scene, name) for name in asked}
+    needed = {name: _needed(spread, asked[name]) for name, spread in spreads.items()}
     waited = [needed[name][spread.relative**2 <= limit] for name, spread in spreads.items()]
     most = max(float(n.max(initial=0.0)) for n in waited)
     surfaces = next((n for n in checkpoints(limit) if n >= most), limit)
@@ -82,8 +85,12 @@ def forecast(scene: Scene) -> Forecast:
     return Forecast(needed, surfaces, beyond)
 
 
-def _needed(spread: Spread, wanted: float) -> Array:
-    """Surfaces with which the interval reaches no farther than a share of the mean, neither end."""
+def _needed(spread: Spread, asked: Array) -> Array:
+    """Surfaces with which the interval reaches no farther than a share of the mean, neither end.
+
+    None where nothing is asked (an infinite share).
+    """
+    wanted = np.where(np.isinf(asked), _ANY, asked)
     with np.errstate(divide="ignore"):
         enough = np.maximum(MANY * (1 + 1e-12) / spread.effective(1), 1.0)
     n = np.maximum(enough, (spread.relative / wanted) ** 2)
@@ -93,7 +100,9 @@ def _needed(spread: Spread, wanted: float) -> Array:
         # where an end is to lie, over where it lies: the distance from 1 falls with the root of n
         more = np.maximum((1 - low) / (1 - 1 / (1 + wanted)), (high - 1) / (1 / (1 - wanted) - 1))
         n = np.where(reached, np.maximum(enough, n * more**2), n)
-    return np.minimum(n, (spread.relative * chebyshev() * (1 + wanted) / wanted) ** 2)
+    return np.where(
+        np.isinf(asked), 0.0, np.minimum(n, (spread.relative * chebyshev() * (1 + wanted) / wanted) ** 2)
+    )
 
 
 def checkpoints(limit: int) -> Iterator[int]:

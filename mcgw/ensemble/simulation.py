@@ -86,6 +86,11 @@ def simulate(
     if scene.rel_err is not None or scene.max_seconds is not None:
         scene = without_rule(scene)
     sampler = sampler_of(scene)
+    if scene.keep == "statistics":
+        from mcgw.ensemble.summarised import simulated  # for those scenes alone
+
+        with use_threads(threads), told(progress, "surfaces") as tell:
+            return simulated(scene, sampler, until, tell)
     if until is None:
         _check_memory(scene, scene.n_surfaces)
     parts, drawn = [], 0

@@ -7,11 +7,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analytic import quantity_of
+from mcgw.ensemble.over_surfaces import PROBABILITIES, STATISTICS_OF
 from mcgw.machine.late import optional
 
-__all__ = ["dataframe", "dataset"]
+__all__ = ["dataframe", "dataset", "statistics_dataframe", "statistics_dataset"]
 
 Values = Mapping[str, NDArray[Any]]
+_SCALES = {
+    "surface": ("1", "number of the surface"),
+    "separation": ("1", "mean-plane separation d/sigma"),
+    "displacement": ("m", "tangential displacement"),
+    "probability": ("1", "share of the surfaces that are below"),
+}
 _DIMS = ("surface", "separation", "displacement")
 
 
@@ -34,18 +41,63 @@ def dataset(
     for name, values in sums.items():
         q = quantity_of(name)
         variables[name] = _DIMS[: values.ndim], values, {"units": q.unit, "long_name": q.long_name}
-    scales = {
-        "surface": ("surface", np.arange(rows), {"units": "1", "long_name": "number of the surface"}),
-        "separation": (
-            "separation",
-            separations,
-            {"units": "1", "long_name": "mean-plane separation d/sigma"},
-        ),
-    }
-    if displacements is not None:
-        about = {"units": "m", "long_name": "tangential displacement"}
-        scales["displacement"] = ("displacement", displacements, about)
+    scales = _scales({"surface": np.arange(rows), "separation": separations, "displacement": displacements})
     return xarray.Dataset(variables, scales, dict(attributes))
+
+
+def statistics_dataset(
+    ensemble: Any, attributes: Mapping[str, Any], displacements: NDArray[np.float64] | None = None
+) -> Any:
+    """An `xarray.Dataset` of the statistics of an ensemble, as its file has them.
+
+    Raises
+    ------
+    ImportError
+        If xarray is not installed.
+    """
+    xarray = optional("xarray", "to_xarray")
+    variables = {}
+    for name in ensemble.scene.shapes:
+        q = quantity_of(name)
+        for kind, words in STATISTICS_OF.items():
+            values = getattr(ensemble, kind)(name)
+            about = {"units": "1" if kind == "skewness" else q.unit, "long_name": words.format(q.long_name)}
+            variables[f"{name}_{kind}"] = _DIMS[1 : 1 + values.ndim], values, about
+        quantiles = np.stack([ensemble.quantile(name, share) for share in PROBABILITIES])
+        about = {"units": q.unit, "long_name": f"quantiles of the {q.long_name}"}
+        variables[f"{name}_quantile"] = ("probability", *_DIMS[1 : quantiles.ndim]), quantiles, about
+    scales = _scales(
+        {
+            "probability": np.array(PROBABILITIES),
+            "separation": ensemble.separations,
+            "displacement": displacements,
+        }
+    )
+    return xarray.Dataset(variables, scales, dict(attributes))
+
+
+def _scales(values: Mapping[str, NDArray[Any] | None]) -> dict[str, Any]:
+    """Coordinates with their units and names."""
+    return {
+        name: (name, x, dict(zip(("units", "long_name"), _SCALES[name], strict=True)))
+        for name, x in values.items()
+        if x is not None
+    }
+
+
+def statistics_dataframe(ensemble: Any) -> Any:
+    """A `pandas.DataFrame` of the statistics of an ensemble, a row for each separation.
+
+    Raises
+    ------
+    ImportError
+        If pandas is not installed.
+    """
+    pandas = optional("pandas", "to_dataframe")
+    index = pandas.Index(ensemble.separations, name="separation")
+    names = [(name, kind) for name in ensemble.scene.quantities for kind in STATISTICS_OF]
+    columns = {f"{name}_{kind}": getattr(ensemble, kind)(name) for name, kind in names}
+    return pandas.DataFrame(columns, index=index)
 
 
 def dataframe(sums: Values, separations: NDArray[np.float64]) -> Any:

@@ -7,7 +7,7 @@ from mcgw.errors import StoreError
 from mcgw.machine.memory import check_memory, gibibytes
 from mcgw.scene.scene import Scene
 
-__all__ = ["check_space"]
+__all__ = ["check_disk", "check_space"]
 
 _MOST = 2**63 - 1
 
@@ -31,8 +31,18 @@ def check_space(scene: Scene, path: Path, *, rows: int, columns: int, held: int 
         if value > _MOST:
             raise StoreError(f"ensemble: {what} = {value:.4g} is more than 2^63 - 1 can count; ask for less")
     check_memory(f"contact.separations: a block of {min(rows, m)} surfaces", 3 * 8 * min(rows, m) * columns)
-    size, free = 8 * m * columns, shutil.disk_usage(path.parent).free
-    needed = 2 * size - held  # the shards, and the file they are merged into
+    check_disk(path, 2 * 8 * m * columns - held)  # the shards, and the file they are merged into
+
+
+def check_disk(path: Path, needed: int) -> None:
+    """Refuse what does not fit the disk, in bytes.
+
+    Raises
+    ------
+    StoreError
+        With the numbers.
+    """
+    free = shutil.disk_usage(path.parent).free
     if needed > free:
         raise StoreError(
             f"{path}: needs up to {gibibytes(needed)} more on the disk while made and {gibibytes(free)} "

@@ -3,13 +3,14 @@
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from analytic import PiecewiseSeries
-from mcgw.ensemble.results import joined
+from mcgw.ensemble.results import MemoryResults, Results, joined
 from mcgw.ensemble.simulation import block_size, drawn_blocks, kept, use_threads
 from mcgw.errors import StoreError
 from mcgw.formats.files import check_output
-from mcgw.jobs.disk_space import check_space
+from mcgw.jobs.disk_space import check_disk, check_space
 from mcgw.sampling.samplers import Sampler, sampler_of
 from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_from
@@ -19,6 +20,9 @@ from mcgw.store.ensembles import finished, recorded_scene
 from mcgw.store.layout import stored_text
 from mcgw.store.run_folder import RunFolder, parts_of
 from mcgw.store.shards import Span, Tables
+
+if TYPE_CHECKING:
+    from mcgw.ensemble.bins import Bins
 
 __all__ = ["Job", "as_recorded"]
 
@@ -59,8 +63,18 @@ class Job:
         job = cls(scene, sampler_of(scene), path)
         check_output(path)
         job.done()
-        check_space(scene, path, rows=job.rows, columns=job.columns, held=job._bytes())
+        job._check_space()
         return job
+
+    def _check_space(self) -> None:
+        """Refuse what does not fit the memory or the disk."""
+        if self.scene.keep == "statistics":
+            from mcgw.ensemble.summarised import check_width, stored_bytes  # for those scenes alone
+
+            check_width(self.scene)
+            check_disk(self.path, stored_bytes(self.scene, self.rows) - self._bytes())
+        else:
+            check_space(self.scene, self.path, rows=self.rows, columns=self.columns, held=self._bytes())
 
     @property
     def folder(self) -> Path:
@@ -70,6 +84,10 @@ class Job:
     @cached_property
     def rows(self) -> int:
         """Surfaces a block: a function of the scene alone, however many of them are asked; whole chunks."""
+        if self.scene.keep == "statistics":
+            from mcgw.ensemble.summarised import block_rows  # for those scenes alone
+
+            return block_rows(self.scene, self.sampler)
         size, row = block_size(self.scene, self.sampler), 8 * self.columns
         fitting = min(_BYTES / (size * row), _DRAWS / (size * (self.sampler.draws + 1)))
         rows = size * int(max(fitting, 1))
@@ -79,7 +97,7 @@ class Job:
     def columns(self) -> int:
         """Numbers kept of a surface."""
         sums = self.scene.width
-        if self.scene.keep == "sums":
+        if self.scene.keep != "moments":
             return sums
         return sums + self.sampler.moments + self.sampler.cells + _OUTSIDE
 
@@ -101,8 +119,28 @@ class Job:
         """Results of some surfaces, in pieces that fit the memory; they do not depend on `threads`."""
         size = block_size(self.scene, self.sampler)
         with use_threads(threads):
+            if self.scene.keep == "statistics":
+                from mcgw.ensemble.summarised import summary_of  # for those scenes alone
+
+                return summary_of(self.scene, self.sampler, self.bins, span.first, span.stop).tables()
             blocks = drawn_blocks(self.sampler, span.first, span.stop, size)
             return joined([kept(self.scene, block) for block in blocks])
+
+    @cached_property
+    def bins(self) -> "Bins":
+        """In which values are counted where statistics are kept."""
+        from mcgw.ensemble.bins import Bins  # for those scenes alone
+
+        return Bins.of(self.scene)
+
+    def results(self, tables: Tables) -> Results:
+        """What the tables of all surfaces are, drawn as one block."""
+        if self.scene.keep != "statistics":
+            return MemoryResults(tables)
+        from mcgw.ensemble.summarised import Summarised  # for those scenes alone
+        from mcgw.ensemble.summary import Summary
+
+        return Summarised(self.scene, (Summary.from_tables(tables),))
 
     def _bytes(self) -> int:
         """What lies there already: the file, and shards of a run."""

@@ -1,5 +1,6 @@
 """From the blocks of a run to its file."""
 
+from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
 
@@ -7,6 +8,7 @@ from mcgw.ensemble.ensemble import Ensemble
 from mcgw.errors import RunError, StoreError
 from mcgw.formats.files import rename_over, state_of, sync, temporary_beside
 from mcgw.jobs.driver import Signals, heed_signals
+from mcgw.scene.scene import Scene
 from mcgw.store.ensembles import finished, open_ensemble
 from mcgw.store.leftovers import tidy
 from mcgw.store.lock import locked
@@ -74,7 +76,7 @@ def merge_once(started: RunFolder, path: Path, signals: Signals) -> bool:
         signals.check(f"all blocks are kept in {started.folder}; the same command merges them")
 
     try:
-        merge_into(started.folder, path, temporary, check)
+        _merge_of(started.scene)(started.folder, path, temporary, check)
         rename_over(temporary, path, before)
         sync(path.parent)
     except StoreError:
@@ -96,6 +98,15 @@ def merge_once(started: RunFolder, path: Path, signals: Signals) -> bool:
             temporary.unlink()
     started.remove()
     return True
+
+
+def _merge_of(scene: Scene) -> Callable[[Path, Path, Path, Callable[[], None]], None]:
+    """How the shards of a scene become a file."""
+    if scene.keep != "statistics":
+        return merge_into
+    from mcgw.store.merged_statistics import merge_statistics  # for those scenes alone
+
+    return merge_statistics
 
 
 def _why(error: OSError | RuntimeError) -> str:

@@ -9,7 +9,6 @@ from typing import Any
 
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.forecast import checkpoints, without_rule
-from mcgw.ensemble.results import MemoryResults
 from mcgw.errors import RunError, StoreError
 from mcgw.jobs.blocks import commit_block, draw_block
 from mcgw.jobs.driver import Signals, drive, heed_signals
@@ -199,7 +198,7 @@ def _at_once(job: Job, session: _Session) -> None:
         session.signals,
     )
     session.signals.check("nothing was kept, the run is one block; the same command starts it again")
-    ensemble = Ensemble(job.scene, job.sampler.name, MemoryResults(answers[0]))
+    ensemble = Ensemble(job.scene, job.sampler.name, job.results(answers[0]))
     write_ensemble(ensemble, job.path, wall_seconds=perf_counter() - started)
     session.progress(job.scene.n_surfaces)
 

@@ -6,6 +6,8 @@ from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.forecast import Forecast
 from mcgw.ensemble.intervals import CONFIDENCE, TOO_FEW, spread_of
 from mcgw.scene.samplers import promise_of
+from mcgw.scene.scene import Scene
+from mcgw.scene.stop_rule import wanted
 
 __all__ = ["after", "before", "upper_contacts"]
 
@@ -16,8 +18,8 @@ def before(forecast: Forecast, seconds_each: float) -> str:
     return f"{line}; {forecast.shortfall}" if forecast.shortfall else line
 
 
-def after(ensemble: Ensemble, rel_err: float) -> list[str]:
-    """One line for each separation without a contact and each mean known less well than asked."""
+def after(ensemble: Ensemble, scene: Scene) -> list[str]:
+    """One line for each separation without a contact and each mean known less well than the scene asked."""
     m, n = ensemble.n_surfaces, ensemble.scene.n_asperities
     silent = np.all([ensemble.mean(name) == 0 for name in ensemble.scene.quantities], axis=0)
     limit = upper_contacts(m)
@@ -28,10 +30,11 @@ def after(ensemble: Ensemble, rel_err: float) -> list[str]:
     ]
     if not promise_of(ensemble.sampler).real_surfaces:
         return lines
-    for name in ensemble.scene.quantities:
+    asked = wanted(scene) or dict.fromkeys(scene.quantities, np.ones(len(scene.separations)))
+    for name, most in asked.items():
         reach = spread_of(ensemble.scene, name).reach(m)
-        for h, w in zip(ensemble.separations[~silent], reach[~silent], strict=True):
-            if not w <= rel_err * (1 + 1e-9):
+        for h, w, rel_err in zip(ensemble.separations[~silent], reach[~silent], most[~silent], strict=True):
+            if rel_err < np.inf and not w <= rel_err * (1 + 1e-9):
                 known = TOO_FEW if np.isnan(w) else f"is known to {w:.2g} of itself, not to {rel_err:g}"
                 lines.append(f"{name} at d/sigma = {h:g}{': ' if np.isnan(w) else ' '}{known}")
     return lines

@@ -146,7 +146,7 @@ def aggregate_of(scene: Scene, crowded: int = CROWDED, distance: float = np.nan)
     mesh = mesh_of(scene, split=False)
     response = _response(scene, mesh)
     varying = response.layout
-    if scene.keep == "sums":
+    if scene.keep != "moments":
         varying = layout_of(scene, mesh, _summed(scene.quantities), precision=Precision(VARYING))
         varying = varying.at_most(response.layout)
     return Counted("aggregate", scene, mesh, response, drawing=Crowds(varying, crowded, distance))
@@ -230,7 +230,7 @@ def _response(scene: Scene, mesh: Mesh, drawn: "Response | Families | None" = No
         return response_of(scene, mesh, names, kept=kept, precision=precision)
 
     names = _summed(scene.quantities)
-    if scene.curvature is None or (not names and scene.keep == "sums"):
+    if scene.curvature is None or (not names and scene.keep != "moments"):
         return response_to(None, names)
     from mcgw.sampling.families import Families
 
@@ -284,4 +284,4 @@ def _cheapest(scene: Scene) -> str:
     if nominal:
         return "cells" if scene.hertzian else "tail"
     few = scene.touching < min(5 + len(scene.separations) / 20, 20)
-    return "tail" if few and scene.keep == "sums" else "cells"
+    return "tail" if few and scene.keep != "moments" else "cells"

@@ -9,6 +9,7 @@ from analytic import Surface
 from mcgw.scene.fields import EXACT
 from mcgw.scene.samplers import SAMPLERS
 from mcgw.scene.section import Section
+from mcgw.scene.stop_rule import rel_err_of
 
 __all__ = ["LeftOut", "drawing_values", "ensemble_values"]
 
@@ -22,11 +23,11 @@ def drawing_values(section: Section) -> dict[str, Any]:
     return {
         "count": section.choice("count", "fixed", ("fixed", "poisson")),
         "sampler": section.choice("sampler", "auto", SAMPLERS),
-        "keep": section.choice("keep", "sums", ("sums", "moments")),
+        "keep": section.choice("keep", "sums", ("sums", "moments", "statistics")),
         "accuracy": section.number("accuracy", EXACT, unit="1"),
         "law_error": section.number("law_error", 0.0, unit="1", positive=False),
         "edges": _edges(section),
-        "rel_err": section.number("rel_err", unit="1") if "rel_err" in section else None,
+        "rel_err": rel_err_of(section),
         "max_seconds": section.number("max_seconds", unit="s") if "max_seconds" in section else None,
     }
 

@@ -21,6 +21,7 @@ from analytic import (
 )
 from analytic.laws import Branch, ContactLaw, Film, Hertz, Tangential, Ways
 from mcgw.machine.kept import kept
+from mcgw.scene.stop_rule import RelErr
 
 if TYPE_CHECKING:
     from analytic import Interaction
@@ -55,11 +56,11 @@ class Fields:
     count: Literal["fixed", "poisson"]
     seed: int
     sampler: str
-    keep: Literal["sums", "moments"]
+    keep: Literal["sums", "moments", "statistics"]
     accuracy: float
     law_error: float
     edges: tuple[float, ...]
-    rel_err: float | None
+    rel_err: RelErr | None
     max_seconds: float | None
 
     @property

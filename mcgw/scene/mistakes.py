@@ -21,6 +21,7 @@ from analytic.laws import half_spaces
 from mcgw.formats.sheet import brief
 from mcgw.scene.fields import EXACT, Fields
 from mcgw.scene.samplers import promise_of
+from mcgw.scene.stop_rule import rel_err_mistakes
 
 __all__ = ["COARSEST", "mistakes"]
 
@@ -67,11 +68,7 @@ def _values(scene: Fields) -> Iterator[str]:
             f"ensemble.n_asperities = {scene.n_asperities}: must lie between 1 and 2^53; "
             "change it, or surface.eta and surface.nominal_area"
         )
-    if scene.rel_err is not None and scene.rel_err > 0.1:
-        yield (
-            f"ensemble.rel_err = {scene.rel_err}: give a number > 0 and at most 0.1, beyond which so few "
-            "contacts would do that an interval means nothing"
-        )
+    yield from rel_err_mistakes(scene)
     if scene.rel_err is not None and not promise_of(sampler).real_surfaces:
         yield f'ensemble.rel_err: sampler = "{sampler}" has no variance to stop by; take another'
     if not EXACT <= scene.accuracy <= COARSEST:
@@ -84,6 +81,8 @@ def _values(scene: Fields) -> Iterator[str]:
             f"ensemble.law_error = {scene.law_error:g}: give a number from 0, exact samplers only, to "
             f"{_FARTHEST:g}"
         )
+    if scene.keep == "statistics" and not promise_of(sampler).real_surfaces:
+        yield f'ensemble.keep = "statistics": sampler = "{sampler}" has none; take another, or "sums"'
     if scene.seed >= 2**64:
         yield f"ensemble.seed = {scene.seed}: give a whole number from 0 to 2^64 - 1"
     listed = isinstance(scene.heights, MeasuredHeights)  # of which no sampler has moments

@@ -1,7 +1,7 @@
 """What is asked: surface, grading, contact and ensemble, checked before anything is computed."""
 
 import dataclasses
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -17,6 +17,7 @@ from mcgw.scene.law_text import law_text
 from mcgw.scene.mistakes import mistakes
 from mcgw.scene.reading import read_values
 from mcgw.scene.section import SceneError, nearest
+from mcgw.scene.stop_rule import rel_err_text
 from mcgw.scene.summits_section import Spectral
 from mcgw.scene.surface import SURFACE_UNITS, surface_of
 
@@ -87,8 +88,10 @@ class Scene(Fields, Shown):
         0 to 2^64 - 1. Default: drawn, and recorded.
     sampler : {"auto", "direct", "tail", "cells", "aggregate", "stratified"}, optional
         How surfaces are drawn; "auto" takes the cheapest exact way.
-    keep : {"sums", "moments"}, optional
-        Whether the file also keeps the moments, from which `mcgw.regrade` starts.
+    keep : {"sums", "moments", "statistics"}, optional
+        "moments": the file keeps these too, from which `mcgw.regrade` starts. "statistics": in the place of
+        the values of surfaces only their mean, covariance, skewness, quantiles and extremes, of any number
+        of surfaces in the same memory.
     accuracy : float, optional
         How near every value of every surface comes to the exact sum over its heights, relative to that sum:
         1e-13 to 0.01. Less than the default takes fewer moments, coarser cells, and uniforms of fewer bits
@@ -102,9 +105,11 @@ class Scene(Fields, Shown):
         Heights where cells are cut besides those where the scene needs it; nothing is then cut for speed
         alone. Scenes with the same cells and seed have the same surfaces: `mcgw.sweep` says which edges its
         points share. Default: none.
-    rel_err : float or str, optional
+    rel_err : float, str or dict, optional
         Draw so many surfaces that the 95 % interval of every mean reaches no farther than this share of
-        it, 0 to 0.1 or as "1 %": as many as the exact theory of a finite surface says.
+        it, 0 to 0.1 or as "1 %": as many as the exact theory of a finite surface says. Or of some quantities
+        alone, as ``{"load": 1e-3, "contacts": 1e-2}``, each with one number for all separations or a list
+        with one for each, `inf` where nothing is asked.
     max_seconds : float or str, optional
         Stop after the block that is being drawn then; s, or as "2 h".
 
@@ -150,11 +155,11 @@ class Scene(Fields, Shown):
         count: Literal["fixed", "poisson"] = "fixed",
         seed: int | None = None,
         sampler: str = "auto",
-        keep: Literal["sums", "moments"] = "sums",
+        keep: Literal["sums", "moments", "statistics"] = "sums",
         accuracy: float = EXACT,
         law_error: float = 0.0,
         edges: ArrayLike | None = None,
-        rel_err: float | str | None = None,
+        rel_err: float | str | Mapping[str, Any] | None = None,
         max_seconds: float | str | None = None,
     ) -> None:
         given = {key: value for key, value in locals().items() if key != "self"}
@@ -234,7 +239,7 @@ class Scene(Fields, Shown):
         x = {key: f"{key} = {getattr(self.surface, key):g} {unit}" for key, unit in SURFACE_UNITS.items()}
         h, among = self.separations, f"{len(self.separations)} from " if len(self.separations) > 1 else ""
         ends = " to ".join(f"{end:g}" for end in sorted({min(h), max(h)}))
-        stop = "" if self.rel_err is None else f" until rel_err = {self.rel_err:g}, at most"
+        stop = "" if self.rel_err is None else f" until rel_err = {rel_err_text(self.rel_err)}, at most"
         facts = [
             ("surface", ", ".join((x["sigma"], x["radius"], x["eta"]))),
             ("", f"{x['nominal_area']}, {x['E_star']}"),

@@ -1,6 +1,6 @@
 """Scenes as TOML: read with all mistakes named at once, written so that they read the same."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -236,10 +236,11 @@ def _ensemble_table(scene: Scene, left_out: bool) -> dict[str, Any]:
     # What is not asked for is not written: the text of a scene without it stays as it was.
     spent = {"accuracy": None if scene.exact else scene.accuracy, "law_error": scene.law_error or None}
     stops = {**spent, "rel_err": scene.rel_err, "max_seconds": scene.max_seconds}
+    given = {key: value for key, value in stops.items() if value is not None}
     return {
         most: scene.n_surfaces,
         **{key: getattr(scene, key) for key in ("n_asperities", "count", "seed", "sampler", "keep")},
-        **{key: float(value) for key, value in stops.items() if value is not None},
+        **{key: dict(x) if isinstance(x, Mapping) else float(x) for key, x in given.items()},
         **({"edges": list(scene.edges)} if scene.edges else {}),
         **({"left_out": list(scene.left_out)} if left_out and scene.left_out else {}),
     }

@@ -1,7 +1,8 @@
 """Ensemble files: opened and verified; the schema stands in `mcgw.store`."""
 
+from collections.abc import Iterable
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import h5py
 import numpy as np
@@ -12,11 +13,15 @@ from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_from, scene_text
 from mcgw.store.head import MOST_SCALE
 from mcgw.store.identity import difference, identity_of
-from mcgw.store.layout import FILETYPE, FORMAT, numbers, scales_of, values_digest
+from mcgw.store.layout import FILETYPE, FORMAT, STATISTICS, numbers, scales_of, values_digest
 from mcgw.store.run_folder import RunFolder, parts_of
+from mcgw.store.shards import Shard
 from mcgw.store.stored import FileResults, ShardResults
 from mcgw.store.trailer import check_trailer, read_trailer
 from mcgw.store.untrusted import examine
+
+if TYPE_CHECKING:
+    from mcgw.ensemble.summary import Summary
 
 __all__ = [
     "StoreError",
@@ -64,9 +69,31 @@ def open_ensemble(path: str | Path) -> Ensemble:
         shards = tuple(run.shards())
         if not shards:
             raise StoreError(f"{path}: no block of its run is finished yet")
+        if run.scene.keep == "statistics":
+            return _statistics(run.scene, run.sampler, _joined(shards))
         return Ensemble(run.scene, run.sampler, ShardResults(shards))
     attributes, scene = _described(path)
+    if scene.keep == "statistics":
+        from mcgw.store.statistics_file import read_blocks
+
+        return _statistics(scene, str(attributes["sampler"]), read_blocks(path))
     return Ensemble(scene, str(attributes["sampler"]), FileResults(path), _drawn_for(path, attributes))
+
+
+def _joined(shards: Iterable[Shard]) -> "tuple[Summary, ...]":
+    """Blocks of a run in progress, those that are there."""
+    from mcgw.ensemble.summary import Summary, push
+
+    blocks: list[Summary] = []
+    for shard in shards:
+        push(blocks, Summary.from_tables(shard.arrays()))
+    return tuple(blocks)
+
+
+def _statistics(scene: Scene, sampler: str, blocks: "tuple[Summary, ...]") -> Ensemble:
+    from mcgw.ensemble.summarised import Summarised  # for those scenes alone
+
+    return Ensemble(scene, sampler, Summarised(scene, blocks))
 
 
 def _drawn_for(path: Path, attributes: dict[str, Any]) -> Scene | None:
@@ -123,7 +150,7 @@ def _described(path: Path) -> tuple[dict[str, Any], Scene]:
     """Attributes and scene of a file that are as they were written, with the datasets that they declare."""
     answer = examine(path)
     attributes = answer["attributes"]
-    if attributes.get("filetype") != FILETYPE:
+    if attributes.get("filetype") not in (FILETYPE, STATISTICS):
         raise StoreError(f"{path}: not an ensemble file (filetype is not {FILETYPE!r})")
     try:
         major, minor = (int(part) for part in attributes["format"])
@@ -142,6 +169,8 @@ def _described(path: Path) -> tuple[dict[str, Any], Scene]:
         if isinstance(error, StoreError):
             raise
         raise StoreError(f"{path}: its scene cannot be read: {str(error).splitlines()[0]}") from None
+    if (scene.keep == "statistics") != (attributes["filetype"] == STATISTICS):
+        raise StoreError(f"{path}: its filetype is {attributes['filetype']}, its scene says otherwise")
     _check_tables(path, scene, answer["datasets"])
     return attributes, scene
 
@@ -149,8 +178,14 @@ def _described(path: Path) -> tuple[dict[str, Any], Scene]:
 def _check_tables(path: Path, scene: Scene, datasets: dict[str, Any]) -> None:
     """The datasets must have the shapes that the scene declares, and the scales its values."""
     scales = scales_of(scene)
-    shapes = {name: [len(values)] for name, values in scales.items()}
-    shapes |= {name: [scene.n_surfaces, *shape] for name, shape in scene.shapes.items()}
+    if scene.keep == "statistics":
+        from mcgw.store.statistics_file import shapes_of
+
+        del scales["surface"]
+        shapes = shapes_of(scene)
+    else:
+        shapes = {name: [len(values)] for name, values in scales.items()}
+        shapes |= {name: [scene.n_surfaces, *shape] for name, shape in scene.shapes.items()}
     for name, shape in shapes.items():
         if name not in datasets or datasets[name][1] != shape:
             found = datasets.get(name, ["", "none"])[1]
@@ -173,8 +208,7 @@ def verify(path: Path) -> tuple[str, str]:
         problem = str(error).removeprefix(f"{path}: ")
     try:
         attributes, scene = _described(path)
-        with h5py.File(path, "r") as file:
-            found = values_digest(file, scene)
+        found = _digest_now(path, scene)
         if found != attributes["digest"]:
             problem = problem or "digest mismatch of its data"
     except (OSError, RuntimeError, KeyError, ValueError) as error:
@@ -182,6 +216,15 @@ def verify(path: Path) -> tuple[str, str]:
             raise
         return f"{problem}; {error}", "unreadable"
     return problem, found
+
+
+def _digest_now(path: Path, scene: Scene) -> str:
+    if scene.keep == "statistics":
+        from mcgw.store.statistics_file import found_digest
+
+        return found_digest(path, scene)
+    with h5py.File(path, "r") as file:
+        return values_digest(file, scene)
 
 
 def recorded_scene(path: Path) -> Scene | None:

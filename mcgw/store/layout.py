@@ -19,8 +19,10 @@ from mcgw.store.provenance import now, provenance
 from mcgw.store.shards import DRAWN, RAGGED, Span, Tables
 
 __all__ = [
+    "AXES",
     "FILETYPE",
     "FORMAT",
+    "STATISTICS",
     "describe",
     "digest_of",
     "file_pieces",
@@ -36,6 +38,7 @@ __all__ = [
 ]
 
 FILETYPE, FORMAT = "mcgw-ensemble", (1, 1)
+STATISTICS = "mcgw-statistics"  # the filetype of `mcgw.store.statistics_file`
 
 Stored = Mapping[str, NDArray[Any] | h5py.Dataset]
 
@@ -44,7 +47,7 @@ _LONG_NAMES = {
     "cells": "asperities in each cell",
     RAGGED: "asperities outside the cells: surface, height, weight",
 }
-_SCALES = {  # of the axes of tables, in their order: unit and long name
+AXES = {  # of the axes of tables, in their order: unit and long name
     "surface": ("1", "number of the surface"),
     "separation": ("1", "mean-plane separation d/sigma"),
     "displacement": ("m", "tangential displacement"),
@@ -75,19 +78,18 @@ def fill(file: h5py.File, scene: Scene, pieces: Iterable[tuple[Span, Stored]]) -
 
 def describe(file: h5py.File, scene: Scene, sampler: str, digest: str, **attributes: Any) -> None:
     """Give a file that is filled its root attributes, and more of them."""
-    file.attrs.update(
-        filetype=FILETYPE,
-        format=FORMAT,
-        title=scene.title,
-        scene=stored_text(scene),
-        seed=np.uint64(scene.seed),
-        sampler=sampler,
-        complete=True,
-        digest=digest,
-        date=now(),
-        **_spent(scene),
-        **{**provenance(), **attributes},
-    )
+    usual = {
+        "filetype": FILETYPE,
+        "format": FORMAT,
+        "title": scene.title,
+        "scene": stored_text(scene),
+        "seed": np.uint64(scene.seed),
+        "sampler": sampler,
+        "complete": True,
+        "digest": digest,
+        "date": now(),
+    }
+    file.attrs.update(**{**usual, **_spent(scene), **provenance(), **attributes})
 
 
 def _spent(scene: Scene) -> dict[str, float]:
@@ -139,7 +141,7 @@ def numbers(scale: Sequence[float], most: int | None = None) -> NDArray[Any]:
 
 
 def _scales(file: h5py.File) -> list[str]:
-    return [name for name in _SCALES if name in file]
+    return [name for name in AXES if name in file]
 
 
 class _Digest:
@@ -217,12 +219,12 @@ def _steps(data: h5py.Dataset) -> Iterator[tuple[int, int]]:
 def _lay_out(file: h5py.File, scene: Scene, like: Stored) -> None:
     """Empty datasets with their scales, units and names."""
     for name, scale in scales_of(scene).items():
-        _scale(file, name, numbers(scale), *_SCALES[name])
+        _scale(file, name, numbers(scale), *AXES[name])
     for name in sorted(like):
         q = ALL_QUANTITIES.get(name)
         data = empty_table(file, where(name), None if name == RAGGED else scene.n_surfaces, like[name])
         data.attrs.update(units=q.unit if q else "1", long_name=q.long_name if q else _LONG_NAMES[name])
-        for axis, name_of_scale in enumerate(tuple(_SCALES)[: data.ndim] if q else ()):
+        for axis, name_of_scale in enumerate(tuple(AXES)[: data.ndim] if q else ()):
             data.dims[axis].attach_scale(file[name_of_scale])
 
 

@@ -171,7 +171,8 @@ class RunFolder:
             raise RunError(f"{self.folder}: is gone, or not complete; run the command again")
         for path in sorted(self.shards_folder.glob("block-*.h5")):
             try:
-                yield (None if path.is_symlink() else open_shard(path, self.identity, body=bodies)), path
+                shard = None if path.is_symlink() else open_shard(path, self.identity, body=bodies)
+                yield (shard if shard and self._takes(shard.span) else None), path
             except StoreError:
                 yield None, path
 
@@ -188,8 +189,20 @@ class RunFolder:
 
     def missing(self, done: int, shards: Iterable[Shard]) -> list[Span]:
         """Blocks that neither the file, of `done` surfaces, nor one of the shards holds."""
+        done = self.kept(done)
         held = [*([Span(0, done)] if done else []), *(shard.span for shard in shards)]
         return missing(self.scene.n_surfaces, self.size, held)
+
+    def kept(self, done: int) -> int:
+        """Of the surfaces of a file those that it need not be given again: of statistics whole blocks."""
+        statistics = self.scene.keep == "statistics" and done < self.scene.n_surfaces
+        return done - done % self.size if statistics else done
+
+    def _takes(self, span: Span) -> bool:
+        """Whether a shard of these surfaces is of use: statistics cannot be cut, and are of a block."""
+        if self.scene.keep != "statistics":
+            return True
+        return span.first % self.size == 0 and (span.n == self.size or span.stop == self.scene.n_surfaces)
 
     def remove(self) -> None:
         """Remove all but the lock, what identifies the run last. Only with the lock."""

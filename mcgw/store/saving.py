@@ -2,6 +2,7 @@
 
 import io
 from pathlib import Path
+from typing import Any
 
 import h5py
 
@@ -80,14 +81,31 @@ def write_ensemble(ensemble: Ensemble, path: Path, *, wall_seconds: float) -> No
     """
     scene, before = ensemble.scene, state_of(path)
     finished(path, scene, ensemble.sampler)
-    names = [*scene.shapes, *(DRAWN if scene.keep == "moments" else ())]
-    arrays = {name: ensemble.sums.read(name, 0, None) for name in names}
     more = {
         "run": identity_of(scene, ensemble.sampler),
         "draws": drawn_with(scene, ensemble.sampler),
         "wall_seconds": wall_seconds,
         **({} if ensemble.drawn_for is None else {"drawn_for": scene_text(ensemble.drawn_for)}),
     }
+    try:
+        write_whole(path, _body_of(ensemble, more), expected=before)
+    except FileExistsError as error:
+        raise StoreError(f"{path}: {error.strerror}; it is left as it is, choose another -o") from None
+    except OSError as error:
+        raise RunError(
+            f"{path}: cannot be written ({error.strerror or error}); make room and repeat"
+        ) from None
+
+
+def _body_of(ensemble: Ensemble, more: dict[str, Any]) -> tuple[bytes, bytes]:
+    """The file and its trailer."""
+    scene = ensemble.scene
+    if scene.keep == "statistics":
+        from mcgw.store.statistics_file import body_of  # for those scenes alone
+
+        return body_of(ensemble, **more)
+    names = [*scene.shapes, *(DRAWN if scene.keep == "moments" else ())]
+    arrays = {name: ensemble.sums.read(name, 0, None) for name in names}
 
     def make(file: h5py.File) -> None:
         fill(file, scene, [(Span(0, ensemble.n_surfaces), arrays)])
@@ -96,11 +114,4 @@ def write_ensemble(ensemble: Ensemble, path: Path, *, wall_seconds: float) -> No
     body = in_memory(make)
     with h5py.File(io.BytesIO(body), "r") as file:
         notes = trailer_notes(file)
-    try:
-        write_whole(path, (body, trailer_of(body, **notes)), expected=before)
-    except FileExistsError as error:
-        raise StoreError(f"{path}: {error.strerror}; it is left as it is, choose another -o") from None
-    except OSError as error:
-        raise RunError(
-            f"{path}: cannot be written ({error.strerror or error}); make room and repeat"
-        ) from None
+    return body, trailer_of(body, **notes)

@@ -24,6 +24,7 @@ from mcgw.store.chunks import stored
 from mcgw.store.trailer import Trailer, read_checked, read_trailer, trailer_of
 
 __all__ = [
+    "BLOCK",
     "DRAWN",
     "LIBVER",
     "RAGGED",
@@ -42,6 +43,7 @@ Tables = dict[str, NDArray[Any]]
 
 RAGGED = "extras"  # the one table whose rows are not surfaces
 DRAWN = ("moments", "cells", RAGGED)  # what `keep = "moments"` adds to the quantities
+BLOCK = "block_"  # begins the names of tables with one row for all surfaces of a block
 LIBVER = ("v108", "v110")  # checksums on all metadata, and every HDF5 of the last decade reads it
 _MOST_DATASETS = 64
 
@@ -221,6 +223,8 @@ def _check_rows(shard: Shard, arrays: Tables) -> None:
         if name == RAGGED:
             surfaces = values[:, 0] if len(values) else np.empty(0)
             good = bool(np.all((surfaces >= shard.span.first) & (surfaces < shard.span.stop)))
+        elif name.startswith(BLOCK):
+            good = len(values) == 1
         else:
             good = len(values) == shard.span.n
         if not good:

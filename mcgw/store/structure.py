@@ -35,7 +35,7 @@ class RefusedError(Exception):
     """The file is not as it must be."""
 
 
-def check_plain(file: h5py.File, *, most: int = 64) -> list[str]:
+def check_plain(file: h5py.File, *, most: int = 128) -> list[str]:
     """Paths of the datasets of an open file, in order of name, each plain; at most so many.
 
     Raises

@@ -1,0 +1,126 @@
+"""What `keep = "statistics"` keeps of some surfaces in the place of their values, and how two are joined.
+
+Mean, products and cubes of deviations are joined by the formulas of Chan, Golub and LeVeque (1979) and Pebay
+(2008) [mem]. Rounding depends on what is joined with what, and that is fixed: blocks of a size that the scene
+decides are joined in pairs along a binary tree over their numbers (`push`), what is left of it from the last
+to the first (`total`). So the bits do not depend on who drew what, and when.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mcgw.ensemble.bins import NUMBER, Bins
+from mcgw.ensemble.products import packed, products
+from mcgw.machine.in_threads import in_threads
+
+__all__ = ["ROW", "Summary", "push", "size_of", "total"]
+
+Array = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+ROW = "block_"  # before the names of tables with one row for a whole block of surfaces
+
+
+@dataclass(frozen=True)
+class Summary:
+    """Of some surfaces, each with so many columns of numbers.
+
+    Parameters
+    ----------
+    n : int
+        How many surfaces.
+    mean, cubes : ndarray
+        Mean, and sum of the cubes of deviations from it, shape (columns,).
+    products : ndarray
+        Sums of the products of deviations of every two columns, a packed lower triangle.
+    extremes : ndarray
+        Least and greatest value, shape (2, columns).
+    at : ndarray of int64
+        The first surfaces that have them, shape (2, columns).
+    counts : ndarray of int64
+        Values in each bin, shape (columns, bins).
+    """
+
+    n: int
+    mean: Array
+    cubes: Array
+    products: Array
+    extremes: Array
+    at: Ints
+    counts: Ints
+
+    @classmethod
+    def of(cls, values: Array, first: int, bins: Bins) -> "Summary":
+        """Of values, shape (surfaces, columns), of the surfaces from number `first` on."""
+        n, width = values.shape
+        apart = np.empty((width, n))
+
+        def column(i: int) -> tuple[float, float, tuple[float, float], tuple[int, int], Ints]:
+            x = np.ascontiguousarray(values[:, i])
+            mean = (x - x[0]).sum() / n + x[0]
+            d = np.subtract(x, mean, out=apart[i])
+            least, most = int(x.argmin()), int(x.argmax())
+            at = first + least, first + most
+            return mean, float((d * d * d).sum()), (x[least], x[most]), at, bins.counts(i, x)
+
+        found = in_threads(column, range(width))
+        mean, cubes, extremes, at, counts = (np.array(each) for each in zip(*found, strict=True))
+        return cls(n, mean, cubes, products(apart), extremes.T.copy(), at.T.astype(np.int64), counts)
+
+    @classmethod
+    def from_tables(cls, tables: dict[str, NDArray[Any]], row: int = 0) -> "Summary":
+        """What `tables` gave, of one row."""
+        each = {name.removeprefix(ROW): table[row] for name, table in tables.items() if name.startswith(ROW)}
+        return cls(int(each.pop("n")), **each)
+
+    def tables(self) -> dict[str, NDArray[Any]]:
+        """As tables of one row."""
+        each = {name: np.asarray(value)[None] for name, value in vars(self).items()}
+        return {ROW + name: value for name, value in each.items()}
+
+    @property
+    def squares(self) -> Array:
+        """Sums of the squares of deviations, shape (columns,)."""
+        i = np.arange(len(self.mean))
+        return np.asarray(self.products[i * (i + 3) // 2])
+
+    def __add__(self, other: "Summary") -> "Summary":
+        """Of the surfaces of both, the other's numbers being higher."""
+        n, step = self.n + other.n, other.mean - self.mean
+        both = self.n * (other.n / n)
+        lean = 3 * step * (self.n / n * other.squares - other.n / n * self.squares)
+        better = np.stack([other.extremes[0] < self.extremes[0], other.extremes[1] > self.extremes[1]])
+        return Summary(
+            n=n,
+            mean=self.mean + step * (other.n / n),
+            cubes=self.cubes + other.cubes + step**3 * (both * ((self.n - other.n) / n)) + lean,
+            products=self.products + other.products + packed(step, step) * both,
+            extremes=np.where(better, other.extremes, self.extremes),
+            at=np.where(better, other.at, self.at),
+            counts=self.counts + other.counts,
+        )
+
+
+def push(blocks: list[Summary], new: Summary) -> None:
+    """Join the next block to those before it: of equal size in pairs, along a binary tree."""
+    blocks.append(new)
+    while len(blocks) > 1 and blocks[-2].n == blocks[-1].n:
+        last = blocks.pop()
+        blocks[-1] = blocks[-1] + last
+
+
+def total(blocks: Sequence[Summary]) -> Summary:
+    """All of them as one."""
+    whole = blocks[-1]
+    for block in reversed(blocks[:-1]):
+        whole = block + whole
+    return whole
+
+
+def size_of(width: int) -> int:
+    """Bytes of a summary of so many columns."""
+    return 8 * (width * (width + 1) // 2 + width * (NUMBER + 6) + 1)

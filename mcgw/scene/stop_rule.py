@@ -1,0 +1,83 @@
+"""How well means are to be known: one number for all, one for each quantity, or for each separation too."""
+
+import math
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mcgw.scene.section import Section
+
+if TYPE_CHECKING:
+    from mcgw.scene.fields import Fields
+
+__all__ = ["RelErr", "rel_err_mistakes", "rel_err_of", "rel_err_text", "wanted"]
+
+RelErr = float | Mapping[str, float | list[float]]
+
+_MOST = 0.1  # beyond it so few contacts would do that an interval means nothing
+
+
+def rel_err_of(section: Section) -> RelErr | None:
+    """Read it; mistakes are noted in the section."""
+    if "rel_err" not in section:
+        return None
+    given = section.table["rel_err"]
+    if not isinstance(given, Mapping):
+        return section.number("rel_err", unit="1")
+    section.known("rel_err")
+    each = Section("ensemble.rel_err", dict(given), section.problems)
+    return {name: _of_quantity(each, name) for name in given}
+
+
+def _of_quantity(section: Section, name: str) -> float | list[float]:
+    value = section.table[name]
+    if not isinstance(value, list):
+        return section.number(name, unit="1")
+    rows = Section(f"ensemble.rel_err.{name}", {str(k): x for k, x in enumerate(value)}, section.problems)
+    return [math.inf if x == math.inf else rows.number(str(k), unit="1") for k, x in enumerate(value)]
+
+
+def rel_err_mistakes(scene: "Fields") -> Iterator[str]:
+    """What does not go with the scene."""
+    if scene.rel_err is None:
+        return
+    given = scene.rel_err if isinstance(scene.rel_err, Mapping) else {"": scene.rel_err}
+    if not given:
+        yield "ensemble.rel_err = {}: name at least one quantity, or give one number for all"
+    for name, value in given.items():
+        key = f"ensemble.rel_err.{name}" if name else "ensemble.rel_err"
+        if name and name not in scene.quantities:
+            yield f"{key}: is not among contact.quantities; name one of {', '.join(scene.quantities)}"
+        listed = value if isinstance(value, list) else [value]
+        if isinstance(value, list) and len(value) != len(scene.separations):
+            yield f"{key}: has {len(value)} values; give one for each of {len(scene.separations)} separations"
+        for x in listed:
+            if x > _MOST and not (isinstance(value, list) and x == math.inf):
+                yield (
+                    f"{key} = {x}: give a number > 0 and at most {_MOST:g}, beyond which so few contacts "
+                    "would do that an interval means nothing"
+                    + ("; or inf, where nothing is asked" if isinstance(value, list) else "")
+                )
+                break
+
+
+def wanted(scene: "Fields") -> dict[str, NDArray[np.float64]]:
+    """How well each mean is to be known, shape (separations,); of the quantities that are waited for."""
+    if scene.rel_err is None:
+        return {}
+    one = not isinstance(scene.rel_err, Mapping)
+    given: Any = dict.fromkeys(scene.quantities, scene.rel_err) if one else scene.rel_err
+    return {
+        name: np.broadcast_to(np.array(x, dtype=np.float64), len(scene.separations))
+        for name, x in given.items()
+    }
+
+
+def rel_err_text(rel_err: RelErr) -> str:
+    """For people."""
+    if not isinstance(rel_err, Mapping):
+        return f"{rel_err:g}"
+    shown = (f"{min(x):g} at best" if isinstance(x, list) else f"{x:g}" for x in rel_err.values())
+    return ", ".join(f"{name} {text}" for name, text in zip(rel_err, shown, strict=True))
