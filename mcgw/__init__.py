@@ -52,6 +52,7 @@ Ask:
 ``scene.validity()``     how far the model is from elasticity, as it was measured
 `regrade`                another grading or contact law, same surfaces; `paired_ratio` of the two
 `solve`                  the separation at a load, pressure or area
+`export`                 tables for finite-element programs
 `sweep`, `open_sweep`    many scenes at once, over the same surfaces: means, differences, slopes
 `converge`, `tradeoff`   the statistical convergence test; error against time on this machine
 `fit`, `fitted_scene`    the surface of a measured height map or of profiles, and a scene of it
@@ -110,6 +111,7 @@ if TYPE_CHECKING:
     from mcgw.ensemble.simulation import simulate
     from mcgw.ensemble.solution import solve
     from mcgw.errors import RunError, StoreError
+    from mcgw.exports.writing import export
     from mcgw.jobs.from_python import run
     from mcgw.jobs.merging import merge
     from mcgw.maps.fitted_scene import fitted_scene
@@ -165,6 +167,7 @@ __all__ = [
     "compare",
     "composite_modulus",
     "converge",
+    "export",
     "fit",
     "fitted_scene",
     "heights",
@@ -201,6 +204,7 @@ _HOME = {
     "Surface": "scene.surface",
     "compare": "statistics.comparison",
     "converge": "statistics.convergence",
+    "export": "exports.writing",
     "fit": "maps.from_file",
     "fitted_scene": "maps.fitted_scene",
     "heights": "sampling.asperities",

@@ -22,6 +22,7 @@ COMMANDS = (
     "regrade",
     "merge",
     "solve",
+    "export",
     "figures",
     "report",
     "surface",

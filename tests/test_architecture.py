@@ -24,6 +24,7 @@ LAYERS = (
     "jobs",
     "sweeps",
     "statistics",
+    "exports",
     "maps",
     "figures",
     "reports",

@@ -316,6 +316,34 @@ def errors_differ(plain, given):
     assert [x.split(" +- ")[0] for x in a] == [x.split(" +- ")[0] for x in b]
 
 
+def rows_in(name, number):
+    """So many lines that are neither comment nor keyword."""
+
+    def count(said):
+        return sum(not line.startswith("*") for line in (said.folder / name).read_text().splitlines())
+
+    def check(plain, given):
+        assert given.code == 0, given.err
+        assert count(given) == number != count(plain)
+
+    return check
+
+
+def in_mm(plain, given):
+    """Pressure in MPa, overclosure in mm."""
+    a, b = (
+        np.array(
+            [
+                [float(x) for x in line.split(",")]
+                for line in (said.folder / "a.inp").read_text().splitlines()
+                if not line.startswith("*")
+            ]
+        )
+        for said in (plain, given)
+    )
+    np.testing.assert_allclose(b, a * [1e-6, 1e3], rtol=1e-8)
+
+
 @dataclass
 class Row:
     """A command line, the option that is looked at, and what it must change."""
@@ -330,6 +358,7 @@ class Row:
 E = ["@e.h5"]
 LAW = [*E, "-o", "a.h5", "--law"]
 HERTZ, KE = [*LAW, "hertz"], [*LAW, "kogut-etsion"]
+INP = ["@e.h5", "--to", "abaqus", "-o", "a.inp"]
 RUN = ["@s.toml", "-o", "a.h5"]
 SWEEP = ["@s.toml", "--over", "grading.gamma=1,2", "-o", "a.h5"]
 MAP = ["@s.toml", "--shape", "200", "-o", "m.sdf"]
@@ -423,6 +452,18 @@ ROWS = [
         surfaces_solved(9)),
     row("solve", "--csv", ["@s.toml", "--load", "1N"], ["@s.toml", "--load", "1N", "--csv", "x.csv"],
         csv_columns("x.csv", "theory", "mean", "low_95", "high_95", "std")),
+    row("export", "--output", INP, [*INP[:-1], "b.inp"], writes("b.inp", "b.q05.inp", instead=["a.inp"])),
+    row("export", "--to", INP, ["@e.h5", "--to", "moose", "-o", "a.csv"],
+        writes("a.csv", "a.q95.csv", instead=["a.inp"])),
+    row("export", "--table", INP,
+        ["@e.h5", "--to", "comsol", "--table", "stiffness-pressure", "-o", "a.txt"],
+        says("a.txt: stiffness-pressure")),
+    row("export", "--points", ["@s.toml", *INP[1:]], ["@s.toml", *INP[1:], "--points", "7"],
+        rows_in("a.inp", 8)),
+    row("export", "--pressures", ["@s.toml", *INP[1:]],
+        ["@s.toml", *INP[1:], "--pressures", "10MPa:200MPa:5"], rows_in("a.inp", 6)),
+    row("export", "--quantile", INP, [*INP, "--quantile", "0.5"], writes("a.q50.inp", instead=["a.q05.inp"])),
+    row("export", "--units", INP, [*INP, "--units", "mm-N-s"], in_mm),
     row("report", "--output", [*E, "-o", "a.html"], [*E, "-o", "b.html"],
         writes("b.html", instead=["a.html"])),
     row("surface", "--surface", HDF, [*HDF, "--surface", "7"], surface_is(7)),

@@ -1,0 +1,84 @@
+"""``mcgw export``: tables of contact for finite-element programs."""
+
+import argparse
+from pathlib import Path
+
+HELP = "write pressure, conductance or stiffness as a table for a finite-element program"
+EXAMPLE = "mcgw export mine.toml --to calculix --units mm-N-s -o contact.inp"
+
+
+def arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of this command."""
+    parser.add_argument(
+        "scene", type=Path, metavar="SCENE_OR_FILE",
+        help="TOML file, whose surfaces are drawn as the table needs them; or an ensemble file (HDF5)",
+    )  # fmt: skip
+    parser.add_argument(
+        "--to", required=True, choices=("calculix", "abaqus", "moose", "comsol"), help="the program"
+    )
+    parser.add_argument(
+        "--table", default="pressure-gap",
+        choices=("pressure-gap", "conductance-pressure", "conductance-gap", "stiffness-pressure"),
+        help="what is tabulated, against what; default: pressure-gap",
+    )  # fmt: skip
+    parser.add_argument("--points", type=int, default=40, metavar="N", help="rows; default: 40")
+    parser.add_argument(
+        "--pressures", metavar="LO:HI:N",
+        help="nominal pressures, N of them a constant ratio apart, as 10kPa:20MPa:30; left out: all that the "
+        "surfaces reach",
+    )  # fmt: skip
+    parser.add_argument(
+        "--quantile", type=float, nargs="+", metavar="Q",
+        help="over the surfaces, beside the mean; left out: 0.05 and 0.95",
+    )  # fmt: skip
+    parser.add_argument("--units", default="SI", choices=("SI", "mm-N-s"), help="of the files; default: SI")
+    parser.add_argument(
+        "-o", "--output", type=Path, required=True, metavar="FILE",
+        help="of the mean: .inp, for moose .csv, for comsol .txt; quantiles, and all together, go beside it",
+    )  # fmt: skip
+
+
+def execute(args: argparse.Namespace) -> int:
+    """Write the files and say where they are."""
+    from mcgw.commands.notes import tell_notes
+    from mcgw.commands.outputs import CSV, Format, Output, check_outputs
+    from mcgw.exports.curves import quantile_name
+    from mcgw.exports.programs import PROGRAMS
+    from mcgw.exports.writing import DEFAULT_QUANTILES, export, files_of_export
+    from mcgw.scene.scene_file import files_of, load_scene
+    from mcgw.store.ensembles import open_ensemble
+
+    pressures = None if args.pressures is None else _pressures(args.pressures)
+    from_scene = args.scene.suffix.lower() == ".toml"
+    what = load_scene(args.scene) if from_scene else args.scene
+    scene = what if from_scene else open_ensemble(args.scene).scene
+    *tables, all_of_them = files_of_export(
+        args.output, ["mean", *(quantile_name(q) for q in args.quantile or DEFAULT_QUANTILES)]
+    )
+    form = Format(f"a table for {args.to}", PROGRAMS[args.to].endings)
+    outputs = [*(Output(path, form) for path in tables), Output(all_of_them, CSV)]
+    check_outputs(outputs, inputs=files_of(args.scene) if from_scene else [args.scene])
+    tell_notes(scene)
+    made = export(
+        what, args.output, to=args.to, table=args.table, points=args.points, pressures=pressures,
+        quantiles=args.quantile, units=args.units,
+    )  # fmt: skip
+    for path in made:
+        print(f"{path}: {args.table}{', mean and quantiles' if path == made[-1] else ''}")
+    return 0
+
+
+def _pressures(text: str) -> list[float]:
+    """LO:HI:N as pressures, Pa."""
+    import numpy as np
+
+    from mcgw.formats.units import parse
+
+    low, _, rest = text.partition(":")
+    high, _, number = rest.partition(":")
+    if not number.isdigit() or int(number) < 2:
+        raise ValueError(f"--pressures {text}: give LO:HI:N, as 10kPa:20MPa:30, with N of 2 or more")
+    ends = parse(low, "Pa", "--pressures"), parse(high, "Pa", "--pressures")
+    if not ends[0] < ends[1]:
+        raise ValueError(f"--pressures {text}: give the lower one first")
+    return [float(p) for p in np.geomspace(*ends, int(number))]

@@ -1,0 +1,150 @@
+"""Curves of an ensemble against gap or pressure: mean over surfaces, and quantiles, SI."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mcgw.ensemble.ensemble import Ensemble
+from mcgw.ensemble.equal_pressure import at_pressures, common_pressures
+from mcgw.exports.kinds import Kind
+from mcgw.formats.evenly import evenly
+from mcgw.scene.samplers import promise_of
+
+__all__ = ["Curve", "curves_of", "quantile_name"]
+
+Array = NDArray[np.float64]
+Range = tuple[float, float]
+
+_FEWEST = 2  # points of a curve
+
+
+@dataclass(frozen=True)
+class Curve:
+    """One line of a table.
+
+    Parameters
+    ----------
+    name : str
+        "mean", or of a quantile, as "q05".
+    x : ndarray
+        Gap (m) or pressure (Pa), rising.
+    y : ndarray
+        Pressure (Pa), or conductance or stiffness per nominal area, SI.
+    """
+
+    name: str
+    x: Array
+    y: Array
+
+
+def curves_of(
+    ensemble: Ensemble, kind: Kind, pressures: Array | None, points: int, quantiles: tuple[float, ...]
+) -> list[Curve]:
+    """Mean and quantiles over surfaces, at equal gap or at equal pressure.
+
+    Parameters
+    ----------
+    ensemble : Ensemble
+        Its own separations are the gaps.
+    kind : Kind
+        Of which table.
+    pressures : ndarray or None
+        Pressures of the rows, or of which the first and the last bound the gaps. Default: all that the
+        surfaces reach.
+    points : int
+        How many rows, where no pressures are given.
+    quantiles : tuple of float
+        Between 0 and 1; empty for the mean alone.
+
+    Raises
+    ------
+    ValueError
+        If there are surfaces that do not reach a pressure, too few points, or something that is no function.
+    """
+    if quantiles and not promise_of(ensemble.sampler).real_surfaces:
+        raise ValueError(f"quantiles: {ensemble.sampler} surfaces have means only; leave it out")
+    if kind.against == "gap":
+        x, y = _at_gaps(ensemble, kind, pressures, points)
+    else:
+        x, y = _at_pressures(ensemble, kind, pressures, points)
+    y = y / (1.0 if kind.quantity == "pressure" else ensemble.scene.surface.nominal_area)
+    found = [Curve("mean", x, y.mean(axis=0))]
+    found += [Curve(quantile_name(q), x, np.quantile(y, q, axis=0)) for q in quantiles]
+    return [_one_way(curve, kind) for curve in found]
+
+
+def quantile_name(quantile: float) -> str:
+    """As it is called in names of files: q05 of 0.05."""
+    digits = f"{100 * quantile:.6g}"
+    return f"q{digits.zfill(2)}" if "." not in digits else f"q{digits}"
+
+
+def _at_gaps(ensemble: Ensemble, kind: Kind, pressures: Array | None, points: int) -> tuple[Array, Array]:
+    order = np.argsort(ensemble.separations, kind="stable")
+    mean = ensemble.mean("pressure")[order]
+    if np.any(mean < 0):
+        worst = ensemble.separations[order][int(np.argmin(mean))]
+        raise ValueError(
+            f"contact.law: surfaces pull each other (mean pressure {mean.min():.3g} Pa at d/sigma = "
+            f"{worst:g}), and a table of contact has no negative pressures; give a law without adhesion"
+        )
+    if pressures is not None:
+        inside = (mean >= pressures[0] * (1 - 1e-9)) & (mean <= pressures[-1] * (1 + 1e-9))
+        order = order[inside]
+    order = order[evenly(len(order), points)] if len(order) else order
+    h, first = np.unique(ensemble.separations[order], return_index=True)
+    order = order[first]
+    name = "pressure" if kind.quantity == "pressure" else kind.dataset
+    return h * ensemble.scene.surface.sigma, ensemble.values(name)[:, order].astype(np.float64)
+
+
+def _at_pressures(
+    ensemble: Ensemble, kind: Kind, pressures: Array | None, points: int
+) -> tuple[Array, Array]:
+    wanted = _pressures_within(ensemble, points) if pressures is None else pressures
+    y = at_pressures(ensemble, wanted, (kind.dataset,))[kind.dataset]
+    if np.any(missing := np.isnan(y)):
+        surface, at = (int(k[0]) for k in np.nonzero(missing))
+        reach = common_pressures(ensemble)
+        told = "no pressure at all" if reach is None else f"{reach[0]:.4g} to {reach[1]:.4g} Pa"
+        raise ValueError(
+            f"pressures: {wanted[at]:.4g} Pa is not on the curve of surface {surface}; all surfaces reach "
+            f"{told}"
+        )
+    return wanted, y
+
+
+def _pressures_within(ensemble: Ensemble, points: int) -> Array:
+    """Pressures that all surfaces reach, a constant ratio apart, Pa.
+
+    Raises
+    ------
+    ValueError
+        If there are none.
+    """
+    reach = common_pressures(ensemble)
+    if reach is None:
+        raise ValueError(
+            "contact.separations: there is no pressure that all surfaces reach; give more, or lower ones"
+        )
+    return np.geomspace(*reach, points)
+
+
+def _one_way(curve: Curve, kind: Kind) -> Curve:
+    """Without what carries nothing; a curve that does not go one way is no table."""
+    carries = curve.y > 0
+    x, y = curve.x[carries], curve.y[carries]
+    if x.size < _FEWEST:
+        raise ValueError(
+            f"{kind.name}, {curve.name}: {x.size} point(s) at which anything is carried; give more or "
+            "lower separations, or a wider range of pressures"
+        )
+    steps = np.diff(y) * (-1 if kind.against == "gap" else 1)
+    if np.any(steps <= 0):
+        at = x[int(np.argmin(steps))]
+        raise ValueError(
+            f"{kind.name}, {curve.name}: does not go one way at {kind.against} = {at:.4g}, as programs "
+            "want it; give fewer points, or a contact law without jumps"
+        )
+    return Curve(curve.name, x, y)

@@ -1,0 +1,144 @@
+"""How each finite-element program reads a table: order of columns, signs, comments, and what it demands."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mcgw.exports.curves import Curve
+from mcgw.exports.kinds import KINDS, Kind
+
+__all__ = ["PROGRAMS", "Program", "foot_of", "rows_of"]
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Program:
+    """A program and its rules.
+
+    Parameters
+    ----------
+    name : str
+        As it is asked for.
+    endings : tuple of str
+        Of its files.
+    comment : str
+        What a line of comment begins with.
+    separator : str
+        Between two numbers of a row.
+    keywords : dict of str to str
+        By table: the line that stands above the rows; empty where there is none. Tables that it does not take
+        are not there.
+    overclosure : bool
+        Whether gaps are told as overclosures that begin with 0 where the pressure does.
+    first : {"x", "y"}
+        Which column stands first: argument or value.
+    hints : dict of str to tuple of str
+        By table: lines that say how the program is told of the file, and what it does beyond the ends.
+    most : int, optional
+        Rows that it has room for.
+    least_step : float, optional
+        Overclosures nearer than that are moved apart by the program.
+    """
+
+    name: str
+    endings: tuple[str, ...]
+    comment: str
+    separator: str
+    keywords: dict[str, str]
+    overclosure: bool
+    first: str
+    hints: Callable[[Kind, str], Sequence[str]]
+    most: int | None = None
+    least_step: float = 0.0
+
+
+def foot_of(curve: Curve) -> float:
+    """The gap at which a line through the last two points comes down to no pressure."""
+    (x1, x2), (y1, y2) = curve.x[-2:], curve.y[-2:]
+    return float(x2 + y2 * (x2 - x1) / (y1 - y2))
+
+
+def rows_of(curve: Curve, kind: Kind, program: Program, foot: float) -> Array:
+    """Rows as a program reads them, in its order and from SI, shape (rows, 2).
+
+    Nothing is carried at the first point, of pressure 0 or of the gap `foot`.
+    """
+    if kind.against == "pressure":
+        x, y = np.concatenate([[0.0], curve.x]), np.concatenate([[0.0], curve.y])
+    else:
+        x, y = np.concatenate([curve.x, [foot]]), np.concatenate([curve.y, [0.0]])
+        if program.overclosure and kind.quantity == "pressure":
+            x, y = (foot - x)[::-1], y[::-1]
+    return np.column_stack([x, y] if program.first == "x" else [y, x])
+
+
+def _calculix(kind: Kind, file: str) -> list[str]:
+    lines = [f"under *SURFACE INTERACTION: *INCLUDE, INPUT={file}"]
+    if kind.quantity == "pressure":
+        lines += [
+            "use *CONTACT PAIR, TYPE=NODE TO SURFACE: with SURFACE TO SURFACE CalculiX misreads tables",
+            "beyond the last line the pressure stays as it is",
+            "in a thermomechanical step give *GAP CONDUCTANCE too",
+        ]
+    else:
+        lines += [
+            "below *SURFACE BEHAVIOR; beyond the last line the conductance stays as it is",
+            "third entry: temperature, on which nothing here depends",
+        ]
+    return lines
+
+
+def _abaqus(kind: Kind, file: str) -> list[str]:
+    lines = [f"under *SURFACE INTERACTION: *INCLUDE, INPUT={file}"]
+    beyond = {
+        "pressure-gap": "beyond the last line the slope goes on",
+        "conductance-pressure": "beyond the last line the conductance stays as it is",
+        "conductance-gap": "beyond the last line nothing is conducted",
+    }
+    return [*lines, beyond[kind.name]]
+
+
+def _moose(kind: Kind, file: str) -> list[str]:
+    return [
+        f"[Functions] [{kind.quantity}] type = PiecewiseLinear data_file = {file} format = columns [] []",
+        f"x: {kind.against}, y: {kind.quantity}; beyond the ends y stays as it is, unless extrap = true",
+    ]
+
+
+def _comsol(kind: Kind, _: str) -> list[str]:
+    return [
+        "Definitions > Functions > Interpolation: Data source File, Data format Spreadsheet, 1 argument",
+        f"column 1: {kind.against} (argument), column 2: {kind.quantity}; enter their units under Units",
+        "beyond the ends: Extrapolation Constant",
+    ]
+
+
+_BEHAVIOR = "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=TABULAR"
+_ANY = dict.fromkeys(KINDS, "")
+PROGRAMS = {
+    # Rules and limits as in CalculiX's manual and its sources (surfacebehaviors.f, springforc_n2f.f).
+    "calculix": Program(
+        "calculix", (".inp",), "**", ", ",
+        {"pressure-gap": _BEHAVIOR, "conductance-pressure": "*GAP CONDUCTANCE"},
+        overclosure=True, first="y", hints=_calculix, most=200, least_step=1e-10,
+    ),
+    # Abaqus Keywords Guide, *SURFACE BEHAVIOR and *GAP CONDUCTANCE.
+    "abaqus": Program(
+        "abaqus", (".inp",), "**", ", ",
+        {
+            "pressure-gap": _BEHAVIOR,
+            "conductance-pressure": "*GAP CONDUCTANCE, PRESSURE",
+            "conductance-gap": "*GAP CONDUCTANCE",
+        },
+        overclosure=True, first="y", hints=_abaqus,
+    ),
+    # MOOSE, PiecewiseTabularBase.C: comments "#", rising x.
+    "moose": Program("moose", (".csv",), "#", ",", _ANY, overclosure=False, first="x", hints=_moose),
+    # COMSOL Multiphysics Reference Manual, "Spreadsheet Data Format": comments "%".
+    "comsol": Program(
+        "comsol", (".txt", ".dat"), "%", " ", _ANY, overclosure=False, first="x", hints=_comsol
+    ),
+}  # fmt: skip

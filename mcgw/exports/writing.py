@@ -1,0 +1,184 @@
+"""``mcgw.export``: the files of a table, one for each curve, and one of all."""
+
+from collections.abc import Sequence
+from hashlib import sha256
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mcgw.ensemble.ensemble import Ensemble
+from mcgw.exports.curves import curves_of
+from mcgw.exports.heading import heading
+from mcgw.exports.kinds import KINDS, Kind
+from mcgw.exports.programs import PROGRAMS, Program
+from mcgw.exports.surfaces import checked, surfaces_for
+from mcgw.exports.table_text import all_rows, in_units, table_text
+from mcgw.exports.unit_systems import UNIT_SYSTEMS, UnitSystem
+from mcgw.formats.csv_table import write_csv
+from mcgw.formats.files import write_whole
+from mcgw.scene.reading import argument, as_toml
+from mcgw.scene.samplers import promise_of
+from mcgw.scene.scene import Scene
+from mcgw.scene.scene_file import scene_text
+from mcgw.store.ensembles import open_ensemble, read_attributes
+
+__all__ = ["DEFAULT_POINTS", "DEFAULT_QUANTILES", "export", "files_of_export"]
+
+Array = NDArray[np.float64]
+
+DEFAULT_POINTS, DEFAULT_QUANTILES = 40, (0.05, 0.95)
+_MOST_POINTS = 10_000
+
+
+def export(
+    what: Scene | Ensemble | str | Path,
+    path: str | Path,
+    *,
+    to: str,
+    table: str = "pressure-gap",
+    points: int = DEFAULT_POINTS,
+    pressures: Any = None,
+    quantiles: Sequence[float] | None = None,
+    units: str = "SI",
+) -> list[Path]:
+    """Write a table of contact in the form that a finite-element program reads.
+
+    Means and quantiles are those over the surfaces, at equal gap in tables against the gap, at equal pressure
+    in tables against the pressure.
+
+    Parameters
+    ----------
+    what : Scene, Ensemble, str or Path
+        A scene, whose surfaces are drawn at separations that suit the table; or an ensemble or its file, with
+        its own separations.
+    path : str or Path
+        Of the table of means; those of quantiles lie beside it, as ``NAME.q05.inp``, and all together as
+        ``NAME.all.csv``.
+    to : {"calculix", "abaqus", "moose", "comsol"}
+        The program.
+    table : {"pressure-gap", "conductance-pressure", "conductance-gap", "stiffness-pressure"}
+        What is tabulated, against what. Stiffness and conductance are per nominal area.
+    points : int, optional
+        Rows, besides the one where nothing is carried. Default: 40.
+    pressures : array_like or sequence of str, optional
+        Nominal pressures of the rows, rising, Pa or as "1 MPa"; against the gap those of the mean surface, or
+        bounds, where there is an ensemble. Default: all that the surfaces reach at the scene's separations.
+    quantiles : sequence of float, optional
+        Default: 0.05 and 0.95, or none where there are not several surfaces.
+    units : {"SI", "mm-N-s"}
+        Of the files.
+
+    Returns
+    -------
+    list of Path
+        The files: mean, quantiles, all.
+
+    Raises
+    ------
+    ValueError
+        If a program does not take a table, a scene has none, or an argument is wrong.
+    SceneError
+        If a pressure is none.
+    StoreError
+        If the ensemble cannot be read.
+
+    Examples
+    --------
+    >>> import mcgw, tempfile
+    >>> surface = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "1 mm^2", "78.6 GPa")
+    >>> scene = mcgw.Scene(surface, separations=[0, 3], n_surfaces=50, seed=1)
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     files = mcgw.export(scene, f"{folder}/soft.inp", to="abaqus", units="mm-N-s")
+    >>> [file.name for file in files]
+    ['soft.inp', 'soft.q05.inp', 'soft.q95.inp', 'soft.all.csv']
+    """
+    program, kind, system = _asked(to, table, units)
+    wanted = _pressures(pressures)
+    _check_points(points)
+    source, digest = _source(what)
+    scene = source if isinstance(source, Scene) else source.scene
+    checked(scene, kind)
+    ensemble = _drawn(source, kind, wanted, points)
+    bounds, rows = wanted, points
+    if wanted is not None and ensemble is not source and kind.against == "gap":
+        bounds, rows = None, len(wanted)  # drawn at the very separations of the rows
+    curves = curves_of(ensemble, kind, bounds, rows, _quantiles(quantiles, ensemble))
+    files = files_of_export(path, [curve.name for curve in curves])
+    scaled = [in_units(curve, kind, system) for curve in curves]
+    texts = [
+        table_text(curve, kind, program, system, heading(ensemble, kind, curve, system, digest), file.name)
+        for file, curve in zip(files, scaled, strict=False)
+    ]
+    for file, text in zip(files, texts, strict=False):
+        write_whole(file, [text.encode("ascii", "replace")])
+    write_csv(files[-1], *all_rows(scaled, kind, system), comment=f"{kind.name}; SHA-256 of the {digest}")
+    return files
+
+
+def _drawn(source: Scene | Ensemble, kind: Kind, pressures: Array | None, points: int) -> Ensemble:
+    """The ensemble itself, or that of a scene."""
+    if isinstance(source, Scene):
+        return surfaces_for(source, kind, pressures, points)
+    if missing := [name for name in kind.needs if name not in source.scene.quantities]:
+        raise ValueError(
+            f"contact.quantities: the ensemble has no {', '.join(missing)}; give its scene instead"
+        )
+    return source
+
+
+def files_of_export(path: str | Path, names: Sequence[str]) -> list[Path]:
+    """The file of each curve, the mean first, and that of all of them."""
+    path = Path(path)
+    beside = [path.with_name(f"{path.stem}.{name}{path.suffix}") for name in names[1:]]
+    return [path, *beside, path.with_name(f"{path.stem}.all.csv")]
+
+
+def _asked(to: str, table: str, units: str) -> tuple[Program, Kind, UnitSystem]:
+    for key, value, known in (("to", to, PROGRAMS), ("table", table, KINDS), ("units", units, UNIT_SYSTEMS)):
+        if value not in known:
+            raise ValueError(f"{key} = {value!r}: choose one of {', '.join(known)}")
+    program = PROGRAMS[to]
+    if table not in program.keywords:
+        raise ValueError(
+            f"table = {table!r}: {to} has no keyword for it; choose one of {', '.join(program.keywords)}"
+        )
+    return program, KINDS[table], UNIT_SYSTEMS[units]
+
+
+def _check_points(points: int) -> None:
+    if isinstance(points, bool) or not isinstance(points, int) or not 2 <= points <= _MOST_POINTS:
+        raise ValueError(f"points = {points!r}: give a whole number from 2 to {_MOST_POINTS}")
+
+
+def _pressures(given: Any) -> Array | None:
+    if given is None:
+        return None
+    plain = as_toml(given)
+    listed = plain if isinstance(plain, list) else [plain]
+    found = np.array([argument("pressures", x, "Pa") for x in listed])
+    if found.size < 2 or np.any(np.diff(found) <= 0):
+        raise ValueError(f"pressures = {listed!r}: give two or more, each above the one before")
+    return found
+
+
+def _quantiles(given: Sequence[float] | None, ensemble: Ensemble) -> tuple[float, ...]:
+    if given is None:
+        several = ensemble.n_surfaces > 1 and promise_of(ensemble.sampler).real_surfaces
+        return DEFAULT_QUANTILES if several else ()
+    found = tuple(float(q) for q in given)
+    wrong = [q for q in found if not 0 < q < 1]
+    if wrong or len(set(found)) < len(found):
+        raise ValueError(f"quantiles = {list(found)!r}: give numbers between 0 and 1, each once, as 0.05")
+    return found
+
+
+def _source(what: Scene | Ensemble | str | Path) -> tuple[Scene | Ensemble, str]:
+    """A scene or an ensemble, and the digest of its numbers or, where there are none yet, of its scene."""
+    if isinstance(what, str | Path):
+        return open_ensemble(what), f"data {read_attributes(Path(what))['digest']}"
+    if not isinstance(what, Scene | Ensemble):
+        raise ValueError(f"{type(what).__name__}: give a scene, an ensemble, or the file of an ensemble")
+    scene = what if isinstance(what, Scene) else what.scene
+    return what, f"scene {sha256(scene_text(scene).encode()).hexdigest()}"

@@ -1,0 +1,427 @@
+"""Tables for finite-element programs: read by each program's rule, against theory and literal sums."""
+
+import csv
+import re
+import shutil
+import subprocess
+
+import numpy as np
+import pytest
+from scipy.optimize import brentq
+
+import mcgw
+from mcgw.cli import main
+from mcgw.ensemble.equal_pressure import at_pressures, loaded_part
+from mcgw.exports.kinds import KINDS
+from mcgw.exports.programs import PROGRAMS
+from mcgw.exports.surfaces import surfaces_for
+from mcgw.exports.unit_systems import UNIT_SYSTEMS
+
+SURFACE = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "10 mm^2", "78.6 GPa")
+FILM = mcgw.Film(resistivity=1 / 150 + 1 / 16)
+ENDING = {"calculix": ".inp", "abaqus": ".inp", "moose": ".csv", "comsol": ".txt"}
+CCX = shutil.which("ccx")
+
+
+@pytest.fixture(scope="module")
+def scene():
+    return mcgw.Scene(
+        SURFACE,
+        separations=np.linspace(0, 3, 13),
+        grading=mcgw.Exponential(1.5),
+        film=FILM,
+        quantities=["load", "stiffness", "conductance_si"],
+        n_surfaces=60,
+        seed=4,
+    )
+
+
+@pytest.fixture(scope="module")
+def ensemble(scene):
+    return mcgw.simulate(scene)
+
+
+# --- small readers, each written from its program's rule ------------------------------------------------
+
+
+def read_inp(path):
+    """Keyword and data lines of an input deck: `**` comments, `*` keywords, fields between commas."""
+    keyword, rows = "", []
+    for line in path.read_text().splitlines():
+        assert len(line) <= 132  # CalculiX cuts there
+        if line.startswith("**"):
+            continue
+        if line.startswith("*"):
+            assert not keyword
+            keyword = line.replace(" ", "").upper()
+            continue
+        fields = [field.strip() for field in line.split(",")]
+        assert len(fields) == 2
+        assert all(len(field) <= 20 for field in fields)  # CalculiX reads 20 characters of each
+        rows.append([float(field) for field in fields])
+    return keyword, np.array(rows)
+
+
+def read_moose(path):
+    """Comments from #, a header if the first line is not made of numbers, values between commas."""
+    lines = [line for line in path.read_text().splitlines() if not line.startswith("#")]
+    assert all(re.fullmatch(r"[-+.\de]+,[-+.\de]+", line) for line in lines)
+    return np.array([[float(x) for x in line.split(",")] for line in lines])
+
+
+def read_comsol(path):
+    """Rows of comments begin with %; columns between blanks."""
+    rows = [line.split() for line in path.read_text().splitlines() if not line.startswith("%")]
+    return np.array(rows, dtype=float)
+
+
+def table_of(path, program):
+    """Argument and value, whatever stands first."""
+    if program == "moose":
+        return read_moose(path).T
+    if program == "comsol":
+        return read_comsol(path).T
+    _, rows = read_inp(path)
+    return rows[:, 1], rows[:, 0]
+
+
+def d0_of(path):
+    return float(re.search(r"d0 = (\S+) ", path.read_text())[1])
+
+
+# --- forms ----------------------------------------------------------------------------------------------
+
+TABLES = [(name, table) for name, program in PROGRAMS.items() for table in program.keywords]
+
+
+@pytest.mark.parametrize(("program", "table"), TABLES)
+@pytest.mark.parametrize("units", list(UNIT_SYSTEMS))
+def test_every_table_goes_one_way_and_begins_where_nothing_is_carried(
+    ensemble, program, table, units, tmp_path
+):
+    files = mcgw.export(
+        ensemble, tmp_path / f"t{ENDING[program]}", to=program, table=table, points=9, units=units
+    )
+    kind = KINDS[table]
+    for path in files[:-1]:
+        x, y = table_of(path, program)
+        assert np.all(np.diff(x) > 0)
+        assert np.all((np.diff(y) > 0) if kind.against == "pressure" else (np.diff(y) != 0))
+        falling = kind.against == "gap" and not (
+            program in ("calculix", "abaqus") and table == "pressure-gap"
+        )
+        assert np.all(np.diff(y) < 0) == falling
+        assert y[-1 if falling else 0] == 0
+        if not falling:
+            assert x[0] == 0
+    assert files[0].name == f"t{ENDING[program]}"
+    assert [path.name.split(".")[1] for path in files[1:]] == ["q05", "q95", "all"]
+
+
+KEYWORDS = {
+    ("calculix", "pressure-gap"): "*SURFACEBEHAVIOR,PRESSURE-OVERCLOSURE=TABULAR",
+    ("calculix", "conductance-pressure"): "*GAPCONDUCTANCE",
+    ("abaqus", "pressure-gap"): "*SURFACEBEHAVIOR,PRESSURE-OVERCLOSURE=TABULAR",
+    ("abaqus", "conductance-pressure"): "*GAPCONDUCTANCE,PRESSURE",
+    ("abaqus", "conductance-gap"): "*GAPCONDUCTANCE",
+}
+
+
+@pytest.mark.parametrize(("program", "table"), KEYWORDS)
+def test_keywords(ensemble, program, table, tmp_path):
+    path, *_ = mcgw.export(ensemble, tmp_path / "t.inp", to=program, table=table)
+    assert read_inp(path)[0] == KEYWORDS[program, table]
+
+
+def test_what_a_program_has_no_keyword_for_is_told(ensemble, tmp_path):
+    for program, table in (("calculix", "conductance-gap"), ("abaqus", "stiffness-pressure")):
+        with pytest.raises(ValueError, match=f"^table = '{table}': {program} has no keyword for it; choose"):
+            mcgw.export(ensemble, tmp_path / "t.inp", to=program, table=table)
+    assert not list(tmp_path.iterdir())
+
+
+# --- numbers --------------------------------------------------------------------------------------------
+
+
+def test_pressure_against_gap_is_that_of_theory(scene, tmp_path):
+    """Against the exact mean, in its standard errors; |z| < 5 at 12 points: a false alarm in 1e5 seeds."""
+    path, *_ = mcgw.export(scene, tmp_path / "t.txt", to="comsol", points=12)
+    gap, pressure = read_comsol(path)[:-1].T
+    h = gap / SURFACE.sigma
+    np.testing.assert_allclose(h, np.linspace(0, 3, 12), atol=1e-9)
+    exact = scene.theory.mean("pressure", h)
+    stderr = scene.theory.std("load", h) / SURFACE.nominal_area / np.sqrt(60)
+    assert np.all(np.abs(pressure - exact) < 5 * stderr)
+    assert not np.all(np.abs(1.3 * pressure - exact) < 5 * stderr)  # it would be seen
+
+
+def test_an_ensemble_gives_its_own_numbers(ensemble, tmp_path):
+    """Mean and quantiles of what it holds, the overclosure from where the line of two points ends."""
+    path, low, high, every = mcgw.export(ensemble, tmp_path / "t.inp", to="abaqus", units="mm-N-s")
+    overclosure, pressure = table_of(path, "abaqus")
+    mean = 1e-6 * ensemble.mean("pressure")
+    np.testing.assert_allclose(pressure[:0:-1], mean, rtol=1e-9)
+    gap = 1e3 * SURFACE.sigma * ensemble.separations
+    d0 = d0_of(path)
+    np.testing.assert_allclose(overclosure[:0:-1], d0 - gap, atol=1e-11)
+    assert d0 == pytest.approx(gap[-1] + mean[-1] * (gap[-1] - gap[-2]) / (mean[-2] - mean[-1]), rel=1e-9)
+    for q, file in ((0.05, low), (0.95, high)):
+        expected = np.quantile(1e-6 * ensemble.values("pressure"), q, axis=0)
+        np.testing.assert_allclose(table_of(file, "abaqus")[1][:0:-1], expected[expected > 0], rtol=1e-9)
+    rows = list(csv.reader(every.read_text().splitlines()[1:]))
+    assert rows[0] == [
+        "gap (mm)", "pressure mean (MPa)", "pressure q05 (MPa)", "pressure q95 (MPa)"
+    ]  # fmt: skip
+    np.testing.assert_allclose([float(row[1]) for row in rows[1:]], mean, rtol=1e-12)
+
+
+def literal(scene, number, pressure):
+    """Separation, stiffness and conductance of one surface at a pressure: sums over its very heights."""
+    surface, s = scene.surface, mcgw.heights(scene, number)
+    modulus = surface.E_star * (1.5 - 0.5 * np.exp(-s))
+
+    def approach(h):
+        return surface.sigma * np.clip(s - h, 0, None)
+
+    def load(h):
+        return np.sum(4 / 3 * modulus * np.sqrt(surface.radius) * approach(h) ** 1.5)
+
+    h = brentq(lambda h: load(h) / surface.nominal_area - pressure, scene.lowest, s.max(), xtol=1e-14)
+    radius = np.sqrt(surface.radius * approach(h))
+    return h, np.sum(2 * modulus * radius), np.sum(4 * radius) / FILM.resistivity
+
+
+@pytest.mark.parametrize("table", ["stiffness-pressure", "conductance-pressure"])
+def test_at_equal_pressure_each_surface_is_on_its_own_curve(scene, table):
+    """Against literal sums over the heights of all 60 surfaces.
+
+    Between separations 1/32 apart a contact may begin, which a power of the pressure does not know: of n
+    contacts that is a share of the order (1/32) / sqrt(n) on one surface, and
+    less on the mean, where signs differ.
+    """
+    kind, wanted = KINDS[table], np.geomspace(3e4, 1e7, 5)
+    e = surfaces_for(scene, kind, wanted, 5)
+    found = at_pressures(e, wanted, ("separation", kind.dataset))
+    by_hand = np.array([[literal(e.scene, i, p) for p in wanted] for i in range(60)])
+    contacts = scene.theory.mean("contacts", by_hand[:, :, 0].mean(axis=0))
+    share = found[kind.dataset] / by_hand[:, :, 1 if kind.quantity == "stiffness" else 2]
+    assert np.all(np.abs(share - 1) < 0.1 / np.sqrt(contacts))
+    assert np.all(np.abs(share.mean(axis=0) - 1) < 0.1 / np.sqrt(60 * contacts))
+    assert np.all(np.abs(found["separation"] - by_hand[:, :, 0]) < 1 / 32 / np.sqrt(contacts))
+
+
+def test_rows_against_pressure_are_means_of_those(scene, tmp_path):
+    """Mean against `mcgw.solve` on other surfaces: |z| < 5, a false alarm in 1e5; a shift of 20 % is seen."""
+    wanted, scene = [1e5, 1e6, 1e7], scene.replace(n_surfaces=400)
+    path, *_ = mcgw.export(
+        scene, tmp_path / "t.csv", to="moose", table="conductance-pressure", pressures=wanted
+    )
+    x, y = read_moose(path)[1:].T
+    np.testing.assert_allclose(x, wanted, rtol=1e-9)
+    for value, solved in zip(y, mcgw.solve(scene, pressure=wanted), strict=True):
+        other = solved.surfaces["conductance_si"] / SURFACE.nominal_area
+        error = other.std(ddof=1) * np.sqrt(2 / 400)
+        assert abs(value - other.mean()) < 5 * error + 1e-3 * value
+        assert abs(1.2 * value - other.mean()) > 5 * error + 1e-3 * value
+
+
+def test_units_of_mm_n_s():
+    """Products as the program forms them: W = 1e3 mW, stress times length over stress."""
+    system = UNIT_SYSTEMS["mm-N-s"]
+    length, pressure = system.length[0], system.pressure[0]
+    assert pressure == pytest.approx(1 / length**2)  # N stays N
+    assert system.stiffness[0] == pytest.approx(pressure / length)
+    power = length  # N m/s as N mm/s
+    assert system.conductance[0] == pytest.approx(power / length**2)
+
+
+def test_comments_tell_where_it_comes_from(ensemble, tmp_path):
+    file = tmp_path / "e.h5"
+    mcgw.save(ensemble, file)
+    path, *_ = mcgw.export(file, tmp_path / "t.inp", to="calculix", quantiles=[])
+    text = path.read_text()
+    from mcgw.store.ensembles import read_attributes
+
+    assert f"SHA-256 of the data {read_attributes(file)['digest']}" in text
+    assert "60 surfaces of 3000 asperities, seed 4" in text
+    assert "from the mean plane of the summits" in text
+    assert "units: pressure in Pa; gap in m" in text
+    spectral = mcgw.Scene(
+        mcgw.SpectralSurface(1e-12, 1e-3, 5e6, "1 mm^2", "78.6 GPa"),
+        separations=[0, 1, 2],
+        n_surfaces=3,
+        seed=1,
+    )
+    path, *_ = mcgw.export(spectral, tmp_path / "n.inp", to="calculix", points=5)
+    rise = float(re.search(r"larger by (\S+) m", path.read_text())[1])
+    alpha = 1e-12 * 5e6 / 1e-3**2
+    assert rise == pytest.approx(4 * np.sqrt(1e-12 / (np.pi * alpha)), rel=1e-9)  # Nayak 1971
+
+
+# --- what has no table ----------------------------------------------------------------------------------
+
+WRONG = [
+    ({"table": "gap-pressure"}, r"^table = 'gap-pressure': choose one of pressure-gap, "),
+    ({"to": "ansys"}, r"^to = 'ansys': choose one of calculix, abaqus, moose, comsol$"),
+    ({"units": "cgs"}, r"^units = 'cgs': choose one of SI, mm-N-s$"),
+    ({"points": 1}, r"^points = 1: give a whole number from 2 to 10000$"),
+    ({"points": 300}, r"^points = 300: calculix has room for 200 lines; give fewer$"),
+    ({"pressures": [2.0, 1.0]}, r"^pressures = \[2\.0, 1\.0\]: give two or more, each above the one before$"),
+    ({"pressures": ["1 N", "2 N"]}, r"^pressures = '1 N': give a finite number > 0 in Pa"),
+    ({"quantiles": [0.5, 1.0]}, r"^quantiles = \[0\.5, 1\.0\]: give numbers between 0 and 1"),
+]
+
+
+@pytest.mark.parametrize(("change", "told"), WRONG)
+def test_wrong_arguments_get_one_line(scene, change, told, tmp_path):
+    with pytest.raises(ValueError, match=told) as caught:
+        mcgw.export(scene, tmp_path / "t.inp", **({"to": "calculix"} | change))
+    assert "\n" not in str(caught.value)
+    assert not list(tmp_path.iterdir())
+
+
+def test_what_pulls_has_no_table(tmp_path):
+    scene = mcgw.Scene(
+        SURFACE,
+        separations=np.linspace(0, 4, 9),
+        law=mcgw.DerjaguinMullerToporov(pull_off=0.3),
+        n_surfaces=5,
+        seed=1,
+    )
+    with pytest.raises(ValueError, match=r"^contact\.law: surfaces pull each other .* negative pressures"):
+        mcgw.export(scene, tmp_path / "t.inp", to="abaqus")
+
+
+def test_what_a_scene_lacks_is_told(scene, tmp_path):
+    bare = scene.replace(film=None, quantities=["load"])
+    with pytest.raises(ValueError, match=r"^contact\.conductivities: a table of conductance needs them"):
+        mcgw.export(bare, tmp_path / "t.inp", to="abaqus", table="conductance-pressure")
+    few = mcgw.simulate(bare, n_surfaces=3)
+    with pytest.raises(
+        ValueError, match=r"^contact\.quantities: the ensemble has no stiffness; give its scene"
+    ):
+        mcgw.export(few, tmp_path / "t.txt", to="comsol", table="stiffness-pressure")
+    means = mcgw.simulate(bare, n_surfaces=3, sampler="stratified")
+    assert len(mcgw.export(means, tmp_path / "t.txt", to="comsol")) == 2
+    with pytest.raises(ValueError, match=r"^quantiles: stratified surfaces have means only"):
+        mcgw.export(means, tmp_path / "t.txt", to="comsol", quantiles=[0.5])
+
+
+def test_steps_that_calculix_moves_apart_are_told(tmp_path):
+    fine = mcgw.Scene(
+        mcgw.Surface("2 nm", "13 um", "300/mm^2", "10 mm^2", "78.6 GPa"),
+        separations=[0, 3],
+        n_surfaces=3,
+        seed=1,
+    )
+    with pytest.raises(ValueError, match=r'nearer than 1e-10, .*units = "mm-N-s"'):
+        mcgw.export(fine, tmp_path / "t.inp", to="calculix", points=80)
+    mcgw.export(fine, tmp_path / "t.inp", to="calculix", points=80, units="mm-N-s")
+
+
+def test_only_the_rising_part_of_a_load_counts():
+    """With adhesion a load falls below 0 and comes back."""
+    assert loaded_part(np.array([0.0, -1.0, -2.0, -1.0, 0.5, 2.0])) == slice(4, 6)
+    assert loaded_part(np.array([1.0, 2.0, 3.0])) == slice(0, 3)
+    assert loaded_part(np.array([0.0, 0.0, 0.0])).indices(3)[:2] in ((2, 2), (3, 3))
+
+
+def test_command(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    assert main(["init", "demo", "-o", "s.toml"]) == 0
+    words = ["export", "s.toml", "--to", "moose", "-o"]
+    for given, told in (
+        (["t.inp"], "a table for moose is written there, whose name ends in .csv"),
+        (["t.csv", "--pressures", "1MPa"], "--pressures 1MPa: give LO:HI:N, as 10kPa:20MPa:30"),
+        (["t.csv", "--pressures", "2MPa:1MPa:3"], "give the lower one first"),
+        (["s.toml"], "is an input"),
+    ):
+        assert main([*words, *given]) == 2
+        err = capsys.readouterr().err.splitlines()
+        assert told in err[-1]
+        assert sum(line.startswith("mcgw: ") and "note" not in line for line in err) == 1
+
+
+# --- CalculiX itself, where it is installed -------------------------------------------------------------
+
+DECK = """*NODE, NSET=ALL
+1,0,0,0
+2,1,0,0
+3,1,1,0
+4,0,1,0
+5,0,0,1
+6,1,0,1
+7,1,1,1
+8,0,1,1
+11,0,0,1
+12,1,0,1
+13,1,1,1
+14,0,1,1
+15,0,0,2
+16,1,0,2
+17,1,1,2
+18,0,1,2
+*ELEMENT, TYPE=C3D8, ELSET=BELOW
+1,1,2,3,4,5,6,7,8
+*ELEMENT, TYPE=C3D8, ELSET=ABOVE
+2,11,12,13,14,15,16,17,18
+*NSET, NSET=TOP
+15,16,17,18
+*NSET, NSET=LOOSE
+11,12,13,14
+*SURFACE, NAME=MASTER
+1,S2
+*SURFACE, NAME=SLAVE
+2,S1
+*MATERIAL, NAME=STIFF
+*ELASTIC
+1E8,0
+*SOLID SECTION, ELSET=BELOW, MATERIAL=STIFF
+*SOLID SECTION, ELSET=ABOVE, MATERIAL=STIFF
+*SURFACE INTERACTION, NAME=ROUGH
+*INCLUDE, INPUT=contact.inp
+*CONTACT PAIR, INTERACTION=ROUGH, TYPE=NODE TO SURFACE
+SLAVE,MASTER
+*BOUNDARY
+1,1,3
+2,1,3
+3,1,3
+4,1,3
+5,1,2
+6,1,2
+7,1,2
+8,1,2
+11,1,2
+12,1,2
+13,1,2
+14,1,2
+*STEP
+*STATIC, DIRECT
+1,1
+*BOUNDARY
+TOP,1,2
+TOP,3,3,{down}
+*NODE PRINT, NSET=TOP, TOTALS=ONLY
+RF
+*END STEP
+"""
+
+
+@pytest.mark.skipif(CCX is None, reason="no CalculiX here")
+@pytest.mark.parametrize("share", [0.35, 0.6, 0.9])
+def test_calculix_presses_as_the_table_says(ensemble, share, tmp_path):
+    """Two blocks of 1 mm^3, nearly rigid, pressed into each other: the reaction is that of the ensemble."""
+    path, *_ = mcgw.export(ensemble, tmp_path / "contact.inp", to="calculix", units="mm-N-s", quantiles=[])
+    overclosure, pressure = table_of(path, "calculix")
+    depth = share * overclosure[-1]
+    expected = np.interp(depth, overclosure, pressure)
+    (tmp_path / "deck.inp").write_text(DECK.format(down=-depth))
+    done = subprocess.run([CCX, "deck"], cwd=tmp_path, capture_output=True, text=True, timeout=60)
+    assert "*ERROR" not in done.stdout, done.stdout[-2000:]
+    said = (tmp_path / "deck.dat").read_text()
+    force = [float(x) for x in re.findall(r"^\s+(\S+)\s+(\S+)\s+(\S+)\s*$", said, flags=re.M)[-1]]
+    assert -force[2] == pytest.approx(expected, rel=2e-3)
+    own = np.interp(
+        d0_of(path) - depth, 1e3 * SURFACE.sigma * ensemble.separations, 1e-6 * ensemble.mean("pressure")
+    )
+    assert -force[2] == pytest.approx(own, rel=2e-3)
