@@ -46,8 +46,8 @@ def ensemble_of(make_scene):
 @pytest.fixture
 def no_figures(monkeypatch):
     """A report without its drawings, which take a second each."""
-    monkeypatch.setattr(mcgw.reports.html, "quantity_figure", lambda *_: None)
-    monkeypatch.setattr(mcgw.reports.html, "_svg", lambda *_: "")
+    for name in ("comparison_figures", "means_figures", "patch_pictures", "pressure_pictures"):
+        monkeypatch.setattr(mcgw.reports.html, name, lambda _: [])
 
 
 def literal(scene, quantity, h):

@@ -124,8 +124,9 @@ def test_report(scene, ensemble):
     (said,) = re.findall(r"contacts expected at the lowest separation</td><td>([^<]*)<", page)
     assert float(said) == pytest.approx(3000 * exact.share_above(scene, 0.0), rel=5e-4)
     tables = page[page.index("<h2>Tables") : page.index("<h2>The surface")]
-    theory = re.findall(r"<td>([-+\d.]+)(?:×10<sup>([−\d]+)</sup>)?</td><td>[-+][\d.]+</td></tr>", tables)
-    shown = [float(x) * 10.0 ** int((power or "0").replace("−", "-")) for x, power in theory]
+    theory = re.findall(r"<td>([\d.]+)(?:×10([⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+))?\s*</td><td>[−+][\d.]+</td></tr>", tables)
+    lowered = str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789")
+    shown = [float(x) * 10.0 ** int((power or "⁰").translate(lowered)) for x, power in theory]
     expected = np.concatenate([exact.mean(scene, name) for name in QUANTITIES])
     np.testing.assert_allclose(shown, expected, rtol=6e-5)
 

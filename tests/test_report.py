@@ -1,5 +1,6 @@
 """The report: one page, whole in itself, that says what the ensemble says."""
 
+import html
 import os
 import re
 import shutil
@@ -8,17 +9,21 @@ from dataclasses import replace
 from html.parser import HTMLParser
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import analytic
 import mcgw
 from mcgw.cli import main
+from mcgw.ensemble.intervals import TOO_FEW
 from mcgw.jobs.running import run
-from mcgw.reports.html import _number, _with_error, report_html
+from mcgw.reports.html import report_html
+from mcgw.reports.numbers import columns, number
 from mcgw.store.ensembles import read_attributes
 
 QUICK = Path(__file__).parent.parent / "runs" / "quick.toml"
-BROWSER = shutil.which("chromium") or shutil.which("google-chrome")
+BROWSERS = ("chromium", "google-chrome", "chromium-headless-shell")
+BROWSER = next(filter(None, map(shutil.which, BROWSERS)), None)
 
 
 @pytest.fixture(scope="module")
@@ -42,7 +47,7 @@ class Balanced(HTMLParser):
         self.open, self.ids = [], []
 
     def handle_starttag(self, tag, attrs):
-        if tag not in ("meta", "link", "br"):
+        if tag not in ("meta", "link", "br", "img"):
             self.open.append(tag)
         self.ids += [value for key, value in attrs if key == "id"]
 
@@ -60,26 +65,30 @@ def test_page_is_whole_in_itself(page):
     assert len(set(parser.ids)) == len(parser.ids)
     assert len(page.encode()) < 3e6
     assert "<script" not in page
-    assert not re.findall(r'(?:src|href)="(?!#|data:,)', page)
+    assert not re.findall(r'(?:src|href)="(?!#|data:,|data:image/png;base64,)', page)
     assert not re.search(r"url\((?!#)", page)
-    assert page.count("<svg") == 6  # five quantities and their spread
+    assert page.count("<svg") == 10  # four against pressure; five quantities and their spread
+    assert page.count('<img src="data:image/png;base64,') == 2  # a patch, and its contacts
+    assert len(re.findall(r'<img [^>]*alt="[^"]+"', page)) == 2
+    assert page.count('role="img" aria-label="') == 10
 
 
 def test_numbers_of_the_page_are_those_of_the_ensemble(file, page):
     ensemble = mcgw.open_ensemble(file)
     low, high = ensemble.interval("load")
     for k in (0, 4, 8):
-        assert _with_error(ensemble.mean("load")[k], (high - low)[k] / 2) in page
+        half = columns([(ensemble.mean("load"), 5), ((high - low) / 2, 2)])
+        assert f"<td>{half[0][k]}</td><td>{half[1][k] or TOO_FEW}</td>" in page
         load = analytic.load(ensemble.scene.surface, ensemble.separations[k], ensemble.scene.grading)
-        assert _number(float(load) / 30, 5) in page  # 1000 asperities, not eta A_n = 30 000
+        shown = f"{float(load) / 30:.4e}".partition("e")[0]
+        assert f"<td>{shown}×10" in page  # 1000 asperities, not eta A_n = 30 000
     attributes = read_attributes(file)
     assert attributes["digest"] in page
     assert "Monte Carlo and theory of this model agree" in page
 
 
 def test_scene_of_the_page_runs_again(file, page):
-    text = re.findall(r"<pre>(.*?)</pre>", page, flags=re.DOTALL)[-1]
-    text = text.replace("&quot;", '"').replace("&#x27;", "'").replace("&gt;", ">").replace("&amp;", "&")
+    text = html.unescape(re.findall(r"<pre>(.*?)</pre>", page, flags=re.DOTALL)[-1])
     assert mcgw.scene_from(text) == mcgw.open_ensemble(file).scene
 
 
@@ -98,12 +107,20 @@ def test_one_surface_and_one_separation_have_a_report(file, make_scene):
 
 
 def test_numbers_as_people_write_them():
-    assert _number(6.698e-7) == "6.698×10<sup>−7</sup>"
-    assert _number(1234.4) == "1234"
-    assert _with_error(6.6982e-7, 3.6e-10) == "6.6982(36)×10<sup>−7</sup>"
-    assert _with_error(6361.2, 6.3) == "6361.2(6.3)"
-    assert _with_error(0.1494, 0.017) == "0.149(17)"
-    assert _with_error(0.0, 0.0) == "0"
+    assert number(6.698e-7) == "6.698×10⁻⁷"
+    assert number(1234.4) == "1234"
+    assert number(-0.5) == "−0.5"
+
+
+def test_numbers_of_a_table_have_one_format():
+    mean, half = columns([([6361.2, 801.04], 5), ([6.3, 0.12], 2)])
+    assert (mean, half) == (["6361.20", "801.04"], ["6.30", "0.12"])
+    mean, half = columns([([6361.2, 6.6982e-7, 0.0], 5), ([6.3, 3.6e-10, np.nan], 2)])
+    assert [x.rstrip() for x in mean] == ["6.3612×10³", "6.6982×10⁻⁷", "0"]
+    assert [x.rstrip() for x in half] == ["6.3×10⁰", "3.6×10⁻¹⁰", ""]
+    assert len({len(x) for x in (*mean[:2], "6.6982×10⁻⁷")}) == 1  # as wide, with blanks behind
+    assert columns([([0.0, 0.0], 5)]) == [["0", "0"]]
+    assert columns([([-2.5, 4.0], 3)]) == [["−2.50", "4.00"]]
 
 
 @pytest.mark.slow

@@ -64,13 +64,15 @@ def test_the_report_has_the_sentences_and_a_table(paths):
     page = html.unescape(report_html(ensemble, read_attributes(paths / "s.h5")))
     known = ensemble.scene.validity()
     assert re.search(r'<p class="verdict">Monte Carlo and theory of this model agree: [^<]*<br>\n', page)
-    assert f"<br>\n{known.verdict}</p>" in page
+    assert f"<br>\n{known.verdict}.</p>" in page
     part = page[page.index("<h2>Against elasticity") : page.index("<h2>Before you trust it")]
     assert known.where in part
     rows = re.findall(r"<tr><td>([^<]*)</td><td>([^<]*)</td><td>([^<]*)</td>", part)
     assert [float(h) for h, _, _ in rows] == list(SEPARATIONS)
     for k in (0, 1):
-        bias, scatter = (float(x) for x in re.match(r"([-+]\d+) ± (\d+) %$", rows[k][2]).groups())
+        bias, scatter = (
+            float(x) for x in re.match(r"([-+]\d+) ± (\d+) %$", rows[k][2].replace("−", "-")).groups()
+        )
         assert bias == pytest.approx(100 * known.bias["area"][k], abs=0.51)
         assert scatter == pytest.approx(100 * (known.error["area"] - abs(known.bias["area"]))[k], abs=0.51)
     assert rows[2][2] == "not measured"

@@ -18,7 +18,7 @@ from mcgw.maps.envelope import envelope
 from mcgw.maps.topography import Topography
 from mcgw.scene.scene import Scene
 
-__all__ = ["Spots", "save_contact_map", "spots_at"]
+__all__ = ["Spots", "contact_map_figure", "save_contact_map", "spots_at"]
 
 Array = NDArray[np.float64]
 Colour = Literal["load", "modulus"]
@@ -91,12 +91,12 @@ def _load_and_radius(scene: Scene, delta: Array, modulus: Array, radii: Array) -
     return scale * load, np.sqrt(surface.radius * surface.sigma) * radius
 
 
-def _window(spots: Spots, size: tuple[float, float]) -> tuple[float, float, float, float]:
-    """Left, right, bottom, top: all of the map, or where spots are large enough to be seen."""
+def _window(spots: Spots, size: tuple[float, float], most: float) -> tuple[float, float, float, float]:
+    """Left, right, bottom, top: all of the map, or as many radii of the median spot as there is room for."""
     width, height = size
     if not spots.radius.size:
         return 0.0, width, 0.0, height
-    side = np.median(spots.radius) / _VISIBLE * _INCHES * _DPI
+    side = np.median(spots.radius) * most
     if side >= max(size):
         return 0.0, width, 0.0, height
     left, bottom = max(width - side, 0) / 2, max(height - side, 0) / 2
@@ -130,11 +130,24 @@ def save_contact_map(
     OSError
         If the file cannot be written.
     """
+    save_figure(contact_map_figure(field, spots, colour=colour, periodic=periodic), path, dpi=_DPI)
+
+
+def contact_map_figure(
+    field: Asperities,
+    spots: Spots,
+    *,
+    colour: Colour = "load",
+    periodic: bool = False,
+    inches: float = _INCHES,
+    visible: float = _VISIBLE,
+) -> Figure:
+    """The same as a figure, of so many inches, the median spot of a radius of so many pixels or more."""
     if not spots.radius.size:
         raise ValueError(f"separation = {spots.separation:g}: nothing touches; give a smaller one")
-    window = _window(spots, field.size)
+    window = _window(spots, field.size, inches * _DPI / visible)
     topography = envelope(field, (_POINTS, _POINTS), periodic=periodic, window=window)
-    figure = Figure(figsize=(_INCHES + 2.2, _INCHES + 0.6), layout="constrained")
+    figure = Figure(figsize=(inches + 2.2, inches + 0.6), layout="constrained")
     axes = figure.add_subplot()
     _draw_heights(figure, axes, topography, window)
     inside = _inside(spots, window)
@@ -150,7 +163,7 @@ def save_contact_map(
     whole = inside.all() and window[1] - window[0] >= field.size[0]
     seen = "" if whole else f", {np.count_nonzero(inside)} in this window of the map"
     axes.set_title(f"{spots.radius.size} contacts at $d/\\sigma$ = {spots.separation:g}{seen}", fontsize=10)
-    save_figure(figure, path, dpi=_DPI)
+    return figure
 
 
 def _inside(spots: Spots, window: tuple[float, float, float, float]) -> NDArray[np.bool_]:

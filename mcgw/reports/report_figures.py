@@ -1,0 +1,151 @@
+"""Figures of a report inside its page: lines as SVG, height maps as PNG, each with words in its place."""
+
+import io
+import re
+from base64 import b64encode
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import matplotlib as mpl
+import numpy as np
+from matplotlib.figure import Figure
+
+from analytic import quantity_of
+from mcgw.ensemble.ensemble import Ensemble
+from mcgw.figures.comparison import quantity_figure, title_of
+from mcgw.figures.data import FigureData, Panel, Points, Series
+from mcgw.figures.drawing import draw
+from mcgw.figures.patch import patch_figures
+from mcgw.figures.pressure_curves import pressure_curves, pressure_figure
+from mcgw.figures.style import STYLE
+from mcgw.formats.pictures import write_figure
+from mcgw.statistics.comparison import Comparison
+
+__all__ = ["PageFigure", "comparison_figures", "means_figures", "patch_pictures", "pressure_pictures"]
+
+_DPI = 150
+_FITTED = "Fitted to "  # how titles of scenes that mcgw fit writes begin, before the name of the map
+
+
+@dataclass(frozen=True)
+class PageFigure:
+    """A figure in a page.
+
+    Parameters
+    ----------
+    label : str
+        What it shows.
+    svg : str
+        An element that takes the width it is given; empty for a picture.
+    uri : str
+        The data of a picture as the address of an image.
+    caption : str
+        Below it.
+    """
+
+    label: str
+    svg: str = ""
+    uri: str = ""
+    caption: str = ""
+
+
+def comparison_figures(comparison: Comparison) -> list[PageFigure]:
+    """Each quantity with its theory, and how far surfaces spread."""
+    names = comparison.ensemble.scene.quantities
+    found = [_lines(quantity_figure(comparison, name), quantity_of(name).long_name) for name in names]
+    if comparison.ensemble.n_surfaces > 1:
+        found.append(_lines(draw(_spread(comparison)), "std over mean against separation"))
+    return found
+
+
+def means_figures(ensemble: Ensemble) -> list[PageFigure]:
+    """Each quantity of surfaces that have means only, with its theory."""
+    found = []
+    for name in ensemble.scene.quantities:
+        order = np.argsort(ensemble.separations, kind="stable")
+        h, mean = ensemble.separations[order], ensemble.mean(name)[order]
+        exact = ensemble.scene.theory.mean(name, h)
+        series = Series("theory, and means", h, exact, Points(h, mean, np.zeros(len(h)), exact))
+        panel = Panel(title_of(name), "separation d/σ", quantity_of(name).unit, (series,), ("linear", "log"))
+        figure = draw(FigureData(name, "", "Line: exact. Markers: means.", (panel,), columns=1))
+        found.append(_lines(figure, quantity_of(name).long_name))
+    return found
+
+
+def pressure_pictures(ensemble: Ensemble) -> Iterator[PageFigure]:
+    """What holds at equal nominal pressure."""
+    for curve in pressure_curves(ensemble):
+        low, high = curve.pressure[[0, -1]]
+        label = f"{curve.title} against nominal pressure from {low:.3g} to {high:.3g} MPa"
+        yield _lines(pressure_figure(curve), label)
+
+
+def patch_pictures(ensemble: Ensemble) -> list[PageFigure]:
+    """Heights and contacts of one surface; empty where it has no single asperities."""
+    found = patch_figures(ensemble.surfaces_of)
+    if found is None:
+        return []
+    which = "surface 0 of the ensemble" if found.whole else "a patch like its surfaces, of 20 000 asperities"
+    title = ensemble.scene.title
+    twin = (
+        f" A synthetic twin of {title[len(_FITTED) :].partition(':')[0]}."
+        if title.startswith(_FITTED)
+        else ""
+    )
+    return [
+        _dots(
+            found.heights,
+            f"height map of {which}",
+            f"Part of {which}, as mcgw surface writes it: caps on summits at random places; the scale ends "
+            f"6 σ below their mean.{twin}",
+        ),
+        _dots(
+            found.spots,
+            f"{found.contacts} contact spots at d/σ = {found.separation:g}",
+            f"Its contacts at d/σ = {found.separation:g}, to scale, coloured by what they carry.",
+        ),
+    ]
+
+
+def _lines(figure: Figure, label: str) -> PageFigure:
+    """An SVG element that takes the width it is given."""
+    buffer = io.StringIO()
+    with mpl.rc_context(STYLE | {"svg.hashsalt": label}):
+        write_figure(figure, buffer, format="svg", metadata={"Date": None, "Creator": None})
+    text = buffer.getvalue()
+    text = re.sub(r"<metadata>.*?</metadata>", "", text[text.index("<svg") :], flags=re.DOTALL)
+    head, rest = text.split(">", 1)
+    head = re.sub(r' (width|height)="[^"]*"', "", head)
+    # Ids are unique in a page: each figure has its own.
+    mark = re.sub(r"\W+", "-", label)
+    rest = re.sub(r'(id="|href="#|url\(#)', rf"\g<1>{mark}-", rest)
+    return PageFigure(label, svg=f"{head}>{rest}")
+
+
+def _dots(figure: Figure, label: str, caption: str) -> PageFigure:
+    buffer = io.BytesIO()
+    with mpl.rc_context(STYLE):
+        write_figure(figure, buffer, format="png", dpi=_DPI, metadata={"Software": None})
+    return PageFigure(
+        label, uri=f"data:image/png;base64,{b64encode(buffer.getvalue()).decode()}", caption=caption
+    )
+
+
+def _spread(comparison: Comparison) -> FigureData:
+    ensemble = comparison.ensemble
+    scene, h = ensemble.scene, ensemble.separations
+    order = np.argsort(h, kind="stable")
+    series = []
+    for name in scene.quantities:
+        curve = comparison.curves[name]
+        touches = curve.theory != 0
+        exact = np.full(len(h), np.nan)
+        exact[touches] = (curve.stderr * np.sqrt(ensemble.n_surfaces))[touches] / np.abs(
+            curve.theory[touches]
+        )
+        known = (ensemble.mean(name) > 0) & (exact > 0)
+        mean, std = ensemble.mean(name)[known], ensemble.std(name)[known]
+        points = Points(h[known], std / mean, np.zeros(known.sum()), exact[known])
+        series.append(Series(name, h[order], exact[order], points))
+    panel = Panel("Spread over surfaces", "separation d/σ", "std / mean", tuple(series), ("linear", "log"))
+    return FigureData("spread", "", "Lines: exact. Markers: the ensemble.", (panel,), columns=1)
