@@ -7,12 +7,13 @@ from typing import Any
 import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 from numpy.typing import NDArray
 
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.equal_pressure import at_pressures, common_pressures
 from mcgw.ensemble.results import MemoryResults
-from mcgw.figures.style import STYLE
+from mcgw.figures.style import STYLE, power_of_ten
 from mcgw.scene.samplers import promise_of
 
 __all__ = ["MOST_SURFACES", "PressureCurve", "pressure_curves", "pressure_figure"]
@@ -22,6 +23,7 @@ Array = NDArray[np.float64]
 MOST_SURFACES = 2000  # that mean and band are of: more would move them by less than a line is wide
 _POINTS = 60
 _BAND = (0.05, 0.95)
+_FEW = 1.5  # decades, below which powers of ten are too few ticks
 
 
 @dataclass(frozen=True)
@@ -111,9 +113,19 @@ def pressure_figure(curve: PressureCurve) -> Figure:
             )
         axes.plot(curve.pressure, curve.mean, color="C0", label="mean")
         axes.set_xscale("log")
+        _label(axes.xaxis, curve.pressure)
         if curve.logarithmic:
             axes.set_yscale("log")
+            _label(axes.yaxis, np.array([curve.mean, *(curve.band or ())]))
         axes.set(xlabel="nominal pressure P/Aₙ (MPa)", ylabel=curve.label)
         axes.set_title(curve.title, loc="left")
         axes.legend(fontsize=8)
     return figure
+
+
+def _label(axis: Any, values: Array) -> None:
+    """Ticks of a logarithmic axis: powers of ten, and where they are few 2 and 5 times them."""
+    short = np.ptp(np.log10(values)) < _FEW
+    axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0) if short else (1.0,)))
+    axis.set_major_formatter(FuncFormatter(power_of_ten))
+    axis.set_minor_formatter(NullFormatter())
