@@ -1,3 +1,4 @@
+import io
 from pathlib import Path
 
 import numpy as np
@@ -49,6 +50,6 @@ def blank_figures(monkeypatch):
         if isinstance(target, Path):
             target.touch()
         else:
-            target.write("<svg></svg>")
+            target.write(b"" if isinstance(target, io.BytesIO) else "<svg></svg>")
 
     monkeypatch.setattr(Figure, "savefig", blank)
