@@ -232,11 +232,11 @@ def test_panels_are_drawn_as_they_are(scale):
     assert (figure.get_suptitle(), figure.get_supxlabel()) == ("The title", "The caption.")
     used = [axis for axis in figure.axes if axis.get_title(loc="left")]
     assert len(used) == 2
-    for axis in used:
-        assert (axis.get_xlabel(), axis.get_ylabel()) == ("x (m)", "y (N)")
+    for axis, key in zip(used, (["Monte Carlo, 95 %"], []), strict=True):
+        assert (axis.get_xlabel(), axis.get_ylabel()) == ("", "y (N)")  # the residuals below say what x is
         assert axis.get_title(loc="left") == "the panel"
         assert (axis.get_xscale(), axis.get_yscale()) == ("linear", scale)
-        assert [t.get_text() for t in axis.get_legend().get_texts()] == [s.label for s in SERIES]
+        assert [t.get_text() for t in axis.get_legend().get_texts()] == [s.label for s in SERIES] + key
         lines = [x for x in axis.get_lines() if len(x.get_xdata()) == 3 and x.get_linestyle() != "None"]
         for line, series in zip(lines, SERIES, strict=True):
             np.testing.assert_array_equal(line.get_xydata(), np.stack([series.x, series.theory], axis=1))
@@ -252,6 +252,24 @@ def test_panels_are_drawn_as_they_are(scale):
         np.testing.assert_allclose(bars[:, 2], high, rtol=1e-12)
 
 
+def test_residuals_are_below_their_panel():
+    """In standard errors, with the marker and the colour of their series; none where there are no points."""
+    panels = Panel("with", "x (m)", "y (N)", SERIES), Panel("without", "x (m)", "y (N)", SERIES[:1])
+    above, below, alone = draw(FigureData("name", "", "", panels)).axes
+    assert (below.get_xlabel(), alone.get_xlabel()) == ("x (m)", "x (m)")
+    assert below.get_xlim() == above.get_xlim()
+    shown = [line for line in markers_of(below) if line.get_linestyle() == "None"]
+    looks = [(line.get_marker(), line.get_color()) for line in markers_of(above)]
+    for line, series, drawn in zip(shown, SERIES[1:], looks, strict=False):
+        z = (series.points.mean - series.points.exact) / series.points.stderr
+        np.testing.assert_allclose(line.get_xydata(), np.stack([series.points.x, z], axis=1))
+        assert (line.get_marker(), line.get_color()) == drawn
+    low, high = below.get_ylim()
+    assert low == -high < -np.abs(SERIES[1].points.residual).max()
+    (band,) = below.patches
+    assert (band.get_y(), band.get_height()) == (-2, 4)
+
+
 def reach(points, scale):
     """On a logarithmic axis a bar ends above zero."""
     return 0.95 * points.mean if scale == "log" else np.inf
@@ -259,9 +277,11 @@ def reach(points, scale):
 
 def test_legends_name_the_line_that_is_drawn_so():
     figure = draw(FigureData("name", "", "", (Panel("p", "x", "y", SERIES),)))
-    (axis,) = figure.axes
+    axis, _ = figure.axes
     drawn = [x for x in axis.get_lines() if len(x.get_xdata()) == 3 and x.get_linestyle() != "None"]
-    for entry, line in zip(axis.get_legend().get_lines(), drawn, strict=True):
+    *named, key = axis.get_legend().get_lines()
+    assert key.get_linestyle() == "None"  # a marker alone: any of the drawn
+    for entry, line in zip(named, drawn, strict=True):
         assert entry.get_color() == line.get_color()
         assert entry.get_linestyle() == line.get_linestyle()
     assert drawn[2].get_color() == "#000000"  # homogeneous, in every figure alike
@@ -310,15 +330,17 @@ def test_convergence(make_scene, kept, tmp_path):
     np.testing.assert_allclose(heights, expected)
     x, y = z.get_lines()[0].get_data()
     np.testing.assert_allclose(y, norm.pdf(x))
-    (dots,) = (c for c in bottom.collections if isinstance(c, PathCollection))
-    np.testing.assert_allclose(dots.get_offsets()[:, 0], [0.5, 1e-5, 1e-12])
+    good, bad = (c for c in bottom.collections if isinstance(c, PathCollection))
+    np.testing.assert_allclose(good.get_offsets()[:, 0], [0.5])
+    np.testing.assert_allclose(bad.get_offsets()[:, 0], [1e-5, 1e-12])  # the second and third fail
+    places = np.concatenate([good.get_offsets(), bad.get_offsets()])[:, 1]
     labels = {
         label.get_text(): y for label, y in zip(bottom.get_yticklabels(), bottom.get_yticks(), strict=True)
     }
-    for check, row in zip(checks, dots.get_offsets()[:, 1], strict=True):
+    for check, row in zip(checks, places, strict=True):
         assert labels[f"{check.name}: {check.seen}"] == row
-    colours = [tuple(c) for c in dots.get_facecolors()]
-    assert colours[0] != colours[1] == colours[2]  # the second and third fail
+    assert tuple(good.get_facecolors()[0]) != tuple(bad.get_facecolors()[0])
+    assert len(good.get_paths()[0].vertices) != len(bad.get_paths()[0].vertices)  # nor by colour alone
     assert "T\nStatistical convergence FAILED: p = 0 over 3 checks" in figure.get_suptitle()
 
 

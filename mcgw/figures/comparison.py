@@ -9,13 +9,22 @@ from matplotlib.figure import Figure
 
 from analytic import quantity_of
 from mcgw.ensemble.intervals import TOO_FEW
-from mcgw.figures.style import STYLE, contact_label, power_of_ten, shown_title
+from mcgw.figures.drawing import draw_residual
+from mcgw.figures.style import (
+    LEVEL,
+    MONTE_CARLO,
+    STYLE,
+    THEORY,
+    contact_label,
+    power_of_ten,
+    shown_title,
+)
 from mcgw.formats.pictures import save_figure
 from mcgw.statistics.comparison import Comparison, Curve
 
 __all__ = ["draw_curve", "quantity_figure", "save_comparison", "title_of"]
 
-_MOST_COLUMNS = 6
+_MOST_COLUMNS = 3  # more are too small to read on a page
 # Inches: from column to column, the least width, the label at the left, ticks with labels; a band of panels.
 _PITCH, _NARROWEST, _LABEL, _TICKS, _EDGE = 3.1, 7.0, 0.3, 0.6, 0.08
 _TITLE, _CURVE, _BETWEEN, _RESIDUAL, _UNDER = 0.3, 2.83, 0.21, 0.93, 0.3
@@ -132,7 +141,7 @@ def quantity_figure(comparison: Comparison, name: str) -> Figure:
 def draw_curve(axis: Any, h: np.ndarray, curve: Curve) -> None:
     """One quantity: its theory as a line, means with intervals on it."""
     order = np.argsort(h, kind="stable")
-    axis.plot(h[order], curve.theory[order], label="theory", zorder=2)
+    axis.plot(h[order], curve.theory[order], color=THEORY, label="theory", zorder=2)
     pulls = bool(np.any(curve.theory < 0) or np.any(curve.mean < 0))  # no place for it on a log axis
     seen, known = (curve.mean != 0) if pulls else (curve.mean > 0), np.isfinite(curve.low)
     for shown, marker, label in ((seen & known, "o", "Monte Carlo, 95 %"), (seen & ~known, "x", TOO_FEW)):
@@ -140,10 +149,19 @@ def draw_curve(axis: Any, h: np.ndarray, curve: Curve) -> None:
         bars = np.nan_to_num([mean - low if pulls else np.minimum(mean - low, 0.999 * mean), high - mean])
         if shown.any() or marker == "o":
             axis.errorbar(
-                h[shown], mean, bars, fmt=marker, ms=3, mfc="none", color="C1", lw=1, label=label, zorder=3
+                h[shown],
+                mean,
+                bars,
+                fmt=marker,
+                ms=3,
+                mfc="none",
+                color=MONTE_CARLO,
+                lw=1,
+                label=label,
+                zorder=3,
             )
     if pulls:
-        axis.axhline(0, color="0.55", lw=0.8, zorder=1)
+        axis.axhline(0, color=LEVEL, lw=0.8, zorder=1)
     elif np.any(seen) or np.any(curve.theory > 0):
         axis.set_yscale("log")
         axis.yaxis.set_major_formatter(power_of_ten)
@@ -152,7 +170,5 @@ def draw_curve(axis: Any, h: np.ndarray, curve: Curve) -> None:
 
 
 def _draw_residual(axis: Any, h: np.ndarray, curve: Curve) -> None:
-    axis.axhspan(-2, 2, color="0.93", zorder=0)
-    axis.axhline(0, color="C0", lw=1)
-    axis.plot(h, curve.residual, "o", ms=3, mfc="none", color="C1")
-    axis.set_ylim(-max(4, 1.1 * np.abs(curve.residual).max()), max(4, 1.1 * np.abs(curve.residual).max()))
+    axis.plot(h, curve.residual, "o", ms=3, mfc="none", color=MONTE_CARLO)
+    draw_residual(axis, max(4, 1.1 * float(np.abs(curve.residual).max())))

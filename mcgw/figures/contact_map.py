@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
 
+import matplotlib as mpl
 import numpy as np
 from matplotlib.collections import EllipseCollection
 from matplotlib.colors import LogNorm, Normalize
@@ -12,6 +13,7 @@ from numpy.typing import NDArray
 
 from analytic import Hertz, quantity_of
 from analytic.laws import Ways
+from mcgw.figures.style import STYLE
 from mcgw.formats.pictures import save_figure
 from mcgw.maps.asperities import Asperities
 from mcgw.maps.envelope import envelope
@@ -130,7 +132,8 @@ def save_contact_map(
     OSError
         If the file cannot be written.
     """
-    save_figure(contact_map_figure(field, spots, colour=colour, periodic=periodic), path, dpi=_DPI)
+    with mpl.rc_context(STYLE | {"axes.grid": False}):
+        save_figure(contact_map_figure(field, spots, colour=colour, periodic=periodic), path, dpi=_DPI)
 
 
 def contact_map_figure(

@@ -7,7 +7,7 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
 
-from mcgw.figures.style import STYLE, shown_title
+from mcgw.figures.style import BAND, MONTE_CARLO, SAMPLE, STYLE, THEORY, shown_title
 from mcgw.formats.pictures import save_figure
 from mcgw.statistics.checks import Slope
 from mcgw.statistics.comparison import FALSE_ALARM
@@ -56,10 +56,10 @@ def _say(axis: Any, text: str) -> None:
 
 def _draw_slope(axis: Any, curve: Slope) -> None:
     fit = np.exp(np.mean(np.log(curve.errors) + np.log(curve.sizes) / 2)) / np.sqrt(curve.sizes)
-    axis.loglog(curve.sizes, fit, color="C0", label="slope $-1/2$")
+    axis.loglog(curve.sizes, fit, color=THEORY, label="slope $-1/2$")
     axis.errorbar(
-        curve.sizes, curve.errors, 1.96 * curve.stderr * curve.errors, fmt="o", ms=4, mfc="none", color="C1",
-        label="measured, 95 %",
+        curve.sizes, curve.errors, 1.96 * curve.stderr * curve.errors, fmt="o", ms=4, mfc="none",
+        color=MONTE_CARLO, label="measured, 95 %",
     )  # fmt: skip
     axis.set_xlabel(_TITLES[curve.against])
     axis.set_ylabel("rms error (standard deviations)" if curve.against == "M" else "rms relative error")
@@ -72,9 +72,9 @@ def _draw_scores(axis: Any, z: np.ndarray) -> None:
         _say(axis, "z-scores: too few contacts")
         return
     edges = np.linspace(-4, 4, 25)
-    axis.hist(np.clip(z, -4, 4), edges, density=True, color="C5", label=f"{z.size} means")
+    axis.hist(np.clip(z, -4, 4), edges, density=True, color=SAMPLE, label=f"{z.size} means")
     x = np.linspace(-4, 4, 201)
-    axis.plot(x, np.exp(-(x**2) / 2) / np.sqrt(2 * np.pi), color="C0", label="standard normal")
+    axis.plot(x, np.exp(-(x**2) / 2) / np.sqrt(2 * np.pi), color=THEORY, label="standard normal")
     axis.set_ylim(0, 0.58)
     axis.set_xlabel("error of a mean (exact standard errors)")
     axis.set_title("z-scores")
@@ -88,9 +88,11 @@ def draw_checks(axis: Any, found: Convergence) -> None:
     p = np.array([max(check.p, floor) for check in found.checks])
     limit = FALSE_ALARM / len(p)
     rows = np.arange(len(p))[::-1]
-    axis.axvspan(floor / 10, limit, color="0.93", zorder=0)
+    axis.axvspan(floor / 10, limit, color=BAND, zorder=0)
     axis.hlines(rows, p, 1, color="0.7", lw=1)
-    axis.scatter(p, rows, c=["C0" if value > limit else "C1" for value in p], s=28, zorder=3)
+    failed = p <= limit
+    for some, color, marker in ((~failed, THEORY, "o"), (failed, MONTE_CARLO, "X")):
+        axis.scatter(p[some], rows[some], color=color, marker=marker, s=28, zorder=3)
     axis.set_xscale("log")
     axis.set_xlim(floor / 3, 2.5)
     axis.set_yticks(rows, [f"{c.name}: {c.seen}" for c in found.checks], fontsize=8)

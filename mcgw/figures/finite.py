@@ -32,8 +32,9 @@ def fluctuations(samples: Samples) -> FigureData:
         for n in (100, 1000, 10_000, 100_000, 1_000_000):
             points = _spread_points(drawn[n].values(name), h, name, n, samples) if n in drawn else None
             series.append(Series(f"N = {_power(n)}", line, _exact_spread(name, line, n, samples), points))
+        room = float(series[-1].theory.min()) / 2, 50 * float(series[0].theory.max())  # for the legend
         panels.append(
-            Panel(f"{key}  {name}", SEPARATION, "std / mean", tuple(series), ("linear", "log"), level=1.0)
+            Panel(f"{key}  {name}", SEPARATION, "std / mean", tuple(series), ("linear", "log"), 1.0, room)
         )
     return FigureData(
         "fluctuations",
@@ -41,7 +42,6 @@ def fluctuations(samples: Samples) -> FigureData:
         f"N asperities a surface; 2000 surfaces (400 of N = 10⁶), seed {samples.seed}. Markers, with "
         "95 % intervals, where the ensemble has 400 contacts or more.",
         tuple(panels),
-        columns=3,
     )
 
 
@@ -97,10 +97,9 @@ def distribution(samples: Samples) -> FigureData:
     return FigureData(
         "distribution",
         "Load of one finite surface at light contact (d/σ = 2.5)",
-        f"Homogeneous; 100 000 surfaces, seed {samples.seed}. Solid: exact law; dashed: Gaussian of the same "
-        "mean and std.",
+        f"Homogeneous; 100 000 surfaces, seed {samples.seed}. Gaussian: of the same mean and "
+        "std. Markers: share of the surfaces in bins of a quarter of the std, over their width.",
         panels,
-        columns=3,
     )
 
 

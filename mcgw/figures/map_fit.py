@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from analytic import Gaussian, Nayak
-from mcgw.figures.style import STYLE
+from mcgw.figures.style import HOMOGENEOUS, MARKED, MISSING, SAMPLE, STYLE, THEORY, look
 from mcgw.formats.pictures import save_figure
 from mcgw.maps.estimates import moments_of
 from mcgw.maps.fit import Fit
@@ -73,7 +73,7 @@ def _draw_map(figure: Figure, axis: Any, topography: Topography, seen: NDArray[n
     unit, factor = _unit(float(np.nanstd(z)))
     lateral, times = _unit(max(topography.size))
     low, high = np.nanpercentile(z, (0.5, 99.5)) * factor
-    grey = mpl.colormaps["gray"].with_extremes(bad="#E69F00")
+    grey = mpl.colormaps["gray"].with_extremes(bad=MISSING)
     extent = (0, times * topography.size[0], 0, times * topography.size[1])
     image = axis.imshow(
         factor * z, cmap=grey, origin="lower", extent=extent, vmin=low, vmax=high, interpolation="nearest"
@@ -100,7 +100,7 @@ def _draw_summits(axis: Any, fit: Fit, ready: Prepared) -> None:
     listed = (fit.listed.x, fit.listed.y)
     x, y = (times * (place[some] - margin) for place, margin in zip(listed, margins, strict=True))
     marks = max(0.4, min(3.0, 90 / np.sqrt(x.size)))
-    axis.plot(x, y, "o", ms=marks, color="#D55E00", mew=0)
+    axis.plot(x, y, "o", ms=marks, color=MARKED, mew=0)
     shown = "" if x.size == fit.summits.size else f", {x.size} shown"
     axis.set_title(f"b  looked at: {fit.summits.size} summits{shown}", loc="left")
 
@@ -117,9 +117,9 @@ def _draw_moments(axis: Any, ready: Prepared) -> None:
             break
         rows.append((m.m0, m.m2, m.m4))
     unit, times = _unit(float(cutoffs[len(rows) // 2]))
-    looks = (("$m_0$", "o-"), ("$m_2$", "s--"), ("$m_4$", "^:"))
-    for values, (name, look) in zip(np.array(rows).T, looks, strict=True):
-        axis.plot(times * cutoffs[: len(rows)], values / values[0], look, ms=4, mfc="white", label=name)
+    for values, name in zip(np.array(rows).T, ("$m_0$", "$m_2$", "$m_4$"), strict=True):
+        x, y = times * cutoffs[: len(rows)], values / values[0]
+        axis.plot(x, y, **look(name), ms=4, mfc="white", label=name)
     axis.set(xscale="log", yscale="log", xlabel=f"cutoff ({unit})", ylabel="over those at the first cutoff")
     ticks = times * cutoffs[: len(rows) : 2]
     axis.set_xticks(ticks, [f"{t:.3g}" for t in ticks])
@@ -132,9 +132,11 @@ def _draw_heights(axis: Any, fit: Fit) -> None:
     """Of the summits, and the laws they may follow."""
     sigma = float(fit.summits.std())
     z = np.linspace(-4.5, 4.5, 241)
-    axis.hist(fit.summits / sigma, bins="auto", density=True, color="C5", label="summits")
-    for (label, density), look in zip(height_laws(fit), ("C1--", "C0-"), strict=False):
-        axis.plot(z, density(z), look, label=label)
+    axis.hist(fit.summits / sigma, bins="auto", density=True, color=SAMPLE, label="summits")
+    for (label, density), (color, dash) in zip(
+        height_laws(fit), ((HOMOGENEOUS, "--"), (THEORY, "-")), strict=False
+    ):
+        axis.plot(z, density(z), dash, color=color, label=label)
     axis.set(xlabel="summit height, about its mean, over its std", ylabel="density")
     axis.set_title("d  summit heights", loc="left")
     axis.margins(y=0.5)
@@ -153,13 +155,13 @@ def _draw_curvatures(axis: Any, fit: Fit) -> None:
     """Of the summits over their mean, and that of isotropic Gaussian surfaces (Nayak 1971), free of alpha."""
     k = fit.curvatures / fit.curvatures.mean()
     k = k[(k > 0) & (k < 3)]
-    axis.hist(k, bins="auto", density=True, color="C5", label="summits")
+    axis.hist(k, bins="auto", density=True, color=SAMPLE, label="summits")
     axis.set_ylim(top=max(axis.get_ylim()[1], 1.5))
     x = np.linspace(0.01, 3, 200)
     mean = 8 / np.sqrt(3 * np.pi)
     t = mean * x
     density = np.sqrt(3) / (2 * np.sqrt(np.pi)) * (t**2 - 2 + 2 * np.exp(-(t**2) / 2)) * np.exp(-(t**2) / 4)
-    axis.plot(x, mean * density, color="C1", label="Gaussian surface")
+    axis.plot(x, mean * density, color=THEORY, label="Gaussian surface")
     axis.set(xlabel="mean curvature over its mean", ylabel="density", xlim=(0, 3))
     axis.set_title("e  summit curvatures", loc="left")
     axis.legend()

@@ -13,7 +13,7 @@ from mcgw.ensemble.paired import Paired
 from mcgw.ensemble.solved import Solution
 from mcgw.figures.comparison import draw_curve, title_of
 from mcgw.figures.convergence import draw_checks
-from mcgw.figures.style import STYLE, shown_title
+from mcgw.figures.style import MONTE_CARLO, SAMPLE, STYLE, THEORY, shown_title, step
 from mcgw.figures.tradeoff import draw_methods
 from mcgw.formats.evenly import evenly
 from mcgw.maps.fit import Fit
@@ -71,14 +71,16 @@ def _(result: Ensemble, ax: Any, *, quantity: str) -> None:
     if result.n_surfaces > 1:
         low = np.maximum(mean - std, mean / 20)[order]  # an axis of logarithms has no place for 0
         ax.fill_between(
-            h[order], low, (mean + std)[order], color="C0", alpha=0.18, lw=0, label="std over surfaces"
+            h[order], low, (mean + std)[order], color=MONTE_CARLO, alpha=0.18, lw=0, label="std over surfaces"
         )
     if not promise_of(result.sampler).real_surfaces:
-        ax.plot(h[order], mean[order], "o-", ms=3, mfc="none", label="mean")
+        ax.plot(h[order], mean[order], "o-", ms=3, mfc="none", color=MONTE_CARLO, label="mean")
     else:
         low, high = result.interval(quantity)
         bars = np.nan_to_num([np.minimum(mean - low, 0.999 * mean), high - mean])[:, order]
-        ax.errorbar(h[order], mean[order], bars, fmt="o-", ms=3, mfc="none", label="mean, 95 %")
+        ax.errorbar(
+            h[order], mean[order], bars, fmt="o-", ms=3, mfc="none", color=MONTE_CARLO, label="mean, 95 %"
+        )
     if np.any(mean > 0):
         ax.set_yscale("log")
     ax.set(xlabel=_SEPARATION, ylabel=f"{quantity.replace('_', ' ')} ({q.unit})")
@@ -99,7 +101,7 @@ def _(result: Comparison, ax: Any, *, quantity: str) -> None:
 def _(result: Paired, ax: Any) -> None:
     order = np.argsort(result.separations, kind="stable")
     columns = (x[order] for x in (result.separations, result.ratio, 1.96 * result.stderr))
-    ax.errorbar(*columns, fmt="o-", ms=3, mfc="none", label="same surfaces, 95 %")
+    ax.errorbar(*columns, fmt="o-", ms=3, mfc="none", color=MONTE_CARLO, label="same surfaces, 95 %")
     ax.set(xlabel=_SEPARATION, ylabel=f"ratio of the mean {result.quantity}")
     ax.legend()
 
@@ -110,9 +112,9 @@ def _(result: Sweep, ax: Any, *, quantity: str) -> None:
     order, points = np.argsort(result.separations, kind="stable"), list(result.axes.points())
     means, errors = result.mean(quantity), result.stderr(quantity)
     shown = evenly(len(points), _MOST_LINES)
-    for color, i in zip(mpl.colormaps["viridis"](np.linspace(0, 0.9, len(shown))), shown, strict=True):
+    for place, i in enumerate(shown):
         columns = result.separations[order], means[points[i]][order], 1.96 * errors[points[i]][order]
-        ax.errorbar(*columns, fmt="o-", ms=3, color=color, label=result.axes.values_text(points[i]))
+        ax.errorbar(*columns, marker="o", ms=3, **step(result.axes.values_text(points[i]), place, len(shown)))
     if np.any(means > 0):
         ax.set_yscale("log")
     ax.set(xlabel=_SEPARATION, ylabel=f"mean {quantity.replace('_', ' ')} ({quantity_of(quantity).unit})")
@@ -128,8 +130,17 @@ def _(result: Slopes, ax: Any, *, k: int) -> None:
         np.moveaxis(x, result.axis, 0)[..., k].reshape(len(result.at), -1)[:, 0]
         for x in (result.value, result.stderr, result.theory)
     )
-    ax.errorbar(result.at, value, 1.96 * error, fmt="o", ms=3, mfc="none", label="same surfaces, 95 %")
-    ax.plot(result.at, theory, label="theory")
+    ax.errorbar(
+        result.at,
+        value,
+        1.96 * error,
+        fmt="o",
+        ms=3,
+        mfc="none",
+        color=MONTE_CARLO,
+        label="same surfaces, 95 %",
+    )
+    ax.plot(result.at, theory, color=THEORY, label="theory")
     ax.set(xlabel=result.key, ylabel=f"change of the mean {result.quantity.replace('_', ' ')}")
     ax.legend()
 
@@ -137,10 +148,10 @@ def _(result: Slopes, ax: Any, *, k: int) -> None:
 @_draw.register
 def _(result: Solution, ax: Any) -> None:
     x = result.surfaces["separation"]
-    ax.hist(x, bins="auto", color="C5", label=f"{x.size} surfaces")
+    ax.hist(x, bins="auto", color=SAMPLE, label=f"{x.size} surfaces")
     ax.margins(y=0.3)  # room for the legend
-    ax.axvline(result.theory["separation"], color="C0", label="theory, infinite surface")
-    ax.axvline(x.mean(), color="C1", ls="--", label="mean of the surfaces")
+    ax.axvline(result.theory["separation"], color=THEORY, label="theory, infinite surface")
+    ax.axvline(x.mean(), color=MONTE_CARLO, ls="--", label="mean of the surfaces")
     unit = quantity_of(result.given).unit
     ax.set(xlabel=_SEPARATION, ylabel="surfaces", title=f"at {result.given} = {result.value:.6g} {unit}")
     ax.legend()
@@ -165,10 +176,10 @@ def _(result: Tradeoff, ax: Any, *, k: int) -> None:
 @_draw.register
 def _(result: Fit, ax: Any) -> None:
     sigma = float(result.summits.std())
-    ax.hist(result.summits, bins="auto", density=True, color="C5", label=f"{result.summits.size} summits")
+    ax.hist(result.summits, bins="auto", density=True, color=SAMPLE, label=f"{result.summits.size} summits")
     ax.margins(y=0.3)  # room for the legend
     z = np.linspace(-4 * sigma, 4 * sigma, 201)
-    ax.plot(z, norm.pdf(z, scale=sigma), color="C0", label="Gaussian")
+    ax.plot(z, norm.pdf(z, scale=sigma), color=THEORY, label="Gaussian")
     ax.set(xlabel="summit height (m)", ylabel="density (1/m)", title=f"sigma = {sigma:.4g} m")
     ax.legend()
 
@@ -178,9 +189,9 @@ def _(result: ProfileFit, ax: Any) -> None:
     m = result.moments
     rms = float(np.sqrt(m.m0))
     z = np.linspace(-4 * rms, m.mean_height + 4 * m.sigma, 401)
-    ax.plot(z, norm.pdf(z, scale=rms), color="C5", label=f"all heights, Sq = {rms:.4g} m")
+    ax.plot(z, norm.pdf(z, scale=rms), color=SAMPLE, label=f"all heights, Sq = {rms:.4g} m")
     summits = norm.pdf(z, m.mean_height, m.sigma)
-    ax.plot(z, summits, color="C0", label=f"summits, sigma = {m.sigma:.4g} m")
+    ax.plot(z, summits, color=THEORY, label=f"summits, sigma = {m.sigma:.4g} m")
     ax.set(xlabel="height above the mean plane (m)", ylabel="density (1/m)")
     ax.set_title(f"from {len(result.lengths)} profile(s), alpha = {m.alpha:.3g}")
     ax.margins(y=0.3)  # room for the legend

@@ -80,7 +80,7 @@ class Samples:
         """In words."""
         return (
             f"Markers: Monte-Carlo means with 95 % intervals, {self.n_surfaces} surfaces of "
-            f"{self.n_asperities:g} asperities, seed {self.seed}. Lines: theory."
+            f"{self.n_asperities:g} asperities, seed {self.seed}, the same for all lines. Lines: theory."
         )
 
     @property

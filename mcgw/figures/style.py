@@ -1,8 +1,14 @@
-"""What all figures share: their look, titles and labels."""
+"""What all figures share: one colour for each meaning, their look, titles and labels.
+
+Colour never stands alone: a dash and a marker go with each. Those that one figure shows together differ for
+readers with two kinds of cones and in grey (`tests/test_palette.py` measures both).
+"""
 
 import math
+import re
 from typing import Any
 
+import numpy as np
 from cycler import cycler
 
 from analytic import Exponential, Grading, Hertz, Homogeneous, PiecewiseSeries
@@ -10,26 +16,156 @@ from mcgw.machine.terminal import one_line
 from mcgw.scene.law_text import law_text
 from mcgw.scene.scene import Scene
 
-__all__ = ["STYLE", "contact_label", "grading_label", "power_of_ten", "shown_title"]
+__all__ = [
+    "BACK", "BAND", "CATEGORIES", "FAMILIES", "GRADINGS", "HOMOGENEOUS", "LEVEL", "MARKED", "MEANINGS",
+    "MISSING", "MONTE_CARLO", "PAIRS", "PAPER", "SAMPLE", "SEPARATIONS", "STEPS", "STYLE", "THEORY",
+    "contact_label", "grading_label", "line", "look", "power_of_ten", "shown_title", "step",
+]  # fmt: skip
 
-# One style for all figures: colours of Okabe and Ito, told apart by colour-blind readers and in grey.
+THEORY, MONTE_CARLO = "#00598F", "#E0701A"
+SAMPLE = "#9CCBEB"  # bars and bands of what was drawn, with lines upon them
+HOMOGENEOUS = "#000000"  # and every other reference: Hertz's law, boundary elements
+LEVEL, BAND, BACK = "0.55", "0.93", "0.35"  # a value worth a line; where residuals may lie; lesser lines
+MARKED, MISSING = "#E0701A", "#F0C419"  # on pictures of maps: summits; points without a height
+PAPER = "0.25"  # text that is read last
+
+# Lightness goes up and down between blue and yellow: the two that are left to those who see no red or green.
+CATEGORIES = ("#1A2560", "#7B2D26", "#8A4FD3", "#D9700A", "#5FB0E8", "#E8C81A")
+_CYCLE = (THEORY, MONTE_CARLO, "#5C1F1A", "#8A4FD3", "#E8C81A", "#5FB0E8")
+STEPS = ("#2A0A5E", "#7A1D6D", "#C0394F", "#ED6925", "#FBB61A")  # of any quantity that rises
+SEPARATIONS = ("#2D0B59", "#3C4F9E", "#1F8A8C", "#5DBB63", "#C8D431")  # d/sigma = 0 to 4
+# By gamma: blue where tips are stiffer, orange where they are softer, lighter the farther from homogeneous.
+GRADINGS = {
+    0.0: "#FFD98A", 0.2: "#EFAE3A", 0.5: "#CC5A10", 0.8: "#7A2E0C", 1.0: HOMOGENEOUS,
+    1.2: "#12306E", 1.5: "#1F63B5", 2.0: "#58A6E0", math.inf: "#B4DBF5",
+}  # fmt: skip
+_DASHES: tuple[Any, ...] = (
+    "-", (0, (6, 2)), (0, (3, 1, 1, 1)), (0, (1.2, 1.2)), (0, (8, 2, 1, 2)), (0, (2, 1)), (0, (4, 1.2))
+)  # fmt: skip
+_MARKERS = ("o", "s", "^", "D", "v", "<", ">")
+_TOP = len(_DASHES)
+
+FAMILIES: tuple[tuple[str, ...], ...] = (  # what one figure may show together, in the order of the colours
+    ("load", "area", "stiffness", "contacts", "conductance", "yielded"),
+    ("Chang", "Zhao", "Kogut", "Jackson"),
+    ("cells", "tail", "aggregate", "direct", "stratified"),
+    ("own radii", "one radius", "nayak"),
+    ("$m_0$", "$m_2$", "$m_4$"),
+)
+PAIRS: tuple[tuple[str, ...], ...] = (
+    ("pressed on", "let go"),
+    ("in", "back"),
+    ("independent", "interacting"),
+    ("exact", "Gaussian"),
+    ("theory", "Monte Carlo"),
+)
+
+
+def _of(color: str, place: int) -> dict[str, Any]:
+    return {"color": color, "linestyle": _DASHES[place % _TOP], "marker": _MARKERS[place % _TOP]}
+
+
+MEANINGS = {
+    **{name: _of(CATEGORIES[k], k) for names in FAMILIES for k, name in enumerate(names)},
+    **{name: _of(_CYCLE[k], k) for names in PAIRS for k, name in enumerate(names)},
+    "load_slope": _of(CATEGORIES[2], 5),
+    "conductance_si": _of(CATEGORIES[4], 6),
+    "this scene": _of(THEORY, 0),
+    "homogeneous": _of(HOMOGENEOUS, 1) | {"marker": "v"},
+    "homogeneous, Hertz": _of(LEVEL, 3),
+    "Hertz": _of(HOMOGENEOUS, 0) | {"marker": "v"},
+    "no film": _of(HOMOGENEOUS, 0) | {"marker": "v"},
+}
+
+# One style for all figures. Texts stay texts, so that they can be searched, copied and edited: in SVG set in
+# the reader's own sans-serif, in PDF in a TrueType font that goes with the file (journals refuse Type 3).
 STYLE: Any = {
     "font.size": 9,
     "axes.titlesize": 10,
     "axes.titley": 1.0,  # told, for it is looked for by measuring all ticks, at each drawing
     "axes.spines.top": False,
     "axes.spines.right": False,
-    "axes.prop_cycle": cycler(color=["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9"]),
+    "axes.prop_cycle": cycler(color=list(_CYCLE)),
     "axes.grid": True,
     "grid.color": "0.9",
     "legend.frameon": False,
     "lines.linewidth": 1.4,
     "savefig.dpi": 160,
     "svg.fonttype": "none",
+    "pdf.fonttype": 42,
 }
 
-
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+_LOWERED = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹", "0123456789")
+
+
+def look(label: str, place: int = 0) -> dict[str, Any]:
+    """Colour, dash and marker of what a label names.
+
+    Parameters
+    ----------
+    label : str
+        A name of `MEANINGS`, of a quantity on the way back, "γ = 0.5", "d/σ = 2", "N = 10³", or "b = 0.1".
+    place : int, optional
+        Which line of its panel it is: tells those of other labels apart.
+
+    Returns
+    -------
+    dict
+        With keys "color", "linestyle", "marker".
+    """
+    if label in MEANINGS:
+        return MEANINGS[label]
+    if label.removesuffix("_unloading") in MEANINGS:
+        return MEANINGS[label.removesuffix("_unloading")] | {"linestyle": "--"}
+    found = re.match(r"(γ|d/σ|N|b) = ([0-9.]+)([⁰¹²³⁴⁵⁶⁷⁸⁹]*)$", label)
+    if found is None:
+        return _of(_CYCLE[place % len(_CYCLE)], place)
+    number = float(found[2])
+    if found[1] == "γ":
+        return _of_gamma(number)
+    if found[1] == "d/σ":
+        return _of(_between(number / 4, SEPARATIONS), round(number))
+    power = int(found[3].translate(_LOWERED)) - 2 if found[3] else round(math.log10(number)) + 2
+    return _of(_between(power / 4, STEPS), power)
+
+
+def line(label: str, place: int = 0) -> dict[str, Any]:
+    """Label, colour and dash of a line: ``ax.plot(x, y, **line("γ = 0.5"))``."""
+    found = look(label, place)
+    return {"label": label, "color": found["color"], "linestyle": found["linestyle"]}
+
+
+def step(label: str, k: int, n: int) -> dict[str, Any]:
+    """Label, colour and dash of line k of n, along a quantity that rises from line to line."""
+    return {"label": label, "color": _between(k / max(n - 1, 1), STEPS), "linestyle": _DASHES[k % _TOP]}
+
+
+def _of_gamma(gamma: float) -> dict[str, Any]:
+    """On the map of gradings; dash and marker of the nearest one there."""
+    if gamma == 1:
+        return MEANINGS["Hertz"]
+    side = [g for g in GRADINGS if g != 1 and (g > 1) == (gamma > 1)]
+    away = np.array([1 - min(g, 1 / g) if g else 1.0 for g in side])  # as far from 1 as its inverse is
+    x = 1 - min(gamma, 1 / gamma) if gamma > 0 else 1.0
+    order, rgb = np.argsort(away), np.array([_rgb(GRADINGS[g]) for g in side])
+    color = _hex([np.interp(x, away[order], channel[order]) for channel in rgb.T])
+    nearest = int(np.argmin(np.abs(away - x)))
+    return _of(color, (3, 2, 1, 1)[nearest] if gamma > 1 else (5, 5, 4, 6)[nearest])
+
+
+def _between(x: float, colors: tuple[str, ...]) -> str:
+    """Colour at x, 0 to 1, along a map."""
+    at = np.linspace(0, 1, len(colors))
+    return _hex([np.interp(x, at, channel) for channel in np.array([_rgb(c) for c in colors]).T])
+
+
+def _rgb(color: str) -> tuple[int, ...]:
+    return tuple(int(color[k : k + 2], 16) for k in (1, 3, 5))
+
+
+def _hex(rgb: Any) -> str:
+    return "#" + "".join(f"{round(float(x)):02X}" for x in rgb)
 
 
 def power_of_ten(x: float, _: Any = None) -> str:

@@ -7,7 +7,7 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
 
-from mcgw.figures.style import STYLE, shown_title
+from mcgw.figures.style import BACK, STYLE, look, shown_title
 from mcgw.formats.pictures import save_figure
 from mcgw.statistics.tradeoff import Tradeoff
 
@@ -16,9 +16,10 @@ __all__ = ["draw_methods", "draw_ways", "save_tradeoff"]
 _FLOOR = 1e-16
 _WIDE = 20  # times that are better told apart by their logarithms
 _TWO = 1.96  # standard errors that 95 of 100 keep
-_CELLS, _TAIL, _CROWDS, _DIRECT, _STRATA, _RULE = "C0", "C1", "C2", "C3", "C4", "0.35"
-_COLOURS = {"cells": _CELLS, "tail": _TAIL, "aggregate": _CROWDS, "direct": _DIRECT, "stratified": _STRATA}
-_MARKERS = {"cells": "o", "tail": "s", "aggregate": "^", "direct": "v", "stratified": "D"}
+_KINDS = ("cells", "tail", "aggregate", "direct", "stratified")
+_COLOURS = {kind: look(kind)["color"] for kind in _KINDS}
+_MARKERS = {kind: look(kind)["marker"] for kind in _KINDS}
+_CELLS, _CROWDS = _COLOURS["cells"], _COLOURS["aggregate"]
 
 
 def save_tradeoff(found: Tradeoff, path: str | Path) -> None:
@@ -79,7 +80,7 @@ def draw_methods(axis: Any, found: Tradeoff, k: int) -> None:
         line, marker = ("-", _MARKERS[kind]) if kind in _MARKERS else next(others, ("-", "."))
         law = {-0.5: r" (size$^{-1/2}$)", -1.5: r" (size$^{-3/2}$)"}.get(method.slope or 0.0, "")
         axis.errorbar(
-            time, error, error * np.array([p.rms_stderr for p in points]), color=_COLOURS.get(kind, _RULE),
+            time, error, error * np.array([p.rms_stderr for p in points]), color=_COLOURS.get(kind, BACK),
             marker=marker, ms=4.5, lw=1.2, ls=line, label=f"{method.name}{law}",
         )  # fmt: skip
     axis.set(xscale="log", yscale="log", ylim=(_FLOOR / 5, 10))

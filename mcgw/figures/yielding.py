@@ -53,7 +53,6 @@ def who_yields(samples: Samples) -> FigureData:
         f"Kogut and Etsion's law; an asperity of modulus E* yields at a penetration of {_CRITICAL:g} σ, a "
         f"stiffer one sooner. {samples.listed_caption}",
         tuple(panels),
-        columns=3,
     )
 
 
@@ -79,7 +78,6 @@ def laws_compared(samples: Samples) -> FigureData:
         f"All yield at a penetration of {_CRITICAL:g} σ (Jackson's with S_y/E* = {_STRAIN:g}). Ratios on the "
         f"same surfaces have next to no noise. {samples.listed_caption}",
         tuple(panels),
-        columns=3,
     )
 
 

@@ -23,6 +23,9 @@ _SIDES: dict[str, tuple[str, str, Any]] = {
     "yaxis": ("left", "right", TICKLEFT),
 }
 
+# No file knows when it was written, so that the same figure gives the same bytes.
+_UNDATED: dict[str, dict[str, Any]] = {"pdf": {"CreationDate": None}, "svg": {"Date": None}}
+
 
 def figure_endings() -> tuple[str, ...]:
     """Endings of the formats that matplotlib writes."""
@@ -61,7 +64,12 @@ def write_figure(figure: Figure, file: str | Path | IO[Any], **options: Any) -> 
         figure.set_layout_engine(None)
     for axes, which, locator in minor_ticks:  # how many there are depends on the length of the axis
         axes.add_artist(_as_line(axes, which, locator))
-    figure.savefig(file, **options)
+    ending = file.suffix[1:].lower() if isinstance(file, Path) else ""
+    undated = _UNDATED.get(options.get("format", ending))
+    if undated:
+        options["metadata"] = undated | (options.get("metadata") or {})
+    with mpl.rc_context({"svg.hashsalt": "mcgw"}):
+        figure.savefig(file, **options)
 
 
 def _take_minor_ticks(figure: Figure) -> list[tuple[Axes, str, Locator]]:
