@@ -24,13 +24,15 @@ from scipy import fft
 from scipy.optimize import root
 
 import mcgw
-from mcgw.figures.style import STYLE
+from mcgw.figures.style import HOMOGENEOUS, STYLE, look
+from mcgw.formats.pictures import save_figure
 from mcgw.maps.asperities import Asperities, asperities_of
 from mcgw.maps.envelope import envelope
 
 HERE = Path(__file__).parent
 POINTS = 2048
 SURFACE = 0
+_MODELS = {"independent": ("area", "plane"), "interacting": ("interacting", "plane_interacting")}
 # Potential at a point charge of a square lattice with a neutral background, over charge/side.
 SQUARE_LATTICE = -3.900264920001956
 
@@ -129,18 +131,16 @@ def draw(rows: list[dict[str, float]], path: Path) -> None:
     with mpl.rc_context(STYLE):
         figure = Figure(figsize=(8.2, 5.6), layout="constrained")
         (area, plane), (less_area, less_plane) = figure.subplots(2, 2, sharex=True, height_ratios=[3, 2])
-        for key, label, style in (
-            ("area", "independent asperities", "--"),
-            ("interacting", "with interaction", "-"),
-            ("solver", "boundary elements (Tamaas)", "o"),
-        ):
-            area.plot(load, 1e12 * column[key], style, label=label, mfc="none" if style == "o" else None)
-        for key, style in (("plane", "--"), ("plane_interacting", "-"), ("plane_solver", "o")):
-            plane.plot(load, 1e6 * column[key], style, mfc="none" if style == "o" else None)
-        for key, style, colour in (("area", "s--", "C0"), ("interacting", "^-", "C1")):
-            less_area.plot(load, 100 * (column["solver"] / column[key] - 1), style, color=colour, ms=4)
-        for key, style, colour in (("plane", "s--", "C0"), ("plane_interacting", "^-", "C1")):
-            less_plane.plot(load, 1e6 * (column["plane_solver"] - column[key]), style, color=colour, ms=4)
+        for name, (each, height) in _MODELS.items():
+            line = {"color": look(name)["color"], "linestyle": look(name)["linestyle"]}
+            label = "with interaction" if name == "interacting" else "independent asperities"
+            area.plot(load, 1e12 * column[each], label=label, **line)
+            plane.plot(load, 1e6 * column[height], **line)
+            less_area.plot(load, 100 * (column["solver"] / column[each] - 1), **look(name), ms=4)
+            less_plane.plot(load, 1e6 * (column["plane_solver"] - column[height]), **look(name), ms=4)
+        for axis, values in ((area, 1e12 * column["solver"]), (plane, 1e6 * column["plane_solver"])):
+            label = "boundary elements (Tamaas)"
+            axis.plot(load, values, "o", color=HOMOGENEOUS, mfc="none", label=label)
         area.set(xscale="log", yscale="log", ylabel="real area (µm²)", title="Area at equal load")
         plane.set(ylabel="height of the plane (µm)", title="Separation at equal load")
         less_area.set(xlabel="load (mN)", ylabel="solver less model (%)")
@@ -150,7 +150,7 @@ def draw(rows: list[dict[str, float]], path: Path) -> None:
             axis.set_major_formatter(ScalarFormatter())
             axis.set_minor_formatter(NullFormatter())
         area.legend()
-        figure.savefig(path)
+        save_figure(figure, path)
 
 
 if __name__ == "__main__":

@@ -13,13 +13,14 @@ import mcgw
 from mcgw.figures.drawing import draw
 from mcgw.figures.equal_load import equal_load
 from mcgw.figures.samples import Samples
-from mcgw.figures.style import STYLE
+from mcgw.figures.style import CATEGORIES, MONTE_CARLO, STYLE, THEORY
 from mcgw.figures.yielding import laws_compared, who_yields
+from mcgw.formats.pictures import save_figure
 from mcgw.sampling.cells import mesh_of
 
 HERE = Path(__file__).parent
 FOLDER = HERE / "pictures"
-BLUE, ORANGE, GREEN = "#0072B2", "#D55E00", "#009E73"
+CELLS, PHYSICS, ANSWERS = THEORY, CATEGORIES[2], MONTE_CARLO  # as dark, middle and light in grey
 
 
 def trend():
@@ -27,7 +28,7 @@ def trend():
     scene = mcgw.load_scene(HERE / "demo.toml")
     samples = Samples(scene.surface, 200, scene.n_asperities, scene.seed, 100)
     data = equal_load(samples)
-    draw(replace(data, panels=data.panels[:2])).savefig(FOLDER / "equal-load.png", dpi=110)
+    save_figure(draw(replace(data, panels=data.panels[:2])), FOLDER / "equal-load.png", dpi=110)
 
 
 def laws():
@@ -35,7 +36,7 @@ def laws():
     scene = mcgw.load_scene(HERE / "demo.toml")
     samples = Samples(scene.surface, 200, scene.n_asperities, scene.seed, 100)
     for data in (who_yields(samples), laws_compared(samples)):
-        draw(data).savefig(FOLDER / f"{data.name}.png", dpi=110)
+        save_figure(draw(data), FOLDER / f"{data.name}.png", dpi=110)
 
 
 def how_it_works():
@@ -48,7 +49,7 @@ def how_it_works():
         _draw_cells(left, scene, edges)
         _draw_product(middle)
         _draw_answer(right, scene)
-        figure.savefig(FOLDER / "how-it-works.png", dpi=110)
+        save_figure(figure, FOLDER / "how-it-works.png", dpi=110)
 
 
 def _draw_cells(axis, scene, edges):
@@ -57,10 +58,10 @@ def _draw_cells(axis, scene, edges):
     for k, (a, b) in enumerate(pairwise(edges)):
         x = np.linspace(a, b, 20)
         axis.fill_between(
-            x, np.exp(-x * x / 2) / np.sqrt(2 * np.pi), color=BLUE, alpha=0.55 if k % 2 else 0.25, lw=0
+            x, np.exp(-x * x / 2) / np.sqrt(2 * np.pi), color=CELLS, alpha=0.55 if k % 2 else 0.25, lw=0
         )
     heights = mcgw.heights(scene, 0, untouched=True)[::2]
-    axis.plot(heights, np.full(heights.size, -0.03), "|", color=ORANGE, ms=7)
+    axis.plot(heights, np.full(heights.size, -0.03), "|", color=ANSWERS, ms=7)
     axis.axvline(1.0, color="0.2", lw=1)
     axis.text(1.1, 0.36, "plane at d/σ", fontsize=9)
     axis.set(xlabel="summit height s = z/σ", yticks=[], ylim=(-0.06, 0.45), xlim=(-2.5, 3.6))
@@ -71,9 +72,9 @@ def _draw_cells(axis, scene, edges):
 def _draw_product(axis):
     rng = np.random.default_rng(4)
     blocks = (
-        (0.0, 3.2, 4, rng.random((9, 6)), BLUE, "moments", "surfaces × sums"),
-        (4.6, 2.2, 3.2, np.tril(rng.random((6, 5)) + 0.3), GREEN, "response", "sums × separations"),
-        (8.4, 2.2, 4, rng.random((9, 5)), ORANGE, "loads, areas, …", "surfaces × separations"),
+        (0.0, 3.2, 4, rng.random((9, 6)), CELLS, "moments", "surfaces × sums"),
+        (4.6, 2.2, 3.2, np.tril(rng.random((6, 5)) + 0.3), PHYSICS, "response", "sums × separations"),
+        (8.4, 2.2, 4, rng.random((9, 5)), ANSWERS, "loads, areas, …", "surfaces × separations"),
     )
     for x, width, height, values, color, name, shape in blocks:
         rows, columns = values.shape
@@ -104,7 +105,7 @@ def _draw_answer(axis, scene):
     full = replace(scene, separations=tuple(np.linspace(0, 3, 31)), n_surfaces=12, n_asperities=300)
     ensemble = mcgw.simulate(full)
     axis.plot(
-        ensemble.separations, ensemble.load.T / ensemble.mean("load")[0], color=ORANGE, lw=0.7, alpha=0.7
+        ensemble.separations, ensemble.load.T / ensemble.mean("load")[0], color=ANSWERS, lw=0.7, alpha=0.7
     )
     axis.plot(ensemble.separations, ensemble.mean("load") / ensemble.mean("load")[0], color="k", lw=1.6)
     axis.set(xlabel="separation d/σ", ylabel="load", yticks=[], yscale="log", ylim=(1e-4, 2))

@@ -125,6 +125,7 @@ def test_the_simulator_takes_no_integral_from_theory():
     """It shares the surface and its laws with the theory; what a scene's theory says it never asks."""
     besides = {"scene/fields.py": {"Model", "InteractingModel"}, "statistics/comparison.py": {"Fluctuations"}}
     besides["statistics/bounded.py"] = {"Model"}
+    besides["figures/scene_paper.py"] = {"mean_modulus"}
     besides |= {f"figures/{name}.py": {"Model"} for name in ("listed", "yielding", "histories")}
     whole = GAUSSIAN_FIGURES | {"statistics/methods.py"}  # the quadratures that tradeoff measures
     for name, tree in sources():

@@ -1,4 +1,4 @@
-"""The gallery and the notebooks: they run, are short, draw one picture, and use what `import mcgw` gives."""
+"""The gallery and the notebooks: short, one picture each, with what `import mcgw` gives and our colours."""
 
 import ast
 import json
@@ -12,7 +12,7 @@ ROOT = Path(__file__).parent.parent
 SCRIPTS = sorted((ROOT / "runs" / "gallery").glob("*.py"))
 NOTEBOOKS = sorted((ROOT / "runs" / "notebooks").glob("*.py"))
 MOST_LINES = 40
-PUBLIC = {"mcgw", "matplotlib.pyplot", "numpy", "scipy.stats", "tempfile"}
+PUBLIC = {"mcgw", "mcgw.figures.style", "matplotlib.pyplot", "numpy", "scipy.stats", "tempfile"}
 
 
 def lines_of_code(text):

@@ -731,16 +731,22 @@ def few_methods(methods_for):
 
 
 def test_figures_take_folder_scene_and_csv(call, tmp_path, monkeypatch):
-    from mcgw.figures import further, paper
+    from mcgw.figures import further, of_scene, paper
 
-    seen = []
+    seen, scenes = [], []
 
     def first_alone(samples):
         seen.append(samples)
         return [paper._figure_1()]
 
+    def first_of_scene(scene):
+        scenes.append(scene)
+        yield "figure-1", paper._figure_1()
+        yield "figure-3", "why not"
+
     monkeypatch.setattr(paper, "paper_figures", first_alone)
     monkeypatch.setattr(further, "further_figures", lambda samples: [])
+    monkeypatch.setattr(of_scene, "scene_figures", first_of_scene)
     assert call(["figures"]).files == ["figure-1.png", "figure-1.svg"]
     given = call(["figures", "-o", "there", "--scene", "@s.toml", "--csv"])
     assert given.code == 0, given.err
@@ -751,10 +757,13 @@ def test_figures_take_folder_scene_and_csv(call, tmp_path, monkeypatch):
     of_python = scene.replace(grading=lambda s: 1 + 0.3 * np.tanh(s))
     (tmp_path / "python.toml").write_text(mcgw.scene_text(of_python))  # holds the series of that grading
     assert call(["figures", "--scene", str(tmp_path / "python.toml")]).code == 0
-    default, *both = seen
-    for asked in both:
-        assert (asked.surface, asked.n_asperities, asked.seed) == (scene.surface, 300, 5)
+    assert "figure-3: not drawn: why not" in given.out
+    (default,) = seen
     assert (default.n_asperities, default.seed) == (30_000, 20240601)
+    one, other = scenes
+    assert one == scene
+    heights = np.linspace(0, 3, 7)
+    np.testing.assert_allclose(other.grading(heights), 1 + 0.3 * np.tanh(heights), rtol=1e-6)
 
 
 def test_colours_tell_what_was_asked(call, monkeypatch):

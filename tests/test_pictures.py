@@ -104,3 +104,31 @@ def test_a_figure_is_drawn_once_for_each_file(tmp_path, monkeypatch):
     save_figure(figure, tmp_path / "x.png")
     save_figure(figure, tmp_path / "x.svg")
     assert len(drawn) == 2
+
+
+@pytest.mark.parametrize("ending", ["png", "pdf", "svg"])
+def test_the_same_bytes_twice(ending, tmp_path, monkeypatch):
+    """Whenever that is: SOURCE_DATE_EPOCH, which matplotlib takes for the time, is a year later."""
+    for name, at in (("one", "1"), ("two", "31536000")):
+        monkeypatch.setenv("SOURCE_DATE_EPOCH", at)
+        with mpl.rc_context(STYLE):
+            save_figure(decades(), tmp_path / f"{name}.{ending}")
+    assert (tmp_path / f"one.{ending}").read_bytes() == (tmp_path / f"two.{ending}").read_bytes()
+
+
+def test_a_date_would_be_seen(tmp_path, monkeypatch):
+    for name, at in (("one", "1"), ("two", "31536000")):
+        monkeypatch.setenv("SOURCE_DATE_EPOCH", at)
+        decades().savefig(tmp_path / f"{name}.pdf")
+    assert (tmp_path / "one.pdf").read_bytes() != (tmp_path / "two.pdf").read_bytes()
+
+
+def test_texts_stay_texts(tmp_path):
+    """In SVG as they are; in PDF in TrueType fonts, none of Type 3."""
+    with mpl.rc_context(STYLE):
+        for ending in ("svg", "pdf"):
+            save_figure(decades(), tmp_path / f"x.{ending}")
+    assert ">separation</text>" in (tmp_path / "x.svg").read_text()
+    pdf = (tmp_path / "x.pdf").read_bytes()
+    assert b"/FontFile2" in pdf
+    assert b"/Type3" not in pdf

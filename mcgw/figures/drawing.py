@@ -57,7 +57,8 @@ def draw(data: FigureData) -> Figure:
                 _draw_residuals(lower, panel, labelled=column == 0)
                 axis.set_xlabel("")
                 axis.tick_params(labelbottom=False)
-        figure.suptitle(data.title, fontsize=11, fontweight="bold", x=0.01, ha="left")
+        title = textwrap.fill(data.title, int(width * 10))
+        figure.suptitle(title, fontsize=11, fontweight="bold", x=0.01, ha="left")
         caption = textwrap.fill(data.caption, int(width * 16))
         figure.supxlabel(caption, fontsize=8, color=PAPER, x=0.01, ha="left")
     return figure

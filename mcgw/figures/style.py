@@ -19,7 +19,8 @@ from mcgw.scene.scene import Scene
 __all__ = [
     "BACK", "BAND", "CATEGORIES", "FAMILIES", "GRADINGS", "HOMOGENEOUS", "LEVEL", "MARKED", "MEANINGS",
     "MISSING", "MONTE_CARLO", "PAIRS", "PAPER", "SAMPLE", "SEPARATIONS", "STEPS", "STYLE", "THEORY",
-    "contact_label", "grading_label", "line", "look", "power_of_ten", "shown_title", "step",
+    "contact_label", "grading_label", "line", "look", "power_of_ten", "prefixed", "short", "shown_title",
+    "step",
 ]  # fmt: skip
 
 THEORY, MONTE_CARLO = "#00598F", "#E0701A"
@@ -49,13 +50,13 @@ FAMILIES: tuple[tuple[str, ...], ...] = (  # what one figure may show together, 
     ("load", "area", "stiffness", "contacts", "conductance", "yielded"),
     ("Chang", "Zhao", "Kogut", "Jackson"),
     ("cells", "tail", "aggregate", "direct", "stratified"),
-    ("own radii", "one radius", "nayak"),
+    ("own radii", "one radius", "nayak", "its very summits"),
     ("$m_0$", "$m_2$", "$m_4$"),
 )
 PAIRS: tuple[tuple[str, ...], ...] = (
     ("pressed on", "let go"),
     ("in", "back"),
-    ("independent", "interacting"),
+    ("interacting", "independent"),
     ("exact", "Gaussian"),
     ("theory", "Monte Carlo"),
 )
@@ -97,6 +98,13 @@ STYLE: Any = {
 
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _LOWERED = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹", "0123456789")
+
+
+def prefixed(largest: float) -> tuple[float, str]:
+    """A power of a thousand that leaves 1 to 1000 of a number, and its prefix: 2.5e6 -> (1e6, "M")."""
+    power = math.floor(math.log10(largest) / 3) if largest > 0 else 0
+    power = min(max(power, -5), 5)
+    return 1000.0**power, "fpnµm kMGTP"[power + 5].strip()
 
 
 def look(label: str, place: int = 0) -> dict[str, Any]:
@@ -193,5 +201,11 @@ def grading_label(grading: Grading) -> str:
 
 def contact_label(scene: Scene) -> str:
     """Grading and contact law for a caption; Hertz's law is not named."""
-    law = "" if type(scene.law) is Hertz else f", {one_line(law_text(scene.law))}"
+    law = "" if type(scene.law) is Hertz else f", {short(law_text(scene.law))}"
     return f"{grading_label(scene.grading)}{law}"
+
+
+def short(law: str) -> str:
+    """A law as one line with numbers of a few digits: ``KogutEtsion(hardness=1.2e+09, poisson=0.33)``."""
+    few = re.sub(r"[0-9]+\.[0-9]+(e[-+]?[0-9]+)?", lambda number: f"{float(number[0]):g}", one_line(law))
+    return few.removesuffix("()").replace("$", "")

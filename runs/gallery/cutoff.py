@@ -12,6 +12,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import mcgw
+from mcgw.figures.style import line
 
 # A Gaussian map of 512 points of 0.5 um: waves of 2 to 60 um, Hurst exponent 0.8.
 q = np.fft.fftfreq(512, 0.5)[:, None], np.fft.rfftfreq(512, 0.5)[None, :]
@@ -25,10 +26,12 @@ with tempfile.TemporaryDirectory() as folder:
     fits = [mcgw.fit(f"{folder}/map.npy", cutoff=f"{c} um", pixel="0.5 um") for c in cutoffs]
 scenes = [mcgw.fitted_scene(fit).surface for fit in fits]
 fig, ax = plt.subplots()
-for name, label in (("sigma", "σ of the summits"), ("radius", "radius R"), ("eta", "density η")):
+labels = {"sigma": "σ of the summits", "radius": "radius R", "eta": "density η"}
+for k, (name, label) in enumerate(labels.items()):
     values = np.array([getattr(surface, name) for surface in scenes])
-    ax.loglog(cutoffs, values / values[0], "o-", markersize=4, label=label)
+    ax.loglog(cutoffs, values / values[0], marker="o", markersize=4, **line(label, k))
 ax.set(xlabel="cutoff, shortest wave that counts (µm)", ylabel="over the value at 3 µm")
 ax.set_xticks(cutoffs, labels=[str(c) for c in cutoffs])
+ax.set_yticks([0.1, 0.2, 0.5, 1, 2, 5], labels=["0.1", "0.2", "0.5", "1", "2", "5"])
 ax.minorticks_off()
 ax.legend()

@@ -11,6 +11,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import mcgw
+from mcgw.figures.style import line
 
 surface = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "1 cm^2", "78.6 GPa")
 h = np.array([0.0, 2.0, 3.5])
@@ -21,7 +22,8 @@ runs = [mcgw.simulate(scene, n_surfaces=300, seed=seed)["load"] for seed in rang
 fig, ax = plt.subplots()
 for k in range(3):
     off = [np.sqrt(np.mean([(x[:m, k].mean() / truth[k] - 1) ** 2 for x in runs])) for m in numbers]
-    (line,) = ax.loglog(numbers, 100 * std[k] / truth[k] / np.sqrt(numbers), label=f"d/σ = {h[k]:g}")
-    ax.loglog(numbers, 100 * np.array(off), "o", color=line.get_color(), markersize=4)
+    look = line(f"d/σ = {h[k]:g}")
+    ax.loglog(numbers, 100 * std[k] / truth[k] / np.sqrt(numbers), **look)
+    ax.loglog(numbers, 100 * np.array(off), "o", color=look["color"], markersize=4)
 ax.set(xlabel="number of surfaces", ylabel="error of the mean load (%)")
 ax.legend(title="lines: theory, dots: simulated")

@@ -10,6 +10,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import mcgw
+from mcgw.figures.style import SAMPLE, line
 
 surface = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "1 cm^2", "78.6 GPa")
 h = [1.0, 3.5]
@@ -19,8 +20,8 @@ x = np.linspace(-3, 5, 200)
 fig, axes = plt.subplots(1, 2, sharex=True, sharey=True, figsize=(8, 3.6))
 for k, ax in enumerate(axes):
     t = (e["load"][:, k] - e.mean("load")[k]) / e.std("load")[k]
-    ax.hist(t, np.linspace(-3, 5, 81), density=True, color="C5", label="simulated surfaces")
-    ax.plot(x, np.exp(-(x**2) / 2) / np.sqrt(2 * np.pi), color="C1", label="Gaussian")
+    ax.hist(t, np.linspace(-3, 5, 81), density=True, color=SAMPLE, label="simulated surfaces")
+    ax.plot(x, np.exp(-(x**2) / 2) / np.sqrt(2 * np.pi), **line("Gaussian"))
     skewness = float(scene.theory.cumulants("load", h[k]).skewness)
     ax.set_title(f"d = {h[k]:g} σ: {e.mean('contacts')[k]:.0f} contacts, skewness {skewness:.2f}")
     ax.set_xlabel("(load − mean) / standard deviation")

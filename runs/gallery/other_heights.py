@@ -11,6 +11,7 @@ import numpy as np
 import scipy.stats
 
 import mcgw
+from mcgw.figures.style import line
 
 surface = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "1 cm^2", "78.6 GPa")
 h = np.linspace(0, 3, 31)
@@ -21,8 +22,8 @@ laws = {
     "exponential": mcgw.ExponentialHeights(),
 }
 fig, ax = plt.subplots()
-for name, law in laws.items():
+for k, (name, law) in enumerate(laws.items()):
     pressure = mcgw.Scene(surface, separations=h, heights=law).theory.mean("pressure", h) / 1e6
-    ax.semilogy(h, np.where(pressure > 0, pressure, np.nan), label=name)
+    ax.semilogy(h, np.where(pressure > 0, pressure, np.nan), **line(name, k))
 ax.set(xlabel="separation d/σ", ylabel="pressure (MPa)", ylim=(1e-3, None))
 ax.legend()

@@ -10,16 +10,18 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import mcgw
+from mcgw.figures.style import step
 
 law = mcgw.JohnsonKendallRoberts(work=0.05)  # J/m^2
 d = np.linspace(-0.2, 1.2, 71)  # um
 fig, ax = plt.subplots()
-for sigma in (0.1, 0.2, 0.5):
+for k, sigma in enumerate((0.1, 0.2, 0.5)):
     surface = mcgw.Surface(f"{sigma} um", "50 um", "1000/mm^2", "1 mm^2", "10 MPa")
     asked = {"law": law, "unload_from": "loop", "quantities": ["load"]}
     scene = mcgw.Scene(surface, separations=d / sigma, n_surfaces=50, seed=1, **asked)
     e = mcgw.simulate(scene)
-    ax.plot(d, e.mean("load_unloading") / surface.nominal_area / 1e3, label=f"σ = {sigma:g} µm")
+    pressure = e.mean("load_unloading") / surface.nominal_area / 1e3
+    ax.plot(d, pressure, **step(f"σ = {sigma:g} µm", k, 3))
 ax.axhline(0, color="0.5", linewidth=0.8, linestyle=":")
 ax.set(xlabel="separation d (µm)", ylabel="pressure on the way back (kPa)", ylim=(-12, 15))
 ax.legend()

@@ -9,19 +9,17 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import mcgw
+from mcgw.figures.style import step
 
 h = np.linspace(0, 4, 81)
 fig, ax = plt.subplots()
-for name, modulus in (
-    ("steel, 115 GPa", "115 GPa"),
-    ("glass, 37 GPa", "37 GPa"),
-    ("polymer, 2 GPa", "2 GPa"),
-):
+for k, (name, modulus) in enumerate((("steel", "115 GPa"), ("glass", "37 GPa"), ("polymer", "2 GPa"))):
     surface = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "1 cm^2", modulus)
     theory = mcgw.Scene(surface, separations=h).theory
     at = float(theory.separation_at("pressure", 1e6))
-    (line,) = ax.semilogy(h, theory.mean("pressure", h) / 1e6, label=f"{name}: d = {at:.2f} σ at 1 MPa")
-    ax.plot(at, 1, "o", color=line.get_color())
+    look = step(f"{name}, {modulus}: d = {at:.2f} σ at 1 MPa", k, 3)
+    ax.semilogy(h, theory.mean("pressure", h) / 1e6, **look)
+    ax.plot(at, 1, "o", color=look["color"])
 ax.axhline(1, color="0.5", linewidth=0.8, linestyle=":")
 ax.set(xlabel="separation d/σ", ylabel="pressure (MPa)", ylim=(1e-3, 1e3))
 ax.legend()

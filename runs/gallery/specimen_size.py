@@ -10,10 +10,11 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import mcgw
+from mcgw.figures.style import step
 
 areas = np.geomspace(1, 1000, 7)  # mm^2
 fig, ax = plt.subplots()
-for pressure in ("0.1 MPa", "1 MPa", "10 MPa"):
+for k, pressure in enumerate(("0.1 MPa", "1 MPa", "10 MPa")):
     simulated, exact = [], []
     for area in areas:
         surface = mcgw.Surface("1.37 um", "13 um", "300/mm^2", f"{area} mm^2", "78.6 GPa")
@@ -22,8 +23,9 @@ for pressure in ("0.1 MPa", "1 MPa", "10 MPa"):
         e = mcgw.simulate(scene, separations=h)
         simulated.append(100 * e.std("load")[0] / e.mean("load")[0])
         exact.append(100 * scene.theory.std("load", h) / scene.theory.mean("load", h))
-    (line,) = ax.loglog(areas, exact, label=f"at a mean pressure of {pressure}")
-    ax.loglog(areas, simulated, "o", color=line.get_color(), markersize=4)
+    look = step(f"at a mean pressure of {pressure}", k, 3)
+    ax.loglog(areas, exact, **look)
+    ax.loglog(areas, simulated, "o", color=look["color"], markersize=4)
 ax.axhline(10, color="0.5", linewidth=0.8, linestyle=":")
 ax.set(xlabel="nominal area of the specimen (mm²)", ylabel="scatter of the load (%)")
-ax.legend()
+ax.legend(title="lines: theory, dots: simulated")

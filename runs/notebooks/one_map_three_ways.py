@@ -21,6 +21,9 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import mcgw
+from mcgw.figures.style import STYLE, line
+
+plt.rcParams.update(STYLE)
 
 # A map of 384 points of 1 um: waves from 10 to 80 um, Gaussian heights of 0.4 um.
 n, pixel = 384, 1.0
@@ -45,11 +48,7 @@ fit
 
 # %%
 h = np.linspace(0.5, 3.0, 26)
-names = {
-    "gaussian": "Gaussian heights, one radius",
-    "nayak": "own radii, by the spectrum",
-    "summits": "its very summits",
-}
+names = {"gaussian": "one radius", "nayak": "own radii", "summits": "its very summits"}
 scenes = {name: mcgw.fitted_scene(fit, heights=name, E_star="100 GPa") for name in names}
 curves = {}
 for name, scene in scenes.items():
@@ -65,10 +64,11 @@ fig, ax = plt.subplots()
 d = scenes["gaussian"].surface.sigma * h * 1e6
 for name, e in curves.items():
     pressure = e["pressure"] / 1e6
-    (line,) = ax.semilogy(d, np.maximum(pressure.mean(axis=0), 1e-6), label=names[name])
+    look = line(names[name])
+    ax.semilogy(d, np.maximum(pressure.mean(axis=0), 1e-6), **look)
     if len(pressure) > 1:
         low, high = np.quantile(pressure, [0.025, 0.975], axis=0)
-        ax.fill_between(d, np.maximum(low, 1e-6), high, alpha=0.2, color=line.get_color(), linewidth=0)
+        ax.fill_between(d, np.maximum(low, 1e-6), high, alpha=0.2, color=look["color"], linewidth=0)
 ax.set(xlabel="separation from the mean summit (µm)", ylabel="pressure (MPa)", ylim=(1e-2, None))
 ax.legend()
 

@@ -19,6 +19,9 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import mcgw
+from mcgw.figures.style import MONTE_CARLO, STYLE, line
+
+plt.rcParams.update(STYLE)
 
 surface = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "1 cm^2", "78.6 GPa")
 metal = mcgw.KogutEtsion(hardness=1.2e9, poisson=0.33)
@@ -35,8 +38,8 @@ e
 
 # %%
 fig, ax = plt.subplots()
-ax.plot(h, e.mean("load"), label="pressed on")
-ax.plot(h, e.mean("load_unloading"), "--", label="let go")
+ax.plot(h, e.mean("load"), **line("pressed on"))
+ax.plot(h, e.mean("load_unloading"), **line("let go"))
 ax.set(xlabel="separation d/σ", ylabel="load (N)")
 ax.legend()
 
@@ -62,8 +65,8 @@ print(
 yielded = e.mean("yielded") / e.mean("contacts")
 by_theory = 1 - scene.theory.share(0, h)
 fig, ax = plt.subplots()
-ax.plot(h, by_theory, label="theory")
-ax.plot(h[::5], yielded[::5], "o", markersize=4, label="simulated")
+ax.plot(h, by_theory, **line("theory"))
+ax.plot(h[::5], yielded[::5], "o", markersize=4, color=MONTE_CARLO, label="simulated")
 ax.set(xlabel="separation d/σ", ylabel="share of the contacts that yielded", ylim=(0.98, 1.0))
 ax.legend()
 

@@ -20,6 +20,9 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import mcgw
+from mcgw.figures.style import BACK, STYLE, THEORY, line
+
+plt.rcParams.update(STYLE)
 
 surface = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "1 cm^2", "78.6 GPa")
 pressure = np.geomspace(0.1e6, 30e6, 12)  # Pa
@@ -42,9 +45,9 @@ data = stiffness(1.5) * (1 + noise * np.random.default_rng(1).normal(size=len(pr
 
 # %%
 fig, ax = plt.subplots()
-ax.semilogx(pressure / 1e6, data / stiffness(1.0), "o", label="data")
+ax.semilogx(pressure / 1e6, data / stiffness(1.0), "o", color=BACK, label="data")
 for gamma in (0.5, 1.5, 3.0):
-    ax.semilogx(pressure / 1e6, stiffness(gamma) / stiffness(1.0), label=f"γ = {gamma:g}")
+    ax.semilogx(pressure / 1e6, stiffness(gamma) / stiffness(1.0), **line(f"γ = {gamma:g}"))
 ax.set(xlabel="pressure (MPa)", ylabel="stiffness over that of γ = 1")
 ax.legend()
 
@@ -60,8 +63,8 @@ inside = gammas[squares < squares.min() + 3.84]
 print(f"best: {gammas[squares.argmin()]:.2f}; 95 %: {inside.min():.2f} to {inside.max():.2f}")
 
 fig, ax = plt.subplots()
-ax.plot(gammas, squares)
-ax.axhspan(squares.min(), squares.min() + 3.84, alpha=0.2)
+ax.plot(gammas, squares, color=THEORY)
+ax.axhspan(squares.min(), squares.min() + 3.84, color=THEORY, alpha=0.2)
 ax.set(xlabel="γ", ylabel="sum of squares", ylim=(0, squares.min() + 30))
 
 # %% [markdown]

@@ -16,7 +16,8 @@ from models import INTERACTIONS, MODELS, Model, summits_of
 from numpy.typing import NDArray
 from solve_table import Row
 
-from mcgw.figures.style import STYLE
+from mcgw.figures.style import HOMOGENEOUS, STYLE, look
+from mcgw.formats.pictures import save_figure
 
 Lines = list[Condensed]
 
@@ -38,7 +39,7 @@ def chart(lines: Lines, quantity: str, panels: list[tuple[str, str]], path: Path
         axes[0].set(ylabel="Nayak's α")
         bar = figure.colorbar(ScalarMappable(NORM, COLOURS), ax=axes, extend="both")
         bar.set_label(f"{quantity}: model less BEM (%)")
-        figure.savefig(path)
+        save_figure(figure, path)
 
 
 def _panel(ax: Axes, lines: Lines, quantity: str) -> None:
@@ -81,11 +82,12 @@ def one_map(rows: list[Row], path: Path) -> None:
     row, unit = rows[0], math.sqrt(number(rows[0], "m0"))
     p, area, gap = (np.array([number(one, key) for one in rows]) for key in ("p", "area", "gap"))
     with mpl.rc_context(STYLE):
-        figure = Figure(figsize=(9.6, 3.5), layout="constrained")
-        areas, gaps, missed = figure.subplots(1, 3, sharex=True)
-        areas.plot(p, area / p, "o", color="black", ms=4.5, label="boundary elements")
-        gaps.plot(p, gap / unit, "o", color="black", ms=4.5)
-        for name, colour in zip(MODELS, ("C0", "C4", "C2"), strict=True):
+        figure = Figure(figsize=(7.4, 5.8), layout="constrained")
+        (areas, gaps), (missed, legend) = figure.subplots(2, 2, sharex=True)
+        areas.plot(p, area / p, "o", color=HOMOGENEOUS, ms=4.5, label="boundary elements")
+        gaps.plot(p, gap / unit, "o", color=HOMOGENEOUS, ms=4.5)
+        for name in MODELS:
+            colour = look(name)["color"]
             summits = summits_of(name, *(number(row, key) for key in ("m0", "m2", "m4")))
             x = [summits.separation(one) for one in p.tolist()]
             areas.plot(p, np.array([summits.at(one).area for one in x]) / p, color=colour, label=name)
@@ -99,6 +101,8 @@ def one_map(rows: list[Row], path: Path) -> None:
         missed.set(ylabel="over rms height", title="Gap: model less boundary elements")
         for ax in (areas, gaps, missed):
             ax.set(xscale="log", xlabel="p/(E* g)")
-        areas.legend()
-        missed.legend(loc="lower left")
-        figure.savefig(path)
+            ax.tick_params(labelbottom=True)
+        handles = [x for ax in (areas, missed) for x in ax.get_legend_handles_labels()[0]]
+        legend.axis("off")
+        legend.legend(handles=handles, loc="center", fontsize=9)
+        save_figure(figure, path)
