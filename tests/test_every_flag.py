@@ -747,11 +747,11 @@ def test_figures_take_folder_scene_and_csv(call, tmp_path, monkeypatch):
     monkeypatch.setattr(paper, "paper_figures", first_alone)
     monkeypatch.setattr(further, "further_figures", lambda samples: [])
     monkeypatch.setattr(of_scene, "scene_figures", first_of_scene)
-    assert call(["figures"]).files == ["figure-1.png", "figure-1.svg"]
+    assert call(["figures"]).files == ["figure-1.pdf", "figure-1.png", "figure-1.svg"]
     given = call(["figures", "-o", "there", "--scene", "@s.toml", "--csv"])
     assert given.code == 0, given.err
     assert sorted(p.name for p in (given.folder / "there").iterdir()) == [
-        "figure-1.csv", "figure-1.png", "figure-1.svg"
+        "figure-1.csv", "figure-1.pdf", "figure-1.png", "figure-1.svg"
     ]  # fmt: skip
     scene = mcgw.scene_from(SCENE)
     of_python = scene.replace(grading=lambda s: 1 + 0.3 * np.tanh(s))

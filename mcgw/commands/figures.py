@@ -1,10 +1,10 @@
-"""``mcgw figures``: the paper's figures with Monte Carlo on top, and those it lacks."""
+"""``mcgw figures``: the paper's figures with Monte Carlo on top, and those it lacks; or those of a scene."""
 
 import argparse
 from pathlib import Path
 
 HELP = "draw the paper's Figures 1-6 with Monte-Carlo points, and those it lacks (a minute)"
-EXAMPLE = "mcgw figures -o figures --csv"
+EXAMPLE = "mcgw figures --scene mine.toml -o figures --csv"
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
@@ -13,13 +13,13 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         "-o", "--output", type=Path, metavar="DIR", default=Path("figures"), help="default: figures here"
     )
     parser.add_argument(
-        "--scene", type=Path, metavar="SCENE", help="of this scene instead: its surface, grading and laws"
+        "--scene", type=Path, metavar="SCENE", help="of this scene instead, beside its homogeneous reference"
     )
     parser.add_argument("--csv", action="store_true", help="also write the numbers of each figure")
 
 
 def execute(args: argparse.Namespace) -> int:
-    """Write PNG and SVG of each figure and say where they are."""
+    """Write PNG, PDF and SVG of each figure and say where they are."""
     return _of_scene(args) if args.scene else _of_paper(args)
 
 

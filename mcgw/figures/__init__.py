@@ -7,5 +7,7 @@
 ``finite``      fluctuations of finite surfaces, and the law of their load
 ``summits``     how the area grows with the load, which summits carry it, where their modulus turns negative
 ``further``     all that the paper lacks
-``drawing``     the look of every figure, and its files
+``of_scene``    the same of anybody's scene, ``beside`` its references (``scene_paper``, ``scene_further``)
+``style``       one colour for each meaning, in every figure alike
+``drawing``     panels, residuals below them, and the files of a figure
 """

@@ -67,12 +67,12 @@ class Beside:
     def references(self) -> dict[str, Scene]:
         """By label, the one that ratios are taken to last; none for a scene that is the simplest itself."""
         found = {}
+        if self.scene.interaction is not None:
+            found["independent"] = self.scene.replace(interaction=None)
         if self.graded:
             found["homogeneous"] = self.scene.replace(grading=Homogeneous())
         if not self.hertz:
             found["homogeneous, Hertz"] = self.scene.replace(grading=Homogeneous(), law=Hertz())
-        if self.scene.interaction is not None:
-            found["independent"] = self.scene.replace(interaction=None)
         return found
 
     @property
@@ -171,6 +171,9 @@ class Beside:
     def words(self) -> str:
         """What the scene is."""
         said, heights = contact_label(self.scene), short(law_text(self.scene.heights))
+        if self.scene.interaction is not None:
+            felt = "d/σ is nominal" if self.scene.interaction.nominal else "d/σ is what the summits feel"
+            said += f", interacting ({felt})"
         return f"This scene: {said}; heights {heights}."
 
 

@@ -153,11 +153,11 @@ def draw_residual(axis: Any, reach: float) -> None:
 
 def figure_files(folder: Path, name: str, *, csv: bool) -> list[Path]:
     """Files of the figure of this name."""
-    return [folder / f"{name}.{ending}" for ending in ("png", "svg", *(["csv"] if csv else []))]
+    return [folder / f"{name}.{ending}" for ending in ("png", "pdf", "svg", *(["csv"] if csv else []))]
 
 
 def save_figures(figures: list[FigureData], folder: Path, *, csv: bool = False) -> Iterator[Path]:
-    """Write each figure as PNG and SVG.
+    """Write each figure as PNG, PDF and SVG.
 
     Parameters
     ----------

@@ -10,6 +10,7 @@ from mcgw.ensemble.simulation import simulate
 from mcgw.figures.beside import SCENE, Beside, NoMeaningError, needs_pressing, needs_reference
 from mcgw.figures.data import SEPARATION, FigureData, Panel, Points, Series
 from mcgw.figures.listed import PRESSURE
+from mcgw.figures.style import prefixed
 from mcgw.scene.scene import Scene, SceneError
 
 __all__ = ["area_and_load", "equal_load", "fluctuations", "way_back", "who_yields"]
@@ -101,12 +102,16 @@ def way_back(b: Beside) -> FigureData:
         raise NoMeaningError("the scene is not released: contact.unload_from is left out")
     both = b.scene.replace(unload_from=b.asked.unload_from, quantities=("load", "contacts"))
     ensemble, area = simulate(both), both.surface.nominal_area
+    most = max(np.abs(both.theory.mean(name, b.line)).max() for name in ("load", "load_unloading"))
+    unit, prefix = prefixed(float(most) / area)
+    labels = {"load": f"pressure ({prefix}Pa)", "contacts": "contacts per mm²"}
     panels = []
-    for key, name, ylabel in (("a", "load", "pressure (MPa)"), ("b", "contacts", "contacts per mm²")):
+    for key, (name, ylabel) in zip("ab", labels.items(), strict=True):
+        size = area * (unit if name == "load" else 1e6)
         series = []
         for way, asked in (("in", name), ("back", f"{name}_unloading")):
-            line, exact = (both.theory.mean(asked, h) / area / 1e6 for h in (b.line, b.h))
-            values = ensemble.values(asked) / area / 1e6
+            line, exact = (both.theory.mean(asked, h) / size for h in (b.line, b.h))
+            values = ensemble.values(asked) / size
             known = np.count_nonzero(values, axis=0) >= 20
             points = None
             if known.any():
