@@ -81,7 +81,7 @@ def save_comparison(comparison: Comparison, path: str | Path) -> None:
 def _with_panels(comparison: Comparison) -> Figure:
     """A pair of panels for each quantity, at given places: to look for them takes as long as to draw."""
     h = comparison.ensemble.separations
-    columns = min(len(comparison.curves), _MOST_COLUMNS)
+    columns = 2 if len(comparison.curves) == 4 else min(len(comparison.curves), _MOST_COLUMNS)
     bands = -(-len(comparison.curves) // columns)
     width, height = max(_PITCH * columns, _NARROWEST), _BAND * bands + _HEAD + _FOOT
     pitch = (width - _LABEL) / columns
