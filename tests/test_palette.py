@@ -1,11 +1,14 @@
 """One colour for one meaning, told apart by readers who see no red or no green, and in grey print."""
 
 import itertools
+import re
+from pathlib import Path
 
 import numpy as np
 import pytest
 from matplotlib.colors import to_hex
 
+import mcgw
 from mcgw.figures import style
 from mcgw.figures.drawing import draw
 from mcgw.figures.further import further_figures
@@ -117,3 +120,20 @@ def _surface():
     from conftest import SURFACE
 
     return SURFACE
+
+
+ROOT = Path(mcgw.__file__).parent.parent
+DRAWS = [
+    *(path for path in sorted((ROOT / "mcgw").rglob("*.py")) if path.name != "style.py"),
+    *sorted((ROOT / "runs" / "gallery").glob("*.py")),
+    *sorted((ROOT / "runs" / "notebooks").glob("*.py")),
+    *(ROOT / "runs" / name for name in ("pictures.py", "bem_check.py", "validation/validity_figures.py")),
+]
+COLOUR = re.compile(r"""["'](#[0-9A-Fa-f]{6}|C[0-9])["']""")
+
+
+def test_colours_are_named_in_one_place():
+    """Nobody else says which blue: neither by its number nor by its place in the cycle."""
+    found = {path.name: COLOUR.findall(path.read_text(encoding="utf-8")) for path in DRAWS}
+    assert {name: colours for name, colours in found.items() if colours} == {}
+    assert COLOUR.findall('plot(x, color="C1"); fill("#0072B2")') == ["C1", "#0072B2"]
