@@ -595,11 +595,15 @@ class Recorder:
     ("words", "where", "made"),
     [
         (["--processes", "3"], "mcgw.jobs.engines.Processes", ((3,), {})),
-        (["--workers", "2"], "mcgw.jobs.dask_engine.Dask", ((None,), {"workers": 2, "insecure": False})),
+        (
+            ["--workers", "2"],
+            "mcgw.jobs.dask_engine.Dask",
+            ((None,), {"workers": 2, "insecure": False, "quiet": True}),
+        ),
         (
             ["--scheduler", "tcp://h:1", "--insecure"],
             "mcgw.jobs.dask_engine.Dask",
-            (("tcp://h:1",), {"workers": 1, "insecure": True}),
+            (("tcp://h:1",), {"workers": 1, "insecure": True, "quiet": True}),
         ),
     ],
 )

@@ -5,9 +5,10 @@ import warnings
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from mcgw.commands.engine_options import add_engine_options, engine_asked, tell_share
+
 if TYPE_CHECKING:
     from mcgw.ensemble.forecast import Forecast
-    from mcgw.jobs.engines import Engine
     from mcgw.scene.scene import Scene
 
 HELP = "simulate a scene: draw its surfaces and store load, area, ... in HDF5; goes on where it stopped"
@@ -21,19 +22,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "-o", "--output", type=Path, metavar="FILE.h5", help="default: out/NAME.h5 beside the scene"
     )
-    parser.add_argument("--threads", type=int, metavar="N", help="default: all cores; never changes a bit")
-    engine = parser.add_mutually_exclusive_group()
-    engine.add_argument("--processes", type=int, metavar="N", help="draw in N processes instead")
-    engine.add_argument("--workers", type=int, metavar="N", help="draw in N dask workers on this machine")
-    engine.add_argument(
-        "--scheduler", metavar="ADDRESS", help="draw with the workers of a dask scheduler, tcp:// or tls://"
-    )
-    engine.add_argument(
-        "--shard", metavar="I/N", help="draw the I-th of N shares, as one job of an array; then mcgw merge"
-    )
-    parser.add_argument(
-        "--insecure", action="store_true", help="allow a scheduler elsewhere without encryption"
-    )
+    add_engine_options(parser)
 
 
 def execute(args: argparse.Namespace) -> int:
@@ -47,6 +36,7 @@ def _execute(args: argparse.Namespace) -> int:
     from mcgw.commands.notes import tell_notes
     from mcgw.commands.outputs import HDF5, Output, check_outputs
     from mcgw.ensemble.forecast import forecast
+    from mcgw.jobs.chosen_engine import dashboard_of
     from mcgw.jobs.from_python import part_of, run
     from mcgw.machine.progress import bar
     from mcgw.reports.elasticity import two_questions
@@ -59,23 +49,18 @@ def _execute(args: argparse.Namespace) -> int:
     check_outputs([Output(path, HDF5, grows=True)], inputs=files_of(args.scene))
     expected = forecast(scene)
     short = [expected.shortfall] if part and expected.shortfall else []
-    engine = _engine(args)
-    tell_notes(scene, *_of_threads(args.threads), *_of_time(scene), *short)
-    if part:
-        with bar("surfaces", terminal=True) as show:
-            left = run(scene, path, shard=args.shard, threads=args.threads, progress=show)
-        then = f"{left} surfaces are still missing" if left else f"all are there: mcgw merge {path}"
-        print(f"{path}.parts: share {args.shard} is done; {then}")
-        return 0
     ruled = scene.rel_err is not None or scene.max_seconds is not None
-    if ruled:
-        _tell_forecast(scene, expected)
-    try:
-        with bar("surfaces", terminal=True) as show:
-            ensemble = run(scene, path, threads=args.threads, engine=engine, progress=show)
-    finally:
-        if engine:
-            engine.close()
+    with engine_asked(args) as engine:
+        tell_notes(scene, *_of_threads(args.threads), *_of_time(scene), *short)
+        if ruled and not part:
+            _tell_forecast(scene, expected)
+        with bar("surfaces", dashboard_of(engine), terminal=True) as show:
+            if part:
+                left = run(scene, path, shard=args.shard, threads=args.threads, progress=show)
+            else:
+                ensemble = run(scene, path, threads=args.threads, engine=engine, progress=show)
+    if part:
+        return tell_share(args.shard, path, left, "surfaces")
     print(f"{path}: {ensemble.n_surfaces} surfaces of {scene.n_asperities:g} asperities, seed {scene.seed}")
     if ruled:
         from mcgw.reports.stop_rule import after
@@ -121,17 +106,3 @@ def _of_time(scene: "Scene") -> list[str]:
         f"{m:g} surfaces of {scene.n_asperities:g} asperities: about {in_words(seconds)} on this machine "
         f"({drawn:.2g} draws); Ctrl-C keeps what is done, mcgw show --plan tells more"
     ]
-
-
-def _engine(args: argparse.Namespace) -> "Engine | None":
-    if args.processes is not None:
-        from mcgw.jobs.engines import Processes
-
-        return Processes(args.processes)
-    if args.workers is not None or args.scheduler is not None:
-        from mcgw.jobs.dask_engine import Dask
-
-        return Dask(
-            args.scheduler, workers=1 if args.workers is None else args.workers, insecure=args.insecure
-        )
-    return None

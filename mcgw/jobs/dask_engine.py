@@ -1,11 +1,12 @@
 """The engine of dask.distributed: workers on this machine or on a cluster with a shared disk."""
 
 import ipaddress
-import logging
+import sys
 from collections.abc import Callable
 from concurrent.futures import CancelledError, Future
 from contextlib import suppress
 from importlib import import_module
+from importlib.util import find_spec
 from time import monotonic
 from typing import Any
 from urllib.parse import urlsplit
@@ -13,71 +14,71 @@ from urllib.parse import urlsplit
 from mcgw.errors import RunError
 from mcgw.jobs.engines import EngineLostError, pass_on
 
-__all__ = ["Dask", "check_address"]
+__all__ = ["Dask", "check_address", "is_client"]
 
-_QUIET = {
-    # The profiler holds frames, and with them HDF5 handles; results are digests and need no spilling.
-    "distributed.worker.profile.enabled": False,
-    "distributed.scheduler.work-stealing": False,
-    "distributed.comm.timeouts.connect": "10s",
-}
+# Of our own workers: the profiler holds frames, and with them HDF5 handles.
+_WORKERS = {"distributed.worker.profile.enabled": False}
 _ASK_AGAIN = 5.0  # seconds after which the workers are counted anew
 
 
 class Dask:
-    """Workers behind a dask scheduler.
+    """Workers behind a dask scheduler; nothing of dask's configuration or logging is changed.
 
     Parameters
     ----------
-    address : str, optional
-        Of a running scheduler. Default: a cluster on this machine, that listens to it alone.
+    scheduler : str or distributed.Client, optional
+        Address of a running one, or a client of it, which is left open. Default: a cluster on this machine,
+        that listens to it alone, and ends with `close`.
     workers : int, optional
         Processes of that cluster.
     insecure : bool, optional
         Talk to a scheduler elsewhere without encryption.
+    quiet : bool, optional
+        Whether that cluster logs nothing. Default: warnings, as dask's own.
 
     Raises
     ------
     ValueError
-        If the address is not fit for use.
+        If the address or the client is not fit for use.
     RunError
         If dask is not installed or nobody answers.
     """
 
-    def __init__(self, address: str | None = None, *, workers: int = 2, insecure: bool = False) -> None:
-        if address is not None:
-            check_address(address, insecure=insecure)
+    def __init__(
+        self, scheduler: Any = None, *, workers: int = 2, insecure: bool = False, quiet: bool = False
+    ) -> None:
+        if isinstance(scheduler, str):
+            check_address(scheduler, insecure=insecure)
         if workers < 1:
             raise ValueError(f"workers = {workers}: give a whole number >= 1")
         try:
-            dask: Any = import_module("dask")
             distributed: Any = import_module("distributed")
         except ImportError:
             raise RunError('dask is not installed: pip install "mcgw[dask]"') from None
-        dask.config.set(_QUIET)
-        for name in logging.root.manager.loggerDict:
-            if name.startswith("distributed"):  # a lost worker or scheduler is one line, and that is ours
-                logging.getLogger(name).setLevel(logging.CRITICAL)
-        self._cluster: Any = None
-        if address is None:
-            self._cluster = distributed.LocalCluster(
-                n_workers=workers,
-                threads_per_worker=1,
-                processes=True,
-                host="127.0.0.1",
-                dashboard_address=None,
-                silence_logs="CRITICAL",
-            )
-        try:
-            self._client: Any = distributed.Client(self._cluster or address, timeout="10s")
-        except OSError:
-            raise RunError(
-                f"{address}: no scheduler answers there; start it (dask scheduler), then repeat the command"
-            ) from None
+        self._cluster = _own_cluster(distributed, workers, quiet) if scheduler is None else None
+        self._borrowed = scheduler is not None and not isinstance(scheduler, str)
+        if self._borrowed:
+            self._client: Any = _fit(scheduler)
+        else:
+            try:
+                self._client = distributed.Client(
+                    self._cluster or scheduler, timeout="10s", set_as_default=False
+                )
+            except OSError:
+                raise RunError(
+                    f"{scheduler}: no scheduler answers there; start it (dask scheduler), then repeat the "
+                    "command"
+                ) from None
+        self._pending: set[Any] = set()
         self._asked, self._threads = -_ASK_AGAIN, 1
         self._died = distributed.KilledWorker
         closed = distributed.comm.CommClosedError
         self._lost = (CancelledError, distributed.client.FutureCancelledError, closed)
+
+    @property
+    def dashboard(self) -> str:
+        """Address of the page on which a cluster of our own is seen at work; empty if there is none."""
+        return str(self._cluster.dashboard_link) if self._cluster is not None and _has_pages() else ""
 
     @property
     def width(self) -> int:
@@ -96,8 +97,10 @@ class Dask:
         except (*self._lost, OSError, RuntimeError) as error:
             outer.set_exception(EngineLostError(type(error).__name__))
             return outer
+        self._pending.add(inner)
 
         def finished(done: Any) -> None:
+            self._pending.discard(done)
             pass_on(done, outer, self._died, self._lost)
             done.release()
 
@@ -105,10 +108,46 @@ class Dask:
         return outer
 
     def close(self) -> None:
-        """Leave the scheduler; end a cluster of our own."""
+        """End a cluster of our own; of a client that was given, only drop what is not done."""
+        if self._borrowed:
+            for future in list(self._pending):
+                future.release()
+            return
         self._client.close(timeout=2)
         if self._cluster is not None:
             self._cluster.close(timeout=5)
+
+
+def is_client(engine: Any) -> bool:
+    """Whether something is a `distributed.Client`, which is not imported to know it."""
+    distributed = sys.modules.get("distributed")
+    return distributed is not None and isinstance(engine, distributed.Client)
+
+
+def _own_cluster(distributed: Any, workers: int, quiet: bool) -> Any:
+    return distributed.LocalCluster(
+        n_workers=workers,
+        threads_per_worker=1,
+        processes=True,
+        host="127.0.0.1",
+        dashboard_address="127.0.0.1:0" if _has_pages() else None,
+        silence_logs="CRITICAL" if quiet else "WARNING",
+        config=_WORKERS,
+    )
+
+
+def _has_pages() -> bool:
+    """Whether dask has what it draws its dashboard with."""
+    return find_spec("bokeh") is not None
+
+
+def _fit(client: Any) -> Any:
+    """A client that answers now."""
+    if client.asynchronous:
+        raise ValueError("engine: this client is asynchronous; give one made without asynchronous=True")
+    if client.status != "running":
+        raise ValueError(f"engine: this client is {client.status}; give one that is connected")
+    return client
 
 
 def check_address(address: str, *, insecure: bool = False) -> None:

@@ -6,7 +6,7 @@ from typing import Any, overload
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.forecast import forecast
 from mcgw.jobs import running
-from mcgw.jobs.engines import Engine, Processes
+from mcgw.jobs.chosen_engine import chosen_engine, dashboard_of
 from mcgw.jobs.running import Part
 from mcgw.machine.progress import Progress, told
 from mcgw.scene.ensemble_section import LeftOut
@@ -15,8 +15,6 @@ from mcgw.store.ensembles import recorded_seed
 
 __all__ = ["part_of", "run"]
 
-_ENGINES = ("threads", "processes", "dask")
-
 
 @overload
 def run(
@@ -24,7 +22,7 @@ def run(
     path: str | Path,
     *,
     threads: int | None = None,
-    engine: "Engine | str | None" = None,
+    engine: Any = None,
     shard: None = None,
     progress: Progress = None,
     **changes: Any,
@@ -44,7 +42,7 @@ def run(
     path: str | Path,
     *,
     threads: int | None = None,
-    engine: "Engine | str | None" = None,
+    engine: Any = None,
     shard: str | None = None,
     progress: Progress = None,
     **changes: Any,
@@ -63,8 +61,9 @@ def run(
     threads : int, optional
         Cores: threads, or processes or workers of the engine. Default: all there are. The data are the
         same for any number.
-    engine : {"threads", "processes", "dask"}, address or Engine, optional
-        Who draws; an address, as "tcp://host:8786", is that of a dask scheduler.
+    engine : {"threads", "processes", "dask"}, address, distributed.Client or Engine, optional
+        Who draws; an address, as "tcp://host:8786", is that of a dask scheduler. A client is left open, and
+        dask's configuration and logging as they are.
     shard : str, optional
         "2/8": draw only the second of eight shares, as one of eight jobs; then `mcgw.merge`.
     progress : bool or callable, optional
@@ -107,20 +106,18 @@ def run(
     part = None if shard is None else part_of(shard)
     if part and engine is not None:
         raise ValueError(f"shard = {shard!r}: a share is drawn by threads; leave engine out")
-    draws = _engine_of(engine, threads)
     total = forecast(scene).surfaces if progress else 0
-    with told(progress, "surfaces") as tell:
+    with (
+        chosen_engine(engine, threads) as draws,
+        told(progress, "surfaces", dashboard_of(draws)) as tell,
+    ):
 
         def note(done: int) -> None:
             tell(done, total)
 
         if part:
             return running.run_part(scene, path, part, threads=threads, progress=note)
-        try:
-            return running.run(scene, path, threads=threads, engine=draws, progress=note)
-        finally:
-            if draws is not None and draws is not engine:
-                draws.close()
+        return running.run(scene, path, threads=threads, engine=draws, progress=note)
 
 
 def part_of(shard: str) -> Part:
@@ -135,28 +132,3 @@ def part_of(shard: str) -> Part:
     if not (number.isdecimal() and of.isdecimal()):
         raise ValueError(f"--shard {shard}: give i/n with 1 <= i <= n")
     return Part(int(number), int(of))
-
-
-def _engine_of(engine: "Engine | str | None", threads: int | None) -> Engine | None:
-    """The engine that is given, or that a word or an address names; None for threads of this process."""
-    match engine:
-        case None | "threads":
-            return None
-        case "processes":
-            return Processes(_cores() if threads is None else threads)
-        case str() if engine == "dask" or "://" in engine:
-            from mcgw.jobs.dask_engine import Dask
-
-            address = None if engine == "dask" else engine
-            return Dask(address, workers=_cores() if threads is None else threads)
-        case _ if not isinstance(engine, str) and hasattr(engine, "submit") and hasattr(engine, "width"):
-            return engine
-    raise ValueError(
-        f"engine = {engine!r}: give one of {', '.join(_ENGINES)}, or tcp://ADDRESS of a scheduler"
-    )
-
-
-def _cores() -> int:
-    import numba
-
-    return int(numba.get_num_threads())

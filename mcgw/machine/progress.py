@@ -1,5 +1,6 @@
 """How far a long call has come: told to a function, or drawn as a bar."""
 
+import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any
@@ -11,10 +12,11 @@ Progress = bool | Tell | None
 
 
 @contextmanager
-def told(progress: Progress, unit: str) -> Iterator[Tell]:
+def told(progress: Progress, unit: str, beside: str = "") -> Iterator[Tell]:
     """Whom to tell ``(done, total)``: the one meaning of ``progress=`` in every call that takes it.
 
-    True draws a bar that counts in `unit`; a function is called; None and False tell nobody.
+    True draws a bar that counts in `unit`, with a line `beside` it as in `bar`; a function is called; None
+    and False tell nobody.
 
     Raises
     ------
@@ -22,7 +24,7 @@ def told(progress: Progress, unit: str) -> Iterator[Tell]:
         If `progress` is something else.
     """
     if progress is True:
-        with bar(unit) as show:
+        with bar(unit, beside) as show:
             yield show
     elif callable(progress):
         yield progress
@@ -33,14 +35,16 @@ def told(progress: Progress, unit: str) -> Iterator[Tell]:
 
 
 @contextmanager
-def bar(unit: str, *, terminal: bool = False) -> Iterator[Tell]:
-    """A bar on standard error, if asked so on a terminal only.
+def bar(unit: str, beside: str = "", *, terminal: bool = False) -> Iterator[Tell]:
+    """A bar on standard error, if asked so on a terminal only; on one a line may be said `beside` it, once.
 
     Its rate is that of this call: what was done before counts as given.
     """
     from tqdm import tqdm
 
     bars: list[Any] = []
+    if beside and sys.stderr.isatty():
+        tqdm.write(beside, file=sys.stderr)
 
     def show(done: float, total: float) -> None:
         if not bars:

@@ -1,0 +1,69 @@
+"""The options of commands that draw in blocks: how many threads, which engine, which share."""
+
+import argparse
+import logging
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from mcgw.jobs.engines import Engine
+
+__all__ = ["add_engine_options", "engine_asked", "tell_share"]
+
+
+def add_engine_options(parser: argparse.ArgumentParser) -> None:
+    """Add --threads, --processes, --workers, --scheduler, --shard and --insecure."""
+    parser.add_argument("--threads", type=int, metavar="N", help="default: all cores; never changes a bit")
+    engine = parser.add_mutually_exclusive_group()
+    engine.add_argument("--processes", type=int, metavar="N", help="draw in N processes instead")
+    engine.add_argument("--workers", type=int, metavar="N", help="draw in N dask workers on this machine")
+    engine.add_argument(
+        "--scheduler", metavar="ADDRESS", help="draw with the workers of a dask scheduler, tcp:// or tls://"
+    )
+    engine.add_argument(
+        "--shard", metavar="I/N", help="draw the I-th of N shares, as one job of an array; then mcgw merge"
+    )
+    parser.add_argument(
+        "--insecure", action="store_true", help="allow a scheduler elsewhere without encryption"
+    )
+
+
+@contextmanager
+def engine_asked(args: argparse.Namespace) -> Iterator["Engine | None"]:
+    """The engine that the options name, closed at the end; None for threads of this process.
+
+    Until then no library logs anything: a worker or scheduler that is lost is one line, and that is ours.
+    """
+    before = logging.root.manager.disable
+    logging.disable(logging.CRITICAL)
+    try:
+        engine = _engine(args)
+        try:
+            yield engine
+        finally:
+            if engine:
+                engine.close()
+    finally:
+        logging.disable(before)
+
+
+def tell_share(shard: str, path: Path, left: int, unit: str) -> int:
+    """Say that a share is done and what is left of the whole; returns the exit code."""
+    then = f"{left} {unit} are still missing" if left else f"all are there: mcgw merge {path}"
+    print(f"{path}.parts: share {shard} is done; {then}")
+    return 0
+
+
+def _engine(args: argparse.Namespace) -> "Engine | None":
+    if args.processes is not None:
+        from mcgw.jobs.engines import Processes
+
+        return Processes(args.processes)
+    if args.workers is not None or args.scheduler is not None:
+        from mcgw.jobs.dask_engine import Dask
+
+        workers = 1 if args.workers is None else args.workers
+        return Dask(args.scheduler, workers=workers, insecure=args.insecure, quiet=True)
+    return None

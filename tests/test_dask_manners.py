@@ -1,0 +1,201 @@
+"""Dask as its users expect: a client is taken and left as it was, and so is all that the process shares."""
+
+import copy
+import logging
+import os
+import signal
+import subprocess
+import sys
+import warnings
+from pathlib import Path
+
+import pytest
+from test_engines import Cluster, connected, digest
+
+import mcgw
+from mcgw.jobs.dask_engine import Dask
+from mcgw.jobs.job import Job
+from mcgw.machine.progress import bar
+
+distributed = pytest.importorskip("distributed")
+SIZE = 8
+
+
+@pytest.fixture(autouse=True)
+def _small_blocks(monkeypatch):
+    monkeypatch.setattr(Job, "rows", SIZE)
+    monkeypatch.setenv("PYTHONPATH", str(Path(__file__).parents[1]))
+
+
+@pytest.fixture
+def scene(make_scene):
+    return make_scene(n_surfaces=6 * SIZE)
+
+
+def shared_state():
+    """What dask, logging and warnings have in common for the whole process."""
+    import dask
+
+    def handlers(logger):  # but for the records that each worker and scheduler of dask keeps of itself
+        return [(id(h), h.level) for h in logger.handlers if not isinstance(h, distributed.node.DequeHandler)]
+
+    loggers = {
+        name: (logger.level, logger.disabled, logger.propagate, handlers(logger))
+        for name, logger in {**logging.root.manager.loggerDict, "": logging.root}.items()
+        if isinstance(logger, logging.Logger)
+    }
+    default = distributed.client._get_global_client()
+    return {
+        "configuration": copy.deepcopy(dask.config.config),
+        "loggers": loggers,
+        "disabled": logging.root.manager.disable,
+        "warnings": list(warnings.filters),
+        "default client": default,
+    }
+
+
+@pytest.fixture
+def untouched():
+    """All of it is after a test as it was before; loggers that are new are dask's own affair."""
+    with distributed.LocalCluster(n_workers=0, processes=False, dashboard_address=None):
+        pass  # whatever dask imports late
+    before = shared_state()
+    yield
+    after = shared_state()
+    assert before["loggers"] == {name: after["loggers"][name] for name in before["loggers"]}
+    for name in before.keys() - {"loggers"}:
+        assert after[name] == before[name], name
+
+
+def test_a_client_is_taken_and_left_open(scene, tmp_path):
+    options = {
+        "n_workers": 2,
+        "threads_per_worker": 2,
+        "processes": False,
+        "dashboard_address": "127.0.0.1:0",
+    }
+    with (
+        distributed.LocalCluster(**options) as cluster,
+        distributed.Client(cluster, set_as_default=False) as client,
+    ):
+        within, link = shared_state(), client.dashboard_link
+        mcgw.run(scene, tmp_path / "client.h5", engine=client)
+        found = shared_state()
+        assert {**found, "loggers": None} == {**within, "loggers": None}
+        assert all(found["loggers"][name] == within["loggers"][name] for name in within["loggers"])
+        assert (client.status, client.dashboard_link) == ("running", link)
+        assert client.submit(sum, (1, 2)).result(timeout=30) == 3
+    mcgw.run(scene, tmp_path / "threads.h5")
+    assert digest(tmp_path / "client.h5") == digest(tmp_path / "threads.h5")
+
+
+def test_a_client_that_is_of_no_use(scene, tmp_path):
+    with distributed.LocalCluster(n_workers=1, processes=False, dashboard_address=None) as cluster:
+        client = distributed.Client(cluster, set_as_default=False)
+        client.close()
+        with pytest.raises(ValueError, match=r"^engine: this client is closed; give one that is connected$"):
+            mcgw.run(scene, tmp_path / "e.h5", engine=client)
+    assert not list(tmp_path.iterdir())
+
+
+def test_what_is_not_done_is_dropped_and_the_client_lives(scene, tmp_path):
+    with (
+        distributed.LocalCluster(
+            n_workers=1, threads_per_worker=1, processes=False, dashboard_address=None
+        ) as cluster,
+        distributed.Client(cluster, set_as_default=False) as client,
+    ):
+
+        def fail(done, total):
+            if done > SIZE:
+                raise ZeroDivisionError
+
+        with pytest.raises(ZeroDivisionError):
+            mcgw.run(scene, tmp_path / "e.h5", engine=client, progress=fail)
+        assert client.submit(sum, (1, 2)).result(timeout=30) == 3
+        assert all(key.startswith("sum") for key in client.futures)
+
+
+@pytest.mark.slow
+def test_a_cluster_of_our_own(scene, tmp_path, untouched, capfd):
+    """Four workers, more than there are cores."""
+    mcgw.run(scene, tmp_path / "dask.h5", engine="dask", threads=4)
+    mcgw.run(scene, tmp_path / "threads.h5")
+    assert digest(tmp_path / "dask.h5") == digest(tmp_path / "threads.h5")
+    assert capfd.readouterr().err == ""
+
+
+@pytest.mark.slow
+def test_its_dashboard_is_on_this_machine_if_dask_can_draw_it(monkeypatch):
+    from importlib.util import find_spec
+
+    engine = Dask(workers=1)
+    try:
+        if find_spec("bokeh"):
+            assert engine.dashboard.startswith("http://127.0.0.1:")
+        else:
+            assert engine.dashboard == ""
+    finally:
+        engine.close()
+
+
+def test_a_line_beside_the_bar_is_said_once_and_to_terminals_alone(capsys, monkeypatch):
+    for terminal in (False, True):
+        monkeypatch.setattr(sys.stderr, "isatty", lambda seen=terminal: seen, raising=False)
+        with bar("surfaces", "dashboard: http://127.0.0.1:1/status", terminal=True) as show:
+            show(0, 2)
+            show(2, 2)
+        assert capsys.readouterr().err.count("dashboard") == terminal
+
+
+@pytest.mark.slow
+def test_a_scheduler_that_is_lost(scene, tmp_path, untouched):
+    cluster = Cluster(tmp_path)
+    engine = connected(cluster)
+
+    def kill(done, total):
+        if done >= SIZE and cluster.scheduler.poll() is None:
+            os.killpg(cluster.scheduler.pid, signal.SIGKILL)
+
+    try:
+        with pytest.raises(mcgw.RunError, match=r"^scheduler lost"):
+            mcgw.run(scene, tmp_path / "e.h5", engine=engine, progress=kill)
+    finally:
+        engine.close()
+        cluster.kill()
+
+
+COMMAND = """
+import os, signal, sys
+from mcgw.jobs.job import Job
+from mcgw.jobs import running
+Job.rows = 8
+plain, seen = running._Session, []
+def session(engine, task, threads, progress, signals):
+    def told(done):
+        if done >= 8 and not seen:
+            seen.append(done)
+            os.kill(int(sys.argv[1]), signal.SIGKILL)
+        return progress(done)
+    return plain(engine, task, threads, told, signals)
+running._Session = session
+from mcgw.cli import main
+sys.exit(main(sys.argv[2:]))
+"""
+
+
+@pytest.mark.slow
+def test_for_the_command_a_lost_scheduler_is_one_line(make_scene, tmp_path):
+    cluster = Cluster(tmp_path)
+    (tmp_path / "s.toml").write_text(mcgw.scene_text(make_scene(n_surfaces=48)))
+    connected(cluster).close()
+    call = [sys.executable, "-c", COMMAND, str(cluster.scheduler.pid)]
+    call += ["run", "s.toml", "-o", "e.h5", "--scheduler", cluster.address]
+    try:
+        done = subprocess.run(call, cwd=tmp_path, capture_output=True, text=True, timeout=120, check=False)
+    finally:
+        cluster.kill()
+    lines = [line for line in done.stderr.splitlines() if ": note: " not in line]
+    assert done.returncode == 1
+    assert len(lines) == 1, done.stderr
+    assert lines[0].startswith("mcgw: scheduler lost")
