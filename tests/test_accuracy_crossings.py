@@ -15,7 +15,8 @@ from mcgw.ensemble.regrading import regrade
 from mcgw.jobs.engines import Processes
 from mcgw.jobs.job import Job
 from mcgw.jobs.merging import merge
-from mcgw.jobs.running import Part, run, run_part
+from mcgw.jobs.running import run, run_part
+from mcgw.jobs.session import Part
 from mcgw.sampling.samplers import sampler_of
 from mcgw.scene.scene_file import scene_text
 from mcgw.statistics.comparison import compare

@@ -168,17 +168,17 @@ def test_a_scheduler_that_is_lost(scene, tmp_path, untouched):
 COMMAND = """
 import os, signal, sys
 from mcgw.jobs.job import Job
-from mcgw.jobs import running
+from mcgw.jobs import session as of_jobs
 Job.rows = 8
-plain, seen = running._Session, []
-def session(engine, task, threads, progress, signals):
+plain, seen = of_jobs.Session, []
+def session(engine, alone, threads, progress, signals):
     def told(done):
         if done >= 8 and not seen:
             seen.append(done)
             os.kill(int(sys.argv[1]), signal.SIGKILL)
         return progress(done)
-    return plain(engine, task, threads, told, signals)
-running._Session = session
+    return plain(engine, alone, threads, told, signals)
+of_jobs.Session = session
 from mcgw.cli import main
 sys.exit(main(sys.argv[2:]))
 """

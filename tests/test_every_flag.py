@@ -233,7 +233,8 @@ def share_drawn(plain, given):
     assert given.code == 0, given.err
     assert "a.h5.parts: share 1/2 is done" in given.out
     assert not (given.folder / "a.h5").exists()
-    assert (given.folder / "a.h5.parts/run.toml").is_file()
+    begun = [given.folder / "a.h5.parts" / name for name in ("run.toml", "sweep/asked.toml")]
+    assert [path.is_file() for path in begun].count(True) == 1
     assert (plain.folder / "a.h5").is_file()
 
 
@@ -393,6 +394,11 @@ ROWS = [
     row("sweep", "--over", SWEEP, [*SWEEP, "--over", "ensemble.seed"], refuses("--over ensemble.seed: give")),
     row("sweep", "--zip", SWEEP, [*SWEEP, "--zip", "--over", "ensemble.seed=1,2"], says("1, 1 ")),
     row("sweep", "--threads", SWEEP, [*SWEEP, "--threads", "0"], refuses("threads = 0: give")),
+    row("sweep", "--processes", SWEEP, [*SWEEP, "--processes", "0"], refuses("processes = 0: give")),
+    row("sweep", "--workers", SWEEP, [*SWEEP, "--workers", "0"], refuses("workers = 0: give")),
+    row("sweep", "--scheduler", SWEEP, [*SWEEP, "--scheduler", "ftp://x"], refuses("ftp://x")),
+    row("sweep", "--shard", SWEEP, [*SWEEP, "--shard", "1/2"], share_drawn),
+    row("sweep", "--shard", SWEEP, [*SWEEP, "--shard", "3/2"], refuses("--shard 3/2: give i/n")),
     row("sweep", "--plan", SWEEP, [*SWEEP, "--plan"], says("computed ")),
     row("show", "--scene", E, [*E, "--scene"], scene_alone),
     row("show", "--digest", E, [*E, "--digest"], digest_alone),
@@ -519,6 +525,7 @@ ROWS = [
 # Options whose commands take long, or need several calls: by tests of their own below.
 APART = {
     ("run", "--insecure"): "test_engines_are_those_asked_for",
+    ("sweep", "--insecure"): "test_sweeps_take_the_same_engines",
     ("merge", "FILE"): "test_merge_makes_the_file_that_is_named",
     ("merge", "--output"): "test_merge_makes_the_file_that_is_named",
     ("tradeoff", "--output"): "test_tradeoff_takes_its_folder_and_its_time",
@@ -620,6 +627,17 @@ def test_engines_are_those_asked_for(call, monkeypatch, scene, words, where, mad
     assert len([x for x in Recorder.made if isinstance(x, tuple)]) == 1
     a, b = (mcgw.open_ensemble(x.folder / "a.h5") for x in (plain, given))
     np.testing.assert_array_equal(a.load, b.load)
+
+
+def test_sweeps_take_the_same_engines(call, monkeypatch):
+    monkeypatch.setattr("mcgw.jobs.dask_engine.Dask", Recorder)
+    Recorder.made.clear()
+    given = call(["sweep", *SWEEP, "--scheduler", "tcp://h:1", "--insecure"])
+    assert given.code == 0, given.err
+    assert Recorder.made[0][1:] == (("tcp://h:1",), {"workers": 1, "insecure": True, "quiet": True})
+    assert (Recorder.made[1], Recorder.made[-1]) == ("commit_chunk", "closed")
+    files = [mcgw.open_sweep(x.folder / "a.h5") for x in (given, call(["sweep", *SWEEP]))]
+    np.testing.assert_array_equal(*(file.mean("load") for file in files))
 
 
 def test_threads_are_so_many_while_it_draws(call, monkeypatch):

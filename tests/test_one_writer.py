@@ -20,7 +20,8 @@ from mcgw.formats.files import state_of
 from mcgw.jobs import merging
 from mcgw.jobs.job import Job
 from mcgw.jobs.merging import merge
-from mcgw.jobs.running import Part, run, run_part
+from mcgw.jobs.running import run, run_part
+from mcgw.jobs.session import Part
 from mcgw.machine.child_process import ChildError, run_child
 from mcgw.store import ensembles, lock, structure
 from mcgw.store.leftovers import tidy

@@ -20,7 +20,8 @@ from mcgw.ensemble.regrading import regrade
 from mcgw.errors import StoreError
 from mcgw.jobs.job import Job
 from mcgw.jobs.merging import merge
-from mcgw.jobs.running import Part, run, run_part
+from mcgw.jobs.running import run, run_part
+from mcgw.jobs.session import Part
 from mcgw.scene.scene import SceneError
 from mcgw.scene.storable import storable
 from mcgw.store import ensembles, structure

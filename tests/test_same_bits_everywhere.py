@@ -16,7 +16,8 @@ import analytic
 from mcgw.errors import RunError, StoreError
 from mcgw.jobs import blocks
 from mcgw.jobs.blocks import commit_block
-from mcgw.jobs.running import Part, run, run_part
+from mcgw.jobs.running import run, run_part
+from mcgw.jobs.session import Part
 from mcgw.sampling.samplers import sampler_of
 from mcgw.scene.samplers import SAMPLERS
 from mcgw.scene.scene import Scene

@@ -15,7 +15,8 @@ from mcgw.ensemble.simulation import simulate
 from mcgw.errors import StoreError
 from mcgw.jobs.engines import Processes
 from mcgw.jobs.merging import merge
-from mcgw.jobs.running import Part, run, run_part
+from mcgw.jobs.running import run, run_part
+from mcgw.jobs.session import Part
 from mcgw.reports.stop_rule import after, before, upper_contacts
 from mcgw.scene.scene import SceneError
 from mcgw.store.ensembles import read_attributes

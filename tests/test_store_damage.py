@@ -13,7 +13,8 @@ from mcgw.cli import main
 from mcgw.errors import RunError, StoreError
 from mcgw.jobs.job import Job
 from mcgw.jobs.merging import merge
-from mcgw.jobs.running import Part, run, run_part
+from mcgw.jobs.running import run, run_part
+from mcgw.jobs.session import Part
 from mcgw.store import ensembles, merged_file, shards, structure, untrusted
 from mcgw.store.run_folder import RunFolder, parts_of
 from mcgw.store.trailer import TRAILER_BYTES, check_trailer, read_checked, trailer_of

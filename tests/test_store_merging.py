@@ -13,7 +13,8 @@ from mcgw.errors import RunError, StoppedError
 from mcgw.jobs import merging
 from mcgw.jobs.job import Job
 from mcgw.jobs.merging import merge
-from mcgw.jobs.running import Part, run, run_part
+from mcgw.jobs.running import run, run_part
+from mcgw.jobs.session import Part
 from mcgw.store import chunks, ensembles, shards, structure
 from mcgw.store.run_folder import parts_of
 from mcgw.store.trailer import read_checked, trailer_of

@@ -15,7 +15,8 @@ from new_trailer import trailer_again
 import mcgw
 from mcgw.errors import StoreError
 from mcgw.jobs.job import Job
-from mcgw.jobs.running import Part, run, run_part
+from mcgw.jobs.running import run, run_part
+from mcgw.jobs.session import Part
 from mcgw.store import ensembles, layout, run_folder, saving, structure
 from mcgw.store.run_folder import RunFolder, parts_of
 from mcgw.store.trailer import trailer_of

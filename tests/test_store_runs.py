@@ -22,7 +22,8 @@ from mcgw.errors import RunError, StoppedError, StoreError
 from mcgw.jobs import merging
 from mcgw.jobs.job import Job
 from mcgw.jobs.merging import merge
-from mcgw.jobs.running import Part, run, run_part
+from mcgw.jobs.running import run, run_part
+from mcgw.jobs.session import Part
 from mcgw.store import chunks, ensembles, layout, structure
 from mcgw.store.lock import LockedError, locked
 from mcgw.store.run_folder import missing, parts_of

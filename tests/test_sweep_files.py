@@ -12,8 +12,9 @@ import pytest
 
 import mcgw
 from mcgw.cli import main
-from mcgw.sweeps import drawing
+from mcgw.sweeps import chunk_task, drawing
 from mcgw.sweeps.file import read_attributes
+from mcgw.sweeps.folder import folder_of
 
 SURFACE = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "1 mm^2", "78.6 GPa")
 SCENE = mcgw.Scene(SURFACE, separations=[0.0, 1.0, 2.5], n_surfaces=300, n_asperities=2000, seed=7)
@@ -73,18 +74,27 @@ def test_again_draws_nothing(tmp_path, monkeypatch):
     def never(*_):
         raise AssertionError("drawn again")
 
-    monkeypatch.setattr(drawing, "shared", never)
+    monkeypatch.setattr(chunk_task, "shared", never)
     mcgw.sweep(SCENE, OVER, path=tmp_path / "a.h5", threads=1)
     assert (tmp_path / "a.h5").read_bytes() == written
     with pytest.raises(AssertionError, match="drawn again"):  # so it would have shown
         mcgw.sweep(SCENE, OVER, path=tmp_path / "b.h5")
 
 
+def committed(path, number):
+    """The shards, once there are so many: the last chunk may still be on its way to the disk."""
+    until = time.monotonic() + 30
+    while len(shards := sorted(folder_of(path).glob("block-*.h5"))) < number and time.monotonic() < until:
+        time.sleep(0.01)
+    assert len(shards) == number
+    return shards
+
+
 @pytest.mark.parametrize("after", [1, 5, 6, 11])
 def test_interrupted_anywhere_it_goes_on_to_the_same_digest(tmp_path, monkeypatch, chunks, after):
     mcgw.sweep(SCENE, OVER, path=tmp_path / "whole.h5")
     drawn = []
-    plain = drawing._pooled
+    plain = chunk_task.pooled_chunk
 
     def stopped(group, source, chunk):
         if len(drawn) == after:
@@ -92,13 +102,12 @@ def test_interrupted_anywhere_it_goes_on_to_the_same_digest(tmp_path, monkeypatc
         drawn.append(chunk.number)
         return plain(group, source, chunk)
 
-    monkeypatch.setattr(drawing, "_pooled", stopped)
+    monkeypatch.setattr(chunk_task, "pooled_chunk", stopped)
     path = tmp_path / "a.h5"
     with pytest.raises(KeyboardInterrupt):
         mcgw.sweep(SCENE, OVER, path=path)
     assert not path.exists()
-    shards = sorted((tmp_path / "a.h5.parts" / "sweep").glob("block-*.h5"))
-    assert len(shards) == after
+    shards = committed(path, after)
     data = bytearray(shards[0].read_bytes())
     data[len(data) // 2] ^= 1
     shards[0].write_bytes(bytes(data))  # a damaged one is drawn again
@@ -155,7 +164,7 @@ def test_another_sweep_is_left_alone(tmp_path, monkeypatch):
     def stopped(*_):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(drawing, "_pooled", stopped)
+    monkeypatch.setattr(chunk_task, "pooled_chunk", stopped)
     with pytest.raises(KeyboardInterrupt):
         mcgw.sweep(SCENE, OVER, path=tmp_path / "b.h5")
     with pytest.raises(mcgw.StoreError, match="a different sweep was begun there"):
@@ -246,13 +255,13 @@ def test_mistakes_of_the_command(shell, over, words):
 
 
 def test_a_disk_that_is_full(tmp_path, monkeypatch):
-    from mcgw.sweeps import in_file
+    from mcgw.sweeps import folder
 
     def full(*_):
         raise OSError(28, "No space left on device")
 
     with monkeypatch.context() as patch:
-        patch.setattr(in_file, "commit_shard", full)
+        patch.setattr(folder, "commit_shard", full)
         with pytest.raises(mcgw.RunError, match="No space left on device; what is done is kept in"):
             mcgw.sweep(SCENE, OVER, path=tmp_path / "a.h5")
     assert not (tmp_path / "a.h5").exists()

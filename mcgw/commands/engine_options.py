@@ -49,9 +49,9 @@ def engine_asked(args: argparse.Namespace) -> Iterator["Engine | None"]:
         logging.disable(before)
 
 
-def tell_share(shard: str, path: Path, left: int, unit: str) -> int:
+def tell_share(shard: str, path: Path, left: int) -> int:
     """Say that a share is done and what is left of the whole; returns the exit code."""
-    then = f"{left} {unit} are still missing" if left else f"all are there: mcgw merge {path}"
+    then = f"{left} surfaces are still missing" if left else f"all are there: mcgw merge {path}"
     print(f"{path}.parts: share {shard} is done; {then}")
     return 0
 

@@ -3,7 +3,7 @@
 import argparse
 from pathlib import Path
 
-HELP = "make the file of a run whose blocks were drawn by several jobs (mcgw run --shard i/n)"
+HELP = "make the file of a run or sweep whose blocks were drawn by several jobs (--shard i/n)"
 EXAMPLE = "mcgw merge demo.h5"
 
 
@@ -21,7 +21,8 @@ def execute(args: argparse.Namespace) -> int:
     """Merge and say where the file is."""
     from mcgw.commands.outputs import HDF5, Output, check_outputs
     from mcgw.formats.files import state_of
-    from mcgw.jobs.merging import merge
+    from mcgw.sweeps.merging import merge
+    from mcgw.sweeps.sweep import Sweep
 
     path = args.file or args.output
     if path is None:
@@ -30,7 +31,10 @@ def execute(args: argparse.Namespace) -> int:
         raise ValueError(f"-o {args.output}: the blocks of {path} make that file; leave out one of the two")
     check_outputs([Output(path, HDF5, grows=True)])
     before = state_of(path)
-    ensemble = merge(path)
+    merged = merge(path)
     done = "was finished before, " if state_of(path) == before else ""
-    print(f"{path}: {done}{ensemble.n_surfaces} surfaces, seed {ensemble.scene.seed}")
+    if isinstance(merged, Sweep):
+        print(f"{path}: {done}{merged.axes.size} scenes, seed {merged.scenes[0].seed}")
+    else:
+        print(f"{path}: {done}{merged.n_surfaces} surfaces, seed {merged.scene.seed}")
     return 0

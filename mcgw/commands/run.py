@@ -37,7 +37,8 @@ def _execute(args: argparse.Namespace) -> int:
     from mcgw.commands.outputs import HDF5, Output, check_outputs
     from mcgw.ensemble.forecast import forecast
     from mcgw.jobs.chosen_engine import dashboard_of
-    from mcgw.jobs.from_python import part_of, run
+    from mcgw.jobs.from_python import run
+    from mcgw.jobs.session import part_of
     from mcgw.machine.progress import bar
     from mcgw.reports.elasticity import two_questions
     from mcgw.scene.scene_file import files_of, load_scene
@@ -60,7 +61,7 @@ def _execute(args: argparse.Namespace) -> int:
             else:
                 ensemble = run(scene, path, threads=args.threads, engine=engine, progress=show)
     if part:
-        return tell_share(args.shard, path, left, "surfaces")
+        return tell_share(args.shard, path, left)
     print(f"{path}: {ensemble.n_surfaces} surfaces of {scene.n_asperities:g} asperities, seed {scene.seed}")
     if ruled:
         from mcgw.reports.stop_rule import after

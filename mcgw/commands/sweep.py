@@ -4,6 +4,8 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from mcgw.commands.engine_options import add_engine_options, engine_asked, tell_share
+
 if TYPE_CHECKING:
     from mcgw.scene.scene import Scene
     from mcgw.sweeps.axes import Axes
@@ -31,7 +33,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "-o", "--output", type=Path, metavar="FILE.h5", help="default: out/NAME.sweep.h5 beside the scene"
     )
-    parser.add_argument("--threads", type=int, metavar="N", help="default: all cores; never changes a bit")
+    add_engine_options(parser)
     parser.add_argument(
         "--plan", action="store_true", help="print what would be drawn and how long it takes; write nothing"
     )
@@ -40,6 +42,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 def execute(args: argparse.Namespace) -> int:
     """Draw and say where the file is."""
     from mcgw.commands.outputs import HDF5, Output, check_outputs
+    from mcgw.jobs.chosen_engine import dashboard_of
     from mcgw.machine.progress import bar
     from mcgw.scene.scene_file import files_of, load_scene
     from mcgw.sweeps.axes import axes_of
@@ -53,8 +56,14 @@ def execute(args: argparse.Namespace) -> int:
         print(_plan(scene, axes_of(over, zipped=args.zip)))
         return 0
     check_outputs([Output(path, HDF5, grows=True)], inputs=files_of(args.scene))
-    with bar("surfaces", terminal=True) as show:
-        found = sweep(scene, over, zipped=args.zip, path=path, threads=args.threads, progress=show)
+    with engine_asked(args) as engine, bar("surfaces", dashboard_of(engine), terminal=True) as show:
+        how: dict[str, Any] = {"zipped": args.zip, "path": path, "threads": args.threads, "progress": show}
+        if args.shard is not None:
+            left = sweep(scene, over, shard=args.shard, **how)
+        else:
+            found = sweep(scene, over, engine=engine, **how)
+    if args.shard is not None:
+        return tell_share(args.shard, path, left)
     print(found)
     print(f"{path}: {found.axes.size} scenes, seed {scene.seed}")
     return 0

@@ -8,13 +8,14 @@ from concurrent.futures import Future
 from contextlib import contextmanager
 from queue import Empty, SimpleQueue
 from time import monotonic
-from typing import Any
+from typing import Any, TypeVar
 
 from mcgw.errors import RunError, StoppedError
 from mcgw.jobs.engines import Engine, EngineLostError, WorkerDiedError
-from mcgw.store.shards import Span
 
 __all__ = ["Signals", "drive", "heed_signals"]
+
+_Block = TypeVar("_Block")
 
 _TRIES = 3
 _GRACE = 2.0  # seconds a running block has to finish when the run is asked to stop
@@ -61,10 +62,10 @@ def heed_signals() -> Iterator[Signals]:
 
 def drive(
     engine: Engine,
-    spans: Sequence[Span],
+    blocks: Sequence[_Block],
     task: Callable[..., Any],
-    arguments: Callable[[Span], tuple[Any, ...]],
-    done: Callable[[Span, Any], None],
+    arguments: Callable[[_Block], tuple[Any, ...]],
+    done: Callable[[_Block, Any], None],
     signals: Signals,
 ) -> None:
     """Have an engine draw every block, in any order, and call `done` with each block and its result.
@@ -80,16 +81,16 @@ def drive(
     Exception
         As the task raises.
     """
-    todo, suspects = deque(spans), deque[Span]()
-    tries: dict[Span, int] = {}
-    given_up: list[Span] = []
-    answers: SimpleQueue[tuple[Span, Future[Any]]] = SimpleQueue()
-    running: set[Span] = set()
+    todo, suspects = deque(blocks), deque[_Block]()
+    tries: dict[_Block, int] = {}
+    given_up: list[_Block] = []
+    answers: SimpleQueue[tuple[_Block, Future[Any]]] = SimpleQueue()
+    running: set[_Block] = set()
 
-    def submit(span: Span) -> None:
-        running.add(span)
-        future = engine.submit(task, *arguments(span))
-        future.add_done_callback(lambda future: answers.put((span, future)))
+    def submit(block: _Block) -> None:
+        running.add(block)
+        future = engine.submit(task, *arguments(block))
+        future.add_done_callback(lambda future: answers.put((block, future)))
 
     while todo or suspects or running:
         while todo and len(running) < engine.width and not suspects:
@@ -97,40 +98,42 @@ def drive(
         if suspects and not running:
             submit(suspects.popleft())
         try:
-            span, future = answers.get(timeout=0.2)
+            block, future = answers.get(timeout=0.2)
         except Empty:
             if signals.number is not None:
                 break
             continue
-        running.discard(span)
+        running.discard(block)
         try:
             result = future.result()
         except WorkerDiedError:
-            tries[span] = tries.get(span, 0) + 1
-            (given_up if tries[span] >= _TRIES else suspects).append(span)
+            tries[block] = tries.get(block, 0) + 1
+            (given_up if tries[block] >= _TRIES else suspects).append(block)
             continue
         except EngineLostError as error:
             raise RunError(f"scheduler lost ({error}); start it again and repeat the command") from None
-        done(span, result)
+        done(block, result)
         if signals.number is not None:
             break
     if signals.number is not None:
         _last_answers(answers, running, done)
     elif given_up:
-        blocks = "1 block is" if len(given_up) == 1 else f"{len(given_up)} blocks are"
-        raise RunError(f"{given_up[0]} killed the worker {_TRIES} times; {blocks} not done, all others are")
+        lost = "1 block is" if len(given_up) == 1 else f"{len(given_up)} blocks are"
+        raise RunError(f"{given_up[0]} killed the worker {_TRIES} times; {lost} not done, all others are")
 
 
 def _last_answers(
-    answers: "SimpleQueue[tuple[Span, Future[Any]]]", running: set[Span], done: Callable[[Span, Any], None]
+    answers: "SimpleQueue[tuple[_Block, Future[Any]]]",
+    running: set[_Block],
+    done: Callable[[_Block, Any], None],
 ) -> None:
     """Give what is running a moment to finish; what does not is dropped."""
     until = monotonic() + _GRACE
     while running and (left := until - monotonic()) > 0:
         try:
-            span, future = answers.get(timeout=left)
+            block, future = answers.get(timeout=left)
         except Empty:
             return
-        running.discard(span)
+        running.discard(block)
         if future.exception() is None:
-            done(span, future.result())
+            done(block, future.result())

@@ -7,13 +7,13 @@ from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.forecast import forecast
 from mcgw.jobs import running
 from mcgw.jobs.chosen_engine import chosen_engine, dashboard_of
-from mcgw.jobs.running import Part
+from mcgw.jobs.session import part_of
 from mcgw.machine.progress import Progress, told
 from mcgw.scene.ensemble_section import LeftOut
 from mcgw.scene.scene import Scene
 from mcgw.store.ensembles import recorded_seed
 
-__all__ = ["part_of", "run"]
+__all__ = ["run"]
 
 
 @overload
@@ -118,17 +118,3 @@ def run(
         if part:
             return running.run_part(scene, path, part, threads=threads, progress=note)
         return running.run(scene, path, threads=threads, engine=draws, progress=note)
-
-
-def part_of(shard: str) -> Part:
-    """The share that a text like "2/8" names.
-
-    Raises
-    ------
-    ValueError
-        If it names none.
-    """
-    number, _, of = str(shard).partition("/")
-    if not (number.isdecimal() and of.isdecimal()):
-        raise ValueError(f"--shard {shard}: give i/n with 1 <= i <= n")
-    return Part(int(number), int(of))

@@ -19,7 +19,7 @@ __all__ = ["merge", "merge_once"]
 
 
 def merge(path: str | Path) -> Ensemble:
-    """Make the file of a run whose blocks are all there.
+    """As `mcgw.merge`, of a run.
 
     Parameters
     ----------
@@ -37,16 +37,6 @@ def merge(path: str | Path) -> Ensemble:
         If there is no such run.
     RunError
         If blocks are missing, or the disk does not take the file.
-
-    Examples
-    --------
-    >>> import mcgw, tempfile
-    >>> surface = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "1 mm^2", "78.6 GPa")
-    >>> scene = mcgw.Scene(surface, separations=[0, 1, 2], n_surfaces=20, seed=1)
-    >>> with tempfile.TemporaryDirectory() as folder:
-    ...     missing = [mcgw.run(scene, f"{folder}/demo.h5", shard=f"{i}/2") for i in (1, 2)]
-    ...     missing[-1], mcgw.merge(f"{folder}/demo.h5").n_surfaces
-    (0, 20)
     """
     path = Path(path)
     tidy(path)

@@ -1,8 +1,7 @@
 """From a scene to its file: begin, go on, extend, until its rule is met."""
 
-from collections.abc import Callable, Iterator
-from contextlib import closing, contextmanager
-from dataclasses import dataclass, replace
+from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from time import monotonic, perf_counter
 from typing import Any
@@ -11,10 +10,11 @@ from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.forecast import checkpoints, without_rule
 from mcgw.errors import RunError, StoreError
 from mcgw.jobs.blocks import commit_block, draw_block
-from mcgw.jobs.driver import Signals, drive, heed_signals
-from mcgw.jobs.engines import Engine, Threads
+from mcgw.jobs.driver import drive
+from mcgw.jobs.engines import Engine
 from mcgw.jobs.job import Job, as_recorded
 from mcgw.jobs.merging import merge_once
+from mcgw.jobs.session import By, Part, Progress, Session
 from mcgw.scene.scene import Scene
 from mcgw.store.ensembles import open_ensemble
 from mcgw.store.leftovers import drop_leftovers, tidy
@@ -23,37 +23,9 @@ from mcgw.store.run_folder import RunFolder
 from mcgw.store.saving import write_ensemble
 from mcgw.store.shards import Shard, Span
 
-__all__ = ["Part", "run", "run_part"]
+__all__ = ["run", "run_part"]
 
-Progress = Callable[[int], Any]
 _ROUNDS = 3  # of merging, if shards turn out damaged
-
-
-@dataclass(frozen=True)
-class Part:
-    """One of several jobs that share the blocks of a run.
-
-    Parameters
-    ----------
-    number, of : int
-        ``1 <= number <= of``.
-
-    Raises
-    ------
-    ValueError
-        If it is not one of them.
-    """
-
-    number: int
-    of: int
-
-    def __post_init__(self) -> None:
-        if not 1 <= self.number <= self.of:
-            raise ValueError(f"--shard {self.number}/{self.of}: give i/n with 1 <= i <= n")
-
-    def mine(self, span: Span, size: int) -> bool:
-        """Whether a block is this job's."""
-        return span.first // size % self.of == self.number - 1
 
 
 def run(
@@ -70,7 +42,7 @@ def run(
     a file holds already is never too much. Of a grading that is a Python function the file keeps its series
     and its name, and never the function.
     """
-    path, by = Path(path), _By(engine, threads, progress or _silent)
+    path, by = Path(path), By(engine, threads, progress or _silent)
     scene = as_recorded(scene, path)
     started = monotonic()
     for stage in _stages(scene, path):
@@ -99,41 +71,7 @@ def _stages(scene: Scene, path: Path) -> Iterator[Scene]:
         yield replace(fixed, n_surfaces=last)
 
 
-@dataclass(frozen=True)
-class _By:
-    """Who draws this time, and who hears of it."""
-
-    engine: Engine | None
-    threads: int | None
-    progress: Progress
-
-    def __post_init__(self) -> None:
-        if self.threads is not None and self.threads < 1:
-            raise ValueError(f"threads = {self.threads}: give a whole number >= 1")
-
-    @contextmanager
-    def at_work(self) -> Iterator["_Session"]:
-        """The engine given, left open; or threads of this process."""
-        with heed_signals() as signals:
-            if self.engine is not None:
-                yield _Session(self.engine, commit_block, 1, self.progress, signals)
-                return
-            with closing(Threads()) as own:
-                yield _Session(own, draw_block, self.threads, self.progress, signals)
-
-
-@dataclass(frozen=True)
-class _Session:
-    """Blocks are given to an engine until a signal comes."""
-
-    engine: Engine
-    task: Callable[..., Any]
-    threads: int | None
-    progress: Progress
-    signals: Signals
-
-
-def _run(job: Job, by: _By) -> Ensemble:
+def _run(job: Job, by: By) -> Ensemble:
     """Draw what is missing of a job."""
     if job.done() == job.scene.n_surfaces:
         tidy(job.path)
@@ -165,7 +103,7 @@ def run_part(
         raise ValueError(
             "ensemble.max_seconds: jobs that share a run end at different times; give n_surfaces"
         )
-    by = _By(None, threads, progress or _silent)
+    by = By(None, threads, progress or _silent)
     scene = as_recorded(scene, Path(path))
     job = Job.of(without_rule(scene) if scene.rel_err is not None else scene, Path(path))
     if job.done() == job.scene.n_surfaces:
@@ -182,7 +120,7 @@ def _silent(done: int) -> None:
     """Tell nobody."""
 
 
-def _at_once(job: Job, session: _Session) -> None:
+def _at_once(job: Job, session: Session) -> None:
     """The whole ensemble as one block, and its file in one step. Only with the lock."""
     if job.done() == job.scene.n_surfaces:  # another process was quicker
         return
@@ -203,7 +141,7 @@ def _at_once(job: Job, session: _Session) -> None:
     session.progress(job.scene.n_surfaces)
 
 
-def _in_blocks(job: Job, session: _Session) -> None:
+def _in_blocks(job: Job, session: Session) -> None:
     """Shards until none is missing, then the file. Only with the lock."""
     try:
         started = job.begin()
@@ -233,26 +171,15 @@ def _refuse_more(started: RunFolder, shards: list[Shard]) -> None:
         )
 
 
-def _draw_missing(started: RunFolder, spans: list[Span], session: _Session, part: Part | None = None) -> None:
+def _draw_missing(started: RunFolder, spans: list[Span], session: Session, part: Part | None = None) -> None:
     """Commit every block that is missing, or of these a job's share."""
-    count = started.scene.n_surfaces - sum(span.n for span in spans)
+    done = started.scene.n_surfaces - sum(span.n for span in spans)
     if part:
-        spans = [span for span in spans if part.mine(span, started.size)]
-    session.progress(count)
-
-    def note(span: Span, _: str) -> None:
-        nonlocal count
-        count += span.n
-        session.progress(count)
-
+        spans = [span for span in spans if part.mine(span.first // started.size)]
     folder = str(started.folder.resolve())
-    drive(
-        session.engine,
-        spans,
-        session.task,
-        lambda span: (folder, span.first, span.n, session.threads),
-        note,
-        session.signals,
+    task = draw_block if session.alone else commit_block
+    count = session.draw(
+        spans, task, lambda span: (folder, span.first, span.n), done=done, size=lambda span: span.n
     )
     total = started.scene.n_surfaces
     session.signals.check(

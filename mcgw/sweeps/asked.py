@@ -5,7 +5,10 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
+import tomli_w
+
 from mcgw.ensemble.forecast import without_rule
+from mcgw.formats.toml_text import loads
 from mcgw.machine.memory import keep_freed_memory
 from mcgw.scene.scene import Scene
 from mcgw.scene.section import SceneError
@@ -37,6 +40,15 @@ class Asked:
     def of(cls, scene: Scene, axes: Axes) -> "Asked":
         """A scene and what is changed of it; nothing is checked yet."""
         return cls(document_of(scene), axes)
+
+    @classmethod
+    def from_texts(cls, scene: str, axes: str) -> "Asked":
+        """What `texts` gave."""
+        return cls(loads(scene), Axes.from_text(axes))
+
+    def texts(self) -> tuple[str, str]:
+        """The scene as TOML and the axes as JSON."""
+        return tomli_w.dumps(self.document), self.axes.text_of_all()
 
     @cached_property
     def groups(self) -> list[Group]:

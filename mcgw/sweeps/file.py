@@ -31,7 +31,6 @@ from typing import Any
 
 import h5py
 import numpy as np
-import tomli_w
 from numpy.typing import NDArray
 
 from analytic import quantity_of
@@ -64,11 +63,7 @@ Tables = dict[str, NDArray[Any]]
 
 def identity_of(asked: Asked) -> str:
     """SHA-256 of all that the numbers of a sweep depend on: scene, axes, what draws."""
-    return hashlib.sha256("\0".join((*_texts(asked), _draws(asked))).encode()).hexdigest()
-
-
-def _texts(asked: Asked) -> tuple[str, str]:
-    return tomli_w.dumps(asked.document), asked.axes.text_of_all()
+    return hashlib.sha256("\0".join((*asked.texts(), _draws(asked))).encode()).hexdigest()
 
 
 def _draws(asked: Asked) -> str:
@@ -86,7 +81,7 @@ def write_sweep(asked: Asked, pooled: Sequence[Pooled], path: Path, *, wall_seco
         If it cannot be written, or another file has this name.
     """
     sweep = asked.answered(pooled, STATISTICS)
-    scene, axes = _texts(asked)
+    scene, axes = asked.texts()
     drawn = _drawn(sweep)
 
     def fill(file: h5py.File) -> None:

@@ -2,19 +2,22 @@
 
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, overload
 
 from mcgw.ensemble.simulation import use_threads
+from mcgw.jobs.chosen_engine import chosen_engine, dashboard_of
+from mcgw.jobs.session import part_of
 from mcgw.machine.progress import Progress, told
 from mcgw.scene.scene import Scene
 from mcgw.sweeps.asked import Asked
 from mcgw.sweeps.axes import axes_of
-from mcgw.sweeps.drawing import Memory, draw
+from mcgw.sweeps.drawing import draw
 from mcgw.sweeps.sweep import STATISTICS, Sweep
 
 __all__ = ["sweep"]
 
 
+@overload
 def sweep(
     scene: Scene,
     over: Mapping[str, Iterable[Any]],
@@ -23,8 +26,33 @@ def sweep(
     zipped: bool = False,
     path: str | Path | None = None,
     threads: int | None = None,
+    engine: Any = None,
+    shard: None = None,
     progress: Progress = None,
-) -> Sweep:
+) -> Sweep: ...
+@overload
+def sweep(
+    scene: Scene,
+    over: Mapping[str, Iterable[Any]],
+    *,
+    zipped: bool = False,
+    path: str | Path,
+    threads: int | None = None,
+    shard: str,
+    progress: Progress = None,
+) -> int: ...
+def sweep(
+    scene: Scene,
+    over: Mapping[str, Iterable[Any]],
+    *,
+    statistics: Sequence[str] = STATISTICS,
+    zipped: bool = False,
+    path: str | Path | None = None,
+    threads: int | None = None,
+    engine: Any = None,
+    shard: str | None = None,
+    progress: Progress = None,
+) -> Sweep | int:
     """Means and standard deviations of many scenes, whose surfaces are the same wherever they can be.
 
     Points whose heights have the same law, number and seed share their surfaces, whatever their surfaces'
@@ -50,14 +78,21 @@ def sweep(
         A file for it, which appears when all is drawn (`mcgw.open_sweep`). The same call again draws nothing,
         or goes on where it was interrupted; where nobody gave a seed it takes that of the file.
     threads : int, optional
-        Default: all there are. The result is the same, bit by bit, for any number.
+        Cores: threads, or processes or workers of the engine. Default: all there are. The result is the
+        same, bit by bit, for any number.
+    engine : {"threads", "processes", "dask"}, address, distributed.Client or Engine, optional
+        Who draws into the file of `path`, as in `mcgw.run`.
+    shard : str, optional
+        "2/8": draw only the second of eight shares into the folder beside `path`, as one of eight jobs; then
+        `mcgw.merge`.
     progress : bool or callable, optional
         True: a bar; a function: called with (done, total) surfaces, each weighted by what it takes.
 
     Returns
     -------
     Sweep
-        With arrays of the shape of the axes and separations.
+        With arrays of the shape of the axes and separations. With `shard`: the number of surfaces of the
+        whole that are still missing.
 
     Raises
     ------
@@ -88,11 +123,22 @@ def sweep(
     """
     if not statistics or not set(statistics) <= set(STATISTICS):
         raise ValueError(f"statistics = {statistics!r}: give one or both of {', '.join(STATISTICS)}")
+    if path is None and (engine not in (None, "threads") or shard is not None):
+        raise ValueError("engine, shard: others draw into a file; give path, or leave them out")
+    if shard is not None and engine is not None:
+        raise ValueError(f"shard = {shard!r}: a share is drawn by threads; leave engine out")
+    part = None if shard is None else part_of(shard)
     axes, chosen = axes_of(over, zipped=zipped), tuple(statistics)
-    with use_threads(threads), told(progress, "surfaces") as tell:
-        if path is not None:
-            from mcgw.sweeps.in_file import sweep_in_file
+    if path is None:
+        with use_threads(threads), told(progress, "surfaces") as tell:
+            asked = Asked.of(scene, axes)
+            return asked.answered(draw(asked.groups, tell), chosen)
+    from mcgw.sweeps.in_file import sweep_in_file, sweep_part
 
-            return sweep_in_file(scene, axes, Path(path), chosen, tell)
-        asked = Asked.of(scene, axes)
-        return asked.answered(draw(asked.groups, Memory(), tell), chosen)
+    with (
+        chosen_engine(engine, threads) as draws,
+        told(progress, "surfaces", dashboard_of(draws)) as tell,
+    ):
+        if part:
+            return sweep_part(scene, axes, Path(path), part, tell, threads=threads)
+        return sweep_in_file(scene, axes, Path(path), chosen, tell, threads=threads, engine=draws)

@@ -1,39 +1,31 @@
-"""A sweep on its way into a file: chunks that are done lie beside it as sealed shards until all are there.
+"""A sweep on its way into a file: an engine, or several jobs, draw its chunks, which are then added up."""
 
-They lie in ``FILE.h5.parts/sweep/``: ``asked.toml``, which says what is asked, and a shard for each chunk, of
-one row each.
-"""
-
-import shutil
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from contextlib import suppress
-from dataclasses import dataclass
 from pathlib import Path
-from time import perf_counter
-from typing import Any
-
-import tomli_w
 
 from mcgw.errors import RunError, StoreError
-from mcgw.formats.files import check_output, write_whole
-from mcgw.formats.plain_file import read_bytes
+from mcgw.formats.files import check_output
 from mcgw.formats.toml_text import loads
 from mcgw.jobs.driver import Signals, heed_signals
+from mcgw.jobs.engines import Engine
+from mcgw.jobs.session import By, Part, Session
 from mcgw.scene.scene import LeftOut, Scene
 from mcgw.store.disk import parts_of
 from mcgw.store.lock import locked
-from mcgw.store.shards import Span, commit_shard, open_shard
 from mcgw.sweeps.asked import Asked
 from mcgw.sweeps.axes import Axes
-from mcgw.sweeps.drawing import Chunk, draw
+from mcgw.sweeps.chunk_task import Drawer, commit_chunk
+from mcgw.sweeps.drawing import Chunk, Told, added_up, check_memory_of
 from mcgw.sweeps.file import identity_of, open_sweep, read_attributes, write_sweep
+from mcgw.sweeps.folder import SweepFolder, folder_of, remove_sweep, seed_of
 from mcgw.sweeps.pooled import Pooled
-from mcgw.sweeps.sweep import Sweep
+from mcgw.sweeps.sweep import STATISTICS, Sweep
 
-__all__ = ["recorded_seed", "sweep_in_file"]
+__all__ = ["merge_sweep", "recorded_seed", "sweep_in_file", "sweep_part"]
 
-_ASKED = "asked.toml"
-_MOST_BYTES = 2**23
+Tell = Callable[[float, float], object]
+_ROUNDS = 3  # of adding up, if shards turn out damaged
 
 
 def sweep_in_file(
@@ -41,101 +33,154 @@ def sweep_in_file(
     axes: Axes,
     path: Path,
     statistics: tuple[str, ...],
-    tell: Callable[[float, float], object],
+    tell: Tell,
+    *,
+    threads: int | None = None,
+    engine: Engine | None = None,
 ) -> Sweep:
-    """As `mcgw.sweep` with a path: read it, go on with it, or begin it."""
-    if isinstance(scene.seed, LeftOut) and (seed := recorded_seed(path)) is not None:
-        scene = scene.replace(seed=seed)
-    asked = Asked.of(scene, axes)
-    check_output(path)
+    """As `mcgw.sweep` with a path: read it, go on with it, or begin it; the engine is left open."""
+    asked = _asked(scene, axes, path)
     if not path.exists():
-        with heed_signals() as signals, locked(parts_of(path)):
+        told = Told(asked.groups, tell)
+        with By(engine, threads, told).at_work() as session, locked(parts_of(path)):
             if not path.exists():  # another process may have been quicker
-                _draw(asked, path, signals, tell)
-    if read_attributes(path)["run"] != identity_of(asked):
-        raise StoreError(f"{path}: holds a different sweep; choose another -o, or remove it")
+                _draw(SweepFolder.begin(path, asked), path, session, told)
+    _refuse_another(path, asked)
     _tidy(path)
     return open_sweep(path, statistics)
+
+
+def sweep_part(
+    scene: Scene, axes: Axes, path: Path, part: Part, tell: Tell, *, threads: int | None = None
+) -> int:
+    """Draw one job's share of the chunks, and return how many surfaces are still missing of the whole.
+
+    `merge_sweep` makes the file once all are there, on a disk that all jobs share.
+    """
+    asked = _asked(scene, axes, path)
+    if not path.exists():
+        told = Told(asked.groups, tell)
+        with By(None, threads, told).at_work() as session, locked(parts_of(path), shared=True):
+            if not path.exists():
+                started = SweepFolder.begin(path, asked)
+                _draw_missing(started, session, told, part)
+                return sum(chunk.n for chunk in started.missing())
+    _refuse_another(path, asked)
+    return 0
+
+
+def merge_sweep(path: Path) -> Sweep:
+    """Make the file of a sweep whose chunks are all there.
+
+    Raises
+    ------
+    StoreError
+        If there is no such sweep.
+    RunError
+        If chunks are missing, or the disk does not take the file.
+    """
+    if not path.exists():
+        with heed_signals() as signals, locked(parts_of(path)):
+            if not path.exists():
+                started = SweepFolder.open(folder_of(path))
+                if gaps := started.missing():
+                    total = sum(group.n_surfaces for group in started.asked.groups)
+                    raise RunError(
+                        f"{path}: {sum(chunk.n for chunk in gaps)} of {total} surfaces are missing, from "
+                        f"{gaps[0]} on; run the jobs that make them again"
+                    )
+                if not _write(started, path, signals):
+                    raise RunError(f"{started.folder}: a shard is damaged; run the jobs again")
+    _tidy(path)
+    return open_sweep(path, STATISTICS)
 
 
 def recorded_seed(path: Path) -> int | None:
     """The seed of the sweep that is at a place, or in the making there."""
     if path.is_file():
         return int(loads(str(read_attributes(path)["scene"]))["ensemble"]["seed"])
-    file = _folder(path) / _ASKED
-    return int(_read(file)["seed"]) if file.is_file() else None
+    return seed_of(path)
+
+
+def _asked(scene: Scene, axes: Axes, path: Path) -> Asked:
+    """The question, checked, with the seed of what is there if nobody gave one."""
+    if isinstance(scene.seed, LeftOut) and (seed := recorded_seed(path)) is not None:
+        scene = scene.replace(seed=seed)
+    asked = Asked.of(scene, axes)
+    check_memory_of(asked.groups)
+    check_output(path)
+    return asked
+
+
+def _refuse_another(path: Path, asked: Asked) -> None:
+    if read_attributes(path)["run"] != identity_of(asked):
+        raise StoreError(f"{path}: holds a different sweep; choose another -o, or remove it")
 
 
 def _tidy(path: Path) -> None:
     """Remove the chunks of a file that is there: a process that was killed may have left them."""
-    if _folder(path).is_dir():
+    if folder_of(path).is_dir():
         with suppress(StoreError, OSError), locked(parts_of(path), patience=0):
-            shutil.rmtree(_folder(path), ignore_errors=True)
+            remove_sweep(path)
 
 
-def _draw(asked: Asked, path: Path, signals: Signals, tell: Callable[[float, float], object]) -> None:
-    """Draw what is missing, then write the file. Only with the lock."""
-    identity, folder, started = identity_of(asked), _folder(path), perf_counter()
-    _begin(folder, identity, asked)
-    keeper = _Shards(folder, identity, signals)
+def _draw(started: SweepFolder, path: Path, session: Session, told: Told) -> None:
+    """Chunks until none is missing, then the file. Only with the lock."""
+    for _ in range(_ROUNDS):
+        _draw_missing(started, session, told)
+        if _write(started, path, session.signals):
+            return
+    raise RunError(f"{started.folder}: shards are damaged again and again; is the disk failing?")
+
+
+def _draw_missing(started: SweepFolder, session: Session, told: Told, part: Part | None = None) -> None:
+    """Commit every chunk that is missing, or of these a job's share."""
+    missing = started.missing()
+    done = sum(map(told.size, started.chunks)) - sum(map(told.size, missing))
+    if part:
+        missing = [chunk for chunk in missing if part.mine(chunk.number)]
     try:
-        pooled = draw(asked.groups, keeper, tell)
-        write_sweep(asked, pooled, path, wall_seconds=perf_counter() - started)
+        if session.alone:
+            session.draw(missing, Drawer(started).draw, lambda chunk: (chunk,), done=done, size=told.size)
+        else:
+            folder = str(started.folder.resolve())
+            session.draw(missing, commit_chunk, lambda chunk: (folder, chunk), done=done, size=told.size)
     except OSError as error:
-        raise RunError(
-            f"{error.filename or path}: {error.strerror or error}; what is done is kept in {folder}, the "
-            "same command goes on once that is mended"
-        ) from None
-    shutil.rmtree(folder, ignore_errors=True)
+        raise _kept(started, error) from None
+    session.signals.check(f"what is done is kept in {started.folder}; the same command goes on")
 
 
-@dataclass(frozen=True)
-class _Shards:
-    """Chunks as shards of one row."""
+def _write(started: SweepFolder, path: Path, signals: Signals) -> bool:
+    """Make the file and remove the shards; False if one turned out damaged. Only with the lock."""
+    seconds = 0.0
 
-    folder: Path
-    identity: str
-    signals: Signals
+    def held() -> Iterator[tuple[Chunk, Pooled]]:
+        nonlocal seconds
+        for chunk in started.chunks:
+            signals.check(f"all chunks are kept in {started.folder}; the same command goes on")
+            if (found := started.held(chunk)) is None:
+                raise _DamagedError
+            seconds += found[1].seconds
+            yield chunk, found[0]
 
-    def held(self, chunk: Chunk) -> Pooled | None:
-        """From its shard, if that is whole."""
-        path = self.folder / _span(chunk).file_name
-        if path.is_symlink() or not path.is_file():
-            return None
-        try:
-            return Pooled.from_tables({k: v[0] for k, v in open_shard(path, self.identity).arrays().items()})
-        except StoreError:
-            return None  # it is drawn again
-
-    def keep(self, chunk: Chunk, pooled: Pooled) -> None:
-        """Into a shard; then heed a signal."""
-        tables = {name: values[None] for name, values in pooled.tables().items()}
-        commit_shard(self.folder / _span(chunk).file_name, self.identity, _span(chunk), tables, 0.0)
-        self.signals.check(f"what is done is kept in {self.folder}; the same command goes on")
-
-
-def _span(chunk: Chunk) -> Span:
-    return Span(chunk.number, 1)
-
-
-def _folder(path: Path) -> Path:
-    return parts_of(path) / "sweep"
-
-
-def _begin(folder: Path, identity: str, asked: Asked) -> None:
-    """Say what is asked, or refuse what was."""
-    folder.mkdir(parents=True, exist_ok=True)
-    file = folder / _ASKED
-    if not file.exists():
-        said = {"identity": identity, "seed": asked.document["ensemble"]["seed"]}
-        write_whole(file, (tomli_w.dumps(said).encode(),), expected=None)
-    elif _read(file)["identity"] != identity:
-        raise StoreError(f"{folder}: a different sweep was begun there; choose another -o, or remove it")
-
-
-def _read(file: Path) -> dict[str, Any]:
     try:
-        said = loads(read_bytes(file, _MOST_BYTES).decode())
-        return {"identity": str(said["identity"]), "seed": int(said["seed"])}
-    except (KeyError, TypeError, ValueError) as error:
-        raise StoreError(f"{file}: damaged ({error}); remove {file.parent} to start again") from None
+        pooled = added_up(held())
+    except _DamagedError:
+        return False
+    try:
+        write_sweep(started.asked, pooled, path, wall_seconds=seconds)
+    except OSError as error:
+        raise _kept(started, error) from None
+    remove_sweep(path)
+    return True
+
+
+class _DamagedError(Exception):
+    """A shard is not there, or not whole."""
+
+
+def _kept(started: SweepFolder, error: OSError) -> RunError:
+    return RunError(
+        f"{error.filename or started.folder}: {error.strerror or error}; what is done is kept in "
+        f"{started.folder}, the same command goes on once that is mended"
+    )

@@ -16,7 +16,8 @@ from harness import ROWS, forked, prepare, scene_of
 
 from mcgw.errors import StoreError
 from mcgw.jobs.job import Job
-from mcgw.jobs.running import Part, run, run_part
+from mcgw.jobs.running import run, run_part
+from mcgw.jobs.session import Part
 from mcgw.store import ensembles, layout, merged_file, saving, structure
 from mcgw.store.run_folder import parts_of
 

@@ -1,0 +1,127 @@
+"""Blocks at work: who draws what is missing, which share of it, and who hears how far it has come."""
+
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import closing, contextmanager
+from dataclasses import dataclass
+from typing import Any, TypeVar
+
+from mcgw.jobs.driver import Signals, drive, heed_signals
+from mcgw.jobs.engines import Engine, Threads
+
+__all__ = ["By", "Part", "Progress", "Session", "part_of"]
+
+Progress = Callable[[Any], Any]
+_Block = TypeVar("_Block")
+
+
+@dataclass(frozen=True)
+class Part:
+    """One of several jobs that share the blocks of a run.
+
+    Parameters
+    ----------
+    number, of : int
+        ``1 <= number <= of``.
+
+    Raises
+    ------
+    ValueError
+        If it is not one of them.
+    """
+
+    number: int
+    of: int
+
+    def __post_init__(self) -> None:
+        if not 1 <= self.number <= self.of:
+            raise ValueError(f"--shard {self.number}/{self.of}: give i/n with 1 <= i <= n")
+
+    def mine(self, block: int) -> bool:
+        """Whether a block, by its number, is this job's."""
+        return block % self.of == self.number - 1
+
+
+def part_of(shard: str) -> Part:
+    """The share that a text like "2/8" names.
+
+    Raises
+    ------
+    ValueError
+        If it names none.
+    """
+    number, _, of = str(shard).partition("/")
+    if not (number.isdecimal() and of.isdecimal()):
+        raise ValueError(f"--shard {shard}: give i/n with 1 <= i <= n")
+    return Part(int(number), int(of))
+
+
+@dataclass(frozen=True)
+class Session:
+    """Blocks are given to an engine until a signal comes.
+
+    Parameters
+    ----------
+    engine : Engine
+        Who draws.
+    alone : bool
+        Whether these are threads of this process, of which one may write a block while others draw the next.
+    threads : int, optional
+        Of a block.
+    progress : callable
+        Told what is done.
+    signals : Signals
+        What has come.
+    """
+
+    engine: Engine
+    alone: bool
+    threads: int | None
+    progress: Progress
+    signals: Signals
+
+    def draw(
+        self,
+        blocks: Sequence[_Block],
+        task: Callable[..., Any],
+        arguments: Callable[[_Block], tuple[Any, ...]],
+        *,
+        done: float,
+        size: Callable[[_Block], float],
+    ) -> float:
+        """Have blocks drawn, and tell what is done after each, from `done` on; returns how much in the end.
+
+        `task` gets what `arguments` gives, and the threads. Who asks must look at `signals` then.
+        """
+        count = done
+        self.progress(count)
+
+        def note(block: _Block, _: Any) -> None:
+            nonlocal count
+            count += size(block)
+            self.progress(count)
+
+        drive(self.engine, blocks, task, lambda b: (*arguments(b), self.threads), note, self.signals)
+        return count
+
+
+@dataclass(frozen=True)
+class By:
+    """Who draws this time, and who hears of it."""
+
+    engine: Engine | None
+    threads: int | None
+    progress: Progress
+
+    def __post_init__(self) -> None:
+        if self.threads is not None and self.threads < 1:
+            raise ValueError(f"threads = {self.threads}: give a whole number >= 1")
+
+    @contextmanager
+    def at_work(self) -> Iterator[Session]:
+        """The engine given, left open; or threads of this process."""
+        with heed_signals() as signals:
+            if self.engine is not None:
+                yield Session(self.engine, False, 1, self.progress, signals)
+                return
+            with closing(Threads()) as own:
+                yield Session(own, True, self.threads, self.progress, signals)
