@@ -48,7 +48,7 @@ Draw surfaces:
 Ask:
 
 =======================  =========================================================================
-`compare`                Monte Carlo against theory; the theory itself: ``scene.theory``
+`compare`                an ensemble or a sweep against theory; the theory itself: ``scene.theory``
 ``scene.validity()``     how far the model is from elasticity, as it was measured
 `regrade`                another grading or contact law, same surfaces; `paired_ratio` of the two
 `solve`                  the separation at a load, pressure or area
@@ -120,7 +120,7 @@ if TYPE_CHECKING:
     from mcgw.scene.scene_file import load_scene, scene_from, scene_text
     from mcgw.scene.section import SceneError
     from mcgw.scene.surface import SpectralSurface, Surface
-    from mcgw.statistics.comparison import compare
+    from mcgw.statistics.compared import compare
     from mcgw.statistics.convergence import converge
     from mcgw.statistics.tradeoff import tradeoff
     from mcgw.store.ensembles import open_ensemble
@@ -202,7 +202,7 @@ _HOME = {
     "SpectralSurface": "scene.surface",
     "StoreError": "errors",
     "Surface": "scene.surface",
-    "compare": "statistics.comparison",
+    "compare": "statistics.compared",
     "converge": "statistics.convergence",
     "export": "exports.writing",
     "fit": "maps.from_file",

@@ -85,7 +85,7 @@ def test_the_snakefile(shell, tmp_path):
     assert done.returncode == 0, done.stderr
     work = tmp_path / "work"
     made = {path.name for path in (work / "out").iterdir()}
-    assert made == {"run.h5", "run.png", "run.shares", "sweep.h5", "sweep.shares"}
+    assert made == {"run.h5", "run.png", "run.shares", "sweep.h5", "sweep.png", "sweep.shares"}
     mcgw.run(mcgw.load_scene(work / "s.toml"), tmp_path / "alone.h5")
     assert verify(work / "out" / "run.h5") == verify(tmp_path / "alone.h5")
     assert mcgw.open_sweep(work / "out" / "sweep.h5").shape == (10,)

@@ -3,13 +3,13 @@
 import argparse
 from pathlib import Path
 
-HELP = "compare an ensemble with theory: table, figure, verdict (exit code 1 if they disagree)"
+HELP = "compare an ensemble or a sweep with theory: table, figure, verdict (exit code 1 if they disagree)"
 EXAMPLE = "mcgw compare demo.h5 -o demo.png"
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of this command."""
-    parser.add_argument("file", type=Path, metavar="FILE", help="ensemble file (HDF5)")
+    parser.add_argument("file", type=Path, metavar="FILE", help="ensemble file, or that of a sweep (HDF5)")
     parser.add_argument(
         "-o", "--output", type=Path, metavar="PNG", help="figure (.png, .pdf, .svg, ...); default: FILE.png"
     )
@@ -24,9 +24,13 @@ def execute(args: argparse.Namespace) -> int:
     from mcgw.reports.elasticity import against_elasticity
     from mcgw.reports.text import COMPARISON_HEADER, comparison_rows, comparison_table, verdict_line
     from mcgw.statistics.comparison import compare
-    from mcgw.store.ensembles import open_ensemble
+    from mcgw.store.ensembles import filetype_of, open_ensemble
 
     path = args.output or args.file.with_suffix(".png")
+    if filetype_of(args.file) == "mcgw-sweep":
+        from mcgw.commands.compare_sweep import compare_with_theory  # of which most files are none
+
+        return compare_with_theory(args, path)
     ensemble = open_ensemble(args.file)
     check_outputs([Output(path, figure_format()), *table_output(args.csv)], inputs=[args.file])
     from mcgw.figures.comparison import save_comparison

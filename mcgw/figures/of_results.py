@@ -14,6 +14,7 @@ from mcgw.ensemble.solved import Solution
 from mcgw.figures.comparison import draw_curve, title_of
 from mcgw.figures.convergence import draw_checks
 from mcgw.figures.style import MONTE_CARLO, SAMPLE, STYLE, THEORY, shown_title, step
+from mcgw.figures.sweep_comparison import draw_residuals
 from mcgw.figures.tradeoff import draw_methods
 from mcgw.formats.evenly import evenly
 from mcgw.maps.fit import Fit
@@ -21,6 +22,7 @@ from mcgw.maps.profile_fit import ProfileFit
 from mcgw.scene.samplers import promise_of
 from mcgw.statistics.comparison import Comparison
 from mcgw.statistics.convergence import Convergence
+from mcgw.statistics.sweep_comparison import SweepComparison
 from mcgw.statistics.tradeoff import Tradeoff
 from mcgw.sweeps.pairs import Slopes
 from mcgw.sweeps.sweep import Sweep
@@ -196,3 +198,8 @@ def _(result: ProfileFit, ax: Any) -> None:
     ax.set_title(f"from {len(result.lengths)} profile(s), alpha = {m.alpha:.3g}")
     ax.margins(y=0.3)  # room for the legend
     ax.legend()
+
+
+@_draw.register
+def _(result: SweepComparison, ax: Any) -> None:
+    draw_residuals(result, ax)

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.equal_pressure import at_pressures, common_pressures
 from mcgw.ensemble.results import MemoryResults
-from mcgw.figures.style import STYLE, power_of_ten
+from mcgw.figures.style import MONTE_CARLO, SAMPLE, STYLE, power_of_ten
 from mcgw.scene.samplers import promise_of
 
 __all__ = ["MOST_SURFACES", "PressureCurve", "pressure_curves", "pressure_figure"]
@@ -109,9 +109,9 @@ def pressure_figure(curve: PressureCurve) -> Figure:
         axes: Any = figure.add_subplot()
         if curve.band is not None:
             axes.fill_between(
-                curve.pressure, *curve.band, color="C0", alpha=0.22, lw=0, label="5 to 95 % of the surfaces"
+                curve.pressure, *curve.band, color=SAMPLE, alpha=0.6, lw=0, label="5 to 95 % of the surfaces"
             )
-        axes.plot(curve.pressure, curve.mean, color="C0", label="mean")
+        axes.plot(curve.pressure, curve.mean, color=MONTE_CARLO, label="mean")
         axes.set_xscale("log")
         _label(axes.xaxis, curve.pressure)
         if curve.logarithmic:

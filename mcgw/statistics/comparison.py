@@ -1,5 +1,6 @@
 """Monte Carlo against theory: where both meet."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, cast
 
@@ -19,7 +20,7 @@ from mcgw.scene.scene import Scene
 from mcgw.statistics.bounded import bounded_theory
 from mcgw.statistics.within_accuracy import allowance, beyond, farthest, told_apart
 
-__all__ = ["FALSE_ALARM", "Comparison", "Curve", "Verdict", "compare", "verdict"]
+__all__ = ["FALSE_ALARM", "Comparison", "Curve", "Tested", "Verdict", "compare", "tested", "verdict"]
 
 Array = NDArray[np.float64]
 
@@ -79,6 +80,36 @@ class Verdict:
     def agrees(self) -> bool:
         """False in one of `1/FALSE_ALARM` ensembles that follow the theory."""
         return self.p > FALSE_ALARM
+
+
+@dataclass(frozen=True)
+class Tested:
+    """What a verdict is on: means at some separations, arrays of shape (quantities, separations).
+
+    Parameters
+    ----------
+    quantities : tuple of str
+        Their names.
+    separations : ndarray
+        In order.
+    mean, theory : ndarray
+        Monte-Carlo and exact means, in SI units.
+    residual : ndarray
+        Their difference over the exact standard error, beyond what the scene's accuracy allows; 0 where
+        nothing fluctuates.
+    counts : ndarray of bool
+        Whether the mean is Gaussian enough for that to be read as a normal number.
+    verdict : Verdict
+        On all of them.
+    """
+
+    quantities: tuple[str, ...]
+    separations: Array
+    mean: Array
+    theory: Array
+    residual: Array
+    counts: NDArray[np.bool_]
+    verdict: Verdict
 
 
 @dataclass(frozen=True, repr=False)
@@ -184,30 +215,60 @@ def verdict(ensemble: Ensemble) -> Verdict:
     scene = ensemble.scene
     if scene.interaction is not None and not scene.interaction.nominal:
         return verdict(asperities_alone(ensemble))
+    return tested(scene, ensemble.n_surfaces, ensemble.mean, _MOST_SEPARATIONS).verdict
+
+
+def tested(scene: Scene, surfaces: int, mean: Callable[[str], Array], most: int) -> Tested:
+    """Means over so many surfaces against theory, as `verdict` does, at the given number of separations.
+
+    Parameters
+    ----------
+    scene : Scene
+        Whose asperities do not press each other down, or find a balance on each surface.
+    surfaces : int
+        How many there are.
+    mean : callable
+        Means of a quantity in SI units, shape (separations,), by its name.
+    most : int
+        Separations to take, evenly.
+    """
     h = np.unique(scene.separations)
-    h = h[evenly(len(h), _MOST_SEPARATIONS)]
-    parts = bounded_theory(scene, ensemble.n_surfaces).fluctuations(scene.quantities, h)
+    h = h[evenly(len(h), most)]
+    parts = bounded_theory(scene, surfaces).fluctuations(scene.quantities, h)
     index = [scene.separations.index(x) for x in h]
-    means = [ensemble.mean(q)[index] / quantity_of(q).scale(scene.surface) for q in scene.quantities]
+    scale = np.repeat([quantity_of(q).scale(scene.surface) for q in scene.quantities], len(h))
     exact = scene.n_asperities * parts.mean
-    difference = np.concatenate(means) - exact
-    asperities = float(scene.n_asperities) * ensemble.n_surfaces
+    means = np.concatenate([mean(q)[index] for q in scene.quantities])
+    difference = means / scale - exact
+    asperities = float(scene.n_asperities) * surfaces
 
     variance = parts.moment(2)
     varies = np.flatnonzero(variance > 0)
     unit = np.sqrt(variance[varies])
     parts = parts.take(varies, unit)
-    errors = np.sqrt(ensemble.n_surfaces / scene.n_asperities) / unit
+    errors = np.sqrt(surfaces / scene.n_asperities) / unit
     z = difference[varies] * errors
     usable = _gaussian(parts, asperities) & (_left_out(scene, h)[varies] * errors < _SMALL)
-    allowed = allowance(scene, exact[varies], 1 / errors)[usable]
-    parts, z = parts.take(usable), beyond(z[usable], allowed)
+    allowed = allowance(scene, exact[varies], 1 / errors)
+    residual, counts = np.zeros(len(means)), np.zeros(len(means), dtype=np.bool_)
+    residual[varies], counts[varies] = beyond(z, allowed), usable
+    parts, z, allowed = parts.take(usable), beyond(z, allowed)[usable], allowed[usable]
     axes = parts.whitening(max(_resolved(scene, h), told_apart(allowed)))
     axes = axes[:, _gaussian(parts.turned(axes), asperities)]
     chi_square = float(np.sum((z @ axes) ** 2))
     degrees = axes.shape[1]
     p = float(chdtrc(degrees, chi_square)) if degrees else 1.0
-    return Verdict(chi_square, degrees, p if scene.exact else min(1.0, 2 * min(p, farthest(z))))
+    found = Verdict(chi_square, degrees, p if scene.exact else min(1.0, 2 * min(p, farthest(z))))
+    shape = len(scene.quantities), len(h)
+    return Tested(
+        quantities=scene.quantities,
+        separations=h,
+        mean=means.reshape(shape),
+        theory=(exact * scale).reshape(shape),
+        residual=residual.reshape(shape),
+        counts=counts.reshape(shape),
+        verdict=found,
+    )
 
 
 def _resolved(scene: Scene, h: Array) -> float:

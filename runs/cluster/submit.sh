@@ -6,4 +6,4 @@ set -euo pipefail
 shares=$1 file=$2
 shift 2
 array=$(sbatch --parsable --array="1-$shares" "$(dirname "$0")/share.sbatch" "$@" -o "$file")
-sbatch --dependency="afterok:$array" --job-name=mcgw-merge --wrap "mcgw merge '$file' && mcgw show '$file'"
+sbatch --dependency="afterok:$array" --job-name=mcgw-merge --wrap "mcgw merge '$file' && mcgw compare '$file'"

@@ -1,0 +1,220 @@
+"""The points of a sweep against theory: each against its own, with one verdict on all of them."""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from analytic import quantity_of
+from mcgw.ensemble.asperities_alone import scene_alone
+from mcgw.formats.sheet import Sheet, Shown
+from mcgw.machine.late import plotted
+from mcgw.machine.progress import Progress, told
+from mcgw.scene.samplers import promise_of
+from mcgw.scene.scene import Scene
+from mcgw.statistics.comparison import FALSE_ALARM, Tested, tested
+from mcgw.sweeps.sweep import Sweep
+
+__all__ = ["PointTested", "SweepComparison", "SweepVerdict", "compare_sweep"]
+
+Array = NDArray[np.float64]
+
+_SEPARATIONS = 12  # of a point, at most: what theory takes grows as their square
+_LISTED = 7
+
+
+@dataclass(frozen=True)
+class SweepVerdict:
+    """A test of all points at once.
+
+    Parameters
+    ----------
+    smallest : float
+        The smallest probability of a point: of a chi-square as large as its own, by chance.
+    points : int
+        How many are tested.
+    """
+
+    smallest: float
+    points: int
+
+    @property
+    def p(self) -> float:
+        """Probability that any of so many points has one as small, at most (Bonferroni).
+
+        It holds whatever points have in common, their surfaces too.
+        """
+        return min(1.0, self.points * self.smallest)
+
+    @property
+    def agrees(self) -> bool:
+        """False in at most one of `1/FALSE_ALARM` sweeps that follow the theory."""
+        return self.p > FALSE_ALARM
+
+
+@dataclass(frozen=True)
+class PointTested:
+    """One point against its theory.
+
+    Parameters
+    ----------
+    number : int
+        Of the point, the last axis fastest.
+    tested : Tested
+        Its means, and the verdict on them.
+    """
+
+    number: int
+    tested: Tested
+
+    @property
+    def worst(self) -> tuple[int, int]:
+        """Quantity and separation, by number, of the mean that is farthest off, of those that count."""
+        off = np.where(self.tested.counts, np.abs(self.tested.residual), -1.0)
+        quantity, separation = divmod(int(np.argmax(off)), len(self.tested.separations))
+        return quantity, separation
+
+    @property
+    def unlikely(self) -> tuple[float, float]:
+        """What orders points: the probability by chance, and for equal ones how far off the worst mean is."""
+        return self.tested.verdict.p, -abs(float(self.tested.residual[self.worst]))
+
+
+@dataclass(frozen=True, repr=False)
+class SweepComparison(Shown):
+    """A comparison of a sweep with theory.
+
+    Parameters
+    ----------
+    sweep : Sweep
+        What was compared.
+    points : tuple of PointTested
+        Those that can be: whose surfaces fluctuate as real ones do.
+    """
+
+    sweep: Sweep
+    points: tuple[PointTested, ...]
+
+    @property
+    def verdict(self) -> SweepVerdict:
+        """On all points together."""
+        return SweepVerdict(min(one.tested.verdict.p for one in self.points), len(self.points))
+
+    @cached_property
+    def worst(self) -> list[PointTested]:
+        """The points, those first whose means are the least likely by chance."""
+        return sorted(self.points, key=lambda one: one.unlikely)
+
+    @property
+    def residuals(self) -> Array:
+        """Of all points, quantities and separations that count: standard normal each, and not independent."""
+        return np.concatenate([one.tested.residual[one.tested.counts] for one in self.points])
+
+    def plot(self, ax: Any = None) -> Any:
+        """Draw how the residuals of all points are distributed; returns the axes."""
+        return plotted(self, ax)
+
+    def sheet(self) -> Sheet:
+        """The verdict, and the points that are farthest from theory."""
+        return self.sheet_of(_LISTED)
+
+    def sheet_of(self, most: int) -> Sheet:
+        """As `sheet`, with so many points."""
+        v = self.verdict
+        word = "agree" if v.agrees else "DISAGREE"
+        left = self.sweep.axes.size - v.points
+        beyond = int((np.abs(self.residuals) > 3).sum())
+        facts = [
+            ("all points", f"p = {v.p:.3g}: {v.points} times the smallest p of a point, {v.smallest:.3g}"),
+            ("residuals", f"{beyond} of {len(self.residuals)} beyond 3 standard errors"),
+            *([("left out", f"{left} stratified points, whose surfaces are no real ones")] if left else []),
+        ]
+        head = [", ".join(self.sweep.axes.keys), "quantity", "d/sigma", "mean", "theory", "residual", "p"]
+        rows = [self._row(one) for one in self.worst[:most]]
+        return Sheet(f"Monte Carlo and theory of {v.points} scenes {word}", facts, head, rows)
+
+    def table(self) -> Iterator[list[float | str]]:
+        """A row for each point, quantity and separation, as `header` names them."""
+        points = list(self.sweep.axes.points())
+        for one in self.points:
+            t, at = one.tested, self.sweep.axes.at(points[one.number])
+            keys = [x if isinstance(x, int | float) else str(x) for x in at.values()]
+            for q, name in enumerate(t.quantities):
+                for k, h in enumerate(t.separations):
+                    yield [*keys, name, h, t.mean[q, k], t.theory[q, k], t.residual[q, k], t.verdict.p]
+
+    @property
+    def header(self) -> list[str]:
+        """Of `table`."""
+        return [*self.sweep.axes.keys, "quantity", "separation", "mean", "theory", "residual", "p_of_point"]
+
+    def _row(self, one: PointTested) -> list[str]:
+        t, (q, k) = one.tested, one.worst
+        point = list(self.sweep.axes.points())[one.number]
+        name, unit = t.quantities[q], quantity_of(t.quantities[q]).unit
+        where = [name if unit == "1" else f"{name} ({unit})", f"{t.separations[k]:g}"]
+        numbers = [f"{t.mean[q, k]:.6g}", f"{t.theory[q, k]:.6g}", f"{t.residual[q, k]:+.2f}"]
+        return [self.sweep.axes.values_text(point), *where, *numbers, f"{t.verdict.p:.2g}"]
+
+
+def compare_sweep(sweep: Sweep, *, progress: Progress = None) -> SweepComparison:
+    """Compare the means of every point of a sweep with its own theory.
+
+    Each point is tested as an ensemble is, at twelve separations at most; of asperities that press each other
+    down, stiffnesses are left out, for of the surfaces only their means in series with the half-space are
+    kept.
+
+    Parameters
+    ----------
+    sweep : Sweep
+        From `mcgw.sweep` or `mcgw.open_sweep`.
+    progress : bool or callable, optional
+        True: a bar; a function: called with (done, total) points.
+
+    Returns
+    -------
+    SweepComparison
+        With one verdict on all points.
+
+    Raises
+    ------
+    ValueError
+        If no point has surfaces that fluctuate as real ones do.
+
+    Examples
+    --------
+    >>> import mcgw
+    >>> surface = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "1 mm^2", "78.6 GPa")
+    >>> scene = mcgw.Scene(surface, separations=[0, 1], n_surfaces=100, seed=1)
+    >>> compared = mcgw.compare(mcgw.sweep(scene, {"grading.gamma": [0.5, 1.0, 2.0]}))
+    >>> compared.verdict.agrees, compared.verdict.points
+    (True, 3)
+    """
+    means = {name: sweep.mean(name).reshape(sweep.axes.size, -1) for name in sweep.scenes[0].quantities}
+    found = []
+    with told(progress, "points") as tell:
+        for i in range(sweep.axes.size):
+            tell(i, sweep.axes.size)
+            scene = sweep.scenes[i]
+            if promise_of(scene.sampler).real_surfaces:
+                surfaces = sweep.groups[sweep.places[i].group].n
+                found.append(
+                    PointTested(i, _tested(scene, surfaces, {q: x[i] for q, x in means.items()}.get))
+                )
+        tell(sweep.axes.size, sweep.axes.size)
+    if not found:
+        raise ValueError("stratified points hold means, not ensembles; compare takes another sampler")
+    return SweepComparison(sweep, tuple(found))
+
+
+def _tested(scene: Scene, surfaces: int, mean: Callable[[str], Any]) -> Tested:
+    """A point as its asperities are by themselves, where these press each other down."""
+    if scene.interaction is not None and not scene.interaction.nominal:
+        from analytic.interacting import is_stiffness  # who asks for no interaction needs none of it
+
+        names = tuple(name for name in scene.quantities if not is_stiffness(name))
+        scene = scene_alone(scene, "this").replace(quantities=names)
+    return tested(scene, surfaces, mean, _SEPARATIONS)
