@@ -13,7 +13,7 @@ from mcgw.formats.pictures import save_figure
 from mcgw.machine.terminal import one_line
 from mcgw.statistics.sweep_comparison import SweepComparison
 
-__all__ = ["draw_residuals", "save_sweep_comparison"]
+__all__ = ["draw_residuals", "save_sweep_comparison", "sweep_figure"]
 
 _BIN = 0.5  # standard errors
 _CAPTION = (
@@ -23,14 +23,24 @@ _CAPTION = (
 
 
 def save_sweep_comparison(comparison: SweepComparison, path: str | Path) -> None:
-    """Draw the distribution of all residuals, and those of the worst point along the separations.
+    """Write `sweep_figure`; the ending chooses the format: .png, .pdf, .svg."""
+    figure = sweep_figure(comparison)
+    with mpl.rc_context(STYLE):
+        save_figure(figure, path)
+
+
+def sweep_figure(comparison: SweepComparison) -> Figure:
+    """The distribution of all residuals, and those of the worst point along the separations.
 
     Parameters
     ----------
     comparison : SweepComparison
         From `mcgw.statistics.sweep_comparison.compare_sweep`.
-    path : str or Path
-        The ending chooses the format: .png, .pdf, .svg.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        Two panels beside each other.
     """
     verdict, sweep = comparison.verdict, comparison.sweep
     word = "agree" if verdict.agrees else "DISAGREE"
@@ -45,7 +55,7 @@ def save_sweep_comparison(comparison: SweepComparison, path: str | Path) -> None
             fontsize=10,
         )
         figure.supxlabel(_CAPTION, fontsize=8, color=PAPER)
-        save_figure(figure, path)
+    return figure
 
 
 def draw_residuals(comparison: SweepComparison, axis: Any) -> None:
