@@ -54,6 +54,15 @@ class SweepVerdict:
         """False in at most one of `1/FALSE_ALARM` sweeps that follow the theory."""
         return self.p > FALSE_ALARM
 
+    @property
+    def line(self) -> str:
+        """Do they agree, and how sure is that."""
+        word = "agree" if self.agrees else "DISAGREE"
+        return (
+            f"Monte Carlo and theory of this model {word}: p = {self.p:.3g} for {self.points} points "
+            f"together (false alarms: at most 1 in {1 / FALSE_ALARM:.0f})"
+        )
+
 
 @dataclass(frozen=True)
 class PointTested:
