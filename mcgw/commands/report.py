@@ -9,7 +9,7 @@ EXAMPLE = "mcgw report demo.h5 -o demo.html"
 
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of this command."""
-    parser.add_argument("file", type=Path, metavar="FILE", help="ensemble file (HDF5)")
+    parser.add_argument("file", type=Path, metavar="FILE", help="ensemble file, or that of a sweep (HDF5)")
     parser.add_argument("-o", "--output", type=Path, metavar="HTML", help="default: FILE.html")
 
 
@@ -19,9 +19,13 @@ def execute(args: argparse.Namespace) -> int:
     from mcgw.commands.outputs import HTML, Output, check_outputs
     from mcgw.formats.files import write_whole
     from mcgw.reports.html import report_html
-    from mcgw.store.ensembles import open_ensemble, read_attributes
+    from mcgw.store.ensembles import filetype_of, open_ensemble, read_attributes
 
     path = args.output or args.file.with_suffix(".html")
+    if filetype_of(args.file) == "mcgw-sweep":
+        from mcgw.commands.report_sweep import report_sweep  # of which most files are none
+
+        return report_sweep(args, path)
     ensemble = open_ensemble(args.file)
     check_outputs([Output(path, HTML)], inputs=[args.file])
     tell_notes(ensemble.scene)

@@ -21,7 +21,14 @@ from mcgw.figures.style import STYLE
 from mcgw.formats.pictures import write_figure
 from mcgw.statistics.comparison import Comparison
 
-__all__ = ["PageFigure", "comparison_figures", "means_figures", "patch_pictures", "pressure_pictures"]
+__all__ = [
+    "PageFigure",
+    "comparison_figures",
+    "line_figure",
+    "means_figures",
+    "patch_pictures",
+    "pressure_pictures",
+]
 
 _DPI = 150
 _FITTED = "Fitted to "  # how titles of scenes that mcgw fit writes begin, before the name of the map
@@ -52,9 +59,9 @@ class PageFigure:
 def comparison_figures(comparison: Comparison) -> list[PageFigure]:
     """Each quantity with its theory, and how far surfaces spread."""
     names = comparison.ensemble.scene.quantities
-    found = [_lines(quantity_figure(comparison, name), quantity_of(name).long_name) for name in names]
+    found = [line_figure(quantity_figure(comparison, name), quantity_of(name).long_name) for name in names]
     if comparison.ensemble.n_surfaces > 1:
-        found.append(_lines(draw(_spread(comparison)), "std over mean against separation"))
+        found.append(line_figure(draw(_spread(comparison)), "std over mean against separation"))
     return found
 
 
@@ -68,7 +75,7 @@ def means_figures(ensemble: Ensemble) -> list[PageFigure]:
         series = Series("theory, and means", h, exact, Points(h, mean, np.zeros(len(h)), exact))
         panel = Panel(title_of(name), "separation d/σ", quantity_of(name).unit, (series,), ("linear", "log"))
         figure = draw(FigureData(name, "", "Line: exact. Markers: means.", (panel,), columns=1))
-        found.append(_lines(figure, quantity_of(name).long_name))
+        found.append(line_figure(figure, quantity_of(name).long_name))
     return found
 
 
@@ -77,7 +84,7 @@ def pressure_pictures(ensemble: Ensemble) -> Iterator[PageFigure]:
     for curve in pressure_curves(ensemble):
         low, high = curve.pressure[[0, -1]]
         label = f"{curve.title} against nominal pressure from {low:.3g} to {high:.3g} MPa"
-        yield _lines(pressure_figure(curve), label)
+        yield line_figure(pressure_figure(curve), label)
 
 
 def patch_pictures(ensemble: Ensemble) -> list[PageFigure]:
@@ -107,7 +114,7 @@ def patch_pictures(ensemble: Ensemble) -> list[PageFigure]:
     ]
 
 
-def _lines(figure: Figure, label: str) -> PageFigure:
+def line_figure(figure: Figure, label: str) -> PageFigure:
     """An SVG element that takes the width it is given."""
     buffer = io.StringIO()
     with mpl.rc_context(STYLE | {"svg.hashsalt": label}):

@@ -1,0 +1,45 @@
+"""A report of a sweep: one HTML page, with the same look as that of an ensemble."""
+
+from typing import Any
+
+from mcgw.figures.sweep_comparison import sweep_figure
+from mcgw.machine.terminal import one_line, plain_text
+from mcgw.reports.html import rendered
+from mcgw.reports.report_facts import provenance_facts
+from mcgw.reports.report_figures import line_figure
+from mcgw.statistics.sweep_comparison import SweepComparison
+from mcgw.sweeps.sweep import Sweep
+
+__all__ = ["sweep_report_html"]
+
+_LISTED = 12  # points
+
+
+def sweep_report_html(comparison: SweepComparison, cautions: list[str], attributes: dict[str, Any]) -> str:
+    """The page of a compared sweep, of its cautions and the attributes of its file: scene, digest, ..."""
+    sweep, verdict = comparison.sweep, comparison.verdict
+    sheet = comparison.sheet_of(_LISTED)
+    first = sweep.scenes[0]
+    return rendered(
+        "sweep.html.j2",
+        title=one_line(first.title) or "Sweep of scenes",
+        agrees=verdict.agrees,
+        verdict=verdict.line,
+        words=_words(sweep),
+        figure=line_figure(sweep_figure(comparison), "residuals of all points, and of the worst one"),
+        header=sheet.header,
+        rows=sheet.rows,
+        cautions=cautions,
+        axes=[(key, sweep.axes.summary(key)) for key in sweep.axes.keys],
+        provenance=provenance_facts({"sampler": first.sampler, **attributes}, first.seed),
+        scene=plain_text(attributes["scene"]),
+    )
+
+
+def _words(sweep: Sweep) -> str:
+    h = sweep.separations
+    return (
+        f"{sweep.axes.size} scenes at {len(h)} separations from d/σ = {h.min():g} to {h.max():g}; "
+        f"{sum(group.n for group in sweep.groups)} surfaces were drawn, in {len(sweep.groups)} groups whose "
+        "points share theirs."
+    )
