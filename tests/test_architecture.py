@@ -213,7 +213,7 @@ def test_compiled_functions_call_those_of_their_own_layer():
     """Whose files are all that is looked at to know whether what was kept is old."""
     for name, tree in inside():
         if any(isinstance(node, ast.Name) and node.id == "njit" for node in ast.walk(tree)):
-            assert name.startswith(("sampling.", "maps.")), name
+            assert name.startswith(("sampling.", "maps.", "ensemble.")), name
             if name.startswith("maps."):
                 assert not any(other.startswith("sampling") for other in imports(tree)), name
 

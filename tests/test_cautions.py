@@ -158,7 +158,7 @@ def test_what_was_not_reached_is_said_after(make_scene):
     ensemble = mcgw.simulate(
         make_scene(n_surfaces=100, separations=(0.0, 3.0, 9.0), quantities=("load", "area"))
     )
-    lines = after(ensemble, 0.02)
+    lines = after(ensemble, ensemble.scene.replace(rel_err=0.02))
     silent = [line for line in lines if "no contact" in line]
     assert len(silent) == 1
     limit = -np.log(0.05) / 100
@@ -171,7 +171,7 @@ def test_what_was_not_reached_is_said_after(make_scene):
         mean = ensemble.mean(name)[1]
         assert float(width) == pytest.approx((high[1] - mean) / mean, rel=0.06)
         assert low[1] < mean
-    assert len(after(ensemble, 1.0)) == 1
+    assert len(after(ensemble, ensemble.scene)) == 1
 
 
 def of_alpha(alpha, **changes):

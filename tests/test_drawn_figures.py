@@ -20,7 +20,7 @@ from mcgw.figures.data import FigureData, Panel, Points, Series
 from mcgw.figures.drawing import draw
 from mcgw.figures.style import power_of_ten
 from mcgw.figures.tradeoff import save_tradeoff
-from mcgw.reports.html import _spread
+from mcgw.reports.report_figures import _relative_error, _spread
 from mcgw.statistics.checks import Check, Slope
 from mcgw.statistics.comparison import Comparison, Curve, Verdict, compare
 from mcgw.statistics.convergence import Convergence
@@ -215,6 +215,19 @@ def test_spread_of_the_report_is_std_over_mean(comparison):
         np.testing.assert_allclose(series.points.exact, spread, rtol=1e-7)
         np.testing.assert_array_equal(series.x, np.sort(H))
         np.testing.assert_allclose(series.theory, spread[np.argsort(H)], rtol=1e-7)
+
+
+def test_error_of_std_over_mean_is_that_of_repetitions(comparison):
+    """400 ensembles of 200 surfaces: their deviation is known to 3.5 %, so 15 % is four of that."""
+    scene = comparison.ensemble.scene.replace(separations=[0.0, 2.0], n_surfaces=80_000, seed=9)
+    values = mcgw.simulate(scene).load.reshape(400, 200, 2)
+    ratio = values.std(axis=1, ddof=1) / values.mean(axis=1)
+    told = (
+        _relative_error(scene, "load")
+        * scene.theory.std("load", [0.0, 2.0])
+        / scene.theory.mean("load", [0.0, 2.0])
+    )
+    np.testing.assert_allclose(told / np.sqrt(200), ratio.std(axis=0), rtol=0.15)
 
 
 X = np.array([1.0, 2.0, 4.0])

@@ -5,7 +5,7 @@ import threading
 import pytest
 from numba import get_num_threads
 
-from mcgw.ensemble.simulation import use_threads
+from mcgw.ensemble.drawing import use_threads
 from mcgw.machine.in_threads import in_threads, pieces
 
 

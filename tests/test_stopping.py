@@ -62,8 +62,10 @@ def test_the_interval_printed_is_as_narrow_as_asked(make_scene):
         for name, most in (("load", 0.05), ("area", 0.05), ("stiffness", 0.05), ("contacts", 0.055)):
             low, high = ensemble.interval(name)
             assert max((high / ensemble.mean(name) - 1).max(), (1 - low / ensemble.mean(name)).max()) <= most
-        assert after(ensemble, 0.05) == []
-        assert len(after(ensemble, 0.045)) == 1  # the companion: only the load at h = 2 is known no better
+        assert after(ensemble, scene) == []
+        assert (
+            len(after(ensemble, replace(scene, rel_err=0.045))) == 1
+        )  # the companion: only the load at h = 2 is known no better
 
 
 def covered(scene, means, n):
@@ -149,7 +151,7 @@ def test_whoever_draws_it_is_one_ensemble(make_scene, tmp_path, monkeypatch, cap
     (tmp_path / "scene.toml").write_text(mcgw.scene_text(scene))
     assert main(["run", str(tmp_path / "scene.toml"), "-o", str(tmp_path / "f.h5")]) == 0
     assert f"{n} surfaces" in capsys.readouterr().out
-    monkeypatch.setattr("mcgw.ensemble.simulation.block_size", lambda *_: 37)
+    monkeypatch.setattr("mcgw.ensemble.drawing.block_size", lambda *_: 37)
     again = simulate(scene, threads=2)
     monkeypatch.setattr("mcgw.jobs.job.block_size", lambda *_: 37)
     monkeypatch.setattr("mcgw.jobs.job._BYTES", 1)
@@ -186,7 +188,7 @@ def test_what_nothing_reaches_is_reported_and_not_waited_for(make_scene):
     with pytest.warns(UserWarning, match=r"4 means need more surfaces than max_surfaces allows, such as"):
         ensemble = simulate(scene)
     assert ensemble.n_surfaces == 64
-    assert f"no contact in {ensemble.n_surfaces} surfaces" in after(ensemble, 0.1)[0]
+    assert f"no contact in {ensemble.n_surfaces} surfaces" in after(ensemble, scene)[0]
     assert upper_contacts(100) == pytest.approx(-np.log(0.05) / 100, rel=1e-14)
 
 
@@ -265,3 +267,65 @@ def test_a_rule_reads_back():
     scene = mcgw.scene_from(text)
     assert (scene.rel_err, scene.n_surfaces, scene.max_seconds) == (0.01, 7, 3.0)
     assert mcgw.scene_from(mcgw.scene_text(scene)) == scene
+
+
+def asked(rel_err, **changes):
+    from conftest import SURFACE
+
+    given = {"separations": (0.0, 1.0, 2.0), "seed": 1, "n_asperities": 3000, **changes}
+    return mcgw.Scene(SURFACE, rel_err=rel_err, **given)
+
+
+def test_each_quantity_may_have_its_own_number():
+    """What is asked of one quantity or separation alone is what one number for all asks of it."""
+    needed = forecast(asked(1e-2)).needed
+    one = forecast(asked({"load": "1 %"}))
+    assert set(one.needed) == {"load"}
+    np.testing.assert_array_equal(one.needed["load"], needed["load"])
+    assert one.surfaces == next(n for n in checkpoints(10**9) if n >= needed["load"].max())
+    two = forecast(asked({"load": [1e-2, np.inf, np.inf], "contacts": 5e-2}))
+    np.testing.assert_array_equal(two.needed["load"], [needed["load"][0], 0, 0])
+    np.testing.assert_array_equal(two.needed["contacts"], forecast(asked(5e-2)).needed["contacts"])
+    assert two.surfaces < one.surfaces < forecast(asked({"load": 5e-3})).surfaces
+    every = dict.fromkeys(asked(1e-2).quantities, 1e-2)
+    assert forecast(asked(every)).surfaces == forecast(asked(1e-2)).surfaces
+
+
+def test_means_are_known_as_well_as_each_was_asked(tmp_path):
+    scene = asked({"load": 2e-2, "contacts": [5e-3, np.inf, 1e-2]})
+    for e in (run(scene, tmp_path / "a.h5"), simulate(scene, keep="statistics")):
+        low, high = e.interval("load")
+        assert np.all(np.maximum(high / e.mean("load") - 1, 1 - low / e.mean("load")) <= 2.1e-2)
+        low, high = e.interval("contacts")
+        reach = np.maximum(high / e.mean("contacts") - 1, 1 - low / e.mean("contacts"))
+        assert reach[0] <= 5.2e-3
+        assert reach[2] <= 1.05e-2
+        assert after(e, scene) == []
+        assert after(e, asked({"load": 1e-3}))[0].startswith("load at d/sigma = 0 is known to")
+
+
+def test_a_scene_file_tells_them():
+    from mcgw.scene.scene_file import scene_from, scene_text
+
+    scene = asked({"load": 1e-3, "contacts": [1e-2, np.inf, 5e-2]})
+    assert scene_from(scene_text(scene)) == scene
+    assert "until rel_err = load 0.001, contacts 0.01 at best" in str(scene)
+
+
+@pytest.mark.parametrize(
+    ("rel_err", "told"),
+    [
+        ({}, "name at least one quantity"),
+        ({"lod": 1e-3}, r"ensemble\.rel_err\.lod: is not among contact\.quantities"),
+        ({"load": 0.5}, r"ensemble\.rel_err\.load = 0\.5: give a number > 0 and at most 0\.1"),
+        ({"load": np.inf}, r"ensemble\.rel_err\.load = inf"),
+        ({"load": [1e-3, 1e-3]}, "has 2 values; give one for each of 3 separations"),
+        ({"load": [1e-3, -1.0, 1e-3]}, r"ensemble\.rel_err\.load\.1 = -1\.0"),
+        ({"load": True}, r"ensemble\.rel_err\.load = True"),
+        ({"load": {"a": 1}}, r"ensemble\.rel_err\.load = "),
+        ([1e-3], r"ensemble\.rel_err = "),
+    ],
+)
+def test_mistakes_are_told(rel_err, told):
+    with pytest.raises(SceneError, match=told):
+        asked(rel_err)

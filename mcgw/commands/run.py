@@ -74,7 +74,7 @@ def _execute(args: argparse.Namespace) -> int:
 
 def _tell_forecast(scene: "Scene", expected: "Forecast") -> None:
     """Say what the rule will take."""
-    from mcgw.ensemble.simulation import seconds_per_surface
+    from mcgw.ensemble.drawing import seconds_per_surface
     from mcgw.reports.stop_rule import before
     from mcgw.sampling.samplers import sampler_of
 

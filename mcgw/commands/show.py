@@ -55,11 +55,11 @@ def execute(args: argparse.Namespace) -> int:
     elif args.digest:
         print(attributes["digest"])
     else:
-        from mcgw.reports.text import SUMMARY_HEADER, summary, summary_rows
+        from mcgw.reports.text import summary, summary_header, summary_rows
 
         ensemble = open_ensemble(args.file)
         check_outputs(table_output(args.csv), inputs=[args.file])
         tell_notes(ensemble.scene)
         print(summary(ensemble, attributes))
-        write_table(args.csv, SUMMARY_HEADER, summary_rows(ensemble))
+        write_table(args.csv, summary_header(ensemble), summary_rows(ensemble))
     return 0

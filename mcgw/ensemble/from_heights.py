@@ -6,9 +6,9 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from mcgw.ensemble.drawing import answered
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.same_surfaces import check_same
-from mcgw.ensemble.simulation import answered
 from mcgw.sampling.asperities import listing_sampler, summits_drawn
 from mcgw.sampling.law_sums import asperity_sums
 from mcgw.scene.drawn_by import drawn_by

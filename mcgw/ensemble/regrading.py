@@ -10,11 +10,11 @@ from numpy.typing import ArrayLike, NDArray
 from analytic import Grading, quantity_of
 from analytic.laws import ContactLaw, half_spaces
 from mcgw.ensemble.asperities_alone import scene_alone
+from mcgw.ensemble.drawing import answered, blocks, kept
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.from_heights import sums_of_heights
 from mcgw.ensemble.results import MemoryResults, joined
 from mcgw.ensemble.same_surfaces import check_same
-from mcgw.ensemble.simulation import answered, blocks, kept
 from mcgw.sampling.block import Block
 from mcgw.sampling.counted import Counted
 from mcgw.sampling.samplers import regraded, sampler_of
@@ -82,7 +82,7 @@ def regrade(
         If each surface finds its own balance (``interaction.at = "nominal"``), the ensemble has no cells, a
         separation or break is not an edge of them, the moments kept do not resolve what is asked, or the
         surfaces that are drawn again are not those of the ensemble (of another version, or of a run that is
-        not finished).
+        not finished), or only statistics are kept.
     SceneError, TypeError
         As from `mcgw.Scene.replace`.
 
@@ -99,11 +99,20 @@ def regrade(
     array([0.7, 0.7, 0.8])
     """
     scene_alone(ensemble.scene, "regrade")
+    _check_kept(ensemble)
     scene = storable(regraded_scene(ensemble, grading, law, quantities, separations, contact))
     scene_alone(scene, "regrade")
     cells = _fitting(ensemble, scene)
     parts = list(_of_moments(ensemble, scene, cells) if cells else _of_heights(ensemble, scene))
     return Ensemble(scene, ensemble.sampler, MemoryResults(joined(parts)), ensemble.surfaces_of)
+
+
+def _check_kept(ensemble: Ensemble) -> None:
+    if ensemble.scene.keep == "statistics":
+        raise ValueError(
+            'keep = "statistics": single surfaces are not kept, to be compared with those drawn again; '
+            "simulate the scene with the other grading or law, its seed gives the same surfaces"
+        )
 
 
 def regraded_scene(

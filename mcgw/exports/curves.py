@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.equal_pressure import at_pressures, common_pressures
+from mcgw.ensemble.with_values import with_values
 from mcgw.exports.kinds import Kind
 from mcgw.formats.evenly import evenly
 from mcgw.scene.samplers import promise_of
@@ -16,6 +17,7 @@ __all__ = ["Curve", "curves_of", "quantile_name"]
 Array = NDArray[np.float64]
 Range = tuple[float, float]
 
+_MOST = 2000  # surfaces drawn again where an ensemble keeps statistics alone
 _FEWEST = 2  # points of a curve
 
 
@@ -65,12 +67,13 @@ def curves_of(
     if quantiles and not promise_of(ensemble.sampler).real_surfaces:
         raise ValueError(f"quantiles: {ensemble.sampler} surfaces have means only; leave it out")
     if kind.against == "gap":
-        x, y = _at_gaps(ensemble, kind, pressures, points)
+        x, mean, some = _at_gaps(ensemble, kind, pressures, points, quantiles)
     else:
-        x, y = _at_pressures(ensemble, kind, pressures, points)
-    y = y / (1.0 if kind.quantity == "pressure" else ensemble.scene.surface.nominal_area)
-    found = [Curve("mean", x, y.mean(axis=0))]
-    found += [Curve(quantile_name(q), x, np.quantile(y, q, axis=0)) for q in quantiles]
+        x, y = _at_pressures(with_values(ensemble, _MOST), kind, pressures, points)
+        mean, some = y.mean(axis=0), [np.quantile(y, q, axis=0) for q in quantiles]
+    area = 1.0 if kind.quantity == "pressure" else ensemble.scene.surface.nominal_area
+    found = [Curve("mean", x, mean / area)]
+    found += [Curve(quantile_name(q), x, y / area) for q, y in zip(quantiles, some, strict=True)]
     return [_one_way(curve, kind) for curve in found]
 
 
@@ -80,7 +83,10 @@ def quantile_name(quantile: float) -> str:
     return f"q{digits.zfill(2)}" if "." not in digits else f"q{digits}"
 
 
-def _at_gaps(ensemble: Ensemble, kind: Kind, pressures: Array | None, points: int) -> tuple[Array, Array]:
+def _at_gaps(
+    ensemble: Ensemble, kind: Kind, pressures: Array | None, points: int, quantiles: tuple[float, ...]
+) -> tuple[Array, Array, list[Array]]:
+    """Gaps, means there, and each quantile."""
     order = np.argsort(ensemble.separations, kind="stable")
     mean = ensemble.mean("pressure")[order]
     if np.any(mean < 0):
@@ -96,7 +102,8 @@ def _at_gaps(ensemble: Ensemble, kind: Kind, pressures: Array | None, points: in
     h, first = np.unique(ensemble.separations[order], return_index=True)
     order = order[first]
     name = "pressure" if kind.quantity == "pressure" else kind.dataset
-    return h * ensemble.scene.surface.sigma, ensemble.values(name)[:, order].astype(np.float64)
+    x = h * ensemble.scene.surface.sigma
+    return x, ensemble.mean(name)[order], [ensemble.quantile(name, q)[order] for q in quantiles]
 
 
 def _at_pressures(

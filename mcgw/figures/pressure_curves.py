@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.equal_pressure import at_pressures, common_pressures
 from mcgw.ensemble.results import MemoryResults
+from mcgw.ensemble.with_values import with_values
 from mcgw.figures.style import MONTE_CARLO, SAMPLE, STYLE, power_of_ten
 from mcgw.scene.samplers import promise_of
 
@@ -56,7 +57,7 @@ def pressure_curves(ensemble: Ensemble) -> list[PressureCurve]:
     """Of what an ensemble holds, each surface read off at the pressure; empty without a common one."""
     if "load" not in ensemble.scene.quantities:
         return []
-    first = _first(ensemble)
+    first = _first(with_values(ensemble, MOST_SURFACES))
     reach = common_pressures(first)
     if reach is None:
         return []

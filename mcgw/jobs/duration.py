@@ -1,12 +1,13 @@
 """How long a run will take, in a moment and in words."""
 
-from mcgw.ensemble.simulation import seconds_per_surface
+from mcgw.ensemble.drawing import seconds_per_surface
 from mcgw.sampling.block import Sampler
 from mcgw.scene.scene import Scene
 
 __all__ = ["in_words", "seconds_for"]
 
 _PER_SUM = 4e-9  # rough seconds of a result
+_PER_COUNT, _PER_PRODUCT = 4e-8, 2.5e-10  # rough seconds of a number, and of two, for statistics
 _TRIED = 0.05  # rough seconds of a surface up to which a block is drawn to see
 
 
@@ -19,7 +20,14 @@ def seconds_for(scene: Scene, sampler: Sampler, surfaces: int, *, at_least: floa
     rough = sampler.draws * sampler.seconds_per_draw + columns * _PER_SUM
     if rough * surfaces < at_least or rough > _TRIED:
         return rough * surfaces
-    return surfaces * seconds_per_surface(scene, sampler)
+    return surfaces * (seconds_per_surface(scene, sampler) + _seconds_of_statistics(scene))
+
+
+def _seconds_of_statistics(scene: Scene) -> float:
+    """Rough seconds that a surface takes once it is drawn, where its numbers are counted and not kept."""
+    if scene.keep != "statistics":
+        return 0.0
+    return scene.width * _PER_COUNT + scene.width**2 / 2 * _PER_PRODUCT
 
 
 def in_words(seconds: float) -> str:

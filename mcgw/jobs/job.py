@@ -6,8 +6,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from analytic import PiecewiseSeries
+from mcgw.ensemble.drawing import block_size, drawn_blocks, kept, use_threads
 from mcgw.ensemble.results import MemoryResults, Results, joined
-from mcgw.ensemble.simulation import block_size, drawn_blocks, kept, use_threads
 from mcgw.errors import StoreError
 from mcgw.formats.files import check_output
 from mcgw.jobs.disk_space import check_disk, check_space
@@ -69,7 +69,7 @@ class Job:
     def _check_space(self) -> None:
         """Refuse what does not fit the memory or the disk."""
         if self.scene.keep == "statistics":
-            from mcgw.ensemble.summarised import check_width, stored_bytes  # for those scenes alone
+            from mcgw.ensemble.summarising import check_width, stored_bytes  # for those scenes alone
 
             check_width(self.scene)
             check_disk(self.path, stored_bytes(self.scene, self.rows) - self._bytes())
@@ -85,7 +85,7 @@ class Job:
     def rows(self) -> int:
         """Surfaces a block: a function of the scene alone, however many of them are asked; whole chunks."""
         if self.scene.keep == "statistics":
-            from mcgw.ensemble.summarised import block_rows  # for those scenes alone
+            from mcgw.ensemble.summarising import block_rows  # for those scenes alone
 
             return block_rows(self.scene, self.sampler)
         size, row = block_size(self.scene, self.sampler), 8 * self.columns
@@ -120,7 +120,7 @@ class Job:
         size = block_size(self.scene, self.sampler)
         with use_threads(threads):
             if self.scene.keep == "statistics":
-                from mcgw.ensemble.summarised import summary_of  # for those scenes alone
+                from mcgw.ensemble.summarising import summary_of  # for those scenes alone
 
                 return summary_of(self.scene, self.sampler, self.bins, span.first, span.stop).tables()
             blocks = drawn_blocks(self.sampler, span.first, span.stop, size)

@@ -80,12 +80,21 @@ def plan_of(scene: Scene) -> Plan:
         sampler.draws,
         sampler.cells,
         sampler.moments,
-        8 * columns * surfaces,
+        _bytes(scene, sampler, columns, surfaces),
         seconds_for(scene, sampler, surfaces),
         _bits(sampler),
         float(getattr(sampler, "law_error", 0.0)) if scene.law_error else 0.0,
         _at_others(scene, sampler, surfaces),
     )
+
+
+def _bytes(scene: Scene, sampler: Sampler, columns: int, surfaces: int) -> int:
+    """Of the results."""
+    if scene.keep != "statistics":
+        return 8 * columns * surfaces
+    from mcgw.ensemble.summarising import block_rows, joined_bytes  # for those scenes alone
+
+    return joined_bytes(scene, surfaces, block_rows(scene, sampler))
 
 
 def _bits(sampler: Sampler) -> dict[int, float]:
@@ -121,7 +130,7 @@ def plan_text(scene: Scene, plan: Plan) -> str:
         f"  cells         {plan.cells}, with {plan.moments} moments a surface",
         f"  quantities    {', '.join(scene.quantities)} at {len(scene.separations)} separations",
         *(f"  {word:13} {what}" for word, what in contact_facts(scene)),
-        f"  results       {plan.bytes / 1e6:.4g} MB before compression",
+        f"  results       {_size(scene, plan)}",
         f"  time          about {in_words(plan.seconds)} on this machine",
         *_accuracy_lines(scene, plan),
         *(f"  {line}" for line in two_questions(scene.validity())),
@@ -135,6 +144,11 @@ def plan_text(scene: Scene, plan: Plan) -> str:
     if left_out:
         lines.append(f"  {', '.join(left_out)}: not asked for")
     return "\n".join(lines)
+
+
+def _size(scene: Scene, plan: Plan) -> str:
+    size = f"{plan.bytes / 1e6:.4g} MB"
+    return f"{size} before compression" if scene.keep != "statistics" else f"statistics alone, about {size}"
 
 
 def _accuracy_lines(scene: Scene, plan: Plan) -> list[str]:

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
+from numpy.typing import NDArray
 
 from analytic import quantity_of
 from mcgw.ensemble.ensemble import Ensemble
@@ -19,6 +20,7 @@ from mcgw.figures.patch import patch_figures
 from mcgw.figures.pressure_curves import pressure_curves, pressure_figure
 from mcgw.figures.style import STYLE
 from mcgw.formats.pictures import write_figure
+from mcgw.scene.scene import Scene
 from mcgw.statistics.comparison import Comparison
 
 __all__ = [
@@ -150,9 +152,20 @@ def _spread(comparison: Comparison) -> FigureData:
         exact[touches] = (curve.stderr * np.sqrt(ensemble.n_surfaces))[touches] / np.abs(
             curve.theory[touches]
         )
-        known = (ensemble.mean(name) > 0) & (exact > 0)
+        error = exact * _relative_error(scene, name) / np.sqrt(ensemble.n_surfaces)
+        known = (ensemble.mean(name) > 0) & (exact > 0) & (error > 0)
         mean, std = ensemble.mean(name)[known], ensemble.std(name)[known]
-        points = Points(h[known], std / mean, np.zeros(known.sum()), exact[known])
+        points = Points(h[known], std / mean, error[known], exact[known])
         series.append(Series(name, h[order], exact[order], points))
     panel = Panel("Spread over surfaces", "separation d/σ", "std / mean", tuple(series), ("linear", "log"))
-    return FigureData("spread", "", "Lines: exact. Markers: the ensemble.", (panel,), columns=1)
+    return FigureData(
+        "spread", "", "Lines: exact. Markers: the ensemble, with standard errors.", (panel,), columns=1
+    )
+
+
+def _relative_error(scene: Scene, name: str) -> NDArray[np.float64]:
+    """Of std over mean of one surface, to first order: half of std's, that of the mean, and both together."""
+    exact = scene.theory.cumulants(name, scene.separations)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        spread = np.sqrt(exact.variance) / np.abs(exact.mean)
+        return np.asarray(np.sqrt((exact.excess_kurtosis + 2) / 4 + spread**2 - exact.skewness * spread))

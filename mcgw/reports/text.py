@@ -8,6 +8,7 @@ import numpy as np
 from analytic import quantity_of
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.intervals import interval_text
+from mcgw.ensemble.over_surfaces import PROBABILITIES
 from mcgw.ensemble.paired import Paired, paired_ratio
 from mcgw.formats.csv_table import Row
 from mcgw.formats.evenly import evenly
@@ -19,12 +20,12 @@ from mcgw.statistics.comparison import FALSE_ALARM, Comparison, Verdict
 __all__ = [
     "COMPARISON_HEADER",
     "RATIO_HEADER",
-    "SUMMARY_HEADER",
     "comparison_rows",
     "comparison_table",
     "ratio_rows",
     "ratio_table",
     "summary",
+    "summary_header",
     "summary_rows",
     "verdict_line",
 ]
@@ -40,9 +41,11 @@ COMPARISON_HEADER = (
     "theory",
     "residual",
 )
-SUMMARY_HEADER = ("quantity", "unit", "separation", "mean", "std", "stderr")
+_SUMMARY_HEADER = ("quantity", "unit", "separation", "mean", "std", "stderr")
 RATIO_HEADER = ("quantity", "separation", "ratio", "stderr", "theory", "variance_gain")
 _MOST_ROWS = 9
+_KEPT = "  kept          statistics alone: mean, covariance, skewness, quantiles, extremes"
+_WITH_STATISTICS = ("skewness", *(f"quantile_{share:g}" for share in PROBABILITIES))
 
 
 def summary(ensemble: Ensemble, attributes: dict[str, Any]) -> str:
@@ -57,6 +60,7 @@ def summary(ensemble: Ensemble, attributes: dict[str, Any]) -> str:
         *(f"  {word:13} {what}" for word, what in contact_facts(scene)),
         f"  sampler       {ensemble.sampler}, seed {scene.seed}",
         *(f"  {word:13} {what}{_spent(word, attributes)}" for word, what in accuracy_facts(scene)),
+        *([] if scene.keep != "statistics" else [_KEPT]),
         f"  complete      {'yes' if attributes['complete'] else 'no'}",
         f"  digest        {attributes['digest']}",
         f"  made          {attributes['date']} in {attributes['wall_seconds']:.2f} s on {attributes['cpu']}",
@@ -111,10 +115,18 @@ def comparison_rows(comparison: Comparison) -> Iterator[Row]:
             yield name, quantity_of(name).unit, *row
 
 
+def summary_header(ensemble: Ensemble) -> tuple[str, ...]:
+    """Names of the columns of `summary_rows`: more where statistics are all there is."""
+    return (*_SUMMARY_HEADER, *(_WITH_STATISTICS if ensemble.scene.keep == "statistics" else ()))
+
+
 def summary_rows(ensemble: Ensemble) -> Iterator[Row]:
-    """Every separation, as rows under `SUMMARY_HEADER`."""
+    """Every separation, as rows under `summary_header`."""
     for name in ensemble.scene.quantities:
-        columns = (ensemble.separations, ensemble.mean(name), ensemble.std(name), ensemble.stderr(name))
+        columns = [ensemble.separations, ensemble.mean(name), ensemble.std(name), ensemble.stderr(name)]
+        if ensemble.scene.keep == "statistics":
+            quantiles = [ensemble.quantile(name, share) for share in PROBABILITIES]
+            columns += [ensemble.skewness(name), *quantiles]
         for row in zip(*columns, strict=True):
             yield name, quantity_of(name).unit, *row
 

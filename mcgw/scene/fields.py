@@ -1,6 +1,7 @@
 """The values of a scene, and the heights that matter to it."""
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Literal
@@ -21,12 +22,13 @@ from analytic import (
 )
 from analytic.laws import Branch, ContactLaw, Film, Hertz, Tangential, Ways
 from mcgw.machine.kept import kept
-from mcgw.scene.stop_rule import RelErr
 
 if TYPE_CHECKING:
     from analytic import Interaction
 
-__all__ = ["EXACT", "Fields", "share_above"]
+__all__ = ["EXACT", "Fields", "RelErr", "share_above"]
+
+RelErr = float | Mapping[str, float | list[float]]
 
 EXACT = 1e-13  # accuracy where none is asked: the last digits
 

@@ -2,19 +2,15 @@
 
 import math
 from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from mcgw.scene.fields import Fields, RelErr
 from mcgw.scene.section import Section
 
-if TYPE_CHECKING:
-    from mcgw.scene.fields import Fields
-
-__all__ = ["RelErr", "rel_err_mistakes", "rel_err_of", "rel_err_text", "wanted"]
-
-RelErr = float | Mapping[str, float | list[float]]
+__all__ = ["rel_err_mistakes", "rel_err_of", "rel_err_text", "wanted"]
 
 _MOST = 0.1  # beyond it so few contacts would do that an interval means nothing
 
@@ -39,7 +35,7 @@ def _of_quantity(section: Section, name: str) -> float | list[float]:
     return [math.inf if x == math.inf else rows.number(str(k), unit="1") for k, x in enumerate(value)]
 
 
-def rel_err_mistakes(scene: "Fields") -> Iterator[str]:
+def rel_err_mistakes(scene: Fields) -> Iterator[str]:
     """What does not go with the scene."""
     if scene.rel_err is None:
         return
@@ -63,7 +59,7 @@ def rel_err_mistakes(scene: "Fields") -> Iterator[str]:
                 break
 
 
-def wanted(scene: "Fields") -> dict[str, NDArray[np.float64]]:
+def wanted(scene: Fields) -> dict[str, NDArray[np.float64]]:
     """How well each mean is to be known, shape (separations,); of the quantities that are waited for."""
     if scene.rel_err is None:
         return {}

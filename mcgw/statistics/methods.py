@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from scipy.integrate import quad
 
 import analytic
-from mcgw.ensemble.simulation import blocks
+from mcgw.ensemble.drawing import blocks
 from mcgw.errors import RunError
 from mcgw.sampling.samplers import Sampler, sampler_of
 from mcgw.scene.scene import Scene

@@ -7,7 +7,7 @@ from typing import Any, cast
 
 import numpy as np
 
-from mcgw.ensemble.simulation import seconds_per_surface
+from mcgw.ensemble.drawing import seconds_per_surface
 from mcgw.sampling.asperities import Listing, summits_drawn
 from mcgw.sampling.block import Sampler
 from mcgw.sampling.law_sums import asperity_sums

@@ -5,7 +5,7 @@ from functools import lru_cache
 from pathlib import Path
 from time import perf_counter
 
-from mcgw.ensemble.simulation import use_threads
+from mcgw.ensemble.drawing import use_threads
 from mcgw.formats.files import State, state_of
 from mcgw.sampling.shared import Alone, Shared, shared
 from mcgw.sweeps.drawing import Chunk, pooled_chunk

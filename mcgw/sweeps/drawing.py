@@ -8,8 +8,8 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import groupby
 
+from mcgw.ensemble.drawing import block_size, drawn_blocks, kept
 from mcgw.ensemble.results import joined
-from mcgw.ensemble.simulation import block_size, drawn_blocks, kept
 from mcgw.machine.memory import check_memory
 from mcgw.sampling.shared import Alone, Shared, shared
 from mcgw.sweeps.groups import Group

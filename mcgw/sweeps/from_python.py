@@ -4,7 +4,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, overload
 
-from mcgw.ensemble.simulation import use_threads
+from mcgw.ensemble.drawing import use_threads
 from mcgw.jobs.chosen_engine import chosen_engine, dashboard_of
 from mcgw.jobs.session import part_of
 from mcgw.machine.progress import Progress, told

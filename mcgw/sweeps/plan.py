@@ -2,7 +2,7 @@
 
 from time import perf_counter
 
-from mcgw.ensemble.simulation import seconds_per_surface
+from mcgw.ensemble.drawing import seconds_per_surface
 from mcgw.jobs.duration import in_words
 from mcgw.machine.terminal import one_line
 from mcgw.sampling.shared import shared

@@ -21,7 +21,7 @@ from scenes import S1, block, script
 from timing import Job, against, parser_of, show, timed
 
 from analytic import InteractingModel, Interaction
-from mcgw.ensemble.simulation import kept
+from mcgw.ensemble.drawing import kept
 from mcgw.sampling.samplers import sampler_of
 from mcgw.scene.scene import Scene
 

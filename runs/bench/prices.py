@@ -9,7 +9,7 @@ below them the numbers of which these prices are made.
 import numpy as np
 from timing import Job, job, parser_of, timed
 
-from mcgw.ensemble.simulation import use_threads
+from mcgw.ensemble.drawing import use_threads
 from mcgw.sampling import short_prices, spacing
 from mcgw.sampling.layout import Layout
 from mcgw.sampling.moments import cell_moments

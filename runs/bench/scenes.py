@@ -11,7 +11,7 @@ import numpy as np
 from timing import Job, job, seconds
 
 import analytic
-from mcgw.ensemble.simulation import at_a_time, block_size, drawn_blocks
+from mcgw.ensemble.drawing import at_a_time, block_size, drawn_blocks
 from mcgw.sampling.block import Block, Sampler
 from mcgw.sampling.samplers import cells_of, sampler_of
 from mcgw.scene.scene import Scene
