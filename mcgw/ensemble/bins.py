@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from analytic import quantity_of
 from mcgw.scene.scene import Scene
 
 __all__ = ["NUMBER", "Bins"]
@@ -22,6 +23,7 @@ _DOUBLINGS = 14  # of the distance; what lies beyond is in the last bin, and the
 _HALF = _DOUBLINGS << _BITS
 NUMBER = 2 * _HALF
 _FIRST = 1023 << _BITS  # these bits of the number 1
+_AT_A_TIME = 32  # separations that share a rule of heights, whose size is the square of their number
 _OFF_TIES = 0.3  # no mean that people ask for lies half way between two centres
 
 
@@ -41,7 +43,8 @@ class Bins:
     @classmethod
     def of(cls, scene: Scene) -> "Bins":
         """Those of a scene, from the exact mean and standard deviation of a surface."""
-        found = [_mean_and_std(scene, name) for name in scene.shapes]
+        known_already = _of_independent(scene)
+        found = [known_already.get(name) or _mean_and_std(scene, name) for name in scene.shapes]
         mean, std = (np.concatenate([np.ravel(pair[i]) for pair in found]) for i in (0, 1))
         known = np.isfinite(std) & (std > 0) & np.isfinite(mean)
         scale = np.exp2(np.floor(np.log2(np.where(known, std, 1.0))))
@@ -79,6 +82,21 @@ class Bins:
 def _distance(place: Ints) -> Array:
     """Distance from the centre, in scales, at which a bin begins."""
     return np.asarray(np.ldexp(1 + (place & (1 << _BITS) - 1) / (1 << _BITS), place >> _BITS) - 1)
+
+
+def _of_independent(scene: Scene) -> dict[str, tuple[Array, Array]]:
+    """Exact mean and standard deviation of all quantities at once, of asperities that are independent."""
+    if scene.interaction is not None:
+        return {}
+    names, (h, back) = scene.quantities, np.unique(scene.separations, return_inverse=True)
+    parts = []
+    for few in np.array_split(h, -(-h.size // _AT_A_TIME)):
+        one = scene.theory.fluctuations(names, few)
+        parts.append(np.stack([one.mean, one.moment(2)]).reshape(2, len(names), -1))
+    mean, variance = np.concatenate(parts, axis=2)[..., back] * scene.n_asperities
+    scale = [quantity_of(name).scale(scene.surface) for name in names]
+    pairs = zip(mean, np.sqrt(np.maximum(variance, 0.0)), scale, strict=True)
+    return {name: (m * unit, std * unit) for name, (m, std, unit) in zip(names, pairs, strict=True)}
 
 
 def _mean_and_std(scene: Scene, name: str) -> tuple[Array, Array]:

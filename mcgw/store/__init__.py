@@ -20,6 +20,8 @@ and, if the scene says ``keep = "moments"``, what `mcgw.ensemble.regrading` star
     /drawn/cells          float64 (surfaces, cells)       asperities in each cell
     /drawn/extras         float64 (extras, 3)             surface, height, weight of those outside
 
+With ``keep = "statistics"`` a file holds none of these tables: see `statistics_file`.
+
 Every dataset has the attributes `units` and `long_name`; only quantities that the scene asks for are
 there. Chunked, each chunk with a checksum (Fletcher); a table is shuffled and compressed with gzip if that
 saves half of it (`chunks`; in older files every one is). `digest` is over scene and data, `run` over what the
@@ -37,6 +39,7 @@ are merged at the end and then removed. What each mechanism is for:
 ``run_folder``   a run goes on only with what it was begun with: scene, sampler, versions
 ``identity``     which scenes, samplers and versions those are
 ``merged_file``  the file is made under another name, and read back before it gets its own
+``statistics_file``, ``merged_statistics``  the same for scenes that keep statistics and no surface
 ``disk``         HDF5 may crash on a full disk: it never sees an error of it
 ``trailer``      whether a file is whole and unchanged, without HDF5
 ``head``         whether scene, units and scales are as written, on every opening

@@ -23,6 +23,7 @@ BENCHES = (
     "contact_laws",
     "file",
     "interaction",
+    "kept_statistics",
     "law_error",
     "maps",
     "random_radii",
