@@ -6,9 +6,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from analytic import PER_AREA, TANGENTIAL, quantity_of
+from analytic import PER_AREA, quantity_of
 from mcgw.ensemble import over_surfaces
-from mcgw.ensemble.intervals import CONFIDENCE, count_interval, mean_interval, spread_of
+from mcgw.ensemble.interval_of import interval_of
+from mcgw.ensemble.intervals import CONFIDENCE
 from mcgw.ensemble.results import Results
 from mcgw.ensemble.tables import dataframe, dataset, statistics_dataframe, statistics_dataset
 from mcgw.formats.sheet import Sheet, Shown
@@ -225,38 +226,8 @@ class Ensemble(Shown):
             If the surfaces are stratified: how far their mean is off is not known.
         """
         name, divisor = self._held(quantity)
-        if divisor:
-            low, high = self.interval(name, level)
-            return low / divisor, high / divisor
-        scene, m = self.scene, self.n_surfaces
-        if not promise_of(self.sampler).real_surfaces:
-            raise ValueError("stratified surfaces have no interval: their fluctuations are not those of any")
-        if scene.as_measured:
-            return self.mean(quantity), self.mean(quantity)
-        if name in scene.other_separations:
-            return self._separation_interval(name, level)
-        balanced = scene.interaction is not None and scene.interaction.nominal
-        if quantity_of(name).counts and not balanced:
-            ends = count_interval(
-                over_surfaces.total_number(scene, self.sums, name),
-                float(scene.n_asperities) * m,
-                poisson=scene.count == "poisson",
-                level=level,
-            )
-            return ends[0] / m, ends[1] / m
-        if name == TANGENTIAL.name:
-            raise ValueError(f"{name} has no interval, as a difference of normal loads; ask for its stderr")
-        return mean_interval(self.mean(quantity), spread_of(scene, quantity), m, level)
-
-    def _separation_interval(self, name: str, level: float) -> tuple[Array, Array]:
-        """Of the other separation, which differs from the scene's by a multiple of the load."""
-        load = "load_unloading" if quantity_of(name).unloading else "load"
-        mean, (low, high) = self.mean(load), self.interval(load, level)
-        here = self.mean(name)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            sunk = (here - self.separations) / mean  # d/sigma for a newton; nan where nothing touches
-        ends = self.separations + sunk * low, self.separations + sunk * high
-        return np.fmin(*ends), np.fmax(*ends)
+        low, high = interval_of(self.scene, self.sampler, self.sums, name, level)
+        return low / (divisor or 1.0), high / (divisor or 1.0)
 
     def to_xarray(self) -> Any:
         """All values as an `xarray.Dataset` with dimensions (surface, separation), as the file has them.
