@@ -331,3 +331,26 @@ def test_tables_for_programs_are_those_of_the_surfaces(tmp_path):
         np.testing.assert_allclose(*read, rtol=1e-11)
         q05 = [numbers(tmp_path / f"{name}.q05.csv") for name in ("full", "kept")]
         np.testing.assert_allclose(*q05, rtol=tolerance)
+
+
+@pytest.mark.usefixtures("small_blocks")
+def test_time_ends_between_pieces_and_the_same_number_gives_the_same_bits():
+    told = []
+    asked = scene(n_surfaces=10**6, keep="statistics", max_seconds=1.0)
+    e = mcgw.simulate(asked, progress=lambda done, _: told.append(done))
+    assert 0 < e.n_surfaces < 10**6
+    assert e.n_surfaces % 64 == 0
+    assert told[-1] == e.n_surfaces
+    assert len(told) > e.n_surfaces // 64
+    assert_same_bits(e, mcgw.simulate(asked, max_seconds=None, n_surfaces=e.n_surfaces))
+
+
+def test_a_block_takes_seconds_however_large_a_surface_is():
+    from mcgw.sampling.samplers import sampler_of
+
+    for n in (10, 10**5, 10**9):
+        asked = scene(n_asperities=n, keep="statistics")
+        sampler = sampler_of(asked)
+        rows = summarising.block_rows(asked, sampler)
+        assert 1 <= rows <= 2**20
+        assert rows == 1 or rows * sampler.draws <= 1e9

@@ -27,24 +27,36 @@ _PACKED = 1500  # bytes of what else there is of a column, packed
 
 def block_rows(scene: Scene, sampler: Sampler) -> int:
     """Surfaces of a block: a function of the scene alone, a power of two of `_piece`."""
-    rows = _piece(scene)
+    rows = _piece(scene, sampler)
     while 2 * rows <= min(_MOST, _DRAWS / (sampler.draws + 1)):
         rows *= 2
     return rows
 
 
-def _piece(scene: Scene) -> int:
-    return max(min(_ROWS, _BYTES // (8 * scene.width)), 1)
+def _piece(scene: Scene, sampler: Sampler) -> int:
+    return max(int(min(_ROWS, _BYTES // (8 * scene.width), _DRAWS / (sampler.draws + 1))), 1)
 
 
-def summary_of(scene: Scene, sampler: Sampler, bins: Bins, first: int, stop: int) -> Summary:
-    """What is kept of one block, or of the beginning of one."""
-    size, piece, parts = block_size(scene, sampler), _piece(scene), list[Summary]()
+def summary_of(
+    scene: Scene,
+    sampler: Sampler,
+    bins: Bins,
+    first: int,
+    stop: int,
+    go_on: Callable[[int], bool] = lambda _: True,
+) -> Summary:
+    """What is kept of one block, or of the beginning of one.
+
+    `go_on` is told the surface after each piece, and says whether to draw the next.
+    """
+    size, piece, parts = block_size(scene, sampler), _piece(scene, sampler), list[Summary]()
     for start in range(first, stop, piece):
         end = min(start + piece, stop)
         values = joined([kept(scene, block) for block in drawn_blocks(sampler, start, end, size)])
         table = [values[name].reshape(end - start, -1).astype(np.float64) for name in scene.shapes]
         push(parts, Summary.of(np.concatenate(table, axis=1), start, bins))
+        if not go_on(end):
+            break
     return total(parts)
 
 
@@ -55,11 +67,15 @@ def simulated(
     check_width(scene)
     blocks, drawn, rows = list[Summary](), 0, block_rows(scene, sampler)
     bins = Bins.of(scene)
+
+    def go_on(done: int) -> bool:
+        tell(done, scene.n_surfaces)
+        return until is None or monotonic() < until
+
     tell(0, scene.n_surfaces)
-    while drawn < scene.n_surfaces and (not drawn or until is None or monotonic() < until):
-        push(blocks, summary_of(scene, sampler, bins, drawn, min(drawn + rows, scene.n_surfaces)))
+    while not drawn or (drawn % rows == 0 and drawn < scene.n_surfaces and go_on(drawn)):
+        push(blocks, summary_of(scene, sampler, bins, drawn, min(drawn + rows, scene.n_surfaces), go_on))
         drawn = sum(block.n for block in blocks)
-        tell(drawn, scene.n_surfaces)
     if drawn != scene.n_surfaces:
         scene = replace(scene, n_surfaces=drawn)
     return Ensemble(scene, sampler.name, Summarised(scene, tuple(blocks)))
@@ -88,5 +104,5 @@ def check_width(scene: Scene) -> None:
     StoreError
         With the numbers.
     """
-    size = 4 * size_of(scene.width) + 3 * 8 * scene.width * _piece(scene)
+    size = 4 * size_of(scene.width) + 3 * _BYTES
     check_memory(f'ensemble.keep = "statistics": covariances between {scene.width} numbers', size)
