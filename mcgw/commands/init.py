@@ -6,6 +6,8 @@ from pathlib import Path
 HELP = "write a commented scene to start from"
 EXAMPLE = "mcgw init coating -o mine.toml && mcgw run mine.toml -o mine.h5"
 
+SCHEMA = "scene.schema.json"
+
 # By name: what it is.
 PRESETS = {
     "demo": "bead-blasted aluminium with stiffened tips",
@@ -22,9 +24,17 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of this command."""
     listed = "; ".join(f"{name}: {what}" for name, what in PRESETS.items())
     parser.add_argument(
-        "preset", nargs="?", default="demo", choices=PRESETS, metavar="PRESET", help=f"{listed} default: demo"
+        "preset",
+        nargs="?",
+        default="demo",
+        choices=tuple(PRESETS),
+        metavar="PRESET",
+        help=f"{listed} default: demo",
     )
     parser.add_argument("-o", "--output", type=Path, metavar="SCENE", help="default: PRESET.toml here")
+    parser.add_argument(
+        "--schema", action="store_true", help=f"write {SCHEMA} beside it, by which editors complete its keys"
+    )
 
 
 def execute(args: argparse.Namespace) -> int:
@@ -37,9 +47,41 @@ def execute(args: argparse.Namespace) -> int:
     text = (files("mcgw.scene") / "presets" / f"{args.preset}.toml").read_bytes()
     path = args.output or Path(f"{args.preset}.toml")
     check_outputs([Output(path, TOML)])
+    if args.schema:
+        if path.exists():
+            raise _is_there(path)
+        _write_schema(path.with_name(SCHEMA))
+        text = f"#:schema ./{SCHEMA}\n".encode() + text
     try:
         write_whole(path, [text], expected=None)
     except FileExistsError:
-        raise ValueError(f"{path}: is already there; give another name with -o") from None
-    print(f"{path}: {PRESETS[args.preset]}\nnext: mcgw run {path} -o {path.with_suffix('.h5')}")
+        raise _is_there(path) from None
+    print(f"{path}: {PRESETS[args.preset]}")
+    if args.schema:
+        print(f"{path.with_name(SCHEMA)}: by it editors complete and check {path.name}")
+    print(f"next: mcgw run {path} -o {path.with_suffix('.h5')}")
     return 0
+
+
+def _is_there(path: Path) -> ValueError:
+    return ValueError(f"{path}: is already there; give another name with -o")
+
+
+def _write_schema(path: Path) -> None:
+    """Write the JSON Schema of scenes; one that is there already does as well.
+
+    Raises
+    ------
+    ValueError
+        If another file has its name.
+    """
+    from importlib.resources import files
+
+    from mcgw.formats.files import write_whole
+
+    schema = (files("mcgw.scene") / SCHEMA).read_bytes()
+    try:
+        write_whole(path, [schema], expected=None)
+    except FileExistsError:
+        if path.read_bytes() != schema:
+            raise ValueError(f"{path}: is already there, and not that of this version; remove it") from None
