@@ -27,6 +27,7 @@ COMMANDS = (
     "report",
     "surface",
     "fit",
+    "completion",
 )
 
 
@@ -95,7 +96,7 @@ def _parser() -> argparse.ArgumentParser:
             name, help=command.HELP, description=f"{command.HELP}.", epilog=f"example: {command.EXAMPLE}"
         )
         command.arguments(sub)
-        sub.set_defaults(execute=command.execute)
+        sub.set_defaults(execute=command.execute, parser=parser)
     return parser
 
 

@@ -379,6 +379,7 @@ def row(command, option, words, given, check):
 ROWS = [
     row("init", "PRESET", [], ["coating"], writes("coating.toml", instead=["demo.toml"])),
     row("init", "--output", [], ["-o", "x.toml"], writes("x.toml", instead=["demo.toml"])),
+    row("init", "--schema", [], ["--schema"], writes("scene.schema.json")),
     row("run", "--output", RUN, ["@s.toml", "-o", "b.h5"], writes("b.h5", instead=["a.h5"])),
     row("run", "--threads", RUN, [*RUN, "--threads", "99"], same_draws),
     row("run", "--threads", RUN, [*RUN, "--threads", "0"], refuses("threads = 0: give")),

@@ -1,0 +1,35 @@
+"""``mcgw completion``: what a shell needs to complete the words of these commands."""
+
+import argparse
+import sys
+from pathlib import Path
+
+HELP = "print a script by which a shell completes commands, options and files"
+EXAMPLE = "mcgw completion bash"
+
+_SHELLS = ("bash", "zsh", "fish")
+
+
+def arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of this command."""
+    parser.add_argument("shell", choices=_SHELLS, metavar="SHELL", help=", ".join(_SHELLS))
+
+
+def execute(args: argparse.Namespace) -> int:
+    """Print it; it is made of the parser of all commands, which it need not start again."""
+    try:
+        import shtab  # an extra
+    except ImportError:
+        raise ValueError('shtab is not installed: pip install "mcgw[completion]"') from None
+    for parser in (args.parser, *_commands(args.parser).values()):
+        for action in parser._actions:
+            if action.type is Path:
+                action.complete = shtab.FILE
+    sys.stdout.write(shtab.complete(args.parser, args.shell) + "\n")
+    return 0
+
+
+def _commands(parser: argparse.ArgumentParser) -> dict[str, argparse.ArgumentParser]:
+    """Parsers of the commands."""
+    (found,) = (x for x in parser._actions if isinstance(x, argparse._SubParsersAction))
+    return dict(found.choices)
