@@ -16,6 +16,7 @@ ROOT = Path(__file__).parent.parent
 # Documents of the repository that are pages of the site: where they lie, and what they are called here.
 DOCUMENTS = {
     "CHANGELOG.md": "changes",
+    "CODE_OF_CONDUCT.md": "code-of-conduct",
     "CONTRIBUTING.md": "contributing",
     "runs/ACCURACY.md": "accuracy",
     "runs/ERRATA.md": "errata",
