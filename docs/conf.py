@@ -27,7 +27,7 @@ myst_enable_extensions = ["dollarmath", "amsmath", "colon_fence"]
 myst_heading_anchors = 3
 templates_path = ["_templates"]
 default_role = "py:obj"
-exclude_patterns = ["_build", "gallery/**/*.ipynb", "gallery/*.py"]
+exclude_patterns = ["_build", "paper/**", "gallery/**/*.ipynb", "gallery/*.py"]
 suppress_warnings = ["config.cache"]  # functions in the configuration of the gallery cannot be stored
 
 autosummary_generate = True

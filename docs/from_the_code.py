@@ -11,6 +11,8 @@ from contextlib import redirect_stdout, suppress
 from importlib import import_module
 from pathlib import Path
 
+from paper_page import paper_page
+
 ROOT = Path(__file__).parent.parent
 
 # Documents of the repository that are pages of the site: where they lie, and what they are called here.
@@ -35,7 +37,7 @@ WIDTH = "100"  # columns of the help
 def pages() -> dict[str, str]:
     """Text of each page, by its name."""
     found = {name: _copied(path) for path, name in DOCUMENTS.items()}
-    found |= {"commands": commands_page(), "errata-proofs": proofs()}
+    found |= {"commands": commands_page(), "errata-proofs": proofs(), "paper": paper_page()}
     return found | {package: names_page(package) for package in ("mcgw", "analytic")}
 
 

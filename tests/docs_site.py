@@ -11,7 +11,7 @@ DOCS = ROOT / "docs"
 WRITTEN = sorted(
     path.relative_to(DOCS).as_posix()
     for path in DOCS.rglob("*.md")
-    if not {"copied", "_build", "gallery"} & set(path.relative_to(DOCS).parts)
+    if not {"copied", "_build", "gallery", "paper"} & set(path.relative_to(DOCS).parts)
 )
 _BLOCK = re.compile(r"^( *)```(python|sh|toml|text)\n(.*?)^ *```$", flags=re.DOTALL | re.MULTILINE)
 
