@@ -32,6 +32,25 @@ def test_scene_has_the_moments_of_the_map(fit):
     assert mcgw.scene_from(mcgw.scene_text(scene)) == scene
 
 
+def test_a_scene_of_a_fit_takes_what_scenes_have(fit):
+    """The same as afterwards; what is wrong is told as it is there."""
+    plain = mcgw.fitted_scene(fit, heights="nayak", E_star="70 GPa")
+    changes = {
+        "grading": mcgw.Exponential(2.0),
+        "nominal_area": "4 mm^2",
+        "n_surfaces": 7,
+        "film": mcgw.Film(0.1),
+    }
+    made = mcgw.fitted_scene(fit, heights="nayak", E_star="70 GPa", **changes)
+    assert made == plain.replace(**changes) != plain
+    assert made.surface.nominal_area == 4e-6
+    assert made.n_asperities == round(made.surface.eta * 4e-6)
+    with pytest.raises(mcgw.SceneError, match="n_surfaces = -1"):
+        mcgw.fitted_scene(fit, n_surfaces=-1)
+    with pytest.raises(TypeError, match="gradient"):
+        mcgw.fitted_scene(fit, gradient=2.0)
+
+
 def test_other_estimates_know_no_such_heights(fit):
     with pytest.raises(ValueError, match='use = "summits": heights = "nayak" follow from the "moments"'):
         mcgw.fitted_scene(fit, heights="nayak", use="summits")

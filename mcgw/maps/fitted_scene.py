@@ -1,7 +1,7 @@
 """The scene of a fit: it runs as it is."""
 
 from pathlib import Path
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 
@@ -27,6 +27,7 @@ def fitted_scene(
     heights: Heights = "gaussian",
     E_star: float | str = "100 GPa",
     title: str = "",
+    **changes: Any,
 ) -> Scene:
     """Make a scene of a fit.
 
@@ -45,16 +46,20 @@ def fitted_scene(
         Composite modulus, which no map tells, Pa or as "78.6 GPa".
     title : str
         For people.
+    **changes
+        What else the scene is to have, as a grading or a film: see `mcgw.Scene.replace`.
 
     Returns
     -------
     Scene
-        On the area that was looked at.
+        On the area that was looked at, if no other is given.
 
     Raises
     ------
     ValueError
         If the fit has no such estimate, or a parameter makes no surface.
+    SceneError, TypeError
+        As from `mcgw.Scene.replace`.
 
     Examples
     --------
@@ -63,10 +68,16 @@ def fitted_scene(
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     np.save(f"{folder}/map.npy", z)
     ...     found = mcgw.fit(f"{folder}/map.npy", cutoff="10 um", pixel="1 um")
-    >>> mcgw.fitted_scene(found, E_star="70 GPa").surface.E_star
-    70000000000.0
+    >>> scene = mcgw.fitted_scene(found, E_star="70 GPa", grading=mcgw.Exponential(2.0))
+    >>> scene.surface.E_star, scene.grading.gamma
+    (70000000000.0, 2.0)
     """
-    modulus = argument("E_star", E_star, "Pa")
+    scene = _as_fitted(fit, use, heights, argument("E_star", E_star, "Pa"), title)
+    return scene.replace(**changes) if changes else scene
+
+
+def _as_fitted(fit: Fit | ProfileFit, use: str, heights: Heights, modulus: float, title: str) -> Scene:
+    """The scene with nothing but what the fit tells."""
     if isinstance(fit, ProfileFit):
         if use == "caps" or heights not in ("gaussian", "nayak"):
             raise ValueError(
