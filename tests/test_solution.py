@@ -290,3 +290,11 @@ def test_a_solution_of_too_few_contacts_has_no_interval(make_scene):
     assert heavy.interval("area")[0] < heavy.surfaces["area"].mean() < heavy.interval("area")[1]
     blocks = solution_table(scene, [light, heavy]).split("\n\n")
     assert [block.count("too few contacts") for block in blocks[:2]] == [5, 0]
+
+
+@pytest.mark.parametrize(("height", "told"), [(3.4, True), (1.0, False)])
+def test_few_contacts_are_told_beside_the_theory(make_scene, height, told):
+    scene = make_scene(n_surfaces=3, separations=(0.0,))
+    (found,) = solutions(scene, "load", [float(scene.theory.mean("load", height))])
+    assert (found.theory["contacts"] < 30) == told
+    assert ("few for theory, which is of a large one; give more area" in repr(found)) == told

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from scipy.special import stdtrit
 
 from analytic import SEPARATIONS, quantity_of
-from mcgw.ensemble.intervals import FEWEST, interval_text
+from mcgw.ensemble.intervals import FEWEST, MANY, interval_text
 from mcgw.formats.sheet import Sheet, Shown
 from mcgw.machine.late import plotted
 from mcgw.scene.scene import Scene
@@ -72,6 +72,9 @@ class Solution(Shown):
             rows.append([f"{name} ({unit})", *cells, f"{x.std(ddof=1):.3g}"])
         many = f"{len(self.surfaces['separation'])} surfaces of {self.scene.n_asperities} asperities"
         facts = [("over", many), ("elasticity", against_elasticity([self]).brief)]
+        if (contacts := self.theory["contacts"]) < MANY:
+            few = f"{contacts:.2g} contacts a surface: few for theory, which is of a large one"
+            facts.append(("caution", f"{few}; give more area"))
         return Sheet(title, facts, ["", "theory", "mean", "95 % interval", "std"], rows)
 
 
