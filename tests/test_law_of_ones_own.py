@@ -5,6 +5,7 @@ import pytest
 from law_means import term
 
 from analytic.laws import CustomLaw, KogutEtsion
+from mcgw import SceneError
 
 KOGUT = KogutEtsion(critical=0.05)
 QUANTITIES = ("load", "area", "stiffness", "conductance", "load_slope", "contacts", "yielded")
@@ -85,3 +86,19 @@ def test_errors_name_the_formula_and_what_would_do(arguments, words):
 def test_how_it_unloads_is_not_known():
     with pytest.raises(ValueError, match="law = 'custom': its unloading is not known"):
         OWN.unloading()
+
+
+def test_a_law_of_the_penetration_itself_is_told_from_a_kink():
+    """(u*u)**1.5 is |u|^3: no series of u begins so, and the advice on kinks alone would lead nowhere."""
+    law = CustomLaw(load=(lambda u: (u * u) ** 1.5,), area=(lambda u: u**2,), limits=(), critical=0.05)
+    with pytest.raises(
+        ValueError, match=r"load\[0\]: .* write u\*\*3 for \(u\*u\)\*\*1.5, as it is asked at -u"
+    ):
+        law.resolved(4.0)
+    whole = CustomLaw(load=(lambda u: u**3,), area=(lambda u: u**2,), limits=(), critical=0.05)
+    assert whole.resolved(4.0).is_data
+
+
+def test_a_plain_function_is_sent_to_custom_laws(make_scene):
+    with pytest.raises(SceneError, match="a law of your own is mcgw"):
+        make_scene(law=lambda penetration: penetration**1.5)

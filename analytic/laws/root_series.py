@@ -79,7 +79,8 @@ def resolved_in_root(formula: Callable[[Any], Any], low: float, high: float) -> 
         over = (found(between) - formula(between)) / between**2
         if np.all(np.abs(over) <= _ALLOWED * np.abs(c).max()):
             return found
+    first = "; where it begins, write u**3 for (u*u)**1.5, as it is asked at -u too" if low < 0 else ""
     raise ValueError(
-        f"{_MOST_TERMS} terms of a series are not enough for it between "
-        f"x = {low * abs(low):g} and {high * high:g}: give the penetration of each jump and kink in limits"
+        f"{_MOST_TERMS} terms of a series are not enough for it between x = {low * abs(low):g} and "
+        f"{high * high:g}: give the penetration of each jump and kink in limits{first}"
     )

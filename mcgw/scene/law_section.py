@@ -28,6 +28,9 @@ def contact_law(section: Section) -> ContactLaw:
         return custom_law(section) or Hertz()
     from analytic.laws import by_name
 
+    if callable(given):
+        section.fail("law", given, "a law of your own is mcgw.CustomLaw(load=..., area=..., ...)")
+        return Hertz()
     if not isinstance(given, str) or given not in by_name:
         section.fail("law", given, f"{nearest(given, tuple(by_name))}choose one of {', '.join(by_name)}")
         section.known(*section.table)  # whose constants they are is not known
