@@ -191,9 +191,10 @@ def test_the_example_of_a_command_is_one(command, parsers):
 
 
 def test_readme_is_short():
-    """Two screens: no more than 100 lines with two pictures."""
+    """Two screens with one picture, and ten lines of Python."""
     text = (ROOT / "README.md").read_text()
     assert len(text.splitlines()) <= 110
-    pictures = re.findall(r"!\[[^\]]{20,}\]\(([^)]+)\)", text)
-    assert len(pictures) == 2
-    assert all((ROOT / path).stat().st_size < 200_000 for path in pictures)
+    (picture,) = re.findall(r"!\[[^\]]{20,}\]\(([^)]+)\)", text)
+    assert (ROOT / picture).stat().st_size < 200_000
+    (code,) = blocks("README.md", "python")
+    assert len(code.splitlines()) <= 10
