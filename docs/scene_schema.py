@@ -34,6 +34,8 @@ WITH_UNIT: Shape = {
     "pattern": r"^\s*\+?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?\s*([^\d\s.].*|1/.*)?$",
 }
 QUANTITY: Shape = {"anyOf": [POSITIVE, WITH_UNIT]}
+# JSON has no infinity: editors see it as null.
+OR_INFINITE: Shape = {"anyOf": [*QUANTITY["anyOf"], {"type": "null"}]}
 SHARE: Shape = {"anyOf": [POSITIVE | {"maximum": 0.1}, WITH_UNIT]}
 POISSON: Shape = {"type": "number", "minimum": -1, "maximum": 0.5}
 
@@ -57,12 +59,12 @@ def inside(required: str, **properties: Shape) -> Shape:
 NAMES = one_of((*QUANTITIES, *LAW_QUANTITIES, *UNLOADING))
 PIECE = inside("low high coefficients", low=NUMBER, high=POSITIVE, coefficients=NUMBERS)
 PIECES: Shape = {"type": "array", "items": PIECE, "minItems": 1}
-BODY = inside("E", E=QUANTITY, nu=POISSON)
+BODY = inside("E", E=OR_INFINITE, nu=POISSON)
 BY_QUANTITY: Shape = {
     "type": "object",
     "propertyNames": NAMES,
     "minProperties": 1,
-    "additionalProperties": {"anyOf": [*SHARE["anyOf"], {"type": "array", "items": QUANTITY}]},
+    "additionalProperties": {"anyOf": [*SHARE["anyOf"], {"type": "array", "items": OR_INFINITE}]},
 }
 
 SHAPES: dict[str, dict[str, Shape]] = {

@@ -128,6 +128,17 @@ def test_right_values_pass_and_wrong_ones_do_not(table, key, passes):
     assert not passes(good.replace(start, f"{start}{key}x = 1\n", 1) if start else f"{key}x = 1\n{good}")
 
 
+def test_what_an_editor_sees_of_infinity_passes():
+    """JSON has none: Taplo makes it null."""
+    validator = jsonschema.Draft202012Validator(json.loads(SCHEMA.read_text(encoding="utf-8")))
+    text = keys_of_the_code.text_of("surface", "bodies", "[{E = 7e10}, {E = inf}]")
+    document = tomllib.loads(text)
+    document["surface"]["bodies"][1]["E"] = None
+    assert validator.is_valid(document)
+    document["surface"]["sigma"] = None
+    assert not validator.is_valid(document)
+
+
 def scenes():
     """Every whole scene of the repository: presets, those of runs/, and those of the pages."""
     for path in sorted((*ROOT.glob("runs/*.toml"), *ROOT.glob("mcgw/**/*.toml"))):
