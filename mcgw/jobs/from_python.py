@@ -62,8 +62,8 @@ def run(
         Cores: threads, or processes or workers of the engine. Default: all there are. The data are the
         same for any number.
     engine : {"threads", "processes", "dask"}, address, distributed.Client or Engine, optional
-        Who draws; an address, as ``"tcp://host:8786"``, is that of a dask scheduler. A client is left open, and
-        dask's configuration and logging as they are.
+        Who draws; an address, as ``"tcp://host:8786"``, is that of a dask scheduler. A client is left open,
+        and dask's configuration and logging as they are.
     shard : str, optional
         "2/8": draw only the second of eight shares, as one of eight jobs; then `mcgw.merge`.
     progress : bool or callable, optional
