@@ -1,4 +1,4 @@
-"""The pictures of the README and of LAWS.md: ``python runs/pictures.py`` writes them to runs/pictures."""
+"""Pictures of README, LAWS.md and the site: ``python runs/pictures.py`` writes them to runs/pictures."""
 
 from dataclasses import replace
 from itertools import pairwise
