@@ -74,4 +74,5 @@ def main():
     state.write_text(str(max(codes, key=abs)))
 
 
-main()
+if __name__ == "__main__":
+    main()

@@ -137,7 +137,7 @@ def missing(data, folder):
 
 
 def many(data, folder):
-    for i in range(100):
+    for i in range(200):
         data[f"x{i}"] = np.zeros(1)
 
 
@@ -176,7 +176,7 @@ HOSTILE = {
     hypercube: "load: not a table",
     narrow: r"load has shape \[20, 1\], its scene declares \[20, 2\]",
     missing: "load has shape none, its scene declares",
-    many: "datasets; at most 64 are allowed",
+    many: "datasets; at most 128 are allowed",
     large_attribute: "attribute numbers: too large",
     scene_bomb: "its scene cannot be read: not a TOML scene",
     no_scene: "an attribute is missing",

@@ -41,13 +41,13 @@ def draw(data: FigureData) -> Figure:
     with mpl.rc_context(STYLE):
         columns = min(data.columns, len(data.panels))
         rows = -(-len(data.panels) // columns)
-        below = _RESIDUAL if any(_known(panel) for panel in data.panels) else 0.0
+        below = _RESIDUAL if any(map(_has_errors, data.panels)) else 0.0
         width = max(_WIDTH * columns, 4.4)
         figure = Figure(figsize=(width, (_HEIGHT + below) * rows + 1.0), layout="constrained")
         grid = figure.add_gridspec(2 * rows, columns, height_ratios=[_HEIGHT, max(below, 1e-3)] * rows)
         for k, panel in enumerate(data.panels):
             row, column = divmod(k, columns)
-            if _known(panel):
+            if _has_errors(panel):
                 axis = figure.add_subplot(grid[2 * row, column])
                 lower = figure.add_subplot(grid[2 * row + 1, column], sharex=axis)
             else:
@@ -127,6 +127,11 @@ def _draw_points(axis: Any, points: Points, look: dict[str, Any], logarithmic: b
         capsize=1.5,
         zorder=3,
     )
+
+
+def _has_errors(panel: Panel) -> bool:
+    """Whether there are points with an error: means of stratified surfaces have none that is known."""
+    return any(bool((points.stderr > 0).any()) for *_, points in _known(panel))
 
 
 def _draw_residuals(axis: Any, panel: Panel, *, labelled: bool) -> None:
