@@ -67,7 +67,7 @@ def test_figures_command(tmp_path, monkeypatch, capsys):
     (words,) = [words for words in commands("README.md") if words[0] == "figures"]
     assert main(words) == 0
     said = capsys.readouterr().out.split()
-    assert len(said) == 2 * (6 + 11)  # of the paper, and those it lacks
+    assert len(said) == 3 * (6 + 11)  # of the paper, and those it lacks
     assert {Path(path).resolve() for path in said} == {p.resolve() for p in (tmp_path / "figures").iterdir()}
 
 
