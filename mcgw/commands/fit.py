@@ -40,6 +40,9 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         "--E-star", default="100 GPa", metavar="E", help="composite modulus; default: 100 GPa"
     )
     parser.add_argument(
+        "--nominal-area", metavar="AREA", help="of the scene, as 1cm^2; default: that of the map"
+    )
+    parser.add_argument(
         "--parts", type=int, default=4, help="sub-areas along each axis, for errors; default: 4"
     )
     parser.add_argument(
@@ -59,6 +62,7 @@ def execute(args: argparse.Namespace) -> int:
     from mcgw.commands.outputs import CSV, NPY, TOML, Output, check_outputs, figure_format
     from mcgw.commands.preparation import preparation
     from mcgw.formats.units import parse
+    from mcgw.machine.progress import stages
     from mcgw.maps.cautions import cautions
     from mcgw.maps.files import files_of_map, read_map
     from mcgw.maps.fit import fit_prepared
@@ -71,28 +75,36 @@ def execute(args: argparse.Namespace) -> int:
         raise ValueError(f"--parts {args.parts}: give 2 or more, to have sub-areas to compare")
     asked = preparation(args)
     E_star = parse(args.E_star, "Pa", "--E-star")
+    area = None if args.nominal_area is None else parse(args.nominal_area, "m^2", "--nominal-area")
+    on = {} if area is None else {"nominal_area": area}
     if args.profile or holds_profile(args.map[0]):
-        return fit_of_profiles(args, asked.cutoff, E_star)
+        return fit_of_profiles(args, asked.cutoff, E_star, on)
     if len(args.map) > 1:
         raise ValueError(
             f"{args.map[1]}: the first of {len(args.map)} files is a map; give one map, or profiles"
         )
     (path_of_map,) = args.map
     pixel = None if args.pixel is None else (parse(args.pixel, "m", "--pixel"),) * 2
-    topography = read_map(path_of_map, pixel=pixel, unit=args.unit)
     beside = [Output(heights_beside(args.output), NPY)] if args.heights == "measured" else []
     tables = {"--summits": args.summits, "--tiles": args.tiles}
     beside += [Output(path, CSV, option) for option, path in tables.items() if path is not None]
     if args.picture is not None:
         beside.append(Output(args.picture, figure_format(), "--picture"))
     check_outputs([Output(args.output, TOML), *beside], inputs=files_of_map(path_of_map))
-    ready = prepared(topography, asked)
-    fit = fit_prepared(ready, across=args.parts)
-    fit = replace(fit, cautions=tuple(cautions(fit, ready)))
+    with stages(4) as done:
+        topography = read_map(path_of_map, pixel=pixel, unit=args.unit)
+        done()
+        ready = prepared(topography, asked)
+        done()
+        fit = fit_prepared(ready, across=args.parts)
+        done()
+        fit = replace(fit, cautions=tuple(cautions(fit, ready)))
+        done()
     head = map_line(path_of_map.name, asked, topography.assumed_unit)
     text = [head, *fit.notes, *fit_lines(fit), *(f"warning: {line}" for line in fit.cautions)]
     print("\n".join(text))
-    scene = fitted_scene(fit, use=args.use, heights=args.heights, E_star=E_star, title=f"Fitted to {head}")
+    title = f"Fitted to {head}"
+    scene = fitted_scene(fit, use=args.use, heights=args.heights, E_star=E_star, title=title, **on)
     comments = [*text, "", "units: sigma and radius in m, eta in 1/m^2, nominal_area in m^2, E_star in Pa"]
     for path in write_scene(scene, args.output, fit if args.heights == "measured" else None, comments):
         print(path)

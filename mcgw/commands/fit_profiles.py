@@ -14,7 +14,9 @@ _ASSUMED = (
 )
 
 
-def fit_of_profiles(args: argparse.Namespace, cutoff: float | None, E_star: float) -> int:
+def fit_of_profiles(
+    args: argparse.Namespace, cutoff: float | None, E_star: float, on: dict[str, float]
+) -> int:
     """Print what the profiles tell, with warnings, write the scene, and say where it is."""
     from mcgw.commands.outputs import TOML, Output, check_outputs
     from mcgw.formats.units import parse
@@ -43,7 +45,8 @@ def fit_of_profiles(args: argparse.Namespace, cutoff: float | None, E_star: floa
         head += f"; lengths taken in {unit} where the file tells no unit"
     text = [head, *_table(fit), *(f"warning: {line}" for line in profile_cautions(fit, profiles, cutoff))]
     print("\n".join(text))
-    scene = fitted_scene(fit, use=args.use, heights=args.heights, E_star=E_star, title=f"Fitted to {head}")
+    title = f"Fitted to {head}"
+    scene = fitted_scene(fit, use=args.use, heights=args.heights, E_star=E_star, title=title, **on)
     for path in write_scene(scene, args.output, None, text):
         print(path)
     return 0

@@ -9,6 +9,7 @@ import numpy as np
 
 from mcgw.formats.files import whole_file
 from mcgw.formats.npy_file import open_npy
+from mcgw.machine.terminal import one_line
 from mcgw.maps.asperities import Asperities
 from mcgw.maps.foreign import ForeignError
 from mcgw.maps.height_unit import height_unit
@@ -71,12 +72,27 @@ def _sidecar(path: Path) -> tuple[tuple[float, float], bool, str | None]:
         raise ValueError(f"{beside}: longer than {_MOST_JSON} bytes, which no sidecar is")
     try:
         facts: Any = json.loads(beside.read_text(encoding="utf-8"))
-        dx, dy = (float(p) for p in facts["pixel"])
-        if facts.get("unit", "m") != "m":
-            raise ValueError(f"unit is {facts['unit']!r}, not 'm'")
-        return (dx, dy), bool(facts.get("periodic", False)), facts.get("unit")
+        pixel, periodic, unit = facts["pixel"], facts.get("periodic", False), facts.get("unit")
     except (AttributeError, KeyError, RecursionError, TypeError, ValueError) as error:
         raise ValueError(f'{beside}: must hold "pixel": [dx, dy] in m: {error}') from None
+    if unit not in (None, "m"):
+        raise ValueError(f"{beside}: unit = {unit!r}: must be 'm'")
+    return _pixel(beside, pixel), _periodic(beside, periodic), unit
+
+
+def _pixel(path: Path, told: Any) -> tuple[float, float]:
+    """What a file tells of the size of a pixel, if it is two numbers: no text of two digits is."""
+    values = told.tolist() if isinstance(told, np.ndarray) else told
+    if not (isinstance(values, list) and len(values) == 2 and all(type(p) in (int, float) for p in values)):
+        raise ValueError(f"{path}: pixel = {told!r}: must be [dx, dy], two numbers in m")
+    return float(values[0]), float(values[1])
+
+
+def _periodic(path: Path, told: Any) -> bool:
+    """Whether a file tells that its map is periodic; no text is an answer, though "no" is true to Python."""
+    if not isinstance(told, bool | np.bool_):
+        raise ValueError(f"{path}: periodic = {told!r}: must be true or false")
+    return bool(told)
 
 
 def write_h5(topography: Topography, path: Path, field: Asperities | None = None, *, scene: str = "") -> None:
@@ -110,9 +126,7 @@ def read_h5(path: Path, unit: str | None = None) -> Topography:
     Raises
     ------
     ValueError
-        If it is not one.
-    OSError
-        If it cannot be read.
+        If it is not one, or damaged.
     """
     if not h5py.is_hdf5(path):
         raise ForeignError(f"{path}: is not a sound HDF5 file")
@@ -121,11 +135,11 @@ def read_h5(path: Path, unit: str | None = None) -> Topography:
             if file.attrs.get("filetype") != _FILETYPE:
                 raise ForeignError(f"{path}: is not a {_FILETYPE} file; it was not written by mcgw surface")
             data = file["height"]
-            checked_shape(*data.shape)
-            dx, dy = (float(p) for p in file.attrs["pixel"])
+            checked_shape(*data.shape, held=data.id.get_storage_size())
+            pixel, periodic = _pixel(path, file.attrs["pixel"]), _periodic(path, file.attrs["periodic"])
             told = data.attrs.get("units")
             metre, assumed = height_unit(path, None if told is None else str(told), unit)
             heights = data[...].astype(np.float64) * metre
-            return Topography(heights, (dx, dy), bool(file.attrs["periodic"]), assumed)
-    except (KeyError, TypeError) as error:
-        raise ValueError(f"{path}: is a damaged {_FILETYPE} file: {error}") from None
+            return Topography(heights, pixel, periodic, assumed)
+    except (AttributeError, KeyError, OSError, RuntimeError, TypeError) as error:  # as HDF5 tells of damage
+        raise ValueError(f"{path}: is a damaged {_FILETYPE} file: {one_line(str(error))}") from None

@@ -2,6 +2,8 @@
 
 from pathlib import Path
 
+import numpy as np
+
 from mcgw.maps.array_files import read_h5, read_npy, sidecar_of, write_h5, write_npy
 from mcgw.maps.asperities import Asperities
 from mcgw.maps.foreign import ForeignError, UnreadableError, read_foreign
@@ -77,7 +79,8 @@ def read_map(path: Path, *, pixel: tuple[float, float] | None = None, unit: str 
     """
     if not path.is_file():
         raise ValueError(f"{path}: is not a regular file" if path.exists() else f"{path}: no such file")
-    topography = _read(path, pixel, unit)
+    with np.errstate(over="ignore", invalid="ignore"):  # of scales: a map refuses what comes of it
+        topography = _read(path, pixel, unit)
     if topography.assumed_unit and topography.steepness > STEEPEST:
         raise ValueError(
             f"{path}: tells no unit of its heights, and in {topography.assumed_unit} their usual slope is "

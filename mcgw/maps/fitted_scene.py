@@ -4,6 +4,7 @@ from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
+import tomli_w
 
 from analytic import Gaussian, HeightLaw, HeightTable, MeasuredHeights, MeasuredRadii, Surface
 from mcgw.formats.files import whole_file
@@ -13,7 +14,7 @@ from mcgw.maps.profile_scene import profile_scene
 from mcgw.maps.spectral_scene import FITTED, spectral_scene
 from mcgw.scene.reading import argument
 from mcgw.scene.scene import Scene
-from mcgw.scene.scene_file import scene_text
+from mcgw.scene.scene_file import scene_document
 
 __all__ = ["fitted_scene", "heights_beside", "write_scene"]
 
@@ -47,7 +48,8 @@ def fitted_scene(
     title : str
         For people.
     **changes
-        What else the scene is to have, as a grading or a film: see `mcgw.Scene.replace`.
+        What else the scene is to have, as a grading, a film, or a larger nominal_area with more of the same
+        summits: see `mcgw.Scene.replace`.
 
     Returns
     -------
@@ -57,7 +59,8 @@ def fitted_scene(
     Raises
     ------
     ValueError
-        If the fit has no such estimate, or a parameter makes no surface.
+        If the fit has no such estimate, a parameter makes no surface, or summits as they were measured are
+        to lie on another area.
     SceneError, TypeError
         As from `mcgw.Scene.replace`.
 
@@ -72,6 +75,11 @@ def fitted_scene(
     >>> scene.surface.E_star, scene.grading.gamma
     (70000000000.0, 2.0)
     """
+    if heights in ("measured", "summits") and changes.get("nominal_area") is not None:
+        raise ValueError(
+            f'nominal_area = {changes["nominal_area"]!r}: heights = "{heights}" are the very summits of the '
+            'map, on its own area; leave it out, or take heights = "table"'
+        )
     scene = _as_fitted(fit, use, heights, argument("E_star", E_star, "Pa"), title)
     return scene.replace(**changes) if changes else scene
 
@@ -147,16 +155,20 @@ def write_scene(scene: Scene, path: Path, measured: Fit | None, comments: list[s
     """Write a scene from `fitted_scene` with comments above it; returns the files that were written.
 
     The summit heights of a fit that is `measured` go to a file beside the scene, which names it in the place
-    of a list.
+    of a list. Numbers that nobody gave are left out: N follows when somebody writes another area.
     """
     text = "".join(f"# {line}\n" for line in comments) + "\n"
+    beside = heights_beside(path)
+    document = scene_document(scene, heights_file=None if measured is None else beside.name)
+    for key in document["ensemble"].pop("left_out", []):
+        del document["ensemble"][key]
+    text += tomli_w.dumps(document)
     if measured is None:
         with whole_file(path) as unfinished:
-            unfinished.write_text(text + scene_text(scene), encoding="utf-8")
+            unfinished.write_text(text, encoding="utf-8")
         return [path]
-    beside = heights_beside(path)
     with whole_file(path) as unfinished, whole_file(beside) as numbers:
         with open(numbers, "wb") as file:
             np.save(file, measured.summits)
-        unfinished.write_text(text + scene_text(scene, heights_file=beside.name), encoding="utf-8")
+        unfinished.write_text(text, encoding="utf-8")
     return [path, beside]

@@ -1,18 +1,27 @@
-"""Maps in the many formats that SurfaceTopography reads, where it is installed."""
+"""Maps in the many formats that SurfaceTopography reads, where it is installed.
 
-from importlib import import_module
+Its readers believe what a file declares, so they work in a process of their own, with as much memory and time
+as a file of that size may take.
+"""
+
+import json
+from importlib.util import find_spec
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
 
+from mcgw.formats.npy_file import open_npy
+from mcgw.machine.child_process import ChildError, run_child
 from mcgw.maps.height_unit import height_unit
-from mcgw.maps.topography import Topography, checked_shape
+from mcgw.maps.topography import Topography
 
 __all__ = ["ForeignError", "UnreadableError", "read_foreign"]
 
 _MOST_TEXT = 2**28  # bytes
+_MEMORY, _A_BYTE = 2**30, 64  # address space of the child, a third of it for imports; and of each byte
+_SECONDS, _BYTES_A_SECOND = 60.0, 1e6
 
 
 class ForeignError(ValueError):
@@ -41,49 +50,49 @@ def read_foreign(path: Path, pixel: tuple[float, float] | None = None, unit: str
         If it is not installed or cannot read the file, or the file holds a profile, or tells another unit
         or the size of a pixel that was given, or none that was not.
     """
-    try:
-        library = import_module("SurfaceTopography")
-    except ImportError:
+    if find_spec("SurfaceTopography") is None:
         raise UnreadableError(
             f"{path}: {path.suffix or 'no ending'} is not read here; install SurfaceTopography "
             "(the extra mcgw[maps]), or save the map as SDF, X3P, .npy or text"
-        ) from None
-    try:
-        return _read(library, path, pixel, unit, path)
-    except UnreadableError as error:
-        with TemporaryDirectory() as folder:
+        )
+    with TemporaryDirectory() as folder:
+        try:
+            return _read(path, Path(folder), pixel, unit, path)
+        except UnreadableError as error:
             points = _with_points(path, Path(folder))
             if points is not None:
                 try:
-                    return _read(library, points, pixel, unit, path)
+                    return _read(points, Path(folder), pixel, unit, path)
                 except UnreadableError:
                     pass
-        raise UnreadableError(f"{path}: SurfaceTopography cannot read it: {error}") from None
+            raise UnreadableError(f"{path}: SurfaceTopography cannot read it: {error}") from None
 
 
 def _read(
-    library: Any, file: Path, pixel: tuple[float, float] | None, unit: str | None, path: Path
+    file: Path, folder: Path, pixel: tuple[float, float] | None, unit: str | None, path: Path
 ) -> Topography:
-    """A file, which errors call by its own path."""
+    """A file, which errors call by its own path; what the child writes lies in a folder."""
+    size, heights = file.stat().st_size, folder / "heights.npy"
+    memory, seconds = _MEMORY + _A_BYTE * size, _SECONDS + size / _BYTES_A_SECOND
     try:
-        channel = library.open_topography(str(file)).default_channel
-        told = channel.dim != 2 or channel.physical_sizes is not None
-        sizes = {} if told else {"physical_sizes": channel.nb_grid_pts}
-        found = channel.topography(**sizes)
-        heights = np.ma.filled(np.ma.masked_invalid(found.heights()), np.nan).T
-    except Exception as error:  # its readers raise errors of many kinds
-        raise UnreadableError(" ".join(str(error).split())[:160]) from None
-    if found.dim != 2:
+        said = run_child("mcgw.maps.foreign_reader", str(file), str(heights), str(memory), seconds=seconds)
+    except ChildError as error:
+        raise UnreadableError(f"reading it {error.how}") from None
+    found: dict[str, Any] = json.loads(said.splitlines()[-1])
+    if "refused" in found:
+        raise UnreadableError(found["refused"])
+    if found["dim"] != 2:
         raise ValueError(f"{path}: is a profile along a line; a map has rows and columns")
-    columns, rows = found.nb_grid_pts
-    checked_shape(rows, columns)
-    metre, assumed = height_unit(path, found.unit, unit)  # of lengths along x and y too
+    metre, assumed = height_unit(path, found["unit"], unit)  # of lengths along x and y too
+    told = found["pixel"]
     if told and pixel is not None:
         raise ValueError(f"{path}: tells the size of a pixel itself; leave --pixel out")
     if not told and pixel is None:
         raise ValueError(f"{path}: does not tell the size of a pixel; give --pixel")
-    dx, dy = pixel or (float(p) * metre for p in found.pixel_size)
-    return Topography(np.ascontiguousarray(heights * metre), (dx, dy), bool(found.is_periodic), assumed)
+    dx, dy = pixel or (p * metre for p in told)
+    z = np.array(open_npy(heights), dtype=np.float64, order="C")
+    z *= metre
+    return Topography(z, (dx, dy), found["periodic"], assumed)
 
 
 def _with_points(path: Path, folder: Path) -> Path | None:

@@ -44,9 +44,15 @@ class Visible:
 
 
 @cache
+def _rule() -> tuple[Array, Array]:
+    """Of Gauss and Legendre: an eigenvalue problem, which is solved once."""
+    return leggauss(_NODES)
+
+
+@cache
 def _nodes() -> tuple[Array, Array]:
     """Heights and their probabilities."""
-    x, w = leggauss(_NODES)
+    x, w = _rule()
     s = _REACH * x
     return s, _REACH * w * np.exp(-s * s / 2) / math.sqrt(2 * math.pi)
 
@@ -54,7 +60,7 @@ def _nodes() -> tuple[Array, Array]:
 @lru_cache(maxsize=64)
 def _taller_neighbours(blur: float) -> Array:
     """Mean number of neighbours that hide each height, over ``4 pi eta R sigma``."""
-    x, w = leggauss(_NODES)
+    x, w = _rule()
     reach = blur + math.sqrt(blur**2 + 2 * _REACH)  # beyond, nobody is tall enough
     r, w = reach * (1 + x) / 2, reach * w / 2
     return np.asarray(ndtr(-(_nodes()[0][:, None] + r * r - 2 * r * blur)) @ (w * r))

@@ -11,7 +11,7 @@ from mcgw.maps.form import Form, lowpass, smooth, without_form
 from mcgw.maps.holes import filled
 from mcgw.maps.levels import step_of
 from mcgw.maps.spikes import spike_heights
-from mcgw.maps.topography import Topography
+from mcgw.maps.topography import SMALLEST, Topography
 
 __all__ = [
     "MISSING",
@@ -112,7 +112,7 @@ def prepared(topography: Topography, asked: Preparation) -> Prepared:
     kept = _within(_trimmed(topography, asked.trim, notes), notes)
     if asked.step == "crop":
         kept = _terrace(kept, notes)
-    if not np.nanmax(kept.heights) > np.nanmin(kept.heights):
+    if not np.nanmax(kept.heights) - np.nanmin(kept.heights) > SMALLEST:
         raise ValueError("the map is flat: there is no roughness to fit")
     kept, level, holes = _levelled(kept, asked, notes)
     used = level

@@ -79,15 +79,24 @@ class SummitSums:
 
 @njit(nogil=True, cache=True)
 def _is_summit(z: Any, j: Any, i: Any) -> Any:
-    """Whether a point is higher than its eight neighbours; of equal ones the last counts."""
+    """Whether a point is higher than its eight neighbours; of equal ones the last counts.
+
+    No point is that has no height, or has a neighbour without. So never are two neighbours, whatever a map
+    holds, which `_most_summits` rests on.
+    """
     here = z[j, i]
     for dj in range(-1, 2):
         for di in range(-1, 2):
             other = z[j + dj, i + di]
             later = dj > 0 or (dj == 0 and di > 0)
-            if other > here or (later and other == here):
+            if (dj or di) and not (other < here or (other == here and not later)):
                 return False
     return True
+
+
+def _most_summits(rows: int, columns: int) -> int:
+    """One in every square of two points by two."""
+    return ((rows + 1) // 2) * ((columns + 1) // 2)
 
 
 @njit(nogil=True, cache=True)
@@ -148,7 +157,7 @@ def _pass(z: Any, seen: Any, dx: Any, dy: Any, across: Any, sums: Any, summits: 
             sums[6, k] += (xx * xx + yy * yy) / 2
             sums[7, k] += (xx1 * xx1 + yy1 * yy1) / 2
             sums[8, k] += (xx2 * xx2 + yy2 * yy2) / 2
-            if _is_summit(z, b, a):
+            if _is_summit(z, b, a) and found < part_of.size:
                 summits[0, found] = _apex(z, b, a)
                 summits[1, found] = -(xx + yy) / 2
                 summits[2, found], summits[3, found] = (i + 0.5) / columns, (j + 0.5) / rows
@@ -166,7 +175,8 @@ def summit_sums_of(topography: Topography, *, across: int = 4, seen: Mask | None
     Raises
     ------
     ValueError
-        If the map is smaller than the sub-areas need, or no point counts.
+        If the map is smaller than the sub-areas need, lacks a point, is too rough for squares of its
+        derivatives, or no point counts.
     """
     z = topography.heights - topography.heights.mean()
     counts = np.empty((0, 0), dtype=np.bool_) if seen is None else _with_neighbours(seen, topography.periodic)
@@ -179,10 +189,17 @@ def summit_sums_of(topography: Topography, *, across: int = 4, seen: Mask | None
             f"{max(columns, 0)} x {max(rows, 0)} points are left: too few for {across} x {across} sub-areas"
         )
     sums = np.zeros((len(SUMS), across * across))
-    summits, part = np.empty((4, rows * columns // 2 + 1)), np.empty(rows * columns // 2 + 1, dtype=np.int64)
+    most = _most_summits(rows, columns)
+    summits, part = np.empty((4, most)), np.empty(most, dtype=np.int64)
     found = _pass(z, counts, *topography.pixel, across, sums, summits, part)
     if not sums[0].any():
         raise ValueError("too many points are missing: none has all its neighbours; give --missing fill")
+    if not np.isfinite(sums).all():
+        raise ValueError(
+            f"heights between {z.min():.3g} and {z.max():.3g} m about their mean, on pixels of "
+            f"{topography.pixel[0]:.3g} m: squares of their derivatives overflow, or points are missing; "
+            "give the right unit and pixel"
+        )
     dx, dy = topography.pixel
     summits = summits[:, :found].copy()
     return SummitSums(sums, summits[0], summits[1], summits[2:], part[:found].copy(), dx * dy)

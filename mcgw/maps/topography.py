@@ -6,11 +6,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["MOST_PIXELS", "STEEPEST", "Topography", "checked_shape"]
+__all__ = ["MOST_PIXELS", "SMALLEST", "STEEPEST", "Topography", "checked_shape"]
 
 Array = NDArray[np.float64]
 
 MOST_PIXELS = 2**28  # 16384 x 16384: 2 GiB as float64
+SMALLEST, _LARGEST = 1e-150, 1e150  # of what is squared, m: sums of squares and a dozen times that, too
+_FINEST = 1e-30  # m, of a pixel, whose eighth power still counts
+_SMALL, _PACKED = 2**22, 20  # points that any file may declare, and that each of its bytes may hold
 STEEPEST = 10.0  # 84 degrees: no instrument that gives a height map sees such slopes all over it
 
 
@@ -33,7 +36,8 @@ class Topography:
     Raises
     ------
     ValueError
-        If the array is not two-dimensional, or empty, or a pixel has no positive size.
+        If the array is not two-dimensional, or empty, or a pixel has no positive size, or a height is
+        infinite, or powers of any of these are beyond floating-point numbers.
     """
 
     heights: Array
@@ -45,8 +49,16 @@ class Topography:
         if self.heights.ndim != 2:
             raise ValueError(f"a map has rows and columns, not {self.heights.ndim} dimension(s)")
         checked_shape(*self.heights.shape)
-        if not all(math.isfinite(p) and p > 0 for p in self.pixel):
-            raise ValueError(f"pixel = {self.pixel}: give its size in m, two numbers > 0")
+        if not all(_FINEST < p < 1 / _FINEST for p in self.pixel):
+            raise ValueError(
+                f"pixel = {self.pixel}: give its size in m, two numbers > 0, {_FINEST:g} to {1 / _FINEST:g}"
+            )
+        highest = max(abs(float(end.reduce(self.heights, axis=None))) for end in (np.fmax, np.fmin))
+        if highest > _LARGEST:
+            raise ValueError(
+                f"a height is {highest:.3g} m, too large to be squared; give the right unit or scale, and "
+                "nan where points are missing"
+            )
 
     @property
     def size(self) -> tuple[float, float]:
@@ -70,13 +82,13 @@ class Topography:
         return math.hypot(*usual)
 
 
-def checked_shape(rows: int, columns: int) -> tuple[int, int]:
-    """Rows and columns, if a map can have so many.
+def checked_shape(rows: int, columns: int, *, held: int | None = None) -> tuple[int, int]:
+    """Rows and columns, if a map can have so many; `held` is how many bytes a file may hold packed for them.
 
     Raises
     ------
     ValueError
-        If there is none, or more than 2^28 points.
+        If there is none, or more than 2^28 points, or more than any map packs into its file.
     """
     if rows < 1 or columns < 1:
         raise ValueError(f"{columns} x {rows} points: a map has one or more along each axis")
@@ -84,4 +96,6 @@ def checked_shape(rows: int, columns: int) -> tuple[int, int]:
         raise ValueError(
             f"{columns} x {rows} points: more than the {MOST_PIXELS} that are read; crop it first"
         )
+    if held is not None and rows * columns > max(_SMALL, _PACKED * held):
+        raise ValueError(f"{columns} x {rows} points: more than {held} bytes hold of a map")
     return rows, columns

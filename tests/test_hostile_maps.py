@@ -1,0 +1,143 @@
+"""Maps that no instrument gives: heights that overflow, bombs, and words in the place of numbers."""
+
+import json
+import struct
+import zipfile
+
+import h5py
+import numpy as np
+import pytest
+
+import mcgw
+from mcgw.maps import summit_sums
+from mcgw.maps.files import read_map, write_map
+from mcgw.maps.summit_sums import summit_sums_of
+from mcgw.maps.topography import Topography
+
+SHAPE = (8, 9)
+UNITS = 1e-6 * np.random.default_rng(1).normal(size=SHAPE)
+
+
+def sdf(path, scale):
+    head = struct.pack(
+        "<8s10s12s12sHHddddBBB", b"bISO-1.0", b"", b"", b"", 9, 8, 1e-6, 1e-6, scale, 0.0, 0, 7, 0
+    )
+    path.write_bytes(head + (1e6 * UNITS).astype("<f8").tobytes())
+
+
+def x3p(path, scale):
+    write_map(Topography(1e6 * UNITS, (1e-6, 1e-6)), path)
+    with zipfile.ZipFile(path) as archive:
+        members = {name: archive.read(name) for name in archive.namelist()}
+    before, axis, after = members["main.xml"].partition(b"<CZ>")
+    members["main.xml"] = before + axis + after.replace(b">1.0<", f">{scale!r}<".encode(), 1)
+    with zipfile.ZipFile(path, "w") as archive:
+        for name, data in members.items():
+            archive.writestr(name, data)
+
+
+def array(path, scale):
+    with np.errstate(over="ignore"):
+        np.save(path, 1e6 * UNITS * scale)
+    path.with_suffix(".json").write_text(json.dumps({"pixel": [1e-6, 1e-6], "unit": "m"}))
+
+
+@pytest.mark.parametrize(
+    ("name", "make"), [("m.sdf", sdf), ("m.x3p", x3p), ("m.npy", array)], ids=["sdf", "x3p", "npy"]
+)
+@pytest.mark.parametrize("scale", [1e308, 1e153], ids=["overflows", "its square does"])
+def test_heights_that_overflow_are_refused_where_they_are_read(name, make, scale, tmp_path):
+    make(tmp_path / name, 1e-6)
+    assert read_map(tmp_path / name).heights == pytest.approx(UNITS, rel=1e-14)
+    make(tmp_path / name, scale)
+    with pytest.raises(ValueError, match=r"a height is .* m, too large to be squared; give the right unit"):
+        read_map(tmp_path / name)
+
+
+@pytest.mark.parametrize("wrong", [np.inf, -np.inf, 1.7e308, -1e160])
+def test_heights_that_overflow_are_refused_where_a_map_is_made(wrong):
+    heights = UNITS.copy()
+    heights[2, 3], heights[4, 4] = wrong, np.nan
+    with pytest.raises(ValueError, match="too large to be squared"):
+        Topography(heights, (1e-6, 1e-6))
+
+
+@pytest.mark.parametrize("pixel", [0.0, 1e-200, 1e-60, 1e60, 1e200, np.nan])
+def test_pixels_beyond_numbers_are_refused(pixel):
+    with pytest.raises(ValueError, match="two numbers > 0, 1e-30 to 1e"):
+        Topography(UNITS, (1e-6, pixel))
+
+
+HEIGHTS = {
+    "missing": np.full((12, 12), np.nan),
+    "some missing": np.where(np.random.default_rng(2).random((12, 12)) < 0.3, np.nan, 1.0),
+    "equal": np.zeros((12, 12)),
+    "infinite": np.random.default_rng(3).choice([-np.inf, np.inf, np.nan], size=(12, 12)),
+    "two heights": np.random.default_rng(4).choice([-1e150, 1e150], size=(12, 12)),
+}
+
+
+@pytest.mark.parametrize("z", HEIGHTS.values(), ids=HEIGHTS)
+def test_no_two_neighbours_are_summits_whatever_a_map_holds(z):
+    """So that one in every square of two by two is the most there can be, for which room is made."""
+    found = np.zeros(z.shape, dtype=int)
+    for j, i in np.ndindex(10, 10):
+        found[j + 1, i + 1] = summit_sums._is_summit(z, j + 1, i + 1)
+    squares = found[:-1, :-1] + found[1:, :-1] + found[:-1, 1:] + found[1:, 1:]
+    assert squares.max() <= 1
+    assert found.sum() <= summit_sums._most_summits(10, 10)
+
+
+def test_as_many_summits_as_there_can_be_are_counted():
+    z = np.zeros((32, 32))
+    z[::2, ::2] = 1.0
+    assert summit_sums_of(Topography(z, (1e-6, 1e-6))).heights.size == summit_sums._most_summits(24, 24)
+
+
+def test_the_pass_writes_nothing_beyond_the_room_it_is_given():
+    """Of whatever size: the lists are the first half of arrays here, whose other half must stay."""
+    z = np.zeros((32, 32))
+    z[::2, ::2] = 1.0
+    lists, part = np.full(800, -7.0), np.full(200, -7)
+    none, sums = np.empty((0, 0), dtype=np.bool_), np.zeros((9, 4))
+    assert summit_sums._pass(z, none, 1.0, 1.0, 2, sums, lists[:400].reshape(4, 100), part[:100]) == 100
+    assert np.all(lists[400:] == -7)
+    assert np.all(part[100:] == -7)
+
+
+@pytest.mark.parametrize(
+    ("factor", "size"), [(1.0, 1e140), (np.nan, 1e-6)], ids=["steep beyond numbers", "missing"]
+)
+def test_sums_that_are_no_numbers_are_told(factor, size):
+    z = size * np.random.default_rng(1).normal(size=(32, 32))
+    z[16, 16] *= factor
+    with pytest.raises(ValueError, match=r"squares of their derivatives overflow, or points are missing"):
+        summit_sums_of(Topography(z, (1e-6, 1e-6)))
+
+
+def test_an_hdf5_map_of_a_kilobyte_is_no_map_of_gigabytes(tmp_path):
+    """Its chunks were never written: HDF5 would make them up, 2 GiB of zeros."""
+    write_map(Topography(UNITS, (1e-6, 1e-6)), tmp_path / "m.h5")
+    with h5py.File(tmp_path / "m.h5", "r+") as file:
+        del file["height"]
+        file.create_dataset("height", shape=(2**14, 2**14), dtype="f8", chunks=(64, 64))
+    with pytest.raises(ValueError, match=r"16384 x 16384 points: more than 0 bytes hold of a map"):
+        read_map(tmp_path / "m.h5")
+
+
+@pytest.mark.parametrize("share", [0.2, 0.5, 0.9])
+def test_damage_that_hdf5_reports_is_one_line(share, tmp_path):
+    path = tmp_path / "m.h5"
+    write_map(Topography(UNITS, (1e-6, 1e-6)), path)
+    data = path.read_bytes()
+    path.write_bytes(data[: int(share * len(data))])
+    with pytest.raises(ValueError, match=r"m\.h5: is .*") as refused:
+        read_map(path)
+    assert len(str(refused.value).splitlines()) == 1
+
+
+def test_heights_whose_squares_vanish_are_flat():
+    z = np.zeros((40, 40))
+    z[20, 20] = 1e-200
+    with pytest.raises(ValueError, match="the map is flat"):
+        mcgw.fit(Topography(z, (1e-6, 1e-6)), cutoff=None)
