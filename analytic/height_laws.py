@@ -26,6 +26,8 @@ T = TypeVar("T")
 _SERIES = 4.0  # shape of a Weibull law from which on its spread is summed in powers of its inverse
 _BEND = 0.5  # change of the logarithm of the density over a span
 _SECONDS = 5.0  # for moments, or jumps, of a law of scipy: some are integrals of integrals
+_NOISE = 2.0**-30  # of a density that is the exponential of large terms, as of gamma(1e4)
+_RARE = np.array([1e-3, 1e-9, 1e-15, 1e-24, 1e-36])
 _TRIAL, _TRIAL_SECONDS = np.array([1e-9, 0.1, 0.5, 0.9]), 1.0  # a few of the thousands of calls to come
 
 
@@ -303,7 +305,7 @@ class ScipyHeights:
     def breaks(self) -> tuple[float, ...]:
         """Heights that cut the density, between its 1e-9 quantiles, into smooth curves."""
         low, high = self.from_below(np.array(1e-9), math.inf), self.from_above(np.array(1e-9), -math.inf)
-        found = partial(resolved_breaks, _Density(self), float(low), float(high))
+        found = partial(resolved_breaks, _Density(self), float(low), float(high), _NOISE)
         return self._in_time(_SECONDS, found, "jumps and kinks of the density")
 
     @property
@@ -354,8 +356,31 @@ class ScipyHeights:
         return self._s(self.distribution.ppf(p * self.below(np.array(s))))
 
     def from_above(self, p: Array, s: float) -> Array:
-        """Its ``isf``."""
-        return self._s(self.distribution.isf(p * self.above(np.array(s))))
+        """Its ``isf``, or where that loses the tail the inverse of its ``sf``."""
+        share = np.asarray(p * self.above(np.array(s)))
+        return self._s(self._halved(share) if self._loses_tail else self.distribution.isf(share))
+
+    @cached_property
+    def _loses_tail(self) -> bool:
+        """Whether ``isf`` does not invert a good ``sf``: SciPy's of F takes 1 - p, and is infinite soon."""
+
+        def good(inverse: Callable[[Array], Array]) -> bool:
+            with np.errstate(all="ignore"):
+                return bool(np.allclose(self.distribution.sf(inverse(_RARE)), _RARE, rtol=1e-6, atol=0))
+
+        return math.isinf(self.support[1]) and not good(self.distribution.isf) and good(self._halved)
+
+    def _halved(self, share: Array) -> Array:
+        """Where ``sf`` has these values: above the median by halving, as far up as it takes."""
+        with np.errstate(all="ignore"):
+            low = np.full(share.shape, float(self.distribution.median()))
+            high, step = low, float(self.distribution.std())
+            while np.any(far := (self.distribution.sf(high) > share) & (high < np.inf)):
+                low, high, step = np.where(far, high, low), np.where(far, high + step, high), 2 * step
+            while np.any(inside := (low < (middle := low + (high - low) / 2)) & (middle < high)):
+                above = self.distribution.sf(middle) > share
+                low, high = np.where(inside & above, middle, low), np.where(inside & ~above, middle, high)
+            return np.where(share < 0.5, high, self.distribution.isf(share))
 
 
 def _without_place(distribution: Any) -> Any:

@@ -22,6 +22,7 @@ _TOLERANCE = 1e-14
 _EVEN, _NARROW = 5.0, 2.0**-6  # greatest ratio of values on an interval, unless it is so narrow
 _OF_ONE = 2.0**-52  # rounding, as of 1 - tanh(s), that is not chased into narrow intervals
 _MOST = 4096
+_NOISE = 2.0**-50  # of a grading, over its greatest value: more is a mistake
 
 
 @dataclass(frozen=True)
@@ -103,8 +104,11 @@ def _rounding(fit: _Fit, grading: Grading, low: Array, high: Array) -> Array:
     return np.asarray(np.median(left, axis=0))  # one of the three may lie on a jump
 
 
-def bisected(fit: _Fit, grading: Grading, edges: Array, most: int) -> Array:
+def bisected(fit: _Fit, grading: Grading, edges: Array, most: int, noise_of_one: float = _NOISE) -> Array:
     """With further edges, until polynomials describe the grading on all intervals.
+
+    What it seems to be off by on ever narrower intervals is its rounding noise, up to `noise_of_one` of its
+    greatest value.
 
     Raises
     ------
@@ -112,7 +116,7 @@ def bisected(fit: _Fit, grading: Grading, edges: Array, most: int) -> Array:
         If that takes more edges than `most`.
     """
     left, right, noise = edges[:-1], edges[1:], np.zeros(edges.size - 1)
-    most_noise = 2.0**-50 * np.abs(grading(spread_over(left, right))).max()
+    most_noise = noise_of_one * np.abs(grading(spread_over(left, right))).max()
     while left.size:
         misfit, allowed = fit.misfit(grading, left, right, spread_over(left, right))
         middle = (left + right) / 2
@@ -147,7 +151,9 @@ def merged(fit: _Fit, grading: Grading, edges: Array, kept: Array) -> Array:
     return edges
 
 
-def resolved_breaks(grading: Grading, low: float, high: float) -> tuple[float, ...]:
+def resolved_breaks(
+    grading: Grading, low: float, high: float, noise_of_one: float = _NOISE
+) -> tuple[float, ...]:
     """Heights that cut ``[low, high]`` into pieces on which the grading is a smooth curve.
 
     A smooth grading is cut at its own breaks; another one is bisected until a polynomial of degree
@@ -161,6 +167,8 @@ def resolved_breaks(grading: Grading, low: float, high: float) -> tuple[float, .
         E*(s)/E*.
     low, high : float
         Range of reduced heights that matters.
+    noise_of_one : float, optional
+        Rounding noise that is no feature, over the greatest value.
 
     Returns
     -------
@@ -176,7 +184,7 @@ def resolved_breaks(grading: Grading, low: float, high: float) -> tuple[float, .
     if grading.smooth or not low < high:
         return tuple(declared.tolist())
     edges = np.unique([low, *declared, *marks(low, high, _WIDEST), high])
-    edges = bisected(_LONG, grading, edges, _MOST)
+    edges = bisected(_LONG, grading, edges, _MOST, noise_of_one)
     return tuple(merged(_LONG, grading, edges, declared)[1:-1].tolist())
 
 

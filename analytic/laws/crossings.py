@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analytic.gradings import Grading, Homogeneous
-from analytic.resolution import resolved_breaks
+from analytic.resolution import marks, resolved_breaks
 
 __all__ = ["Bound", "Crossings", "crossings_of"]
 
@@ -96,7 +96,7 @@ def _stretches(bound: Bound, grading: Grading, low: float, high: float) -> Array
     if isinstance(grading, Homogeneous):
         return np.array([low])
     breaks = [b for b in resolved_breaks(grading, low, high) if low < b < high]
-    starts = np.unique([low, *breaks, *np.arange(np.ceil(low / _STEP), high / _STEP) * _STEP])
+    starts = np.unique([low, *breaks, *marks(low, high, _STEP)])
     ends = np.append(starts[1:], high)
     s = starts[:, None] + (ends - starts)[:, None] * _POINTS
     s[:, -1] = np.nextafter(ends, -np.inf)
@@ -107,7 +107,13 @@ def _stretches(bound: Bound, grading: Grading, low: float, high: float) -> Array
 
     rises = np.diff(curve(s), axis=1) >= 0
     piece, turn = np.nonzero(rises[:, :-1] != rises[:, 1:])
-    turns = _turns(curve, s[piece, turn], s[piece, turn + 2], rises[piece, turn])
+    across = np.flatnonzero((rises[:-1, -1] != rises[1:, 0]) & ~np.isin(ends[:-1], breaks))
+    turns = _turns(
+        curve,
+        np.append(s[piece, turn], s[across, -2]),
+        np.append(s[piece, turn + 2], s[across + 1, 1]),
+        np.append(rises[piece, turn], rises[across, -1]),
+    )
     behind = np.nextafter(breaks, np.inf)  # at a jump the modulus may still be that below it
     return np.unique([low, *breaks, *behind, *turns[(low < turns) & (turns < high)]])
 

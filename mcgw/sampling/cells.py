@@ -36,6 +36,7 @@ __all__ = [
     "TO_COEFFICIENTS",
     "Mesh",
     "evenness",
+    "halved",
     "height_noise",
     "mesh_of",
     "no_cells",
@@ -147,6 +148,14 @@ def _pricing(accuracy: float) -> Pricing:
     from mcgw.sampling.short_prices import short_pricing  # for those scenes alone
 
     return short_pricing(series_accuracy(accuracy), accuracy)
+
+
+def halved(scene: Scene, mesh: Mesh, starts: Array) -> Mesh:
+    """The mesh with the cells that begin at these heights cut in half."""
+    cell = np.searchsorted(mesh.edges, starts)
+    middle = (mesh.edges[cell] + mesh.edges[cell + 1]) / 2
+    edges = np.unique(np.concatenate([mesh.edges, middle]))
+    return _mesh(scene.heights, float(scene.lowest), edges.tobytes())
 
 
 def series_accuracy(accuracy: float) -> float:

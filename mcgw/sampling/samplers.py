@@ -22,13 +22,14 @@ from analytic import QUANTITIES, UNLOADING, Exponential, Hertz, MeasuredHeights,
 from mcgw.machine.memory import keep_freed_memory
 from mcgw.sampling.aggregate import CROWDED, VARYING
 from mcgw.sampling.block import Sampler
-from mcgw.sampling.cells import Mesh, mesh_of, no_cells, series_accuracy
+from mcgw.sampling.cells import Mesh, halved, mesh_of, no_cells, series_accuracy
 from mcgw.sampling.counted import Counted
 from mcgw.sampling.counts import Counts, counts_of, strata_of
 from mcgw.sampling.direct import Direct
 from mcgw.sampling.drawing import Crowds, InStrata, OneByOne, Shortly
 from mcgw.sampling.layout import Layout
 from mcgw.sampling.response.response import Precision, Response, layout_of, response_of
+from mcgw.sampling.response.walk import UnresolvedError
 from mcgw.sampling.stretches import begins_and_breaks
 from mcgw.scene.scene import Scene
 from mcgw.scene.storable import storable
@@ -39,6 +40,7 @@ if TYPE_CHECKING:
 __all__ = ["Sampler", "aggregate_of", "cells_of", "law_error_of", "name_of", "regraded", "sampler_of"]
 
 _GAUSSIAN, _WORTH = 300, 1.5  # asperities that a crowded cell takes as long as; times that much faster
+_HALVINGS = 24  # of a cell on which the modulus, and the law of contact under it, are not resolved
 _SAME = 1e-10  # a kink so near to an edge was found, not told: no value is off by more
 
 
@@ -60,9 +62,14 @@ def sampler_of(scene: Scene) -> Sampler:
     name = name_of(scene)
     if scene.interaction and scene.interaction.nominal:
         return _at_nominal(name, scene)
-    if scene.law_error and scene.sampler == "auto" and name == "cells" and scene.curvature is None:
-        return _perhaps_crowded(scene)
-    return _MAKERS[name](scene)
+    try:
+        if scene.law_error and scene.sampler == "auto" and name == "cells" and scene.curvature is None:
+            return _perhaps_crowded(scene)
+        return _MAKERS[name](scene)
+    except UnresolvedError:
+        if scene.sampler != "auto" or scene.keep == "moments":
+            raise
+        return tail_of(scene)
 
 
 def name_of(scene: Scene) -> str:
@@ -118,7 +125,7 @@ def _counted(
     strata: bool = False,
 ) -> Counted:
     """A sampler on a mesh, with radii where the scene has them."""
-    response = _response(scene, mesh)
+    mesh, response = _resolved(scene, mesh)
     if not isinstance(response, Response):
         from mcgw.sampling.with_radii import with_radii
 
@@ -143,8 +150,7 @@ def aggregate_of(scene: Scene, crowded: int = CROWDED, distance: float = np.nan)
     Counted
         If moments are kept all of them vary, for another grading may need them.
     """
-    mesh = mesh_of(scene, split=False)
-    response = _response(scene, mesh)
+    mesh, response = _resolved(scene, mesh_of(scene, split=False))
     varying = response.layout
     if scene.keep != "moments":
         varying = layout_of(scene, mesh, _summed(scene.quantities), precision=Precision(VARYING))
@@ -199,12 +205,15 @@ def regraded(scene: Scene, drawn: Scene) -> Counted:
     if not isinstance(sampler, Counted):
         raise ValueError(f'sampler = "{sampler.name}" has no cells')
     edges = sampler.mesh.edges
-    _check_edges("separation", scene.separations, edges)
+    # Below the first edge every height that was drawn touches: all there are, or those above the lowest.
+    least = -np.inf if drawn.lowest <= drawn.heights.support[0] else drawn.lowest
+    inside = [h for h in scene.separations if not (edges.size and least <= h <= edges[0])]
+    _check_edges("separation", inside, edges)
     if edges.size:
         _check_edges("break of the grading", bends(scene.modulus, edges[0], edges[-1]), edges, _SAME)
         for heights in begins_and_breaks(scene, *sampler.mesh.range):
-            inside = heights[(edges[0] <= heights) & (heights <= edges[-1])]
-            _check_edges("height where a piece of the contact law begins,", inside.tolist(), edges)
+            begun = heights[(edges[0] <= heights) & (heights <= edges[-1])]
+            _check_edges("height where a piece of the contact law begins,", begun.tolist(), edges)
     response = _response(scene, sampler.mesh, sampler.response)
     return replace(sampler, scene=scene, response=response)
 
@@ -215,6 +224,16 @@ def _check_edges(what: str, wanted: Sequence[float], edges: NDArray[np.float64],
         near = edges[np.argmin(np.abs(edges - s))]
         if abs(s - near) > apart:
             raise ValueError(f"{what} {s:.6g} is not an edge of the cells (the nearest is {near:.6g})")
+
+
+def _resolved(scene: Scene, mesh: Mesh) -> "tuple[Mesh, Response | Families]":
+    """The mesh, cut further where the law of contact bends with the modulus; and the response on it."""
+    for _ in range(_HALVINGS):
+        try:
+            return mesh, _response(scene, mesh)
+        except UnresolvedError as error:
+            mesh = halved(scene, mesh, error.starts)
+    return mesh, _response(scene, mesh)
 
 
 def _response(scene: Scene, mesh: Mesh, drawn: "Response | Families | None" = None) -> "Response | Families":

@@ -10,6 +10,7 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from mcgw.sampling.block import Block, Sampler
 from mcgw.sampling.cells import mesh_of
@@ -111,11 +112,16 @@ def on_common_cells(scenes: Sequence[Scene]) -> list[Scene]:
     if name_of(alike[0]) != "cells":
         return alike
     while True:
-        edges = [mesh_of(scene).edges for scene in alike]
+        edges = [_edges(scene) for scene in alike]
         if all(np.array_equal(each, edges[0]) for each in edges):
             return alike
         common = np.unique(np.concatenate(edges))
         alike = [scene.replace(edges=common) for scene in alike]
+
+
+def _edges(scene: Scene) -> NDArray[np.float64]:
+    """Of its cells; under other laws than Hertz's the response may need more of them than the mesh has."""
+    return (mesh_of(scene) if scene.hertzian else cells_of(scene).mesh).edges
 
 
 def shared(scenes: Sequence[Scene]) -> Shared | Alone:

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from analytic import quantity_of
 from mcgw.scene.fields import Fields, RelErr
 from mcgw.scene.section import Section
 
@@ -57,16 +58,36 @@ def rel_err_mistakes(scene: Fields) -> Iterator[str]:
                     + ("; or inf, where nothing is asked" if isinstance(value, list) else "")
                 )
                 break
+        if not name or name in scene.quantities:
+            yield from _finer_than_values(scene, key, name, [x for x in listed if x < math.inf])
+
+
+def _finer_than_values(scene: Fields, key: str, name: str, listed: list[float]) -> Iterator[str]:
+    """A mean that is asked for to more digits than its values have."""
+    off = max(_off(scene, each) for each in ([name] if name else scene.quantities))
+    if listed and min(listed) <= off:
+        yield (
+            f"{key} = {min(listed):g}: values are good to accuracy = {scene.accuracy:g} alone, and so are "
+            "their means; give a lower accuracy, or a larger rel_err"
+        )
+
+
+def _off(scene: Fields, name: str) -> float:
+    """How far values of a quantity, and so their means, may be off, over themselves; numbers are exact."""
+    return 0.0 if scene.exact or quantity_of(name).counts else scene.accuracy
 
 
 def wanted(scene: Fields) -> dict[str, NDArray[np.float64]]:
-    """How well each mean is to be known, shape (separations,); of the quantities that are waited for."""
+    """How well each mean is to be known by drawing, shape (separations,); of quantities that are waited for.
+
+    What values may be off by is left out: drawing more does not help there.
+    """
     if scene.rel_err is None:
         return {}
     one = not isinstance(scene.rel_err, Mapping)
     given: Any = dict.fromkeys(scene.quantities, scene.rel_err) if one else scene.rel_err
     return {
-        name: np.broadcast_to(np.array(x, dtype=np.float64), len(scene.separations))
+        name: np.broadcast_to(np.array(x, dtype=np.float64) - _off(scene, name), len(scene.separations))
         for name, x in given.items()
     }
 

@@ -52,11 +52,11 @@ class HertzWalk:
         self._rows = rows.h, rows.rooted, rows.graded, formulas.exponent, formulas.scale
         self._limits = nodes.limits(rows)
 
-    def entries(self) -> tuple[Entries, Ints, Ints, float, float]:
+    def entries(self) -> tuple[Entries, Ints, Ints, Array, float]:
         """What each node gives; how many T_j and R_j it must have; where that fails.
 
-        The last two are the lowest start of a cell on which a row is not resolved, and the lowest separation
-        that is not an edge; infinite if there is none.
+        The last two are starts of cells on which a row is not resolved, the lowest among them, and the lowest
+        separation that is not an edge; infinite if there is none.
         """
         rows = len(self._rows[0]) if self._links[0].size else 0
 
@@ -68,7 +68,9 @@ class HertzWalk:
         found, coefficients, plain, rooted, unresolved, inside = zip(*parts, strict=True)
         node, row, root, length = np.concatenate(found).T.copy()
         entries = Entries(node, row, root.astype(bool), length, np.concatenate(coefficients))
-        return entries, np.max(plain, axis=0), np.max(rooted, axis=0), min(unresolved), min(inside)
+        lost = np.unique(unresolved)
+        lost = lost[np.isfinite(lost)]
+        return entries, np.max(plain, axis=0), np.max(rooted, axis=0), lost, min(inside)
 
     def needed(self, node: Ints, row: Ints) -> Ints:
         """Moments that each of these nodes needs for a row that is smooth on it."""

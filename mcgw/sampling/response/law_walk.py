@@ -51,12 +51,12 @@ class LawWalk:
         self._tree, self._nodes, self._rows, self._formulas = tree, nodes, rows, formulas
         self._limits = nodes.limits(rows)
 
-    def entries(self) -> tuple[Entries, Ints, Ints, float, float]:
+    def entries(self) -> tuple[Entries, Ints, Ints, Array, float]:
         """As `mcgw.sampling.response.hertz_walk.HertzWalk.entries`."""
         tree, nodes = self._tree, self._nodes
         plain, rooted = np.zeros(tree.size, dtype=np.int64), np.zeros(tree.size, dtype=np.int64)
         found: list[Entries] = []
-        unresolved = inside = np.inf
+        unresolved, inside = [np.empty(0)], np.inf
         row = np.arange(len(self._rows.h) if tree.size else 0)
         node = np.full(len(row), tree.size - 1)
         while len(node):
@@ -69,7 +69,7 @@ class LawWalk:
                 np.maximum.at(plain, series.node, needed)
                 left[few[done]] = False
             cells = left & ~nodes.parent[node]
-            unresolved = nodes.start[node[cells & smooth]].min(initial=unresolved)
+            unresolved.append(nodes.start[node[cells & smooth]])
             begins = cells & ~smooth
             inside = self._inside(node[begins], row[begins]).min(initial=inside)
             for root, which, c, needed in self._starts(node[begins], row[begins]):
@@ -78,7 +78,7 @@ class LawWalk:
             left &= nodes.parent[node]
             node, row = node[left], row[left]
             node, row = np.concatenate([tree.left[node], tree.right[node]]), np.concatenate([row, row])
-        return Entries.joined(found), plain, rooted, unresolved, inside
+        return Entries.joined(found), plain, rooted, np.unique(np.concatenate(unresolved)), inside
 
     def needed(self, node: Ints, row: Ints) -> Ints:
         """As `mcgw.sampling.response.hertz_walk.HertzWalk.needed`."""

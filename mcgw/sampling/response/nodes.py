@@ -55,7 +55,7 @@ class Nodes:
     broken : ndarray of bool
         Whether the grading has a break inside a parent, which its values at 20 heights may not show.
     crowd : ndarray
-        Asperities of a surface there, at most.
+        Asperities of a surface there, at most; with `Precision.of_least`, if all cells were such as its own.
     even, noise : ndarray
         Share of the largest value that errors are held against, and share that the last digit of a height
         makes: of rows that depend on the modulus.
@@ -83,6 +83,9 @@ class Nodes:
         kinks = np.array(resolved_breaks(grading, *mesh.range))
         inside = np.searchsorted(kinks, end) > np.searchsorted(kinks, start, side="right")
         largest = np.maximum(np.abs(moduli).max(axis=1), np.finfo(float).tiny)
+        crowd = n_asperities * tree.probability + _SCATTER
+        if precision.of_least:  # each node is off by its part of what the sum of them all may be off by
+            crowd *= mesh.size / (tree.last - tree.first)
         return cls(
             start=start,
             end=end,
@@ -90,7 +93,7 @@ class Nodes:
             moduli=moduli,
             parent=tree.left >= 0,
             broken=inside & (tree.left >= 0),
-            crowd=n_asperities * tree.probability + _SCATTER,
+            crowd=crowd,
             even=evenness(grading, moduli),
             noise=height_noise(start, above, moduli) / largest,
             precision=precision,

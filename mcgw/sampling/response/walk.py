@@ -14,9 +14,21 @@ from mcgw.sampling.response.nodes import Nodes
 from mcgw.sampling.response.rows import Powers, Rows
 from mcgw.sampling.response.tree import Tree
 
-__all__ = ["walk"]
+__all__ = ["UnresolvedError", "walk"]
 
+Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
+
+
+class UnresolvedError(ValueError):
+    """Cells are too wide for what is asked: their lower edges are its `starts`, increasing."""
+
+    def __init__(self, starts: Array) -> None:
+        self.starts = starts
+        super().__init__(
+            f"not resolved near s = {starts[0]:.6g}: the modulus there, or a contact law under it, bends too "
+            'fast for cells; take sampler = "tail", or give a smoother grading'
+        )
 
 
 def walk(mesh: Mesh, tree: Tree, rows: Rows, nodes: Nodes) -> tuple[Entries, Ints, Ints]:
@@ -36,8 +48,10 @@ def walk(mesh: Mesh, tree: Tree, rows: Rows, nodes: Nodes) -> tuple[Entries, Int
 
     Raises
     ------
+    UnresolvedError
+        If a row is not resolved on some cells.
     ValueError
-        If a row begins or ends inside a cell, or is not resolved on one.
+        If a row begins or ends inside a cell.
     """
     formulas = rows.formulas
     if isinstance(formulas, Powers):
@@ -45,10 +59,8 @@ def walk(mesh: Mesh, tree: Tree, rows: Rows, nodes: Nodes) -> tuple[Entries, Int
     else:
         series = LawWalk(tree, nodes, rows, formulas)
     entries, plain, rooted, unresolved, inside = series.entries()
-    if np.isfinite(unresolved):
-        raise ValueError(
-            f"grading: not resolved near s = {unresolved:.6g}; give its breaks, or a smoother one"
-        )
+    if unresolved.size:
+        raise UnresolvedError(unresolved)
     if np.isfinite(inside):
         raise ValueError(f"a break of the contact law at s = {inside:.6g} is not an edge of the cells")
     inherited = _inherited(plain, tree.left, tree.right)[: mesh.size]
