@@ -20,6 +20,7 @@ from mcgw.errors import StoreError
 __all__ = [
     "Expected",
     "State",
+    "alive",
     "check_output",
     "remove_stale",
     "rename_over",
@@ -53,7 +54,7 @@ def remove_stale(path: Path) -> None:
     """Remove the temporary files that processes of this host, now dead, left beside a file."""
     for left in path.parent.glob(f"{glob.escape(_stem(path))}*.tmp"):
         pid = left.name.removeprefix(_stem(path)).split("-")[0]
-        if pid.isdecimal() and not _alive(int(pid)):
+        if pid.isdecimal() and not alive(int(pid)):
             with suppress(OSError):  # not ours to remove
                 left.unlink()
 
@@ -63,7 +64,8 @@ def _stem(path: Path) -> str:
     return f".{path.name[:100]}.{host:08x}-"
 
 
-def _alive(pid: int) -> bool:
+def alive(pid: int) -> bool:
+    """Whether a process of this host runs."""
     try:
         os.kill(pid, 0)
     except ProcessLookupError:

@@ -6,7 +6,9 @@ from pathlib import Path
 
 from mcgw.errors import StoreError
 
-__all__ = ["open_regular", "read_bytes", "read_text"]
+__all__ = ["HDF5", "open_regular", "read_bytes", "read_text"]
+
+HDF5 = b"\x89HDF\r\n"  # how such a file begins
 
 
 def open_regular(path: Path) -> int:

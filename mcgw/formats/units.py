@@ -5,7 +5,7 @@ import re
 import unicodedata
 from fractions import Fraction
 
-__all__ = ["EXAMPLES", "METRES", "parse", "quantity"]
+__all__ = ["EXAMPLES", "METRES", "parse", "quantity", "signed"]
 
 # Powers of ten as text: a product of fractions rounds once, so that "1.37 um" is 1.37e-6 to the last bit.
 _PREFIXES = {
@@ -84,17 +84,22 @@ def parse(text: str, unit: str, name: str = "") -> float:
     >>> parse("1.37 um", "m"), parse("300/mm^2", "1/m^2"), parse("2 %", "1")
     (1.37e-06, 300000000.0, 0.02)
     """
-    match = _NUMBER.fullmatch(text) if len(text) < 1000 else None
-    factor = _factor(match.group(2) or "", unit) if match else None
-    try:
-        value = float(Fraction(match.group(1)) * factor) if match and factor is not None else math.nan
-    except OverflowError:
-        value = math.inf
+    value = signed(text, unit)
     if not (math.isfinite(value) and value > 0):
         said = f"{name} = " if name else ""
         shown = repr(text if len(text) <= 60 else text[:57] + "...")
         raise ValueError(f"{said}{shown}: give a number > 0 with its unit, such as {EXAMPLES[unit]}")
     return value
+
+
+def signed(text: str, unit: str) -> float:
+    """As `parse`, of a number of any sign: nan or infinite where it is none of that kind."""
+    match = _NUMBER.fullmatch(text) if len(text) < 1000 else None
+    factor = _factor(match.group(2) or "", unit) if match else None
+    try:
+        return float(Fraction(match.group(1)) * factor) if match and factor is not None else math.nan
+    except OverflowError:
+        return math.inf
 
 
 def quantity(given: float | str, unit: str, name: str = "") -> float:

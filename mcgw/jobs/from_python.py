@@ -11,6 +11,7 @@ from mcgw.jobs.session import part_of
 from mcgw.machine.progress import Progress, told
 from mcgw.scene.ensemble_section import LeftOut
 from mcgw.scene.scene import Scene
+from mcgw.scene.wrong_object import check_object
 from mcgw.store.ensembles import recorded_seed
 
 __all__ = ["run"]
@@ -99,6 +100,7 @@ def run(
     20
     30
     """
+    check_object("run", scene, Scene)
     path = Path(path)
     scene = scene.replace(**changes)
     if isinstance(scene.seed, LeftOut) and (recorded := recorded_seed(path)) is not None:

@@ -1,5 +1,6 @@
 """Ensemble files: opened and verified; the schema stands in `mcgw.store`."""
 
+import re
 from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -141,6 +142,8 @@ def filetype_of(path: Path) -> str:
 
 def _run_of(path: Path) -> RunFolder:
     """The run that makes a file; one that is a single block says nothing of itself."""
+    if (parts_of(path) / "sweep").is_dir():
+        raise StoreError(f"{path}: is a sweep in the making; mcgw show tells how far, mcgw sweep goes on")
     if not (parts_of(path) / "run.toml").exists():
         raise StoreError(f"{path}: no block of its run is finished yet")
     return RunFolder.open(parts_of(path))
@@ -163,6 +166,8 @@ def _described(path: Path) -> tuple[dict[str, Any], Scene]:
         for key in ("sampler", "digest", "complete", "date", "cpu", "versions", "commit"):
             attributes[key]
         float(attributes["wall_seconds"])
+        if not re.fullmatch("[0-9a-f]{64}", str(attributes["digest"])):
+            raise StoreError(f"{path}: its digest is not one")
     except (KeyError, TypeError) as error:
         raise StoreError(f"{path}: an attribute is missing or of another type ({error})") from None
     except ValueError as error:

@@ -3,7 +3,8 @@
 It lies in the folder of the run (`mcgw.store.disk.parts_of`) and goes together with the folder when nothing
 else is left there. The system frees it when its holder dies, however that happens. It is the lock of an
 SQLite file that stays empty, which every system has. Such a lock goes when *any* descriptor of its file is
-closed, so nothing else may open that file: who holds it stands in another one.
+closed, so nothing else may open that file: who holds it stands in another one. Where the disk keeps no locks,
+names of files stand for them (`mcgw.store.lock_by_name`).
 """
 
 import os
@@ -19,6 +20,7 @@ from filelock import ReadWriteLock, Timeout
 from mcgw.errors import StoreError
 from mcgw.formats.files import write_whole
 from mcgw.formats.plain_file import read_text
+from mcgw.store.lock_by_name import hold_by_name, keeps_locks, names_of_locks
 
 __all__ = ["LOCK_FILES", "LockedError", "locked", "refuse_link"]
 
@@ -69,14 +71,20 @@ def locked(folder: Path, *, shared: bool = False, patience: float | None = None)
 def _try(folder: Path, shared: bool, held: ExitStack) -> str | None:
     """Take the lock at once, or tell why it cannot be had now."""
     refuse_link(folder)
+    new = not folder.exists()
     try:
         # Writable by its owner alone: otherwise the lock makes names of its own there, and may leave them.
         folder.mkdir(mode=0o755, parents=True, exist_ok=True)
-        held.enter_context(_lock(folder, shared))
-    except Timeout:
-        return f"locked by {_holder(folder)}, which works on this run"
-    except sqlite3.Error as error:
-        raise StoreError(f"{folder}: cannot be locked ({error}); choose another -o") from None
+        try:
+            held.enter_context(_lock(folder, shared))
+        except (Timeout, sqlite3.Error) as error:
+            by_name = not keeps_locks(folder)
+            if not by_name and isinstance(error, sqlite3.Error):
+                if new:
+                    _remove_if_empty(folder)
+                raise StoreError(f"{folder}: cannot be locked ({error}); choose another -o") from None
+            holder = hold_by_name(folder, shared, held) if by_name else _holder(folder)
+            return holder and f"locked by {holder}, which works on this run"
     except OSError as error:
         if error.errno is None or isinstance(error, FileNotFoundError):
             return "its run has just ended; repeat the command"  # the folder went between two steps
@@ -91,8 +99,9 @@ def _lock(folder: Path, shared: bool) -> AbstractContextManager[None]:
 
 def _remove_if_empty(folder: Path) -> None:
     with suppress(OSError):
-        if set(os.listdir(folder)) <= set(LOCK_FILES):
-            for name in LOCK_FILES:
+        names = {*LOCK_FILES, *names_of_locks(folder)}
+        if set(os.listdir(folder)) <= names:
+            for name in names:
                 (folder / name).unlink(missing_ok=True)
             folder.rmdir()
 

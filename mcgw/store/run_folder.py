@@ -6,6 +6,7 @@
                 last, the SHA-256 of all that stands before
     lock.db     held by whoever writes the file, freed by the system when it dies (`lock`)
     holder      who that is
+    lock.*      in the place of both where the disk keeps no locks (`lock_by_name`)
     shards/     block-0000000000042.h5: the surfaces from number 42 on
 
 The set of valid shards is the only record of progress.
@@ -88,13 +89,19 @@ class RunFolder:
         refuse_link(folder)
         (folder / "shards").mkdir(parents=True, exist_ok=True)
         sync(folder.parent)
+        new = cls(
+            folder, scene, sampler, size, identity_of(scene, sampler), drawn_with(scene, sampler), now()
+        )
         with suppress(FileExistsError):
-            new = cls(
-                folder, scene, sampler, size, identity_of(scene, sampler), drawn_with(scene, sampler), now()
-            )
             new._write(expected=None)
             return new
-        old = cls.open(folder)
+        try:
+            old = cls.open(folder)
+        except _DamagedError:
+            if not new.shards(bodies=False):
+                raise
+            new._write(expected="anything")  # its blocks say that they are of this very run
+            return new
         if old.identity != identity_of(scene, sampler):
             raise StoreError(
                 f"{folder}: holds a different run: {difference(old.scene, old.drawn_with, scene, sampler)}; "
@@ -141,6 +148,8 @@ class RunFolder:
                 raise StoreError(f"{file}: is not a run of format {_FORMAT[0]}.x, but {said['format']}")
             scene = scene_from(said["scene"])
             known = [str(said[key]) for key in ("identity", "versions", "date")]
+            if not all(map(str.isprintable, known)):
+                raise ValueError
             return cls(folder, scene, str(said["sampler"]), int(said["block"]), *known)
         except OSError as error:
             raise StoreError(f"{file}: {error.strerror}") from None
@@ -148,7 +157,10 @@ class RunFolder:
             if isinstance(error, StoreError):
                 raise
             what = "checksum mismatch" if isinstance(error, _ChangedError) else "it cannot be read"
-            raise StoreError(f"{file}: damaged ({what}); remove {folder} to start again") from None
+            raise _DamagedError(
+                f"{file}: damaged ({what}); the blocks beside it are kept, and mcgw run with their scene and "
+                f"seed goes on; or remove {folder}"
+            ) from None
 
     def shards(self, *, bodies: bool = True) -> list[Shard]:
         """Valid shards in order, each checked bit by bit; or by its trailer alone, without the `bodies`."""
@@ -226,6 +238,10 @@ def missing(n_surfaces: int, size: int, held: Iterable[Span]) -> list[Span]:
             stop = end
         stop = max(stop, span.stop)
     return gaps
+
+
+class _DamagedError(StoreError):
+    """A run.toml that says nothing."""
 
 
 class _ChangedError(ValueError):

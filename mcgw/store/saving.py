@@ -10,6 +10,7 @@ from mcgw.ensemble.ensemble import Ensemble
 from mcgw.errors import RunError, StoreError
 from mcgw.formats.files import check_output, state_of, write_whole
 from mcgw.scene.scene_file import scene_text
+from mcgw.scene.wrong_object import check_object
 from mcgw.store.arithmetic import drawn_with
 from mcgw.store.disk import parts_of
 from mcgw.store.ensembles import finished, open_ensemble
@@ -57,6 +58,7 @@ def save(ensemble: Ensemble, path: str | Path, *, wall_seconds: float = 0.0) -> 
     ...     mcgw.save(mcgw.regrade(e, mcgw.Exponential(2.0)), f"{folder}/stiffer.h5").n_surfaces
     20
     """
+    check_object("save", ensemble, Ensemble)
     path = Path(path)
     check_output(path)
     with locked(parts_of(path)):

@@ -29,6 +29,7 @@ _MOST_ATTRIBUTES = 64
 _READ_ALL = 2**26  # stored bytes up to which all is read here first
 _MOST_EXPANSION = 1100  # deflate cannot shrink more
 _MOST_CHUNK = 2**28
+_DOCUMENTS = ("title", "scene", "drawn_for", "axes")  # other texts are shown and exported as they stand
 
 
 class RefusedError(Exception):
@@ -130,6 +131,8 @@ def _plain_value(name: str, attributes: Any) -> Any:
     if isinstance(value, str):
         if len(value) > MOST_TEXT:
             raise RefusedError(f"attribute {name}: too large")
+        if name not in _DOCUMENTS and not value.isprintable():
+            raise RefusedError(f"attribute {name}: not one line of text")
         return value
     if isinstance(value, np.ndarray | np.generic) and value.dtype.kind in "iufb":
         return value.tolist()

@@ -37,9 +37,11 @@ def examine(path: Path) -> dict[str, Any]:
     """
     fd = open_regular(path)
     try:
-        status = os.fstat(fd)
+        status, head = os.fstat(fd), os.read(fd, 512)
     finally:
         os.close(fd)
+    if path.suffix == ".toml" and b"\0" not in head:
+        raise StoreError(f"{path}: is no file of results; mcgw run {path} makes one of a scene")
     return _examined(path.resolve(), path, (status.st_ino, status.st_size, status.st_mtime_ns))
 
 

@@ -79,12 +79,20 @@ class SweepFolder:
         }
         with suppress(FileExistsError):  # another job may have been quicker
             if not (folder / ASKED).exists():
-                write_whole(
-                    folder / ASKED, (tomli_w.dumps(said, multiline_strings=True).encode(),), expected=None
-                )
-        if _read(folder)["identity"] != identity:
-            raise StoreError(f"{folder}: a different sweep was begun there; choose another -o, or remove it")
-        return cls(folder, asked, identity)
+                write_whole(folder / ASKED, _document(said), expected=None)
+        started = cls(folder, asked, identity)
+        try:
+            if (there := _read(folder)) == said:
+                return started
+            problem = StoreError(
+                f"{folder}: a different sweep was begun there; choose another -o, or remove it"
+            )
+        except StoreError as error:
+            there, problem = {}, error
+        if there.get("identity") != identity and not any(map(started.held, started.chunks)):
+            raise problem
+        write_whole(folder / ASKED, _document(said))  # it was damaged, and the chunks say whose they are
+        return started
 
     @classmethod
     def open(cls, folder: Path) -> "SweepFolder":
@@ -149,6 +157,10 @@ def seed_of(path: Path) -> int | None:
 
 def _span(chunk: Chunk) -> Span:
     return Span(chunk.number, 1)
+
+
+def _document(said: dict[str, Any]) -> tuple[bytes]:
+    return (tomli_w.dumps(said, multiline_strings=True).encode(),)
 
 
 def _read(folder: Path) -> dict[str, Any]:

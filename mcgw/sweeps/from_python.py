@@ -9,6 +9,7 @@ from mcgw.jobs.chosen_engine import chosen_engine, dashboard_of
 from mcgw.jobs.session import part_of
 from mcgw.machine.progress import Progress, told
 from mcgw.scene.scene import Scene
+from mcgw.scene.wrong_object import check_object
 from mcgw.sweeps.asked import Asked
 from mcgw.sweeps.axes import axes_of
 from mcgw.sweeps.drawing import draw
@@ -121,6 +122,7 @@ def sweep(
     >>> stiffer.gain.round()
     array([6., 6., 5.])
     """
+    check_object("sweep", scene, Scene)
     if not statistics or not set(statistics) <= set(STATISTICS):
         raise ValueError(f"statistics = {statistics!r}: give one or both of {', '.join(STATISTICS)}")
     if path is None and (engine not in (None, "threads") or shard is not None):

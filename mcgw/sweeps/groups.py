@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analytic import quantity_of
+from mcgw.machine.progress import steps
 from mcgw.sampling.shared import on_common_cells, to_be_shared
 from mcgw.scene.scene import Scene
 from mcgw.sweeps.exponentials import between_two
@@ -73,7 +74,7 @@ class Group:
 
 def groups_of(scenes: Sequence[Scene]) -> list[Group]:
     """Group the scenes of a sweep."""
-    keys = [to_be_shared(scene) for scene in scenes]
+    keys = [to_be_shared(scene) for scene in steps(scenes, "points")]
     together = _alike(range(len(scenes)), lambda i: (i,) if keys[i] is None else keys[i])
     return [_group(g, members, [scenes[i] for i in members]) for g, members in enumerate(together)]
 

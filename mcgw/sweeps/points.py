@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from typing import Any, overload
 
+from mcgw.machine.progress import steps
 from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_document, scene_of
 from mcgw.scene.section import SceneError
@@ -22,7 +23,7 @@ def scenes_of(document: dict[str, Any], axes: Axes) -> list[Scene]:
         With the mistakes of all points, each with the point it is of.
     """
     found, problems = [], []
-    for point in axes.points():
+    for point in steps(list(axes.points()), "points"):
         try:
             found.append(scene_of(_with(document, axes.at(point))))
         except SceneError as error:

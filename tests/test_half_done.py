@@ -1,0 +1,66 @@
+"""What is said of runs and sweeps before they are finished, and of laws that are lists of numbers."""
+
+import re
+
+import numpy as np
+import pytest
+
+import mcgw
+from mcgw.cli import main
+from mcgw.jobs.job import Job
+from mcgw.scene.law_text import law_text
+
+SURFACE = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "0.1 mm^2", "78.6 GPa")
+SCENE = mcgw.Scene(SURFACE, separations=[0.0, 1.0], n_surfaces=100, seed=1)
+OVER = {"grading.gamma": [0.5, 1.5], "ensemble.count": ["fixed", "poisson"]}
+
+
+def out_of(capsys, *words):
+    assert main([str(word) for word in words]) == 0
+    return capsys.readouterr().out
+
+
+def test_a_run_half_done_tells_surfaces_from_asperities(tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr(Job, "rows", 16)
+    path = tmp_path / "a.h5"
+    left = mcgw.run(SCENE, path, shard="1/2")
+    done = 100 - left
+    assert 0 < done < 100
+    assert f"  surfaces      {done} so far, not yet 100, of 30 asperities each (fixed)" in out_of(
+        capsys, "show", path
+    )
+    mcgw.run(SCENE, path)
+    assert "  surfaces      100 of 30 asperities each (fixed)" in out_of(capsys, "show", path)
+
+
+def test_a_sweep_half_done_says_how_far_it_is(tmp_path, capsys):
+    path, scene = tmp_path / "s.h5", SCENE
+    left = mcgw.sweep(scene, OVER, path=path, shard="1/2")
+    assert left == 100  # one of two groups, by the law of the number of asperities
+    said = out_of(capsys, "show", path)
+    assert said == (
+        f"{path}: a sweep of 4 points over grading.gamma, ensemble.count, not finished: 100 of 200 surfaces "
+        "are drawn; the same mcgw sweep goes on\n"
+    )
+    assert mcgw.scene_from(out_of(capsys, "show", "--scene", path)).surface == SURFACE
+    for option in ("--verify", "--digest"):
+        assert main(["show", str(path), option]) == 2
+        assert "is a sweep in the making; mcgw sweep goes on" in capsys.readouterr().err
+    with pytest.raises(mcgw.StoreError, match="is a sweep in the making; mcgw show tells how far"):
+        mcgw.open_ensemble(path)
+    assert mcgw.sweep(scene, OVER, path=path).shape == (2, 2)  # nothing of it was removed
+
+
+@pytest.mark.parametrize("points", [2, 5, 400])
+def test_no_text_of_a_law_ends_in_half_a_number(points):
+    heights = mcgw.HeightTable.of(np.random.default_rng(1).normal(size=points))
+    text = law_text(heights)
+    assert len(text) < 200
+    known = {f"{x:.4g}" for x in (*heights.s, *heights.share)} | {
+        repr(x) for x in (*heights.s, *heights.share)
+    }
+    numbers = re.findall(r"-?\d+\.\d+(?:e-?\d+)?", text)
+    assert numbers
+    assert set(numbers) <= known
+    verdict = SCENE.replace(heights=heights).validity().brief
+    assert set(re.findall(r"-?\d+\.\d{2,}", verdict)) <= known

@@ -1,0 +1,60 @@
+"""A flipped bit in the record of a run or a sweep: its blocks are whole, and the scene is at hand."""
+
+import numpy as np
+import pytest
+
+import mcgw
+from mcgw.errors import StoreError
+from mcgw.jobs.job import Job
+from mcgw.store.run_folder import RunFolder, parts_of
+from mcgw.sweeps.folder import ASKED
+
+
+def flip(path, bit):
+    data = bytearray(path.read_bytes())
+    data[bit // 8 % len(data)] ^= 1 << bit % 8
+    path.write_bytes(data)
+
+
+@pytest.fixture
+def begun(make_scene, tmp_path, monkeypatch):
+    """A run of three blocks, two of which are drawn."""
+    monkeypatch.setattr(Job, "rows", 4)
+    scene = make_scene(separations=(2.0,), sampler="tail", n_surfaces=12)
+    mcgw.run(scene, tmp_path / "e.h5", shard="1/2")
+    return scene, tmp_path / "e.h5"
+
+
+@pytest.mark.parametrize("bit", [3, 801, 2404, 4007, -2])
+def test_a_run_goes_on_from_its_blocks(begun, bit, monkeypatch):
+    scene, path = begun
+    flip(parts_of(path) / "run.toml", bit)
+    with pytest.raises(StoreError, match=r"damaged .* mcgw run with their scene and seed goes on"):
+        RunFolder.open(parts_of(path))
+    drawn, draw = [], Job.draw
+    monkeypatch.setattr(
+        Job, "draw", lambda job, span, threads: drawn.append(span) or draw(job, span, threads)
+    )
+    made = mcgw.run(scene, path)
+    assert [span.first for span in drawn] == [4]
+    assert np.array_equal(made.load, mcgw.simulate(scene).load)
+
+
+def test_another_scene_does_not_take_it(begun):
+    scene, path = begun
+    flip(parts_of(path) / "run.toml", 801)
+    with pytest.raises(StoreError, match="damaged"):
+        mcgw.run(scene.replace(seed=2), path)
+    assert len(list((parts_of(path) / "shards").glob("block-*.h5"))) == 2
+
+
+@pytest.mark.parametrize("share", [0.001, 0.3, 0.6, 0.95])
+def test_a_sweep_goes_on_from_its_chunks(make_scene, share, tmp_path, monkeypatch):
+    path, scene = tmp_path / "s.h5", make_scene(separations=(2.0,), n_surfaces=8)
+    axes = {"grading.gamma": [1.2, 1.5], "ensemble.seed": [1, 2]}
+    mcgw.sweep(scene, axes, path=path, shard="1/2")
+    asked = parts_of(path) / "sweep" / ASKED
+    before = asked.read_bytes()
+    flip(asked, int(8 * len(before) * share) + 1)
+    mcgw.sweep(scene, axes, path=path, shard="1/2")
+    assert asked.read_bytes() == before
