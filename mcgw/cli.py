@@ -1,6 +1,7 @@
 """The command line: ``mcgw COMMAND``. What a command needs is imported when it runs."""
 
 import argparse
+import re
 import sys
 import warnings
 from collections.abc import Sequence
@@ -9,7 +10,8 @@ from typing import Any, NoReturn
 
 from mcgw.errors import RunError
 from mcgw.machine.leaving import leave
-from mcgw.machine.terminal import drop_output, one_line, plain_output
+from mcgw.machine.progress import watched
+from mcgw.machine.terminal import Plain, one_line, plain_output
 
 COMMANDS = (
     "init",
@@ -29,6 +31,8 @@ COMMANDS = (
     "fit",
     "completion",
 )
+_PRINTED = ("", "show", "solve", "completion")  # whose product is what they print
+_NEGATIVE = re.compile(r"-\.?\d")  # how a value begins that is no option, as -1MPa, which is then told of
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -42,36 +46,44 @@ def main(argv: Sequence[str] | None = None) -> int:
     Returns
     -------
     int
-        0: done; 1: a comparison or a run failed; 2: bad input; 130, 143: interrupted by a
-        signal.
+        0: done; 1: a comparison or a run failed, or a full disk does not take the output of a command that
+        has no other product; 2: bad input; 130, 143: interrupted by a signal.
     """
-    with plain_output():
-        return _main(argv)
+    asked = argparse.Namespace(command="")  # help, or the version
+    with plain_output() as output:
+        try:
+            return _main(argv, asked) or _printed(output, asked)
+        except SystemExit as end:  # of argparse: help, the version, or words that are none
+            raise SystemExit(end.code or _printed(output, asked)) from None
 
 
-def _main(argv: Sequence[str] | None) -> int:
+def _printed(output: Plain, asked: argparse.Namespace) -> int:
+    """1 if what was asked for is what is printed, and a full disk has not taken it; readers may leave."""
+    output.flush()
+    if output.lost is None or isinstance(output.lost, BrokenPipeError) or asked.command not in _PRINTED:
+        return 0
+    print(f"mcgw: {output.lost}", file=sys.stderr)
+    return 1
+
+
+def _main(argv: Sequence[str] | None, asked: argparse.Namespace) -> int:
     try:
-        args = _parser().parse_args(argv)
+        args = _parser().parse_args(argv, asked)
         with warnings.catch_warnings():
             warnings.showwarning = _show_warning  # type: ignore[assignment]
-            code = int(args.execute(args))
-        sys.stdout.flush()
-        return code
+            warnings.filterwarnings("ignore", module=r"mcgw\.scene\.plausible")  # told as notes
+            with watched():
+                return int(args.execute(args))
     except KeyboardInterrupt:
         print("mcgw: interrupted", file=sys.stderr)
         return 130
     except RunError as error:
         print(f"mcgw: {error}", file=sys.stderr)
         return error.code
-    except BrokenPipeError:  # the reader of our output has seen enough
-        drop_output()
-        return 0
     except MemoryError as error:
         print(f"mcgw: the memory does not suffice ({one_line(str(error))}); ask for less", file=sys.stderr)
         return 1
     except (ValueError, OSError) as error:
-        if isinstance(error, OSError) and error.filename == "standard output":
-            drop_output()
         for line in str(error).splitlines():
             print(f"mcgw: {one_line(line)}", file=sys.stderr)
         return 2
@@ -95,8 +107,9 @@ def _parser() -> argparse.ArgumentParser:
         sub = commands.add_parser(
             name, help=command.HELP, description=f"{command.HELP}.", epilog=f"example: {command.EXAMPLE}"
         )
+        sub._negative_number_matcher = _NEGATIVE
         command.arguments(sub)
-        sub.set_defaults(execute=command.execute, parser=parser)
+        sub.set_defaults(execute=command.execute, parser=parser, command=name)
     return parser
 
 

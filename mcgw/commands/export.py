@@ -43,11 +43,12 @@ def execute(args: argparse.Namespace) -> int:
     from mcgw.commands.notes import tell_notes
     from mcgw.commands.outputs import CSV, Format, Output, check_outputs
     from mcgw.exports.curves import quantile_name
-    from mcgw.exports.programs import PROGRAMS
+    from mcgw.exports.programs import PROGRAMS, check_name
     from mcgw.exports.writing import DEFAULT_QUANTILES, export, files_of_export
     from mcgw.scene.scene_file import files_of, load_scene
     from mcgw.store.ensembles import open_ensemble
 
+    check_name(args.output.name, PROGRAMS[args.to])
     pressures = None if args.pressures is None else _pressures(args.pressures)
     from_scene = args.scene.suffix.lower() == ".toml"
     what = load_scene(args.scene) if from_scene else args.scene

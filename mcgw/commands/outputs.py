@@ -1,6 +1,7 @@
 """What a command may write: asked of all its outputs together, before anything is computed."""
 
 import os
+import sys
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
@@ -68,7 +69,7 @@ class Output:
 
 
 def check_outputs(outputs: Iterable[Output], *, inputs: Iterable[Path] = ()) -> None:
-    """Refuse what would destroy something or cannot be written; make the folders.
+    """Refuse what would destroy something or cannot be written; make the folders, and say so.
 
     `outputs` are all that the command writes, `inputs` all that it reads, and with each the folder of the run
     that makes it.
@@ -93,7 +94,11 @@ def check_outputs(outputs: Iterable[Output], *, inputs: Iterable[Path] = ()) -> 
             raise output.refuse(f"{output.format.what} is written there, whose name ends in {known}")
         _refuse_ensemble(output)
     for output in outputs:
+        folder = output.path.parent
+        new = not folder.exists()
         check_output(output.path)
+        if new:
+            print(f"mcgw: note: {folder} is a new folder", file=sys.stderr)
 
 
 def same_file(one: Path, other: Path) -> bool:

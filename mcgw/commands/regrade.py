@@ -30,6 +30,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def execute(args: argparse.Namespace) -> int:
     """Write the new ensemble and print its ratios to the old one."""
+    from mcgw.commands.notes import tell_notes
     from mcgw.commands.outputs import HDF5, Output, check_outputs
     from mcgw.commands.table_option import table_output, write_table
     from mcgw.ensemble.regrading import regrade, regraded_scene
@@ -46,7 +47,9 @@ def execute(args: argparse.Namespace) -> int:
     path = args.output or args.file.with_suffix(".regraded.h5")
     inputs = [args.file, table] if table else [args.file]
     check_outputs([Output(path, HDF5, grows=True), *table_output(args.csv)], inputs=inputs)
-    finished(path, regraded_scene(old, grading, law), old.sampler)
+    asked = regraded_scene(old, grading, law)
+    tell_notes(asked)
+    finished(path, asked, old.sampler)
     new = save(regrade(old, grading, law=law), path)
     print(ratio_table(new, old))
     print(f"{path}: {new.n_surfaces} surfaces, the same as in {args.file}")

@@ -27,20 +27,29 @@ def execute(args: argparse.Namespace) -> int:
     from mcgw.commands.notes import tell_notes
     from mcgw.commands.outputs import check_outputs
     from mcgw.commands.table_option import table_output, write_table
+    from mcgw.store.disk import parts_of
     from mcgw.store.ensembles import filetype_of, open_ensemble, read_attributes, verify
     from mcgw.store.leftovers import tidy
 
     if args.csv and (args.scene or args.digest or args.plan or args.verify):
         raise ValueError(f"--csv {args.csv}: writes the table of the summary; leave out the other option")
     if args.plan:
+        from mcgw.machine.progress import stages
         from mcgw.reports.plan import plan_of, plan_text
         from mcgw.scene.scene_file import load_scene
 
         scene = load_scene(args.file)
-        tell_notes(scene)
-        print(plan_text(scene, plan_of(scene)))
+        with stages(2) as done:
+            tell_notes(scene)
+            done()
+            plan = plan_of(scene)
+        print(plan_text(scene, plan))
         return 0
     tidy(args.file)
+    if not args.file.exists() and parts_of(args.file).joinpath("sweep").is_dir():
+        from mcgw.commands.show_sweep import show_unfinished
+
+        return show_unfinished(args)
     if filetype_of(args.file) == "mcgw-sweep":
         from mcgw.commands.show_sweep import show_sweep  # of which most files are none
 

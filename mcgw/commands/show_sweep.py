@@ -10,9 +10,10 @@ from mcgw.formats.csv_table import Row
 from mcgw.store.trailer import check_trailer
 from mcgw.sweeps.axes import label
 from mcgw.sweeps.file import open_sweep, read_attributes
+from mcgw.sweeps.folder import SweepFolder, folder_of
 from mcgw.sweeps.sweep import Sweep
 
-__all__ = ["show_sweep"]
+__all__ = ["show_sweep", "show_unfinished"]
 
 
 def show_sweep(args: argparse.Namespace) -> int:
@@ -33,6 +34,29 @@ def show_sweep(args: argparse.Namespace) -> int:
         print(f"  with    {attributes['versions']}; commit {attributes['commit']}")
         names = [f"{name}_{kind}" for name in _plain(sweep) for kind in sweep.statistics]
         write_table(args.csv, [*sweep.axes.keys, "separation", *names], _rows(sweep))
+    return 0
+
+
+def show_unfinished(args: argparse.Namespace) -> int:
+    """How far a sweep has come that is not yet in its file; with --scene, what all of its points come from.
+
+    Raises
+    ------
+    StoreError
+        If something is asked for that only a finished one has, or it cannot be read.
+    """
+    run = SweepFolder.open(folder_of(args.file))
+    if args.scene:
+        print(run.asked.texts()[0], end="")
+        return 0
+    if args.verify or args.digest or args.csv:
+        raise StoreError(f"{args.file}: is a sweep in the making; mcgw sweep goes on, then ask again")
+    missing, axes = sum(chunk.n for chunk in run.missing()), run.asked.axes
+    total = sum(chunk.n for chunk in run.chunks)
+    print(
+        f"{args.file}: a sweep of {axes.size} points over {', '.join(axes.keys)}, not finished: "
+        f"{total - missing} of {total} surfaces are drawn; the same mcgw sweep goes on"
+    )
     return 0
 
 

@@ -29,6 +29,7 @@ def execute(args: argparse.Namespace) -> int:
     from mcgw.commands.table_option import table_output, write_table
     from mcgw.ensemble.solution import solutions
     from mcgw.formats.units import parse
+    from mcgw.machine.progress import bar
     from mcgw.reports.solution import SOLUTION_HEADER, solution_rows, solution_table
     from mcgw.scene.scene_file import files_of, load_scene
 
@@ -36,7 +37,6 @@ def execute(args: argparse.Namespace) -> int:
     check_outputs(table_output(args.csv), inputs=files_of(args.scene))
     if args.surfaces is not None:
         scene = replace(scene, n_surfaces=args.surfaces)
-    tell_notes(scene)
     area = scene.surface.nominal_area
     if args.load:
         given, values = "load", [parse(text, "N", "--load") for text in args.load]
@@ -44,7 +44,9 @@ def execute(args: argparse.Namespace) -> int:
         given, values = "load", [parse(p, "Pa", "--pressure") * area for p in args.pressure]
     else:
         given, values = "area", [parse(a, "1", "--area-fraction") * area for a in args.area_fraction]
-    found = solutions(scene, given, values)
+    tell_notes(scene)
+    with bar("surfaces", terminal=True) as tell:
+        found = solutions(scene, given, values, tell)
     print(solution_table(scene, found))
     write_table(args.csv, SOLUTION_HEADER, solution_rows(scene, found))
     return 0

@@ -1,5 +1,6 @@
 """How each finite-element program reads a table: order of columns, signs, comments, and what it demands."""
 
+import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
@@ -9,7 +10,7 @@ from numpy.typing import NDArray
 from mcgw.exports.curves import Curve
 from mcgw.exports.kinds import KINDS, Kind
 
-__all__ = ["PROGRAMS", "Program", "foot_of", "rows_of"]
+__all__ = ["PROGRAMS", "Program", "check_name", "foot_of", "rows_of"]
 
 Array = NDArray[np.float64]
 
@@ -53,6 +54,21 @@ class Program:
     hints: Callable[[Kind, str], Sequence[str]]
     most: int | None = None
     least_step: float = 0.0
+
+
+def check_name(file: str, program: Program) -> None:
+    """Refuse the name of a file that an input of the program cannot tell, as its own comments do.
+
+    Raises
+    ------
+    ValueError
+        If it is not made of letters, digits and ``._+-``, or is too long for a line.
+    """
+    if not re.fullmatch(r"[A-Za-z0-9._+-]{1,64}", file):
+        raise ValueError(
+            f"path = {file!r}: {program.name} is told of it by name; give one of at most 64 letters, digits "
+            "and . _ + -"
+        )
 
 
 def foot_of(curve: Curve) -> float:

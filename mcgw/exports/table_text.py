@@ -10,6 +10,7 @@ from mcgw.exports.kinds import Kind
 from mcgw.exports.programs import Program, foot_of, rows_of
 from mcgw.exports.unit_systems import UnitSystem
 from mcgw.formats.csv_table import Row
+from mcgw.machine.terminal import one_line
 
 __all__ = ["all_rows", "in_units", "table_text"]
 
@@ -45,7 +46,7 @@ def table_text(
     rows = rows_of(curve, kind, program, foot)
     _check(rows, kind, program)
     comments = [*head, *(_foot(foot, kind, program, system) if foot else ()), *program.hints(kind, file)]
-    lines = [f"{program.comment} {line}" for line in comments]
+    lines = [f"{program.comment} {one_line(line)}" for line in comments]
     lines += [program.keywords[kind.name]] if program.keywords[kind.name] else []
     lines += [program.separator.join(f"{x:.9e}" for x in row) for row in rows.tolist()]
     return "\n".join([*lines, ""])

@@ -12,7 +12,7 @@ from mcgw.ensemble.ensemble import Ensemble
 from mcgw.exports.curves import curves_of
 from mcgw.exports.heading import heading
 from mcgw.exports.kinds import KINDS, Kind
-from mcgw.exports.programs import PROGRAMS, Program
+from mcgw.exports.programs import PROGRAMS, Program, check_name
 from mcgw.exports.surfaces import checked, surfaces_for
 from mcgw.exports.table_text import all_rows, in_units, table_text
 from mcgw.exports.unit_systems import UNIT_SYSTEMS, UnitSystem
@@ -78,7 +78,7 @@ def export(
     Raises
     ------
     ValueError
-        If a program does not take a table, a scene has none, or an argument is wrong.
+        If a program does not take a table or the name of a file, a scene has none, or an argument is wrong.
     SceneError
         If a pressure is none.
     StoreError
@@ -95,6 +95,7 @@ def export(
     ['soft.inp', 'soft.q05.inp', 'soft.q95.inp', 'soft.all.csv']
     """
     program, kind, system = _asked(to, table, units)
+    check_name(Path(path).name, program)
     wanted = _pressures(pressures)
     _check_points(points)
     source, digest = _source(what)

@@ -1,12 +1,16 @@
 """How far a long call has come: told to a function, or drawn as a bar."""
 
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from typing import Any
+from contextvars import ContextVar
+from itertools import count
+from typing import Any, TypeVar
 
-__all__ = ["Progress", "bar", "told"]
+__all__ = ["Progress", "bar", "stages", "steps", "told", "watched"]
 
+_Item = TypeVar("_Item")
+_WATCHED = ContextVar("_WATCHED", default=False)
 Tell = Callable[[float, float], Any]
 Progress = bool | Tell | None
 
@@ -24,7 +28,7 @@ def told(progress: Progress, unit: str, beside: str = "") -> Iterator[Tell]:
         If `progress` is something else.
     """
     if progress is True:
-        with bar(unit, beside) as show:
+        with watched(), bar(unit, beside) as show:
             yield show
     elif callable(progress):
         yield progress
@@ -40,6 +44,9 @@ def bar(unit: str, beside: str = "", *, terminal: bool = False) -> Iterator[Tell
 
     Its rate is that of this call: what was done before counts as given.
     """
+    if terminal and not sys.stderr.isatty():
+        yield _nobody
+        return
     from tqdm import tqdm
 
     bars: list[Any] = []
@@ -48,12 +55,7 @@ def bar(unit: str, beside: str = "", *, terminal: bool = False) -> Iterator[Tell
 
     def show(done: float, total: float) -> None:
         if not bars:
-            options = {
-                "unit": f" {unit}",
-                "disable": None if terminal else False,
-                "leave": False,
-                "smoothing": 0,
-            }
+            options = {"unit": f" {unit}", "leave": False, "smoothing": 0}
             bars.append(tqdm(total=total, initial=done, **options))
         bars[0].update(done - bars[0].n)
 
@@ -62,6 +64,36 @@ def bar(unit: str, beside: str = "", *, terminal: bool = False) -> Iterator[Tell
     finally:
         for each in bars:
             each.close()
+
+
+@contextmanager
+def watched() -> Iterator[None]:
+    """Let `steps` and `stages` draw bars: somebody waits, as for every command and ``progress=True``."""
+    before = _WATCHED.set(True)
+    try:
+        yield
+    finally:
+        _WATCHED.reset(before)
+
+
+def steps(items: Sequence[_Item], unit: str) -> Iterator[_Item]:
+    """Go through what takes long, anywhere below; with a bar on the terminal of who waits for it."""
+    with stages(len(items), unit) as done:
+        for item in items:
+            yield item
+            done()
+
+
+@contextmanager
+def stages(number: int, unit: str = "steps") -> Iterator[Callable[[], Any]]:
+    """As `steps`, of things that follow each other: what is yielded is called after each."""
+    if not _WATCHED.get():
+        yield lambda: None
+        return
+    with bar(unit, terminal=True) as tell:
+        tell(0, number)
+        finished = count(1)
+        yield lambda: tell(next(finished), number)
 
 
 def _nobody(done: float, total: float) -> None:

@@ -1,4 +1,7 @@
-"""What a command prints: text that cannot steer a terminal, to streams that may be closed or full."""
+"""What a command prints: text that cannot steer a terminal, to streams that may be closed or full.
+
+Who reads it decides nothing about the work: what a stream does not take is lost, and its user may ask why.
+"""
 
 import os
 import re
@@ -7,7 +10,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from typing import Any
 
-__all__ = ["drop_output", "one_line", "plain_output", "plain_text"]
+__all__ = ["Plain", "one_line", "plain_output", "plain_text"]
 
 _SHORT = {"\n": "\\n", "\r": "\\r", "\t": "\\t"}
 
@@ -34,8 +37,13 @@ def _escape(code: int) -> str:
     return f"\\u{code:04x}" if code < 2**16 else f"\\U{code:08x}"
 
 
-class _Plain:
-    """A stream that passes on printable characters and the ends of lines."""
+class Plain:
+    """A stream that passes on printable characters and the ends of lines, and never fails.
+
+    `lost` is the first error of the stream below; all that is written after it is lost too.
+    """
+
+    lost: OSError | None = None
 
     def __init__(self, stream: Any, name: str, ends: str) -> None:
         self._stream, self._name, self._ends = stream, name, ends
@@ -47,46 +55,44 @@ class _Plain:
         shown = "".join(
             line if line in self._ends else one_line(line) for line in re.split(f"([{self._ends}])", text)
         )
-        with self._named():
+        with self._unfailing():
             self._stream.write(shown)
         return len(text)
 
     def flush(self) -> None:
         """Pass on what is held back."""
-        with self._named():
+        with self._unfailing():
             self._stream.flush()
 
     @contextmanager
-    def _named(self) -> Iterator[None]:
+    def _unfailing(self) -> Iterator[None]:
         try:
             yield
-        except BrokenPipeError:
-            raise
         except OSError as error:
-            error.filename = self._name
-            raise
+            error.filename, self.lost = self._name, self.lost or error
+            with suppress(OSError, ValueError), open(os.devnull, "wb") as nowhere:
+                os.dup2(nowhere.fileno(), self._stream.fileno())  # what it holds back would fail again
 
     def __getattr__(self, name: str) -> Any:
         return getattr(self._stream, name)
 
 
 @contextmanager
-def plain_output() -> Iterator[None]:
-    """Let nothing but text reach the terminal, and replace streams that were closed by an empty one."""
+def plain_output() -> Iterator[Plain]:
+    """Let nothing but text reach the terminal, and replace streams that were closed by an empty one.
+
+    Gives what stands for standard output.
+    """
     _open_closed()
     before = sys.stdout, sys.stderr
-    sys.stdout = _Plain(sys.stdout, "standard output", "\n")
-    sys.stderr = _Plain(sys.stderr, "standard error", "\n\r")
+    output = Plain(sys.stdout, "standard output", "\n")
+    sys.stdout, sys.stderr = output, Plain(sys.stderr, "standard error", "\n\r")
     try:
-        yield
+        yield output
     finally:
+        sys.stdout.flush()
+        sys.stderr.flush()
         sys.stdout, sys.stderr = before
-
-
-def drop_output() -> None:
-    """Forget what standard output could not take, so that leaving the process does not try again."""
-    with suppress(OSError, ValueError):
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def _open_closed() -> None:

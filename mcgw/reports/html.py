@@ -4,6 +4,7 @@ import re
 from typing import Any
 
 from mcgw.ensemble.ensemble import Ensemble
+from mcgw.machine.progress import stages
 from mcgw.machine.terminal import one_line, plain_text
 from mcgw.reports.elasticity import elasticity_words
 from mcgw.reports.laws_section import laws_table
@@ -30,7 +31,19 @@ def report_html(ensemble: Ensemble, attributes: dict[str, Any]) -> str:
     """
     scene, against = ensemble.scene, ensemble.scene.validity()
     real = promise_of(ensemble.sampler).real_surfaces
-    comparison = compare(ensemble) if real else None
+    with stages(4) as done:
+        comparison = compare(ensemble) if real else None
+        done()
+        at_pressure = list(pressure_pictures(ensemble))
+        done()
+        patch = patch_pictures(ensemble)
+        done()
+        figures = means_figures(ensemble) if comparison is None else comparison_figures(comparison)
+        tables = [
+            means_table(ensemble, name) if comparison is None else quantity_table(comparison, name)
+            for name in scene.quantities
+        ]
+        done()
     return rendered(
         "report.html.j2",
         title=one_line(scene.title) or "Ensemble of rough surfaces",
@@ -38,14 +51,11 @@ def report_html(ensemble: Ensemble, attributes: dict[str, Any]) -> str:
         agrees=comparison is None or comparison.verdict.agrees,
         verdict=_verdict(ensemble, comparison),
         elastic=against.verdict,
-        at_pressure=list(pressure_pictures(ensemble)),
+        at_pressure=at_pressure,
         several=real and ensemble.n_surfaces > 1,
-        patch=patch_pictures(ensemble),
-        figures=means_figures(ensemble) if comparison is None else comparison_figures(comparison),
-        tables=[
-            means_table(ensemble, name) if comparison is None else quantity_table(comparison, name)
-            for name in scene.quantities
-        ],
+        patch=patch,
+        figures=figures,
+        tables=tables,
         tested=comparison is not None,
         facts=surface_facts(ensemble),
         laws=laws_table(scene),

@@ -7,6 +7,7 @@ import numpy as np
 from analytic import QUANTITIES
 from mcgw.ensemble.forecast import forecast
 from mcgw.jobs.duration import in_words, seconds_for
+from mcgw.machine.progress import steps
 from mcgw.machine.terminal import one_line
 from mcgw.reports.elasticity import two_questions
 from mcgw.sampling.block import Sampler
@@ -112,7 +113,7 @@ def _at_others(scene: Scene, sampler: Sampler, surfaces: int) -> dict[float, flo
         return {}  # to it, or to its law, accuracy means nothing
     others = (1e-6, 1e-3) if scene.exact else (scene.accuracy / 10, scene.accuracy * 10)
     found = {}
-    for accuracy in others:
+    for accuracy in steps(others, "accuracies"):
         if EXACT <= accuracy <= COARSEST:
             asked = scene.replace(accuracy=accuracy, sampler=sampler.name)
             found[accuracy] = seconds_for(asked, sampler_of(asked), surfaces)

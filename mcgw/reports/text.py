@@ -15,6 +15,7 @@ from mcgw.formats.evenly import evenly
 from mcgw.machine.terminal import one_line
 from mcgw.reports.elasticity import two_questions
 from mcgw.scene.contact_text import accuracy_facts, contact_facts
+from mcgw.scene.law_text import law_text
 from mcgw.statistics.comparison import FALSE_ALARM, Comparison, Verdict
 
 __all__ = [
@@ -53,10 +54,10 @@ def summary(ensemble: Ensemble, attributes: dict[str, Any]) -> str:
     scene = ensemble.scene
     lines = [
         one_line(scene.title) or "ensemble",
-        f"  surfaces      {ensemble.n_surfaces} of {scene.n_asperities} asperities ({scene.count})",
+        f"  surfaces      {_so_far(ensemble)} of {scene.n_asperities} asperities each ({scene.count})",
         f"  separations   {len(scene.separations)} from {min(scene.separations):g} to "
         f"{max(scene.separations):g} (d/sigma)",
-        f"  grading       {scene.grading}",
+        f"  grading       {law_text(scene.grading)}",
         *(f"  {word:13} {what}" for word, what in contact_facts(scene)),
         f"  sampler       {ensemble.sampler}, seed {scene.seed}",
         *(f"  {word:13} {what}{_spent(word, attributes)}" for word, what in accuracy_facts(scene)),
@@ -78,6 +79,12 @@ def summary(ensemble: Ensemble, attributes: dict[str, Any]) -> str:
         for k in evenly(len(ensemble.separations), _MOST_ROWS):
             lines.append(f"  {scene.separations[k]:8.3f} {mean[k]:13.6g} {std[k]:11.3g} {stderr[k]:11.3g}")
     return "\n".join(lines)
+
+
+def _so_far(ensemble: Ensemble) -> str:
+    """How many surfaces there are, and of how many while the run goes on."""
+    n, total = ensemble.n_surfaces, ensemble.scene.n_surfaces
+    return f"{n}" if n == total else f"{n} so far, not yet {total},"
 
 
 def _spent(word: str, attributes: dict[str, Any]) -> str:
@@ -168,8 +175,7 @@ def ratio_table(new: Ensemble, old: Ensemble) -> str:
 def verdict_line(verdict: Verdict) -> str:
     """One line: do they agree, and how sure is that."""
     word = "agree" if verdict.agrees else "DISAGREE"
-    seen = f"chi-square {verdict.chi_square:.1f} for {verdict.degrees} degrees of freedom"
     return (
-        f"Monte Carlo and theory of this model {word}: {seen}, p = {verdict.p:.3g} (false alarms: 1 in "
-        f"{1 / FALSE_ALARM:.0f})"
+        f"Monte Carlo and theory of this model {word}: {verdict.seen}, p = {verdict.p:.3g} (false alarms: "
+        f"1 in {1 / FALSE_ALARM:.0f})"
     )

@@ -1,0 +1,111 @@
+"""Long work has a bar on the terminal of who waits for it: commands and ``progress=True``, nobody else."""
+
+import io
+import sys
+
+import numpy as np
+import pytest
+
+import mcgw
+from mcgw.cli import main
+from mcgw.machine.progress import stages, steps, watched
+
+SURFACE = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "0.1 mm^2", "78.6 GPa")
+SCENE = mcgw.Scene(SURFACE, separations=[0.0, 1.0], n_surfaces=4, seed=1)
+
+
+class Stream(io.StringIO):
+    """Standard error of a person, or of a log."""
+
+    def __init__(self, terminal):
+        super().__init__()
+        self.terminal = terminal
+
+    def isatty(self):
+        return self.terminal
+
+
+@pytest.fixture
+def told(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "s.toml").write_text(mcgw.scene_text(SCENE))
+    mcgw.save(mcgw.simulate(SCENE), tmp_path / "e.h5")
+    z = np.random.default_rng(1).normal(size=(64, 64))
+    np.save(tmp_path / "map.npy", 1e-7 * (z + np.roll(z, 1, 0) + np.roll(z, 1, 1)))
+
+    def run(words, terminal):
+        stream = Stream(terminal)
+        with monkeypatch.context() as patch:
+            patch.setattr(sys, "stderr", stream)
+            assert main(words.split()) == 0
+        return stream.getvalue()
+
+    return run
+
+
+@pytest.mark.parametrize(
+    ("words", "bars"),
+    [
+        ("solve s.toml --pressure 1MPa", ["4 [", " surfaces/s"]),
+        ("fit map.npy --cutoff none --pixel 1um -o f.toml", ["/4 [", " steps/s"]),
+        ("show --plan s.toml", ["/2 [", " steps/s", "? accuracies/s"]),
+        ("sweep s.toml --over grading.gamma=0.2:1:7 -o w.h5", ["/7 [", "? points/s"]),
+    ],
+)
+def test_commands_draw_one_on_terminals_alone(told, words, bars):
+    seen = told(words, terminal=True)
+    for part in bars:
+        assert part in seen
+    log = told(words.replace("w.h5", "v.h5"), terminal=False)
+    assert "/s]" not in log
+    assert "\r" not in log
+
+
+def test_report_and_figures_draw_one(told, monkeypatch):
+    """Of what they are made of, without what draws it."""
+    from mcgw.figures import of_scene
+    from mcgw.reports import html
+
+    for name in ("comparison_figures", "patch_pictures", "pressure_pictures"):
+        monkeypatch.setattr(html, name, lambda _: [])
+    assert "/4 [" in told("report e.h5 -o e.html", terminal=True)
+
+    def nothing(_):
+        raise of_scene.NoMeaningError("it has no meaning")
+
+    monkeypatch.setattr(of_scene, "_FIGURES", dict.fromkeys(("a", "b", "c"), nothing))
+    assert "/3 [" in told("figures --scene s.toml -o drawn", terminal=True)
+
+
+def test_python_waits_only_if_it_says_so(monkeypatch):
+    stream = Stream(terminal=True)
+    monkeypatch.setattr(sys, "stderr", stream)
+    over = {"grading.gamma": [0.5, 1.5]}
+    mcgw.sweep(SCENE, over)
+    assert list(steps((3, 5), "things")) == [3, 5]
+    mcgw.solve(SCENE, pressure=1e6)
+    assert not stream.getvalue()
+    mcgw.sweep(SCENE, over, progress=True)
+    assert " points/s" in stream.getvalue()
+    calls = []
+    mcgw.solve(SCENE, pressure=[1e6, 2e6], progress=lambda done, total: calls.append((done, total)))
+    assert calls == [(1, 4), (2, 4), (3, 4), (4, 4)]
+
+
+def test_a_bar_counts_what_is_done_and_ends_with_an_error(monkeypatch):
+    stream = Stream(terminal=True)
+    monkeypatch.setattr(sys, "stderr", stream)
+
+    def interrupted():
+        with watched(), stages(3, "things") as done:
+            done()
+            raise KeyError
+
+    with pytest.raises(KeyError):
+        interrupted()
+    assert "0/3 [" in stream.getvalue()
+    assert stream.getvalue().endswith("\r")  # it is wiped out
+    before = len(stream.getvalue())
+    with stages(3, "things") as done:  # nobody waits any more
+        done()
+    assert len(stream.getvalue()) == before
