@@ -37,7 +37,10 @@ def interval_of(scene: Scene, sampler: str, sums: Results, name: str, level: flo
         return ends[0] / m, ends[1] / m
     if name == TANGENTIAL.name:
         raise ValueError(f"{name} has no interval, as a difference of normal loads; ask for its stderr")
-    return mean_interval(mean, spread_of(scene, name), m, level)
+    low, high = mean_interval(mean, spread_of(scene, name), m, level)
+    # What values may be off by, all of them in one direction.
+    off = 0.0 if scene.exact else scene.accuracy * np.abs(mean)
+    return low - off, high + off
 
 
 def _of_separation(scene: Scene, sampler: str, sums: Results, name: str, level: float) -> tuple[Array, Array]:

@@ -11,6 +11,7 @@ from mcgw.formats.evenly import evenly
 from mcgw.formats.sheet import Sheet, Shown
 from mcgw.machine.late import plotted
 from mcgw.scene.drawn_by import drawn_by
+from mcgw.scene.wrong_object import check_object
 
 __all__ = ["Paired", "paired_ratio"]
 
@@ -91,6 +92,8 @@ def paired_ratio(numerator: Ensemble, denominator: Ensemble, quantity: str) -> P
     >>> mcgw.paired_ratio(mcgw.regrade(e, mcgw.Exponential(2.0)), e, "load").ratio.shape
     (3,)
     """
+    for ensemble in (numerator, denominator):
+        check_object("paired_ratio", ensemble, Ensemble)
     differ = [name for name in _PAIRED if getattr(numerator.scene, name) != getattr(denominator.scene, name)]
     differ += [
         name for name in ("n_surfaces", "sampler") if getattr(numerator, name) != getattr(denominator, name)

@@ -23,6 +23,7 @@ from mcgw.scene.law_section import read_law
 from mcgw.scene.reading import as_toml
 from mcgw.scene.scene import Scene
 from mcgw.scene.storable import storable
+from mcgw.scene.wrong_object import check_object
 
 __all__ = ["regrade", "regraded_scene"]
 
@@ -98,6 +99,7 @@ def regrade(
     >>> mcgw.paired_ratio(metal, e, "load").ratio.round(1)
     array([0.7, 0.7, 0.8])
     """
+    check_object("regrade", ensemble, Ensemble)
     scene_alone(ensemble.scene, "regrade")
     _check_kept(ensemble)
     scene = storable(regraded_scene(ensemble, grading, law, quantities, separations, contact))

@@ -43,8 +43,10 @@ def separation_on(heights: Array, modulus: Array, exponent: float, target: float
         d = heights[:n] - h
         forces = modulus[:n] * d ** (exponent - 1)
         total = float(forces @ d)
+        if total <= target * (1 + _ENOUGH):
+            return h
         step = total / float(forces.sum()) * (1 - (target / total) ** (1 / exponent))
-        if total <= target * (1 + _ENOUGH) or h + step <= h:
+        if h + step <= h:
             return h
         h += step
 

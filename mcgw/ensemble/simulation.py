@@ -13,6 +13,7 @@ from mcgw.machine.progress import Progress, told
 from mcgw.sampling.samplers import sampler_of
 from mcgw.scene.scene import LeftOut, Scene
 from mcgw.scene.storable import storable
+from mcgw.scene.wrong_object import check_object
 
 __all__ = ["simulate"]
 
@@ -55,6 +56,7 @@ def simulate(
     >>> mcgw.simulate(scene, n_surfaces=20).load.shape
     (20, 3)
     """
+    check_object("simulate", scene, Scene)
     scene = scene.replace(**changes) if changes else scene
     until = None if scene.max_seconds is None else monotonic() + scene.max_seconds
     scene = storable(scene)

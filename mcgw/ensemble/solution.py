@@ -1,6 +1,6 @@
 """The separation at a given load or real area: by theory, and on every surface for itself."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from typing import Any, NamedTuple
 
@@ -13,9 +13,12 @@ from analytic.laws.elastic_plastic import ElasticPlastic
 from mcgw.ensemble.law_separation import LawSum
 from mcgw.ensemble.separation import LOWEST, crossing, separation_on
 from mcgw.ensemble.solved import Solution, with_half_space
+from mcgw.machine.progress import Progress, told
 from mcgw.sampling.asperities import summits, touching_summits
 from mcgw.scene.reading import argument, as_toml
 from mcgw.scene.scene import Scene
+from mcgw.scene.section import nearest
+from mcgw.scene.wrong_object import check_object
 
 __all__ = ["Solution", "solutions", "solve"]
 
@@ -24,6 +27,7 @@ Array = NDArray[np.float64]
 _MARGIN = 6.0  # standard deviations of a surface's separation that are drawn at once
 _MOST_HEIGHTS = 3e9
 _STEP = 0.5  # by which the search for a start goes down, where the margin was not enough
+_LAST_DIGITS = 64 * float(np.finfo(float).eps)  # of a reduced height
 _NOTHING = 1e-16  # share of the heights below all that are drawn
 _NEGATIVE = (
     "{} = {:g} {}: {} does not reach it without asperities of negative modulus, at s = {:.4g}; give less, "
@@ -45,6 +49,7 @@ def solve(
     pressure: Any = None,
     area: Any = None,
     area_fraction: Any = None,
+    progress: Progress = None,
     **changes: Any,
 ) -> "Solution | list[Solution]":
     """Find the separation at which each surface has a given load, pressure or real area.
@@ -55,6 +60,8 @@ def solve(
         Its surface, grading, heights, contact law, number of surfaces and asperities, and seed are used.
     load, pressure, area, area_fraction : float, str or sequence of them
         One of the four: P (N), P/A_n (Pa), A (m^2) or A/A_n; or texts with units, as "1 MPa".
+    progress : bool or callable, optional
+        True: a bar; a function: called with (done, total) surfaces.
     **changes
         Fields of the scene that have other values: see `mcgw.Scene.replace`.
 
@@ -81,6 +88,10 @@ def solve(
     """
     asked = {"load": load, "pressure": pressure, "area": area, "area_fraction": area_fraction}
     known = {key: value for key, value in asked.items() if value is not None}
+    check_object("solve", scene, Scene)
+    for key in changes:
+        if not (hasattr(scene, key) or hasattr(scene.surface, key)) and (meant := nearest(key, tuple(asked))):
+            raise TypeError(f"solve: there is no {key!r}; {meant.rstrip()}")
     if len(known) != 1:
         raise ValueError(f"solve: give one of {', '.join(asked)}, not {' and '.join(known) or 'none'}")
     ((key, value),) = known.items()
@@ -88,11 +99,14 @@ def solve(
     unit, given, per_area = _GIVEN[key]
     plain, factor = as_toml(value), scene.surface.nominal_area if per_area else 1.0
     values = [factor * argument(key, x, unit) for x in (plain if isinstance(plain, list) else [plain])]
-    found = solutions(scene, given, values)
+    with told(progress, "surfaces") as tell:
+        found = solutions(scene, given, values, tell)
     return found if isinstance(plain, list) else found[0]
 
 
-def solutions(scene: Scene, given: str, values: Sequence[float]) -> list[Solution]:
+def solutions(
+    scene: Scene, given: str, values: Sequence[float], tell: Callable[[float, float], Any] | None = None
+) -> list[Solution]:
     """As `solve`, of loads ("load", N) or real areas ("area", m^2) of a scene.
 
     The asperities of a surface are drawn one by one (sampler ``tail``), once for all values; so this
@@ -106,11 +120,12 @@ def solutions(scene: Scene, given: str, values: Sequence[float]) -> list[Solutio
     Raises
     ------
     ValueError
-        If a value is not reached, or only with contacts of negative modulus where the scene does not allow
-        them, if there are too many asperities to draw, or if a surface has none.
+        If a value is not reached, too small for digits to tell, or reached only with contacts of negative
+        modulus where the scene does not allow them, if there are too many asperities to draw, or if a
+        surface has none.
     """
     if scene.interaction is not None:
-        alone = solutions(replace(scene, interaction=None), given, values)
+        alone = solutions(replace(scene, interaction=None), given, values, tell)
         return [with_half_space(scene, found) for found in alone]
     if isinstance(scene.heights, MeasuredHeights):
         raise ValueError(
@@ -120,6 +135,12 @@ def solutions(scene: Scene, given: str, values: Sequence[float]) -> list[Solutio
     if scene.n_surfaces < 2:
         raise ValueError(f"n_surfaces = {scene.n_surfaces}: an interval takes at least 2 surfaces")
     q = quantity_of(given)
+    least = q.scale(scene.surface) * _LAST_DIGITS**q.exponent
+    if small := [value for value in values if 0 <= value < least]:
+        raise ValueError(
+            f"{q.name} = {small[0]:g} {q.unit}: less than one asperity has that is pressed by the last "
+            f"digits of its height; give {2 * least:.1g} {q.unit} or more"
+        )
     theory = [_theory(scene, q, value) for value in values]
     drawn = _drawn(scene, q, [at["separation"] for at in theory])
     if drawn.touching * drawn.n_surfaces > _MOST_HEIGHTS:
@@ -127,10 +148,14 @@ def solutions(scene: Scene, given: str, values: Sequence[float]) -> list[Solutio
             f"{drawn.n_surfaces} surfaces with {drawn.touching:.3g} contacts each are too many to solve "
             f"singly; give fewer than {_MOST_HEIGHTS / drawn.touching:.0f} surfaces"
         )
-    rows = [_surface(scene, drawn, number, q, values) for number in range(drawn.n_surfaces)]
+    rows = []
+    for number in range(drawn.n_surfaces):
+        rows.append(_surface(scene, drawn, number, q, values))
+        if tell is not None:
+            tell(number + 1, drawn.n_surfaces)
     return [
         Solution(
-            scene, given, float(value), at, {name: np.array([row[k][name] for row in rows]) for name in at}
+            scene, given, float(value), at, {x: np.array([row[k][x] for row in rows]) for x in at}, drawn
         )
         for k, (value, at) in enumerate(zip(values, theory, strict=True))
     ]

@@ -12,6 +12,7 @@ from analytic import SEPARATIONS, quantity_of
 from mcgw.ensemble.intervals import FEWEST, MANY, interval_text
 from mcgw.formats.sheet import Sheet, Shown
 from mcgw.machine.late import plotted
+from mcgw.sampling.asperities import summits, touching_summits
 from mcgw.scene.scene import Scene
 from mcgw.scene.validity import Validity, validity_of
 
@@ -37,6 +38,8 @@ class Solution(Shown):
         each other down the separation is what they feel, and "nominal_separation" there besides.
     surfaces : dict of str to ndarray
         The same on every surface at its own separation, shape (surfaces,).
+    drawn : Scene
+        What the surfaces were drawn by.
     """
 
     scene: Scene
@@ -44,6 +47,44 @@ class Solution(Shown):
     value: float
     theory: dict[str, float]
     surfaces: dict[str, Array]
+    drawn: Scene
+
+    def heights(self, surface: int) -> Array:
+        """Reduced heights of the asperities of a surface that touch at its own separation, in falling order.
+
+        Parameters
+        ----------
+        surface : int
+            Its number, from 0.
+
+        Returns
+        -------
+        ndarray
+            Those whose sums are in `surfaces`, in units of sigma.
+
+        Examples
+        --------
+        >>> import mcgw
+        >>> surface = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "1 mm^2", "78.6 GPa")
+        >>> found = mcgw.solve(mcgw.Scene(surface, separations=0, n_surfaces=20, seed=1), load="1 N")
+        >>> found.heights(3).size == int(found.surfaces["contacts"][3])
+        True
+        """
+        return self._contacts(surface)[0]
+
+    def radii(self, surface: int) -> Array:
+        """Their radii, m, in the order of `heights`; all alike where summits have one radius."""
+        s, ratios = self._contacts(surface)
+        return np.asarray(self.scene.surface.radius * (np.ones_like(s) if ratios is None else ratios))
+
+    def _contacts(self, surface: int) -> tuple[Array, Array | None]:
+        separations = self.surfaces["separation"]
+        if not 0 <= surface < separations.size:
+            raise ValueError(f"surface = {surface}: give a number from 0 to {separations.size - 1}")
+        h = float(separations[surface])
+        s, ratios = (summits if h < self.drawn.lowest else touching_summits)(self.drawn, surface)
+        order = np.argsort(-s, kind="stable")[: np.count_nonzero(s > h)]
+        return s[order], None if ratios is None else ratios[order]
 
     def interval(self, name: str, level: float = 0.95) -> tuple[float, float]:
         """Confidence interval of the mean over surfaces, by Student's t; nan for too few contacts of all."""

@@ -66,7 +66,7 @@ def save_comparison(comparison: Comparison, path: str | Path) -> None:
         word = "agree" if verdict.agrees else "DISAGREE"
         figure.suptitle(
             f"{shown_title(scene, 'Ensemble')}\nMonte Carlo and theory of this model {word}: "
-            f"χ² = {verdict.chi_square:.1f} for {verdict.degrees} degrees of freedom, p = {verdict.p:.3g}",
+            f"{verdict.seen.replace('chi-square', 'χ² =')}, p = {verdict.p:.3g}",
             fontsize=10,
             y=1 - _EDGE / figure.get_figheight(),
         )

@@ -14,6 +14,7 @@ from mcgw.figures.data import FIGURE_HEADER, FigureData, Panel, Points, Series, 
 from mcgw.figures.style import BACK, BAND, LEVEL, PAPER, STYLE, look
 from mcgw.formats.csv_table import write_csv
 from mcgw.formats.pictures import save_figure
+from mcgw.machine.progress import steps
 
 __all__ = ["draw", "draw_residual", "figure_files", "save_figures"]
 
@@ -179,7 +180,7 @@ def save_figures(figures: list[FigureData], folder: Path, *, csv: bool = False) 
         Of each file as it is there.
     """
     folder.mkdir(parents=True, exist_ok=True)
-    for data in figures:
+    for data in steps(figures, "figures"):
         figure = draw(data)
         for path in figure_files(folder, data.name, csv=csv):
             if path.suffix == ".csv":

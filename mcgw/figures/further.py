@@ -7,6 +7,7 @@ from mcgw.figures.histories import films, sliding, way_back
 from mcgw.figures.samples import Samples
 from mcgw.figures.summits import area_and_load, negative_modulus, who_carries
 from mcgw.figures.yielding import laws_compared, who_yields
+from mcgw.machine.progress import steps
 
 __all__ = ["FURTHER", "further_figures"]
 
@@ -41,16 +42,8 @@ def further_figures(samples: Samples) -> list[FigureData]:
     list of FigureData
         In order.
     """
-    return [
-        equal_load(samples),
-        fluctuations(samples),
-        distribution(samples),
-        area_and_load(samples),
-        who_carries(samples),
-        negative_modulus(),
-        who_yields(samples),
-        laws_compared(samples),
-        way_back(samples),
-        sliding(samples),
-        films(samples),
-    ]
+    drawn = (
+        equal_load, fluctuations, distribution, area_and_load, who_carries, lambda _: negative_modulus(),
+        who_yields, laws_compared, way_back, sliding, films,
+    )  # fmt: skip
+    return [figure(samples) for figure in steps(drawn, "figures")]

@@ -5,6 +5,7 @@ from collections.abc import Callable, Iterator
 from mcgw.figures import scene_further, scene_paper
 from mcgw.figures.beside import Beside, NoMeaningError
 from mcgw.figures.data import FigureData
+from mcgw.machine.progress import steps
 from mcgw.scene.scene import Scene
 
 __all__ = ["OF_SCENE", "scene_figures"]
@@ -39,7 +40,7 @@ def scene_figures(scene: Scene) -> Iterator[tuple[str, FigureData | str]]:
         Name of a figure, and its numbers, or why it has no meaning for this scene.
     """
     beside = Beside(scene)
-    for name, figure in _FIGURES.items():
+    for name, figure in steps(list(_FIGURES.items()), "figures"):
         try:
             yield name, figure(beside)
         except NoMeaningError as why:

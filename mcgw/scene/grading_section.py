@@ -1,11 +1,15 @@
 """The table [grading] of a scene: E*(s)/E*, and what to do where it is negative."""
 
+import csv
 import math
+import re
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 from analytic import Exponential, Grading, Homogeneous, PiecewiseSeries, Surface, Table
 from mcgw.formats.plain_file import read_text
+from mcgw.formats.units import signed
 from mcgw.scene.section import Section
 from mcgw.scene.series_section import read_series, series_table
 
@@ -13,6 +17,8 @@ __all__ = ["NEGATIVE", "grading_table", "grading_values", "read_grading"]
 
 NEGATIVE = ("error", "clip", "allow")
 _MOST_BYTES = 2**24  # of a grading as CSV
+_COLUMNS = {"s": "1", "z": "m", "ratio": "1", "E_star": "Pa"}
+_NAMED = re.compile(r"\s*(\w+)\s*(?:[(\[/ ]\s*([^()\[\]]*?)\s*[)\]]?)?\s*")  # z, z (um), z [um], z / um, z um
 
 
 def grading_values(section: Section, surface: Surface | None, folder: Path) -> dict[str, Any]:
@@ -48,6 +54,8 @@ def _table(section: Section, surface: Surface | None, folder: Path) -> Table | N
 def read_grading(path: Path, surface: Surface) -> Table:
     """A grading from a CSV file of bounded length, as `analytic.Table.from_csv` reads it.
 
+    Units may stand behind the names, as ``z (um), E_star (GPa)``, or behind numbers, as ``61.2 GPa``.
+
     Raises
     ------
     ValueError
@@ -55,9 +63,34 @@ def read_grading(path: Path, surface: Surface) -> Table:
     """
     lines = read_text(path, _MOST_BYTES).splitlines()
     try:
-        return Table.from_lines(lines, sigma=surface.sigma, E_star=surface.E_star)
-    except ValueError as error:
+        return Table.from_lines(_in_si(lines), sigma=surface.sigma, E_star=surface.E_star)
+    except (ValueError, csv.Error) as error:
         raise ValueError(f"{path}: {error}") from None
+
+
+def _in_si(lines: list[str]) -> Iterator[str]:
+    """The lines of a table with its units worked in; what is no number with a unit stays, to be refused."""
+    header, *rows = [row for row in csv.reader(lines) if row] or [[]]
+    named = [
+        (match[1], match[2] or "") if (match := _NAMED.fullmatch(name)) else (name, "") for name in header
+    ]
+    known = [name in _COLUMNS and not math.isnan(signed(f"1{unit}", _COLUMNS[name])) for name, unit in named]
+    if not all(known):
+        raise ValueError(
+            "the first line must be s or z, a comma, then ratio or E_star, as z (um),E_star (GPa)"
+        )
+    yield ",".join(name for name, _ in named)
+    for row in rows:
+        cells = [_cell(text, *column) for text, column in zip(row, named, strict=False)]
+        yield ",".join([*cells, *row[len(named) :]])
+
+
+def _cell(text: str, name: str, unit: str) -> str:
+    """A number in the unit of its column, unless it has one of its own."""
+    for written in (f"{text}{unit}", text):
+        if math.isfinite(value := signed(written, _COLUMNS[name])):
+            return repr(value)
+    return text.replace(",", " ")
 
 
 def grading_table(grading: Grading) -> dict[str, Any]:

@@ -9,6 +9,8 @@ from analytic.laws import ContactLaw
 
 __all__ = ["law_text"]
 
+_MOST = 4  # numbers of a list that are all said
+
 
 def law_text(law: Any) -> str:
     """A law by its name and the numbers that were given for it.
@@ -39,4 +41,11 @@ def law_text(law: Any) -> str:
 
 
 def _listed(given: Mapping[str, Any]) -> str:
-    return ", ".join(f"{key}={value!r}" for key, value in given.items())
+    return ", ".join(f"{key}={_short(value)}" for key, value in given.items())
+
+
+def _short(value: Any) -> str:
+    """A list of many numbers by their ends: no text that is cut holds half a number."""
+    if isinstance(value, tuple) and len(value) > _MOST and all(isinstance(x, float) for x in value):
+        return f"{len(value)} from {value[0]:.4g} to {value[-1]:.4g}"
+    return repr(value)

@@ -1,63 +1,120 @@
 """What values a rough surface has, so that a number in another unit is asked about."""
 
+import warnings
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
+import numpy as np
+
+from analytic import Surface, Table
 from mcgw.formats.units import parse
-from mcgw.scene.scene import Scene
-from mcgw.scene.surface import SURFACE_UNITS
 
-__all__ = ["RANGES", "perhaps_other_units"]
+if TYPE_CHECKING:
+    from mcgw.scene.fields import Fields
+
+__all__ = ["RANGES", "perhaps_other_units", "surface_in_other_units", "warn_of_units"]
 
 
 @dataclass(frozen=True)
 class Range:
-    """Values that need no question, SI, why others do, and the units that were perhaps meant."""
+    """Values that need no question, SI, why others do, their unit, and those that were perhaps meant."""
 
     low: float
     high: float
     below: str
     above: str
+    si: str
     units: tuple[str, ...]
 
 
 # Wide: from atoms to faults in rock, from gels to diamond.
 RANGES = {
     "sigma": Range(
-        1e-10, 1e-3, "is less than an atom", "is higher than the summits of any ground surface", ("um", "nm")
+        1e-10, 1e-3, "is less than an atom", "is higher than the summits of any ground surface", "m",
+        ("um", "nm"),
     ),
-    "radius": Range(1e-10, 0.1, "is less than an atom", "is not a radius of a summit", ("um", "mm")),
+    "radius": Range(1e-10, 0.1, "is less than an atom", "is not a radius of a summit", "m", ("um", "mm")),
     "eta": Range(
-        1e4, 1e19, "is less than a summit a square centimetre", "is more than a summit an atom", ("/mm^2",)
+        1e4, 1e19, "is less than a summit a square centimetre", "is more than a summit an atom", "1/m^2",
+        ("/mm^2",),
     ),
     "nominal_area": Range(
-        1e-17, 10.0, "is less than a hundred atoms", "is larger than two bodies in contact", ("mm^2", "um^2")
+        1e-17, 10.0, "is less than a hundred atoms", "is larger than two bodies in contact", "m^2",
+        ("mm^2", "um^2"),
     ),
-    "E_star": Range(1e3, 2e12, "is softer than any gel", "is stiffer than diamond", ("GPa", "MPa")),
-}
+    "E_star": Range(1e3, 2e12, "is softer than any gel", "is stiffer than diamond", "Pa", ("GPa", "MPa")),
+}  # fmt: skip
 _HARDLY_APART = 1e-3  # d/sigma: separations that all lie so close to 0 are lengths
+_FARTHEST = 50.0  # reduced heights of which no surface has one
+_RATIOS = (1e-3, 50.0)  # from a gel on its rubber to diamond on its glue
+_UNTOLD = 0.1  # share of the contacts at a separation that a table may leave to the value of its end
 
 
-def perhaps_other_units(scene: Scene) -> list[str]:
+def warn_of_units(doubts: Iterable[str]) -> None:
+    """Ask a caller in Python, once for each text; commands tell them as notes."""
+    for line in doubts:
+        warnings.warn(line, UserWarning, stacklevel=1)
+
+
+def perhaps_other_units(scene: "Fields") -> list[str]:
     """Values that are perhaps given in another unit, a line each with what was perhaps meant."""
-    found = []
-    for key, known in RANGES.items():
-        value = float(getattr(scene.surface, key))
-        if not known.low <= value <= known.high:
-            unit = SURFACE_UNITS[key]
-            why = known.below if value < known.low else known.above
-            found.append(f"surface.{key} = {value:g}: {value:g} {unit} {why}; {_meant(value, known, unit)}")
+    found = surface_in_other_units(scene.surface)
     farthest = max(scene.separations, key=abs)
     if 0 < abs(farthest) < _HARDLY_APART:
         found.append(
             f"contact.separations: {farthest:g} sigma is hardly apart from 0; did you mean {farthest:g} m = "
             f"{farthest / scene.surface.sigma:.4g} sigma? Separations are d/sigma"
         )
+    if isinstance(scene.grading, Table):
+        found += _of_table(scene.grading, scene)
     return found
 
 
-def _meant(value: float, known: Range, si: str) -> str:
+def surface_in_other_units(surface: Surface) -> list[str]:
+    """The same of a surface alone."""
+    found = []
+    for key, known in RANGES.items():
+        value = float(getattr(surface, key))
+        if not known.low <= value <= known.high:
+            why = known.below if value < known.low else known.above
+            found.append(f"surface.{key} = {value:g}: {value:g} {known.si} {why}; {_meant(value, known)}")
+    return found
+
+
+def _meant(value: float, known: Range) -> str:
+    """These digits as people write them, from 0.01 to 9999, in a unit that makes them one of these values."""
+    while value < 1e-2:
+        value *= 1e3
+    while value >= 1e4:
+        value /= 1e3
     for unit in known.units:
-        meant = f"{value:g}{unit}" if unit[0] == "/" else f"{value:g} {unit}"
-        if known.low <= parse(meant, si) <= known.high:
-            return f"did you mean {meant} = {parse(meant, si):g}?"
-    return f"did you mean {si}?"
+        meant = f"{value:.6g}{unit}" if unit[0] == "/" else f"{value:.6g} {unit}"
+        if known.low <= parse(meant, known.si) <= known.high:
+            return f"did you mean {meant} = {parse(meant, known.si):g}?"
+    return f"did you mean {known.si}?"
+
+
+def _of_table(table: Table, scene: "Fields") -> Iterator[str]:
+    """Heights and moduli of a table in other units, and contacts beyond its ends."""
+    farthest = max(table.s, key=abs)
+    if abs(farthest) > _FARTHEST:
+        yield (
+            f"grading: a point lies at s = {farthest:.3g} sigma, where no summit is; s is z/sigma, and z is "
+            "in m unless the header of the file says z (um)"
+        )
+    ratios = [abs(ratio) for ratio in table.ratio if ratio != 0]
+    if odd := [ratio for ratio in ratios if not _RATIOS[0] <= ratio <= _RATIOS[1]]:
+        yield (
+            f"grading: E*(s)/E* = {odd[0]:.3g} of surface.E_star = {scene.surface.E_star:g} Pa; a ratio is a "
+            "number near 1, and E_star in Pa unless the header of the file says E_star (GPa)"
+        )
+    low, high = min(scene.separations), max(scene.separations)
+    touch, from_first, over_last = scene.heights.above(np.maximum(low, (low, table.s[0], table.s[-1])))
+    share = float(touch - from_first + over_last) / float(touch) if touch > 0 else 0.0
+    if share > _UNTOLD or high > table.s[-1]:
+        where, share = (high, 1.0) if high > table.s[-1] else (low, share)
+        yield (
+            f"grading: the table reaches from s = {table.s[0]:.3g} to {table.s[-1]:.3g}, and {share:.0%} of "
+            f"the contacts at d/sigma = {where:g} lie beyond; they have the modulus of its end"
+        )

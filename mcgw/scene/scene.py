@@ -15,6 +15,7 @@ from mcgw.scene.ensemble_section import LeftOut
 from mcgw.scene.fields import EXACT, Fields, share_above
 from mcgw.scene.law_text import law_text
 from mcgw.scene.mistakes import mistakes
+from mcgw.scene.plausible import perhaps_other_units, warn_of_units
 from mcgw.scene.reading import read_values
 from mcgw.scene.section import SceneError, nearest
 from mcgw.scene.stop_rule import rel_err_text
@@ -181,6 +182,7 @@ class Scene(Fields, Shown):
         object.__setattr__(self, "separations", tuple(h + 0.0 for h in self.separations))  # -0.0 is 0.0
         if problems := mistakes(self):
             raise SceneError(problems)
+        warn_of_units(perhaps_other_units(self))
 
     def _fill(self, key: str, value: int) -> None:
         """Give what was left out, now or in the scene that this one was made of, its value."""

@@ -8,7 +8,7 @@ import tomli_w
 
 from analytic import MeasuredRadii
 from analytic.laws import Hertz
-from mcgw.formats.plain_file import read_bytes
+from mcgw.formats.plain_file import HDF5, read_bytes
 from mcgw.formats.toml_text import loads
 from mcgw.scene.contact_section import contact_values
 from mcgw.scene.ensemble_section import ensemble_values
@@ -68,6 +68,8 @@ def load_scene(path: str | Path, *, seed: Callable[[], int | None] | None = None
         text = read_bytes(path, _MOST_BYTES)
     except ValueError as error:
         raise SceneError([str(error)]) from None
+    if text.startswith(HDF5):
+        raise SceneError([f"{path}: holds results, not a scene; mcgw show --scene {path} prints theirs"])
     return scene_from(text, folder=path.parent, seed=seed)
 
 
@@ -121,6 +123,8 @@ def scene_from(
     """
     try:
         document = loads(text if isinstance(text, str) else text.decode("utf-8"))
+    except UnicodeDecodeError as error:
+        raise SceneError([f"not a TOML scene: no text in UTF-8 (byte {error.start})"]) from None
     except (ValueError, RecursionError) as error:
         reason = str(error).splitlines()[0] if str(error) else "nested too deeply"
         raise SceneError([f"not a TOML scene: {reason}"]) from None

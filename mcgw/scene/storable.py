@@ -40,11 +40,11 @@ def storable(scene: Scene) -> Scene:
 
 
 def _extent(scene: Scene) -> tuple[float, float]:
-    """Lowest and highest height that count; asperities may feel lower separations than those asked."""
+    """Lowest and highest height that count; asperities may have felt lower separations than those asked."""
     asked = scene.separations
-    nominal = scene.interaction is not None and scene.interaction.nominal
-    if nominal and scene.lowest < min(asked):
-        asked = (*asked, scene.lowest - _MARGIN)
+    if scene.lowest < min(asked):
+        nominal = scene.interaction is not None and scene.interaction.nominal
+        asked = (*asked, scene.lowest - (_MARGIN if nominal else 0.0))
     return extent(scene.grading, scene.heights, asked)
 
 

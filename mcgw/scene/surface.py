@@ -8,6 +8,7 @@ from analytic import Body, Nayak, SpectralMoments, composite_modulus
 from analytic import Surface as Plain
 from mcgw.formats.units import quantity
 from mcgw.scene.listed_summits import ListedSummits
+from mcgw.scene.plausible import surface_in_other_units, warn_of_units
 from mcgw.scene.reading import as_toml
 from mcgw.scene.section import SceneError, Section
 from mcgw.scene.summits_section import Spectral
@@ -132,6 +133,7 @@ def surface_of(given: Mapping[str, Any]) -> Plain:
     surface = read_surface(section)
     if surface is None:
         raise SceneError(section.problems)
+    warn_of_units(surface_in_other_units(surface))
     return surface
 
 

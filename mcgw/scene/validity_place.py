@@ -75,7 +75,7 @@ def not_on_the_map(scene: Fields) -> str | None:
     if type(scene.law) is not Hertz:
         return f'it was for Hertz\'s contacts, not for contact.law = "{scene.law.name}"'
     if type(scene.heights) not in (Gaussian, Nayak):
-        return f"it was for Gaussian heights and Nayak's, not for {law_text(scene.heights):.60}"
+        return f"it was for Gaussian heights and Nayak's, not for {law_text(scene.heights)}"
     if isinstance(scene.heights, Nayak):
         found, told = (s.eta * s.radius * s.sigma for s in (_of_alpha(scene), scene.surface))
         if abs(told / found - 1) > _SAME:

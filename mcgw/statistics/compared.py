@@ -4,6 +4,7 @@ from typing import overload
 
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.machine.progress import Progress
+from mcgw.scene.wrong_object import check_object
 from mcgw.statistics import comparison, sweep_comparison
 from mcgw.statistics.comparison import Comparison
 from mcgw.statistics.sweep_comparison import SweepComparison
@@ -48,4 +49,5 @@ def compare(result: Ensemble | Sweep, *, progress: Progress = None) -> Compariso
     """
     if isinstance(result, Sweep):
         return sweep_comparison.compare_sweep(result, progress=progress)
+    check_object("compare", result, Ensemble)
     return comparison.compare(result)

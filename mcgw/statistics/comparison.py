@@ -59,7 +59,7 @@ class Curve:
 
 @dataclass(frozen=True)
 class Verdict:
-    """A chi-square test of all means at once.
+    """A chi-square test of all means at once, or of the farthest of them where that tells more.
 
     Parameters
     ----------
@@ -69,17 +69,34 @@ class Verdict:
         How many: independent combinations of the means that are Gaussian to within 0.1 in skewness
         and excess kurtosis.
     p : float
-        Probability of so large a chi-square by chance.
+        Probability of so large a chi-square by chance; or of so far a mean.
+    means, farthest : int, float
+        How many means were looked at one by one, and by how many standard errors the farthest of them lies
+        beyond what the scene's accuracy allows; 0 where chi-square decided.
     """
 
     chi_square: float
     degrees: int
     p: float
+    means: int = 0
+    farthest: float = 0.0
 
     @property
     def agrees(self) -> bool:
         """False in one of `1/FALSE_ALARM` ensembles that follow the theory."""
         return self.p > FALSE_ALARM
+
+    @property
+    def seen(self) -> str:
+        """What p is of, in words."""
+        if self.means:
+            return (
+                f"the farthest of {self.means} means is {self.farthest:.1f} standard errors beyond the "
+                "accuracy asked for"
+            )
+        if not self.degrees:
+            return "no mean is near enough to Gaussian to be tested"
+        return f"chi-square {self.chi_square:.1f} for {self.degrees} degrees of freedom"
 
 
 @dataclass(frozen=True)
@@ -155,7 +172,7 @@ class Comparison(Shown):
             numbers = (f"{h[k]:g}", f"{curve.mean[k]:.6g}", interval_text(curve.low[k], curve.high[k]))
             rows.append([name, *numbers, f"{curve.theory[k]:.6g}", f"{curve.residual[k]:+.2f}"])
         v = self.verdict
-        seen = f"chi-square {v.chi_square:.1f} for {v.degrees} degrees of freedom, p = {v.p:.3g}"
+        seen = f"{v.seen}, p = {v.p:.3g}"
         head = ["farthest off", "d/sigma", "mean", "95 % interval", "theory", "residual"]
         word = "agree" if v.agrees else "DISAGREE"
         facts = [("all means", seen), ("elasticity", self.ensemble.scene.validity().brief)]
@@ -258,7 +275,11 @@ def tested(scene: Scene, surfaces: int, mean: Callable[[str], Array], most: int)
     chi_square = float(np.sum((z @ axes) ** 2))
     degrees = axes.shape[1]
     p = float(chdtrc(degrees, chi_square)) if degrees else 1.0
-    found = Verdict(chi_square, degrees, p if scene.exact else min(1.0, 2 * min(p, farthest(z))))
+    found = Verdict(chi_square, degrees, p)
+    if not scene.exact:
+        alone = farthest(z)
+        told = (z.size, float(np.abs(z).max(initial=0.0))) if alone < p or not degrees else (0, 0.0)
+        found = Verdict(chi_square, degrees, min(1.0, 2 * min(p, alone)), *told)
     shape = len(scene.quantities), len(h)
     return Tested(
         quantities=scene.quantities,

@@ -22,6 +22,7 @@ from mcgw.sampling.block import Sampler
 from mcgw.sampling.samplers import sampler_of
 from mcgw.scene.samplers import promise_of
 from mcgw.scene.scene import Scene
+from mcgw.scene.wrong_object import check_object
 from mcgw.statistics.checks import (
     Check,
     Slope,
@@ -134,6 +135,7 @@ def converge(
     >>> mcgw.converge(scene, n_surfaces=64, seeds=8).passed
     True
     """
+    check_object("converge", scene, Scene)
     scene = scene.replace(**changes)
     if not promise_of(scene.sampler).real_surfaces:
         raise ValueError('sampler = "stratified" draws means, not an ensemble; converge takes another one')
@@ -156,7 +158,7 @@ def converge(
     whole = replace(scene, n_surfaces=len(y))
     means = verdict(Ensemble(whole, "drawn", MemoryResults(sums)))
     checks = [
-        Check("means", f"chi-square {means.chi_square:.1f} for {means.degrees} combinations", means.p),
+        Check("means", means.seen, means.p),
         *_contacts(whole, sums),
         *_repeats(scene, sums),
     ]

@@ -19,6 +19,7 @@ from mcgw.machine.memory import peak_growth
 from mcgw.machine.progress import Progress, told
 from mcgw.scene.reading import argument
 from mcgw.scene.scene import Scene
+from mcgw.scene.wrong_object import check_object
 from mcgw.statistics.methods import Method, methods_for
 from mcgw.statistics.ways import Way, ways_for
 from mcgw.statistics.wishes import Advice, advise
@@ -217,6 +218,7 @@ def tradeoff(
     """
     limit = argument("seconds", SECONDS if seconds is None else seconds, "s")
     started = monotonic()
+    check_object("tradeoff", scene, Scene)
     scene = scene_alone(replace(scene.replace(**changes), rel_err=None, max_seconds=None), "tradeoff")
     chosen = _chosen(scene)
     methods = methods_for(scene, chosen)
