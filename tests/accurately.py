@@ -4,6 +4,8 @@ The sums are literal: each asperity's own formula, added up. Where loads may be 
 they are held against the sum over the contacts of what each presses or pulls and of its pull at first touch.
 """
 
+import math
+
 import numpy as np
 
 from analytic import quantity_of
@@ -11,6 +13,16 @@ from mcgw.sampling.asperities import summits_drawn
 from mcgw.sampling.samplers import sampler_of
 
 POWERS_OF_RADIUS = {"load": 0.5, "area": 1.0, "stiffness": 0.5, "conductance": 0.5, "contacts": 0.0}
+
+
+def exact_sums(scene, heights, name):
+    """Of what each asperity of one surface adds to a quantity, exactly rounded, at each separation."""
+    q = quantity_of(name)
+    lowest = [scene.unload_from if q.unloading else h for h in scene.separations]
+    terms = (
+        term(scene, name, h, heights[heights > low]) for h, low in zip(scene.separations, lowest, strict=True)
+    )
+    return q.scale(scene.surface) * np.array([math.fsum(x.tolist()) for x in terms])
 
 
 def drawn(scene, surfaces):

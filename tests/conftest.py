@@ -1,10 +1,18 @@
 import io
+import os
+from functools import cache
 from pathlib import Path
+
+# Workers share the cores: threads of BLAS that wait for each other spin.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import numpy as np
 import pytest
 from interacting_by_hand import QUANTITIES, SEPARATIONS, interaction
+from item_cost import Bill, Meter
 from matplotlib.figure import Figure
+from touched import reached
+from warm import warm
 
 import analytic
 from mcgw.scene.scene import Scene
@@ -12,7 +20,35 @@ from mcgw.scene.scene import Scene
 SURFACE = analytic.Surface(sigma=1.37e-6, radius=13e-6, eta=3.0e8, nominal_area=1e-4, E_star=78.6e9)
 
 
-@pytest.fixture
+def pytest_addoption(parser):
+    group = parser.getgroup("mcgw")
+    group.addoption("--cost", action="store_true", help="list what items cost; fail those that are too dear")
+    group.addoption("--touched", action="store_true", help="only what imports what has changed since main")
+
+
+def pytest_configure(config):
+    worker, alone = hasattr(config, "workerinput"), not config.getoption("numprocesses", None)
+    if not worker and not alone:
+        warm()
+    if config.getoption("--cost"):
+        if worker or alone:
+            config.pluginmanager.register(Meter())
+        if not worker:
+            config.pluginmanager.register(Bill())
+
+
+@cache
+def touched_files():
+    return reached()
+
+
+def pytest_ignore_collect(collection_path, config):
+    if config.getoption("--touched") and collection_path.suffix == ".py":
+        return collection_path not in touched_files() or None
+    return None
+
+
+@pytest.fixture(scope="session")
 def make_scene():
     """Scenes of one surface, whatever else is asked."""
 
@@ -43,6 +79,12 @@ def pressed(make_scene):
 
 
 @pytest.fixture
+def without_caps(monkeypatch):
+    """Fits of maps leave out the estimate of hidden caps, which takes most of their time."""
+    monkeypatch.setattr("mcgw.maps.fit.by_caps", lambda *_: None)
+
+
+@pytest.fixture
 def blank_figures(monkeypatch):
     """Figures are made and their files written, but nothing is drawn in them, which takes a second each."""
 
@@ -53,3 +95,26 @@ def blank_figures(monkeypatch):
             target.write(b"" if isinstance(target, io.BytesIO) else "<svg></svg>")
 
     monkeypatch.setattr(Figure, "savefig", blank)
+
+
+@pytest.fixture
+def kept(monkeypatch):
+    """A list of the figures that are saved, as they are then; nothing is drawn."""
+    figures = []
+
+    def keep(self, path, **_):
+        path.touch()
+        figures.append(self)
+
+    monkeypatch.setattr(Figure, "savefig", keep)
+    return figures
+
+
+@pytest.fixture(scope="module")
+def looked_at_here():
+    """Files of ensembles are looked at in this process: a child for each takes most of the time."""
+    from mcgw.store import ensembles, structure
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(ensembles, "examine", lambda path: structure.describe(str(path)))
+        yield

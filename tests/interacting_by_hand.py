@@ -49,12 +49,9 @@ def sums_at(s, e, x):
     d = np.maximum(s - x[:, None], 0.0)
     root = np.sqrt(d)
     return {
-        "load": (e * d * root).sum(axis=1),
-        "stiffness": (e * root).sum(axis=1),
-        "area": d.sum(axis=1),
-        "conductance": root.sum(axis=1),
-        "contacts": (d > 0).sum(axis=1).astype(float),
-    }
+        "load": (e * d * root).sum(axis=1), "stiffness": (e * root).sum(axis=1), "area": d.sum(axis=1),
+        "conductance": root.sum(axis=1), "contacts": (d > 0).sum(axis=1).astype(float),
+    }  # fmt: skip
 
 
 def balances(s, e, h, c):

@@ -5,13 +5,12 @@ intervals that shrink towards first touch by halves: formulas have poles and pow
 """
 
 from dataclasses import replace
-from itertools import pairwise
 
 import numpy as np
 from scipy.optimize import brentq
 from scipy.special import ndtr
 
-from analytic import ChangEtsionBogy, JacksonGreen, KogutEtsion, Surface, ZhaoMaiettaChang
+from analytic import ChangEtsionBogy, JacksonGreen, KogutEtsion, Surface, ZhaoMaiettaChang, quantity_of
 from analytic.laws import LoadingBranch, term_of
 
 ONE = np.array(1.0)
@@ -71,17 +70,17 @@ def mean(law, quantity, h=1.0, modulus=ones):
     )
 
 
-def loading_work(law, deepest):
-    """Work that an asperity of modulus E* takes up to a penetration."""
-    limits = [0.0, *(x for x in law.limits(np.array(1.0)) if x < deepest), deepest]
-    work = 0.0
-    for piece, (low, high) in enumerate(pairwise(limits)):
-        a, b = np.sqrt([low, high])
-        v = a + (b - a) * (1 + X) / 2
-        work += float(np.sum((b - a) / 2 * W * 2 * v * law.load(piece, v, 1.0)))
-    return work
-
-
 def tail(h):
     """Share of the heights above h."""
     return float(ndtr(-h))
+
+
+def own_terms(scene, quantity, heights, radii):
+    """What each summit adds, in SI, by the law on a surface of its own radius: (separations, summits)."""
+    terms = []
+    for s, radius in zip(heights.tolist(), radii.tolist(), strict=True):
+        own = replace(scene.surface, radius=radius)
+        branch, e = LoadingBranch(scene.law.on(own)), scene.modulus(np.array(s))
+        term = term_of(quantity, branch, np.array(scene.separations), s, e)
+        terms.append(term * quantity_of(quantity).scale(own))
+    return np.array(terms).T

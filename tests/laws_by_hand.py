@@ -1,10 +1,28 @@
-"""Contact laws typed in for the tests, in ten lines each: independent of those of `analytic.laws`."""
+"""Contact laws typed in, independent of those of `analytic.laws`, and what tests of models share."""
 
 from dataclasses import dataclass
 
 import numpy as np
 
+from analytic import Exponential, Homogeneous, Surface, quantity_of
 from analytic.laws.law import ContactLaw
+
+SURFACE = Surface(sigma=1e-6, radius=1e-5, eta=1e9, nominal_area=1e-6, E_star=1e9)
+GRADINGS = {
+    "uniform": Homogeneous(), "no tips": Exponential(0.0), "soft tips": Exponential(0.2),
+    "stiff tips": Exponential(2.0),
+}  # fmt: skip
+
+
+def reduced(model, quantity, h):
+    """Mean of one asperity over the scale."""
+    return np.asarray(model.mean(quantity, h)) / model.number / quantity_of(quantity).scale(SURFACE)
+
+
+def differences(model, quantity, h, step=4e-3):
+    """-d mean/dh by differences of the eighth order: the mean is smooth, jumps are smeared over heights."""
+    k, weights = step * np.array([1, 2, 3, 4]), np.array([4 / 5, -1 / 5, 4 / 105, -1 / 280]) / step
+    return float((model.mean(quantity, h - k) - model.mean(quantity, h + k)) @ weights)
 
 
 @dataclass(frozen=True)

@@ -6,12 +6,8 @@ import numpy as np
 
 # Powers of the approach and of the modulus, and the factor of one asperity, from Hertz' formulas.
 POWERS = {
-    "load": (1.5, 1),
-    "area": (1.0, 0),
-    "stiffness": (0.5, 1),
-    "contacts": (0.0, 0),
-    "conductance": (0.5, 0),
-}
+    "load": (1.5, 1), "area": (1.0, 0), "stiffness": (0.5, 1), "contacts": (0.0, 0), "conductance": (0.5, 0),
+}  # fmt: skip
 
 
 def factor(surface, quantity):
@@ -55,3 +51,14 @@ def ensemble_arrays(scene, seed, *, exponent=None, heights=None):
             columns.append(((d > 0) * d**power * e**modulus).sum(axis=1))
         arrays[quantity] = factor(scene.surface, quantity) * np.stack(columns, axis=1)
     return arrays
+
+
+def scores(ensemble):
+    """Of all means and variances, in exact standard errors."""
+    scene, m, means, variances = ensemble.scene, ensemble.n_surfaces, [], []
+    for name in scene.quantities:
+        exact, values = scene.theory.cumulants(name, scene.separations), ensemble[name]
+        means.append((values.mean(axis=0) - exact.mean) / np.sqrt(exact.variance / m))
+        off = values.var(axis=0, ddof=1) / exact.variance - 1
+        variances.append(off / np.sqrt(exact.excess_kurtosis / m + 2 / (m - 1)))
+    return np.abs(means).max(), np.abs(variances).max()

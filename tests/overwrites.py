@@ -44,7 +44,6 @@ sampler = "cells"
 keep = "moments"
 """
 
-FITTED = "f.heights.npy"
 # By name: the file that is read; the command, with OUT or DIR for where it is told to write; and what the
 # name of its output ends in, or the name of a file that it writes in DIR.
 CASES = {
@@ -74,9 +73,7 @@ CASES = {
     "fit": ("map.npy", "fit map.npy --cutoff none -o OUT", ".toml"),
     "fit, sidecar": ("map.json", "fit map.npy --cutoff none -o OUT", ".toml"),
     "fit, heights": (
-        "map.npy",
-        "fit map.npy --cutoff none --heights measured -o DIR/f.toml",
-        "f.heights.npy",
+        "map.npy", "fit map.npy --cutoff none --heights measured -o DIR/f.toml", "f.heights.npy",
     ),
     "fit --summits": ("map.npy", "fit map.npy --cutoff none -o f.toml --summits OUT", ".csv"),
     "fit --tiles": ("map.npy", "fit map.npy --cutoff none -o f.toml --tiles OUT", ".csv"),
@@ -85,7 +82,7 @@ CASES = {
     "tradeoff, figure": ("scene.toml", "tradeoff scene.toml -o DIR", "scene-tradeoff.png"),
     "figures": ("scene.toml", "figures --scene scene.toml -o DIR", "equal-load.svg"),
     "figures --csv": ("table.csv", "figures --scene scene.toml --csv -o DIR", "figure-6.csv"),
-}
+}  # fmt: skip
 WAYS = ("its name", "dots", "absolute", "linked folder", "symbolic link", "hard link")
 
 

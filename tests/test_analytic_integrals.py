@@ -1,40 +1,49 @@
-"""F_n and F*_n of the homogeneous and the exponential grading, against closed forms at 40 digits."""
+"""F_n and F*_n for powers that are half-integers and others, against closed forms at 40 digits."""
 
 import math
 
 import mpmath as mp
 import numpy as np
 import pytest
+import scipy.stats
 from reference import F, F_star, error, exponential, graded, phi
+from scipy.integrate import quad
 
 import analytic
+from analytic import Custom, MeasuredHeights, ScipyHeights, Weibull
 
 # Promised: 1e-13. The quadrature itself is good to 1e-14; gamma = 2 loses a digit below h = -1.
 TOLERANCE = 1e-13
-ORDERS = (0, 0.5, 1, 1.5, 2, 2.5)
-RANDOM_H = np.random.default_rng(20240601).uniform(-40, 1000, 500)
+HALVES = (0, 0.5, 1, 1.5, 2, 2.5, 3, 4.5, 6)
+OTHERS = (0.125, 0.25, 1 / 3, 0.625, 0.75, 1.3, 1.625, 1.75, 2.2, 5.3)
+FAR_H = np.random.default_rng(20240601).uniform(-40, 1000, 40)
 # Half the interval means little physically: the same again where contacts are.
 CLOSE_H = np.concatenate(
-    [np.random.default_rng(20240602).uniform(-40, 40, 60), [-13, -1e-9, 0, 1e-9, 13, 37]]
+    [np.random.default_rng(20240602).uniform(-40, 40, 20), [-13, -1e-9, 0, 1e-9, 13, 37]]
 )
+PAIRS = [  # powers, and what the grading is: each of both, and neighbours of all
+    *((n, None) for n in (*HALVES[:6], *OTHERS)),
+    *((n, 0.2) for n in (0, 1, 2, 4.5, 1 / 3, 1.625)),
+    *((n, 1.5) for n in (0.5, 2, 3, 0.25, 1.3)),
+    *((n, 2.0) for n in (0, 0.5, 1.5, 2.5, 6, 0.125, 0.75, 5.3)),
+]
 
 
-def scaled(truth: mp.mpf, h: float) -> mp.mpf:
-    return truth / phi(h) if h >= 0 else truth
+def worst(found, truth, h):
+    """Largest error of scaled integrals."""
+    return max(
+        error(v, truth(x) / phi(x) if x >= 0 else truth(x)) for v, x in zip(found, h.tolist(), strict=True)
+    )
 
 
-@pytest.mark.parametrize("n", ORDERS)
-def test_homogeneous_at_500_random_separations(n):
-    values = analytic.fn_scaled(n, RANDOM_H)
-    assert max(error(v, scaled(F(n, h), h)) for v, h in zip(values, RANDOM_H, strict=True)) < TOLERANCE
-
-
-@pytest.mark.parametrize("gamma", [0.2, 1.5, 2.0])
-@pytest.mark.parametrize("n", [*ORDERS, 3, 4.5, 6])
-def test_exponential(n, gamma):
-    h = np.concatenate([CLOSE_H, RANDOM_H[:20]])
-    values = analytic.fn_scaled(n, h, analytic.Exponential(gamma))
-    assert max(error(v, scaled(F_star(n, x, gamma), x)) for v, x in zip(values, h, strict=True)) < TOLERANCE
+@pytest.mark.parametrize(("n", "gamma"), PAIRS)
+def test_integrals_of_any_power_at_random_separations(n, gamma):
+    h = np.concatenate([CLOSE_H, FAR_H])
+    if gamma is None:
+        assert worst(analytic.fn_scaled(n, h), lambda x: F(n, x), h) < TOLERANCE
+    else:
+        found = analytic.fn_scaled(n, h, analytic.Exponential(gamma))
+        assert worst(found, lambda x: F_star(n, x, gamma), h) < TOLERANCE
 
 
 @pytest.mark.parametrize("n", [0, 1.5, 6])
@@ -50,7 +59,7 @@ def test_unscaled_and_its_logarithm(n):
 
 @pytest.mark.parametrize("n", [0, 1.5, 2.5])
 def test_logarithm_far_beyond_underflow(n):
-    h = RANDOM_H[(RANDOM_H > 40)][:40]
+    h = FAR_H[FAR_H > 40][:20]
     assert np.all(analytic.fn(n, h) == 0)
     for x, log in zip(h, analytic.fn(n, h, analytic.Exponential(2.0), log=True), strict=True):
         truth = mp.log(F_star(n, x, 2))
@@ -60,43 +69,9 @@ def test_logarithm_far_beyond_underflow(n):
 @pytest.mark.parametrize("n", [0, 0.5, 1.5, 2])
 def test_closed_form_is_the_definition(n):
     """The oracle itself: the paper says that there is no closed form."""
-    for h in (-3, 0.5, 4, 20):
-        for gamma in (0.2, 1.5):
-            literal = graded(n, h, exponential(gamma))
-            assert abs(literal / F_star(n, h, gamma) - 1) < 1e-20  # the digits of the quadrature
-
-
-def test_plain_cases_known_by_heart():
-    assert float(analytic.fn(0, 0.0)) == pytest.approx(0.5, rel=1e-15)
-    assert float(analytic.fn(1, 0.0)) == pytest.approx(1 / math.sqrt(2 * math.pi), rel=1e-15)
-    assert float(analytic.fn(2, 0.0)) == pytest.approx(0.5, rel=1e-15)
-    # Everything touches: mean of (s - h)^2 is 1 + h^2.
-    assert float(analytic.fn(2, -40.0)) == pytest.approx(1601, rel=1e-14)
-
-
-@pytest.mark.parametrize(
-    "grading", [None, analytic.Exponential(1.5), analytic.Custom(lambda s: 2 + np.sin(s))]
-)
-@pytest.mark.parametrize("n", [1, 1.5, 2.5])
-def test_derivative_is_minus_n_times_the_order_below(n, grading):
-    h, step = np.linspace(-6, 6, 25), 1e-2
-    f = {k: analytic.fn(n, h + k * step, grading) for k in (-3, -2, -1, 1, 2, 3)}
-    slope = (45 * (f[1] - f[-1]) - 9 * (f[2] - f[-2]) + f[3] - f[-3]) / (60 * step)
-    # Sixth order: (step^6/140) F^(7) is 1e-14 of it (times 7th powers of h <= 6), rounding 1e-16/step.
-    np.testing.assert_allclose(slope, -n * analytic.fn(n - 1, h, grading), rtol=2e-9)
-
-
-@pytest.mark.parametrize("n", [1, 1.5, 2])
-def test_recurrence(n):
-    h = np.linspace(-8, 0.5, 18)  # above, n F_{n-1} - h F_n is a difference of nearly equal numbers
-    right = n * analytic.fn(n - 1, h) - h * analytic.fn(n, h)
-    np.testing.assert_allclose(analytic.fn(n + 1, h), right, rtol=1e-13)
-
-
-def test_gamma_one_is_homogeneous():
-    h = np.linspace(-10, 30, 41)
-    for n in (0, 0.5, 1.5):
-        np.testing.assert_array_equal(analytic.fn(n, h, analytic.Exponential(1.0)), analytic.fn(n, h))
+    for h, gamma in ((-3, 0.2), (0.5, 1.5), (20, 0.2)):
+        literal = graded(n, h, exponential(gamma))
+        assert abs(literal / F_star(n, h, gamma) - 1) < 1e-20  # the digits of the quadrature
 
 
 def test_shape_order_and_neighbours_do_not_matter():
@@ -110,16 +85,13 @@ def test_shape_order_and_neighbours_do_not_matter():
     assert analytic.fn(1.5, []).shape == (0,)
 
 
-@pytest.mark.parametrize("n", [-0.5, -1, math.inf, math.nan])
-def test_wrong_order_is_refused(n):
-    with pytest.raises(ValueError, match=f"n = {n}: give a finite number that is not negative"):
-        analytic.fn(n, 0.0)
-
-
-@pytest.mark.parametrize("h", [math.inf, -math.inf, math.nan])
-def test_wrong_separation_is_refused(h):
-    with pytest.raises(ValueError, match="must be finite"):
-        analytic.fn(1.5, [0.0, h])
+def test_what_is_no_power_or_separation_is_refused():
+    for n in (-0.5, -1, math.inf, math.nan):
+        with pytest.raises(ValueError, match=f"n = {n}: give a finite number that is not negative"):
+            analytic.fn(n, 0.0)
+    for h in (math.inf, -math.inf, math.nan):
+        with pytest.raises(ValueError, match="must be finite"):
+            analytic.fn(1.5, [0.0, h])
 
 
 @pytest.mark.parametrize(("h", "low", "high"), [(0, 1, 3), (-2, -5, 0.5), (1, 11, math.inf), (-40, -3, -1)])
@@ -131,11 +103,50 @@ def test_share_between_two_heights(h, low, high):
         assert error(share, part / F_star(n, h, 2)) < TOLERANCE
 
 
-def test_shares_add_up():
-    h = np.linspace(-5, 5, 11)
-    parts = [analytic.fn_between(1.5, h, a, b) for a, b in [(-math.inf, 0), (0, 2), (2, math.inf)]]
-    np.testing.assert_allclose(sum(parts), 1, rtol=1e-14)
-
-
 def test_logarithm_of_a_negative_integral_is_nan_without_warning():
     assert math.isnan(float(analytic.fn(1.5, 4.0, analytic.Exponential(-1.0), log=True)))
+
+
+# Powers that are no half-integers
+
+
+@pytest.mark.parametrize("gap", [1e-12, 1e-6, 0.3])
+def test_a_break_close_above_the_separation(gap):
+    """The range behind it begins where the power is steepest."""
+    h, n = 0.4, 0.25
+    grading = Custom(lambda s: np.where(s > h + gap, 2.0, 1.0), breaks=(h + gap,))
+    gap = mp.mpf(h + gap) - mp.mpf(h)
+    near = gap ** (mp.mpf(n) + 1) / (n + 1)  # of the homogeneous surface, next to h
+    with mp.workdps(25):
+        near = phi(h) * (
+            near - h * gap ** (mp.mpf(n) + 2) / (n + 2) + (h * h - 1) * gap ** (mp.mpf(n) + 3) / (n + 3) / 2
+        )
+    if gap > 0.1:
+        near = graded(n, h, lambda s: 1, high=mp.mpf(h) + gap)
+    truth = 2 * F(n, h) - near
+    assert error(float(analytic.fn(n, h, grading)), truth) < TOLERANCE
+
+
+UNIFORM = ScipyHeights(scipy.stats.uniform())
+
+
+@pytest.mark.parametrize(
+    ("law", "h"), [(Weibull(2.0), -3.0), (Weibull(2.0), 0.4), (UNIFORM, -3.0), (UNIFORM, -0.9)]
+)
+def test_other_height_laws_in_another_variable(law, h):
+    """With s - h = v^4 the power 1.25 is v^5, and nothing is singular at the separation."""
+    n, low = 1.25, max(h, law.support[0])
+
+    def term(v):
+        return 4 * v**3 * v**5 * float(law.density(np.array(h + v**4)))
+
+    top = min(law.support[1], 20.0)
+    truth = quad(term, (low - h) ** 0.25, (top - h) ** 0.25, epsabs=0, epsrel=1e-12, limit=400)[0]
+    assert float(analytic.fn(n, h, heights=law)) == pytest.approx(truth, rel=1e-11)
+
+
+def test_measured_heights_are_summed():
+    heights = MeasuredHeights([-1.2, 0.1, 0.7, 2.0])
+    s = np.array(heights.heights)
+    truth = np.sum(np.where(s > 0.05, np.abs(s - 0.05) ** 1.7, 0.0)) / 4
+    assert float(analytic.fn(1.7, 0.05, heights=heights)) == pytest.approx(truth, rel=1e-14)

@@ -1,14 +1,26 @@
 """The model of a surface: its own number, count and height law in everything it says."""
 
 import math
-from dataclasses import replace
+import re
+import sys
+from dataclasses import asdict, replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 from scipy.integrate import quad
 
 import analytic
-from analytic import Exponential, ExponentialHeights, Gaussian, Model, Weibull
+from analytic import (
+    Body,
+    Exponential,
+    ExponentialHeights,
+    Gaussian,
+    Model,
+    Surface,
+    Weibull,
+    composite_modulus,
+)
 
 SURFACE = analytic.Surface(sigma=1e-6, radius=1e-5, eta=1e9, nominal_area=1e-6, E_star=1e9)
 H = np.array([-0.5, 0.0, 1.5])
@@ -41,12 +53,6 @@ def test_means_and_variances_are_sums_of_independent_terms(model):
             assert fixed == pytest.approx(70 * scale**2 * (moment(2) - moment(1) ** 2), rel=1e-9)
 
 
-def test_covariance_has_the_variances_on_its_diagonal(model):
-    matrix = model.covariance(["load", "contacts"], H)
-    for i, name in enumerate(("load", "contacts")):
-        np.testing.assert_allclose(np.diag(matrix[i, :, i, :]), model.std(name, H) ** 2, rtol=1e-12)
-
-
 def test_separations_belong_to_the_number_of_asperities(model):
     for name in ("load", "area"):
         np.testing.assert_allclose(model.separation_at(name, model.mean(name, H)), H, atol=1e-12)
@@ -72,39 +78,97 @@ def test_mistakes_are_named(given, told):
 
 
 CALLS = {
-    "mean": (SURFACE, "load", 1.0),
-    "load": (SURFACE, 1.0),
-    "area": (SURFACE, 1.0),
-    "contacts": (SURFACE, 1.0),
-    "stiffness": (SURFACE, 1.0),
-    "conductance": (SURFACE, 1.0),
-    "barber_conductance": (SURFACE, 1.0),
-    "area_per_load": (SURFACE, 1.0),
-    "area_per_load_ratio": (1.0, Exponential(2.0)),
-    "stiffness_ratio": (1.0, Exponential(2.0)),
-    "separation_at": (SURFACE, "load", 1e-3),
-    "covariance": (SURFACE, ["load"], [1.0]),
-    "fn": (1.5, 1.0),
-    "fn_scaled": (1.5, 1.0),
-    "fn_between": (1.5, 1.0, 1.0, 2.0),
-    "mean_modulus": (1.0, Exponential(2.0)),
-}
+    "mean": (SURFACE, "load", 1.0), "load": (SURFACE, 1.0), "area": (SURFACE, 1.0),
+    "contacts": (SURFACE, 1.0), "stiffness": (SURFACE, 1.0), "conductance": (SURFACE, 1.0),
+    "barber_conductance": (SURFACE, 1.0), "area_per_load": (SURFACE, 1.0),
+    "area_per_load_ratio": (1.0, Exponential(2.0)), "stiffness_ratio": (1.0, Exponential(2.0)),
+    "separation_at": (SURFACE, "load", 1e-3), "covariance": (SURFACE, ["load"], [1.0]), "fn": (1.5, 1.0),
+    "fn_scaled": (1.5, 1.0), "fn_between": (1.5, 1.0, 1.0, 2.0), "mean_modulus": (1.0, Exponential(2.0)),
+}  # fmt: skip
 
 
-@pytest.mark.parametrize("name", CALLS)
-def test_the_old_keyword_of_the_height_law_warns_and_works(name):
-    function, law = getattr(analytic, name), Weibull(1.7)
-    with pytest.warns(DeprecationWarning, match=rf"{name}: the law of the heights is now heights="):
-        old = function(*CALLS[name], law=law)
-    np.testing.assert_array_equal(old, function(*CALLS[name], heights=law))
-    assert not np.array_equal(old, function(*CALLS[name]))
-
-
-def test_the_old_keyword_of_rules_and_cumulants():
+def test_the_old_keyword_of_the_height_law_warns_and_works():
+    law = Weibull(1.7)
+    for name, given in CALLS.items():
+        function = getattr(analytic, name)
+        with pytest.warns(DeprecationWarning, match=rf"{name}: the law of the heights is now heights="):
+            old = function(*given, law=law)
+        np.testing.assert_array_equal(old, function(*given, heights=law))
+        assert not np.array_equal(old, function(*given)), name
     with pytest.warns(DeprecationWarning, match="heights="):
-        old = analytic.cumulants(SURFACE, "load", 1.0, law=Weibull(1.7))
-    assert old == analytic.cumulants(SURFACE, "load", 1.0, heights=Weibull(1.7))
+        cumulants = analytic.cumulants(SURFACE, "load", 1.0, law=law)
+    assert cumulants == analytic.cumulants(SURFACE, "load", 1.0, heights=law)
     with pytest.warns(DeprecationWarning, match="heights="):
-        rule = analytic.HeightRule.over([1.0], Exponential(2.0), law=Weibull(1.7))
-    new = analytic.HeightRule.over([1.0], Exponential(2.0), Weibull(1.7))
-    np.testing.assert_array_equal(rule.heights, new.heights)
+        rule = analytic.HeightRule.over([1.0], Exponential(2.0), law=law)
+    np.testing.assert_array_equal(
+        rule.heights, analytic.HeightRule.over([1.0], Exponential(2.0), law).heights
+    )
+
+
+def test_no_source_imports_the_simulator():
+    paths = sorted(Path(analytic.__file__).parent.rglob("*.py"))
+    assert len(paths) > 50
+    for path in paths:
+        imported = re.findall(r"^\s*(?:from|import)\s+(\w+)", path.read_text(encoding="utf-8"), re.MULTILINE)
+        assert set(imported) <= {"analytic", "numpy", "scipy", *sys.stdlib_module_names}, path
+
+
+GOOD = {"sigma": 1.37e-6, "radius": 13e-6, "eta": 3e8, "nominal_area": 1e-4, "E_star": 78.6e9}
+
+
+def test_composite_modulus():
+    steel, glass = Body(210e9, 0.3), Body(70e9, 0.22)
+    expected = 1 / ((1 - 0.09) / 210e9 + (1 - 0.0484) / 70e9)
+    assert composite_modulus([steel, glass]) == pytest.approx(expected, rel=1e-15)
+    assert composite_modulus([glass, steel]) == pytest.approx(expected, rel=1e-15)
+    assert composite_modulus([steel, Body(math.inf)]) == pytest.approx(210e9 / 0.91, rel=1e-15)
+
+
+def test_two_bodies_one_of_them_elastic():
+    with pytest.raises(ValueError, match="give two of them, not 1"):
+        composite_modulus([Body(1e9)])
+    with pytest.raises(ValueError, match="both are rigid"):
+        composite_modulus([Body(math.inf), Body(math.inf)])
+
+
+def test_bodies_have_moduli_in_their_range():
+    for modulus in (0, -1.0, math.nan):
+        with pytest.raises(ValueError, match=r"E = .*> 0 Pa"):
+            Body(modulus)
+    for nu in (-1.01, 0.51, math.nan):
+        with pytest.raises(ValueError, match=r"nu = .*between -1 and 0\.5"):
+            Body(1e9, nu)
+    assert [Body(1e9, nu).nu for nu in (-1, 0, 0.5)] == [-1, 0, 0.5]
+
+
+@pytest.mark.parametrize("name", list(GOOD))
+def test_every_parameter_is_positive_and_finite(name):
+    for value in (0, -1.0, math.inf, math.nan):
+        with pytest.raises(ValueError, match=rf"{name} = .*finite number > 0"):
+            Surface(**{**GOOD, name: value})
+
+
+def test_number_of_asperities():
+    surface = Surface(**GOOD)
+    assert surface.n_asperities == pytest.approx(30000, rel=1e-15)
+    assert asdict(surface) == GOOD
+
+
+# Exponents of m, N in the unit, from which a change of units is worked out.
+UNITS = {"load": ("N", 0, 1), "area": ("m^2", 2, 0), "stiffness": ("N/m", -1, 1), "contacts": ("1", 0, 0),
+         "conductance": ("m", 1, 0)}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", list(UNITS))
+def test_quantities_have_the_dimension_of_their_unit(name):
+    """The same surface in millimetres and newtons: the number changes as the unit says."""
+    surface = Surface(**GOOD)
+    in_mm = Surface(1e3 * surface.sigma, 1e3 * surface.radius, 1e-6 * surface.eta, 1e6 * surface.nominal_area,
+                    1e-6 * surface.E_star)  # fmt: skip
+    unit, metres, newtons = UNITS[name]
+    assert analytic.QUANTITIES[name].unit == unit
+    assert analytic.QUANTITIES[name].name == name
+    ratio = float(analytic.mean(in_mm, name, 1.0) / analytic.mean(surface, name, 1.0))
+    assert ratio == pytest.approx(1e3**metres, rel=1e-14)
+    stiff = float(analytic.mean(replace(surface, E_star=2 * surface.E_star), name, 1.0))
+    assert stiff / float(analytic.mean(surface, name, 1.0)) == pytest.approx(2**newtons, rel=1e-14)

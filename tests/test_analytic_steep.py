@@ -42,14 +42,13 @@ def off(value, truth):
     return abs(float(mp.mpf(float(value)) / truth - 1))
 
 
-@pytest.mark.parametrize("k", [4.0, 8.0, 12.0, 20.0])
-@pytest.mark.parametrize("n", [0.5, 1.5])
+@pytest.mark.parametrize(("n", "k"), [(0.5, 4.0), (1.5, 8.0), (0.5, 12.0), (1.5, 20.0)])
 def test_means_of_steep_gradings(n, k):
     for h in H:
         assert off(analytic.fn(n, h, raised(k)), tilted(n, h, k)) < 1e-12
 
 
-@pytest.mark.parametrize("k", [-4.0, -8.0, -12.0])
+@pytest.mark.parametrize("k", [-4.0, -12.0])
 def test_gradings_that_are_steep_towards_the_valleys(k):
     for h in (-40.0, -16.0, -3.0, 0.0):
         assert off(analytic.fn(1.5, h, raised(k)), tilted(1.5, h, k)) < 1e-12
@@ -70,7 +69,7 @@ def test_means_beyond_double_precision_are_refused(k):
         analytic.fn(1.5, 0.0, Custom(lambda s: np.exp(0.51 * s * s)))  # there is no mean at all
 
 
-@pytest.mark.parametrize("k", [2.0, 3.0, 4.0])
+@pytest.mark.parametrize("k", [2.0, 4.0])
 def test_variances_and_skewness_of_steep_gradings(make_model, k):
     for h in (-2.0, 0.0, 3.0):
         one = make_model(grading=raised(k), n_asperities=1.0)
@@ -82,7 +81,7 @@ def test_variances_and_skewness_of_steep_gradings(make_model, k):
         assert off(exact.skewness, (m3 - 3 * m2 * m1 + 2 * m1**3) / mp.sqrt(variance) ** 3) < 1e-11
 
 
-@pytest.mark.parametrize("k", [8.0, 12.0, 20.0])
+@pytest.mark.parametrize("k", [8.0, 20.0])
 def test_variances_beyond_double_precision_are_refused(make_model, k):
     model = make_model(grading=raised(k))
     with pytest.raises(ValueError, match=TOO_STEEP):
@@ -142,8 +141,9 @@ def soft(n, h, gamma):
     return mp.log(gamma * F(n, h) - (gamma - 1) * mp.exp(mp.mpf(1) / 2) * F(n, h + 1))
 
 
-@pytest.mark.parametrize("gamma", [0.0, 5e-324, 1e-310, 1e-300, 1e-250, 1e-9])
-@pytest.mark.parametrize("n", [0, 0.5, 1.5])
+@pytest.mark.parametrize(
+    ("gamma", "n"), [(0.0, 1.5), (5e-324, 0), (1e-310, 0.5), (1e-300, 1.5), (1e-250, 0), (1e-9, 1.5)]
+)
 def test_logarithms_do_not_underflow_with_the_grading(n, gamma):
     h = np.array([300.0, 600.0, 700.0, 744.0, 745.0, 746.0, 800.0, 1000.0])
     found = analytic.fn(n, h, Exponential(gamma), log=True)
@@ -152,7 +152,7 @@ def test_logarithms_do_not_underflow_with_the_grading(n, gamma):
     np.testing.assert_array_equal(analytic.fn(n, h, Clipped.of(Exponential(gamma)), log=True), found)
 
 
-@pytest.mark.parametrize("size", [1e-305, 1e-200, 1e200, 1e305])
+@pytest.mark.parametrize("size", [1e-305, 1e305])
 def test_gradings_of_any_size(size):
     """A constant drops out of the logarithm, whatever it does to the integral itself."""
     h = np.array([-5.0, 0.0, 30.0, 1000.0])
@@ -183,8 +183,11 @@ def test_ratios_of_soft_tips_far_out():
     assert float(found) == pytest.approx(float(F(0.5, other) / F(0.5, mp.mpf(900))), rel=1e-9)
 
 
-@pytest.mark.parametrize("shape", [1.0, 1.5, 3.9, 4.0, 12.0, 40.0, 40.743, 100.0])
-@pytest.mark.parametrize("h", [-20.0, -3.0, 0.0, 2.0, 4.0])
+@pytest.mark.parametrize(
+    ("shape", "h"),
+    [(1.0, -20.0), (1.0, 4.0), (1.5, -3.0), (1.5, 2.0), (3.9, 0.0), (4.0, 2.0), (12.0, -20.0), (40.743, -3.0),
+     (40.743, 0.0), (100.0, 2.0)],
+)  # fmt: skip
 def test_weibull_integrals_of_any_shape(shape, h):
     with mp.workdps(40):
         k = mp.mpf(shape)

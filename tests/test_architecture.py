@@ -1,42 +1,25 @@
-"""Imports point one way, and nothing is compiled or drawn before it is needed."""
+"""Imports point one way, and compiled loops stay in their layer."""
 
 import ast
-import subprocess
-import sys
-import tomllib
+from functools import cache
 from graphlib import TopologicalSorter
 from pathlib import Path
 
-import pytest
-
+import analytic
 import mcgw
 from mcgw.scene.samplers import SAMPLERS
 
 # Packages are layers: each imports only from those before it, and within one nothing goes round in a circle.
 LAYERS = (
-    "errors",
-    "machine",
-    "formats",
-    "scene",
-    "sampling",
-    "ensemble",
-    "store",
-    "jobs",
-    "sweeps",
-    "statistics",
-    "exports",
-    "maps",
-    "figures",
-    "reports",
-    "commands",
-    "cli",
-)
+    "errors", "machine", "formats", "scene", "sampling", "ensemble", "store", "jobs", "sweeps", "statistics",
+    "exports", "maps", "figures", "reports", "commands", "cli",
+)  # fmt: skip
 ROOT = Path(mcgw.__file__).parent
 
 
 def imports(tree):
     """Modules of this package that a file imports, wherever in it that is."""
-    for node in ast.walk(tree):
+    for node in tree.nodes:
         match node:
             case ast.ImportFrom(module=str(module)) if module.startswith("mcgw."):
                 yield module.removeprefix("mcgw.")
@@ -44,9 +27,18 @@ def imports(tree):
                 yield from (x.name.removeprefix("mcgw.") for x in names if x.name.startswith("mcgw."))
 
 
+@cache
 def sources():
-    for path in sorted(ROOT.rglob("*.py")):
-        yield path.relative_to(ROOT).as_posix(), ast.parse(path.read_text())
+    """Each file and its syntax tree, read once."""
+    paths = sorted(ROOT.rglob("*.py"))
+    return [(path.relative_to(ROOT).as_posix(), Tree(ast.parse(path.read_text()))) for path in paths]
+
+
+class Tree:
+    """What stands in a file."""
+
+    def __init__(self, tree):
+        self.body, self.nodes = tree.body, list(ast.walk(tree))
 
 
 def inside():
@@ -82,14 +74,14 @@ def test_nobody_outside_asks_which_sampler_it_is():
     for this, tree in inside():
         if this.startswith(("sampling.", "scene.samplers")):
             continue
-        compared = [x for node in ast.walk(tree) if isinstance(node, ast.Compare) for x in ast.walk(node)]
+        compared = [x for node in tree.nodes if isinstance(node, ast.Compare) for x in ast.walk(node)]
         assert not {x.value for x in compared if isinstance(x, ast.Constant)} & names, this
         assert not {"Cells", "Counted", "Direct"} & {x.id for x in asked_for(tree)}, this
 
 
 def asked_for(tree):
     """Names in all calls of `isinstance`."""
-    for node in ast.walk(tree):
+    for node in tree.nodes:
         match node:
             case ast.Call(func=ast.Name(id="isinstance")):
                 yield from (x for x in ast.walk(node) if isinstance(x, ast.Name))
@@ -99,120 +91,50 @@ def test_the_root_has_only_the_door():
     assert {path.name for path in ROOT.glob("*.py")} == {"__init__.py", "__main__.py", "cli.py", "errors.py"}
 
 
-SHARED = {
-    "ALL_QUANTITIES", "LAW_QUANTITIES", "QUANTITIES", "TANGENTIAL", "UNLOADING",
-    "Body", "Clipped", "Custom", "Exponential", "ExponentialHeights", "Gaussian", "Grading",
-    "HeightLaw", "HeightTable", "Homogeneous", "MeasuredHeights", "MeasuredRadii", "Nayak", "PER_AREA",
-    "PiecewiseSeries", "Quantity", "RandomCurvature", "ScipyHeights", "SpectralMoments", "Surface", "Table",
-    "Weibull",
-    "bends", "composite_modulus", "extent",
-    "first_negative", "is_data", "quantity_of", "resolved", "resolved_breaks",
-    "ChangEtsionBogy", "Coated", "ContactLaw", "CustomLaw", "DerjaguinMullerToporov", "Hertz",
-    "JacksonGreen", "JohnsonKendallRoberts", "KogutEtsion", "PowerLawGraded", "ZhaoMaiettaChang",
-    "Film", "Interaction", "Tangential", "masing", "SEPARATIONS",
-}  # fmt: skip
-LAW_FILES = {
-    "adhesion", "bridge", "chang_etsion_bogy", "coated", "custom", "elastic_plastic",
-    "etsion_kligerman_kadin", "hardness", "jackson_green", "kogut_etsion", "law_rows",
-    "power_law_graded", "root_series", "zhao_maietta_chang",
-    "balance", "interacting", "interaction", "interaction_mistakes", "interaction_section", "lowest_felt",
-    "nominal", "nominal_literal", "own_balance",
-}  # fmt: skip
+# Theory, as modules of `analytic`; the first three are Gaussian unless they are told another law.
+GAUSSIAN = {"contact", "integrals", "inversion"}
+THEORY = GAUSSIAN | {"height_rule", "interacting", "law_rule", "mean_contact", "model", "plasticity"}
 GAUSSIAN_FIGURES = {"figures/paper.py", "figures/equal_load.py", "figures/summits.py"}  # those of the paper
 
 
+def from_theory(tree, modules):
+    """Names of `analytic` that a file uses and that these modules of it define."""
+    for node in tree.nodes:
+        match node:
+            case ast.ImportFrom(module="analytic", names=names):
+                found = [alias.name for alias in names]
+            case ast.Attribute(value=ast.Name(id="analytic"), attr=name):
+                found = [name]
+            case _:
+                continue
+        for name in found:
+            module = getattr(getattr(analytic, name), "__module__", "")
+            if module.removeprefix("analytic.") in modules:
+                yield name
+
+
 def test_the_simulator_takes_no_integral_from_theory():
-    """It shares the surface and its laws with the theory; what a scene's theory says it never asks."""
-    besides = {"scene/fields.py": {"Model", "InteractingModel"}, "statistics/comparison.py": {"Fluctuations"}}
-    besides["statistics/bounded.py"] = {"Model"}
-    besides["figures/scene_paper.py"] = {"mean_modulus"}
-    besides |= {f"figures/{name}.py": {"Model"} for name in ("listed", "yielding", "histories")}
-    whole = GAUSSIAN_FIGURES | {"statistics/methods.py"}  # the quadratures that tradeoff measures
+    """It shares the surface and its laws with the theory, and compares; what theory says it never asks."""
+    asking = {name for name, tree in sources() if set(from_theory(tree, THEORY))}
+    assert {name for name in asking if not name.startswith(("statistics/", "figures/"))} == {
+        "scene/fields.py"
+    }
     for name, tree in sources():
-        for node in ast.walk(tree):
-            if isinstance(node, ast.ImportFrom) and node.module == "analytic":
-                assert {alias.name for alias in node.names} <= SHARED | besides.get(name, set()), name
-            if isinstance(node, ast.Import) and name not in whole:
-                assert all(not alias.name.startswith("analytic") for alias in node.names), name
-            if name.startswith(("sampling/", "store/")):
-                assert not (isinstance(node, ast.Attribute) and node.attr == "theory"), name
+        if name.startswith(("sampling/", "store/")):
+            attributes = {node.attr for node in tree.nodes if isinstance(node, ast.Attribute)}
+            assert "theory" not in attributes, name
 
 
 def test_no_default_stands_for_the_height_law_of_a_scene():
-    """The functions of 0.x are Gaussian unless told; `scene.theory` knows the scene's own law."""
-    forbidden = {
-        "area", "area_per_load", "area_per_load_ratio", "barber_conductance", "conductance", "contacts",
-        "covariance", "cumulants", "fn", "fn_between", "fn_scaled", "load", "mean", "mean_modulus",
-        "ratio_at_equal_load", "separation_at", "stiffness", "stiffness_ratio", "HeightRule", "Model",
-    }  # fmt: skip
-
-    def calls(tree):
-        for node in ast.walk(tree):
-            match node:
-                case ast.Attribute(value=ast.Name(id="analytic"), attr=name) if name in forbidden:
-                    yield name
-
-    seen = {name: set(calls(tree)) for name, tree in sources()}
-    assert {name for name, found in seen.items() if found} == GAUSSIAN_FIGURES  # and they do call them
-
-
-@pytest.mark.parametrize("code", ["import mcgw", "import mcgw.cli; mcgw.cli._parser()"])
-def test_nothing_heavy_is_imported_early(code):
-    probe = f"{code}\nimport sys\nprint(*({{'numba', 'h5py', 'matplotlib', 'scipy'}} & set(sys.modules)))"
-    found = subprocess.run([sys.executable, "-c", probe], capture_output=True, text=True, check=True)
-    assert found.stdout.strip() == ""
-
-
-def test_who_asks_for_hertz_loads_no_other_law(tmp_path):
-    """Neither files of other laws nor of interaction, for a run and its comparison with theory."""
-    scene = ROOT.parent / "runs" / "quick.toml"
-    code = "import sys, mcgw.cli\n"
-    for words in (["run", scene, "-o", tmp_path / "q.h5"], ["compare", tmp_path / "q.h5"]):
-        code += f"assert mcgw.cli.main({list(map(str, words))}) == 0\n"
-    code += (
-        "found = {name.rpartition('.')[2] for name in sys.modules if name.startswith(('analytic', 'mcgw'))}\n"
-    )
-    code += f"assert not found & {LAW_FILES!r}, found & {LAW_FILES!r}\n"
-    subprocess.run([sys.executable, "-c", code], capture_output=True, check=True)
-    assert {path.stem for path in (*ROOT.rglob("*.py"), *ROOT.parent.glob("analytic/**/*.py"))} >= LAW_FILES
-
-
-# Each takes as long to import as much of what a command does: who needs it imports it in a function.
-NEEDLESS = {
-    "run": {"matplotlib", "scipy.optimize", "scipy.stats"},
-    "show": {"matplotlib", "numba", "scipy.optimize", "scipy.stats"},
-    "show --plan": {"matplotlib", "scipy.optimize", "scipy.stats"},
-    "compare": {"matplotlib.pyplot", "numba", "scipy.optimize", "scipy.stats"},
-}
-
-
-def test_commands_import_nothing_they_do_not_need(tmp_path):
-    scene, file = ROOT.parent / "runs" / "quick.toml", tmp_path / "q.h5"
-    seen = {}
-    for words, needless in NEEDLESS.items():
-        on = [scene, "-o", file] if words == "run" else [scene if "--plan" in words else file]
-        arguments = [*words.split(), *map(str, on)]
-        code = f"import sys, mcgw.cli\nassert mcgw.cli.main({arguments}) == 0\n"
-        code += "print(*sys.modules, file=sys.stderr)"
-        done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-        seen[words] = set(done.stderr.splitlines()[-1].split())
-        assert not needless & seen[words], words
-    assert "numba" in seen["run"]  # they would be seen
-    assert "matplotlib.figure" in seen["compare"]
-
-
-@pytest.mark.parametrize("command", ["surface", "fit"])
-def test_help_needs_not_even_numpy(command):
-    code = f"import mcgw.commands.{command}"
-    probe = f"{code}\nimport sys\nprint('numpy' in sys.modules)"
-    found = subprocess.run([sys.executable, "-c", probe], capture_output=True, text=True, check=True)
-    assert found.stdout.strip() == "False"
+    """`scene.theory` knows the scene's own law; the Gaussian functions are for the paper's own figures."""
+    asking = {name for name, tree in sources() if set(from_theory(tree, GAUSSIAN))}
+    assert asking == GAUSSIAN_FIGURES | {"statistics/methods.py"}  # whose rules `tradeoff` measures
 
 
 def test_compiled_functions_call_those_of_their_own_layer():
     """Whose files are all that is looked at to know whether what was kept is old."""
     for name, tree in inside():
-        if any(isinstance(node, ast.Name) and node.id == "njit" for node in ast.walk(tree)):
+        if any(isinstance(node, ast.Name) and node.id == "njit" for node in tree.nodes):
             assert name.startswith(("sampling.", "maps.", "ensemble.")), name
             if name.startswith("maps."):
                 assert not any(other.startswith("sampling") for other in imports(tree)), name
@@ -223,7 +145,7 @@ def test_a_compiled_function_made_several_times_has_a_name_for_each():
     made = 0
     for name, tree in inside():
         outer = {id(node) for node in tree.body}
-        for node in ast.walk(tree):
+        for node in tree.nodes:
             if isinstance(node, ast.FunctionDef) and id(node) not in outer:
                 for call in (c for c in node.decorator_list if "njit" in ast.unparse(c)):
                     assert "version=" in ast.unparse(call), (name, node.name)
@@ -235,19 +157,3 @@ def test_no_loop_of_the_sampler_has_threads_of_its_own():
     """It is called from several threads, which not every kind of numba's own threads allows."""
     for path in (ROOT / "sampling").rglob("*.py"):
         assert "prange" not in path.read_text(), path.name
-
-
-def test_the_wheel_holds_every_package_and_every_file_that_is_no_module():
-    project = ROOT.parent / "pyproject.toml"
-    if not project.is_file():
-        pytest.skip("the sources are not here")
-    said = tomllib.loads(project.read_text())["tool"]["setuptools"]
-    there = {path.parent for top in ("mcgw", "analytic") for path in (ROOT.parent / top).rglob("*.py")}
-    assert {path.relative_to(ROOT.parent).as_posix().replace("/", ".") for path in there} == set(
-        said["packages"]
-    )
-    for top, patterns in said["package-data"].items():
-        data = {file for pattern in patterns for file in (ROOT.parent / top).glob(pattern)}
-        kinds = (".py", ".pyc", ".nbi", ".nbc")
-        others = {f for f in (ROOT.parent / top).rglob("*") if f.is_file() and f.suffix not in kinds}
-        assert others == data

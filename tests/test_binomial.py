@@ -15,22 +15,11 @@ from mcgw.sampling.halving import halvings_of
 
 FALSE_ALARM = 1e-6  # of each chi-square test; the seeds are fixed
 
-CASES = [
-    (1, 0.5),
-    (3, 0.3),
-    (30, 0.01),
-    (55, 0.5),  # the largest mean that is inverted, and the smallest that is not
-    (56, 0.5),
-    (200, 0.1),
-    (1000, 0.5),
-    (10**6, 1e-6),
-    (10**6, 0.37),
-    (10**9, 3e-8),
-    (10**12, 1e-11),
-    (10**15, 2e-13),
-    (10**15, 0.5),
-    (2**53, 0.25),
-]
+CASES = [  # 55 is the largest mean that is inverted, 56 the smallest that is not
+    (1, 0.5), (1, 0.005), (3, 0.3), (30, 0.01), (55, 0.5), (56, 0.5), (200, 0.1), (1000, 0.5), (10**6, 1e-6),
+    (10**6, 0.37), (10**9, 3e-8), (10**12, 1e-11), (10**15, 2e-13), (10**15, 0.5), (2**53, 0.25),
+    (20_000, 0.009),
+]  # fmt: skip
 
 
 def draw(n, p, m, *, seed=5, node=3, first=0):
@@ -63,9 +52,15 @@ def test_numbers_have_the_binomial_law(n, p):
     assert p_value(numbers, n, p) > FALSE_ALARM
 
 
-@pytest.mark.parametrize(("n", "p", "off"), [(40, 0.5, 1.01), (1000, 0.5, 1.002), (10**15, 2e-13, 1.005)])
-def test_the_chi_square_test_sees_a_wrong_probability(n, p, off):
-    assert p_value(draw(n, p * off, 200_000), n, p) < FALSE_ALARM
+@pytest.mark.parametrize(
+    ("n", "p"), [(1.0, 0.5), (2.0, 0.009), (5.0, 0.3), (300.0, 0.009), (55.0, 0.5), (1e15, 1e-14)]
+)
+def test_small_numbers_are_those_of_their_uniforms(n, p):
+    """The smallest number that at least a share u of all do not exceed, in exact sums of probabilities."""
+    work, uniforms = np.zeros(WORDS), (np.arange(SURFACES) + 0.37) / SURFACES
+    work[TRIALS : TRIALS + SURFACES], work[binomial._LEFT : binomial._LEFT + SURFACES] = n, uniforms
+    binomial._invert(work, SURFACES, p)
+    np.testing.assert_array_equal(work[:SURFACES], stats.binom(n, p).ppf(uniforms))
 
 
 def test_the_ratio_of_probabilities_against_mpmath():
@@ -74,7 +69,7 @@ def test_the_ratio_of_probabilities_against_mpmath():
     By the series, wherever these are said to serve, and without them.
     """
     rng, worst, served = np.random.default_rng(1), [], 0
-    for _ in range(400):
+    for _ in range(100):
         n = float(np.floor(10 ** rng.uniform(1.8, 15)))
         p = min(10 ** rng.uniform(math.log10(28.5 / n), math.log10(0.5)), 0.5)
         sd = math.sqrt(n * p * (1 - p))
@@ -95,7 +90,7 @@ def test_the_ratio_of_probabilities_against_mpmath():
             served += 1
             worst.append(abs(ratio / math.exp(exact) - 1) - rounded)
     assert max(worst) < 2e-12
-    assert 300 < served < 400
+    assert 75 < served < 100
 
 
 def log_probability(n, p, k):
@@ -110,8 +105,9 @@ def log_probability(n, p, k):
     )
 
 
-@pytest.mark.parametrize("mean", [28.0, 60.0, 1e3, 1e6, 1e11])
-@pytest.mark.parametrize("p", [0.5, 0.3, 1e-3])
+@pytest.mark.parametrize(
+    ("mean", "p"), [(28.0, 0.5), (28.0, 1e-3), (60.0, 0.3), (1e3, 0.5), (1e6, 1e-3), (1e11, 0.3)]
+)
 def test_the_hat_covers_the_law_and_the_squeeze_is_below_it(mean, p):
     """All that rejection rests on, at 20 000 uniforms, with no random number."""
     n = float(math.ceil(mean / p))

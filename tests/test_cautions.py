@@ -6,25 +6,73 @@ import re
 import exact
 import numpy as np
 import pytest
+from conftest import SURFACE
 
 import analytic
 import mcgw
-from mcgw.reports.stop_rule import after, before
+from mcgw.reports.stop_rule import before
 from mcgw.scene.cautions import cautions
 
-
-@pytest.fixture
-def shallow(make_scene):
-    """Summits so blunt that nothing is steep."""
-    return dataclasses.replace(make_scene().surface, radius=1e-3, sigma=1e-6)
+SHALLOW = dataclasses.replace(SURFACE, radius=1e-3, sigma=1e-6)  # summits so blunt that nothing is steep
+METAL = mcgw.KogutEtsion(critical=0.05)
 
 
 def about(lines, words):
     return [line for line in lines if words in line]
 
 
-def test_a_calm_scene_has_no_caution(make_scene, shallow):
-    assert cautions(make_scene(separations=(2.0,), n_asperities=30_000, surface=shallow)) == []
+def on(law, surface=SHALLOW, **changes):
+    return {"surface": surface, "law": law, "grading": analytic.Homogeneous(), **changes}
+
+
+def told_of(make_scene, law, **changes):
+    return cautions(make_scene(**on(law, **changes)))
+
+
+def steel(strain):
+    return mcgw.JacksonGreen(yield_strength=strain * SHALLOW.E_star)
+
+
+def crowded(h):
+    return {"separations": (h, 1.0), "heights": analytic.ExponentialHeights()}
+
+
+def graded(h, negative):
+    return {"separations": (h,), "negative": negative}
+
+
+def coat(ratio):
+    return on(mcgw.Coated(ratio=ratio, thickness=1e-6))
+
+
+OF_AREA = "3000 asperities, not eta * nominal_area = 30000: loads belong to 0.1 of the nominal area"
+# Words, a scene of which they are told in one line, and one beside it of which they are not.
+BESIDE = [
+    ("more than half", crowded(-0.35), crowded(-0.25)),  # their median is ln 2 - 1 = -0.307
+    (OF_AREA, {"n_asperities": 3000}, {"n_asperities": 30_000}),
+    ("set to zero", graded(-0.8, "clip"), graded(-0.6, "clip")),  # gamma = 2: negative below -ln 2 = -0.693
+    ("left negative", graded(-0.8, "allow"), graded(-0.6, "allow")),
+    ("the law's load jumps", on(METAL), on(dataclasses.replace(METAL, bridge="hermite"))),
+    ("the law's load jumps", on(METAL), on(mcgw.ZhaoMaiettaChang(critical=0.05))),
+    ("stiffness is that of first unloading", on(METAL), on(None)),
+    # S_y/E* from 0.001 to 0.01, contacts up to 0.4 R
+    ("contact.yield_strength", on(steel(2e-2)), on(steel(4e-3))),
+    ("contact.yield_strength", on(steel(5e-4)), on(steel(4e-3))),
+    ("of the summit radius", on(steel(4e-3), dataclasses.replace(SHALLOW, radius=1e-5)), on(steel(4e-3))),
+    ("contact.ratio", coat(0.2), coat(0.5)),
+    ("contact.ratio", coat(4.0), coat(2.9)),
+    ('metals yield far earlier: contact.law = "kogut-etsion"', {}, {"law": METAL}),  # steep and elastic
+]
+
+
+@pytest.mark.parametrize(("words", "told", "silent"), BESIDE)
+def test_told_here_and_not_beside(make_scene, words, told, silent):
+    assert len(about(cautions(make_scene(**told)), words)) == 1
+    assert not about(cautions(make_scene(**silent)), words)
+
+
+def test_a_calm_scene_has_no_caution(make_scene):
+    assert cautions(make_scene(separations=(2.0,), n_asperities=30_000, surface=SHALLOW)) == []
 
 
 @pytest.mark.parametrize(("h", "given"), [(0.0, False), (0.05, False), (-0.05, True), (-2.0, True)])
@@ -36,20 +84,13 @@ def test_more_than_half_of_all_summits_of_a_model_that_was_not_measured(make_sce
     assert not about(cautions(measured), "more than half")  # the map says how far off it is
 
 
-@pytest.mark.parametrize(("h", "given"), [(-0.25, False), (-0.35, True)])
-def test_more_than_half_of_exponential_heights(make_scene, h, given):
-    """Their median is ln 2 - 1 = -0.307."""
-    told = cautions(make_scene(separations=(h, 1.0), heights=analytic.ExponentialHeights()))
-    assert bool(about(told, "more than half")) == given
-
-
 @pytest.mark.parametrize(
     "changes",
     [{"law": mcgw.Coated(ratio=1.0001, thickness=1e-6)}, {"heights": analytic.ExponentialHeights()}],
 )
-def test_a_crowd_that_was_not_measured_up_to_the_last_separation(make_scene, shallow, changes):
+def test_a_crowd_that_was_not_measured_up_to_the_last_separation(make_scene, changes):
     """5 % of the nominal area, by quadrature at each of the separations; a coating changes no area."""
-    surface = dataclasses.replace(shallow, eta=1e8, radius=5e-4)
+    surface = dataclasses.replace(SHALLOW, eta=1e8, radius=5e-4)
     h = (0.0, 0.25, 0.5, 0.75, 1.0, 1.5, 2.0)
     scene = make_scene(surface=surface, separations=h, n_asperities=10_000, **changes)
     plain = dataclasses.replace(scene, law=analytic.Hertz())
@@ -57,10 +98,8 @@ def test_a_crowd_that_was_not_measured_up_to_the_last_separation(make_scene, sha
     assert share[0] > 0.05 > share[-1]
     (line,) = about(cautions(scene), "nominal area touches")
     assert f"up to d/sigma = {max(x for x, part in zip(h, share, strict=True) if part > 0.05):.3g} " in line
-    assert (
-        "too large where d counts from the undeformed body of a punch, and too small where d is the mean"
-        in line
-    )
+    assert "too large where d counts from the undeformed body of a punch" in line
+    assert "and too small where d is the mean" in line
     pressed = about(cautions(scene.replace(interaction="body")), "nominal area touches")
     assert "punch" not in pressed[0]
     sparse = dataclasses.replace(scene, n_asperities=500, n_surfaces=2)
@@ -78,30 +117,16 @@ def test_few_contacts_from_the_first_separation_where_they_are(make_scene, heigh
     assert not about(cautions(many), "fewer than 30")
 
 
-def test_steep_contacts(make_scene, shallow):
+def test_steep_contacts(make_scene):
     """sqrt(delta/R) of the highest of 3000 summits, at h = 0: 3.4 sigma."""
     for ratio, given in ((0.25, False), (0.35, True)):
         radius = 3.403 * 1e-6 / ratio**2
-        surface = dataclasses.replace(shallow, radius=radius)
+        surface = dataclasses.replace(SHALLOW, radius=radius)
         told = about(cautions(make_scene(surface=surface, separations=(0.0,))), "times their radius")
         assert bool(told) == given
         if given:
             assert f"contacts of {ratio:.2f} times" in told[0]
             assert "(s = 3.4)" in told[0]
-
-
-def test_another_number_of_asperities_than_the_area_has(make_scene):
-    (line,) = about(cautions(make_scene(n_asperities=3000)), "eta * nominal_area")
-    assert "3000 asperities, not eta * nominal_area = 30000: loads belong to 0.1 of the nominal area" in line
-    assert not about(cautions(make_scene(n_asperities=30_000)), "eta * nominal_area")
-
-
-@pytest.mark.parametrize(("negative", "word"), [("clip", "set to zero"), ("allow", "left negative")])
-def test_a_negative_modulus(make_scene, negative, word):
-    """gamma = 2 is negative below -ln 2 = -0.693."""
-    told = cautions(make_scene(separations=(-0.8,), negative=negative))
-    assert len(about(told, word)) == 1
-    assert not about(cautions(make_scene(separations=(-0.6,), negative=negative)), "modulus is negative")
 
 
 @pytest.mark.parametrize("heights", [analytic.Gaussian(), analytic.ExponentialHeights()])
@@ -115,17 +140,15 @@ def test_a_note_where_contacts_are_deeper_than_the_radius(make_scene, heights, l
         told = about(cautions(scene), "compressed by more")
         assert len(told) == (share > 1e-3 or depth <= 1), depth
         if told:
-            assert (
-                f"surface.radius = {surface.radius:g} m: at d/sigma = {lowest:g} a share of {share:.2g} "
-                in told[0]
-            )
+            where = f"surface.radius = {surface.radius:g} m: at d/sigma = {lowest:g}"
+            assert f"{where} a share of {share:.2g} " in told[0]
 
 
-def test_the_command_says_the_notes_on_stderr(make_scene, shallow, tmp_path, capsys):
+def test_the_command_says_the_notes_on_stderr(make_scene, tmp_path, capsys):
     from mcgw.cli import main
 
     surface = dataclasses.replace(make_scene().surface, radius=2e-6)
-    calm = make_scene(surface=shallow, separations=(2.0,), n_asperities=30_000)
+    calm = make_scene(surface=SHALLOW, separations=(2.0,), n_asperities=30_000)
     for name, scene in (("deep", make_scene(surface=surface)), ("plain", calm)):
         (tmp_path / f"{name}.toml").write_text(mcgw.scene_text(scene))
         assert main(["run", str(tmp_path / f"{name}.toml"), "-o", str(tmp_path / f"{name}.h5")]) == 0
@@ -146,32 +169,11 @@ def test_what_a_rule_will_not_reach_is_said_before(make_scene):
     assert np.all((plain < needed) & (needed < 1.01**2 * plain))  # an end 1 % away, of either of the two
     assert found.out_of_reach == (("load", 3.0),)
     line = before(found, 0.25)
-    assert line.startswith(
-        f"about {found.surfaces:.2g} surfaces, {found.surfaces * 0.25:.2g} s; 1 means need more"
-    )
+    n = found.surfaces
+    assert line.startswith(f"about {n:.2g} surfaces, {n * 0.25:.2g} s; 1 means need more")
     assert line.endswith(f"such as load at d/sigma = 3: {needed[1]:.2g}")
     easy = dataclasses.replace(scene, n_surfaces=10**9)
     assert ";" not in before(forecast(easy), 0.25)
-
-
-def test_what_was_not_reached_is_said_after(make_scene):
-    ensemble = mcgw.simulate(
-        make_scene(n_surfaces=100, separations=(0.0, 3.0, 9.0), quantities=("load", "area"))
-    )
-    lines = after(ensemble, ensemble.scene.replace(rel_err=0.02))
-    silent = [line for line in lines if "no contact" in line]
-    assert len(silent) == 1
-    limit = -np.log(0.05) / 100
-    assert silent[0].startswith(f"d/sigma = 9: no contact in 100 surfaces, mean below {limit:.3g} contacts")
-    assert f"{limit / 3000:.3g} an asperity" in silent[0]
-    known = re.findall(r"(\w+) at d/sigma = (\S+) is known to (\S+) of itself", "\n".join(lines))
-    assert [(name, h) for name, h, _ in known] == [("load", "3"), ("area", "3")]
-    for name, _, width in known:
-        low, high = ensemble.interval(name)
-        mean = ensemble.mean(name)[1]
-        assert float(width) == pytest.approx((high[1] - mean) / mean, rel=0.06)
-        assert low[1] < mean
-    assert len(after(ensemble, ensemble.scene)) == 1
 
 
 def of_alpha(alpha, **changes):
@@ -230,11 +232,11 @@ def test_loads_above_all_that_were_measured():
     assert not about(cautions(scene.replace(separations=[0.5, 6.0])), "above all that were measured")
 
 
-def test_who_yields(make_scene, shallow):
+def test_who_yields(make_scene):
     """Beyond the critical penetration: the share above h + 0.05 of that above h."""
     for critical, given in ((0.05, True), (4.5, False)):
         law = mcgw.KogutEtsion(critical=critical)
-        told = about(told_of(make_scene, shallow, law, separations=(0.5, 1.0)), "has yielded")
+        told = about(told_of(make_scene, law, separations=(0.5, 1.0)), "has yielded")
         scene = make_scene(separations=(0.5, 1.0))
         share = exact.share_above(scene, 0.5 + critical) / exact.share_above(scene, 0.5)
         assert bool(told) == given == (share > 1e-3)
@@ -246,33 +248,24 @@ def test_who_yields(make_scene, shallow):
 @pytest.mark.parametrize(
     ("law", "tabor", "given"),
     [
-        (mcgw.JohnsonKendallRoberts, 4.9, True),
-        (mcgw.JohnsonKendallRoberts, 5.1, False),
-        (mcgw.DerjaguinMullerToporov, 0.09, False),
-        (mcgw.DerjaguinMullerToporov, 0.11, True),
+        (mcgw.JohnsonKendallRoberts, 4.9, True), (mcgw.JohnsonKendallRoberts, 5.1, False),
+        (mcgw.DerjaguinMullerToporov, 0.09, False), (mcgw.DerjaguinMullerToporov, 0.11, True),
     ],
-)
-def test_adhesion_by_tabors_number(make_scene, shallow, law, tabor, given):
+)  # fmt: skip
+def test_adhesion_by_tabors_number(make_scene, law, tabor, given):
     """(R w^2/(E*^2 z0^3))^(1/3) at z0 = 0.3 nm, by work of adhesion or by the pull-off that it gives."""
-    work = np.sqrt((tabor * 3e-10) ** 3 / shallow.radius) * shallow.E_star
-    stretch = 0.75 * (np.pi**2 * work**2 * shallow.radius / shallow.E_star**2) ** (1 / 3) / shallow.sigma
+    work = np.sqrt((tabor * 3e-10) ** 3 / SHALLOW.radius) * SHALLOW.E_star
+    stretch = 0.75 * (np.pi**2 * work**2 * SHALLOW.radius / SHALLOW.E_star**2) ** (1 / 3) / SHALLOW.sigma
     for constant in ({"work": work}, {"pull_off": stretch}):
-        told = about(told_of(make_scene, shallow, law(**constant), separations=(1.0, 2.0)), "Tabor")
+        told = about(told_of(make_scene, law(**constant), separations=(1.0, 2.0)), "Tabor")
         assert bool(told) == given
         if told:
             assert f"it is {tabor:.3g} (Maugis's: {1.157 * tabor:.3g})" in told[0]
 
 
-METAL = mcgw.KogutEtsion(critical=0.05)
-
-
-def told_of(make_scene, shallow, law, **changes):
-    return cautions(make_scene(surface=shallow, law=law, grading=analytic.Homogeneous(), **changes))
-
-
-def test_the_choice_of_the_law_is_worth_ten_percent(make_scene, shallow):
+def test_the_choice_of_the_law_is_worth_ten_percent(make_scene):
     """Means of physics.md at h = 1 and delta_c = 0.05: CEB .0532829, KE .0534662, ZMC .0487678, Hertz."""
-    (line,) = about(told_of(make_scene, shallow, METAL, separations=(0.0, 1.0, 2.0)), "choice of the law")
+    (line,) = about(told_of(make_scene, METAL, separations=(0.0, 1.0, 2.0)), "choice of the law")
     said = {name: float(x) for name, x in re.findall(r"([a-z-]+) ([0-9.]+)(?:,|$)", line.split("sigma: ")[1])}
     here = 0.05346624148043353
     known = {"chang-etsion-bogy": 0.05328285176044976, "zhao-maietta-chang": 0.04876778006841703}
@@ -281,59 +274,26 @@ def test_the_choice_of_the_law_is_worth_ten_percent(make_scene, shallow):
     assert said["hertz"] == pytest.approx(float(analytic.fn(1.5, 1.0)) / here, abs=6e-3)
     worth = max(1.0, said["jackson-green"]) / min(x for n, x in said.items() if n != "hertz") - 1
     assert f"is worth {worth:.0%} of the load at d/sigma = 1;" in line
-    assert not about(told_of(make_scene, shallow, None), "choice of the law")
-    assert not about(told_of(make_scene, shallow, mcgw.PowerLawGraded(0.5, c0=1e-6)), "choice of the law")
+    assert not about(told_of(make_scene, None), "choice of the law")
+    assert not about(told_of(make_scene, mcgw.PowerLawGraded(0.5, c0=1e-6)), "choice of the law")
 
 
-def test_jumps_are_told_unless_they_are_bridged(make_scene, shallow):
-    bridged = dataclasses.replace(METAL, bridge="hermite")
-    for law, given in ((METAL, True), (bridged, False), (mcgw.ZhaoMaiettaChang(critical=0.05), False)):
-        told = told_of(make_scene, shallow, law)
-        assert bool(about(told, "the law's load jumps")) == given
-        assert len(about(told, "stiffness is that of first unloading")) == 1
-    assert not about(told_of(make_scene, shallow, None), "stiffness")
-
-
-def test_a_loop_that_gains_energy(make_scene, shallow):
+def test_a_loop_that_gains_energy(make_scene):
     """The share of contacts with a deepest penetration from 1 to 1.25 times 0.05, by the exact law."""
-    (line,) = about(told_of(make_scene, shallow, METAL, unload_from="loop", separations=(0.5, 1.0)), "work")
+    (line,) = about(told_of(make_scene, METAL, unload_from="loop", separations=(0.5, 1.0)), "work")
     scene = make_scene(grading=analytic.Homogeneous(), separations=(0.5, 1.0))
     share = exact.share_above(scene, 0.55) - exact.share_above(scene, 0.5625)
     said = float(re.search(r"a share of (\S+) of", line)[1])
     assert said == pytest.approx(share / exact.share_above(scene, 0.5), abs=2e-3)
-    assert not about(told_of(make_scene, shallow, METAL), "work")
+    assert not about(told_of(make_scene, METAL), "work")
 
 
 @pytest.mark.parametrize(("critical", "given"), [(0.04, 0), (0.02, 1), (0.005, 1), (0.001, 1)])
-def test_contacts_deeper_than_the_fit(make_scene, shallow, critical, given):
+def test_contacts_deeper_than_the_fit(make_scene, critical, given):
     law = mcgw.KogutEtsion(critical=critical)
-    told = about(told_of(make_scene, shallow, law, separations=(0.0, 1.0)), "110 critical")
+    told = about(told_of(make_scene, law, separations=(0.0, 1.0)), "110 critical")
     scene = make_scene(grading=analytic.Homogeneous())
     share = exact.share_above(scene, 110 * critical) / exact.share_above(scene, 0.0)
     assert len(told) == given == (share > 1e-3)
     if told:
         assert float(re.search(r"a share of (\S+) of", told[0])[1]) == pytest.approx(share, rel=0.05)
-
-
-def test_materials_and_contacts_beyond_jackson_and_green(make_scene, shallow):
-    """S_y/E* from 0.001 to 0.01, contacts up to 0.4 R."""
-    for strain, given in ((4e-3, False), (2e-2, True), (5e-4, True)):
-        law = mcgw.JacksonGreen(yield_strength=strain * shallow.E_star)
-        assert bool(about(told_of(make_scene, shallow, law), "contact.yield_strength")) == given
-    law = mcgw.JacksonGreen(yield_strength=4e-3 * shallow.E_star)
-    assert not about(told_of(make_scene, shallow, law), "of the summit radius")
-    sharp = dataclasses.replace(shallow, radius=10e-6)
-    assert about(told_of(make_scene, sharp, law), "of the summit radius")
-
-
-def test_a_coating_too_unlike_its_substrate(make_scene, shallow):
-    for ratio, given in ((0.2, True), (0.5, False), (2.9, False), (4.0, True)):
-        law = mcgw.Coated(ratio=ratio, thickness=1e-6)
-        assert bool(about(told_of(make_scene, shallow, law), "contact.ratio")) == given
-
-
-def test_metals_are_shown_the_way(make_scene):
-    """Where contacts are steep and elastic, the key is named."""
-    for law, given in ((None, True), (METAL, False)):
-        (line,) = about(cautions(make_scene(law=law)), "times their radius")
-        assert ('contact.law = "kogut-etsion"' in line) == given

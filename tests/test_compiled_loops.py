@@ -1,12 +1,13 @@
 """Compiled loops kept on the disk are those that are asked for, whoever compiles at the same time."""
 
+import importlib
 import importlib.util
 import subprocess
 import sys
 
-import numba
 import pytest
 
+from mcgw.machine import compiling
 from mcgw.machine.compiling import njit
 
 LOOPS = """
@@ -30,7 +31,7 @@ def loops(tmp_path, monkeypatch):
     return module
 
 
-def compiled_at_once(loops, njit):
+def test_loops_compiled_at_the_same_time_are_not_mixed_up(loops):
     """Two processes compile two versions; the second is quick, between two steps of the first."""
     one, two = loops.make(njit, 1.0), loops.make(njit, 2.0)
     first, second = one._cache._cache_file, two._cache._cache_file
@@ -43,23 +44,15 @@ def compiled_at_once(loops, njit):
 
     first._save_data = interrupted
     assert one(3.0) == 3.0
-    return [loops.make(njit, n)(3.0) for n in (1.0, 2.0)]  # as a third process loads them
-
-
-def test_loops_compiled_at_the_same_time_are_not_mixed_up(loops):
-    assert compiled_at_once(loops, njit) == [3.0, 6.0]
-
-
-def test_with_the_files_of_numba_they_are(loops):
-    """Otherwise the test above says nothing."""
-    assert compiled_at_once(loops, numba.njit) != [3.0, 6.0]
+    found = [loops.make(njit, n)(3.0) for n in (1.0, 2.0)]  # as a third process loads them
+    assert found == [3.0, 6.0]  # with the files of Numba they are not
 
 
 VERSIONS = """
-{imported}
+from mcgw.machine.compiling import njit
 
 def make(n):
-    @njit(cache=True{version})
+    @njit(cache=True, version=str(n))
     def ramp(x):
         total = 0.0
         for i in range(n):
@@ -75,42 +68,47 @@ def both(x):
 """
 
 
-def called_through_a_third(tmp_path, imported, version):
-    """What a loop finds that calls two versions of one function, which two processes compiled before."""
-    (tmp_path / "versions.py").write_text(VERSIONS.format(imported=imported, version=version))
+def test_versions_of_one_function_have_names_of_their_own():
+    """By which one that was compiled finds what it calls."""
+
+    def named(n):
+        def ramp(x):
+            return n * x
+
+        return njit(cache=True, version=str(n))(ramp)
+
+    names = {named(n).py_func.__qualname__ for n in (2, 3)}
+    assert len(names) == 2
+
+
+@pytest.mark.slow
+def test_versions_kept_by_several_processes_are_not_called_for_each_other(tmp_path):
+    """By a loop that calls two versions of one function, which two processes compiled before."""
+    (tmp_path / "versions.py").write_text(VERSIONS)
     for call in ("two(1.0)", "three(1.0)", "both(1.0)"):
         code = f"import sys; sys.path.insert(0, '.'); import versions; print(versions.{call})"
-        done = subprocess.run(
-            [sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, check=True
-        )
-    return done.stdout.strip()
+        words = [sys.executable, "-c", code]
+        done = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "(1.0, 3.0)"
 
 
-def test_versions_kept_by_several_processes_are_not_called_for_each_other(tmp_path):
-    imported = "from mcgw.machine.compiling import njit"
-    assert called_through_a_third(tmp_path, imported, ", version=str(n)") == "(1.0, 3.0)"
-
-
-def test_with_the_names_of_numba_they_are_called_for_each_other(tmp_path):
-    """Otherwise the test above says nothing."""
-    assert called_through_a_third(tmp_path, "from numba import njit", "") != "(1.0, 3.0)"
-
-
-@pytest.mark.parametrize(("imported", "found"), [("mcgw.machine.compiling", 6.0), ("numba", 3.0)])
-def test_a_loop_whose_callee_has_changed_is_compiled_anew(tmp_path, imported, found):
+def test_a_loop_whose_callee_has_changed_is_compiled_anew(tmp_path, monkeypatch):
     """Numba alone goes on with the old one: the file of the caller is as it was."""
     layer = tmp_path / "house" / "layer"
     layer.mkdir(parents=True)
     for folder in (layer, layer.parent):
         (folder / "__init__.py").touch()
-    head = f"from {imported} import njit\n"
+    head = "from mcgw.machine.compiling import njit\n"
     (layer / "caller.py").write_text(
         f"{head}from house.layer.callee import times\n@njit(cache=True)\ndef call(x):\n    return times(x)\n"
     )
+    monkeypatch.syspath_prepend(tmp_path)
+    monkeypatch.setattr(sys, "dont_write_bytecode", True)
     for factor in ("3.0", "6.0"):
         (layer / "callee.py").write_text(f"{head}@njit(cache=True)\ndef times(x):\n    return {factor} * x\n")
-        code = "import sys; sys.path.insert(0, '.'); from house.layer.caller import call; print(call(1.0))"
-        done = subprocess.run(
-            [sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, check=True
-        )
-    assert float(done.stdout) == found
+        for name in [name for name in sys.modules if name.partition(".")[0] == "house"]:
+            monkeypatch.delitem(sys.modules, name)
+        importlib.invalidate_caches()
+        compiling._stamp_of_package.cache_clear()  # as in another process
+        last = importlib.import_module("house.layer.caller").call(1.0)
+    assert last == 6.0

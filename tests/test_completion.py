@@ -33,12 +33,9 @@ def script(tmp_path_factory):
 def tab(script, tmp_path):
     def ask(*words):
         done = subprocess.run(
-            [BASH, "--norc", "-c", ASK, "bash", str(script), *words],
-            capture_output=True,
-            text=True,
-            check=True,
-            cwd=tmp_path,
-        )
+            [BASH, "--norc", "-c", ASK, "bash", str(script), *words], capture_output=True, text=True,
+            check=True, cwd=tmp_path,
+        )  # fmt: skip
         assert not done.stderr
         return sorted(set(done.stdout.split()))
 

@@ -1,56 +1,34 @@
 """Every check of the convergence test, each with a flaw that it alone is made for; and its exit codes."""
 
-import operator
 import re
 from dataclasses import replace
-from functools import cache, reduce
+from functools import cache
 from types import SimpleNamespace
 
 import exact
 import numpy as np
 import pytest
+from oracles import ensemble_arrays
+from scipy.special import ndtri
 from scipy.stats import binom, chi2, norm
 
 import analytic
 import mcgw
 from mcgw.cli import main
+from mcgw.figures.convergence import save_convergence
 from mcgw.statistics import convergence
 from mcgw.statistics.checks import coverage, skewness, variances
 from mcgw.statistics.comparison import FALSE_ALARM
 from mcgw.statistics.convergence import Convergence, converge
 from mcgw.statistics.convergence import _own as own
 
-pytestmark = pytest.mark.usefixtures("blank_figures")
-
 H = (0.0, 1.0, 2.0)
-CHECKS = [
-    "means",
-    "number of contacts",
-    "repeated surfaces",
-    "distribution of z-scores",
-    "coverage of the intervals",
-    "variance",
-    "covariance across separations",
-    "skewness",
-    "independence of surfaces",
-    "slope of the error in M",
-    "slope of the error in N",
-]
 
 
 @pytest.fixture(scope="module")
-def scene():
+def scene(make_scene):
     """24 x 300 surfaces: variances are known to 1.7 %; a surface has 114 contacts at h = 2."""
-    from conftest import SURFACE
-
-    return mcgw.Scene(
-        surface=SURFACE,
-        separations=H,
-        grading=analytic.Exponential(2.0),
-        n_asperities=5000,
-        n_surfaces=300,
-        seed=8,
-    )
+    return make_scene(separations=H, n_asperities=5000, n_surfaces=300, seed=8)
 
 
 def right(scene):
@@ -86,10 +64,8 @@ def scaled_about_the_mean(factor):
 def of_other_asperities(scene):
     """Each separation has surfaces of its own: the same law for each, no covariance between them."""
     columns = [right(replace(scene, seed=scene.seed + 10**9 * k)) for k in range(len(scene.separations))]
-    return {
-        name: np.stack([part[name][:, k] for k, part in enumerate(columns)], axis=1)
-        for name in scene.quantities
-    }
+    at = range(len(columns))
+    return {name: np.stack([columns[k][name][:, k] for k in at], axis=1) for name in scene.quantities}
 
 
 def mirrored(scene):
@@ -151,9 +127,8 @@ FLAWS = [
 def test_the_right_sampler_passes_every_check(scene):
     found = converge(scene)
     assert found.passed
-    assert [check.name for check in found.checks] == CHECKS
+    assert [check.name for check in found.checks] == [name for _, checks in FLAWS for name in checks]
     assert min(check.p for check in found.checks) > FALSE_ALARM
-    assert reduce(operator.iadd, (checks for _, checks in FLAWS), []) == CHECKS
 
 
 @pytest.mark.parametrize(("flaw", "checks"), FLAWS, ids=[checks[-1] for _, checks in FLAWS])
@@ -228,17 +203,10 @@ def test_a_slope_is_a_least_squares_fit_and_its_p_two_sided():
 
 
 @pytest.fixture
-def scene_file(scene, tmp_path):
+def scene_file(scene, tmp_path, blank_figures):
     path = tmp_path / "x.toml"
     path.write_text(mcgw.scene_text(replace(scene, n_surfaces=100)))
     return path
-
-
-def test_the_command_ends_with_0_if_all_is_right(scene_file, tmp_path, capsys):
-    assert main(["converge", str(scene_file), "-o", str(tmp_path)]) == 0
-    out = capsys.readouterr().out
-    assert "convergence passed: p = " in out
-    assert "FAILED" not in out
 
 
 def test_the_command_ends_with_1_if_the_sampler_is_wrong(scene_file, tmp_path, capsys, monkeypatch):
@@ -247,14 +215,6 @@ def test_the_command_ends_with_1_if_the_sampler_is_wrong(scene_file, tmp_path, c
     out = capsys.readouterr().out
     assert "convergence FAILED: p = " in out
     assert (tmp_path / "x-converge.png").exists()
-
-
-def test_the_command_ends_with_1_if_the_theory_is_wrong(scene_file, tmp_path, capsys, monkeypatch):
-    """The simulator as it is, held to a stiffer modulus."""
-    own = convergence._own
-    softer = replace(mcgw.load_scene(scene_file), grading=analytic.Exponential(1.98))
-    monkeypatch.setattr(convergence, "_own", lambda scene: own(replace(scene, grading=softer.grading)))
-    assert main(["converge", str(scene_file), "-o", str(tmp_path)]) == 1
 
 
 def test_what_the_command_prints_is_what_was_found(scene_file, tmp_path, capsys):
@@ -285,3 +245,110 @@ def test_a_skewness_is_seen_on_any_axis_and_either_side(sign, axis):
     assert f"z = {'+' if sign > 0 else '-'}" in check.seen
     law.skewness[axis] = sign * 0.5
     assert skewness(law, of_one).p > 0.01
+
+
+# --- right samplers, NumPy's with a flaw, and scenes at the edge of what it can test ---
+
+FIVE = (0.0, 1.0, 2.0, 3.0, 4.0)
+
+
+@pytest.fixture
+def asked(make_scene):
+    return make_scene(separations=FIVE, n_asperities=5000, n_surfaces=64)
+
+
+def drawn(*, gamma=None, shared=False, **flaw):
+    """A sampler in NumPy with one flaw."""
+
+    def draw(scene):
+        if gamma is not None:
+            scene = replace(scene, grading=analytic.Exponential(gamma))
+        if not shared:
+            return ensemble_arrays(scene, scene.seed, **flaw)
+        half = ensemble_arrays(replace(scene, n_surfaces=scene.n_surfaces // 2), scene.seed)
+        return {name: np.repeat(x, 2, axis=0)[: scene.n_surfaces] for name, x in half.items()}
+
+    return draw
+
+
+def of_12_bits(s):
+    """Normals by inversion of uniforms of 12 bits."""
+    k = np.random.default_rng(abs(int(s.flat[0] * 1e12))).integers(0, 4096, s.shape)
+    return ndtri((k + 0.5) / 4096)
+
+
+@pytest.mark.slow
+def test_a_right_sampler_from_outside_passes(asked):
+    assert converge(asked, drawn()).passed
+
+
+NUMPYS_FLAWS = {
+    "exponent 1.49": {"exponent": 1.49},
+    "gamma off by 1 %": {"gamma": 2.02},
+    "uniforms of 12 bits": {"heights": of_12_bits},
+    "tail cut at 4 sigma": {"heights": lambda s: np.where(s > 4, 0.0, s)},
+    "variance off by 0.5 %": {"heights": lambda s: s * np.sqrt(1.005)},
+    "pairs of surfaces share a stream": {"shared": True},
+}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("flaw", NUMPYS_FLAWS)
+def test_a_flaw_fails(asked, flaw):
+    assert not converge(asked, drawn(**NUMPYS_FLAWS[flaw])).passed
+
+
+def test_streams_shared_but_for_rounding_fail_too(asked):
+    """The same surfaces seen through another last digit: no number repeats, but neighbours correlate."""
+
+    def draw(scene):
+        sums = drawn(shared=True)(scene)
+        return {name: x * (1 + 1e-13 * np.arange(len(x))[:, None]) for name, x in sums.items()}
+
+    found = converge(replace(asked, quantities=("load", "area"), n_asperities=1000), draw)
+    assert {c.name: c.p for c in found.checks}["independence of surfaces"] < FALSE_ALARM / 100
+    assert not found.passed
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("count", ["fixed", "poisson"])
+@pytest.mark.parametrize("sampler", ["direct", "tail", "cells", "aggregate"])
+def test_every_sampler_passes(make_scene, sampler, count):
+    scene = make_scene(separations=FIVE, sampler=sampler, count=count, n_surfaces=100, seed=11)
+    found = converge(scene)
+    assert found.passed, found.checks
+    assert len(found.checks) == 11
+
+
+@pytest.mark.slow
+def test_passes_for_100_seeds_at_its_rate(make_scene):
+    """100 verdicts at 1e-3: a right program fails this for 1 in 10 choices of seeds, and these are fixed.
+
+    Single p-values below 0.05: 900 that are nearly independent give 45 +- 6.5; 5 standard errors are 33.
+    """
+    p, single = [], []
+    for k in range(100):
+        found = converge(make_scene(separations=FIVE, n_asperities=10_000, n_surfaces=64, seed=1000 * k))
+        p.append(found.p)
+        single += [c.p for c in found.checks if c.name != "repeated surfaces"]
+    assert min(p) > FALSE_ALARM
+    assert 0 < np.sum(np.array(single) < 0.05) * 900 / len(single) < 45 + 33
+
+
+def test_few_contacts_leave_the_exact_checks(make_scene, tmp_path):
+    found = converge(make_scene(separations=(4.0, 5.0), n_asperities=1000))
+    assert found.passed
+    assert {"means", "number of contacts"} == {c.name for c in found.checks}
+    save_convergence(found, tmp_path / "few.png")
+    assert (tmp_path / "few.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_other_numbers_of_asperities_and_separations_in_disorder(make_scene):
+    odd = make_scene(separations=(3.0, -0.9, 0.5, 0.5), n_asperities=500, grading=analytic.Homogeneous())
+    assert converge(odd.replace(heights=analytic.ExponentialHeights())).passed
+    assert converge(make_scene(sampler="aggregate", n_asperities=10**12)).passed
+
+
+def test_stratified_is_refused(make_scene):
+    with pytest.raises(ValueError, match="takes another one"):
+        converge(make_scene(sampler="stratified"))

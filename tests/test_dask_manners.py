@@ -2,15 +2,14 @@
 
 import copy
 import logging
-import os
-import signal
-import subprocess
 import sys
 import warnings
+from contextlib import closing, contextmanager
+from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
-from test_engines import Cluster, connected, digest
+from begun_runs import digest
 
 import mcgw
 from mcgw.jobs.dask_engine import Dask
@@ -18,6 +17,7 @@ from mcgw.jobs.job import Job
 from mcgw.machine.progress import bar
 
 distributed = pytest.importorskip("distributed")
+pytestmark = pytest.mark.site
 SIZE = 8
 
 
@@ -67,17 +67,19 @@ def untouched():
         assert after[name] == before[name], name
 
 
-def test_a_client_is_taken_and_left_open(scene, tmp_path):
-    options = {
-        "n_workers": 2,
-        "threads_per_worker": 2,
-        "processes": False,
-        "dashboard_address": "127.0.0.1:0",
-    }
+@contextmanager
+def a_client(n, dashboard_address=None):
+    """Of a cluster of so many workers, each with as many threads, in this process."""
+    options = {"n_workers": n, "threads_per_worker": n, "dashboard_address": dashboard_address}
     with (
-        distributed.LocalCluster(**options) as cluster,
+        distributed.LocalCluster(**options, processes=False) as cluster,
         distributed.Client(cluster, set_as_default=False) as client,
     ):
+        yield client
+
+
+def test_a_client_is_taken_and_left_open(scene, tmp_path):
+    with a_client(2, dashboard_address="127.0.0.1:0") as client:
         within, link = shared_state(), client.dashboard_link
         mcgw.run(scene, tmp_path / "client.h5", engine=client)
         found = shared_state()
@@ -90,8 +92,7 @@ def test_a_client_is_taken_and_left_open(scene, tmp_path):
 
 
 def test_a_client_that_is_of_no_use(scene, tmp_path):
-    with distributed.LocalCluster(n_workers=1, processes=False, dashboard_address=None) as cluster:
-        client = distributed.Client(cluster, set_as_default=False)
+    with a_client(1) as client:
         client.close()
         with pytest.raises(ValueError, match=r"^engine: this client is closed; give one that is connected$"):
             mcgw.run(scene, tmp_path / "e.h5", engine=client)
@@ -99,12 +100,7 @@ def test_a_client_that_is_of_no_use(scene, tmp_path):
 
 
 def test_what_is_not_done_is_dropped_and_the_client_lives(scene, tmp_path):
-    with (
-        distributed.LocalCluster(
-            n_workers=1, threads_per_worker=1, processes=False, dashboard_address=None
-        ) as cluster,
-        distributed.Client(cluster, set_as_default=False) as client,
-    ):
+    with a_client(1) as client:
 
         def fail(done, total):
             if done > SIZE:
@@ -116,7 +112,6 @@ def test_what_is_not_done_is_dropped_and_the_client_lives(scene, tmp_path):
         assert all(key.startswith("sum") for key in client.futures)
 
 
-@pytest.mark.slow
 def test_a_cluster_of_our_own(scene, tmp_path, untouched, capfd):
     """Four workers, more than there are cores."""
     mcgw.run(scene, tmp_path / "dask.h5", engine="dask", threads=4)
@@ -125,18 +120,10 @@ def test_a_cluster_of_our_own(scene, tmp_path, untouched, capfd):
     assert capfd.readouterr().err == ""
 
 
-@pytest.mark.slow
-def test_its_dashboard_is_on_this_machine_if_dask_can_draw_it(monkeypatch):
-    from importlib.util import find_spec
-
-    engine = Dask(workers=1)
-    try:
-        if find_spec("bokeh"):
-            assert engine.dashboard.startswith("http://127.0.0.1:")
-        else:
-            assert engine.dashboard == ""
-    finally:
-        engine.close()
+def test_its_dashboard_is_on_this_machine_if_dask_can_draw_it():
+    with closing(Dask(workers=1)) as engine:
+        place = engine.dashboard[:17]
+    assert place == ("http://127.0.0.1:" if find_spec("bokeh") else "")
 
 
 def test_a_line_beside_the_bar_is_said_once_and_to_terminals_alone(capsys, monkeypatch):
@@ -146,56 +133,3 @@ def test_a_line_beside_the_bar_is_said_once_and_to_terminals_alone(capsys, monke
             show(0, 2)
             show(2, 2)
         assert capsys.readouterr().err.count("dashboard") == terminal
-
-
-@pytest.mark.slow
-def test_a_scheduler_that_is_lost(scene, tmp_path, untouched):
-    cluster = Cluster(tmp_path)
-    engine = connected(cluster)
-
-    def kill(done, total):
-        if done >= SIZE and cluster.scheduler.poll() is None:
-            os.killpg(cluster.scheduler.pid, signal.SIGKILL)
-
-    try:
-        with pytest.raises(mcgw.RunError, match=r"^scheduler lost"):
-            mcgw.run(scene, tmp_path / "e.h5", engine=engine, progress=kill)
-    finally:
-        engine.close()
-        cluster.kill()
-
-
-COMMAND = """
-import os, signal, sys
-from mcgw.jobs.job import Job
-from mcgw.jobs import session as of_jobs
-Job.rows = 8
-plain, seen = of_jobs.Session, []
-def session(engine, alone, threads, progress, signals):
-    def told(done):
-        if done >= 8 and not seen:
-            seen.append(done)
-            os.kill(int(sys.argv[1]), signal.SIGKILL)
-        return progress(done)
-    return plain(engine, alone, threads, told, signals)
-of_jobs.Session = session
-from mcgw.cli import main
-sys.exit(main(sys.argv[2:]))
-"""
-
-
-@pytest.mark.slow
-def test_for_the_command_a_lost_scheduler_is_one_line(make_scene, tmp_path):
-    cluster = Cluster(tmp_path)
-    (tmp_path / "s.toml").write_text(mcgw.scene_text(make_scene(n_surfaces=48)))
-    connected(cluster).close()
-    call = [sys.executable, "-c", COMMAND, str(cluster.scheduler.pid)]
-    call += ["run", "s.toml", "-o", "e.h5", "--scheduler", cluster.address]
-    try:
-        done = subprocess.run(call, cwd=tmp_path, capture_output=True, text=True, timeout=120, check=False)
-    finally:
-        cluster.kill()
-    lines = [line for line in done.stderr.splitlines() if ": note: " not in line]
-    assert done.returncode == 1
-    assert len(lines) == 1, done.stderr
-    assert lines[0].startswith("mcgw: scheduler lost")

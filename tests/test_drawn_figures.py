@@ -1,69 +1,28 @@
-"""What is drawn is what was computed: lines, error bars, labels and legends, read from the axes."""
+"""What is drawn is what was computed: lines, error bars, labels, legends and verdicts, read from the axes."""
 
 import dataclasses
 import itertools
 import math
+import re
 
-import exact
 import numpy as np
 import pytest
+from conftest import SURFACE
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.collections import LineCollection, PathCollection
-from matplotlib.figure import Figure
 from scipy.stats import norm
 
 import analytic
 import mcgw
-from mcgw.figures.comparison import quantity_figure, save_comparison
+from mcgw.figures.comparison import quantity_figure, save_comparison, title_of
 from mcgw.figures.convergence import save_convergence
 from mcgw.figures.data import FigureData, Panel, Points, Series
 from mcgw.figures.drawing import draw
 from mcgw.figures.style import power_of_ten
 from mcgw.figures.tradeoff import save_tradeoff
-from mcgw.reports.report_figures import _relative_error, _spread
 from mcgw.statistics.checks import Check, Slope
 from mcgw.statistics.comparison import Comparison, Curve, Verdict, compare
 from mcgw.statistics.convergence import Convergence
-
-TITLES = {
-    "load": "Load P (N)",
-    "area": "Real area A (m²)",
-    "stiffness": "Stiffness K (N/m)",
-    "contacts": "Contacts",
-    "conductance": "Conductance Cρ (m)",
-}
-QUANTITIES = tuple(TITLES)
-H = (1.0, 0.0, 2.0)
-
-
-@pytest.fixture
-def kept(monkeypatch):
-    """Figures as they are when they are saved."""
-    figures = []
-
-    def keep(self, path, **_):
-        path.touch()
-        figures.append(self)
-
-    monkeypatch.setattr(Figure, "savefig", keep)
-    return figures
-
-
-@pytest.fixture(scope="module")
-def comparison():
-    from conftest import SURFACE
-
-    scene = mcgw.Scene(
-        surface=SURFACE,
-        title="A title",
-        separations=H,
-        grading=analytic.Exponential(2.0),
-        quantities=QUANTITIES,
-        n_asperities=3000,
-        n_surfaces=60,
-        seed=4,
-    )
-    return compare(mcgw.simulate(scene))
 
 
 def bars_of(axis):
@@ -79,155 +38,6 @@ def bars_of(axis):
 def markers_of(axis):
     """Lines of markers alone."""
     return [line for line in axis.get_lines() if line.get_marker() in list("os^Dv") and len(line.get_xdata())]
-
-
-def check_curve(axis, curve, title):
-    """Theory in the order of the separations, means and their intervals where they are."""
-    h, order = np.array(H), np.argsort(H)
-    assert axis.get_title() + axis.get_title(loc="left") == title
-    assert axis.get_yscale() == "log"
-    (line,) = (x for x in axis.get_lines() if x.get_label() == "theory")
-    np.testing.assert_array_equal(line.get_xdata(), h[order])
-    np.testing.assert_array_equal(line.get_ydata(), curve.theory[order])
-    (points,) = markers_of(axis)
-    np.testing.assert_array_equal(points.get_xdata(), h)
-    np.testing.assert_array_equal(points.get_ydata(), curve.mean)
-    bars = bars_of(axis)
-    np.testing.assert_array_equal(bars[:, 0], h)
-    np.testing.assert_allclose(bars[:, 1], curve.low, rtol=1e-12)
-    np.testing.assert_allclose(bars[:, 2], curve.high, rtol=1e-12)
-
-
-def check_residual(axis, curve):
-    (points,) = markers_of(axis)
-    np.testing.assert_array_equal(points.get_xdata(), H)
-    np.testing.assert_array_equal(points.get_ydata(), curve.residual)
-    low, high = axis.get_ylim()
-    assert low == -high <= -4
-    assert np.all(np.abs(curve.residual) < high)
-    (band,) = axis.patches
-    assert (band.get_y(), band.get_height()) == (-2, 4)
-
-
-def test_comparison(comparison, kept, tmp_path):
-    save_comparison(comparison, tmp_path / "x.png")
-    (figure,) = kept
-    assert len(figure.axes) == 2 * len(QUANTITIES)
-    below, above = figure.axes[::2], figure.axes[1::2]
-    for k, name in enumerate(QUANTITIES):
-        check_curve(above[k], comparison.curves[name], TITLES[name])
-        check_residual(below[k], comparison.curves[name])
-    assert below[0].get_ylabel() == "residual\n(standard errors)"
-    legend = [text.get_text() for text in above[0].get_legend().get_texts()]
-    assert legend == ["theory", "Monte Carlo, 95 %"]
-    verdict = comparison.verdict
-    assert figure.get_suptitle() == (
-        f"A title\nMonte Carlo and theory of this model agree: χ² = {verdict.chi_square:.1f} for "
-        f"{verdict.degrees} degrees of freedom, p = {verdict.p:.3g}"
-    )
-    assert figure.get_supxlabel() == (
-        "separation d/σ\n60 surfaces of 3000 asperities, exponential grading, γ = 2; "
-        f"sampler {comparison.ensemble.sampler}, seed 4"
-    )
-
-
-def crowded(figure):
-    """What runs out of a figure or into a neighbour, as matplotlib measures all of each panel."""
-    canvas = FigureCanvasAgg(figure)
-    canvas.draw()
-    texts = [text for text in (figure._suptitle, figure._supxlabel) if text]
-    boxes = [part.get_tightbbox(canvas.get_renderer()) for part in (*figure.axes, *texts)]
-    out = [
-        box for box in boxes if box.x0 < 0 or box.y0 < 0 or box.x1 > figure.bbox.x1 or box.y1 > figure.bbox.y1
-    ]
-    return out + [pair for pair in itertools.combinations(boxes, 2) if pair[0].overlaps(pair[1])]
-
-
-@pytest.mark.parametrize("size", [1.0, 1e6])
-@pytest.mark.parametrize("sign", [1, -1])
-@pytest.mark.parametrize("panels", [1, 2, 5, 6, 7])
-def test_panels_of_a_comparison_have_room(comparison, kept, tmp_path, panels, sign, size):
-    """Also those of a pull, on linear axes, and far from theory."""
-    names = (*QUANTITIES, "yielded", "load_slope")[:panels]
-    one = comparison.curves["load"]
-    mean, error = sign * 1e-12 * one.mean, 1e-13 * one.mean
-    curve = Curve(mean, mean - error, mean + error, mean * (1 + 0.01 * size), 1e-13 * one.stderr)
-    save_comparison(dataclasses.replace(comparison, curves=dict.fromkeys(names, curve)), tmp_path / "x.png")
-    assert len(kept[0].axes) == 2 * panels
-    assert not crowded(kept[0])
-
-
-def test_crowding_would_be_seen(comparison, kept, tmp_path):
-    save_comparison(comparison, tmp_path / "x.png")
-    kept[0].axes[3].set_ylabel("A label for which there is no room")
-    assert crowded(kept[0])
-
-
-def test_comparison_that_fails_says_so(comparison, kept, tmp_path):
-    wrong = dataclasses.replace(comparison, verdict=Verdict(99.0, 15, 1e-9))
-    save_comparison(wrong, tmp_path / "x.png")
-    assert "theory of this model DISAGREE: χ² = 99.0 for 15" in kept[0].get_suptitle()
-
-
-@pytest.mark.parametrize("name", QUANTITIES)
-def test_one_quantity(comparison, name):
-    figure = quantity_figure(comparison, name)
-    above, below = figure.axes
-    check_curve(above, comparison.curves[name], TITLES[name])
-    check_residual(below, comparison.curves[name])
-    assert (below.get_xlabel(), below.get_ylabel()) == ("separation d/σ", "residual\n(std. errors)")
-    assert [t.get_text() for t in above.get_legend().get_texts()] == ["theory", "Monte Carlo, 95 %"]
-
-
-def test_a_large_residual_stays_in_sight(comparison):
-    curve = comparison.curves["load"]
-    shift = 20 * curve.stderr
-    off = Curve(curve.mean + shift, curve.low + shift, curve.high + shift, curve.theory, curve.stderr)
-    wrong = Comparison(comparison.ensemble, comparison.curves | {"load": off}, comparison.verdict)
-    low, high = quantity_figure(wrong, "load").axes[1].get_ylim()
-    assert low < off.residual.min() < off.residual.max() < high
-
-
-def test_lopsided_intervals_are_drawn_lopsided(comparison):
-    """Longer upwards than downwards, and the other way round: each end where it belongs."""
-    curve = comparison.curves["load"]
-    low, high = curve.mean * [0.9, 0.7, 0.99], curve.mean * [1.3, 1.1, 1.5]
-    lopsided = Curve(curve.mean, low, high, curve.theory, curve.stderr)
-    drawn = Comparison(comparison.ensemble, comparison.curves | {"load": lopsided}, comparison.verdict)
-    check_curve(quantity_figure(drawn, "load").axes[0], lopsided, TITLES["load"])
-
-
-def test_spread_of_the_report_is_std_over_mean(comparison):
-    ensemble = comparison.ensemble
-    data = _spread(comparison)
-    (panel,) = data.panels
-    assert (panel.xlabel, panel.ylabel, panel.scales) == (
-        "separation d/σ", "std / mean", ("linear", "log")
-    )  # fmt: skip
-    assert [series.label for series in panel.series] == list(QUANTITIES)
-    for series, name in zip(panel.series, QUANTITIES, strict=True):
-        values = ensemble.values(name).astype(float)
-        np.testing.assert_array_equal(series.points.x, H)
-        np.testing.assert_allclose(
-            series.points.mean, values.std(axis=0, ddof=1) / values.mean(axis=0), rtol=1e-10
-        )
-        spread = exact.std(ensemble.scene, name) / exact.mean(ensemble.scene, name)
-        np.testing.assert_allclose(series.points.exact, spread, rtol=1e-7)
-        np.testing.assert_array_equal(series.x, np.sort(H))
-        np.testing.assert_allclose(series.theory, spread[np.argsort(H)], rtol=1e-7)
-
-
-def test_error_of_std_over_mean_is_that_of_repetitions(comparison):
-    """400 ensembles of 200 surfaces: their deviation is known to 3.5 %, so 15 % is four of that."""
-    scene = comparison.ensemble.scene.replace(separations=[0.0, 2.0], n_surfaces=80_000, seed=9)
-    values = mcgw.simulate(scene).load.reshape(400, 200, 2)
-    ratio = values.std(axis=1, ddof=1) / values.mean(axis=1)
-    told = (
-        _relative_error(scene, "load")
-        * scene.theory.std("load", [0.0, 2.0])
-        / scene.theory.mean("load", [0.0, 2.0])
-    )
-    np.testing.assert_allclose(told / np.sqrt(200), ratio.std(axis=0), rtol=0.15)
 
 
 X = np.array([1.0, 2.0, 4.0])
@@ -271,6 +81,11 @@ def test_residuals_are_below_their_panel():
     above, below, alone = draw(FigureData("name", "", "", panels)).axes
     assert (below.get_xlabel(), alone.get_xlabel()) == ("x (m)", "x (m)")
     assert below.get_xlim() == above.get_xlim()
+    labelled = [
+        [axis.xaxis.get_tick_params()["labelbottom"], axis.yaxis.get_tick_params()["labelleft"]]
+        for axis in (above, below, alone)
+    ]
+    assert labelled == [[False, True], [True, True], [True, True]]  # the axis of both stands below
     shown = [line for line in markers_of(below) if line.get_linestyle() == "None"]
     looks = [(line.get_marker(), line.get_color()) for line in markers_of(above)]
     for line, series, drawn in zip(shown, SERIES[1:], looks, strict=False):
@@ -321,6 +136,8 @@ def test_convergence(make_scene, kept, tmp_path):
     checks = (Check("first", "seen so", 0.5), Check("second", "seen else", 1e-5), Check("third", "x", 0.0))
     scores = np.random.default_rng(1).normal(size=400)
     found = Convergence(make_scene(title="T"), checks, (slope("M", -0.49), slope("N", -0.55)), scores)
+    assert repr(found).startswith("Statistical convergence FAILED")
+    assert repr(dataclasses.replace(found, checks=checks[:1])).startswith("Statistical convergence passed")
     save_convergence(found, tmp_path / "x.png")
     (figure,) = kept
     m, n, z, bottom = figure.axes
@@ -466,3 +283,173 @@ def test_contact_map(make_scene, kept, tmp_path):
 @pytest.mark.parametrize(("x", "label"), [(1e-12, "10⁻¹²"), (1.0, "10⁰"), (1e308, "10³⁰⁸"), (30.0, "30")])
 def test_labels_of_decades_are_plain_text(x, label):
     assert power_of_ten(x) == label
+
+
+# --- comparisons ----------------------------------------------------------------------------------------
+
+TITLES = {
+    "load": "Load P (N)",
+    "area": "Real area A (m²)",
+    "stiffness": "Stiffness K (N/m)",
+    "contacts": "Contacts",
+    "conductance": "Conductance Cρ (m)",
+}
+QUANTITIES = tuple(TITLES)
+H = (1.0, 0.0, 2.0)
+
+
+@pytest.fixture(scope="module")
+def comparison():
+    scene = mcgw.Scene(
+        surface=SURFACE,
+        title="A title",
+        separations=H,
+        grading=analytic.Exponential(2.0),
+        quantities=QUANTITIES,
+        n_asperities=3000,
+        n_surfaces=60,
+        seed=4,
+    )
+    return compare(mcgw.simulate(scene))
+
+
+def check_curve(axis, curve, title):
+    """Theory in the order of the separations, means and their intervals where they are."""
+    h, order = np.array(H), np.argsort(H)
+    assert axis.get_title() + axis.get_title(loc="left") == title
+    assert axis.get_yscale() == "log"
+    (line,) = (x for x in axis.get_lines() if x.get_label() == "theory")
+    np.testing.assert_array_equal(line.get_xdata(), h[order])
+    np.testing.assert_array_equal(line.get_ydata(), curve.theory[order])
+    (points,) = markers_of(axis)
+    np.testing.assert_array_equal(points.get_xdata(), h)
+    np.testing.assert_array_equal(points.get_ydata(), curve.mean)
+    bars = bars_of(axis)
+    np.testing.assert_array_equal(bars[:, 0], h)
+    np.testing.assert_allclose(bars[:, 1], curve.low, rtol=1e-12)
+    np.testing.assert_allclose(bars[:, 2], curve.high, rtol=1e-12)
+
+
+def check_residual(axis, curve):
+    (points,) = markers_of(axis)
+    np.testing.assert_array_equal(points.get_xdata(), H)
+    np.testing.assert_array_equal(points.get_ydata(), curve.residual)
+    low, high = axis.get_ylim()
+    assert low == -high <= -4
+    assert np.all(np.abs(curve.residual) < high)
+    (band,) = axis.patches
+    assert (band.get_y(), band.get_height()) == (-2, 4)
+
+
+def test_every_title_has_the_unit_of_its_quantity():
+    """As the ensemble gives it: N and m², never mN or mm²."""
+    names = (*QUANTITIES, "load_slope", "conductance_si", "yielded", "load_unloading", "area_unloading")
+    found = [re.search(r" \((.+?)\)|$", title_of(name))[1] for name in names]
+    assert found == ["N", "m²", "N/m", None, "m", "N/m", "S or W/K", None, "N", "m²"]
+    assert title_of("area_unloading") == "Real area A (m²), unloading"
+
+
+def test_comparison(comparison, kept, tmp_path):
+    save_comparison(comparison, tmp_path / "x.png")
+    (figure,) = kept
+    assert len(figure.axes) == 2 * len(QUANTITIES)
+    below, above = figure.axes[::2], figure.axes[1::2]
+    for k, name in enumerate(QUANTITIES):
+        check_curve(above[k], comparison.curves[name], TITLES[name])
+        check_residual(below[k], comparison.curves[name])
+    assert below[0].get_ylabel() == "residual\n(standard errors)"
+    legend = [text.get_text() for text in above[0].get_legend().get_texts()]
+    assert legend == ["theory", "Monte Carlo, 95 %"]
+    verdict = comparison.verdict
+    assert figure.get_suptitle() == (
+        f"A title\nMonte Carlo and theory of this model agree: χ² = {verdict.chi_square:.1f} for "
+        f"{verdict.degrees} degrees of freedom, p = {verdict.p:.3g}"
+    )
+    assert figure.get_supxlabel() == (
+        "separation d/σ\n60 surfaces of 3000 asperities, exponential grading, γ = 2; "
+        f"sampler {comparison.ensemble.sampler}, seed 4"
+    )
+
+
+def one_of(comparison, curve):
+    """The same with another curve of the load, and that alone."""
+    return Comparison(comparison.ensemble, {"load": curve}, comparison.verdict)
+
+
+def test_one_quantity(comparison):
+    figure = quantity_figure(comparison, "area")
+    above, below = figure.axes
+    check_curve(above, comparison.curves["area"], TITLES["area"])
+    check_residual(below, comparison.curves["area"])
+    assert (below.get_xlabel(), below.get_ylabel()) == ("separation d/σ", "residual\n(std. errors)")
+    assert [t.get_text() for t in above.get_legend().get_texts()] == ["theory", "Monte Carlo, 95 %"]
+
+
+def test_a_large_residual_stays_in_sight_and_the_verdict_says_so(comparison, kept, tmp_path):
+    curve = comparison.curves["load"]
+    shift = 20 * curve.stderr
+    off = Curve(curve.mean + shift, curve.low + shift, curve.high + shift, curve.theory, curve.stderr)
+    wrong = dataclasses.replace(one_of(comparison, off), verdict=Verdict(99.0, 15, 1e-9))
+    save_comparison(wrong, tmp_path / "x.png")
+    low, high = kept[0].axes[0].get_ylim()
+    assert low < off.residual.min() < off.residual.max() < high
+    assert "theory of this model DISAGREE: χ² = 99.0 for 15" in kept[0].get_suptitle()
+
+
+def test_lopsided_intervals_are_drawn_lopsided(comparison):
+    """Longer upwards than downwards, and the other way round: each end where it belongs."""
+    curve = comparison.curves["load"]
+    low, high = curve.mean * [0.9, 0.7, 0.99], curve.mean * [1.3, 1.1, 1.5]
+    lopsided = Curve(curve.mean, low, high, curve.theory, curve.stderr)
+    check_curve(quantity_figure(one_of(comparison, lopsided), "load").axes[0], lopsided, TITLES["load"])
+
+
+def test_too_few_contacts_have_a_marker_of_their_own_and_pulls_a_linear_axis(comparison):
+    curve = comparison.curves["load"]
+    few = dataclasses.replace(curve, low=curve.low * [1, 1, np.nan], high=curve.high * [1, 1, np.nan])
+    axis = quantity_figure(one_of(comparison, few), "load").axes[0]
+    (points,), (cross,) = markers_of(axis), [x for x in axis.get_lines() if x.get_marker() == "x"]
+    np.testing.assert_array_equal(points.get_xdata(), H[:2])
+    np.testing.assert_array_equal(cross.get_xydata(), [(H[2], curve.mean[2])])
+    assert [t.get_text() for t in axis.get_legend().get_texts()][-1] == "too few contacts"
+    pull = Curve(-curve.mean, -curve.high, -curve.low, -curve.theory, curve.stderr)
+    axis = quantity_figure(one_of(comparison, pull), "load").axes[0]
+    assert axis.get_yscale() == "linear"
+    np.testing.assert_allclose(bars_of(axis)[:, 1:], np.column_stack([pull.low, pull.high]), rtol=1e-12)
+    touches_nowhere = dataclasses.replace(curve, mean=curve.mean * [1, 1, 0])
+    axis = quantity_figure(one_of(comparison, touches_nowhere), "load").axes[0]
+    assert axis.get_ylim()[0] == pytest.approx(0.01 * curve.mean[:2].min())
+
+
+# --- drawn ------------------------------------------------------------------------------------------------
+
+
+def crowded(figure):
+    """What runs out of a figure or into a neighbour, as matplotlib measures all of each panel."""
+    canvas = FigureCanvasAgg(figure)
+    canvas.draw()
+    texts = [text for text in (figure._suptitle, figure._supxlabel) if text]
+    boxes = [part.get_tightbbox(canvas.get_renderer()) for part in (*figure.axes, *texts)]
+    out = [
+        box for box in boxes if box.x0 < 0 or box.y0 < 0 or box.x1 > figure.bbox.x1 or box.y1 > figure.bbox.y1
+    ]
+    return out + [pair for pair in itertools.combinations(boxes, 2) if pair[0].overlaps(pair[1])]
+
+
+# Panels, sign of the mean, and how far theory is: linear axes of pulls, exponents at the side.
+ROOM = [(1, 1, 1.0), (2, -1, 1e6), (5, 1, 1e6), (6, -1, 1.0), (7, 1, 1.0), (7, -1, 1e6)]
+
+
+@pytest.mark.parametrize(
+    ("panels", "sign", "size"), [pytest.param(*x, marks=() if x[0] == 1 else pytest.mark.site) for x in ROOM]
+)
+def test_panels_of_a_comparison_have_room(comparison, kept, tmp_path, panels, sign, size):
+    names = (*QUANTITIES, "yielded", "load_slope")[:panels]
+    one = comparison.curves["load"]
+    mean, error = sign * 1e-12 * one.mean, 1e-13 * one.mean
+    curve = Curve(mean, mean - error, mean + error, mean * (1 + 0.01 * size), 1e-13 * one.stderr)
+    save_comparison(dataclasses.replace(comparison, curves=dict.fromkeys(names, curve)), tmp_path / "x.png")
+    assert len(kept[0].axes) == 2 * panels
+    assert not crowded(kept[0])
+    kept[0].axes[1].set_title("A title for which there is no room " * 9)  # which would be seen
+    assert crowded(kept[0])

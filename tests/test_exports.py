@@ -11,11 +11,14 @@ from scipy.optimize import brentq
 
 import mcgw
 from mcgw.cli import main
+from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.equal_pressure import at_pressures, loaded_part
+from mcgw.ensemble.results import MemoryResults
 from mcgw.exports.kinds import KINDS
 from mcgw.exports.programs import PROGRAMS
 from mcgw.exports.surfaces import surfaces_for
 from mcgw.exports.unit_systems import UNIT_SYSTEMS
+from mcgw.store.ensembles import read_attributes
 
 SURFACE = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "10 mm^2", "78.6 GPa")
 FILM = mcgw.Film(resistivity=1 / 150 + 1 / 16)
@@ -91,33 +94,6 @@ def d0_of(path):
 
 # --- forms ----------------------------------------------------------------------------------------------
 
-TABLES = [(name, table) for name, program in PROGRAMS.items() for table in program.keywords]
-
-
-@pytest.mark.parametrize(("program", "table"), TABLES)
-@pytest.mark.parametrize("units", list(UNIT_SYSTEMS))
-def test_every_table_goes_one_way_and_begins_where_nothing_is_carried(
-    ensemble, program, table, units, tmp_path
-):
-    files = mcgw.export(
-        ensemble, tmp_path / f"t{ENDING[program]}", to=program, table=table, points=9, units=units
-    )
-    kind = KINDS[table]
-    for path in files[:-1]:
-        x, y = table_of(path, program)
-        assert np.all(np.diff(x) > 0)
-        assert np.all((np.diff(y) > 0) if kind.against == "pressure" else (np.diff(y) != 0))
-        falling = kind.against == "gap" and not (
-            program in ("calculix", "abaqus") and table == "pressure-gap"
-        )
-        assert np.all(np.diff(y) < 0) == falling
-        assert y[-1 if falling else 0] == 0
-        if not falling:
-            assert x[0] == 0
-    assert files[0].name == f"t{ENDING[program]}"
-    assert [path.name.split(".")[1] for path in files[1:]] == ["q05", "q95", "all"]
-
-
 KEYWORDS = {
     ("calculix", "pressure-gap"): "*SURFACEBEHAVIOR,PRESSURE-OVERCLOSURE=TABULAR",
     ("calculix", "conductance-pressure"): "*GAPCONDUCTANCE",
@@ -127,17 +103,28 @@ KEYWORDS = {
 }
 
 
-@pytest.mark.parametrize(("program", "table"), KEYWORDS)
-def test_keywords(ensemble, program, table, tmp_path):
-    path, *_ = mcgw.export(ensemble, tmp_path / "t.inp", to=program, table=table)
-    assert read_inp(path)[0] == KEYWORDS[program, table]
-
-
-def test_what_a_program_has_no_keyword_for_is_told(ensemble, tmp_path):
-    for program, table in (("calculix", "conductance-gap"), ("abaqus", "stiffness-pressure")):
-        with pytest.raises(ValueError, match=f"^table = '{table}': {program} has no keyword for it; choose"):
-            mcgw.export(ensemble, tmp_path / "t.inp", to=program, table=table)
-    assert not list(tmp_path.iterdir())
+@pytest.mark.parametrize("program", PROGRAMS)
+def test_every_table_goes_one_way_and_begins_where_nothing_is_carried(ensemble, program, tmp_path):
+    """Every table of a program, one in SI and the next in mm-N-s; its keyword and its files."""
+    for table, units in zip(PROGRAMS[program].keywords, ["SI", "mm-N-s"] * 2, strict=False):
+        files = mcgw.export(
+            ensemble, tmp_path / f"t{ENDING[program]}", to=program, table=table, points=9, units=units
+        )
+        kind = KINDS[table]
+        overclosure = table == "pressure-gap" and program in ("calculix", "abaqus")
+        falling = kind.against == "gap" and not overclosure
+        for path in files[:-1]:
+            x, y = table_of(path, program)
+            assert len(x) == 10
+            assert np.all(np.diff(x) > 0)
+            assert np.all(np.diff(y) * (-1 if falling else 1) > 0)
+            assert y[-1 if falling else 0] == 0
+            assert falling or x[0] == 0
+            if (program, table) in KEYWORDS:
+                assert read_inp(path)[0] == KEYWORDS[program, table]
+        assert [path.name for path in files] == [
+            f"t{ENDING[program]}", *(f"t.{q}{ENDING[program]}" for q in ("q05", "q95")), "t.all.csv"
+        ]  # fmt: skip
 
 
 # --- numbers --------------------------------------------------------------------------------------------
@@ -161,6 +148,10 @@ def test_an_ensemble_gives_its_own_numbers(ensemble, tmp_path):
     overclosure, pressure = table_of(path, "abaqus")
     mean = 1e-6 * ensemble.mean("pressure")
     np.testing.assert_allclose(pressure[:0:-1], mean, rtol=1e-9)
+    inner, *_ = mcgw.export(
+        ensemble, tmp_path / "i.txt", to="comsol", pressures=[1e6 * mean[6], 1e6 * mean[2]]
+    )
+    np.testing.assert_allclose(read_comsol(inner)[:-1, 1], 1e6 * mean[2:7], rtol=1e-9)  # they bound the gaps
     gap = 1e3 * SURFACE.sigma * ensemble.separations
     d0 = d0_of(path)
     np.testing.assert_allclose(overclosure[:0:-1], d0 - gap, atol=1e-11)
@@ -191,28 +182,28 @@ def literal(scene, number, pressure):
     return h, np.sum(2 * modulus * radius), np.sum(4 * radius) / FILM.resistivity
 
 
-@pytest.mark.parametrize("table", ["stiffness-pressure", "conductance-pressure"])
-def test_at_equal_pressure_each_surface_is_on_its_own_curve(scene, table):
-    """Against literal sums over the heights of all 60 surfaces.
+def test_at_equal_pressure_each_surface_is_on_its_own_curve(scene):
+    """Against literal sums over the heights of ten surfaces; bounds from the number of contacts.
 
     Between separations 1/32 apart a contact may begin, which a power of the pressure does not know: of n
-    contacts that is a share of the order (1/32) / sqrt(n) on one surface, and
-    less on the mean, where signs differ.
+    contacts that is a share of the order (1/32) / sqrt(n) on one surface.
     """
-    kind, wanted = KINDS[table], np.geomspace(3e4, 1e7, 5)
-    e = surfaces_for(scene, kind, wanted, 5)
-    found = at_pressures(e, wanted, ("separation", kind.dataset))
-    by_hand = np.array([[literal(e.scene, i, p) for p in wanted] for i in range(60)])
-    contacts = scene.theory.mean("contacts", by_hand[:, :, 0].mean(axis=0))
-    share = found[kind.dataset] / by_hand[:, :, 1 if kind.quantity == "stiffness" else 2]
-    assert np.all(np.abs(share - 1) < 0.1 / np.sqrt(contacts))
-    assert np.all(np.abs(share.mean(axis=0) - 1) < 0.1 / np.sqrt(60 * contacts))
-    assert np.all(np.abs(found["separation"] - by_hand[:, :, 0]) < 1 / 32 / np.sqrt(contacts))
+    wanted = np.geomspace(3e4, 1e7, 3)
+    scene = scene.replace(n_surfaces=10)
+    for table in ("stiffness-pressure", "conductance-pressure"):
+        kind = KINDS[table]
+        e = surfaces_for(scene, kind, wanted, 3)
+        found = at_pressures(e, wanted, ("separation", kind.dataset))
+        by_hand = np.array([[literal(e.scene, i, p) for p in wanted] for i in range(10)])
+        contacts = scene.theory.mean("contacts", by_hand[:, :, 0].mean(axis=0))
+        share = found[kind.dataset] / by_hand[:, :, 1 if kind.quantity == "stiffness" else 2]
+        assert np.all(np.abs(share - 1) < 0.1 / np.sqrt(contacts))
+        assert np.all(np.abs(found["separation"] - by_hand[:, :, 0]) < 1 / 32 / np.sqrt(contacts))
 
 
 def test_rows_against_pressure_are_means_of_those(scene, tmp_path):
     """Mean against `mcgw.solve` on other surfaces: |z| < 5, a false alarm in 1e5; a shift of 20 % is seen."""
-    wanted, scene = [1e5, 1e6, 1e7], scene.replace(n_surfaces=400)
+    wanted, scene = [1e6, 1e7], scene.replace(n_surfaces=150)
     path, *_ = mcgw.export(
         scene, tmp_path / "t.csv", to="moose", table="conductance-pressure", pressures=wanted
     )
@@ -220,19 +211,41 @@ def test_rows_against_pressure_are_means_of_those(scene, tmp_path):
     np.testing.assert_allclose(x, wanted, rtol=1e-9)
     for value, solved in zip(y, mcgw.solve(scene, pressure=wanted), strict=True):
         other = solved.surfaces["conductance_si"] / SURFACE.nominal_area
-        error = other.std(ddof=1) * np.sqrt(2 / 400)
+        error = other.std(ddof=1) * np.sqrt(2 / 150)
         assert abs(value - other.mean()) < 5 * error + 1e-3 * value
         assert abs(1.2 * value - other.mean()) > 5 * error + 1e-3 * value
 
 
-def test_units_of_mm_n_s():
-    """Products as the program forms them: W = 1e3 mW, stress times length over stress."""
-    system = UNIT_SYSTEMS["mm-N-s"]
-    length, pressure = system.length[0], system.pressure[0]
-    assert pressure == pytest.approx(1 / length**2)  # N stays N
-    assert system.stiffness[0] == pytest.approx(pressure / length)
-    power = length  # N m/s as N mm/s
-    assert system.conductance[0] == pytest.approx(power / length**2)
+# Per table: argument and value in mm, N and s over SI. 1 W/(m^2 K) is 1e3 mW / (1e6 mm^2 K).
+FACTORS = {
+    "pressure-gap": (1e3, 1e-6), "conductance-gap": (1e3, 1e-3),
+    "conductance-pressure": (1e-6, 1e-3), "stiffness-pressure": (1e-6, 1e-9),
+}  # fmt: skip
+TOLD = {
+    "pressure": ("pressure in Pa", "pressure in MPa"), "gap": ("gap in m", "gap in mm"),
+    "conductance": tuple(f"conductance per nominal area in {x}" for x in ("W/(m^2 K)", "mW/(mm^2 K)")),
+    "stiffness": tuple(f"stiffness per nominal area in {x}" for x in ("Pa/m", "MPa/mm")),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("table", KINDS)
+def test_units_of_every_table(ensemble, table, tmp_path):
+    """SI, and mm-N-s from it; the comments name the units that the numbers are in."""
+    tables, told = [], []
+    for units in UNIT_SYSTEMS:
+        path, *_ = mcgw.export(ensemble, tmp_path / "t.txt", to="comsol", table=table, points=5, units=units)
+        tables.append(read_comsol(path).T)
+        told.append(re.search(r"units: (.+)", path.read_text())[1])
+    si, mm = tables
+    for one, other, factor in zip(si, mm, FACTORS[table], strict=True):
+        np.testing.assert_allclose(other, factor * one, rtol=1e-8)
+    for part in (KINDS[table].quantity, KINDS[table].against):
+        assert all(words in line for words, line in zip(TOLD[part], told, strict=True))
+    if table == "conductance-gap":
+        k = [0, 3, 6, 9, 12]
+        mean = ensemble.values("conductance_si").mean(axis=0) / SURFACE.nominal_area
+        np.testing.assert_allclose(si[0][:-1], SURFACE.sigma * ensemble.separations[k], rtol=1e-9)
+        np.testing.assert_allclose(si[1][:-1], mean[k], rtol=1e-9)
 
 
 def test_comments_tell_where_it_comes_from(ensemble, tmp_path):
@@ -240,28 +253,29 @@ def test_comments_tell_where_it_comes_from(ensemble, tmp_path):
     mcgw.save(ensemble, file)
     path, *_ = mcgw.export(file, tmp_path / "t.inp", to="calculix", quantiles=[])
     text = path.read_text()
-    from mcgw.store.ensembles import read_attributes
-
     assert f"SHA-256 of the data {read_attributes(file)['digest']}" in text
     assert "60 surfaces of 3000 asperities, seed 4" in text
     assert "from the mean plane of the summits" in text
-    assert "units: pressure in Pa; gap in m" in text
-    spectral = mcgw.Scene(
-        mcgw.SpectralSurface(1e-12, 1e-3, 5e6, "1 mm^2", "78.6 GPa"),
-        separations=[0, 1, 2],
-        n_surfaces=3,
-        seed=1,
-    )
+    of_spectrum = mcgw.SpectralSurface(1e-12, 1e-3, 5e6, "1 mm^2", "78.6 GPa")
+    spectral = mcgw.Scene(of_spectrum, separations=[0, 1, 2], n_surfaces=3, n_asperities=1000, seed=1)
     path, *_ = mcgw.export(spectral, tmp_path / "n.inp", to="calculix", points=5)
     rise = float(re.search(r"larger by (\S+) m", path.read_text())[1])
     alpha = 1e-12 * 5e6 / 1e-3**2
     assert rise == pytest.approx(4 * np.sqrt(1e-12 / (np.pi * alpha)), rel=1e-9)  # Nayak 1971
+    for at, told in (("nominal", "d is nominal"), ("effective", "d is what the asperities feel")):
+        given = {"reference": "mean-plane", "at": at}
+        pressed = ensemble.scene.replace(interaction=given, quantities=["load"], n_surfaces=2)
+        path, *_ = mcgw.export(pressed, tmp_path / "b.inp", to="abaqus", points=5, quantiles=[])
+        assert f"asperities press each other down; {told}" in path.read_text()
 
 
 # --- what has no table ----------------------------------------------------------------------------------
 
+
 WRONG = [
     ({"table": "gap-pressure"}, r"^table = 'gap-pressure': choose one of pressure-gap, "),
+    ({"table": "conductance-gap"}, r"^table = 'conductance-gap': calculix has no keyword for it; choose"),
+    ({"to": "abaqus", "table": "stiffness-pressure"}, r"pressure': abaqus has no keyword for it; choose"),
     ({"to": "ansys"}, r"^to = 'ansys': choose one of calculix, abaqus, moose, comsol$"),
     ({"units": "cgs"}, r"^units = 'cgs': choose one of SI, mm-N-s$"),
     ({"points": 1}, r"^points = 1: give a whole number from 2 to 10000$"),
@@ -280,43 +294,38 @@ def test_wrong_arguments_get_one_line(scene, change, told, tmp_path):
     assert not list(tmp_path.iterdir())
 
 
-def test_what_pulls_has_no_table(tmp_path):
-    scene = mcgw.Scene(
-        SURFACE,
-        separations=np.linspace(0, 4, 9),
-        law=mcgw.DerjaguinMullerToporov(pull_off=0.3),
-        n_surfaces=5,
-        seed=1,
-    )
-    with pytest.raises(ValueError, match=r"^contact\.law: surfaces pull each other .* negative pressures"):
-        mcgw.export(scene, tmp_path / "t.inp", to="abaqus")
-
-
-def test_what_a_scene_lacks_is_told(scene, tmp_path):
-    bare = scene.replace(film=None, quantities=["load"])
-    with pytest.raises(ValueError, match=r"^contact\.conductivities: a table of conductance needs them"):
-        mcgw.export(bare, tmp_path / "t.inp", to="abaqus", table="conductance-pressure")
-    few = mcgw.simulate(bare, n_surfaces=3)
-    with pytest.raises(
-        ValueError, match=r"^contact\.quantities: the ensemble has no stiffness; give its scene"
+def test_what_has_no_table_is_told(scene, ensemble, tmp_path):
+    mean, stiffness = ensemble.mean("pressure"), {"table": "stiffness-pressure", "points": 5}
+    conductance = {"table": "conductance-pressure", "pressures": [1e6, 1e12]}
+    bare = scene.replace(film=None, quantities=["load"], n_surfaces=3)
+    means = mcgw.simulate(bare, sampler="stratified")
+    bent = scene.replace(separations=[0, 1, 2], quantities=["load", "stiffness"], film=None, n_surfaces=2)
+    load = np.outer([1.0, 1.1], [4.0, 2.0, 1.0])
+    less = MemoryResults({"load": load, "stiffness": load[:, [1, 0, 2]]})  # at the highest pressure
+    pulls = bare.replace(law=mcgw.DerjaguinMullerToporov(pull_off=0.3))
+    fine = bare.replace(surface=mcgw.Surface("2 nm", "13 um", "300/mm^2", "10 mm^2", "78.6 GPa"))
+    steps = {"to": "calculix", "points": 80}
+    for what, given, told in (
+        (pulls, {}, r"^contact\.law: surfaces pull each other .* negative pressures"),
+        (bare, conductance, r"^contact\.conductivities: a table of conductance needs them"),
+        (
+            mcgw.simulate(bare),
+            stiffness,
+            r"^contact\.quantities: the ensemble has no stiffness; give its scene",
+        ),
+        (means, {"quantiles": [0.5]}, r"^quantiles: stratified surfaces have means only"),
+        (fine, steps, r'nearer than 1e-10, .*units = "mm-N-s"'),
+        (ensemble, {"pressures": [0.9 * mean[3], 1.1 * mean[3]]}, r"mean: 1 point\(s\) at which anything is"),
+        (ensemble, conductance, r"^pressures: 1e\+12 Pa .* all surfaces reach [\d.e+]+ to [\d.e+]+ Pa$"),
+        (scene.replace(separations=[8, 9]), stiffness, "no pressure that all surfaces reach"),
+        (Ensemble(bent, "cells", less), stiffness, "does not go one way at pressure"),
+        (3.0, {}, "^float: give a scene, an ensemble, or the file of an ensemble$"),
     ):
-        mcgw.export(few, tmp_path / "t.txt", to="comsol", table="stiffness-pressure")
-    means = mcgw.simulate(bare, n_surfaces=3, sampler="stratified")
+        with pytest.raises(ValueError, match=told):
+            mcgw.export(what, tmp_path / "t.txt", **({"to": "comsol"} | given))
+    assert not list(tmp_path.iterdir())
     assert len(mcgw.export(means, tmp_path / "t.txt", to="comsol")) == 2
-    with pytest.raises(ValueError, match=r"^quantiles: stratified surfaces have means only"):
-        mcgw.export(means, tmp_path / "t.txt", to="comsol", quantiles=[0.5])
-
-
-def test_steps_that_calculix_moves_apart_are_told(tmp_path):
-    fine = mcgw.Scene(
-        mcgw.Surface("2 nm", "13 um", "300/mm^2", "10 mm^2", "78.6 GPa"),
-        separations=[0, 3],
-        n_surfaces=3,
-        seed=1,
-    )
-    with pytest.raises(ValueError, match=r'nearer than 1e-10, .*units = "mm-N-s"'):
-        mcgw.export(fine, tmp_path / "t.inp", to="calculix", points=80)
-    mcgw.export(fine, tmp_path / "t.inp", to="calculix", points=80, units="mm-N-s")
+    mcgw.export(fine, tmp_path / "t.inp", **steps, units="mm-N-s")
 
 
 def test_only_the_rising_part_of_a_load_counts():
@@ -344,69 +353,32 @@ def test_command(tmp_path, monkeypatch, capsys):
 
 # --- CalculiX itself, where it is installed -------------------------------------------------------------
 
-DECK = """*NODE, NSET=ALL
-1,0,0,0
-2,1,0,0
-3,1,1,0
-4,0,1,0
-5,0,0,1
-6,1,0,1
-7,1,1,1
-8,0,1,1
-11,0,0,1
-12,1,0,1
-13,1,1,1
-14,0,1,1
-15,0,0,2
-16,1,0,2
-17,1,1,2
-18,0,1,2
-*ELEMENT, TYPE=C3D8, ELSET=BELOW
-1,1,2,3,4,5,6,7,8
-*ELEMENT, TYPE=C3D8, ELSET=ABOVE
-2,11,12,13,14,15,16,17,18
-*NSET, NSET=TOP
-15,16,17,18
-*NSET, NSET=LOOSE
-11,12,13,14
-*SURFACE, NAME=MASTER
-1,S2
-*SURFACE, NAME=SLAVE
-2,S1
-*MATERIAL, NAME=STIFF
-*ELASTIC
-1E8,0
-*SOLID SECTION, ELSET=BELOW, MATERIAL=STIFF
-*SOLID SECTION, ELSET=ABOVE, MATERIAL=STIFF
-*SURFACE INTERACTION, NAME=ROUGH
-*INCLUDE, INPUT=contact.inp
-*CONTACT PAIR, INTERACTION=ROUGH, TYPE=NODE TO SURFACE
-SLAVE,MASTER
-*BOUNDARY
-1,1,3
-2,1,3
-3,1,3
-4,1,3
-5,1,2
-6,1,2
-7,1,2
-8,1,2
-11,1,2
-12,1,2
-13,1,2
-14,1,2
-*STEP
-*STATIC, DIRECT
-1,1
-*BOUNDARY
-TOP,1,2
-TOP,3,3,{down}
-*NODE PRINT, NSET=TOP, TOTALS=ONLY
-RF
-*END STEP
-"""
+
+def nodes(first, level):
+    """Four corners of a unit square, numbered on from `first`."""
+    return [f"{first + k},{x},{y},{level}" for k, (x, y) in enumerate([(0, 0), (1, 0), (1, 1), (0, 1)])]
 
 
+DECK = "\n".join(
+    [
+        "*NODE, NSET=ALL", *nodes(1, 0), *nodes(5, 1), *nodes(11, 1), *nodes(15, 2),
+        "*ELEMENT, TYPE=C3D8, ELSET=BELOW", "1,1,2,3,4,5,6,7,8",
+        "*ELEMENT, TYPE=C3D8, ELSET=ABOVE", "2,11,12,13,14,15,16,17,18",
+        "*NSET, NSET=TOP", "15,16,17,18",
+        "*SURFACE, NAME=MASTER", "1,S2", "*SURFACE, NAME=SLAVE", "2,S1",
+        "*MATERIAL, NAME=STIFF", "*ELASTIC", "1E8,0",
+        "*SOLID SECTION, ELSET=BELOW, MATERIAL=STIFF", "*SOLID SECTION, ELSET=ABOVE, MATERIAL=STIFF",
+        "*SURFACE INTERACTION, NAME=ROUGH", "*INCLUDE, INPUT=contact.inp",
+        "*CONTACT PAIR, INTERACTION=ROUGH, TYPE=NODE TO SURFACE", "SLAVE,MASTER",
+        "*BOUNDARY", *(f"{k},1,3" for k in range(1, 5)), *(f"{k},1,2" for k in (5, 6, 7, 8, 11, 12, 13, 14)),
+        "*STEP", "*STATIC, DIRECT", "1,1",
+        "*BOUNDARY", "TOP,1,2", "TOP,3,3,{down}",
+        "*NODE PRINT, NSET=TOP, TOTALS=ONLY", "RF", "*END STEP", "",
+    ]
+)  # fmt: skip
+
+
+@pytest.mark.site
 @pytest.mark.skipif(CCX is None, reason="no CalculiX here")
 @pytest.mark.parametrize("share", [0.35, 0.6, 0.9])
 def test_calculix_presses_as_the_table_says(ensemble, share, tmp_path):

@@ -1,12 +1,20 @@
 """Calls side by side: all of them, in order, and truly at the same time."""
 
+import cProfile
+import subprocess
+import sys
 import threading
+from math import sqrt
 
 import pytest
+import scipy.stats
 from numba import get_num_threads
 
+import analytic
+from analytic.in_time import in_time
 from mcgw.ensemble.drawing import use_threads
 from mcgw.machine.in_threads import in_threads, pieces
+from mcgw.machine.one_ahead import one_ahead
 
 
 @pytest.mark.parametrize("threads", [1, 2])
@@ -51,3 +59,130 @@ def test_pieces_cover_everything_once(n, least):
         assert [i for first, last in cut for i in range(first, last)] == list(range(n))
         assert all(first % least == 0 for first, _ in cut)
         assert 1 <= len(cut) <= get_num_threads()
+
+
+def test_items_and_order_are_the_same():
+    assert list(one_ahead(i for i in range(100))) == list(range(100))
+    assert list(one_ahead(i for i in [])) == []
+    assert list(one_ahead(i for i in [None, (), 0])) == [None, (), 0]
+
+
+def test_the_next_one_is_made_meanwhile():
+    """The second item is there although nobody asked for it: without, this would wait for ever."""
+    made = threading.Event()
+
+    def items():
+        yield 1
+        made.set()
+        yield 2
+
+    for _ in one_ahead(items()):
+        assert made.wait(timeout=30)
+
+
+def test_no_more_than_one_is_made_ahead():
+    made = []
+    ahead = one_ahead(made.append(i) or i for i in range(10))
+    next(ahead)
+    next(ahead)
+    ahead.close()  # waits for the one in hand
+    assert len(made) == 3
+
+
+def test_an_error_comes_where_its_item_would_have():
+    def items():
+        yield 1
+        raise OSError("gone")
+
+    ahead = one_ahead(items())
+    assert next(ahead) == 1
+    with pytest.raises(OSError, match="gone"):
+        next(ahead)
+
+
+def test_what_makes_the_items_is_closed_with_it():
+    ended = []
+
+    def items():
+        try:
+            yield from range(10)
+        finally:
+            ended.append(True)
+
+    ahead = one_ahead(items())
+    next(ahead)
+    ahead.close()
+    assert ended
+
+
+def endless():
+    while True:
+        abs(complex(*divmod(7, 2)))
+        (lambda: None)()
+
+
+def test_a_call_without_end_is_given_up():
+    with pytest.raises(ValueError, match="too long"):
+        in_time(0.05, endless, "too long")
+    assert sys.getprofile() is None
+
+
+def test_a_result_is_handed_on():
+    assert in_time(5.0, lambda: sqrt(4.0), "too long") == 2.0
+
+
+def test_a_profiler_is_left_at_work():
+    """`cProfile` cannot be put back by Python: laws of scipy ended in a TypeError under it."""
+    profiler = cProfile.Profile()
+    profiler.enable()
+    try:
+        law = analytic.ScipyHeights(scipy.stats.gamma(4))
+        assert sys.getprofile() is profiler
+    finally:
+        profiler.disable()
+    assert law.support[1] == float("inf")
+
+
+# A process that leaves at once still runs what was asked of its end, and its output is written
+
+
+ENDS = """
+import atexit, sys
+from mcgw.machine.leaving import leave
+class Slow:
+    def __del__(self): print("taken down")
+sys.modules["slow"] = Slow()
+atexit.register(lambda: print("asked for"))
+print("written", end=" ")
+print("error", end=" ", file=sys.stderr)
+"""
+
+
+def end_of(code):
+    done = subprocess.run([sys.executable, "-c", ENDS + code], capture_output=True, text=True)
+    return done.returncode, done.stdout, done.stderr
+
+
+def test_what_was_asked_for_is_done_and_the_rest_is_not_taken_down():
+    assert end_of("leave(3)") == (3, "written asked for\n", "error ")
+
+
+def test_a_plain_end_takes_down_everything():
+    assert end_of("sys.exit(3)") == (3, "written asked for\ntaken down\n", "error ")
+
+
+def test_closed_output_is_no_mistake_of_the_end():
+    assert end_of("sys.stdout.close()\natexit._clear()\nleave(0)") == (0, "written ", "error ")
+
+
+def test_matplotlib_without_help_draws_and_tells_help_later():
+    code = """
+from mcgw.machine.late import without_help
+with without_help():
+    import matplotlib.figure
+from matplotlib.artist import kwdoc
+from matplotlib.lines import Line2D
+print("antialiased" in Line2D.set.__doc__, "antialiased" in kwdoc(Line2D), Line2D([0], [0], lw=3).get_lw())
+"""
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout == "False True 3.0\n"

@@ -1,6 +1,11 @@
 """Surfaces whose asperities press each other down: against literal sums, identities, and each other."""
 
-import dataclasses
+import hashlib
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
 
 import interacting_by_hand as hand
 import numpy as np
@@ -10,9 +15,13 @@ from conftest import SURFACE
 from interacting_by_hand import QUANTITIES, SEPARATIONS, STRENGTHS, interaction, literal_sums
 from oracles import factor
 from scipy.stats import ks_2samp
+from test_same_bits_everywhere import OLD_BLAS, OLD_C, OLD_NUMPY
 
 import analytic
 import mcgw
+from mcgw.sampling.nominal_literal import balanced_sums
+from mcgw.sampling.samplers import sampler_of
+from mcgw.store import ensembles
 
 GRADINGS = {
     "exponential": analytic.Exponential(2.0),
@@ -20,11 +29,9 @@ GRADINGS = {
     "own": analytic.Custom(lambda s: 1 + 0.3 * np.tanh(s)),
 }
 HEIGHTS = {
-    "Weibull": analytic.Weibull(2.0),
-    "Nayak": analytic.Nayak(5.0),
-    "exponential": analytic.ExponentialHeights(),
-    "uniform": scipy.stats.uniform(),
-}
+    "Weibull": analytic.Weibull(2.0), "Nayak": analytic.Nayak(5.0),
+    "exponential": analytic.ExponentialHeights(), "uniform": scipy.stats.uniform(),
+}  # fmt: skip
 
 
 def check_against_literal_sums(scene, surface=1, tolerance=1e-12):
@@ -54,19 +61,16 @@ class TestLiteralSums:
         asked = {"heights": heights, "separations": h, "grading": GRADINGS["table"]}
         check_against_literal_sums(pressed(strength, **asked))
 
-    @pytest.mark.parametrize("count", ["fixed", "poisson"])
-    @pytest.mark.parametrize("n", [300, 10**5, 10**6])
-    def test_numbers(self, pressed, strength, n, count):
-        surfaces = {"n_surfaces": 2, "n_asperities": n, "count": count}
-        check_against_literal_sums(pressed(strength, grading=analytic.Exponential(1.5), **surfaces))
-
-
-def test_sums_where_the_plane_does_not_sink_fail(pressed):
-    """What the tests above say is not said by sums at the separations asked."""
-    scene = pressed(3.0)
-    found = mcgw.simulate(scene)["load"][1]
-    naive = literal_sums(scene, mcgw.heights(scene, 1), scene.separations, "load")
-    assert naive[0] > 1.5 * found[0]
+    @pytest.mark.parametrize("changes", [
+        {"n_asperities": 300, "count": "poisson", "sampler": "tail"},
+        {"n_asperities": 300, "sampler": "cells"},
+        {"n_asperities": 10**5, "count": "poisson"},
+        pytest.param({"n_asperities": 10**6}, marks=pytest.mark.slow),
+    ], ids=lambda changes: ", ".join(map(str, changes.values())))  # fmt: skip
+    def test_numbers(self, pressed, strength, changes):
+        check_against_literal_sums(
+            pressed(strength, grading=analytic.Exponential(1.5), n_surfaces=2, **changes)
+        )
 
 
 @pytest.mark.parametrize("strength", STRENGTHS.values(), ids=STRENGTHS)
@@ -82,42 +86,6 @@ def test_stiffness_is_the_slope_of_the_load_of_one_surface(pressed, strength):
     c = ensemble.scene.interaction.compliance(ensemble.scene.surface, 3000)
     alone = 1 / (1 / ensemble["stiffness"][:, 2] - c)
     assert (np.abs(alone * sigma / slope - 1) > 0.02).all()
-
-
-@pytest.mark.parametrize("strength", STRENGTHS.values(), ids=STRENGTHS)
-def test_the_two_forms_agree(pressed, strength):
-    """What one surface feels, given as effective separations, has the nominal ones beside it."""
-    nominal = mcgw.simulate(pressed(strength))
-    for surface in (0, 3):
-        felt = tuple(nominal["effective_separation"][surface].tolist())
-        effective = mcgw.simulate(pressed(strength, "effective", separations=SEPARATIONS + felt))
-        heights = mcgw.heights(effective.scene, surface)
-        c = effective.scene.interaction.compliance(effective.scene.surface, 3000)
-        beside = effective["nominal_separation"][surface]
-        loads = literal_sums(effective.scene, heights, felt, "load")
-        back = np.array(felt) - c / effective.scene.surface.sigma * loads
-        np.testing.assert_allclose(beside[len(SEPARATIONS) :], back, rtol=0, atol=1e-12)
-    again = balanced_by_effective_form(nominal, 0)
-    np.testing.assert_allclose(again, SEPARATIONS, rtol=0, atol=1e-12)
-
-
-def balanced_by_effective_form(nominal, surface):
-    """Nominal separations of the very asperities of a surface, told as a list, at what they felt."""
-    scene, heights = nominal.scene, mcgw.heights(nominal.scene, surface, untouched=True)
-    felt = nominal["effective_separation"][surface]
-    mean, spread = heights.mean(), heights.std()
-    own = dataclasses.replace(scene.surface, sigma=spread * scene.surface.sigma)
-    listed = mcgw.Scene(
-        own,
-        heights=mcgw.MeasuredHeights(heights),
-        grading=lambda s: scene.grading(mean + spread * s),
-        separations=(felt - mean) / spread,
-        n_surfaces=1,
-        n_asperities=heights.size,
-        interaction=dataclasses.replace(scene.interaction, at="effective"),
-        seed=1,
-    )
-    return mean + spread * mcgw.simulate(listed)["nominal_separation"][0]
 
 
 def test_effective_separations_change_the_stiffness_alone(pressed):
@@ -140,25 +108,18 @@ SAME = 1e-7  # false alarm of each comparison of two samples
 
 @pytest.fixture(scope="module")
 def laws_by_sampler():
-    """Small surfaces of strength 3 drawn by every sampler that finds balances; and wrong strengths."""
+    """Small surfaces of strength 3 by the sampler that tells no heights and by one that does."""
 
     def drawn(sampler, seed, strength=3.0, n_surfaces=1200):
         scene = mcgw.Scene(
-            SURFACE,
-            separations=(0.4, 1.2),
-            grading=analytic.Exponential(2.0),
-            quantities=QUANTITIES,
-            n_asperities=300,
-            n_surfaces=n_surfaces,
-            sampler=sampler,
-            seed=seed,
+            SURFACE, separations=(0.4, 1.2), grading=analytic.Exponential(2.0), quantities=QUANTITIES,
+            n_asperities=300, n_surfaces=n_surfaces, sampler=sampler, seed=seed,
             interaction=interaction(strength, SURFACE, 300),
-        )
+        )  # fmt: skip
         return mcgw.simulate(scene)
 
     return {
         "cells": drawn("cells", 1, n_surfaces=4000),
-        "tail": drawn("tail", 2, n_surfaces=600),
         "direct": drawn("direct", 3, n_surfaces=600),
         "sinking of the centre": drawn(
             "cells", 4, 3.0 * hand.SINKING_OF_THE_CENTRE / hand.MEAN_SINKING, n_surfaces=1200
@@ -166,13 +127,12 @@ def laws_by_sampler():
     }
 
 
-@pytest.mark.parametrize("name", [*QUANTITIES, "effective_separation"])
-@pytest.mark.parametrize("other", ["tail", "direct"])
-def test_samplers_have_one_law(laws_by_sampler, other, name):
-    """Kolmogorov-Smirnov, 24 comparisons at 1e-7 each."""
-    one, two = laws_by_sampler["cells"][name], laws_by_sampler[other][name]
-    for k in range(one.shape[1]):
-        assert ks_2samp(one[:, k], two[:, k]).pvalue > SAME
+def test_samplers_have_one_law(laws_by_sampler):
+    """Kolmogorov-Smirnov, 12 comparisons at 1e-7 each."""
+    for name in (*QUANTITIES, "effective_separation"):
+        one, two = laws_by_sampler["cells"][name], laws_by_sampler["direct"][name]
+        for k in range(one.shape[1]):
+            assert ks_2samp(one[:, k], two[:, k]).pvalue > SAME, (name, k)
 
 
 def test_sinking_of_the_centre_has_another_law(laws_by_sampler):
@@ -238,3 +198,193 @@ def test_own_radii():
     np.testing.assert_allclose(ensemble["area"][1], np.pi * (radius * depth).sum(axis=1), rtol=1e-12)
     sunk = 2.0 / 2000 * load / factor(scene.surface, "load")
     np.testing.assert_allclose(x, np.array([0.3, 1.0]) + sunk, rtol=0, atol=1e-13)
+
+
+@pytest.mark.parametrize("sampler", ["direct", "tail", "cells"])
+def test_same_bits_in_any_block_by_any_threads(pressed, sampler):
+    scene = pressed(3.0, sampler=sampler, n_asperities=200, n_surfaces=40)
+    one, two = mcgw.simulate(scene, threads=1), mcgw.simulate(scene, threads=2)
+    drawn = sampler_of(scene)
+    whole = drawn.block(0, 40).sums
+    for name, values in whole.items():
+        np.testing.assert_array_equal(one[name], two[name])
+        for first, n in ((0, 1), (33, 7), (10, 20)):
+            np.testing.assert_array_equal(drawn.block(first, n).sums[name], values[first : first + n])
+
+
+def test_company_of_separations_changes_hardly_a_digit(pressed):
+    """The search begins anew at each; which asperities are drawn one by one is all that may differ."""
+    h = (2.0, 0.0, 2.0, 1.0)
+    many = sampler_of(pressed(3.0, separations=h)).block(0, 3).sums
+    few = sampler_of(pressed(3.0, separations=(0.0, 1.0, 2.0))).block(0, 3).sums
+    for name in many:
+        np.testing.assert_array_equal(many[name][:, 0], many[name][:, 2])
+        np.testing.assert_allclose(many[name][:, [1, 3, 0]], few[name], rtol=1e-13)
+
+
+@pytest.mark.parametrize("at", ["effective", "nominal"])
+def test_a_file_holds_both_separations_and_goes_on(pressed, at, tmp_path):
+    """At once, in two goes, and in memory: one digest; the scene reads back from its text."""
+    scene, path = pressed(3.0, at, n_surfaces=100, n_asperities=500), tmp_path / "e.h5"
+    mcgw.run(scene.replace(n_surfaces=40), path)
+    mcgw.run(scene, path)
+    mcgw.run(scene, tmp_path / "at_once.h5", threads=1)
+    found, memory = mcgw.open_ensemble(path), mcgw.simulate(scene)
+    assert ensembles.verify(path) == ensembles.verify(tmp_path / "at_once.h5")
+    assert found.scene == scene
+    assert mcgw.scene_from(mcgw.scene_text(found.scene)) == scene
+    for name in (*QUANTITIES, *scene.other_separations):
+        np.testing.assert_array_equal(found[name], memory[name])
+
+
+def digests():
+    """Of surfaces of both references by `cells`."""
+    found = {}
+    for name, strength in STRENGTHS.items():
+        values = {"grading": analytic.Exponential(1.5), "separations": SEPARATIONS, "n_asperities": 5000}
+        scene = mcgw.Scene(SURFACE, seed=1, interaction=interaction(strength, SURFACE, 5000), **values)
+        sums = sampler_of(scene).block(0, 5).sums
+        found[name] = hashlib.sha256(b"".join(sums[key].tobytes() for key in sorted(sums))).hexdigest()
+    return found
+
+
+@pytest.mark.slow
+def test_older_processors_find_the_same_balances():
+    """Their libraries round otherwise (`test_same_bits_everywhere`)."""
+    code = "import json, test_interaction_surfaces as t; print(json.dumps(t.digests()))"
+    folder = Path(__file__).parent
+    older = {
+        **OLD_BLAS,
+        **OLD_C,
+        **OLD_NUMPY,
+        "PYTHONPATH": os.pathsep.join(map(str, (folder, folder.parent))),
+    }
+    call = [sys.executable, "-W", "ignore", "-c", code]
+    done = subprocess.run(call, env=os.environ | older, capture_output=True, check=True)
+    assert json.loads(done.stdout) == digests()
+
+
+NOMINAL, EFFECTIVE = {"reference": "body", "at": "nominal"}, "body"
+KOGUT, JKR = analytic.KogutEtsion(critical=0.3), analytic.JohnsonKendallRoberts(pull_off=0.05)
+NEGATIVE = {"grading": analytic.Exponential(2.0), "separations": (-1.0, 1.0)}
+SIDEWAYS = analytic.Tangential(friction=0.3, displacements=(1e-7,), poisson=0.3)
+LOAD = 'add "load" to contact.quantities'
+# What is refused, a word of the line for it, and the neighbour that passes.
+REFUSED = {
+    "no load": ({"interaction": "body", "quantities": ["area"]}, LOAD, {"quantities": ["area", "load"]}),
+    "no load there and back": (
+        {"interaction": "body", "unload_from": "loop", "quantities": ["area"]}, LOAD,
+        {"quantities": ["area", "load"]},  # with its way back
+    ),
+    "sideways": (
+        {"interaction": "body", "tangential": SIDEWAYS}, r"leave out it or \[interaction\]",
+        {"tangential": None},
+    ),
+    "means alone": (
+        {"interaction": "body", "sampler": "stratified"}, "each surface sinks by its own load",
+        {"sampler": "cells"},
+    ),
+    "no asperities": (
+        {"interaction": NOMINAL, "sampler": "aggregate"}, 'it draws no asperities.*at = "effective"',
+        {"interaction": "body"},
+    ),
+    "cells of another law": (
+        {"interaction": NOMINAL, "sampler": "cells", "law": KOGUT}, 'found asperity by asperity; take "tail"',
+        {"sampler": "tail"},
+    ),
+    "moments": (
+        {"interaction": NOMINAL, "keep": "moments", "sampler": "cells"}, 'keeps none; take "sums"',
+        {"interaction": "body"},
+    ),
+    "the way back": (
+        {"interaction": NOMINAL, "unload_from": "loop", "quantities": ["load", "load_unloading"]},
+        "has no way back", {"interaction": "body"},
+    ),
+    "negative moduli": (
+        {"interaction": NOMINAL, "negative": "allow", **NEGATIVE},
+        'needs loads that fall with the separation; say "clip"', {"negative": "clip"},
+    ),
+    "adhesion": (
+        {"interaction": NOMINAL, "law": JKR, "quantities": ["load"]}, "would have several balances",
+        {"interaction": "body"},
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(("asked", "line", "neighbour"), REFUSED.values(), ids=REFUSED)
+def test_refused_in_one_line_and_its_neighbour_not(make_scene, asked, line, neighbour):
+    plain = {"grading": None, "n_surfaces": 2, "n_asperities": 100, "separations": (0.5, 1.0)}
+    with pytest.raises(mcgw.SceneError, match=line) as caught:
+        make_scene(**(plain | asked))
+    assert len(caught.value.problems) == 1
+    make_scene(**(plain | asked | neighbour))
+
+
+@pytest.mark.parametrize("at", ["nominal", "effective"])
+def test_separations_below_the_fold(make_scene, at):
+    """Strength 1: loads pull the mean plane down faster than it is pressed, somewhere above 0."""
+    scene = make_scene(separations=(-1.0, 2.0), grading=None, n_asperities=3000)
+    pulled = interaction(-1.0, scene.surface, 3000, at)
+    with pytest.raises(mcgw.SceneError, match="give higher separations") as caught:
+        scene.replace(interaction=pulled)
+    assert len(caught.value.problems) == 1
+    assert scene.replace(interaction=pulled, separations=(1.5, 2.0)).separations == (1.5, 2.0)
+
+
+def test_a_surface_without_balance_says_so(make_scene):
+    """Small surfaces scatter about a mean that has a balance: the line names the surface."""
+    scene = make_scene(separations=(0.0,), grading=None, n_asperities=30, n_surfaces=3000)
+    pulled = interaction(-0.62, scene.surface, 30)
+    for sampler in ("cells", "tail"):
+        with pytest.raises(ValueError, match=r"interaction: surface .* no balance at d/sigma = 0 ") as one:
+            mcgw.simulate(scene.replace(interaction=pulled, sampler=sampler))
+        assert "\n" not in str(one.value)
+
+
+def test_literal_search_gives_up_alike(make_scene):
+    """One surface told by its heights: five summits far above a plane that each of them pulls down."""
+    scene = make_scene(separations=(0.5,), grading=None, n_asperities=5)
+    weak, strong = (
+        scene.replace(interaction=interaction(-c, scene.surface, 5), separations=(3.0,)) for c in (0.02, 2.0)
+    )
+    heights = np.full(5, 4.0)
+    found = balanced_sums(weak, 7, heights, None)["effective_separation"][0, 0]
+    assert found == pytest.approx(3.0 - 0.02 * (4.0 - found) ** 1.5, abs=1e-14)
+    with pytest.raises(ValueError, match="surface 7 has no balance"):
+        balanced_sums(strong, 7, heights, None)
+
+
+@pytest.mark.parametrize(("given", "line"), [
+    ({"at": "nominal"}, "interaction.reference: missing"),
+    ({"reference": "moon"}, "interaction.reference = 'moon'"),
+    ({"reference": "body", "at": "once"}, "interaction.at = 'once'"),
+    ({"reference": "body", "bulk_modulus": -1.0}, "interaction.bulk_modulus = -1"),
+    ({"reference": "body", "bulk": 1.0}, "interaction.bulk"),
+    (3, "interaction = 3"),
+])  # fmt: skip
+def test_keys(make_scene, given, line):
+    with pytest.raises(mcgw.SceneError) as caught:
+        make_scene(interaction=given)
+    assert len(caught.value.problems) == 1
+    assert line.replace("'", "") in caught.value.problems[0].replace("'", "").replace('"', "")
+
+
+@pytest.mark.parametrize("given", [{"reference": "sea"}, {"at": "sea"}, {"bulk_modulus": float("inf")}])
+def test_words_of_the_theory(given):
+    ((key, value),) = given.items()
+    with pytest.raises(ValueError, match=f"{key} = '?{value}"):
+        analytic.Interaction(**({"reference": "body"} | given))
+
+
+@pytest.mark.parametrize("factor", [None, 1.0, 0.9, 1.1])
+def test_errors_were_measured_for_one_modulus_of_the_bulk(factor):
+    """That of the asperities: of softer bulks and of stiffer ones nothing is known but the area."""
+    surface = analytic.SpectralMoments(1e-12, 1e-3, 4e6).surface(1e-6, 78.6e9)
+    bulk = {} if factor is None else {"bulk_modulus": factor * 78.6e9}
+    asked = {"reference": "mean-plane"} | bulk
+    found = mcgw.Scene(surface, separations=[1.2, 1.6], interaction=asked, seed=1).validity()
+    assert np.isfinite(found.error["area"]).all()
+    known = factor in (None, 1.0)
+    assert np.isfinite(found.error["stiffness"]).all() == known
+    assert np.isfinite(found.bias["separation"]).all() == known
+    assert ("the bulk had the modulus of the asperities there" in found.details) != known

@@ -3,8 +3,11 @@
 Statistical gates are |z| < 5 with fixed seeds: false alarms 6e-7 a number. Wrong versions are shown to fail.
 """
 
+import importlib
 import math
 from dataclasses import replace
+from functools import cache
+from pathlib import Path
 
 import interacting_by_hand as hand
 import mpmath
@@ -39,8 +42,9 @@ def test_mean_sinking_of_a_square():
     """Integral of (1 - x)(1 - y)/r over the square, the distances of two of its points, in polar form."""
 
     def along(angle):
-        end = 1 / mpmath.cos(angle)
-        return mpmath.quad(lambda r: (1 - r * mpmath.cos(angle)) * (1 - r * mpmath.sin(angle)), [0, end])
+        """Of (1 - r cos)(1 - r sin) up to r = 1/cos."""
+        tan = mpmath.tan(angle)
+        return (1 - (1 + tan) / 2 + tan / 3) / mpmath.cos(angle)
 
     mean = 8 / mpmath.pi * mpmath.quad(along, [0, mpmath.pi / 4])
     assert pytest.approx(float(mean), rel=1e-14) == BOWL
@@ -56,13 +60,11 @@ def test_potential_of_a_square_lattice():
 
     def left(n):
         i = np.arange(1, n + 1.0)
-        quarter = 1 / np.hypot(
-            i[:, None], np.arange(n + 1.0)
-        )  # turned by right angles it fills the plane but the point
+        quarter = 1 / np.hypot(i[:, None], np.arange(n + 1.0))  # four of them fill the plane but the point
         return 8 * (n + 0.5) * math.asinh(1) - 4 * math.fsum(quarter.ravel().tolist())
 
-    sums = np.array([left(n) for n in (200, 400, 800)])
-    widths = 2 * np.array([200, 400, 800]) + 1.0
+    sums = np.array([left(n) for n in (100, 200, 400)])
+    widths = 2 * np.array([100, 200, 400]) + 1.0
     fit = np.polynomial.polynomial.polyfit(1 / widths, sums, 2)  # charges' own shape: falls as 1/width
     assert fit[0] == pytest.approx(LATTICE, abs=1e-8)
 
@@ -71,16 +73,6 @@ def test_potential_of_a_square_lattice():
 def poisson():
     """N = 3000, strength 3, h = 0.8: the case of the check values."""
     return model_of(3.0, 3000, count="poisson")
-
-
-def test_check_values(poisson):
-    """Values of a separate script (12 steps of Newton on 8000 surfaces, -0.102 +- 0.125)."""
-    x0 = float(poisson.effective(0.8))
-    assert x0 == pytest.approx(1.01848013262518, rel=1e-14)
-    at_x0 = float(poisson.alone.mean("load", x0)) / LOAD
-    assert at_x0 / 3000 == pytest.approx(0.0728267108750539, rel=1e-13)
-    assert float(poisson.mean("load", 0.8)) / LOAD - at_x0 == pytest.approx(-0.120, abs=5e-4)
-    assert float(poisson.std("load", 0.8) / LOAD) ** 2 == pytest.approx(123.75, abs=5e-3)
 
 
 def test_mean_and_variance_of_the_load_by_the_formulas(poisson):
@@ -161,8 +153,9 @@ CROSSED = {
 }
 
 
-@pytest.mark.parametrize("own", CROSSED.values(), ids=CROSSED)
-@pytest.mark.parametrize("strength", STRENGTHS.values(), ids=STRENGTHS)
+@pytest.mark.parametrize(
+    ("strength", "own"), [*zip((3.0, -0.3, 3.0, -0.3, 3.0), CROSSED.values(), strict=True)], ids=CROSSED
+)
 def test_every_asperity_can_be_pressed_down(strength, own):
     """Balance, variance and compliances from the model of the same asperities alone."""
     surface = NAYAK.surface(1e-8, 1e9) if "curvature" in own else SURFACE
@@ -214,29 +207,32 @@ N, M, TOUCHING = 100, 22_000, 75
 GRADED = analytic.Exponential(2.0)
 
 
-def literal_means(strength, h, *, series=True, seed=11):
+@cache
+def literal_means(strength, h, seed=11):
     """Mean of every quantity over many surfaces, and its standard error."""
     s, e = drawn(N, M, GRADED, seed, TOUCHING)
     c = strength / N
     x = hand.balances(s, e, h, c)
     sums = hand.sums_at(s, e, x)
-    if series:
-        sums["stiffness"] = sums["stiffness"] / (1 + 1.5 * c * sums["stiffness"])
+    sums["stiffness of the contacts"] = sums["stiffness"]
+    sums["stiffness"] = sums["stiffness"] / (1 + 1.5 * c * sums["stiffness"])
     sums["effective_separation"] = x
     return {name: (v.mean(), v.std() / math.sqrt(M)) for name, v in sums.items()}
 
 
-def scores(means, model, h):
+def scores(strength, h, model):
+    """How far means of literal surfaces are from those of a model, in standard errors."""
     scale = {name: factor(SURFACE, name) for name in QUANTITIES} | {"effective_separation": 1.0}
+    means = literal_means(strength, h)
     return {
-        name: (mean - float(model.mean(name, h)) / scale[name]) / error
-        for name, (mean, error) in means.items()
+        name: (means[name][0] - float(model.mean(name, h)) / unit) / means[name][1]
+        for name, unit in scale.items()
     }
 
 
 @pytest.mark.parametrize(("strength", "h"), [(3.0, 0.8), (-0.3, 0.3)])
 def test_means_of_finite_surfaces(strength, h):
-    z = scores(literal_means(strength, h), model_of(strength, N, grading=GRADED), h)
+    z = scores(strength, h, model_of(strength, N, grading=GRADED))
     assert max(map(abs, z.values())) < 5, z
 
 
@@ -250,15 +246,87 @@ def test_the_load_without_its_bias_fails():
 
 
 WRONG = {
-    "sinking of the centre": {"strength": 3.0 * hand.SINKING_OF_THE_CENTRE / hand.MEAN_SINKING},
-    "the other sign": {"strength": -0.3},
-    "a half-space graded as its asperities": {"strength": 3.0 / 1.5},
-    "half-space not in series": {"strength": 3.0, "series": False},
+    "sinking of the centre": (3.0, 0.8, 3.0 * hand.SINKING_OF_THE_CENTRE / hand.MEAN_SINKING),
+    "the other sign": (-0.3, 0.3, 0.3),
+    "a half-space graded as its asperities": (3.0, 0.8, 3.0 / 1.5),
 }
 
 
-@pytest.mark.parametrize("wrong", WRONG.values(), ids=WRONG)
-def test_wrong_versions_fail(wrong):
-    right = 0.3 if wrong["strength"] < 0 else 3.0
-    z = scores(literal_means(h=0.8, **wrong), model_of(right, N, grading=GRADED), 0.8)
+@pytest.mark.parametrize(("strength", "h", "wrong"), WRONG.values(), ids=WRONG)
+def test_wrong_models_fail(strength, h, wrong):
+    z = scores(strength, h, model_of(wrong, N, grading=GRADED))
     assert max(map(abs, z.values())) > 5, z
+
+
+def test_stiffness_without_the_half_space_in_series_fails():
+    mean, error = literal_means(3.0, 0.8)["stiffness of the contacts"]
+    model = model_of(3.0, N, grading=GRADED)
+    assert (mean - float(model.mean("stiffness", 0.8)) / factor(SURFACE, "stiffness")) / error > 5
+
+
+@pytest.fixture(scope="module")
+def witness():
+    with pytest.MonkeyPatch.context() as patch:
+        patch.syspath_prepend(str(Path(__file__).parents[1] / "runs"))
+        yield importlib.import_module("interaction_witness")
+
+
+def test_potential_of_images(witness):
+    """At a charge that of all others of a square lattice; a lattice of four is one of half the side."""
+    at = np.array([[0.1, 0.2], [0.6, 0.2], [0.1, 0.7], [0.6, 0.7]])
+    pairs = witness.potential(at, periodic=True)
+    np.testing.assert_allclose(np.diag(pairs), -LATTICE, rtol=1e-13)
+    np.testing.assert_allclose(pairs.sum(axis=1), -2 * LATTICE, rtol=1e-13)
+
+
+def test_potential_has_no_mean(witness):
+    """By the middles of squares, and 1/r over the one about the charge; the error of both falls as 1/n."""
+
+    def mean(n):
+        x = (np.arange(n) - n // 2) / n
+        table = witness.lattice_potential(*np.meshgrid(x, x))
+        table[n // 2, n // 2] += 4 * math.asinh(1) * n  # what is there is less the charge's own 1/r
+        return table.mean()
+
+    assert (101 * mean(101) - 51 * mean(51)) / 50 == pytest.approx(0, abs=1e-4)
+
+
+def test_pairs_are_balanced(witness):
+    rng = np.random.default_rng(2)
+    s = rng.standard_normal(80)
+    sinking = 0.02 * witness.potential(witness.places(80, rng, periodic=False), periodic=False)
+    d = witness.pairwise(s, sinking, 0.3)
+    literal = [
+        s[i] - 0.3 - math.fsum(sinking[i, j] * d[j] ** 1.5 for j in range(80) if j != i) for i in range(80)
+    ]
+    np.testing.assert_allclose(d, np.maximum(literal, 0), rtol=0, atol=1e-9)
+
+
+def test_two_asperities_side_by_side(witness):
+    """By symmetry both sink alike: d + k d^1.5 = s - h."""
+    s, k = np.array([1.0, 1.0]), 0.4
+    d = witness.pairwise(s, k * np.array([[0, 1], [1, 0]]), 0.0)
+    np.testing.assert_allclose(d + k * d**1.5, 1.0, rtol=1e-10)
+
+
+# Load of the mean field over that of pairs, less 1, and area of pairs over that of independent asperities at
+# the same load, h = 0, 1, 2: of another script, with other heights and places. What means of 16 surfaces
+# scatter by from seed to seed was seen on eight seeds; gates are about four times that.
+PRINTED = {"rms": (0.066, 0.047, 0.037), "area": (0.984, 0.988, 0.995)}
+
+
+@pytest.mark.slow
+def test_a_punch_as_printed_elsewhere(witness):
+    rows = witness.study("body")
+    assert [x.error_field for x in rows] == pytest.approx(PRINTED["rms"], abs=0.02)
+    assert [x.area for x in rows] == pytest.approx(PRINTED["area"], abs=0.01)
+    assert rows[0].error_independent > 1.5  # nearly three times the load
+
+
+@pytest.mark.slow
+def test_a_periodic_cell(witness):
+    """The lattice's shift brings the error of the load at h = 0 from 27 % to a few; its sign is right."""
+    rows = witness.study("mean-plane", surfaces=6)
+    assert rows[0].error_independent > 0.2
+    assert all(x.error_field < 0.07 and x.error_field < x.error_independent for x in rows)
+    assert all(x.independent < x.field < x.pairs for x in rows)

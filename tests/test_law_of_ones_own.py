@@ -11,12 +11,7 @@ KOGUT = KogutEtsion(critical=0.05)
 QUANTITIES = ("load", "area", "stiffness", "conductance", "load_slope", "contacts", "yielded")
 
 OWN = CustomLaw(
-    load=(
-        lambda u: u**3,
-        lambda u: 1.03 * u**2.85,
-        lambda u: 1.40 * u**2.526,
-        lambda u: 3 / 0.577 * u**2,
-    ),
+    load=(lambda u: u**3, lambda u: 1.03 * u**2.85, lambda u: 1.40 * u**2.526, lambda u: 3 / 0.577 * u**2),
     area=(lambda u: u**2, lambda u: 0.93 * u**2.272, lambda u: 0.94 * u**2.292, lambda u: 2 * u**2),
     limits=(1.0, 6.0, 110.0),
     critical=0.05,
@@ -65,27 +60,19 @@ def test_a_kink_inside_a_piece_is_seen():
         law.resolved(50.0)
 
 
-@pytest.mark.parametrize(
-    ("arguments", "words"),
-    [
-        (((film_like,), (film_like,), (1.0,), 0.1), "load: give 2 formulas, one more than limits, not 1"),
-        (((film_like,) * 2, (film_like,), (1.0,), 0.1), "area: give 2 formulas"),
-        (((film_like,) * 3, (film_like,) * 3, (2.0, 1.0), 0.1), r"limits = \[2.0, 1.0\]: give"),
-        (((film_like,), (film_like,), (), 0.0), "critical = 0.0: give"),
-        (((lambda u: u**2.5,), (film_like,), (), 0.1), r"load\[0\]: .*also negative ones"),
-        (((film_like,), (lambda u: np.interp(u, [0, 1], [0, 1]),), (), 0.1), r"area\[0\]: .*complex u"),
-        (((film_like, lambda u: np.log(1 - u)), (film_like,) * 2, (1.0,), 0.1), r"load\[1\]: .*finite"),
-    ],
-)
+@pytest.mark.parametrize(("arguments", "words"), [
+    (((film_like,), (film_like,), (1.0,), 0.1), "load: give 2 formulas, one more than limits, not 1"),
+    (((film_like,) * 2, (film_like,), (1.0,), 0.1), "area: give 2 formulas"),
+    (((film_like,) * 3, (film_like,) * 3, (2.0, 1.0), 0.1), r"limits = \[2.0, 1.0\]: give"),
+    (((film_like,), (film_like,), (), 0.0), "critical = 0.0: give"),
+    (((lambda u: u**2.5,), (film_like,), (), 0.1), r"load\[0\]: .*also negative ones"),
+    (((film_like,), (lambda u: np.interp(u, [0, 1], [0, 1]),), (), 0.1), r"area\[0\]: .*complex u"),
+    (((film_like, lambda u: np.log(1 - u)), (film_like,) * 2, (1.0,), 0.1), r"load\[1\]: .*finite"),
+])  # fmt: skip
 def test_errors_name_the_formula_and_what_would_do(arguments, words):
     with pytest.raises(ValueError, match=words) as caught:
         CustomLaw(*arguments)
     assert "\n" not in str(caught.value)
-
-
-def test_how_it_unloads_is_not_known():
-    with pytest.raises(ValueError, match="law = 'custom': its unloading is not known"):
-        OWN.unloading()
 
 
 def test_a_law_of_the_penetration_itself_is_told_from_a_kink():

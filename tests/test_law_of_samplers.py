@@ -4,13 +4,21 @@ Every gate is |z| < 5 with fixed seeds: false alarms 6e-7 a number. Each test ha
 wrong law fails.
 """
 
+import dataclasses
+
 import numpy as np
 import pytest
+from conftest import SURFACE
 from oracles import ensemble_arrays
 from scipy.stats import ks_2samp
 
 import analytic
 import mcgw
+from mcgw.ensemble.ensemble import Ensemble
+from mcgw.ensemble.results import MemoryResults
+from mcgw.sampling.counts import strata_of
+from mcgw.sampling.samplers import sampler_of
+from mcgw.statistics.checks import independence
 
 GATE = 5.0
 EXACT = ("direct", "tail", "cells")
@@ -20,14 +28,10 @@ M = 4000
 @pytest.fixture(scope="module")
 def ensembles():
     """One ensemble a sampler, fixed and Poisson."""
-    from conftest import SURFACE
-
-    from mcgw.scene.scene import Scene
-
     made = {}
     for count in ("fixed", "poisson"):
         for k, sampler in enumerate((*EXACT, "aggregate")):
-            scene = Scene(
+            scene = mcgw.Scene(
                 surface=SURFACE,
                 separations=(0.0, 0.5, 1.0, 2.0),
                 grading=analytic.Exponential(1.5),
@@ -79,31 +83,28 @@ def test_a_grading_off_by_2_percent_fails(ensembles):
 
 
 def test_a_poisson_number_for_a_fixed_one_fails(ensembles):
-    import dataclasses
-
     ensemble = ensembles["cells", "poisson"]
     scene = dataclasses.replace(ensemble.scene, count="fixed")
     assert scores(dataclasses.replace(ensemble, scene=scene))[1] > GATE
 
 
-@pytest.mark.parametrize(
-    ("flaw", "where"),
-    [
-        ({"exponent": 1.4}, 0),
-        ({"heights": lambda s: s + 0.01}, 0),
-        ({"heights": lambda s: np.minimum(s, 2.5)}, 1),
-    ],
-)
+def by_numpy(ensembles, **flaw):
+    scene = ensembles["direct", "fixed"].scene
+    return Ensemble(scene, "direct", MemoryResults(ensemble_arrays(scene, 5, **flaw)))
+
+
+def test_the_law_by_numpy_alone_passes(ensembles):
+    assert max(scores(by_numpy(ensembles))) < GATE
+
+
+@pytest.mark.parametrize(("flaw", "where"), [
+    ({"exponent": 1.4}, 0),
+    ({"heights": lambda s: s + 0.01}, 0),
+    ({"heights": lambda s: np.minimum(s, 2.5)}, 1),
+])  # fmt: skip
 def test_a_wrong_law_fails(ensembles, flaw, where):
     """Exponent 1.4 for 3/2, normals biased by 0.01, a tail cut at 2.5 sigma."""
-    from mcgw.ensemble.ensemble import Ensemble
-    from mcgw.ensemble.results import MemoryResults
-
-    scene = ensembles["direct", "fixed"].scene
-    right = Ensemble(scene, "direct", MemoryResults(ensemble_arrays(scene, 5)))
-    assert max(scores(right)) < GATE
-    wrong = Ensemble(scene, "direct", MemoryResults(ensemble_arrays(scene, 5, **flaw)))
-    assert scores(wrong)[where] > GATE
+    assert scores(by_numpy(ensembles, **flaw))[where] > GATE
 
 
 @pytest.mark.parametrize("quantity", ["load", "area", "stiffness", "contacts"])
@@ -115,7 +116,7 @@ def test_same_distribution_two_by_two(ensembles, quantity):
             assert ks_2samp(x[:, k], y[:, k]).pvalue > 1e-7
 
 
-def test_kolmogorov_smirnov_sees_one_percent_more_spread(ensembles):
+def test_kolmogorov_smirnov_sees_another_mean(ensembles):
     """The companion: a load at h = 0 whose mean is off by a fifth of its spread fails."""
     x = ensembles["cells", "fixed"].load[:, 0]
     assert ks_2samp(x, ensembles["direct", "fixed"].load[:, 0] + 0.2 * x.std()).pvalue < 1e-7
@@ -132,6 +133,14 @@ def test_surfaces_are_independent(ensembles):
     assert abs((shared[1:] * shared[:-1]).mean()) * np.sqrt(M) > GATE
 
 
+@pytest.mark.parametrize("lag", [None, 1, 2, 4, 8, 16, 32, 64])
+def test_the_check_of_independence_sees_every_lag(lag):
+    """By its p-value, below 1e-10 where each surface is correlated by 0.1 with the one a lag before only."""
+    e = np.random.default_rng(4).standard_normal((24, 364, 3))
+    groups = e[:, 64:] if lag is None else (e[:, 64:] + 0.1 * e[:, 64 - lag : -lag]) / np.sqrt(1.01)
+    assert (independence(groups).p < 1e-10) == (lag is not None)
+
+
 def test_skewness(ensembles):
     scene = ensembles["cells", "fixed"].scene
     exact = analytic.cumulants(scene.surface, "load", scene.separations, scene.grading, n_asperities=600)
@@ -145,14 +154,31 @@ def test_skewness(ensembles):
         assert np.abs(z_if_gaussian).max() > GATE
 
 
-def test_rare_contacts_are_poisson(make_scene):
-    """h = 5 with 1e6 asperities: 0.29 contacts a surface; the counts follow the exact binomial law."""
-    scene = make_scene(separations=(5.0,), n_asperities=10**6, n_surfaces=20_000, quantities=("contacts",))
-    contacts = mcgw.simulate(scene).contacts[:, 0]
-    p = float(analytic.fn(0, 5.0))
-    from scipy.stats import binom
+# The error of a stratified mean falls as N^(-3/2)
 
-    for k in range(3):
-        share = binom.pmf(k, 10**6, p)
-        z = ((contacts == k).mean() - share) / np.sqrt(share * (1 - share) / len(contacts))
-        assert abs(z) < GATE
+
+REPEATS = 60  # an rms over so many parts is known to 9 %
+
+
+def test_stratified_falls_as_the_three_halves_power(make_scene):
+    n = np.array([3200, 25600, 204800])  # fewer leave less than a stratum a cell
+    scene, errors = make_scene(separations=(1.0,), quantities=("load",), n_surfaces=REPEATS, seed=1000), []
+    exact = float(analytic.load(scene.surface, 1.0, scene.grading)) / scene.surface.n_asperities
+    for k in n.tolist():
+        loads = mcgw.simulate(scene.replace(sampler="stratified", n_asperities=k)).load
+        errors.append(np.sqrt(np.mean((loads / exact / k - 1) ** 2)))
+    assert np.polyfit(np.log(n), np.log(errors), 1)[0] < -1.4
+
+
+@pytest.mark.parametrize("separations", [(0.0,), tuple(np.linspace(0, 4, 41))])
+def test_a_millionth_with_fewer_than_1e5_draws(make_scene, separations):
+    """The load at h = 0: each of 60 surfaces, whose rms is 2e-7."""
+    scene = make_scene(
+        separations=separations, n_asperities=120_000, n_surfaces=REPEATS, sampler="stratified"
+    )
+    exact = float(analytic.load(scene.surface, 0.0, scene.grading)) / scene.surface.n_asperities
+    errors = mcgw.simulate(scene).load[:, 0] / (exact * scene.n_asperities) - 1
+    assert np.ptp(errors) > 0
+    strata = strata_of(scene, sampler_of(scene).mesh, 0, 1)
+    assert strata.cells.sum() + strata.low_extras.sum() + strata.high_extras.sum() < 1e5
+    assert np.abs(errors).max() < 1e-6

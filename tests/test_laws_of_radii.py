@@ -11,7 +11,7 @@ from analytic.laws import Ways, term_of
 
 SURFACE = analytic.Surface(1e-6, 1e-5, 1e9, 1e-6, 1e11)
 RNG = np.random.default_rng(0)
-S, RATIOS = RNG.normal(size=200), RNG.gamma(3, size=200) / 2
+S, RATIOS = RNG.normal(size=60), RNG.gamma(3, size=60) / 2
 MODULI = np.exp(0.3 * S)
 FILM = laws.Film(1e-7, 1e-12)
 LAWS = {

@@ -15,7 +15,9 @@ from hypothesis import strategies as st
 
 from mcgw.formats.units import METRES
 from mcgw.maps.files import read_map, write_map
+from mcgw.maps.form import smooth
 from mcgw.maps.sdf import read_sdf
+from mcgw.maps.spectrum import Spectrum, gaussian_map
 from mcgw.maps.topography import Topography
 
 NAMES = ["map.sdf", "map.ascii.sdf", "map.x3p", "map.npy", "map.h5"]
@@ -30,20 +32,14 @@ def topography():
 
 @every_format
 def test_what_is_written_is_read_again(name, topography, tmp_path):
+    """With every digit, and points that are missing."""
+    topography.heights[2, 3] = np.nan
     written = write_map(topography, tmp_path / name)
     again = read_map(tmp_path / name)
-    assert np.array_equal(again.heights, topography.heights)
+    assert np.array_equal(again.heights, topography.heights, equal_nan=True)
+    assert again.missing == 1
     assert again.pixel == topography.pixel
     assert sorted(tmp_path.iterdir()) == sorted(written)
-
-
-@every_format
-def test_missing_points_stay_missing(name, topography, tmp_path):
-    topography.heights[2, 3] = np.nan
-    write_map(topography, tmp_path / name)
-    again = read_map(tmp_path / name)
-    assert again.missing == 1
-    assert np.array_equal(again.heights, topography.heights, equal_nan=True)
 
 
 def metres_of(library_topography):
@@ -54,27 +50,22 @@ def metres_of(library_topography):
 
 
 @pytest.mark.parametrize("name", NAMES[:3])
+@pytest.mark.parametrize("program", ["SurfaceTopography", pytest.param("gwyddion", marks=pytest.mark.site)])
 @pytest.mark.filterwarnings("ignore")
-def test_surface_topography_reads_the_same(name, topography, tmp_path):
-    library = pytest.importorskip("SurfaceTopography")
-    write_map(topography, tmp_path / name)
-    heights, size = metres_of(library.read_topography(str(tmp_path / name)))
-    # it holds micrometres: one multiplication and back
-    assert heights == pytest.approx(topography.heights, rel=1e-14)
-    assert size == pytest.approx(topography.size, rel=1e-14)
-
-
-@pytest.mark.parametrize("name", NAMES[:3])
-@pytest.mark.filterwarnings("ignore")
-def test_gwyddion_reads_the_same(name, topography, tmp_path):
+def test_other_programs_read_the_same(program, name, topography, tmp_path):
     """Gwyddion converts the file to its own format, which SurfaceTopography reads."""
     library = pytest.importorskip("SurfaceTopography")
-    if shutil.which("gwyddion") is None:
-        pytest.skip("gwyddion is not installed")
-    write_map(topography, tmp_path / name)
-    command = ["gwyddion", "--no-splash", f"--convert-to-gwy={tmp_path / 'out.gwy'}", str(tmp_path / name)]
-    subprocess.run(command, check=True, capture_output=True, timeout=60)
-    heights, size = metres_of(library.read_topography(str(tmp_path / "out.gwy")))
+    path = tmp_path / name
+    write_map(topography, path)
+    if program == "gwyddion":
+        if shutil.which("gwyddion") is None:
+            pytest.skip("gwyddion is not installed")
+        out = tmp_path / "out.gwy"
+        command = ["gwyddion", "--no-splash", f"--convert-to-gwy={out}", str(path)]
+        subprocess.run(command, check=True, capture_output=True, timeout=60)
+        path = out
+    heights, size = metres_of(library.read_topography(str(path)))
+    # it holds micrometres: one multiplication and back
     assert heights == pytest.approx(topography.heights, rel=1e-14)
     assert size == pytest.approx(topography.size, rel=1e-14)
 
@@ -98,33 +89,46 @@ def test_files_of_surface_topography_are_read(topography, tmp_path):
     assert other.size == pytest.approx(topography.size, rel=1e-14)
 
 
-def test_integer_types_of_sdf(tmp_path):
-    """Scaled, and the mark of a missing point."""
-    for code, dtype, missing in ((5, "<i2", -(2**15)), (1, "<u2", 2**16 - 1), (6, "<i4", -(2**31))):
-        raw = np.array([[1, 2, 3], [4, missing, 6]], dtype=dtype)
-        head = struct.pack(
-            "<8s10s12s12sHHddddBBB", b"bISO-1.0", b"", b"", b"", 3, 2, 1e-6, 1e-6, 1e-9, 0, 0, code, 0
-        )
-        (tmp_path / "i.sdf").write_bytes(head + raw.tobytes())
-        expected = 1e-9 * np.array([[1, 2, 3], [4, np.nan, 6]])
-        assert read_sdf(tmp_path / "i.sdf").heights == pytest.approx(expected, nan_ok=True, rel=1e-15)
+def sdf_head(columns, rows, code, *scales):
+    """Of a binary SDF file; scales of x, y and z in m."""
+    names = b"bISO-1.0", b"", b"", b""
+    return struct.pack("<8s10s12s12sHHddddBBB", *names, columns, rows, *scales, 0, 0, code, 0)
 
 
-def test_text_with_the_comments_of_gwyddion(tmp_path):
-    (tmp_path / "map.txt").write_text(
-        "# Channel: Z\n# Width: 10.0 µm\n# Height: 4.0 µm\n# Value units: nm\n1;2\t3 4\n5 6 --- 8\n",
-        encoding="utf-8",
-    )
-    found = read_map(tmp_path / "map.txt")
-    assert found.heights == pytest.approx(1e-9 * np.array([[1, 2, 3, 4], [5, 6, np.nan, 8]]), nan_ok=True)
-    assert found.pixel == pytest.approx((2.5e-6, 2e-6))
+BY_HAND = np.array([[1, 2, 3], [4, np.nan, 6]])  # what each of the files below holds, in nm
 
 
-def test_text_without_a_size_needs_one(tmp_path):
-    (tmp_path / "map.csv").write_text("1,2\n3,4\n")
-    with pytest.raises(ValueError, match="--pixel"):
-        read_map(tmp_path / "map.csv")
-    assert read_map(tmp_path / "map.csv", pixel=(1e-6, 1e-6), unit="m").heights.tolist() == [[1, 2], [3, 4]]
+@pytest.mark.parametrize(("code", "dtype", "missing"), [
+    (1, "<u2", 2**16 - 1), (5, "<i2", -(2**15)), (6, "<i4", -(2**31)), (3, "<f4", np.finfo("f4").min),
+    (7, "<f8", np.finfo("f8").min),
+])  # fmt: skip
+def test_binary_sdf_made_by_hand(code, dtype, missing, tmp_path):
+    """Three scales, and the mark of a missing point of each type of numbers."""
+    raw = np.where(np.isnan(BY_HAND), missing, BY_HAND).astype(dtype)
+    (tmp_path / "i.sdf").write_bytes(sdf_head(3, 2, code, 1.5e-6, 4e-6, 1e-9) + raw.tobytes())
+    found = read_sdf(tmp_path / "i.sdf")
+    assert found.heights == pytest.approx(1e-9 * BY_HAND, nan_ok=True, rel=1e-15)
+    assert found.pixel == (1.5e-6, 4e-6)
+
+
+def test_other_files_made_by_hand(tmp_path):
+    """Sizes along x and y, units, and the lowest number as the mark of a missing point."""
+    keys = "NumPoints = 3\nNumProfiles = 2\nXscale=1.5e-6\nYscale=4e-6\nZscale=1e-9\nDataType=7\n"
+    (tmp_path / "t.ascii.sdf").write_text(f"aISO-1.0\n{keys}*\n1 2 3 4 -1.7976931348623e+308 6\n*\n")
+    np.save(tmp_path / "a.npy", 1e-9 * BY_HAND)
+    (tmp_path / "a.json").write_text('{"pixel": [1.5e-6, 4e-6], "unit": "m"}')
+    with h5py.File(tmp_path / "h.h5", "w") as file:
+        file["height"] = BY_HAND
+        file["height"].attrs["units"] = "nm"
+        file.attrs.update(filetype="mcgw-surface", format=[1, 0], pixel=(1.5e-6, 4e-6), periodic=False)
+    text = "# Channel: Z\n# Width: 4.5 µm\n# Height: 8.0 µm\n# Value units: nm\n1;2\t3\n4 --- 6\n"
+    (tmp_path / "w.txt").write_text(text, encoding="utf-8")
+    german = "# Kanal: Z\n# Breite: 4,5 µm\n# Höhe: 8,0 µm\n# Werteinheit: nm\n1,0\t2,0\t3\n4\t\t6,0\n"
+    (tmp_path / "g.txt").write_text(german, encoding="utf-8")
+    for name in ("t.ascii.sdf", "a.npy", "h.h5", "w.txt", "g.txt"):
+        found = read_map(tmp_path / name)
+        assert found.heights == pytest.approx(1e-9 * BY_HAND, nan_ok=True, rel=1e-14), name
+        assert found.pixel == pytest.approx((1.5e-6, 4e-6), rel=1e-14), name
 
 
 @every_format
@@ -140,7 +144,7 @@ def test_a_file_cut_short_is_refused(name, topography, tmp_path):
 
 
 @pytest.mark.parametrize("name", NAMES[:-1])  # the HDF5 library itself may crash on damaged files
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=25, deadline=None)
 @given(data=st.data())
 def test_a_damaged_file_gives_an_error_or_a_map(name, data, tmp_path_factory):
     """One byte changed anywhere: never another kind of error, never more memory than the file is worth."""
@@ -158,9 +162,7 @@ def test_a_damaged_file_gives_an_error_or_a_map(name, data, tmp_path_factory):
 
 
 def test_gigantic_declarations_allocate_nothing(tmp_path):
-    head = struct.pack(
-        "<8s10s12s12sHHddddBBB", b"bISO-1.0", b"", b"", b"", 65535, 65535, 1e-6, 1e-6, 1.0, 0, 0, 7, 0
-    )
+    head = sdf_head(65535, 65535, 7, 1e-6, 1e-6, 1.0)
     (tmp_path / "huge.sdf").write_bytes(head + bytes(100))
     with pytest.raises(ValueError, match="65535 x 65535 points: more than"):
         read_map(tmp_path / "huge.sdf")
@@ -220,10 +222,7 @@ def all_zero(members):
         (replaced(b"<Record1>", b"<!DOCTYPE a><Record1>"), "declares entities"),
         (replaced(b"</Record1>", b""), "mismatched tag"),
         *(
-            (
-                replaced(b"<Increment>%s<" % old, b"<Increment>%s<" % new),
-                f"C{axis}/Increment = .*must be >",
-            )
+            (replaced(b"<Increment>%s<" % old, b"<Increment>%s<" % new), f"C{axis}/Increment = .*must be >")
             for axis, old in (("X", b"1e-06"), ("Y", b"2.5e-06"), ("Z", b"1.0"))
             for new in (b"0", b"-1e-6")
         ),
@@ -313,16 +312,13 @@ def test_what_a_file_tells_is_not_told_again(name, topography, tmp_path):
     assert np.array_equal(read_map(tmp_path / name, unit="m").heights, topography.heights)
 
 
-@pytest.mark.parametrize(
-    ("content", "told"),
-    [
-        ("1 2\n3\n", "line 2 has 1 numbers, the first row 2"),
-        ("1 2\n3 x\n", "line 2: could not convert"),
-        ("1 inf\n", "infinite"),
-        ("# nothing\n", "holds no numbers"),
-        ("# Width: 1 furlong\n", "not a unit of length"),
-    ],
-)
+@pytest.mark.parametrize(("content", "told"), [
+    ("1 2\n3\n", "line 2 has 1 numbers, the first row 2"),
+    ("1 2\n3 x\n", "line 2: could not convert"),
+    ("1 inf\n", "infinite"),
+    ("# nothing\n", "holds no numbers"),
+    ("# Width: 1 furlong\n", "not a unit of length"),
+])  # fmt: skip
 def test_damaged_text_is_refused(content, told, tmp_path):
     (tmp_path / "map.txt").write_text(content)
     with pytest.raises(ValueError, match=told):
@@ -339,6 +335,38 @@ def test_an_array_needs_a_sound_sidecar(sidecar, topography, tmp_path):
     beside.unlink() if sidecar is None else beside.write_text(sidecar)
     with pytest.raises(ValueError, match=r"map\.json"):
         read_map(tmp_path / "map.npy")
+
+
+def test_what_makes_no_map_is_refused(tmp_path):
+    def saved(name, array):
+        np.save(tmp_path / name, array)
+        return tmp_path / name
+
+    def sdf(*scales):
+        (tmp_path / "s.sdf").write_bytes(sdf_head(1, 1, 7, *scales) + bytes(8))
+        return tmp_path / "s.sdf"
+
+    def other_h5():
+        h5py.File(tmp_path / "o.h5", "w").close()
+        return tmp_path / "o.h5"
+
+    narrow, rng = Spectrum(1e-6, 30e-6, 5e-6), np.random.default_rng(1)
+    wave = Topography(np.sin(np.arange(400.0)).reshape(20, 20), (1e-6, 1e-6), periodic=True)
+    for call, told in (
+        (lambda: Topography(np.zeros(3), (1.0, 1.0)), "not 1 dimension"),
+        (lambda: Topography(np.zeros((0, 3)), (1.0, 1.0)), "one or more along each axis"),
+        (lambda: Topography(np.zeros((2, 3)), (1.0, 0.0)), "two numbers > 0"),
+        (lambda: read_map(saved("v.npy", np.zeros(3)), pixel=(1.0, 1.0)), "a map has rows and columns"),
+        (lambda: read_map(sdf(1e-6, 0.0, 1.0)), "all must be > 0"),
+        (lambda: read_map(other_h5()), "not a mcgw-surface file|SurfaceTopography"),
+        (lambda: Spectrum(0.0, 30e-6, 5e-6), "give a length > 0 m"),
+        (lambda: Spectrum(1e-6, 30e-6, 5e-6, 2.0), "hurst"),
+        (lambda: gaussian_map(narrow, (64, 64), (3e-6, 1e-6), rng), "shows 2 pixels or more"),
+        (lambda: gaussian_map(narrow, (64, 20), (1e-6, 1e-6), rng), "longer than the map"),
+        (lambda: smooth(wave, 30e-6), "longer than the map"),
+    ):
+        with pytest.raises(ValueError, match=told):
+            call()
 
 
 def test_arrays_of_objects_are_never_unpickled(tmp_path):
@@ -367,21 +395,6 @@ def test_nothing_half_written_is_left(tmp_path):
         write_map(Topography(np.zeros((1, 2)), (1.0, 1.0)), tmp_path / "nowhere" / "map.npy")
 
 
-def test_the_lowest_floating_number_is_a_missing_point(tmp_path):
-    for code, dtype in ((7, "<f8"), (3, "<f4")):
-        raw = np.array([[1, 2, 3], [4, np.finfo(dtype).min, 6]], dtype=dtype)
-        head = struct.pack(
-            "<8s10s12s12sHHddddBBB", b"bISO-1.0", b"", b"", b"", 3, 2, 1e-6, 1e-6, 1e-9, 0, 0, code, 0
-        )
-        (tmp_path / "f.sdf").write_bytes(head + raw.tobytes())
-        expected = 1e-9 * np.array([[1, 2, 3], [4, np.nan, 6]])
-        assert read_sdf(tmp_path / "f.sdf").heights == pytest.approx(expected, nan_ok=True, rel=1e-15)
-    write_map(Topography(np.array([[1.0, 2.0], [3.0, 4.0]]), (1.0, 1.0)), tmp_path / "t.ascii.sdf")
-    text = (tmp_path / "t.ascii.sdf").read_text().replace("4.0", "-1.7976931348623e+308")
-    (tmp_path / "t.ascii.sdf").write_text(text)
-    assert read_map(tmp_path / "t.ascii.sdf").missing == 1
-
-
 def gwyddions_numbers(text):
     """What Gwyddion's sdfile.c reads after the header: as C's strtod does, it ends at the first word."""
     rest, found = text.partition("*")[2], []
@@ -401,16 +414,6 @@ def test_ascii_sdf_with_missing_points_is_read_by_gwyddions_rules(topography, tm
     keys = [line.split("=")[0].strip() for line in text.partition("*")[0].splitlines()[1:]]
     order = "ManufacID CreateDate ModDate NumPoints NumProfiles Xscale Yscale Zscale Zresolution"
     assert keys == [*order.split(), "Compression", "DataType", "CheckType"]
-
-
-GERMAN = "# Kanal: Z\n# Breite: 10,0 µm\n# Höhe: 4,0 µm\n# Werteinheit: nm\n1,5\t2,5\n3,5\t4,25\n"
-
-
-def test_german_exports(tmp_path):
-    (tmp_path / "map.txt").write_text(GERMAN, encoding="utf-8")
-    found = read_map(tmp_path / "map.txt")
-    assert found.heights == pytest.approx(1e-9 * np.array([[1.5, 2.5], [3.5, 4.25]]))
-    assert found.pixel == pytest.approx((5e-6, 2e-6))
 
 
 @pytest.mark.filterwarnings("ignore")

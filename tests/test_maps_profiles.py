@@ -7,42 +7,42 @@ import matplotlib.pyplot as plt
 import mpmath
 import numpy as np
 import pytest
+from scipy.stats import t as t_law
 
 import mcgw
-from analytic import SpectralMoments
+from analytic import Nayak, SpectralMoments
 from mcgw.cli import main
 from mcgw.maps.areal_weights import areal_weights, filter_variance, stencil_weights
 from mcgw.maps.form import gaussian_transmission
-from mcgw.maps.profile import Profile, smooth_profile, without_profile_form
+from mcgw.maps.profile import Profile, profile_at, smooth_profile, without_profile_form
+from mcgw.maps.profile_files import holds_profile, read_profile
 from mcgw.maps.profile_fit import fit_profiles
 from mcgw.maps.profile_waves import waves_of_profile
 from mcgw.maps.spectrum import Spectrum, gaussian_map
 
 UM = 1e-6
+SMOOTH = 3  # neighbouring waves whose power is averaged
 NAMES = ("m0", "m2", "m4", "alpha", "eta", "radius", "sigma")
 
 
 def by_quadrature(x, order):
-    """m0, m2 or m4 of a wave k = 1 of a profile, with a = x^2: derivatives of an integral over distances."""
-    with mpmath.workdps(20):
+    """m0, m2 or m4 of a wave k = 1 of a profile, with a = x^2: derivatives under an integral."""
+    with mpmath.workdps(25):
+        a = mpmath.mpf(x) ** 2
 
-        def w0(a):
-            return mpmath.quad(
-                lambda r: mpmath.cos(r) * mpmath.exp(-r * r / (4 * a)) * r / (2 * a),
-                mpmath.linspace(0, 20 * mpmath.sqrt(a), 20),
-            )
+        def under(r):  # cos(r) r exp(-r^2/(4a))/(2a), differentiated so often by a
+            first = r * r / (4 * a * a) - 1 / a
+            factor = (1, first, first**2 - r * r / (2 * a**3) + 1 / a**2)[order]
+            return mpmath.cos(r) * mpmath.exp(-r * r / (4 * a)) * r / (2 * a) * factor
 
-        factor = {0: 1, 1: mpmath.mpf(-1) / 2, 2: mpmath.mpf(3) / 8}[order]
-        return float(
-            factor * (mpmath.diff(w0, mpmath.mpf(x) ** 2, order) if order else w0(mpmath.mpf(x) ** 2))
-        )
+        whole = mpmath.quad(under, mpmath.linspace(0, 18 * mpmath.sqrt(a), 5))
+        return float((1, mpmath.mpf(-1) / 2, mpmath.mpf(3) / 8)[order] * whole)
 
 
 @pytest.mark.parametrize("x", [0.019, 0.021, 1.0, 3.0])
 def test_weights_are_means_of_the_autocorrelation_under_a_gaussian(x):
-    cutoff = 1.0
-    k = x / math.sqrt(filter_variance(cutoff))
-    found = areal_weights(np.array([k]), cutoff)[:, 0]
+    k = x / math.sqrt(filter_variance(1.0))
+    found = areal_weights(np.array([k]), 1.0)[:, 0]
     for order in range(3):
         assert found[order] == pytest.approx(by_quadrature(x, order), rel=1e-8, abs=1e-9)
 
@@ -91,60 +91,83 @@ def test_without_a_cutoff_moments_are_mean_squares_of_stencils():
     np.testing.assert_allclose(stencil_weights(phases)[1] * phases**2, sees**2, rtol=1e-12)
 
 
-def truth(spectrum, cutoff, points):
+def truth(spectrum, cutoff, shape):
     """Moments of the surface after the areal filter: sums over the waves of the map that is drawn."""
-    q = 2 * np.pi * np.fft.fftfreq(points, UM)
-    both = np.hypot(q, q[:, None])
+    qy, qx = (2 * np.pi * np.fft.fftfreq(n, UM) for n in shape)
+    both = np.hypot(qx, qy[:, None])
     power = spectrum.density(both)
     power *= spectrum.rms**2 / power.sum()
     left = power if cutoff is None else power * gaussian_transmission(both, cutoff) ** 2
-    return SpectralMoments(*(float((left * q**k).sum()) for k in (0, 2, 4)))
+    return SpectralMoments(*(float((left * q**k).sum()) for q, k in ((qx, 0), (qx, 2), (qx, 4))))
 
 
-def cut(spectrum, points, maps, seed):
-    """Profiles along x and y, as far apart as the longest wave, from maps twice as long; pixel 1 um."""
+def cut(spectrum, points, maps=1, seed=6, apart=2):
+    """Profiles as far apart as the longest wave, two on a line, from maps of `apart` lines; pixel 1 um."""
     rng = np.random.default_rng(seed)
-    apart = round(spectrum.long / UM)
+    step = round(spectrum.long / UM)
     for _ in range(maps):
-        z = gaussian_map(spectrum, (2 * points, 2 * points), (UM, UM), rng).heights
-        for lines in (z, z.T):
-            for line in lines[::apart]:
-                yield Profile(line[:points].copy(), UM)
-                yield Profile(line[points:].copy(), UM)
+        z = gaussian_map(spectrum, (apart * step, 2 * points), (UM, UM), rng).heights
+        for line in z[::step]:
+            yield Profile(line[:points].copy(), UM)
+            yield Profile(line[points:].copy(), UM)
+
+
+def test_errors_of_a_fit_literally():
+    """Of profiles of unequal length: power of the waves seen, and what stretches differ, the larger one."""
+    profiles = list(cut(Spectrum(UM, 60 * UM, 8 * UM), 900))[:2]
+    profiles[1] = Profile(profiles[1].heights[:500], UM)
+    plain = [without_profile_form(p, "plane") for p in profiles]
+    fit = fit_profiles(profiles, cutoff=10 * UM)
+    seen = [waves_of_profile(p, cutoff=10 * UM, terms=2, pieces=8) for p in plain]  # 16 stretches together
+    whole = sum(w.length for w in seen)
+    values = sum(w.length / whole * w.moments for w in seen)
+    assert (fit.moments.m0, fit.moments.m2, fit.moments.m4) == pytest.approx(tuple(values), rel=1e-12)
+    m0 = 0.8968057562340189 * fit.moments.m2**2 / fit.moments.m4 / fit.moments.sigma**2  # m0/sigma^2 - 1
+    by_logarithms = {
+        "m0": (1, 0, 0), "m2": (0, 1, 0), "m4": (0, 0, 1), "alpha": (1, -2, 1), "eta": (0, -1, 1),
+        "radius": (0, 0, -0.5), "sigma": ((1 + m0) / 2, -m0, m0 / 2),
+    }  # fmt: skip
+    for name, exponents in by_logarithms.items():
+        squares, stretches = [], []
+        for w in seen:
+            each = sum(e / v * row for e, v, row in zip(exponents, values, w.weights, strict=True))
+            power = np.convolve(w.power, np.full(SMOOTH, 1 / SMOOTH), mode="same")
+            squares += [(w.length / whole * a * b) ** 2 for a, b in zip(each, power, strict=True)]
+            of_pieces = sum(e / v * row for e, v, row in zip(exponents, values, w.pieces, strict=True))
+            stretches += [w.length / whole * 2 * x for x in of_pieces]
+        freedom = max(sum(squares) ** 2 / sum(q * q for q in squares) / 2, 2)
+        by_waves = math.sqrt(sum(squares) / (1 + 1 / SMOOTH)) * t_law.ppf(0.975, freedom) / 2
+        by_stretches = np.std(stretches, ddof=1) / 4 * t_law.ppf(0.975, 15) / 2
+        assert fit.errors[name] == pytest.approx(max(by_waves, by_stretches), rel=1e-9), name
 
 
 CASES = {  # spectrum, cutoff, profiles together: 10 of the longest waves on a profile, or 4
-    "alpha 12": (Spectrum(UM, 100 * UM, 8 * UM, 0.8), 10 * UM, 1),
     "alpha 12, four": (Spectrum(UM, 100 * UM, 8 * UM, 0.8), 10 * UM, 4),
     "noisy": (Spectrum(UM, 100 * UM, 4 * UM, -0.5), 16 * UM, 1),
     "as measured": (Spectrum(UM, 100 * UM, 16 * UM, 0.5), None, 1),
-    "few long waves": (Spectrum(UM, 250 * UM, 12 * UM, 0.8), 16 * UM, 3),
+    "few long waves": (Spectrum(UM, 250 * UM, 12 * UM, 0.8), 16 * UM, 1),
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("case", CASES)
 def test_intervals_hold_on_profiles_cut_from_maps(case):
     """Truth is the spectrum. z is the error of the logarithm over the one stated.
 
-    5 % may lie beyond two errors; more than 10 % do so by chance in 1 of 500 tests of 200 fits (binomial), in
-    1 of 100 of 120. The spread of z is 1 to a twentieth if errors are right, less where they are careful.
+    5 % may lie beyond two errors; more than 11 % do so by chance in 1 of 100 tests of 120 fits (binomial).
+    The spread of z is 1 to a fifteenth if errors are right, less where they are careful.
     """
     spectrum, cutoff, together = CASES[case]
-    expected = truth(spectrum, cutoff, 2000)
-    number = 120 if case == "few long waves" else 200
-    per_map = 4 * math.ceil(2000 * UM / spectrum.long)
-    profiles = list(cut(spectrum, 1000, math.ceil(number * together / per_map), seed=4))
+    lines = round(2000 * UM / spectrum.long)
+    expected = truth(spectrum, cutoff, (2000, 2000))
+    profiles = list(cut(spectrum, 1000, math.ceil(120 * together / (2 * lines)), seed=4, apart=lines))
     np.random.default_rng(5).shuffle(profiles)
-    fits = [
-        fit_profiles(profiles[i : i + together], cutoff=cutoff)
-        for i in range(0, len(profiles) - together + 1, together)
-    ][:number]
-    assert len(fits) == number
+    fits = [fit_profiles(profiles[i * together : (i + 1) * together], cutoff=cutoff) for i in range(120)]
     for name in NAMES:
         z = [math.log(getattr(f.moments, name) / getattr(expected, name)) / f.errors[name] for f in fits]
-        assert np.mean(np.abs(z) > 2) <= 0.1, name
+        assert np.mean(np.abs(z) > 2) <= 0.11, name
         assert 0.6 < np.std(z) < 1.25, name
-        assert abs(np.mean(z)) < 0.35, name  # logarithms of few waves: minus half a variance
+        assert abs(np.mean(z)) < 0.4, name  # logarithms of few waves: minus half a variance
     if case == "noisy":  # the companion: filtered along the line instead
         wrong = [np.mean((np.diff(smooth_profile(p, cutoff).heights, 2) / UM**2) ** 2) for p in profiles[:40]]
         outside = [
@@ -153,9 +176,9 @@ def test_intervals_hold_on_profiles_cut_from_maps(case):
         assert np.mean(outside) > 0.5
 
 
-def test_a_profile_and_its_map_agree():
+def test_a_profile_and_its_map_agree(without_caps):
     """Map and profiles of one surface, one cutoff: summits within the errors of both."""
-    drawn = gaussian_map(Spectrum(UM, 60 * UM, 6 * UM), (1024, 1024), (UM, UM), np.random.default_rng(8))
+    drawn = gaussian_map(Spectrum(UM, 60 * UM, 6 * UM), (512, 640), (UM, UM), np.random.default_rng(8))
     of_map = mcgw.fit(drawn, cutoff="10 um", form="none")
     of_profiles = mcgw.fit([Profile(z, UM) for z in drawn.heights[::64]], cutoff="10 um")
     for name in ("eta", "radius", "sigma"):
@@ -166,33 +189,21 @@ def test_a_profile_and_its_map_agree():
         assert math.sqrt(low * high) == pytest.approx(b, rel=1e-12)
 
 
-def test_several_profiles_are_averaged_and_know_more():
-    profiles = list(cut(Spectrum(UM, 100 * UM, 8 * UM), 1000, 1, seed=6))[:9]
-    together, alone = (fit_profiles(p, cutoff=10 * UM) for p in (profiles, profiles[:1]))
-    each = [fit_profiles([p], cutoff=10 * UM) for p in profiles]
-    assert together.moments.m4 == pytest.approx(np.mean([f.moments.m4 for f in each]), rel=1e-3)
-    assert 0.2 < together.errors["m4"] / alone.errors["m4"] < 0.5  # a third, as one knows one's own error
-    longer = Profile(np.concatenate([p.heights for p in profiles[:3]]), UM)
-    mixed = fit_profiles([longer, profiles[5]], cutoff=10 * UM)
-    weighted = (3 * fit_profiles([longer], cutoff=10 * UM).moments.m2 + each[5].moments.m2) / 4
-    assert mixed.moments.m2 == pytest.approx(weighted, rel=1e-12)
-
-
 def test_peaks_of_a_profile_follow_rice_and_are_no_summits():
     """A Gaussian surface has 2 pi/(3 sqrt 3) = 1.21 times as many summits as its profile's peaks squared."""
-    drawn = gaussian_map(Spectrum(UM, 60 * UM, 12 * UM), (1024, 1024), (UM, UM), np.random.default_rng(3))
+    drawn = gaussian_map(Spectrum(UM, 60 * UM, 12 * UM), (640, 1024), (UM, UM), np.random.default_rng(3))
     fit = fit_profiles([Profile(z, UM) for z in drawn.heights[::40]], cutoff=None)
     counted, expected = fit.peaks
     assert counted == pytest.approx(expected, rel=0.03)
     assert fit.moments.eta / counted**2 == pytest.approx(2 * math.pi / (3 * math.sqrt(3)), rel=0.06)
 
 
-def test_roughness_is_that_of_what_is_left():
-    drawn = gaussian_map(Spectrum(UM, 40 * UM, 8 * UM), (512, 512), (UM, UM), np.random.default_rng(3))
+def test_roughness_is_that_of_what_is_left(without_caps):
+    drawn = gaussian_map(Spectrum(UM, 40 * UM, 8 * UM), (256, 256), (UM, UM), np.random.default_rng(3))
     of_map = mcgw.fit(drawn, cutoff="10 um", form="none")
     assert of_map.roughness.q == pytest.approx(math.sqrt(of_map.moments.m0), rel=1e-12)
     assert of_map.roughness.sk == pytest.approx(of_map.skewness[0], rel=1e-9)
-    assert of_map.roughness.a / of_map.roughness.q == pytest.approx(math.sqrt(2 / math.pi), rel=0.01)
+    assert of_map.roughness.a / of_map.roughness.q == pytest.approx(math.sqrt(2 / math.pi), rel=0.02)
     z = np.sin(np.arange(6280) / 10) * UM  # 100 waves
     of_profile = fit_profiles([Profile(z, UM)], cutoff=None, form="none").roughness
     assert of_profile.a == pytest.approx(2 / math.pi * UM, rel=1e-3)
@@ -208,16 +219,13 @@ def test_form_of_a_profile_is_taken_off(form):
     assert np.abs(without_profile_form(Profile(shape + t**3, 1.0), form).heights).max() > 0.01
 
 
-@pytest.mark.parametrize(
-    ("heights", "cutoff", "told"),
-    [
-        (np.ones(900), 10 * UM, "flat"),
-        (np.random.default_rng(1).normal(size=900) * UM, 800 * UM, "leaves nothing"),
-        (np.random.default_rng(1).normal(size=40) * UM, None, "too few for 16 stretches"),
-        (np.sin(np.arange(9000) / 10) * UM, 37 * UM, "no isotropic surface has"),
-        (np.random.default_rng(3).normal(size=100) * UM, 40 * UM, "too short"),
-    ],
-)
+@pytest.mark.parametrize(("heights", "cutoff", "told"), [
+    (np.ones(900), 10 * UM, "flat"),
+    (np.random.default_rng(1).normal(size=900) * UM, 800 * UM, "leaves nothing"),
+    (np.random.default_rng(1).normal(size=40) * UM, None, "too few for 16 stretches"),
+    (np.sin(np.arange(9000) / 10) * UM, 37 * UM, "no isotropic surface has"),
+    (np.random.default_rng(3).normal(size=100) * UM, 40 * UM, "too short"),
+])  # fmt: skip
 def test_profiles_that_cannot_be_fitted_are_refused(heights, cutoff, told):
     with pytest.raises(ValueError, match=told):
         fit_profiles([Profile(heights, UM)], cutoff=cutoff)
@@ -230,7 +238,7 @@ def cautions(profiles, cutoff):
 
 
 def test_profiles_that_should_be_doubted_are():
-    (good, other, *_) = cut(Spectrum(UM, 60 * UM, 8 * UM), 2000, 1, seed=6)
+    (good, other, *_) = cut(Spectrum(UM, 60 * UM, 8 * UM), 2000)
     assert cautions([good, other], 10 * UM) == []
     assert cautions([good, other], None) == ["cutoff"]
     assert "cutoff" in cautions([good], 4 * UM)
@@ -246,7 +254,7 @@ def test_profiles_that_should_be_doubted_are():
 @pytest.fixture(scope="module")
 def files(tmp_path_factory):
     folder = tmp_path_factory.mktemp("profiles")
-    for k, p in enumerate(list(cut(Spectrum(UM, 100 * UM, 8 * UM), 1000, 1, seed=6))[:2]):
+    for k, p in enumerate(list(cut(Spectrum(UM, 100 * UM, 8 * UM), 1000))[:2]):
         lines = [f"{i / 1000:.4f};{z * 1e6:.6f}".replace(".", ",") for i, z in enumerate(p.heights)]
         text = "\n".join(["Taster 2 um, Nr. 7", "x [mm];z [µm]", *lines])
         (folder / f"p{k}.txt").write_text(text, encoding="utf-8")
@@ -267,20 +275,19 @@ def test_the_command_tells_a_profile_by_its_shape(files, tmp_path, capsys):
     assert scene.surface.sigma == found.moments.sigma
     assert scene.surface.nominal_area == pytest.approx(1e-6, rel=1e-9)
     assert mcgw.fitted_scene(found, E_star="70 GPa").surface == scene.surface
-    assert mcgw.simulate(scene, n_surfaces=2, separations=[2.0]).load.shape == (2, 1)
+    assert mcgw.fitted_scene(found, heights="nayak").heights == Nayak(found.moments.alpha)
+    with pytest.raises(ValueError, match="a profile has plane"):
+        fit_profiles([Profile(np.arange(99.0) % 7, UM)], cutoff=None, form="cubic")
     assert "95 %" in repr(found)
     assert len(repr(found).splitlines()) <= 12
 
 
-@pytest.mark.parametrize(
-    ("words", "told"),
-    [
-        (["--summits", "s.csv"], "--summits s.csv: a profile shows no summits"),
-        (["--heights", "table"], "profiles show no summits"),
-        (["--pixel", "1um"], "tells x in mm itself; leave --pixel out"),
-        (["--unit", "nm"], "heights are in .m as the file says, not in nm"),
-    ],
-)
+@pytest.mark.parametrize(("words", "told"), [
+    (["--summits", "s.csv"], "--summits s.csv: a profile shows no summits"),
+    (["--heights", "table"], "profiles show no summits"),
+    (["--pixel", "1um"], "tells x in mm itself; leave --pixel out"),
+    (["--unit", "nm"], "heights are in .m as the file says, not in nm"),
+])  # fmt: skip
 def test_what_a_profile_cannot_be_asked(words, told, files, tmp_path, capsys, monkeypatch):
     monkeypatch.chdir(tmp_path)
     assert main(["fit", str(files / "p0.txt"), "--cutoff", "10um", *words, "-o", "s.toml"]) == 2
@@ -309,3 +316,161 @@ def test_the_picture_shows_heights_and_summits(files):
         assert np.trapezoid(z * density, z) == pytest.approx(mean, abs=1e-2 * spread)
         assert np.trapezoid((z - mean) ** 2 * density, z) == pytest.approx(spread**2, rel=1e-2)
     plt.close("all")
+
+
+Z = np.array([0.1, 0.3, -0.2, 0.5, 0.4, 0.0, -0.1, 0.2, 0.35, 0.15])
+UM, MM = 1e-6, 1e-3
+
+
+def lines(columns, separator, comma):
+    rows = (separator.join(f"{v:g}" for v in row) for row in zip(*columns, strict=True))
+    return [row.replace(".", ",") if comma else row for row in rows]
+
+
+X = np.arange(10) * 0.5
+BOTH, ALONE = (X, Z), (Z,)
+ROWS = {  # name: text, ending, spacing given, spacing and unit of z expected in m
+    "two columns, SI": (lines((X * UM, Z * UM), " ", False), ".txt", None, (0.5 * UM, UM)),
+    "tabs, units in brackets": (["x [mm]\tz [um]", *lines(BOTH, "\t", False)], ".txt", None, (0.5 * MM, UM)),
+    "decimal commas": (["X (µm);Z (nm)", *lines(BOTH, ";", True)], ".csv", None, (0.5 * UM, 1e-9)),
+    "after a slash": (["Weg/mm;Hoehe/um", *lines(BOTH, ";", True)], ".asc", None, (0.5 * MM, UM)),
+    "commas": (["x,z", "um,nm", *lines(BOTH, ",", False)], ".csv", None, (0.5 * UM, 1e-9)),
+    "Gwyddion": (
+        ["Profile 1", "x [m] y [m]", *lines((X * UM, Z * UM), "  ", False)], ".txt", None, (0.5 * UM, UM),
+    ),
+    "comments": (["# x in um; z in nm", *lines(BOTH, " ", False)], ".dat", None, (0.5 * UM, 1e-9)),
+    "one unit for both": (["Units (um)", *lines(BOTH, ";", False)], ".txt", None, (0.5 * UM, UM)),
+    "metadata": (
+        ["Speed (mm/s): 0.5", "Length (mm): 4.8", "x (um);z (nm)", *lines(BOTH, ";", False)],
+        ".txt", None, (0.5 * UM, 1e-9),
+    ),
+    "one column": (["z (um)", *lines(ALONE, "", False)], ".txt", 2 * UM, (2 * UM, UM)),
+    "one column of commas": (["z (um)", *lines(ALONE, "", True)], ".txt", 2 * UM, (2 * UM, UM)),
+    "a count for x": (["n z", *lines((np.arange(10), Z * UM), " ", False)], ".txt", 2 * UM, (2 * UM, UM)),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", ROWS)
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-16"])
+def test_text_of_every_kind(name, encoding, tmp_path):
+    text, ending, given, (spacing, unit) = ROWS[name]
+    path = tmp_path / f"p{ending}"
+    path.write_text("\n".join(text) + "\n", encoding=encoding)
+    assert holds_profile(path)
+    found = read_profile(path, spacing=given)
+    assert found.spacing == pytest.approx(spacing, rel=1e-9)
+    np.testing.assert_allclose(found.heights, Z * unit, rtol=1e-9, atol=1e-20)
+    assert not found.filled
+    assert not found.resampled
+
+
+@pytest.mark.parametrize(("text", "given", "told"), [
+    ("1\n2\n3\n", {}, "has one column, of heights; give --pixel"),
+    ("x (um);z (um)\n0;1\n1;2\n", {"spacing": 1e-6}, "tells x in um itself; leave --pixel out"),
+    ("x (um);z (um)\n0;1\n1;2\n", {"unit": "nm"}, "heights are in um as the file says, not in nm"),
+    ("0 1\n1 2\n2 1\n3 1\n1 2\n4 2\n5 2\n6 1\n7 1\n", {}, "x = 3 m is followed by 1 m"),
+    ("\n".join(f"{i} {i % 2 * 1e-6}" for i in range(20)), {}, "the points are 1 m apart; give --unit"),
+    ("\n".join(f"{i * 1e-6} {i % 2}" for i in range(20)), {}, "the usual slope is 1e\\+06; give --unit"),
+    ("0 1\n1 2\n", {}, "2 points: a profile has 8 or more"),
+    ("0 1\n1 2 3\n2 2\n", {}, "line 2 has 3 numbers, the first 2"),
+    ("0 1\n1 2\nend\n", {}, "line 3: could not convert"),
+    ("0 1 2\n1 2 3\n", {}, "3 numbers a line; a profile has z, or x and z"),
+    ("x z\n", {}, "holds no numbers"),
+    ("\n".join(f"{i} {'nan' if i % 3 else 1}" for i in range(30)), {}, "lacks 18 of its 28 heights"),
+])  # fmt: skip
+def test_what_is_no_profile_is_refused_in_one_line(text, given, told, tmp_path):
+    path = tmp_path / "p.txt"
+    path.write_text(text)
+    with pytest.raises(ValueError, match=told) as error:
+        read_profile(path, **given)
+    assert "\n" not in str(error.value)
+    assert "p.txt" in str(error.value)
+
+
+def test_maps_are_no_profiles(tmp_path):
+    (tmp_path / "m.txt").write_text("1 2 3\n4 5 6\n")
+    np.save(tmp_path / "m.npy", np.zeros((3, 4)))
+    np.save(tmp_path / "p.npy", np.arange(100.0) % 7 * UM)
+    assert not holds_profile(tmp_path / "m.txt")
+    assert not holds_profile(tmp_path / "m.npy")
+    assert not holds_profile(tmp_path / "absent.txt")
+    assert not holds_profile(tmp_path / "absent.xyz")
+    assert holds_profile(tmp_path / "p.npy")
+    assert read_profile(tmp_path / "p.npy", spacing=UM).heights[6] == 6 * UM
+    with pytest.raises(ValueError, match="give --pixel"):
+        read_profile(tmp_path / "p.npy")
+    with pytest.raises(ValueError, match="no such file"):
+        read_profile(tmp_path / "absent.txt")
+
+
+def test_gaps_are_filled_and_uneven_places_resampled():
+    """On a slope, which straight lines do not change."""
+    x = np.arange(50.0)
+    z = 3 * x + 1
+    z[[0, 7, 8, 49]] = np.nan
+    found = profile_at(x, z)
+    np.testing.assert_allclose(found.heights, 3 * x[1:49] + 1, rtol=1e-14)
+    assert (found.filled, found.resampled, found.spacing) == (2, False, 1.0)
+    uneven = x + 0.3 * np.sin(x)
+    found = profile_at(uneven, 3 * uneven + 1)
+    np.testing.assert_allclose(np.diff(found.heights), 3 * found.spacing, rtol=1e-12)
+    assert found.resampled
+    assert not profile_at(x + 0.04 * np.sin(x), z).resampled  # rounded
+    back = profile_at(-x, 3 * x + 1)
+    np.testing.assert_array_equal(back.heights, (3 * x + 1)[::-1])
+    with pytest.raises(ValueError, match="no heights"):
+        profile_at(x, np.full(50, np.nan))
+
+
+@pytest.mark.parametrize(("heights", "spacing", "told"), [
+    (np.zeros((3, 9)), 1.0, "not 2 dimensions"),
+    (np.zeros(7), 1.0, "8 or more"),
+    (np.full(9, np.nan), 1.0, "lacks points"),
+    (np.zeros(9), 0.0, "give a length > 0 m"),
+])  # fmt: skip
+def test_no_such_profile(heights, spacing, told):
+    with pytest.raises(ValueError, match=told):
+        Profile(heights, spacing)
+
+
+def test_profiles_that_surface_topography_reads(tmp_path):
+    """Its own file of a line scan, even and uneven."""
+    library = pytest.importorskip("SurfaceTopography")
+    z = np.cumsum(np.random.default_rng(1).normal(size=3000)) * 1e-3
+    z -= np.linspace(z[0], z[-1], 3000)
+    library.UniformLineScan(z, 1.5, unit="mm").to_netcdf(str(tmp_path / "even.nc"))
+    assert holds_profile(tmp_path / "even.nc")
+    found = read_profile(tmp_path / "even.nc")
+    np.testing.assert_allclose(found.heights, z * MM, rtol=1e-12)
+    assert found.spacing == pytest.approx(0.5 * UM, rel=1e-9)
+    with pytest.raises(ValueError, match="distance of its points itself"):
+        read_profile(tmp_path / "even.nc", spacing=UM)
+    fit = mcgw.fit(tmp_path / "even.nc", cutoff="10 um")
+    assert fit.lengths == (pytest.approx(1.5 * MM),)
+
+
+def test_lists_of_numbers_without_a_header_go_to_surface_topography(tmp_path):
+    """An ending that is not read here: .xyz of two columns."""
+    pytest.importorskip("SurfaceTopography")
+    text = "\n".join(f"{i * 0.5e-6:.7e} {(i % 5) * 1e-7:.3e}" for i in range(60))
+    (tmp_path / "p.xyz").write_text(text)
+    assert holds_profile(tmp_path / "p.xyz")
+    found = read_profile(tmp_path / "p.xyz")
+    assert found.spacing == pytest.approx(0.5 * UM, rel=1e-6)
+    assert re.fullmatch("m?", found.assumed_unit)
+
+
+def test_whole_numbers_that_rise_before_a_comma_are_places(tmp_path):
+    path = tmp_path / "p.csv"
+    path.write_text("x (um),z (um)\n" + "\n".join(f"{i},{i % 3}" for i in range(9)))
+    assert read_profile(path).heights.tolist() == [i % 3 * UM for i in range(9)]
+    path.write_text("z (um)\n" + "\n".join(f"{i},0{i % 3}" for i in (0, 1, 1, 0, 2, 3, 1, 0)))
+    np.testing.assert_allclose(read_profile(path, spacing=UM).heights[4:6] / UM, [2.02, 3.0], rtol=1e-12)
+
+
+def test_whole_numbers_that_fall_before_a_comma_are_places_too(tmp_path):
+    path = tmp_path / "back.csv"
+    path.write_text("# x (um), z (um)\n" + "\n".join(f"{8 - i},{i % 3}" for i in range(9)))
+    forth = [(8 - i) % 3 * UM for i in range(9)]
+    assert read_profile(path).heights.tolist() in (forth, forth[::-1])
+    assert read_profile(path).spacing == pytest.approx(UM)

@@ -48,39 +48,31 @@ def read(tmp_path, content, encoding="utf-8"):
         ("# nm, as measured\n\n1 2\n", [[1, 2]]),
     ],
 )
-@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16"])
-def test_numbers_of_every_country(content, expected, encoding, tmp_path):
-    found = read(tmp_path, content, encoding)
+def test_numbers_of_every_country(content, expected, tmp_path):
+    found = read(tmp_path, content)
     assert found.shape == np.shape(expected)
     assert np.array_equal(found, expected, equal_nan=True)
 
 
-@pytest.mark.parametrize(
-    ("content", "told"),
-    [
-        ("1,2, 3,4\n", "inside numbers and between them"),
-        ("1,2,3;4,5,6\n", "by commas and by something else"),
-        ("1.234,5;6,5\n", "inside numbers and between them|something else"),
-        ("0,0012,0,0013\n", "begins with 0"),
-        ('"1,5","2,5"\n', "line 1: could not convert"),
-        ("x in nm, y in nm\n1, 2\n", "line 1: could not convert"),
-        ("X;Y\n1;2\n", "line 1: could not convert"),
-        ("1,5;2\n3;4;5\n", "line 2 has 3 numbers, the first row 2"),
-    ],
-)
+@pytest.mark.parametrize("encoding", ["utf-8-sig", "utf-16"])
+def test_marks_of_the_encoding_are_no_numbers(encoding, tmp_path):
+    assert read(tmp_path, "1,5;;-3\n", encoding)[0, [0, 2]].tolist() == [1.5, -3]
+
+
+@pytest.mark.parametrize(("content", "told"), [
+    ("1,2, 3,4\n", "inside numbers and between them"),
+    ("1,2,3;4,5,6\n", "by commas and by something else"),
+    ("1.234,5;6,5\n", "inside numbers and between them|something else"),
+    ("0,0012,0,0013\n", "begins with 0"),
+    ('"1,5","2,5"\n', "line 1: could not convert"),
+    ("x in nm, y in nm\n1, 2\n", "line 1: could not convert"),
+    ("X;Y\n1;2\n", "line 1: could not convert"),
+    ("1,5;2\n3;4;5\n", "line 2 has 3 numbers, the first row 2"),
+])  # fmt: skip
 def test_what_may_mean_two_things_is_refused_in_one_line(content, told, tmp_path):
     with pytest.raises(ValueError, match=told) as error:
         read(tmp_path, content)
     assert "\n" not in str(error.value)
-
-
-def test_the_extent_may_have_decimal_commas(tmp_path):
-    (tmp_path / "map.txt").write_text(
-        "# Width: 7,5 um\n# Height: 5,0 um\n# Value units: nm\n1,5 2 3\n4 5 6\n"
-    )
-    found = read_map(tmp_path / "map.txt")
-    assert found.pixel == pytest.approx((2.5e-6, 2.5e-6))
-    assert found.heights == pytest.approx(1e-9 * np.array([[1.5, 2, 3], [4, 5, 6]]))
 
 
 @pytest.fixture(scope="module")
@@ -104,32 +96,39 @@ def without_unit(path, heights):
 
 
 @pytest.mark.parametrize("name", ["map.txt", "map.npy", "map.h5"])
-def test_heights_in_micrometres_do_not_pass_as_metres(name, rough, tmp_path, capsys):
-    path, out = without_unit(tmp_path / name, 1e6 * rough.heights), tmp_path / "x.toml"
-    assert main(["fit", str(path), "--cutoff", "none", "-o", str(out)]) == 2
+def test_heights_in_micrometres_do_not_pass_as_metres(name, rough, tmp_path):
+    path = without_unit(tmp_path / name, 1e6 * rough.heights)
+    with pytest.raises(ValueError, match="--unit"):
+        read_map(path)
+    assert read_map(path, unit="um").heights == pytest.approx(rough.heights, rel=1e-12)
+    path = without_unit(tmp_path / name, rough.heights)
+    assert read_map(path).assumed_unit == "m"
+    assert read_map(path, unit="m").assumed_unit == ""
+
+
+def test_a_command_takes_a_unit_and_tells_one_that_was_assumed(rough, tmp_path, capsys, without_caps):
+    path, out = without_unit(tmp_path / "map.txt", 1e6 * rough.heights), tmp_path / "x.toml"
+    words = ["fit", str(path), "--cutoff", "none", "-o", str(out)]
+    assert main(words) == 2
     error = capsys.readouterr().err
     assert "--unit" in error
     assert error.count("\n") == 1
     assert not out.exists()
-    assert main(["fit", str(path), "--cutoff", "none", "--unit", "um", "-o", str(out)]) == 0
-    assert "slope" not in capsys.readouterr().out
-    assert read_map(path, unit="um").heights == pytest.approx(rough.heights, rel=1e-12)
+    assert main([*words, "--unit", "um"]) == 0
+    told = capsys.readouterr().out
+    assert "slope" not in told
+    assert "heights taken in" not in told
+    without_unit(path, rough.heights)
+    assert main(words) == 0
+    for text in (capsys.readouterr().out, out.read_text()):
+        assert "heights taken in m" in text
 
 
-@pytest.mark.parametrize("name", ["map.txt", "map.npy", "map.h5"])
-def test_an_assumed_unit_is_told(name, rough, tmp_path, capsys):
-    path, out = without_unit(tmp_path / name, rough.heights), tmp_path / "x.toml"
-    assert main(["fit", str(path), "--cutoff", "none", "-o", str(out)]) == 0
-    assert "heights taken in m, since the file tells no unit" in capsys.readouterr().out
-    assert "heights taken in m" in out.read_text()
-    assert read_map(path, unit="m").assumed_unit == ""
-
-
-@pytest.mark.parametrize("unit", ["m", "mm", "um", "µm", "nm", "pm", "cm", "Å"])
-def test_every_unit(unit, tmp_path):
-    metre = {"m": 1, "cm": 1e-2, "mm": 1e-3, "um": 1e-6, "µm": 1e-6, "nm": 1e-9, "pm": 1e-12, "Å": 1e-10}[
-        unit
-    ]
+@pytest.mark.parametrize(("unit", "metre"), [
+    ("m", 1), ("cm", 1e-2), ("mm", 1e-3), ("um", 1e-6), ("µm", 1e-6), ("nm", 1e-9), ("pm", 1e-12),
+    ("Å", 1e-10),
+])  # fmt: skip
+def test_every_unit(unit, metre, tmp_path):
     (tmp_path / "map.txt").write_text("1 2\n3 4\n")
     found = read_map(tmp_path / "map.txt", pixel=(1.0, 1.0), unit=unit)
     assert found.heights == pytest.approx(metre * np.array([[1, 2], [3, 4]]), rel=1e-15)
@@ -139,6 +138,8 @@ def test_units_that_are_wrong_are_refused(tmp_path):
     (tmp_path / "map.txt").write_text("# Value units: nm\n1 2\n3 4\n", encoding="utf-8")
     with pytest.raises(ValueError, match="in nm as the file says, not in um"):
         read_map(tmp_path / "map.txt", pixel=(1.0, 1.0), unit="um")
+    with pytest.raises(ValueError, match="give --pixel"):
+        read_map(tmp_path / "map.txt")
     with pytest.raises(ValueError, match="'furlong' is not a unit"):
         read_map(tmp_path / "map.txt", pixel=(1.0, 1.0), unit="furlong")
 

@@ -5,8 +5,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from laws_by_hand import GRADINGS, SURFACE, differences, reduced
 from laws_by_hand import KogutEtsion as LoadingByHand
-from unloading_by_hand import TOP, carried, density, ends, integral
+from unloading_by_hand import TOP, carried, ends, integral
 
 import analytic
 from analytic import (
@@ -14,7 +15,6 @@ from analytic import (
     Coated,
     Exponential,
     ExponentialHeights,
-    Homogeneous,
     KogutEtsion,
     MeasuredHeights,
     Model,
@@ -23,20 +23,9 @@ from analytic import (
 )
 from analytic.laws import DerjaguinMullerToporov, Film, JohnsonKendallRoberts, Tangential, Unloading
 
-SURFACE = analytic.Surface(sigma=1e-6, radius=1e-5, eta=1e9, nominal_area=1e-6, E_star=1e9)
 LAW = KogutEtsion(critical=0.05)
 BACK = Model(SURFACE, law=LAW, unload_from=0.5)
-GRADINGS = {
-    "uniform": Homogeneous(),
-    "no tips": Exponential(0.0),
-    "soft tips": Exponential(0.2),
-    "stiff tips": Exponential(2.0),
-}
 MEASURED = MeasuredHeights(np.random.default_rng(3).standard_normal(200))
-
-
-def reduced(model, quantity, h):
-    return np.asarray(model.mean(quantity, h)) / model.number / quantity_of(quantity).scale(SURFACE)
 
 
 def film_of(b):
@@ -52,38 +41,23 @@ def film_of(b):
     [(0.5, 0.133048585347), (0.6, 0.0951909343557), (0.7, 0.0639624164483), (0.9, 0.0229255442328)],
 )
 def test_check_values(h, value):
-    by_quad = integral(lambda s: carried("load", s, h, 0.5), ends(h, 0.5))
     assert float(reduced(BACK, "load_unloading", h)) == pytest.approx(value, rel=1e-11)
-    assert float(reduced(BACK, "load_unloading", h)) == pytest.approx(by_quad, rel=1e-12)
 
 
-@pytest.mark.parametrize("grading", GRADINGS.values(), ids=GRADINGS)
-@pytest.mark.parametrize("quantity", ["load", "area", "contacts", "conductance"])
-def test_means_are_literal_integrals(grading, quantity):
-    model = replace(BACK, grading=grading)
+@pytest.mark.parametrize(
+    ("name", "quantity", "h"),
+    [("uniform", "area", 0.52), ("uniform", "conductance", 0.8), ("no tips", "load", 0.55),
+     ("no tips", "contacts", 0.8), ("soft tips", "load", 0.52), ("soft tips", "area", 0.8),
+     ("stiff tips", "contacts", 0.55), ("stiff tips", "load", 0.8)],
+)  # fmt: skip
+def test_means_are_literal_integrals(name, quantity, h):
+    model = replace(BACK, grading=GRADINGS[name])
 
     def modulus(s):
-        return float(grading(np.array(s)))
+        return float(GRADINGS[name](np.array(s)))
 
-    for h in (0.52, 0.55, 0.8):
-        marks = ends(h, 0.5, modulus)
-        truth = integral(lambda s, h=h: carried(quantity, s, h, 0.5, modulus(s)), marks)
-        assert float(reduced(model, f"{quantity}_unloading", h)) == pytest.approx(truth, rel=1e-11)
-
-
-def test_other_constants_are_seen(monkeypatch):
-    """The lift-off of the fit with another power: what the literal integral is for."""
-    truth = float(reduced(BACK, "load_unloading", 0.7))
-    law = type(LAW.unloading())
-    right = law.residual
-    monkeypatch.setattr(law, "residual", lambda *asked: 1.01 * right(*asked))
-    assert abs(float(reduced(BACK, "load_unloading", 0.7)) / truth - 1) > 1e-3
-
-
-def test_pieces_that_do_not_shrink_to_lift_off_are_not_enough(monkeypatch):
-    truth = float(reduced(BACK, "conductance_unloading", 0.9))
-    monkeypatch.setattr("analytic.laws.cuts._above_beginnings", lambda *_: [])
-    assert abs(float(reduced(BACK, "conductance_unloading", 0.9)) / truth - 1) > 1e-8
+    truth = integral(lambda s: carried(quantity, s, h, 0.5, modulus(s)), ends(h, 0.5, modulus))
+    assert float(reduced(model, f"{quantity}_unloading", h)) == pytest.approx(truth, rel=1e-11)
 
 
 @pytest.mark.parametrize("grading", GRADINGS.values(), ids=GRADINGS)
@@ -95,12 +69,11 @@ def test_unloading_begins_where_loading_ends(grading):
 
 
 def test_separations_that_share_a_rule_do_not_matter_to_each_other():
-    h = np.array([0.5, 0.5 + 1e-9, 0.53, 0.55, 0.9, 0.9 + 1e-9, 2.0, 4.0])
-    for grading in GRADINGS.values():
-        model = replace(BACK, grading=grading)
-        for name in ("load_unloading", "contacts_unloading"):
-            alone = [float(model.mean(name, x)) for x in h]
-            np.testing.assert_allclose(model.mean(name, h), alone, rtol=1e-11)
+    h = np.array([0.5, 0.5 + 1e-9, 0.53, 0.9, 0.9 + 1e-9, 4.0])
+    for grading, name in (("no tips", "load_unloading"), ("stiff tips", "contacts_unloading")):
+        model = replace(BACK, grading=GRADINGS[grading])
+        alone = [float(model.mean(name, x)) for x in h]
+        np.testing.assert_allclose(model.mean(name, h), alone, rtol=1e-11)
 
 
 def test_other_heights():
@@ -121,17 +94,11 @@ def work_of_a_loop(law, grading):
     return float(w * 3 @ (reduced(model, "load", h) - reduced(model, "load_unloading", h)))
 
 
-@pytest.mark.parametrize("grading", GRADINGS.values(), ids=GRADINGS)
-def test_a_loop_takes_work(grading):
-    assert work_of_a_loop(KogutEtsion(critical=0.05, bridge="hermite"), grading) > 0
-    if grading != GRADINGS["no tips"]:
-        assert work_of_a_loop(LAW, grading) > 1e-3
-
-
-@pytest.mark.parametrize(("critical", "grading"), [(3.0, Homogeneous()), (0.05, GRADINGS["no tips"])])
-def test_a_loop_gives_work_where_asperities_hardly_yield(critical, grading):
-    """The known defect of the fit: up to 1.25 delta_c its jump is given back, and was never taken."""
-    assert -1e-4 < work_of_a_loop(KogutEtsion(critical=critical), grading) < 0
+def test_a_loop_takes_work():
+    assert work_of_a_loop(KogutEtsion(critical=0.05, bridge="hermite"), GRADINGS["uniform"]) > 0
+    assert work_of_a_loop(LAW, GRADINGS["soft tips"]) > 1e-3
+    # The known defect of the fit: up to 1.25 delta_c its jump is given back, and was never taken.
+    assert -1e-4 < work_of_a_loop(LAW, GRADINGS["no tips"]) < 0
 
 
 # Fluctuations of the way back
@@ -144,7 +111,7 @@ def test_fluctuations_are_literal_moments():
     def modulus(s):
         return 0.2 + 0.8 * math.exp(-s)
 
-    for name in ("load", "contacts", "area"):
+    for name in ("load", "contacts"):
         scale = quantity_of(name).scale(SURFACE)
         marks = ends(0.8, 0.5, modulus)
         m1, m2 = (
@@ -186,23 +153,13 @@ def test_covariance_of_there_and_back_is_literal():
 # Slopes and separations of the way back
 
 
-@pytest.mark.parametrize("grading", [GRADINGS["uniform"], GRADINGS["soft tips"]], ids=["uniform", "soft"])
-def test_slope_of_the_load(grading):
-    """By differences of the eighth order, away from where asperities first come off."""
-    model, step = replace(BACK, grading=grading), 4e-3
-    k, weights = step * np.array([1, 2, 3, 4]), np.array([4 / 5, -1 / 5, 4 / 105, -1 / 280]) / step
-    for h in (0.8, 1.5):
-        down, up = model.mean("load_unloading", h - k), model.mean("load_unloading", h + k)
-        slope = float(model.slope("load_unloading", h))
-        assert slope == pytest.approx(float((down - up) @ weights), rel=1e-9)
-        assert slope != pytest.approx(float(model.slope("load", h)), rel=0.05)
-
-
-def test_slopes_that_are_not_known_are_refused():
-    with pytest.raises(ValueError, match="quantity = 'area_unloading': its slope is not known; give"):
-        BACK.slope("area_unloading", 0.6)
-    with pytest.raises(ValueError, match="load_slope_unloading"):
-        BACK.slope("load_slope_unloading", 0.6)
+@pytest.mark.parametrize(("name", "h"), [("uniform", 0.8), ("soft tips", 1.5)])
+def test_slope_of_the_load(name, h):
+    """Away from where asperities first come off."""
+    model = replace(BACK, grading=GRADINGS[name])
+    slope = float(model.slope("load_unloading", h))
+    assert slope == pytest.approx(differences(model, "load_unloading", h), rel=1e-9)
+    assert slope != pytest.approx(float(model.slope("load", h)), rel=0.05)
 
 
 def test_separations_belong_to_means():
@@ -216,7 +173,7 @@ def test_separations_belong_to_means():
 # Who has no way back
 
 
-def test_the_way_back_asks_for_where_it_starts():
+def test_questions_without_an_answer_are_refused():
     with pytest.raises(
         ValueError, match=r"quantity = 'load_unloading': asperities yield .* give unload_from"
     ):
@@ -229,6 +186,15 @@ def test_the_way_back_asks_for_where_it_starts():
         Model(SURFACE, law=ChangEtsionBogy(critical=0.05), unload_from=0.5)
     with pytest.raises(KeyError, match="yielded_unloading"):
         BACK.mean("yielded_unloading", 0.6)
+    with pytest.raises(ValueError, match="quantity = 'area_unloading': its slope is not known; give"):
+        BACK.slope("area_unloading", 0.6)
+    with pytest.raises(ValueError, match="load_slope_unloading"):
+        BACK.slope("load_slope_unloading", 0.6)
+    with pytest.raises(ValueError, match="quantity = 'conductance_si': give a film"):
+        BACK.mean("conductance_si", 1.0)
+    for law in (LAW, Coated(ratio=3.0, reduced_thickness=0.5)):
+        with pytest.raises(ValueError, match="tangential loads need elastic half-spaces; take"):
+            Model(SURFACE, law=law).tangential_load(1.0, pushed(0.1))
 
 
 @pytest.mark.parametrize(
@@ -272,8 +238,6 @@ def test_films_at_their_check_values(b, value):
     assert float(reduced(Model(SURFACE, film=film_of(b)), "conductance_si", 1.0)) == pytest.approx(
         value, rel=1e-12
     )
-    wrong = float(reduced(Model(SURFACE, film=film_of(1.01 * b)), "conductance_si", 1.0))
-    assert abs(wrong / value - 1) > 1e-3
 
 
 def test_without_a_film_resistance_it_is_the_spots():
@@ -286,9 +250,11 @@ def test_without_a_film_resistance_it_is_the_spots():
     )
 
 
-@pytest.mark.parametrize("grading", GRADINGS.values(), ids=GRADINGS)
-@pytest.mark.parametrize("back", [False, True])
-def test_films_on_spots_that_yield(grading, back):
+@pytest.mark.parametrize(
+    ("name", "back"), [("uniform", False), ("soft tips", True), ("stiff tips", False), ("no tips", True)]
+)
+def test_films_on_spots_that_yield(name, back):
+    grading = GRADINGS[name]
     model, h, b = replace(BACK, grading=grading, film=film_of(0.03)), 0.8, 0.03
     law = LoadingByHand(0.05)
 
@@ -313,17 +279,12 @@ def test_films_on_spots_that_yield(grading, back):
     assert spread / quantity_of(name).scale(SURFACE) == pytest.approx(math.sqrt(m2), rel=1e-10)
 
 
-def test_conductances_in_si_need_a_resistivity():
-    with pytest.raises(ValueError, match="quantity = 'conductance_si': give a film"):
-        BACK.mean("conductance_si", 1.0)
-
-
 # Tangential loads
 
 
 def pushed(shift):
     """A displacement that shifts the second normal load by so much."""
-    ratio = Tangential(0.3, 0.3, [0.0]).ratio
+    ratio = 2 * (1 - 0.3) / (2 - 0.3)  # Mindlin: of the tangential to the normal stiffness
     return Tangential(0.3, 0.3, [0.0, shift * 0.3 * SURFACE.sigma / ratio])
 
 
@@ -348,18 +309,6 @@ def test_tangential_loads_rise_to_the_friction(law):
     assert np.all((half > 0) & (half < gross))
 
 
-def test_tangential_loads_need_half_spaces():
-    for law in (LAW, Coated(ratio=3.0, reduced_thickness=0.5)):
-        with pytest.raises(ValueError, match="tangential loads need elastic half-spaces; take"):
-            Model(SURFACE, law=law).tangential_load(1.0, pushed(0.1))
-
-
-def test_oracle_counts_heights():
-    """The integral by hand over a constant is a probability."""
-    assert integral(lambda _: 1.0, [0.0, 1.0, TOP]) == pytest.approx(0.5, rel=1e-13)
-    assert density(0.0) == pytest.approx(0.3989422804014327, rel=1e-15)
-
-
 # Contacts that stick
 
 
@@ -367,25 +316,24 @@ def stuck(stretch, **changes):
     return Model(SURFACE, law=JohnsonKendallRoberts(pull_off=stretch), **changes)
 
 
-@pytest.mark.parametrize(
-    ("stretch", "quantity", "value"),  # physics.md A.7: mpmath, from a deepest separation far below
-    [
-        (0.05, "load", 0.07347199399110158),
-        (0.5, "area", 0.2710312896208413),
-        (0.05, "load_unloading", 0.07324746648337926),
-        (0.05, "area_unloading", 0.1097973547290834),
-        (0.05, "contacts_unloading", 0.1710561263084818),
-        (0.5, "load_unloading", -0.08691870486353161),
-        (0.5, "area_unloading", 0.370556433499445),
-        (0.5, "contacts_unloading", 0.3085375387259869),
-    ],
-)
+STUCK = [  # physics.md A.7: mpmath, from a deepest separation far below
+    (0.05, "load", 0.07347199399110158), (0.05, "load_unloading", 0.07324746648337926),
+    (0.05, "area", 0.1089474218832419), (0.05, "area_unloading", 0.1097973547290834),
+    (0.5, "load", -0.001395827560214945), (0.5, "load_unloading", -0.08691870486353161),
+    (0.5, "area", 0.2710312896208413), (0.5, "area_unloading", 0.370556433499445),
+    (0.05, "contacts_unloading", 0.1710561263084818), (0.5, "contacts_unloading", 0.3085375387259869),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("stretch", "quantity", "value"), STUCK)
 def test_contacts_that_stick_at_their_check_values(stretch, quantity, value):
     """On the way back asperities that have touched hold below the separation."""
-    assert float(reduced(stuck(stretch, unload_from=-6.0), quantity, 1.0)) == pytest.approx(value, rel=1e-12)
+    assert float(reduced(stuck(stretch, unload_from=-6.0), quantity, 1.0)) == pytest.approx(
+        value, rel=1e-12, abs=1e-14
+    )
 
 
-@pytest.mark.parametrize("h", [0.5, 0.9, 1.0, 1.2, 2.0])
+@pytest.mark.parametrize("h", [0.5, 0.9, 1.2])
 def test_only_what_has_touched_sticks(h):
     """From a turn at 0.5 contacts are those above h - D, and above 0.5; and both ways have a covariance."""
     model = stuck(0.5, unload_from=0.5, n_asperities=1.0, count="poisson")
@@ -404,11 +352,15 @@ def test_only_what_has_touched_sticks(h):
     assert both == pytest.approx(math.erfc(h / math.sqrt(2)) / 2, rel=1e-12)
 
 
+@pytest.mark.parametrize(("stretch", "load"), [(0.05, 0.07157171634920946), (0.5, -0.05387329499027977)])
+def test_contacts_after_derjaguin_at_their_check_values(stretch, load):
+    model = Model(SURFACE, law=DerjaguinMullerToporov(pull_off=stretch))
+    assert float(reduced(model, "load", 1.0)) == pytest.approx(load, rel=1e-12)
+
+
 def test_the_slope_counts_that_contacts_snap_in():
     for law in (JohnsonKendallRoberts(pull_off=0.3), DerjaguinMullerToporov(pull_off=0.3)):
-        model, step = Model(SURFACE, law=law, grading=Exponential(0.2)), 4e-3
-        k, weights = step * np.array([1, 2, 3, 4]), np.array([4 / 5, -1 / 5, 4 / 105, -1 / 280]) / step
-        found = float((model.mean("load", 0.8 - k) - model.mean("load", 0.8 + k)) @ weights)
-        assert float(model.slope("load", 0.8)) == pytest.approx(found, rel=1e-9)
+        model = Model(SURFACE, law=law, grading=Exponential(0.2))
+        assert float(model.slope("load", 0.8)) == pytest.approx(differences(model, "load", 0.8), rel=1e-9)
     with pytest.raises(ValueError, match="the stiffness of contacts that break off has no variance"):
         stuck(0.3, unload_from=0.5).slope("load_unloading", 0.8)

@@ -22,8 +22,7 @@ from mcgw.jobs.job import Job
 from mcgw.jobs.merging import merge
 from mcgw.jobs.running import run, run_part
 from mcgw.jobs.session import Part
-from mcgw.machine.child_process import ChildError, run_child
-from mcgw.store import ensembles, lock, structure
+from mcgw.store import ensembles, lock
 from mcgw.store.leftovers import tidy
 from mcgw.store.lock import LockedError, locked
 from mcgw.store.run_folder import RunFolder, parts_of
@@ -34,9 +33,7 @@ SIZE = 16
 
 
 @pytest.fixture(autouse=True)
-def _in_this_process(monkeypatch):
-    """Look here: children take most of the time."""
-    monkeypatch.setattr(ensembles, "examine", lambda path: structure.describe(str(path)))
+def _small_blocks_and_no_patience(looked_at_here, monkeypatch):
     monkeypatch.setattr(Job, "rows", SIZE)
     monkeypatch.setattr(lock, "PATIENCE", 0.0)
 
@@ -223,14 +220,11 @@ def test_an_empty_run_of_another_scene_gives_way(scene, path):
     assert RunFolder.open(folder).scene.seed == 2
 
 
-def test_show_of_a_run_without_a_block_says_so(scene, path, capsys):
+def test_what_is_not_there_is_said_in_one_line(path, capsys):
     with locked(parts_of(path)):
         assert main(["show", str(path)]) == 2
-    err = capsys.readouterr().err
-    assert err == f"mcgw: {path}: no block of its run is finished yet\n"
-
-
-def test_merge_of_nothing_is_one_line(path, capsys):
+    assert capsys.readouterr().err == f"mcgw: {path}: no block of its run is finished yet\n"
+    tidy(path)
     assert main(["merge", str(path)]) == 2
     assert capsys.readouterr().err.startswith(f"mcgw: {path}: neither this file nor blocks of it")
 
@@ -291,17 +285,6 @@ def test_a_child_ends_with_its_parent(busy, tmp_path):
     parent.kill()
     parent.communicate()
     assert gone(child)
-
-
-def test_a_child_lives_while_its_parent_does(tmp_path, monkeypatch):
-    """A companion: what ends it is the death of the parent, nothing else."""
-    (tmp_path / "brief.py").write_text("import sys, time\ntime.sleep(0.5)\nprint(sys.argv)")
-    monkeypatch.setenv("PYTHONPATH", str(tmp_path))
-    said = run_child("brief", "a", "b")
-    assert json.loads(said.replace("'", '"'))[1:] == ["a", "b"]
-    (tmp_path / "fails.py").write_text("raise SystemExit('no')")
-    with pytest.raises(ChildError, match="exit code 1: no"):
-        run_child("fails")
 
 
 POOL = """

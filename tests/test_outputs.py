@@ -4,8 +4,8 @@ import os
 import shutil
 import subprocess
 import sys
+from contextlib import chdir
 
-import numpy as np
 import pytest
 from overwrites import CASES, attempt, contents, prepare, ways
 
@@ -16,21 +16,15 @@ from mcgw.commands.outputs import CSV, Output, check_outputs
 from mcgw.errors import StoreError
 from mcgw.formats.files import rename_over, state_of, write_whole
 from mcgw.jobs.job import Job
-from mcgw.store import ensembles, structure, untrusted
+from mcgw.store import ensembles, untrusted
 
-
-@pytest.fixture(autouse=True)
-def _look_here(monkeypatch):
-    """Look at files in this process: children take most of the time."""
-    monkeypatch.setattr(ensembles, "examine", lambda path: structure.describe(str(path)))
+pytestmark = pytest.mark.usefixtures("looked_at_here")
 
 
 @pytest.fixture(scope="module")
-def inputs(tmp_path_factory):
+def inputs(tmp_path_factory, looked_at_here):
     folder = tmp_path_factory.mktemp("inputs")
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(ensembles, "examine", lambda path: structure.describe(str(path)))
-        patch.chdir(folder)
+    with chdir(folder):
         prepare(folder)
     return folder
 
@@ -47,28 +41,27 @@ def told(capsys, words, code=2):
     """The one line that a command ends with."""
     capsys.readouterr()
     assert main([str(word) for word in words]) == code
-    err = capsys.readouterr().err
+    err = "".join(x for x in capsys.readouterr().err.splitlines(True) if not x.startswith("mcgw: note: "))
     assert len(err.splitlines()) == 1, err
     return err
 
 
-@pytest.mark.parametrize(("case", "way"), [(case, way) for case in CASES for way in ways(case)])
+# Each command with the first of the names that its output may have, and in turn with one of the others.
+OVERWRITES = [
+    (case, way)
+    for i, case in enumerate(CASES)
+    for k, way in enumerate(ways(case))
+    if k in (0, 1 + i % (len(ways(case)) - 1))
+]
+
+
+@pytest.mark.parametrize(("case", "way"), OVERWRITES)
 def test_no_command_writes_over_what_it_reads(case, way, here, capsys):
     code, changed = attempt(case, way)
     assert (code, changed) == (2, [])
     err = capsys.readouterr().err.splitlines()
     assert sum(line.startswith("mcgw: ") for line in err) == 1
     assert "is an input" in err[-1]
-
-
-def test_the_cases_would_write_without_the_guard(here, monkeypatch, capsys):
-    """A companion: the same attempts do harm when nothing is asked."""
-    monkeypatch.setattr(outputs, "same_file", lambda one, other: False)
-    for case in ("solve, table", "surface", "surface, to HDF5"):
-        code, changed = attempt(case, "hard link")
-        assert code in (0, 1), case
-        assert changed, case
-        shutil.rmtree("there")
 
 
 OVER_AN_ENSEMBLE = [
@@ -182,6 +175,7 @@ WRITE = [
 ]
 
 
+@pytest.mark.usefixtures("blank_figures")
 @pytest.mark.parametrize(("words", "ending"), WRITE)
 def test_folders_are_made_alike(words, ending, here):
     out = here / "new" / "deeper" / f"x{ending}"
@@ -198,6 +192,7 @@ def test_something_in_the_way_is_one_line(words, ending, kind, here, capsys):
     assert "is not a regular file" in told(capsys, words.replace("OUT", str(out)).split())
 
 
+@pytest.mark.usefixtures("blank_figures")
 @pytest.mark.parametrize(("words", "ending"), WRITE)
 def test_a_disk_that_fails_leaves_the_older_file(words, ending, here, monkeypatch, capsys):
     """The old file is there bit by bit, and nothing lies beside it."""
@@ -304,13 +299,8 @@ def test_leftovers_of_the_dead_go_with_the_next_output(here):
 
 def test_save_in_python_keeps_what_is_there(make_scene, tmp_path, monkeypatch):
     monkeypatch.setattr(ensembles, "examine", untrusted.examine)
-    one, other = (mcgw.simulate(make_scene(n_surfaces=4, seed=seed)) for seed in (1, 2))
-    mcgw.save(one, tmp_path / "e.h5")
-    with pytest.raises(StoreError, match=r"ensemble\.seed is 1 there and 2 here"):
-        mcgw.save(other, tmp_path / "e.h5")
     (tmp_path / "f.h5").write_bytes(b"precious")
     with pytest.raises(StoreError, match="not an HDF5 file"):
-        mcgw.save(one, tmp_path / "f.h5")
+        mcgw.save(mcgw.simulate(make_scene(n_surfaces=4)), tmp_path / "f.h5")
     assert (tmp_path / "f.h5").read_bytes() == b"precious"
-    np.testing.assert_array_equal(mcgw.open_ensemble(tmp_path / "e.h5").load, one.load)
-    assert sorted(p.name for p in tmp_path.iterdir()) == ["e.h5", "f.h5"]
+    assert [p.name for p in tmp_path.iterdir()] == ["f.h5"]

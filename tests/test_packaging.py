@@ -31,10 +31,8 @@ def recipe():
     return yaml.safe_load(environment.from_string(text_of(".ci/conda/meta.yaml")).render(PYTHON="python"))
 
 
-def test_the_citation_has_a_title_and_this_version():
+def test_the_citation_is_of_this_version():
     citation = yaml.safe_load(text_of("CITATION.cff"))
-    assert citation["cff-version"] == "1.2.0"
-    assert citation["title"].startswith("mcgw: ")
     assert citation["version"] == ABOUT["version"]
     assert citation["license"] == ABOUT["license"]
     assert all(citation[key] for key in ("message", "authors", "abstract", "type"))
@@ -92,11 +90,3 @@ def test_contributing_names_every_layer_in_its_order():
     rows = re.findall(r"^\| (`.+?`) \|", text_of("CONTRIBUTING.md"), flags=re.MULTILINE)
     named = [name for row in rows for name in re.findall(r"`(\w+)`", row)]
     assert named == [name for name in LAYERS if name not in ("errors", "cli")]
-    assert "CODE_OF_CONDUCT.md" in text_of("CONTRIBUTING.md")
-
-
-def test_the_code_of_conduct_leaves_nothing_to_fill_in():
-    text = text_of("CODE_OF_CONDUCT.md")
-    assert "version 2.1" in text
-    assert "[INSERT" not in text
-    assert not re.search(r"\S+@\S+", text)

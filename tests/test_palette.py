@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from conftest import SURFACE
 from matplotlib.colors import to_hex
 
 import mcgw
@@ -66,20 +67,17 @@ def test_the_measure_is_that_of_the_standard():
     assert np.linalg.norm(lab(red, "deuteranopia") - lab(green, "deuteranopia")) < 35
 
 
-@pytest.mark.parametrize("name", PALETTES)
-def test_colours_that_meet_are_told_apart(name):
-    for eyes in EYES:
-        assert nearest(PALETTES[name], eyes) > LEAST, eyes
-    assert nearest_in_grey(PALETTES[name]) > LEAST_GREY
+def test_colours_that_meet_are_told_apart():
+    for name, palette in PALETTES.items():
+        for eyes in EYES:
+            assert nearest(palette, eyes) > LEAST, (name, eyes)
+        assert nearest_in_grey(palette) > LEAST_GREY, name
 
 
-def test_the_usual_palettes_would_not_do():
-    """The companion: those of matplotlib and of Okabe and Ito, and the one we had before."""
-    matplotlib = ["#1F77B4", "#FF7F0E", "#2CA02C", "#D62728", "#9467BD"]
-    before = ["#0072B2", "#D55E00", "#009E73", "#AA4499", "#000000"]
-    for usual in (matplotlib, before):
-        assert nearest_in_grey(usual) < LEAST_GREY
-        assert min(nearest(usual, eyes) for eyes in EYES) < LEAST
+def test_steps_reach_from_end_to_end():
+    """Sizes N from 10² to 10⁶, and spreads b of four decades."""
+    for labels in (("N = 10²", "N = 10⁶"), ("b = 0.01", "b = 100")):
+        assert [style.look(label)["color"] for label in labels] == [style.STEPS[0], style.STEPS[-1]]
 
 
 def test_gradings_are_ordered():
@@ -94,16 +92,17 @@ def test_gradings_are_ordered():
     assert style.look("γ = 1")["color"] == style.HOMOGENEOUS
 
 
-@pytest.mark.parametrize("family", [*style.FAMILIES, *style.PAIRS], ids=lambda names: names[0])
-def test_what_a_figure_shows_together_has_other_dashes_and_markers_too(family):
-    looks = [style.look(name) for name in family]
-    for key in ("color", "linestyle", "marker"):
-        assert len({str(look[key]) for look in looks}) == len(family), key
+def test_what_a_figure_shows_together_has_other_dashes_and_markers_too():
+    for family in (*style.FAMILIES, *style.PAIRS):
+        looks = [style.look(name) for name in family]
+        for key in ("color", "linestyle", "marker"):
+            assert len({str(look[key]) for look in looks}) == len(family), (family, key)
 
 
+@pytest.mark.site
 def test_every_figure_has_one_colour_for_a_label():
     """Of lines, markers, residuals and legends, in all figures of the package."""
-    samples = Samples(_surface(), n_surfaces=30, n_asperities=3000, seed=1, n_listed=20)
+    samples = Samples(SURFACE, n_surfaces=30, n_asperities=3000, seed=1, n_listed=20)
     found = {}
     for data in paper_figures(samples) + further_figures(samples):
         for axis in draw(data).axes:
@@ -114,12 +113,6 @@ def test_every_figure_has_one_colour_for_a_label():
                 found.setdefault(text.get_text(), set()).add(to_hex(line.get_color()))
     assert {"γ = 0.2", "γ = 2", "d/σ = 4", "Kogut", "N = 10⁶", "in", "exact"} <= set(found)
     assert {label: colours for label, colours in found.items() if len(colours) > 1} == {}
-
-
-def _surface():
-    from conftest import SURFACE
-
-    return SURFACE
 
 
 ROOT = Path(mcgw.__file__).parent.parent

@@ -16,6 +16,8 @@ import paper_page  # noqa: E402
 
 del sys.path[:2]
 
+pytestmark = pytest.mark.site
+
 PAPER = (FOLDER / "paper.md").read_text(encoding="utf-8")
 SOURCE = (FOLDER / "paper.md.in").read_text(encoding="utf-8")
 SECTIONS = (
@@ -70,7 +72,6 @@ def test_the_form_is_that_of_the_journal():
     assert head["authors"] == [{"name": "The mcgw developers", "affiliation": 1}]
     assert (FOLDER / head["bibliography"]).is_file()
     assert tuple(re.findall(r"^# (.+)$", text, flags=re.MULTILINE)) == SECTIONS
-    assert 750 < len(text.split()) < 1750
     pictures = re.findall(r"^!\[[^\]]{40,}\]\(([^)]+)\)$", text, flags=re.MULTILINE)
     assert len(pictures) == 2
     assert all((FOLDER / path).is_file() for path in pictures)

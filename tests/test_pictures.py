@@ -36,7 +36,9 @@ def shared():
 def labelled():
     """Less than a decade: the minor ticks have labels."""
     figure = Figure(figsize=(4, 3), layout="constrained")
-    figure.subplots().loglog([2.0, 3.0, 7.0], [0.03, 0.05, 0.08])
+    axis = figure.subplots()
+    axis.loglog([2.0, 3.0, 7.0], [0.03, 0.05, 0.08])
+    axis.set_xlabel("approach")
     return figure
 
 
@@ -69,7 +71,10 @@ def pixels(path):
     return np.asarray(Image.open(path).convert("RGB")).astype(int)
 
 
-@pytest.mark.parametrize("make", [decades, shared, labelled, sides, in_parts])
+SITE = [pytest.param(make, marks=pytest.mark.site) for make in (decades, labelled, sides, in_parts)]
+
+
+@pytest.mark.parametrize("make", [shared, *SITE])
 def test_pictures_are_those_of_matplotlib(make, tmp_path):
     with mpl.rc_context({**STYLE, "axes.titley": None}):  # its search for a place ends where we put the title
         make().savefig(tmp_path / "plain.png")
@@ -80,55 +85,37 @@ def test_pictures_are_those_of_matplotlib(make, tmp_path):
     assert np.array_equal(plain, ours)
 
 
-def test_a_lost_tick_would_be_seen(tmp_path):
-    figure = decades()
-    decades().savefig(tmp_path / "plain.png")
-    figure.axes[0].yaxis.set_minor_locator(NullLocator())
-    save_figure(figure, tmp_path / "ours.png")
-    assert not np.array_equal(pixels(tmp_path / "plain.png"), pixels(tmp_path / "ours.png"))
-
-
-def test_minor_ticks_are_one_line_where_they_may_be(tmp_path):
+def test_minor_ticks_are_one_line_where_they_may_be_and_a_figure_is_drawn_once(tmp_path, monkeypatch):
     """That is what makes it fast."""
-    few, as_they_are = decades(), labelled()
+    drawn, draw = [], Figure.draw
+    monkeypatch.setattr(Figure, "draw", lambda self, renderer: (drawn.append(self), draw(self, renderer)))
+    few, as_they_are = shared(), labelled()
     for figure in (few, as_they_are):
         save_figure(figure, tmp_path / "x.png")
+    assert drawn == [few, as_they_are]
     assert all(isinstance(axis.yaxis.get_minor_locator(), NullLocator) for axis in few.axes)
     assert not isinstance(as_they_are.axes[0].yaxis.get_minor_locator(), NullLocator)
 
 
-def test_a_figure_is_drawn_once_for_each_file(tmp_path, monkeypatch):
-    drawn, draw = [], Figure.draw
-    monkeypatch.setattr(Figure, "draw", lambda self, renderer: (drawn.append(self), draw(self, renderer)))
-    figure = decades()
-    save_figure(figure, tmp_path / "x.png")
-    save_figure(figure, tmp_path / "x.svg")
-    assert len(drawn) == 2
-
-
-@pytest.mark.parametrize("ending", ["png", "pdf", "svg"])
-def test_the_same_bytes_twice(ending, tmp_path, monkeypatch):
-    """Whenever that is: SOURCE_DATE_EPOCH, which matplotlib takes for the time, is a year later."""
-    for name, at in (("one", "1"), ("two", "31536000")):
+def written(ending, save, folder, monkeypatch):
+    """The bytes of a figure, twice: SOURCE_DATE_EPOCH, matplotlib's clock, is a year later."""
+    for at in ("1", "31536000"):
         monkeypatch.setenv("SOURCE_DATE_EPOCH", at)
         with mpl.rc_context(STYLE):
-            save_figure(decades(), tmp_path / f"{name}.{ending}")
-    assert (tmp_path / f"one.{ending}").read_bytes() == (tmp_path / f"two.{ending}").read_bytes()
+            save(labelled(), folder / f"{at}.{ending}")
+        yield (folder / f"{at}.{ending}").read_bytes()
 
 
-def test_a_date_would_be_seen(tmp_path, monkeypatch):
-    for name, at in (("one", "1"), ("two", "31536000")):
-        monkeypatch.setenv("SOURCE_DATE_EPOCH", at)
-        decades().savefig(tmp_path / f"{name}.pdf")
-    assert (tmp_path / "one.pdf").read_bytes() != (tmp_path / "two.pdf").read_bytes()
-
-
-def test_texts_stay_texts(tmp_path):
-    """In SVG as they are; in PDF in TrueType fonts, none of Type 3."""
-    with mpl.rc_context(STYLE):
-        for ending in ("svg", "pdf"):
-            save_figure(decades(), tmp_path / f"x.{ending}")
-    assert ">separation</text>" in (tmp_path / "x.svg").read_text()
-    pdf = (tmp_path / "x.pdf").read_bytes()
-    assert b"/FontFile2" in pdf
-    assert b"/Type3" not in pdf
+@pytest.mark.parametrize(
+    "ending", ["svg", *(pytest.param(x, marks=pytest.mark.site) for x in ("pdf", "png"))]
+)
+def test_the_same_bytes_twice_and_texts_stay_texts(ending, tmp_path, monkeypatch):
+    one, two = written(ending, save_figure, tmp_path, monkeypatch)
+    assert one == two
+    if ending == "svg":
+        assert b">approach</text>" in one
+    if ending == "pdf":
+        assert b"/FontFile2" in one  # TrueType
+        assert b"/Type3" not in one
+        one, two = written(ending, Figure.savefig, tmp_path, monkeypatch)
+        assert one != two  # as matplotlib does

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 import analytic
-from mcgw.cli import main
 from mcgw.reports.plan import plan_of, plan_text
 from mcgw.sampling.samplers import sampler_of
 
@@ -22,6 +21,7 @@ def test_plan_says_what_is_drawn(make_scene):
     text = plan_text(scene, plan)
     assert "lie below every separation and are not drawn" in text
     assert "conductance: not asked for" in text
+    assert "time          about" in text
 
 
 def test_plan_counts_what_is_kept_and_says_who_chose(make_scene):
@@ -30,6 +30,10 @@ def test_plan_counts_what_is_kept_and_says_who_chose(make_scene):
     plan = plan_of(scene)
     drawn = sampler_of(scene).block(0, 1)
     assert plan.bytes == 8 * 200 * (2 * 4 + drawn.moments.shape[1] + drawn.counts.shape[1])
+    alone = scene.replace(keep="statistics", n_surfaces=10**6)
+    kept = plan_of(alone)
+    assert kept.bytes < 8 * 10**6  # not even one value of each surface
+    assert f"statistics alone, about {kept.bytes / 1e6:.4g} MB" in plan_text(alone, kept)
     assert "chosen by auto" not in plan_text(scene, plan)
     assert "sampler       cells" in plan_text(scene, plan)
     assert "chosen by auto" in plan_text(make_scene(sampler="auto"), plan)
@@ -47,19 +51,20 @@ def test_contacts_alone_draw_no_height(make_scene):
     assert "no height is drawn" in plan_text(scene, plan)
 
 
-def test_other_samplers(make_scene):
-    assert plan_of(make_scene(sampler="direct")).drawn == 3000
+def test_samplers_that_draw_all_and_hardly_any(make_scene):
+    assert plan_of(make_scene(sampler="direct", separations=(1.0, 2.0), n_asperities=300)).drawn == 300
     huge = plan_of(make_scene(sampler="aggregate", n_asperities=10**15))
     assert huge.moments <= huge.drawn < huge.moments + 0.1
     assert huge.moments < 5000
     assert plan_of(make_scene(rel_err=0.01, n_surfaces=10**6, separations=(0.0,))).surfaces < 10**6
 
 
-def test_from_the_command_line(tmp_path, capsys):
-    from pathlib import Path
-
-    scene = Path(__file__).parent.parent / "runs" / "quick.toml"
-    assert main(["show", "--plan", str(scene)]) == 0
-    said = capsys.readouterr().out
-    assert "sampler       cells (chosen by auto)" in said
-    assert "time          about" in said
+def test_bits_of_uniforms_are_told_where_cells_draw_them(make_scene):
+    """Not of samplers that draw heights one by one; shares of the bits add up to all asperities."""
+    asked = {"accuracy": 1e-3, "separations": (1.0, 2.0)}
+    plain, short = (make_scene(sampler=name, n_asperities=10**5, **asked) for name in ("tail", "cells"))
+    assert plan_of(plain).bits == {}
+    assert "  accuracy      0.001 of every value\n" in plan_text(plain, plan_of(plain)) + "\n"
+    plan = plan_of(short)
+    assert sum(plan.bits.values()) == pytest.approx(1, rel=1e-9)
+    assert "of every value; asperities: " in plan_text(short, plan)

@@ -1,12 +1,14 @@
-"""Closed streams, full disks, files that never end: one line and an end, whatever a command is run in."""
+"""Commands as processes: closed streams, full disks, files that never end are one line and an end."""
 
+import errno
 import gzip
-import json
 import os
+import signal
 import subprocess
 import sys
 from pathlib import Path
 
+import h5py
 import numpy as np
 import pytest
 import scipy.stats
@@ -15,6 +17,7 @@ from said import without_notes
 
 import analytic
 import mcgw
+from mcgw.jobs.job import Job
 from mcgw.machine.terminal import one_line
 
 ROOT = Path(__file__).parent.parent
@@ -31,25 +34,19 @@ def call(words, folder, *, redirect="", env=None, seconds=60):
     )  # fmt: skip
 
 
-MANY = """
-import contextlib, io, json, sys
-from mcgw.cli import main
-for words in json.loads(sys.stdin.read()):
-    said, errors = io.StringIO(), io.StringIO()
-    with contextlib.redirect_stdout(said), contextlib.redirect_stderr(errors):
-        code = main(words.split())
-    print(json.dumps([code, said.getvalue(), errors.getvalue()]), flush=True)
-"""
+def calls(commands, folder):
+    """Many commands in this process; an error if one of them hangs."""
 
+    def late(*_):
+        raise TimeoutError
 
-def calls(commands, folder, *, seconds=120):
-    """Many commands in one process that is stopped if any of them hangs."""
-    done = subprocess.run(
-        [sys.executable, "-c", MANY], input=json.dumps(commands), cwd=folder, env=ENV, capture_output=True,
-        text=True, timeout=seconds, check=True,
-    )  # fmt: skip
-    answers = [json.loads(line) for line in done.stdout.splitlines()]
-    return [subprocess.CompletedProcess(w, *a) for w, a in zip(commands, answers, strict=True)]
+    before = signal.signal(signal.SIGALRM, late)
+    signal.alarm(60)
+    try:
+        return [call_here(*words.split(), cwd=folder) for words in commands]
+    finally:
+        signal.alarm(0)
+        signal.signal(signal.SIGALRM, before)
 
 
 def put(folder, text=SCENE, name="s.toml", **changes):
@@ -69,7 +66,52 @@ def refused(done, message, lines=1):
     assert all(len(line) < 400 for line in done.stderr.splitlines())
 
 
-@pytest.mark.parametrize("redirect", ["2>&-", ">&-", "<&- >&- 2>&-"])
+SLOW = pytest.mark.slow
+
+
+def test_a_file_made_by_a_child_keeps_to_its_schema(tmp_path):
+    file = tmp_path / "quick.h5"
+    done = call(f"run {ROOT / 'runs' / 'quick.toml'} -o {file}", tmp_path)
+    assert (done.returncode, without_notes(done.stderr)) == (0, "")
+    assert str(file) in done.stdout
+    units = {"load": "N", "area": "m^2", "stiffness": "N/m", "contacts": "1", "conductance": "m"}
+    with h5py.File(file) as data:
+        assert data.attrs["filetype"] == "mcgw-ensemble"
+        assert tuple(data.attrs["format"]) == (1, 1)
+        assert data.attrs["seed"] == 1
+        assert bool(data.attrs["complete"])
+        for key in ("scene", "sampler", "versions", "commit", "date", "cpu", "wall_seconds"):
+            assert key in data.attrs
+        for name, unit in units.items():
+            assert data[name].shape == (200, 9)
+            assert data[name].attrs["units"] == unit
+            assert data[name].dtype == ("<i8" if name == "contacts" else "<f8")
+
+
+def test_a_child_answers_as_this_process_does(tmp_path):
+    """What other tests see in this process: exit code, output and errors of the entry point."""
+    for words in ("run absent.toml", "merge --help"):
+        ours, theirs = call_here(*words.split(), cwd=tmp_path), call(words, tmp_path)
+        said = (theirs.returncode, theirs.stdout, theirs.stderr)
+        assert said == (ours.returncode, ours.stdout, ours.stderr), words
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [("run absent.toml", "absent.toml: No such file"), ("show absent.h5", "absent.h5: No such file"),
+     ("compare s.toml", "is no file of results")],
+)  # fmt: skip
+def test_bad_input_is_one_line_and_exit_code_2(words, message, tmp_path):
+    put(tmp_path)
+    done = call_here(*words.split(), cwd=tmp_path)
+    refused(done, message)
+    assert done.stderr.startswith("mcgw: ")
+    assert [path.name for path in tmp_path.iterdir()] == ["s.toml"]
+
+
+@pytest.mark.parametrize(
+    "redirect", [pytest.param("2>&-", marks=SLOW), pytest.param(">&-", marks=SLOW), "<&- >&- 2>&-"]
+)
 def test_a_run_with_closed_streams_makes_its_file(redirect, tmp_path):
     put(tmp_path, n_surfaces=20)
     done = call("run s.toml -o e.h5", tmp_path, redirect=redirect)
@@ -80,18 +122,20 @@ def test_a_run_with_closed_streams_makes_its_file(redirect, tmp_path):
     assert sorted(path.name for path in tmp_path.iterdir()) == ["e.h5", "s.toml"]
 
 
-def test_an_error_with_closed_streams_keeps_its_exit_code(tmp_path):
-    for redirect in ("2>&-", ">&-", ">&- 2>&-"):
-        done = call("run absent.toml", tmp_path, redirect=redirect)
-        assert done.returncode == 2
-        assert "Traceback" not in done.stderr + done.stdout
+@pytest.mark.slow
+@pytest.mark.parametrize("redirect", ["2>&-", ">&-", ">&- 2>&-"])
+def test_an_error_with_closed_streams_keeps_its_exit_code(tmp_path, redirect):
+    done = call("run absent.toml", tmp_path, redirect=redirect)
+    assert done.returncode == 2
+    assert "Traceback" not in done.stderr + done.stdout
 
 
 @pytest.mark.skipif(not os.path.exists("/dev/full"), reason="no device that is always full")
 def test_a_full_standard_output_is_named(tmp_path):
     put(tmp_path)
     done = call("show --plan s.toml", tmp_path, redirect=">/dev/full")
-    refused(done, "No space left on device: 'standard output'")
+    assert done.returncode == 1
+    assert without_notes(done.stderr) == "mcgw: [Errno 28] No space left on device: 'standard output'"
 
 
 def test_without_compiled_loops_it_is_said(tmp_path):
@@ -154,33 +198,23 @@ def test_a_command_with_a_full_folder_of_kernels(tmp_path):
 
 def test_tail_with_more_asperities_than_memory_is_refused_before_drawing(tmp_path):
     put(tmp_path, SCENE.replace("[ensemble]", '[ensemble]\nsampler = "tail"'), n_asperities=10**15)
-    done = call_here("run", "s.toml", "-o", "e.h5", cwd=tmp_path)
-    lines = [line for line in done.stderr.splitlines() if "note:" not in line]
-    assert done.returncode == 2, done.stderr
-    assert len(lines) == 1
-    assert "to list 5e+14 heights one by one needs" in lines[0]
-    with pytest.raises(ValueError, match=r"heights one by one needs .* GiB of memory"):
-        mcgw.simulate(mcgw.load_scene(tmp_path / "s.toml"))
+    refused(call_here("run", "s.toml", "-o", "e.h5", cwd=tmp_path), "to list 5e+14 heights one by one needs")
 
 
-def test_a_long_run_says_so_before_it_begins(tmp_path):
-    put(tmp_path, n_surfaces="1000000000", n_asperities="1000000000")
-    with subprocess.Popen(
-        [sys.executable, "-m", "mcgw", "run", "s.toml", "-o", "e.h5"],
-        cwd=tmp_path, env=ENV, stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True,
-    ) as process:  # fmt: skip
-        try:
-            said = next(line for line in process.stderr if "on this machine" in line)
-        finally:
-            process.kill()
-    assert said.startswith("mcgw: note: 1e+09 surfaces of 1e+09 asperities: about ")
-    assert " years on this machine (5e+17 draws)" in said
-
-
-def test_a_short_run_says_nothing(tmp_path):
+def test_a_long_run_says_so_before_it_begins_and_a_short_one_does_not(tmp_path, monkeypatch):
     put(tmp_path)
     done = call_here("run", "s.toml", "-o", "e.h5", cwd=tmp_path)
     assert (done.returncode, "about" in done.stderr) == (0, False)
+
+    def none(*_):
+        raise OSError(errno.ENOSPC, "drawn")
+
+    monkeypatch.setattr(Job, "draw", none)
+    put(tmp_path, n_surfaces="1000000000", n_asperities="1000000000")
+    said = call_here("run", "s.toml", "-o", "f.h5", cwd=tmp_path).stderr.splitlines()
+    (line,) = (line for line in said if "on this machine" in line)
+    assert line.startswith("mcgw: note: 1e+09 surfaces of 1e+09 asperities: about ")
+    assert " years on this machine (5e+17 draws)" in line
 
 
 def test_a_doubted_unit_is_told_by_every_command_that_speaks_of_the_scene(tmp_path):
@@ -223,13 +257,11 @@ def test_titles_are_plain_text_in_figures_and_pages(tmp_path):
 
 
 def test_names_of_files_cannot_steer_the_terminal(tmp_path):
-    for name in (b"\x1b[31mred\x9b\xff\xfe.toml",):
-        words = [sys.executable, "-m", "mcgw", "run", os.fsdecode(name)]
-        done = subprocess.run(words, cwd=tmp_path, env=ENV, capture_output=True, timeout=60, check=False)
-        assert done.returncode == 2
-        (line,) = done.stderr.decode().splitlines()
-        assert line.isprintable()
-        assert line.endswith("No such file or directory")
+    done = call_here("run", os.fsdecode(b"\x1b[31mred\x9b\xff\xfe.toml"), cwd=tmp_path)
+    assert done.returncode == 2
+    (line,) = done.stderr.splitlines()
+    assert line.isprintable()
+    assert line.endswith("No such file or directory")
 
 
 def test_one_line_keeps_what_is_printable():
@@ -241,30 +273,14 @@ def test_one_line_keeps_what_is_printable():
 # --- files that a scene names ---------------------------------------------------------------------------
 
 
-def fifo(path):
-    os.mkfifo(path)
-
-
-def bomb(path):
-    path.write_bytes(gzip.compress(b"1.0\n" * 50_000_000, 1))
-
-
 def passwords(path):
     path.write_text("root:secret,hash\nuser:word\n")
 
 
-def device(path):
-    path.symlink_to("/dev/zero")
-
-
-def folder(path):
-    path.mkdir()
-
-
 WRONG_FILES = {
-    "fifo": (fifo, "is not a regular file"),
-    "device": (device, "is not a regular file"),
-    "folder": (folder, "is not a regular file"),
+    "fifo": (os.mkfifo, "is not a regular file"),
+    "device": (lambda path: path.symlink_to("/dev/zero"), "is not a regular file"),
+    "folder": (Path.mkdir, "is not a regular file"),
     "absent": (lambda path: None, "No such file"),
     "words": (passwords, "give "),
 }
@@ -295,10 +311,11 @@ def test_files_of_a_scene_that_are_none_are_refused_at_once(tmp_path):
 
 
 def test_a_packed_list_of_heights_is_not_unpacked(tmp_path):
-    bomb(tmp_path / "heights.gz")
-    assert (tmp_path / "heights.gz").stat().st_size < 2e6
+    (tmp_path / "heights.gz").write_bytes(gzip.compress(b"1.0\n" * 5_000_000, 1))
+    assert (tmp_path / "heights.gz").stat().st_size < 2e5
     put(tmp_path, SCENE.replace("[contact]", TABLES["heights"].format("heights.gz")))
-    refused(call("show --plan s.toml", tmp_path, seconds=30), "heights.gz: is not text in UTF-8")
+    (done,) = calls(["show --plan s.toml"], tmp_path)
+    refused(done, "heights.gz: is not text in UTF-8")
 
 
 def test_a_table_of_regrade_is_read_as_carefully(tmp_path):
@@ -314,17 +331,17 @@ def test_a_table_of_regrade_is_read_as_carefully(tmp_path):
 
 
 HOSTILE = {
-    "dotted key": "a" + ".a" * 200_000 + " = 1\n",
-    "dotted quoted key": '"a"' + '."a"' * 100_000 + " = 1\n",
-    "dotted header": "[a" + ".a" * 200_000 + "]\n",
-    "spaced dots": "a" + " . a" * 100_000 + " = 1\n",
-    "lists in lists": "a = " + "[" * 200_000 + "]" * 200_000 + "\n",
-    "tables in tables": "a = " + "{a = " * 100_000 + "1" + "}" * 100_000 + "\n",
-    "unknown keys": "".join(f"k{i} = 1\n" for i in range(100_000)),
-    "quotes": 'a = "' + '\\"' * 400_000 + "\n",
-    "single quotes": "a = " + "'" * 400_001 + "\n",
-    "a long key": "a" * 500_000 + " = 1\n",
-    "quantities": "[contact]\nquantities = [" + "'x'," * 100_000 + "]\n",
+    "dotted key": "a" + ".a" * 20_000 + " = 1\n",
+    "dotted quoted key": '"a"' + '."a"' * 10_000 + " = 1\n",
+    "dotted header": "[a" + ".a" * 20_000 + "]\n",
+    "spaced dots": "a" + " . a" * 10_000 + " = 1\n",
+    "lists in lists": "a = " + "[" * 20_000 + "]" * 20_000 + "\n",
+    "tables in tables": "a = " + "{a = " * 10_000 + "1" + "}" * 10_000 + "\n",
+    "unknown keys": "".join(f"k{i} = 1\n" for i in range(10_000)),
+    "quotes": 'a = "' + '\\"' * 40_000 + "\n",
+    "single quotes": "a = " + "'" * 40_001 + "\n",
+    "a long key": "a" * 50_000 + " = 1\n",
+    "quantities": "[contact]\nquantities = [" + "'x'," * 10_000 + "]\n",
 }
 
 
@@ -350,16 +367,8 @@ def test_texts_with_many_dots_are_still_read():
     assert len(scene.separations) == 2000
 
 
-@pytest.mark.slow
-def test_a_slow_law_of_scipy_is_refused(tmp_path):
-    law = 'law = "scipy"\nname = "studentized_range"\nshapes = {k = 3.0, df = 10.0}'
-    put(tmp_path, SCENE.replace("[contact]", f"[heights]\n{law}\n[contact]"))
-    refused(call("show --plan s.toml", tmp_path, seconds=100), "take scipy longer than")
-
-
 SLOW_LAWS = [
-    scipy.stats.kappa4(0.1, 0.0), scipy.stats.ksone(1000), scipy.stats.kstwo(10),
-    scipy.stats.recipinvgauss(0.63), scipy.stats.vonmises(3.99), scipy.stats.studentized_range(3.0, 10.0),
+    scipy.stats.kappa4(0.1, 0.0), scipy.stats.kstwo(10), scipy.stats.studentized_range(3.0, 10.0),
 ]  # fmt: skip
 
 
@@ -375,8 +384,3 @@ def test_slow_laws_are_given_up_after_their_time(law, monkeypatch):
         analytic.ScipyHeights(law)
     assert sys.getprofile() is profile
     assert analytic.ScipyHeights(scipy.stats.gamma(4.0)).support[0] == -2.0
-
-
-def test_infinite_sums_are_refused(tmp_path):
-    put(tmp_path, gamma="1e308")
-    refused(call("run s.toml -o e.h5", tmp_path), "grading.gamma = 1e+308: E*(s)/E* reaches ")

@@ -1,4 +1,4 @@
-"""The same bits on every x86-64: child processes that believe that they are on an older processor."""
+"""The same bits on every x86-64: children believe to be on another one; and by any number of threads."""
 
 import hashlib
 import json
@@ -13,11 +13,14 @@ import pytest
 from numpy._core import _multiarray_umath as umath
 
 import analytic
+import mcgw
 from mcgw.errors import RunError, StoreError
 from mcgw.jobs import blocks
 from mcgw.jobs.blocks import commit_block
 from mcgw.jobs.running import run, run_part
 from mcgw.jobs.session import Part
+from mcgw.sampling.layout import Layout
+from mcgw.sampling.moments import cell_moments
 from mcgw.sampling.samplers import sampler_of
 from mcgw.scene.samplers import SAMPLERS
 from mcgw.scene.scene import Scene
@@ -92,23 +95,23 @@ def elsewhere(cpu):
     return json.loads(done.stdout)
 
 
-@pytest.mark.parametrize(
-    "cpu",
-    [
-        OLD_BLAS | OLD_C | OLD_NUMPY,
-        pytest.param(OLD_BLAS | OLD_C | OLD_NUMPY | NO_VECTORS, marks=pytest.mark.slow),
-        pytest.param(HASWELL, marks=pytest.mark.slow),
-    ],
-    ids=["libraries", "everything", "haswell"],
-)
+@pytest.fixture(scope="module")
+def older():
+    """On a processor whose libraries are the oldest there are."""
+    return elsewhere(OLD_BLAS | OLD_C | OLD_NUMPY)
+
+
+def test_an_older_processor_draws_the_same_bits_and_rounds_otherwise(here, older):
+    """Otherwise the first says nothing."""
+    assert older["digests"] == here["digests"]
+    if OLD_NUMPY["NPY_DISABLE_CPU_FEATURES"]:  # or this is the oldest processor
+        assert older["kind"] != here["kind"]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("cpu", [OLD_BLAS | OLD_C | OLD_NUMPY | NO_VECTORS, HASWELL], ids=["all", "haswell"])
 def test_every_processor_draws_the_same_bits(here, cpu):
     assert elsewhere(cpu)["digests"] == here["digests"]
-
-
-@pytest.mark.skipif(not OLD_NUMPY["NPY_DISABLE_CPU_FEATURES"], reason="this is the oldest processor")
-def test_the_older_processor_rounds_otherwise(here):
-    """Otherwise the test above says nothing."""
-    assert elsewhere(OLD_BLAS | OLD_C | OLD_NUMPY)["kind"] != here["kind"]
 
 
 def test_the_compiler_neither_fuses_nor_reorders():
@@ -241,3 +244,74 @@ def test_rules_integrate_and_interpolate():
     theirs *= np.sign(np.diag(theirs))[:, None]
     np.testing.assert_allclose(rules.triangle(matrix), theirs, atol=1e-14)
     np.testing.assert_allclose(rules.product(matrix.T, matrix), matrix.T @ matrix, rtol=1e-12, atol=1e-12)
+
+
+# --- nor do threads, blocks, or company change them ------------------------------------------------------
+
+
+@pytest.mark.parametrize("sampler", SAMPLERS[1:])
+def test_threads(make_scene, sampler):
+    scene = make_scene(sampler=sampler, n_surfaces=70)
+    one, two = mcgw.simulate(scene, threads=1), mcgw.simulate(scene, threads=2)
+    for name in scene.quantities:
+        np.testing.assert_array_equal(one.values(name), two.values(name))
+
+
+@pytest.mark.parametrize("sampler", SAMPLERS[1:])
+def test_blocks_and_company(make_scene, sampler):
+    """Surfaces drawn in blocks of 1, 7, 64 or all at once, or a single one far down the list."""
+    drawn = sampler_of(make_scene(sampler=sampler))
+    whole = drawn.block(0, 140).sums
+    for size in (1, 7, 64):
+        for first in (0, 63, 133):
+            part = drawn.block(first, size if first < 133 else 7).sums
+            for name, values in part.items():
+                np.testing.assert_array_equal(values, whole[name][first : first + len(values)])
+
+
+def test_another_seed_is_another_ensemble(make_scene):
+    a, b = (sampler_of(make_scene(seed=seed)).block(0, 2).sums["load"] for seed in (1, 2))
+    assert (a[:, :5] != b[:, :5]).all()
+
+
+def test_sums_of_a_huge_cell_are_compensated():
+    """3e6 uniforms in pieces: the sum of T_0 is exact, the mean of T_1 and T_2 is that of a uniform."""
+    n = 3_000_001
+    moments = cell_moments(5, 0, np.array([[n]]), Layout(np.array([4]), np.array([0])))[:, 0]
+    assert moments[0] == n
+    assert abs(moments[1]) < 5 * np.sqrt(n / 3)
+    assert abs(moments[2] + n / 3) < 5 * np.sqrt(n * 4 / 45 * 4)
+
+
+@pytest.mark.parametrize("threads", [0, -1])
+def test_no_threads_is_an_error(make_scene, threads):
+    with pytest.raises(ValueError, match="whole number >= 1"):
+        mcgw.simulate(make_scene(), threads=threads)
+
+
+@pytest.mark.parametrize("sampler", ["cells", "tail", "direct"])
+def test_separations_in_any_order_and_repeated(make_scene, sampler):
+    """Columns go with their separations, to the last bit."""
+    dice = np.random.default_rng(8)
+    for n in (1, 1, 2, 3, 5, 5, 5):
+        h = tuple(dice.uniform(0, 6, n).round(3).tolist())
+        shuffled = tuple(dice.permutation([*h, *dice.choice(h, 2)]).tolist())
+        a, b = (
+            sampler_of(make_scene(separations=x, sampler=sampler, n_asperities=300)).block(0, 3).sums
+            for x in (h, shuffled)
+        )
+        for name, values in b.items():
+            for k, x in enumerate(shuffled):
+                np.testing.assert_array_equal(values[:, k], a[name][:, h.index(x)])
+
+
+@pytest.mark.parametrize(("metre", "pascal"), [(-30, 7), (13, -30), (30, 30), (0, 1), (1, 0)])
+def test_units_of_length_and_stress_are_free(make_scene, metre, pascal):
+    """Other units, powers of two apart: the very same digits."""
+    scene = make_scene(separations=(0.0, 1.0, 2.5), sampler="tail", n_asperities=300)
+    s, a, p = scene.surface, 2.0**metre, 2.0**pascal
+    other = analytic.Surface(s.sigma * a, s.radius * a, s.eta / a**2, s.nominal_area * a**2, s.E_star * p)
+    units = {"load": a * a * p, "area": a * a, "stiffness": a * p, "contacts": 1.0}
+    before = sampler_of(scene).block(0, 3).sums
+    for name, values in sampler_of(scene.replace(surface=other)).block(0, 3).sums.items():
+        np.testing.assert_array_equal(values, before[name] * units[name])

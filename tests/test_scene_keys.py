@@ -1,17 +1,22 @@
-"""Every key of every table: wrong values of it, a misspelt one beside it; all from one list of keys."""
+"""Every key of every table, in one walk: page, schema, right values, wrong ones and a misspelt key."""
 
+import json
 import re
-from dataclasses import fields, replace
+import sys
+import tomllib
+from functools import cache
 from pathlib import Path
 
+import jsonschema
 import pytest
+from docs_site import DOCS, ROOT, WRITTEN, blocks
 
-import analytic
 import mcgw
-from mcgw.scene.plausible import RANGES, perhaps_other_units
-from mcgw.scene.scene import LeftOut, Scene, SceneError
+from mcgw.cli import main
+from mcgw.scene.scene import SceneError
 from mcgw.scene.section import Section
-from mcgw.scene.surface import SURFACE_UNITS
+
+SCHEMA = Path(mcgw.__file__).parent / "scene" / "scene.schema.json"
 
 GOOD = {
     "": {"title": "'x'"},
@@ -92,65 +97,79 @@ COMPANY = {
     ("contact", "film_resistance"): ("1e-12", {"resistivity": "1e-7"}),
     ("contact", "tangential"): ("{friction = 0.3, poisson = 0.3, displacements = [1e-8]}", {}),
 }
+# With ~ what the schema lets pass: wrong by other keys or a file, or as only the program can know.
 WRONG = {
-    "title": ["1"], "sigma": ["0.0", "-1e-6", "nan", "true", "[1.0]"], "radius": ["0", "-1", "inf", "'x'"],
-    "eta": ["0", "-1", "{}"], "nominal_area": ["0", "-1", "'1 m'"], "E_star": ["0", "-1", "'1 N'"],
-    "reference": ["'plane'", "1"], "at": ["'both'", "1"], "bulk_modulus": ["0", "-1", "'1 N'"],
+    "title": ["1"], "sigma": ["0.0", "-1e-6", "~nan", "true", "[1.0]"], "radius": ["0", "-1", "~inf", "'x'"],
+    "eta": ["0", "-1", "{}"], "nominal_area": ["0", "-1", "~'1 m'"], "E_star": ["0", "-1", "~'1 N'"],
+    "reference": ["'plane'", "1"], "at": ["'both'", "1"], "bulk_modulus": ["0", "-1", "~'1 N'"],
     "bodies": ["[]", "[{E = 7e10}]", "[{E = -1}, {E = 1}]", "[{E = 1, nu = 2}, {E = 1}]",
                "[{e = 1}, {E = 1}]",
-               "3", "[{E = true}, {E = 1}]", "[{E = 1, nu = '0.3'}, {E = 1}]", "[{E = '1 m'}, {E = 1}]"],
-    "law": ["'gauss'", "1"], "gamma": ["nan", "inf", "'2'", "true"], "negative": ["'no'", "1"],
-    "file": ["'absent.csv'", "1", "''"], "ratio": ["[1.0]", "1", "['a', 'b']", "[nan, 1.0]"],
-    "edges": ["[0.0, 20.0, 5.0]", "[0.0, 5.0, 5.0]", "[0.0, 5.0, inf]", "[0.0, 5.0, 'x']", "5.0", "[]",
-              "[0.0, 5.0, true]", "[0.0, 1.0, 2.0]", "[3.0, 5.0, 20.0]"],
-    "coefficients": ["[]", "[[1.0]]", "[[1.0], []]", "[[1.0], [nan]]", "[[1.0], ['x']]", "[1.0, 2.0]", "'x'",
-                     "[[1.0], [[1.0]]]", f"[[1.0], {[1.0] * 65}]"],
-    "kinks": ["[4.0]", "[0.0]", "['x']", "5.0", "[5.0, 5.0]"],
-    "shape": ["0.5", "101", "'2'", "nan"], "heights": ["[]", "[1.0, 1.0]", "'x'", "1"],
+               "3", "[{E = true}, {E = 1}]", "[{E = 1, nu = '0.3'}, {E = 1}]", "~[{E = '1 m'}, {E = 1}]"],
+    "law": ["'gauss'", "1"], "gamma": ["~nan", "~inf", "'2'", "true"], "negative": ["'no'", "1"],
+    "file": ["~'absent.csv'", "1", "''"], "ratio": ["~[1.0]", "1", "['a', 'b']", "~[nan, 1.0]"],
+    "edges": ["~[0.0, 20.0, 5.0]", "~[0.0, 5.0, 5.0]", "~[0.0, 5.0, inf]", "[0.0, 5.0, 'x']", "5.0", "[]",
+              "[0.0, 5.0, true]", "~[0.0, 1.0, 2.0]", "~[3.0, 5.0, 20.0]"],
+    "coefficients": ["[]", "~[[1.0]]", "[[1.0], []]", "~[[1.0], [nan]]", "[[1.0], ['x']]", "[1.0, 2.0]",
+                     "'x'", "[[1.0], [[1.0]]]", f"~[[1.0], {[1.0] * 65}]"],
+    "kinks": ["~[4.0]", "~[0.0]", "['x']", "5.0", "~[5.0, 5.0]"],
+    "shape": ["0.5", "101", "'2'", "~nan"], "heights": ["[]", "~[1.0, 1.0]", "'x'", "1"],
     "resample": ["1.5", "'no'"],
-    "share": ["[0.0, 0.5]", "[0.0]", "1"], "name": ["'absent'", "1", "'binom'"],
-    "shapes": ["{b = 1.0}", "{a = 'x'}", "1", "{a = -1.0}"],
-    "separations": ["[]", "'x'", "[nan]", "true", "[[1.0]]", "{start = 0.0}", "[1e-200]", "[1e7]"],
+    "share": ["~[0.0, 0.5]", "~[0.0]", "1"], "name": ["~'absent'", "1", "~'binom'"],
+    "shapes": ["~{b = 1.0}", "{a = 'x'}", "1", "~{a = -1.0}"],
+    "separations": ["[]", "'x'", "~[nan]", "true", "[[1.0]]", "{start = 0.0}", "~[1e-200]", "~[1e7]"],
     "quantities": ["[]", "['weight']", "'load'", "['load', 'load']", "[1]"],
     "n_surfaces": ["0", "-1", "1.5", "'10'", "true", "inf"], "max_surfaces": ["0", "-1", "1.5", "true"],
-    "n_asperities": ["0", "-1", "1.5", "true", "1e300"], "count": ["'free'", "1"],
-    "seed": ["-1", "1.5", "18446744073709551616", "true"], "sampler": ["'all'", "1"], "keep": ["'all'", "1"],
-    "accuracy": ["0", "-1", "1", "nan", "inf", "'abc'", "1e-14", "true", "[1e-6]"],
-    "law_error": ["-1", "1", "0.2", "nan", "'abc'", "true"],
-    "rel_err": ["0", "-0.1", "0.2", "'x'", "true"], "max_seconds": ["0", "-1", "inf", "'1 m'"],
-    "critical": ["0", "-1", "'x'", "nan"], "hardness": ["0", "-1", "'1 m'"],
+    "n_asperities": ["0", "-1", "1.5", "true", "~1e300"], "count": ["'free'", "1"],
+    "seed": ["-1", "1.5", "~18446744073709551616", "true"], "sampler": ["'all'", "1"], "keep": ["'all'", "1"],
+    "accuracy": ["0", "-1", "~1", "~nan", "~inf", "'abc'", "~1e-14", "true", "[1e-6]"],
+    "law_error": ["-1", "1", "0.2", "~nan", "'abc'", "true"],
+    "rel_err": ["0", "-0.1", "0.2", "'x'", "true"], "max_seconds": ["0", "-1", "~inf", "~'1 m'"],
+    "critical": ["0", "-1", "'x'", "~nan"], "hardness": ["0", "-1", "~'1 m'"],
     "poisson": ["0.6", "-1.5", "'x'"], "bridge": ["'cubic'", "1"],
-    "yield_strength": ["0", "'1 N'"], "yield_strain": ["0", "nan"],
-    "k": ["1.0", "-0.1", "'x'"], "c0": ["0", "'1 Pa'"], "reduced_c0": ["0", "-1"],
-    "thickness": ["0", "'1 Pa'"], "reduced_thickness": ["0", "-1"], "unload_from": ["0.5", "'back'", "nan"],
-    "resistivity": ["0", "-1", "'x'"], "conductivities": ["[1.0]", "[0.0, 1.0]", "1.0", "['x', 1.0]"],
-    "film_resistance": ["-1", "'x'"],
+    "yield_strength": ["0", "~'1 N'"], "yield_strain": ["0", "~nan"],
+    "k": ["~1.0", "-0.1", "'x'"], "c0": ["0", "~'1 Pa'"], "reduced_c0": ["0", "-1"],
+    "thickness": ["0", "~'1 Pa'"], "reduced_thickness": ["0", "-1"], "resistivity": ["0", "-1", "'x'"],
+    "unload_from": ["~0.5", "'back'", "~nan"], "film_resistance": ["-1", "'x'"],
+    "conductivities": ["[1.0]", "[0.0, 1.0]", "1.0", "['x', 1.0]"],
     "tangential": ["1", "{}", "{friction = 0.3}", "{friction = 0, poisson = 0.3, displacements = [1e-8]}",
                    "{friction = 0.3, poisson = 0.9, displacements = [1e-8]}",
                    "{friction = 0.3, poisson = 0.3, displacements = []}",
                    "{friction = 0.3, poisson = 0.3, displacements = [-1.0]}",
                    "{friction = 0.3, poisson = 0.3, displacements = ['x']}",
                    "{friction = 0.3, poisson = 0.3, displacements = [1e-8], u = 1}"],
-    "limits": ["1.0", "[-1.0]", "['x']", "[nan]"],
-    "load": ["[]", "1", PIECE.replace("}, {", "}] #"), "[{low = 1.0}]", PIECE.replace("[1.0]", "[]"),
-             PIECE.replace("high = 3.0", "high = 0.5")],
+    "limits": ["1.0", "[-1.0]", "['x']", "~[nan]"],
+    "load": ["[]", "1", "~" + PIECE.replace("}, {", "}] #"), "[{low = 1.0}]", PIECE.replace("[1.0]", "[]"),
+             "~" + PIECE.replace("high = 3.0", "high = 0.5")],
     "area": ["[]", "'x'", PIECE.replace("[1.0]", "['x']"), PIECE.replace("low = 1.0", "lowest = 1.0")],
-    "work": ["0", "-1", "'x'"], "pull_off": ["0", "-1", "inf"],
-    "alpha": ["1.5", "0", "'x'", "nan", "inf"], "curvature": ["'all'", "1"],
-    "m0": ["0", "-1", "'1 m'"], "m2": ["0", "nan", "'1 m'"], "m4": ["0", "-1", "'1 m'"],
-    "largest_radius": ["0", "-1", "'1 Pa'"], "datum": ["'top'", "1"],
-    "radii": ["[1e-5]", "1", "[1e-5, -1e-5, 1e-5]", "[1e-5, nan, 1e-5]", "['x', 1, 1]"],
-    "ratios": ["[1.0]", "'x'", "[1.0, -1.0, 1.0]"],
-    "left_out": ["'seed'", "['gamma']", "[1]", "['n_asperities']"],
+    "work": ["0", "-1", "'x'"], "pull_off": ["0", "-1", "~inf"],
+    "alpha": ["1.5", "0", "'x'", "~nan", "~inf"], "curvature": ["'all'", "1"],
+    "m0": ["0", "-1", "~'1 m'"], "m2": ["0", "~nan", "~'1 m'"], "m4": ["0", "-1", "~'1 m'"],
+    "largest_radius": ["0", "-1", "~'1 Pa'"], "datum": ["'top'", "1"],
+    "radii": ["~[1e-5]", "1", "[1e-5, -1e-5, 1e-5]", "~[1e-5, nan, 1e-5]", "['x', 1, 1]"],
+    "ratios": ["~[1.0]", "'x'", "[1.0, -1.0, 1.0]"],
+    "left_out": ["'seed'", "['gamma']", "[1]", "~['n_asperities']"],
 }  # fmt: skip
 WRONG_HERE = {
-    ("grading", "s"): ["[1.0]", "[1.0, 0.0]", "[0.0, nan]", "1"],
-    ("heights", "s"): ["[1.0]", "[1.0, 0.0]", "1"],
+    ("grading", "s"): ["~[1.0]", "~[1.0, 0.0]", "~[0.0, nan]", "1"],
+    ("heights", "s"): ["~[1.0]", "~[1.0, 0.0]", "1"],
     ("grading", "name"): ["1", "['x']"],
-    ("ensemble", "edges"): ["1.0", "'x'", "[1.0, 'x']", "[nan]", "[inf]", "[true]", "{a = 1.0}"],
+    ("ensemble", "edges"): ["1.0", "'x'", "[1.0, 'x']", "~[nan]", "~[inf]", "[true]", "{a = 1.0}"],
     ("contact", "ratio"): ["0", "-1", "'x'"],
-    ("summits", "heights"): ["[]", "[1.0]", "1", "[1.0, nan, 2.0]"],
+    ("summits", "heights"): ["[]", "~[1.0]", "1", "~[1.0, nan, 2.0]"],
 }  # fmt: skip
+
+
+# Keys that are arguments in Python, which says the same of a wrong value.
+ARGUMENTS = {
+    "title", "sigma", "radius", "eta", "nominal_area", "E_star", "negative", "separations", "quantities",
+    "n_surfaces", "n_asperities", "count", "seed", "sampler", "keep", "rel_err", "max_seconds",
+}  # fmt: skip
+FILES = {
+    "g.csv": "s,ratio\n0,1\n1,2\n",
+    "h.csv": "0\n1\n3\n",
+    "s.csv": "height,radius\n0,1e-5\n1e-6,2e-5\n3e-6,3e-5\n",
+}
+FILES |= {"moduli.csv": FILES["g.csv"], "heights.csv": FILES["h.csv"], "summits.csv": FILES["s.csv"]}
 
 
 def keys():
@@ -178,18 +197,54 @@ def good(table, key):
     return COMPANY[table, key][0] if (table, key) in COMPANY else GOOD[table][key]
 
 
+def examples():
+    """{(table, key): example} of the rows of the page."""
+    found, table = {}, ""
+    for line in (ROOT / "docs" / "reference" / "scene.md").read_text(encoding="utf-8").splitlines():
+        if line.startswith("## "):
+            name = re.search(r"`\[(\w+)\]`", line)
+            table = name[1] if name else ""
+        elif row := re.match(r"\| `(\w+)` \| `(.+?)` \|", line):
+            assert (table, row[1]) not in found
+            found[table, row[1]] = row[2]
+    return found
+
+
+@pytest.fixture(scope="module")
+def example():
+    return examples()
+
+
+@cache
+def validator():
+    """That of others; the schema itself is one."""
+    schema = json.loads(SCHEMA.read_text(encoding="utf-8"))
+    jsonschema.Draft202012Validator.check_schema(schema)
+    return jsonschema.Draft202012Validator(schema)
+
+
+def passes(text):
+    """Whether the schema finds a document right."""
+    return validator().is_valid(tomllib.loads(text))
+
+
 @pytest.fixture(autouse=True)
 def files(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    Path("g.csv").write_text("s,ratio\n0,1\n1,2\n")
-    Path("h.csv").write_text("0\n1\n3\n")
-    Path("s.csv").write_text("height,radius\n0,1e-5\n1e-6,2e-5\n3e-6,3e-5\n")
+    for name, text in FILES.items():
+        Path(name).write_text(text)
 
 
-def test_the_list_of_keys_is_whole(monkeypatch):
-    """Whatever key any scene is asked for stands in the lists above."""
-    asked = set()
-    plain = Section._take
+def problems(call, *args, **options):
+    with pytest.raises(SceneError) as caught:
+        call(*args, **options)
+    assert all("\n" not in line and len(line) < 300 for line in caught.value.problems)
+    return caught.value.problems
+
+
+def test_the_lists_of_keys_are_whole(monkeypatch, example):
+    """Whatever key any scene is asked for stands in the lists above, and on the page."""
+    asked, plain = set(), Section._take
 
     def noted(self, key, default, unit=""):
         asked.add((self.name, key))
@@ -201,52 +256,77 @@ def test_the_list_of_keys_is_whole(monkeypatch):
     inner = {("contact.separations", name) for name in ("start", "stop", "num")}
     inner |= {("contact.tangential", name) for name in ("friction", "poisson", "displacements")}
     tables = {("", name) for name in (*GOOD, "summits", "interaction") if name}
-    assert asked - inner - tables == set(keys())
+    assert asked - inner - tables == set(keys()) == set(example)
 
 
 @pytest.mark.parametrize(("table", "key"), keys())
-def test_every_wrong_value_of_every_key_names_it(table, key):
-    mcgw.scene_from(text_of(table, key, good(table, key)))
-    path = f"{table}.{key}" if table else key
+def test_right_values_of_every_key_are_read(table, key, example):
+    """That of the list and that of the page, by the program and by the schema; and what it writes of them."""
+    for value in (good(table, key), example[table, key]):
+        text = text_of(table, key, value)
+        scene = mcgw.scene_from(text)
+        assert passes(text)
+        assert passes(mcgw.scene_text(scene))
+        assert mcgw.scene_from(mcgw.scene_text(scene)) == scene
+
+
+@pytest.mark.parametrize(("table", "key"), keys())
+def test_wrong_values_of_every_key_are_named(table, key):
+    """By the program, from a file and from Python, and by the schema but for those that it cannot know."""
+    path, right = f"{table}.{key}" if table else key, mcgw.scene_from(text_of(table, key, good(table, key)))
+    named = {path, f"{table}.s"} if key in ("share", "ratio") else {path}
+    if key in ("radii", "ratios"):  # lists of two lengths are told by the first
+        named.add("summits.heights")
+    if key == "left_out":
+        named.add("ensemble.n_asperities")
+    if key == "law":  # of another law other keys are unknown
+        named.add(f"{table}.")
     for value in WRONG_HERE.get((table, key)) or WRONG[key]:
-        with pytest.raises(SceneError) as caught:
-            mcgw.scene_from(text_of(table, key, value))
-        said = caught.value.problems
-        named = {path, f"{table}.s"} if key in ("share", "ratio") else {path}
-        if key in ("radii", "ratios"):  # lists of two lengths are told by the first
-            named.add("summits.heights")
-        if key == "left_out":
-            named.add("ensemble.n_asperities")
-        if key == "law":  # of another law other keys are unknown
-            named.add(f"{table}.")
+        passing, value = value.startswith("~"), value.removeprefix("~")
+        text = text_of(table, key, value)
+        said = problems(mcgw.scene_from, text)
         assert all(any(line.startswith(name) for name in named) for line in said), (value, said)
-        assert all("\n" not in line and len(line) < 300 for line in said)
+        assert passes(text) == passing, value
+        if key in ARGUMENTS and table != "summits":
+            argument = tomllib.loads(f"x = {value}")["x"]
+            assert problems(right.replace, **{key: argument}) == said
+            if table != "surface":
+                assert problems(mcgw.simulate, right, **{key: argument}) == said
 
 
 @pytest.mark.parametrize(("table", "key"), keys())
 def test_an_unknown_key_beside_every_key_is_named(table, key):
     """A misspelling of this very key, which would be its default in silence."""
-    text = text_of(table, key, good(table, key))
-    start = f"[{table}]\n" if table else ""
-    at = text.index(start) + len(start) if start else 0
-    with pytest.raises(SceneError) as caught:
-        mcgw.scene_from(f"{text[:at]}{key}x = 1\n{text[at:]}")
-    (line,) = caught.value.problems
+    text, start = text_of(table, key, good(table, key)), f"[{table}]\n" if table else ""
+    text = text.replace(start, f"{start}{key}x = 1\n", 1) if start else f"{key}x = 1\n{text}"
+    (line,) = problems(mcgw.scene_from, text)
     path = f"{table}.{key}x" if table else f"{key}x"
     assert line.startswith(f"{path}: unknown key; did you mean ")
-
-
-def test_a_singular_for_a_plural_is_no_default():
-    text = text_of("ensemble", "n_surfaces", "10").replace("n_surfaces = 10", "n_surface = 5")
-    with pytest.raises(SceneError, match=r"ensemble\.n_surface: unknown key; did you mean n_surfaces\?"):
-        mcgw.scene_from(text)
+    assert not passes(text)
 
 
 def test_an_unknown_table_is_named():
-    for name in GOOD:
-        if name:
-            with pytest.raises(SceneError, match=f"{name}x: unknown key; did you mean {name}"):
-                mcgw.scene_from(text_of("", "title", "'x'") + f"[{name}x]\n")
+    for name in filter(None, GOOD):
+        text = text_of("", "title", "'x'") + f"[{name}x]\n"
+        with pytest.raises(SceneError, match=f"{name}x: unknown key; did you mean {name}"):
+            mcgw.scene_from(text)
+        assert not passes(text)
+
+
+def test_words_of_the_schema_are_those_that_the_code_knows(monkeypatch):
+    """Spied from the reader: whatever is read as one of a few words, and which these are."""
+    asked, plain = {}, Section.choice
+
+    def noted(self, key, default, known):
+        asked[self.name, key] = set(known)
+        return plain(self, key, default, known)
+
+    monkeypatch.setattr(Section, "choice", noted)
+    for path in keys():
+        mcgw.scene_from(text_of(*path, good(*path)))
+    assert len(asked) >= 10
+    tables = validator().schema["properties"]
+    assert {(t, k): set(tables[t]["properties"][k]["enum"]) for t, k in asked} == asked
 
 
 RANGE = {"start": "0.0", "stop": "1.0", "num": "3"}
@@ -271,163 +351,107 @@ def test_inside_of_separations(key):
         mcgw.scene_from(of({k: v for k, v in RANGE.items() if k != key}))
 
 
-# --- what was left out --------------------------------------------------------------------------------
-
-SURFACE = analytic.Surface(1e-6, 1e-5, 1e9, 1e-6, 1e11)
-LARGE = replace(SURFACE, nominal_area=1e-5)
+# --- the schema itself: the keys and words of the code, and every right scene passes ---
 
 
-def test_n_follows_the_surface_unless_it_was_given():
-    left_out = Scene(surface=SURFACE, separations=(1.0,), seed=1)
-    given = Scene(surface=SURFACE, separations=(1.0,), n_asperities=1000, seed=1)
-    assert left_out == given  # the same ensemble, by whatever way
-    assert hash(left_out.n_asperities) == hash(1000)
-    assert repr(left_out) == repr(given)
-    changes = (
-        lambda s: replace(s, surface=LARGE),
-        lambda s: s.replace(surface=LARGE),
-        lambda s: s.replace(nominal_area=1e-5),
-        lambda s: s.replace(nominal_area="10 mm²"),
-    )
-    for change in changes:
-        assert change(left_out).n_asperities == 10_000
-        assert change(replace(left_out, title="between")).n_asperities == 10_000
-        assert change(given).n_asperities == 1000
-        assert change(left_out.replace(n_asperities=1000)).n_asperities == 1000
-        assert change(mcgw.scene_from(mcgw.scene_text(left_out))).n_asperities == 10_000
-        assert change(mcgw.scene_from(mcgw.scene_text(given))).n_asperities == 1000
-    assert left_out.replace(eta="2000/mm^2", nominal_area="1 cm^2").n_asperities == 200_000
+def made():
+    """The module that makes it."""
+    sys.path.insert(0, str(DOCS))
+    try:
+        import scene_schema
+    finally:
+        sys.path.remove(str(DOCS))
+    return scene_schema
 
 
-def test_a_changed_surface_keeps_the_pressure():
-    """Ten times the area, ten times the asperities: what the theory says of pressures is what is drawn."""
-    scene = Scene(surface=SURFACE, separations=(0.5,), n_surfaces=400, seed=3)
-    small, large = mcgw.simulate(scene), mcgw.simulate(scene.replace(nominal_area=1e-5))
-    ratio = large.mean("load")[0] / small.mean("load")[0]
-    error = ratio * (
-        large.stderr("load")[0] / large.mean("load")[0] + small.stderr("load")[0] / small.mean("load")[0]
-    )
-    assert abs(ratio - 10) < 5 * error
-    assert 5 * error < 5  # N that stays would give 1
+def test_it_is_that_of_the_page_and_of_the_code():
+    """`python docs/scene_schema.py` would write the same."""
+    assert SCHEMA.read_text(encoding="utf-8") == made().text()
 
 
-def test_the_text_marks_what_nobody_gave_and_older_texts_read_the_same():
-    scene = Scene(surface=SURFACE, separations=(1.0,), seed=1)
-    text = mcgw.scene_text(scene)
-    assert "n_asperities = 1000\n" in text
-    assert re.search(r'left_out = \[\s*"n_asperities",\s*\]', text)
-    again = mcgw.scene_from(text)
-    assert again == scene
-    assert again.left_out == ("n_asperities",)
-    assert mcgw.scene_text(again) == text
-    older = mcgw.scene_text(scene, left_out=False)
-    assert "left_out" not in older
-    assert mcgw.scene_from(older) == scene
-    assert mcgw.scene_from(older).left_out == ()
+def properties():
+    top = json.loads(SCHEMA.read_text(encoding="utf-8"))["properties"]
+    for table, shape in top.items():
+        if "properties" not in shape:
+            yield ("", table), shape
+            continue
+        assert shape["additionalProperties"] is False
+        yield from (((table, key), inner) for key, inner in shape["properties"].items())
 
 
-def test_a_mark_that_no_longer_holds_is_refused():
-    text = mcgw.scene_text(Scene(surface=SURFACE, separations=(1.0,)))
-    for old, new in (
-        ("n_asperities = 1000", "n_asperities = 500"),
-        ("nominal_area = 1e-06", "nominal_area = 1e-05"),
-    ):
-        with pytest.raises(SceneError, match="take it out of left_out, or leave n_asperities out"):
-            mcgw.scene_from(text.replace(old, new))
+def test_it_has_every_key_and_no_other():
+    found = dict(properties())
+    assert set(found) == set(keys())
+    for path, shape in found.items():
+        assert 5 < len(shape["description"]) < 300, path
+        assert not re.search(r"[`\\]|\]\(", shape["description"]), path
 
 
-def test_a_drawn_seed_is_marked_and_stays():
-    text = text_of("", "title", "'x'").replace("seed = 1\n", "").replace("left_out = ['seed']\n", "")
-    scene = mcgw.scene_from(text)
-    assert scene.left_out == ("seed",)
-    again = mcgw.scene_from(mcgw.scene_text(scene))
-    assert (again.seed, again.left_out) == (scene.seed, ("seed",))
-    assert scene.replace(title="y").seed == scene.seed
-    assert scene.replace(seed=5).left_out == ()
+def test_what_an_editor_sees_of_infinity_passes():
+    """JSON has none: Taplo makes it null."""
+    text = text_of("surface", "bodies", "[{E = 7e10}, {E = inf}]")
+    document = tomllib.loads(text)
+    document["surface"]["bodies"][1]["E"] = None
+    assert validator().is_valid(document)
+    document["surface"]["sigma"] = None
+    assert not validator().is_valid(document)
 
 
-def test_the_most_surfaces_of_a_stop_rule_are_not_those_without_it():
-    ruled = Scene(surface=SURFACE, separations=(1.0,), rel_err=0.01)
-    assert (ruled.n_surfaces, replace(ruled, rel_err=None).n_surfaces) == (10**9, 1000)
-    assert replace(ruled, n_surfaces=50).replace(rel_err=None).n_surfaces == 50
-    text = mcgw.scene_text(ruled).replace("max_surfaces = 1000000000\n", "")
-    assert mcgw.scene_from(text).replace(rel_err=None).n_surfaces == 1000
-    with pytest.raises(SceneError, match=r"ensemble\.n_surfaces = 0"):
-        Scene(surface=SURFACE, separations=(1.0,), n_surfaces=0)
+def scenes():
+    """Every whole scene of the repository: presets, those of runs/, and those of the pages."""
+    for path in sorted((*ROOT.glob("runs/*.toml"), *ROOT.glob("mcgw/**/*.toml"))):
+        yield path.relative_to(ROOT).as_posix(), path.read_text(encoding="utf-8")
+    for page in WRITTEN:
+        for k, (kind, code) in enumerate(blocks((DOCS / page).read_text(encoding="utf-8"))):
+            if kind in ("toml", "text") and "[surface]" in code and "[contact]" in code:
+                yield f"{page}-{k}", code
 
 
-def test_a_run_goes_on_whoever_gave_the_numbers(tmp_path):
-    scene = Scene(surface=SURFACE, separations=(1.0,), n_surfaces=5, seed=LeftOut(7))
-    from mcgw.jobs.running import run
-
-    first = run(scene, tmp_path / "e.h5")
-    load = first.load.tobytes()
-    assert first.scene.left_out == ("n_asperities", "seed")
-    assert first.scene.replace(nominal_area=1e-5).n_asperities == 10_000
-    given = replace(scene, n_asperities=1000, seed=7, n_surfaces=9)
-    assert run(given, tmp_path / "e.h5").load[:5].tobytes() == load
-
-
-def test_replace_takes_fields_of_scene_and_surface_only():
-    scene = Scene(surface=SURFACE, separations=(1.0,))
-    every = {f.name for f in fields(Scene)} | SURFACE_UNITS.keys()
-    assert every >= {"title", "sigma", "E_star"}
-    assert scene.replace(sigma="2 um", title="t", max_seconds="1 min").surface.sigma == 2e-6
-    assert scene.replace(max_seconds="1 min").max_seconds == 60
-    assert scene.replace(surface=LARGE, sigma=3e-6).surface == replace(LARGE, sigma=3e-6)
-    with pytest.raises(TypeError):
-        scene.replace(sigam=1.0)
-    with pytest.raises(ValueError, match=r"^surface\.sigma = '2 N': give a finite number > 0"):
-        scene.replace(sigma="2 N")
-
-
-# --- units that are doubted ----------------------------------------------------------------------------
-
-DOUBTED = {
-    "E_star": (50.0, "surface.E_star = 50: 50 Pa is softer than any gel; did you mean 50 GPa = 5e+10?"),
-    "sigma": (
-        0.8,
-        "surface.sigma = 0.8: 0.8 m is higher than the summits of any ground surface; did you mean 0.8",
-    ),
-    "eta": (
-        300.0,
-        "surface.eta = 300: 300 1/m^2 is less than a summit a square centimetre; did you mean 300/",
-    ),
-    "radius": (13.0, "surface.radius = 13: 13 m is not a radius of a summit; did you mean 13 um = 1.3e-05?"),
-    "nominal_area": (
-        100.0,
-        "surface.nominal_area = 100: 100 m^2 is larger than two bodies in contact; did you",
-    ),
-}
-
-
-@pytest.mark.parametrize("key", RANGES)
-def test_a_value_in_another_unit_is_asked_about_in_one_line(key):
-    value, asked = DOUBTED[key]
-    scene = Scene(surface=replace(SURFACE, **{key: value}), separations=(1.0,), n_asperities=100)
-    (line,) = perhaps_other_units(scene)
-    assert line.startswith(asked)
-    assert len(line) < 150
-    tiny = Scene(surface=replace(SURFACE, **{key: RANGES[key].low / 2}), separations=(1.0,), n_asperities=100)
-    (line,) = perhaps_other_units(tiny)
-    assert line.startswith(f"surface.{key} = ")
-
-
-def test_every_key_of_the_surface_has_a_range():
-    assert RANGES.keys() == SURFACE_UNITS.keys() == DOUBTED.keys()
-
-
-def test_separations_in_metres_are_asked_about():
-    scene = Scene(surface=SURFACE, separations=(0.0, 1e-6, 2e-6))
-    (line,) = perhaps_other_units(scene)
-    assert "did you mean 2e-06 m = 2 sigma?" in line
-    assert perhaps_other_units(replace(scene, separations=(0.0,))) == []
-    assert perhaps_other_units(replace(scene, separations=(1e-6, 1.0))) == []
+@pytest.mark.parametrize("text", [pytest.param(text, id=name) for name, text in scenes()])
+def test_every_scene_of_ours_passes(text):
+    assert passes(text)
 
 
 @pytest.mark.parametrize(
-    "path", sorted((Path(__file__).parent.parent).glob("**/*.toml")), ids=lambda p: p.name
+    ("lines", "right"),
+    [
+        ('rel_err = "1 %"', True),
+        ("rel_err = {load = 0.01, area = '2 %'}", True),
+        ("rel_err = {load = [0.01, inf, 0.02]}", True),
+        ('rel_err = 0.01\nmax_surfaces = 50\nkeep = "statistics"', True),
+        ("rel_err = [0.01]", False),
+        ("rel_err = {}", False),
+        ("rel_err = {weight = 0.01}", False),
+        ("rel_err = {load = true}", False),
+        ("max_surfaces = 50", False),
+    ],
 )
-def test_no_scene_of_ours_is_doubted(path):
-    if "[surface]" in path.read_text():
-        assert perhaps_other_units(mcgw.load_scene(path)) == []
+def test_forms_of_a_stop_rule(lines, right):
+    """The program says the same of each."""
+    text = text_of("contact", "separations", "[0.0, 1.0, 2.0]").replace(
+        "quantities = ['load']", "quantities = ['load', 'area']"
+    )
+    text = re.sub("n_surfaces = .*", lines, text.replace("keep = 'sums'\n", ""))
+    assert passes(text) is right
+    if right:
+        mcgw.scene_from(text)
+    else:
+        with pytest.raises(mcgw.SceneError):
+            mcgw.scene_from(text)
+
+
+def test_init_puts_it_beside_the_scene(tmp_path, capsys):
+    """An editor finds it by the first line; a file of that name that is something else stays."""
+    assert main(["init", "coating", "-o", str(tmp_path / "mine.toml"), "--schema"]) == 0
+    first, rest = (tmp_path / "mine.toml").read_text(encoding="utf-8").split("\n", 1)
+    assert first.startswith("#:schema ./")
+    assert (tmp_path / first.removeprefix("#:schema ./")).read_bytes() == SCHEMA.read_bytes()
+    assert rest == (SCHEMA.parent / "presets" / "coating.toml").read_text(encoding="utf-8")
+    mcgw.load_scene(tmp_path / "mine.toml")
+    assert "scene.schema.json" in capsys.readouterr().out
+    assert main(["init", "-o", str(tmp_path / "other.toml"), "--schema"]) == 0  # it is there, and the same
+    (tmp_path / "scene.schema.json").write_text("{}")
+    assert main(["init", "-o", str(tmp_path / "third.toml"), "--schema"]) == 2
+    assert "scene.schema.json: is already there, and not that of this version" in capsys.readouterr().err
+    assert not (tmp_path / "third.toml").exists()
+    assert (tmp_path / "scene.schema.json").read_text() == "{}"

@@ -1,8 +1,6 @@
 """What is made before anything is drawn: by compiled steps, once, and never the result of another scene."""
 
 import math
-import subprocess
-import sys
 from dataclasses import dataclass
 
 import numpy as np
@@ -63,7 +61,7 @@ def cell_price(n, a, width, distance, *, first):
     return 250.0 + expected * float(price(np.array(plain), np.array(rooted)))
 
 
-@pytest.mark.parametrize("n", [0, 10**3, 10**5, 10**6, 10**9])
+@pytest.mark.parametrize("n", [10**3, 10**6])
 def test_gaps_are_cut_as_the_cheapest_of_all_ladders(n):
     """Together as one by one: with few asperities, where one cell is enough, and with crowds."""
     rng = np.random.default_rng(n % 97)
@@ -216,22 +214,3 @@ def test_a_surface_without_extras_is_one_of_many(make_scene):
     assert 0 < len(lonely) < 100
     for surface in (*sorted(lonely)[:3], next(i for i in range(200) if i not in lonely)):
         np.testing.assert_array_equal(sampler.block(surface, 1).sums["load"][0], block.sums["load"][surface])
-
-
-PROBE = """
-import sys, mcgw, scipy.special
-before = set(sys.modules)  # an older SciPy takes more
-surface = mcgw.Surface(1e-6, 1e-5, 3e8, 1e-4, 8e10)
-for sampler in ("cells", "tail", "direct", "stratified", "aggregate"):
-    mcgw.simulate(mcgw.Scene(surface, separations=[0.0, 1.0], n_surfaces=2, seed=1, sampler=sampler))
-print(*{"numba.cpython.setobj", "scipy.linalg"} & set(sys.modules) - before)
-"""
-
-
-def test_what_is_compiled_runs_without_the_compiler():
-    """In a second process, whatever the first one had to compile; nor what NumPy's reductions import."""
-    found = [
-        subprocess.run([sys.executable, "-c", PROBE], capture_output=True, text=True, check=True).stdout
-        for _ in range(2)
-    ]
-    assert found[1].strip() == ""

@@ -1,36 +1,23 @@
 """Given a load, the separation: back through the simulator, against an exact law, and as typed."""
 
-import csv
 from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.stats import t as student
 
 import analytic
 import mcgw
-from mcgw.cli import main
 from mcgw.ensemble.separation import separation_on
 from mcgw.ensemble.solution import solutions
-from mcgw.formats.units import parse
 from mcgw.reports.solution import solution_table
 
 LOADS = (3.0, 100.0, 900.0)
 
 
 @pytest.fixture(scope="module")
-def scene():
-    from conftest import SURFACE
-
-    from mcgw.scene.scene import Scene
-
-    return Scene(
-        surface=SURFACE,
-        separations=(0.0,),
-        grading=analytic.Exponential(2.0),
-        n_asperities=3000,
-        n_surfaces=300,
-        seed=5,
-    )
+def scene(make_scene):
+    return make_scene(separations=(0.0,), n_surfaces=300, seed=5)
 
 
 @pytest.fixture(scope="module")
@@ -45,6 +32,7 @@ def test_theory_inverts_the_load(scene, solved):
         back = analytic.load(scene.surface, solution.theory["separation"], scene.grading) * share
         assert back == pytest.approx(load, rel=1e-10)
         assert solution.theory["load"] == pytest.approx(load, rel=1e-10)
+        np.testing.assert_allclose(solution.surfaces["load"], load, rtol=1e-10)
 
 
 def test_every_surface_inverts_the_simulator(scene, solved):
@@ -73,28 +61,10 @@ def _separations_at(scene, lowest):
     return np.array(rows)
 
 
-def test_solved_surfaces_carry_the_load(solved):
-    for load, solution in zip(LOADS, solved, strict=True):
-        np.testing.assert_allclose(solution.surfaces["load"], load, rtol=1e-10)
-
-
 def test_area_is_inverted_and_loads_of_one_asperity_are_hertz():
     h = separation_on(np.array([2.0]), np.array([3.0]), 1.5, 0.375, 0.0)
     assert h == pytest.approx(2 - 0.125 ** (2 / 3), rel=1e-15)
     assert separation_on(np.array([1.0, 0.5]), np.ones(2), 1.0, 0.9, -1.0) == pytest.approx(0.3, rel=1e-14)
-
-
-def test_law_of_the_separation_is_that_of_the_load(scene, solved):
-    """P(h_i > x) = P(load at x > asked): independent draws on both sides, |z| < 5 (1 in 2e6 a value)."""
-    for load, solution in zip(LOADS, solved, strict=True):
-        h = solution.surfaces["separation"]
-        x = np.quantile(h, [0.2, 0.5, 0.8])
-        fresh = mcgw.simulate(replace(scene, separations=tuple(x), n_surfaces=4000, seed=99)).load
-        p, q = (h[:, None] > x).mean(axis=0), (fresh > load).mean(axis=0)
-        stderr = np.sqrt(q * (1 - q) * (1 / len(h) + 1 / len(fresh)))
-        assert np.abs((p - q) / stderr).max() < 5
-        wrong = (fresh > 1.15 * load).mean(axis=0)  # the companion: loads 15 % off would show
-        assert np.abs((p - wrong) / stderr).max() > (5 if load > 50 else 0)
 
 
 def test_other_quantities_belong_to_the_separation(scene, solved):
@@ -103,18 +73,6 @@ def test_other_quantities_belong_to_the_separation(scene, solved):
     for name in ("area", "stiffness", "contacts", "conductance"):
         assert last.surfaces[name].mean() == pytest.approx(last.theory[name], rel=0.01)
     assert last.surfaces["area"].std() > 0
-
-
-def test_surfaces_below_the_margin_are_solved_too(scene, monkeypatch):
-    """Two asperities: their separation spreads far beyond what linear theory expects."""
-    few = replace(scene, n_asperities=2, grading=analytic.Exponential(0.5), n_surfaces=200)
-    below = entered(monkeypatch, "_anywhere")
-    monkeypatch.setattr("mcgw.ensemble.solution._MARGIN", 1.0)
-    (solution,) = solutions(few, "load", [0.5])
-    np.testing.assert_allclose(solution.surfaces["load"], 0.5, rtol=1e-10)
-    start = below[0][-1]
-    assert 3 < len(below) == np.count_nonzero(solution.surfaces["separation"] < start)
-    assert np.unique(solution.surfaces["separation"]).size == 200
 
 
 def entered(monkeypatch, name):
@@ -166,14 +124,8 @@ def test_a_negative_modulus_that_matters_is_told_with_the_load(scene):
 
 
 def literal_load(scene, heights, h):
-    modulus = scene.modulus(heights)
-    return (
-        4
-        / 3
-        * scene.surface.E_star
-        * np.sqrt(scene.surface.radius)
-        * np.sum((np.maximum(heights - h, 0) * scene.surface.sigma) ** 1.5 * modulus)
-    )
+    unit = 4 / 3 * scene.surface.E_star * np.sqrt(scene.surface.radius * scene.surface.sigma**3)
+    return unit * np.sum(np.maximum(heights - h, 0) ** 1.5 * scene.modulus(heights))
 
 
 @pytest.mark.parametrize("negative", ["clip", "allow"])
@@ -236,41 +188,11 @@ def test_surfaces_within_the_margin_are_drawn_once(scene, monkeypatch):
     assert not whole
 
 
-@pytest.mark.parametrize("level", [0.5, 0.95, 0.99])
+@pytest.mark.parametrize("level", [0.5, 0.95])
 def test_intervals_are_students(solved, level):
-    from scipy.stats import t as student
-
     for name, x in solved[1].surfaces.items():
         half = student.ppf((1 + level) / 2, x.size - 1) * x.std(ddof=1) / np.sqrt(x.size)
-        assert solved[1].interval(name, level) == (
-            pytest.approx(x.mean() - half), pytest.approx(x.mean() + half)
-        )  # fmt: skip
-
-
-def test_units():
-    assert parse("0.5 GPa", "Pa") == 0.5e9
-    assert parse("3", "N") == 3
-    assert parse("2e1kN", "N") == 20e3
-    assert parse(".5%", "1") == 0.005
-    for text, unit in (("-1Pa", "Pa"), ("0", "N"), ("kN", "N"), ("1Pa", "N"), ("nan", "1")):
-        with pytest.raises(ValueError, match="give a number > 0 with its unit"):
-            parse(text, unit)
-
-
-def test_command(tmp_path, capsys):
-    table = tmp_path / "solved.csv"
-    scene = tmp_path / "scene.toml"
-    scene.write_text(
-        "surface = {sigma = 1e-6, radius = 1e-5, eta = 1e9, nominal_area = 1e-6, E_star = 1e11}\n"
-        "contact = {separations = 0.0}\nensemble = {n_surfaces = 20, seed = 1}\n"
-    )
-    assert main(["solve", str(scene), "--pressure", "1MPa", "20MPa", "--csv", str(table)]) == 0
-    assert "Load 1 N = pressure 1 MPa" in capsys.readouterr().out
-    rows = list(csv.DictReader(table.read_text().splitlines()))
-    assert len(rows) == 12
-    assert float(rows[1]["theory"]) == pytest.approx(1, rel=1e-10)
-    assert main(["solve", str(scene), "--load", "3lbf"]) == 2
-    assert "'3lbf': give a number" in capsys.readouterr().err
+        assert solved[1].interval(name, level) == pytest.approx((x.mean() - half, x.mean() + half))
 
 
 def test_what_cannot_be_solved(scene):

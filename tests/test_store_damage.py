@@ -1,39 +1,28 @@
 """What is damaged is never gone on with: each kind of damage, and then every way of going on."""
 
 import shutil
-import sys
 from dataclasses import replace
 
 import h5py
 import numpy as np
 import pytest
+from begun_runs import SURFACES, begun, in_small_blocks
+from new_trailer import trailer_again
 
 import mcgw
 from mcgw.cli import main
 from mcgw.errors import RunError, StoreError
-from mcgw.jobs.job import Job
 from mcgw.jobs.merging import merge
 from mcgw.jobs.running import run, run_part
 from mcgw.jobs.session import Part
-from mcgw.store import ensembles, merged_file, shards, structure, untrusted
+from mcgw.store import ensembles, layout, lock, merged_file, run_folder, saving, shards, structure, untrusted
 from mcgw.store.run_folder import RunFolder, parts_of
 from mcgw.store.trailer import TRAILER_BYTES, check_trailer, read_checked, trailer_of
 
-SIZE, SURFACES = 16, 100
-
 
 @pytest.fixture(autouse=True)
-def _small_blocks_in_this_process(monkeypatch):
-    """Seven blocks, looked at here: children take most of the time."""
-    monkeypatch.setattr(Job, "rows", SIZE)
-    monkeypatch.setattr(ensembles, "examine", examined_here)
-
-
-def examined_here(path):
-    try:
-        return structure.describe(str(path))
-    except OSError as error:
-        raise StoreError(f"{path}: {error}") from None
+def _small_blocks(monkeypatch):
+    in_small_blocks(monkeypatch)
 
 
 @pytest.fixture
@@ -85,158 +74,76 @@ def with_another_trailer(path):
 
 
 DAMAGES = [changed_in_place, flipped_in_a_result, a_changed_load, without_its_trailer, with_another_trailer]
-every_damage = pytest.mark.parametrize("damage", DAMAGES)
 
 
-@pytest.fixture
-def damaged(scene, tmp_path, request):
-    path = tmp_path / "e.h5"
-    run(scene, path)
-    assert ensembles.verify(path)[0] == ""
-    request.param(path)
-    return path
+# Every way to put more into a file.
+WAYS = {
+    "run": run,
+    "shard job": lambda scene, path: run_part(scene, path, Part(1, 2)),
+    "stop rule": lambda scene, path: run(replace(scene, rel_err=1e-4), path),
+}
 
 
-def ways(larger):
-    """Every way to put more into a file, by name."""
-    return {
-        "run": lambda path: run(larger, path),
-        "shard job": lambda path: run_part(larger, path, Part(1, 2)),
-        "command": lambda path: as_typed(larger, path),
-        "stop rule": lambda path: by_rule(larger, path),
-    }
-
-
-def as_typed(scene, path):
-    file = path.with_suffix(".toml")
-    file.write_text(mcgw.scene_text(scene))
-    assert main(["run", str(file), "-o", str(path)]) == 2
-    raise StoreError("by the command")
-
-
-def by_rule(scene, path):
-    run(replace(scene, rel_err=1e-4), path)
-
-
-@pytest.mark.parametrize("damaged", DAMAGES, indirect=True)
-@pytest.mark.parametrize("way", ["run", "shard job", "command", "stop rule"])
-def test_a_damaged_file_is_not_extended_nor_sealed_anew(damaged, larger, way):
+@pytest.mark.filterwarnings("ignore:.* more surfaces than max_surfaces allows")  # said before it is opened
+@pytest.mark.parametrize(("damage", "large"), [*((x, False) for x in DAMAGES), (flipped_in_a_result, True)])
+@pytest.mark.parametrize("way", WAYS)
+def test_a_damaged_file_is_not_extended_nor_sealed_anew(
+    scene, larger, tmp_path, damage, way, large, monkeypatch
+):
+    """Of a large file only the head is looked at on opening: all of it before more is drawn for it."""
+    damaged = tmp_path / "e.h5"
+    run(scene, damaged)
+    assert ensembles.verify(damaged)[0] == ""
+    damage(damaged)
+    if large:
+        monkeypatch.setattr(ensembles, "examine", untrusted.examine)
+        monkeypatch.setattr(untrusted, "_SMALL", 0)
+        untrusted._examined.cache_clear()
+        assert ensembles.open_ensemble(damaged).n_surfaces == SURFACES
     before = damaged.read_bytes()
     with pytest.raises(StoreError):
-        ways(larger)[way](damaged)
+        WAYS[way](larger, damaged)
     assert damaged.read_bytes() == before
     assert not parts_of(damaged).exists() or not list(parts_of(damaged).glob("shards/*.h5"))
     with pytest.raises(StoreError):
         check_trailer(damaged)
 
 
-@pytest.mark.filterwarnings("ignore:.* more surfaces than max_surfaces allows")  # said before it is opened
-@pytest.mark.parametrize("damaged", [flipped_in_a_result], indirect=True)
-@pytest.mark.parametrize("way", ["run", "shard job", "command", "stop rule"])
-def test_a_large_damaged_file_is_not_extended_either(damaged, larger, way, monkeypatch):
-    """Of a large file only the head is looked at on opening: all of it before more is drawn for it."""
-    monkeypatch.setattr(ensembles, "examine", untrusted.examine)
-    monkeypatch.setattr(untrusted, "_SMALL", 0)
-    untrusted._examined.cache_clear()
-    assert ensembles.open_ensemble(damaged).n_surfaces == SURFACES
-    before = damaged.read_bytes()
-    with pytest.raises(StoreError):
-        ways(larger)[way](damaged)
-    assert damaged.read_bytes() == before
-    assert not parts_of(damaged).exists() or not list(parts_of(damaged).glob("shards/*.h5"))
-
-
-@every_damage
-def test_a_file_damaged_while_more_is_drawn_is_not_merged(scene, larger, tmp_path, damage):
+@pytest.mark.parametrize("damage", DAMAGES)
+def test_a_file_damaged_while_more_is_drawn_is_not_merged(scene, larger, tmp_path, damage, capsys):
     """Its own surfaces come first in the file that takes its place: they are looked at again."""
     path = tmp_path / "e.h5"
     run(scene, path)
     assert run_part(larger, path, Part(1, 1)) == 0
+    assert main(["show", "--verify", str(path)]) == 0
+    assert "intact" in capsys.readouterr().out
     damage(path)
+    assert main(["show", "--verify", str(path)]) == 1
+    assert "DAMAGED" in capsys.readouterr().out
     before = path.read_bytes()
     with pytest.raises((StoreError, RunError)):
         merge(path)
     assert path.read_bytes() == before
 
 
-@every_damage
-def test_verify_tells_it(scene, tmp_path, damage, capsys):
+@pytest.mark.parametrize("way", ["merge", "run", "read"])
+def test_a_shard_of_other_contents_never_becomes_a_file(scene, tmp_path, way):
+    """Another number under a good trailer: only the digest of the contents is as before."""
     path = tmp_path / "e.h5"
-    run(scene, path)
-    assert main(["show", "--verify", str(path)]) == 0
-    assert "intact" in capsys.readouterr().out
-    damage(path)
-    assert main(["show", "--verify", str(path)]) == 1
-    assert "DAMAGED" in capsys.readouterr().out
-
-
-def begun(scene, path, jobs=1):
-    """All blocks of a run, not merged yet."""
-    for k in range(1, jobs + 1):
-        run_part(scene, path, Part(k, jobs))
-    assert not path.exists()
-    return sorted(parts_of(path).glob("shards/block-*.h5"))
-
-
-def make_trailer_anew(path, change):
-    """Other numbers under a good trailer: only the digest of the contents is as before."""
-    trailer, body = read_checked(path)
-    with shards.tables_in(body, path) as tables:
+    shard = begun(scene, path)[2]
+    trailer, body = read_checked(shard)
+    with shards.tables_in(body, shard) as tables:
         arrays = {name: table[()] for name, table in tables.items()}
-    change(arrays)
-    body = shards.pack(arrays)
-    path.write_bytes(body + trailer_of(body, **trailer.notes))
-
-
-def another_number(arrays):
     arrays["load"][3, 1] *= 1.5
-
-
-def test_contents_that_are_others_than_the_digest_says_are_refused(scene, tmp_path):
-    path = tmp_path / "e.h5"
-    make_trailer_anew(begun(scene, path)[2], another_number)
-    run_here = RunFolder.open(parts_of(path))
-    with pytest.raises(StoreError, match=r"block-0000000000032.*mismatch of its contents"):
-        [shard.arrays() for shard in run_here.shards()]
-
-
-@pytest.mark.parametrize("way", ["merge", "run", "merge as typed", "run as typed", "read"])
-def test_a_shard_of_other_contents_never_becomes_a_file(scene, tmp_path, way, capsys):
-    path = tmp_path / "e.h5"
-    make_trailer_anew(begun(scene, path)[2], another_number)
+    body = shards.pack(arrays)
+    shard.write_bytes(body + trailer_of(body, **trailer.notes))
     if way == "read":
-        with pytest.raises(StoreError, match="mismatch of its contents"):
+        with pytest.raises(StoreError, match=r"block-0000000000032.*mismatch of its contents"):
             _ = mcgw.open_ensemble(path).load
-    elif "typed" in way:
-        (tmp_path / "s.toml").write_text(mcgw.scene_text(scene))
-        words = ["merge", str(path)] if "merge" in way else ["run", str(tmp_path / "s.toml"), "-o", str(path)]
-        assert main(words) in (1, 2)
-        assert "damaged" in capsys.readouterr().err
     else:
         with pytest.raises((RunError, StoreError), match="damaged"):
             merge(path) if way == "merge" else run(scene, path)
     assert not path.exists()
-
-
-def test_what_was_written_is_read_again_before_it_is_sealed(scene, tmp_path, monkeypatch):
-    """A number that reaches the file as another: the digest of the shards tells."""
-    from mcgw.store import layout
-
-    path = tmp_path / "e.h5"
-    begun(scene, path)
-    put = layout._put
-
-    def slip(file, span, arrays):
-        put(file, span, arrays)
-        if span.first == 32:
-            file["area"][33, 0] *= 1 + 1e-15
-
-    monkeypatch.setattr(layout, "_put", slip)
-    with pytest.raises(OSError, match="reads otherwise than written"):
-        merged_file.merge_into(parts_of(path), path, tmp_path / "x.tmp", nobody)
-    monkeypatch.setattr(layout, "_put", put)
-    merged_file.merge_into(parts_of(path), path, tmp_path / "y.tmp", nobody)
-    assert ensembles.verify(tmp_path / "y.tmp")[0] == ""
 
 
 def test_a_digest_that_is_written_wrong_is_seen(scene, tmp_path, monkeypatch):
@@ -275,44 +182,36 @@ def test_shards_of_another_run_are_not_taken(scene, tmp_path):
     np.testing.assert_array_equal(mcgw.open_ensemble(a).load, mcgw.simulate(scene).load)
 
 
-@pytest.mark.skipif(sys.platform == "win32", reason="an open file cannot be removed there")
 @pytest.mark.parametrize("way", ["run", "shard job", "merge"])
 def test_nobody_works_on_a_folder_that_was_just_removed(scene, tmp_path, way, monkeypatch):
-    """Another one's run ends between our opening of its lock and our getting it."""
+    """Another's run ends, and its folder goes, between our looking for the lock and our getting it."""
     path = tmp_path / "e.h5"
     begun(scene, path)
+
+    class Late(lock.ReadWriteLock):
+        def _late(self, name, blocking):
+            shutil.rmtree(parts_of(path), ignore_errors=True)
+            return getattr(super(), name)(blocking=blocking)
+
+        def read_lock(self, *, blocking):
+            return self._late("read_lock", blocking)
+
+        def write_lock(self, *, blocking):
+            return self._late("write_lock", blocking)
+
+    monkeypatch.setattr(lock, "ReadWriteLock", Late)
+    monkeypatch.setattr(lock, "PATIENCE", 0.0)
     work = {
         "run": lambda: run(scene, path),
         "shard job": lambda: run_part(scene, path, Part(1, 2)),
         "merge": lambda: merge(path),
     }[way]
-    asked = ended_while_locking(monkeypatch, parts_of(path))
-    try:
+    with pytest.raises(
+        StoreError, match=r"its run has just ended; repeat the command|neither this file nor blocks"
+    ):
         work()
-    except (RunError, StoreError) as error:
-        assert "its run has just ended; repeat the command" in str(error)  # noqa: PT017
-    else:
-        assert not asked, "it worked on in a folder that is no longer the run's"
-        pytest.skip("this lock is not fcntl's")
     assert not path.exists()
-
-
-def ended_while_locking(monkeypatch, folder):
-    """The system's lock is granted only after the folder was removed and made anew; who asked, in a list."""
-    fcntl, asked = pytest.importorskip("fcntl"), []
-    for name in ("flock", "lockf"):
-        granted = getattr(fcntl, name)
-
-        def late(fd, *arguments, granted=granted):
-            asked.append(fd)
-            if folder.exists():
-                shutil.rmtree(folder)
-                (folder / "shards").mkdir(parents=True)
-                (folder / "lock").touch()
-            return granted(fd, *arguments)
-
-        monkeypatch.setattr(fcntl, name, late)
-    return asked
+    assert not parts_of(path).exists()
 
 
 def test_a_shard_of_other_surfaces_than_its_block_is_drawn_again(scene, tmp_path):
@@ -341,3 +240,139 @@ def test_seconds_of_all_blocks_and_of_the_file_before_add_up(scene, larger, tmp_
     merge(path)
     assert ensembles.read_attributes(path)["wall_seconds"] == pytest.approx(first + sum(more), rel=1e-12)
     assert sum(more) > 0
+
+
+# --- what is small is checked whenever a file is opened -------------------------------------------------
+
+
+@pytest.fixture
+def file(scene, tmp_path):
+    """A finished file."""
+    run(scene, tmp_path / "e.h5")
+    return tmp_path / "e.h5"
+
+
+@pytest.fixture
+def old_file(scene, file, monkeypatch):
+    """The same as version 0.2 wrote it."""
+    file.unlink()
+    monkeypatch.setattr(layout, "FORMAT", (1, 0))
+    monkeypatch.setattr(saving, "trailer_notes", lambda opened: {})
+    run(scene, file)
+    return file
+
+
+def test_files_of_format_1_0_are_opened(old_file, scene):
+    with h5py.File(old_file) as data:
+        assert tuple(data.attrs["format"]) == (1, 0)
+    np.testing.assert_array_equal(mcgw.open_ensemble(old_file).load, mcgw.simulate(scene).load)
+    assert ensembles.verify(old_file)[0] == ""
+
+
+def test_a_new_file_without_the_checksum_is_refused(file):
+    """Nobody makes it one of format 1.0 by leaving the checksum away."""
+    with h5py.File(file, "r+") as data:
+        data.attrs["seed"] = np.uint64(5)
+    body = file.read_bytes()
+    file.write_bytes(body + trailer_of(body))
+    with pytest.raises(StoreError, match="checksum mismatch of its scene, attributes or scales"):
+        mcgw.open_ensemble(file)
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        lambda data: data.attrs.__setitem__("title", "another"),
+        lambda data: data.attrs.__setitem__("wall_seconds", 1.0),
+        lambda data: data.attrs.__setitem__("note", "added"),
+        lambda data: data.attrs.__delitem__("cpu"),
+        lambda data: data["load"].attrs.__setitem__("units", "kN"),
+        lambda data: data["area"].attrs.__setitem__("long_name", "something else"),
+        lambda data: data["separation"].__setitem__(1, 1.0000000000000002),
+        lambda data: data["surface"].__setitem__(3, 4),
+        lambda data: data["load"].dims[1].detach_scale(data["separation"]),
+        lambda data: data.create_dataset("more", data=np.ones(3)),
+    ],
+)
+def test_whatever_is_small_is_checked(file, change):
+    """The trailer fits the bytes, only the checksum of the head is the old one."""
+    head = structure.describe(str(file))["head"]
+    with h5py.File(file, "r+") as data:
+        change(data)
+    body = file.read_bytes()
+    file.write_bytes(body + trailer_of(body, head=head))
+    with pytest.raises(StoreError, match="checksum mismatch of its scene, attributes or scales"):
+        mcgw.open_ensemble(file)
+
+
+def test_the_checksum_is_of_contents_alone(file):
+    """Rewritten by another layout and sealed again it is the same."""
+    head = structure.describe(str(file))["head"]
+    with h5py.File(file, "r+") as data:
+        values, units = data["load"][()], dict(data["load"].attrs)
+        del data["load"]
+        data.create_dataset("load", data=values)
+        data["load"].attrs.update({key: units[key] for key in ("long_name", "units")})
+        for axis, name in enumerate(("surface", "separation")):
+            data["load"].dims[axis].attach_scale(data[name])
+    assert structure.describe(str(file))["head"] == head
+
+
+@pytest.mark.parametrize(("name", "value"), [("separation", 1.5), ("surface", 7)])
+def test_scales_must_be_those_of_the_scene(old_file, name, value):
+    """Also where no checksum guards them, and where somebody sealed the file anew."""
+    with h5py.File(old_file, "r+") as data:
+        data[name][1] = value
+    trailer_again(old_file)
+    with pytest.raises(StoreError, match=f"{name} does not hold the values that its scene declares"):
+        mcgw.open_ensemble(old_file)
+
+
+def test_a_changed_number_is_an_error_when_it_is_read(file):
+    """Each chunk has a checksum: what HDF5 reads is what was written, or nothing."""
+    data, dice = bytearray(file.read_bytes()), np.random.default_rng(5)
+    with h5py.File(file) as opened:
+        chunk = opened["load"].id.get_chunk_info(0)
+    for at in dice.integers(chunk.byte_offset, chunk.byte_offset + chunk.size, 20):
+        changed = data.copy()
+        changed[at] ^= 1 << int(dice.integers(8))
+        file.write_bytes(changed)
+        with pytest.raises(StoreError, match="cannot be read; is it damaged"):
+            ensembles.FileResults(file).read("load", 0, None)
+
+
+@pytest.fixture
+def half(scene, tmp_path):
+    """A run of which half is done."""
+    run_part(scene, tmp_path / "b.h5", Part(1, 2))
+    return parts_of(tmp_path / "b.h5")
+
+
+def test_another_scene_in_a_run_is_noticed(half):
+    file = half / "run.toml"
+    good = file.read_text()
+    assert "sigma = 1.37e-06" in good
+    file.write_text(good.replace("sigma = 1.37e-06", "sigma = 1.37e-05"))
+    with pytest.raises(StoreError, match=r"run\.toml: damaged \(checksum mismatch\)"):
+        RunFolder.open(half)
+    file.write_text(good[: good.index("sha256")])
+    with pytest.raises(StoreError, match=r"run\.toml: damaged"):
+        RunFolder.open(half)
+
+
+def test_runs_of_format_1_0_go_on(half, scene):
+    file = half / "run.toml"
+    text = file.read_text()
+    old = text[: text.index("sha256")].replace("    1,\n    1,\n", "    1,\n    0,\n")
+    assert old.count("    0,\n") == 1
+    file.write_text(old)
+    assert run(scene, half.with_suffix("")).n_surfaces == SURFACES
+    assert not half.exists()
+
+
+def test_the_checksum_of_a_run_is_of_its_text(half):
+    """Computed here anew, by what the format says: the last line is of all before it."""
+    text = (half / "run.toml").read_bytes()
+    *lines, last = text.splitlines(keepends=True)
+    expected = run_folder.hashlib.sha256(b"".join(lines)).hexdigest()
+    assert last == f'sha256 = "{expected}"\n'.encode()

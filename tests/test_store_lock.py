@@ -13,6 +13,7 @@ import mcgw
 from mcgw.errors import StoreError
 from mcgw.jobs.job import Job
 from mcgw.jobs.running import run
+from mcgw.store import lock
 from mcgw.store.lock import LOCK_FILES, locked
 from mcgw.store.run_folder import parts_of
 
@@ -31,6 +32,11 @@ with locked(Path(sys.argv[1]), shared=sys.argv[2] == "shared"):
     print(child, flush=True)
     time.sleep(600)
 """
+
+
+@pytest.fixture(autouse=True)
+def _at_once(monkeypatch):
+    monkeypatch.setattr(lock, "PATIENCE", 0.1)
 
 
 def free(folder, *, shared):
@@ -166,6 +172,7 @@ assert not {"fcntl", "resource"} & set(sys.modules)
 """
 
 
+@pytest.mark.slow
 def test_all_works_where_fcntl_and_resource_are_missing(tmp_path):
     """Hidden from this interpreter and from its children."""
     (tmp_path / "sitecustomize.py").write_text(HIDDEN)

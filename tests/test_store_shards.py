@@ -9,10 +9,10 @@ import pytest
 from mcgw.errors import StoreError
 from mcgw.formats.files import write_whole
 from mcgw.store.shards import Span, commit_shard, content_digest, open_shard, pack
-from mcgw.store.trailer import TRAILER_BYTES, Trailer, check_trailer, read_checked, trailer_of
+from mcgw.store.trailer import TRAILER_BYTES, check_trailer, read_checked, trailer_of
 
 RUN, SPAN = "a" * 64, Span(40, 5)
-FLIPS, TRUNCATIONS = 600, 300
+FLIPS, TRUNCATIONS = 200, 100
 
 
 def arrays():
@@ -32,11 +32,6 @@ def test_a_shard_gives_back_what_was_put_in(shard):
         np.testing.assert_array_equal(again.arrays()[name], values)
 
 
-def test_any_hdf5_reader_opens_it(shard):
-    with h5py.File(shard.path) as file:
-        np.testing.assert_array_equal(file["load"], arrays()["load"])
-
-
 def test_every_flipped_bit_is_noticed(shard):
     data = shard.path.read_bytes()
     rng = np.random.default_rng(1)
@@ -48,19 +43,16 @@ def test_every_flipped_bit_is_noticed(shard):
             open_shard(shard.path, RUN)
 
 
-def test_every_truncation_is_noticed(shard):
+def test_every_other_length_is_noticed(shard):
     data = shard.path.read_bytes()
     rng = np.random.default_rng(2)
+    shard.path.write_bytes(data + b"\0")
+    with pytest.raises(StoreError, match="not a whole file"):
+        open_shard(shard.path, RUN)
     for length in [0, 1, TRAILER_BYTES, len(data) - 1, *rng.choice(len(data), TRUNCATIONS, replace=False)]:
         shard.path.write_bytes(data[:length])
         with pytest.raises(StoreError):
             open_shard(shard.path, RUN)
-
-
-def test_a_longer_file_is_noticed(shard):
-    shard.path.write_bytes(shard.path.read_bytes() + b"\0")
-    with pytest.raises(StoreError, match="not a whole file"):
-        open_shard(shard.path, RUN)
 
 
 def test_a_shard_of_another_run_or_block_is_refused(shard):
@@ -105,11 +97,6 @@ def test_the_digest_is_of_contents_alone():
     changed["load"][0, 0] = -0.0  # equal to 0.0, and not the same bits
     assert content_digest(changed) != content_digest(arrays())
     assert pack(arrays()) == pack(arrays())
-
-
-def test_a_trailer_reads_as_written():
-    trailer = Trailer(12, "f" * 64, {"run": RUN, "first": 2**60})
-    assert Trailer.from_bytes(trailer.to_bytes()) == trailer
 
 
 def test_a_file_appears_whole_or_not_at_all(tmp_path, monkeypatch):

@@ -2,6 +2,8 @@
 
 import numpy as np
 import pytest
+from conftest import SURFACE
+from test_law_of_ones_own import OWN
 
 import analytic
 import mcgw
@@ -9,19 +11,7 @@ from analytic import laws
 from mcgw.errors import StoreError
 from mcgw.scene.storable import storable
 
-SURFACE = analytic.Surface(sigma=1.37e-6, radius=1.3e-5, eta=3e8, nominal_area=1e-4, E_star=78.6e9)
 KOGUT = laws.KogutEtsion(critical=0.05)
-OWN = laws.CustomLaw(
-    load=(
-        lambda u: u**3,
-        lambda u: 1.03 * u**2.85,
-        lambda u: 1.40 * u**2.526,
-        lambda u: 3 / KOGUT.yield_factor * u**2,
-    ),
-    area=(lambda u: u**2, lambda u: 0.93 * u**2.272, lambda u: 0.94 * u**2.292, lambda u: 2 * u**2),
-    limits=(1.0, 6.0, 110.0),
-    critical=0.05,
-)
 LAWS = {
     "Kogut": laws.KogutEtsion(hardness=1.2e9),
     "bridged": laws.KogutEtsion(critical=0.05, bridge="hermite"),
@@ -72,15 +62,6 @@ def test_a_law_of_ones_own_is_the_same_from_its_file(grading, tmp_path):
         np.testing.assert_allclose(found[name], built_in[name], rtol=1e-12)
     with pytest.raises(StoreError):  # another law is another run
         mcgw.run(scene.replace(law=KOGUT), path)
-
-
-def test_a_law_that_is_no_curve_is_refused():
-    """It is resolved before anything is drawn; the line names the piece."""
-    rough = laws.CustomLaw(
-        (lambda u: u**3, lambda u: u**2 * (2 + np.sqrt((u - 2) ** 2))), (lambda u: u**2,) * 2, (1.0,), 0.01
-    )
-    with pytest.raises(mcgw.SceneError, match=r"contact\.law = CustomLaw: load\[1\]: 256 terms"):
-        mcgw.simulate(scene_of(rough))
 
 
 def test_unloading_of_a_law_of_ones_own_is_refused():

@@ -1,6 +1,10 @@
 """A sweep against theory: each point as an ensemble is, one verdict on all, and what a reader sees of it."""
 
 import dataclasses
+import html
+import re
+from html.parser import HTMLParser
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -10,6 +14,7 @@ from mcgw.cli import main
 from mcgw.statistics.comparison import FALSE_ALARM, verdict
 from mcgw.statistics.sweep_comparison import SweepVerdict
 from mcgw.sweeps.cautions import sweep_cautions
+from mcgw.sweeps.file import read_attributes
 
 SURFACE = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "1 mm^2", "78.6 GPa")
 SCENE = mcgw.Scene(SURFACE, separations=[2.0, 0.0, 1.0], n_surfaces=200, n_asperities=2000, seed=5)
@@ -135,19 +140,37 @@ def test_the_command(sweep, tmp_path, monkeypatch, capsys):
     assert main(["compare", "w.h5", "-o", "w.h5"]) == 2
 
 
-def test_the_command_sees_what_is_wrong(sweep, tmp_path, monkeypatch, capsys):
+def test_the_commands_see_what_is_wrong(sweep, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     mcgw.sweep(SCENE, OVER, path="w.h5")
-    monkeypatch.setattr("mcgw.commands.compare_sweep.open_sweep", lambda path: off(sweep, 1.03))
-    assert main(["compare", "w.h5", "-o", "w.svg"]) == 1
+    for command, code, name in (("compare", 1, "w.svg"), ("report", 0, "w.html")):
+        monkeypatch.setattr(f"mcgw.commands.{command}_sweep.open_sweep", lambda path: off(sweep, 1.03))
+        assert main([command, "w.h5", "-o", name]) == code
+        assert "DISAGREE" in (tmp_path / name).read_text()
     assert "DISAGREE: p = " in capsys.readouterr().out
-    assert "DISAGREE" in (tmp_path / "w.svg").read_text()
+    assert 'class="verdict bad">Monte Carlo and theory of this model DISAGREE' in Path("w.html").read_text()
 
 
-def test_what_is_no_sweep_keeps_its_line(tmp_path, capsys):
-    (tmp_path / "x.h5").write_text("no")
-    assert main(["compare", str(tmp_path / "x.h5")]) == 2
-    assert len(capsys.readouterr().err.splitlines()) == 1
+def test_the_page_of_a_sweep(tmp_path, capsys):
+    """Verdict, worst points, cautions and provenance, all text escaped."""
+    path = tmp_path / "w.h5"
+    over = {"grading.gamma": [0.5, 1.0, 2.0], "ensemble.count": ["fixed", "poisson"]}
+    sweep = mcgw.sweep(SCENE.replace(title="<b>&co"), over, path=path)
+    assert main(["report", str(path)]) == 0
+    assert "w.html: report" in capsys.readouterr().out
+    page = (tmp_path / "w.html").read_text()
+    HTMLParser().feed(page)
+    assert "<b>" not in page
+    assert not re.search(r"<script|https?://(?!www\.w3\.org)", page)
+    text = html.unescape(re.sub(r"<[^>]*>", "\n", page))
+    compared = mcgw.compare(sweep)
+    assert f"p = {compared.verdict.p:.3g} for 6 points together (false alarms: at most 1 in 1000)." in text
+    for row in compared.sheet_of(12).rows:
+        assert all(cell in text for cell in row)
+    for line in sweep_cautions(sweep):
+        assert line in text
+    assert read_attributes(path)["digest"] in text
+    assert main(["report", str(path), "-o", str(path)]) == 2
 
 
 def test_the_histogram_holds_every_mean(sweep):

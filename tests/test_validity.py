@@ -5,9 +5,9 @@ The numbers are read from the table, whatever it holds: nothing here knows one o
 
 import csv
 import dataclasses
+import html
 import math
-import subprocess
-import sys
+import re
 from pathlib import Path
 
 import numpy as np
@@ -18,13 +18,14 @@ from scipy.stats import norm
 
 import analytic
 import mcgw
-from mcgw.commands.init import PRESETS
+from mcgw.cli import main
+from mcgw.reports.html import report_html
 from mcgw.scene import validity, validity_table
 from mcgw.scene.validity_place import LEAST_CROWDING, moments_of, reduced_pressure
 from mcgw.scene.validity_table import COLUMNS, grid_of
+from mcgw.store.ensembles import read_attributes
 
 TABLE = Path(mcgw.__file__).parent / "scene" / "validity.csv"
-HERE = TABLE.parent / "presets"
 HEAD = ["map", "model", "interaction", "x", "p"]
 HEAD += [f"{name}{end}" for name in COLUMNS for end in ("", "_std")] + ["maps", "contacts"]
 
@@ -33,7 +34,8 @@ def packaged():
     lines = [line for line in TABLE.read_text().splitlines() if not line.startswith("#")]
     for row in csv.DictReader(lines):
         words = {key: row[key] for key in HEAD[:3]}
-        yield words | {key: float(row[key]) for key in HEAD[3:]}
+        numbers = {key: float(row[key]) for key in HEAD[3:]}
+        yield words | numbers | {"log": math.log(numbers["contacts"])}  # of contacts, to go between
 
 
 ROWS = list(packaged())
@@ -148,20 +150,10 @@ def test_a_gaussian_surface_by_its_own_interpolation():
         area, scatter = (interpolated(model, "area", alpha, p, end) for end in ("", "_std"))
         if not math.isnan(area):
             contacts = scene.n_asperities * norm.sf(h)
-            of_map = math.exp(logarithmic(model, alpha, p))
+            of_map = math.exp(interpolated(model, "log", alpha, p))
             share = max(math.sqrt(of_map / contacts), 2 / math.sqrt(fewest(model, alpha)))
             assert found.error["area"][k] == pytest.approx(abs(area) + share * scatter, rel=1e-5)
     assert (found.error["area"] >= np.abs(found.bias["area"]))[found.measured].all()
-
-
-def logarithmic(model, x, p):
-    """Log of the contacts of a map, in between."""
-    rows = [row | {"log": math.log(row["contacts"])} for row in ROWS]
-    before, ROWS[:] = ROWS[:], rows
-    try:
-        return interpolated(model, "log", x, p)
-    finally:
-        ROWS[:] = before
 
 
 def fewest(model, x):
@@ -260,11 +252,9 @@ def test_a_grading_leaves_the_share_of_the_geometry():
     graded = plain.replace(grading=analytic.Exponential(1.2))
     for name in COLUMNS:
         np.testing.assert_array_equal(plain.validity().error[name], graded.validity().error[name])
-    assert "the geometry of this model is within" in graded.validity().verdict
-    assert "of the grading that says nothing" in graded.validity().details
-    assert "geometry" not in plain.validity().verdict
-    for each in (plain, graded):
-        assert "on homogeneous half-spaces" in each.validity().details
+    for scene, word in ((plain, False), (graded, True)):
+        assert ("geometry" in scene.validity().verdict) == word
+        assert ("of the grading that says nothing" in scene.validity().details) == word
 
 
 def test_few_contacts_widen_and_many_do_not_hide_how_few_maps_there_were(monkeypatch):
@@ -274,8 +264,7 @@ def test_few_contacts_widen_and_many_do_not_hide_how_few_maps_there_were(monkeyp
     monkeypatch.setattr(validity, "grid_of", validity_table.grid_of.__wrapped__)
     scene = mcgw.Scene(surface_of(4.0), separations=[1.0], seed=1)
     for contacts, share in ((1.0, 10.0), (25.0, 2.0), (100.0, 1.0), (1e4, 1.0)):
-        few = scene.replace(n_asperities=round(contacts * 1e6 / norm.sf(1.0)))
-        few = dataclasses.replace(few, n_asperities=max(round(contacts / norm.sf(1.0)), 1))
+        few = dataclasses.replace(scene, n_asperities=max(round(contacts / norm.sf(1.0)), 1))
         actual = few.n_asperities * norm.sf(1.0)
         wanted = 0.1 + 0.02 * max(math.sqrt(100 / actual), 1.0)
         assert few.validity().error["area"][0] == pytest.approx(wanted, rel=1e-9)
@@ -293,16 +282,6 @@ def flat_table():
                 "map": "gaussian", "model": "one radius", "interaction": "none",
                 "x": str(x), "p": str(p), "maps": "4", "contacts": "100",
             }  # fmt: skip
-
-
-@pytest.mark.parametrize("name", PRESETS)
-def test_every_preset_has_a_number_or_the_words(name):
-    found = mcgw.load_scene(HERE / f"{name}.toml").validity()
-    if found.measured.any():
-        assert "% of elasticity" in found.verdict
-        assert found.where
-    else:
-        assert "not measured" in found.verdict or "outside of what was measured" in found.verdict
 
 
 def test_an_interaction_has_its_own_rows_and_a_body_the_area_alone():
@@ -324,9 +303,6 @@ def test_an_interaction_has_its_own_rows_and_a_body_the_area_alone():
             ("gaussian", "one radius", "summits"), "separation", alpha, cell.validity().loads[k]
         )
         assert cell.validity().bias["separation"][k] == pytest.approx(rms * wanted, rel=1e-5)
-    other = plain.replace(interaction={"reference": "mean-plane", "bulk_modulus": 1e8}).validity()
-    assert np.isnan(other.error["stiffness"]).all()
-    assert np.isfinite(other.error["area"]).all()
 
 
 def test_a_nominal_separation_is_looked_up_by_the_felt_one():
@@ -346,9 +322,103 @@ def test_many_separations_are_looked_at_from_the_first_to_the_last():
     assert (found.separations[0], found.separations[-1]) == (-1.0, 3.0)
 
 
-def test_the_table_is_read_by_who_asks():
-    code = (
-        "import sys, mcgw\nfrom mcgw.scene.scene import Scene\n"
-        "assert not [name for name in sys.modules if name.startswith('mcgw.scene.validity')]"
+SEPARATIONS = (0.4, 1.2, 6.0)
+
+
+@pytest.fixture(scope="module")
+def scene():
+    """alpha = 4, and a separation at which hardly anything touches."""
+    surface = analytic.SpectralMoments(1e-12, 1e-3, 4e6).surface(1e-4, 1e9)
+    return mcgw.Scene(surface, separations=SEPARATIONS, n_surfaces=20, seed=1)
+
+
+@pytest.fixture(scope="module")
+def paths(scene, tmp_path_factory):
+    folder = tmp_path_factory.mktemp("shown")
+    (folder / "s.toml").write_text(mcgw.scene_text(scene))
+    mcgw.save(mcgw.simulate(scene), folder / "s.h5")
+    return folder
+
+
+@pytest.fixture
+def without_pictures(monkeypatch):
+    """The report has its words and tables only."""
+    for name in ("comparison_figures", "pressure_pictures", "patch_pictures"):
+        monkeypatch.setattr(f"mcgw.reports.html.{name}", lambda *_: [])
+
+
+COMMANDS = {
+    "run": ["run", "s.toml", "-o", "new.h5"],
+    "compare": ["compare", "s.h5", "-o", "s.png"],
+    "show": ["show", "s.h5"],
+    "plan": ["show", "--plan", "s.toml"],
+    "solve": ["solve", "s.toml", "--pressure", "1 MPa", "--surfaces", "5"],
+}
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_a_command_says_both_sentences(scene, paths, name, capsys, monkeypatch, blank_figures):
+    monkeypatch.chdir(paths)
+    assert main(COMMANDS[name]) == 0
+    out = capsys.readouterr().out
+    first = "Monte Carlo and theory of this model agree"
+    assert (f"{first}: chi-square" if name == "compare" else f"Whether {first}: mcgw compare") in out
+    if name == "solve":
+        scene = scene.replace(separations=[mcgw.solve(scene, pressure="1 MPa").theory["separation"]])
+    known = scene.validity()
+    assert f"{known.verdict}\n" in out
+    assert f"  {known.details}\n" in out
+    assert re.match(
+        r"At a given load this model is within \d+ % of elasticity (here|at d/sigma = 0.4 to 1.2)",
+        known.verdict,
     )
-    subprocess.run([sys.executable, "-c", code], check=True)
+
+
+def test_the_report_has_the_sentences_and_a_table(paths, without_pictures):
+    ensemble = mcgw.open_ensemble(paths / "s.h5")
+    page = html.unescape(report_html(ensemble, read_attributes(paths / "s.h5")))
+    known = ensemble.scene.validity()
+    assert re.search(r'<p class="verdict">Monte Carlo and theory of this model agree: [^<]*<br>\n', page)
+    assert f"<br>\n{known.verdict}.</p>" in page
+    part = page[page.index("<h2>Against elasticity") : page.index("<h2>Before you trust it")]
+    assert known.where in part
+    rows = re.findall(r"<tr><td>([^<]*)</td><td>([^<]*)</td><td>([^<]*)</td>", part)
+    assert [float(h) for h, _, _ in rows] == list(SEPARATIONS)
+    for k in (0, 1):
+        bias, scatter = (
+            float(x) for x in re.match(r"([-+]\d+) ± (\d+) %$", rows[k][2].replace("−", "-")).groups()
+        )
+        assert bias == pytest.approx(100 * known.bias["area"][k], abs=0.51)
+        assert scatter == pytest.approx(100 * (known.error["area"] - abs(known.bias["area"]))[k], abs=0.51)
+    assert rows[2][2] == "not measured"
+
+
+def test_the_report_of_a_model_that_was_not_measured(paths, without_pictures):
+    ensemble = mcgw.open_ensemble(paths / "s.h5")
+    other = dataclasses.replace(ensemble.scene, heights=analytic.ExponentialHeights())
+    page = report_html(dataclasses.replace(ensemble, scene=other), read_attributes(paths / "s.h5"))
+    part = page[page.index("<h2>Against elasticity") : page.index("<h2>Before you trust it")]
+    assert "not measured" in part
+    assert "<table>" not in part
+
+
+def test_results_in_python_say_it(scene):
+    ensemble = mcgw.simulate(scene)
+    known = scene.validity()
+    assert len(known.brief) <= 88
+    assert known.brief in repr(ensemble)
+    assert known.brief in repr(mcgw.compare(ensemble))
+    assert known.brief in ensemble._repr_html_()
+    solved = mcgw.solve(scene, pressure="1 MPa", n_surfaces=5)
+    assert scene.validity(solved.theory["separation"]).brief in repr(solved)
+    shown = repr(known).splitlines()
+    assert shown[0] == "Against elasticity"
+    assert [line.split()[0] for line in shown[4:]] == [f"{h:g}" for h in SEPARATIONS]
+
+
+@pytest.mark.parametrize("worst", [0.1, 0.1000001, 0.0999999, 2.345])
+def test_what_is_said_is_rounded_up(worst):
+    from mcgw.scene.validity_text import percent
+
+    said = float(percent(worst).removesuffix(" %")) / 100
+    assert worst - 1e-12 <= said < worst + 0.01

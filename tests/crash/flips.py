@@ -1,7 +1,7 @@
-"""Single bits flipped where a file says what its numbers mean: ``python flips.py FOLDER FLIPS [old]``.
+"""Single bits flipped where a file says what its numbers mean: ``python flips.py FOLDER FLIPS``.
 
 Prints one JSON line: for each kind of place the flips tried, those seen when the ensemble is opened, and
-where the others were. With "old" the files are of format 1.0, which had no checksum there.
+where the others were.
 """
 
 import json
@@ -18,7 +18,7 @@ from mcgw.errors import StoreError
 from mcgw.jobs.job import Job
 from mcgw.jobs.running import run, run_part
 from mcgw.jobs.session import Part
-from mcgw.store import ensembles, layout, merged_file, saving, structure
+from mcgw.store import ensembles, structure
 from mcgw.store.run_folder import parts_of
 
 BLOCKS = 5
@@ -86,12 +86,8 @@ def seen(file, whole):
     return forked(look) != 0
 
 
-def main(folder, flips, *, old=False):
+def main(folder, flips):
     prepare()
-    if old:
-        layout.FORMAT = (1, 0)
-        for module in (saving, merged_file):
-            module.trailer_notes = lambda file: {}
     folder.mkdir(parents=True)
     dice, (one, merged, begun) = random.Random(1), made(folder)
     places = places_of(one) | places_of(merged)
@@ -119,4 +115,4 @@ def main(folder, flips, *, old=False):
 
 
 if __name__ == "__main__":
-    main(Path(sys.argv[1]), int(sys.argv[2]), old="old" in sys.argv[3:])
+    main(Path(sys.argv[1]), int(sys.argv[2]))

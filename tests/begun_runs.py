@@ -1,0 +1,60 @@
+"""Runs of small blocks that are begun, halted and looked at: what tests of files and engines share."""
+
+import pytest
+
+from mcgw.errors import StoreError
+from mcgw.jobs.job import Job
+from mcgw.jobs.running import run, run_part
+from mcgw.jobs.session import Part
+from mcgw.store import chunks, ensembles, structure
+from mcgw.store.run_folder import parts_of
+
+SIZE, SURFACES = 16, 100  # seven blocks, the last one short
+
+
+class HaltError(Exception):
+    """Stands for whatever ends a run."""
+
+
+def look_here(patch):
+    """Files are looked at in this process: children take most of the time."""
+
+    def examined(path):
+        try:
+            return structure.describe(str(path))
+        except OSError as error:
+            raise StoreError(f"{path}: {error}") from None
+
+    patch.setattr(ensembles, "examine", examined)
+
+
+def in_small_blocks(patch, size=SIZE):
+    patch.setattr(Job, "rows", size)
+    patch.setattr(chunks, "CHUNK_ROWS", size // 2)
+    look_here(patch)
+
+
+def halted(scene, path, surfaces):
+    """A run that is ended when so many are done."""
+
+    def progress(done):
+        if done >= surfaces:
+            raise HaltError
+
+    with pytest.raises(HaltError):
+        run(scene, path, progress=progress)
+    assert parts_of(path).is_dir()
+
+
+def begun(scene, path, jobs=1):
+    """All blocks of a run, not merged yet."""
+    for k in range(1, jobs + 1):
+        run_part(scene, path, Part(k, jobs))
+    assert not path.exists()
+    return sorted(parts_of(path).glob("shards/block-*.h5"))
+
+
+def digest(path):
+    problem, found = ensembles.verify(path)
+    assert problem == ""
+    return found

@@ -1,0 +1,159 @@
+"""Height laws with rounding noise, heavy tails, ends that separations pass, and layers that keep contact."""
+
+import tracemalloc
+from itertools import pairwise
+
+import numpy as np
+import pytest
+import scipy.stats
+from scipy.integrate import quad
+from scipy.optimize import brentq
+
+import analytic
+import mcgw
+from analytic.laws.crossings import crossings_of
+
+SURFACE = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "1 mm^2", "78.6 GPa")
+H = (0.0, 1.0, 2.5)
+NOISY = (
+    scipy.stats.gamma(25), scipy.stats.gamma(1000), scipy.stats.chi2(60), scipy.stats.erlang(30),
+    scipy.stats.f(10, 20), scipy.stats.betaprime(3, 20),
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("law", NOISY, ids=lambda law: law.dist.name)
+def test_means_and_surfaces_are_literal(law):
+    """Theory against quadrature over the law itself, each surface against plain sums over its heights."""
+    scene = mcgw.Scene(
+        SURFACE, separations=H, heights=law, n_asperities=3000, n_surfaces=3, seed=1, quantities=["load"]
+    )
+    ensemble = mcgw.simulate(scene)
+    heights = [mcgw.heights(scene, i) for i in range(3)]
+    sums = np.array([[np.sum(np.maximum(s - h, 0) ** 1.5) for h in H] for s in heights])
+    scale = ensemble.load[0, 0] / sums[0, 0]
+    np.testing.assert_allclose(ensemble.load, scale * sums, rtol=1e-12)
+    mean, std = law.mean(), law.std()
+    integrals = [
+        quad(lambda x, h=h: ((x - mean) / std - h) ** 1.5 * law.pdf(x), mean + h * std, np.inf, epsabs=0)[0]
+        for h in H
+    ]
+    np.testing.assert_allclose(scene.theory.mean("load", H), 3000 * scale * np.array(integrals), rtol=1e-7)
+
+
+def test_the_tail_of_f_is_that_of_its_sf():
+    """The isf of SciPy takes 1 - p: off by a tenth at 1e-16, infinite beyond."""
+    law = mcgw.ScipyHeights(scipy.stats.f(10, 20))
+    shares = np.array([0.7, 0.2, 1e-9, 1e-16, 1e-30])
+    np.testing.assert_allclose(law.above(law.from_above(shares, -np.inf)), shares, rtol=1e-12)
+
+
+def stiffer(s):
+    return 1 + 0.5 * np.tanh(s)
+
+
+def contact_area(u):
+    """Kogut and Etsion: a/a_c of the penetration over the critical one."""
+    conditions = [u < 1, u < 6, u < 110]
+    return np.select(conditions, [u, 0.93 * u**1.136, 0.94 * u**1.146], 2 * u)
+
+
+@pytest.mark.parametrize("freedom", [3.5, 6.0])
+@pytest.mark.parametrize("unload_from", [None, -1.0])
+def test_theory_takes_little_memory_and_is_right(freedom, unload_from):
+    heights, critical = scipy.stats.t(freedom), 0.1
+    law = mcgw.KogutEtsion(critical=critical)
+    scene = mcgw.Scene(
+        SURFACE, separations=[0.0, 1.0], grading=stiffer, heights=heights, law=law, unload_from=unload_from,
+        n_asperities=1000, seed=1, quantities=["area"],
+    )  # fmt: skip
+    tracemalloc.start()
+    found = scene.theory.mean("area", 1.0)
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert peak < 2**26
+
+    std = heights.std()
+
+    def term(s):
+        yields = critical / stiffer(s) ** 2
+        return yields * contact_area((s - 1.0) / yields) * std * heights.pdf(std * s)
+
+    ends = np.array([1.0, 1.2, 1.4, 2.0, 4.0, 7.0, 12.0, 30.0, 1e3, 1e5, 1e8])
+    # Where a piece begins there is a small jump: the quadrature is told where.
+    s = np.linspace(1, 40, 400_001)
+    u = (s - 1.0) * stiffer(s) ** 2 / critical
+    ends = np.unique([*ends, *(s[np.searchsorted(u, limit)] for limit in (1, 6, 110))])
+    pieces = [quad(term, a, b, epsabs=0, limit=200)[0] for a, b in pairwise(ends)]
+    scale = 1000 * np.pi * SURFACE.radius * SURFACE.sigma
+    assert found == pytest.approx(scale * sum(pieces), rel=1e-5)
+
+
+FEW = {"n_asperities": 500, "n_surfaces": 4, "seed": 3, "quantities": ["load", "area"]}
+BOUNDED = (
+    scipy.stats.uniform(), scipy.stats.beta(2, 3), mcgw.Weibull(2.0), mcgw.ExponentialHeights(),
+)  # fmt: skip
+
+
+def stiffening(s):
+    return 1 + 0.3 * np.tanh(s)
+
+
+@pytest.mark.parametrize("keep", ["sums", "moments"])
+@pytest.mark.parametrize("heights", BOUNDED, ids=lambda x: getattr(x, "name", type(x).__name__))
+def test_regraded_loads_are_literal(heights, keep):
+    """One separation lies below the support, one in it."""
+    scene = mcgw.Scene(SURFACE, separations=[-5.0, -0.5, 0.5], heights=heights, keep=keep, **FEW)
+    softer = mcgw.Exponential(0.5)
+    regraded = mcgw.regrade(mcgw.simulate(scene), softer)
+    drawn = [mcgw.heights(scene, i) for i in range(4)]
+    sums = [[np.sum(np.maximum(s - h, 0) ** 1.5 * softer(s)) for h in scene.separations] for s in drawn]
+    scale = 4 / 3 * SURFACE.E_star * np.sqrt(SURFACE.radius) * SURFACE.sigma**1.5
+    np.testing.assert_allclose(regraded.load, scale * np.array(sums), rtol=1e-12)
+
+
+def test_moments_of_heights_that_were_not_drawn_are_refused():
+    scene = mcgw.Scene(SURFACE, separations=[0.0, 1.0], heights=scipy.stats.uniform(), keep="moments", **FEW)
+    ensemble = mcgw.simulate(scene)
+    with pytest.raises(ValueError, match=r"separation -1 is not an edge"):
+        mcgw.regrade(ensemble, mcgw.Exponential(0.5), separations=[-1.0, 1.0])
+
+
+def test_a_function_is_resolved_down_to_where_the_way_back_begins():
+    """On the surface's own heights: elastic spots lose nothing on the way back."""
+    law = mcgw.KogutEtsion(critical=1e3)
+    scene = mcgw.Scene(SURFACE, separations=[0.5, 2.0], grading=stiffening, law=law, unload_from=-1.0, **FEW)
+    ensemble = mcgw.simulate(scene)
+    np.testing.assert_allclose(ensemble["load_unloading"], ensemble.load, rtol=1e-12)
+    assert mcgw.scene_from(mcgw.scene_text(ensemble.scene)) == ensemble.scene
+
+
+@pytest.mark.parametrize("peak", np.linspace(0.9, 1.6, 57))
+def test_a_narrow_interval_is_found_wherever_its_peak_lies(peak):
+    """Between two heights looked at, on one of them, and where one stretch ends and the next begins."""
+    level, half = 0.99, np.sqrt(0.01 / 30)
+    found = crossings_of(
+        lambda s: s - (1 - 30 * (s - peak) ** 2), analytic.Custom(lambda s: 1 + 0 * s), np.array([level]),
+        0.0, 3.0,
+    )  # fmt: skip
+    np.testing.assert_allclose(found.height, [peak - half, peak + half], rtol=1e-12)
+    assert found.begins.tolist() == [True, False]
+
+
+def test_contacts_on_the_way_back_where_a_soft_layer_keeps_them():
+    """Against the residual penetration of Etsion, Kligerman and Kadin, and the law of SciPy itself."""
+    deepest, h, critical, law = -5.81, -3.3948, 0.2025, scipy.stats.lognorm(0.25)
+
+    def modulus(s):
+        return 1 + 2.469 * np.tanh(s - 1.469) ** 2
+
+    def excess(s):
+        ratio = (s - deepest) / (critical / modulus(s) ** 2)
+        return s - h - (s - deepest) * (1 - ratio**-0.28) * (1 - ratio**-0.69)
+
+    ends = [law.mean() + law.std() * brentq(excess, *x) for x in ((0.8, 1.3), (1.6, 2.3), (8, 11))]
+    expected = law.cdf(ends[1]) - law.cdf(ends[0]) + law.sf(ends[2])
+    scene = mcgw.Scene(
+        SURFACE, separations=[h], grading=modulus, heights=law, law=mcgw.KogutEtsion(critical=critical),
+        unload_from=deepest, n_asperities=30, quantities=["contacts"], seed=1,
+    )  # fmt: skip
+    assert scene.theory.mean("contacts_unloading", h) == pytest.approx(30 * expected, rel=1e-9)

@@ -1,0 +1,91 @@
+"""A fitted scene on another nominal area than that of its map: N follows, in files, options and Python."""
+
+import numpy as np
+import pytest
+
+import mcgw
+from mcgw.cli import main
+
+LAWS = ["gaussian", "nayak", "table"]
+
+
+@pytest.fixture(scope="module")
+def heights():
+    z = np.random.default_rng(1).normal(size=(96, 96))
+    for axis in (0, 1):
+        z = sum(np.roll(z, k, axis) for k in range(-2, 3))
+    return 1e-7 * z
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch, heights):
+    monkeypatch.chdir(tmp_path)
+    np.save("map.npy", heights)
+    x = np.arange(heights.size // 4) * 1e-6
+    np.savetxt(
+        "line.txt", np.column_stack([x * 1e6, heights.ravel()[: x.size] * 1e6]), header="x (um), z (um)"
+    )
+    return tmp_path
+
+
+def fit(*more, code=0):
+    assert main(["fit", "map.npy", "--pixel", "1um", "--cutoff", "none", "-o", "f.toml", *more]) == code
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_the_area_of_a_fitted_file_can_be_changed_by_hand(folder, law):
+    fit("--heights", law)
+    before = mcgw.load_scene("f.toml")
+    text = (folder / "f.toml").read_text()
+    (line,) = [line for line in text.splitlines() if line.startswith("nominal_area =")]
+    (folder / "f.toml").write_text(text.replace(line, 'nominal_area = "1 cm^2"'))
+    after = mcgw.load_scene("f.toml")
+    assert after.surface.nominal_area == 1e-4
+    assert after.n_asperities == round(before.surface.eta * 1e-4) > 1000 * before.n_asperities
+    assert after.replace(nominal_area=before.surface.nominal_area) == before
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_an_option_and_an_argument_give_the_same_area(folder, law, heights):
+    fit("--heights", law, "--nominal-area", "0.5 mm^2")
+    scene = mcgw.load_scene("f.toml")
+    found = mcgw.fit("map.npy", cutoff=None, pixel="1 um")
+    of_map = mcgw.fitted_scene(found, heights=law)
+    assert of_map.surface.nominal_area != 5e-7
+    for one in (scene, mcgw.fitted_scene(found, heights=law, nominal_area="0.5 mm^2")):
+        assert one.surface.nominal_area == 5e-7
+        assert one.n_asperities == round(of_map.surface.eta * 5e-7)
+        assert one.heights == of_map.heights
+
+
+@pytest.mark.usefixtures("folder")
+def test_profiles_have_an_area_too():
+    words = ["fit", "line.txt", "--cutoff", "none", "-o", "p.toml", "--nominal-area", "2 mm^2"]
+    assert main(words) == 0
+    scene = mcgw.load_scene("p.toml")
+    assert scene.surface.nominal_area == 2e-6
+    assert scene.n_asperities == round(scene.surface.eta * 2e-6)
+
+
+@pytest.mark.parametrize("law", ["measured", "summits"])
+@pytest.mark.usefixtures("folder")
+def test_summits_as_they_were_measured_stay_on_their_own_area(capsys, law):
+    fit("--heights", law, "--nominal-area", "1cm^2", code=2)
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.startswith(f'mcgw: nominal_area = 0.0001: heights = "{law}" are the very summits of the map')
+    fit("--heights", law)
+    assert mcgw.load_scene("f.toml").n_asperities < 10000
+
+
+@pytest.mark.parametrize("separator", [" ", ",", "\t", ";"])
+@pytest.mark.parametrize("header", ["", "# x y z\n"])
+@pytest.mark.usefixtures("folder")
+def test_points_in_space_are_taken_for_no_image(capsys, separator, header):
+    """Whether or not a pixel is given: more rows than three are no image three pixels wide."""
+    rows = [separator.join(f"{v:.6f}" for v in (i % 8, i // 8, 0.1 * i % 1)) for i in range(64)]
+    with open("points.txt", "w") as file:
+        file.write(header + "\n".join(rows) + "\n")
+    for more in ([], ["--pixel", "1um"]):
+        assert main(["fit", "points.txt", "--cutoff", "none", "-o", "f.toml", *more]) == 2
+        (line,) = capsys.readouterr().err.splitlines()
+        assert "points.txt: three numbers a line, 64 lines: x, y and z of single points are no map" in line

@@ -1,0 +1,85 @@
+"""Values that are just not what they must be: each is refused in one line that says what would do."""
+
+import json
+
+import h5py
+import numpy as np
+import pytest
+
+import mcgw
+from mcgw.cli import main
+from mcgw.commands.outputs import CSV, Output, check_outputs
+from mcgw.maps.files import read_map, write_map
+from mcgw.maps.topography import Topography
+
+FLAT = Topography(1e-6 * np.arange(12.0).reshape(3, 4), (1e-6, 2e-6))
+
+
+@pytest.mark.parametrize("given", ["load", "pressure", "area", "area_fraction"])
+@pytest.mark.parametrize("value", [5e-324, 1e-320, 1e-200, 1e-30, 1e-15, 1e-12])
+def test_loads_down_to_the_smallest_number_are_found_or_refused(make_scene, given, value):
+    scene = make_scene(separations=(2.0,), n_surfaces=3)
+    if value < 1e-20:
+        with pytest.raises(ValueError, match=r"pressed by the last digits of its height; give .* or more"):
+            mcgw.solve(scene, **{given: value})
+        return
+    found = mcgw.solve(scene, **{given: value})
+    name = {"pressure": "load", "area_fraction": "area"}.get(given, given)
+    assert found.surfaces[name] == pytest.approx(found.value, rel=0.5)
+
+
+@pytest.mark.parametrize("number", ["1e-320", "1e-200"])
+def test_solve_says_so_in_one_line(number, tmp_path, capsys):
+    assert main(["init", "-o", str(tmp_path / "s.toml")]) == 0
+    capsys.readouterr()
+    assert main(["solve", str(tmp_path / "s.toml"), "--surfaces", "2", f"--load={number}"]) == 2
+    (line,) = [x for x in capsys.readouterr().err.splitlines() if "note:" not in x]
+    assert line.startswith(f"mcgw: load = {float(number):g} N: less than one asperity has")
+
+
+WRONG = [
+    ("pixel", "12", "must be [dx, dy], two numbers in m"),
+    ("pixel", ["1", "2"], "must be [dx, dy], two numbers in m"),
+    ("pixel", [True, True], "must be [dx, dy], two numbers in m"),
+    ("pixel", [1e-6], "must be [dx, dy], two numbers in m"),
+    ("pixel", [1e-6, 1e-6, 1e-6], "must be [dx, dy], two numbers in m"),
+    ("pixel", {"1": 1, "2": 2}, "must be [dx, dy], two numbers in m"),
+    ("pixel", None, "must be [dx, dy], two numbers in m"),
+    ("pixel", [0.0, 1e-6], "give its size in m, two numbers > 0"),
+    ("periodic", "no", "must be true or false"),
+    ("periodic", 0, "must be true or false"),
+    ("periodic", None, "must be true or false"),
+    ("periodic", [False], "must be true or false"),
+    ("unit", "um", "must be 'm'"),
+    ("unit", ["m"], "must be 'm'"),
+    ("unit", 1, "must be 'm'"),
+]
+
+
+@pytest.mark.parametrize(("key", "value", "told"), WRONG)
+def test_a_sidecar_is_taken_at_its_word(key, value, told, tmp_path):
+    write_map(FLAT, tmp_path / "m.npy")
+    facts = json.loads((tmp_path / "m.json").read_text())
+    (tmp_path / "m.json").write_text(json.dumps(facts | {key: value}))
+    with pytest.raises(ValueError, match=rf"{key} = ") as refused:
+        read_map(tmp_path / "m.npy")
+    assert told in str(refused.value)
+
+
+IN_HDF5 = [row for row in WRONG if row[0] != "unit" and isinstance(row[1], str | list)]
+
+
+@pytest.mark.parametrize(("key", "value", "told"), IN_HDF5)
+def test_so_is_an_hdf5_map(key, value, told, tmp_path):
+    write_map(FLAT, tmp_path / "m.h5")
+    with h5py.File(tmp_path / "m.h5", "r+") as file:
+        file.attrs[key] = value
+    with pytest.raises(ValueError, match=rf"{key} = ") as refused:
+        read_map(tmp_path / "m.h5")
+    assert told in str(refused.value)
+
+
+def test_a_folder_is_not_made_without_a_word(tmp_path, capsys):
+    for _ in range(2):
+        check_outputs([Output(tmp_path / "new" / "deeper" / "x.csv", CSV)])
+    assert capsys.readouterr().err == f"mcgw: note: {tmp_path / 'new' / 'deeper'} is a new folder\n"

@@ -1,0 +1,165 @@
+"""What is imported when: one process answers all questions, each before the next import would blur it.
+
+Every module costs its users time: who needs one imports it in a function.
+"""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import analytic
+import mcgw
+from mcgw.scene.samplers import SAMPLERS
+
+ROOT = Path(mcgw.__file__).parents[1]
+SCENE = ROOT / "runs" / "quick.toml"
+
+# Steps of one process; what it has imported after each of them is printed. A branch goes on in a fork.
+CHILD = """
+import json, os, sys
+scene, file, picture, made = sys.argv[1:]
+
+def tell(step):
+    os.write(out, (json.dumps([step, sorted(sys.modules)]) + "\\n").encode())
+
+def main(*words):
+    from mcgw.cli import main
+    assert main([*words]) == 0
+
+def branch(steps):
+    pid = os.fork()
+    if not pid:
+        code = 1
+        try:
+            steps()
+            code = 0
+        finally:
+            os._exit(code)
+    assert os.waitpid(pid, 0)[1] == 0
+
+def theory():
+    import analytic
+    tell("analytic")
+
+def looks():
+    main("show", file)
+    tell("show")
+    main("compare", file, "-o", picture)
+    tell("compare")
+
+out = os.dup(1)
+os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
+branch(theory)
+import mcgw
+import mcgw.commands.surface, mcgw.commands.fit
+import mcgw.cli
+mcgw.cli._parser()
+tell("parser")
+from mcgw.scene.scene import Scene
+tell("scene")
+branch(looks)
+main("run", scene, "-o", made)
+tell("run")
+surface = mcgw.Surface(1e-6, 1e-5, 3e8, 1e-4, 8e10)
+
+def simulate(**wish):
+    given = {"separations": [0.0, 1.0], "n_surfaces": 2, "seed": 1, **wish}
+    return mcgw.simulate(mcgw.Scene(surface, **given))
+
+for sampler in ("cells", "tail", "direct", "stratified", "aggregate"):
+    simulate(sampler=sampler, n_asperities=10**5)
+repr(simulate())
+simulate().mean("load")
+tell("simulate")
+simulate(n_asperities=10**5, law_error=1e-2)
+tell("law_error")
+simulate(sampler="cells", n_asperities=10**5, accuracy=1e-6)
+tell("accuracy")
+simulate(keep="statistics")
+tell("statistics")
+main("show", "--plan", scene)
+tell("plan")
+"""
+
+
+@pytest.fixture(scope="module")
+def after(tmp_path_factory):
+    """Modules that were imported after each step."""
+    folder = tmp_path_factory.mktemp("imports")
+    scene = mcgw.load_scene(SCENE)
+    mcgw.run(scene, folder / "e.h5")
+    for sampler in SAMPLERS[1:]:  # what is compiled already is run without the compiler
+        mcgw.simulate(scene, sampler=sampler, n_surfaces=2, n_asperities=1000)
+    words = [SCENE, *(folder / name for name in ("e.h5", "e.png", "made.h5"))]
+    call = [sys.executable, "-W", "ignore::DeprecationWarning", "-c", CHILD, *map(str, words)]
+    done = subprocess.run(call, capture_output=True, text=True, cwd=ROOT, check=False)
+    assert done.returncode == 0, done.stderr
+    return {step: set(names) for step, names in map(json.loads, done.stdout.splitlines())}
+
+
+VALIDITY = list(ROOT.glob("mcgw/scene/validity*.py"))
+# None of them may be there after a step.
+NOT_THERE = {
+    "analytic": {"mcgw", "matplotlib", "h5py", "numba", "mpmath", "tqdm"},
+    "parser": {"numpy", "numba", "h5py", "matplotlib", "scipy"},
+    "scene": {"numba", "h5py", "matplotlib", *(f"mcgw.scene.{path.stem}" for path in VALIDITY)},
+    "show": {"matplotlib", "numba", "scipy.optimize", "scipy.stats"},
+    "compare": {"matplotlib.pyplot", "numba", "scipy.optimize", "scipy.stats"},
+    "run": {"matplotlib", "scipy.optimize", "scipy.stats"},
+    "plan": {"matplotlib", "scipy.optimize", "scipy.stats"},
+    "simulate": {"pandas", "xarray", "matplotlib", "scipy.linalg", "numba.cpython.setobj"},
+}
+# What a scene that does not ask for it pays nothing for; and the step that asks, if one does.
+FEATURES = {
+    "mcgw.ensemble.summary": "statistics", "mcgw.ensemble.summarised": "statistics",
+    "mcgw.ensemble.summarising": "statistics", "mcgw.ensemble.bins": "statistics",
+    "mcgw.sampling.crowding": "law_error",
+    "mcgw.sampling.few_bits": "accuracy", "mcgw.sampling.short_sums": "accuracy",
+    "mcgw.sampling.short_prices": "accuracy",
+    "mcgw.sampling.radius_table": None, "mcgw.sampling.families": None, "mcgw.sampling.shared": None,
+    "mcgw.sampling.weighted_sums": None, "mcgw.sampling.with_radii": None, "mcgw.sweeps.sweep": None,
+}  # fmt: skip
+# Laws of contact and height, and interaction: by the last part of their names.
+LAWS = {
+    "adhesion", "bridge", "chang_etsion_bogy", "coated", "custom", "elastic_plastic",
+    "etsion_kligerman_kadin", "hardness", "jackson_green", "kogut_etsion", "law_rows",
+    "power_law_graded", "root_series", "zhao_maietta_chang",
+    "balance", "interacting", "interaction", "interaction_mistakes", "interaction_section", "lowest_felt",
+    "nominal", "nominal_literal", "own_balance",
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("step", NOT_THERE)
+def test_nothing_needless_is_imported(after, step):
+    assert not NOT_THERE[step] & after[step]
+
+
+def test_who_does_not_ask_for_a_feature_imports_nothing_of_it(after):
+    for step in ("compare", "run", "simulate"):
+        assert sorted(FEATURES.keys() & after[step]) == [], step
+    for name, step in FEATURES.items():
+        assert (ROOT / f"{name.replace('.', '/')}.py").exists(), name
+        assert step is None or name in after[step], name
+    assert "mcgw.sampling.few_bits" not in after["law_error"]
+
+
+def test_who_asks_for_hertz_loads_no_other_law(after):
+    seen = after["run"] | after["compare"] | after["simulate"]
+    assert not LAWS & {name.rpartition(".")[2] for name in seen if name.startswith(("analytic", "mcgw"))}
+    assert {path.stem for package in (mcgw, analytic) for path in folder(package).rglob("*.py")} >= LAWS
+
+
+def folder(package):
+    return Path(package.__file__).parent
+
+
+def test_what_is_imported_would_be_seen(after):
+    """And of packages from elsewhere the theory takes NumPy and SciPy alone."""
+    assert {"analytic", "numpy", "scipy"} <= after["analytic"]
+    assert "numba" in after["run"]
+    assert "matplotlib.figure" in after["compare"]
+    assert "mcgw.commands.surface" in after["parser"]
+    assert VALIDITY

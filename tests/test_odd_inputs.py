@@ -1,0 +1,144 @@
+"""Odd scenes, files and places: each works, fails in one line that names it, or degrades as stated."""
+
+import os
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import analytic
+import mcgw
+from mcgw.errors import StoreError
+from mcgw.formats.files import check_output
+from mcgw.jobs.disk_space import check_space
+from mcgw.jobs.running import run
+from mcgw.machine.memory import memory_available
+from mcgw.scene.scene import SceneError
+
+
+def load_share(scene):
+    """Load in units of what one asperity carries at unit approach, a surface and asperity."""
+    unit = analytic.QUANTITIES["load"].scale(scene.surface)
+    return mcgw.simulate(scene).load / (unit * scene.n_asperities)
+
+
+def test_a_separation_at_which_all_touch(make_scene):
+    scene = make_scene(separations=(-40.0,), grading=analytic.Homogeneous(), n_surfaces=50)
+    share = load_share(scene)
+    error = share.std() / np.sqrt(share.size)
+    assert abs(share.mean() - 253.042) < 5 * error + 5e-4  # the last digit of the reference
+    ensemble = mcgw.simulate(scene)
+    assert (ensemble.contacts == scene.n_asperities).all()
+
+
+def test_separations_at_which_nothing_touches(make_scene):
+    ensemble = mcgw.simulate(make_scene(separations=(38.6, 40.0, 1e3)))
+    for name in ensemble.scene.quantities:
+        assert not ensemble.values(name).any()
+        assert not ensemble.stderr(name).any()
+    assert np.isfinite(analytic.fn(1.5, 40.0, log=True))
+
+
+def test_separations_that_are_neither_sorted_nor_all_different(make_scene):
+    """Zero of either sign is one number."""
+    h = (2.0, 0.0, 1.0, -0.0, 2.0)
+    ensemble = mcgw.simulate(make_scene(separations=h, n_surfaces=5))
+    np.testing.assert_array_equal(ensemble.separations, h)
+    assert np.all(np.diff(ensemble.load[:, [0, 2, 1]], axis=1) > 0)
+    np.testing.assert_array_equal(ensemble.load[:, [3, 4]], ensemble.load[:, [1, 0]])
+
+
+def test_one_asperity(make_scene):
+    ensemble = mcgw.simulate(make_scene(n_asperities=1, separations=(0.0, 1.0)))
+    assert set(np.unique(ensemble.contacts)) == {0, 1}
+
+
+def test_many_asperities(make_scene):
+    """Far up, where few touch, drawn one by one; with aggregated cells anywhere."""
+    for change in ({"separations": (6.5,)}, {"separations": (1.0,), "sampler": "aggregate"}):
+        scene = make_scene(n_asperities=10**12, n_surfaces=3, **change)
+        contacts = mcgw.simulate(scene).contacts
+        expected = 10**12 * float(scene.heights.above(np.array(scene.lowest)))
+        assert (np.abs(contacts - expected) < 6 * np.sqrt(expected)).all()
+
+
+def test_one_surface(make_scene):
+    ensemble = mcgw.simulate(make_scene(n_surfaces=1))
+    assert np.isnan(ensemble.std("load")).all()
+    assert np.isnan(ensemble.stderr("load")).all()
+    assert np.isfinite(ensemble.mean("load")).all()
+
+
+def test_beyond_64_bits(make_scene, tmp_path):
+    scene = make_scene(n_surfaces=10**12, n_asperities=10**8, separations=(6.0,))
+    with pytest.raises(StoreError, match=r"n_surfaces \* n_asperities = 1e\+20 is more than 2\^63 - 1"):
+        run(scene, tmp_path / "e.h5")
+    assert not list(tmp_path.iterdir())
+
+
+def test_more_asperities_than_memory(make_scene, tmp_path):
+    scene = make_scene(
+        n_surfaces=4, n_asperities=memory_available() // 8, separations=(4.0,), sampler="aggregate"
+    )
+    assert run(scene, tmp_path / "e.h5").n_surfaces == 4
+    with pytest.raises(ValueError, match=r"the heights of one surface needs .* GiB of memory and .* GiB are"):
+        mcgw.heights(replace(scene, sampler="cells"), 0, untouched=True)
+    with pytest.raises(StoreError, match=r"a block of 4 surfaces needs .* GiB of memory"):
+        check_space(scene, tmp_path / "e.h5", rows=4, columns=memory_available())
+
+
+def test_more_than_the_disk(make_scene, tmp_path):
+    scene = make_scene(n_surfaces=10**12, n_asperities=1000, separations=(3.0,))
+    with pytest.raises(StoreError, match=r"needs up to .* GiB more on the disk while made and .* are free"):
+        run(scene, tmp_path / "e.h5")
+    assert not list(tmp_path.iterdir())
+
+
+def test_an_extreme_gamma(make_scene):
+    for gamma in (1e300, 1e308):  # the sums of stiffness, or all, would be infinite
+        with pytest.raises(SceneError, match=r"grading.gamma = 1e\+30\d: .* leave double precision"):
+            make_scene(grading=analytic.Exponential(gamma))
+    for gamma in (0.0, 1e-300, 1e280):
+        ensemble = mcgw.simulate(make_scene(grading=analytic.Exponential(gamma), n_surfaces=3))
+        assert np.isfinite(ensemble.load).all()
+
+
+def test_names_that_are_none(make_scene, tmp_path):
+    for name in ("..", "a\0b", "x" * 300, "a\nb"):
+        with pytest.raises(StoreError):
+            run(make_scene(n_surfaces=2), tmp_path / name)
+    with pytest.raises(StoreError, match="is not a name for a file"):
+        run(make_scene(n_surfaces=2), "")
+    assert not list(tmp_path.iterdir())
+
+
+def test_output_that_is_a_link(make_scene, tmp_path):
+    victim = tmp_path / "victim"
+    victim.write_bytes(b"precious")
+    (tmp_path / "e.h5").symlink_to(victim)
+    with pytest.raises(StoreError, match="is not a regular file"):
+        run(make_scene(n_surfaces=2), tmp_path / "e.h5")
+    assert victim.read_bytes() == b"precious"
+
+
+def test_inputs_that_are_no_files(make_scene, tmp_path):
+    os.mkfifo(tmp_path / "pipe")
+    for path in (tmp_path / "pipe", tmp_path, Path("/dev/zero")):
+        with pytest.raises(SceneError, match="is not a regular file"):
+            mcgw.load_scene(path)
+        with pytest.raises(StoreError, match=r"is not a regular file|Is a directory"):
+            mcgw.open_ensemble(path)
+
+
+def test_folders_that_are_none(make_scene, tmp_path):
+    (tmp_path / "file").touch()
+    with pytest.raises(StoreError, match=r"cannot be written|Not a directory"):
+        run(make_scene(n_surfaces=2), tmp_path / "file" / "e.h5")
+    folder = tmp_path / "closed"
+    folder.mkdir(mode=0o500)
+    if not os.access(folder, os.W_OK):  # the superuser may write anywhere
+        with pytest.raises(StoreError, match="read-only"):
+            check_output(folder / "e.h5")
+    with pytest.raises(StoreError, match=r"0 GiB are free|cannot be written"):
+        run(make_scene(n_surfaces=2), "/proc/e.h5")
