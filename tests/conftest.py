@@ -34,7 +34,7 @@ def pytest_configure(config):
         if worker or alone:
             config.pluginmanager.register(Meter())
         if not worker:
-            config.pluginmanager.register(Bill())
+            config.pluginmanager.register(Bill(alone))
 
 
 @cache

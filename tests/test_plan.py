@@ -61,7 +61,7 @@ def test_samplers_that_draw_all_and_hardly_any(make_scene):
 
 def test_bits_of_uniforms_are_told_where_cells_draw_them(make_scene):
     """Not of samplers that draw heights one by one; shares of the bits add up to all asperities."""
-    asked = {"accuracy": 1e-3, "separations": (1.0, 2.0)}
+    asked = {"accuracy": 1e-3, "separations": (3.5, 4.0)}
     plain, short = (make_scene(sampler=name, n_asperities=10**5, **asked) for name in ("tail", "cells"))
     assert plan_of(plain).bits == {}
     assert "  accuracy      0.001 of every value\n" in plan_text(plain, plan_of(plain)) + "\n"
