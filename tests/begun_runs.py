@@ -1,5 +1,7 @@
 """Runs of small blocks that are begun, halted and looked at: what tests of files and engines share."""
 
+import threading
+
 import pytest
 
 from mcgw.errors import StoreError
@@ -43,6 +45,9 @@ def halted(scene, path, surfaces):
 
     with pytest.raises(HaltError):
         run(scene, path, progress=progress)
+    for thread in threading.enumerate():
+        if thread.name == "mcgw-blocks":  # the block at work is written even so
+            thread.join()
     assert parts_of(path).is_dir()
 
 
