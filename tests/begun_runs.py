@@ -36,6 +36,13 @@ def in_small_blocks(patch, size=SIZE):
     look_here(patch)
 
 
+def settle():
+    """Wait for what is at work: a block is written even after its caller has an exception."""
+    for thread in threading.enumerate():
+        if thread.name == "mcgw-blocks":
+            thread.join()
+
+
 def halted(scene, path, surfaces):
     """A run that is ended when so many are done."""
 
@@ -45,9 +52,7 @@ def halted(scene, path, surfaces):
 
     with pytest.raises(HaltError):
         run(scene, path, progress=progress)
-    for thread in threading.enumerate():
-        if thread.name == "mcgw-blocks":  # the block at work is written even so
-            thread.join()
+    settle()
     assert parts_of(path).is_dir()
 
 
