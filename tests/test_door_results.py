@@ -12,6 +12,7 @@ from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.results import MemoryResults
 from mcgw.figures.of_results import draw
 from mcgw.formats.sheet import Sheet, brief
+from mcgw.formats.table import Column, Table
 from mcgw.machine.progress import told
 from mcgw.statistics import tradeoff
 
@@ -187,7 +188,7 @@ def test_a_title_is_no_tag_and_no_command(scene, ensemble):
         assert "<script" not in shown._repr_html_()
         assert "&lt;script" in shown._repr_html_()
         assert "\x1b" not in repr(shown)
-    sheet = Sheet("<a>", [("<b>", "<c>")], ["<d>"], [["<e>"]])
+    sheet = Sheet("<a>", [("<b>", "<c>")], Table((Column("<d>", ["<e>"]),)))
     assert not [tag for tag in ("<a>", "<c>", "<d>", "<e>") if tag in sheet.html()]
     assert sheet.html().count("<b>") == 1  # our own
     assert brief("x" * 88) == "x" * 88

@@ -22,7 +22,7 @@ from mcgw.ensemble.forecast import forecast, relative_spread
 from mcgw.ensemble.solution import solutions
 from mcgw.reports.html import report_html
 from mcgw.reports.plan import plan_of
-from mcgw.reports.text import comparison_table, summary, verdict_line
+from mcgw.reports.text import comparison_text, summary, verdict_line
 from mcgw.scene.cautions import cautions
 from mcgw.statistics.comparison import compare
 from mcgw.statistics.convergence import converge
@@ -87,7 +87,7 @@ def test_what_is_printed_is_the_theory_of_that_law(name, ensemble_of, no_figures
     exact = {q: [literal(scene, q, h) for h in scene.separations] for q in scene.quantities}
     for q, curve in comparison.curves.items():
         np.testing.assert_allclose(curve.theory, exact[q], rtol=1e-8)
-    rows = [line.split() for line in comparison_table(comparison).splitlines() if "..." in line]
+    rows = [line.split() for line in comparison_text(comparison).splitlines() if "..." in line]
     printed = [float(row[5]) for row in rows]
     assert printed == pytest.approx([x for q in scene.quantities for x in exact[q]], rel=1e-5)
     page = report_html(e, ATTRIBUTES)

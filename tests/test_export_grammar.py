@@ -18,7 +18,7 @@ from mcgw.exports.kinds import KINDS
 from mcgw.exports.programs import PROGRAMS
 from mcgw.exports.table_text import table_text
 from mcgw.exports.unit_systems import UNIT_SYSTEMS
-from mcgw.formats.csv_table import write_csv
+from mcgw.formats.table import Column, Table
 from mcgw.store import ensembles, structure
 from mcgw.store.run_folder import RunFolder
 
@@ -104,5 +104,5 @@ def test_texts_of_a_run_are_one_line_each(make_scene, tmp_path):
 
 
 def test_a_comment_above_a_table_is_one_line(tmp_path):
-    write_csv(tmp_path / "t.csv", ["x"], [[1.0]], comment=LIVE)
+    Table((Column("x", [1.0]),)).write(tmp_path / "t.csv", comment=LIVE)
     assert len(re.split(r"[\r\n]", (tmp_path / "t.csv").read_text("utf-8").strip())) == 3

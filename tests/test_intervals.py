@@ -18,8 +18,8 @@ from mcgw.ensemble.intervals import FEWEST, TOO_FEW, Spread, count_interval, pea
 from mcgw.ensemble.over_surfaces import total_number
 from mcgw.ensemble.results import MemoryResults
 from mcgw.figures.comparison import quantity_figure
-from mcgw.reports.report_tables import quantity_table
-from mcgw.reports.text import COMPARISON_HEADER, comparison_rows, comparison_table
+from mcgw.formats.table import stacked
+from mcgw.reports.text import comparison_text
 from mcgw.scene.scene import Scene
 from mcgw.statistics.comparison import compare
 
@@ -224,14 +224,14 @@ def test_too_few_is_said_wherever_intervals_are(make_scene):
     comparison = compare(mcgw.simulate(make_scene(n_surfaces=20, separations=h, seed=3)))
     effective = spread_of(comparison.ensemble.scene, "load").effective(20)
     assert (effective < FEWEST).tolist() == [False, True, True]
-    lines = comparison_table(comparison).splitlines()
-    words = [TOO_FEW in line for line in lines if line.split()[0] in ("0.000", "4.000", "8.000")]
+    lines = comparison_text(comparison).splitlines()
+    words = [TOO_FEW in line for line in lines if line.split()[0] in ("0", "4", "8")]
     assert words == 3 * [False, True, True] + 3 * [False]
-    rows = [dict(zip(COMPARISON_HEADER, row, strict=True)) for row in comparison_rows(comparison)]
-    assert [bool(np.isnan(row["low_95"])) for row in rows] == words
-    assert [bool(np.isnan(row["high_95"])) for row in rows] == words
-    assert [row[2] == TOO_FEW for row in quantity_table(comparison, "load").rows] == [False, True, True]
-    assert TOO_FEW not in [row[2] for row in quantity_table(comparison, "contacts").rows]
+    stored = {column.name: column for column in stacked(comparison.tables(), "quantity").flat}
+    assert np.isnan(stored["low_95"].values).tolist() == words
+    assert np.isnan(stored["high_95"].values).tolist() == words
+    pages = [comparison.tables()[name].html().count(TOO_FEW) for name in ("load", "contacts")]
+    assert pages == [2, 0]
     assert comparison.curves["load"].mean[1] > 0  # so that the figure has something to mark
     shown = [text.get_text() for text in quantity_figure(comparison, "load").axes[0].get_legend().get_texts()]
     assert shown == ["theory", "Monte Carlo, 95 %", TOO_FEW]

@@ -12,18 +12,18 @@ from conftest import SURFACE
 import analytic
 import mcgw
 from mcgw.cli import main
+from mcgw.formats.numbers import columns, number
 from mcgw.reports.html import report_html
-from mcgw.reports.numbers import columns, number
 from mcgw.statistics.comparison import compare
 
 LOWERED = str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789")
 H = (0.5, 0.0, 2.0, 1.0)
 HEADINGS = {
-    "area": "Area (m²)",
-    "contacts": "Contacts",
-    "load": "Load (N)",
-    "conductance": "Conductance (m)",
-    "stiffness": "Stiffness (N/m)",
+    "area": "real contact area (m²)",
+    "contacts": "number of contacts",
+    "load": "normal load (N)",
+    "conductance": "contact conductance of the spots, times the resistivity rho (m)",
+    "stiffness": "normal stiffness (N/m)",
 }
 ATTRIBUTES = {
     "digest": "a1b2", "seed": 77, "sampler": "cells", "date": "2026-01-02", "versions": "mcgw 9 <x>",
@@ -122,15 +122,16 @@ def test_every_column_of_every_table(ensemble, page):
     """Means by NumPy, theory and standard errors by quadrature over these heights."""
     assert [heading for heading, *_ in tables(page)] == list(HEADINGS.values())
     for (_, header, rows), name in zip(tables(page), HEADINGS, strict=True):
-        assert header == ["d/σ", "mean", "± 95 %", "theory", "residual"]
+        assert header == ["d/σ", "mean", "95 % interval", "std", "theory", "residual"]
         assert [float(row[0]) for row in rows] == list(H)
         x = ensemble.values(name).astype(float)
         theory, stderr = exact.mean(ensemble.scene, name), exact.std(ensemble.scene, name) / np.sqrt(150)
         low, high = ensemble.interval(name)
-        for k, (_, mean, error, shown, residual) in enumerate(rows):
-            assert value(mean)[0] == pytest.approx(x[:, k].mean(), rel=1e-3)
-            assert value(error)[0] == pytest.approx((high[k] - low[k]) / 2, rel=0.06)
-            assert value(error)[0] == pytest.approx(1.976 * x[:, k].std(ddof=1) / np.sqrt(150), rel=0.2)
+        for k, (_, mean, interval, std, shown, residual) in enumerate(rows):
+            assert value(mean)[0] == pytest.approx(x[:, k].mean(), rel=6e-5)
+            ends = [value(end)[0] for end in interval.split(" … ")]
+            assert ends == pytest.approx([low[k], high[k]], rel=6e-5)
+            assert value(std)[0] == pytest.approx(x[:, k].std(ddof=1), rel=6e-3)
             assert value(shown)[0] == pytest.approx(theory[k], rel=6e-5)
             assert value(residual)[0] == pytest.approx((x[:, k].mean() - theory[k]) / stderr[k], abs=0.06)
 

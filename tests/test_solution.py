@@ -10,7 +10,7 @@ import analytic
 import mcgw
 from mcgw.ensemble.separation import separation_on
 from mcgw.ensemble.solution import solutions
-from mcgw.reports.solution import solution_table
+from mcgw.reports.solution import solutions_text
 
 LOADS = (3.0, 100.0, 900.0)
 
@@ -210,7 +210,7 @@ def test_a_solution_of_too_few_contacts_has_no_interval(make_scene):
     assert 3 * light.theory["contacts"] < 10 < 3 * heavy.theory["contacts"]
     assert np.isnan(light.interval("area")).all()
     assert heavy.interval("area")[0] < heavy.surfaces["area"].mean() < heavy.interval("area")[1]
-    blocks = solution_table(scene, [light, heavy]).split("\n\n")
+    blocks = solutions_text(scene, [light, heavy]).split("\n\n")
     assert [block.count("too few contacts") for block in blocks[:2]] == [5, 0]
 
 

@@ -72,7 +72,7 @@ def test_one_mean_of_one_point_that_is_off_breaks_it(sweep, name):
         "ensemble.seed": 2,
     }
     assert worst.tested.quantities[worst.worst[0]] == name
-    assert compared.sheet().rows[0][0] == "2, 2"
+    assert compared.sheet().table.columns[0].values[0] == "2, 2"
     assert "DISAGREE" in repr(compared)
     assert len(repr(compared).splitlines()) <= 12
 
@@ -165,8 +165,9 @@ def test_the_page_of_a_sweep(tmp_path, capsys):
     text = html.unescape(re.sub(r"<[^>]*>", "\n", page))
     compared = mcgw.compare(sweep)
     assert f"p = {compared.verdict.p:.3g} for 6 points together (false alarms: at most 1 in 1000)." in text
-    for row in compared.sheet_of(12).rows:
-        assert all(cell in text for cell in row)
+    table = compared.sheet_of(12).table.only("point", "quantity", "residual")
+    for column in table.columns:
+        assert all(cell in text for cell in column.typeset())
     for line in sweep_cautions(sweep):
         assert line in text
     assert read_attributes(path)["digest"] in text

@@ -21,8 +21,9 @@ def execute(args: argparse.Namespace) -> int:
     from mcgw.commands.notes import tell_notes
     from mcgw.commands.outputs import Output, check_outputs, figure_format
     from mcgw.commands.table_option import table_output, write_table
+    from mcgw.formats.table import stacked
     from mcgw.reports.elasticity import against_elasticity
-    from mcgw.reports.text import COMPARISON_HEADER, comparison_rows, comparison_table, verdict_line
+    from mcgw.reports.text import comparison_text, verdict_line
     from mcgw.statistics.comparison import compare
     from mcgw.store.ensembles import filetype_of, open_ensemble
 
@@ -38,8 +39,8 @@ def execute(args: argparse.Namespace) -> int:
     tell_notes(ensemble.scene)
     comparison = compare(ensemble)
     save_comparison(comparison, path)
-    print(comparison_table(comparison))
-    write_table(args.csv, COMPARISON_HEADER, comparison_rows(comparison))
+    print(comparison_text(comparison))
+    write_table(args.csv, lambda: stacked(comparison.tables(), "quantity"))
     known = against_elasticity(ensemble.scene.validity())
     print("", verdict_line(comparison.verdict), *known, f"{path}: figure", sep="\n")
     return 0 if comparison.verdict.agrees else 1

@@ -28,6 +28,6 @@ def compare_with_theory(args: argparse.Namespace, path: Path) -> int:
         comparison = compare_sweep(sweep, progress=show)
     save_sweep_comparison(comparison, path)
     print(comparison.sheet_of(_LISTED).text())
-    write_table(args.csv, comparison.header, comparison.table())
+    write_table(args.csv, comparison.table)
     print("", comparison.verdict.line, f"{path}: figure", sep="\n")
     return 0 if comparison.verdict.agrees else 1

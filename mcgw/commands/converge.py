@@ -38,8 +38,7 @@ def execute(args: argparse.Namespace) -> int:
     print(
         f"{SEEDS} ensembles of {found.scene.n_surfaces} surfaces of {found.scene.n_asperities:g} asperities"
     )
-    for check in found.checks:
-        print(f"  {check.name:28} p = {check.p:<9.3g} {check.seen}")
+    print(found.table().text())
     word = "passed" if found.passed else "FAILED"
     print(f"convergence {word}: p = {found.p:.3g} over all (false alarms: 1 in {1 / FALSE_ALARM:.0f})")
     print(f"{path}: figure")

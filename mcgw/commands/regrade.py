@@ -34,7 +34,8 @@ def execute(args: argparse.Namespace) -> int:
     from mcgw.commands.outputs import HDF5, Output, check_outputs
     from mcgw.commands.table_option import table_output, write_table
     from mcgw.ensemble.regrading import regrade, regraded_scene
-    from mcgw.reports.text import RATIO_HEADER, ratio_rows, ratio_table
+    from mcgw.formats.table import stacked
+    from mcgw.reports.text import ratio_tables
     from mcgw.scene.grading_section import read_grading
     from mcgw.store.ensembles import finished, open_ensemble
     from mcgw.store.saving import save
@@ -51,9 +52,11 @@ def execute(args: argparse.Namespace) -> int:
     tell_notes(asked)
     finished(path, asked, old.sampler)
     new = save(regrade(old, grading, law=law), path)
-    print(ratio_table(new, old))
+    ratios = ratio_tables(new, old)
+    for ratio in ratios.values():
+        print(ratio.rows(9).text())
     print(f"{path}: {new.n_surfaces} surfaces, the same as in {args.file}")
-    write_table(args.csv, RATIO_HEADER, ratio_rows(new, old))
+    write_table(args.csv, lambda: stacked(ratios, "quantity"))
     return 0
 
 

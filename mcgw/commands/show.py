@@ -64,11 +64,17 @@ def execute(args: argparse.Namespace) -> int:
     elif args.digest:
         print(attributes["digest"])
     else:
-        from mcgw.reports.text import summary, summary_header, summary_rows
+        from mcgw.ensemble.tables import statistics_table
+        from mcgw.formats.table import stacked
+        from mcgw.reports.text import summary
 
         ensemble = open_ensemble(args.file)
         check_outputs(table_output(args.csv), inputs=[args.file])
         tell_notes(ensemble.scene)
         print(summary(ensemble, attributes))
-        write_table(args.csv, summary_header(ensemble), summary_rows(ensemble))
+        names = ensemble.scene.quantities
+        write_table(
+            args.csv,
+            lambda: stacked({name: statistics_table(ensemble, name) for name in names}, "quantity"),
+        )
     return 0

@@ -1,17 +1,13 @@
 """What ``mcgw show`` says of the file of a sweep."""
 
 import argparse
-from collections.abc import Iterator
 
 from mcgw.commands.outputs import check_outputs
 from mcgw.commands.table_option import table_output, write_table
 from mcgw.errors import StoreError
-from mcgw.formats.csv_table import Row
 from mcgw.store.trailer import check_trailer
-from mcgw.sweeps.axes import label
 from mcgw.sweeps.file import open_sweep, read_attributes
 from mcgw.sweeps.folder import SweepFolder, folder_of
-from mcgw.sweeps.sweep import Sweep
 
 __all__ = ["show_sweep", "show_unfinished"]
 
@@ -32,8 +28,7 @@ def show_sweep(args: argparse.Namespace) -> int:
         print(f"  digest  {attributes['digest']}")
         print(f"  made    {attributes['date']} in {attributes['wall_seconds']:.3g} s on {attributes['cpu']}")
         print(f"  with    {attributes['versions']}; commit {attributes['commit']}")
-        names = [f"{name}_{kind}" for name in _plain(sweep) for kind in sweep.statistics]
-        write_table(args.csv, [*sweep.axes.keys, "separation", *names], _rows(sweep))
+        write_table(args.csv, sweep.table)
     return 0
 
 
@@ -70,17 +65,3 @@ def _verified(args: argparse.Namespace) -> int:
         return 1
     print(f"{args.file}: intact ({read_attributes(args.file)['digest']})")
     return 0
-
-
-def _plain(sweep: Sweep) -> list[str]:
-    """Quantities that depend on the separation alone."""
-    return [name for name, shape in sweep.scenes[0].shapes.items() if len(shape) == 1]
-
-
-def _rows(sweep: Sweep) -> Iterator[Row]:
-    """A row for each point and separation."""
-    values = [getattr(sweep, kind)(name) for name in _plain(sweep) for kind in sweep.statistics]
-    for point in sweep.axes.points():
-        keys = [label(value) for value in sweep.axes.at(point).values()]
-        for k, h in enumerate(sweep.separations):
-            yield [*keys, h, *(array[point][k] for array in values)]

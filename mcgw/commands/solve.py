@@ -30,7 +30,7 @@ def execute(args: argparse.Namespace) -> int:
     from mcgw.ensemble.solution import solutions
     from mcgw.formats.units import parse
     from mcgw.machine.progress import bar
-    from mcgw.reports.solution import SOLUTION_HEADER, solution_rows, solution_table
+    from mcgw.reports.solution import solutions_table, solutions_text
     from mcgw.scene.scene_file import files_of, load_scene
 
     scene = load_scene(args.scene)
@@ -47,6 +47,6 @@ def execute(args: argparse.Namespace) -> int:
     tell_notes(scene)
     with bar("surfaces", terminal=True) as tell:
         found = solutions(scene, given, values, tell)
-    print(solution_table(scene, found))
-    write_table(args.csv, SOLUTION_HEADER, solution_rows(scene, found))
+    print(solutions_text(scene, found))
+    write_table(args.csv, lambda: solutions_table(scene, found))
     return 0

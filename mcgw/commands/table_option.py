@@ -1,10 +1,10 @@
 """The option ``--csv`` of commands that print a table."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable
 from pathlib import Path
 
 from mcgw.commands.outputs import CSV, Output
-from mcgw.formats.csv_table import Row, write_csv
+from mcgw.formats.table import Table
 
 __all__ = ["table_output", "write_table"]
 
@@ -14,8 +14,8 @@ def table_output(path: Path | None) -> list[Output]:
     return [Output(path, CSV, "--csv")] if path else []
 
 
-def write_table(path: Path | None, header: Sequence[str], rows: Iterable[Row]) -> None:
-    """Write it, and say where it is."""
+def write_table(path: Path | None, table: Callable[[], Table]) -> None:
+    """Write it if it is asked for, and say where it is."""
     if path:
-        write_csv(path, header, rows)
+        table().write(path)
         print(f"{path}: the table")

@@ -21,10 +21,8 @@ def execute(args: argparse.Namespace) -> int:
     from mcgw.commands.notes import tell_notes
     from mcgw.commands.outputs import CSV, Output, check_outputs, figure_format
     from mcgw.figures.tradeoff import save_tradeoff
-    from mcgw.formats.csv_table import write_csv
     from mcgw.formats.units import parse
     from mcgw.machine.progress import bar
-    from mcgw.reports.tradeoff import tradeoff_header, tradeoff_rows
     from mcgw.scene.scene_file import files_of, load_scene
     from mcgw.statistics.tradeoff import tradeoff
 
@@ -36,19 +34,9 @@ def execute(args: argparse.Namespace) -> int:
     tell_notes(scene)
     with bar("s", terminal=True) as show:
         found = tradeoff(scene, seconds=seconds, progress=show)
-    write_csv(table, tradeoff_header(found), tradeoff_rows(found))
+    found.table().write(table)
     save_tradeoff(found, figure)
-    quantity = scene.quantities[0]
-    shown = ", ".join(f"{h:g}" for h in found.separations)
-    print(f"relative error of the mean {quantity} at d/sigma = {shown}")
-    for p in found.points:
-        errors = " ".join(f"{e:9.2e}" for e in p.rms)
-        print(f"  {p.method:36} {p.size:9.3g} {p.unit:11} {errors}  +-{p.rms_stderr:4.0%}  {p.cpu:9.2e} s")
-    print("\nvalues of single surfaces (largest relative error of a few surfaces, seconds by the clock):")
-    for way in found.ways:
-        spent = f", law_error {way.scene.law_error:g}" if way.scene.law_error else ""
-        asked = f"{way.sampler}, accuracy {way.scene.accuracy:g}{spent}"
-        print(f"  {asked:40} {way.error:9.1e} {way.each:9.2e} s a surface, {way.set_up:.2g} s before")
+    print(found.table().text(), found.ways_table().text(), sep="\n\n")
     print(f"\n{found}")
     print("for the mean alone: the theory, `analytic`, is exact; by samples, stratified")
     print(f"{table}: record\n{figure}: figure\nstudy: {found.seconds:.0f} s")

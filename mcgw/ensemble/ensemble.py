@@ -13,6 +13,7 @@ from mcgw.ensemble.intervals import CONFIDENCE
 from mcgw.ensemble.results import Results
 from mcgw.ensemble.tables import dataframe, dataset, statistics_dataframe, statistics_dataset
 from mcgw.formats.sheet import Sheet, Shown
+from mcgw.formats.table import Column, Table
 from mcgw.machine.late import plotted
 from mcgw.scene.contact_text import accuracy_facts, contact_facts
 from mcgw.scene.law_text import law_text
@@ -24,6 +25,7 @@ __all__ = ["Ensemble"]
 
 Array = NDArray[np.float64]
 
+_AT = "mean +- stderr, d/sigma ="
 _MOST_SHOWN = 20_000_000  # numbers that are read for a short look; of more, only how many there are
 
 
@@ -297,14 +299,15 @@ class Ensemble(Shown):
         if m * len(scene.separations) * len(scene.quantities) > _MOST_SHOWN:
             held = f"{', '.join(scene.quantities)} at {len(scene.separations)} separations"
             return Sheet(head, [*facts, ("holds", held)])
-        rows = []
-        for name in scene.quantities:
-            mean, error = self.mean(name)[shown], self.stderr(name)[shown]
-            error = error if promise_of(self.sampler).real_surfaces else error + np.nan
-            cells = (_with_error(*pair) for pair in zip(mean, error, strict=True))
-            rows.append([f"{name} ({quantity_of(name).unit})", *cells])
-        at = [f"{scene.separations[k]:g}" for k in shown]
-        return Sheet(head, facts, ["mean +- stderr, d/sigma =", *at], rows)
+        names = scene.quantities
+        columns = [Column("quantity", [f"{q} ({quantity_of(q).unit})" for q in names], _AT)]
+        mean, error = (np.array([get(q)[shown] for q in names]) for get in (self.mean, self.stderr))
+        error *= 1 if promise_of(self.sampler).real_surfaces else np.nan
+        for i, h in enumerate(self.separations[shown]):
+            columns.append(
+                Column(f"{h:g}", mean[:, i], form=".5g", beside=Column("stderr", error[:, i], form=".1g"))
+            )
+        return Sheet(head, facts, Table(tuple(columns)))
 
     def _quantile(self, quantity: str, share: float) -> tuple[Array, Array, Array]:
         if not 0 <= share <= 1:
@@ -330,8 +333,3 @@ class Ensemble(Shown):
         name, divisor = self._held(quantity)
         mean, std = over_surfaces.mean_and_std(self.scene, self.sums, name)
         return np.asarray(mean / (divisor or 1.0)), np.asarray(std / (divisor or 1.0))
-
-
-def _with_error(mean: float, error: float) -> str:
-    """A mean, and its standard error where there is one."""
-    return f"{mean:.5g}" if np.isnan(error) else f"{mean:.5g} +- {error:.1g}"

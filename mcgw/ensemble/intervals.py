@@ -11,9 +11,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 from scipy.special import betainc, betaincc, gammainccinv, gammaincinv, ndtri
 
+from mcgw.formats.table import Column
 from mcgw.scene.scene import Scene
 
 __all__ = [
@@ -24,7 +25,7 @@ __all__ = [
     "Spread",
     "chebyshev",
     "count_interval",
-    "interval_text",
+    "interval_column",
     "mean_interval",
     "spread_of",
 ]
@@ -161,6 +162,9 @@ def _root(passed: Callable[[Array], NDArray[np.bool_]], low: Array, high: Array)
     return np.asarray((low + high) / 2)
 
 
-def interval_text(low: float, high: float) -> str:
-    """An interval for a table, or that there is none."""
-    return TOO_FEW if np.isnan(low) else f"{low:.6g} ... {high:.6g}"
+def interval_column(low: ArrayLike, high: ArrayLike, unit: str = "") -> Column:
+    """Both ends of 95 % intervals in one column of a table, or that there is none."""
+    ends = Column("high_95", np.asarray(high), unit=unit)
+    return Column(
+        "low_95", np.asarray(low), "95 % interval", unit, missing=TOO_FEW, beside=ends, between=" ... "
+    )

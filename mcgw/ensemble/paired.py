@@ -7,8 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mcgw.ensemble.ensemble import Ensemble
-from mcgw.formats.evenly import evenly
 from mcgw.formats.sheet import Sheet, Shown
+from mcgw.formats.table import SEPARATION, Column, Table
 from mcgw.machine.late import plotted
 from mcgw.scene.drawn_by import drawn_by
 from mcgw.scene.wrong_object import check_object
@@ -49,17 +49,19 @@ class Paired(Shown):
 
     def sheet(self) -> Sheet:
         """Ratios at some separations."""
-        rows = [
-            [
-                f"{self.separations[k]:g}",
-                f"{self.ratio[k]:.6g}",
-                f"{self.stderr[k]:.1g}",
-                f"{self.gain[k]:.3g}",
-            ]
-            for k in evenly(len(self.separations), _MOST_ROWS)
-        ]
-        head = ["d/sigma", "ratio", "stderr", "variance, independent/paired"]
-        return Sheet(f"Ratio of the mean {self.quantity} over the same surfaces", (), head, rows)
+        title = f"Ratio of the mean {self.quantity} over the same surfaces"
+        return Sheet(title, table=self.table().rows(_MOST_ROWS))
+
+    def table(self) -> Table:
+        """Ratio, standard error and gain at every separation."""
+        return Table(
+            (
+                Column("separation", self.separations, SEPARATION, form="g"),
+                Column("ratio", self.ratio, unit="1"),
+                Column("stderr", self.stderr, unit="1", form=".1g"),
+                Column("variance_gain", self.gain, "variance, independent/paired", form=".3g"),
+            )
+        )
 
 
 def paired_ratio(numerator: Ensemble, denominator: Ensemble, quantity: str) -> Paired:

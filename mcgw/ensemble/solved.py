@@ -9,8 +9,9 @@ from numpy.typing import NDArray
 from scipy.special import stdtrit
 
 from analytic import SEPARATIONS, quantity_of
-from mcgw.ensemble.intervals import FEWEST, MANY, interval_text
+from mcgw.ensemble.intervals import FEWEST, MANY, interval_column
 from mcgw.formats.sheet import Sheet, Shown
+from mcgw.formats.table import Column, Table
 from mcgw.machine.late import plotted
 from mcgw.sampling.asperities import summits, touching_summits
 from mcgw.scene.scene import Scene
@@ -100,23 +101,39 @@ class Solution(Shown):
 
     def sheet(self) -> Sheet:
         """Theory and Monte Carlo side by side."""
-        share = self.value / self.scene.surface.nominal_area
-        if self.given == "load":
-            title = f"At the load {self.value:.6g} N = pressure {share / 1e6:.6g} MPa"
-        else:
-            title = f"At the real area {self.value:.6g} m^2 = {share:.4%} of the nominal area"
-        rows = []
-        for name in (name for name in self.theory if name != self.given):
-            unit = "d/sigma" if name in ("separation", *SEPARATIONS) else quantity_of(name).unit
-            x, (low, high) = self.surfaces[name], self.interval(name)
-            cells = (f"{self.theory[name]:.6g}", f"{x.mean():.6g}", interval_text(low, high))
-            rows.append([f"{name} ({unit})", *cells, f"{x.std(ddof=1):.3g}"])
         many = f"{len(self.surfaces['separation'])} surfaces of {self.scene.n_asperities} asperities"
         facts = [("over", many), ("elasticity", against_elasticity([self]).brief)]
         if (contacts := self.theory["contacts"]) < MANY:
             few = f"{contacts:.2g} contacts a surface: few for theory, which is of a large one"
             facts.append(("caution", f"{few}; give more area"))
-        return Sheet(title, facts, ["", "theory", "mean", "95 % interval", "std"], rows)
+        table = self.table()
+        return Sheet(table.title, facts, table)
+
+    def table(self) -> Table:
+        """Theory beside the mean over the surfaces, a row for each quantity but that given."""
+        share = self.value / self.scene.surface.nominal_area
+        if self.given == "load":
+            title = f"At the load {self.value:.6g} N = pressure {share / 1e6:.6g} MPa"
+        else:
+            title = f"At the real area {self.value:.6g} m^2 = {share:.4%} of the nominal area"
+        names = [name for name in self.theory if name != self.given]
+        low, high = np.array([self.interval(name) for name in names]).T
+        found = [self.surfaces[name] for name in names]
+        return Table(
+            (
+                Column("quantity", names),
+                Column("unit", [_unit(name) for name in names]),
+                Column("theory", [self.theory[name] for name in names]),
+                Column("mean", [x.mean() for x in found]),
+                interval_column(low, high),
+                Column("std", [x.std(ddof=1) for x in found], form=".3g"),
+            ),
+            title,
+        )
+
+
+def _unit(name: str) -> str:
+    return "sigma" if name in ("separation", *SEPARATIONS) else quantity_of(name).unit
 
 
 def against_elasticity(solutions: Sequence[Solution]) -> Validity:

@@ -9,10 +9,10 @@ from mcgw.exports.curves import Curve
 from mcgw.exports.kinds import Kind
 from mcgw.exports.programs import Program, foot_of, rows_of
 from mcgw.exports.unit_systems import UnitSystem
-from mcgw.formats.csv_table import Row
+from mcgw.formats.table import Column, Table
 from mcgw.machine.terminal import one_line
 
-__all__ = ["all_rows", "in_units", "table_text"]
+__all__ = ["all_curves", "in_units", "table_text"]
 
 
 def in_units(curve: Curve, kind: Kind, system: UnitSystem) -> Curve:
@@ -75,11 +75,13 @@ def _check(rows: NDArray[np.float64], kind: Kind, program: Program) -> None:
         )
 
 
-def all_rows(curves: Sequence[Curve], kind: Kind, system: UnitSystem) -> tuple[list[str], list[Row]]:
-    """Header and rows of all curves, in the units of the files; empty where one of them carries nothing."""
+def all_curves(curves: Sequence[Curve], kind: Kind, system: UnitSystem) -> Table:
+    """All curves beside each other, in the units of the files; empty where one of them carries nothing."""
     x = np.unique(np.concatenate([curve.x for curve in curves])).tolist()
     unit = (system.length if kind.against == "gap" else system.pressure)[1]
     value = getattr(system, kind.quantity)[1].partition(",")[0]
-    header = [f"{kind.against} ({unit})", *(f"{kind.quantity} {c.name} ({value})" for c in curves)]
-    columns = [dict(zip(curve.x.tolist(), curve.y.tolist(), strict=True)) for curve in curves]
-    return header, [[at, *(column.get(at, "") for column in columns)] for at in x]
+    columns = [Column(f"{kind.against} ({unit})", x)]
+    for curve in curves:
+        held = dict(zip(curve.x.tolist(), curve.y.tolist(), strict=True))
+        columns.append(Column(f"{kind.quantity} {curve.name} ({value})", [held.get(at, "") for at in x]))
+    return Table(tuple(columns))

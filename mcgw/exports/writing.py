@@ -14,9 +14,8 @@ from mcgw.exports.heading import heading
 from mcgw.exports.kinds import KINDS, Kind
 from mcgw.exports.programs import PROGRAMS, Program, check_name
 from mcgw.exports.surfaces import checked, surfaces_for
-from mcgw.exports.table_text import all_rows, in_units, table_text
+from mcgw.exports.table_text import all_curves, in_units, table_text
 from mcgw.exports.unit_systems import UNIT_SYSTEMS, UnitSystem
-from mcgw.formats.csv_table import write_csv
 from mcgw.formats.files import write_whole
 from mcgw.scene.reading import argument, as_toml
 from mcgw.scene.samplers import promise_of
@@ -114,7 +113,7 @@ def export(
     ]
     for file, text in zip(files, texts, strict=False):
         write_whole(file, [text.encode("ascii", "replace")])
-    write_csv(files[-1], *all_rows(scaled, kind, system), comment=f"{kind.name}; SHA-256 of the {digest}")
+    all_curves(scaled, kind, system).write(files[-1], comment=f"{kind.name}; SHA-256 of the {digest}")
     return files
 
 

@@ -1,30 +1,28 @@
 """What a figure shows, as numbers: lines of theory and Monte-Carlo points, ready to draw, test or export."""
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
-from mcgw.formats.csv_table import Row
+from mcgw.formats.table import Column, Table
 
 __all__ = [
-    "FIGURE_HEADER",
     "GAMMA",
     "SEPARATION",
     "FigureData",
     "Panel",
     "Points",
     "Series",
-    "figure_rows",
+    "figure_table",
     "ratio_of_sums",
 ]
 
 Array = NDArray[np.float64]
 
 GAMMA, SEPARATION = "grading factor γ", "separation d/σ"
-FIGURE_HEADER = ("panel", "series", "kind", "x", "theory", "mean", "stderr")
+_COLUMNS = ("panel", "series", "kind", "x", "theory", "mean", "stderr")
 
 
 @dataclass(frozen=True)
@@ -103,13 +101,18 @@ def ratio_of_sums(b: Array, a: Array) -> tuple[Array, Array]:
     return ratio, (b - ratio * a).std(axis=0, ddof=1) / np.sqrt(len(a)) / mean
 
 
-def figure_rows(figure: FigureData) -> Iterator[Row]:
-    """Every number of a figure, under `FIGURE_HEADER`."""
+def figure_table(figure: FigureData) -> Table:
+    """Every number of a figure."""
+    rows: list[tuple[float | str, ...]] = []
     for panel in figure.panels:
         for series in panel.series:
-            for x, y in zip(series.x, series.theory, strict=True):
-                yield panel.title, series.label, "line", x, y, "", ""
+            rows += [
+                (panel.title, series.label, "line", x, y, "", "")
+                for x, y in zip(series.x, series.theory, strict=True)
+            ]
             p = series.points
             if p:
-                for row in zip(p.x, p.exact, p.mean, p.stderr, strict=True):
-                    yield panel.title, series.label, "point", *row
+                points = zip(p.x, p.exact, p.mean, p.stderr, strict=True)
+                rows += [(panel.title, series.label, "point", *point) for point in points]
+    columns = zip(_COLUMNS, zip(*rows, strict=True), strict=True)
+    return Table(tuple(Column(name, values) for name, values in columns))

@@ -10,9 +10,8 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.ticker import FixedLocator, LogLocator, MaxNLocator
 
-from mcgw.figures.data import FIGURE_HEADER, FigureData, Panel, Points, Series, figure_rows
+from mcgw.figures.data import FigureData, Panel, Points, Series, figure_table
 from mcgw.figures.style import BACK, BAND, LEVEL, PAPER, STYLE, look
-from mcgw.formats.csv_table import write_csv
 from mcgw.formats.pictures import save_figure
 from mcgw.machine.progress import steps
 
@@ -184,7 +183,7 @@ def save_figures(figures: list[FigureData], folder: Path, *, csv: bool = False) 
         figure = draw(data)
         for path in figure_files(folder, data.name, csv=csv):
             if path.suffix == ".csv":
-                write_csv(path, FIGURE_HEADER, figure_rows(data))
+                figure_table(data).write(path)
             else:
                 with mpl.rc_context(STYLE):
                     save_figure(figure, path)

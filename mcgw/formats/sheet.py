@@ -1,13 +1,15 @@
 """What an object shows of itself: a dozen lines in a terminal, a table in a notebook."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from html import escape
 
+from mcgw.formats.table import Table
 from mcgw.machine.terminal import one_line
 
-__all__ = ["Sheet", "Shown", "brief"]
+__all__ = ["Facts", "Sheet", "Shown", "brief", "listed"]
 
+Facts = Sequence[tuple[str, str]]
 _LONGEST = 88  # characters of one fact
 
 
@@ -15,6 +17,13 @@ def brief(text: str) -> str:
     """A text on one line, with dots in the place of its end if it is longer than 88 characters."""
     plain = one_line(text)
     return plain if len(plain) <= _LONGEST else f"{plain[: _LONGEST - 3]}..."
+
+
+def listed(facts: Iterable[tuple[str, str]], width: int = 0) -> Iterator[str]:
+    """Lines of names and texts, the texts under each other; names take `width` characters or more."""
+    facts = list(facts)
+    width = max([width, *(len(name) for name, _ in facts)])
+    return (f"  {name:{width}}  {text}" for name, text in facts)
 
 
 @dataclass(frozen=True)
@@ -27,44 +36,25 @@ class Sheet:
         What it is.
     facts : sequence of (str, str), optional
         Name and text.
-    header : sequence of str, optional
-        Of the table's columns, the first one to the left, numbers to the right.
-    rows : sequence of sequence of str, optional
-        Of the table.
+    table : Table, optional
+        Below them.
     """
 
     title: str
-    facts: Sequence[tuple[str, str]] = ()
-    header: Sequence[str] = ()
-    rows: Sequence[Sequence[str]] = ()
+    facts: Facts = ()
+    table: Table | None = None
 
     def text(self) -> str:
         """Plain lines, the columns under each other."""
-        return "\n".join([brief(self.title), *self._facts(), *self._table()])
+        facts = listed((name, brief(text)) for name, text in self.facts)
+        return "\n".join([brief(self.title), *facts, *([] if self.table is None else [self.table.text()])])
 
     def html(self) -> str:
         """The same as HTML; nothing in it is a tag but what stands here."""
-        facts = "".join(f"<tr><th>{escape(name)}</th>{_cell(brief(text))}</tr>" for name, text in self.facts)
-        head = "".join(f"<th>{escape(name)}</th>" for name in self.header)
-        rows = "".join(f"<tr>{''.join(map(_cell, row))}</tr>" for row in self.rows)
-        table = f"<table><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table>" if head else ""
-        return f"<b>{escape(brief(self.title))}</b>{f'<table>{facts}</table>' if facts else ''}{table}"
-
-    def _facts(self) -> Iterator[str]:
-        width = max((len(name) for name, _ in self.facts), default=0)
-        for name, text in self.facts:
-            yield f"  {name:{width}}  {brief(text)}"
-
-    def _table(self) -> Iterator[str]:
-        lines = [self.header, *self.rows] if self.header else []
-        widths = [max(map(len, column)) for column in zip(*lines, strict=True)]
-        for first, *others in lines:
-            cells = (f"{cell:>{width}}" for cell, width in zip(others, widths[1:], strict=True))
-            yield "  ".join([f"  {first:{widths[0]}}", *cells])
-
-
-def _cell(text: str) -> str:
-    return f"<td>{escape(text)}</td>"
+        cells = "<tr><th>{}</th><td>{}</td></tr>".format
+        facts = "".join(cells(escape(name), escape(brief(text))) for name, text in self.facts)
+        facts = f"<table>{facts}</table>" if facts else ""
+        return f"<b>{escape(brief(self.title))}</b>{facts}{'' if self.table is None else self.table.html()}"
 
 
 class Shown:

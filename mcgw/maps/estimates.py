@@ -1,6 +1,6 @@
 """Density, radius and spread of the summits, by three methods, with the errors that sub-areas tell."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Protocol, Self, TypeVar
 
@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from scipy.special import ndtr, stdtrit
 
 from analytic import SpectralMoments
+from mcgw.formats.table import Column, Table
 from mcgw.maps.hidden import unhidden
 from mcgw.maps.summit_sums import SUMS, SummitSums
 from mcgw.maps.uncertain import Uncertain, uncertain
@@ -21,6 +22,7 @@ __all__ = [
     "by_caps",
     "by_moments",
     "by_summits",
+    "estimates_table",
     "jackknife",
     "mean_squares",
     "moments_of",
@@ -100,6 +102,17 @@ class Scales:
     def without(self, part: int) -> "Scales":
         """All but one sub-area."""
         return Scales(self.fine.without(part), self.coarse.without(part))
+
+
+def estimates_table(estimates: Mapping[str, Estimate]) -> Table:
+    """Estimates by all methods, with standard errors."""
+    found = list(estimates.values())
+    columns = [Column("method", [METHODS[name] for name in estimates], "by")]
+    for name, words, unit in (("eta", "eta", "1/m^2"), ("radius", "R", "m"), ("sigma", "sigma", "m")):
+        told = [getattr(e, name) for e in found]
+        error = Column(f"{name}_stderr", [x.error for x in told], unit=unit, form=".1g")
+        columns.append(Column(name, [x.value for x in told], words, unit, ".4g", beside=error))
+    return Table((*columns, Column("overlap", [e.overlap for e in found], "eta R sigma", form=".3g")))
 
 
 def jackknife(counted: T, statistic: Callable[[T], Array]) -> Pairs:

@@ -17,6 +17,7 @@ from mcgw.maps.estimates import (
     by_caps,
     by_moments,
     by_summits,
+    estimates_table,
     jackknife,
     mean_squares,
     moments_of,
@@ -150,17 +151,13 @@ class Fit(Shown):
 
     def sheet(self) -> Sheet:
         """Estimates by all methods, with standard errors, and the first of the cautions."""
-        rows = [
-            [METHODS[name], *(f"{x.value:.4g} +- {x.error:.1g}" for x in (e.eta, e.radius, e.sigma))]
-            for name, e in self.estimates.items()
-        ]
         facts = [("roughness", self.roughness.text("S"))]
         facts += [("spectrum", f"alpha = {self.alpha.value:.3g}, skewness {self.skewness[0]:.2f}")]
         facts += [("caution", line) for line in self.cautions[:_MOST_CAUTIONS]]
         more = len(self.cautions) - _MOST_CAUTIONS
         facts += [("", f"and {more} more in .cautions")] if more > 0 else []
-        head = ["", "eta (1/m^2)", "R (m)", "sigma (m)"]
-        return Sheet(f"Fit of {self.summits.size} summits on {self.area:.4g} m^2", facts, head, rows)
+        title = f"Fit of {self.summits.size} summits on {self.area:.4g} m^2"
+        return Sheet(title, facts, estimates_table(self.estimates).only("method", "eta", "radius", "sigma"))
 
 
 def fit_map(

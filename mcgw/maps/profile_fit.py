@@ -16,6 +16,7 @@ from scipy.special import stdtrit
 
 from analytic import SpectralMoments
 from mcgw.formats.sheet import Sheet, Shown
+from mcgw.formats.table import Column, Table
 from mcgw.machine.late import plotted
 from mcgw.maps.estimates import Estimate
 from mcgw.maps.form import Form
@@ -97,15 +98,20 @@ class ProfileFit(Shown):
     def sheet(self) -> Sheet:
         """Each number with its 95 % interval, and the first of the cautions."""
         units = {"m0": "m^2", "m4": "1/m^2", "eta": "1/m^2", "radius": "m", "sigma": "m"}
-        rows = []
-        for name in _NAMES:
-            low, high = self.interval(name)
-            unit = f" ({units[name]})" if name in units else ""
-            rows.append([name + unit, f"{getattr(self.moments, name):.4g}", f"{low:.3g} to {high:.3g}"])
+        low, high = np.array([self.interval(name) for name in _NAMES]).T
+        end = Column("high_95", high, form=".3g")
+        table = Table(
+            (
+                Column("name", _NAMES, " "),
+                Column("unit", [units.get(name, "1") for name in _NAMES]),
+                Column("value", [getattr(self.moments, name) for name in _NAMES], form=".4g"),
+                Column("low_95", low, "95 %", form=".3g", beside=end, between=" to "),
+            )
+        )
         facts = [("profiles", self.roughness.text("P"))]
         facts += [("caution", line) for line in self.cautions[:2]]
         title = f"Fit of {len(self.lengths)} profile(s), {sum(self.lengths):.4g} m together"
-        return Sheet(title, facts, ["", "value", "95 %"], rows)
+        return Sheet(title, facts, table)
 
 
 def fit_profiles(profiles: Sequence[Profile], *, cutoff: float | None, form: Form = "plane") -> ProfileFit:

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from mcgw.formats.csv_table import write_csv
+from mcgw.formats.table import Column, Table
 from mcgw.maps.summit_sums import EDGE, SummitSums
 from mcgw.maps.topography import Topography
 
@@ -130,8 +130,6 @@ def _apex(z: Array, j: NDArray[np.int64], i: NDArray[np.int64]) -> tuple[Array, 
 
 def write_summits(summits: Summits, path: Path) -> None:
     """Write a table with a row for each summit; a comment above it tells the units."""
-    columns = (summits.x, summits.y, summits.heights, summits.radii, *summits.curvatures)
-    rows = (
-        (*row[:-1], str(row[-1])) for row in zip(*(c.tolist() for c in columns), summits.tile, strict=True)
-    )
-    write_csv(path, _COLUMNS, rows, comment=_UNITS)
+    found = (summits.x, summits.y, summits.heights, summits.radii, *summits.curvatures, summits.tile)
+    table = Table(tuple(Column(name, values) for name, values in zip(_COLUMNS, found, strict=True)))
+    table.write(path, comment=_UNITS)

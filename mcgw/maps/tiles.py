@@ -7,14 +7,14 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from mcgw.formats.csv_table import Row, write_csv
+from mcgw.formats.table import Column, Table
 from mcgw.maps.summit_sums import SUMS, SummitSums
 
 __all__ = ["Tiles", "tiles_of", "write_tiles"]
 
 Array = NDArray[np.float64]
 
-_COLUMNS = ("tile", "column", "row", "summits", "eta", "radius", "sigma", "m0", "m2", "m4")
+_MEASURED = ("summits", "eta", "radius", "sigma", "m0", "m2", "m4")
 _UNITS = (
     "eta in 1/m^2, radius and sigma in m, by the summits of the tile; m0 in m^2, m2, m4 in 1/m^2; heights "
     "are about the mean of the tile"
@@ -81,11 +81,7 @@ def tiles_of(counted: SummitSums) -> Tiles:
 
 def write_tiles(tiles: Tiles, path: Path) -> None:
     """Write a table with a row for each tile; a comment above it tells the units."""
-    rows: list[Row] = [
-        (
-            *(str(n) for n in (tile, tile % tiles.across, tile // tiles.across, tiles.summits[tile])),
-            *(float(getattr(tiles, name)[tile]) for name in _COLUMNS[4:]),
-        )
-        for tile in range(tiles.across**2)
-    ]
-    write_csv(path, _COLUMNS, rows, comment=_UNITS)
+    tile = np.arange(tiles.across**2)
+    counted = {"tile": tile, "column": tile % tiles.across, "row": tile // tiles.across}
+    columns = counted | {name: getattr(tiles, name) for name in _MEASURED}
+    Table(tuple(Column(name, values) for name, values in columns.items())).write(path, comment=_UNITS)

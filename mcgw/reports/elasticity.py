@@ -20,7 +20,7 @@ def against_elasticity(found: Validity) -> list[str]:
 
 def elasticity_words(found: Validity) -> list[str]:
     """The same in paragraphs of a page; the second one tells of a table over the separations."""
-    if not found.sheet().rows:
+    if not found.measured.any():
         return [f"{found.verdict}."]
     details = f"{found.details}."
     return [

@@ -1,6 +1,6 @@
 """What a map told, as lines of text."""
 
-from mcgw.maps.estimates import METHODS
+from mcgw.maps.estimates import METHODS, estimates_table
 from mcgw.maps.fit import Fit
 from mcgw.maps.preparation import Preparation
 from mcgw.maps.uncertain import Uncertain
@@ -26,13 +26,8 @@ def fit_lines(fit: Fit) -> list[str]:
         f"{fit.summits.size} summits on {fit.area:.4g} m^2, "
         f"on average {fit.mean_summit:.3g} m above the mean plane",
         f"of all heights (sigma below is of the summits): {fit.roughness.text('S')}",
-        f"{'':36}{'eta (1/m^2)':22}{'R (m)':22}{'sigma (m)':22}eta R sigma",
+        *estimates_table(fit.estimates).text().splitlines(),
     ]
-    for name, label in METHODS.items():
-        if name in fit.estimates:
-            e = fit.estimates[name]
-            cells = "".join(f"{_told(x):22}" for x in (e.eta, e.radius, e.sigma))
-            lines.append(f"{label:36}{cells}{e.overlap:.3g}")
     across, *varies = fit.tiles.across, *(fit.tiles.variation(x) for x in ("eta", "radius", "sigma"))
     shares = zip(("eta", "R", "sigma"), varies, strict=True)
     lines.append(

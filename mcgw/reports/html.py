@@ -3,7 +3,11 @@
 import re
 from typing import Any
 
+from analytic import quantity_of
 from mcgw.ensemble.ensemble import Ensemble
+from mcgw.ensemble.tables import statistics_table
+from mcgw.formats.numbers import typeset
+from mcgw.formats.table import Column, Table
 from mcgw.machine.progress import stages
 from mcgw.machine.terminal import one_line, plain_text
 from mcgw.reports.elasticity import elasticity_words
@@ -15,13 +19,14 @@ from mcgw.reports.report_figures import (
     patch_pictures,
     pressure_pictures,
 )
-from mcgw.reports.report_tables import errors_table, means_table, quantity_table
 from mcgw.reports.text import verdict_line
 from mcgw.scene.cautions import cautions
 from mcgw.scene.samplers import promise_of
 from mcgw.statistics.comparison import Comparison, compare
 
 __all__ = ["rendered", "report_html"]
+
+_MOST_ROWS = 9
 
 
 def report_html(ensemble: Ensemble, attributes: dict[str, Any]) -> str:
@@ -39,10 +44,7 @@ def report_html(ensemble: Ensemble, attributes: dict[str, Any]) -> str:
         patch = patch_pictures(ensemble)
         done()
         figures = means_figures(ensemble) if comparison is None else comparison_figures(comparison)
-        tables = [
-            means_table(ensemble, name) if comparison is None else quantity_table(comparison, name)
-            for name in scene.quantities
-        ]
+        tables = _means(ensemble) if comparison is None else list(comparison.tables().values())
         done()
     return rendered(
         "report.html.j2",
@@ -55,12 +57,12 @@ def report_html(ensemble: Ensemble, attributes: dict[str, Any]) -> str:
         several=real and ensemble.n_surfaces > 1,
         patch=patch,
         figures=figures,
-        tables=tables,
+        tables=[table.rows(_MOST_ROWS) for table in tables],
         tested=comparison is not None,
         facts=surface_facts(ensemble),
         laws=laws_table(scene),
         elasticity=elasticity_words(against),
-        errors=errors_table(against),
+        errors=against.sheet().table,
         cautions=cautions(scene),
         elastic_law=scene.law.elastic,
         provenance=provenance_facts(attributes, scene.seed),
@@ -79,7 +81,18 @@ def rendered(template: str, **values: Any) -> str:
         loader=PackageLoader("mcgw.reports", "."), autoescape=True, undefined=StrictUndefined,
         trim_blocks=True, lstrip_blocks=True, keep_trailing_newline=True,
     )  # fmt: skip
+    environment.filters["typeset"] = typeset
     return environment.get_template(template).render(**values)
+
+
+def _means(ensemble: Ensemble) -> list[Table]:
+    """Means and theory of surfaces whose fluctuations are no real ones."""
+    found, h = [], ensemble.separations
+    for name in ensemble.scene.quantities:
+        table, unit = statistics_table(ensemble, name), quantity_of(name).unit
+        theory = Column("theory", ensemble.scene.theory.mean(name, h), unit=unit)
+        found.append(Table((*table.only("separation", "mean").columns, theory), table.title))
+    return found
 
 
 def _verdict(ensemble: Ensemble, comparison: Comparison | None) -> str:

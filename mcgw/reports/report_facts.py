@@ -4,8 +4,8 @@ from typing import Any
 
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.figures.style import grading_label
+from mcgw.formats.numbers import number
 from mcgw.reports.laws_section import contacts_sentence
-from mcgw.reports.numbers import number
 from mcgw.scene.contact_text import contact_facts
 
 __all__ = ["opening_words", "provenance_facts", "surface_facts"]

@@ -1,50 +1,25 @@
-"""Solutions for given loads as plain text and as rows of a table."""
+"""Solutions for given loads as plain text and as one table."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 
-from analytic import quantity_of
-from mcgw.ensemble.intervals import interval_text
+from mcgw.ensemble.intervals import MANY
 from mcgw.ensemble.solved import Solution, against_elasticity
-from mcgw.formats.csv_table import Row
+from mcgw.formats.table import Column, Table, joined
 from mcgw.reports.elasticity import two_questions
 from mcgw.scene.contact_text import contact_facts
 from mcgw.scene.scene import Scene
 
-__all__ = ["SOLUTION_HEADER", "solution_rows", "solution_table"]
+__all__ = ["solutions_table", "solutions_text"]
 
-SOLUTION_HEADER = (
-    "pressure_Pa", "load_or_area_SI", "quantity", "unit", "theory", "mean", "low_95", "high_95", "std"
-)  # fmt: skip
-_LABELS = {
-    "separation": "separation d/sigma",
-    "nominal_separation": "nominal d/sigma",
-    "conductance": "conductance x rho",
-}
 _SHOWN = ("contact law", "film", "interaction")  # what of the contacts counts at a given load
 
 
-def solution_table(scene: Scene, solutions: Sequence[Solution]) -> str:
+def solutions_text(scene: Scene, solutions: Sequence[Solution]) -> str:
     """Theory and Monte Carlo side by side, one block for each given value."""
-    lines = []
-    for solution in solutions:
-        lines += [
-            f"{_title(scene, solution)}",
-            f"  {'':22} {'theory':>12} {'mean':>12} {'95 % interval of the mean':>29} {'std':>10}",
-        ]
-        for name, x in solution.surfaces.items():
-            if name == solution.given:
-                continue
-            label, unit = _LABELS.get(name, name), _unit(name)
-            low, high = solution.interval(name)
-            lines.append(
-                f"  {label + (f' ({unit})' if unit != '1' else ''):22} {solution.theory[name]:12.6g} "
-                f"{x.mean():12.6g} {interval_text(low, high):>29} {x.std(ddof=1):10.3g}"
-            )
-        lines.append("")
-    few = [x for x in solutions if x.theory["contacts"] < 30]
-    if few:
+    lines = [f"{solution.table().text()}\n" for solution in solutions]
+    if any(x.theory["contacts"] < MANY for x in solutions):
         lines.append(
             "Few contacts: finite surfaces differ from theory, whose surface is infinite, by more than noise."
         )
@@ -58,22 +33,13 @@ def solution_table(scene: Scene, solutions: Sequence[Solution]) -> str:
     return "\n".join([*lines, "", *two_questions(against_elasticity(solutions))])
 
 
-def solution_rows(scene: Scene, solutions: Sequence[Solution]) -> Iterator[Row]:
-    """Rows under `SOLUTION_HEADER`; an interval of too few contacts is nan."""
+def solutions_table(scene: Scene, solutions: Sequence[Solution]) -> Table:
+    """All of them under each other, each row with what was given."""
+    tables = []
     for solution in solutions:
-        pressure = solution.value / scene.surface.nominal_area if solution.given == "load" else np.nan
-        for name, x in solution.surfaces.items():
-            low, high = solution.interval(name)
-            std = x.std(ddof=1)
-            yield pressure, solution.value, name, _unit(name), solution.theory[name], x.mean(), low, high, std
-
-
-def _unit(name: str) -> str:
-    return "1" if name == "separation" else quantity_of(name).unit
-
-
-def _title(scene: Scene, solution: Solution) -> str:
-    share = solution.value / scene.surface.nominal_area
-    if solution.given == "area":
-        return f"Real area {solution.value:.6g} m^2 = {share:.4%} of the nominal area"
-    return f"Load {solution.value:.6g} N = pressure {share / 1e6:.6g} MPa on the nominal area"
+        table, area = solution.table(), scene.surface.nominal_area
+        pressure = solution.value / area if solution.given == "load" else np.nan
+        given = {"pressure_Pa": pressure, "load_or_area_SI": solution.value}
+        columns = (Column(name, np.full(len(table), value)) for name, value in given.items())
+        tables.append(Table((*columns, *table.columns)))
+    return joined(tables)

@@ -18,7 +18,6 @@ _LISTED = 12  # points
 def sweep_report_html(comparison: SweepComparison, cautions: list[str], attributes: dict[str, Any]) -> str:
     """The page of a compared sweep, of its cautions and the attributes of its file: scene, digest, ..."""
     sweep, verdict = comparison.sweep, comparison.verdict
-    sheet = comparison.sheet_of(_LISTED)
     first = sweep.scenes[0]
     return rendered(
         "sweep.html.j2",
@@ -27,8 +26,7 @@ def sweep_report_html(comparison: SweepComparison, cautions: list[str], attribut
         verdict=verdict.line,
         words=_words(sweep),
         figure=line_figure(sweep_figure(comparison), "residuals of all points, and of the worst one"),
-        header=sheet.header,
-        rows=sheet.rows,
+        table=comparison.sheet_of(_LISTED).table,
         cautions=cautions,
         axes=[(key, sweep.axes.summary(key)) for key in sweep.axes.keys],
         provenance=provenance_facts({"sampler": first.sampler, **attributes}, first.seed),

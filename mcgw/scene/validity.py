@@ -45,7 +45,7 @@ class Validity(ModelErrors, Shown):
     def sheet(self) -> Sheet:
         """The verdict, and the errors at some separations: mean and scatter over maps."""
         where = [("measured", self.where)] if self.where else []
-        return Sheet("Against elasticity", [("verdict", self.brief), *where], *table_of(self))
+        return Sheet("Against elasticity", [("verdict", self.brief), *where], table_of(self))
 
 
 def validity_of(scene: Fields, separations: ArrayLike | None = None, *, felt: bool = False) -> Validity:

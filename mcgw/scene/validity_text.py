@@ -1,20 +1,19 @@
 """How far a model is from elasticity, in words and as a table."""
 
 import math
-from collections.abc import Sequence
 from itertools import groupby
 
 import numpy as np
 from numpy.typing import NDArray
 
-from mcgw.formats.evenly import evenly
+from mcgw.formats.table import SEPARATION, Column, Table
 from mcgw.scene.validity_errors import ModelErrors
 
 __all__ = ["details", "percent", "rounded_up", "short_verdict", "span", "table_of", "verdict"]
 
 _MOST_ROWS = 9
 _AT_LOAD = {"area": "area", "stiffness": "stiffness", "separation": "gap"}  # columns at a given load
-_HEADER = ("d/sigma", "pressure", "area", "stiffness", "gap/sigma", "load at d")
+_COLUMNS = {"area": "area", "stiffness": "stiffness", "separation": "gap/sigma", "load": "load at d"}
 
 
 def verdict(v: ModelErrors) -> str:
@@ -61,15 +60,16 @@ def short_verdict(v: ModelErrors) -> str:
     return f"{'geometry ' if v.graded else ''}within {', '.join(told)}{where}"
 
 
-def table_of(v: ModelErrors) -> tuple[Sequence[str], Sequence[Sequence[str]]]:
-    """Header and rows at some of the separations: bias and scatter of each quantity."""
+def table_of(v: ModelErrors) -> Table:
+    """Bias and scatter of each quantity at some of the separations; empty where nothing was measured."""
     if not v.measured.any():
-        return (), ()
-    rows = []
-    for k in evenly(len(v.separations), _MOST_ROWS):
-        cells = [_cell(v, name, int(k)) for name in ("area", "stiffness", "separation", "load")]
-        rows.append([f"{v.separations[k]:g}", f"{v.loads[k]:.2g}", *cells])
-    return _HEADER, rows
+        return Table(())
+    told = (
+        Column(name, [_cell(v, name, k) for k in range(len(v.separations))], words)
+        for name, words in _COLUMNS.items()
+    )
+    separation = Column("separation", v.separations, SEPARATION, form="g")
+    return Table((separation, Column("pressure", v.loads, unit="1", form=".2g"), *told)).rows(_MOST_ROWS)
 
 
 def percent(x: float) -> str:

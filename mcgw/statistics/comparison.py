@@ -11,9 +11,11 @@ from scipy.special import chdtrc
 from analytic import Fluctuations, quantity_of
 from mcgw.ensemble.asperities_alone import asperities_alone
 from mcgw.ensemble.ensemble import Ensemble
-from mcgw.ensemble.intervals import interval_text
+from mcgw.ensemble.intervals import interval_column
+from mcgw.ensemble.tables import heading
 from mcgw.formats.evenly import evenly
 from mcgw.formats.sheet import Sheet, Shown
+from mcgw.formats.table import SEPARATION, Column, Table, stacked
 from mcgw.machine.late import plotted
 from mcgw.scene.samplers import promise_of
 from mcgw.scene.scene import Scene
@@ -166,17 +168,31 @@ class Comparison(Shown):
 
     def sheet(self) -> Sheet:
         """The verdict, and each quantity at the separation where it is farthest from theory."""
-        h, rows = self.ensemble.separations, []
-        for name, curve in self.curves.items():
-            k = int(np.argmax(np.abs(curve.residual)))
-            numbers = (f"{h[k]:g}", f"{curve.mean[k]:.6g}", interval_text(curve.low[k], curve.high[k]))
-            rows.append([name, *numbers, f"{curve.theory[k]:.6g}", f"{curve.residual[k]:+.2f}"])
+        worst = [int(np.argmax(np.abs(curve.residual))) for curve in self.curves.values()]
+        tables = zip(self.tables().items(), worst, strict=True)
+        farthest = {name: table.at([k]) for (name, table), k in tables}
         v = self.verdict
         seen = f"{v.seen}, p = {v.p:.3g}"
-        head = ["farthest off", "d/sigma", "mean", "95 % interval", "theory", "residual"]
         word = "agree" if v.agrees else "DISAGREE"
         facts = [("all means", seen), ("elasticity", self.ensemble.scene.validity().brief)]
-        return Sheet(f"Monte Carlo and theory of this model {word}", facts, head, rows)
+        table = stacked(farthest, "quantity", "farthest off")
+        return Sheet(f"Monte Carlo and theory of this model {word}", facts, table)
+
+    def tables(self) -> dict[str, Table]:
+        """By quantity: mean, 95 % interval, standard deviation, theory and residual at every separation."""
+        return {name: self._table(name) for name in self.curves}
+
+    def _table(self, quantity: str) -> Table:
+        c, unit = self.curves[quantity], quantity_of(quantity).unit
+        columns = (
+            Column("separation", self.ensemble.separations, SEPARATION, form="g"),
+            Column("mean", c.mean, unit=unit),
+            interval_column(c.low, c.high, unit),
+            Column("std", self.ensemble.std(quantity), unit=unit, form=".3g"),
+            Column("theory", c.theory, unit=unit),
+            Column("residual", c.residual, form="+.2f"),
+        )
+        return Table(columns, heading(quantity))
 
 
 def compare(ensemble: Ensemble) -> Comparison:

@@ -1,6 +1,6 @@
 """The statistical convergence test, for this simulator and for anybody's sampler or contact law."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any
@@ -16,6 +16,7 @@ from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.results import MemoryResults, joined
 from mcgw.formats.evenly import evenly
 from mcgw.formats.sheet import Sheet, Shown, brief
+from mcgw.formats.table import Column, Table
 from mcgw.machine.late import plotted
 from mcgw.machine.progress import Progress, told
 from mcgw.sampling.block import Sampler
@@ -90,9 +91,22 @@ class Convergence(Shown):
         """The verdict and its worst checks."""
         word = "passed" if self.passed else "FAILED"
         worst = sorted(self.checks, key=lambda check: check.p)[:_MOST_SHOWN]
-        rows = [[check.name, f"{check.p:.3g}", brief(check.seen)] for check in worst]
         facts = [("p", f"{self.p:.3g} over all {len(self.checks)} checks")]
-        return Sheet(f"Statistical convergence {word}", facts, ["worst", "p", "seen"], rows)
+        return Sheet(f"Statistical convergence {word}", facts, _table(worst, "worst"))
+
+    def table(self) -> Table:
+        """Every check."""
+        return _table(self.checks, "check")
+
+
+def _table(checks: Sequence[Check], words: str) -> Table:
+    return Table(
+        (
+            Column("check", [check.name for check in checks], words),
+            Column("p", [check.p for check in checks], form=".3g"),
+            Column("seen", [brief(check.seen) for check in checks]),
+        )
+    )
 
 
 def converge(

@@ -1,6 +1,6 @@
 """The points of a sweep against theory: each against its own, with one verdict on all of them."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -11,11 +11,13 @@ from numpy.typing import NDArray
 from analytic import quantity_of
 from mcgw.ensemble.asperities_alone import scene_alone
 from mcgw.formats.sheet import Sheet, Shown
+from mcgw.formats.table import SEPARATION, Column, Table
 from mcgw.machine.late import plotted
 from mcgw.machine.progress import Progress, told
 from mcgw.scene.samplers import promise_of
 from mcgw.scene.scene import Scene
 from mcgw.statistics.comparison import FALSE_ALARM, Tested, tested
+from mcgw.sweeps.axes import label
 from mcgw.sweeps.sweep import Sweep
 
 __all__ = ["PointTested", "SweepComparison", "SweepVerdict", "compare_sweep"]
@@ -141,32 +143,39 @@ class SweepComparison(Shown):
             ("residuals", f"{beyond} of {len(self.residuals)} beyond 3 standard errors"),
             *([("left out", f"{left} stratified points, whose surfaces are no real ones")] if left else []),
         ]
-        head = [", ".join(self.sweep.axes.keys), "quantity", "d/sigma", "mean", "theory", "residual", "p"]
-        rows = [self._row(one) for one in self.worst[:most]]
-        return Sheet(f"Monte Carlo and theory of {v.points} scenes {word}", facts, head, rows)
+        where = list(self.sweep.axes.points())
+        shown = [(one, *one.worst) for one in self.worst[:most]]
+        at = [self.sweep.axes.values_text(where[one.number]) for one, *_ in shown]
+        columns = (Column("point", at, ", ".join(self.sweep.axes.keys)), *_columns(shown))
+        title = f"Monte Carlo and theory of {v.points} scenes {word}"
+        return Sheet(title, facts, Table(columns))
 
-    def table(self) -> Iterator[list[float | str]]:
-        """A row for each point, quantity and separation, as `header` names them."""
-        points = list(self.sweep.axes.points())
-        for one in self.points:
-            t, at = one.tested, self.sweep.axes.at(points[one.number])
-            keys = [x if isinstance(x, int | float) else str(x) for x in at.values()]
-            for q, name in enumerate(t.quantities):
-                for k, h in enumerate(t.separations):
-                    yield [*keys, name, h, t.mean[q, k], t.theory[q, k], t.residual[q, k], t.verdict.p]
+    def table(self) -> Table:
+        """A row for each point, quantity and separation."""
+        where, axes = list(self.sweep.axes.points()), self.sweep.axes
+        rows = [
+            (one, q, k)
+            for one in self.points
+            for q, k in np.ndindex(len(one.tested.quantities), len(one.tested.separations))
+        ]
+        at = [axes.at(where[one.number]) for one, *_ in rows]
+        keys = (Column(key, [label(values[key]) for values in at]) for key in axes.keys)
+        return Table((*keys, *_columns(rows)))
 
-    @property
-    def header(self) -> list[str]:
-        """Of `table`."""
-        return [*self.sweep.axes.keys, "quantity", "separation", "mean", "theory", "residual", "p_of_point"]
 
-    def _row(self, one: PointTested) -> list[str]:
-        t, (q, k) = one.tested, one.worst
-        point = list(self.sweep.axes.points())[one.number]
-        name, unit = t.quantities[q], quantity_of(t.quantities[q]).unit
-        where = [name if unit == "1" else f"{name} ({unit})", f"{t.separations[k]:g}"]
-        numbers = [f"{t.mean[q, k]:.6g}", f"{t.theory[q, k]:.6g}", f"{t.residual[q, k]:+.2f}"]
-        return [self.sweep.axes.values_text(point), *where, *numbers, f"{t.verdict.p:.2g}"]
+def _columns(rows: Sequence[tuple[PointTested, int, int]]) -> tuple[Column, ...]:
+    """Of points, each at a quantity and a separation, by number."""
+    found = [(one.tested, q, k) for one, q, k in rows]
+    names = [t.quantities[q] for t, q, _ in found]
+    return (
+        Column("quantity", names),
+        Column("unit", [quantity_of(name).unit for name in names]),
+        Column("separation", [t.separations[k] for t, _, k in found], SEPARATION, form="g"),
+        Column("mean", [t.mean[q, k] for t, q, k in found]),
+        Column("theory", [t.theory[q, k] for t, q, k in found]),
+        Column("residual", [t.residual[q, k] for t, q, k in found], form="+.2f"),
+        Column("p_of_point", [t.verdict.p for t, *_ in found], form=".2g"),
+    )
 
 
 def compare_sweep(sweep: Sweep, *, progress: Progress = None) -> SweepComparison:

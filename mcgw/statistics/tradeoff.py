@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from mcgw.ensemble.asperities_alone import scene_alone
 from mcgw.formats.sheet import Sheet, Shown
+from mcgw.formats.table import Column, Table
 from mcgw.machine.late import plotted
 from mcgw.machine.memory import peak_growth
 from mcgw.machine.progress import Progress, told
@@ -132,23 +133,58 @@ class Tradeoff(Shown):
         """What to run for each wish."""
         quantity, h = self.scene.quantities[0], f"{self.separations[-1]:g}"
         facts = [("mean, quantile", f"of the {quantity} at d/sigma = {h}, in 95 of 100 ensembles")]
-        return Sheet("What to run", facts, list(_ADVICE_HEAD), [_advice_row(a) for a in self.advice])
+        return Sheet("What to run", facts, self._to_run())
 
+    def table(self) -> Table:
+        """Errors and time of every method at every size."""
+        p = self.points
+        errors = (
+            Column(f"rms_relative_error_at_h_{h:g}", [x.rms[k] for x in p], f"at {h:g}", form=".2e")
+            for k, h in enumerate(self.separations)
+        )
+        title = f"root mean square relative error of the mean {self.scene.quantities[0]} at d/sigma"
+        columns = (
+            Column("method", [x.method for x in p]),
+            Column("size", [x.size for x in p], form=".3g"),
+            Column("size_counts", [x.unit for x in p], "of"),
+            *errors,
+            Column("rms_uncertainty", [x.rms_stderr for x in p], "+-", form=".0%"),
+            Column("cpu_s", [x.cpu for x in p], "CPU (s)", form=".2e"),
+            Column("wall_s", [x.wall for x in p], "wall (s)", form=".2e"),
+            Column("peak_growth_bytes", [x.peak for x in p], "memory (B)", form=".2g"),
+            Column("seeds", [x.seeds for x in p], form="d"),
+        )
+        return Table(columns, title)
 
-_ADVICE_HEAD = ("wish, relative error", "sampler", "accuracy", "law_error", "n_surfaces", "seconds")
+    def ways_table(self) -> Table:
+        """What single surfaces cost by every pair of sampler and accuracy, and how good they are."""
+        w = self.ways
+        columns = (
+            Column("sampler", [x.sampler for x in w]),
+            Column("accuracy", [x.scene.accuracy for x in w], form="g"),
+            Column("law_error", [x.scene.law_error for x in w], form="g"),
+            Column("error", [x.error for x in w], form=".1e"),
+            Column("s_per_surface", [x.each for x in w], "s a surface", form=".2e"),
+            Column("set_up_s", [x.set_up for x in w], "s before", form=".2g"),
+        )
+        title = "values of single surfaces (largest relative error of a few surfaces, seconds by the clock)"
+        return Table(columns, title)
 
-
-def _advice_row(advice: Advice) -> list[str]:
-    """What to run, in words under `_ADVICE_HEAD`."""
-    asked = advice.scene
-    return [
-        advice.wish.text,
-        asked.sampler if asked.sampler == advice.sampler else f"{asked.sampler}: {advice.sampler}",
-        f"{asked.accuracy:g}",
-        f"{asked.law_error:g}",
-        str(asked.n_surfaces),
-        f"{advice.seconds:.2g}",
-    ]
+    def _to_run(self) -> Table:
+        a = self.advice
+        samplers = [
+            x.scene.sampler if x.scene.sampler == x.sampler else f"{x.scene.sampler}: {x.sampler}" for x in a
+        ]
+        return Table(
+            (
+                Column("wish", [x.wish.text for x in a], "wish, relative error"),
+                Column("sampler", samplers),
+                Column("accuracy", [x.scene.accuracy for x in a], form="g"),
+                Column("law_error", [x.scene.law_error for x in a], form="g"),
+                Column("n_surfaces", [x.scene.n_surfaces for x in a], form="d"),
+                Column("seconds", [x.seconds for x in a], form=".2g"),
+            )
+        )
 
 
 class _Task:

@@ -6,8 +6,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from mcgw.formats.evenly import evenly
 from mcgw.formats.sheet import Sheet, Shown
+from mcgw.formats.table import Column, Table
 from mcgw.machine.late import plotted
 from mcgw.sweeps.groups import Place
 from mcgw.sweeps.pooled import Pooled
@@ -105,9 +105,11 @@ class Slopes(Shown):
             np.moveaxis(x, self.axis, 0).reshape(len(self.at), -1)[:, 0]
             for x in (self.value, self.stderr, self.theory)
         ]
-        rows = [
-            [f"{self.at[k]:g}", *(f"{x[k]:.{digits}g}" for x, digits in zip(flat, (6, 1, 6), strict=True))]
-            for k in evenly(len(self.at), _SHOWN)
-        ]
-        head = [self.key, "slope", "stderr", "theory"]
-        return Sheet(f"Change of the mean {self.quantity} with {self.key}", (), head, rows)
+        columns = (
+            Column("at", self.at, self.key, form="g"),
+            Column("slope", flat[0], unit="1"),
+            Column("stderr", flat[1], unit="1", form=".1g"),
+            Column("theory", flat[2], unit="1"),
+        )
+        title = f"Change of the mean {self.quantity} with {self.key}"
+        return Sheet(title, table=Table(columns).rows(_SHOWN))

@@ -7,13 +7,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from analytic import PER_AREA
+from analytic import PER_AREA, quantity_of
 from mcgw.formats.evenly import evenly
 from mcgw.formats.sheet import Sheet, Shown
+from mcgw.formats.table import SEPARATION, Column, Table
 from mcgw.machine.late import plotted
 from mcgw.scene.samplers import promise_of
 from mcgw.scene.scene import Scene
-from mcgw.sweeps.axes import Axes, Point
+from mcgw.sweeps.axes import Axes, Point, label
 from mcgw.sweeps.groups import Place
 from mcgw.sweeps.pairs import Difference, Slopes
 from mcgw.sweeps.pooled import Pooled
@@ -201,15 +202,28 @@ class Sweep(Shown):
         means = {name: self.mean(name).reshape(self.axes.size, -1)[:, k] for name in names}
         errors = {name: self.stderr(name).reshape(self.axes.size, -1)[:, k] for name in names}
         points = list(self.axes.points())
-        rows = [
-            [
-                self.axes.values_text(points[i]),
-                *(self._text(i, means[name][i], errors[name][i]) for name in names),
-            ]
-            for i in evenly(len(points), _SHOWN)
-        ]
-        head = [f"mean +- stderr at d/sigma = {self.separations[k]:g}", *names]
-        return Sheet(f"Sweep of {self.axes.size} scenes", facts, head, rows)
+        shown = evenly(len(points), _SHOWN)
+        real = [promise_of(self.scenes[i].sampler).real_surfaces for i in shown]
+        where = [self.axes.values_text(points[i]) for i in shown]
+        columns = [Column("point", where, f"mean +- stderr at d/sigma = {self.separations[k]:g}")]
+        for name in names:
+            error = Column("stderr", np.where(real, errors[name][shown], np.nan), form=".1g")
+            columns.append(Column(name, means[name][shown], form=".5g", beside=error))
+        return Sheet(f"Sweep of {self.axes.size} scenes", facts, Table(tuple(columns)))
+
+    def table(self) -> Table:
+        """A row for each point and separation: the keys, and statistics of what depends on these alone."""
+        h, size = self.separations, self.axes.size
+        at = [self.axes.at(point) for point in self.axes.points()]
+        columns = [Column(key, [label(values[key]) for values in at for _ in h]) for key in self.axes.keys]
+        columns.append(Column("separation", np.tile(h, size), SEPARATION, form="g"))
+        for name, shape in self.scenes[0].shapes.items():
+            if len(shape) == 1:
+                columns += [
+                    Column(f"{name}_{kind}", getattr(self, kind)(name).ravel(), unit=quantity_of(name).unit)
+                    for kind in self.statistics
+                ]
+        return Table(tuple(columns))
 
     def _of_all(self, quantity: str, get: Any) -> Array:
         """One array of all points, per area where that is asked."""
@@ -240,8 +254,3 @@ class Sweep(Shown):
             )
         area = (self.scenes[k].surface.nominal_area if per_area else 1.0 for k in (a, b))
         return Difference.of(self.groups[places[0].group], places, name, (next(area), next(area)))
-
-    def _text(self, point: int, mean: float, error: float) -> str:
-        """A mean, and its error where surfaces fluctuate as real ones do."""
-        real = promise_of(self.scenes[point].sampler).real_surfaces
-        return f"{mean:.5g} +- {error:.1g}" if real else f"{mean:.5g}"

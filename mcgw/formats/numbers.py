@@ -1,13 +1,16 @@
 """Numbers as people write them: 1.234×10⁻⁵; those of a table all in one format."""
 
+import re
 from collections.abc import Iterable
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["columns", "number"]
+__all__ = ["columns", "number", "typeset"]
 
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+_POWER, _MINUS = re.compile(r"(?<=\d)e([+-]\d+)\b"), re.compile(r"(?<![\w⁻])-(?=[\d.])")
+_PRINTED = {"d/sigma": "d/σ", "gap/sigma": "gap/σ", "^2": "²", "+-": "±", " ... ": " … "}
 _PLAIN = 30.0  # largest over smallest number of a table that is written without powers of ten
 _SMALLEST, _LARGEST = 1e-3, 1e5  # of such a table
 _BLANK = "\u2004"  # a third of an em, about as wide as a raised digit
@@ -20,6 +23,20 @@ def number(x: float, digits: int = 4) -> str:
         return text.replace("-", "−")
     mantissa, power = text.split("e")
     return f"{mantissa}×10{str(int(power)).translate(_RAISED)}".replace("-", "−")
+
+
+def typeset(text: str) -> str:
+    """What is plain in a terminal as it is written: 1e-05, d/sigma, m^2, +-, ... and minus signs.
+
+    Examples
+    --------
+    >>> typeset("d/sigma = -1.5 +- 2e-05 m^2")
+    'd/σ = −1.5 ± 2×10⁻⁵ m²'
+    """
+    text = _POWER.sub(lambda found: f"×10{str(int(found[1])).translate(_RAISED)}", text)
+    for plain, printed in _PRINTED.items():
+        text = text.replace(plain, printed)
+    return _MINUS.sub("−", text)
 
 
 def columns(values: Iterable[tuple[ArrayLike, int]]) -> list[list[str]]:

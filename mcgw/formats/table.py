@@ -1,0 +1,250 @@
+"""A table of named columns, and one way each to print it, to mark it up, to store it and to hand it on."""
+
+import csv
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from html import escape
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from mcgw.formats.evenly import evenly
+from mcgw.formats.files import whole_file
+from mcgw.formats.numbers import columns as typeset_columns
+from mcgw.formats.numbers import typeset
+from mcgw.machine.late import optional
+from mcgw.machine.terminal import one_line
+
+__all__ = ["SEPARATION", "Column", "Table", "joined", "stacked"]
+
+SEPARATION = "d/sigma"  # over a column of separations
+_DIGITS = re.compile(r"\.(\d+)g")
+
+
+@dataclass(frozen=True)
+class Column:
+    """Numbers or texts of one kind.
+
+    Parameters
+    ----------
+    name : str
+        In code: of a column of a CSV file or a DataFrame.
+    values : array_like of float or sequence of str
+        One for each row.
+    words : str, optional
+        What a reader sees over it; default: `name`.
+    unit : str, optional
+        Of the numbers; those of one unit are set in one format.
+    form : str, optional
+        Format of a number for a reader; files have all digits.
+    missing : str, optional
+        What a reader sees for nan.
+    beside : Column, optional
+        A second number in the same cell, as a standard error or the end of an interval.
+    between : str, optional
+        What stands between the two.
+    """
+
+    name: str
+    values: Any
+    words: str = ""
+    unit: str = ""
+    form: str = ".6g"
+    missing: str = "nan"
+    beside: "Column | None" = None
+    between: str = " +- "
+
+    @property
+    def flat(self) -> "list[Column]":
+        """The column itself, and what is beside it."""
+        return [self] if self.beside is None else [self.alone(), *self.beside.flat]
+
+    @property
+    def textual(self) -> bool:
+        """Whether it holds texts."""
+        return any(isinstance(x, str) for x in self.values[:1])
+
+    def cells(self) -> list[str]:
+        """What a reader sees, a text for each row."""
+        own = [x if isinstance(x, str) else self._shown(x) for x in self.values]
+        return own if self.beside is None else self.together(own, self.beside.cells())
+
+    def together(self, own: Sequence[str], others: Sequence[str]) -> list[str]:
+        """Both numbers of each cell; the first alone where the second is nan."""
+        numbers = () if self.beside is None else self.beside.values
+        return [
+            one if np.isnan(x) else f"{one}{self.between}{other}"
+            for one, other, x in zip(own, others, numbers, strict=True)
+        ]
+
+    def alone(self) -> "Column":
+        """Without what is beside it."""
+        return replace(self, beside=None)
+
+    def typeset(self) -> list[str]:
+        """Its cells as they are printed."""
+        return list(map(typeset, self.cells()))
+
+    def _shown(self, x: float) -> str:
+        return self.missing if np.isnan(x) else format(x, self.form)
+
+
+@dataclass(frozen=True)
+class Table:
+    """Columns of one length under a title.
+
+    Examples
+    --------
+    >>> Table((Column("h", [0.0, 1.0], SEPARATION, form="g"), Column("load", [77.8, 13.5], unit="N")))
+      d/sigma  load (N)
+      0            77.8
+      1            13.5
+    """
+
+    columns: tuple[Column, ...]
+    title: str = ""
+
+    def __len__(self) -> int:
+        return len(self.columns[0].values) if self.columns else 0
+
+    @property
+    def flat(self) -> list[Column]:
+        """Columns of one number a cell each."""
+        return [each for column in self.columns for each in column.flat]
+
+    @property
+    def unit(self) -> str:
+        """The first of its columns'."""
+        return next((column.unit for column in self.columns if column.unit), "")
+
+    def heading(self, column: Column) -> str:
+        """Words over a column, and its unit if the title does not tell it."""
+        unit = f" ({column.unit})" if column.unit not in ("", "1") else ""
+        return (column.words or column.name) + ("" if unit in self.title else unit)
+
+    def only(self, *names: str) -> "Table":
+        """Some of its columns, in this order."""
+        by_name = {column.name: column for column in self.columns}
+        return replace(self, columns=tuple(by_name[name] for name in names))
+
+    def rows(self, most: int) -> "Table":
+        """So many rows at most, evenly, with the first and the last."""
+        return self.at(evenly(len(self), most).tolist())
+
+    def at(self, k: Sequence[int]) -> "Table":
+        """Some of its rows, by number."""
+        return replace(self, columns=tuple(_part(column, k) for column in self.columns))
+
+    def text(self) -> str:
+        """Plain lines under the title: texts at the left of their column, numbers at the right."""
+        lines = [self.title] if self.title else []
+        cells = [[self.heading(column), *column.cells()] for column in self.columns]
+        widths = [max(map(len, column)) for column in cells]
+        left = [not k or column.textual for k, column in enumerate(self.columns)]
+        for row in zip(*cells, strict=True):
+            told = (
+                f"{x:{'<' if to_left else '>'}{width}}"
+                for x, width, to_left in zip(row, widths, left, strict=True)
+            )
+            lines.append(f"  {'  '.join(told)}".rstrip())
+        return "\n".join(lines)
+
+    __repr__ = text
+
+    def html(self) -> str:
+        """A ``table`` without its title; numbers of one unit in one format, every text escaped."""
+        head = "".join(f"<th>{escape(typeset(self.heading(column)))}</th>" for column in self.columns)
+        rows = "".join(
+            f"<tr>{''.join(f'<td>{escape(cell)}</td>' for cell in row)}</tr>"
+            for row in zip(*self._typeset(), strict=True)
+        )
+        return f"<table><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table>" if head else ""
+
+    def write(self, path: str | Path, *, comment: str = "") -> None:
+        """Write it as CSV: names of the columns, then rows that read back to the last bit.
+
+        Parameters
+        ----------
+        path : str or Path
+            The file; it is there whole or not at all.
+        comment : str, optional
+            Stands above the names.
+        """
+        columns = self.flat
+        with (
+            whole_file(Path(path)) as unfinished,
+            open(unfinished, "w", newline="", encoding="utf-8") as file,
+        ):
+            file.write(f"# {one_line(comment)}\n" if comment else "")
+            writer = csv.writer(file, lineterminator="\n")
+            writer.writerow([column.name for column in columns])
+            writer.writerows(zip(*map(_stored, columns), strict=True))
+
+    def to_dataframe(self) -> Any:
+        """The same as a `pandas.DataFrame`.
+
+        Raises
+        ------
+        ImportError
+            If pandas is not installed.
+        """
+        pandas = optional("pandas", "to_dataframe")
+        return pandas.DataFrame({column.name: column.values for column in self.flat})
+
+    def _typeset(self) -> Iterator[list[str]]:
+        """Cells of each column: numbers of one unit in one format, all else as in a terminal."""
+        found: dict[str, list[str]] = {}
+        for unit in dict.fromkeys(column.unit for column in self.flat if column.unit):
+            alike = [c for c in self.flat if c.unit == unit and not c.textual and _DIGITS.fullmatch(c.form)]
+            sized = [(c.values, int(c.form[1:-1])) for c in alike]
+            texts = typeset_columns(sized) if sized else []
+            found |= {c.name: text for c, text in zip(alike, texts, strict=True)}
+        for column in self.columns:
+            own, *beside = (found.get(c.name) or c.typeset() for c in column.flat)
+            own = [text or typeset(column.missing) for text in own]
+            between = replace(column, between=typeset(column.between))
+            yield between.together(own, beside[0]) if beside else own
+
+
+def stacked(tables: Mapping[str, Table], key: str, words: str = "") -> Table:
+    """Tables with the same columns under each other.
+
+    Parameters
+    ----------
+    tables : dict of str to Table
+        By what tells their rows apart.
+    key : str
+        What that is: the name of the first column. The second is the unit, if there is any.
+    words : str, optional
+        What a reader sees over the first column.
+    """
+    parts = list(tables.values())
+    first = [Column(key, [name for name, table in tables.items() for _ in range(len(table))], words)]
+    if any(table.unit for table in parts):
+        first.append(Column("unit", [table.unit for table in parts for _ in range(len(table))]))
+    return Table((*first, *joined(parts).columns))
+
+
+def joined(tables: Sequence[Table]) -> Table:
+    """Tables with the same columns under each other, with nothing to tell their rows apart."""
+    return Table(tuple(map(_under, zip(*(table.columns for table in tables), strict=True))))
+
+
+def _under(columns: Sequence[Column]) -> Column:
+    """Columns under each other, without their unit where it is not the same."""
+    values = np.concatenate([np.asarray(column.values) for column in columns])
+    unit = columns[0].unit if len({column.unit for column in columns}) == 1 else ""
+    besides = [column.beside for column in columns if column.beside is not None]
+    return replace(columns[0], values=values, unit=unit, beside=_under(besides) if besides else None)
+
+
+def _part(column: Column, k: Sequence[int]) -> Column:
+    beside = None if column.beside is None else _part(column.beside, k)
+    return replace(column, values=[column.values[i] for i in k], beside=beside)
+
+
+def _stored(column: Column) -> Iterator[str]:
+    for x in column.values:
+        yield str(x) if isinstance(x, str | int | np.integer) else repr(float(x))
