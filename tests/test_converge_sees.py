@@ -222,7 +222,8 @@ def test_what_the_command_prints_is_what_was_found(scene_file, tmp_path, capsys)
     out = capsys.readouterr().out.splitlines()
     found = converge(mcgw.load_scene(scene_file))
     assert out[0] == "24 ensembles of 100 surfaces of 5000 asperities"
-    shown = [re.fullmatch(r"  (.+?) +p = (\S+) +(.*)", line).groups() for line in out[1:-2]]
+    assert out[1].split() == ["check", "p", "seen"]
+    shown = [re.fullmatch(r"  (.+?)  +(\d\S*)  +(.*)", line).groups() for line in out[2:-2]]
     assert [(n, seen) for n, _, seen in shown] == [(c.name, c.seen) for c in found.checks]
     for (_, p, _), check in zip(shown, found.checks, strict=True):
         assert float(p) == pytest.approx(check.p, rel=5e-3)

@@ -88,7 +88,7 @@ def test_what_is_printed_is_the_theory_of_that_law(name, ensemble_of, no_figures
     for q, curve in comparison.curves.items():
         np.testing.assert_allclose(curve.theory, exact[q], rtol=1e-8)
     rows = [line.split() for line in comparison_text(comparison).splitlines() if "..." in line]
-    printed = [float(row[5]) for row in rows]
+    printed = [float(row[6]) for row in rows]
     assert printed == pytest.approx([x for q in scene.quantities for x in exact[q]], rel=1e-5)
     page = report_html(e, ATTRIBUTES)
     contacts = re.search(r"contacts expected at the lowest separation</td><td>([\d.]+)<", page)

@@ -25,10 +25,10 @@ LONG = {
     "load": "normal load (N)",
     "area": "real contact area (m^2)",
     "stiffness": "normal stiffness (N/m)",
-    "contacts": "number of contacts (1)",
+    "contacts": "number of contacts",
     "conductance": "contact conductance of the spots, times the resistivity rho (m)",
 }
-TITLES = {name: LONG[name].rpartition(" (")[0] for name in LONG}
+TITLES = {name: LONG[name].partition(" (")[0] for name in LONG}
 
 
 @pytest.fixture(scope="module")
@@ -79,7 +79,7 @@ def tables(text):
         if line and not line.startswith(" "):
             title = line
         elif title and "d/sigma" in line and title not in found:
-            found[title] = (re.split(r" {2,}| (?=stderr|std|theory|residual)", line.strip()), [])
+            found[title] = (re.split(r" {2,}", line.strip()), [])
         elif title in found and re.match(r"  +-?\d", line):
             numbers = line.replace(" ... ", "...").split()
             found[title][1].append(numbers)
@@ -129,10 +129,11 @@ def test_compare(file, told, tmp_path, capsys):
     assert list(found) == [LONG[name] for name in QUANTITIES]
     for name in QUANTITIES:
         header, rows = found[LONG[name]]
-        assert [x for x in header if x] == ["d/sigma", "Monte Carlo", "95 % interval", "theory", "residual"]
+        assert [x for x in header if x] == ["d/sigma", "mean", "95 % interval", "std", "theory", "residual"]
         expected = told[name]
         for k, row in enumerate(rows):
-            h, mean, interval, theory, residual = row
+            h, mean, interval, std, theory, residual = row
+            assert float(std) == pytest.approx(expected["std"][k], rel=6e-3)
             assert float(h) == H[k]
             assert float(mean) == pytest.approx(expected["mean"][k], rel=6e-6)
             assert float(theory) == pytest.approx(expected["theory"][k], rel=6e-6)
@@ -199,10 +200,10 @@ def test_regrade(file, ratios, tmp_path, capsys):
 @pytest.mark.parametrize(
     ("words", "given", "pressure", "title"),
     [
-        (["--pressure", "1MPa"], ("load", 100.0), 1e6, "Load 100 N = pressure 1 MPa on the nominal area"),
-        (["--load", "0.2kN"], ("load", 200.0), 2e6, "Load 200 N = pressure 2 MPa on the nominal area"),
+        (["--pressure", "1MPa"], ("load", 100.0), 1e6, "At the load 100 N = pressure 1 MPa"),
+        (["--load", "0.2kN"], ("load", 200.0), 2e6, "At the load 200 N = pressure 2 MPa"),
         (["--area-fraction", "0.01%"], ("area", 1e-8), math.nan,
-         "Real area 1e-08 m^2 = 0.0100% of the nominal area"),
+         "At the real area 1e-08 m^2 = 0.0100% of the nominal area"),
     ],
 )  # fmt: skip
 def test_solve(scene, words, given, pressure, title, tmp_path, capsys):
@@ -212,11 +213,11 @@ def test_solve(scene, words, given, pressure, title, tmp_path, capsys):
     out = out_of(["solve", tmp_path / "s.toml", *words, "--csv", tmp_path / "s.csv"], capsys)
     lines = out.splitlines()
     assert lines[0] == title
-    assert lines[1].split() == ["theory", "mean", "95", "%", "interval", "of", "the", "mean", "std"]
+    assert lines[1].split() == ["quantity", "unit", "theory", "mean", "95", "%", "interval", "std"]
     rows = {row["quantity"]: row for row in rows_of(tmp_path / "s.csv")}
     assert list(rows) == ["separation", *analytic.QUANTITIES]
     h = float(rows["separation"]["theory"])
-    units = {"separation": "1", **exact.UNITS}
+    units = {"separation": "sigma", **exact.UNITS}
     for name, row in rows.items():
         assert row["unit"] == units[name]
         assert float(row["load_or_area_SI"]) == pytest.approx(given[1])
@@ -229,15 +230,11 @@ def test_solve(scene, words, given, pressure, title, tmp_path, capsys):
             student.ppf(0.975, 24) * float(row["std"]) / 5, rel=1e-9, abs=1e-14 * float(row["mean"])
         )
     assert exact.mean(few, given[0], [h])[0] == pytest.approx(given[1], rel=1e-8)
-    labels = {
-        "separation d/sigma": "separation",
-        "conductance x rho (m)": "conductance",
-        **{f"{n} ({exact.UNITS[n]})" if n != "contacts" else n: n for n in exact.UNITS if n != "conductance"},
-    }
     shown = {}
     for line in lines[2:]:
-        if match := re.match(r"  (\S.*?) {2,}(\S+) +(\S+) +(\S+) \.\.\. (\S+) +(\S+)$", line):
-            shown[labels[match[1]]] = [float(x) for x in match.groups()[1:]]
+        if match := re.match(r"  (\S+) +(\S+) +(\S+) +(\S+) +(\S+) \.\.\. (\S+) +(\S+)$", line):
+            assert match[2] == units[match[1]]
+            shown[match[1]] = [float(x) for x in match.groups()[2:]]
     assert set(shown) == set(rows) - {given[0]}
     for name, numbers in shown.items():
         wanted = [float(rows[name][key]) for key in ("theory", "mean", "low_95", "high_95", "std")]
@@ -276,18 +273,19 @@ def test_tradeoff(study, tmp_path, capsys, monkeypatch):
     (tmp_path / "s.toml").write_text(mcgw.scene_text(study.scene))
     monkeypatch.setattr("mcgw.statistics.tradeoff.tradeoff", lambda scene, *, seconds, progress: study)
     out = out_of(["tradeoff", tmp_path / "s.toml", "-o", tmp_path], capsys).splitlines()
-    assert out[0] == "relative error of the mean load at d/sigma = 0, 2"
-    for line, point in zip(out[1:3], study.points, strict=True):
+    assert out[0] == "root mean square relative error of the mean load at d/sigma"
+    assert out[1].split()[:7] == ["method", "size", "of", "at", "0", "at", "2"]
+    for line, point in zip(out[2:4], study.points, strict=True):
         words = line.split()
         assert (words[0], float(words[1]), words[2]) == (point.method, point.size, point.unit)
         assert [float(x) for x in words[3:5]] == point.rms.tolist()
-        spread, cpu = line.rpartition("+-")[2].replace("%", " ").split()[:2]
-        assert float(spread) == pytest.approx(100 * point.rms_stderr, abs=0.6)
-        assert float(cpu) == point.cpu
-    spent = "cells, accuracy 1e-06 3.0e-07 5.00e-05 s a surface, 0.02 s before"
-    assert out[5].split() == spent.split()
-    spent = "aggregate, accuracy 1e-13, law_error 0.0001 nan 6.00e-06 s a surface, 0.04 s before"
-    assert out[6].split() == spent.split()
+        assert float(words[5].rstrip("%")) == pytest.approx(100 * point.rms_stderr, abs=0.6)
+        assert [float(x) for x in words[6:]] == pytest.approx(
+            [point.cpu, point.wall, point.peak, point.seeds], rel=0.03
+        )
+    assert out[6].split() == ["sampler", "accuracy", "law_error", "error", "s", "a", "surface", "s", "before"]
+    assert out[7].split() == ["cells", "1e-06", "0", "3.0e-07", "5.00e-05", "0.02"]
+    assert out[8].split() == ["aggregate", "1e-13", "0.0001", "nan", "6.00e-06", "0.04"]
     assert ["a", "mean", "to", "0.01", "cells", "1e-06", "0", "77", "3.5"] in [line.split() for line in out]
     assert out[-1] == "study: 12 s"
     rows = rows_of(tmp_path / "s-tradeoff.csv")

@@ -58,7 +58,7 @@ class Paired(Shown):
             (
                 Column("separation", self.separations, SEPARATION, form="g"),
                 Column("ratio", self.ratio, unit="1"),
-                Column("stderr", self.stderr, unit="1", form=".1g"),
+                Column("stderr", self.stderr, unit="1", form=".2g"),
                 Column("variance_gain", self.gain, "variance, independent/paired", form=".3g"),
             )
         )

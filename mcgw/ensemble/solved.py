@@ -107,16 +107,17 @@ class Solution(Shown):
             few = f"{contacts:.2g} contacts a surface: few for theory, which is of a large one"
             facts.append(("caution", f"{few}; give more area"))
         table = self.table()
-        return Sheet(table.title, facts, table)
+        found = [k for k, name in enumerate(self.surfaces) if name != self.given]
+        return Sheet(table.title, facts, table.at(found))
 
     def table(self) -> Table:
-        """Theory beside the mean over the surfaces, a row for each quantity but that given."""
+        """Theory beside the mean over the surfaces, a row for each quantity."""
         share = self.value / self.scene.surface.nominal_area
         if self.given == "load":
             title = f"At the load {self.value:.6g} N = pressure {share / 1e6:.6g} MPa"
         else:
             title = f"At the real area {self.value:.6g} m^2 = {share:.4%} of the nominal area"
-        names = [name for name in self.theory if name != self.given]
+        names = list(self.surfaces)
         low, high = np.array([self.interval(name) for name in names]).T
         found = [self.surfaces[name] for name in names]
         return Table(

@@ -18,7 +18,7 @@ _SHOWN = ("contact law", "film", "interaction")  # what of the contacts counts a
 
 def solutions_text(scene: Scene, solutions: Sequence[Solution]) -> str:
     """Theory and Monte Carlo side by side, one block for each given value."""
-    lines = [f"{solution.table().text()}\n" for solution in solutions]
+    lines = [f"{solution.sheet().table}\n" for solution in solutions]
     if any(x.theory["contacts"] < MANY for x in solutions):
         lines.append(
             "Few contacts: finite surfaces differ from theory, whose surface is infinite, by more than noise."
