@@ -130,7 +130,3 @@ class _Version(argparse.Action):
 def process() -> NoReturn:
     """Run the command of this process, and end it."""
     leave(main())
-
-
-if __name__ == "__main__":
-    process()

@@ -182,7 +182,8 @@ def test_names(grading, name):
 def test_two_resolutions_of_one_function_agree():
     one = resolved(Custom(lambda s: 1 + 0.3 * np.tanh(s)), 0.0, 13.0)
     assert one.agrees(resolved(Custom(lambda s: (1 + 0.3 * np.tanh(s)) * (1 + 1e-15)), 0.0, 13.0))
-    assert one.agrees(resolved(Custom(lambda s: 1 + 0.3 * np.tanh(s), (1.0,)), 0.0, 13.0))
+    for breaks in ((1.0,), (-3.0, 1.0, 20.0)):  # those beyond the ends do not count
+        assert one.agrees(resolved(Custom(lambda s: 1 + 0.3 * np.tanh(s), breaks), 0.0, 13.0))
     assert not one.agrees(resolved(Custom(lambda s: (1 + 0.3 * np.tanh(s)) * (1 + 1e-12)), 0.0, 13.0))
     assert not one.agrees(resolved(Custom(lambda s: 1 + 0.3 * np.tanh(s)), 1.0, 13.0))
 

@@ -5,10 +5,12 @@ import importlib.util
 import subprocess
 import sys
 
+import numpy as np
 import pytest
 
 from mcgw.machine import compiling
 from mcgw.machine.compiling import njit
+from mcgw.sampling.lanes import load, total
 
 LOOPS = """
 def make(njit, n):
@@ -46,6 +48,19 @@ def test_loops_compiled_at_the_same_time_are_not_mixed_up(loops):
     assert one(3.0) == 3.0
     found = [loops.make(njit, n)(3.0) for n in (1.0, 2.0)]  # as a third process loads them
     assert found == [3.0, 6.0]  # with the files of Numba they are not
+
+
+def test_lanes_of_what_is_not_contiguous_are_refused():
+    """Four numbers at once are neighbours in memory: of a transposed array they would be others."""
+
+    @njit()
+    def first(x):
+        return total(load(x, 0))
+
+    x = np.arange(16.0).reshape(4, 4)
+    assert first(x) == 0 + 1 + 2 + 3
+    with pytest.raises(TypeError, match="lanes are neighbours"):
+        first(x.T)
 
 
 VERSIONS = """

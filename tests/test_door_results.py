@@ -315,7 +315,8 @@ def test_one_load_by_four_names(scene):
         np.testing.assert_allclose(found.surfaces["area"], one.surfaces["area"], rtol=1e-12)
     several = mcgw.solve(scene, area_fraction=["0.1 %", 0.002])
     assert [s.value / area for s in several] == pytest.approx([0.001, 0.002], rel=1e-15)
-    assert [s.value for s in mcgw.solve(scene, area=np.array([1e-9]))] == [1e-9]
+    for words in (np.array([1e-9]), [1e-9], ["1e-3 mm^2"]):
+        assert [s.value for s in mcgw.solve(scene, area=words)] == [1e-9]
     assert math.isclose(mcgw.solve(scene, load=2.0, n_surfaces=7).surfaces["load"].size, 7)
 
 

@@ -246,7 +246,7 @@ def test_tradeoff(make_scene, kept, tmp_path):
 
 def test_contact_map(make_scene, kept, tmp_path):
     """Spots to scale at their places in micrometres, coloured by their loads in millinewtons."""
-    from mcgw.figures.contact_map import save_contact_map, spots_at
+    from mcgw.figures.contact_map import _DPI, contact_map_figure, save_contact_map, spots_at
     from mcgw.maps.asperities import Asperities
 
     scene = make_scene(grading=analytic.Exponential(2.0))
@@ -278,6 +278,11 @@ def test_contact_map(make_scene, kept, tmp_path):
         assert image.get_extent() == pytest.approx([0, 60, 0, 40])
         assert np.max(image.get_array()) == pytest.approx(1e6 * sigma * 2, rel=1e-2)
         assert image.origin == "lower"
+    pixels = 20e-6 / np.median(spots.radius)  # so many to a radius, and the window is 20 um wide
+    axis, *_ = contact_map_figure(field, spots, inches=1.0, visible=_DPI / pixels).axes
+    (circles,) = axis.collections
+    np.testing.assert_allclose(circles.get_array(), 1e3 * load[1:], rtol=1e-12)
+    assert circles.norm.vmax == pytest.approx(1e3 * load[0], rel=1e-12)  # colours are those of the whole map
 
 
 @pytest.mark.parametrize(("x", "label"), [(1e-12, "10⁻¹²"), (1.0, "10⁰"), (1e308, "10³⁰⁸"), (30.0, "30")])

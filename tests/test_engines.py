@@ -248,6 +248,12 @@ def test_addresses_that_are_not(address, message):
     assert message in str(caught.value)
 
 
+def test_dask_without_its_scheduler_is_one_line(monkeypatch):
+    monkeypatch.setitem(sys.modules, "distributed", None)  # it cannot be imported
+    with pytest.raises(RunError, match=r'dask is not installed: pip install "mcgw\[dask\]"'):
+        Dask(workers=1)
+
+
 @pytest.mark.parametrize("engine", [Processes, lambda n: Dask(workers=n)])
 def test_no_workers_are_an_error(engine):
     with pytest.raises(ValueError, match="= 0: give a whole number >= 1"):

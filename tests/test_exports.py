@@ -14,6 +14,7 @@ from mcgw.cli import main
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.equal_pressure import at_pressures, loaded_part
 from mcgw.ensemble.results import MemoryResults
+from mcgw.exports.curves import quantile_name
 from mcgw.exports.kinds import KINDS
 from mcgw.exports.programs import PROGRAMS
 from mcgw.exports.surfaces import surfaces_for
@@ -140,6 +141,11 @@ def test_pressure_against_gap_is_that_of_theory(scene, tmp_path):
     stderr = scene.theory.std("load", h) / SURFACE.nominal_area / np.sqrt(60)
     assert np.all(np.abs(pressure - exact) < 5 * stderr)
     assert not np.all(np.abs(1.3 * pressure - exact) < 5 * stderr)  # it would be seen
+
+
+def test_quantiles_have_names_of_their_own():
+    shares = (0.05, 0.5, 0.025, 0.975, 0.9999)
+    assert [quantile_name(q) for q in shares] == ["q05", "q50", "q2.5", "q97.5", "q99.99"]
 
 
 def test_an_ensemble_gives_its_own_numbers(ensemble, tmp_path):

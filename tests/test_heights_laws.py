@@ -207,6 +207,14 @@ def test_a_negative_modulus_is_found_far_up_a_heavy_tail(make_scene):
         make_scene(grading=falling, heights=ExponentialHeights())
 
 
+def test_a_modulus_below_all_heights_does_not_matter(make_scene):
+    """Exponential heights begin at s = -1; Gaussian ones are found where the grading is negative."""
+    falling = analytic.Custom(lambda s: np.where(s < -1.5, -1.0, 1.0), breaks=(-1.5,))
+    make_scene(grading=falling, heights=ExponentialHeights(), separations=(-2.5,))
+    with pytest.raises(mcgw.SceneError, match="negative"):
+        make_scene(grading=falling, separations=(-2.5,))
+
+
 DENSITIES = {  # p(0), p(2) of heights over sqrt(m0), above the mean plane of the surface
     1.6: (0.00366848561180587, 0.532312950790285),
     2.0: (0.0459483593407531, 0.441484818068322),

@@ -37,6 +37,13 @@ def test_solve_says_so_in_one_line(number, tmp_path, capsys):
     assert line.startswith(f"mcgw: load = {float(number):g} N: less than one asperity has")
 
 
+@pytest.mark.parametrize("option", ["--load", "--pressure", "--area-fraction"])
+def test_solve_needs_a_value_of_what_is_given(option, capsys):
+    with pytest.raises(SystemExit, match="2"):
+        main(["solve", "s.toml", option])
+    assert f"{option}: expected at least one argument" in capsys.readouterr().err
+
+
 WRONG = [
     ("pixel", "12", "must be [dx, dy], two numbers in m"),
     ("pixel", ["1", "2"], "must be [dx, dy], two numbers in m"),

@@ -52,6 +52,14 @@ def test_pieces_out_of_reach_are_left_out():
     np.testing.assert_allclose(series.load(1, 0.4, 1.0), OWN.load(1, 0.4, 1.0), rtol=1e-14)
 
 
+def test_another_law_does_not_agree():
+    series = OWN.resolved(30.0)
+    given = {"load": series.load_of, "area": series.area_of, "limits": (1.0, 6.0), "critical": 0.05}
+    assert series.agrees(CustomLaw(**given))
+    for other in ({"critical": 0.06}, {"limits": (1.0, 7.0)}, {"load": series.load_of[::-1]}):
+        assert not series.agrees(CustomLaw(**given | other)), other
+
+
 def test_a_kink_inside_a_piece_is_seen():
     law = CustomLaw(
         (lambda u: u**3, lambda u: u**2 * (2 + np.sqrt((u - 2) ** 2))), (lambda u: u**2,) * 2, (1,), 0.1

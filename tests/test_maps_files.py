@@ -342,8 +342,8 @@ def test_what_makes_no_map_is_refused(tmp_path):
         np.save(tmp_path / name, array)
         return tmp_path / name
 
-    def sdf(*scales):
-        (tmp_path / "s.sdf").write_bytes(sdf_head(1, 1, 7, *scales) + bytes(8))
+    def sdf(*scales, code=7):
+        (tmp_path / "s.sdf").write_bytes(sdf_head(1, 1, code, *scales) + bytes(8))
         return tmp_path / "s.sdf"
 
     def other_h5():
@@ -358,6 +358,7 @@ def test_what_makes_no_map_is_refused(tmp_path):
         (lambda: Topography(np.zeros((2, 3)), (1.0, 0.0)), "two numbers > 0"),
         (lambda: read_map(saved("v.npy", np.zeros(3)), pixel=(1.0, 1.0)), "a map has rows and columns"),
         (lambda: read_map(sdf(1e-6, 0.0, 1.0)), "all must be > 0"),
+        (lambda: read_map(sdf(1e-6, 1e-6, 1.0, code=8)), "DataType = 8: SDF knows 0 to 7"),
         (lambda: read_map(other_h5()), "not a mcgw-surface file|SurfaceTopography"),
         (lambda: Spectrum(0.0, 30e-6, 5e-6), "give a length > 0 m"),
         (lambda: Spectrum(1e-6, 30e-6, 5e-6, 2.0), "hurst"),

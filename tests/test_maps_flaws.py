@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import mcgw
+from mcgw.cli import main
 from mcgw.maps.edges import bad_edges
 from mcgw.maps.fit import fit_map
 from mcgw.maps.levels import form_left, step_of
@@ -167,3 +168,10 @@ def test_edges_that_jump_are_named():
     z[:3] += 1e-5
     assert "--trim 3" in lines(z, (1e-6, 1e-6))["edge"]
     assert "edge" not in lines(z, (1e-6, 1e-6), trim=3)
+
+
+def test_less_than_no_points_cannot_be_trimmed(tmp_path, capsys):
+    np.save(tmp_path / "z.npy", rng(1).normal(size=(40, 40)))
+    given = ["--pixel", "1um", "--cutoff", "none", "--E-star", "1GPa", "-o", str(tmp_path / "s.toml")]
+    assert main(["fit", str(tmp_path / "z.npy"), *given, "--trim=-1"]) == 2
+    assert "--trim -1: give a whole number >= 0" in capsys.readouterr().err

@@ -118,6 +118,12 @@ def test_the_kurtosis_of_the_area_is_infinite_unless_radii_have_a_bound():
     assert rises[1] == pytest.approx(rises[0], rel=0.2)  # like the logarithm of the bound
     combined = m.fluctuations(["load", "area"], H).turned(np.eye(6)[:, [0, 3]] @ np.array([[1.0, 1], [0, 1]]))
     assert np.isinf(combined.moment(4)).tolist() == [False, True]
+    every = m.fluctuations(["load", "area"], H)
+    some = every.take(np.array([4, 0]), np.array([2.0, 3.0]))
+    for k in (2, 3, 4):
+        np.testing.assert_allclose(
+            some.moment(k), every.moment(k)[[4, 0]] / np.array([2.0, 3.0]) ** k, rtol=1e-13
+        )
 
 
 def test_moments_by_curvatures_one_by_one():

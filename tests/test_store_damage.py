@@ -16,6 +16,7 @@ from mcgw.jobs.merging import merge
 from mcgw.jobs.running import run, run_part
 from mcgw.jobs.session import Part
 from mcgw.store import ensembles, layout, lock, merged_file, run_folder, saving, shards, structure, untrusted
+from mcgw.store.disk import SteadyFile
 from mcgw.store.run_folder import RunFolder, parts_of
 from mcgw.store.trailer import TRAILER_BYTES, check_trailer, read_checked, trailer_of
 
@@ -33,6 +34,16 @@ def scene(make_scene):
 @pytest.fixture
 def larger(scene):
     return replace(scene, n_surfaces=SURFACES + 30)
+
+
+def test_beyond_the_end_of_a_file_hdf5_reads_zeros(tmp_path):
+    file = SteadyFile(tmp_path / "f")
+    file.write(b"abc")
+    file.seek(1)
+    buffer = bytearray(b"?" * 6)
+    assert file.readinto(buffer) == 6
+    assert bytes(buffer) == b"bc\0\0\0\0"
+    file.close()
 
 
 def nobody():

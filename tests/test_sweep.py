@@ -6,6 +6,7 @@ from scipy.integrate import quad
 
 import mcgw
 from mcgw.sweeps import drawing
+from mcgw.sweeps.axes import axes_of
 
 SURFACE = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "1 mm^2", "78.6 GPa")
 SCENE = mcgw.Scene(SURFACE, separations=[0.0, 0.4, 1.0, 1.5, 2.5], n_surfaces=300, n_asperities=2000, seed=7)
@@ -193,6 +194,11 @@ def test_labels_and_zipped_axes():
     data = mcgw.sweep(SCENE, over).to_xarray()
     assert data.load_std.sel({GAMMA: 2.0, "surface.sigma": "1 um"}).shape == (5,)
     assert data.load_mean.attrs == {"units": "N", "long_name": "mean of the normal load"}
+
+
+def test_many_values_of_a_key_are_told_by_the_first_and_the_last():
+    axes = axes_of({GAMMA: [3.0, 1.0, 2.0, 5.0, 4.0, 6.0, 7.0], "ensemble.seed": [4, 2]}, zipped=False)
+    assert [axes.summary(key) for key in axes.keys] == ["7 from 3 to 7", "4, 2"]
 
 
 def test_what_nobody_gave_follows():

@@ -77,6 +77,12 @@ def test_one_mean_of_one_point_that_is_off_breaks_it(sweep, name):
     assert len(repr(compared).splitlines()) <= 12
 
 
+def test_means_too_low_are_counted_as_those_too_high(sweep):
+    for factor in (0.97, 1.03):
+        facts = dict(mcgw.compare(off(sweep, factor)).sheet().facts)
+        assert facts["residuals"] == "1 of 108 beyond 3 standard errors"
+
+
 @pytest.mark.slow
 def test_false_alarms_are_as_rare_as_stated():
     """Of 60 sweeps of six points a tenth at most has p < 0.1: more than 15 in 1 of 5000 choices of seeds.

@@ -60,6 +60,14 @@ def papers_rule(h, points):
     return np.exp(-h) / 2 * np.sum(w * (s - h) ** 1.5 * (2 - t) * norm.pdf(s) / t)
 
 
+@pytest.mark.parametrize(
+    ("heights", "offered"), [(analytic.Gaussian(), True), (analytic.ExponentialHeights(), False)]
+)
+def test_the_rule_of_the_paper_is_for_gaussian_heights(heights, offered, scene):
+    names = [method.name for method in study.methods_for(scene.replace(heights=heights), (0,))]
+    assert ("paper's Gauss rule, Eq. (9)" in names) == offered
+
+
 @pytest.mark.usefixtures("blank_figures")
 def test_two_methods_in_a_moment(scene, monkeypatch, tmp_path):
     """The paper's rule, whose errors are those of the rule itself, and real surfaces, whose are random."""

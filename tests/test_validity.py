@@ -416,6 +416,13 @@ def test_results_in_python_say_it(scene):
     assert [line.split()[0] for line in shown[4:]] == [f"{h:g}" for h in SEPARATIONS]
 
 
+def test_the_sentence_names_the_worst_at_a_load_and_at_a_gap(scene):
+    error = {name: 100 * np.nanmax(x) for name, x in scene.validity().error.items()}
+    at_load, at_gap = map(float, re.findall(r"within (\d+) %", scene.validity().verdict))
+    assert 0 <= at_load - max(error["area"], error["stiffness"]) <= 1
+    assert 0 <= at_gap - error["load"] <= 1
+
+
 @pytest.mark.parametrize("worst", [0.1, 0.1000001, 0.0999999, 2.345])
 def test_what_is_said_is_rounded_up(worst):
     from mcgw.scene.validity_text import percent

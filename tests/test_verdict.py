@@ -1,6 +1,7 @@
 """What the verdict rests on: every quantity at every separation, and as many degrees as there are."""
 
 import dataclasses
+from functools import partial
 from itertools import pairwise
 
 import exact
@@ -14,7 +15,7 @@ from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.results import MemoryResults
 from mcgw.figures.comparison import save_comparison
 from mcgw.sampling.samplers import sampler_of
-from mcgw.statistics.comparison import FALSE_ALARM, Verdict, compare, verdict
+from mcgw.statistics.comparison import FALSE_ALARM, Verdict, compare, tested, verdict
 
 QUANTITIES = tuple(analytic.QUANTITIES)
 H = (2.0, 0.0, 1.0)  # in no order: a verdict that sorts one of two lists would show
@@ -52,6 +53,18 @@ def test_each_quantity_alone_2_percent_off_breaks_it(ensemble, quantity):
         assert compare(wrong).verdict == verdict(wrong)
     for k in range(len(H)):
         assert not verdict(scaled(ensemble, {(quantity, k): 1.02})).agrees
+
+
+def test_what_theory_leaves_out_belongs_to_its_quantity(make_scene):
+    """Of so many surfaces it leaves out too much of some means: of the same ones in any order."""
+    balanced = {"interaction": mcgw.Interaction("body", at="nominal"), "separations": (0.0, 2.0)}
+    found = []
+    for quantities in (("load", "area", "contacts"), ("area", "load", "contacts")):
+        scene = make_scene(**balanced, quantities=quantities, n_asperities=1000)
+        counts = tested(scene, 10**9, partial(scene.theory.mean, h=(0.0, 2.0)), 60).counts
+        found.append(dict(zip(quantities, counts.tolist(), strict=True)))
+    assert found[0] == found[1]
+    assert {name for name, counts in found[0].items() if counts[0]} == {"area"}
 
 
 def test_the_last_of_many_separations_counts(make_scene):
