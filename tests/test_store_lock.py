@@ -47,6 +47,21 @@ def free(folder, *, shared):
         return False
 
 
+def test_a_folder_that_goes_between_two_steps_is_made_again(tmp_path, monkeypatch):
+    """Whoever ends removes it, while the next one is about to lock it."""
+    take, made = lock._lock, []
+
+    def too_late(folder, shared):
+        made.append(folder)
+        if len(made) < 3:
+            folder.rmdir()
+        return take(folder, shared)
+
+    monkeypatch.setattr(lock, "_lock", too_late)
+    assert free(tmp_path / "f.parts", shared=False)
+    assert len(made) == 3
+
+
 def in_a_thread(folder, *, shared):
     found = []
     thread = threading.Thread(target=lambda: found.append(free(folder, shared=shared)))
