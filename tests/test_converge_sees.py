@@ -17,7 +17,7 @@ import mcgw
 from mcgw.cli import main
 from mcgw.figures.convergence import save_convergence
 from mcgw.statistics import convergence
-from mcgw.statistics.checks import coverage, skewness, variances
+from mcgw.statistics.checks import coverage, independence, skewness, variances
 from mcgw.statistics.comparison import FALSE_ALARM
 from mcgw.statistics.convergence import Convergence, converge
 from mcgw.statistics.convergence import _own as own
@@ -162,6 +162,13 @@ def test_p_of_a_variance_is_the_chi_squares(factor):
     exact_p = 2 * min(chi2.cdf(total, 400), chi2.sf(total, 400))
     assert variances(Law(1), y).p == pytest.approx(min(exact_p, 1.0), rel=1e-12)
     assert variances(Law(3), np.tile(y, 3)).p == pytest.approx(min(3 * exact_p, 1.0), rel=1e-12)
+
+
+@pytest.mark.parametrize("lag", [1, 2, 4, 8, 16, 32, 64])
+def test_surfaces_alike_at_any_of_the_lags_are_seen(lag):
+    noise = np.random.default_rng(3).normal(size=(4, 500 + lag, 2))
+    assert independence(noise).p > FALSE_ALARM
+    assert independence((noise[:, lag:] + noise[:, :-lag]) / np.sqrt(2)).p < FALSE_ALARM / 100
 
 
 def test_coverage_is_students_and_its_p_the_binomials():
