@@ -113,6 +113,8 @@ if TYPE_CHECKING:
     from mcgw.errors import RunError, StoreError
     from mcgw.exports.writing import export
     from mcgw.jobs.from_python import run
+    from mcgw.jobs.merging import merge
+    from mcgw.jobs.sweeping import sweep
     from mcgw.maps.fitted_scene import fitted_scene
     from mcgw.maps.from_file import fit
     from mcgw.sampling.asperities import heights, radii
@@ -126,8 +128,6 @@ if TYPE_CHECKING:
     from mcgw.store.ensembles import open_ensemble
     from mcgw.store.saving import save
     from mcgw.sweeps.file import open_sweep
-    from mcgw.sweeps.from_python import sweep
-    from mcgw.sweeps.merging import merge
 
 __all__ = [
     "Body",
@@ -209,7 +209,7 @@ _HOME = {
     "fitted_scene": "maps.fitted_scene",
     "heights": "sampling.asperities",
     "load_scene": "scene.scene_file",
-    "merge": "sweeps.merging",
+    "merge": "jobs.merging",
     "open_ensemble": "store.ensembles",
     "open_sweep": "sweeps.file",
     "paired_ratio": "ensemble.paired",
@@ -221,7 +221,7 @@ _HOME = {
     "scene_text": "scene.scene_file",
     "simulate": "ensemble.simulation",
     "solve": "ensemble.solution",
-    "sweep": "sweeps.from_python",
+    "sweep": "jobs.sweeping",
     "tradeoff": "statistics.tradeoff",
 }
 

@@ -11,7 +11,7 @@ from mcgw.scene.samplers import SAMPLERS
 
 # Packages are layers: each imports only from those before it, and within one nothing goes round in a circle.
 LAYERS = (
-    "errors", "machine", "formats", "scene", "sampling", "ensemble", "store", "jobs", "sweeps", "statistics",
+    "errors", "machine", "formats", "scene", "sampling", "ensemble", "store", "sweeps", "jobs", "statistics",
     "exports", "maps", "figures", "reports", "commands", "cli",
 )  # fmt: skip
 ROOT = Path(mcgw.__file__).parent

@@ -20,6 +20,7 @@ from mcgw.exports.table_text import table_text
 from mcgw.exports.unit_systems import UNIT_SYSTEMS
 from mcgw.formats.table import Column, Table
 from mcgw.store import ensembles, structure
+from mcgw.store.plan import Plan
 from mcgw.store.run_folder import RunFolder
 
 NUMBER = r"[-+]?\d\.\d{9}e[-+]\d\d"
@@ -97,7 +98,7 @@ def test_the_digest_of_a_file_is_one(made):
 def test_texts_of_a_run_are_one_line_each(make_scene, tmp_path):
     folder = tmp_path / "e.h5.parts"
     folder.mkdir()
-    run = RunFolder.begin(folder, make_scene(), "cells", 8)
+    run = RunFolder.of(folder, make_scene(), "cells", Plan(((8, 8),))).begin()
     RunFolder(**{**vars(run), "date": "now\n  digest  forged"})._write(expected="anything")
     with pytest.raises(StoreError, match=r"run\.toml: damaged"):
         RunFolder.open(folder)

@@ -15,7 +15,6 @@ from analytic import Exponential, ExponentialHeights, Gaussian, MeasuredHeights,
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.forecast import forecast
 from mcgw.ensemble.intervals import FEWEST, TOO_FEW, Spread, count_interval, pearson3_quantile, spread_of
-from mcgw.ensemble.over_surfaces import total_number
 from mcgw.ensemble.results import MemoryResults
 from mcgw.figures.comparison import quantity_figure
 from mcgw.formats.table import stacked
@@ -158,7 +157,7 @@ def test_contacts_are_counted_exactly(make_scene):
     contacts = np.array([[2**53 - 1], [2**53], [3]])
     scene = make_scene(separations=(0.0,), quantities=("contacts",), n_surfaces=3, n_asperities=2**53)
     ensemble = Ensemble(scene, "cells", MemoryResults({"contacts": np.repeat(contacts, 3000, axis=0)}))
-    assert total_number(scene, ensemble.sums, "contacts")[0] == float(3000 * (2**54 + 2))
+    assert ensemble.sums.total_number("contacts")[0] == float(3000 * (2**54 + 2))
 
 
 def test_spread_of_many_separations_is_that_of_each(make_scene):

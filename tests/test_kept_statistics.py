@@ -213,7 +213,7 @@ def test_same_bits_whoever_draws_them(tmp_path):
     """In memory, in a file, on one thread, by jobs in any order, in steps, after a loss: one digest."""
     asked = scene(n_surfaces=700, keep="statistics")
     e = run(asked, tmp_path / "a.h5")
-    assert read_attributes(tmp_path / "a.h5")["filetype"] == "mcgw-statistics"
+    assert read_attributes(tmp_path / "a.h5")["filetype"] == "mcgw-results"
     assert_same_bits(e, mcgw.simulate(asked))
     assert_same_bits(e, mcgw.simulate(asked, threads=1))
     wanted = read_attributes(tmp_path / "a.h5")["digest"]
@@ -314,7 +314,7 @@ def test_single_surfaces_are_refused_with_what_to_do(tmp_path, monkeypatch):
     with pytest.raises(StoreError, match="covariances between 3200 numbers needs"):
         mcgw.simulate(scene(separations=np.linspace(0, 4, 800), n_surfaces=2, keep="statistics"))
     with h5py.File(tmp_path / "a.h5", "r+") as file:
-        file.attrs["filetype"] = "mcgw-ensemble"
+        file.attrs["seed"] = 2
     with pytest.raises(StoreError, match=r"not a whole file"):
         mcgw.open_ensemble(tmp_path / "a.h5")
 

@@ -25,6 +25,7 @@ from mcgw.jobs.session import Part
 from mcgw.store import ensembles, lock
 from mcgw.store.leftovers import tidy
 from mcgw.store.lock import LockedError, locked
+from mcgw.store.plan import Plan
 from mcgw.store.run_folder import RunFolder, parts_of
 from mcgw.store.saving import save
 
@@ -186,7 +187,7 @@ def leave_behind(path, scene, *, shards):
     (folder / "shards" / "block-0000000000016.h5").write_bytes(b"of a worker whose driver is gone")
     if shards:
         (folder / "shards" / "block-0000000000016.h5").unlink()
-        RunFolder.begin(folder, scene, "tail", SIZE)
+        RunFolder.of(folder, scene, "tail", Plan(((scene.n_surfaces, SIZE),))).begin()
         (folder / "shards" / "block-0000000000000.h5").write_bytes(b"whole")
 
 
@@ -215,7 +216,7 @@ def test_leftovers_of_a_run_of_one_block_do_not_stand_in_the_way_of_another(scen
 def test_an_empty_run_of_another_scene_gives_way(scene, path):
     folder = parts_of(path)
     with locked(folder):
-        RunFolder.begin(folder, scene, "tail", SIZE)
+        RunFolder.of(folder, scene, "tail", Plan(((scene.n_surfaces, SIZE),))).begin()
     run_part(replace(scene, seed=2, n_surfaces=3 * SIZE), path, Part(1, 2))
     assert RunFolder.open(folder).scene.seed == 2
 

@@ -15,7 +15,7 @@ from mcgw.errors import RunError, StoreError
 from mcgw.jobs.merging import merge
 from mcgw.jobs.running import run, run_part
 from mcgw.jobs.session import Part
-from mcgw.store import ensembles, layout, lock, merged_file, run_folder, saving, shards, structure, untrusted
+from mcgw.store import ensembles, layout, lock, merged_file, run_folder, shards, structure, untrusted
 from mcgw.store.disk import SteadyFile
 from mcgw.store.run_folder import RunFolder, parts_of
 from mcgw.store.trailer import TRAILER_BYTES, check_trailer, read_checked, trailer_of
@@ -263,25 +263,20 @@ def file(scene, tmp_path):
     return tmp_path / "e.h5"
 
 
-@pytest.fixture
-def old_file(scene, file, monkeypatch):
-    """The same as version 0.2 wrote it."""
+@pytest.mark.parametrize(
+    ("filetype", "version"), [("mcgw-ensemble", (1, 1)), ("mcgw-results", (1, 0)), ("mcgw-results", (3, 0))]
+)
+def test_files_of_other_formats_are_refused_in_one_line(scene, file, filetype, version, monkeypatch):
     file.unlink()
-    monkeypatch.setattr(layout, "FORMAT", (1, 0))
-    monkeypatch.setattr(saving, "trailer_notes", lambda opened: {})
-    run(scene, file)
-    return file
-
-
-def test_files_of_format_1_0_are_opened(old_file, scene):
-    with h5py.File(old_file) as data:
-        assert tuple(data.attrs["format"]) == (1, 0)
-    np.testing.assert_array_equal(mcgw.open_ensemble(old_file).load, mcgw.simulate(scene).load)
-    assert ensembles.verify(old_file)[0] == ""
+    monkeypatch.setattr(layout, "FILETYPE", filetype)
+    monkeypatch.setattr(layout, "FORMAT", version)
+    with pytest.raises(StoreError, match=r"is a format that this version does not read") as caught:
+        run(scene, file)
+    assert len(str(caught.value).splitlines()) == 1
 
 
 def test_a_new_file_without_the_checksum_is_refused(file):
-    """Nobody makes it one of format 1.0 by leaving the checksum away."""
+    """Nobody makes it an older one by leaving the checksum away."""
     with h5py.File(file, "r+") as data:
         data.attrs["seed"] = np.uint64(5)
     body = file.read_bytes()
@@ -330,13 +325,13 @@ def test_the_checksum_is_of_contents_alone(file):
 
 
 @pytest.mark.parametrize(("name", "value"), [("separation", 1.5), ("surface", 7)])
-def test_scales_must_be_those_of_the_scene(old_file, name, value):
-    """Also where no checksum guards them, and where somebody sealed the file anew."""
-    with h5py.File(old_file, "r+") as data:
+def test_scales_must_be_those_of_the_scene(file, name, value):
+    """Also where somebody sealed the file anew."""
+    with h5py.File(file, "r+") as data:
         data[name][1] = value
-    trailer_again(old_file)
+    trailer_again(file)
     with pytest.raises(StoreError, match=f"{name} does not hold the values that its scene declares"):
-        mcgw.open_ensemble(old_file)
+        mcgw.open_ensemble(file)
 
 
 def test_a_changed_number_is_an_error_when_it_is_read(file):
@@ -371,14 +366,13 @@ def test_another_scene_in_a_run_is_noticed(half):
         RunFolder.open(half)
 
 
-def test_runs_of_format_1_0_go_on(half, scene):
+def test_a_run_of_an_older_format_is_refused(half, scene):
     file = half / "run.toml"
     text = file.read_text()
-    old = text[: text.index("sha256")].replace("    1,\n    1,\n", "    1,\n    0,\n")
-    assert old.count("    0,\n") == 1
-    file.write_text(old)
-    assert run(scene, half.with_suffix("")).n_surfaces == SURFACES
-    assert not half.exists()
+    old = text[: text.index("sha256")].replace("    2,\n    0,\n", "    1,\n    1,\n")
+    file.write_text(old + f'sha256 = "{run_folder.hashlib.sha256(old.encode()).hexdigest()}"\n')
+    with pytest.raises(StoreError, match=r"is not a run of format 2\.x, but \[1, 1\]"):
+        run(scene, half.with_suffix(""))
 
 
 def test_the_checksum_of_a_run_is_of_its_text(half):

@@ -27,7 +27,8 @@ from mcgw.jobs.merging import merge
 from mcgw.jobs.running import run, run_part
 from mcgw.jobs.session import Part
 from mcgw.store import ensembles, layout
-from mcgw.store.run_folder import missing, parts_of
+from mcgw.store.plan import Plan
+from mcgw.store.run_folder import parts_of
 from mcgw.store.shards import Span
 
 HERE = Path(__file__).parent
@@ -267,9 +268,26 @@ def test_room_is_asked_for_what_is_not_there_yet(scene, tmp_path, monkeypatch):
 
 
 def test_gaps_are_cut_at_multiples_of_a_block():
-    assert missing(50, 16, []) == [Span(0, 16), Span(16, 16), Span(32, 16), Span(48, 2)]
-    assert missing(50, 16, [Span(0, 20), Span(32, 16)]) == [Span(20, 12), Span(48, 2)]
-    assert missing(50, 16, [Span(0, 50)]) == missing(50, 16, [Span(0, 64)]) == []
+    plan = Plan(((50, 16),))
+    assert plan.missing([]) == [Span(0, 16), Span(16, 16), Span(32, 16), Span(48, 2)]
+    assert plan.missing([Span(0, 20), Span(32, 16)]) == [Span(20, 12), Span(48, 2)]
+    assert plan.missing([Span(0, 50)]) == plan.missing([Span(0, 64)]) == []
+
+
+def test_blocks_of_several_groups_end_with_their_group():
+    """Two groups of 50 and 20 surfaces, in blocks of 16 and 20, one after the other."""
+    plan = Plan(((50, 16), (20, 20)), whole=True)
+    blocks = [Span(0, 16), Span(16, 16), Span(32, 16), Span(48, 2), Span(50, 20)]
+    assert plan.total == 70
+    assert plan.missing([]) == blocks
+    assert [plan.number(block) for block in blocks] == [0, 1, 2, 3, 4]
+    assert [plan.group(block) for block in blocks] == [(0, 0), (0, 16), (0, 32), (0, 48), (1, 0)]
+    for held in blocks:
+        assert plan.missing([held]) == [block for block in blocks if block != held]
+        assert plan.takes(held)
+    assert not any(map(plan.takes, (Span(0, 15), Span(8, 16), Span(50, 16), Span(48, 4))))
+    assert Plan(((50, 16),), whole=True).takes(Span(64, 16))  # of more than is asked for now
+    assert [Plan(((50, 16),), whole=True).kept(n) for n in (0, 20, 32, 50)] == [0, 16, 32, 50]
 
 
 def as_typed(scene, path):

@@ -189,10 +189,10 @@ def test_labels_and_zipped_axes():
     data = sweep.to_xarray()
     assert data.load_mean.dims == ("point", "separation")
     assert "load_std" not in data
-    assert data["surface.sigma"].values.tolist() == ["1 um", "2 um"]
+    assert data["sigma"].values.tolist() == ["1 um", "2 um"]
     assert sweep.scene({"surface.sigma": "2 um"}).surface.sigma == 2e-6
     data = mcgw.sweep(SCENE, over).to_xarray()
-    assert data.load_std.sel({GAMMA: 2.0, "surface.sigma": "1 um"}).shape == (5,)
+    assert data.load_std.sel(gamma=2.0, sigma="1 um").shape == (5,)
     assert data.load_mean.attrs == {"units": "N", "long_name": "mean of the normal load"}
 
 
@@ -320,3 +320,53 @@ def test_zipped_axes_of_other_lengths_are_refused(lengths):
     over = {key: [1, 2, 3][:n] for key, n in zip(keys, lengths, strict=False)}
     with pytest.raises(mcgw.SceneError, match=r"zipped axes .* these have grading\.gamma 2, ens"):
         mcgw.sweep(SCENE, over, zipped=True)
+
+
+# --- what an ensemble can -------------------------------------------------------------------------------
+
+
+def test_points_have_the_intervals_and_tables_of_single_runs():
+    sweep = mcgw.sweep(SCENE, {GAMMA: [0.5, 2.0], "ensemble.n_asperities": [50, 2000]})
+    frame = sweep.to_dataframe()
+    assert frame.index.names == ["gamma", "n_asperities", "separation"]
+    for i, gamma in enumerate((0.5, 2.0)):
+        for k, n in enumerate((50, 2000)):
+            alone = mcgw.simulate(sweep.scene((i, k)))
+            for name in ("load", "contacts", "pressure"):
+                low, high = sweep.interval(name, 0.9)
+                np.testing.assert_allclose((low[i, k], high[i, k]), alone.interval(name, 0.9), rtol=1e-12)
+            assert frame.loc[gamma, n].load_std.tolist() == alone.std("load").tolist()
+            assert mcgw.compare(sweep.ensemble((i, k))).verdict == mcgw.compare(alone).verdict
+    assert sweep.ensemble({GAMMA: 0.5, "ensemble.n_asperities": 50}).n_surfaces == 300
+    for ask in (sweep.ensemble((0, 0)).values, lambda q: sweep.quantile(q, 0.5), sweep.skewness):
+        with pytest.raises(ValueError, match=r'load: a sweep keeps mean and .* keep = "statistics"'):
+            ask("load")
+
+
+@pytest.mark.parametrize("gammas", [[0.5, 2.0], np.linspace(0.5, 2.0, 9)])
+def test_points_that_keep_statistics_have_the_quantiles_of_single_runs(tmp_path, gammas):
+    """Also of many exponential gradings, whose sums are combinations and whose quantiles are not."""
+    kept = SCENE.replace(keep="statistics", separations=[0.0, 1.5], quantities=["load", "contacts"])
+    memory = mcgw.sweep(kept, {GAMMA: gammas})
+    held = mcgw.sweep(kept, {GAMMA: gammas}, path=tmp_path / "a.h5")
+    for i in (0, len(gammas) - 1):
+        alone = mcgw.simulate(kept, grading=mcgw.Exponential(float(gammas[i])))
+        for sweep in (memory, held):
+            for share in (0.0, 0.05, 0.5, 1.0):
+                found = sweep.quantile("load", share)[i]
+                assert found.tolist() == alone.quantile("load", share).tolist()
+            assert sweep.skewness("contacts")[i].tolist() == alone.skewness("contacts").tolist()
+            assert sweep.mean("load")[i].tolist() == alone.mean("load").tolist()
+    import xarray
+
+    with xarray.open_dataset(tmp_path / "a.h5", engine="h5netcdf") as file:
+        assert file.load_quantile.dims == ("point", "probability", "separation")
+        data = held.to_xarray()
+        assert data.load_quantile.dims == ("gamma", "probability", "separation")
+        assert np.array_equal(file.load_quantile, data.load_quantile)
+        assert (
+            data.load_quantile.sel(probability=0.5)[-1].values.tolist()
+            == sweep.quantile("load", 0.5)[-1].tolist()
+        )
+    with pytest.raises(mcgw.SceneError, match=r"ensemble\.keep: all points have the same"):
+        mcgw.sweep(SCENE, {"ensemble.keep": ["sums", "statistics"]})

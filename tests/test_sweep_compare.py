@@ -13,8 +13,8 @@ import mcgw
 from mcgw.cli import main
 from mcgw.statistics.comparison import FALSE_ALARM, verdict
 from mcgw.statistics.sweep_comparison import SweepVerdict
+from mcgw.store.ensembles import read_attributes
 from mcgw.sweeps.cautions import sweep_cautions
-from mcgw.sweeps.file import read_attributes
 
 SURFACE = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "1 mm^2", "78.6 GPa")
 SCENE = mcgw.Scene(SURFACE, separations=[2.0, 0.0, 1.0], n_surfaces=200, n_asperities=2000, seed=5)
@@ -150,7 +150,7 @@ def test_the_commands_see_what_is_wrong(sweep, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     mcgw.sweep(SCENE, OVER, path="w.h5")
     for command, code, name in (("compare", 1, "w.svg"), ("report", 0, "w.html")):
-        monkeypatch.setattr(f"mcgw.commands.{command}_sweep.open_sweep", lambda path: off(sweep, 1.03))
+        monkeypatch.setattr("mcgw.sweeps.opening.open_results", lambda path: off(sweep, 1.03))
         assert main([command, "w.h5", "-o", name]) == code
         assert "DISAGREE" in (tmp_path / name).read_text()
     assert "DISAGREE: p = " in capsys.readouterr().out

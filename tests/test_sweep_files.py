@@ -5,6 +5,7 @@ import signal
 import subprocess
 import sys
 from contextlib import closing
+from dataclasses import replace
 from pathlib import Path
 
 import h5py
@@ -14,17 +15,19 @@ from begun_runs import settle
 
 import mcgw
 from mcgw.cli import main
+from mcgw.jobs import blocks, sweep_job
+from mcgw.jobs.blocks import commit_block
 from mcgw.jobs.engines import Processes
-from mcgw.sweeps import chunk_task, drawing
-from mcgw.sweeps.chunk_task import commit_chunk
-from mcgw.sweeps.file import read_attributes
-from mcgw.sweeps.folder import ASKED, SweepFolder, folder_of
+from mcgw.store.ensembles import read_attributes
+from mcgw.store.run_folder import RunFolder, parts_of
+from mcgw.sweeps import drawing
 
 SURFACE = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "1 mm^2", "78.6 GPa")
 SCENE = mcgw.Scene(SURFACE, separations=[0.0, 1.0, 2.5], n_surfaces=300, n_asperities=2000, seed=7)
 GAMMA, N = "grading.gamma", "ensemble.n_asperities"
 OVER = {GAMMA: np.linspace(0.5, 1.7, 9), N: [200, 2000]}
 CHUNKS = 12
+FIRST = 2 * [0, 50, 100, 150, 200, 250]  # surfaces of the chunks
 TOML = """
 surface = {sigma = 1e-6, radius = 1e-5, eta = 1e9, nominal_area = 1e-6, E_star = 1e11}
 contact = {separations = [0.0, 1.0]}
@@ -45,14 +48,14 @@ def _small_chunks(monkeypatch):
 
 @pytest.fixture
 def drawn(monkeypatch):
-    """Numbers of the chunks that are drawn."""
-    found, plain = [], chunk_task.pooled_chunk
+    """First surfaces of the blocks that are drawn, within their groups."""
+    found, plain = [], sweep_job.pooled_of
 
-    def counted(group, source, chunk):
-        found.append(chunk.number)
-        return plain(group, source, chunk)
+    def counted(group, source, first, n):
+        found.append(first)
+        return plain(group, source, first, n)
 
-    monkeypatch.setattr(chunk_task, "pooled_chunk", counted)
+    monkeypatch.setattr(sweep_job, "pooled_of", counted)
     return found
 
 
@@ -98,14 +101,23 @@ def test_other_programs_read_it(tmp_path):
     with xarray.open_dataset(tmp_path / "a.h5", engine="h5netcdf") as data:
         assert data.load_std.dims == ("point", "separation")
         assert np.array_equal(data.load_std.values.reshape(9, 2, 3), sweep.std("load"))
-        assert data[N].values.tolist() == [200, 2000] * 9
-        assert data.attrs["filetype"] == "mcgw-sweep"
+        assert data.n_asperities.values.tolist() == [200, 2000] * 9
+        assert data.attrs["filetype"] == "mcgw-results"
+
+
+def test_a_sweep_of_tangential_loads_has_a_file(tmp_path):
+    """Its shards have tables of four axes."""
+    pushed = mcgw.Tangential(friction=0.3, poisson=0.3, displacements=[1e-8, 1e-7])
+    scene = SCENE.replace(tangential=pushed)
+    held, memory = (mcgw.sweep(scene, {N: [50, 200]}, **to) for to in ({"path": tmp_path / "a.h5"}, {}))
+    assert held.mean("tangential_load").shape == (2, 3, 2)
+    assert np.array_equal(held.std("tangential_load"), memory.std("tangential_load"))
 
 
 @pytest.mark.parametrize("after", [1, 6])
 def test_interrupted_anywhere_it_goes_on_to_the_same_digest(tmp_path, monkeypatch, drawn, expected, after):
     """A damaged chunk is drawn again; a finished file is not."""
-    path, counted = tmp_path / "a.h5", chunk_task.pooled_chunk
+    path, counted = tmp_path / "a.h5", sweep_job.pooled_of
 
     def stopped(*words):
         if len(drawn) == after:
@@ -113,40 +125,35 @@ def test_interrupted_anywhere_it_goes_on_to_the_same_digest(tmp_path, monkeypatc
         return counted(*words)
 
     with monkeypatch.context() as patch:
-        patch.setattr(chunk_task, "pooled_chunk", stopped)
+        patch.setattr(sweep_job, "pooled_of", stopped)
         with pytest.raises(KeyboardInterrupt):
             mcgw.sweep(SCENE, OVER, path=path)
         settle()
     assert not path.exists()
-    shards = sorted(folder_of(path).glob("block-*.h5"))
+    shards = sorted(parts_of(path).glob("shards/block-*.h5"))
     assert len(shards) == after
     flip(shards[0])
     for _ in range(2):
         mcgw.sweep(SCENE, OVER, path=path, threads=1)
-        assert drawn == [*range(len(shards)), 0, *range(len(shards), CHUNKS)]
+        assert drawn == [*FIRST[: len(shards)], 0, *FIRST[len(shards) :]]
     assert digest(path) == expected
     assert not (tmp_path / "a.h5.parts").exists()
 
 
-def test_another_sweep_is_left_alone(tmp_path, monkeypatch):
+def test_another_sweep_is_left_alone(tmp_path):
     mcgw.sweep(SCENE, OVER, path=tmp_path / "a.h5")
     for scene, over in ((SCENE, {GAMMA: [1.0]}), (SCENE.replace(seed=8), OVER)):
-        with pytest.raises(mcgw.StoreError, match=r"a\.h5: holds a different sweep; choose another -o"):
+        with pytest.raises(mcgw.StoreError, match=r"a\.h5: holds something else than this sweep; choose"):
             mcgw.sweep(scene, over, path=tmp_path / "a.h5")
     e = mcgw.simulate(SCENE, n_surfaces=3)
     mcgw.save(e, tmp_path / "e.h5")
-    with pytest.raises(mcgw.StoreError, match="not the file of a sweep"):
+    with pytest.raises(mcgw.StoreError, match="holds something else than this sweep"):
         mcgw.sweep(SCENE, OVER, path=tmp_path / "e.h5")
-    with pytest.raises(mcgw.StoreError, match="not an ensemble file"):
+    with pytest.raises(mcgw.StoreError, match=r"holds a sweep; mcgw\.open_sweep opens it"):
         mcgw.open_ensemble(tmp_path / "a.h5")
 
-    def stopped(*_):
-        raise KeyboardInterrupt
-
-    monkeypatch.setattr(chunk_task, "pooled_chunk", stopped)
-    with pytest.raises(KeyboardInterrupt):
-        mcgw.sweep(SCENE, OVER, path=tmp_path / "b.h5")
-    with pytest.raises(mcgw.StoreError, match="a different sweep was begun there"):
+    mcgw.sweep(SCENE, OVER, path=tmp_path / "b.h5", shard="1/2")
+    with pytest.raises(mcgw.StoreError, match=r"holds a different sweep: sweep is .* there and .* here"):
         mcgw.sweep(SCENE, {GAMMA: [1.0]}, path=tmp_path / "b.h5")
 
 
@@ -226,14 +233,12 @@ def test_mistakes_of_the_command(shell, over, words):
 
 
 def test_a_disk_that_is_full(tmp_path, monkeypatch):
-    from mcgw.sweeps import folder
-
     def full(*_):
         raise OSError(28, "No space left on device")
 
     with monkeypatch.context() as patch:
-        patch.setattr(folder, "commit_shard", full)
-        with pytest.raises(mcgw.RunError, match="No space left on device; what is done is kept in"):
+        patch.setattr(blocks, "commit_shard", full)
+        with pytest.raises(mcgw.RunError, match="No space left on device; finished blocks are kept in"):
             mcgw.sweep(SCENE, OVER, path=tmp_path / "a.h5")
     assert not (tmp_path / "a.h5").exists()
     assert mcgw.sweep(SCENE, OVER, path=tmp_path / "a.h5").shape == (9, 2)
@@ -269,9 +274,7 @@ def test_in_shares_in_any_order(tmp_path, expected, order):
         left.append(mcgw.sweep(SCENE, OVER, path=path, shard=f"{i}/3"))
         assert not path.exists()
         if left[-1]:
-            with pytest.raises(
-                mcgw.RunError, match=rf"{left[-1]} of 600 surfaces are missing, from surfaces \d+ \.\.\. "
-            ):
+            with pytest.raises(mcgw.RunError, match=rf"{left[-1]} of 600 surfaces are missing, from \d+ on"):
                 mcgw.merge(path)
     assert left == [400, 200, 0]
     assert mcgw.sweep(SCENE, OVER, path=path, shard="2/3") == 0  # a job that is started again
@@ -281,18 +284,16 @@ def test_in_shares_in_any_order(tmp_path, expected, order):
     assert not list(tmp_path.glob("*.parts"))
     assert mcgw.sweep(SCENE, OVER, path=path, shard="1/3") == 0
     assert repr(mcgw.merge(path)) == repr(merged)
-    with pytest.raises(mcgw.StoreError, match="holds a different sweep"):
+    with pytest.raises(mcgw.StoreError, match="holds something else than this sweep"):
         mcgw.sweep(SCENE, {"grading.gamma": [1.0]}, path=path, shard="1/3")
 
 
 def test_a_damaged_share_is_drawn_again(tmp_path, expected):
     path = tmp_path / "a.h5"
     mcgw.sweep(SCENE, OVER, path=path, shard="1/1")
-    shard = sorted(folder_of(path).glob("block-*.h5"))[4]
+    shard = sorted(parts_of(path).glob("shards/block-*.h5"))[4]
     flip(shard)
-    with pytest.raises(
-        mcgw.RunError, match=r"50 of 600 surfaces are missing, from surfaces 200 \.\.\. 249 of"
-    ):
+    with pytest.raises(mcgw.RunError, match="50 of 600 surfaces are missing, from 200 on"):
         mcgw.merge(path)
     assert mcgw.sweep(SCENE, OVER, path=path, shard="1/1") == 0
     mcgw.merge(path)
@@ -309,9 +310,10 @@ SWEEPING = """
 import os, signal, sys
 import numpy as np
 import mcgw
-from mcgw.sweeps import drawing, folder
+from mcgw.jobs import blocks
+from mcgw.sweeps import drawing
 drawing._ROWS = 50
-commit, committed = folder.commit_shard, []
+commit, committed = blocks.commit_shard, []
 
 def killed_at_the_next(*words):
     if len(committed) == int(sys.argv[3]):
@@ -319,7 +321,7 @@ def killed_at_the_next(*words):
     committed.append(words)
     return commit(*words)
 
-folder.commit_shard = killed_at_the_next
+blocks.commit_shard = killed_at_the_next
 if __name__ == "__main__":
     over = {"grading.gamma": np.linspace(0.5, 1.7, 9), "ensemble.n_asperities": [200, 2000]}
     how = {"run": {}, "1/1": {"shard": "1/1"}}
@@ -345,7 +347,7 @@ def test_killed_at_a_chunk_it_goes_on(tmp_path, expected, how, kills, drawn):
         assert done.returncode == -signal.SIGKILL
         assert not path.exists()
         held += kill
-        assert len(list(folder_of(path).glob("block-*.h5"))) == held
+        assert len(list(parts_of(path).glob("shards/block-*.h5"))) == held
     mcgw.sweep(SCENE, OVER, path=path)
     assert len(drawn) == CHUNKS - held
     assert digest(path) == expected
@@ -355,27 +357,28 @@ def test_killed_at_a_chunk_it_goes_on(tmp_path, expected, how, kills, drawn):
 def test_a_worker_draws_no_chunk_that_is_there(tmp_path, drawn):
     """A task may be given twice: to the next worker after one that died."""
     mcgw.sweep(SCENE, OVER, path=tmp_path / "a.h5", shard="2/2")
-    folder = folder_of(tmp_path / "a.h5")
+    folder = parts_of(tmp_path / "a.h5")
     drawn.clear()
-    missing = SweepFolder.open(folder).missing()
-    held = [chunk for chunk in SweepFolder.open(folder).chunks if chunk not in missing]
-    digests = [commit_chunk(str(folder), chunk) for chunk in (*held, missing[0], missing[0])]
-    assert drawn == [missing[0].number]
+    run = RunFolder.open(folder)
+    missing, held = run.missing(0, run.shards()), [shard.span for shard in run.shards()]
+    asked = (*held, missing[0], missing[0])
+    digests = [commit_block(str(folder), span.first, span.n) for span in asked]
+    assert drawn == [missing[0].first]
     assert digests[-1] == digests[-2]
 
 
 def test_a_worker_draws_for_nobody_who_asked_something_else(tmp_path):
     path = tmp_path / "a.h5"
     mcgw.sweep(SCENE, OVER, path=path, shard="2/2")
-    folder = folder_of(path)
-    chunk = SweepFolder.open(folder).missing()[0]
-    asked = folder / ASKED
-    asked.write_text(asked.read_text().replace("seed = 7\n", "seed = 8\n"))
-    with pytest.raises(mcgw.RunError, match=r"cannot be gone on with here: asked\.toml was changed"):
-        commit_chunk(str(folder), chunk)
-    asked.write_text("identity = 3")
-    with pytest.raises(mcgw.StoreError, match=r"asked\.toml: damaged"):
-        commit_chunk(str(folder), chunk)
+    asked = parts_of(path) / "run.toml"
+    good, run = asked.read_text(), RunFolder.open(parts_of(path))
+    for text in (good.replace("seed = 7\n", "seed = 8\n"), "identity = 3"):
+        asked.write_text(text)
+        with pytest.raises(mcgw.StoreError, match=r"run\.toml: damaged"):
+            commit_block(str(parts_of(path)), 0, 50)
+    replace(run, identity="0" * 64)._write(expected="anything")
+    with pytest.raises(mcgw.RunError, match="this worker cannot draw for that run"):
+        commit_block(str(parts_of(path)), 0, 50)
 
 
 def test_engines_draw_into_a_file():
@@ -387,7 +390,7 @@ def test_engines_draw_into_a_file():
 
 
 def test_shares_by_command(shell, tmp_path):
-    call = ["sweep", "s.toml", "--over", f"{GAMMA}=0.5:1.5:3", "-o"]
+    call = ["sweep", "s.toml", "--over", f"{N}=100,200,300", "-o"]
     shell(*call, "p.h5", "--threads", "1")
     shell(*call, "s.h5", "--shard", "2/2")
     shell("merge", "s.h5", code=1)

@@ -21,26 +21,22 @@ def execute(args: argparse.Namespace) -> int:
     from mcgw.commands.notes import tell_notes
     from mcgw.commands.outputs import Output, check_outputs, figure_format
     from mcgw.commands.table_option import table_output, write_table
-    from mcgw.formats.table import stacked
-    from mcgw.reports.elasticity import against_elasticity
-    from mcgw.reports.text import comparison_text, verdict_line
-    from mcgw.statistics.comparison import compare
-    from mcgw.store.ensembles import filetype_of, open_ensemble
+    from mcgw.machine.progress import bar
+    from mcgw.statistics.compared import compare
+    from mcgw.sweeps.opening import open_results
 
     path = args.output or args.file.with_suffix(".png")
-    if filetype_of(args.file) == "mcgw-sweep":
-        from mcgw.commands.compare_sweep import compare_with_theory  # of which most files are none
-
-        return compare_with_theory(args, path)
-    ensemble = open_ensemble(args.file)
+    result = open_results(args.file)
     check_outputs([Output(path, figure_format()), *table_output(args.csv)], inputs=[args.file])
     from mcgw.figures.comparison import save_comparison
+    from mcgw.reports.compared import told
 
-    tell_notes(ensemble.scene)
-    comparison = compare(ensemble)
+    tell_notes(result)
+    with bar("points", terminal=True) as show:
+        comparison = compare(result, progress=show)
     save_comparison(comparison, path)
-    print(comparison_text(comparison))
-    write_table(args.csv, lambda: stacked(comparison.tables(), "quantity"))
-    known = against_elasticity(ensemble.scene.validity())
-    print("", verdict_line(comparison.verdict), *known, f"{path}: figure", sep="\n")
+    text, table, verdict = told(comparison)
+    print(text)
+    write_table(args.csv, table)
+    print("", *verdict, f"{path}: figure", sep="\n")
     return 0 if comparison.verdict.agrees else 1

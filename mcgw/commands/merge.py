@@ -20,9 +20,9 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 def execute(args: argparse.Namespace) -> int:
     """Merge and say where the file is."""
     from mcgw.commands.outputs import HDF5, Output, check_outputs
+    from mcgw.ensemble.ensemble import Ensemble
     from mcgw.formats.files import state_of
-    from mcgw.sweeps.merging import merge
-    from mcgw.sweeps.sweep import Sweep
+    from mcgw.jobs.merging import merge
 
     path = args.file or args.output
     if path is None:
@@ -33,8 +33,8 @@ def execute(args: argparse.Namespace) -> int:
     before = state_of(path)
     merged = merge(path)
     done = "was finished before, " if state_of(path) == before else ""
-    if isinstance(merged, Sweep):
-        print(f"{path}: {done}{merged.axes.size} scenes, seed {merged.scenes[0].seed}")
-    else:
+    if isinstance(merged, Ensemble):
         print(f"{path}: {done}{merged.n_surfaces} surfaces, seed {merged.scene.seed}")
+    else:
+        print(f"{path}: {done}{merged.axes.size} scenes, seed {merged.scenes[0].seed}")
     return 0

@@ -17,19 +17,26 @@ def execute(args: argparse.Namespace) -> int:
     """Write the page and say where it is."""
     from mcgw.commands.notes import tell_notes
     from mcgw.commands.outputs import HTML, Output, check_outputs
+    from mcgw.ensemble.ensemble import Ensemble
     from mcgw.formats.files import write_whole
-    from mcgw.reports.html import report_html
-    from mcgw.store.ensembles import filetype_of, open_ensemble, read_attributes
+    from mcgw.machine.progress import bar
+    from mcgw.store.ensembles import read_attributes
+    from mcgw.sweeps.opening import open_results
 
     path = args.output or args.file.with_suffix(".html")
-    if filetype_of(args.file) == "mcgw-sweep":
-        from mcgw.commands.report_sweep import report_sweep  # of which most files are none
-
-        return report_sweep(args, path)
-    ensemble = open_ensemble(args.file)
+    result = open_results(args.file)
     check_outputs([Output(path, HTML)], inputs=[args.file])
-    tell_notes(ensemble.scene)
-    page = report_html(ensemble, read_attributes(args.file))
+    tell_notes(result)
+    attributes = read_attributes(args.file)
+    if isinstance(result, Ensemble):
+        from mcgw.reports.html import report_html
+
+        page = report_html(result, attributes)
+    else:
+        from mcgw.reports.sweep_html import sweep_report_html  # of which most files are none
+
+        with bar("points", terminal=True) as show:
+            page = sweep_report_html(result, attributes, progress=show)
     write_whole(path, [page.encode()])
     print(f"{path}: report, {len(page.encode()) / 1e6:.2f} MB; open it in a browser")
     return 0

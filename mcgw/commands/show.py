@@ -2,6 +2,10 @@
 
 import argparse
 from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from mcgw.store.run_folder import RunFolder
 
 HELP = "show what an ensemble file holds, or how far its run has come"
 EXAMPLE = "mcgw show demo.h5"
@@ -9,7 +13,7 @@ EXAMPLE = "mcgw show demo.h5"
 
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of this command."""
-    parser.add_argument("file", type=Path, metavar="FILE", help="ensemble file (HDF5)")
+    parser.add_argument("file", type=Path, metavar="FILE", help="ensemble file, or that of a sweep (HDF5)")
     what = parser.add_mutually_exclusive_group()
     what.add_argument("--scene", action="store_true", help="print the scene as TOML: it runs again")
     what.add_argument("--digest", action="store_true", help="print the digest of scene and data")
@@ -27,8 +31,7 @@ def execute(args: argparse.Namespace) -> int:
     from mcgw.commands.notes import tell_notes
     from mcgw.commands.outputs import check_outputs
     from mcgw.commands.table_option import table_output, write_table
-    from mcgw.store.disk import parts_of
-    from mcgw.store.ensembles import filetype_of, open_ensemble, read_attributes, verify
+    from mcgw.store.ensembles import read_attributes, unfinished_sweep, verify
     from mcgw.store.leftovers import tidy
 
     if args.csv and (args.scene or args.digest or args.plan or args.verify):
@@ -46,14 +49,8 @@ def execute(args: argparse.Namespace) -> int:
         print(plan_text(scene, plan))
         return 0
     tidy(args.file)
-    if not args.file.exists() and parts_of(args.file).joinpath("sweep").is_dir():
-        from mcgw.commands.show_sweep import show_unfinished
-
-        return show_unfinished(args)
-    if filetype_of(args.file) == "mcgw-sweep":
-        from mcgw.commands.show_sweep import show_sweep  # of which most files are none
-
-        return show_sweep(args)
+    if (begun := unfinished_sweep(args.file)) is not None:
+        return _show_unfinished(args, begun)
     if args.verify:
         problem, found = verify(args.file)
         print(f"{args.file}: {f'DAMAGED, {problem}' if problem else 'intact'} ({found})")
@@ -64,17 +61,30 @@ def execute(args: argparse.Namespace) -> int:
     elif args.digest:
         print(attributes["digest"])
     else:
-        from mcgw.ensemble.tables import statistics_table
-        from mcgw.formats.table import stacked
-        from mcgw.reports.text import summary
+        from mcgw.reports.summaries import summary_of
+        from mcgw.sweeps.opening import open_results
 
-        ensemble = open_ensemble(args.file)
+        result = open_results(args.file)
         check_outputs(table_output(args.csv), inputs=[args.file])
-        tell_notes(ensemble.scene)
-        print(summary(ensemble, attributes))
-        names = ensemble.scene.quantities
-        write_table(
-            args.csv,
-            lambda: stacked({name: statistics_table(ensemble, name) for name in names}, "quantity"),
-        )
+        tell_notes(result)
+        text, table = summary_of(result, attributes)
+        print(text)
+        write_table(args.csv, table)
+    return 0
+
+
+def _show_unfinished(args: argparse.Namespace, begun: "RunFolder") -> int:
+    """How far a sweep has come that is not yet in its file; with --scene, what all of its points come from.
+
+    Raises
+    ------
+    StoreError
+        If something is asked for that only a finished one has.
+    """
+    from mcgw.errors import StoreError
+    from mcgw.reports.summaries import progress_of
+
+    if args.verify or args.digest or args.csv:
+        raise StoreError(f"{args.file}: is a sweep in the making; mcgw sweep goes on, then ask again")
+    print(*([begun.text] if args.scene else [progress_of(begun, args.file), "\n"]), sep="", end="")
     return 0

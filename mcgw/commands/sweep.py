@@ -43,11 +43,11 @@ def execute(args: argparse.Namespace) -> int:
     """Draw and say where the file is."""
     from mcgw.commands.outputs import HDF5, Output, check_outputs
     from mcgw.jobs.chosen_engine import dashboard_of
+    from mcgw.jobs.sweeping import sweep
     from mcgw.machine.progress import bar
     from mcgw.scene.scene_file import files_of, load_scene
+    from mcgw.store.ensembles import recorded_seed
     from mcgw.sweeps.axes import axes_of
-    from mcgw.sweeps.from_python import sweep
-    from mcgw.sweeps.in_file import recorded_seed
 
     path = args.output or args.scene.parent / "out" / f"{args.scene.stem}.sweep.h5"
     over = dict(map(_axis, args.over))
@@ -70,8 +70,8 @@ def execute(args: argparse.Namespace) -> int:
 
 
 def _plan(scene: "Scene", axes: "Axes") -> str:
+    from mcgw.reports.sweep_plan import plan_text
     from mcgw.sweeps.asked import Asked
-    from mcgw.sweeps.plan import plan_text
 
     return plan_text(Asked.of(scene, axes))
 

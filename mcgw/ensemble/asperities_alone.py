@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mcgw.ensemble.ensemble import Ensemble
-from mcgw.ensemble.results import Results
+from mcgw.ensemble.results import Held, Results
 from mcgw.scene.scene import Scene
 
 __all__ = ["asperities_alone", "scene_alone"]
@@ -15,10 +15,10 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class _Alone:
+class _Alone(Results):
     """Results without the half-space that stiffnesses are in series with."""
 
-    whole: Results
+    whole: Held
     compliance: float
     names: tuple[str, ...]
 

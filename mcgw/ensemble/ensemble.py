@@ -7,11 +7,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analytic import PER_AREA, quantity_of
-from mcgw.ensemble import over_surfaces
 from mcgw.ensemble.interval_of import interval_of
 from mcgw.ensemble.intervals import CONFIDENCE
-from mcgw.ensemble.results import Results
-from mcgw.ensemble.tables import dataframe, dataset, statistics_dataframe, statistics_dataset
+from mcgw.ensemble.labelled import Labelled, axes_of, axis, statistic, values_of
+from mcgw.ensemble.results import PROBABILITIES, Held
 from mcgw.formats.sheet import Sheet, Shown
 from mcgw.formats.table import Column, Table
 from mcgw.machine.late import plotted
@@ -21,9 +20,11 @@ from mcgw.scene.samplers import promise_of
 from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_text
 
-__all__ = ["Ensemble"]
+__all__ = ["STATISTICS", "Ensemble"]
 
 Array = NDArray[np.float64]
+
+STATISTICS = ("mean", "std", "skewness")  # that are kept where values are not, besides quantiles
 
 _AT = "mean +- stderr, d/sigma ="
 _MOST_SHOWN = 20_000_000  # numbers that are read for a short look; of more, only how many there are
@@ -42,7 +43,7 @@ class Ensemble(Shown):
         What was asked.
     sampler : str
         What drew it.
-    sums : Results
+    sums : Held
         Its numbers.
     drawn_for : Scene, optional
         The scene that its surfaces were drawn for, if that is another one, as after `mcgw.regrade`.
@@ -69,7 +70,7 @@ class Ensemble(Shown):
 
     scene: Scene
     sampler: str
-    sums: Results
+    sums: Held
     drawn_for: Scene | None = None
 
     @property
@@ -159,12 +160,12 @@ class Ensemble(Shown):
         Shape (separations, separations of the other); nan for one surface.
         """
         (name, divisor), (second, by) = self._held(quantity), self._held(other or quantity)
-        found = over_surfaces.covariance(self.scene, self.sums, name, second)
+        found = self.sums.covariance(name, second)
         return np.asarray(found / (divisor or 1.0) / (by or 1.0))
 
     def skewness(self, quantity: str) -> Array:
         """Skewness over the surfaces (divisor M), shape (separations,); nan where nothing varies."""
-        return over_surfaces.skewness(self.scene, self.sums, self._held(quantity)[0])
+        return self.sums.skewness(self._held(quantity)[0])
 
     def quantile(self, quantity: str, share: float) -> Array:
         """Value that a share of the surfaces is below, as `numpy.quantile`, shape (separations,).
@@ -192,12 +193,12 @@ class Ensemble(Shown):
     def extremes(self, quantity: str) -> tuple[Array, Array]:
         """Least and greatest value over the surfaces, each of shape (separations,)."""
         name, divisor = self._held(quantity)
-        low, high, *_ = over_surfaces.extremes(self.scene, self.sums, name)
+        low, high, *_ = self.sums.extremes(name)
         return np.asarray(low / (divisor or 1.0)), np.asarray(high / (divisor or 1.0))
 
     def extreme_surfaces(self, quantity: str) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
         """Numbers of the first surfaces that have the `extremes`: `mcgw.heights` gives their asperities."""
-        *_, low, high = over_surfaces.extremes(self.scene, self.sums, self._held(quantity)[0])
+        *_, low, high = self.sums.extremes(self._held(quantity)[0])
         return low, high
 
     def interval(self, quantity: str, level: float = CONFIDENCE) -> tuple[Array, Array]:
@@ -244,11 +245,7 @@ class Ensemble(Shown):
         """
         scene = self.scene
         about = {"title": scene.title, "scene": scene_text(scene), "sampler": self.sampler}
-        pushed = scene.tangential
-        displacements = None if pushed is None else np.array(pushed.displacements)
-        if scene.keep == "statistics":
-            return statistics_dataset(self, about, displacements)
-        return dataset(self._all(), self.separations, about, displacements)
+        return self.labelled().to_xarray(about)
 
     def to_dataframe(self) -> Any:
         """All values as a `pandas.DataFrame`: rows (surface, separation), a column for each quantity.
@@ -260,9 +257,20 @@ class Ensemble(Shown):
         ImportError
             If pandas is not installed.
         """
-        if self.scene.keep == "statistics":
-            return statistics_dataframe(self)
-        return dataframe({name: self.values(name) for name in self.scene.quantities}, self.separations)
+        over = () if self.scene.keep == "statistics" else ("surface",)
+        return self.labelled().to_dataframe((*over, "separation"))
+
+    def labelled(self) -> Labelled:
+        """All there is, with axes, units and words: what its file, xarray and pandas are told alike."""
+        if self.scene.keep != "statistics":
+            return values_of(self.scene, {name: self.values(name) for name in self.scene.shapes})
+        found = {}
+        for name in self.scene.shapes:
+            for kind in STATISTICS:
+                found[f"{name}_{kind}"] = statistic(name, kind, getattr(self, kind)(name))
+            quantiles = np.stack([self.quantile(name, share) for share in PROBABILITIES])
+            found[f"{name}_quantile"] = statistic(name, "quantile", quantiles)
+        return Labelled(found, {"probability": axis("probability", PROBABILITIES), **axes_of(self.scene)})
 
     def plot(self, ax: Any = None, *, quantity: str | None = None) -> Any:
         """Draw the mean of a quantity with its interval, and how far surfaces spread.
@@ -313,11 +321,8 @@ class Ensemble(Shown):
         if not 0 <= share <= 1:
             raise ValueError(f"share = {share!r}: give a share of the surfaces, 0 to 1")
         name, divisor = self._held(quantity)
-        value, low, high = over_surfaces.quantile(self.scene, self.sums, name, float(share))
+        value, low, high = self.sums.quantile(name, float(share))
         return value / (divisor or 1.0), low / (divisor or 1.0), high / (divisor or 1.0)
-
-    def _all(self) -> dict[str, Array]:
-        return {name: self.values(name) for name in self.scene.shapes}
 
     def _held(self, quantity: str) -> tuple[str, float]:
         """The quantity that is held, and the area that this one is per, or 0."""
@@ -331,5 +336,5 @@ class Ensemble(Shown):
     def _moments(self, quantity: str) -> tuple[Array, Array]:
         """Mean and standard deviation."""
         name, divisor = self._held(quantity)
-        mean, std = over_surfaces.mean_and_std(self.scene, self.sums, name)
+        mean, std = self.sums.mean_and_std(name)
         return np.asarray(mean / (divisor or 1.0)), np.asarray(std / (divisor or 1.0))

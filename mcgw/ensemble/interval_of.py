@@ -5,8 +5,7 @@ from numpy.typing import NDArray
 
 from analytic import TANGENTIAL, quantity_of
 from mcgw.ensemble.intervals import count_interval, mean_interval, spread_of
-from mcgw.ensemble.over_surfaces import mean_and_std, total_number
-from mcgw.ensemble.results import Results
+from mcgw.ensemble.results import Held
 from mcgw.scene.samplers import promise_of
 from mcgw.scene.scene import Scene
 
@@ -15,7 +14,7 @@ __all__ = ["interval_of"]
 Array = NDArray[np.float64]
 
 
-def interval_of(scene: Scene, sampler: str, sums: Results, name: str, level: float) -> tuple[Array, Array]:
+def interval_of(scene: Scene, sampler: str, sums: Held, name: str, level: float) -> tuple[Array, Array]:
     """Ends of the interval of a mean, as `Ensemble.interval` says.
 
     Raises
@@ -23,7 +22,7 @@ def interval_of(scene: Scene, sampler: str, sums: Results, name: str, level: flo
     ValueError
         If there is none.
     """
-    mean, m = mean_and_std(scene, sums, name)[0], sums.rows()
+    mean, m = sums.mean_and_std(name)[0], sums.rows()
     if not promise_of(sampler).real_surfaces:
         raise ValueError("stratified surfaces have no interval: their fluctuations are not those of any")
     if scene.as_measured:
@@ -32,7 +31,7 @@ def interval_of(scene: Scene, sampler: str, sums: Results, name: str, level: flo
         return _of_separation(scene, sampler, sums, name, level)
     balanced = scene.interaction is not None and scene.interaction.nominal
     if quantity_of(name).counts and not balanced:
-        contacts, asperities = total_number(scene, sums, name), float(scene.n_asperities) * m
+        contacts, asperities = sums.total_number(name), float(scene.n_asperities) * m
         ends = count_interval(contacts, asperities, poisson=scene.count == "poisson", level=level)
         return ends[0] / m, ends[1] / m
     if name == TANGENTIAL.name:
@@ -43,11 +42,11 @@ def interval_of(scene: Scene, sampler: str, sums: Results, name: str, level: flo
     return low - off, high + off
 
 
-def _of_separation(scene: Scene, sampler: str, sums: Results, name: str, level: float) -> tuple[Array, Array]:
+def _of_separation(scene: Scene, sampler: str, sums: Held, name: str, level: float) -> tuple[Array, Array]:
     """Of the other separation, which differs from the scene's by a multiple of the load."""
     load = "load_unloading" if quantity_of(name).unloading else "load"
     low, high = interval_of(scene, sampler, sums, load, level)
-    mean, here = (mean_and_std(scene, sums, each)[0] for each in (load, name))
+    mean, here = (sums.mean_and_std(each)[0] for each in (load, name))
     separations = np.array(scene.separations)
     with np.errstate(divide="ignore", invalid="ignore"):
         sunk = (here - separations) / mean  # d/sigma for a newton; nan where nothing touches

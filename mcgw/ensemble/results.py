@@ -1,31 +1,125 @@
-"""Where the numbers of an ensemble lie: in memory here, in files in `mcgw.store.stored`."""
+"""The numbers of an ensemble, wherever they lie, and their statistics over the surfaces."""
 
-from collections.abc import Mapping, Sequence
+from abc import ABC, abstractmethod
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["MemoryResults", "Results", "joined"]
+__all__ = ["PROBABILITIES", "Held", "MemoryResults", "Results", "joined"]
 
 Array = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+PROBABILITIES = (0.0, 0.001, 0.01, 0.025, 0.05, 0.25, 0.5, 0.75, 0.95, 0.975, 0.99, 0.999, 1.0)
+
+_ROWS = 8192  # surfaces at a time, for ensembles larger than the memory
+_LOW = 2**32 - 1  # the lower half of an integer: sums of halves do not overflow
 
 
-class Results(Protocol):
-    """Where an ensemble's numbers lie: in memory or in a file."""
+class Held(ABC):
+    """What is held of surfaces: mean and deviation of a table by its name, and perhaps more."""
 
-    def read(self, name: str, start: int, stop: int | None) -> Array:
-        """Rows `start` to `stop` (None: to the end) of a dataset."""
-        ...
+    no_more = ""  # why there is no more, and what to do about it
 
+    @abstractmethod
     def rows(self) -> int:
         """Number of surfaces there are."""
-        ...
+
+    @abstractmethod
+    def mean_and_std(self, name: str) -> tuple[Array, Array]:
+        """Mean and standard deviation (divisor M - 1)."""
+
+    @abstractmethod
+    def total_number(self, name: str) -> Array:
+        """Sum of whole numbers over all surfaces: exact but for the rounding to double precision."""
+
+    def read(self, name: str, start: int, stop: int | None) -> Array:  # noqa: ARG002
+        """Rows `start` to `stop` (None: to the end) of a table."""
+        raise ValueError(f"{name}: {self.no_more}")
+
+    def covariance(self, name: str, other: str) -> Array:  # noqa: ARG002
+        """Between all numbers of two tables (divisor M - 1), shape (*shape, *shape of the other)."""
+        raise ValueError(f"{name}: {self.no_more}")
+
+    def skewness(self, name: str) -> Array:
+        """Third cumulant over the 3/2 power of the second (divisor M); nan where nothing varies."""
+        raise ValueError(f"{name}: {self.no_more}")
+
+    def extremes(self, name: str) -> tuple[Array, Array, Ints, Ints]:
+        """Least and greatest value, and the first surfaces that have them."""
+        raise ValueError(f"{name}: {self.no_more}")
+
+    def quantile(self, name: str, share: float) -> tuple[Array, Array, Array]:  # noqa: ARG002
+        """Quantile of the values there are, as `numpy.quantile`, and both ends of where it lies."""
+        raise ValueError(f"{name}: {self.no_more}")
+
+
+class Results(Held):
+    """Values of every surface, of which statistics are made when they are asked for."""
+
+    @abstractmethod
+    def read(self, name: str, start: int, stop: int | None) -> Array:
+        """Rows `start` to `stop` (None: to the end) of a table."""
+
+    def mean_and_std(self, name: str) -> tuple[Array, Array]:
+        """Shifted by the first row, so that nothing cancels."""
+        m = self.rows()
+        few = [self.read(name, 0, m).astype(np.float64)] if m <= _ROWS else None  # read once
+        shift = next(iter(few or self._chunks(name)))[0]
+        mean = sum((chunk - shift).sum(axis=0) for chunk in few or self._chunks(name)) / m + shift
+        squares = sum(((chunk - mean) ** 2).sum(axis=0) for chunk in few or self._chunks(name))
+        return np.asarray(mean), np.sqrt(squares / (m - 1)) if m > 1 else np.full(np.shape(mean), np.nan)
+
+    def total_number(self, name: str) -> Array:
+        """By halves of the numbers, which do not overflow."""
+        total = [0] * len(self.read(name, 0, 1)[0])
+        for rows in self._chunks(name, np.int64):
+            halves = zip((rows >> 32).sum(axis=0).tolist(), (rows & _LOW).sum(axis=0).tolist(), strict=True)
+            total = [so_far + (high << 32) + low for so_far, (high, low) in zip(total, halves, strict=True)]
+        return np.array([float(x) for x in total])
+
+    def covariance(self, name: str, other: str) -> Array:
+        """From the deviations, some surfaces at a time."""
+        m, means = self.rows(), [self.mean_and_std(each)[0] for each in (name, other)]
+        shape = means[0].shape + means[1].shape
+        if m == 1:
+            return np.full(shape, np.nan)
+        a, b = (mean.ravel() for mean in means)
+        total = np.zeros((a.size, b.size))
+        for x, y in zip(self._chunks(name), self._chunks(other), strict=True):
+            total += (x.reshape(len(x), -1) - a).T @ (y.reshape(len(y), -1) - b)
+        return (total / (m - 1)).reshape(shape)
+
+    def skewness(self, name: str) -> Array:
+        """From the deviations, some surfaces at a time."""
+        mean = self.mean_and_std(name)[0]
+        squares = np.asarray(sum(((chunk - mean) ** 2).sum(axis=0) for chunk in self._chunks(name)))
+        cubes = np.asarray(sum(((chunk - mean) ** 3).sum(axis=0) for chunk in self._chunks(name)))
+        with np.errstate(invalid="ignore", divide="ignore"):
+            return np.asarray(cubes * np.sqrt(self.rows()) / squares**1.5)
+
+    def extremes(self, name: str) -> tuple[Array, Array, Ints, Ints]:
+        """Of all values at once."""
+        values = self.read(name, 0, None)
+        at = values.argmin(axis=0), values.argmax(axis=0)
+        return values.min(axis=0), values.max(axis=0), *at
+
+    def quantile(self, name: str, share: float) -> tuple[Array, Array, Array]:
+        """Of all values at once: the ends are the quantile itself."""
+        exact = np.quantile(self.read(name, 0, None), share, axis=0)
+        return exact, exact, exact
+
+    def _chunks(self, name: str, kind: type = np.float64) -> Iterator[NDArray[Any]]:
+        m = self.rows()
+        for start in range(0, m, _ROWS):
+            yield self.read(name, start, min(start + _ROWS, m)).astype(kind)
 
 
 @dataclass(frozen=True)
-class MemoryResults:
+class MemoryResults(Results):
     """Numbers in memory, by name."""
 
     arrays: dict[str, Array]

@@ -1,22 +1,26 @@
 """The numbers of an ensemble that keeps statistics over its surfaces, and no surface."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
+from analytic import quantity_of
 from mcgw.ensemble.bins import Bins
-from mcgw.ensemble.summary import Summary, total
+from mcgw.ensemble.results import Held
+from mcgw.ensemble.summary import Summary, push, total
 from mcgw.scene.scene import Scene
 
 __all__ = ["Summarised"]
 
 Array = NDArray[np.float64]
+Ints = NDArray[np.int64]
 
 
 @dataclass(frozen=True)
-class Summarised:
+class Summarised(Held):
     """The numbers of an ensemble of which no values are kept.
 
     Parameters
@@ -30,22 +34,22 @@ class Summarised:
     scene: Scene
     blocks: tuple[Summary, ...]
 
+    no_more = (
+        'single surfaces are not kept with keep = "statistics"; ask for mean, std, covariance, skewness, '
+        'quantile or extremes, or draw some of them again with keep = "sums"'
+    )
+
+    @classmethod
+    def of(cls, scene: Scene, blocks: Iterable[Summary]) -> "Summarised":
+        """Of blocks that follow each other."""
+        found: list[Summary] = []
+        for block in blocks:
+            push(found, block)
+        return cls(scene, tuple(found))
+
     def rows(self) -> int:
         """Number of surfaces."""
         return sum(block.n for block in self.blocks)
-
-    def read(self, name: str, start: int, stop: int | None) -> Array:  # noqa: ARG002 - as all results have it
-        """Refuse: there are no values.
-
-        Raises
-        ------
-        ValueError
-            Always.
-        """
-        raise ValueError(
-            f'{name}: single surfaces are not kept with keep = "statistics"; ask for mean, std, covariance, '
-            'skewness, quantile or extremes, or draw some of them again with keep = "sums"'
-        )
 
     @cached_property
     def whole(self) -> Summary:
@@ -53,11 +57,11 @@ class Summarised:
         return total(self.blocks)
 
     @cached_property
-    def bins(self) -> Bins:
+    def _bins(self) -> Bins:
         """In which values are counted."""
         return Bins.of(self.scene)
 
-    def columns(self, name: str) -> NDArray[np.int64]:
+    def _columns(self, name: str) -> Ints:
         """Where the numbers of a table stand, in the shape it has for one surface."""
         start = 0
         for other, shape in self.scene.shapes.items():
@@ -66,3 +70,64 @@ class Summarised:
                 return np.arange(start, start + size).reshape(shape)
             start += size
         raise KeyError(name)
+
+    def mean_and_std(self, name: str) -> tuple[Array, Array]:
+        """Mean and standard deviation (divisor M - 1)."""
+        columns, m = self._columns(name), self.rows()
+        mean, squares = self.whole.mean[columns], self.whole.squares[columns]
+        return mean, np.sqrt(squares / (m - 1)) if m > 1 else np.full(mean.shape, np.nan)
+
+    def total_number(self, name: str) -> Array:
+        """The mean times the number of surfaces, as a whole number."""
+        return np.rint(self.whole.mean[self._columns(name)] * self.whole.n)
+
+    def covariance(self, name: str, other: str) -> Array:
+        """From the products of deviations of every two columns."""
+        a, b = self._columns(name), self._columns(other)
+        if self.rows() == 1:
+            return np.full(a.shape + b.shape, np.nan)
+        i, j = np.meshgrid(a.ravel(), b.ravel(), indexing="ij")
+        i, j = np.maximum(i, j), np.minimum(i, j)
+        found = self.whole.products[i * (i + 1) // 2 + j] / (self.rows() - 1)
+        return np.asarray(found).reshape(a.shape + b.shape)
+
+    def skewness(self, name: str) -> Array:
+        """From the sums of the cubes of deviations."""
+        squares, cubes = (x[self._columns(name)] for x in (self.whole.squares, self.whole.cubes))
+        with np.errstate(invalid="ignore", divide="ignore"):
+            return np.asarray(cubes * np.sqrt(self.rows()) / squares**1.5)
+
+    def extremes(self, name: str) -> tuple[Array, Array, Ints, Ints]:
+        """Least and greatest value, and the first surfaces that have them."""
+        columns = self._columns(name)
+        (low, high), (at_low, at_high) = self.whole.extremes, self.whole.at
+        return low[columns], high[columns], at_low[columns], at_high[columns]
+
+    def quantile(self, name: str, share: float) -> tuple[Array, Array, Array]:
+        """By even spacing in the bins that hold the two values next to it."""
+        columns = self._columns(name)
+        place = share * (self.whole.n - 1)
+        ranks = (int(k) for k in (np.floor(place), np.ceil(place)))
+        below, above = (self._in_order(name, columns.ravel(), k) for k in ranks)
+        part = place - np.floor(place)
+        found = ((1 - part) * x + part * y for x, y in zip(below, above, strict=True))
+        value, low, high = (x.reshape(columns.shape) for x in found)
+        return value, low, high
+
+    def _in_order(self, name: str, columns: Ints, k: int) -> tuple[Array, Array, Array]:
+        """The value with `k` others below it, by even spacing in its bin, and the ends of that."""
+        whole, whole_numbers = self.whole, quantity_of(name).counts
+        upto = np.cumsum(whole.counts[columns], axis=1)
+        bins = (upto <= k).sum(axis=1)
+        row = np.arange(len(columns))
+        inside = whole.counts[columns][row, bins]
+        before = upto[row, bins] - inside
+        ends = self._bins.ends(columns, bins, whole=whole_numbers)
+        least, most = whole.extremes[:, columns]
+        low, high = np.maximum(ends[0], least), np.minimum(ends[1], most)
+        value = low + (high - low) * ((k - before + 0.5) / inside)
+        value = np.rint(value) if whole_numbers else value
+        for end, at in ((least, 0), (most, whole.n - 1)):
+            if k == at:  # it is known
+                value, low, high = end, end, end
+        return value, low, high

@@ -1,10 +1,12 @@
 """Surfaces that are drawn for their statistics alone, in as much memory for ten as for a billion."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from time import monotonic
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from mcgw.ensemble.bins import Bins
 from mcgw.ensemble.drawing import block_size, drawn_blocks, kept
@@ -16,7 +18,15 @@ from mcgw.machine.memory import check_memory
 from mcgw.sampling.samplers import Sampler
 from mcgw.scene.scene import Scene
 
-__all__ = ["block_rows", "check_width", "joined_bytes", "simulated", "stored_bytes", "summary_of"]
+__all__ = [
+    "block_rows",
+    "check_width",
+    "joined_bytes",
+    "simulated",
+    "stored_bytes",
+    "summary_of",
+    "summary_of_values",
+]
 
 _ROWS = 2**13  # surfaces whose values lie in memory at once
 _BYTES = 2**26  # of these values
@@ -53,11 +63,16 @@ def summary_of(
     for start in range(first, stop, piece):
         end = min(start + piece, stop)
         values = joined([kept(scene, block) for block in drawn_blocks(sampler, start, end, size)])
-        table = [values[name].reshape(end - start, -1).astype(np.float64) for name in scene.shapes]
-        push(parts, Summary.of(np.concatenate(table, axis=1), start, bins))
+        push(parts, summary_of_values(scene, values, start, bins))
         if not go_on(end):
             break
     return total(parts)
+
+
+def summary_of_values(scene: Scene, values: Mapping[str, NDArray[Any]], first: int, bins: Bins) -> Summary:
+    """What is kept of the tables of surfaces from number `first` on."""
+    table = [values[name].reshape(len(values[name]), -1).astype(np.float64) for name in scene.shapes]
+    return Summary.of(np.concatenate(table, axis=1), first, bins)
 
 
 def simulated(

@@ -1,7 +1,7 @@
 """Monte-Carlo means on the curves of the theory."""
 
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import matplotlib as mpl
 import numpy as np
@@ -21,6 +21,9 @@ from mcgw.figures.style import (
 )
 from mcgw.formats.pictures import save_figure
 from mcgw.statistics.comparison import Comparison, Curve
+
+if TYPE_CHECKING:
+    from mcgw.statistics.sweep_comparison import SweepComparison
 
 __all__ = ["draw_curve", "quantity_figure", "save_comparison", "title_of"]
 
@@ -49,16 +52,23 @@ def title_of(quantity: str) -> str:
     return f"{_TITLES[q.base]}, unloading" if q.unloading else _TITLES[quantity]
 
 
-def save_comparison(comparison: Comparison, path: str | Path) -> None:
-    """Draw each quantity with its theory, and below it the residual in standard errors.
+def save_comparison(comparison: "Comparison | SweepComparison", path: str | Path) -> None:
+    """Draw each quantity with its theory, and below it the residual in standard errors; or those of a sweep.
 
     Parameters
     ----------
-    comparison : Comparison
+    comparison : Comparison or SweepComparison
         From `mcgw.statistics.comparison.compare`.
     path : str or Path
         The ending chooses the format: .png, .pdf, .svg.
     """
+    if not isinstance(comparison, Comparison):
+        from mcgw.figures.sweep_comparison import sweep_figure  # which loads what draws
+
+        figure = sweep_figure(comparison)
+        with mpl.rc_context(STYLE):
+            save_figure(figure, path)
+        return
     ensemble, scene = comparison.ensemble, comparison.ensemble.scene
     with mpl.rc_context(STYLE):
         figure = _with_panels(comparison)

@@ -1,7 +1,6 @@
 """A sweep against theory, for a reader of a thousand points: all residuals, and the point farthest off."""
 
 import textwrap
-from pathlib import Path
 from typing import Any
 
 import matplotlib as mpl
@@ -9,24 +8,16 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from mcgw.figures.style import BAND, LEVEL, PAPER, SAMPLE, STYLE, THEORY, look, power_of_ten, shown_title
-from mcgw.formats.pictures import save_figure
 from mcgw.machine.terminal import one_line
 from mcgw.statistics.sweep_comparison import SweepComparison
 
-__all__ = ["draw_residuals", "save_sweep_comparison", "sweep_figure"]
+__all__ = ["draw_residuals", "sweep_figure"]
 
 _BIN = 0.5  # standard errors
 _CAPTION = (
     "Residuals of points that share their surfaces move together, as those of neighbouring separations do; "
     "the verdict allows for both."
 )
-
-
-def save_sweep_comparison(comparison: SweepComparison, path: str | Path) -> None:
-    """Write `sweep_figure`; the ending chooses the format: .png, .pdf, .svg."""
-    figure = sweep_figure(comparison)
-    with mpl.rc_context(STYLE):
-        save_figure(figure, path)
 
 
 def sweep_figure(comparison: SweepComparison) -> Figure:

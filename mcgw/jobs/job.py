@@ -1,5 +1,6 @@
 """A scene on its way into a file: asked by whoever runs it, draws a part of it, or merges it."""
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -7,7 +8,8 @@ from typing import TYPE_CHECKING
 
 from analytic import PiecewiseSeries
 from mcgw.ensemble.drawing import block_size, drawn_blocks, kept, use_threads
-from mcgw.ensemble.results import MemoryResults, Results, joined
+from mcgw.ensemble.ensemble import Ensemble
+from mcgw.ensemble.results import Held, MemoryResults, joined
 from mcgw.errors import StoreError
 from mcgw.formats.files import check_output
 from mcgw.jobs.disk_space import check_disk, check_space
@@ -18,22 +20,67 @@ from mcgw.scene.storable import storable
 from mcgw.store.chunks import CHUNK_ROWS
 from mcgw.store.ensembles import finished, recorded_scene
 from mcgw.store.layout import stored_text
+from mcgw.store.plan import Plan
 from mcgw.store.run_folder import RunFolder, parts_of
+from mcgw.store.saving import write_ensemble
 from mcgw.store.shards import Span, Tables
 
 if TYPE_CHECKING:
     from mcgw.ensemble.bins import Bins
 
-__all__ = ["Job", "as_recorded"]
+__all__ = ["Job", "Making", "as_recorded"]
 
 _BYTES = 2**23  # of a shard: large enough that its flushing costs little
 _DRAWS = 4e8  # numbers drawn for a shard: a second or so
 _OUTSIDE = 3  # numbers kept of an asperity outside the cells: surface, height, weight
 
 
+class Making(ABC):
+    """A file in the making, of one scene or of the points of a sweep: what the loop over blocks asks."""
+
+    path: Path
+
+    @property
+    @abstractmethod
+    def plan(self) -> Plan:
+        """Blocks of all surfaces that are asked for."""
+
+    @property
+    @abstractmethod
+    def record(self) -> RunFolder:
+        """What is drawn, and in which blocks, as its folder will say it."""
+
+    @property
+    def folder(self) -> Path:
+        """Where its blocks lie while it runs."""
+        return parts_of(self.path)
+
+    @abstractmethod
+    def done(self) -> int:
+        """Surfaces that its file holds.
+
+        Raises
+        ------
+        StoreError
+            If the file is another's, damaged, or holds more than is asked.
+        """
+
+    @abstractmethod
+    def draw(self, span: Span, threads: int | None) -> Tables:
+        """What is kept of some surfaces, in pieces that fit the memory; it does not depend on `threads`."""
+
+    @abstractmethod
+    def write(self, tables: Tables, seconds: float) -> None:
+        """Write the file in one step, of all surfaces drawn as one block. Only with the lock."""
+
+    def work(self, span: Span) -> float:
+        """What some surfaces take, in any unit."""
+        return span.n
+
+
 @dataclass(frozen=True)
-class Job:
-    """What is drawn, by what, in which pieces, and where it goes.
+class Job(Making):
+    """One scene: what is drawn, by what, in which pieces, and where it goes.
 
     Parameters
     ----------
@@ -76,10 +123,15 @@ class Job:
         else:
             check_space(self.scene, self.path, rows=self.rows, columns=self.columns, held=self._bytes())
 
-    @property
-    def folder(self) -> Path:
-        """Where its blocks lie while it runs."""
-        return parts_of(self.path)
+    @cached_property
+    def record(self) -> RunFolder:
+        """What is drawn, and in which blocks, as its folder will say it."""
+        return RunFolder.of(self.folder, self.scene, self.sampler.name, self.plan)
+
+    @cached_property
+    def plan(self) -> Plan:
+        """Blocks of all surfaces that are asked for."""
+        return Plan(((self.scene.n_surfaces, self.rows),), whole=self.scene.keep == "statistics")
 
     @cached_property
     def rows(self) -> int:
@@ -102,18 +154,8 @@ class Job:
         return sums + self.sampler.moments + self.sampler.cells + _OUTSIDE
 
     def done(self) -> int:
-        """Surfaces that its file holds.
-
-        Raises
-        ------
-        StoreError
-            If the file is another's, damaged, or holds more than is asked.
-        """
+        """Surfaces that its file holds."""
         return finished(self.path, self.scene, self.sampler.name)
-
-    def begin(self) -> RunFolder:
-        """The folder of its blocks, new or as it is. Only with the lock."""
-        return RunFolder.begin(self.folder, self.scene, self.sampler.name, self.rows)
 
     def draw(self, span: Span, threads: int | None) -> Tables:
         """Results of some surfaces, in pieces that fit the memory; they do not depend on `threads`."""
@@ -133,14 +175,15 @@ class Job:
 
         return Bins.of(self.scene)
 
-    def results(self, tables: Tables) -> Results:
-        """What the tables of all surfaces are, drawn as one block."""
-        if self.scene.keep != "statistics":
-            return MemoryResults(tables)
-        from mcgw.ensemble.summarised import Summarised  # for those scenes alone
-        from mcgw.ensemble.summary import Summary
+    def write(self, tables: Tables, seconds: float) -> None:
+        """Write the file in one step, of all surfaces drawn as one block. Only with the lock."""
+        results: Held = MemoryResults(tables)
+        if self.scene.keep == "statistics":
+            from mcgw.ensemble.summarised import Summarised  # for those scenes alone
+            from mcgw.ensemble.summary import Summary
 
-        return Summarised(self.scene, (Summary.from_tables(tables),))
+            results = Summarised(self.scene, (Summary.from_tables(tables),))
+        write_ensemble(Ensemble(self.scene, self.sampler.name, results), self.path, wall_seconds=seconds)
 
     def _bytes(self) -> int:
         """What lies there already: the file, and shards of a run."""

@@ -3,23 +3,26 @@
 from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from mcgw.ensemble.ensemble import Ensemble
 from mcgw.errors import RunError, StoreError
 from mcgw.formats.files import rename_over, state_of, sync, temporary_beside
 from mcgw.jobs.driver import Signals, heed_signals
-from mcgw.scene.scene import Scene
-from mcgw.store.ensembles import finished, open_ensemble
+from mcgw.store.ensembles import held_by
 from mcgw.store.leftovers import tidy
 from mcgw.store.lock import locked
 from mcgw.store.merged_file import merge_into
 from mcgw.store.run_folder import RunFolder, parts_of
 
+if TYPE_CHECKING:
+    from mcgw.ensemble.ensemble import Ensemble
+    from mcgw.sweeps.sweep import Sweep
+
 __all__ = ["merge", "merge_once"]
 
 
-def merge(path: str | Path) -> Ensemble:
-    """As `mcgw.merge`, of a run.
+def merge(path: str | Path) -> "Ensemble | Sweep":
+    """Make the file of a run or of a sweep whose blocks are all there.
 
     Parameters
     ----------
@@ -28,7 +31,7 @@ def merge(path: str | Path) -> Ensemble:
 
     Returns
     -------
-    Ensemble
+    Ensemble or Sweep
         That reads from it.
 
     Raises
@@ -37,36 +40,52 @@ def merge(path: str | Path) -> Ensemble:
         If there is no such run.
     RunError
         If blocks are missing, or the disk does not take the file.
+
+    Examples
+    --------
+    >>> import mcgw, tempfile
+    >>> surface = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "1 mm^2", "78.6 GPa")
+    >>> scene = mcgw.Scene(surface, separations=[0, 1, 2], n_surfaces=20, seed=1)
+    >>> over = {"ensemble.n_asperities": [100, 200]}
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     missing = [mcgw.run(scene, f"{folder}/demo.h5", shard=f"{i}/2") for i in (1, 2)]
+    ...     missing[-1], mcgw.merge(f"{folder}/demo.h5").n_surfaces
+    ...     missing = [mcgw.sweep(scene, over, path=f"{folder}/n.h5", shard=f"{i}/2") for i in (1, 2)]
+    ...     missing, mcgw.merge(f"{folder}/n.h5").shape
+    (0, 20)
+    ([20, 0], (2,))
     """
+    from mcgw.sweeps.opening import open_results  # which a run that merges its own blocks needs not
+
     path = Path(path)
     tidy(path)
     if not parts_of(path).exists():
         if path.exists():
-            return open_ensemble(path)
+            return open_results(path)
         raise StoreError(f"{path}: neither this file nor blocks of it ({parts_of(path)}) are there")
     with heed_signals() as signals, locked(parts_of(path)):
         started = RunFolder.open(parts_of(path))
-        gaps = started.missing(finished(path, started.scene, started.sampler), started.sweep())
+        gaps = started.missing(held_by(path, started), started.sweep())
         if gaps:
             raise RunError(
-                f"{path}: {sum(span.n for span in gaps)} of {started.scene.n_surfaces} surfaces are missing, "
+                f"{path}: {sum(span.n for span in gaps)} of {started.plan.total} surfaces are missing, "
                 f"from {gaps[0].first} on; run the jobs that make them again"
             )
         if not merge_once(started, path, signals):
             raise RunError(f"{started.folder}: a shard is damaged; run the jobs again, which draw it anew")
-    return open_ensemble(path)
+    return open_results(path)
 
 
 def merge_once(started: RunFolder, path: Path, signals: Signals) -> bool:
     """Make the file and remove the shards; False if a shard turned out damaged. Only with the lock."""
     temporary, before = temporary_beside(started.folder / path.name), state_of(path)
-    finished(path, started.scene, started.sampler)
+    held_by(path, started)
 
     def check() -> None:
         signals.check(f"all blocks are kept in {started.folder}; the same command merges them")
 
     try:
-        _merge_of(started.scene)(started.folder, path, temporary, check)
+        _merge_of(started)(started.folder, path, temporary, check)
         rename_over(temporary, path, before)
         sync(path.parent)
     except StoreError:
@@ -90,9 +109,13 @@ def merge_once(started: RunFolder, path: Path, signals: Signals) -> bool:
     return True
 
 
-def _merge_of(scene: Scene) -> Callable[[Path, Path, Path, Callable[[], None]], None]:
-    """How the shards of a scene become a file."""
-    if scene.keep != "statistics":
+def _merge_of(started: RunFolder) -> Callable[[Path, Path, Path, Callable[[], None]], None]:
+    """How the shards of a run become a file."""
+    if started.axes:
+        from mcgw.sweeps.file import merge_sweep  # of which most runs are none
+
+        return merge_sweep
+    if started.scene.keep != "statistics":
         return merge_into
     from mcgw.store.merged_statistics import merge_statistics  # for those scenes alone
 

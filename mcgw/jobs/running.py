@@ -1,6 +1,7 @@
 """From a scene to its file: begin, go on, extend, until its rule is met."""
 
 from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 from time import monotonic, perf_counter
@@ -12,7 +13,7 @@ from mcgw.errors import RunError, StoreError
 from mcgw.jobs.blocks import commit_block, draw_block
 from mcgw.jobs.driver import drive
 from mcgw.jobs.engines import Engine
-from mcgw.jobs.job import Job, as_recorded
+from mcgw.jobs.job import Job, Making, as_recorded
 from mcgw.jobs.merging import merge_once
 from mcgw.jobs.session import By, Part, Progress, Session
 from mcgw.scene.scene import Scene
@@ -20,10 +21,9 @@ from mcgw.store.ensembles import open_ensemble
 from mcgw.store.leftovers import drop_leftovers, tidy
 from mcgw.store.lock import locked
 from mcgw.store.run_folder import RunFolder
-from mcgw.store.saving import write_ensemble
 from mcgw.store.shards import Shard, Span
 
-__all__ = ["run", "run_part"]
+__all__ = ["make", "make_part", "run", "run_part"]
 
 _ROUNDS = 3  # of merging, if shards turn out damaged
 
@@ -46,10 +46,10 @@ def run(
     scene = as_recorded(scene, path)
     started = monotonic()
     for stage in _stages(scene, path):
-        ensemble = _run(Job.of(stage, path), by)
+        make(Job.of(stage, path), by)
         if scene.max_seconds is not None and monotonic() - started > scene.max_seconds:
             break
-    return ensemble
+    return open_ensemble(path)
 
 
 def _stages(scene: Scene, path: Path) -> Iterator[Scene]:
@@ -71,20 +71,24 @@ def _stages(scene: Scene, path: Path) -> Iterator[Scene]:
         yield replace(fixed, n_surfaces=last)
 
 
-def _run(job: Job, by: By) -> Ensemble:
-    """Draw what is missing of a job."""
-    if job.done() == job.scene.n_surfaces:
-        tidy(job.path)
-        by.progress(job.scene.n_surfaces)
-        return open_ensemble(job.path)
-    with by.at_work() as session, locked(job.folder):
-        drop_leftovers(job.path)
-        begun = (job.folder / "run.toml").exists()
-        if by.engine is None and job.scene.n_surfaces <= job.rows and not begun:
-            _at_once(job, session)
+def make(making: Making, by: By) -> None:
+    """Draw what is missing of a file, and make it."""
+    plan, path = making.plan, making.path
+    total = sum(map(making.work, plan.missing([])))
+    if making.done() == plan.total:
+        tidy(path)
+        by.progress(total)
+        return
+    with by.at_work() as session, locked(making.folder):
+        drop_leftovers(path)
+        if making.done() == plan.total:  # another process was quicker
+            by.progress(total)
+            return
+        begun = (making.folder / "run.toml").exists()
+        if by.engine is None and len(plan.missing([])) == 1 and not begun:
+            _at_once(making, session)
         else:
-            _in_blocks(job, session)
-    return open_ensemble(job.path)
+            _in_blocks(making, session)
 
 
 def run_part(
@@ -106,13 +110,22 @@ def run_part(
     by = By(None, threads, progress or _silent)
     scene = as_recorded(scene, Path(path))
     job = Job.of(without_rule(scene) if scene.rel_err is not None else scene, Path(path))
-    if job.done() == job.scene.n_surfaces:
+    return make_part(job, by, part)
+
+
+def make_part(making: Making, by: By, part: Part) -> int:
+    """Draw one job's share of the blocks of a file, and return how many surfaces are still missing."""
+    total = making.plan.total
+    if making.done() == total:
         return 0
-    tidy(job.path)
-    with by.at_work() as session, locked(job.folder, shared=True):
-        done = job.done()  # again: the last of the jobs may have been merged
-        started = job.begin()
-        _draw_missing(started, started.missing(done, started.shards()), session, part)
+    tidy(making.path)
+    with by.at_work() as session, locked(making.folder, shared=True):
+        done = making.done()  # again: the last of the jobs may have been merged
+        if done == total:
+            return 0
+        with _what_is_kept(making):
+            started = making.record.begin()
+            _draw_missing(making, started, started.missing(done, started.shards()), session, part)
         return sum(span.n for span in started.missing(done, started.shards()))
 
 
@@ -120,50 +133,54 @@ def _silent(done: int) -> None:
     """Tell nobody."""
 
 
-def _at_once(job: Job, session: Session) -> None:
-    """The whole ensemble as one block, and its file in one step. Only with the lock."""
-    if job.done() == job.scene.n_surfaces:  # another process was quicker
-        return
+def _at_once(making: Making, session: Session) -> None:
+    """All surfaces as one block, and their file in one step. Only with the lock."""
     answers: list[Any] = []
-    started = perf_counter()
+    started, (span,) = perf_counter(), making.plan.missing([])
     session.progress(0)
     drive(
         session.engine,
-        [Span(0, job.scene.n_surfaces)],
-        job.draw,
+        [span],
+        making.draw,
         lambda span: (span, session.threads),
-        lambda _, arrays: answers.append(arrays),
+        lambda _, tables: answers.append(tables),
         session.signals,
     )
     session.signals.check("nothing was kept, the run is one block; the same command starts it again")
-    ensemble = Ensemble(job.scene, job.sampler.name, job.results(answers[0]))
-    write_ensemble(ensemble, job.path, wall_seconds=perf_counter() - started)
-    session.progress(job.scene.n_surfaces)
+    making.write(answers[0], perf_counter() - started)
+    session.progress(making.work(span))
 
 
-def _in_blocks(job: Job, session: Session) -> None:
+def _in_blocks(making: Making, session: Session) -> None:
     """Shards until none is missing, then the file. Only with the lock."""
-    try:
-        started = job.begin()
+    with _what_is_kept(making):
+        started = making.record.begin()
         started.freeze()
         for _ in range(_ROUNDS):
             shards = started.sweep()
-            done = job.done()
+            done = making.done()
             _refuse_more(started, shards)
-            _draw_missing(started, started.missing(done, shards), session)
-            if merge_once(started, job.path, session.signals):
+            _draw_missing(making, started, started.missing(done, shards), session)
+            if merge_once(started, making.path, session.signals):
                 return
+    raise RunError(f"{making.folder}: shards are damaged again and again; is the disk failing?")
+
+
+@contextmanager
+def _what_is_kept(making: Making) -> Iterator[None]:
+    """An error of the disk, with what it leaves."""
+    try:
+        yield
     except OSError as error:
         raise RunError(
-            f"{error.filename or job.path}: {error.strerror or error}; finished blocks are kept in "
-            f"{job.folder}, the same command goes on once that is mended"
+            f"{error.filename or making.path}: {error.strerror or error}; finished blocks are kept in "
+            f"{making.folder}, the same command goes on once that is mended"
         ) from None
-    raise RunError(f"{job.folder}: shards are damaged again and again; is the disk failing?")
 
 
 def _refuse_more(started: RunFolder, shards: list[Shard]) -> None:
     """Blocks beyond what is asked are not thrown away."""
-    n, wanted = max((shard.span.stop for shard in shards), default=0), started.scene.n_surfaces
+    n, wanted = max((shard.span.stop for shard in shards), default=0), started.plan.total
     if n > wanted:
         raise StoreError(
             f"{started.folder}: holds surfaces up to number {n} already, more than ensemble.n_surfaces = "
@@ -171,17 +188,30 @@ def _refuse_more(started: RunFolder, shards: list[Shard]) -> None:
         )
 
 
-def _draw_missing(started: RunFolder, spans: list[Span], session: Session, part: Part | None = None) -> None:
+def _draw_missing(
+    making: Making, started: RunFolder, spans: list[Span], session: Session, part: Part | None = None
+) -> None:
     """Commit every block that is missing, or of these a job's share."""
-    done = started.scene.n_surfaces - sum(span.n for span in spans)
+    plan, left = started.plan, sum(span.n for span in spans)
+    done = sum(map(making.work, plan.missing(spans)))
     if part:
-        spans = [span for span in spans if part.mine(span.first // started.size)]
+        spans = [span for span in spans if part.mine(plan.number(span))]
     folder = str(started.folder.resolve())
-    task = draw_block if session.alone else commit_block
-    count = session.draw(
-        spans, task, lambda span: (folder, span.first, span.n), done=done, size=lambda span: span.n
+
+    def note(span: Span, _: str) -> None:
+        nonlocal done, left
+        done, left = done + making.work(span), left - span.n
+        session.progress(done)
+
+    session.progress(done)
+    drive(
+        session.engine,
+        spans,
+        draw_block if session.alone else commit_block,
+        lambda span: (folder, span.first, span.n, session.threads),
+        note,
+        session.signals,
     )
-    total = started.scene.n_surfaces
     session.signals.check(
-        f"{count} of {total} surfaces are kept in {started.folder}; the same command goes on"
+        f"{plan.total - left} of {plan.total} surfaces are kept in {started.folder}; the same command goes on"
     )

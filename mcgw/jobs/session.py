@@ -1,17 +1,16 @@
 """Blocks at work: who draws what is missing, which share of it, and who hears how far it has come."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from contextlib import closing, contextmanager
 from dataclasses import dataclass
-from typing import Any, TypeVar
+from typing import Any
 
-from mcgw.jobs.driver import Signals, drive, heed_signals
+from mcgw.jobs.driver import Signals, heed_signals
 from mcgw.jobs.engines import Engine, Threads
 
 __all__ = ["By", "Part", "Progress", "Session", "part_of"]
 
 Progress = Callable[[Any], Any]
-_Block = TypeVar("_Block")
 
 
 @dataclass(frozen=True)
@@ -57,7 +56,7 @@ def part_of(shard: str) -> Part:
 
 @dataclass(frozen=True)
 class Session:
-    """Blocks are given to an engine until a signal comes.
+    """Who is at work on blocks, until a signal comes.
 
     Parameters
     ----------
@@ -78,30 +77,6 @@ class Session:
     threads: int | None
     progress: Progress
     signals: Signals
-
-    def draw(
-        self,
-        blocks: Sequence[_Block],
-        task: Callable[..., Any],
-        arguments: Callable[[_Block], tuple[Any, ...]],
-        *,
-        done: float,
-        size: Callable[[_Block], float],
-    ) -> float:
-        """Have blocks drawn, and tell what is done after each, from `done` on; returns how much in the end.
-
-        `task` gets what `arguments` gives, and the threads. Who asks must look at `signals` then.
-        """
-        count = done
-        self.progress(count)
-
-        def note(block: _Block, _: Any) -> None:
-            nonlocal count
-            count += size(block)
-            self.progress(count)
-
-        drive(self.engine, blocks, task, lambda b: (*arguments(b), self.threads), note, self.signals)
-        return count
 
 
 @dataclass(frozen=True)

@@ -3,11 +3,13 @@
 from typing import Any
 
 from mcgw.figures.sweep_comparison import sweep_figure
+from mcgw.machine.progress import Progress
 from mcgw.machine.terminal import one_line, plain_text
 from mcgw.reports.html import rendered
 from mcgw.reports.report_facts import provenance_facts
 from mcgw.reports.report_figures import line_figure
-from mcgw.statistics.sweep_comparison import SweepComparison
+from mcgw.statistics.sweep_comparison import compare_sweep
+from mcgw.sweeps.cautions import sweep_cautions
 from mcgw.sweeps.sweep import Sweep
 
 __all__ = ["sweep_report_html"]
@@ -15,9 +17,10 @@ __all__ = ["sweep_report_html"]
 _LISTED = 12  # points
 
 
-def sweep_report_html(comparison: SweepComparison, cautions: list[str], attributes: dict[str, Any]) -> str:
-    """The page of a compared sweep, of its cautions and the attributes of its file: scene, digest, ..."""
-    sweep, verdict = comparison.sweep, comparison.verdict
+def sweep_report_html(sweep: Sweep, attributes: dict[str, Any], *, progress: Progress = None) -> str:
+    """The page of a sweep and of the attributes of its file: scene, digest, ..."""
+    comparison = compare_sweep(sweep, progress=progress)
+    verdict = comparison.verdict
     first = sweep.scenes[0]
     return rendered(
         "sweep.html.j2",
@@ -27,9 +30,9 @@ def sweep_report_html(comparison: SweepComparison, cautions: list[str], attribut
         words=_words(sweep),
         figure=line_figure(sweep_figure(comparison), "residuals of all points, and of the worst one"),
         table=comparison.sheet_of(_LISTED).table,
-        cautions=cautions,
+        cautions=sweep_cautions(sweep),
         axes=[(key, sweep.axes.summary(key)) for key in sweep.axes.keys],
-        provenance=provenance_facts({"sampler": first.sampler, **attributes}, first.seed),
+        provenance=provenance_facts({**attributes, "sampler": first.sampler}, first.seed),
         scene=plain_text(attributes["scene"]),
     )
 

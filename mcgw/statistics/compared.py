@@ -1,23 +1,25 @@
 """``mcgw.compare``: an ensemble, or all points of a sweep, against theory."""
 
-from typing import overload
+from typing import TYPE_CHECKING, overload
 
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.machine.progress import Progress
 from mcgw.scene.wrong_object import check_object
-from mcgw.statistics import comparison, sweep_comparison
+from mcgw.statistics import comparison
 from mcgw.statistics.comparison import Comparison
-from mcgw.statistics.sweep_comparison import SweepComparison
-from mcgw.sweeps.sweep import Sweep
+
+if TYPE_CHECKING:
+    from mcgw.statistics.sweep_comparison import SweepComparison
+    from mcgw.sweeps.sweep import Sweep
 
 __all__ = ["compare"]
 
 
 @overload
-def compare(result: Ensemble) -> Comparison: ...
+def compare(result: Ensemble, *, progress: Progress = None) -> Comparison: ...
 @overload
-def compare(result: Sweep, *, progress: Progress = None) -> SweepComparison: ...
-def compare(result: Ensemble | Sweep, *, progress: Progress = None) -> Comparison | SweepComparison:
+def compare(result: "Sweep", *, progress: Progress = None) -> "SweepComparison": ...
+def compare(result: "Ensemble | Sweep", *, progress: Progress = None) -> "Comparison | SweepComparison":
     """Compare the means of an ensemble, or those of every point of a sweep, with theory.
 
     Parameters
@@ -47,7 +49,11 @@ def compare(result: Ensemble | Sweep, *, progress: Progress = None) -> Compariso
     >>> mcgw.compare(mcgw.sweep(scene, {"grading.gamma": [0.5, 2.0]})).verdict.agrees
     True
     """
-    if isinstance(result, Sweep):
-        return sweep_comparison.compare_sweep(result, progress=progress)
+    if not isinstance(result, Ensemble):
+        from mcgw.statistics.sweep_comparison import compare_sweep  # which loads what draws
+        from mcgw.sweeps.sweep import Sweep
+
+        if isinstance(result, Sweep):
+            return compare_sweep(result, progress=progress)
     check_object("compare", result, Ensemble)
     return comparison.compare(result)

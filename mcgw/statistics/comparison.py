@@ -196,31 +196,7 @@ class Comparison(Shown):
 
 
 def compare(ensemble: Ensemble) -> Comparison:
-    """Compare the means of an ensemble with theory.
-
-    Parameters
-    ----------
-    ensemble : Ensemble
-        Of independent surfaces.
-
-    Returns
-    -------
-    Comparison
-        Curves and verdict.
-
-    Raises
-    ------
-    ValueError
-        If the surfaces are stratified: their fluctuations are not those of an ensemble.
-
-    Examples
-    --------
-    >>> import mcgw
-    >>> surface = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "1 mm^2", "78.6 GPa")
-    >>> e = mcgw.simulate(mcgw.Scene(surface, separations=[0, 1], n_surfaces=100, seed=1))
-    >>> mcgw.compare(e).verdict.agrees
-    True
-    """
+    """As `mcgw.compare`, of an ensemble."""
     if not promise_of(ensemble.sampler).real_surfaces:
         raise ValueError("a stratified file holds means, not an ensemble; compare takes another sampler")
     scene = ensemble.scene

@@ -179,37 +179,11 @@ def _columns(rows: Sequence[tuple[PointTested, int, int]]) -> tuple[Column, ...]
 
 
 def compare_sweep(sweep: Sweep, *, progress: Progress = None) -> SweepComparison:
-    """Compare the means of every point of a sweep with its own theory.
+    """As `mcgw.compare`, of a sweep.
 
     Each point is tested as an ensemble is, at twelve separations at most; of asperities that press each other
     down, stiffnesses are left out, for of the surfaces only their means in series with the half-space are
     kept.
-
-    Parameters
-    ----------
-    sweep : Sweep
-        From `mcgw.sweep` or `mcgw.open_sweep`.
-    progress : bool or callable, optional
-        True: a bar; a function: called with (done, total) points.
-
-    Returns
-    -------
-    SweepComparison
-        With one verdict on all points.
-
-    Raises
-    ------
-    ValueError
-        If no point has surfaces that fluctuate as real ones do.
-
-    Examples
-    --------
-    >>> import mcgw
-    >>> surface = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "1 mm^2", "78.6 GPa")
-    >>> scene = mcgw.Scene(surface, separations=[0, 1], n_surfaces=100, seed=1)
-    >>> compared = mcgw.compare(mcgw.sweep(scene, {"grading.gamma": [0.5, 1.0, 2.0]}))
-    >>> compared.verdict.agrees, compared.verdict.points
-    (True, 3)
     """
     means = {name: sweep.mean(name).reshape(sweep.axes.size, -1) for name in sweep.scenes[0].quantities}
     found = []

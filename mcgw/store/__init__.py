@@ -1,6 +1,18 @@
-"""Ensembles as HDF5 files, and the folders of the runs that make them.
+"""Results as HDF5 files, and the folders of the runs that make them.
 
-A file appears whole or not at all. Its schema (``filetype = "mcgw-ensemble"``, ``format = [1, 1]``)::
+A file appears whole or not at all. All have one layout (``filetype = "mcgw-results"``, ``format = [2, 0]``),
+which reads
+
+==========================  ========================================  ========================
+of                          holds                                     opened by
+==========================  ========================================  ========================
+a scene                     values of every surface, as below         `mcgw.open_ensemble`
+``keep = "statistics"``     statistics over them (`statistics_file`)  `mcgw.open_ensemble`
+a sweep: attribute `axes`   statistics with the dimension `point`     `mcgw.open_sweep`
+any earlier format                                                    no reader: run it again
+==========================  ========================================  ========================
+
+Of a scene::
 
     /                     attributes: filetype, format, title, scene (TOML text of the resolved scene),
                           seed, sampler, complete, digest, versions, draws, run, commit, date, cpu,
@@ -24,11 +36,11 @@ With ``keep = "statistics"`` a file holds none of these tables: see `statistics_
 
 Every dataset has the attributes `units` and `long_name`; only quantities that the scene asks for are
 there. Chunked, each chunk with a checksum (Fletcher); a table is shuffled and compressed with gzip if that
-saves half of it (`chunks`; in older files every one is). `digest` is over scene and data, `run` over what the
+saves half of it (`chunks`). `digest` is over scene and data, `run` over what the
 numbers of a surface depend on (scene but for the number of surfaces, sampler, and the versions in `draws`).
 After the HDF5 data stand 512 bytes, the trailer (`trailer`), with the digest of the file's bytes and that of
 its head (`head`: attributes, types, shapes, scales). That of the head is checked on every opening, that of
-all bytes by ``mcgw show --verify``; files of format 1.0 have none of the head.
+all bytes by ``mcgw show --verify``.
 
 A run that fits one block is written in one atomic step. Any other grows as shards in ``FILE.parts/``, which
 are merged at the end and then removed. What each mechanism is for:
@@ -37,6 +49,7 @@ are merged at the end and then removed. What each mechanism is for:
 ``chunks``       a table is compressed where that pays; packed chunks are copied as they are
 ``shards``       a killed run loses at most the blocks in hand; workers elsewhere share no open file
 ``run_folder``   a run goes on only with what it was begun with: scene, sampler, versions
+``plan``         which surfaces are drawn together, of a run or of all groups of a sweep
 ``identity``     which scenes, samplers and versions those are
 ``merged_file``  the file is made under another name, and read back before it gets its own
 ``statistics_file``, ``merged_statistics``  the same for scenes that keep statistics and no surface

@@ -1,37 +1,42 @@
 """Ensemble files: opened and verified; the schema stands in `mcgw.store`."""
 
 import re
-from collections.abc import Iterable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import h5py
 import numpy as np
 
 from mcgw.ensemble.ensemble import Ensemble
+from mcgw.ensemble.results import Held
 from mcgw.errors import StoreError
 from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_from, scene_text
+from mcgw.store.arithmetic import drawn_with
 from mcgw.store.head import MOST_SCALE
 from mcgw.store.identity import difference, identity_of
-from mcgw.store.layout import FILETYPE, FORMAT, STATISTICS, numbers, scales_of, values_digest
+from mcgw.store.layout import (
+    FILETYPE,
+    FORMAT,
+    drawn_digest,
+    drawn_tables,
+    numbers,
+    scales_of,
+    values_digest,
+)
 from mcgw.store.run_folder import RunFolder, parts_of
-from mcgw.store.shards import Shard
 from mcgw.store.stored import FileResults, ShardResults
 from mcgw.store.trailer import check_trailer, read_trailer
 from mcgw.store.untrusted import examine
 
-if TYPE_CHECKING:
-    from mcgw.ensemble.summary import Summary
-
 __all__ = [
-    "StoreError",
-    "filetype_of",
     "finished",
+    "held_by",
     "open_ensemble",
     "read_attributes",
     "recorded_scene",
     "recorded_seed",
+    "unfinished_sweep",
     "verify",
 ]
 
@@ -70,31 +75,21 @@ def open_ensemble(path: str | Path) -> Ensemble:
         shards = tuple(run.shards())
         if not shards:
             raise StoreError(f"{path}: no block of its run is finished yet")
-        if run.scene.keep == "statistics":
-            return _statistics(run.scene, run.sampler, _joined(shards))
-        return Ensemble(run.scene, run.sampler, ShardResults(shards))
+        if run.scene.keep != "statistics":
+            return Ensemble(run.scene, run.sampler, ShardResults(shards))
+        from mcgw.ensemble.summarised import Summarised  # for those scenes alone
+        from mcgw.store.statistics_file import blocks_of
+
+        return Ensemble(run.scene, run.sampler, Summarised.of(run.scene, blocks_of(shards)))
     attributes, scene = _described(path)
+    if "axes" in attributes:
+        raise StoreError(f"{path}: holds a sweep; mcgw.open_sweep opens it")
+    results: Held = FileResults(path)
     if scene.keep == "statistics":
         from mcgw.store.statistics_file import read_blocks
 
-        return _statistics(scene, str(attributes["sampler"]), read_blocks(path))
-    return Ensemble(scene, str(attributes["sampler"]), FileResults(path), _drawn_for(path, attributes))
-
-
-def _joined(shards: Iterable[Shard]) -> "tuple[Summary, ...]":
-    """Blocks of a run in progress, those that are there."""
-    from mcgw.ensemble.summary import Summary, push
-
-    blocks: list[Summary] = []
-    for shard in shards:
-        push(blocks, Summary.from_tables(shard.arrays()))
-    return tuple(blocks)
-
-
-def _statistics(scene: Scene, sampler: str, blocks: "tuple[Summary, ...]") -> Ensemble:
-    from mcgw.ensemble.summarised import Summarised  # for those scenes alone
-
-    return Ensemble(scene, sampler, Summarised(scene, blocks))
+        results = read_blocks(path, scene)
+    return Ensemble(scene, str(attributes["sampler"]), results, _drawn_for(path, attributes))
 
 
 def _drawn_for(path: Path, attributes: dict[str, Any]) -> Scene | None:
@@ -132,36 +127,32 @@ def read_attributes(path: Path) -> dict[str, Any]:
     }
 
 
-def filetype_of(path: Path) -> str:
-    """What a file says it is; empty if there is none, it says nothing, or cannot be read."""
-    try:
-        return str(examine(path)["attributes"].get("filetype", "")) if path.is_file() else ""
-    except (StoreError, OSError):
-        return ""
+def unfinished_sweep(path: Path) -> RunFolder | None:
+    """The folder of a sweep that is not yet in its file, if there is one."""
+    if path.exists() or not (parts_of(path) / "run.toml").is_file():
+        return None
+    run = RunFolder.open(parts_of(path))
+    return run if run.axes else None
 
 
 def _run_of(path: Path) -> RunFolder:
     """The run that makes a file; one that is a single block says nothing of itself."""
-    if (parts_of(path) / "sweep").is_dir():
-        raise StoreError(f"{path}: is a sweep in the making; mcgw show tells how far, mcgw sweep goes on")
     if not (parts_of(path) / "run.toml").exists():
         raise StoreError(f"{path}: no block of its run is finished yet")
-    return RunFolder.open(parts_of(path))
+    run = RunFolder.open(parts_of(path))
+    if run.axes:
+        raise StoreError(f"{path}: is a sweep in the making; mcgw show tells how far, mcgw sweep goes on")
+    return run
 
 
 def _described(path: Path) -> tuple[dict[str, Any], Scene]:
     """Attributes and scene of a file that are as they were written, with the datasets that they declare."""
     answer = examine(path)
     attributes = answer["attributes"]
-    if attributes.get("filetype") not in (FILETYPE, STATISTICS):
-        raise StoreError(f"{path}: not an ensemble file (filetype is not {FILETYPE!r})")
+    _check_format(path, attributes)
+    if read_trailer(path).notes.get("head") != answer["head"]:
+        raise StoreError(f"{path}: damaged (checksum mismatch of its scene, attributes or scales)")
     try:
-        major, minor = (int(part) for part in attributes["format"])
-        if major != FORMAT[0]:
-            raise StoreError(f"{path}: format {major}.{minor}; this version reads {FORMAT[0]}.x")
-        head = read_trailer(path).notes.get("head")
-        if head != answer["head"] and (head or minor):  # files of format 1.0 have none
-            raise StoreError(f"{path}: damaged (checksum mismatch of its scene, attributes or scales)")
         scene = scene_from(str(attributes["scene"]))
         for key in ("sampler", "digest", "complete", "date", "cpu", "versions", "commit"):
             attributes[key]
@@ -174,10 +165,21 @@ def _described(path: Path) -> tuple[dict[str, Any], Scene]:
         if isinstance(error, StoreError):
             raise
         raise StoreError(f"{path}: its scene cannot be read: {str(error).splitlines()[0]}") from None
-    if (scene.keep == "statistics") != (attributes["filetype"] == STATISTICS):
-        raise StoreError(f"{path}: its filetype is {attributes['filetype']}, its scene says otherwise")
-    _check_tables(path, scene, answer["datasets"])
+    if "axes" not in attributes:
+        _check_tables(path, scene, answer["datasets"])
     return attributes, scene
+
+
+def _check_format(path: Path, attributes: dict[str, Any]) -> None:
+    """Refuse what is no file of results, or of another format than this version reads."""
+    filetype, known = str(attributes.get("filetype", "")), attributes.get("format")
+    if filetype.startswith("mcgw-") and (filetype != FILETYPE or known != list(FORMAT)):
+        raise StoreError(
+            f"{path}: {filetype} {known} is a format that this version does not read, which reads {FILETYPE} "
+            f"{list(FORMAT)}; its attribute scene is the scene to run again"
+        )
+    if filetype != FILETYPE:
+        raise StoreError(f"{path}: holds no results of mcgw (its filetype is not {FILETYPE!r})")
 
 
 def _check_tables(path: Path, scene: Scene, datasets: dict[str, Any]) -> None:
@@ -213,7 +215,7 @@ def verify(path: Path) -> tuple[str, str]:
         problem = str(error).removeprefix(f"{path}: ")
     try:
         attributes, scene = _described(path)
-        found = _digest_now(path, scene)
+        found = _digest_now(path, attributes, scene)
         if found != attributes["digest"]:
             problem = problem or "digest mismatch of its data"
     except (OSError, RuntimeError, KeyError, ValueError) as error:
@@ -223,12 +225,12 @@ def verify(path: Path) -> tuple[str, str]:
     return problem, found
 
 
-def _digest_now(path: Path, scene: Scene) -> str:
-    if scene.keep == "statistics":
-        from mcgw.store.statistics_file import found_digest
-
-        return found_digest(path, scene)
+def _digest_now(path: Path, attributes: dict[str, Any], scene: Scene) -> str:
     with h5py.File(path, "r") as file:
+        if "axes" in attributes:
+            return drawn_digest(drawn_tables(file), str(attributes["scene"]), str(attributes["axes"]))
+        if scene.keep == "statistics":
+            return drawn_digest(drawn_tables(file), scene_text(scene, left_out=False))
         return values_digest(file, scene)
 
 
@@ -245,6 +247,21 @@ def recorded_seed(path: Path) -> int | None:
     return there.seed if there else None
 
 
+def held_by(path: Path, run: RunFolder) -> int:
+    """Number of surfaces that a file holds of a run; of a sweep all or none.
+
+    Raises
+    ------
+    StoreError
+        As `finished`.
+    """
+    if not run.axes or not path.exists():
+        return finished(path, run.scene, run.sampler)
+    if _described(path)[0].get("run") != run.identity:
+        raise StoreError(f"{path}: holds something else than this sweep; choose another -o, or remove it")
+    return run.plan.total
+
+
 def finished(path: Path, scene: Scene, sampler: str) -> int:
     """Number of surfaces that a file holds of a scene; 0 if there is no file.
 
@@ -256,8 +273,11 @@ def finished(path: Path, scene: Scene, sampler: str) -> int:
     if not path.exists():
         return 0
     attributes, there = _described(path)
+    if "axes" in attributes:
+        raise StoreError(f"{path}: holds a sweep; choose another -o, or remove it")
     if attributes.get("run") != identity_of(scene, sampler):
-        what = difference(there, str(attributes.get("draws", "another version")), scene, sampler)
+        before = scene_text(there), "", str(attributes.get("draws", "another version"))
+        what = difference(before, (scene_text(scene), "", drawn_with(scene, sampler)))
         raise StoreError(f"{path}: holds a different ensemble: {what}; choose another -o, or remove it")
     if there.n_surfaces > scene.n_surfaces:
         raise StoreError(

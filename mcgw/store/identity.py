@@ -7,10 +7,12 @@ from typing import Any
 
 from mcgw.formats.toml_text import loads
 from mcgw.scene.scene import Scene
-from mcgw.scene.scene_file import scene_text
+from mcgw.scene.scene_file import scene_from, scene_text
 from mcgw.store.arithmetic import KIND, drawn_with
 
-__all__ = ["difference", "identity_of"]
+__all__ = ["Question", "difference", "identity_of"]
+
+Question = tuple[str, str, str]  # text of a scene, axes of a sweep or none, versions that draw
 
 
 def _frozen_text(scene: Scene) -> str:
@@ -24,19 +26,26 @@ def identity_of(scene: Scene, sampler: str) -> str:
     return hashlib.sha256("\0".join(parts).encode()).hexdigest()
 
 
-def difference(scene: Scene, made_with: str, wanted: Scene, sampler: str) -> str:
-    """What keeps two runs from being one, in words."""
-    there, here = (dict(_flat(loads(_frozen_text(s)))) for s in (scene, wanted))
-    for key, value in here.items():
-        if there.get(key) != value:
-            return f"{key} is {_short(there.get(key))} there and {_short(value)} here"
-    for key, value in there.items():
-        if key not in here:
+def difference(there: Question, here: Question) -> str:
+    """What keeps two runs, or two sweeps, from being one, in words: scene, axes and what draws, of each."""
+    before, now = _said(*there[:2]), _said(*here[:2])
+    for key, value in now.items():
+        if before.get(key) != value:
+            return f"{key} is {_short(before.get(key))} there and {_short(value)} here"
+    for key, value in before.items():
+        if key not in now:
             return f"{key} is {_short(value)} there and not given here"
-    this = drawn_with(wanted, sampler)
+    made_with, this = there[2], here[2]
     if made_with.partition(KIND)[0] == this.partition(KIND)[0] and made_with != this:
         return "it was drawn on another kind of processor, which rounds exponentials and logarithms otherwise"
     return f"it was drawn with {made_with}, this is {this}"
+
+
+def _said(scene: str, axes: str) -> dict[str, Any]:
+    """Keys and values that decide the numbers: of a scene alone but for the number of surfaces."""
+    if not axes:
+        return dict(_flat(loads(_frozen_text(scene_from(scene)))))
+    return {**dict(_flat(loads(scene))), "sweep": axes}
 
 
 def _flat(table: dict[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:

@@ -1,8 +1,9 @@
 """How an ensemble lies in its HDF5 file; the schema is written out in `mcgw.store`."""
 
 import hashlib
+import io
 import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
 import h5py
@@ -10,26 +11,31 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analytic import ALL_QUANTITIES
+from mcgw.ensemble.labelled import AXES, Labelled
 from mcgw.errors import StoreError
 from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_text
 from mcgw.store.chunks import PACKED, add_rows, empty_table
 from mcgw.store.head import MOST_TEXT, head_digest
 from mcgw.store.provenance import now, provenance
-from mcgw.store.shards import DRAWN, RAGGED, Span, Tables
+from mcgw.store.shards import DRAWN, RAGGED, Span, Tables, content_digest, in_memory
+from mcgw.store.structure import GROUP, check_plain
+from mcgw.store.trailer import trailer_of
 
 __all__ = [
-    "AXES",
     "FILETYPE",
     "FORMAT",
-    "STATISTICS",
+    "body_of_kept",
     "describe",
     "digest_of",
+    "drawn_digest",
+    "drawn_tables",
     "file_pieces",
     "fill",
     "numbers",
     "rows_of",
     "scales_of",
+    "sealed",
     "stored_tables",
     "stored_text",
     "trailer_notes",
@@ -37,8 +43,7 @@ __all__ = [
     "where",
 ]
 
-FILETYPE, FORMAT = "mcgw-ensemble", (1, 1)
-STATISTICS = "mcgw-statistics"  # the filetype of `mcgw.store.statistics_file`
+FILETYPE, FORMAT = "mcgw-results", (2, 0)
 
 Stored = Mapping[str, NDArray[Any] | h5py.Dataset]
 
@@ -47,11 +52,7 @@ _LONG_NAMES = {
     "cells": "asperities in each cell",
     RAGGED: "asperities outside the cells: surface, height, weight",
 }
-AXES = {  # of the axes of tables, in their order: unit and long name
-    "surface": ("1", "number of the surface"),
-    "separation": ("1", "mean-plane separation d/sigma"),
-    "displacement": ("m", "tangential displacement"),
-}
+_OF_SURFACES = ("surface", "separation", "displacement")  # axes of tables with values
 _PIECE = 2**23  # bytes read at a time
 _SCALE_CHUNK = 2**17  # numbers
 
@@ -76,7 +77,7 @@ def fill(file: h5py.File, scene: Scene, pieces: Iterable[tuple[Span, Stored]]) -
         raise StoreError(f"{stop} surfaces, not {scene.n_surfaces}")
 
 
-def describe(file: h5py.File, scene: Scene, sampler: str, digest: str, **attributes: Any) -> None:
+def describe(file: h5py.File, scene: Scene, sampler: str, digest: str, /, **attributes: Any) -> None:
     """Give a file that is filled its root attributes, and more of them."""
     usual = {
         "filetype": FILETYPE,
@@ -103,7 +104,7 @@ def _spent(scene: Scene) -> dict[str, float]:
 
 def where(name: str) -> str:
     """Path of a table in the file."""
-    return f"drawn/{name}" if name in DRAWN else name
+    return f"{GROUP}/{name}" if name in DRAWN else name
 
 
 def stored_tables(file: h5py.File) -> dict[str, h5py.Dataset]:
@@ -141,7 +142,7 @@ def numbers(scale: Sequence[float], most: int | None = None) -> NDArray[Any]:
 
 
 def _scales(file: h5py.File) -> list[str]:
-    return [name for name in AXES if name in file]
+    return [name for name in _OF_SURFACES if name in file]
 
 
 class _Digest:
@@ -167,9 +168,45 @@ class _Digest:
 
 
 def trailer_notes(file: h5py.File) -> dict[str, str]:
-    """What the trailer of an ensemble file says besides its length and digest."""
-    names = [*_scales(file), *(where(name) for name in stored_tables(file))]
-    return {"head": head_digest(file, names)}
+    """What the trailer of a file says besides its length and digest."""
+    return {"head": head_digest(file, check_plain(file))}
+
+
+def sealed(make: Callable[[h5py.File], Any]) -> tuple[bytes, bytes]:
+    """A small file that is made in memory, and its trailer."""
+    body = in_memory(make)
+    with h5py.File(io.BytesIO(body), "r") as file:
+        return body, trailer_of(body, **trailer_notes(file))
+
+
+def body_of_kept(
+    labelled: Labelled, tables: Tables, texts: Sequence[str], scene: Scene, sampler: str, /, **attributes: Any
+) -> tuple[bytes, bytes]:
+    """A file without surfaces, and its trailer: what others read, and in one group what that follows from.
+
+    The digest is over these tables, and over the texts that say what they are of.
+    """
+
+    def make(file: h5py.File) -> None:
+        for name, one in labelled.coordinates.items():
+            if one.dims == (name,):
+                _scale(file, name, one.values, one.units, one.long_name)
+        for name, one in (*labelled.coordinates.items(), *labelled.variables.items()):
+            if one.dims == (name,):
+                continue
+            data = file.create_dataset(name, data=one.values, **_packed(one.values))
+            data.attrs.update(one.about)
+            for place, dim in enumerate(one.dims):
+                data.dims[place].attach_scale(file[dim])
+        for name, values in tables.items():
+            file.create_dataset(f"{GROUP}/{name}", data=values, **_packed(values))
+        describe(file, scene, sampler, drawn_digest(tables, *texts), **attributes)
+
+    return sealed(make)
+
+
+def _packed(values: NDArray[Any]) -> dict[str, Any]:
+    return dict(PACKED) if values.ndim and values.size else {}
 
 
 def digest_of(file: h5py.File, scene: Scene, pieces: Iterable[Tables]) -> str:
@@ -187,6 +224,16 @@ def digest_of(file: h5py.File, scene: Scene, pieces: Iterable[Tables]) -> str:
 def values_digest(file: h5py.File, scene: Scene) -> str:
     """Digest of what a file holds, read piece by piece."""
     return digest_of(file, scene, (arrays for _, arrays in file_pieces(file)))
+
+
+def drawn_tables(file: h5py.File) -> Tables:
+    """Of a file that holds no surfaces, all that its statistics follow from."""
+    return {name: data[()] for name, data in file[GROUP].items()}
+
+
+def drawn_digest(tables: Tables, *texts: str) -> str:
+    """Digest of that, and of the scene, and axes, that it is of."""
+    return hashlib.sha256("\0".join((*texts, content_digest(tables))).encode()).hexdigest()
 
 
 def file_pieces(file: h5py.File) -> Iterator[tuple[Span, Tables]]:
@@ -224,7 +271,7 @@ def _lay_out(file: h5py.File, scene: Scene, like: Stored) -> None:
         q = ALL_QUANTITIES.get(name)
         data = empty_table(file, where(name), None if name == RAGGED else scene.n_surfaces, like[name])
         data.attrs.update(units=q.unit if q else "1", long_name=q.long_name if q else _LONG_NAMES[name])
-        for axis, name_of_scale in enumerate(tuple(AXES)[: data.ndim] if q else ()):
+        for axis, name_of_scale in enumerate(_OF_SURFACES[: data.ndim] if q else ()):
             data.dims[axis].attach_scale(file[name_of_scale])
 
 

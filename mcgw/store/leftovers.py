@@ -44,7 +44,8 @@ def _of_use(path: Path) -> bool:
     try:
         run, attributes = RunFolder.open(folder), read_attributes(path)
         same = attributes.get("run") == run.identity
-        held = scene_from(attributes["scene"]).n_surfaces if same else 0
+        here = run.plan.total if run.axes else scene_from(attributes["scene"]).n_surfaces
+        held = here if same else 0
     except StoreError:
         return True  # a person must look
     return any(int(shard.stem.removeprefix("block-")) >= held for shard in shards)

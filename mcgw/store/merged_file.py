@@ -39,7 +39,7 @@ def merge_into(folder: Path, target: Path, temporary: Path, check: Callable[[], 
         If the disk does not take it, or what was written reads otherwise.
     """
     run = RunFolder.open(folder)
-    held = _held(target)
+    held, _ = _before(target)
     shards = [shard for shard in run.shards(bodies=False) if shard.span.first >= held]
     with closing(SteadyFile(temporary)) as raw:
 
@@ -72,7 +72,7 @@ def _write(
         digest = _read_back(path, run.scene, _expected(target, shards), go_on)
         flushed.result()
     with h5py.File(raw, "r+", libver=LIBVER) as file:
-        seconds = sum(shard.seconds for shard in shards) + _seconds_of(target)
+        seconds = sum(shard.seconds for shard in shards) + _before(target)[1]
         of_run = {"run": run.identity, "draws": run.drawn_with, "wall_seconds": seconds}
         describe(file, run.scene, run.sampler, digest, **of_run)
     raw.check()
@@ -134,16 +134,9 @@ def _read_back(
             return digest_of(file, scene, pieces)
 
 
-def _held(target: Path) -> int:
-    """Surfaces of the finished file."""
+def _before(target: Path) -> tuple[int, float]:
+    """Surfaces of the finished file, and the seconds they took."""
     if not target.exists():
-        return 0
+        return 0, 0.0
     with h5py.File(target, "r") as old:
-        return len(old["surface"])
-
-
-def _seconds_of(target: Path) -> float:
-    if not target.exists():
-        return 0.0
-    with h5py.File(target, "r") as old:
-        return float(old.attrs["wall_seconds"])
+        return len(old["surface"]), float(old.attrs["wall_seconds"])

@@ -1,9 +1,9 @@
-"""The folder of a run, beside its file: ``demo.h5.parts/``.
+"""The folder of a run or a sweep, beside its file: ``demo.h5.parts/``.
 
 ::
 
-    run.toml    the frozen scene, its identity, the versions that draw, the size of a block;
-                last, the SHA-256 of all that stands before
+    run.toml    the frozen scene, the axes of a sweep, the identity of both, the versions that draw, the
+                surfaces and the size of a block of each group; last, the SHA-256 of all that stands before
     lock.db     held by whoever writes the file, freed by the system when it dies (`lock`)
     holder      who that is
     lock.*      in the place of both where the disk keeps no locks (`lock_by_name`)
@@ -18,6 +18,7 @@ import shutil
 from collections.abc import Iterable, Iterator
 from contextlib import suppress
 from dataclasses import dataclass, replace
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -32,12 +33,13 @@ from mcgw.store.arithmetic import drawn_with
 from mcgw.store.disk import parts_of
 from mcgw.store.identity import difference, identity_of
 from mcgw.store.lock import refuse_link
+from mcgw.store.plan import Plan
 from mcgw.store.provenance import now
 from mcgw.store.shards import Shard, Span, open_shard
 
-__all__ = ["RunFolder", "missing", "parts_of", "remove_run"]
+__all__ = ["RunFolder", "parts_of", "remove_run"]
 
-_FILETYPE, _FORMAT = "mcgw-run", [1, 1]
+_FILETYPE, _FORMAT = "mcgw-run", [2, 0]
 _CHECKSUM = 'sha256 = "'
 _MOST_BYTES = 2**23
 
@@ -50,12 +52,14 @@ class RunFolder:
     ----------
     folder : Path
         Where it lies.
-    scene : Scene
-        Frozen, but for the number of surfaces.
+    text : str
+        The scene, frozen but for the number of surfaces; of a sweep what all points have in common.
+    axes : str
+        Of a sweep, as JSON; empty for a run.
     sampler : str
-        Never "auto".
-    size : int
-        Surfaces a block.
+        Never "auto"; empty for a sweep.
+    plan : Plan
+        Blocks of the surfaces that are asked for.
     identity : str
         See `identity_of`.
     drawn_with : str
@@ -65,49 +69,60 @@ class RunFolder:
     """
 
     folder: Path
-    scene: Scene
+    text: str
+    axes: str
     sampler: str
-    size: int
+    plan: Plan
     identity: str
     drawn_with: str
     date: str
+
+    @classmethod
+    def of(cls, folder: Path, scene: Scene, sampler: str, plan: Plan) -> "RunFolder":
+        """That of one scene; nothing is written yet."""
+        draws, identity = drawn_with(scene, sampler), identity_of(scene, sampler)
+        return cls(folder, scene_text(scene), "", sampler, plan, identity, draws, now())
+
+    @cached_property
+    def scene(self) -> Scene:
+        """What is drawn; of a sweep what its points come from."""
+        return scene_from(self.text)
 
     @property
     def shards_folder(self) -> Path:
         """Where the shards lie."""
         return self.folder / "shards"
 
-    @classmethod
-    def begin(cls, folder: Path, scene: Scene, sampler: str, size: int) -> "RunFolder":
-        """Begin a run, or go on with the one that is there. Only with the lock.
+    def begin(self) -> "RunFolder":
+        """Begin this run, or go on with the one that is there. Only with the lock.
 
         Raises
         ------
         StoreError
             If it belongs to another scene, seed or version, or is not a folder of a run.
         """
-        refuse_link(folder)
-        (folder / "shards").mkdir(parents=True, exist_ok=True)
-        sync(folder.parent)
-        new = cls(
-            folder, scene, sampler, size, identity_of(scene, sampler), drawn_with(scene, sampler), now()
-        )
+        refuse_link(self.folder)
+        self.shards_folder.mkdir(parents=True, exist_ok=True)
+        sync(self.folder.parent)
         with suppress(FileExistsError):
-            new._write(expected=None)
-            return new
+            self._write(expected=None)
+            return self
         try:
-            old = cls.open(folder)
+            old = RunFolder.open(self.folder)
         except _DamagedError:
-            if not new.shards(bodies=False):
+            if not self.shards(bodies=False):
                 raise
-            new._write(expected="anything")  # its blocks say that they are of this very run
-            return new
-        if old.identity != identity_of(scene, sampler):
+            self._write(expected="anything")  # its blocks say that they are of this very run
+            return self
+        if old.identity != self.identity:
+            there, here = ((run.text, run.axes, run.drawn_with) for run in (old, self))
             raise StoreError(
-                f"{folder}: holds a different run: {difference(old.scene, old.drawn_with, scene, sampler)}; "
-                "choose another -o, or remove it"
+                f"{self.folder}: holds a different {'sweep' if self.axes else 'run'}: "
+                f"{difference(there, here)}; choose another -o, or remove it"
             )
-        return replace(old, scene=scene)
+        sizes = zip(self.plan.groups, old.plan.groups, strict=True)
+        plan = replace(self.plan, groups=tuple((n, size) for (n, _), (_, size) in sizes))
+        return replace(self, plan=plan, date=old.date)
 
     def _write(self, *, expected: Expected) -> None:
         document = {
@@ -115,10 +130,11 @@ class RunFolder:
             "format": _FORMAT,
             "identity": self.identity,
             "sampler": self.sampler,
-            "block": self.size,
+            "blocks": [list(group) for group in self.plan.groups],
             "versions": self.drawn_with,
             "date": self.date,
-            "scene": scene_text(self.scene),
+            "axes": self.axes,
+            "scene": self.text,
         }
         text = tomli_w.dumps(document, multiline_strings=True).encode()
         checksum = f'{_CHECKSUM}{hashlib.sha256(text).hexdigest()}"\n'
@@ -126,7 +142,7 @@ class RunFolder:
 
     def freeze(self) -> None:
         """Record how many surfaces are wanted now."""
-        if RunFolder.open(self.folder).scene != self.scene:
+        if RunFolder.open(self.folder).text != self.text:
             self._write(expected="anything")
 
     @classmethod
@@ -146,11 +162,13 @@ class RunFolder:
                 said = _unchanged(opened.read(_MOST_BYTES))
             if said["filetype"] != _FILETYPE or said["format"][0] != _FORMAT[0]:
                 raise StoreError(f"{file}: is not a run of format {_FORMAT[0]}.x, but {said['format']}")
-            scene = scene_from(said["scene"])
+            text, axes, sampler = (str(said[key]) for key in ("scene", "axes", "sampler"))
             known = [str(said[key]) for key in ("identity", "versions", "date")]
-            if not all(map(str.isprintable, known)):
+            if not all(map(str.isprintable, (sampler, *known))):
                 raise ValueError
-            return cls(folder, scene, str(said["sampler"]), int(said["block"]), *known)
+            groups = tuple((int(n), int(size)) for n, size in said["blocks"])
+            whole = bool(axes) or scene_from(text).keep == "statistics"
+            return cls(folder, text, axes, sampler, Plan(groups, whole), *known)
         except OSError as error:
             raise StoreError(f"{file}: {error.strerror}") from None
         except (SceneError, KeyError, TypeError, ValueError) as error:
@@ -159,7 +177,7 @@ class RunFolder:
             what = "checksum mismatch" if isinstance(error, _ChangedError) else "it cannot be read"
             raise _DamagedError(
                 f"{file}: damaged ({what}); the blocks beside it are kept, and mcgw run with their scene and "
-                f"seed goes on; or remove {folder}"
+                f"seed goes on, or mcgw sweep; or remove {folder}"
             ) from None
 
     def shards(self, *, bodies: bool = True) -> list[Shard]:
@@ -184,7 +202,7 @@ class RunFolder:
         for path in sorted(self.shards_folder.glob("block-*.h5")):
             try:
                 shard = None if path.is_symlink() else open_shard(path, self.identity, body=bodies)
-                yield (shard if shard and self._takes(shard.span) else None), path
+                yield (shard if shard and self.plan.takes(shard.span) else None), path
             except StoreError:
                 yield None, path
 
@@ -201,20 +219,9 @@ class RunFolder:
 
     def missing(self, done: int, shards: Iterable[Shard]) -> list[Span]:
         """Blocks that neither the file, of `done` surfaces, nor one of the shards holds."""
-        done = self.kept(done)
+        done = self.plan.kept(done)
         held = [*([Span(0, done)] if done else []), *(shard.span for shard in shards)]
-        return missing(self.scene.n_surfaces, self.size, held)
-
-    def kept(self, done: int) -> int:
-        """Of the surfaces of a file those that it need not be given again: of statistics whole blocks."""
-        statistics = self.scene.keep == "statistics" and done < self.scene.n_surfaces
-        return done - done % self.size if statistics else done
-
-    def _takes(self, span: Span) -> bool:
-        """Whether a shard of these surfaces is of use: statistics cannot be cut, and are of a block."""
-        if self.scene.keep != "statistics":
-            return True
-        return span.first % self.size == 0 and (span.n == self.size or span.stop == self.scene.n_surfaces)
+        return self.plan.missing(held)
 
     def remove(self) -> None:
         """Remove all but the lock, what identifies the run last. Only with the lock."""
@@ -228,18 +235,6 @@ def remove_run(folder: Path) -> None:
         left.unlink(missing_ok=True)
 
 
-def missing(n_surfaces: int, size: int, held: Iterable[Span]) -> list[Span]:
-    """Blocks that fill what is not held, cut where a multiple of `size` lies."""
-    gaps, stop = [], 0
-    for span in (*sorted(held), Span(n_surfaces, 1)):
-        while stop < min(span.first, n_surfaces):
-            end = min(span.first, n_surfaces, (stop // size + 1) * size)
-            gaps.append(Span(stop, end - stop))
-            stop = end
-        stop = max(stop, span.stop)
-    return gaps
-
-
 class _DamagedError(StoreError):
     """A run.toml that says nothing."""
 
@@ -249,10 +244,9 @@ class _ChangedError(ValueError):
 
 
 def _unchanged(data: bytes) -> dict[str, Any]:
-    """What a run.toml says, if its checksum holds; those of format 1.0 have none."""
+    """What a run.toml says, if its checksum holds."""
     said = loads(data.decode())
     text = data.rpartition(_CHECKSUM.encode())[0]
-    expected = hashlib.sha256(text).hexdigest() if said["format"] != [1, 0] or "sha256" in said else None
-    if said.get("sha256") != expected:
+    if said.get("sha256") != hashlib.sha256(text).hexdigest():
         raise _ChangedError
     return said

@@ -1,6 +1,5 @@
 """Ensembles that lie in memory, written to files; the schema stands in `mcgw.store`."""
 
-import io
 from pathlib import Path
 from typing import Any
 
@@ -15,10 +14,9 @@ from mcgw.store.arithmetic import drawn_with
 from mcgw.store.disk import parts_of
 from mcgw.store.ensembles import finished, open_ensemble
 from mcgw.store.identity import identity_of
-from mcgw.store.layout import describe, digest_of, fill, trailer_notes
+from mcgw.store.layout import describe, digest_of, fill, sealed
 from mcgw.store.lock import locked
-from mcgw.store.shards import DRAWN, Span, in_memory
-from mcgw.store.trailer import trailer_of
+from mcgw.store.shards import DRAWN, Span
 
 __all__ = ["save", "write_ensemble"]
 
@@ -113,7 +111,4 @@ def _body_of(ensemble: Ensemble, more: dict[str, Any]) -> tuple[bytes, bytes]:
         fill(file, scene, [(Span(0, ensemble.n_surfaces), arrays)])
         describe(file, scene, ensemble.sampler, digest_of(file, scene, [arrays]), **more)
 
-    body = in_memory(make)
-    with h5py.File(io.BytesIO(body), "r") as file:
-        notes = trailer_notes(file)
-    return body, trailer_of(body, **notes)
+    return sealed(make)

@@ -8,6 +8,7 @@ import h5py
 import numpy as np
 from numpy.typing import NDArray
 
+from mcgw.ensemble.results import Results
 from mcgw.errors import StoreError
 from mcgw.store.layout import where
 from mcgw.store.shards import RAGGED, Shard
@@ -16,7 +17,7 @@ __all__ = ["FileResults", "ShardResults"]
 
 
 @dataclass(frozen=True)
-class FileResults:
+class FileResults(Results):
     """The datasets of an ensemble file, opened for each reading."""
 
     path: Path
@@ -36,7 +37,7 @@ class FileResults:
 
 
 @dataclass(frozen=True)
-class ShardResults:
+class ShardResults(Results):
     """The blocks that a run had committed when it was looked at."""
 
     shards: tuple[Shard, ...]

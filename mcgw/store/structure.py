@@ -71,8 +71,8 @@ def _check_dataset(name: str, item: Any) -> None:
     dtype, plist, shape = item.dtype, item.get_create_plist(), item.shape
     if dtype.kind not in "fi" or dtype.itemsize != 8:
         raise RefusedError(f"{name}: type {dtype}, not 64-bit numbers")
-    if item.get_space().get_simple_extent_type() != h5py.h5s.SIMPLE or not 1 <= len(shape) <= 3:
-        raise RefusedError(f"{name}: not a table of one to three axes")
+    if item.get_space().get_simple_extent_type() != h5py.h5s.SIMPLE or not 1 <= len(shape) <= 4:
+        raise RefusedError(f"{name}: not a table of one to four axes")
     if plist.get_external_count() or plist.get_layout() not in (h5py.h5d.CONTIGUOUS, h5py.h5d.CHUNKED):
         raise RefusedError(f"{name}: its data lie elsewhere")
     filters = {plist.get_filter(i)[0] for i in range(plist.get_nfilters())}

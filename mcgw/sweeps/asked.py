@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Any
 
 import tomli_w
@@ -43,8 +43,8 @@ class Asked:
 
     @classmethod
     def from_texts(cls, scene: str, axes: str) -> "Asked":
-        """What `texts` gave."""
-        return cls(loads(scene), Axes.from_text(axes))
+        """What `texts` gave; the same object for the same texts, for its groups may take long to find."""
+        return _from_texts(scene, axes)
 
     def texts(self) -> tuple[str, str]:
         """The scene as TOML and the axes as JSON."""
@@ -77,6 +77,11 @@ class Asked:
             edges=tuple(group.scenes[0].edges for group in self.groups),
             statistics=statistics,
         )
+
+
+@lru_cache(maxsize=1)
+def _from_texts(scene: str, axes: str) -> Asked:
+    return Asked(loads(scene), Axes.from_text(axes))
 
 
 def _with_a_number(scene: Scene) -> Scene:

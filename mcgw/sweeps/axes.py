@@ -11,10 +11,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analytic import is_data
+from mcgw.ensemble.labelled import AXES
 from mcgw.formats.sheet import brief
 from mcgw.scene.grading_section import grading_table
 from mcgw.scene.reading import as_toml
 from mcgw.scene.section import SceneError
+from mcgw.store.structure import GROUP
 
 __all__ = ["Axes", "Point", "axes_of", "label"]
 
@@ -22,7 +24,7 @@ Point = tuple[int, ...]
 
 _SECTIONS = ("surface", "grading", "heights", "summits", "contact", "interaction", "ensemble")
 _LISTED = 6
-_FIXED = ("contact.separations", "contact.datum", "contact.quantities")  # of all points
+_FIXED = ("contact.separations", "contact.datum", "contact.quantities", "ensemble.keep")  # of all points
 
 
 @dataclass(frozen=True)
@@ -63,9 +65,16 @@ class Axes:
         return lengths[:1] if self.zipped else lengths
 
     @property
+    def names(self) -> dict[str, str]:
+        """Of each key what its coordinate is called: its last word, or all of it if another has that name."""
+        last = [key.rpartition(".")[2] for key in self.keys]
+        taken = {*AXES, GROUP, *(name for name in last if last.count(name) > 1)}
+        return {key: key if name in taken else name for key, name in zip(self.keys, last, strict=True)}
+
+    @property
     def dims(self) -> tuple[str, ...]:
-        """Names of the dimensions: the keys, or "point" for zipped ones."""
-        return ("point",) if self.zipped else self.keys
+        """Names of the dimensions: one a key, or "point" for zipped ones."""
+        return ("point",) if self.zipped else tuple(self.names.values())
 
     @property
     def size(self) -> int:

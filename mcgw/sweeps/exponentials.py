@@ -45,6 +45,6 @@ def _gamma(grading: Grading) -> float | None:
 
 
 def _linear(scene: Scene) -> bool:
-    """Whether sums are linear in a modulus that is not negative."""
+    """Whether all that is kept follows from sums linear in a modulus that is not negative."""
     plain = scene.hertzian and scene.tangential is None and scene.interaction is None
-    return plain and scene.negative == "error"
+    return plain and scene.negative == "error" and scene.keep != "statistics"

@@ -1,14 +1,15 @@
 """Sweeps as HDF5 files: written in one step, opened and checked.
 
-The schema (``filetype = "mcgw-sweep"``, ``format = [1, 0]``)::
+The schema (that of `mcgw.store` for many scenes)::
 
-    /                     attributes: filetype, format, title, scene (TOML text of the scene that all points
-                          come from), axes (JSON), digest, run, draws, versions, commit, date, cpu,
-                          wall_seconds
+    /                     attributes: those of `mcgw.store` (filetype, format, title, scene, seed, sampler,
+                          complete, digest, run, draws, versions, commit, date, cpu, wall_seconds), where
+                          scene is what all points come from, and axes (JSON)
     /point                int64 (points,)                 dimension scale: the last axis fastest
     /separation           float64 (separations,)          dimension scale: d/sigma
     /load_mean, /load_std float64 (points, separations) N (and so on for each quantity)
-    /KEY                  float64 (points,)               values of an axis, if they are numbers
+    /gamma                float64 (points,)               values of an axis, if they are numbers: by the last
+                                                          word of its key
 
 and in ``/drawn``, from which the statistics follow::
 
@@ -19,13 +20,17 @@ and in ``/drawn``, from which the statistics follow::
     /drawn/load_means     float64 (scenes, separations)   of all groups, one after the other
     /drawn/load_products  float64 (pairs, separations)    sums of products of deviations, all pairs of each
 
+With ``keep = "statistics"`` also ``/load_skewness``, and ``/load_quantile`` with the dimension
+`probability`, and a row for each scene of the tables of `mcgw.store.statistics_file`, as
+``/drawn/summary_mean``.
+
 `digest` is over the scene, the axes and ``/drawn``; `run` over all that they depend on: scene, axes and the
 versions in `draws`. After the HDF5 data stands a trailer, as in the files of ensembles.
 """
 
 import hashlib
-import io
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -33,40 +38,35 @@ import h5py
 import numpy as np
 from numpy.typing import NDArray
 
-from analytic import quantity_of
+from mcgw.ensemble.labelled import AXES, Labelled, Variable, axis
 from mcgw.errors import StoreError
 from mcgw.formats.files import write_whole
 from mcgw.formats.toml_text import loads
 from mcgw.sampling.samplers import name_of
 from mcgw.scene.section import SceneError
 from mcgw.store.arithmetic import drawn_with
-from mcgw.store.chunks import PACKED
-from mcgw.store.head import head_digest
-from mcgw.store.provenance import now, provenance
-from mcgw.store.shards import content_digest, in_memory
-from mcgw.store.structure import check_plain
-from mcgw.store.trailer import read_trailer, trailer_of
-from mcgw.store.untrusted import examine
+from mcgw.store.ensembles import read_attributes
+from mcgw.store.layout import body_of_kept, drawn_digest, drawn_tables
+from mcgw.store.run_folder import RunFolder
 from mcgw.sweeps.asked import Asked
 from mcgw.sweeps.axes import Axes
+from mcgw.sweeps.drawing import added_up
 from mcgw.sweeps.groups import Place
 from mcgw.sweeps.points import Points
 from mcgw.sweeps.pooled import Pooled
 from mcgw.sweeps.sweep import STATISTICS, Sweep
 
-__all__ = ["FILETYPE", "identity_of", "open_sweep", "read_attributes", "write_sweep"]
-
-FILETYPE, FORMAT = "mcgw-sweep", (1, 0)
+__all__ = ["draws_of", "identity_of", "merge_sweep", "open_sweep", "write_sweep"]
 
 Tables = dict[str, NDArray[Any]]
 
 
 def identity_of(asked: Asked) -> str:
     """SHA-256 of all that the numbers of a sweep depend on: scene, axes, what draws."""
-    return hashlib.sha256("\0".join((*asked.texts(), _draws(asked))).encode()).hexdigest()
+    return hashlib.sha256("\0".join((*asked.texts(), draws_of(asked))).encode()).hexdigest()
 
 
-def _draws(asked: Asked) -> str:
+def draws_of(asked: Asked) -> str:
     """Versions that draw, and the kind of processor if any point depends on it."""
     known = {drawn_with(scene, name_of(scene)) for group in asked.groups for scene in group.computed}
     return max(known, key=len)
@@ -80,61 +80,60 @@ def write_sweep(asked: Asked, pooled: Sequence[Pooled], path: Path, *, wall_seco
     OSError
         If it cannot be written, or another file has this name.
     """
-    sweep = asked.answered(pooled, STATISTICS)
-    scene, axes = asked.texts()
-    drawn = _drawn(sweep)
-
-    def fill(file: h5py.File) -> None:
-        _lay_out(file, sweep)
-        for name, values in drawn.items():
-            file.create_dataset(f"drawn/{name}", data=values, **_packed(values))
-        file.attrs.update(
-            filetype=FILETYPE,
-            format=FORMAT,
-            title=sweep.scenes[0].title,
-            scene=scene,
-            axes=axes,
-            digest=_digest(scene, axes, drawn),
-            run=identity_of(asked),
-            draws=_draws(asked),
-            date=now(),
-            wall_seconds=wall_seconds,
-            **provenance(),
-        )
-
-    body = in_memory(fill)
-    with h5py.File(io.BytesIO(body), "r") as file:
-        head = head_digest(file, check_plain(file))
-    write_whole(path, (body, trailer_of(body, head=head)), expected=None)
+    sweep, texts = asked.answered(pooled, STATISTICS), asked.texts()
+    of_sweep = {
+        "scene": texts[0],
+        "axes": texts[1],
+        "run": identity_of(asked),
+        "draws": draws_of(asked),
+        "wall_seconds": wall_seconds,
+    }
+    body = body_of_kept(_by_point(sweep), _drawn(sweep), texts, sweep.scenes[0], "", **of_sweep)
+    write_whole(path, body, expected=None)
 
 
-def _lay_out(file: h5py.File, sweep: Sweep) -> None:
-    """What other programs read: statistics by point and separation."""
-    _scale(file, "point", np.arange(sweep.axes.size), "number of the point")
-    _scale(file, "separation", sweep.separations, "mean-plane separation d/sigma")
-    for key in sweep.axes.keys:
-        values = [sweep.axes.at(point)[key] for point in sweep.axes.points()]
-        if all(isinstance(value, int | float) for value in values):
-            data = file.create_dataset(key, data=np.array(values, dtype=np.float64))
-            data.dims[0].attach_scale(file["point"])
-    for name in sweep.quantities:
-        for kind in STATISTICS:
-            values = getattr(sweep, kind)(name)
-            values = values.reshape(sweep.axes.size, *values.shape[len(sweep.shape) :])
-            data = file.create_dataset(f"{name}_{kind}", data=values, **_packed(values))
-            data.attrs.update(units=quantity_of(name).unit, long_name=f"{kind} of {name}")
-            for axis, scale in enumerate(("point", "separation")):
-                data.dims[axis].attach_scale(file[scale])
+def merge_sweep(folder: Path, _target: Path, temporary: Path, check: Callable[[], None]) -> None:
+    """Write the file of a sweep under a temporary name, out of its shards: as a whole, never onto another.
+
+    `check` is called often, and raises if this is to end.
+
+    Raises
+    ------
+    StoreError
+        If a shard is missing or damaged.
+    OSError
+        If the disk does not take it.
+    """
+    run, seconds = RunFolder.open(folder), 0.0
+
+    def held() -> Iterator[tuple[int, Pooled]]:
+        nonlocal seconds
+        for span in run.plan.missing([]):
+            check()
+            if (shard := run.held(span)) is None:
+                raise StoreError(f"{folder}: {span} are missing")
+            seconds += shard.seconds
+            yield run.plan.group(span)[0], Pooled.from_shard(shard.arrays())
+
+    pooled = added_up(held())
+    write_sweep(Asked.from_texts(run.text, run.axes), pooled, temporary, wall_seconds=seconds)
 
 
-def _scale(file: h5py.File, name: str, values: NDArray[Any], long_name: str) -> None:
-    scale = file.create_dataset(name, data=values)
-    scale.attrs.update(units="1", long_name=long_name)
-    scale.make_scale(name)
-
-
-def _packed(values: NDArray[Any]) -> dict[str, Any]:
-    return dict(PACKED) if values.size else {}
+def _by_point(sweep: Sweep) -> Labelled:
+    """What other programs read: statistics by point and separation, and the axes whose values are numbers."""
+    found = sweep.labelled()
+    coordinates = {name: one for name, one in found.coordinates.items() if name in AXES}
+    coordinates["point"] = axis("point", np.arange(sweep.axes.size))
+    for key, name in sweep.axes.names.items():
+        given = [sweep.axes.at(point)[key] for point in sweep.axes.points()]
+        if all(isinstance(value, int | float) for value in given):
+            coordinates[name] = Variable(("point",), np.array(given, dtype=np.float64), "", key)
+    variables = {}
+    for name, one in found.variables.items():
+        values = one.values.reshape(sweep.axes.size, *one.values.shape[len(sweep.shape) :])
+        dims = ("point", *one.dims[len(sweep.shape) :])
+        variables[name] = replace(one, dims=dims, values=values)
+    return Labelled(variables, coordinates)
 
 
 def _drawn(sweep: Sweep) -> Tables:
@@ -154,29 +153,6 @@ def _drawn(sweep: Sweep) -> Tables:
             if name != "n":
                 tables[name] = np.concatenate([tables[name], values]) if name in tables else values
     return tables
-
-
-def _digest(scene: str, axes: str, drawn: Tables) -> str:
-    return hashlib.sha256("\0".join((scene, axes, content_digest(drawn))).encode()).hexdigest()
-
-
-def read_attributes(path: Path) -> dict[str, Any]:
-    """Root attributes of the file of a sweep.
-
-    Raises
-    ------
-    StoreError
-        If it is none, damaged, or of another format.
-    """
-    answer = examine(path)
-    attributes: dict[str, Any] = answer["attributes"]
-    if attributes.get("filetype") != FILETYPE:
-        raise StoreError(f"{path}: not the file of a sweep (filetype is not {FILETYPE!r})")
-    if attributes["format"][0] != FORMAT[0]:
-        raise StoreError(f"{path}: format {attributes['format']}; this version reads {FORMAT[0]}.x")
-    if read_trailer(path).notes.get("head") != answer["head"]:
-        raise StoreError(f"{path}: damaged (checksum mismatch of its scene, attributes or scales)")
-    return attributes
 
 
 def open_sweep(path: str | Path, statistics: tuple[str, ...] = STATISTICS) -> Sweep:
@@ -211,10 +187,12 @@ def open_sweep(path: str | Path, statistics: tuple[str, ...] = STATISTICS) -> Sw
     """
     path = Path(path)
     said = read_attributes(path)
+    if "axes" not in said:
+        raise StoreError(f"{path}: not the file of a sweep; mcgw.open_ensemble opens it")
     try:
         with h5py.File(path, "r") as file:
-            drawn = {name: data[()] for name, data in file["drawn"].items()}
-        if _digest(said["scene"], said["axes"], drawn) != said["digest"]:
+            drawn = drawn_tables(file)
+        if drawn_digest(drawn, said["scene"], said["axes"]) != said["digest"]:
             raise StoreError(f"{path}: damaged (digest mismatch of its data)")
         axes, document = Axes.from_text(said["axes"]), loads(said["scene"])
         groups = tuple(_groups(drawn))
@@ -241,7 +219,7 @@ def _groups(drawn: Tables) -> Iterator[Pooled]:
     for n, scenes in drawn["groups"].tolist():
         tables: Tables = {"n": np.array([n])}
         for name, values in drawn.items():
-            if name.endswith("_means"):
+            if name.endswith("_means") or name.startswith("summary_"):
                 tables[name] = values[first : first + scenes]
             elif name.endswith("_products"):
                 tables[name] = values[pair : pair + scenes**2]

@@ -2,7 +2,8 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields
-from typing import Any, TypeVar
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +13,9 @@ from mcgw.machine.progress import steps
 from mcgw.sampling.shared import on_common_cells, to_be_shared
 from mcgw.scene.scene import Scene
 from mcgw.sweeps.exponentials import between_two
+
+if TYPE_CHECKING:
+    from mcgw.ensemble.bins import Bins
 
 __all__ = ["Group", "Place", "groups_of"]
 
@@ -65,6 +69,13 @@ class Group:
     scenes: tuple[Scene, ...]
     computed: tuple[Scene, ...]
     places: tuple[Place, ...]
+
+    @cached_property
+    def bins(self) -> "tuple[Bins, ...]":
+        """In which values of the computed scenes are counted, where these keep statistics."""
+        from mcgw.ensemble.bins import Bins  # for those scenes alone
+
+        return tuple(map(Bins.of, self.computed))
 
     @property
     def n_surfaces(self) -> int:

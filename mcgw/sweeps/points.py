@@ -82,7 +82,8 @@ def document_of(scene: Scene) -> dict[str, Any]:
         del document["ensemble"]["n_asperities"]
     if document["grading"]["law"] == "homogeneous":
         del document["grading"]["law"]
-    document["ensemble"]["keep"] = "sums"
+    if scene.keep == "moments":  # which no point can be given back
+        document["ensemble"]["keep"] = "sums"
     return document
 
 

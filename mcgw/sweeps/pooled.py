@@ -7,13 +7,17 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from mcgw.ensemble.summary import ROW, Summary, push, total
+from mcgw.store.shards import BLOCK
+
 __all__ = ["Pooled"]
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 Values = dict[str, Array]
+Blocks = tuple[tuple[Summary, ...], ...]
 
-_MEANS, _PRODUCTS = "_means", "_products"
+_MEANS, _PRODUCTS, _OF_EACH = "_means", "_products", "summary_"
 
 
 @dataclass(frozen=True)
@@ -29,11 +33,15 @@ class Pooled:
     products : dict of str to ndarray
         Sums over the surfaces of products of two scenes' deviations from their means, shape (scenes, scenes,
         separations).
+    blocks : tuple of tuple of Summary
+        Of each scene joined blocks as `mcgw.ensemble.summary.push` leaves them; none, unless the scenes keep
+        statistics.
     """
 
     n: int
     means: Values
     products: Values
+    blocks: Blocks = ()
 
     @classmethod
     def of(cls, values: Sequence[Values]) -> "Pooled":
@@ -59,15 +67,31 @@ class Pooled:
         products = {
             name: tables[name + _PRODUCTS].reshape(len(mean), *mean.shape) for name, mean in means.items()
         }
-        return cls(int(tables["n"][0]), means, products)
+        rows = {ROW + k.removeprefix(_OF_EACH): v for k, v in tables.items() if k.startswith(_OF_EACH)}
+        scenes = range(len(rows[ROW + "n"]) if rows else 0)
+        return cls(
+            int(tables["n"][0]), means, products, tuple((Summary.from_tables(rows, i),) for i in scenes)
+        )
 
     def tables(self) -> dict[str, NDArray[Any]]:
-        """As arrays of at most three axes: n, means (scenes, ...) and products (scenes^2, ...)."""
+        """As arrays: n, means (scenes, ...), products (scenes^2, ...), and the summaries of all scenes."""
         tables: dict[str, NDArray[Any]] = {"n": np.array([self.n])}
         for name, mean in self.means.items():
             tables[name + _MEANS] = mean
             tables[name + _PRODUCTS] = self.products[name].reshape(len(mean) ** 2, *mean.shape[1:])
+        rows = [total(blocks).tables() for blocks in self.blocks]
+        for name in rows[0] if rows else ():
+            tables[_OF_EACH + name.removeprefix(ROW)] = np.concatenate([row[name] for row in rows])
         return tables
+
+    @classmethod
+    def from_shard(cls, tables: Mapping[str, NDArray[Any]]) -> "Pooled":
+        """What `shard` gave."""
+        return cls.from_tables({name.removeprefix(BLOCK): table[0] for name, table in tables.items()})
+
+    def shard(self) -> dict[str, NDArray[Any]]:
+        """As tables of one row for the whole block."""
+        return {BLOCK + name: table[None] for name, table in self.tables().items()}
 
     def __add__(self, other: "Pooled") -> "Pooled":
         """Of the surfaces of both."""
@@ -77,7 +101,8 @@ class Pooled:
             means[name] = mean + step * (other.n / n)
             between = step[:, None] * step[None] * (self.n * (other.n / n))
             products[name] = self.products[name] + other.products[name] + between
-        return Pooled(n, means, products)
+        pairs = zip(self.blocks, other.blocks, strict=True)
+        return Pooled(n, means, products, tuple(_pushed(*pair) for pair in pairs))
 
     def mean(self, name: str, scenes: Ints, weights: Array) -> Array:
         """Mean of a combination of some scenes, shape (separations,)."""
@@ -92,3 +117,10 @@ class Pooled:
         pairs = list(zip(scenes, weights, strict=True))
         total = sum(v * w * products[i, j] for i, v in pairs for j, w in pairs)
         return np.asarray(total / (self.n - 1))
+
+
+def _pushed(before: tuple[Summary, ...], new: tuple[Summary, ...]) -> tuple[Summary, ...]:
+    blocks = list(before)
+    for block in new:
+        push(blocks, block)
+    return tuple(blocks)

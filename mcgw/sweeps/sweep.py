@@ -1,100 +1,38 @@
 """A sweep: many scenes as one question, whose surfaces are the same wherever they can be."""
 
-from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from analytic import PER_AREA, quantity_of
+from analytic import quantity_of
+from mcgw.ensemble.labelled import Labelled, Variable, axes_of, axis, statistic
+from mcgw.ensemble.results import PROBABILITIES
 from mcgw.formats.evenly import evenly
 from mcgw.formats.sheet import Sheet, Shown
 from mcgw.formats.table import SEPARATION, Column, Table
 from mcgw.machine.late import plotted
 from mcgw.scene.samplers import promise_of
-from mcgw.scene.scene import Scene
+from mcgw.scene.scene_file import scene_text
 from mcgw.sweeps.axes import Axes, Point, label
-from mcgw.sweeps.groups import Place
+from mcgw.sweeps.over_points import At, OverPoints
 from mcgw.sweeps.pairs import Difference, Slopes
-from mcgw.sweeps.pooled import Pooled
-from mcgw.sweeps.tables import sweep_dataset
 
 __all__ = ["STATISTICS", "Sweep"]
 
 Array = NDArray[np.float64]
-At = Mapping[str, Any] | Sequence[int] | int
 
 STATISTICS = ("mean", "std")
 _SHOWN = 7  # points of a sheet
 
 
 @dataclass(frozen=True, repr=False)
-class Sweep(Shown):
-    """Means and standard deviations over the surfaces of every point.
+class Sweep(OverPoints, Shown):
+    """Means and standard deviations over the surfaces of every point, their differences and slopes.
 
-    Parameters
-    ----------
-    axes : Axes
-        The keys and their values.
-    scenes : sequence of Scene
-        Of all points, the last axis fastest. Where points needed other cells they have the edges of all
-        (`edges`): drawn alone, each gives the same surfaces, and the same bits.
-    places : tuple of Place
-        Where the statistics of each point are.
-    groups : tuple of Pooled
-        What is kept of each group of points that share their surfaces.
-    edges : tuple of tuple of float
-        Of each group, the edges of cells that its points got from each other.
-    statistics : tuple of str
-        What `to_xarray` tells.
+    Its fields are those of `OverPoints`.
     """
-
-    axes: Axes
-    scenes: Sequence[Scene]
-    places: tuple[Place, ...]
-    groups: tuple[Pooled, ...]
-    edges: tuple[tuple[float, ...], ...]
-    statistics: tuple[str, ...]
-
-    @property
-    def shape(self) -> tuple[int, ...]:
-        """Number of points along each axis; along the one of zipped axes."""
-        return self.axes.shape
-
-    @property
-    def separations(self) -> Array:
-        """Reduced separations d/sigma, shape (separations,)."""
-        return np.array(self.scenes[0].separations)
-
-    @property
-    def quantities(self) -> tuple[str, ...]:
-        """What there is of each point."""
-        return tuple(self.scenes[0].shapes)
-
-    def mean(self, quantity: str) -> Array:
-        """Mean over the surfaces in SI units, shape (axes ..., separations)."""
-        return self._of_all(quantity, lambda pooled, *some: pooled.mean(*some))
-
-    def std(self, quantity: str) -> Array:
-        """Standard deviation over the surfaces (divisor M - 1), nan for one surface."""
-        return self._of_all(quantity, lambda pooled, *some: np.sqrt(pooled.variance(*some)))
-
-    def stderr(self, quantity: str) -> Array:
-        """Standard error of the mean, nan for one surface."""
-        m = np.array([self.groups[place.group].n for place in self.places]).reshape(self.shape)
-        std = self.std(quantity)
-        return np.asarray(std / np.sqrt(m.reshape(self.shape + (1,) * (std.ndim - m.ndim))))
-
-    def scene(self, at: At) -> Scene:
-        """The scene of a point, by values of the keys or by its place along each axis.
-
-        Raises
-        ------
-        ValueError
-            If there is no such point.
-        """
-        return self.scenes[self._number(self.axes.place(at))]
 
     def difference(self, quantity: str, one: At, other: At) -> Difference:
         """How much larger a mean is at the first point than at the second, over the same surfaces.
@@ -159,14 +97,6 @@ class Sweep(Shown):
             theory=np.diff(self.theory(quantity), axis=axis) / step,
         )
 
-    def theory(self, quantity: str) -> Array:
-        """Exact mean of each point (`Scene.theory`), shape (axes ..., separations)."""
-        name, per_area = self._held(quantity)
-        found = [np.asarray(scene.theory.mean(name, self.separations)) for scene in self.scenes]
-        if per_area:
-            found = [x / scene.surface.nominal_area for x, scene in zip(found, self.scenes, strict=True)]
-        return np.stack(found).reshape(*self.shape, -1)
-
     def to_xarray(self) -> Any:
         """The statistics as an `xarray.Dataset`, with a dimension for each axis: ``load_mean`` and so on.
 
@@ -175,10 +105,37 @@ class Sweep(Shown):
         ImportError
             If xarray is not installed.
         """
-        values = {
-            (name, kind): getattr(self, kind)(name) for name in self.quantities for kind in self.statistics
+        first = self.scenes[0]
+        about = {"title": first.title, "first_scene": scene_text(first)}
+        return self.labelled().to_xarray(about)
+
+    def to_dataframe(self) -> Any:
+        """The statistics as a `pandas.DataFrame`: a row for each point and separation.
+
+        Raises
+        ------
+        ImportError
+            If pandas is not installed.
+        """
+        return self.labelled().to_dataframe((*self.axes.dims, "separation"))
+
+    def labelled(self) -> Labelled:
+        """What there is, with axes, units and words: what xarray and pandas are told."""
+        coordinates = {
+            name: Variable(("point",) if self.axes.zipped else (name,), _labels(self.axes, key), "", key)
+            for key, name in self.axes.names.items()
         }
-        return sweep_dataset(self.axes, self.scenes[0], values)
+        variables = {
+            f"{name}_{kind}": statistic(name, kind, getattr(self, kind)(name), self.axes.dims)
+            for name in self.quantities
+            for kind in (*self.statistics, *(("skewness",) if self.groups[0].blocks else ()))
+        }
+        if self.groups[0].blocks:
+            coordinates["probability"] = axis("probability", PROBABILITIES)
+            for name in self.quantities:
+                values = np.stack([self.quantile(name, p) for p in PROBABILITIES], axis=len(self.shape))
+                variables[f"{name}_quantile"] = statistic(name, "quantile", values, self.axes.dims)
+        return Labelled(variables, {**axes_of(self.scenes[0]), **coordinates})
 
     def plot(self, ax: Any = None, *, quantity: str | None = None) -> Any:
         """Draw the mean of a quantity against the separation, a line a point; returns the axes.
@@ -225,24 +182,6 @@ class Sweep(Shown):
                 ]
         return Table(tuple(columns))
 
-    def _of_all(self, quantity: str, get: Any) -> Array:
-        """One array of all points, per area where that is asked."""
-        name, per_area = self._held(quantity)
-        found = [get(self.groups[place.group], name, *place.of(name)) for place in self.places]
-        if per_area:
-            found = [x / scene.surface.nominal_area for x, scene in zip(found, self.scenes, strict=True)]
-        return np.stack(found).reshape(*self.shape, *found[0].shape)
-
-    def _held(self, quantity: str) -> tuple[str, bool]:
-        """The quantity that is held, and whether that asked is per nominal area."""
-        name = PER_AREA[quantity].of if quantity in PER_AREA else quantity
-        if name not in self.quantities:
-            raise KeyError(f"{quantity!r} is not in this sweep; it has {', '.join(self.quantities)}")
-        return name, quantity in PER_AREA
-
-    def _number(self, point: Point) -> int:
-        return int(np.ravel_multi_index(point, self.shape))
-
     def _difference(self, quantity: str, one: Point, other: Point) -> Difference:
         name, per_area = self._held(quantity)
         a, b = self._number(one), self._number(other)
@@ -254,3 +193,7 @@ class Sweep(Shown):
             )
         area = (self.scenes[k].surface.nominal_area if per_area else 1.0 for k in (a, b))
         return Difference.of(self.groups[places[0].group], places, name, (next(area), next(area)))
+
+
+def _labels(axes: Axes, key: str) -> NDArray[Any]:
+    return np.array([label(value) for value in axes.values[key]])

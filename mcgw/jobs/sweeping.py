@@ -6,13 +6,13 @@ from typing import Any, overload
 
 from mcgw.ensemble.drawing import use_threads
 from mcgw.jobs.chosen_engine import chosen_engine, dashboard_of
-from mcgw.jobs.session import part_of
+from mcgw.jobs.session import By, part_of
 from mcgw.machine.progress import Progress, told
-from mcgw.scene.scene import Scene
+from mcgw.scene.scene import LeftOut, Scene
 from mcgw.scene.wrong_object import check_object
 from mcgw.sweeps.asked import Asked
 from mcgw.sweeps.axes import axes_of
-from mcgw.sweeps.drawing import draw
+from mcgw.sweeps.drawing import draw, weighted
 from mcgw.sweeps.sweep import STATISTICS, Sweep
 
 __all__ = ["sweep"]
@@ -135,12 +135,22 @@ def sweep(
         with use_threads(threads), told(progress, "surfaces") as tell:
             asked = Asked.of(scene, axes)
             return asked.answered(draw(asked.groups, tell), chosen)
-    from mcgw.sweeps.in_file import sweep_in_file, sweep_part
+    from mcgw.jobs.running import make, make_part  # files, which a sweep in memory has none of
+    from mcgw.jobs.sweep_job import SweepJob
+    from mcgw.store.ensembles import recorded_seed
+    from mcgw.sweeps.file import open_sweep
 
+    path = Path(path)
+    if isinstance(scene.seed, LeftOut) and (recorded := recorded_seed(path)) is not None:
+        scene = scene.replace(seed=recorded)
     with (
         chosen_engine(engine, threads) as draws,
         told(progress, "surfaces", dashboard_of(draws)) as tell,
     ):
+        asked = Asked.from_texts(*Asked.of(scene, axes).texts())  # as workers read it
+        job = SweepJob.of(asked, path)
+        by = By(draws, threads, weighted(asked.groups, tell))
         if part:
-            return sweep_part(scene, axes, Path(path), part, tell, threads=threads)
-        return sweep_in_file(scene, axes, Path(path), chosen, tell, threads=threads, engine=draws)
+            return make_part(job, by, part)
+        make(job, by)
+    return open_sweep(path, chosen)

@@ -1,0 +1,119 @@
+"""Results as named arrays with axes, units and words: what files, xarray and pandas are told alike."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from analytic import quantity_of
+from mcgw.machine.late import optional
+from mcgw.scene.scene import Scene
+
+__all__ = ["AXES", "Labelled", "Variable", "axes_of", "axis", "statistic", "values_of"]
+
+AXES = {  # of tables, in their order: unit and long name
+    "point": ("1", "number of the point"),
+    "surface": ("1", "number of the surface"),
+    "probability": ("1", "share of the surfaces that are below"),
+    "separation": ("1", "mean-plane separation d/sigma"),
+    "displacement": ("m", "tangential displacement"),
+}
+_OF_A_SURFACE = ("separation", "displacement")
+_WORDS = {
+    "mean": "mean of the {}",
+    "std": "standard deviation of the {} over surfaces",
+    "skewness": "skewness of the {} over surfaces",
+    "quantile": "quantiles of the {}",
+}
+
+
+@dataclass(frozen=True)
+class Variable:
+    """An array with the names of its axes, its unit and what it is."""
+
+    dims: tuple[str, ...]
+    values: NDArray[Any]
+    units: str
+    long_name: str
+
+    @property
+    def about(self) -> dict[str, str]:
+        """Its attributes, as netCDF has them."""
+        return {**({"units": self.units} if self.units else {}), "long_name": self.long_name}
+
+
+@dataclass(frozen=True)
+class Labelled:
+    """Tables and the coordinates of their axes, by name."""
+
+    variables: Mapping[str, Variable]
+    coordinates: Mapping[str, Variable]
+
+    def to_xarray(self, attributes: Mapping[str, Any]) -> Any:
+        """An `xarray.Dataset`.
+
+        Raises
+        ------
+        ImportError
+            If xarray is not installed.
+        """
+        xarray = optional("xarray", "to_xarray")
+        both = (
+            {name: (one.dims, one.values, one.about) for name, one in some.items()}
+            for some in (self.variables, self.coordinates)
+        )
+        return xarray.Dataset(*both, dict(attributes))
+
+    def to_dataframe(self, dims: Sequence[str]) -> Any:
+        """A `pandas.DataFrame` of the tables with just these axes, a row for each place along them.
+
+        Raises
+        ------
+        ImportError
+            If pandas is not installed.
+        """
+        pandas = optional("pandas", "to_dataframe")
+        tables = {name: one.values for name, one in self.variables.items() if one.dims == tuple(dims)}
+        size = next(iter(tables.values())).shape
+        places = [
+            self.coordinates[dim].values if dim in self.coordinates else np.arange(n)
+            for dim, n in zip(dims, size, strict=True)
+        ]
+        if len(dims) == 1:
+            index = pandas.Index(places[0], name=dims[0])
+        else:
+            index = pandas.MultiIndex.from_product(places, names=dims)
+        return pandas.DataFrame({name: values.ravel() for name, values in tables.items()}, index=index)
+
+
+def axis(name: str, values: Any) -> Variable:
+    """The coordinate of an axis of this name."""
+    return Variable((name,), np.asarray(values), *AXES[name])
+
+
+def axes_of(scene: Scene) -> dict[str, Variable]:
+    """The coordinates that tables of one surface of a scene have."""
+    found = {"separation": axis("separation", scene.separations)}
+    if scene.tangential is not None:
+        found["displacement"] = axis("displacement", scene.tangential.displacements)
+    return found
+
+
+def values_of(scene: Scene, tables: Mapping[str, NDArray[Any]]) -> Labelled:
+    """Values of every surface, as the tables hold them."""
+    rows = len(next(iter(tables.values())))
+    found = {}
+    for name, values in tables.items():
+        q, dims = quantity_of(name), ("surface", *_OF_A_SURFACE)
+        found[name] = Variable(dims[: values.ndim], values, q.unit, q.long_name)
+    return Labelled(found, {"surface": axis("surface", np.arange(rows)), **axes_of(scene)})
+
+
+def statistic(name: str, kind: str, values: NDArray[Any], lead: tuple[str, ...] = ()) -> Variable:
+    """A statistic over the surfaces of a quantity, that may have axes before those of a surface."""
+    q = quantity_of(name)
+    lead = (*lead, "probability") if kind == "quantile" else lead
+    dims = (*lead, *_OF_A_SURFACE)[: values.ndim]
+    return Variable(dims, values, "1" if kind == "skewness" else q.unit, _WORDS[kind].format(q.long_name))

@@ -1,0 +1,177 @@
+"""Statistics over the surfaces of every point of a sweep, arranged along its axes."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from analytic import PER_AREA
+from mcgw.ensemble.ensemble import Ensemble
+from mcgw.ensemble.intervals import CONFIDENCE
+from mcgw.ensemble.results import Held
+from mcgw.ensemble.summarised import Summarised
+from mcgw.sampling.samplers import name_of
+from mcgw.scene.scene import Scene
+from mcgw.sweeps.axes import Axes, Point
+from mcgw.sweeps.groups import Place
+from mcgw.sweeps.point_results import PointResults
+from mcgw.sweeps.pooled import Pooled
+
+__all__ = ["At", "OverPoints"]
+
+Array = NDArray[np.float64]
+At = Mapping[str, Any] | Sequence[int] | int
+
+
+@dataclass(frozen=True, repr=False)
+class OverPoints:
+    """Means and standard deviations over the surfaces of every point.
+
+    Parameters
+    ----------
+    axes : Axes
+        The keys and their values.
+    scenes : sequence of Scene
+        Of all points, the last axis fastest. Where points needed other cells they have the edges of all
+        (`edges`): drawn alone, each gives the same surfaces, and the same bits.
+    places : tuple of Place
+        Where the statistics of each point are.
+    groups : tuple of Pooled
+        What is kept of each group of points that share their surfaces.
+    edges : tuple of tuple of float
+        Of each group, the edges of cells that its points got from each other.
+    statistics : tuple of str
+        What `to_xarray` tells, and with ``keep = "statistics"`` skewness and quantiles besides.
+    """
+
+    axes: Axes
+    scenes: Sequence[Scene]
+    places: tuple[Place, ...]
+    groups: tuple[Pooled, ...]
+    edges: tuple[tuple[float, ...], ...]
+    statistics: tuple[str, ...]
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Number of points along each axis; along the one of zipped axes."""
+        return self.axes.shape
+
+    @property
+    def separations(self) -> Array:
+        """Reduced separations d/sigma, shape (separations,)."""
+        return np.array(self.scenes[0].separations)
+
+    @property
+    def quantities(self) -> tuple[str, ...]:
+        """What there is of each point."""
+        return tuple(self.scenes[0].shapes)
+
+    def mean(self, quantity: str) -> Array:
+        """Mean over the surfaces in SI units, shape (axes ..., separations)."""
+        return self._of_all(quantity, lambda pooled, *some: pooled.mean(*some))
+
+    def std(self, quantity: str) -> Array:
+        """Standard deviation over the surfaces (divisor M - 1), nan for one surface."""
+        return self._of_all(quantity, lambda pooled, *some: np.sqrt(pooled.variance(*some)))
+
+    def stderr(self, quantity: str) -> Array:
+        """Standard error of the mean, nan for one surface."""
+        m = np.array([self.groups[place.group].n for place in self.places]).reshape(self.shape)
+        std = self.std(quantity)
+        return np.asarray(std / np.sqrt(m.reshape(self.shape + (1,) * (std.ndim - m.ndim))))
+
+    def interval(self, quantity: str, level: float = CONFIDENCE) -> tuple[Array, Array]:
+        """Confidence interval of the mean of each point, as `mcgw.Ensemble.interval`.
+
+        Raises
+        ------
+        KeyError, ValueError
+            As there.
+        """
+        low, high = zip(
+            *(self.ensemble(p).interval(quantity, level) for p in self.axes.points()), strict=True
+        )
+        return self._arranged(low), self._arranged(high)
+
+    def quantile(self, quantity: str, share: float) -> Array:
+        """Value that a share of the surfaces is below, of each point, as `mcgw.Ensemble.quantile`.
+
+        Raises
+        ------
+        KeyError
+            If there is no such quantity.
+        ValueError
+            If the scenes keep no statistics (``keep = "statistics"``), or `share` is not from 0 to 1.
+        """
+        return self._arranged(self.ensemble(p).quantile(quantity, share) for p in self.axes.points())
+
+    def skewness(self, quantity: str) -> Array:
+        """Skewness over the surfaces of each point; errors as of `quantile`."""
+        return self._arranged(self.ensemble(p).skewness(quantity) for p in self.axes.points())
+
+    def theory(self, quantity: str) -> Array:
+        """Exact mean of each point (`Scene.theory`), shape (axes ..., separations)."""
+        name, per_area = self._held(quantity)
+        found = [np.asarray(scene.theory.mean(name, self.separations)) for scene in self.scenes]
+        if per_area:
+            found = [x / scene.surface.nominal_area for x, scene in zip(found, self.scenes, strict=True)]
+        return np.stack(found).reshape(*self.shape, -1)
+
+    def scene(self, at: At) -> Scene:
+        """The scene of a point, by values of the keys or by its place along each axis.
+
+        Raises
+        ------
+        ValueError
+            If there is no such point.
+        """
+        return self.scenes[self._number(self.axes.place(at))]
+
+    def ensemble(self, at: At) -> Ensemble:
+        """What is held of a point, as an ensemble of its scene: of plain scenes mean and deviation.
+
+        Raises
+        ------
+        ValueError
+            If there is no such point.
+        """
+        i = self._number(self.axes.place(at))
+        if i not in self._ensembles:
+            scene, place = self.scenes[i], self.places[i]
+            pooled = self.groups[place.group]
+            held: Held = PointResults(pooled, place)
+            if pooled.blocks:
+                held = Summarised(scene, pooled.blocks[place.scenes[0]])
+            self._ensembles[i] = Ensemble(scene, name_of(scene), held)
+        return self._ensembles[i]
+
+    @cached_property
+    def _ensembles(self) -> dict[int, Ensemble]:
+        """Those of the points that were asked for."""
+        return {}
+
+    def _of_all(self, quantity: str, get: Any) -> Array:
+        """One array of all points, per area where that is asked."""
+        name, per_area = self._held(quantity)
+        found = [get(self.groups[place.group], name, *place.of(name)) for place in self.places]
+        if per_area:
+            found = [x / scene.surface.nominal_area for x, scene in zip(found, self.scenes, strict=True)]
+        return self._arranged(found)
+
+    def _arranged(self, found: Iterable[Array]) -> Array:
+        """What there is of all points, in the shape of the axes."""
+        each = np.stack(list(found))
+        return each.reshape(*self.shape, *each.shape[1:])
+
+    def _held(self, quantity: str) -> tuple[str, bool]:
+        """The quantity that is held, and whether that asked is per nominal area."""
+        name = PER_AREA[quantity].of if quantity in PER_AREA else quantity
+        if name not in self.quantities:
+            raise KeyError(f"{quantity!r} is not in this sweep; it has {', '.join(self.quantities)}")
+        return name, quantity in PER_AREA
+
+    def _number(self, point: Point) -> int:
+        return int(np.ravel_multi_index(point, self.shape))
