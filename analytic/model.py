@@ -1,6 +1,6 @@
 """The exact statistics of one rough surface in contact: means, fluctuations and their inversion."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import KW_ONLY, dataclass, field, replace
 from functools import cached_property, partial
 
@@ -21,7 +21,7 @@ from analytic.laws.ways import Ways
 from analytic.mean_contact import MeanContact
 from analytic.measured_radii import MeasuredRadii
 from analytic.quantities import LAW_QUANTITIES, Quantity, quantity_of
-from analytic.summits import over_radii, random_fluctuations, separations_of_means
+from analytic.summits import at_each_radius, on_radius, separations_of_means, with_radii
 from analytic.surface import Surface
 from analytic.weighted_heights import WeightedHeights
 
@@ -158,7 +158,7 @@ class Model:
         if self._by_powers(q):
             return self._unit(q) * fn(q.exponent, h, self._grading(q), heights=self._weighted(q))
         if isinstance(self.curvature, RandomCurvature):
-            return over_radii(self, np.asarray(h), lambda one: one.mean(quantity, h))
+            return self._over_radii(h, lambda one: one.mean(quantity, h))
         return self._unit(q) * self._contact.mean(quantity, np.asarray(h, dtype=np.float64))
 
     def slope(self, quantity: str, h: ArrayLike) -> Array:
@@ -196,7 +196,7 @@ class Model:
                 * fn(q.exponent - 1, h, self._grading(q), heights=self._weighted(q))
             )
         if isinstance(self.curvature, RandomCurvature) and not self._by_powers(q):
-            return over_radii(self, np.asarray(h), lambda one: one.slope(quantity, h))
+            return self._over_radii(h, lambda one: one.slope(quantity, h))
         h = np.asarray(h, dtype=np.float64)
         if not q.unloading or self.ways.law.elastic:
             return self._unit(q) * replace(self._contact, heights=self._weighted(q)).slope(q.base, h)
@@ -222,9 +222,7 @@ class Model:
         h = np.asarray(h, dtype=np.float64)
         if not isinstance(self.curvature, RandomCurvature):
             return self._contact.share(piece, h)
-        met = over_radii(
-            self, np.asarray(h), lambda one: np.nan_to_num(one.share(piece, h)) * one.mean("contacts", h)
-        )
+        met = self._over_radii(h, lambda one: np.nan_to_num(one.share(piece, h)) * one.mean("contacts", h))
         with np.errstate(invalid="ignore"):
             return np.asarray(met / self.mean("contacts", h))
 
@@ -319,7 +317,8 @@ class Model:
         if self._by_powers(q):
             return separations_at(q, np.log(target / self._unit(q)), self._grading(q), self._weighted(q))
         if isinstance(self.curvature, RandomCurvature):
-            return separations_of_means(self, quantity, target)
+            starts = replace(self, curvature=None).separation_at(quantity, target)
+            return separations_of_means(partial(self.mean, quantity), starts, target, quantity)
         return self._contact.separations_at(quantity, target / self._unit(q))
 
     def rule(self, separations: ArrayLike, quantities: Sequence[str] = ("load",)) -> HeightRule:
@@ -337,10 +336,54 @@ class Model:
         """
         powers = all(self._by_powers(quantity_of(name)) for name in quantities)
         if isinstance(self.curvature, RandomCurvature):
-            return random_fluctuations(self, quantities, np.asarray(separations, dtype=float), powers=powers)
+            return self._random_fluctuations(quantities, np.asarray(separations, dtype=float), powers=powers)
         rule = self.rule(separations, quantities)
         terms = rule.terms(quantities, separations, self.grading, None if powers else self.ways)
         return rule.fluctuations(terms, self.count)
+
+    def _random_fluctuations(self, quantities: Sequence[str], h: Array, *, powers: bool) -> Fluctuations:
+        """Of summits of random curvature; `powers`: one adds powers of its approach and of its radius."""
+        assert isinstance(self.curvature, RandomCurvature)
+        if powers:
+            rule = with_radii(self.rule(h, quantities), self.curvature)
+            terms = rule.terms(quantities, h, self.grading)
+        else:
+            rule, terms = self._at_all_radii(quantities, h)
+        result = rule.fluctuations(terms, self.count)
+        if not np.isinf(self.curvature.largest):
+            return result
+        return replace(result, radius=np.repeat([quantity_of(name).radius for name in quantities], h.size))
+
+    def _at_all_radii(self, quantities: Sequence[str], h: Array) -> tuple[HeightRule, Array]:
+        """Rule over heights and radii under any law of contact, and what is added at each of its points."""
+        rules, columns = [], []
+        unit = np.array([quantity_of(name).scale(self.surface) for name in quantities])
+        for weight, one in self._of_each_radius(h):
+            rule = one.rule(h, quantities)
+            own = np.array([quantity_of(name).scale(one.surface) for name in quantities])
+            terms = rule.terms(quantities, h, self.grading, one.ways)
+            rules.append((rule.heights, weight * rule.probabilities))
+            columns.append(terms * np.repeat(own / unit, h.size))
+        heights, probabilities = (np.concatenate(part) for part in zip(*rules, strict=True))
+        return HeightRule(heights, probabilities, rule.below), np.concatenate(columns)
+
+    def _of_each_radius(self, h: Array) -> list[tuple[float, "Model"]]:
+        """Weights and models of one radius each, whose weighted sum this model is."""
+        assert isinstance(self.curvature, RandomCurvature)
+        found = []
+        for weight, ratio, counts in at_each_radius(self.curvature, h):
+            surface = replace(self.surface, radius=ratio * self.surface.radius)
+            heights = WeightedHeights(self.heights, counts, self.curvature.narrowest)
+            law = None if self.law is None else on_radius(self.law.on(self.surface), ratio)
+            one = replace(
+                self, surface=surface, heights=heights, curvature=None, law=law, n_asperities=self.number
+            )
+            found.append((weight, one))
+        return found
+
+    def _over_radii(self, h: ArrayLike, what: Callable[["Model"], Array]) -> Array:
+        """Sum of something over models of one radius each; shape of `h`."""
+        return np.asarray(sum(weight * what(one) for weight, one in self._of_each_radius(np.asarray(h))))
 
     @cached_property
     def _hertz(self) -> bool:

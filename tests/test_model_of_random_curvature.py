@@ -24,7 +24,6 @@ from analytic import (
 )
 from analytic.curvature import MEAN_CURVATURE
 from analytic.laws import Film
-from analytic.summits import random_fluctuations
 
 ALPHA = 5.0
 MOMENTS = SpectralMoments(1e-12, 1e-3, ALPHA * 1e6)
@@ -130,7 +129,7 @@ def test_moments_by_curvatures_one_by_one():
     """Rules of five radii at each height against integrals over the curvature, cut at the largest radius."""
     m, h = model(largest=3.0, grading=GRADED), H[1:2]
     by_rule = m.fluctuations(["load", "area"], h)
-    one_by_one = random_fluctuations(m, ["load", "area"], h, powers=False)
+    one_by_one = m._random_fluctuations(["load", "area"], h, powers=False)
     np.testing.assert_allclose(one_by_one.products(), by_rule.products(), rtol=1e-12)
     np.testing.assert_allclose(one_by_one.moment(3), by_rule.moment(3), rtol=1e-11)
 
