@@ -73,6 +73,8 @@ import os
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
+from mcgw.machine.notebook import bind_drawing
+
 if TYPE_CHECKING:
     from analytic import (
         Body,
@@ -224,6 +226,16 @@ _HOME = {
     "sweep": "jobs.sweeping",
     "tradeoff": "statistics.tradeoff",
 }
+
+
+def _draw(result: Any, ax: Any, **options: Any) -> Any:
+    """What ``.plot()`` of results calls; figures are imported when the first of them is drawn."""
+    from mcgw.figures.plotting import draw
+
+    return draw(result, ax, **options)
+
+
+bind_drawing(_draw)
 
 
 def __getattr__(name: str) -> Any:

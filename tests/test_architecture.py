@@ -1,37 +1,22 @@
-"""Imports point one way, and compiled loops stay in their layer."""
+"""Imports point one way, whether by name or by string, and compiled loops stay in their layer."""
 
 import ast
 from functools import cache
-from graphlib import TopologicalSorter
+from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
+
+import pytest
 
 import analytic
 import mcgw
 from mcgw.scene.samplers import SAMPLERS
 
-# Packages are layers: each imports only from those before it, and within one nothing goes round in a circle.
+# Packages are layers: each imports only from those before it. Above all is the door, `mcgw` itself.
 LAYERS = (
     "errors", "machine", "formats", "scene", "sampling", "ensemble", "store", "sweeps", "jobs", "statistics",
     "exports", "maps", "figures", "reports", "commands", "cli",
 )  # fmt: skip
 ROOT = Path(mcgw.__file__).parent
-
-
-def imports(tree):
-    """Modules of this package that a file imports, wherever in it that is."""
-    for node in tree.nodes:
-        match node:
-            case ast.ImportFrom(module=str(module)) if module.startswith("mcgw."):
-                yield module.removeprefix("mcgw.")
-            case ast.Import(names=names):
-                yield from (x.name.removeprefix("mcgw.") for x in names if x.name.startswith("mcgw."))
-
-
-@cache
-def sources():
-    """Each file and its syntax tree, read once."""
-    paths = sorted(ROOT.rglob("*.py"))
-    return [(path.relative_to(ROOT).as_posix(), Tree(ast.parse(path.read_text()))) for path in paths]
 
 
 class Tree:
@@ -41,24 +26,96 @@ class Tree:
         self.body, self.nodes = tree.body, list(ast.walk(tree))
 
 
+@cache
+def modules(package):
+    """Every file of a package by the name of its module, read once."""
+    folder = Path(package.__file__).parent
+    paths = {path.relative_to(folder.parent): path for path in sorted(folder.rglob("*.py"))}
+    return {
+        ".".join(name.with_suffix("").parts).removesuffix(".__init__"): Tree(ast.parse(path.read_text()))
+        for name, path in paths.items()
+    }
+
+
+def known():
+    return {**modules(mcgw), **modules(analytic)}
+
+
+def imports(tree):
+    """Modules of both packages that a file imports, wherever in it that is, or has a string for."""
+    for node in tree.nodes:
+        match node:
+            case ast.ImportFrom(module=str(module), names=names):
+                inside = [f"{module}.{alias.name}" for alias in names]
+                found = [name if name in known() else module for name in inside]
+            case ast.Import(names=names):
+                found = [alias.name for alias in names]
+            case ast.Constant(value=str(text)) if "." in text:
+                found = [text.rstrip(".")]  # as in f"mcgw.commands.{name}"
+            case _:
+                continue
+        yield from (name for name in found if name in known())
+
+
 def inside():
-    """All that lies in a layer: name of the module, and its tree."""
-    for name, tree in sources():
-        if name not in ("__init__.py", "__main__.py"):
-            yield name.removesuffix(".py").removesuffix("/__init__").replace("/", "."), tree
+    """All that lies in a layer: name of the module in `mcgw`, and its tree."""
+    for name, tree in modules(mcgw).items():
+        if name not in ("mcgw", "mcgw.__main__"):
+            yield name.removeprefix("mcgw."), tree
+
+
+def going_up(files):
+    """Imports of a layer from one above it, as (module, what it imports)."""
+    place = {f"mcgw.{layer}": k for k, layer in enumerate(LAYERS)} | {"mcgw": len(LAYERS), "analytic": -1}
+
+    def of(name):
+        return place[".".join(name.split(".")[: 1 if name.startswith("analytic") else 2])]
+
+    return {(name, other) for name, tree in files.items() for other in imports(tree) if of(other) > of(name)}
 
 
 def test_packages_are_layers():
     assert {name.partition(".")[0] for name, _ in inside()} == set(LAYERS)
-    for this, tree in inside():
-        for name in imports(tree):
-            above, below = (LAYERS.index(x.partition(".")[0]) for x in (this, name))
-            assert below <= above, f"{this} imports {name}"
+    doors = {"mcgw", "mcgw.__main__"}
+    assert going_up({name: tree for name, tree in known().items() if name not in doors}) == set()
+
+
+def around(files):
+    """A circle of imports, if there is one; the name of a package itself is a text, not an import."""
+    graph = {name: set(imports(tree)) - {name, "mcgw", "analytic"} for name, tree in files.items()}
+    try:
+        TopologicalSorter(graph).prepare()
+    except CycleError as error:
+        return error.args[1]
+    return []
 
 
 def test_no_imports_go_round_in_a_circle():
-    graph = {this: set(imports(tree)) for this, tree in inside()}
-    TopologicalSorter(graph).prepare()
+    assert around(modules(mcgw)) == []
+    assert around(modules(analytic)) == []
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "import mcgw.figures.plotting",
+        "from mcgw.figures import plotting",
+        "from mcgw.figures.plotting import draw",
+        "def late():\n    from mcgw.figures.plotting import draw",
+        "import_module('mcgw.figures.plotting').draw(1)",
+        "late = optional('mcgw.figures.plotting', 'a picture')",
+        "import_module(f'mcgw.figures.{name}')",
+        "import mcgw",
+        "from mcgw import simulate",
+    ],
+)
+def test_each_way_of_importing_would_be_seen(text):
+    low, high = "mcgw.machine.notebook", "mcgw.figures.plotting"
+    (pair,) = going_up({low: Tree(ast.parse(text))})
+    assert pair[0] == low
+    if pair[1] == high:
+        back = Tree(ast.parse("from mcgw.machine.notebook import plotted"))
+        assert set(around({low: Tree(ast.parse(text)), high: back})) == {low, high}
 
 
 def test_the_response_knows_no_randomness():
@@ -94,7 +151,6 @@ def test_the_root_has_only_the_door():
 # Theory, as modules of `analytic`; the first three are Gaussian unless they are told another law.
 GAUSSIAN = {"contact", "integrals", "inversion"}
 THEORY = GAUSSIAN | {"height_rule", "interacting", "law_rule", "mean_contact", "model", "plasticity"}
-GAUSSIAN_FIGURES = {"figures/paper.py", "figures/equal_load.py", "figures/summits.py"}  # those of the paper
 
 
 def from_theory(tree, modules):
@@ -115,20 +171,18 @@ def from_theory(tree, modules):
 
 def test_the_simulator_takes_no_integral_from_theory():
     """It shares the surface and its laws with the theory, and compares; what theory says it never asks."""
-    asking = {name for name, tree in sources() if set(from_theory(tree, THEORY))}
-    assert {name for name in asking if not name.startswith(("statistics/", "figures/"))} == {
-        "scene/fields.py"
-    }
-    for name, tree in sources():
-        if name.startswith(("sampling/", "store/")):
+    asking = {name.partition(".")[0] for name, tree in inside() if set(from_theory(tree, THEORY))}
+    assert asking == {"scene", "statistics", "figures"}  # that of a scene, of comparisons, of what is drawn
+    for name, tree in inside():
+        if name.startswith(("sampling.", "store.")):
             attributes = {node.attr for node in tree.nodes if isinstance(node, ast.Attribute)}
             assert "theory" not in attributes, name
 
 
 def test_no_default_stands_for_the_height_law_of_a_scene():
     """`scene.theory` knows the scene's own law; the Gaussian functions are for the paper's own figures."""
-    asking = {name for name, tree in sources() if set(from_theory(tree, GAUSSIAN))}
-    assert asking == GAUSSIAN_FIGURES | {"statistics/methods.py"}  # whose rules `tradeoff` measures
+    asking = {name.partition(".")[0] for name, tree in inside() if set(from_theory(tree, GAUSSIAN))}
+    assert asking == {"statistics", "figures"}  # the rules that `tradeoff` measures
 
 
 def test_compiled_functions_call_those_of_their_own_layer():

@@ -10,7 +10,7 @@ import analytic
 import mcgw
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.results import MemoryResults
-from mcgw.figures.of_results import draw
+from mcgw.figures.plotting import draw
 from mcgw.formats.sheet import Sheet, brief
 from mcgw.formats.table import Column, Table
 from mcgw.machine.progress import told

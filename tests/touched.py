@@ -61,7 +61,7 @@ def asked_for(tree):
     for node in ast.walk(tree):
         match node:
             case ast.Attribute(attr="plot"):
-                yield "mcgw.figures.of_results"
+                yield "mcgw.figures.plotting"
             case ast.Constant(value=str(text)):
                 words = text.removeprefix("mcgw ").split()
                 yield from (f"mcgw.commands.{word}" for word in words[:1] if word in COMMANDS)

@@ -13,7 +13,7 @@ from mcgw.ensemble.labelled import Labelled, axes_of, axis, statistic, values_of
 from mcgw.ensemble.results import PROBABILITIES, Held
 from mcgw.formats.sheet import Sheet, Shown
 from mcgw.formats.table import Column, Table
-from mcgw.machine.late import plotted
+from mcgw.machine.notebook import plotted
 from mcgw.scene.contact_text import accuracy_facts, contact_facts
 from mcgw.scene.law_text import law_text
 from mcgw.scene.samplers import promise_of

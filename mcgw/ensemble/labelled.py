@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analytic import quantity_of
-from mcgw.machine.late import optional
+from mcgw.machine.notebook import optional
 from mcgw.scene.scene import Scene
 
 __all__ = ["AXES", "Labelled", "Variable", "axes_of", "axis", "statistic", "values_of"]

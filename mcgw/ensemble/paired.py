@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.formats.sheet import Sheet, Shown
 from mcgw.formats.table import SEPARATION, Column, Table
-from mcgw.machine.late import plotted
+from mcgw.machine.notebook import plotted
 from mcgw.scene.drawn_by import drawn_by
 from mcgw.scene.wrong_object import check_object
 

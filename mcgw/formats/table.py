@@ -14,7 +14,7 @@ from mcgw.formats.evenly import evenly
 from mcgw.formats.files import whole_file
 from mcgw.formats.numbers import columns as typeset_columns
 from mcgw.formats.numbers import typeset
-from mcgw.machine.late import optional
+from mcgw.machine.notebook import optional
 from mcgw.machine.terminal import one_line
 
 __all__ = ["SEPARATION", "Column", "Table", "joined", "stacked"]

@@ -2,10 +2,8 @@
 
 from collections.abc import Iterator
 from contextlib import contextmanager
-from importlib import import_module
-from typing import Any
 
-__all__ = ["optional", "plotted", "without_help"]
+__all__ = ["without_help"]
 
 
 @contextmanager
@@ -19,26 +17,3 @@ def without_help() -> Iterator[None]:
         yield
     finally:
         artist.kwdoc = kwdoc
-
-
-def plotted(result: Any, ax: Any, **options: Any) -> Any:
-    """Draw a result of any layer on axes, new ones if `ax` is None, and return them.
-
-    Its class cannot import how it is drawn: figures lie above it, and know it. So this is the one call that
-    goes up, and the only place that names `mcgw.figures.of_results`, where each class has its function.
-    """
-    return import_module("mcgw.figures.of_results").draw(result, ax, **options)
-
-
-def optional(package: str, what: str) -> Any:
-    """A package that mcgw does without.
-
-    Raises
-    ------
-    ImportError
-        If it is not installed; the message says what needs it and how to get it.
-    """
-    try:
-        return import_module(package)
-    except ImportError:
-        raise ImportError(f'{what} needs {package}: pip install "mcgw[notebook]"', name=package) from None

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from analytic import SpectralMoments
 from mcgw.formats.sheet import Sheet, Shown
-from mcgw.machine.late import plotted
+from mcgw.machine.notebook import plotted
 from mcgw.maps.estimates import (
     METHODS,
     Estimate,

@@ -17,7 +17,7 @@ from scipy.special import stdtrit
 from analytic import SpectralMoments
 from mcgw.formats.sheet import Sheet, Shown
 from mcgw.formats.table import Column, Table
-from mcgw.machine.late import plotted
+from mcgw.machine.notebook import plotted
 from mcgw.maps.estimates import Estimate
 from mcgw.maps.form import Form
 from mcgw.maps.profile import Profile, smooth_profile, without_profile_form

@@ -16,7 +16,7 @@ from mcgw.ensemble.tables import heading
 from mcgw.formats.evenly import evenly
 from mcgw.formats.sheet import Sheet, Shown
 from mcgw.formats.table import SEPARATION, Column, Table, stacked
-from mcgw.machine.late import plotted
+from mcgw.machine.notebook import plotted
 from mcgw.scene.samplers import promise_of
 from mcgw.scene.scene import Scene
 from mcgw.statistics.bounded import bounded_theory

@@ -17,7 +17,7 @@ from mcgw.ensemble.results import MemoryResults, joined
 from mcgw.formats.evenly import evenly
 from mcgw.formats.sheet import Sheet, Shown, brief
 from mcgw.formats.table import Column, Table
-from mcgw.machine.late import plotted
+from mcgw.machine.notebook import plotted
 from mcgw.machine.progress import Progress, told
 from mcgw.sampling.block import Sampler
 from mcgw.sampling.samplers import sampler_of

@@ -12,7 +12,7 @@ from analytic import quantity_of
 from mcgw.ensemble.asperities_alone import scene_alone
 from mcgw.formats.sheet import Sheet, Shown
 from mcgw.formats.table import SEPARATION, Column, Table
-from mcgw.machine.late import plotted
+from mcgw.machine.notebook import plotted
 from mcgw.machine.progress import Progress, told
 from mcgw.scene.samplers import promise_of
 from mcgw.scene.scene import Scene

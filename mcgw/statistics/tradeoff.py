@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 from mcgw.ensemble.asperities_alone import scene_alone
 from mcgw.formats.sheet import Sheet, Shown
 from mcgw.formats.table import Column, Table
-from mcgw.machine.late import plotted
 from mcgw.machine.memory import peak_growth
+from mcgw.machine.notebook import plotted
 from mcgw.machine.progress import Progress, told
 from mcgw.scene.reading import argument
 from mcgw.scene.scene import Scene

@@ -12,7 +12,7 @@ from mcgw.ensemble.results import PROBABILITIES
 from mcgw.formats.evenly import evenly
 from mcgw.formats.sheet import Sheet, Shown
 from mcgw.formats.table import SEPARATION, Column, Table
-from mcgw.machine.late import plotted
+from mcgw.machine.notebook import plotted
 from mcgw.scene.samplers import promise_of
 from mcgw.scene.scene_file import scene_text
 from mcgw.sweeps.axes import Axes, Point, label
