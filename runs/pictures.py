@@ -10,11 +10,10 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
 import mcgw
+from mcgw.figures.catalogue import figures_of
+from mcgw.figures.compared import Compared
 from mcgw.figures.drawing import draw
-from mcgw.figures.equal_load import equal_load
-from mcgw.figures.samples import Samples
 from mcgw.figures.style import CATEGORIES, MONTE_CARLO, STYLE, THEORY
-from mcgw.figures.yielding import laws_compared, who_yields
 from mcgw.formats.pictures import save_figure
 from mcgw.sampling.cells import mesh_of
 
@@ -23,20 +22,13 @@ FOLDER = HERE / "pictures"
 CELLS, PHYSICS, ANSWERS = THEORY, CATEGORIES[2], MONTE_CARLO  # as dark, middle and light in grey
 
 
-def trend():
-    """Equal separation against equal load, from `mcgw figures`."""
-    scene = mcgw.load_scene(HERE / "demo.toml")
-    samples = Samples(scene.surface, 200, scene.n_asperities, scene.seed, 100)
-    data = equal_load(samples)
-    save_figure(draw(replace(data, panels=data.panels[:2])), FOLDER / "equal-load.png", dpi=110)
-
-
-def laws():
-    """Who yields, and the laws side by side, from `mcgw figures`."""
-    scene = mcgw.load_scene(HERE / "demo.toml")
-    samples = Samples(scene.surface, 200, scene.n_asperities, scene.seed, 100)
-    for data in (who_yields(samples), laws_compared(samples)):
-        save_figure(draw(data), FOLDER / f"{data.name}.png", dpi=110)
+def from_the_catalogue():
+    """Equal separation against equal load, who yields, and the laws side by side, from `mcgw figures`."""
+    scene = mcgw.load_scene(HERE / "demo.toml").replace(n_surfaces=200)
+    found = dict(figures_of(Compared(scene, swept=True)))
+    found["equal-load"] = replace(found["equal-load"], panels=found["equal-load"].panels[:2])
+    for name in ("equal-load", "who-yields", "laws-compared"):
+        save_figure(draw(found[name]), FOLDER / f"{name}.png", dpi=110)
 
 
 def how_it_works():
@@ -116,7 +108,6 @@ def _draw_answer(axis, scene):
 
 if __name__ == "__main__":
     FOLDER.mkdir(exist_ok=True)
-    trend()
-    laws()
+    from_the_catalogue()
     how_it_works()
     print(FOLDER)

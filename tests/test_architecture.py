@@ -37,12 +37,18 @@ def modules(package):
     }
 
 
+@cache
 def known():
     return {**modules(mcgw), **modules(analytic)}
 
 
+@cache
 def imports(tree):
     """Modules of both packages that a file imports, wherever in it that is, or has a string for."""
+    return set(named(tree))
+
+
+def named(tree):
     for node in tree.nodes:
         match node:
             case ast.ImportFrom(module=str(module), names=names):

@@ -63,17 +63,15 @@ def test_commands_draw_one_on_terminals_alone(told, words, bars):
 
 def test_report_and_figures_draw_one(told, monkeypatch):
     """Of what they are made of, without what draws it."""
-    from mcgw.figures import of_scene
+    from mcgw.figures import catalogue
     from mcgw.reports import html
 
     for name in ("comparison_figures", "patch_pictures", "pressure_pictures"):
         monkeypatch.setattr(html, name, lambda _: [])
     assert "/4 [" in told("report e.h5 -o e.html", terminal=True)
 
-    def nothing(_):
-        raise of_scene.NoMeaningError("it has no meaning")
-
-    monkeypatch.setattr(of_scene, "_FIGURES", dict.fromkeys(("a", "b", "c"), nothing))
+    rows = [catalogue.Row(name, catalogue.Row, (lambda _: "it has no meaning",)) for name in "abc"]
+    monkeypatch.setattr(catalogue, "CATALOGUE", rows)
     assert "/3 [" in told("figures --scene s.toml -o drawn", terminal=True)
 
 

@@ -51,7 +51,7 @@ SERIES = (
 @pytest.mark.parametrize("scale", ["linear", "log"])
 def test_panels_are_drawn_as_they_are(scale):
     panel = Panel("the panel", "x (m)", "y (N)", SERIES, ("linear", scale), level=2.5)
-    figure = draw(FigureData("name", "The title", "The caption.", (panel, panel)))
+    figure = draw(FigureData("The title", "The caption.", (panel, panel)))
     assert (figure.get_suptitle(), figure.get_supxlabel()) == ("The title", "The caption.")
     used = [axis for axis in figure.axes if axis.get_title(loc="left")]
     assert len(used) == 2
@@ -78,7 +78,7 @@ def test_panels_are_drawn_as_they_are(scale):
 def test_residuals_are_below_their_panel():
     """In standard errors, with the marker and the colour of their series; none where there are no points."""
     panels = Panel("with", "x (m)", "y (N)", SERIES), Panel("without", "x (m)", "y (N)", SERIES[:1])
-    above, below, alone = draw(FigureData("name", "", "", panels)).axes
+    above, below, alone = draw(FigureData("", "", panels)).axes
     assert (below.get_xlabel(), alone.get_xlabel()) == ("x (m)", "x (m)")
     assert below.get_xlim() == above.get_xlim()
     labelled = [
@@ -104,7 +104,7 @@ def reach(points, scale):
 
 
 def test_legends_name_the_line_that_is_drawn_so():
-    figure = draw(FigureData("name", "", "", (Panel("p", "x", "y", SERIES),)))
+    figure = draw(FigureData("", "", (Panel("p", "x", "y", SERIES),)))
     axis, _ = figure.axes
     drawn = [x for x in axis.get_lines() if len(x.get_xdata()) == 3 and x.get_linestyle() != "None"]
     *named, key = axis.get_legend().get_lines()
@@ -118,7 +118,7 @@ def test_legends_name_the_line_that_is_drawn_so():
 @pytest.mark.parametrize("side", ["below", "above"])
 def test_the_shaded_side(side):
     series = Series("edge", X, X, None, side)
-    (axis,) = draw(FigureData("n", "", "", (Panel("p", "x", "y", (series,), ylim=(-3.0, 9.0)),))).axes
+    (axis,) = draw(FigureData("", "", (Panel("p", "x", "y", (series,), ylim=(-3.0, 9.0)),))).axes
     (patch,) = axis.collections
     y = patch.get_paths()[0].vertices[:, 1]
     assert (y.min(), y.max()) == ((-3.0, 4.0) if side == "below" else (1.0, 9.0))

@@ -587,22 +587,19 @@ def test_tradeoff_takes_its_folder_and_its_time(call, monkeypatch):
 
 
 def test_figures_take_folder_scene_and_csv(call, tmp_path, monkeypatch):
-    from mcgw.figures import further, of_scene, paper
+    from mcgw.figures import catalogue
 
-    seen, scenes = [], []
+    seen = []
 
-    def first_alone(samples):
-        seen.append(samples)
-        return [paper._figure_1()]
-
-    def first_of_scene(scene):
-        scenes.append(scene)
-        yield "figure-1", paper._figure_1()
+    def first_alone(compared):
+        seen.append(compared)
+        yield (
+            "figure-1",
+            dataclasses.replace(catalogue.CATALOGUE[0].draw(catalogue.of_paper()), name="figure-1"),
+        )
         yield "figure-3", "why not"
 
-    monkeypatch.setattr(paper, "paper_figures", first_alone)
-    monkeypatch.setattr(further, "further_figures", lambda samples: [])
-    monkeypatch.setattr(of_scene, "scene_figures", first_of_scene)
+    monkeypatch.setattr(catalogue, "figures_of", first_alone)
     assert call(["figures"]).files == ["figure-1.pdf", "figure-1.png", "figure-1.svg"]
     given = call(["figures", "-o", "there", "--scene", "@s.toml", "--csv"])
     assert given.code == 0, given.err
@@ -614,9 +611,9 @@ def test_figures_take_folder_scene_and_csv(call, tmp_path, monkeypatch):
     (tmp_path / "python.toml").write_text(mcgw.scene_text(of_python))  # holds the series of that grading
     assert call(["figures", "--scene", str(tmp_path / "python.toml")]).code == 0
     assert "figure-3: not drawn: why not" in given.out
-    (default,) = seen
-    assert (default.n_asperities, default.seed) == (30_000, 20240601)
-    one, other = scenes
+    default, *others = seen
+    assert (default.swept, default.scene.n_asperities, default.scene.seed) == (True, 30_000, 20240601)
+    one, other = (compared.asked for compared in others)
     assert one == scene
     heights = np.linspace(0, 3, 7)
     np.testing.assert_allclose(other.grading(heights), 1 + 0.3 * np.tanh(heights), rtol=1e-6)

@@ -1,6 +1,7 @@
 """Figures of the paper, those it lacks, those of any scene: every Monte-Carlo point against theory."""
 
 import csv
+from dataclasses import replace
 from functools import cache
 from importlib.resources import files
 from itertools import pairwise
@@ -13,16 +14,11 @@ from scipy.stats import norm
 
 import analytic
 import mcgw
-from analytic import inversion
-from mcgw.figures.beside import Beside, NoMeaningError
+from mcgw.figures.catalogue import CATALOGUE, figures_of, rows_of
+from mcgw.figures.compared import Compared
 from mcgw.figures.data import FigureData, ratio_of_sums
-from mcgw.figures.drawing import draw, save_figures
-from mcgw.figures.finite import _spread_points, law_of_load
-from mcgw.figures.further import FURTHER, further_figures
-from mcgw.figures.of_scene import OF_SCENE, scene_figures
-from mcgw.figures.paper import PAPER, paper_figures
-from mcgw.figures.samples import Samples
-from mcgw.figures.scene_further import equal_load, way_back, who_yields
+from mcgw.figures.drawing import draw, save_figure_files
+from mcgw.figures.finite import law_of_load, spread
 from mcgw.figures.style import prefixed, short
 from mcgw.scene.scene_file import scene_from
 
@@ -31,19 +27,10 @@ THEORY_ALONE = {"figure-1", "negative-modulus"}
 
 @pytest.fixture(scope="module")
 def figures():
-    """All of them; three curves at equal load ask for the same separations, which take most of the time."""
-    samples = Samples(SURFACE, n_surfaces=400, n_asperities=5000, seed=11, n_listed=10)
-    plain, found = inversion.separations_at, {}
-
-    def once(quantity, log_target, grading, heights):
-        key = quantity.name, log_target.tobytes(), grading
-        if key not in found:
-            found[key] = plain(quantity, log_target, grading, heights)
-        return found[key]
-
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(inversion, "separations_at", once)
-        return {data.name: data for data in paper_figures(samples) + further_figures(samples)}
+    """All of the sweep; eta A_n is 5000, as pressures are per nominal area."""
+    surface = replace(SURFACE, nominal_area=5000 / SURFACE.eta)
+    scene = mcgw.Scene(surface, separations=0.0, n_surfaces=400, n_asperities=5000, seed=11)
+    return dict(figures_of(Compared(scene, swept=True, most_listed=10)))
 
 
 def points(data):
@@ -52,7 +39,8 @@ def points(data):
 
 def test_all_are_there(figures):
     assert [f"figure-{k}" for k in range(1, 7)] == list(figures)[:6]
-    assert (*PAPER, *FURTHER) == tuple(figures)  # the names that are checked before anything is drawn
+    assert [row.name for row in CATALOGUE] == list(figures)  # the names that are checked before one is drawn
+    assert [data.name for data in figures.values()] == list(figures)
     assert set(list(figures)[6:]) == {
         "equal-load", "fluctuations", "distribution", "area-and-load", "who-carries", "negative-modulus",
         "who-yields", "laws-compared", "way-back", "sliding", "films",
@@ -135,13 +123,10 @@ def test_ratio_of_sums_against_repetition():
 
 def test_error_of_a_spread_against_repetition():
     """Of std/mean as of ratios: 300 repetitions know it to 4 %."""
-    samples = Samples(SURFACE, n_surfaces=4, n_asperities=1000, seed=1, n_listed=1)
     rng, h = np.random.default_rng(4), np.array([0.0, 0.5])
-    found = [
-        _spread_points(rng.gamma([2.0, 5.0], size=(500, 2)), h, "load", 1000, samples) for _ in range(300)
-    ]
-    spread = np.std([p.mean for p in found], axis=0, ddof=1)
-    np.testing.assert_allclose(spread, np.mean([p.stderr for p in found], axis=0), rtol=0.16)
+    found = [spread(rng.gamma([2.0, 5.0], size=(500, 2)), h, 0 * h) for _ in range(300)]
+    seen = np.std([p.mean for p in found], axis=0, ddof=1)
+    np.testing.assert_allclose(seen, np.mean([p.stderr for p in found], axis=0), rtol=0.16)
 
 
 OVER_H, G, S = "separation d/σ", "grading factor γ", "summit height s = z/σ"
@@ -217,7 +202,8 @@ def test_captions_count_what_was_drawn(figures):
 @pytest.mark.usefixtures("blank_figures")
 def test_files_and_every_number_of_a_figure_in_its_csv(figures, tmp_path):
     data = figures["figure-6"]
-    paths = list(save_figures([data, figures["negative-modulus"]], tmp_path / "new", csv=True))
+    both = (data, figures["negative-modulus"])
+    paths = [path for one in both for path in save_figure_files(one, tmp_path / "new", csv=True)]
     assert sorted(p.suffix for p in paths) == [".csv", ".csv", ".pdf", ".pdf", ".png", ".png", ".svg", ".svg"]
     assert set((tmp_path / "new").iterdir()) == set(paths)
     rows = list(csv.DictReader((tmp_path / "new" / "figure-6.csv").read_text().splitlines()))
@@ -302,8 +288,10 @@ def preset(name):
 
 def drawn(scene):
     """Figures by name, and the names of those with no meaning."""
-    found = dict(scene_figures(scene))
-    assert tuple(found) == OF_SCENE
+    compared = Compared(scene)
+    found = dict(figures_of(compared))
+    assert [row.name for row in rows_of(compared)] == list(found)
+    assert not found.keys() & {"distribution", "sliding", "films"}
     figures = {name: x for name, x in found.items() if isinstance(x, FigureData)}
     assert all(
         isinstance(x, str) and x and "\n" not in x for x in found.values() if x not in figures.values()
@@ -385,8 +373,8 @@ def test_every_kind_of_scene_has_its_figures(name):
 def test_yielding_and_the_way_back():
     """Shares and contacts are tails of the normal law; the way back begins where the way in ends."""
     scene = scene_of(law=mcgw.KogutEtsion(critical=0.05), unload_from="loop", n_surfaces=100)
-    beside = Beside(scene)
-    yields, back = who_yields(beside), way_back(beside)
+    compared, rows = Compared(scene), {row.name: row for row in CATALOGUE}
+    yields, back = (rows[name].draw(compared) for name in ("who-yields", "way-back"))
     check([yields, back])
     share = yields.panels[0].series[0].points.exact
     np.testing.assert_allclose(share, norm.sf(np.add(H, 0.05)) / norm.sf(H), rtol=1e-9)
@@ -399,8 +387,10 @@ def test_yielding_and_the_way_back():
         assert (way_in.label, way_out.label) == ("in", "back")
         assert way_out.theory[0] == pytest.approx(way_in.theory[0], rel=1e-9)
         assert not np.allclose(way_out.theory[1:10], way_in.theory[1:10], rtol=1e-3)
-    with pytest.raises(NoMeaningError, match="does not carry the load of its reference"):
-        equal_load(Beside(scene_of(**YIELDS)))
+    assert (
+        "does not carry the load of its reference"
+        in dict(figures_of(Compared(scene_of(**YIELDS))))["equal-load"]
+    )
 
 
 def test_numbers_are_integrals_over_the_heights(graded):

@@ -11,10 +11,9 @@ from matplotlib.colors import to_hex
 
 import mcgw
 from mcgw.figures import style
+from mcgw.figures.catalogue import figures_of
+from mcgw.figures.compared import Compared
 from mcgw.figures.drawing import draw
-from mcgw.figures.further import further_figures
-from mcgw.figures.paper import paper_figures
-from mcgw.figures.samples import Samples
 
 # Machado, Oliveira and Fernandes 2009 (doi:10.1109/TVCG.2009.113), severity 1.0, on linear RGB.
 EYES = {
@@ -102,9 +101,9 @@ def test_what_a_figure_shows_together_has_other_dashes_and_markers_too():
 @pytest.mark.site
 def test_every_figure_has_one_colour_for_a_label():
     """Of lines, markers, residuals and legends, in all figures of the package."""
-    samples = Samples(SURFACE, n_surfaces=30, n_asperities=3000, seed=1, n_listed=20)
+    scene = mcgw.Scene(SURFACE, separations=0.0, n_surfaces=30, n_asperities=3000, seed=1)
     found = {}
-    for data in paper_figures(samples) + further_figures(samples):
+    for _, data in figures_of(Compared(scene, swept=True, most_listed=20)):
         for axis in draw(data).axes:
             legend = axis.get_legend()
             if legend is None:

@@ -9,9 +9,8 @@ import pytest
 from said import call
 
 import mcgw
-from mcgw.ensemble.regrading import regrade
 from mcgw.errors import StoreError
-from mcgw.figures.samples import Samples
+from mcgw.figures.compared import Compared
 from mcgw.jobs.running import run
 from mcgw.sampling.asperities import heights
 from mcgw.sampling.samplers import sampler_of
@@ -74,9 +73,9 @@ def test_heights_figures_regrading_and_convergence_take_it(make_scene, seed):
     touching = heights(scene, 0, untouched=True)
     assert touching.size == 300
     assert np.sum(touching > 0) == sampler_of(scene).block(0, 1).sums["contacts"][0, 0]
-    samples = Samples(scene.surface, 20, 30_000, seed, 1)
-    assert regrade(samples.base, samples.base.scene.grading).scene.seed == seed
-    assert samples.heights[0].size
+    swept = Compared(scene.replace(n_surfaces=20, n_asperities=30_000), swept=True, most_listed=1)
+    assert swept.drawn(2.0).scene.seed == seed
+    assert swept.listed[0].size
     seen = []
     converge(scene, lambda x: seen.append(x.seed) or sampler_of(x).block(0, x.n_surfaces).sums, seeds=3)
     assert {(seed + k) % 2**64 for k in range(3)} <= set(seen)

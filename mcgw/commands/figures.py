@@ -20,53 +20,27 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def execute(args: argparse.Namespace) -> int:
     """Write PNG, PDF and SVG of each figure and say where they are."""
-    return _of_scene(args) if args.scene else _of_paper(args)
-
-
-def _of_paper(args: argparse.Namespace) -> int:
-    from importlib.resources import files
-
-    from mcgw.figures.drawing import save_figures
-    from mcgw.figures.further import FURTHER, further_figures
-    from mcgw.figures.paper import PAPER, paper_figures
-    from mcgw.figures.samples import Samples
-    from mcgw.scene.scene_file import scene_from
-
-    _check(args, (*PAPER, *FURTHER))
-    scene = scene_from((files("mcgw.scene") / "presets" / "demo.toml").read_text(encoding="utf-8"))
-    samples = Samples(scene.surface, 2000, scene.n_asperities, scene.seed, 100)
-    for path in save_figures(paper_figures(samples) + further_figures(samples), args.output, csv=args.csv):
-        print(path)
-    return 0
-
-
-def _of_scene(args: argparse.Namespace) -> int:
-    from mcgw.figures.drawing import save_figures
-    from mcgw.figures.of_scene import OF_SCENE, scene_figures
-    from mcgw.scene.scene_file import load_scene
-
-    scene = load_scene(args.scene)
-    _check(args, OF_SCENE)
-    for name, figure in scene_figures(scene):
-        if isinstance(figure, str):
-            print(f"{name}: not drawn: {figure}")
-            continue
-        for path in save_figures([figure], args.output, csv=args.csv):
-            print(path)
-    return 0
-
-
-def _check(args: argparse.Namespace, names: tuple[str, ...]) -> None:
-    """That all files can be written, and none is an input."""
     from mcgw.commands.outputs import CSV, Output, check_outputs, figure_format
-    from mcgw.figures.drawing import figure_files
-    from mcgw.scene.scene_file import files_of
+    from mcgw.scene.scene_file import files_of, load_scene
 
+    scene, figure = load_scene(args.scene) if args.scene else None, figure_format()
+    from mcgw.figures.catalogue import figures_of, of_paper, rows_of
+    from mcgw.figures.compared import Compared
+    from mcgw.figures.drawing import figure_files, save_figure_files
+
+    compared = of_paper() if scene is None else Compared(scene)
     check_outputs(
         [
-            Output(path, CSV if path.suffix == ".csv" else figure_format())
-            for name in names
-            for path in figure_files(args.output, name, csv=args.csv)
+            Output(path, CSV if path.suffix == ".csv" else figure)
+            for row in rows_of(compared)
+            for path in figure_files(args.output, row.name, csv=args.csv)
         ],
         inputs=files_of(args.scene) if args.scene else (),
     )
+    for name, data in figures_of(compared):
+        if isinstance(data, str):
+            print(f"{name}: not drawn: {data}")
+            continue
+        for path in save_figure_files(data, args.output, csv=args.csv):
+            print(path)
+    return 0

@@ -10,18 +10,23 @@ from mcgw.formats.table import Column, Table
 
 __all__ = [
     "GAMMA",
+    "PRESSURE",
     "SEPARATION",
+    "Estimate",
     "FigureData",
     "Panel",
     "Points",
     "Series",
     "figure_table",
+    "mean_points",
+    "quotient_of_sums",
     "ratio_of_sums",
 ]
 
 Array = NDArray[np.float64]
+Estimate = tuple[Array, Array]  # means and their standard errors
 
-GAMMA, SEPARATION = "grading factor γ", "separation d/σ"
+GAMMA, SEPARATION, PRESSURE = "grading factor γ", "separation d/σ", "pressure $P/A_n$ (MPa)"
 _COLUMNS = ("panel", "series", "kind", "x", "theory", "mean", "stderr")
 
 
@@ -74,17 +79,22 @@ class Panel:
 
 @dataclass(frozen=True)
 class FigureData:
-    """A figure: its file's name, what it says, and its panels."""
+    """A figure: what it says, its panels, and the name of its file."""
 
-    name: str
     title: str
     caption: str
     panels: tuple[Panel, ...]
     columns: int = 2
+    name: str = ""
 
 
-def ratio_of_sums(b: Array, a: Array) -> tuple[Array, Array]:
-    """Ratio of two means over the same surfaces and its standard error, by the delta method.
+def mean_points(x: Array, values: Array, exact: Array) -> Points:
+    """Take the means of values of surfaces, shape (surfaces, points), and their standard errors."""
+    return Points(x, values.mean(axis=0), values.std(axis=0, ddof=1) / np.sqrt(len(values)), exact)
+
+
+def ratio_of_sums(b: Array, a: Array) -> Estimate:
+    """Take the ratio of two means over the same surfaces, and its standard error by the delta method.
 
     Parameters
     ----------
@@ -94,11 +104,33 @@ def ratio_of_sums(b: Array, a: Array) -> tuple[Array, Array]:
     Returns
     -------
     (ndarray, ndarray)
-        Of shape (...).
+        Of shape (...); nan where there is nothing.
     """
-    mean = a.mean(axis=0)
-    ratio = b.mean(axis=0) / mean
-    return ratio, (b - ratio * a).std(axis=0, ddof=1) / np.sqrt(len(a)) / mean
+    with np.errstate(invalid="ignore", divide="ignore"):
+        mean = a.mean(axis=0)
+        ratio = b.mean(axis=0) / mean
+        return ratio, (b - ratio * a).std(axis=0, ddof=1) / np.sqrt(len(a)) / mean
+
+
+def quotient_of_sums(above: tuple[Array, Array], below: tuple[Array, Array]) -> Estimate:
+    """Take a ratio of means over another such ratio, all over the same surfaces, and its standard error.
+
+    Parameters
+    ----------
+    above, below : (ndarray, ndarray)
+        Numerator and denominator of each: sums of each surface, shape (surfaces, ...).
+
+    Returns
+    -------
+    (ndarray, ndarray)
+        Of shape (...); nan where there is nothing.
+    """
+    parts = (*above, *below)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        means = [x.mean(axis=0) for x in parts]
+        value = means[0] / means[1] / (means[2] / means[3])
+        influence = sum(s * x / m for s, x, m in zip((1, -1, -1, 1), parts, means, strict=True))
+        return value, np.abs(value) * np.std(influence, axis=0, ddof=1) / np.sqrt(len(parts[0]))
 
 
 def figure_table(figure: FigureData) -> Table:

@@ -13,9 +13,8 @@ from matplotlib.ticker import FixedLocator, LogLocator, MaxNLocator
 from mcgw.figures.data import FigureData, Panel, Points, Series, figure_table
 from mcgw.figures.style import BACK, BAND, LEVEL, PAPER, STYLE, look
 from mcgw.formats.pictures import save_figure
-from mcgw.machine.progress import steps
 
-__all__ = ["draw", "draw_residual", "figure_files", "save_figures"]
+__all__ = ["draw", "draw_residual", "figure_files", "save_figure_files"]
 
 _WIDTH, _HEIGHT, _RESIDUAL = 3.7, 2.9, 0.8  # of a panel, and of the residuals below it; inches
 _KEY = "Monte Carlo, 95 %"
@@ -161,17 +160,17 @@ def figure_files(folder: Path, name: str, *, csv: bool) -> list[Path]:
     return [folder / f"{name}.{ending}" for ending in ("png", "pdf", "svg", *(["csv"] if csv else []))]
 
 
-def save_figures(figures: list[FigureData], folder: Path, *, csv: bool = False) -> Iterator[Path]:
-    """Write each figure as PNG, PDF and SVG.
+def save_figure_files(data: FigureData, folder: Path, *, csv: bool = False) -> Iterator[Path]:
+    """Write a figure as PNG, PDF and SVG.
 
     Parameters
     ----------
-    figures : list of FigureData
+    data : FigureData
         What to draw.
     folder : Path
         Where; made if it is not there.
     csv : bool, optional
-        Also write the numbers of each.
+        Also write its numbers.
 
     Yields
     ------
@@ -179,12 +178,11 @@ def save_figures(figures: list[FigureData], folder: Path, *, csv: bool = False) 
         Of each file as it is there.
     """
     folder.mkdir(parents=True, exist_ok=True)
-    for data in steps(figures, "figures"):
-        figure = draw(data)
-        for path in figure_files(folder, data.name, csv=csv):
-            if path.suffix == ".csv":
-                figure_table(data).write(path)
-            else:
-                with mpl.rc_context(STYLE):
-                    save_figure(figure, path)
-            yield path
+    figure = draw(data)
+    for path in figure_files(folder, data.name, csv=csv):
+        if path.suffix == ".csv":
+            figure_table(data).write(path)
+        else:
+            with mpl.rc_context(STYLE):
+                save_figure(figure, path)
+        yield path

@@ -1,45 +1,45 @@
 """How finite surfaces differ from each other."""
 
-from dataclasses import replace
-
 import numpy as np
 from numpy.typing import NDArray
 from scipy.special import ndtr
 
 from analytic import quantity_of
+from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.simulation import simulate
+from mcgw.figures.compared import ENOUGH, SCENE, Compared
 from mcgw.figures.data import SEPARATION, FigureData, Panel, Points, Series
-from mcgw.figures.samples import Samples
+from mcgw.scene.scene import Scene
 
-__all__ = ["distribution", "fluctuations", "law_of_load"]
+__all__ = ["distribution", "fluctuations", "law_of_load", "spread"]
 
 Array = NDArray[np.float64]
 
+_SPREADING = ("load", "area", "stiffness")
 _FINE = 2048  # steps of the exact law in a bin: rounding each contact to a step shifts the mean by 1e-4
 
 
-def fluctuations(samples: Samples) -> FigureData:
-    """Standard deviation over mean, from a hundred asperities to a million."""
-    h, line = np.linspace(0, 4, 9), np.linspace(0, 4, 41)
-    scene = replace(
-        samples.base.scene, keep="sums", separations=tuple(h), quantities=("load", "area", "stiffness")
-    )
+def fluctuations(f: Compared) -> FigureData:
+    """Show the standard deviation over the mean: of a sweep from a hundred asperities to a million."""
+    if not f.swept:
+        series = tuple(_spreads(name, f.scene, name, f.line, f.drawn(SCENE), ENOUGH) for name in _SPREADING)
+        panel = Panel("", SEPARATION, "std / mean", series, ("linear", "log"), level=1.0)
+        size = f"{f.scene.surface.nominal_area * 1e6:g} mm²"
+        return FigureData(f"How far surfaces of {size} differ from each other", f.caption, (panel,))
+    scene = f.scene.replace(keep="sums", separations=np.linspace(0, 4, 9), quantities=_SPREADING)
     sizes = {n: min(2000, 400_000_000 // n) for n in (100, 10_000, 1_000_000)}
-    drawn = {n: simulate(replace(scene, n_asperities=n, n_surfaces=m)) for n, m in sizes.items()}
-    panels = []
+    drawn = {n: simulate(scene.replace(n_asperities=n, n_surfaces=m)) for n, m in sizes.items()}
+    line, panels = np.linspace(0, 4, 41), []
     for key, name in zip("abc", scene.quantities, strict=True):
-        series = []
-        for n in (100, 1000, 10_000, 100_000, 1_000_000):
-            points = _spread_points(drawn[n].values(name), h, name, n, samples) if n in drawn else None
-            series.append(Series(f"N = {_power(n)}", line, _exact_spread(name, line, n, samples), points))
-        room = float(series[-1].theory.min()) / 2, 50 * float(series[0].theory.max())  # for the legend
-        panels.append(
-            Panel(f"{key}  {name}", SEPARATION, "std / mean", tuple(series), ("linear", "log"), 1.0, room)
+        series = tuple(
+            _spreads(f"N = {_power(n)}", scene.replace(n_asperities=n), name, line, drawn.get(n), 400)
+            for n in (100, 1000, 10_000, 100_000, 1_000_000)
         )
+        room = float(series[-1].theory.min()) / 2, 50 * float(series[0].theory.max())  # for the legend
+        panels.append(Panel(f"{key}  {name}", SEPARATION, "std / mean", series, ("linear", "log"), 1.0, room))
     return FigureData(
-        "fluctuations",
         "How far finite surfaces differ from each other",
-        f"N asperities a surface; 2000 surfaces (400 of N = 10⁶), seed {samples.seed}. Markers, with "
+        f"N asperities a surface; 2000 surfaces (400 of N = 10⁶), seed {scene.seed}. Markers, with "
         "95 % intervals, where the ensemble has 400 contacts or more.",
         tuple(panels),
     )
@@ -49,23 +49,33 @@ def _power(n: int) -> str:
     return "10" + "⁰¹²³⁴⁵⁶"[len(str(n)) - 1]
 
 
-def _exact_spread(name: str, h: Array, n: int, samples: Samples) -> Array:
-    c = replace(samples.base.scene, n_asperities=n).theory.cumulants(name, h)
-    return np.asarray(np.sqrt(c.variance) / c.mean)
+def _spreads(
+    label: str, scene: Scene, name: str, line: Array, drawn: Ensemble | None, fewest: float
+) -> Series:
+    """A line of theory; points where surfaces are drawn and have so many contacts together."""
+
+    def exact(h: Array) -> Array:
+        return np.asarray(scene.theory.std(name, h) / np.abs(scene.theory.mean(name, h)))
+
+    if drawn is None:
+        return Series(label, line, exact(line))
+    h = drawn.separations
+    known = scene.theory.mean("contacts", h) * drawn.n_surfaces >= fewest
+    return Series(label, line, exact(line), spread(drawn.values(name)[:, known], h[known], exact(h)[known]))
 
 
-def _spread_points(x: Array, h: Array, name: str, n: int, samples: Samples) -> Points:
-    """std/mean where enough asperities touch, with the standard error of its influence function."""
-    known = x.shape[0] * n * samples.base.scene.heights.above(h) >= 400
-    x, h = x[:, known], h[known]
+def spread(x: Array, h: Array, exact: Array) -> Points | None:
+    """Take std over mean of surfaces at each separation, and its standard error by its influence function."""
+    if not h.size:
+        return None
     mean, std = x.mean(axis=0), x.std(axis=0, ddof=1)
     z = (x - mean) / std
     influence = std / mean * ((z**2 - 1) / 2 - z * std / mean)
-    return Points(h, std / mean, influence.std(axis=0) / np.sqrt(len(x)), _exact_spread(name, h, n, samples))
+    return Points(h, std / np.abs(mean), influence.std(axis=0) / np.sqrt(len(x)), exact)
 
 
 def law_of_load(n: int, h: float, step: float, bins: int) -> Array:
-    """Exact law of the load of a finite homogeneous surface, by Fourier transform.
+    """Find the exact law of the load of a finite homogeneous surface, by Fourier transform.
 
     Parameters
     ----------
@@ -89,26 +99,21 @@ def law_of_load(n: int, h: float, step: float, bins: int) -> Array:
     return np.fft.irfft(np.fft.rfft(one) ** n, bins)
 
 
-def distribution(samples: Samples) -> FigureData:
-    """The law of the load at light contact: exact, Gaussian, drawn."""
-    panels = tuple(
-        _load_panel(samples, key, contacts) for key, contacts in (("a", 5.0), ("b", 50.0), ("c", 500.0))
-    )
+def distribution(f: Compared) -> FigureData:
+    """Show the law of the load at light contact: exact, Gaussian, drawn."""
+    panels = tuple(_load_panel(f, key, contacts) for key, contacts in (("a", 5.0), ("b", 50.0), ("c", 500.0)))
     return FigureData(
-        "distribution",
         "Load of one finite surface at light contact (d/σ = 2.5)",
-        f"Homogeneous; 100 000 surfaces, seed {samples.seed}. Gaussian: of the same mean and "
+        f"Homogeneous; 100 000 surfaces, seed {f.scene.seed}. Gaussian: of the same mean and "
         "std. Markers: share of the surfaces in bins of a quarter of the std, over their width.",
         panels,
     )
 
 
-def _load_panel(samples: Samples, key: str, contacts: float) -> Panel:
+def _load_panel(f: Compared, key: str, contacts: float) -> Panel:
     h, m = 2.5, 100_000
-    n = round(contacts / float(samples.base.scene.heights.above(np.array(h))))
-    scene = replace(
-        samples.base.scene, keep="sums", separations=(h,), quantities=("load",), n_asperities=n, n_surfaces=m
-    )
+    n = round(contacts / float(f.scene.heights.above(np.array(h))))
+    scene = f.scene.replace(keep="sums", separations=h, quantities=("load",), n_asperities=n, n_surfaces=m)
     exact = scene.theory.cumulants("load", h)
     mean, std = float(exact.mean), float(np.sqrt(exact.variance))
     x = simulate(scene).load[:, 0] / mean

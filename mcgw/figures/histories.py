@@ -1,13 +1,26 @@
 """Where a surface has been: the way back, sideways, and through films."""
 
+from dataclasses import dataclass
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
 from analytic import Model
 from analytic.laws import ContactLaw, Film, Hertz, JohnsonKendallRoberts, KogutEtsion, Tangential, masing
-from mcgw.figures.data import SEPARATION, FigureData, Panel, Points, Series, ratio_of_sums
-from mcgw.figures.listed import PRESSURE, area_of, mean_points, model_of, sums_of
-from mcgw.figures.samples import Samples
+from mcgw.ensemble.simulation import simulate
+from mcgw.figures.compared import Compared
+from mcgw.figures.data import (
+    PRESSURE,
+    SEPARATION,
+    FigureData,
+    Panel,
+    Points,
+    Series,
+    mean_points,
+    ratio_of_sums,
+)
+from mcgw.figures.style import prefixed
 
 __all__ = ["films", "sliding", "way_back"]
 
@@ -25,41 +38,64 @@ _PUSHED = r"displacement $u/(\mu\sigma)$"
 _SLIPS = r"$T/(\mu P)$"
 
 
-def way_back(samples: Samples) -> FigureData:
-    """Load and contacts on the way in and back, of asperities that yield and of those that stick."""
-    h, line = np.linspace(_TURN, 2, 7), np.linspace(_TURN, 2.5, 41)
-    scales = {"load": 1e-6 / area_of(samples), "contacts": 1e-6 / area_of(samples)}
-    labels = {"load": "pressure (MPa)", "contacts": "contacts per mm²"}
-    panels = []
-    for key, (name, law) in zip("ab", _WAYS.items(), strict=True):
-        model = model_of(samples, law, unload_from=_TURN)
-        sums = sums_of(samples, law, h, quantities=("load", "contacts"), unload_from=_TURN)
-        for quantity, scale in scales.items():
-            series = []
-            for way, ending in (("in", ""), ("back", "_unloading")):
-                asked = quantity + ending
-                exact, shown = (model.mean(asked, x) * scale for x in (h, line))
-                touching = sums[asked].any(axis=0)  # a mean of nothing has no error
-                points = mean_points(h[touching], sums[asked][:, touching] * scale, exact[touching])
-                series.append(Series(way, line, shown, points))
-            title = f"{key}  {name}: {quantity}" if quantity == "load" else f"{key}  contacts"
-            panels.append(Panel(title, SEPARATION, labels[quantity], tuple(series), level=0.0))
-    return FigureData(
-        "way-back",
-        "The way back: contacts lift off early where they yielded, late where they stick",
-        f"Pressed to d/σ = {_TURN:g} and released: the same asperities both ways. Penetration at yield "
-        f"{_CRITICAL:g} σ; stretch at break-off {_STRETCH:g} σ. {samples.listed_caption}",
-        tuple(panels),
-    )
+def way_back(f: Compared) -> FigureData:
+    """Show load and contacts on the way in and back: of a sweep for asperities that yield and that stick."""
+    area, labels = f.scene.surface.nominal_area, {"load": "pressure (MPa)", "contacts": "contacts per mm²"}
+    if f.swept:
+        h, line, panels = np.linspace(_TURN, 2, 7), np.linspace(_TURN, 2.5, 41), []
+        for key, (name, law) in zip("ab", _WAYS.items(), strict=True):
+            sums = f.sums(law, h, quantities=("load", "contacts"), unload_from=_TURN)
+            ways = _Ways(f.model(law=law, unload_from=_TURN), sums, h, line, fewest=1)
+            for quantity, label in labels.items():
+                title = f"{key}  {name}: {quantity}" if quantity == "load" else f"{key}  contacts"
+                panels.append(ways.panel(title, label, quantity, 1e6 * area))
+        return FigureData(
+            "The way back: contacts lift off early where they yielded, late where they stick",
+            f"Pressed to d/σ = {_TURN:g} and released: the same asperities both ways. Penetration at yield "
+            f"{_CRITICAL:g} σ; stretch at break-off {_STRETCH:g} σ. {f.listed_caption}",
+            tuple(panels),
+        )
+    both = f.scene.replace(unload_from=f.asked.unload_from, quantities=("load", "contacts"))
+    ensemble = simulate(both)
+    sums = {name: ensemble.values(name) for name in (*labels, *(f"{x}_unloading" for x in labels))}
+    most = max(np.abs(both.theory.mean(name, f.line)).max() for name in ("load", "load_unloading"))
+    unit, prefix = prefixed(float(most) / area)
+    ways = _Ways(both.theory, sums, f.h, f.line, fewest=20)
+    panels = [
+        ways.panel("a  load", f"pressure ({prefix}Pa)", "load", area * unit),
+        ways.panel("b  contacts", labels["contacts"], "contacts", 1e6 * area),
+    ]
+    return FigureData(f"Pressed to d/σ = {both.theory.unload_from:g}, and let go", f.caption, tuple(panels))
 
 
-def sliding(samples: Samples) -> FigureData:
-    """Pre-sliding curves, and cycles by Masing's rule."""
+@dataclass(frozen=True)
+class _Ways:
+    """What is known of both ways: theory, sums of surfaces at separations, and how many make a point."""
+
+    theory: Any
+    sums: dict[str, Array]
+    h: Array
+    line: Array
+    fewest: int
+
+    def panel(self, title: str, ylabel: str, quantity: str, unit: float) -> Panel:
+        series = []
+        for way, name in (("in", quantity), ("back", f"{quantity}_unloading")):
+            exact, line = (self.theory.mean(name, x) / unit for x in (self.h, self.line))
+            values = self.sums[name] / unit
+            known = np.count_nonzero(values, axis=0) >= self.fewest  # a mean of nothing has no error
+            points = mean_points(self.h[known], values[:, known], exact[known]) if known.any() else None
+            series.append(Series(way, self.line, line, points))
+        return Panel(title, SEPARATION, ylabel, tuple(series), level=0.0)
+
+
+def sliding(f: Compared) -> FigureData:
+    """Show pre-sliding curves, and cycles by Masing's rule."""
     u, line = np.linspace(0, 1.2, 7)[1:], np.linspace(0, 1.2, 61)
-    model, curves, cycles = model_of(samples, Hertz()), [], []
+    model, curves, cycles = f.model(), [], []
     for h in (0.0, 1.0, 2.0):
-        pushed = Tangential(_FRICTION, _POISSON, u * _FRICTION * samples.surface.sigma)
-        sums = sums_of(samples, Hertz(), np.array([h]), quantities=("load",), tangential=pushed)
+        pushed = Tangential(_FRICTION, _POISSON, u * _FRICTION * f.scene.surface.sigma)
+        sums = f.sums(Hertz(), np.array([h]), quantities=("load",), tangential=pushed)
         ratio, stderr = ratio_of_sums(sums["tangential_load"][:, 0], _FRICTION * sums["load"])
         points = Points(u, ratio, stderr, _slipping(model, h, u))
         curves.append(Series(f"d/σ = {h:g}", line, _slipping(model, h, line), points))
@@ -70,10 +106,9 @@ def sliding(samples: Samples) -> FigureData:
         around = np.concatenate([x, down, -down]), np.concatenate([virgin, back, -back])
         cycles.append(Series(f"up to {reach:g}", *around))
     return FigureData(
-        "sliding",
         "Pushed sideways: from the first slip to gross sliding",
         f"Ciavarella's and Jaeger's theorem, surface by surface; friction {_FRICTION:g}, Poisson's ratio "
-        f"{_POISSON:g}. Cycles at d/σ = 1 by Masing's rule. {samples.listed_caption}",
+        f"{_POISSON:g}. Cycles at d/σ = 1 by Masing's rule. {f.listed_caption}",
         (
             Panel("a  first push", _PUSHED, _SLIPS, tuple(curves), level=1.0),
             Panel("b  cycles", _PUSHED, _SLIPS, tuple(cycles), level=0.0),
@@ -88,26 +123,24 @@ def _slipping(model: Model, h: float, u: Array) -> Array:
     return np.asarray((load - model.mean("load", h + pushed.shifts(model.surface))) / load)
 
 
-def films(samples: Samples) -> FigureData:
-    """Resistance against load, with a film on the spots."""
+def films(f: Compared) -> FigureData:
+    """Show the resistance against load, with a film on the spots."""
     h, line = np.linspace(0, 3, 7), np.linspace(3.5, 0, 36)  # pressures rise
-    root, unit = np.sqrt(samples.surface.radius * samples.surface.sigma), 1e9 * area_of(samples)
-    bare, series = model_of(samples, Hertz()), []
+    root, unit = np.sqrt(f.scene.surface.radius * f.scene.surface.sigma), 1e9 * f.scene.surface.nominal_area
+    bare, series = f.model(), []
     pressure, shown = (bare.mean("pressure", x) / 1e6 for x in (h, line))
     for b in (0.0, 0.1, 1.0, 10.0):
         film = Film(_RESISTIVITY, b * np.pi * _RESISTIVITY * root / 4)
-        model = model_of(samples, Hertz(), film=film)
+        model = f.model(film=film)
         exact, resistance = (unit / model.mean("conductance_si", x) for x in (h, line))
-        values = sums_of(samples, Hertz(), h, quantities=("load",), film=film)["conductance_si"]
+        values = f.sums(Hertz(), h, quantities=("load",), film=film)["conductance_si"]
         mean = values.mean(axis=0)
         error = values.std(axis=0, ddof=1) / np.sqrt(len(values)) / mean
         points = Points(pressure, unit / mean, unit / mean * error, exact)
         series.append(Series("no film" if b == 0 else f"b = {b:g}", shown, resistance, points))
     return FigureData(
-        "films",
         "A film on the spots",
         f"b is the radius of a spot over √(Rσ) whose film and constriction resist alike; "
-        f"ρ = {_RESISTIVITY:g} Ω m. {samples.listed_caption}",
+        f"ρ = {_RESISTIVITY:g} Ω m. {f.listed_caption}",
         (Panel("", PRESSURE, "resistance of 1 mm² (mΩ)", tuple(series), ("log", "log")),),
-        columns=1,
     )

@@ -1,5 +1,8 @@
 """Who yields, and what the choice of the law is worth on the same surfaces."""
 
+from dataclasses import replace
+from functools import partial
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -13,9 +16,9 @@ from analytic.laws import (
     ZhaoMaiettaChang,
     piece_of,
 )
-from mcgw.figures.data import SEPARATION, FigureData, Panel, Points, Series, ratio_of_sums
-from mcgw.figures.listed import PRESSURE, model_of, sums_of
-from mcgw.figures.samples import Samples
+from mcgw.ensemble.simulation import simulate
+from mcgw.figures.compared import Compared, of_gamma
+from mcgw.figures.data import PRESSURE, SEPARATION, FigureData, Panel, Points, Series, ratio_of_sums
 
 __all__ = ["laws_compared", "who_yields"]
 
@@ -35,32 +38,52 @@ _LAWS: dict[str, ContactLaw] = {
 _ENOUGH = 100  # contacts on either side of a share
 
 
-def who_yields(samples: Samples) -> FigureData:
-    """Shares of the contacts that are elastic, yield, and are fully plastic, by the grading."""
+def who_yields(f: Compared) -> FigureData:
+    """Show the share of the contacts that yielded: of a sweep those of each state, by the grading."""
+    return _states(f) if f.swept else _yielded(f)
+
+
+def _yielded(f: Compared) -> FigureData:
+    area, series = f.scene.surface.nominal_area, []
+    for label, scene in f.all.items():
+        if scene.law.elastic:
+            continue
+        ensemble = simulate(scene.replace(quantities=("load", "contacts", "yielded")))
+        load = f.theory(label, "load", f.line)
+        share, exact = (f.theory(label, "yielded", h) / f.theory(label, "contacts", h) for h in (f.line, f.h))
+        yielded, contacts = ensemble.values("yielded"), ensemble.values("contacts")
+        points = f.points(partial(ratio_of_sums, yielded, contacts), exact)
+        if points:
+            points = replace(points, x=ensemble.mean("load")[f.enough(f.scene)] / area / 1e6)
+        series.append(Series(label, load / area / 1e6, share, points))
+    panel = Panel("", PRESSURE, "share of the contacts that yielded", tuple(series), ("log", "linear"))
+    return FigureData("Who yields", f.caption, (panel,))
+
+
+def _states(f: Compared) -> FigureData:
     law, panels = _LAWS["Kogut"], []
-    models = {gamma: model_of(samples, law, gamma) for gamma in (2.0, 1.0, 0.5)}
+    models = {gamma: f.model(gamma, law=law) for gamma in (2.0, 1.0, 0.5)}
     for key, (name, pieces) in zip("abc", _STATES, strict=True):
         series = []
         for gamma, model in models.items():
             line = _share(model, pieces, _FALLING)
-            points = _share_points(samples, law, gamma, model, pieces)
-            series.append(Series(f"γ = {gamma:g}", _pressure(model, _FALLING), line, points))
+            points = _share_points(f.listed, law, gamma, model, pieces)
+            series.append(Series(of_gamma(gamma), _pressure(model, _FALLING), line, points))
         title, label = f"{key}  {name}", "share of the contacts"
         panels.append(Panel(title, PRESSURE, label, tuple(series), ("log", "linear")))
     return FigureData(
-        "who-yields",
         "Who yields: the plasticity index as a count of contacts",
         f"Kogut and Etsion's law; an asperity of modulus E* yields at a penetration of {_CRITICAL:g} σ, a "
-        f"stiffer one sooner. {samples.listed_caption}",
+        f"stiffer one sooner. {f.listed_caption}",
         tuple(panels),
     )
 
 
-def laws_compared(samples: Samples) -> FigureData:
-    """Load and area of all laws that yield, relative to Hertz's on the same surfaces, and at its load."""
-    hertz, model = sums_of(samples, Hertz(), _AT), model_of(samples, Hertz())
-    models = {label: model_of(samples, law) for label, law in _LAWS.items()}
-    sums = {label: sums_of(samples, law, _AT) for label, law in _LAWS.items()}
+def laws_compared(f: Compared) -> FigureData:
+    """Show load and area of laws that yield over Hertz's on the same surfaces, and at its load."""
+    hertz, model = f.sums(Hertz(), _AT), f.model()
+    models = {label: f.model(law=law) for label, law in _LAWS.items()}
+    sums = {label: f.sums(law, _AT) for label, law in _LAWS.items()}
     panels = []
     for key, name in (("a", "load"), ("b", "area")):
         series = []
@@ -73,10 +96,9 @@ def laws_compared(samples: Samples) -> FigureData:
     label = "area over Hertz's at this load"
     panels.append(Panel("c  equal load", PRESSURE, label, at_load, ("log", "linear"), level=1.0))
     return FigureData(
-        "laws-compared",
         "The choice of the law: the same surfaces, the same onset of yield",
         f"All yield at a penetration of {_CRITICAL:g} σ (Jackson's with S_y/E* = {_STRAIN:g}). Ratios on the "
-        f"same surfaces have next to no noise. {samples.listed_caption}",
+        f"same surfaces have next to no noise. {f.listed_caption}",
         tuple(panels),
     )
 
@@ -90,12 +112,12 @@ def _share(model: Model, pieces: tuple[int, ...], h: Array) -> Array:
 
 
 def _share_points(
-    samples: Samples, law: ContactLaw, gamma: float, model: Model, pieces: tuple[int, ...]
+    listed: tuple[Array, ...], law: ContactLaw, gamma: float, model: Model, pieces: tuple[int, ...]
 ) -> Points:
     """Shares on the listed surfaces, where they have enough contacts of this kind and of others."""
     grading = Exponential(gamma)
-    counts = np.zeros((2, len(samples.heights), len(_AT)))
-    for i, s in enumerate(samples.heights):
+    counts = np.zeros((2, len(listed), len(_AT)))
+    for i, s in enumerate(listed):
         for k, h in enumerate(_AT):
             touching = s[s > h]
             piece = piece_of(law, touching - h, grading(touching))

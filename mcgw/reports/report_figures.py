@@ -76,7 +76,7 @@ def means_figures(ensemble: Ensemble) -> list[PageFigure]:
         exact = ensemble.scene.theory.mean(name, h)
         series = Series("theory, and means", h, exact, Points(h, mean, np.zeros(len(h)), exact))
         panel = Panel(title_of(name), "separation d/σ", quantity_of(name).unit, (series,), ("linear", "log"))
-        figure = draw(FigureData(name, "", "Line: exact. Markers: means.", (panel,), columns=1))
+        figure = draw(FigureData("", "Line: exact. Markers: means.", (panel,), columns=1))
         found.append(line_figure(figure, quantity_of(name).long_name))
     return found
 
@@ -158,9 +158,7 @@ def _spread(comparison: Comparison) -> FigureData:
         points = Points(h[known], std / mean, error[known], exact[known])
         series.append(Series(name, h[order], exact[order], points))
     panel = Panel("Spread over surfaces", "separation d/σ", "std / mean", tuple(series), ("linear", "log"))
-    return FigureData(
-        "spread", "", "Lines: exact. Markers: the ensemble, with standard errors.", (panel,), columns=1
-    )
+    return FigureData("", "Lines: exact. Markers: the ensemble, with standard errors.", (panel,), columns=1)
 
 
 def _relative_error(scene: Scene, name: str) -> NDArray[np.float64]:

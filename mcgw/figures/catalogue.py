@@ -1,0 +1,132 @@
+"""The figures of `mcgw figures`: a row each, of the paper's preset swept over gamma or of anybody's scene."""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from importlib.resources import files
+
+import numpy as np
+
+from mcgw.figures import curves, equal_load, finite, histories, moduli, yielding
+from mcgw.figures.compared import SCENE, Compared
+from mcgw.figures.data import FigureData
+from mcgw.machine.progress import steps
+from mcgw.scene.scene_file import scene_from
+
+__all__ = ["CATALOGUE", "Row", "figures_of", "of_paper", "rows_of"]
+
+_SURFACES = 2000  # of the paper's figures
+
+
+@dataclass(frozen=True)
+class Row:
+    """A figure.
+
+    Parameters
+    ----------
+    name : str
+        Of its files.
+    draw : callable
+        Takes the scenes to its numbers.
+    needs : tuple of callables, optional
+        What it has no meaning without: each says what is missing, or nothing.
+    sweep : bool, optional
+        Whether it is of a sweep over gamma alone.
+    """
+
+    name: str
+    draw: Callable[[Compared], FigureData]
+    needs: tuple[Callable[[Compared], str], ...] = ()
+    sweep: bool = False
+
+    def lacking(self, f: Compared) -> str:
+        """Say why it has no meaning for a scene; nothing if it has."""
+        return next(filter(None, (need(f) for need in self.needs)), "")
+
+
+def _grading(f: Compared) -> str:
+    return "" if f.graded else "the scene has no grading: E*(s) = E* at every height"
+
+
+def _reference(f: Compared) -> str:
+    """Ratios are to another scene."""
+    alone = "the scene is its own reference (homogeneous, Hertz's law): every ratio is 1"
+    return "" if f.others else alone
+
+
+def _pressing(f: Compared) -> str:
+    """There is no ratio to a pull, nor a logarithm of it."""
+    pulls = any(np.any(f.theory(label, "load", f.line) <= 0) for label in f.all)
+    return "the mean load is not positive at every separation: there is no ratio to it" if pulls else ""
+
+
+def _same_load(f: Compared) -> str:
+    try:
+        for label in f.others:
+            f.at_load_of_reference(label, f.line)
+    except ValueError:
+        return "the scene does not carry the load of its reference at every separation"
+    return ""
+
+
+def _several(f: Compared) -> str:
+    return "" if f.scene.n_surfaces > 1 else "there is one surface: nothing differs"
+
+
+def _yielding(f: Compared) -> str:
+    law = f.scene.law
+    yields = f.swept or (not law.elastic and np.any(f.theory(SCENE, "yielded", f.line)))
+    return "" if yields else f"nothing yields under contact.law = {law.name!r}"
+
+
+def _released(f: Compared) -> str:
+    released = f.swept or f.asked.unload_from is not None
+    return "" if released else "the scene is not released: contact.unload_from is left out"
+
+
+CATALOGUE = (
+    Row("figure-1", curves.gradings, (_grading,)),
+    Row("figure-2", curves.load),
+    Row("figure-3", curves.area_per_load, (_reference, _pressing)),
+    Row("figure-4", moduli.mean_moduli, (_grading,)),
+    Row("figure-5", curves.stiffness),
+    Row("figure-6", curves.stiffness_ratios, (_reference,)),
+    Row("equal-load", equal_load.equal_load, (_reference, _pressing, _same_load)),
+    Row("fluctuations", finite.fluctuations, (_several,)),
+    Row("distribution", finite.distribution, sweep=True),
+    Row("area-and-load", curves.area_and_load, (_pressing,)),
+    Row("who-carries", moduli.carriers, sweep=True),
+    Row("negative-modulus", moduli.negative_modulus, sweep=True),
+    Row("who-yields", yielding.who_yields, (_yielding, _pressing)),
+    Row("laws-compared", yielding.laws_compared, sweep=True),
+    Row("way-back", histories.way_back, (_released,)),
+    Row("sliding", histories.sliding, sweep=True),
+    Row("films", histories.films, sweep=True),
+)
+
+
+def of_paper() -> Compared:
+    """Take the paper's surfaces, those of the preset ``demo``."""
+    text = (files("mcgw.scene") / "presets" / "demo.toml").read_text(encoding="utf-8")
+    return Compared(scene_from(text).replace(n_surfaces=_SURFACES), swept=True)
+
+
+def rows_of(f: Compared) -> list[Row]:
+    """Pick the rows that a scene or a sweep has."""
+    return [row for row in CATALOGUE if f.swept or not row.sweep]
+
+
+def figures_of(f: Compared) -> Iterator[tuple[str, FigureData | str]]:
+    """Compute the figures of a scene or of a sweep.
+
+    Parameters
+    ----------
+    f : Compared
+        Of a scene its surface, separations, grading, contact law, height law and seed are used.
+
+    Yields
+    ------
+    (str, FigureData or str)
+        Name of a figure, and its numbers, or why it has no meaning for this scene.
+    """
+    for row in steps(rows_of(f), "figures"):
+        yield row.name, row.lacking(f) or replace(row.draw(f), name=row.name)

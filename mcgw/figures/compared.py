@@ -1,0 +1,245 @@
+"""Scenes on the same surfaces side by side: one and what it is measured by, or a preset swept over gamma."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from analytic import QUANTITIES, Exponential, Hertz, Homogeneous, MeasuredHeights, Model
+from analytic.laws import ContactLaw
+from mcgw.ensemble.ensemble import Ensemble
+from mcgw.ensemble.regrading import regrade
+from mcgw.ensemble.simulation import simulate
+from mcgw.figures.data import Estimate, Points
+from mcgw.figures.style import contact_label, short
+from mcgw.formats.evenly import evenly
+from mcgw.sampling.asperities import heights
+from mcgw.sampling.law_sums import asperity_sums
+from mcgw.scene.law_text import law_text
+from mcgw.scene.samplers import promise_of
+from mcgw.scene.scene import Scene
+
+__all__ = ["ENOUGH", "SCENE", "Compared", "of_gamma"]
+
+Array = NDArray[np.float64]
+
+SCENE = "this scene"
+_STIFFER, _SOFTER = (2.0, 1.5, 1.2, 1.0), (1.0, 0.8, 0.5, 0.2)
+_MOST_SURFACES, _MOST_ASPERITIES = 1000, 1_000_000_000
+_MOST_SEPARATIONS, _FINE, _COARSE = 17, 49, 25  # of lines: radii of their own take long
+_SWEPT, _SWEPT_LINE = np.linspace(0, 4, 17), np.linspace(0, 4, 161)
+_LOWEST = -0.2  # of the heights that are listed for a sweep: at equal load it goes below its separations
+_MOST_HEIGHTS = 10_000_000
+ENOUGH = 20  # contacts in the ensemble below which a mean is far from Gaussian
+
+
+def of_gamma(gamma: float) -> str:
+    """Label a grading."""
+    return f"γ = {gamma:g}"
+
+
+@dataclass(frozen=True)
+class Compared:
+    """Scenes on the same surfaces, each with its theory and its ensemble when first asked for.
+
+    Parameters
+    ----------
+    asked : Scene
+        As it was given.
+    swept : bool, optional
+        Whether its surfaces get the gradings of the paper. Else it stands as it is beside what it is measured
+        by: itself without interaction, without its grading, and with Hertz's law.
+    most_listed : int, optional
+        Surfaces whose heights are listed one by one.
+    """
+
+    asked: Scene
+    swept: bool = False
+    most_listed: int = 100
+
+    @cached_property
+    def scene(self) -> Scene:
+        """What is drawn: pressed once, with the sums that the figures show, at some of its separations."""
+        if self.swept:
+            return self.asked.replace(
+                grading=Homogeneous(), separations=_SWEPT, quantities=tuple(QUANTITIES), keep="moments"
+            )
+        h = np.unique(self.asked.separations)
+        cheap = _MOST_ASPERITIES // self.asked.n_asperities
+        real = promise_of(self.asked.sampler).real_surfaces
+        return self.asked.replace(
+            separations=h[evenly(len(h), _MOST_SEPARATIONS)],
+            quantities=tuple(QUANTITIES),
+            unload_from=None,
+            film=None,
+            tangential=None,
+            n_surfaces=max(min(self.asked.n_surfaces, _MOST_SURFACES, cheap), 1),
+            sampler=self.asked.sampler if real else "auto",
+            keep="sums",
+            rel_err=None,
+            max_seconds=None,
+        )
+
+    @cached_property
+    def all(self) -> dict[str, Scene]:
+        """Scenes by label, the one that ratios are taken to last; that alone if it is the simplest itself."""
+        if self.swept:
+            gammas = (*_STIFFER[:-1], *_SOFTER[1:])
+            graded = {of_gamma(g): self.scene.replace(grading=Exponential(g)) for g in gammas}
+            return graded | {of_gamma(1): self.scene}
+        found = {SCENE: self.scene}
+        if self.scene.interaction is not None:
+            found["independent"] = self.scene.replace(interaction=None)
+        if self.graded:
+            found["homogeneous"] = self.scene.replace(grading=Homogeneous())
+        if not self.hertz:
+            found["homogeneous, Hertz"] = self.scene.replace(grading=Homogeneous(), law=Hertz())
+        return found
+
+    @property
+    def groups(self) -> tuple[tuple[str, tuple[str, ...]], ...]:
+        """Titles of panels, and labels of what they show together."""
+        if not self.swept:
+            return (("", tuple(self.all)),)
+        return tuple(
+            (title, tuple(map(of_gamma, gammas)))
+            for title, gammas in (("a  stiffer tips", _STIFFER), ("b  softer tips", _SOFTER))
+        )
+
+    @property
+    def graded(self) -> bool:
+        """Whether a modulus depends on the height."""
+        return self.swept or not isinstance(self.scene.grading, Homogeneous)
+
+    @property
+    def hertz(self) -> bool:
+        """Whether its law of contact is Hertz's."""
+        return type(self.scene.law) is Hertz
+
+    @property
+    def reference(self) -> str:
+        """Label of what ratios are taken to."""
+        return list(self.all)[-1]
+
+    @property
+    def others(self) -> tuple[str, ...]:
+        """Labels of those that ratios are taken of."""
+        return tuple(self.all)[:-1]
+
+    @cached_property
+    def h(self) -> Array:
+        """Separations of the points."""
+        return np.array(self.scene.separations)
+
+    @cached_property
+    def line(self) -> Array:
+        """Separations of the lines."""
+        if self.swept:
+            return _SWEPT_LINE
+        fine = _FINE if self.scene.curvature is None else _COARSE
+        return np.linspace(self.h.min(), self.h.max(), fine) if len(self.h) > 1 else self.h
+
+    @cached_property
+    def _kept(self) -> dict[Any, Any]:
+        return {}
+
+    def model(self, gamma: float = 1.0, **changes: Any) -> Model:
+        """Theory of the surfaces of a sweep, with another grading and contact."""
+        grading = Homogeneous() if gamma == 1 else Exponential(gamma)
+        model: Model = self.scene.theory
+        return replace(model, grading=grading, **changes)
+
+    def theory(self, key: str | float, quantity: str, h: Array) -> Array:
+        """Exact means of what has this label or, in a sweep, this gamma, each computed once."""
+        place = (key, quantity, h.tobytes())
+        if place not in self._kept:
+            model = self.all[key].theory if isinstance(key, str) else self.model(key)
+            self._kept[place] = model.mean(quantity, h)
+        return np.asarray(self._kept[place])
+
+    def at_load_of_reference(self, key: str | float, h: Array) -> Array:
+        """Separations at which the same load is carried that the reference carries at these."""
+        place = (key, "at load", h.tobytes())
+        if place not in self._kept:
+            model = self.all[key].theory if isinstance(key, str) else self.model(key)
+            self._kept[place] = model.separation_at("load", self.theory(self.reference, "load", h))
+        return np.asarray(self._kept[place])
+
+    def drawn(self, key: str | float) -> Ensemble:
+        """Ensemble of what has this label or, in a sweep, this gamma: on the same surfaces."""
+        key = key if isinstance(key, str) else of_gamma(key)
+        if key not in self._kept:
+            if self.swept and key != self.reference:
+                gamma = float(key.partition("= ")[2])
+                self._kept[key] = regrade(self.drawn(self.reference), Exponential(gamma))
+            else:
+                self._kept[key] = simulate(self.all[key])
+        found: Ensemble = self._kept[key]
+        return found
+
+    @cached_property
+    def listed(self) -> tuple[Array, ...]:
+        """Heights of some surfaces, in sigma, of all that touch."""
+        if isinstance(self.scene.heights, MeasuredHeights):  # the same on every surface, or nearly
+            return ()
+        room = max(int(_MOST_HEIGHTS / max(self.scene.touching, 1.0)), 2)
+        scene = self.scene
+        if scene.curvature is None:
+            lowest = _LOWEST if self.swept else scene.separations
+            scene = scene.replace(sampler="tail", keep="sums", separations=lowest)
+        return tuple(heights(scene, k) for k in range(min(self.most_listed, scene.n_surfaces, room)))
+
+    def sums(self, law: ContactLaw, h: Array, **asked: Any) -> dict[str, Array]:
+        """Sums over each listed surface under a law, at separations above the lowest listed height."""
+        asked = {"quantities": ("load", "area")} | asked
+        number, seed = self.scene.n_asperities, self.scene.seed
+        scene = Scene(self.scene.surface, separations=h, law=law, n_asperities=number, seed=seed, **asked)
+        every = np.concatenate(self.listed)
+        return asperity_sums(scene, np.array([len(s) for s in self.listed]), every, np.ones(len(every)))
+
+    def enough(self, scene: Scene) -> NDArray[np.bool_]:
+        """At which of its separations the ensemble has contacts and surfaces enough for an error."""
+        h = np.array(scene.separations)
+        return (scene.theory.mean("contacts", h) * scene.n_surfaces >= ENOUGH) & (scene.n_surfaces > 1)
+
+    def points(self, found: Callable[[], Estimate], exact: Array, of: Scene | None = None) -> Points | None:
+        """Points at the separations where the ensemble of a scene has enough for an error."""
+        known = self.enough(of or self.scene)
+        return Points(*(x[known] for x in (self.h, *found(), exact))) if known.any() else None
+
+    def means(self, label: str, quantity: str, unit: float) -> Points | None:
+        """Means over the surfaces, in this unit."""
+        ensemble, exact = self.drawn(label), self.theory(label, quantity, self.h) / unit
+        return self.points(
+            lambda: (ensemble.mean(quantity) / unit, ensemble.stderr(quantity) / unit), exact, self.all[label]
+        )
+
+    @property
+    def caption(self) -> str:
+        """In words."""
+        scene = self.scene
+        markers = (
+            f"Markers: Monte-Carlo means with 95 % intervals, {scene.n_surfaces} surfaces of "
+            f"{scene.n_asperities:g} asperities, seed {scene.seed}, the same for all lines."
+        )
+        return " ".join(filter(None, (self.words, markers * (scene.n_surfaces > 1), "Lines: theory.")))
+
+    @property
+    def listed_caption(self) -> str:
+        """In words, where the heights are listed."""
+        counted = self.caption.replace(f"{self.scene.n_surfaces} surf", f"{len(self.listed)} surf")
+        return counted if self.listed else self.words
+
+    @property
+    def words(self) -> str:
+        """What the scene is."""
+        if self.swept:
+            return ""
+        said, law = contact_label(self.scene), short(law_text(self.scene.heights))
+        if self.scene.interaction is not None:
+            felt = "d/σ is nominal" if self.scene.interaction.nominal else "d/σ is what the summits feel"
+            said += f", interacting ({felt})"
+        return f"This scene: {said}; heights {law}."

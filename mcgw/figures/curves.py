@@ -1,0 +1,199 @@
+"""Gradings, means against the separation and the load, and their ratios to the homogeneous surface."""
+
+from collections.abc import Callable, Iterable
+from dataclasses import replace
+from functools import partial
+
+import numpy as np
+from numpy.typing import NDArray
+
+from analytic import quantity_of
+from mcgw.figures.compared import SCENE, Compared
+from mcgw.figures.data import (
+    GAMMA,
+    PRESSURE,
+    SEPARATION,
+    Estimate,
+    FigureData,
+    Panel,
+    Points,
+    Series,
+    quotient_of_sums,
+    ratio_of_sums,
+)
+from mcgw.figures.style import prefixed
+
+__all__ = [
+    "area_and_load", "area_per_load", "at_separations", "gradings", "load", "over_gamma", "stiffness",
+    "stiffness_ratio", "stiffness_ratios",
+]  # fmt: skip
+
+Array = NDArray[np.float64]
+Exact = Callable[[str | float, Array], Array]  # of a label or gamma at separations
+
+_BESIDE = 1.5  # sigma above the highest separation that a grading is shown
+_AT = np.arange(5.0)  # separations of the paper's ratios
+_STIFFER = np.linspace(1, 2, 81), np.array([1.2, 1.4, 1.6, 1.8, 2.0])
+_SOFTER = np.linspace(0.2, 1, 81), np.array([0.2, 0.4, 0.6, 0.8])
+_GRADES = ("γ = 2", "γ = 1", "γ = 0.5", "γ = 0.2")
+
+
+def gradings(f: Compared) -> FigureData:
+    """Show the modulus over the height."""
+    s = f.line if f.swept else np.linspace(f.h.min(), f.h.max() + _BESIDE, 161)
+    panels = [
+        Panel(
+            title, "summit height s = z/σ", "E*(s)/E*",
+            tuple(Series(label, s, f.all[label].modulus(s)) for label in labels),
+        )
+        for title, labels in (f.groups if f.swept else (("", (SCENE, "homogeneous")),))
+    ]  # fmt: skip
+    if f.swept:
+        caption = "E*(s)/E* = γ − (γ − 1) exp(−s). Theory alone."
+        return FigureData("Exponential grading (Eq. 4)", caption, tuple(panels))
+    return FigureData("The grading", f.words, tuple(panels))
+
+
+def load(f: Compared) -> FigureData:
+    """Show the load over the separation."""
+    return _against_separation(f, "Load at a given separation (Eq. 7)", "load", "pressure $P/A_n$", "Pa")
+
+
+def stiffness(f: Compared) -> FigureData:
+    """Show the stiffness over the separation."""
+    title = "Stiffness at a given separation; the paper's “conductance”"
+    return _against_separation(f, title, "stiffness", "stiffness $K/A_n$", "Pa/m")
+
+
+def _against_separation(f: Compared, title: str, quantity: str, symbol: str, unit: str) -> FigureData:
+    """Means: of a sweep as the paper's integrals, else per nominal area."""
+    q, area = quantity_of(quantity), f.scene.surface.nominal_area
+    top = max(float(np.abs(f.theory(label, quantity, f.line)).max()) for label in f.all)
+    if f.swept:
+        size, ylabel = (
+            f.scene.n_asperities * q.scale(f.scene.surface),
+            rf"{quantity} integral $F^*_{{{2 * q.exponent:g}/2}}$",
+        )
+    else:
+        factor, prefix = prefixed(top / area)
+        size, ylabel = area * factor, f"{symbol} ({prefix}{unit})"
+    panels = []
+    for name, labels in f.groups:
+        lines = {label: f.theory(label, quantity, f.line) / size for label in labels}
+        positive = all(np.all(line >= 0) and np.any(line > 0) for line in lines.values())
+        series = (
+            Series(label, f.line, line, f.means(label, quantity, size)) for label, line in lines.items()
+        )
+        scales = ("linear", "log" if positive else "linear")
+        panels.append(Panel(name, SEPARATION, ylabel, tuple(series), scales, None if positive else 0.0))
+    return FigureData(title, f.caption, tuple(panels))
+
+
+def area_per_load(f: Compared) -> FigureData:
+    """Show the area per load over the reference's."""
+
+    def exact(key: str | float, h: Array) -> Array:
+        area, load = (f.theory(key, name, h) / f.theory(f.reference, name, h) for name in ("area", "load"))
+        return area / load
+
+    def drawn(key: str | float) -> Estimate:
+        ours, theirs = f.drawn(key), f.drawn(f.reference)
+        return quotient_of_sums(*((x.values("area"), x.values("load")) for x in (ours, theirs)))
+
+    return _ratios(f, "Area per load at a given separation (Eq. 12)", r"(A/P)\,/\,(A/P)", exact, drawn)
+
+
+def stiffness_ratio(f: Compared) -> tuple[Exact, Callable[[str | float], Estimate]]:
+    """Give the stiffness over the reference's, exact and drawn."""
+
+    def exact(key: str | float, h: Array) -> Array:
+        return f.theory(key, "stiffness", h) / f.theory(f.reference, "stiffness", h)
+
+    def drawn(key: str | float) -> Estimate:
+        return ratio_of_sums(*(f.drawn(x).values("stiffness") for x in (key, f.reference)))
+
+    return exact, drawn
+
+
+def stiffness_ratios(f: Compared) -> FigureData:
+    """Show the stiffness over the reference's."""
+    title = "Stiffness at a given separation (Eq. 15: “conductance”)"
+    return _ratios(f, title, "K/K", *stiffness_ratio(f))
+
+
+def _ratios(
+    f: Compared, title: str, symbol: str, exact: Exact, drawn: Callable[[str | float], Estimate]
+) -> FigureData:
+    """Over gamma, if that is swept, else over the separation."""
+    if f.swept:
+        parts = (("a  stiffer tips", *_STIFFER), ("b  softer tips", *_SOFTER))
+        panels = [
+            Panel(
+                name, GAMMA, rf"${symbol}_\mathrm{{hom}}$",
+                over_gamma(line, gammas, _AT, exact, at_separations(f, _AT, map(drawn, gammas))), level=1.0,
+            )
+            for name, line, gammas in parts
+        ]  # fmt: skip
+        return FigureData(title, f.caption, tuple(panels))
+    series = tuple(
+        Series(label, f.line, exact(label, f.line), f.points(partial(drawn, label), exact(label, f.h)))
+        for label in f.others
+    )
+    panel = Panel("", SEPARATION, rf"${symbol}_\mathrm{{ref}}$", series, level=1.0)
+    return FigureData(title, f"Reference: {f.reference}, the same surface. {f.caption}", (panel,))
+
+
+def at_separations(f: Compared, at: Array, found: Iterable[Estimate]) -> Estimate:
+    """Take some separations of estimates at all of them: shape (estimates, separations)."""
+    columns = np.searchsorted(f.h, at)
+    mean, stderr = np.array([[x[columns] for x in pair] for pair in found]).transpose(1, 0, 2)
+    return mean, stderr
+
+
+def over_gamma(line: Array, gammas: Array, at: Array, exact: Exact, found: Estimate) -> tuple[Series, ...]:
+    """Draw lines over gamma, one for each separation, with points of shape (gammas, separations)."""
+    curves, truth = (np.array([exact(float(g), at) for g in x]).T for x in (line, gammas))
+    mean, stderr = found
+    return tuple(
+        Series(f"d/σ = {h:g}", line, curves[k], Points(gammas, mean[:, k], stderr[:, k], truth[k]))
+        for k, h in enumerate(at)
+    )
+
+
+def area_and_load(f: Compared) -> FigureData:
+    """Show the real area over the pressure; of a sweep the local exponent, too."""
+    area = f.scene.surface.nominal_area
+    areas, exponents = [], []
+    for label in _GRADES if f.swept else f.all:
+        pressure, fraction = (f.theory(label, name, f.line) / area for name in ("load", "area"))
+        points = f.means(label, "area", area)
+        if points:
+            loads = f.drawn(label).mean("load")[f.enough(f.all[label])]
+            points = replace(points, x=loads / area / 1e6)
+        areas.append(Series(label, pressure / 1e6, fraction, points))
+        if f.swept:
+            exponents.append(_exponent(f, label))
+    panels = [Panel("", PRESSURE, r"real area fraction $A/A_n$", tuple(areas), ("log", "log"))]
+    if not f.swept:
+        return FigureData("Real area against load", f.caption, tuple(panels))
+    panels = [
+        replace(panels[0], title="a  real area"),
+        Panel("b  local exponent", SEPARATION, r"$d\,\ln A/d\,\ln P$", tuple(exponents), level=1.0),
+    ]
+    return FigureData("Real area against load, and how far it is from proportional", f.caption, tuple(panels))
+
+
+def _exponent(f: Compared, label: str) -> Series:
+    """(n/A)/(K/P), to the slope by dA/dd = -pi R n and dP/dd = -K."""
+    names, factor = ("contacts", "area", "stiffness", "load"), np.pi * f.scene.surface.radius
+    n, a, k, p = (f.drawn(label).values(name) for name in names)
+
+    def exact(h: Array) -> Array:
+        n, a, k, p = (f.theory(label, name, h) for name in names)
+        return np.asarray(n / a / (k / p) * factor)
+
+    def drawn() -> Estimate:
+        mean, stderr = quotient_of_sums((n, a), (k, p))
+        return mean * factor, stderr * factor
+
+    return Series(label, f.line, exact(f.line), f.points(drawn, exact(f.h)))
