@@ -15,7 +15,7 @@ __all__: list[str] = []
 def _read(path: Path, heights: Path) -> dict[str, Any]:
     """Facts about a map whose heights are written, rows of y from below; of a profile its dimension alone."""
     import numpy as np
-    from SurfaceTopography import open_topography  # type: ignore[import-not-found, unused-ignore]
+    from SurfaceTopography import open_topography  # type: ignore[import-not-found, import-untyped, unused-ignore]
 
     from mcgw.maps.topography import checked_shape
 
