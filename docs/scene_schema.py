@@ -24,6 +24,7 @@ Shape = dict[str, Any]
 NUMBER: Shape = {"type": "number"}
 POSITIVE: Shape = {"type": "number", "exclusiveMinimum": 0}
 NOT_NEGATIVE: Shape = {"type": "number", "minimum": 0}
+AT_LEAST_ONE: Shape = {"type": "number", "minimum": 1}
 NUMBERS: Shape = {"type": "array", "items": NUMBER, "minItems": 1}
 TEXT: Shape = {"type": "string"}
 FILE: Shape = {"type": "string", "minLength": 1}
@@ -130,6 +131,12 @@ SHAPES: dict[str, dict[str, Shape]] = {
         "at": one_of(("effective", "nominal")),
         "bulk_modulus": QUANTITY,
     },
+    "fitted": {
+        **dict.fromkeys(("m0", "m2", "m4", "area"), QUANTITY),
+        **dict.fromkeys(("kurtosis", "independent"), POSITIVE),
+        "skewness": NUMBER,
+        **dict.fromkeys(("agreement", "lay"), AT_LEAST_ONE),
+    },
     "ensemble": {
         **dict.fromkeys(("n_surfaces", "n_asperities", "max_surfaces"), whole(1)),
         "count": one_of(("fixed", "poisson")),
@@ -146,6 +153,7 @@ SHAPES: dict[str, dict[str, Shape]] = {
 }
 REQUIRED = {"": ["surface", "contact"], "surface": ["nominal_area"], "contact": ["separations"]}
 REQUIRED |= {"interaction": ["reference"]}
+REQUIRED |= {"fitted": ["m0", "m2", "m4", "skewness", "kurtosis", "independent"]}
 TOGETHER = {"ensemble": {"max_surfaces": ["rel_err"]}}
 
 

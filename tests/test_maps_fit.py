@@ -1,5 +1,6 @@
 """From maps to surfaces and scenes: known fields of caps and known spectra are found again."""
 
+import math
 from types import SimpleNamespace
 
 import numpy as np
@@ -180,9 +181,21 @@ def test_a_lay_is_doubted_along_either_axis(axis, without_caps):
     pixel = (4e-6, 1e-6) if axis else (1e-6, 4e-6)
     fit = mcgw.fit(Topography(even.heights, pixel), cutoff=None)
     (line,) = (x for x in fit.cautions if x.startswith("lay:"))
+    assert f"ratio {fit.lay:.3g};" in line
     ratio = fit.mean_squares["slope_x"] / fit.mean_squares["slope_y"]
-    assert f"ratio {ratio:.3g};" in line
+    assert max(ratio, 1 / ratio) <= fit.lay
     assert ratio == pytest.approx(1 / 16 if axis else 16, rel=0.3)
+
+
+def test_a_lay_along_the_diagonal_is_seen(without_caps):
+    """Slopes along x and y are alike there; of two waves one has three times the mean square of the other."""
+    y, x = np.mgrid[0:200, 0:200] * 1e-6
+    q = 2 * math.pi / 20e-6
+    z = 1e-7 * (3**0.5 * np.cos(q * (x + y)) + np.cos(q * (x - y)))
+    fit = mcgw.fit(Topography(z, (1e-6, 1e-6), periodic=True), cutoff=None, form="none")
+    assert fit.mean_squares["slope_x"] == pytest.approx(fit.mean_squares["slope_y"], rel=1e-9)
+    assert fit.lay == pytest.approx(3, rel=1e-9)
+    assert [line for line in fit.cautions if line.startswith("lay:")]
 
 
 def test_skewed_heights_and_alpha_below_its_bound_are_doubted(without_caps):

@@ -39,6 +39,8 @@ SPECTRAL |= {"m0": "1e-12", "m2": "1e-3", "m4": "5e6"}
 LISTED = {("heights", "law"): None, ("heights", "shape"): None, ("ensemble", "sampler"): "'direct'"}
 LISTED |= {"resample": "true"}
 HEIGHTS, RADII = {"heights": "[0.0, 1e-6, 3e-6]"}, {"radii": "[1e-5, 2e-5, 3e-5]"}
+FITTED = {"m0": "1e-12", "m2": "1e-3", "m4": "5e6"}
+FITTED |= {"skewness": "-0.1", "kurtosis": "3.1", "independent": "900.0"}
 # Keys that need other company: its good value, and what is put in place of which other lines.
 COMPANY = {
     ("surface", "bodies"): ("[{E = 7e10, nu = 0.3}, {E = inf}]", {"E_star": None}),
@@ -62,6 +64,10 @@ COMPANY = {
     ("interaction", "reference"): ("'body'", {}),
     ("interaction", "at"): ("'nominal'", {"reference": "'body'"}),
     ("interaction", "bulk_modulus"): ("1e11", {"reference": "'body'"}),
+    **{("fitted", key): (value, FITTED | {key: value}) for key, value in FITTED.items()},
+    ("fitted", "agreement"): ("1.02", FITTED),
+    ("fitted", "lay"): ("1.0", FITTED),
+    ("fitted", "area"): ("'1 mm^2'", FITTED),
     ("surface", "m0"): ("1e-12", SPECTRAL),
     ("surface", "m2"): ("1e-3", SPECTRAL),
     ("surface", "m4"): ("5e6", SPECTRAL),
@@ -143,6 +149,8 @@ WRONG = {
     "area": ["[]", "'x'", PIECE.replace("[1.0]", "['x']"), PIECE.replace("low = 1.0", "lowest = 1.0")],
     "work": ["0", "-1", "'x'"], "pull_off": ["0", "-1", "~inf"],
     "alpha": ["1.5", "0", "'x'", "~nan", "~inf"], "curvature": ["'all'", "1"],
+    "skewness": ["~nan", "'x'"], "kurtosis": ["0", "-1", "~inf"], "independent": ["0", "'many'", "~nan"],
+    "agreement": ["0.9", "~nan", "'x'"], "lay": ["0.5", "-1", "~inf"],
     "m0": ["0", "-1", "~'1 m'"], "m2": ["0", "~nan", "~'1 m'"], "m4": ["0", "-1", "~'1 m'"],
     "largest_radius": ["0", "-1", "~'1 Pa'"], "datum": ["'top'", "1"],
     "radii": ["~[1e-5]", "1", "[1e-5, -1e-5, 1e-5]", "~[1e-5, nan, 1e-5]", "['x', 1, 1]"],
@@ -156,6 +164,7 @@ WRONG_HERE = {
     ("ensemble", "edges"): ["1.0", "'x'", "[1.0, 'x']", "~[nan]", "~[inf]", "[true]", "{a = 1.0}"],
     ("contact", "ratio"): ["0", "-1", "'x'"],
     ("summits", "heights"): ["[]", "~[1.0]", "1", "~[1.0, nan, 2.0]"],
+    ("fitted", "area"): ["0", "-1", "~'1 m'"],
 }  # fmt: skip
 
 
@@ -255,7 +264,7 @@ def test_the_lists_of_keys_are_whole(monkeypatch, example):
         mcgw.scene_from(text_of(table, key, good(table, key)))
     inner = {("contact.separations", name) for name in ("start", "stop", "num")}
     inner |= {("contact.tangential", name) for name in ("friction", "poisson", "displacements")}
-    tables = {("", name) for name in (*GOOD, "summits", "interaction") if name}
+    tables = {("", name) for name in (*GOOD, "summits", "interaction", "fitted") if name}
     assert asked - inner - tables == set(keys()) == set(example)
 
 

@@ -127,6 +127,30 @@ class Fit(Shown):
         return self.listed.radii
 
     @property
+    def lay(self) -> float:
+        """Mean square slope across the lay over that along it, whichever way it runs: 1 if isotropic."""
+        x, y, xy = (self.mean_squares[key] for key in ("slope_x", "slope_y", "slope_xy"))
+        apart = math.hypot(x - y, 2 * xy)
+        return (x + y + apart) / max(x + y - apart, 1e-12 * (x + y))
+
+    @property
+    def agreement(self) -> float | None:
+        """Largest ratio between eta, R and sigma by moments and by counted summits; None if too few are.
+
+        On 20 isotropic Gaussian maps of 1000 to 4000 summits it was 1.01 to 1.05, on as many of 70 to 500
+        summits 1.01 to 1.12; with a lay of 2 : 1 it is 1.6, on honed, lognormal or Weibull maps 1.6 and more.
+        """
+        if "summits" not in self.estimates:
+            return None
+        told, seen = self.estimates["moments"], self.estimates["summits"]
+        return max(
+            max(a.value, b.value) / min(a.value, b.value)
+            for a, b in zip(
+                (told.eta, told.radius, told.sigma), (seen.eta, seen.radius, seen.sigma), strict=True
+            )
+        )
+
+    @property
     def spread_of_curvatures(self) -> float:
         """Relative standard deviation of Gaussian curvatures that have the quartiles of the summits'."""
         low, median, high = np.percentile(self.curvatures, (25, 50, 75))

@@ -12,6 +12,7 @@ from mcgw.maps.fit import Fit
 from mcgw.maps.profile_fit import ProfileFit
 from mcgw.maps.profile_scene import profile_scene
 from mcgw.maps.spectral_scene import FITTED, spectral_scene
+from mcgw.scene.fitted_section import Fitted
 from mcgw.scene.reading import argument
 from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_document
@@ -81,7 +82,22 @@ def fitted_scene(
             'map, on its own area; leave it out, or take heights = "table"'
         )
     scene = _as_fitted(fit, use, heights, argument("E_star", E_star, "Pa"), title)
-    return scene.replace(**changes) if changes else scene
+    return scene.replace(**{"fitted": _known(fit), **changes})
+
+
+def _known(fit: Fit | ProfileFit) -> Fitted:
+    """What the fit knew besides the summits of the scene."""
+    m = fit.moments
+    if isinstance(fit, ProfileFit):
+        counted, expected = fit.peaks
+        agreement = max(counted, expected) / min(counted, expected) if counted > 0 else None
+        return Fitted(
+            m.m0, m.m2, m.m4, fit.roughness.sk, fit.roughness.ku, 2 / fit.errors["m0"] ** 2, agreement
+        )
+    return Fitted(
+        m.m0, m.m2, m.m4, fit.roughness.sk, fit.roughness.ku, fit.waves.independent,
+        fit.agreement, fit.lay, fit.area,
+    )  # fmt: skip
 
 
 def _as_fitted(fit: Fit | ProfileFit, use: str, heights: Heights, modulus: float, title: str) -> Scene:

@@ -19,13 +19,14 @@ class Roughness:
         Arithmetic mean deviation, Sa or Pa, m.
     q : float
         Root mean square deviation, Sq or Pq, m.
-    sk : float
-        Skewness, Ssk or Psk.
+    sk, ku : float
+        Skewness and kurtosis, Ssk and Sku or Psk and Pku.
     """
 
     a: float
     q: float
     sk: float
+    ku: float
 
     def text(self, kind: str) -> str:
         """Named as of a map ("S") or a profile ("P")."""
@@ -36,4 +37,6 @@ def roughness_of(heights: NDArray[np.float64]) -> Roughness:
     """Of an array of any shape without missing points, m."""
     z = heights - heights.mean()
     q = math.sqrt(float(np.mean(z * z)))
-    return Roughness(float(np.mean(np.abs(z))), q, float(np.mean(z**3)) / q**3 if q > 0 else 0.0)
+    square = z * z
+    sk, ku = (float(np.mean(x)) / q**k if q > 0 else 0.0 for x, k in ((square * z, 3), (square * square, 4)))
+    return Roughness(float(np.mean(np.abs(z))), q, sk, ku)

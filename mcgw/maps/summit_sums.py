@@ -15,9 +15,9 @@ __all__ = ["EDGE", "SUMS", "SummitSums", "coarse_sums_of", "summit_sums_of"]
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
-# Rows of the sums: points, powers of height, squared slopes, squared second derivatives, and the
-# latter by plain differences over one pixel and over two, which tell whether the pixel resolves them.
-SUMS = ("points", "z", "z2", "z3", "slope_x", "slope_y", "bend", "bend_1", "bend_2")
+# Rows of the sums: points, powers of height, squared slopes, squared second derivatives, the latter by plain
+# differences over one pixel and over two, which tell whether the pixel resolves them, and products of slopes.
+SUMS = ("points", "z", "z2", "z3", "slope_x", "slope_y", "bend", "bend_1", "bend_2", "slope_xy")
 EDGE = 4  # pixels that are left out
 _STENCIL = 2  # pixels that the differences reach
 
@@ -157,6 +157,7 @@ def _pass(z: Any, seen: Any, dx: Any, dy: Any, across: Any, sums: Any, summits: 
             sums[6, k] += (xx * xx + yy * yy) / 2
             sums[7, k] += (xx1 * xx1 + yy1 * yy1) / 2
             sums[8, k] += (xx2 * xx2 + yy2 * yy2) / 2
+            sums[9, k] += sx * sy
             if _is_summit(z, b, a) and found < part_of.size:
                 summits[0, found] = _apex(z, b, a)
                 summits[1, found] = -(xx + yy) / 2

@@ -25,6 +25,7 @@ from mcgw.machine.kept import kept
 
 if TYPE_CHECKING:
     from analytic import Interaction
+    from mcgw.scene.fitted_section import Fitted
 
 __all__ = ["EXACT", "Fields", "RelErr", "share_above"]
 
@@ -64,6 +65,7 @@ class Fields:
     edges: tuple[float, ...]
     rel_err: RelErr | None
     max_seconds: float | None
+    fitted: "Fitted | None"
 
     @property
     def modulus(self) -> Grading:

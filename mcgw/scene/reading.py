@@ -25,6 +25,7 @@ from mcgw.scene.summits_section import Spectral, curvature_of
 
 if TYPE_CHECKING:
     from analytic import Interaction
+    from mcgw.scene.fitted_section import Fitted
 
 __all__ = ["argument", "as_toml", "read_values"]
 
@@ -58,6 +59,7 @@ def read_values(given: Mapping[str, Any]) -> tuple[dict[str, Any], list[str]]:
         "negative": grading.choice("negative", "error", NEGATIVE),
         "heights": law,
         "interaction": _interaction(table.get("interaction"), problems),
+        "fitted": _fitted(given["fitted"], problems),
         "curvature": _curvature(summits, given["curvature"], law, surface, "random" if spectral else "mean"),
         "n_surfaces": _whole(ensemble, "n_surfaces", given, LeftOut(), least=1),
         "n_asperities": _whole(ensemble, "n_asperities", given, LeftOut(), least=1),
@@ -135,6 +137,14 @@ def _interaction(given: Any, problems: list[str]) -> "Interaction | None":
     from mcgw.scene.interaction_section import interaction_argument  # for those scenes alone
 
     return interaction_argument(given, problems)
+
+
+def _fitted(given: Any, problems: list[str]) -> "Fitted | None":
+    if given is None:
+        return None
+    from mcgw.scene.fitted_section import fitted_argument  # as above
+
+    return fitted_argument(given, problems)
 
 
 def _curvature(

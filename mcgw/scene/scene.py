@@ -24,8 +24,7 @@ from mcgw.scene.surface import SURFACE_UNITS, surface_of
 
 if TYPE_CHECKING:
     from analytic import Interaction
-
-if TYPE_CHECKING:
+    from mcgw.scene.fitted_section import Fitted
     from mcgw.scene.validity import Validity
 
 __all__ = ["LeftOut", "Scene", "SceneError"]
@@ -113,6 +112,9 @@ class Scene(Fields, Shown):
         with one for each, `inf` where nothing is asked.
     max_seconds : float or str, optional
         Stop after the block that is being drawn then; s, or as "2 h".
+    fitted : Fitted or dict, optional
+        What the fit of a map knew besides, as `mcgw.fitted_scene` writes it; or its keys in a scene file.
+        It draws nothing: by it `validity` tells how far the model is from elasticity, or that nobody knows.
 
     Raises
     ------
@@ -162,6 +164,7 @@ class Scene(Fields, Shown):
         edges: ArrayLike | None = None,
         rel_err: float | str | Mapping[str, Any] | None = None,
         max_seconds: float | str | None = None,
+        fitted: "Fitted | dict[str, Any] | None" = None,
     ) -> None:
         given = {key: value for key, value in locals().items() if key != "self"}
         values, problems = read_values(given)
@@ -248,6 +251,7 @@ class Scene(Fields, Shown):
             ("grading", law_text(self.grading) + ("" if self.negative == "error" else f", {self.negative}")),
             ("heights", law_text(self.heights)),
             *([] if self.curvature is None else [("radii", law_text(self.curvature))]),
+            *([] if self.fitted is None else zip(("fitted to", ""), self.fitted.lines(), strict=True)),
             *contact_facts(self),
             ("separations", f"{among}{ends} (d/sigma)"),
             ("quantities", ", ".join(self.quantities)),

@@ -26,6 +26,7 @@ from mcgw.scene.tangential_section import tangential_table
 
 if TYPE_CHECKING:
     from analytic import Interaction
+    from mcgw.scene.fitted_section import Fitted
 
 __all__ = ["files_of", "load_scene", "scene_document", "scene_from", "scene_of", "scene_text"]
 
@@ -140,7 +141,7 @@ def scene_of(
         name: top.section(name)
         for name in ("surface", "grading", "heights", "summits", "contact", "ensemble")
     }
-    interaction = top.section("interaction")
+    interaction, fitted = top.section("interaction"), top.section("fitted")
     folder = folder or Path()
     surface, heights, curvature = surface_and_summits(sections, folder)
     values = {
@@ -151,6 +152,7 @@ def scene_of(
         "curvature": curvature,
         **contact_values(sections["contact"], heights),
         "interaction": _interaction(interaction) if "interaction" in top else None,
+        "fitted": _fitted(fitted) if "fitted" in top else None,
         **ensemble_values(sections["ensemble"], surface, seed),
     }
     for section in (top, *sections.values()):
@@ -208,6 +210,7 @@ def scene_document(scene: Scene, *, heights_file: str | None = None, left_out: b
         **({"summits": summits} if summits else {}),
         "contact": _contact_table(scene),
         **_interaction_table(scene),
+        **_fitted_table(scene),
         "ensemble": _ensemble_table(scene, left_out),
     }
 
@@ -224,6 +227,20 @@ def _interaction_table(scene: Scene) -> dict[str, Any]:
     from mcgw.scene.interaction_section import interaction_table
 
     return {"interaction": interaction_table(scene.interaction)}
+
+
+def _fitted(section: Section) -> "Fitted | None":
+    from mcgw.scene.fitted_section import fitted_values  # as above
+
+    return fitted_values(section)
+
+
+def _fitted_table(scene: Scene) -> dict[str, Any]:
+    if scene.fitted is None:
+        return {}
+    from mcgw.scene.fitted_section import fitted_table
+
+    return {"fitted": fitted_table(scene.fitted)}
 
 
 def _contact_table(scene: Scene) -> dict[str, Any]:

@@ -1,0 +1,99 @@
+"""What the fit of a map or of profiles knew of the surface that a scene was made of: the table [fitted]."""
+
+import math
+from dataclasses import asdict, dataclass
+from typing import Any
+
+from analytic import SpectralMoments, Surface
+from mcgw.scene.section import Section
+
+__all__ = ["Fitted", "fitted_argument", "fitted_table", "fitted_values"]
+
+_MOMENTS = {"m0": "m^2", "m2": "1", "m4": "1/m^2"}
+_PERHAPS = {"agreement": "", "lay": "", "area": "m^2"}  # not of every fit
+
+
+@dataclass(frozen=True)
+class Fitted:
+    """What a fit knew of a surface besides its summits: by it `Scene.validity` tells whether it fits.
+
+    Parameters
+    ----------
+    m0, m2, m4 : float
+        Spectral moments, m^2, 1, 1/m^2: means over all directions.
+    skewness, kurtosis : float
+        Of all heights: 0 and 3 of Gaussian ones.
+    independent : float
+        How many independent heights would tell m0 as well: few where long waves are.
+    agreement : float or None
+        Largest ratio, at least 1, between what moments and counted summits say of eta, R or sigma; of
+        profiles between the peaks that are counted and those that follow from the moments. None: summits
+        were too few to be counted.
+    lay : float or None
+        Mean square slope across the lay over that along it, at least 1; None: nobody saw it.
+    area : float or None
+        That was looked at, m^2; None: along lines only.
+    """
+
+    m0: float
+    m2: float
+    m4: float
+    skewness: float
+    kurtosis: float
+    independent: float
+    agreement: float | None = None
+    lay: float | None = None
+    area: float | None = None
+
+    @property
+    def moments(self) -> SpectralMoments:
+        """m0, m2 and m4."""
+        return SpectralMoments(self.m0, self.m2, self.m4)
+
+    def off(self, surface: Surface) -> float:
+        """Largest ratio between eta, R and sigma of a surface and those that the moments tell, at least 1."""
+        m = self.moments
+        pairs = ((surface.eta, m.eta), (surface.radius, m.radius), (surface.sigma, m.sigma))
+        return max(max(a, b) / min(a, b) if min(a, b) > 0 else math.inf for a, b in pairs)
+
+    def lines(self) -> tuple[str, str]:
+        """What it says: of the spectrum, and of what else the map is."""
+        lay = "" if self.lay is None else f", lay {self.lay:.3g}"
+        apart = "" if self.agreement is None else f", estimates {self.agreement:.3g} times apart"
+        return (
+            f"alpha = {self.moments.alpha:.4g}, rms slope {math.sqrt(2 * self.m2):.3g}{lay}",
+            f"skewness {self.skewness:.2f}, kurtosis {self.kurtosis:.2f}{apart}",
+        )
+
+
+def fitted_values(section: Section) -> Fitted | None:
+    """Read the table; mistakes are noted in the section, and give None."""
+    before = len(section.problems)
+    numbers: dict[str, Any] = {key: section.number(key, unit=unit) for key, unit in _MOMENTS.items()}
+    numbers["skewness"] = section.number("skewness", positive=False)
+    numbers |= {key: section.number(key) for key in ("kurtosis", "independent")}
+    for key, unit in _PERHAPS.items():
+        section.known(key)
+        numbers[key] = section.number(key, unit=unit) if key in section else None
+    section.finish()
+    for key in ("agreement", "lay"):
+        if len(section.problems) == before and section.table.get(key, 1) < 1:
+            section.fail(key, section.table[key], "give the larger over the smaller, a number >= 1")
+    if len(section.problems) > before:
+        return None
+    return Fitted(**numbers)
+
+
+def fitted_argument(given: Any, problems: list[str]) -> Fitted | None:
+    """Read what Python gives: a `Fitted`, or its keys in a scene file."""
+    table = fitted_table(given) if isinstance(given, Fitted) else given
+    if not isinstance(table, dict):
+        advice = "give what mcgw.fitted_scene gave, or the keys of [fitted] in a scene file"
+        Section("", {}, problems).fail("fitted", given, advice)
+        return None
+    return fitted_values(Section("fitted", table, problems))
+
+
+def fitted_table(fitted: Fitted) -> dict[str, Any]:
+    """The table that gives it back."""
+    return {key: float(value) for key, value in asdict(fitted).items() if value is not None}
