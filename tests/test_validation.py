@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from analytic import Model, Nayak, RandomCurvature, SpectralMoments
+from mcgw.scene import validity, validity_table
 
 ROOT = Path(__file__).parent.parent
 FOLDER = ROOT / "runs" / "validation"
@@ -50,7 +51,7 @@ def test_the_table_holds_every_solve_it_counts():
     maps = {(x["map"], float(x["x"]), float(x["p"])): int(x["maps"]) for x in lines}
     counted = [row for row in ROWS if row["purpose"] in ("study", "caps")]
     assert sum(maps.values()) == len(counted)
-    assert {key[1] for key in maps if key[0] == "gaussian"} == {2, 5, 10, 20, 50, 100}
+    assert {key[1] for key in maps if key[0] == "gaussian"} == {2, 3, 5, 7, 10, 20, 50, 100}
     assert {key[1] for key in maps if key[0] == "caps"} == {0.002, 0.006, 0.02, 0.06, 0.2}
 
 
@@ -179,7 +180,7 @@ def test_fresh_maps_are_as_the_table_says():
             x["map"], x["model"], x["interaction"], float(x["x"]), float(x["p"]),
             {q: float(x[q]) for q in deviations.QUANTITIES},
             {q: float(x[f"{q}_std"]) for q in deviations.QUANTITIES},
-            int(x["maps"]), float(x["contacts"]),
+            int(x["maps"]), float(x["contacts"]), float(x["waves"]),
         )
         for x in lines
     ]  # fmt: skip
@@ -191,3 +192,43 @@ def test_fresh_maps_are_as_the_table_says():
     assert np.mean([one.z**2 for one in found]) < 2.0
     wrong = [replace(one, measured=one.measured + 0.15) for one in found]
     assert np.mean([one.z**2 for one in wrong]) > 4.0
+
+
+@pytest.mark.slow
+def test_95_percent_hold_of_maps_left_out(monkeypatch):
+    """Each Gaussian map against a table of all others: of the intervals about the bias 93 to 97 % hold it.
+
+    The error of each figure is shared by loads and neighbouring figures of one map; of 59 maps, whose share
+    outside scatters by 4 %, a rule of 95 % has a mean share of 91 to 99 % in all but one of a thousand.
+    """
+    monkeypatch.setattr(deviations, "MODELS", ("one radius",))
+    monkeypatch.setattr(deviations, "INTERACTIONS", ("none",))
+    rows = [row for row in ROWS if row["kind"] == "gaussian" and row["purpose"] == "study"]
+    found = [(row, deviations.deviations(row)[0]) for row in rows]
+    inside, below, many = 0, 0, 0
+    for key in {(row["x"], row["seed"]) for row in rows}:
+        others = [row for row in rows if (row["x"], row["seed"]) != key]
+        known = {id(row): one for row, one in found}
+        with monkeypatch.context() as patch:
+            patch.setattr(deviations, "deviations", lambda row, known=known: [known[id(row)]])
+            lines = deviations.table_text(deviations.condensed(others), b"", 0).splitlines()
+        grid = validity_table.Grid.of(
+            list(csv.DictReader(line for line in lines if not line.startswith("#"))), along_separation=False
+        )
+        for row, one in found:
+            if (row["x"], row["seed"]) != key:
+                continue
+            for name in deviations.QUANTITIES:
+                real = getattr(one, name)
+                at = np.array([row["p"] * (1 + real) if name == "load" else row["p"]])
+                said = grid.expected(row["x"], at)
+                (bias,), (off,) = said.bias[name], validity.farthest(said, name, np.ones(1))
+                if math.isnan(bias):
+                    continue
+                low = bias - off if name == "separation" else (1 + bias) ** 2 / (1 + bias + off) - 1
+                many += 1
+                inside += low <= real <= bias + off
+                below += abs(real) <= abs(bias) + off
+    assert many > 1500
+    assert 0.91 < inside / many < 0.99
+    assert below / many > 0.95

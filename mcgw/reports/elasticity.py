@@ -25,8 +25,8 @@ def elasticity_words(found: Validity) -> list[str]:
     details = f"{found.details}."
     return [
         f"{details[0].upper()}{details[1:]}",
-        "Model over elasticity, less 1: mean over the maps ± scatter, that of surfaces with so many "
-        "contacts, or twice the standard error of the mean. Area, stiffness and gap are those at the load of "
-        "that separation; the load is that at the separation itself, taken for the mean gap of a periodic "
-        f"cell. Pressure: {found.axis}.",
+        "Model over elasticity, less 1: mean over the maps ± what holds 95 % of surfaces with so many "
+        "contacts and long waves. Area, stiffness and gap are those at the load of that separation; the load "
+        "is that at the separation itself, taken for the mean gap of a periodic cell. Pressure: "
+        f"{found.axis}.",
     ]

@@ -15,12 +15,12 @@ from mcgw.scene.validity_place import Place, not_on_the_map, place_of, reduced_p
 from mcgw.scene.validity_table import COLUMNS, Expected, Grid, grid_of
 from mcgw.scene.validity_text import details, short_verdict, table_of, verdict
 
-__all__ = ["Validity", "validity_of"]
+__all__ = ["Validity", "farthest", "validity_of"]
 
 Array = NDArray[np.float64]
 
 _MOST_SEPARATIONS = 64
-_SURE = 2.0  # standard errors of a mean over maps
+_SURE = 2.1  # standard deviations that hold 95 % of maps left out: light loads have long tails
 
 
 @dataclass(frozen=True, repr=False)
@@ -43,7 +43,7 @@ class Validity(ModelErrors, Shown):
         return short_verdict(self)
 
     def sheet(self) -> Sheet:
-        """The verdict, and the errors at some separations: mean and scatter over maps."""
+        """The verdict, and the errors at some separations: mean over maps, and how far 95 % are from it."""
         where = [("measured", self.where)] if self.where else []
         return Sheet("Against elasticity", [("verdict", self.brief), *where], table_of(self))
 
@@ -92,14 +92,14 @@ def _nothing(h: Array, why: str) -> Validity:
 def _looked_up(scene: Fields, place: Place, grid: Grid, h: Array, felt: Array) -> Validity:
     p = reduced_pressure(scene, felt) / place.slope
     found = grid.expected(place.x, p)
-    contacts = scene.n_asperities * scene.heights.above(felt)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        share = np.maximum(np.sqrt(found.contacts / contacts), _SURE / np.sqrt(found.maps))
-    unit = {name: place.rms if name == "separation" else 1.0 for name in COLUMNS}
-    for name in COLUMNS[1:] if place.area_only else ():
-        unit[name] = np.nan
-    bias = {name: unit[name] * found.bias[name] for name in COLUMNS}
-    error = {name: np.abs(bias[name]) + unit[name] * found.scatter[name] * share for name in COLUMNS}
+    share = _share(scene, place, found, felt)
+    bias, error = {}, {}
+    for name in COLUMNS:
+        off = farthest(found, name, share[name])
+        unit = place.rms if name == "separation" else 1.0
+        unit = np.nan if place.area_only and name != "area" else unit
+        bias[name] = unit * found.bias[name]
+        error[name] = np.abs(bias[name]) + unit * off
     loads = _loads(place, found, p)
     graded = not isinstance(scene.modulus, Homogeneous)
     where = _where(scene, place, grid, found.maps, loads)
@@ -108,6 +108,24 @@ def _looked_up(scene: Fields, place: Place, grid: Grid, h: Array, felt: Array) -
         return found_at
     why = f": {loads}" if not found_at.measured.any() else ""
     return replace(found_at, unknown=f"outside of what was measured{why}")
+
+
+def farthest(found: Expected, name: str, share: Array) -> Array:
+    """How far 95 % of surfaces are from the bias, at most: those that scatter by a share of what maps do."""
+    off = _SURE * np.hypot(found.scatter[name] * share, found.unsure[name])
+    return off if name == "separation" else (1 + found.bias[name]) * np.expm1(off)  # ratios differ by factors
+
+
+def _share(scene: Fields, place: Place, found: Expected, felt: Array) -> dict[str, Array]:
+    """Root of the contacts of a map over those of a surface; of waves, if fewer of them, for all but areas.
+
+    A gap, and what follows from it, is as sure as the long waves are many, however many contacts lie on them.
+    """
+    area = scene.n_asperities / scene.surface.eta
+    with np.errstate(divide="ignore", invalid="ignore"):
+        contacts = np.sqrt(found.contacts / (scene.n_asperities * scene.heights.above(felt)))
+    waves = np.sqrt(found.waves * place.correlation_area / area)
+    return {name: contacts if name == "area" else np.fmax(contacts, waves) for name in COLUMNS}
 
 
 def _felt(scene: Fields, h: Array) -> Array:
@@ -140,7 +158,9 @@ def _loads(place: Place, found: Expected, p: Array) -> str:
 def _where(scene: Fields, place: Place, grid: Grid, maps: int, loads: str) -> str:
     many = f"{maps} maps" if maps > 1 else "one map"
     by = ""
-    if place.kind == "gaussian" and place.model == "one radius":
+    if scene.fitted is not None:
+        by = " as the fit says"
+    elif place.kind == "gaussian" and place.model == "one radius":
         by = f" as eta R sigma = {scene.surface.eta * scene.surface.radius * scene.surface.sigma:.3g} says"
     return (
         f"boundary elements on homogeneous half-spaces, {many} ({_maps(place)}) a point: "

@@ -28,10 +28,9 @@ class ModelErrors:
         Pressure over E* g of Gaussian surfaces, g being the rms slope, or over E* sqrt(sigma/R) of separate
         caps: of Hertz's law without a grading at each separation; nan where the model was not measured.
     error : dict of str to ndarray
-        How far to be off is expected: ``|bias| + scatter``, over the right value, or over sigma for
-        "separation". The scatter is the standard deviation over maps, as of surfaces with so many contacts
-        as one of the scene has (it goes as one over their root), but at least two standard errors of the
-        bias. nan where nothing was measured.
+        How far off 95 % of surfaces are at most, over the right value, or over sigma for "separation":
+        ``|bias|`` and 2.1 standard deviations, of surfaces with so many contacts as one of the scene has,
+        and so many long waves except for areas, and of the bias itself. nan where nothing was measured.
     bias : dict of str to ndarray
         Mean over maps of model/elasticity - 1, or of the difference over sigma.
     graded : bool

@@ -2,20 +2,25 @@
 
 import csv
 from collections import defaultdict
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.special import digamma
 
-__all__ = ["COLUMNS", "Expected", "Grid", "grid_of", "rows"]
+__all__ = ["COLUMNS", "Expected", "Grid", "Scatter", "grid_of", "rows"]
 
 Array = NDArray[np.float64]
 
 COLUMNS = ("area", "stiffness", "separation", "load")  # what has an error
+_OF_GAP = ("separation", "load")
 _ROUNDING = 1e-9  # by which a point of the table may be missed
+# Standard deviation of the gap over sqrt(m0) between spectra of H = 0.5 to 1 and one alpha, a unit of
+# ln(alpha/2): 0.01 to 0.02 at alpha = 3 and 7, 0.04 to 0.06 at 15, whatever the load (fresh maps, README).
+_SPECTRA = 0.02
 
 
 @cache
@@ -39,10 +44,11 @@ class Expected:
 
     Parameters
     ----------
-    bias, scatter : dict of str to ndarray
-        Mean over maps and standard deviation over them, by column.
-    contacts : ndarray
-        Loaded spots of a map.
+    bias, scatter, unsure : dict of str to ndarray
+        Mean over maps, standard deviation over them, and standard error of the mean for a surface of another
+        spectrum, by column.
+    contacts, waves : ndarray
+        Loaded spots of a map, and independent heights.
     maps : int
         Fewest maps behind a number.
     loads : (float, float)
@@ -51,7 +57,9 @@ class Expected:
 
     bias: dict[str, Array]
     scatter: dict[str, Array]
+    unsure: dict[str, Array]
     contacts: Array
+    waves: Array
     maps: int
     loads: tuple[float, float]
 
@@ -61,31 +69,76 @@ class _Surface:
     """Rows of surfaces of one x: logarithms of loads, and the numbers there, by column."""
 
     at: dict[str, Array]
-    numbers: dict[str, Array]  # bias, scatter, logarithm of contacts: shape (3, rows)
+    numbers: dict[str, Array]  # bias, logarithms of contacts, waves and steepness: shape (4, rows)
     maps: int
 
     @classmethod
     def of(cls, found: Iterable[Mapping[str, str]], unit: float) -> "_Surface":
         ordered = sorted(found, key=lambda row: float(row["p"]))
-        p, contacts = (np.array([float(row[key]) for row in ordered]) for key in ("p", "contacts"))
+        p, contacts, waves = (_numbers(ordered, key) for key in ("p", "contacts", "waves"))
         at, numbers = {}, {}
         for name in COLUMNS:
-            bias, scatter = (np.array([float(row[key]) for row in ordered]) for key in (name, f"{name}_std"))
+            bias = _numbers(ordered, name)
             # The table's load is the right one; at a given gap the model is known by its own.
             own = p * (1 + bias) if name == "load" else p
             known = np.isfinite(own)
             at[name] = np.log(own[known] / unit)
-            numbers[name] = np.array([bias, scatter, np.log(contacts)])[:, known]
+            steep = np.log(_steepness(ordered)) if name == "load" else np.zeros_like(p)
+            numbers[name] = np.array([bias, np.log(contacts), np.log(waves), steep])[:, known]
         return cls(at, numbers, min(int(row["maps"]) for row in ordered))
 
     def __call__(self, name: str, at: Array) -> Array:
-        """Bias, scatter and log contacts, shape (3, loads)."""
+        """Bias, and logarithms of contacts, waves and steepness, shape (4, loads)."""
         points = self.at[name]
         if not points.size:
-            return np.full((3, *at.shape), np.nan)
+            return np.full((4, *at.shape), np.nan)
         nearest = points[np.argmin(np.abs(points - at[:, None]), axis=1)]
         at = np.where(np.abs(nearest - at) <= _ROUNDING, nearest, at)
         return np.array([np.interp(at, points, y, np.nan, np.nan) for y in self.numbers[name]])
+
+
+def _numbers(found: Iterable[Mapping[str, str]], key: str) -> Array:
+    return np.array([float(row[key]) for row in found])
+
+
+def _steepness(found: Sequence[Mapping[str, str]]) -> Array:
+    """By how much the logarithm of a load differs between maps for each unit that their gaps differ by."""
+    load, off, gap = (_numbers(found, key) for key in ("load", "load_std", "separation_std"))
+    return off / (1 + load) / gap
+
+
+@dataclass(frozen=True)
+class Scatter:
+    """Standard deviation between maps, as a power of x times one of the loaded spots.
+
+    Eight maps tell a deviation to a quarter; all those of a model tell such a law to a few per cent, and over
+    the table it is theirs (`runs/validation/README.md`).
+
+    Parameters
+    ----------
+    law : ndarray
+        Logarithm of the deviation where x and spots are 1, and both powers.
+    """
+
+    law: Array
+
+    @classmethod
+    def of(cls, found: Iterable[Mapping[str, str]], name: str) -> "Scatter":
+        """By least squares of the logarithms over rows of the table, weighted by what each knows."""
+        bias, std, maps = (_numbers(found, key) for key in (name, f"{name}_std", "maps"))
+        share = std if name == "separation" else std / (1 + bias)
+        known = np.isfinite(share) & (share > 0)
+        nu = maps[known] - 1
+        x, contacts = (np.log(_numbers(found, key)[known]) for key in ("x", "contacts"))
+        # The mean logarithm of a variance of nu degrees of freedom lies below that of its mean.
+        told = np.log(share[known]) + (np.log(nu / 2) - digamma(nu / 2)) / 2
+        columns, weight = np.column_stack([np.ones_like(x), x, contacts]), np.sqrt(nu)
+        return cls(np.linalg.lstsq(columns * weight[:, None], told * weight, rcond=None)[0])
+
+    def __call__(self, x: float, contacts: Array) -> Array:
+        """Of separations over their unit, of all else over the value, as of its logarithm."""
+        start, of_x, of_contacts = self.law
+        return np.asarray(np.exp(start + of_x * np.log(x) + of_contacts * np.log(contacts)))
 
 
 @dataclass(frozen=True)
@@ -101,23 +154,27 @@ class Grid:
         Rising: alpha, or eta R sigma of caps.
     surfaces : tuple
         The rows of each.
+    scatter : dict of str to Scatter
+        Between maps, by column; loads at a gap scatter as gaps do, times their steepness.
     along_separation : bool
         Whether loads are taken over x.
     """
 
     x: Array
     surfaces: tuple[_Surface, ...]
+    scatter: dict[str, Scatter]
     along_separation: bool
 
     @classmethod
     def of(cls, found: Iterable[Mapping[str, str]], *, along_separation: bool) -> "Grid":
         """A grid of rows of the table."""
-        by_x = defaultdict(list)
+        by_x, found = defaultdict(list), list(found)
         for row in found:
             by_x[float(row["x"])].append(row)
         x = sorted(by_x)
         surfaces = tuple(_Surface.of(by_x[value], value if along_separation else 1.0) for value in x)
-        return cls(np.array(x), surfaces, along_separation)
+        scatter = {name: Scatter.of(found, name) for name in COLUMNS if name != "load"}
+        return cls(np.array(x), surfaces, scatter, along_separation)
 
     def holds(self, x: float) -> bool:
         """Whether surfaces on both sides of it were measured."""
@@ -132,11 +189,22 @@ class Grid:
         found = {name: np.sum([share * s(name, at) for share, s in near], axis=0) for name in COLUMNS}
         ends = [s.at["area"][[0, -1]] for _, s in near if s.at["area"].size]
         low, high = (max(e[0] for e in ends), min(e[1] for e in ends)) if len(ends) == len(near) else (1, 0)
+        bias = {name: values[0] for name, values in found.items()}
+        scatter, unsure = {}, {}
+        maps = min(s.maps for _, s in near)
+        for name, (_, contacts, _, steep) in found.items():
+            law = self.scatter["separation" if name == "load" else name]
+            scatter[name] = law(x, np.exp(contacts)) * np.exp(steep)
+            # So few maps tell a mean; and alpha does not tell all of a spectrum.
+            other = _SPECTRA * np.log(x / self.x[0]) if name in _OF_GAP and not self.along_separation else 0.0
+            unsure[name] = np.hypot(scatter[name] / np.sqrt(maps), other * np.exp(steep))
         return Expected(
-            {name: values[0] for name, values in found.items()},
-            {name: values[1] for name, values in found.items()},
+            bias,
+            scatter,
+            unsure,
+            np.exp(found["area"][1]),
             np.exp(found["area"][2]),
-            min(s.maps for _, s in near),
+            maps,
             (float(unit * np.exp(low)), float(unit * np.exp(high))) if low <= high else (np.nan, np.nan),
         )
 

@@ -25,10 +25,10 @@ def verdict(v: ModelErrors) -> str:
     if at_load.any():
         worst = percent(v.worst("area", "stiffness"))
         what = "the geometry of this model" if v.graded else "this model"
-        parts.append(f"at a given load {what} is within {worst} of elasticity {_here(v, at_load)}")
+        parts.append(f"at a given load {what} is within {worst} of elasticity (95 %) {_here(v, at_load)}")
     if at_gap.any():
         where = "" if np.array_equal(at_gap, at_load) else f" {_here(v, at_gap)}"
-        parts.append(f"its load at a given mean gap is within {percent(v.worst('load'))}{where}")
+        parts.append(f"its load at a given mean gap is within {percent(v.worst('load'))} (95 %){where}")
     if not v.measured.all():
         parts.append(f"at d/sigma = {span(v.separations, ~v.measured)} the model is {v.unknown}")
     line = "; ".join(parts)
@@ -47,7 +47,7 @@ def details(v: ModelErrors) -> str:
     lacking = [word for word in _AT_LOAD.values() if word not in known]
     each = ", ".join(told) + (f"; {', '.join(lacking)}: not measured" if lacking else "")
     graded = "; of the grading that says nothing" if v.graded else ""
-    return f"{each}; by {v.where}{graded}"
+    return f"{each} (95 %); by {v.where}{graded}"
 
 
 def short_verdict(v: ModelErrors) -> str:
@@ -57,11 +57,11 @@ def short_verdict(v: ModelErrors) -> str:
     errors = {"at a given load": v.worst("area", "stiffness"), "in load at a given gap": v.worst("load")}
     told = [f"{percent(error)} {of}" for of, error in errors.items() if not math.isnan(error)]
     where = "" if v.measured.all() else f"; d/sigma = {span(v.separations, v.measured)}"
-    return f"{'geometry ' if v.graded else ''}within {', '.join(told)}{where}"
+    return f"{'geometry ' if v.graded else ''}within {', '.join(told)} (95 %){where}"
 
 
 def table_of(v: ModelErrors) -> Table:
-    """Bias and scatter of each quantity at some of the separations; empty where nothing was measured."""
+    """At some separations the bias of each quantity, and how far 95 % are from it; empty where unmeasured."""
     if not v.measured.any():
         return Table(())
     told = (
@@ -101,7 +101,7 @@ def _cell(v: ModelErrors, name: str, k: int) -> str:
     bias, error = float(v.bias[name][k]), float(v.error[name][k])
     if math.isnan(error):
         return "not measured"
-    scatter = error - abs(bias)
+    off = error - abs(bias)
     if name == "separation":
-        return f"{bias:+.2f} ± {scatter:.2f}"
-    return f"{100 * bias:+.0f} ± {100 * scatter:.0f} %"
+        return f"{bias:+.2f} ± {off:.2f}"
+    return f"{100 * bias:+.0f} ± {100 * off:.0f} %"

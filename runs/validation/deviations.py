@@ -6,18 +6,19 @@ import io
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass
+from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
 from models import INTERACTIONS, MODELS, Model, Summits, listed, summits_of
-from rough_maps import CapsMap
+from rough_maps import CapsMap, GaussianMap
 from solve_list import STEP
 from solve_table import Row
 
 QUANTITIES = ("area", "stiffness", "separation", "load")
 COLUMNS = (
     "map", "model", "interaction", "x", "p", "area", "area_std", "stiffness", "stiffness_std",
-    "separation", "separation_std", "load", "load_std", "maps", "contacts",
+    "separation", "separation_std", "load", "load_std", "maps", "contacts", "waves",
 )  # fmt: skip
 
 
@@ -75,6 +76,20 @@ def deviations(row: Row) -> list[Deviation]:
     return found
 
 
+def waves(row: Row) -> float:
+    """Independent heights on the map of a row; nan of caps, which have no spectrum."""
+    if row["kind"] == "caps":
+        return math.nan
+    alpha, hurst, shortest = (number(row, key) for key in ("x", "hurst", "waves"))
+    return independent(alpha, hurst, int(shortest))
+
+
+@lru_cache
+def independent(alpha: float, hurst: float, shortest: int) -> float:
+    """The same, for maps of one spectrum."""
+    return GaussianMap(hurst, alpha, 0, shortest).independent()
+
+
 def contacts(row: Row) -> float:
     """Loaded spots on the map of a row, by the model of one radius."""
     summits = summits_behind(row, MODELS[0])
@@ -94,6 +109,7 @@ class Condensed:
     std: dict[str, float]
     maps: int
     contacts: float
+    waves: float
 
     def error(self, quantity: str) -> float:
         """Standard error of the mean."""
@@ -126,6 +142,7 @@ def _of_group(key: Key, rows: list[Row]) -> Iterable[Condensed]:
             std={q: float(v.std(ddof=1)) if len(v) > 1 else math.nan for q, v in values.items()},
             maps=len(rows),
             contacts=spots,
+            waves=waves(rows[0]),
         )
 
 
@@ -139,13 +156,14 @@ def table_text(lines: list[Condensed], source: bytes, solves: int) -> str:
         "# area, stiffness: model/BEM - 1 at p; load: the same at the gap of BEM\n"
         "# separation: (model - BEM) at p, over the rms height of the map (gaussian), sigma (caps)\n"
         "# *_std: deviation between maps, not of their mean; nan: the model has no such state\n"
+        "# contacts, waves: of a map, loaded spots and independent heights\n"
     )
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(COLUMNS)
     for line in lines:
         pairs = [f"{value:.4f}" for q in QUANTITIES for value in (line.mean[q], line.std[q])]
         first = (line.map, line.model, line.interaction, f"{line.x:g}", f"{line.p:g}")
-        writer.writerow((*first, *pairs, line.maps, f"{line.contacts:.4g}"))
+        writer.writerow((*first, *pairs, line.maps, f"{line.contacts:.4g}", f"{line.waves:.4g}"))
     return text.getvalue()
 
 

@@ -110,6 +110,13 @@ class GaussianMap:
         fine[:half, :half], fine[-half:, :half] = coarse[:half, :half], coarse[-half:, :half]
         return np.ascontiguousarray(fft.irfft2(fine * n**2, s=(n, n)))
 
+    def independent(self) -> float:
+        """How many independent heights would tell m0 as well: by the waves that the spectrum expects."""
+        n = DRAWN_PIXELS * self.shortest
+        k = np.hypot(fft.fftfreq(n, 1 / n)[:, None], fft.fftfreq(n, 1 / n))
+        power = spectrum(k, self.shortest, roll_off(self.alpha, self.hurst, self.shortest), self.hurst)
+        return float(power.sum() ** 2 / (power**2).sum())
+
     def moments(self) -> tuple[float, float, float]:
         """m0, m2, m4 of this very map."""
         series = self._series()

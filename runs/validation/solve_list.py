@@ -24,6 +24,7 @@ CAP_LOADS = {
 }
 STUDY, OTHER, TWIN, FRESH = 8, 4, 2, 3  # maps of a spectrum
 FRESH_SEEDS = 1000
+BETWEEN = {3: 2000, 7: 3000}  # alphas between the first ones, on maps of other seeds; and those before
 TOLERANCE = 1e-6  # of the solver, by its own measure
 STEP = 1.02  # stiffness is that of the step from a load to this times the load: at 1.01 times the load
 HALF_STEP = (1.005, 1.015)  # steps of half the width around the same load
@@ -104,6 +105,10 @@ def jobs() -> list[Job]:
     listed += tightened(2) + tightened(10) + meshed(2, few) + study(20, every)
     listed += [job for crowding in (0.2, 0.06, 0.02, 0.006) for job in caps(crowding)]
     listed += [job for alpha in (3, 7, 15) for hurst in (0.5, 1.0) for job in fresh(alpha, hurst)]
+    listed += [
+        job for alpha, seed in BETWEEN.items() for job in study(alpha, range(seed + 1, seed + 1 + STUDY))
+    ]
+    listed += [Job("fresh", GaussianMap(0.6, 15, seed, 80), LOADS[1::2]) for seed in range(4001, 4009)]
     listed += study(50, range(1, 5)) + study(100, range(1, 4)) + enlarged(2, few)
     listed += (
         caps(0.002) + meshed(10, few, 6) + study(50, range(5, STUDY + 1)) + fresh(30, 0.5) + meshed(5, few)
