@@ -1,21 +1,25 @@
 """What one asperity contributes in the mean, under any law of contact: sums over a rule of heights."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from analytic.curvature import RandomCurvature
 from analytic.gradings import Grading
 from analytic.height_rule import HeightRule
 from analytic.heights import Gaussian, HeightLaw
-from analytic.laws.branch import Branch, LoadingBranch, UnloadingBranch
+from analytic.laws.branch import Branch, UnloadingBranch
 from analytic.laws.slopes import jump_terms, slope_term
 from analytic.laws.spot import piece_of
 from analytic.laws.ways import Ways
 from analytic.measured_heights import MeasuredHeights
 from analytic.measured_radii import MeasuredRadii
 from analytic.quantities import quantity_of
+from analytic.radii_rule import jumps_of_radii, rule_of_radii
 
 __all__ = ["MeanContact"]
 
@@ -24,6 +28,7 @@ Array = NDArray[np.float64]
 _LOWEST, _HIGHEST = -40.0, 1000.0  # separations that are looked at
 _COUNTS = 13.0  # no lower height does
 _RAREST = 1e-280  # share of heights above the highest of them
+_KEPT = 4_000_000  # points of rules over heights and radii
 _LAST_DIGITS = 4 * np.finfo(float).eps
 
 
@@ -39,14 +44,14 @@ class MeanContact:
         E*(s)/E*.
     heights : HeightLaw
         Law of the reduced heights.
-    summits : MeasuredRadii, optional
-        The very summits, where heights were measured together with radii.
+    summits : MeasuredRadii or RandomCurvature, optional
+        The very summits, where heights were measured together with radii; or the law of their radii.
     """
 
     ways: Ways
     grading: Grading
     heights: HeightLaw
-    summits: MeasuredRadii | None = None
+    summits: MeasuredRadii | RandomCurvature | None = None
 
     @property
     def together(self) -> int:
@@ -81,13 +86,29 @@ class MeanContact:
         return result.reshape(np.shape(h))
 
     def _sums(self, h: Array, quantity: str) -> "_Sums":
-        branches = self.ways.among([quantity])
-        return _Sums(self, h, self._rule(h, branches))
+        return _Sums(self, h, self.rule(h, self.ways.among([quantity])))
 
-    def _rule(self, h: Array, branches: Iterable[Branch] = ()) -> HeightRule:
-        if self.summits is not None:
+    def rule(self, h: Array, branches: tuple[Branch, ...] = ()) -> HeightRule:
+        """Heights, and radii, for integrals of what is added on these branches at these separations."""
+        if isinstance(self.summits, MeasuredRadii):
             return HeightRule.of_summits(h, self.summits, branches)
-        return HeightRule.over(h, self.grading, self.heights, branches=branches)
+        if self.summits is None:
+            return HeightRule.over(h, self.grading, self.heights, branches=branches)
+        key = (branches, h.tobytes())
+        if key not in self._rules:
+            while sum(kept.heights.size for kept in self._rules.values()) > _KEPT:
+                self._rules.pop(next(iter(self._rules)))
+            self._rules[key] = rule_of_radii(h, self.grading, self.summits, branches)
+        return self._rules[key]
+
+    @cached_property
+    def _rules(self) -> dict[tuple[tuple[Branch, ...], bytes], HeightRule]:
+        """Those over heights and radii: every quantity and statistic asks again for the same."""
+        return {}
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Without what is kept, which is large: other processes compute their own."""
+        return {name: value for name, value in vars(self).items() if name != "_rules"}
 
     def separations_at(self, quantity: str, values: Array) -> Array:
         """Largest separations with given means, in the shape of `values`.
@@ -104,7 +125,7 @@ class MeanContact:
 
     def _roughly(self, quantity: str, h: Array) -> Array:
         """Mean by a rule that is not cut where pieces of the law end: to a percent, and soon done."""
-        rule = self._rule(h)
+        rule = self.rule(h)
         return np.asarray(rule.probabilities @ rule.terms([quantity], h, self.grading, self.ways))
 
     def _separation_at(self, quantity: str, value: float, grid: Array, about: Array) -> float:
@@ -179,7 +200,7 @@ class _Sums:
 
     def slope(self, quantity: str) -> Array:
         grading, heights = self.contact.grading, self.contact.heights
-        branch = LoadingBranch(self._ways.law, self._ways.conductance)
+        branch = self._ways.loading
         s, p = self.rule.heights, self.rule.probabilities
         if not s.size:
             return np.zeros(self.h.shape)
@@ -189,5 +210,10 @@ class _Sums:
         within = p @ np.stack([slope_term(quantity, branch, s - h, e) for h in self.h], axis=1)
         if isinstance(heights, MeasuredHeights):
             return np.asarray(within)  # between the separations at which one of them jumps
+        if isinstance(self.contact.summits, RandomCurvature):
+            branch, law, top = self.contact.ways.loading, self.contact.summits, float(s.max())
+            met = [jumps_of_radii(quantity, branch, grading, law, x, top) for x in self.h.tolist()]
+            return np.asarray(within + met)
         ends = float(s[0]), float(s[-1])
-        return np.asarray(within + jump_terms(quantity, branch, grading, heights, self.h, ends))
+        jumps = jump_terms(quantity, branch, grading, lambda t, _: heights.density(t), self.h, ends)
+        return np.asarray(within + jumps)

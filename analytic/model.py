@@ -1,6 +1,6 @@
 """The exact statistics of one rough surface in contact: means, fluctuations and their inversion."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import KW_ONLY, dataclass, field, replace
 from functools import cached_property, partial
 
@@ -21,7 +21,7 @@ from analytic.laws.ways import Ways
 from analytic.mean_contact import MeanContact
 from analytic.measured_radii import MeasuredRadii
 from analytic.quantities import LAW_QUANTITIES, Quantity, quantity_of
-from analytic.summits import at_each_radius, on_radius, separations_of_means, with_radii
+from analytic.summits import separations_of_means, with_radii
 from analytic.surface import Surface
 from analytic.weighted_heights import WeightedHeights
 
@@ -157,8 +157,6 @@ class Model:
         q = self._asked(quantity, h)
         if self._by_powers(q):
             return self._unit(q) * fn(q.exponent, h, self._grading(q), heights=self._weighted(q))
-        if isinstance(self.curvature, RandomCurvature):
-            return self._over_radii(h, lambda one: one.mean(quantity, h))
         return self._unit(q) * self._contact.mean(quantity, np.asarray(h, dtype=np.float64))
 
     def slope(self, quantity: str, h: ArrayLike) -> Array:
@@ -195,11 +193,12 @@ class Model:
                 * q.exponent
                 * fn(q.exponent - 1, h, self._grading(q), heights=self._weighted(q))
             )
-        if isinstance(self.curvature, RandomCurvature) and not self._by_powers(q):
-            return self._over_radii(h, lambda one: one.slope(quantity, h))
         h = np.asarray(h, dtype=np.float64)
+        if self._by_powers(q):
+            weighted = replace(self._contact, heights=self._weighted(q), summits=None)
+            return self._unit(q) * weighted.slope(q.base, h)
         if not q.unloading or self.ways.law.elastic:
-            return self._unit(q) * replace(self._contact, heights=self._weighted(q)).slope(q.base, h)
+            return self._unit(q) * self._contact.slope(q.base, h)
         if q.base != "load":
             raise ValueError(f"quantity = {quantity!r}: its slope is not known; give 'load_unloading'")
         return self._unit(q) * q.exponent * self._contact.mean("load_slope_unloading", h)
@@ -219,12 +218,7 @@ class Model:
         ndarray
             In the shape of `h`; nan where no contact is to be expected in double precision.
         """
-        h = np.asarray(h, dtype=np.float64)
-        if not isinstance(self.curvature, RandomCurvature):
-            return self._contact.share(piece, h)
-        met = self._over_radii(h, lambda one: np.nan_to_num(one.share(piece, h)) * one.mean("contacts", h))
-        with np.errstate(invalid="ignore"):
-            return np.asarray(met / self.mean("contacts", h))
+        return self._contact.share(piece, np.asarray(h, dtype=np.float64))
 
     def cumulants(self, quantity: str, h: ArrayLike) -> Cumulants:
         """Mean, variance, skewness and excess kurtosis over surfaces, in the shape of `h`."""
@@ -324,10 +318,9 @@ class Model:
     def rule(self, separations: ArrayLike, quantities: Sequence[str] = ("load",)) -> HeightRule:
         """Heights and probabilities for integrals of these quantities of an asperity at these separations."""
         powers = all(self._by_powers(self._asked(name, separations)) for name in quantities)
+        contact = replace(self._contact, summits=None) if powers else self._contact
         branches = () if powers else self.ways.among(quantities)
-        if isinstance(self.curvature, MeasuredRadii):
-            return HeightRule.of_summits(separations, self.curvature, branches)
-        return HeightRule.over(separations, self.grading, self.heights, branches=branches)
+        return contact.rule(np.asarray(separations, dtype=np.float64), branches)
 
     def fluctuations(self, quantities: Sequence[str], separations: ArrayLike) -> Fluctuations:
         """What one asperity adds to each quantity at each separation, over its scale.
@@ -335,55 +328,28 @@ class Model:
         Columns are quantity by quantity, at increasing number of the separation.
         """
         powers = all(self._by_powers(quantity_of(name)) for name in quantities)
-        if isinstance(self.curvature, RandomCurvature):
-            return self._random_fluctuations(quantities, np.asarray(separations, dtype=float), powers=powers)
         rule = self.rule(separations, quantities)
+        if isinstance(self.curvature, RandomCurvature):
+            h = np.asarray(separations, dtype=np.float64)
+            return self._random_fluctuations(rule, quantities, h, powers=powers)
         terms = rule.terms(quantities, separations, self.grading, None if powers else self.ways)
         return rule.fluctuations(terms, self.count)
 
-    def _random_fluctuations(self, quantities: Sequence[str], h: Array, *, powers: bool) -> Fluctuations:
-        """Of summits of random curvature; `powers`: one adds powers of its approach and of its radius."""
+    def _random_fluctuations(
+        self, rule: HeightRule, quantities: Sequence[str], h: Array, *, powers: bool
+    ) -> Fluctuations:
+        """Of summits of random curvature; `powers`: one adds powers of its approach and of its radius.
+
+        The rule is over the heights; unless powers are added, over the radii too.
+        """
         assert isinstance(self.curvature, RandomCurvature)
         if powers:
-            rule = with_radii(self.rule(h, quantities), self.curvature)
-            terms = rule.terms(quantities, h, self.grading)
-        else:
-            rule, terms = self._at_all_radii(quantities, h)
+            rule = with_radii(rule, self.curvature)
+        terms = rule.terms(quantities, h, self.grading, None if powers else self.ways)
         result = rule.fluctuations(terms, self.count)
         if not np.isinf(self.curvature.largest):
             return result
         return replace(result, radius=np.repeat([quantity_of(name).radius for name in quantities], h.size))
-
-    def _at_all_radii(self, quantities: Sequence[str], h: Array) -> tuple[HeightRule, Array]:
-        """Rule over heights and radii under any law of contact, and what is added at each of its points."""
-        rules, columns = [], []
-        unit = np.array([quantity_of(name).scale(self.surface) for name in quantities])
-        for weight, one in self._of_each_radius(h):
-            rule = one.rule(h, quantities)
-            own = np.array([quantity_of(name).scale(one.surface) for name in quantities])
-            terms = rule.terms(quantities, h, self.grading, one.ways)
-            rules.append((rule.heights, weight * rule.probabilities))
-            columns.append(terms * np.repeat(own / unit, h.size))
-        heights, probabilities = (np.concatenate(part) for part in zip(*rules, strict=True))
-        return HeightRule(heights, probabilities, rule.below), np.concatenate(columns)
-
-    def _of_each_radius(self, h: Array) -> list[tuple[float, "Model"]]:
-        """Weights and models of one radius each, whose weighted sum this model is."""
-        assert isinstance(self.curvature, RandomCurvature)
-        found = []
-        for weight, ratio, counts in at_each_radius(self.curvature, h):
-            surface = replace(self.surface, radius=ratio * self.surface.radius)
-            heights = WeightedHeights(self.heights, counts, self.curvature.narrowest)
-            law = None if self.law is None else on_radius(self.law.on(self.surface), ratio)
-            one = replace(
-                self, surface=surface, heights=heights, curvature=None, law=law, n_asperities=self.number
-            )
-            found.append((weight, one))
-        return found
-
-    def _over_radii(self, h: ArrayLike, what: Callable[["Model"], Array]) -> Array:
-        """Sum of something over models of one radius each; shape of `h`."""
-        return np.asarray(sum(weight * what(one) for weight, one in self._of_each_radius(np.asarray(h))))
 
     @cached_property
     def _hertz(self) -> bool:
@@ -397,8 +363,7 @@ class Model:
 
     @cached_property
     def _contact(self) -> MeanContact:
-        measured = self.curvature if isinstance(self.curvature, MeasuredRadii) else None
-        return MeanContact(self.ways, self.grading, self.heights, measured)
+        return MeanContact(self.ways, self.grading, self.heights, self.curvature)
 
     def _asked(self, quantity: str, h: ArrayLike = np.inf) -> Quantity:
         """A quantity that is known at these separations."""

@@ -23,13 +23,10 @@ class WeightedHeights:
         The law itself, which all but `density` is of.
     weight : callable
         Takes reduced heights to their weights.
-    widest : float, optional
-        Largest span over which the weight hardly bends.
     """
 
     law: HeightLaw
     weight: Callable[[Array], Array]
-    widest: float = np.inf
 
     @property
     def support(self) -> tuple[float, float]:
@@ -47,8 +44,8 @@ class WeightedHeights:
         return self.law.singular
 
     def span(self, s: float) -> float:
-        """As the law's, or narrower."""
-        return min(self.law.span(s), self.widest)
+        """As the law's."""
+        return self.law.span(s)
 
     def sample(self, rng: np.random.Generator, n: int) -> Array:
         """Heights of the law, without the weight."""

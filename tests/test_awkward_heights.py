@@ -132,7 +132,7 @@ def test_a_narrow_interval_is_found_wherever_its_peak_lies(peak):
     """Between two heights looked at, on one of them, and where one stretch ends and the next begins."""
     level, half = 0.99, np.sqrt(0.01 / 30)
     found = crossings_of(
-        lambda s: s - (1 - 30 * (s - peak) ** 2), analytic.Custom(lambda s: 1 + 0 * s), np.array([level]),
+        lambda s, _: s - (1 - 30 * (s - peak) ** 2), analytic.Custom(lambda s: 1 + 0 * s), np.array([level]),
         0.0, 3.0,
     )  # fmt: skip
     np.testing.assert_allclose(found.height, [peak - half, peak + half], rtol=1e-12)

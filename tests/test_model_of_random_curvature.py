@@ -24,6 +24,7 @@ from analytic import (
 )
 from analytic.curvature import MEAN_CURVATURE
 from analytic.laws import Film
+from analytic.radii_rule import rule_of_radii
 
 ALPHA = 5.0
 MOMENTS = SpectralMoments(1e-12, 1e-3, ALPHA * 1e6)
@@ -128,8 +129,9 @@ def test_the_kurtosis_of_the_area_is_infinite_unless_radii_have_a_bound():
 def test_moments_by_curvatures_one_by_one():
     """Rules of five radii at each height against integrals over the curvature, cut at the largest radius."""
     m, h = model(largest=3.0, grading=GRADED), H[1:2]
-    by_rule = m.fluctuations(["load", "area"], h)
-    one_by_one = m._random_fluctuations(["load", "area"], h, powers=False)
+    names = ["load", "area"]
+    by_rule, radii = m.fluctuations(names, h), rule_of_radii(h, GRADED, m.curvature, m.ways.among(names))
+    one_by_one = m._random_fluctuations(radii, names, h, powers=False)
     np.testing.assert_allclose(one_by_one.products(), by_rule.products(), rtol=1e-12)
     np.testing.assert_allclose(one_by_one.moment(3), by_rule.moment(3), rtol=1e-11)
 
@@ -234,7 +236,7 @@ def found_again(law):
 
 def test_separations_and_shares_fit_the_means(monkeypatch):
     """Of two radii, whose sums are no less consistent."""
-    monkeypatch.setattr("analytic.summits._NODES", 1)
+    monkeypatch.setattr("analytic.radii_rule._NODES", 1)
     found_again(ChangEtsionBogy(critical=CRITICAL))
 
 

@@ -107,7 +107,7 @@ def test_regimes_are_what_the_literal_comparison_says(name):
 def test_every_crossing_is_the_first_number_behind_it(name):
     grading = GRADINGS[name]
 
-    def bound(s):
+    def bound(s, _=None):
         with np.errstate(divide="ignore"):
             return 0.05 / grading(s) ** 2
 
@@ -125,7 +125,7 @@ def test_no_pair_of_crossings_next_to_a_tangency_is_missed():
     grading = GRADINGS["waves"]
     for h in np.linspace(-0.2, 1.5, 18):
         crossing = np.flatnonzero(np.diff(s - h >= 0.2 / grading(s) ** 2))
-        found = crossings_of(lambda x: 0.2 / grading(x) ** 2, grading, np.array([h]), 0.0, 6.0)
+        found = crossings_of(lambda x, _: 0.2 / grading(x) ** 2, grading, np.array([h]), 0.0, 6.0)
         np.testing.assert_allclose(found.height, s[crossing + 1], atol=6.1e-6)
 
 
@@ -146,7 +146,7 @@ def residual(deepest, dc):
 def test_lift_off_is_a_crossing_too():
     """Unloaded from h_min = 0.5: heights that still touch, by mpmath at 30 digits."""
     found = crossings_of(
-        lambda s: residual(s - 0.5, 0.05), Homogeneous(), np.array([0.6, 0.7, 0.9]), 0.5, 13.0
+        lambda s, _: residual(s - 0.5, 0.05), Homogeneous(), np.array([0.6, 0.7, 0.9]), 0.5, 13.0
     )
     touching = [0.608849771991328907, 0.769773542969503951, 1.21658942136438179]
     np.testing.assert_allclose(found.height, touching, rtol=1e-13)
@@ -157,7 +157,7 @@ def test_lift_off_of_soft_tips():
     """Against a fine grid: the bound has a kink of its own where asperities have just yielded."""
     grading, h_min, h = Exponential(0.2), 0.0, np.array([0.1, 0.3])
 
-    def bound(s):
+    def bound(s, _=None):
         return residual(s - h_min, 0.05 / grading(s) ** 2)
 
     found = crossings_of(bound, grading, h, 0.0, 8.0)

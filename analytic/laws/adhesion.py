@@ -143,7 +143,7 @@ class JohnsonKendallRoberts(_Adhesive):
     @property
     def finest(self) -> float:
         """The formulas end where contacts break off."""
-        return float(self._stretch)
+        return float(np.min(self._stretch))
 
     def stretch(self, e: Array) -> Array:
         """D_e, in the shape of `e`; infinite without stiffness."""

@@ -4,13 +4,14 @@ A branch says at which heights which formula holds, and gives the formulas at he
 So everything that sums over asperities treats loading, unloading and any law of contact alike.
 """
 
-from dataclasses import dataclass
-from typing import Any, Protocol
+from dataclasses import dataclass, replace
+from functools import partial
+from typing import Any, Protocol, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from analytic.gradings import Custom, Grading, Homogeneous
+from analytic.gradings import Grading
 from analytic.laws.crossings import crossings_of
 from analytic.laws.film import SpotConductance
 from analytic.laws.law import ContactLaw
@@ -21,6 +22,7 @@ __all__ = ["Branch", "LoadingBranch", "UnloadingBranch", "term_of"]
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
+Way = TypeVar("Way", "LoadingBranch", "UnloadingBranch")
 
 
 class Branch(Protocol):
@@ -41,6 +43,10 @@ class Branch(Protocol):
 
     def root(self, piece: int) -> bool:
         """Whether a contact of this piece is analytic in the root of the penetration where it begins."""
+        ...
+
+    def with_radii(self, ratios: Array) -> "Branch":
+        """That of summits whose radii are these multiples of the surface's, one for each separation asked."""
         ...
 
     def left(self, h: Array, above: Array, e: Array) -> Array:
@@ -107,7 +113,11 @@ class LoadingBranch:
         """As `Branch.value`."""
         return self.of_root(quantity, piece, sign * np.sqrt(above), e)
 
-    def of_some(self, which: NDArray[np.bool_]) -> "LoadingBranch":
+    def with_radii(self, ratios: Array) -> "LoadingBranch":
+        """As `Branch.with_radii`."""
+        return _with_radii(self, ratios)
+
+    def of_some(self, which: NDArray[Any]) -> "LoadingBranch":
         """That of some of the summits that the law was made for; as it is where all have one radius."""
         conductance = None if self.conductance is None else self.conductance.of_some(which)
         return LoadingBranch(self.law.of_some(which), conductance)
@@ -149,34 +159,30 @@ class UnloadingBranch:
     def regimes(self, grading: Grading, separations: ArrayLike, low: float, high: float) -> Regimes:
         """As `Branch.regimes`: pieces are those of the deepest penetration."""
         h = np.asarray(separations, dtype=np.float64)
-        turn = regimes_of(self.law, grading, [self.deepest], low, high)
+        laws = h.size if self.law.each else 1
+        turn = regimes_of(self.law, grading, np.full(laws, self.deepest), low, high)
         if not turn.low.size:
             return turn
-        kinks = tuple(float(s) for s in turn.low)
-        bent = grading if isinstance(grading, Homogeneous) else Custom(grading, (*grading.breaks, *kinks))
-        lost = crossings_of(lambda s: self._residual(s, grading(s)), bent, h, low, high)
+        turns = [(turn.low[turn.separation == k], turn.piece[turn.separation == k]) for k in range(laws)]
+        kinks = [starts.tolist() for starts, _ in turns]
+        lost = crossings_of(partial(self._lost, grading), grading, h, low, high, kinks)
         height = merged_heights(lost.height, h[lost.separation], h)
+        touches = low - h >= self._lost(grading, np.full(h.shape, low), np.arange(h.size))
         found = [
-            self._intervals(k, turn, height[lost.separation == k], low, high, self._touches(x, low, grading))
-            for k, x in enumerate(h.tolist())
+            _intervals(k, *turns[k % laws], height[lost.separation == k], low, high, touches=touching)
+            for k, touching in enumerate(touches.tolist())
         ]
         return Regimes(*(np.concatenate(part) for part in zip(*found, strict=True)))
 
-    def _intervals(
-        self, separation: int, turn: Regimes, crossings: Array, low: float, high: float, touches: bool
-    ) -> tuple[Ints, Array, Array, Ints]:
-        """Pieces of the deepest penetration, where there is contact."""
-        edges = np.unique([low, *crossings, *turn.low, high])
-        begin, end = edges[:-1], edges[1:]
-        contact = touches ^ (np.searchsorted(crossings, begin, side="right") % 2 == 1)
-        where = np.searchsorted(turn.low, begin, side="right") - 1
-        held = contact & (where >= 0)
-        return np.full(held.sum(), separation), begin[held], end[held], turn.piece[where[held]]
+    def _lost(self, grading: Grading, s: Array, which: Ints) -> Array:
+        """Penetration at which asperities of a height are lost, under the law of which separation."""
+        if self.law.each:
+            s, which = np.broadcast_arrays(s, which)
+        return replace(self, law=self.law.of_some(which))._residual(s, grading(s))
 
-    def _touches(self, h: float, s: float, grading: Grading) -> bool:
-        """Whether the lowest height there is touches."""
-        at = np.array([s])
-        return bool(s - h >= self._residual(at, grading(at))[0])
+    def with_radii(self, ratios: Array) -> "UnloadingBranch":
+        """As `Branch.with_radii`."""
+        return _with_radii(self, ratios)
 
     def _residual(self, s: Array, e: Array) -> Array:
         """Penetration at which an asperity is lost; infinite where it was never in contact."""
@@ -211,6 +217,24 @@ class UnloadingBranch:
         unloading, deepest = self.law.unloading(), above + (h - self.deepest)
         y = sign * np.sqrt(np.maximum(above - unloading.residual(piece, deepest, e), 0.0))
         return of_unloading(quantity, unloading, piece, y, deepest, e)
+
+
+def _with_radii(branch: Way, ratios: Array) -> Way:
+    film = branch.conductance
+    own = None if film is None else film.with_radii(ratios)
+    return replace(branch, law=branch.law.with_radii(ratios), conductance=own)
+
+
+def _intervals(
+    separation: int, turn: Array, piece: Ints, crossings: Array, low: float, high: float, *, touches: bool
+) -> tuple[Ints, Array, Array, Ints]:
+    """Pieces of the deepest penetration, where there is contact."""
+    edges = np.unique([low, *crossings, *turn, high])
+    begin, end = edges[:-1], edges[1:]
+    contact = touches ^ (np.searchsorted(crossings, begin, side="right") % 2 == 1)
+    where = np.searchsorted(turn, begin, side="right") - 1
+    held = contact & (where >= 0)
+    return np.full(held.sum(), separation), begin[held], end[held], piece[where[held]]
 
 
 def _conducted(conductance: SpotConductance | None, radius: Array) -> Array:

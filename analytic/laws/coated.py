@@ -93,7 +93,7 @@ class Coated(ContactLaw):
     @property
     def finest(self) -> float:
         """How far above first touch the formulas are analytic: arctan(a/t) up to ``|a|`` = t."""
-        return float(self._t**2)
+        return float(np.min(self._t)) ** 2
 
     def load(self, piece: int, y: Any, e: Array) -> Any:
         """Load of a contact, in the shape of `y` and `e`: three times the integral of its stiffness y dy."""

@@ -6,8 +6,9 @@ it falls faster than heights rise, as that of yielding does where the modulus fa
 """
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,8 +20,8 @@ __all__ = ["Bound", "Crossings", "crossings_of"]
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
-Bound = Callable[[Array], Array]
-Excess = Callable[[Array, Array], Array]  # penetration beyond the bound, of heights and separations
+Bound = Callable[[Array, Ints], Array]  # of heights, and of which separation
+Excess = Callable[[Array, Ints], Array]  # penetration beyond the bound, of the same
 
 _STEP, _POINTS = 0.5, np.linspace(0, 1, 33)  # heights at which a bound is looked at, between its breaks
 _GOLDEN, _SECTIONS = (math.sqrt(5) - 1) / 2, 45
@@ -46,20 +47,30 @@ class Crossings:
     begins: NDArray[np.bool_]
 
 
-def crossings_of(bound: Bound, grading: Grading, separations: Array, low: float, high: float) -> Crossings:
+def crossings_of(
+    bound: Bound,
+    grading: Grading,
+    separations: Array,
+    low: float,
+    high: float,
+    kinks: Sequence[Sequence[float]] = ((),),
+) -> Crossings:
     """All crossings between two heights, each to the last bit.
 
     Parameters
     ----------
     bound : callable
-        Penetration at which something begins, of the heights; infinite where it never does. Under one
-        modulus for all it must be constant, or rise by less than the height.
+        Penetration at which something begins, of the heights, and of the numbers of their separations in an
+        array that broadcasts with them; infinite where it never does. Under one modulus for all it must be
+        constant, or rise by less than the height.
     grading : Grading
         The bound has its kinks and jumps where this has them.
     separations : ndarray
         Reduced separations h, shape (k,).
     low, high : float
         Range of reduced heights.
+    kinks : sequence of sequences of float, optional
+        Further ones, of the one bound there is; or of that of each separation.
 
     Returns
     -------
@@ -74,48 +85,72 @@ def crossings_of(bound: Bound, grading: Grading, separations: Array, low: float,
     h = np.asarray(separations, dtype=np.float64)
     if not low < high:
         return Crossings(np.empty(0, np.int64), np.empty(0), np.empty(0, np.bool_))
-    starts = _stretches(bound, grading, low, high)
-    ends = np.append(np.nextafter(starts[1:], -np.inf), high)
+    starts = _stretches(bound, grading, low, high, kinks)
+    ends = np.append(np.nextafter(starts[:, 1:], -np.inf), np.full((len(starts), 1), high), axis=1)
+    ends = np.where(starts < high, ends, high)
 
-    def excess(s: Array, level: Array) -> Array:
+    def excess(s: Array, which: Ints) -> Array:
         with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
-            return np.asarray(s - level - bound(s))
+            return np.asarray(s - h[which] - bound(s, which))
 
-    at_start, at_end = excess(starts, h[:, None]) >= 0, excess(ends, h[:, None]) >= 0
+    every = np.arange(h.size)[:, None]
+    at_start, at_end = excess(starts, every) >= 0, excess(ends, every) >= 0
     inner, stretch = np.nonzero(at_start != at_end)
-    found = _halved(excess, h[inner], starts[stretch], ends[stretch])
+    starts, ends = (np.broadcast_to(x, at_start.shape) for x in (starts, ends))
+    found = _halved(excess, inner, np.abs(h)[inner], starts[inner, stretch], ends[inner, stretch])
     jump, before = np.nonzero(at_end[:, :-1] != at_start[:, 1:])
-    separation, height = np.append(inner, jump), np.append(found, starts[before + 1])
+    separation, height = np.append(inner, jump), np.append(found, starts[jump, before + 1])
     begins = np.append(at_end[inner, stretch], at_start[jump, before + 1])
     order = np.lexsort((height, separation))
     return Crossings(separation[order], height[order], begins[order])
 
 
-def _stretches(bound: Bound, grading: Grading, low: float, high: float) -> Array:
-    """Where stretches begin on which ``s - bound(s)`` only rises, or only falls."""
+def _stretches(
+    bound: Bound, grading: Grading, low: float, high: float, kinks: Sequence[Sequence[float]]
+) -> Array:
+    """Where stretches begin on which ``s - bound(s)`` only rises, or only falls: a row for each bound.
+
+    Rows with fewer of them than others end with `high`.
+    """
     if isinstance(grading, Homogeneous):
-        return np.array([low])
-    breaks = [b for b in resolved_breaks(grading, low, high) if low < b < high]
-    starts = np.unique([low, *breaks, *marks(low, high, _STEP)])
-    ends = np.append(starts[1:], high)
-    s = starts[:, None] + (ends - starts)[:, None] * _POINTS
-    s[:, -1] = np.nextafter(ends, -np.inf)
+        return np.full((len(kinks), 1), low)
+    resolved = [b for b in resolved_breaks(grading, low, high) if low < b < high]
+    breaks = _rows([[*resolved, *(b for b in own if low < b < high)] for own in kinks], high)
+    regular = [low, *marks(low, high, _STEP)]
+    starts = _rows([[*row, *regular] for row in breaks.tolist()], high)
+    ends = np.append(starts[:, 1:], np.full((len(starts), 1), high), axis=1)
+    s = starts[..., None] + (ends - starts)[..., None] * _POINTS
+    s[..., -1] = np.maximum(np.nextafter(ends, -np.inf), starts)
 
-    def curve(x: Array) -> Array:  # the arctangent rises with it, also where the bound is infinite
+    def curve(x: Array, which: Ints) -> Array:  # the arctangent rises with it, also where it is infinite
         with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
-            return np.arctan(x - bound(x))
+            return np.arctan(x - bound(x, which))
 
-    rises = np.diff(curve(s), axis=1) >= 0
-    piece, turn = np.nonzero(rises[:, :-1] != rises[:, 1:])
-    across = np.flatnonzero((rises[:-1, -1] != rises[1:, 0]) & ~np.isin(ends[:-1], breaks))
+    rises = np.diff(curve(s, np.arange(len(s))[:, None, None]), axis=2) >= 0
+    row, piece, turn = np.nonzero(rises[..., :-1] != rises[..., 1:])
+    at_break = np.stack([np.isin(own, marked) for own, marked in zip(ends[:, :-1], breaks, strict=True)])
+    other, across = np.nonzero((rises[:, :-1, -1] != rises[:, 1:, 0]) & ~at_break)
+    row_of = np.append(row, other)
     turns = _turns(
-        curve,
-        np.append(s[piece, turn], s[across, -2]),
-        np.append(s[piece, turn + 2], s[across + 1, 1]),
-        np.append(rises[piece, turn], rises[across, -1]),
+        partial(curve, which=row_of),
+        np.append(s[row, piece, turn], s[other, across, -2]),
+        np.append(s[row, piece, turn + 2], s[other, across + 1, 1]),
+        np.append(rises[row, piece, turn], rises[other, across, -1]),
     )
     behind = np.nextafter(breaks, np.inf)  # at a jump the modulus may still be that below it
-    return np.unique([low, *breaks, *behind, *turns[(low < turns) & (turns < high)]])
+    found = [[low, *b, *c] for b, c in zip(breaks.tolist(), behind.tolist(), strict=True)]
+    for k, x in zip(row_of.tolist(), turns.tolist(), strict=True):
+        found[k].append(x if low < x < high else low)
+    return _rows(found, high)
+
+
+def _rows(heights: Sequence[Sequence[float]], high: float) -> Array:
+    """Those below `high` in increasing order, each once; a row for each list, as long as the longest."""
+    rows = [np.unique([x for x in row if x < high]) for row in heights]
+    result = np.full((len(rows), max(row.size for row in rows)), high)
+    for k, row in enumerate(rows):
+        result[k, : row.size] = row
+    return result
 
 
 def _turns(curve: Callable[[Array], Array], left: Array, right: Array, peak: NDArray[np.bool_]) -> Array:
@@ -130,13 +165,13 @@ def _turns(curve: Callable[[Array], Array], left: Array, right: Array, peak: NDA
     return np.asarray((left + right) / 2)
 
 
-def _halved(excess: Excess, h: Array, left: Array, right: Array) -> Array:
+def _halved(excess: Excess, which: Ints, unit: Array, left: Array, right: Array) -> Array:
     """First height at which the excess has the sign that it has at `right`, by halving down to neighbours.
 
     Signs are asked for only next to where secants meet: what is left of that or right of it is known.
     """
-    behind = excess(right, h) >= 0
-    low, high = _around(excess, h, left, right, behind)
+    behind = excess(right, which) >= 0
+    low, high = _around(excess, which, unit, left, right, behind)
     while True:
         middle = left + (right - left) / 2
         inner = (middle > left) & (middle < right)
@@ -145,17 +180,17 @@ def _halved(excess: Excess, h: Array, left: Array, right: Array) -> Array:
         same = middle >= high
         asked = np.flatnonzero(inner & (low < middle) & (middle < high))
         if asked.size:
-            same[asked] = (excess(middle[asked], h[asked]) >= 0) == behind[asked]
+            same[asked] = (excess(middle[asked], which[asked]) >= 0) == behind[asked]
         right, left = np.where(inner & same, middle, right), np.where(inner & ~same, middle, left)
 
 
 def _around(
-    excess: Excess, h: Array, left: Array, right: Array, behind: NDArray[np.bool_]
+    excess: Excess, which: Ints, unit: Array, left: Array, right: Array, behind: NDArray[np.bool_]
 ) -> tuple[Array, Array]:
     """Two heights next to where secants meet, or the ends given where the sign does not change in between."""
     before, x = left, right
-    of_before, of_x = excess(before, h), excess(x, h)
-    room = _NEAR * np.spacing(np.maximum(np.maximum(np.abs(left), np.abs(right)), np.abs(h)))
+    of_before, of_x = excess(before, which), excess(x, which)
+    room = _NEAR * np.spacing(np.maximum(np.maximum(np.abs(left), np.abs(right)), unit))
     for _ in range(_SECANTS):
         with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
             found = x - of_x * ((x - before) / (of_x - of_before))
@@ -163,8 +198,8 @@ def _around(
         before, x = x, np.clip(np.where(np.isfinite(found), found, stay), left, right)
         if np.all(np.abs(x - before) < room):
             break
-        of_before, of_x = of_x, excess(x, h)
+        of_before, of_x = of_x, excess(x, which)
     low, high = x - room, x + room
     sure = (left < low) & (high < right)
-    sure &= ((excess(low, h) >= 0) != behind) & ((excess(high, h) >= 0) == behind)
+    sure &= ((excess(low, which) >= 0) != behind) & ((excess(high, which) >= 0) == behind)
     return np.where(sure, low, left), np.where(sure, high, right)

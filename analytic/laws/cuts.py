@@ -1,6 +1,6 @@
 """Where a quadrature over the heights must be cut so that terms of a contact law are smooth in between."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,10 +10,11 @@ from analytic.laws.branch import Branch
 from analytic.laws.regimes import Regimes
 from analytic.towards import NEAREST, towards
 
-__all__ = ["cuts_of"]
+__all__ = ["cuts_of", "cuts_of_each"]
 
 Array = NDArray[np.float64]
 Marks = NDArray[np.bool_]
+Ints = NDArray[np.int64]
 
 
 def cuts_of(
@@ -42,31 +43,46 @@ def cuts_of(
     list of float
         In no order, some perhaps outside the range.
     """
-    cuts: list[float] = []
-    for branch in branches:
-        regimes = branch.regimes(grading, separations, low, high)
-        smooth = np.array([branch.root(j) for j in regimes.piece.tolist()], dtype=bool)
-        cuts += np.unique([regimes.low, regimes.high]).tolist()
-        cuts += _above_beginnings(branch, regimes, smooth, separations, low)
-        cuts += _below_losses(regimes, smooth, high)
-    return cuts
+    found = [cuts_of_each(branch, grading, separations, low, high)[0] for branch in branches]
+    return [float(x) for x in np.unique(np.concatenate([np.empty(0), *found]))]
 
 
-def _above_beginnings(branch: Branch, regimes: Regimes, smooth: Marks, h: Array, low: float) -> list[float]:
-    """Towards where contact begins, and where formulas of broken powers follow smooth ones."""
+def cuts_of_each(
+    branch: Branch, grading: Grading, separations: Array, low: float, high: float
+) -> tuple[Array, Ints]:
+    """The same of one branch, with repetitions, and of which separation each is."""
+    regimes = branch.regimes(grading, separations, low, high)
+    smooth = np.array([branch.root(j) for j in regimes.piece.tolist()], dtype=bool)
+    towards_ends = _above_beginnings(branch, regimes, smooth, separations, low)
+    towards_ends += _below_losses(regimes, smooth, high)
+    of = regimes.separation
+    heights = np.concatenate([regimes.low, regimes.high, *(x for _, x in towards_ends)])
+    which = np.concatenate([of, of, *(np.full(len(x), of[i]) for i, x in towards_ends)])
+    return heights, which
+
+
+def _above_beginnings(
+    branch: Branch, regimes: Regimes, smooth: Marks, h: Array, low: float
+) -> list[tuple[int, Sequence[float]]]:
+    """Towards where contact begins, and where formulas of broken powers follow smooth ones.
+
+    Of each such interval its number, and heights.
+    """
     h = h[regimes.separation]
     start = np.where(regimes.low > low, regimes.low, np.minimum(h, low))
     rooted = smooth & (regimes.piece == 0) & (start == h)
     begins = np.append(True, ~_goes_on(regimes))[: smooth.size]
     rough = ~smooth & np.append(True, smooth[:-1])[: smooth.size]
     nearest = np.minimum(branch.finest, np.where(rooted, regimes.high - start, NEAREST))
-    return [x for i in np.flatnonzero(begins | rough) for x in towards(float(start[i]), float(nearest[i]))]
+    found = np.flatnonzero(begins | rough).tolist()
+    return [(i, towards(float(start[i]), float(nearest[i]))) for i in found]
 
 
-def _below_losses(regimes: Regimes, smooth: Marks, high: float) -> list[float]:
+def _below_losses(regimes: Regimes, smooth: Marks, high: float) -> list[tuple[int, Sequence[float]]]:
     """Towards heights above which asperities have lost contact, under lower ones that still touch."""
     lost = np.append(~_goes_on(regimes), True)[: smooth.size] & (regimes.high < high) & ~smooth
-    return [2 * end - x for end in regimes.high[lost].tolist() for x in towards(end, NEAREST)]
+    ends = [(i, float(regimes.high[i])) for i in np.flatnonzero(lost).tolist()]
+    return [(i, [2 * end - x for x in towards(end, NEAREST)]) for i, end in ends]
 
 
 def _goes_on(regimes: Regimes) -> Marks:

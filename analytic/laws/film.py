@@ -131,13 +131,14 @@ class SpotConductance:
     @property
     def finest(self) -> float:
         """How far above first touch it is analytic: radii that go on to negative ones meet a pole."""
-        return self.parameter**2 if self.parameter > 0 else math.inf
+        parameter = float(np.min(self.parameter))
+        return parameter**2 if parameter > 0 else math.inf
 
     def with_radii(self, ratios: Array) -> "SpotConductance":
         """In the units of summits whose radii are these multiples of the surface's."""
         return replace(self, parameter=self.parameter / np.sqrt(ratios))
 
-    def of_some(self, which: NDArray[np.bool_]) -> "SpotConductance":
+    def of_some(self, which: NDArray[Any]) -> "SpotConductance":
         """That of some of these summits; as it is where all have one radius."""
         return replace(self, parameter=self.parameter[which]) if np.ndim(self.parameter) else self
 

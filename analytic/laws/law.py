@@ -98,9 +98,14 @@ class ContactLaw:
         """
         return self._with(lambda constant, power: constant * ratios**power)
 
-    def of_some(self, which: NDArray[np.bool_]) -> Self:
+    @property
+    def each(self) -> bool:
+        """Whether it was made for summits of different radii: constants are arrays."""
+        return bool(self.of_radius and np.ndim(getattr(self, self.of_radius[0])))
+
+    def of_some(self, which: NDArray[Any]) -> Self:
         """The law of some of the summits that it was made for; itself where all have one radius."""
-        return self._with(lambda constant, _: constant[which] if np.ndim(constant) else constant)
+        return self._with(lambda constant, _: constant[which]) if self.each else self
 
     def _with(self, change: Callable[[Any, float], Any]) -> Self:
         """The law with another constant in the place of the one that follows the radius."""

@@ -57,7 +57,7 @@ def regimes_of(law: ContactLaw, grading: Grading, separations: ArrayLike, low: f
     Parameters
     ----------
     law : ContactLaw
-        In reduced units.
+        In reduced units; one, or one for each separation (`ContactLaw.with_radii`).
     grading : Grading
         E*(s)/E*.
     separations : array_like
@@ -76,8 +76,9 @@ def regimes_of(law: ContactLaw, grading: Grading, separations: ArrayLike, low: f
         If one separation has more than 16 intervals.
     """
     h = np.asarray(separations, dtype=np.float64)
-    count = len(law.limits(np.ones(1)))
-    found = [crossings_of(_limit(law, grading, j), grading, h, low, high) for j in range(count)]
+    count = len(law.limits(np.ones(h.shape)))
+    kinks = [()] * (h.size if law.each else 1)
+    found = [crossings_of(_limit(law, grading, j), grading, h, low, high, kinks) for j in range(count)]
     empty = np.empty(0, np.int64)
     index = np.concatenate([empty, *(c.separation for c in found)])
     anchors = np.append(h, grading.breaks)
@@ -86,15 +87,15 @@ def regimes_of(law: ContactLaw, grading: Grading, separations: ArrayLike, low: f
 
     touching = np.flatnonzero(h < high)
     start = np.maximum(h[touching], low)
-    first = piece_of(law, start - h[touching], grading(start))
+    first = piece_of(law.of_some(touching), start - h[touching], grading(start))
     index, step = np.concatenate([touching, index]), np.concatenate([first, step])
     height = np.concatenate([start, np.maximum(height, np.maximum(h, low)[index[touching.size :]])])
     return _intervals(index, height, step, high)
 
 
 def _limit(law: ContactLaw, grading: Grading, j: int) -> Bound:
-    """Penetration at which piece j + 1 begins, of the height."""
-    return lambda s: np.asarray(law.limits(grading(s))[j])
+    """Penetration at which piece j + 1 begins, of the height and of which separation."""
+    return lambda s, which: np.asarray(law.of_some(which).limits(grading(s))[j])
 
 
 def _intervals(index: Ints, height: Array, step: Ints, high: float) -> Regimes:

@@ -1,19 +1,21 @@
 """How fast sums grow when a surface comes nearer: within the pieces of a law, and where pieces change."""
 
+from collections.abc import Callable
+
 import numpy as np
 from numpy.polynomial import chebyshev
 from numpy.typing import NDArray
 
 from analytic.gradings import Grading
-from analytic.heights import HeightLaw
 from analytic.laws.branch import LoadingBranch
-from analytic.laws.crossings import Bound, crossings_of
+from analytic.laws.crossings import Bound, Crossings, crossings_of
 from analytic.laws.spot import piece_of
 from analytic.resolution import resolved_breaks
 
 __all__ = ["jump_terms", "slope_term"]
 
 Array = NDArray[np.float64]
+Ints = NDArray[np.int64]
 
 _COMPLEX_STEP = 1e-30
 _TOUCH = 1e-60  # root of the penetration at first touch: at 0 itself slopes are 0/0
@@ -55,7 +57,7 @@ def jump_terms(
     quantity: str,
     branch: LoadingBranch,
     grading: Grading,
-    heights: HeightLaw,
+    density: Callable[[Array, Ints], Array],
     separations: Array,
     ends: tuple[float, float],
 ) -> Array:
@@ -68,8 +70,10 @@ def jump_terms(
     ----------
     quantity : str
         Its name.
-    branch, grading, heights
-        In reduced units.
+    branch, grading
+        In reduced units; the law is one, or one for each separation.
+    density : callable
+        Probability density of the heights, of them and of the numbers of their separations.
     separations : ndarray
         Reduced separations, shape (k,).
     ends : (float, float)
@@ -80,47 +84,53 @@ def jump_terms(
     ndarray
         Shape (k,).
     """
-    (low, high), law = ends, branch.law
+    (low, high), law, every = ends, branch.law, np.arange(separations.size)
     e = grading(separations)
     total = np.zeros(separations.shape)
     touch = np.full(separations.shape, _TOUCH)
     for j in np.unique(piece_of(law, 0 * separations, e)):
         first = branch.of_root(quantity, int(j), touch, e)
-        total += np.where(piece_of(law, 0 * separations, e) == j, first, 0.0) * heights.density(separations)
-    for j in range(len(law.limits(np.ones(1)))):
+        total += np.where(piece_of(law, 0 * separations, e) == j, first, 0.0) * density(separations, every)
+    for j in range(len(law.limits(e))):
 
-        def bound(s: Array, j: int = j) -> Array:
-            return np.asarray(law.limits(grading(s))[j])
+        def bound(s: Array, which: Ints, j: int = j) -> Array:
+            return np.asarray(law.of_some(which).limits(grading(s))[j])
 
-        found = crossings_of(bound, grading, separations, low, high)
-        t, h = found.height, separations[found.separation]
-        y, e = np.sqrt(np.maximum(t - h, 0.0)), grading(t)
-        jump = branch.of_root(quantity, j + 1, y, e) - branch.of_root(quantity, j, y, e)
-        met = jump * heights.density(t) * _shares(bound, grading, t, h, ends)
-        np.add.at(total, found.separation, met)
+        kinks = [()] * (separations.size if law.each else 1)
+        found = crossings_of(bound, grading, separations, low, high, kinks)
+        t, which = found.height, found.separation
+        y, e, own = np.sqrt(np.maximum(t - separations[which], 0.0)), grading(t), branch.of_some(which)
+        jump = own.of_root(quantity, j + 1, y, e) - own.of_root(quantity, j, y, e)
+        met = jump * density(t, which) * _shares(bound, grading, found, separations, ends)
+        np.add.at(total, which, met)
     return total
 
 
-def _shares(bound: Bound, grading: Grading, t: Array, h: Array, ends: tuple[float, float]) -> Array:
+def _shares(
+    bound: Bound, grading: Grading, found: Crossings, separations: Array, ends: tuple[float, float]
+) -> Array:
     """Heights that cross the bound for each unit of the separation; none where the bound jumps."""
     breaks = np.array([ends[0], *resolved_breaks(grading, *ends), ends[1]])
-    shares = []
-    for s, level in zip(t, h, strict=True):
-        both = np.array([np.nextafter(s, -np.inf), s])
-        with np.errstate(divide="ignore", over="ignore"):
-            missed = np.abs(both - level - bound(both))
-        if not np.all(missed <= _JUMP * np.maximum(1, np.abs(both - level))):
-            shares.append(0.0)
-            continue
-        k = int(np.clip(np.searchsorted(breaks, s, side="right"), 1, breaks.size - 1))
-        left, right = max(breaks[k - 1], s - _ABOUT), min(np.nextafter(breaks[k], -np.inf), s + _ABOUT)
-        shares.append(1 / abs(1 - _slope(bound, float(s), float(left), float(right))))
-    return np.array(shares)
+    t, which = found.height, found.separation
+    both = np.stack([np.nextafter(t, -np.inf), t])
+    above = both - separations[which]
+    with np.errstate(divide="ignore", over="ignore"):
+        missed = np.abs(above - bound(both, which))
+    met = np.all(missed <= _JUMP * np.maximum(1, np.abs(above)), axis=0)
+    t, which, shares = t[met], which[met], np.zeros(t.size)
+    k = np.clip(np.searchsorted(breaks, t, side="right"), 1, breaks.size - 1)
+    left = np.maximum(breaks[k - 1], t - _ABOUT)
+    right = np.minimum(np.nextafter(breaks[k], -np.inf), t + _ABOUT)
+    shares[met] = 1 / np.abs(1 - _slopes(bound, t, which, left, right))
+    return shares
 
 
-def _slope(bound: Bound, s: float, left: float, right: float) -> float:
-    """Derivative of a bound, by the polynomial through some of its values."""
+def _slopes(bound: Bound, t: Array, which: Ints, left: Array, right: Array) -> Array:
+    """Derivatives of a bound, by the polynomials through some of its values."""
+    if not t.size:
+        return t
     x = chebyshev.chebpts1(_NODES)
-    values = bound(left + (right - left) * (1 + x) / 2)
-    c = chebyshev.chebder(chebyshev.chebfit(x, values, _NODES - 1))
-    return float(chebyshev.chebval(2 * (s - left) / (right - left) - 1, c)) * 2 / (right - left)
+    values = bound(left + (right - left) * (1 + x[:, None]) / 2, which)
+    c = chebyshev.chebder(chebyshev.chebfit(x, np.broadcast_to(values, (_NODES, t.size)), _NODES - 1))
+    place = 2 * (t - left) / (right - left) - 1
+    return np.asarray(chebyshev.chebval(place, c, tensor=False) * 2 / (right - left))

@@ -80,7 +80,7 @@ class Ways:
         if q.base == "conductance_si" and self.conductance is None:
             raise ValueError(f"quantity = {quantity!r}: give a film, or at least a resistivity")
         if not q.unloading or self.law.elastic:
-            return LoadingBranch(self.law, self.conductance)
+            return self.loading
         self.law.unloading()  # a law that has none says so
         if self.unload_from is None:
             raise ValueError(
@@ -88,6 +88,11 @@ class Ways:
                 "the lowest separation reached before"
             )
         return UnloadingBranch(self.law, self.unload_from, self.conductance)
+
+    @property
+    def loading(self) -> LoadingBranch:
+        """The way there."""
+        return LoadingBranch(self.law, self.conductance)
 
     def among(self, quantities: Iterable[str]) -> tuple[Branch, ...]:
         """The branches of some quantities, each once."""

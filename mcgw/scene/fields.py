@@ -77,8 +77,9 @@ class Fields:
         """The exact model of this very scene: its modulus, height law, contact law, history, asperities."""
         return self._alone if self.interaction is None else self._interacting
 
-    @property
+    @cached_property
     def _alone(self) -> Model:
+        """Kept, for it keeps what it has computed."""
         return Model(
             self.surface,
             grading=self.modulus,
