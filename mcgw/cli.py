@@ -1,6 +1,7 @@
 """The command line: ``mcgw COMMAND``. What a command needs is imported when it runs."""
 
 import argparse
+import gc
 import re
 import sys
 import warnings
@@ -9,7 +10,6 @@ from importlib import import_module
 from typing import Any, NoReturn
 
 from mcgw.errors import RunError
-from mcgw.machine.leaving import leave
 from mcgw.machine.progress import watched
 from mcgw.machine.terminal import Plain, one_line, plain_output
 
@@ -128,5 +128,11 @@ class _Version(argparse.Action):
 
 
 def process() -> NoReturn:
-    """Run the command of this process, and end it."""
-    leave(main())
+    """Run the command of this process, and end it without a last search for garbage, which takes 0.2 s."""
+    code = main()
+    gc.freeze()
+    sys.exit(code)
+
+
+if __name__ == "__main__":
+    process()

@@ -21,14 +21,12 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 def execute(args: argparse.Namespace) -> int:
     """Write PNG, PDF and SVG of each figure and say where they are."""
     from mcgw.commands.outputs import CSV, Output, check_outputs, figure_format
-    from mcgw.scene.scene_file import files_of, load_scene
-
-    scene, figure = load_scene(args.scene) if args.scene else None, figure_format()
     from mcgw.figures.catalogue import figures_of, of_paper, rows_of
     from mcgw.figures.compared import Compared
     from mcgw.figures.drawing import figure_files, save_figure_files
+    from mcgw.scene.scene_file import files_of, load_scene
 
-    compared = of_paper() if scene is None else Compared(scene)
+    compared, figure = Compared(load_scene(args.scene)) if args.scene else of_paper(), figure_format()
     check_outputs(
         [
             Output(path, CSV if path.suffix == ".csv" else figure)

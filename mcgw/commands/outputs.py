@@ -8,7 +8,6 @@ from pathlib import Path
 
 from mcgw.errors import StoreError
 from mcgw.formats.files import check_output
-from mcgw.machine.late import without_help
 from mcgw.store.disk import parts_of
 from mcgw.store.lock import LOCK_FILES
 from mcgw.store.trailer import TRAILER_BYTES, TRAILER_MAGIC
@@ -36,8 +35,7 @@ TOML = Format("a scene", (".toml",))
 
 def figure_format() -> Format:
     """All that matplotlib writes."""
-    with without_help():
-        from mcgw.formats.pictures import figure_endings
+    from mcgw.formats.pictures import figure_endings
 
     return Format("a figure", figure_endings())
 
