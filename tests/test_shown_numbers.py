@@ -15,7 +15,7 @@ import mcgw
 from mcgw.cli import main
 from mcgw.ensemble.results import MemoryResults
 from mcgw.jobs.running import run
-from mcgw.store import ensembles
+from mcgw.sweeps import opening
 
 pytestmark = pytest.mark.usefixtures("blank_figures", "looked_at_here")
 
@@ -149,7 +149,7 @@ def test_compare_ends_with_1_and_says_so_where_they_disagree(file, tmp_path, cap
     arrays = {name: opened.values(name) * (1.05 if name == "load" else 1) for name in QUANTITIES}
     wrong = dataclasses.replace(opened, sums=MemoryResults(arrays))
     assert "theory of this model agree" in out_of(["compare", file, "-o", tmp_path / "c.png"], capsys)
-    monkeypatch.setattr(ensembles, "open_ensemble", lambda path: wrong)
+    monkeypatch.setattr(opening, "open_ensemble", lambda path: wrong)
     assert "theory of this model DISAGREE" in out_of(
         ["compare", file, "-o", tmp_path / "c.png"], capsys, code=1
     )

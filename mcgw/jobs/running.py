@@ -23,7 +23,7 @@ from mcgw.store.lock import locked
 from mcgw.store.run_folder import RunFolder
 from mcgw.store.shards import Shard, Span
 
-__all__ = ["make", "make_part", "run", "run_part"]
+__all__ = ["make", "run", "run_part"]
 
 _ROUNDS = 3  # of merging, if shards turn out damaged
 
@@ -71,24 +71,40 @@ def _stages(scene: Scene, path: Path) -> Iterator[Scene]:
         yield replace(fixed, n_surfaces=last)
 
 
-def make(making: Making, by: By) -> None:
-    """Draw what is missing of a file, and make it."""
-    plan, path = making.plan, making.path
-    total = sum(map(making.work, plan.missing([])))
-    if making.done() == plan.total:
-        tidy(path)
-        by.progress(total)
-        return
-    with by.at_work() as session, locked(making.folder):
-        drop_leftovers(path)
-        if making.done() == plan.total:  # another process was quicker
-            by.progress(total)
-            return
-        begun = (making.folder / "run.toml").exists()
-        if by.engine is None and len(plan.missing([])) == 1 and not begun:
+def make(making: Making, by: By, part: Part | None = None) -> int:
+    """Draw what is missing of a file and make it; or of its blocks a share, for `mcgw.merge` to make it of.
+
+    Returns
+    -------
+    int
+        How many surfaces are then missing of the whole.
+    """
+    total, blocks = making.plan.total, making.plan.missing([])
+    if making.done() < total:
+        if part:
+            tidy(making.path)
+        with by.at_work() as session, locked(making.folder, shared=part is not None):
+            if not part:
+                drop_leftovers(making.path)
+            if making.done() < total:  # no other process was quicker
+                return _make(making, session, part, at_once=by.engine is None and len(blocks) == 1)
+    tidy(making.path)
+    by.progress(sum(map(making.work, blocks)))
+    return 0
+
+
+def _make(making: Making, session: Session, part: Part | None, *, at_once: bool) -> int:
+    """Only with the lock."""
+    with _what_is_kept(making):
+        if part:
+            started, done = making.record.begin(), making.done()
+            _draw_missing(making, started, started.missing(done, started.shards()), session, part)
+            return sum(span.n for span in started.missing(done, started.shards()))
+        if at_once and not (making.folder / "run.toml").exists():
             _at_once(making, session)
         else:
             _in_blocks(making, session)
+        return 0
 
 
 def run_part(
@@ -110,23 +126,7 @@ def run_part(
     by = By(None, threads, progress or _silent)
     scene = as_recorded(scene, Path(path))
     job = Job.of(without_rule(scene) if scene.rel_err is not None else scene, Path(path))
-    return make_part(job, by, part)
-
-
-def make_part(making: Making, by: By, part: Part) -> int:
-    """Draw one job's share of the blocks of a file, and return how many surfaces are still missing."""
-    total = making.plan.total
-    if making.done() == total:
-        return 0
-    tidy(making.path)
-    with by.at_work() as session, locked(making.folder, shared=True):
-        done = making.done()  # again: the last of the jobs may have been merged
-        if done == total:
-            return 0
-        with _what_is_kept(making):
-            started = making.record.begin()
-            _draw_missing(making, started, started.missing(done, started.shards()), session, part)
-        return sum(span.n for span in started.missing(done, started.shards()))
+    return make(job, by, part)
 
 
 def _silent(done: int) -> None:
@@ -153,16 +153,15 @@ def _at_once(making: Making, session: Session) -> None:
 
 def _in_blocks(making: Making, session: Session) -> None:
     """Shards until none is missing, then the file. Only with the lock."""
-    with _what_is_kept(making):
-        started = making.record.begin()
-        started.freeze()
-        for _ in range(_ROUNDS):
-            shards = started.sweep()
-            done = making.done()
-            _refuse_more(started, shards)
-            _draw_missing(making, started, started.missing(done, shards), session)
-            if merge_once(started, making.path, session.signals):
-                return
+    started = making.record.begin()
+    started.freeze()
+    for _ in range(_ROUNDS):
+        shards = started.sweep()
+        done = making.done()
+        _refuse_more(started, shards)
+        _draw_missing(making, started, started.missing(done, shards), session)
+        if merge_once(started, making.path, session.signals):
+            return
     raise RunError(f"{making.folder}: shards are damaged again and again; is the disk failing?")
 
 

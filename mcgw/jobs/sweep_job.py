@@ -1,5 +1,6 @@
 """A sweep on its way into a file: groups of points that share their surfaces, drawn block by block."""
 
+import hashlib
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
@@ -8,7 +9,9 @@ from pathlib import Path
 from mcgw.ensemble.drawing import use_threads
 from mcgw.formats.files import check_output
 from mcgw.jobs.job import Making
+from mcgw.sampling.samplers import name_of
 from mcgw.sampling.shared import Alone, Shared, shared
+from mcgw.store.arithmetic import drawn_with
 from mcgw.store.ensembles import held_by
 from mcgw.store.plan import Plan
 from mcgw.store.provenance import now
@@ -16,7 +19,7 @@ from mcgw.store.run_folder import RunFolder
 from mcgw.store.shards import Span, Tables
 from mcgw.sweeps.asked import Asked
 from mcgw.sweeps.drawing import check_memory_of, plan_of, pooled_of, work_of
-from mcgw.sweeps.file import draws_of, identity_of, write_sweep
+from mcgw.sweeps.file import write_sweep
 from mcgw.sweeps.pooled import Pooled
 
 __all__ = ["SweepJob"]
@@ -62,10 +65,10 @@ class SweepJob(Making):
     @cached_property
     def record(self) -> RunFolder:
         """What is drawn, and in which blocks, as its folder will say it."""
-        draws = draws_of(self.asked)
-        return RunFolder(
-            self.folder, *self.asked.texts(), "", self.plan, identity_of(self.asked), draws, now()
-        )
+        known = {drawn_with(scene, name_of(scene)) for group in self.asked.groups for scene in group.computed}
+        draws, texts = max(known, key=len), self.asked.texts()  # with the kind of processor, if any has it
+        identity = hashlib.sha256("\0".join((*texts, draws)).encode()).hexdigest()
+        return RunFolder(self.folder, *texts, "", self.plan, identity, draws, now())
 
     def done(self) -> int:
         """Surfaces that its file holds: all or none."""
@@ -79,7 +82,7 @@ class SweepJob(Making):
 
     def write(self, tables: Tables, seconds: float) -> None:
         """Write the file in one step, of all surfaces drawn as one block. Only with the lock."""
-        write_sweep(self.asked, [Pooled.from_shard(tables)], self.path, wall_seconds=seconds)
+        write_sweep(self.record, self.asked, [Pooled.from_shard(tables)], self.path, wall_seconds=seconds)
 
     def work(self, span: Span) -> float:
         """What some surfaces of one group take, in asperities drawn."""

@@ -135,7 +135,7 @@ def sweep(
         with use_threads(threads), told(progress, "surfaces") as tell:
             asked = Asked.of(scene, axes)
             return asked.answered(draw(asked.groups, tell), chosen)
-    from mcgw.jobs.running import make, make_part  # files, which a sweep in memory has none of
+    from mcgw.jobs.running import make  # files, which a sweep in memory has none of
     from mcgw.jobs.sweep_job import SweepJob
     from mcgw.store.ensembles import recorded_seed
     from mcgw.sweeps.file import open_sweep
@@ -150,7 +150,5 @@ def sweep(
         asked = Asked.from_texts(*Asked.of(scene, axes).texts())  # as workers read it
         job = SweepJob.of(asked, path)
         by = By(draws, threads, weighted(asked.groups, tell))
-        if part:
-            return make_part(job, by, part)
-        make(job, by)
-    return open_sweep(path, chosen)
+        left = make(job, by, part)
+    return left if part else open_sweep(path, chosen)

@@ -28,7 +28,6 @@ With ``keep = "statistics"`` also ``/load_skewness``, and ``/load_quantile`` wit
 versions in `draws`. After the HDF5 data stands a trailer, as in the files of ensembles.
 """
 
-import hashlib
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -42,9 +41,7 @@ from mcgw.ensemble.labelled import AXES, Labelled, Variable, axis
 from mcgw.errors import StoreError
 from mcgw.formats.files import write_whole
 from mcgw.formats.toml_text import loads
-from mcgw.sampling.samplers import name_of
 from mcgw.scene.section import SceneError
-from mcgw.store.arithmetic import drawn_with
 from mcgw.store.ensembles import read_attributes
 from mcgw.store.layout import body_of_kept, drawn_digest, drawn_tables
 from mcgw.store.run_folder import RunFolder
@@ -56,23 +53,14 @@ from mcgw.sweeps.points import Points
 from mcgw.sweeps.pooled import Pooled
 from mcgw.sweeps.sweep import STATISTICS, Sweep
 
-__all__ = ["draws_of", "identity_of", "merge_sweep", "open_sweep", "write_sweep"]
+__all__ = ["merge_sweep", "open_sweep", "write_sweep"]
 
 Tables = dict[str, NDArray[Any]]
 
 
-def identity_of(asked: Asked) -> str:
-    """SHA-256 of all that the numbers of a sweep depend on: scene, axes, what draws."""
-    return hashlib.sha256("\0".join((*asked.texts(), draws_of(asked))).encode()).hexdigest()
-
-
-def draws_of(asked: Asked) -> str:
-    """Versions that draw, and the kind of processor if any point depends on it."""
-    known = {drawn_with(scene, name_of(scene)) for group in asked.groups for scene in group.computed}
-    return max(known, key=len)
-
-
-def write_sweep(asked: Asked, pooled: Sequence[Pooled], path: Path, *, wall_seconds: float) -> None:
+def write_sweep(
+    run: RunFolder, asked: Asked, pooled: Sequence[Pooled], path: Path, *, wall_seconds: float
+) -> None:
     """Write the file of a sweep in one atomic step, over none.
 
     Raises
@@ -80,15 +68,12 @@ def write_sweep(asked: Asked, pooled: Sequence[Pooled], path: Path, *, wall_seco
     OSError
         If it cannot be written, or another file has this name.
     """
-    sweep, texts = asked.answered(pooled, STATISTICS), asked.texts()
-    of_sweep = {
-        "scene": texts[0],
-        "axes": texts[1],
-        "run": identity_of(asked),
-        "draws": draws_of(asked),
-        "wall_seconds": wall_seconds,
-    }
-    body = body_of_kept(_by_point(sweep), _drawn(sweep), texts, sweep.scenes[0], "", **of_sweep)
+    sweep = asked.answered(pooled, STATISTICS)
+    of_run = {"run": run.identity, "draws": run.drawn_with, "wall_seconds": wall_seconds}
+    texts = {"scene": run.text, "axes": run.axes}
+    body = body_of_kept(
+        _by_point(sweep), _drawn(sweep), tuple(texts.values()), run.scene, "", **texts, **of_run
+    )
     write_whole(path, body, expected=None)
 
 
@@ -116,7 +101,7 @@ def merge_sweep(folder: Path, _target: Path, temporary: Path, check: Callable[[]
             yield run.plan.group(span)[0], Pooled.from_shard(shard.arrays())
 
     pooled = added_up(held())
-    write_sweep(Asked.from_texts(run.text, run.axes), pooled, temporary, wall_seconds=seconds)
+    write_sweep(run, Asked.from_texts(run.text, run.axes), pooled, temporary, wall_seconds=seconds)
 
 
 def _by_point(sweep: Sweep) -> Labelled:
