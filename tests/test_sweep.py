@@ -11,6 +11,10 @@ from mcgw.sweeps.axes import axes_of
 SURFACE = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "1 mm^2", "78.6 GPa")
 SCENE = mcgw.Scene(SURFACE, separations=[0.0, 0.4, 1.0, 1.5, 2.5], n_surfaces=300, n_asperities=2000, seed=7)
 GAMMA = "grading.gamma"
+SPECTRAL = mcgw.Scene(
+    mcgw.SpectralSurface(1e-12, 1e-3, 5e6, 1e-6, 78.6e9), separations=[0.0, 1.0, 1.5], n_surfaces=50,
+    n_asperities=2000, seed=7,
+)  # fmt: skip
 KINKED = [mcgw.Table((-1, kink, 6), (1.0, 1.5, 3.0)) for kink in (0.33, 0.7, 1.21)]
 
 
@@ -61,6 +65,12 @@ SEVERAL = {
     "not combinations": (  # for they are clipped
         SCENE.replace(separations=[-1.0, 0.0], negative="clip", n_surfaces=20),
         {GAMMA: np.linspace(1.5, 3.0, 9)},
+    ),
+    "radii": (SPECTRAL, {GAMMA: [0.5, 2.0, 3.0]}),
+    "radii, without cells": (SPECTRAL.replace(n_asperities=10), {GAMMA: [0.5, 2.0]}),
+    "radii under laws": (
+        SPECTRAL.replace(law=mcgw.KogutEtsion(critical=0.1)),
+        {"contact.critical": [0.1, 0.2]},
     ),
     "a function": (SCENE.replace(grading=lambda s: 1 + 0.3 * np.tanh(s)), {"surface.E_star": [7e10, 8e10]}),
 }
@@ -135,6 +145,30 @@ def test_paired_differences_have_the_variance_that_theory_gives():
     difference = alone[0] - alone[1]
     np.testing.assert_allclose(found.value, difference.mean(axis=0), rtol=1e-11)
     np.testing.assert_allclose(found.stderr, difference.std(axis=0, ddof=1) / np.sqrt(m), rtol=1e-9)
+
+
+def test_summits_keep_their_radii_from_point_to_point():
+    """A difference of pairs is that of the surfaces, one by one, and ten times as sharp as of others."""
+    sweep = mcgw.sweep(SPECTRAL, {GAMMA: [1.0, 1.5]})
+    found = sweep.difference("load", 1, 0)
+    one, other = (mcgw.simulate(sweep.scene(i))["load"] for i in (1, 0))
+    np.testing.assert_allclose(found.value, (one - other).mean(axis=0), rtol=1e-11)
+    np.testing.assert_allclose(found.stderr, (one - other).std(axis=0, ddof=1) / 50**0.5, rtol=1e-9)
+    assert found.gain.min() > 10
+
+
+def test_what_no_cells_resolve_is_drawn_one_by_one_at_all_points(monkeypatch):
+    monkeypatch.setattr("mcgw.sampling.samplers._HALVINGS", 0)
+    steep = mcgw.Scene(
+        SURFACE, separations=[-1.2, 1.8], grading=mcgw.Exponential(-1.5), negative="clip", n_surfaces=5,
+        n_asperities=3000, seed=7, law=mcgw.KogutEtsion(critical=0.0018),
+    )  # fmt: skip
+    over = {"surface.E_star": [7e10, 8e10]}
+    sweep = mcgw.sweep(steep, over)
+    assert len(sweep.groups) == 1
+    assert all(same_bits(sweep, (i,)) for i in range(2))
+    with pytest.raises(ValueError, match='take sampler = "tail"'):
+        mcgw.sweep(steep.replace(sampler="cells"), over)
 
 
 @pytest.mark.parametrize("gammas", [[1.0, 1.001, 1.5], np.linspace(0.5, 1.7, 9)])

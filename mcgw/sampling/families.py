@@ -5,7 +5,7 @@ matrices are those of one radius; only the moments differ (`mcgw.sampling.weight
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -34,11 +34,14 @@ class Families:
         One a family.
     places : tuple of int
         Where each of their quantities, family by family, stands among all.
+    drawn : tuple of Layout, optional
+        Moments of each family, where there are more than it needs.
     """
 
     powers: tuple[float, ...]
     responses: tuple[Response, ...]
     places: tuple[int, ...]
+    drawn: tuple[Layout, ...] = ()
 
     @classmethod
     def of(
@@ -64,12 +67,29 @@ class Families:
     @cached_property
     def layout(self) -> Layout:
         """The moments of each cell, one family after the other."""
-        parts = [response.layout for response in self.responses]
+        parts = self._layouts
         none = [np.empty(0, dtype=np.int64)]
         return Layout(
             np.concatenate(none + [part.plain for part in parts]),
             np.concatenate(none + [part.rooted for part in parts]),
         )
+
+    @property
+    def _layouts(self) -> tuple[Layout, ...]:
+        return self.drawn or tuple(response.layout for response in self.responses)
+
+    def apart(self, layout: Layout) -> tuple[Layout, ...]:
+        """The moments of each family, of those of all of them."""
+        if not self.powers:
+            return ()
+        plain, rooted = (np.split(x, len(self.powers)) for x in (layout.plain, layout.rooted))
+        return tuple(Layout(*each) for each in zip(plain, rooted, strict=True))
+
+    def out_of(self, layout: Layout) -> "Families":
+        """The same, bit by bit, out of moments of which each cell may have more than this needs."""
+        drawn = self.apart(layout)
+        responses = tuple(x.out_of(more) for x, more in zip(self.responses, drawn, strict=True))
+        return replace(self, responses=responses, drawn=drawn)
 
     def layout_of(self, power: float | None) -> Layout:
         """The moments of one family."""
@@ -77,7 +97,7 @@ class Families:
 
     def __matmul__(self, moments: Array) -> Array:
         """Quantities of every surface: moments (rows, surfaces) to (quantities, surfaces, separations)."""
-        ends = np.cumsum([response.layout.starts[-1] for response in self.responses])
+        ends = np.cumsum([layout.starts[-1] for layout in self._layouts])
         parts = np.split(moments, ends[:-1])
         found = np.concatenate(
             [response @ part for response, part in zip(self.responses, parts, strict=True)]

@@ -12,11 +12,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from analytic import Exponential, Homogeneous, MeasuredRadii, quantity_of
 from mcgw.sampling.block import Block, Sampler
 from mcgw.sampling.cells import mesh_of
 from mcgw.sampling.counted import Counted
 from mcgw.sampling.layout import Layout
-from mcgw.sampling.response.response import Response
+from mcgw.sampling.response.walk import UnresolvedError
 from mcgw.sampling.samplers import cells_of, name_of, sampler_of, tail_of
 from mcgw.scene.scene import Scene
 
@@ -64,7 +65,7 @@ class Shared:
     @cached_property
     def _answering(self) -> tuple[Counted, ...]:
         """All of them, out of the moments of all."""
-        return tuple(_out_of(self.layout, one) for one in self.scenes)
+        return tuple(replace(one, response=one.response.out_of(self.layout)) for one in self.scenes)
 
     @property
     def words(self) -> int:
@@ -83,36 +84,37 @@ class Shared:
         return tuple(Block(one.sums(first, *drawn)) for one in self._answering)
 
 
-def _out_of(layout: Layout, one: Counted) -> Counted:
-    """The same scene out of more moments."""
-    assert isinstance(one.response, Response)  # summits with radii share nothing
-    return replace(one, response=one.response.out_of(layout))
-
-
 def to_be_shared(scene: Scene) -> tuple[Any, ...] | None:
     """What other scenes must agree in to have the same surfaces; None if it shares them with none.
 
-    Crowds depend on what is asked, and summits with radii or balances of their own on more than a height.
+    Crowds depend on what is asked, and balances of their own on more than heights and radii.
     """
     name = name_of(scene)
     nominal = scene.interaction is not None and scene.interaction.nominal
     perhaps_crowded = scene.law_error > 0 and scene.sampler == "auto"
-    if name not in ("cells", "tail") or scene.curvature is not None or nominal or perhaps_crowded:
+    listed = isinstance(scene.curvature, MeasuredRadii)
+    if name not in ("cells", "tail") or listed or nominal or perhaps_crowded:
         return None
     drawn = scene.n_asperities, scene.seed, scene.count, scene.n_surfaces
-    return *drawn, name, scene.accuracy, scene.lowest, scene.heights
+    powers = {quantity_of(name).radius for name in scene.quantities} if scene.curvature else None
+    return *drawn, name, scene.accuracy, scene.lowest, scene.heights, scene.curvature, powers
 
 
 def on_common_cells(scenes: Sequence[Scene]) -> list[Scene]:
     """Scenes that are to be shared with such `edges` that all have the same cells.
 
-    They stay as they are if they have that already.
+    They stay as they are if they have that already. What no cells resolve is to be drawn one by one.
     """
     alike = list(scenes)
     if name_of(alike[0]) != "cells":
         return alike
     while True:
-        edges = [_edges(scene) for scene in alike]
+        try:
+            edges = [_edges(scene) for scene in alike]
+        except UnresolvedError:
+            if any(scene.sampler != "auto" or scene.keep == "moments" for scene in scenes):
+                raise
+            return [scene.replace(sampler="tail") for scene in scenes]
         if all(np.array_equal(each, edges[0]) for each in edges):
             return alike
         common = np.unique(np.concatenate(edges))
@@ -120,8 +122,9 @@ def on_common_cells(scenes: Sequence[Scene]) -> list[Scene]:
 
 
 def _edges(scene: Scene) -> NDArray[np.float64]:
-    """Of its cells; under other laws than Hertz's the response may need more of them than the mesh has."""
-    return (mesh_of(scene) if scene.hertzian else cells_of(scene).mesh).edges
+    """Of its cells; the response may need more of them than the mesh has, but for plain gradings."""
+    plain = scene.hertzian and isinstance(scene.modulus, Homogeneous | Exponential)
+    return (mesh_of(scene) if plain else cells_of(scene).mesh).edges
 
 
 def shared(scenes: Sequence[Scene]) -> Shared | Alone:

@@ -59,7 +59,7 @@ class WithRadii:
 
     def moments(self, seed: int, first: int, counts: Counts, layout: Layout) -> Array:
         """Sums over the uniforms of each cell, each with a power of its radius."""
-        layouts = [response.layout for response in self.families.responses]
+        layouts = list(self.families.apart(layout))
         squares = [power == 1.0 for power in self.families.powers]
         moments = weighted_moments(
             seed, first, counts.cells, layouts, squares, self.mesh, self.table, stratified=self.strata
