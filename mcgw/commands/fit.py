@@ -92,15 +92,15 @@ def execute(args: argparse.Namespace) -> int:
         beside.append(Output(args.picture, figure_format(), "--picture"))
     check_outputs([Output(args.output, TOML), *beside], inputs=files_of_map(path_of_map))
     with stages(4) as done:
-        topography = read_map(path_of_map, pixel=pixel, unit=args.unit)
+        read = [read_map(path_of_map, pixel=pixel, unit=args.unit)]
         done()
-        ready = prepared(topography, asked)
+        ready = prepared(read.pop(), asked)  # which keeps no map as it was read: large ones fill the memory
         done()
         fit = fit_prepared(ready, across=args.parts)
         done()
         fit = replace(fit, cautions=tuple(cautions(fit, ready)))
         done()
-    head = map_line(path_of_map.name, asked, topography.assumed_unit)
+    head = map_line(path_of_map.name, asked, ready.levelled.assumed_unit)
     text = [head, *fit.notes, *fit_lines(fit), *(f"warning: {line}" for line in fit.cautions)]
     print("\n".join(text))
     title = f"Fitted to {head}"
@@ -112,7 +112,7 @@ def execute(args: argparse.Namespace) -> int:
     if args.picture is not None:
         from mcgw.figures.map_fit import save_fit_picture
 
-        save_fit_picture(fit, ready, args.picture)
+        save_fit_picture(fit, read_map(path_of_map, pixel=pixel, unit=args.unit), ready, args.picture)
         print(f"{args.picture}: figure")
     print(f"next: mcgw run {args.output} -o {args.output.with_suffix('.h5')}")
     return 0

@@ -33,15 +33,17 @@ _WIDTH, _LINES = 42, 27  # of the text, in characters and lines
 _TIMES = 12.0  # from the shortest cutoff to the longest
 
 
-def save_fit_picture(fit: Fit, ready: Prepared, path: Path) -> None:
+def save_fit_picture(fit: Fit, raw: Topography, ready: Prepared, path: Path) -> None:
     """Draw it.
 
     Parameters
     ----------
     fit : Fit
         Of the map.
+    raw : Topography
+        The map as it was read.
     ready : Prepared
-        The map.
+        The same when it was looked at.
     path : Path
         Ending in .png, .svg or .pdf.
 
@@ -53,8 +55,8 @@ def save_fit_picture(fit: Fit, ready: Prepared, path: Path) -> None:
     with mpl.rc_context(STYLE | {"axes.axisbelow": True}):
         figure = Figure(figsize=_SIZE, layout="constrained")
         axes = figure.subplots(2, 3, width_ratios=(1, 1, 1.05))
-        _draw_map(figure, axes[0, 0], ready.raw, None)
-        missing = f", {ready.raw.missing} points missing" if ready.raw.missing else ""
+        _draw_map(figure, axes[0, 0], raw, None)
+        missing = f", {raw.missing} points missing" if raw.missing else ""
         axes[0, 0].set_title(f"a  as read{missing}", loc="left")
         _draw_map(figure, axes[0, 1], ready.used, ready.seen)
         _draw_summits(axes[0, 1], fit, ready)

@@ -1,6 +1,7 @@
 """From a measured map to the parameters of a Greenwood-Williamson surface, with their uncertainty."""
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -237,7 +238,7 @@ def fit_prepared(ready: Prepared, *, across: int = 4) -> Fit:
     blur = math.hypot(max(used.pixel), _BLUR * (ready.asked.cutoff or 0.0))
     peak_to_valley = float(np.ptp(used.heights if ready.seen is None else used.heights[ready.seen]))
     if number >= _FEWEST:
-        scales = _scales(ready, across, number)
+        scales = _scales(ready, across, counted)
         estimates["summits"] = Estimate.of(by_summits(scales), waves)
         caps = by_caps(scales.fine, blur)
         if caps is not None and caps[2][0] <= peak_to_valley:  # else too many hide for the others to tell
@@ -274,15 +275,14 @@ def _origin(whole: Topography, used: Topography) -> tuple[float, float]:
     return x, y
 
 
-def _scales(ready: Prepared, across: int, number: int) -> Scales:
+def _scales(ready: Prepared, across: int, counted: SummitSums) -> Scales:
     """Summits of every point and of every second one, in fewer sub-areas where they are few."""
-    fewer = max(min(across, math.isqrt(number // _A_PART)), _LEAST_ACROSS)
-    return Scales(
-        *(
-            _without_summit_form(count(ready.used, across=fewer, seen=ready.seen), ready.asked.form)
-            for count in (summit_sums_of, coarse_sums_of)
-        )
-    )
+    fewer = max(min(across, math.isqrt(counted.heights.size // _A_PART)), _LEAST_ACROSS)
+
+    def count(sums_of: Callable[..., SummitSums]) -> SummitSums:
+        return _without_summit_form(sums_of(ready.used, across=fewer, seen=ready.seen), ready.asked.form)
+
+    return Scales(counted if counted.parts == fewer**2 else count(summit_sums_of), count(coarse_sums_of))
 
 
 def _visible(caps: Estimate, blur: float) -> Visible:

@@ -17,7 +17,7 @@ def flaws(fit: Fit, ready: Prepared) -> list[str]:
     """Warnings about what lies on a map, each in one line that says what to do."""
     level = ready.levelled
     return [
-        *_units(ready.raw),
+        *_units(level),
         *_edges(level),
         *_spikes(level),
         *_alone(fit, level),

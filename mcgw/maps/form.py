@@ -1,6 +1,7 @@
 """What is taken off a measured map before it is looked at: its form, and what is finer than the cutoff."""
 
 import math
+from dataclasses import replace
 from typing import Literal, get_args
 
 import numpy as np
@@ -34,7 +35,7 @@ def without_form(topography: Topography, form: Form) -> Topography:
             shape = round_form(topography, axis=form == "cylinder")
         case _:
             shape = _polynomial(topography.heights, ORDERS[form])
-    return Topography(topography.heights - shape, topography.pixel)
+    return replace(topography, heights=np.subtract(topography.heights, shape, out=shape), periodic=False)
 
 
 def _polynomial(z: Array, order: int) -> Array:
@@ -42,9 +43,11 @@ def _polynomial(z: Array, order: int) -> Array:
     y, x = (_powers(n, order) for n in z.shape)
     terms = [(a, b) for a in range(order + 1) for b in range(order + 1 - a)]
     there = np.isfinite(z)
-    projected = y.T @ np.where(there, z, 0.0) @ x
+    whole = bool(there.all())
+    projected = y.T @ (z if whole else np.where(there, z, 0.0)) @ x
     square_y, square_x = ((v[:, :, None] * v[:, None, :]).reshape(len(v), -1) for v in (y, x))
-    gram = (square_y.T @ there @ square_x).reshape([order + 1] * 4)  # powers a and c of y, b and d of x
+    squares = np.outer(square_y.sum(axis=0), square_x.sum(axis=0)) if whole else square_y.T @ there @ square_x
+    gram = squares.reshape([order + 1] * 4)  # powers a and c of y, b and d of x
     matrix = np.array([[gram[a, c, b, d] for c, d in terms] for a, b in terms])
     found = np.linalg.lstsq(matrix, np.array([projected[a, b] for a, b in terms]), rcond=None)[0]
     weights = np.zeros_like(projected)
@@ -87,7 +90,7 @@ def smooth(topography: Topography, cutoff: float) -> Topography:
     smoothed = lowpass(topography, cutoff)
     if not topography.periodic:
         smoothed = smoothed[radius[0] : rows - radius[0], radius[1] : columns - radius[1]]
-    return Topography(np.ascontiguousarray(smoothed), topography.pixel, topography.periodic)
+    return replace(topography, heights=np.ascontiguousarray(smoothed))
 
 
 def lowpass(topography: Topography, cutoff: float) -> Array:

@@ -14,6 +14,7 @@ from mcgw.maps.preparation import (
     STEP,
     Missing,
     Preparation,
+    Prepared,
     SpikesTo,
     StepTo,
     prepared,
@@ -113,18 +114,21 @@ def fit(
         for name, length in (("cutoff", cutoff), ("long_cutoff", long_cutoff))
     )
     length = None if pixel is None else argument("pixel", pixel, "m")
-    if isinstance(heights, str | Path):
-        path = Path(heights)
-        square = None if length is None else (length, length)
-        as_profile = profile or holds_profile(path)
-        heights = [path] if as_profile else read_map(path, pixel=square, unit=unit)
+    asked = Preparation(short, form, missing, spikes, step, trimmed, long)
     if isinstance(heights, Topography):
-        ready = prepared(heights, Preparation(short, form, missing, spikes, step, trimmed, long))
-        found = fit_prepared(ready, across=across)
-        return replace(found, cautions=tuple(cautions(found, ready)))
-    several = [heights] if isinstance(heights, Profile) else heights
+        return _of_map(prepared(heights, asked), across)
+    if isinstance(heights, str | Path) and not (profile or holds_profile(Path(heights))):
+        square = None if length is None else (length, length)
+        return _of_map(prepared(read_map(Path(heights), pixel=square, unit=unit), asked), across)
+    several = [heights] if isinstance(heights, str | Path | Profile) else heights
     read = [
         p if isinstance(p, Profile) else read_profile(Path(p), spacing=length, unit=unit) for p in several
     ]
     of_profiles = fit_profiles(read, cutoff=short, form=form)
     return replace(of_profiles, cautions=tuple(profile_cautions(of_profiles, read, short)))
+
+
+def _of_map(ready: Prepared, across: int) -> Fit:
+    """With what speaks against it."""
+    found = fit_prepared(ready, across=across)
+    return replace(found, cautions=tuple(cautions(found, ready)))

@@ -90,8 +90,9 @@ def step_of(topography: Topography) -> Step | None:
             begin, place, end = (area * (q + 1.5) for q in np.quantile(at[steps], (_FIRST, 0.5, 1 - _FIRST)))
             found.append(Step(axis, place, height, max(begin - 2 * area, 0.0), min(end + 2 * area, size)))
     step = max(found, key=lambda s: s.height, default=None)
-    rms = float(without_form(topography, "plane").heights.std())
-    return step if step is not None and step.height > rms else None
+    if step is None or not step.height > float(without_form(topography, "plane").heights.std()):
+        return None
+    return step
 
 
 def _medians(z: Array) -> Array:
@@ -103,24 +104,34 @@ def _medians(z: Array) -> Array:
 
 
 def form_left(topography: Topography, form: Form) -> FormLeft | None:
-    """Find a polynomial that is more than long waves, once this form is taken off.
+    """Find a polynomial that is more than long waves, on a map that this form was taken off.
 
     It is of second order, or of fourth where that was taken off already. It must hold more than a twentieth
     of the variance, and three times what the longest waves do, two on the map, once it is taken off too. A
     sphere or a cylinder is named where it takes off as much. No point may be missing.
     """
-    taken = without_form(topography, form).heights
     more: Form = "quadratic" if ORDERS[form] < ORDERS["quadratic"] else "quartic"
     rest = without_form(topography, more).heights
-    left = taken - rest
-    variance = float(left.var())
-    share = variance / float(taken.var())
-    coarse = block_means(rest, _COARSE)
-    power = np.abs(fft.fft2(coarse) / coarse.size) ** 2
-    along, down = (fft.fftfreq(n) * n for n in coarse.shape[::-1])
-    longest = float(power[np.hypot(along, down[:, None]) < _LONGEST].sum())
+    longest, of_rest = _longest(rest), _variance(rest)
+    left = np.subtract(topography.heights, rest, out=rest)
+    variance = _variance(left)
+    share = variance / _variance(topography.heights)
     if share < _COUNTS or variance < _STRONGER * longest:
         return None
-    enough = float(rest.var()) + _AS_MUCH * variance
+    enough = of_rest + _AS_MUCH * variance
     simple = (f for f in _ROUND if more == "quadratic" and without_form(topography, f).heights.var() < enough)
     return FormLeft(share, float(np.ptp(left)), next(simple, more))
+
+
+def _longest(z: Array) -> float:
+    """Variance of the longest waves on a map."""
+    coarse = block_means(z, _COARSE)
+    power = np.abs(fft.fft2(coarse) / coarse.size) ** 2
+    along, down = (fft.fftfreq(n) * n for n in coarse.shape[::-1])
+    return float(power[np.hypot(along, down[:, None]) < _LONGEST].sum())
+
+
+def _variance(z: Array) -> float:
+    """By two passes that make no third map of two: `z` is about its own mean, or near it."""
+    flat = z.ravel()
+    return float(flat @ flat) / flat.size - float(flat.mean()) ** 2

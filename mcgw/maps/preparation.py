@@ -78,8 +78,6 @@ class Prepared:
 
     Parameters
     ----------
-    raw : Topography
-        As it was read.
     levelled : Topography
         Without form; lacks no points, and no wavelength.
     used : Topography
@@ -92,7 +90,6 @@ class Prepared:
         What was done, a line each.
     """
 
-    raw: Topography
     levelled: Topography
     used: Topography
     seen: Mask | None
@@ -110,11 +107,13 @@ def prepared(topography: Topography, asked: Preparation) -> Prepared:
     """
     notes: list[str] = []
     kept = _within(_trimmed(topography, asked.trim, notes), notes)
+    del topography  # a large map that nobody else looks at leaves its memory to what is made of it
     if asked.step == "crop":
         kept = _terrace(kept, notes)
     if not np.nanmax(kept.heights) - np.nanmin(kept.heights) > SMALLEST:
         raise ValueError("the map is flat: there is no roughness to fit")
-    kept, level, holes = _levelled(kept, asked, notes)
+    level, holes = _levelled(kept, asked, notes)
+    del kept
     used = level
     if asked.long_cutoff is not None:
         used = replace(used, heights=used.heights - lowpass(used, asked.long_cutoff))
@@ -123,8 +122,8 @@ def prepared(topography: Topography, asked: Preparation) -> Prepared:
         )
     if asked.cutoff is not None:
         used = smooth(used, asked.cutoff)
-    seen = None if holes is None else _seen(kept, holes, asked, notes)
-    return Prepared(topography, level, used, seen, asked, tuple(notes))
+    seen = None if holes is None else _seen(level, holes, asked, notes)
+    return Prepared(level, used, seen, asked, tuple(notes))
 
 
 def _trimmed(topography: Topography, trim: int, notes: list[str]) -> Topography:
@@ -175,14 +174,12 @@ def _terrace(topography: Topography, notes: list[str]) -> Topography:
     return Topography(heights, topography.pixel, assumed_unit=topography.assumed_unit)
 
 
-def _levelled(
-    topography: Topography, asked: Preparation, notes: list[str]
-) -> tuple[Topography, Topography, Mask | None]:
-    """The map, without spikes; without form and holes; and where its holes are."""
+def _levelled(topography: Topography, asked: Preparation, notes: list[str]) -> tuple[Topography, Mask | None]:
+    """The map without spikes, form and holes; and where its holes are."""
     kept, number, largest = topography, 0, 0.0
     for _ in range(_ROUNDS):
         plain = without_form(kept, asked.form)
-        if np.nanmax(np.abs(plain.heights)) < _ROUNDING * np.nanmax(np.abs(kept.heights)):
+        if plain.highest < _ROUNDING * kept.highest:
             raise ValueError(f"the map is flat without its form ({asked.form}): there is no roughness to fit")
         whole = replace(plain, heights=filled(plain.heights))
         if asked.spikes == "keep":
@@ -197,7 +194,7 @@ def _levelled(
     if asked.spikes == "remove":
         notes.append(f"spikes: {number} places taken out" + (f", up to {largest:.3g} m" if number else ""))
     holes = ~np.isfinite(kept.heights)
-    return kept, whole, holes if holes.any() else None
+    return whole, holes if holes.any() else None
 
 
 def _seen(topography: Topography, holes: Mask, asked: Preparation, notes: list[str]) -> Mask | None:

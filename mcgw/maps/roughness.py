@@ -35,8 +35,8 @@ class Roughness:
 
 def roughness_of(heights: NDArray[np.float64]) -> Roughness:
     """Of an array of any shape without missing points, m."""
-    z = heights - heights.mean()
-    q = math.sqrt(float(np.mean(z * z)))
-    square = z * z
-    sk, ku = (float(np.mean(x)) / q**k if q > 0 else 0.0 for x, k in ((square * z, 3), (square * square, 4)))
-    return Roughness(float(np.mean(np.abs(z))), q, sk, ku)
+    z = (heights - heights.mean()).ravel()  # the one copy of a large map
+    q = math.sqrt(float(z @ z) / z.size)
+    powers = (float(np.einsum(f"i{',i' * (k - 1)}", *k * (z,))) / z.size for k in (3, 4))
+    sk, ku = (power / q**k if q > 0 else 0.0 for k, power in zip((3, 4), powers, strict=True))
+    return Roughness(float(np.abs(z, out=z).mean()), q, sk, ku)

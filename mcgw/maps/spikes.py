@@ -14,6 +14,7 @@ __all__ = ["Spikes", "spike_heights", "spikes_of"]
 Array = NDArray[np.float64]
 
 _REACH = 3  # pixels from a point to the ring around it: a spike is narrower than five
+_BAND = 64  # rows that are looked at together: what is made of them stays in the cache
 _OUT = 3.0  # ranges of the ring: 12 deviations of white noise beyond it; ridges, pits and peaks stay below
 
 
@@ -55,21 +56,38 @@ def spikes_of(topography: Topography) -> Spikes | None:
 
 def spike_heights(topography: Topography) -> Array:
     """How far every point of a spike stands above (or, below 0, under) its ring, m; 0 for all others."""
-    shape = topography.heights.shape
-    if min(shape) <= 2 * _REACH:
-        return np.zeros(shape)
-    padded = np.pad(topography.heights, _REACH, mode="reflect")
-    low = _ring(padded, ndimage.minimum_filter1d, np.minimum)
-    high = _ring(padded, ndimage.maximum_filter1d, np.maximum)
-    ranges = high - low
-    above = np.maximum(topography.heights - high, 0.0) + np.minimum(topography.heights - low, 0.0)
-    usual = float(np.median(ranges)) or float(ranges.mean())  # 0: most of the map is flat
-    return np.asarray(np.where(np.abs(above) > _OUT * np.maximum(ranges, usual), above, 0.0))
+    heights = topography.heights
+    above = np.zeros(heights.shape)
+    if min(heights.shape) <= 2 * _REACH:
+        return above
+    ranges, places, found = np.empty(heights.shape), [], []
+    rows = np.pad(np.arange(len(heights)), _REACH, mode="reflect")
+    for first in range(0, len(heights), _BAND):
+        around = heights[rows[first : first + _BAND + 2 * _REACH]]
+        padded = np.pad(around, ((0, 0), (_REACH, _REACH)), mode="reflect")
+        low, high = _ring(padded, np.minimum), _ring(padded, np.maximum)
+        here = slice(first, first + _BAND)
+        ranges[here] = high - low
+        out = np.maximum(heights[here] - high, 0.0) + np.minimum(heights[here] - low, 0.0)
+        at = np.flatnonzero(np.abs(out) > _OUT * ranges[here])
+        places.append(at + first * heights.shape[1])
+        found.append(out.ravel()[at])
+    usual = float(np.median(ranges, overwrite_input=True)) or float(ranges.mean())  # 0: most of it is flat
+    at, out = np.concatenate(places), np.concatenate(found)
+    most = np.abs(out) > _OUT * usual
+    above.flat[at[most]] = out[most]
+    return above
 
 
-def _ring(padded: Array, filter1d: Any, extreme: Any) -> Array:
+def _ring(padded: Array, extreme: Any) -> Array:
     """Lowest or highest value on the square of seven points around every one."""
-    along = filter1d(padded, 2 * _REACH + 1, axis=1)[:, _REACH:-_REACH]
-    down = filter1d(padded, 2 * _REACH + 1, axis=0)[_REACH:-_REACH]
+    along, down = _of_seven(padded, extreme), _of_seven(padded.T, extreme).T
     rows = extreme(along[: -2 * _REACH], along[2 * _REACH :])
     return np.asarray(extreme(rows, extreme(down[:, : -2 * _REACH], down[:, 2 * _REACH :])))
+
+
+def _of_seven(z: Array, extreme: Any) -> Array:
+    """Lowest or highest of seven neighbours along a line: of two, of two pairs, and of four and four."""
+    two = extreme(z[:, :-1], z[:, 1:])
+    four = extreme(two[:, :-2], two[:, 2:])
+    return np.asarray(extreme(four[:, :-3], four[:, 3:]))

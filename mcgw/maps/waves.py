@@ -1,6 +1,7 @@
 """How well one map can tell of its surface: long waves are few on it, and form takes some of them away."""
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -19,6 +20,7 @@ Array = NDArray[np.float64]
 _ACROSS = 2048  # points that are looked at; of the waves shorter than that there are always many
 _FEWEST = 0.5  # waves: one that is cut in two
 _LEAST_FREEDOM = 2.0
+_BAND = 16  # rows that are looked at together: what is made of them stays in the cache
 _OUTSIDE = 0.025  # at either end of an interval
 
 
@@ -49,6 +51,8 @@ class Waves:
 def block_means(heights: Array, most: int) -> Array:
     """Means over blocks of pixels that leave between `most` and two times as many along each axis."""
     down, along = (max(n // most, 1) for n in heights.shape)
+    if down == along == 1:
+        return heights
     rows, columns = heights.shape[0] // down, heights.shape[1] // along
     blocks = heights[: rows * down, : columns * along].reshape(rows, down, columns, along)
     return np.asarray(blocks.mean(axis=(1, 3)))
@@ -72,40 +76,51 @@ def waves_of(topography: Topography, moments: SpectralMoments, order: int = -1) 
     order : int, optional
         Of the polynomial that was taken off; -1: none.
     """
-    z = block_means(topography.heights - topography.heights.mean(), _ACROSS)
+    z = block_means(topography.heights, _ACROSS)
     rows, columns = topography.heights.shape
     dx, dy = topography.pixel[0] * (columns // z.shape[1]), topography.pixel[1] * (rows // z.shape[0])
     power, waves = _power(z)
-    x, y = (
-        (2 * math.pi / dx * fft.rfftfreq(z.shape[1])) ** 2,
-        (2 * math.pi / dy * fft.fftfreq(z.shape[0])) ** 2,
-    )
+    total = float((power @ waves).sum())
     # edges leave a little power to the very short waves, which would stand for most of m4
-    of_m0 = np.full_like(power, 1 / float((waves * power).sum()))
-    of_m2, of_m4 = (x + y[:, None]) / (2 * moments.m2), (x * x + (y * y)[:, None]) / (2 * moments.m4)
+    of_m0, of_m2, of_m4 = np.diag([1 / total, 0.5 / moments.m2, 0.5 / moments.m4])
     of_alpha = of_m0 + of_m4 - 2 * of_m2
     # sigma^2 is m0 - c m2^2/m4
     share = moments.sigma**2 / moments.m0
     of_sigma = (of_m0 + (1 / share - 1) * of_alpha) / 2 if share > 0 else of_m0 / 2
-    low = float((of_m0 * waves * power * _taken(z.shape, order)).sum())
+    x = (2 * math.pi / dx * fft.rfftfreq(z.shape[1])) ** 2
+    y = (2 * math.pi / dy * fft.fftfreq(z.shape[0]))[:, None] ** 2
+    kinds = np.array([of_m0, of_m2, of_m4, of_alpha, of_m4 - of_m2, -of_m4 / 2, of_sigma])
+    down, along = _legendre_shares(z.shape, order)
+    sums, taken = np.zeros((3, len(kinds))), 0.0
+    for band in _bands(len(z)):
+        features = np.array([np.ones_like(power[band]), x + y[band], x * x + y[band] ** 2])
+        terms = np.tensordot(kinds, features, 1) * power[band]
+        squares = terms * terms
+        sums += [(t @ waves).sum(axis=1) for t in (squares, squares * terms, squares * squares)]
+        taken += float((power[band] * _taken(down[band], along) @ waves).sum())
+    low = taken / total
+    m0, m2, m4, alpha, eta, radius, sigma = sums.T.tolist()
 
-    def spread(derivative: Array, degree: float = 1.0, with_m0: float = 0.0) -> Spread:
-        terms = derivative * power
-        seen = float((waves * terms * terms).sum()) / degree**2
-        sign = math.copysign(degree, float((waves * terms**3).sum()))
-        fourth = float((waves * terms**4).sum()) / degree**4
+    def spread(of: list[float], degree: float = 1.0, with_m0: float = 0.0) -> Spread:
+        seen, third, fourth = of
+        seen, fourth, sign = seen / degree**2, fourth / degree**4, math.copysign(degree, third)
         return _spread(_number(seen), _freedom(seen, fourth), sign, with_m0 * low)
 
     return Waves(
-        m0=spread(of_m0, with_m0=1.0),
-        m2=spread(of_m2),
-        m4=spread(of_m4),
-        alpha=spread(of_alpha, with_m0=1.0),
-        eta=spread(of_m4 - of_m2),
-        radius=spread(-of_m4 / 2, 0.5),
-        sigma=spread(of_sigma, 0.5, with_m0=0.5 / share if share > 0 else 0.5),
-        independent=2 * _number(float((waves * (of_m0 * power) ** 2).sum())),
+        m0=spread(m0, with_m0=1.0),
+        m2=spread(m2),
+        m4=spread(m4),
+        alpha=spread(alpha, with_m0=1.0),
+        eta=spread(eta),
+        radius=spread(radius, 0.5),
+        sigma=spread(sigma, 0.5, with_m0=0.5 / share if share > 0 else 0.5),
+        independent=2 * _number(m0[0]),
     )
+
+
+def _bands(rows: int) -> Iterator[slice]:
+    """Few rows after the other: whole maps between them would take most of the memory and time."""
+    return (slice(first, first + _BAND) for first in range(0, rows, _BAND))
 
 
 def _number(seen: float) -> float:
@@ -137,41 +152,50 @@ def _spread(n: float, freedom: float, degree: float, low: float) -> Spread:
     return Spread(error, -ends[0] + max(-low, 0.0), ends[1] + max(low, 0.0))
 
 
-def _taken(shape: tuple[int, int], order: int) -> Array:
-    """What a polynomial of least squares takes of every wave of ``rfft2``, over what it leaves.
+def _legendre_shares(shape: tuple[int, int], order: int) -> tuple[Array, Array]:
+    """Two factors, down and along, of what a polynomial of least squares holds of every wave of ``rfft2``.
 
     The shares of Legendre polynomials in a wave of random phase are squared spherical Bessel functions.
     """
     x, y = np.pi * np.arange(shape[1] // 2 + 1.0), np.pi * np.abs(fft.fftfreq(shape[0]) * shape[0])
-    along, down = ([(2 * a + 1) * spherical_jn(a, q) ** 2 for a in range(order + 1)] for q in (x, y))
-    share = np.zeros((y.size, x.size))
-    for b, of_y in enumerate(down):
-        for of_x in along[: order + 1 - b]:
-            share += of_y[:, None] * of_x
-    share[0, 0] = 0.0
-    return np.asarray(share / (1 - share))
+    along, down = (
+        np.array([(2 * a + 1) * spherical_jn(a, q) ** 2 for a in range(order + 1)]).reshape(-1, q.size)
+        for q in (x, y)
+    )
+    return down.T, np.cumsum(along, axis=0)[::-1]  # degrees a of x up to order - b
+
+
+def _taken(down: Array, along: Array) -> Array:
+    """What the polynomial takes of these waves, over what it leaves; 0 for the mean, which is none."""
+    share = down @ along
+    return np.asarray(share / np.where(share < 1, 1 - share, np.inf))
 
 
 def _power(z: Array) -> tuple[Array, Array]:
-    """Power at the wave vectors of ``rfft2``, and how many waves of the whole plane each stands for.
+    """Power at the wave vectors of ``rfft2``, and how many waves of the whole plane each column stands for.
 
     Edges that do not fit together would add power that no wave has: the smooth field that makes up for
-    their jumps is taken off (Moisan 2011, periodic plus smooth decomposition).
+    their jumps is taken off (Moisan 2011, periodic plus smooth decomposition). They lie on the outermost
+    rows and columns alone, so that their transform is that of two lines.
     """
     rows, columns = z.shape
-    jumps = np.zeros_like(z)
-    across, along = z[-1] - z[0], z[:, -1] - z[:, 0]
-    jumps[0] += across
-    jumps[-1] -= across
-    jumps[:, 0] += along
-    jumps[:, -1] -= along
-    x, y = np.cos(2 * math.pi * fft.rfftfreq(columns)), np.cos(2 * math.pi * fft.fftfreq(rows))
-    laplacian = 2 * (x + y[:, None] - 2)
-    laplacian[0, 0] = 1.0
-    periodic = fft.rfft2(z) - fft.rfft2(jumps) / laplacian
-    periodic[0, 0] = 0.0
-    waves = np.full(x.shape, 2.0)
+    x, y = 2 * math.pi * fft.rfftfreq(columns), 2 * math.pi * fft.fftfreq(rows)[:, None]
+    mean = z.mean()
+    periodic = np.empty((rows, x.size), dtype=np.complex128)
+    for band in _bands(rows):
+        periodic[band] = fft.rfft(z[band] - mean)
+    periodic = fft.fft(periodic, axis=0, overwrite_x=True)
+    across, along = fft.rfft(z[-1] - z[0]), fft.fft(z[:, -1] - z[:, 0])[:, None]
+    back_x, back_y = 1 - np.exp(1j * x), 1 - np.exp(1j * y)  # from the last column and row to the first
+    for band in _bands(rows):
+        laplacian = 2 * (np.cos(x) + np.cos(y[band]) - 2)
+        laplacian[laplacian == 0] = 1.0
+        periodic[band] -= (across * back_y[band] + along[band] * back_x) / laplacian
+        periodic.real[band] = (periodic.real[band] ** 2 + periodic.imag[band] ** 2) / z.size**2
+    power = periodic.real
+    power[0, 0] = 0.0
+    waves = np.full(x.size, 2.0)
     waves[0] = 1.0
     if columns % 2 == 0:
         waves[-1] = 1.0
-    return np.abs(periodic / z.size) ** 2, np.broadcast_to(waves, periodic.shape)
+    return power, waves

@@ -1,23 +1,43 @@
-"""Speed of synthetic maps, as a ratio to a loop over caps in NumPy.
+"""Speed of synthetic maps, as a ratio to a loop over caps in NumPy; and what `mcgw fit` takes of a large one.
 
 Both draw the envelope of the same asperities, ten pixels a cap, side by side in one process; the loop gets a
 smaller area of the same density, and the ratio is that of the times of a pixel. The largest map follows, with
-the time it takes. Run: ``python runs/bench/maps.py``.
+the time it takes. `mcgw fit` looks at 4096 x 4096 points in a process of its own: its CPU time, all cores
+together, to that of a Fourier transform of the same map, and its memory, Python's own included, to that of
+the map. Run: ``python runs/bench/maps.py``.
 """
 
 import math
 import resource
+import subprocess
+import sys
 from functools import cache
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from time import process_time
 
 import numpy as np
+from scipy import fft
 from timing import Job, Times, against, parser_of, seconds, timed
 
 import analytic
 from mcgw.maps.asperities import Asperities, asperities_of
 from mcgw.maps.envelope import envelope
+from mcgw.maps.files import write_map
+from mcgw.maps.spectrum import Spectrum, gaussian_map
+from mcgw.maps.topography import Topography
 from mcgw.scene.scene import Scene
 
-LOOP = "NumPy loop"
+LOOP, TRANSFORM, MAP = "NumPy loop", "rfft2", "bytes of the map"
+SIDE, LARGE = 4096, Spectrum(1e-6, 500e-6, 10e-6)
+# Memory is that of the process since it began as Python; what its parent had counts in ru_maxrss.
+FIT = """
+import sys, time
+from mcgw.cli import main
+assert main(sys.argv[1:]) == 0
+(peak,) = (line.split()[1] for line in open("/proc/self/status") if line.startswith("VmHWM"))
+print(time.process_time(), 1024 * int(peak))
+"""
 
 
 @cache
@@ -41,6 +61,34 @@ def numpy_loop(field: Asperities, pixels: int) -> np.ndarray:
     return heights
 
 
+def fitting(folder: Path) -> dict[str, Job]:
+    """Jobs on one large map: CPU seconds of a fit and of a Fourier transform; and bytes of memory."""
+    file, used = folder / "large.npy", [0.0, 0.0]
+
+    def transform() -> float:
+        if not file.exists():
+            drawn = gaussian_map(LARGE, (SIDE, SIDE), (1e-6, 1e-6), np.random.default_rng(1))
+            write_map(Topography(drawn.heights, drawn.pixel), file)
+        heights = np.load(file)
+        start = process_time()
+        fft.rfft2(heights)
+        return process_time() - start
+
+    def fit() -> float:
+        call = [sys.executable, "-c", FIT, "fit", file, "--cutoff", "10um", "-o", folder / "large.toml"]
+        said = subprocess.run(call, check=True, capture_output=True, text=True).stdout
+        used[:] = map(float, said.splitlines()[-1].split())
+        return used[0]
+
+    return {TRANSFORM: transform, "fit": fit, MAP: lambda: 8.0 * SIDE**2, "memory of fit": lambda: used[1]}
+
+
+def fitted(rounds: int) -> Times:
+    """What these jobs take."""
+    with TemporaryDirectory() as folder:
+        return timed(fitting(Path(folder)), rounds)
+
+
 def measured(rounds: int) -> Times:
     """Seconds a pixel of both."""
     jobs: dict[str, Job] = {
@@ -51,15 +99,23 @@ def measured(rounds: int) -> Times:
 
 
 def ratios(rounds: int) -> dict[str, float]:
-    """Seconds a pixel, to those of the loop: lower is better."""
-    return against(measured(rounds), LOOP, ["envelope"])
+    """Seconds a pixel, to those of the loop, and what a fit takes to its peers: lower is better."""
+    times = fitted(rounds)
+    of_fit = against(times, TRANSFORM, ["fit"]) | against(times, MAP, ["memory of fit"])
+    return against(measured(rounds), LOOP, ["envelope"]) | of_fit
 
 
 def main() -> None:
     """Print the ratio, and what the largest map takes."""
     small, large = field_of(10**4), field_of(10**6)
     np.testing.assert_allclose(numpy_loop(small, 316), envelope(small, (316, 316)).heights, atol=1e-12)
-    times = measured(parser_of(__doc__).parse_args().rounds)
+    rounds = parser_of(__doc__).parse_args().rounds
+    taken = {name: float(np.median(values)) for name, values in fitted(rounds).items()}
+    print(
+        f"mcgw fit of {SIDE} x {SIDE} points: {taken['fit']:.2f} s of CPU, "
+        f"{taken['memory of fit'] / 2**20:.0f} MiB at most; its transform {taken[TRANSFORM]:.2f} s"
+    )
+    times = measured(rounds)
     low, middle, high = np.quantile(times[LOOP] / times["envelope"], [0, 0.5, 1])
     print(f"NumPy loop / envelope, a pixel: {middle:.3g} x ({low:.3g} ... {high:.3g})")
     took = seconds(lambda: envelope(large, (4096, 4096)))
