@@ -54,10 +54,11 @@ def material(tmp_path_factory):
     z = read_map(folder / "map.sdf").heights
     np.save(folder / "bare.npy", z)
     holes, spiked, stepped = z.copy(), z.copy(), z.copy()
+    lined = z + 2e-7 * np.random.default_rng(9).normal(size=(len(z), 1))
     holes[25:35, 50:65] = np.nan
     spiked[25::30, 20::35] += 3e-5
     stepped[:, 75:] += 1e-5
-    for name, heights in (("holes", holes), ("spiked", spiked), ("stepped", stepped)):
+    for name, heights in (("holes", holes), ("spiked", spiked), ("stepped", stepped), ("lined", lined)):
         np.save(folder / f"{name}.npy", heights)
     return folder
 
@@ -386,6 +387,8 @@ ROWS = [
     ("fit", "--missing", "@holes.npy --cutoff none --pixel 1um -o f.toml", "+ --missing fill",
      fitted(lambda a, b: b.nominal_area > a.nominal_area)),
     ("fit", "--spikes", "@spiked.npy --cutoff none --pixel 1um -o f.toml", "+ --spikes remove",
+     fitted(lambda a, b: b.radius > a.radius)),
+    ("fit", "--lines", "@lined.npy --cutoff none --pixel 1um -o f.toml", "+ --lines rows",
      fitted(lambda a, b: b.radius > a.radius)),
     ("fit", "--step", "@stepped.npy --cutoff none --pixel 1um -o f.toml", "+ --step crop",
      fitted(lambda a, b: b.nominal_area < 0.75 * a.nominal_area)),

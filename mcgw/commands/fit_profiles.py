@@ -30,7 +30,7 @@ def fit_of_profiles(
             raise ValueError(
                 f"{option} {given}: a profile shows no summits, and has no sub-areas; give a map"
             )
-    for option in ("long_cutoff", "missing", "spikes", "step", "trim"):
+    for option in ("long_cutoff", "missing", "spikes", "step", "lines", "trim"):
         if getattr(args, option) not in (None, "auto", "keep", 0):
             raise ValueError(f"--{option.replace('_', '-')}: is for maps; prepare a profile before")
     spacing = None if args.pixel is None else parse(args.pixel, "m", "--pixel")

@@ -35,6 +35,10 @@ def preparation_arguments(parser: argparse.ArgumentParser) -> None:
         help="whether of two terraces only the larger is kept; default: keep",
     )  # fmt: skip
     parser.add_argument(
+        "--lines", choices=("keep", "rows", "columns"), default="keep",
+        help="take off offsets between rows or columns, as of a scan line by line; default: keep",
+    )  # fmt: skip
+    parser.add_argument(
         "--trim", type=int, default=0, metavar="N", help="points left off along each edge; default: 0"
     )
 
@@ -54,4 +58,4 @@ def preparation(args: argparse.Namespace) -> "Preparation":
         raise ValueError(f"--trim {args.trim}: give a whole number >= 0")
     cutoff = None if args.cutoff == "none" else parse(args.cutoff, "m", "--cutoff")
     long = None if args.long_cutoff is None else parse(args.long_cutoff, "m", "--long-cutoff")
-    return Preparation(cutoff, args.form, args.missing, args.spikes, args.step, args.trim, long)
+    return Preparation(cutoff, args.form, args.missing, args.spikes, args.step, args.trim, long, args.lines)

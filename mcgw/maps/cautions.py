@@ -3,6 +3,7 @@
 from mcgw.maps.fit import Fit
 from mcgw.maps.flaws import flaws
 from mcgw.maps.hidden import CROWDED, visible
+from mcgw.maps.instrument import faults
 from mcgw.maps.preparation import Prepared
 
 __all__ = ["cautions"]
@@ -17,13 +18,20 @@ def cautions(fit: Fit, ready: Prepared) -> list[str]:
     """Warnings about the fit of a map, each in one line that says what to do."""
     return [
         *flaws(fit, ready),
-        *_of_the_pixel(fit, max(ready.used.pixel), ready.asked.cutoff),
+        *faults(ready, _longer(ready)),
+        *_of_the_pixel(fit, ready),
         *_of_the_heights(fit),
         *_of_the_summits(fit),
     ]
 
 
-def _of_the_pixel(fit: Fit, pixel: float, cutoff: float | None) -> list[str]:
+def _longer(ready: Prepared) -> float:
+    """A cutoff that takes more of the shortest waves, in pixels."""
+    return max(_PIXELS, 1.5 * (ready.asked.cutoff or 0.0) / max(ready.used.pixel))
+
+
+def _of_the_pixel(fit: Fit, ready: Prepared) -> list[str]:
+    pixel, cutoff = max(ready.used.pixel), ready.asked.cutoff
     if cutoff is not None and cutoff < _PIXELS * pixel:
         return [
             f"cutoff: {cutoff / pixel:.3g} pixels a wavelength; below {_PIXELS:g} the pixel sets eta and R, "
@@ -31,10 +39,9 @@ def _of_the_pixel(fit: Fit, pixel: float, cutoff: float | None) -> list[str]:
         ]
     more = fit.mean_squares["bend"] / fit.mean_squares["bend_1"] - 1
     if more > _RESOLVED:
-        longer = max(_PIXELS, 1.5 * (cutoff or 0.0) / pixel)
         return [
             f"pixel: m4 by differences of fourth order is {100 * more:.2g} % above that by plain ones; it "
-            f"has a say in m4, R and eta; give a cutoff of {longer:.3g} pixels or more"
+            f"has a say in m4, R and eta; give a cutoff of {_longer(ready):.3g} pixels or more"
         ]
     return []
 

@@ -9,9 +9,11 @@ from mcgw.maps.files import read_map
 from mcgw.maps.fit import Fit, fit_prepared
 from mcgw.maps.form import FORMS, Form
 from mcgw.maps.preparation import (
+    LINES,
     MISSING,
     SPIKES,
     STEP,
+    LinesTo,
     Missing,
     Preparation,
     Prepared,
@@ -40,6 +42,7 @@ def fit(
     step: StepTo = "keep",
     trim: int = 0,
     long_cutoff: float | str | None = None,
+    lines: LinesTo = "keep",
     parts: int = 4,
     pixel: float | str | None = None,
     unit: str | None = None,
@@ -61,13 +64,15 @@ def fit(
         neighbours are missing count; with ``fill`` all do; ``auto`` masks them while half of the measured
         points is left. ``notes`` of the fit say what was done.
     spikes : {"keep", "remove"}, optional
-        Whether points that stand out of the map become missing ones.
+        Whether points that stand out of the map, or bend unlike all others, become missing ones.
     step : {"keep", "crop"}, optional
         Whether of two terraces only the larger one is kept.
     trim : int, optional
         Points that are left off along each edge.
     long_cutoff : float, str or None, optional
         Longest wavelength that counts, m or as "80 um"; None: as measured.
+    lines : {"keep", "rows", "columns"}, optional
+        Whether offsets between rows, or columns, are taken off, as of a scan line by line.
     parts : int, optional
         Sub-areas along each axis, whose differences tell the errors; at least 2, and fewer where summits
         are few.
@@ -102,10 +107,11 @@ def fit(
     ['moments', 'summits']
     """
     given = {"parts": as_toml(parts), "trim": as_toml(trim)}
-    given |= {"form": form, "missing": missing, "spikes": spikes, "step": step}
+    given |= {"form": form, "missing": missing, "spikes": spikes, "step": step, "lines": lines}
     section = Section("", given, [])
     across, trimmed = section.whole("parts", least=2), section.whole("trim", least=0)
-    for key, kinds in (("form", FORMS), ("missing", MISSING), ("spikes", SPIKES), ("step", STEP)):
+    choices = {"form": FORMS, "missing": MISSING, "spikes": SPIKES, "step": STEP, "lines": LINES}
+    for key, kinds in choices.items():
         section.choice(key, kinds[0], kinds)
     if section.problems:
         raise SceneError(section.problems)
@@ -114,7 +120,7 @@ def fit(
         for name, length in (("cutoff", cutoff), ("long_cutoff", long_cutoff))
     )
     length = None if pixel is None else argument("pixel", pixel, "m")
-    asked = Preparation(short, form, missing, spikes, step, trimmed, long)
+    asked = Preparation(short, form, missing, spikes, step, trimmed, long, lines)
     if isinstance(heights, Topography):
         return _of_map(prepared(heights, asked), across)
     if isinstance(heights, str | Path) and not (profile or holds_profile(Path(heights))):

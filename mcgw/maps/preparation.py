@@ -10,13 +10,17 @@ from scipy import ndimage
 from mcgw.maps.form import Form, lowpass, smooth, without_form
 from mcgw.maps.holes import filled
 from mcgw.maps.levels import step_of
-from mcgw.maps.spikes import spike_heights
+from mcgw.maps.lines import LINES, LinesTo, without_offsets
+from mcgw.maps.recorded import Recorded, recorded
+from mcgw.maps.spikes import small_spike_heights, spike_heights
 from mcgw.maps.topography import SMALLEST, Topography
 
 __all__ = [
+    "LINES",
     "MISSING",
     "SPIKES",
     "STEP",
+    "LinesTo",
     "Missing",
     "Preparation",
     "Prepared",
@@ -54,13 +58,16 @@ class Preparation:
         neighbours are missing count; with ``fill`` all do; ``auto`` masks them while half of the measured
         points is left.
     spikes : {"keep", "remove"}, optional
-        Whether points that stand out (`mcgw.maps.spikes`) become missing.
+        Whether points that stand out (`mcgw.maps.spikes`) become missing; then also those that bend
+        unlike all others.
     step : {"keep", "crop"}, optional
         Whether of two terraces only the larger is kept.
     trim : int, optional
         Points that are left off along each edge.
     long_cutoff : float or None, optional
         Longest wavelength that counts, m.
+    lines : {"keep", "rows", "columns"}, optional
+        Of which lines the offsets are taken off (`mcgw.maps.lines`).
     """
 
     cutoff: float | None
@@ -70,6 +77,7 @@ class Preparation:
     step: StepTo = "keep"
     trim: int = 0
     long_cutoff: float | None = None
+    lines: LinesTo = "keep"
 
 
 @dataclass(frozen=True)
@@ -84,6 +92,10 @@ class Prepared:
         Between both cutoffs.
     seen : ndarray of bool or None
         Points of `used` that count; None: all.
+    filled : float
+        Share of the points that were missing.
+    recorded : Recorded
+        What the map tells of its instrument.
     asked : Preparation
         What was asked for.
     notes : tuple of str
@@ -93,6 +105,8 @@ class Prepared:
     levelled: Topography
     used: Topography
     seen: Mask | None
+    filled: float
+    recorded: Recorded
     asked: Preparation
     notes: tuple[str, ...]
 
@@ -112,6 +126,10 @@ def prepared(topography: Topography, asked: Preparation) -> Prepared:
         kept = _terrace(kept, notes)
     if not np.nanmax(kept.heights) - np.nanmin(kept.heights) > SMALLEST:
         raise ValueError("the map is flat: there is no roughness to fit")
+    seen_by = recorded(kept.heights)
+    if asked.lines != "keep":
+        kept, offsets = without_offsets(kept, asked.lines)
+        notes.append(f"lines: offsets of {asked.lines} taken off, {offsets:.3g} m rms")
     level, holes = _levelled(kept, asked, notes)
     del kept
     used = level
@@ -123,7 +141,8 @@ def prepared(topography: Topography, asked: Preparation) -> Prepared:
     if asked.cutoff is not None:
         used = smooth(used, asked.cutoff)
     seen = None if holes is None else _seen(level, holes, asked, notes)
-    return Prepared(level, used, seen, asked, tuple(notes))
+    filled_share = 0.0 if holes is None else float(holes.mean())
+    return Prepared(level, used, seen, filled_share, seen_by, asked, tuple(notes))
 
 
 def _trimmed(topography: Topography, trim: int, notes: list[str]) -> Topography:
@@ -184,7 +203,8 @@ def _levelled(topography: Topography, asked: Preparation, notes: list[str]) -> t
         whole = replace(plain, heights=filled(plain.heights))
         if asked.spikes == "keep":
             break
-        above = spike_heights(whole) * np.isfinite(plain.heights)
+        above = spike_heights(whole)
+        above = np.where(above == 0, small_spike_heights(whole), above) * np.isfinite(plain.heights)
         places = ndimage.label(above, structure=np.ones((3, 3)))[1]
         if not places:
             break

@@ -9,11 +9,13 @@ from scipy import ndimage
 
 from mcgw.maps.topography import Topography
 
-__all__ = ["Spikes", "spike_heights", "spikes_of"]
+__all__ = ["BENT", "Spikes", "small_spike_heights", "spike_heights", "spikes_of", "usual_bend"]
 
 Array = NDArray[np.float64]
 
 _REACH = 3  # pixels from a point to the ring around it: a spike is narrower than five
+BENT = 7.0  # usual bends: once in 4e11 points of a Gaussian map
+_OF_MEDIAN = 0.6745  # of a Gaussian deviation
 _BAND = 64  # rows that are looked at together: what is made of them stays in the cache
 _OUT = 3.0  # ranges of the ring: 12 deviations of white noise beyond it; ridges, pits and peaks stay below
 
@@ -77,6 +79,23 @@ def spike_heights(topography: Topography) -> Array:
     most = np.abs(out) > _OUT * usual
     above.flat[at[most]] = out[most]
     return above
+
+
+def small_spike_heights(topography: Topography) -> Array:
+    """The same about the mean of the four neighbours, for points that bend unlike all others.
+
+    A spike may be lower than its surroundings are high and still have most of the curvature of a map. Its
+    second differences lie beyond seven times the usual ones, and beyond those of the points next to it.
+    """
+    bends = ndimage.laplace(topography.heights, mode="nearest")
+    size = np.abs(bends)
+    out = (size > BENT * usual_bend(bends)) & (size == ndimage.maximum_filter(size, 3))
+    return np.asarray(np.where(out, bends / -4, 0.0))
+
+
+def usual_bend(bends: Array) -> float:
+    """Standard deviation of Gaussian bends that have the median of these; some may be nan."""
+    return float(np.nanmedian(np.abs(bends - np.nanmedian(bends)))) / _OF_MEDIAN
 
 
 def _ring(padded: Array, extreme: Any) -> Array:

@@ -1,0 +1,200 @@
+"""What an instrument did to a map: one list of checks, each a measure, how much of it is too much, and words.
+
+Most faults put power into waves as short as a pixel, which is all of m4 and of the curvature of summits. So
+they are measured on the map between its cutoffs, where they count, by second differences; of a large map
+about a million of them are looked at. Isotropic Gaussian maps have as many pits as summits, as sharp; no row
+of theirs differs from its neighbours more than waves that cross it slantwise do; and none of their
+differences lies beyond seven deviations.
+"""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import fft
+
+from mcgw.maps.form import gaussian_transmission
+from mcgw.maps.preparation import Prepared
+from mcgw.maps.spikes import BENT, usual_bend
+
+__all__ = ["CHECKS", "Check", "faults"]
+
+Array = NDArray[np.float64]
+
+_ENOUGH = 2**20  # second differences
+_NEAR = slice(1, 9)  # waves along a row that are nearly as long as those that do not change along it
+_ALTERNATE = -0.4  # correlation of second differences of neighbours: -2/3 of independent offsets
+_TILES = 4  # along each axis, whose differences tell an error
+_SURE = 6.0  # standard errors, with 15 degrees of freedom: once in 80 000 maps
+_TRIMMED = 5.0  # deviations: spikes say nothing of valleys
+_SPIKES = 0.5  # of the bends in outliers, which have rims of the other sign
+_HONED = -0.3  # skewness of heights, below which valleys are deep, and sharp for that reason
+
+
+@dataclass(frozen=True, slots=True)
+class Check:
+    """One fault.
+
+    Parameters
+    ----------
+    name : str
+        First word of the caution.
+    measure : callable
+        Of a map: how much of the fault there is.
+    most : float
+        That is let pass.
+    words : str
+        What it is and which flag helps; ``{share}`` is the measure in per cent, ``{value}`` itself,
+        ``{step}`` that of the heights and ``{pixels}`` a cutoff that would do.
+    """
+
+    name: str
+    measure: Callable[[Prepared], float]
+    most: float
+    words: str
+
+
+def faults(ready: Prepared, longer: float) -> list[str]:
+    """A line for each check that a map fails; `longer` is a cutoff to propose, in pixels."""
+    found = ((check, check.measure(ready)) for check in CHECKS)
+    return [
+        f"{check.name}: "
+        + check.words.format(share=100 * value, value=value, step=ready.recorded.step, pixels=longer)
+        for check, value in found
+        if value > check.most
+    ]
+
+
+def _at_end(ready: Prepared) -> float:
+    return ready.recorded.at_end
+
+
+def _rounding(ready: Prepared) -> float:
+    """Share of the mean square bend, by plain differences, that rounding to steps adds."""
+    if not ready.recorded.step:
+        return 0.0
+    z = ready.used.heights
+    kept = _kept_of_noise(ready.asked.cutoff, ready.used.pixel)
+    return max(
+        ready.recorded.step**2 / 12 * gain / max(float(np.mean(_second(along) ** 2)), 1e-300)
+        for along, gain in zip((z.T, z), kept, strict=True)
+    )
+
+
+def _kept_of_noise(cutoff: float | None, pixel: tuple[float, float]) -> list[float]:
+    """Mean squares of second differences along x and y of independent heights of variance 1, filtered."""
+    k = math.pi * (np.arange(128) + 0.5) / 128
+    left = [
+        1.0 if cutoff is None else gaussian_transmission(k / p, cutoff) ** 2 * np.ones_like(k) for p in pixel
+    ]
+    bend = (2 - 2 * np.cos(k)) ** 2
+    x, y = (np.mean(bend * t) for t in left), [float(np.mean(t)) for t in left]
+    return [float(b) * other for b, other in zip(x, y[::-1], strict=True)]
+
+
+def _lines(axis: int) -> Callable[[Prepared], float]:
+    """Of rows (0) or columns (1)."""
+
+    def measure(ready: Prepared) -> float:
+        """Share of the mean square bend across lines that is the same all along a line.
+
+        Beyond twice what any of its neighbours in the spectrum has; nothing, if the means of lines do not
+        alternate as independent offsets do: grooves along the lines are as wide as several of them.
+        """
+        means = np.diff(ready.levelled.heights.mean(axis=1 - axis), 2)
+        if not float(means[1:] @ means[:-1]) < _ALTERNATE * float(means @ means):
+            return 0.0
+        bends = _second(np.moveaxis(ready.used.heights, axis, 0))
+        power = np.mean(np.abs(fft.rfft(bends)) ** 2, axis=0)
+        power[1:] *= 2
+        return float((power[0] - power[_NEAR].max()) / power.sum())
+
+    return measure
+
+
+def _second(z: Array) -> Array:
+    """Second differences from row to row, around rows that are equally far apart."""
+    j = np.arange(1, len(z) - 1, max(z.size // _ENOUGH, 1))
+    return np.asarray(z[j - 1] - 2 * z[j] + z[j + 1])
+
+
+def _laplacian(ready: Prepared) -> Array:
+    """Sums of second differences along x and y, on such rows; nan where points do not count."""
+    z = ready.used.heights if ready.seen is None else np.where(ready.seen, ready.used.heights, np.nan)
+    j = np.arange(1, len(z) - 1, max(z.size // _ENOUGH, 1))
+    here = z[j]
+    return np.asarray(z[j - 1, 1:-1] + z[j + 1, 1:-1] + here[:, 2:] + here[:, :-2] - 4 * here[:, 1:-1])
+
+
+def _tip(ready: Prepared) -> float:
+    """Skewness of the bends, less what chance may give it."""
+    heights = ready.used.heights
+    deep = _skewness(heights[:: max(heights.size // _ENOUGH, 1)]) < _HONED
+    if deep or _outliers(ready) > _SPIKES:
+        return 0.0
+    bends = _laplacian(ready)
+    usual = usual_bend(bends)
+    bends = np.clip(bends - np.nanmedian(bends), -_TRIMMED * usual, _TRIMMED * usual)
+    tiles = [t for rows in np.array_split(bends, _TILES) for t in np.array_split(rows, _TILES, axis=1)]
+    several = np.array([_skewness(t) for t in tiles])
+    return _skewness(bends) - _SURE * float(np.nanstd(several)) / _TILES
+
+
+def _skewness(bends: Array) -> float:
+    z = bends[np.isfinite(bends)]
+    if z.size < 2 or not np.ptp(z) > 0:
+        return 0.0
+    z = (z - z.mean()) / z.std()
+    return float(np.mean(z**3))
+
+
+def _outliers(ready: Prepared) -> float:
+    """Share of the mean square bend that points have which lie beyond all Gaussian ones."""
+    bends = _laplacian(ready)
+    far = np.abs(bends - np.nanmedian(bends)) > BENT * usual_bend(bends)
+    return float(np.sum(bends[far] ** 2) / np.nansum(bends**2))
+
+
+def _filled(ready: Prepared) -> float:
+    return ready.filled if ready.seen is None else 0.0
+
+
+CHECKS = (
+    Check(
+        "range", _at_end, 1e-3,
+        "{share:.2g} % of the points have one height, the greatest or the least of all, as where the range "
+        "of an instrument ends: summits are cut off; give a larger range, or --use moments, which lose less",
+    ),
+    Check(
+        "rounding", _rounding, 0.05,
+        "heights are whole steps of {step:.3g} m, whose rounding makes {share:.2g} % of m4, and summits that "
+        "are none; give --cutoff of {pixels:.3g} pixels or more",
+    ),
+    Check(
+        "lines", _lines(0), 0.05,
+        "offsets between rows, as of a scan line by line, hold {share:.2g} % of the bends across them; level "
+        "them by --lines rows",
+    ),
+    Check(
+        "lines", _lines(1), 0.05,
+        "offsets between columns, as of a scan line by line, hold {share:.2g} % of the bends across them; "
+        "level them by --lines columns",
+    ),
+    Check(
+        "tip", _tip, 0.05,
+        "valleys are sharper than summits (curvatures have the skewness {value:.2g} at least), as under a "
+        "blunt tip, or between caps; unless these are caps, give --cutoff of five times the tip's width",
+    ),
+    Check(
+        "holes", _filled, 0.01,
+        "{share:.2g} % of the points were missing, and what filled them counts: a film has blunter summits; "
+        "give --missing mask, or a longer --cutoff",
+    ),
+    Check(
+        "bends", _outliers, 0.05,
+        "{share:.2g} % of m4 lies in points that bend more than seven deviations, as small spikes do; take "
+        "them out by --spikes remove, or give --cutoff of {pixels:.3g} pixels or more",
+    ),
+)  # fmt: skip
