@@ -117,6 +117,30 @@ def test_the_best_estimate_is_that_of_the_kind_of_summits(sparse, rough):
     assert not {"cutoff", "pixel", "lay", "skewness"} & words(rough)
 
 
+def test_overlap_is_that_of_the_estimate_that_is_used(crowded, tmp_path, capsys):
+    """Counted summits of a Gaussian surface of alpha = 6 are apart; caps, added, would not be."""
+    map_ = gaussian_map(Spectrum(1e-6, 80e-6, 8e-6), (240, 240), PIXEL, rng(1))
+    fit = mcgw.fit(map_, cutoff=None)
+    assert fit.best == "summits"
+    assert fit.estimates["summits"].overlap < 0.05 < fit.estimates["caps"].overlap
+    assert not {"overlap", "blur"} & words(fit)
+    write_map(map_, tmp_path / "m.sdf")
+    for use, named in (("auto", False), ("caps", True)):
+        words_of = ["fit", str(tmp_path / "m.sdf"), "--cutoff", "none", "--use", use]
+        assert main([*words_of, "-o", str(tmp_path / "s.toml")]) == 0
+        assert ("overlap:" in capsys.readouterr().out) == named
+    wide = gaussian_map(Spectrum(1e-6, 200e-6, 8e-6), (256, 256), PIXEL, rng(1))
+    (line,) = (x for x in mcgw.fit(wide, cutoff=None, form="none").cautions if x.startswith("overlap:"))
+    assert "as broad as they are far apart" in line
+    assert "hide under others" in next(x for x in crowded.fit.cautions if x.startswith("overlap:"))
+
+
+@pytest.mark.parametrize("cutoff", [None, "none"])
+def test_no_cutoff_is_none_by_its_word_too(cutoff, without_caps):
+    drawn = gaussian_map(Spectrum(1e-6, 40e-6, 14e-6), (100, 100), PIXEL, rng(1))
+    assert mcgw.fit(drawn, cutoff=cutoff).area == pytest.approx(92**2 * 1e-12)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("hurst", [-1.0, 0.8])
 def test_a_gaussian_map_gives_nayaks_summits_by_both_methods(hurst, without_caps):

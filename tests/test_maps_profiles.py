@@ -348,6 +348,12 @@ ROWS = {  # name: text, ending, spacing given, spacing and unit of z expected in
         ["Speed (mm/s): 0.5", "Length (mm): 4.8", "x (um);z (nm)", *lines(BOTH, ";", False)],
         ".txt", None, (0.5 * UM, 1e-9),
     ),
+    "Dektak": (
+        ["Scan Parameters", "ID,0", "Stylus,Radius: 2.5 um", "Length,4.5 um", "Location,0.0 um, 0.0 um", "",
+         "Analytical Results", "Function,R.Cur Pos,Result", "Ra,4.0 um,0.005 um", "Skew,4.0 um,6.96", "",
+         "Scan Data", "Lateral um,Raw Micrometer,", *(f"{x},,"  for x in lines(BOTH, ",", False))],
+        ".csv", None, (0.5 * UM, UM),
+    ),
     "one column": (["z (um)", *lines(ALONE, "", False)], ".txt", 2 * UM, (2 * UM, UM)),
     "one column of commas": (["z (um)", *lines(ALONE, "", True)], ".txt", 2 * UM, (2 * UM, UM)),
     "a count for x": (["n z", *lines((np.arange(10), Z * UM), " ", False)], ".txt", 2 * UM, (2 * UM, UM)),
@@ -374,6 +380,7 @@ def test_text_of_every_kind(name, encoding, tmp_path):
     ("x (um);z (um)\n0;1\n1;2\n", {"unit": "nm"}, "heights are in um as the file says, not in nm"),
     ("0 1\n1 2\n2 1\n3 1\n1 2\n4 2\n5 2\n6 1\n7 1\n", {}, "x = 3 m is followed by 1 m"),
     ("\n".join(f"{i} {i % 2 * 1e-6}" for i in range(20)), {}, "the points are 1 m apart; give --unit"),
+    ("\n".join(f"{i * 1e-3} {i % 9 * 1e-4}" for i in range(1250)), {}, "it is 1.25 m long; give --unit"),
     ("\n".join(f"{i * 1e-6} {i % 2}" for i in range(20)), {}, "the usual slope is 1e\\+06; give --unit"),
     ("0 1\n1 2\n", {}, "2 points: a profile has 8 or more"),
     ("0 1\n1 2 3\n2 2\n", {}, "line 2 has 3 numbers, the first 2"),
@@ -393,6 +400,8 @@ def test_what_is_no_profile_is_refused_in_one_line(text, given, told, tmp_path):
 
 def test_maps_are_no_profiles(tmp_path):
     (tmp_path / "m.txt").write_text("1 2 3\n4 5 6\n")
+    (tmp_path / "gaps.csv").write_text("1,2,,\n3,4,5,6\n")
+    assert not holds_profile(tmp_path / "gaps.csv")
     np.save(tmp_path / "m.npy", np.zeros((3, 4)))
     np.save(tmp_path / "p.npy", np.arange(100.0) % 7 * UM)
     assert not holds_profile(tmp_path / "m.txt")

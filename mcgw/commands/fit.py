@@ -98,7 +98,7 @@ def execute(args: argparse.Namespace) -> int:
         done()
         fit = fit_prepared(ready, across=args.parts)
         done()
-        fit = replace(fit, cautions=tuple(cautions(fit, ready)))
+        fit = replace(fit, cautions=tuple(cautions(fit, ready, args.use)))
         done()
     head = map_line(path_of_map.name, asked, ready.levelled.assumed_unit)
     text = [head, *fit.notes, *fit_lines(fit), *(f"warning: {line}" for line in fit.cautions)]

@@ -14,14 +14,14 @@ _LOST = 0.1  # of the summits
 _SKEW, _ALPHA, _FEW, _STREAKY = 0.3, 1.5, 100, 1.5
 
 
-def cautions(fit: Fit, ready: Prepared) -> list[str]:
-    """Warnings about the fit of a map, each in one line that says what to do."""
+def cautions(fit: Fit, ready: Prepared, use: str = "auto") -> list[str]:
+    """Warnings about the fit of a map, and the estimate to `use`, each in one line that says what to do."""
     return [
         *flaws(fit, ready),
         *faults(ready, _longer(ready)),
         *_of_the_pixel(fit, ready),
         *_of_the_heights(fit),
-        *_of_the_summits(fit),
+        *_of_the_summits(fit, use if use in fit.estimates else fit.best),
     ]
 
 
@@ -63,24 +63,22 @@ def _of_the_heights(fit: Fit) -> list[str]:
     return warnings
 
 
-def _of_the_summits(fit: Fit) -> list[str]:
+def _of_the_summits(fit: Fit, used: str) -> list[str]:
     warnings = []
     if fit.summits.size < _FEW:
         warnings.append(f"summits: only {fit.summits.size} were found; give a larger map or a shorter cutoff")
-    if fit.visible is None:
-        warnings.append("overlap: the summits are too many to be independent caps of that radius and spread")
-        return warnings
-    overlap = fit.estimates["caps"].overlap
-    sharp = visible(overlap).share
-    lost = sharp - fit.visible.share
-    if lost > _LOST:
-        warnings.append(
-            f"blur: {100 * lost:.0f} % of caps like these are lost where a valley is nearer than a pixel "
-            "or a third of a cutoff; give finer pixels, and a shorter cutoff"
-        )
+    overlap = fit.estimates[used].overlap
+    if used == "caps" and fit.visible is not None:
+        sharp = visible(overlap).share
+        lost = sharp - fit.visible.share
+        if lost > _LOST:
+            warnings.append(
+                f"blur: {100 * lost:.0f} % of caps like these are lost where a valley is nearer than a pixel "
+                "or a third of a cutoff; give finer pixels, and a shorter cutoff"
+            )
+        hidden = f" of caps like these {100 * (1 - sharp):.0f} % hide under others,"
+    else:
+        hidden = " summits are as broad as they are far apart,"
     if overlap > CROWDED:
-        warnings.append(
-            f"overlap: eta R sigma = {overlap:.2g}; of caps like these {100 * (1 - sharp):.0f} % hide under "
-            "others, so asperities do not act one by one"
-        )
+        warnings.append(f"overlap: eta R sigma = {overlap:.2g};{hidden} so asperities do not act one by one")
     return warnings

@@ -56,7 +56,8 @@ def fit(
         A file (SDF, X3P, .npy, .h5, text, or whatever SurfaceTopography reads), or a map in memory; or
         profiles, one or a list: text of x and z, or any file that holds heights along a line.
     cutoff : float, str or None
-        Shortest wavelength that counts (Gaussian filter, ISO 16610-61), m or as "5 um"; None: as measured.
+        Shortest wavelength that counts (Gaussian filter, ISO 16610-61), m or as "5 um"; None or "none": as
+        measured.
     form : {"plane", "none", "quadratic", "cubic", "quartic", "sphere", "cylinder"}, optional
         What is taken off first.
     missing : {"auto", "mask", "fill"}, optional
@@ -116,7 +117,7 @@ def fit(
     if section.problems:
         raise SceneError(section.problems)
     short, long = (
-        None if length is None else argument(name, length, "m")
+        None if length is None or length == "none" else argument(name, length, "m")
         for name, length in (("cutoff", cutoff), ("long_cutoff", long_cutoff))
     )
     length = None if pixel is None else argument("pixel", pixel, "m")

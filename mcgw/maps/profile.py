@@ -18,7 +18,7 @@ Array = NDArray[np.float64]
 _EVEN = 0.1  # of a step, which places may lie beside an even grid
 _MOST_MISSING = 0.1  # of all points
 _LEAST = 8
-_WIDEST = 1e-2  # m
+_WIDEST, _LONGEST = 1e-2, 0.2  # m, between points and of a profile: no stylus goes farther
 _ORDER = {"none": 0, "plane": 1, "quadratic": 2}
 
 
@@ -78,7 +78,9 @@ class Profile:
             return ""
         if self.steepness > STEEPEST:
             return f"the usual slope is {self.steepness:.3g}"
-        return f"the points are {self.spacing:g} m apart" if self.spacing > _WIDEST else ""
+        if self.spacing > _WIDEST:
+            return f"the points are {self.spacing:g} m apart"
+        return f"it is {self.length:.3g} m long" if self.length > _LONGEST else ""
 
 
 def profile_at(places: Array, heights: Array, assumed_unit: str = "") -> Profile:

@@ -19,8 +19,12 @@ Array = NDArray[np.float64]
 
 _MOST_HEADER = 500  # lines
 _MOST_POINTS = 2**26
-_UNIT_NAMES = "|".join(sorted(map(re.escape, METRES), key=len, reverse=True))
-_UNIT = re.compile(rf"[\[(/]\s*({_UNIT_NAMES})\s*(?=[\])\s;,\t]|$)|\bin ({_UNIT_NAMES})\b")
+_UNITS = {name: name for name in METRES} | {"Nanometer": "nm", "Micrometer": "um", "Millimeter": "mm"}
+_UNIT_NAMES = "|".join(sorted(map(re.escape, _UNITS), key=len, reverse=True))
+_UNIT = re.compile(
+    rf"[\[(/]\s*({_UNIT_NAMES})\s*(?=[\])\s;,\t]|$)|\bin ({_UNIT_NAMES})\b|^(?:Lateral|Raw) ({_UNIT_NAMES})$"
+)
+_LOOKED_AT = 20  # lines of numbers
 _COMMA_ALONE = re.compile(r"\s*[-+]?\d+(?:,\d+)?(?:[eE][-+]?\d+)?\s*")
 
 
@@ -38,19 +42,27 @@ class _Table:
 
 
 def columns_of_text(path: Path) -> int:
-    """How many numbers stand on the first line that has nothing else; 0: there is none.
+    """How many columns stand on the first lines that hold numbers alone; 0: there is none.
+
+    Separators at the end of all of them, as a Dektak writes, make no column.
 
     Raises
     ------
     OSError
         If the file cannot be read.
     """
+    columns = looked_at = 0
     for count, (number, line) in enumerate(lines_of(path)):
-        if not line.startswith("#") and _is_numbers(path, number, line):
-            return 1 if _COMMA_ALONE.fullmatch(line) else len(words_of(path, number, line))
+        if not line.startswith("#") and (looked_at or _is_numbers(path, number, line)):
+            if not looked_at and _COMMA_ALONE.fullmatch(line):
+                return 1
+            words = words_of(path, number, line)
+            columns, looked_at = max(columns, _filled(words)), looked_at + 1
+            if _filled(words) == len(words) or looked_at == _LOOKED_AT:
+                break
         if count > _MOST_HEADER:
             break
-    return 0
+    return columns
 
 
 def read_profile_text(path: Path, spacing: float | None = None, unit: str | None = None) -> Profile:
@@ -132,7 +144,9 @@ def _values(path: Path, table: _Table) -> Array:
         x, _, z = zip(*(line.partition(",") for _, line in table.lines), strict=True)
         if not (all(z) and _rises([int(text) if text.isdigit() else math.nan for text in x])):
             return np.array([[float(line.replace(",", "."))] for _, line in table.lines])
-    rows = [numbers_of(path, n, words_of(path, n, line)) for n, line in table.lines]
+    cells = [(n, words_of(path, n, line)) for n, line in table.lines]
+    width = max(_filled(words) for _, words in cells)
+    rows = [numbers_of(path, n, words[: max(width, 1)]) for n, words in cells]
     widths = np.array([row.size for row in rows])
     other = np.nonzero(widths != widths[0])[0]
     if widths[0] > 2:
@@ -141,6 +155,11 @@ def _values(path: Path, table: _Table) -> Array:
         number = table.lines[int(other[0])][0]
         raise ValueError(f"{path}: line {number} has {widths[other[0]]} numbers, the first {widths[0]}")
     return np.array(rows)
+
+
+def _filled(words: list[str]) -> int:
+    """How many there are up to the last one that is not empty."""
+    return max((k for k, word in enumerate(words, 1) if word), default=0)
 
 
 def _rises(places: list[float]) -> bool:
@@ -164,4 +183,6 @@ def _units(header: list[str], columns: int) -> list[str | None]:
 def _unit(cell: str) -> list[str]:
     """Units in a cell, or in a line of several with single spaces."""
     words = cell.split()
-    return words if all(word in METRES for word in words) else [a or b for a, b in _UNIT.findall(cell)]
+    if not all(word in _UNITS for word in words):
+        words = [next(filter(None, found)) for found in _UNIT.findall(cell)]
+    return [_UNITS[word] for word in words]
