@@ -215,15 +215,16 @@ def test_solve(scene, words, given, pressure, title, tmp_path, capsys):
     assert lines[0] == title
     assert lines[1].split() == ["quantity", "unit", "theory", "mean", "95", "%", "interval", "std"]
     rows = {row["quantity"]: row for row in rows_of(tmp_path / "s.csv")}
-    assert list(rows) == ["separation", *analytic.QUANTITIES]
+    assert list(rows) == ["separation", "mean_gap", *analytic.QUANTITIES]
     h = float(rows["separation"]["theory"])
-    units = {"separation": "sigma", **exact.UNITS}
+    units = {"separation": "sigma", "mean_gap": "m", **exact.UNITS}
     for name, row in rows.items():
         assert row["unit"] == units[name]
         assert float(row["load_or_area_SI"]) == pytest.approx(given[1])
         assert float(row["pressure_Pa"]) == pytest.approx(pressure, nan_ok=True)
         if name != "separation":
-            assert float(row["theory"]) == pytest.approx(exact.mean(few, name, [h])[0], rel=1e-8)
+            expected = h * few.surface.sigma if name == "mean_gap" else exact.mean(few, name, [h])[0]
+            assert float(row["theory"]) == pytest.approx(expected, rel=1e-8)
         half = (float(row["high_95"]) - float(row["low_95"])) / 2
         assert float(row["low_95"]) + half == pytest.approx(float(row["mean"]), rel=1e-9)
         assert half == pytest.approx(

@@ -8,6 +8,7 @@ from scipy.stats import t as student
 
 import analytic
 import mcgw
+from mcgw.cli import main
 from mcgw.ensemble.separation import separation_on
 from mcgw.ensemble.solution import solutions
 from mcgw.reports.solution import solutions_text
@@ -211,7 +212,7 @@ def test_a_solution_of_too_few_contacts_has_no_interval(make_scene):
     assert np.isnan(light.interval("area")).all()
     assert heavy.interval("area")[0] < heavy.surfaces["area"].mean() < heavy.interval("area")[1]
     blocks = solutions_text(scene, [light, heavy]).split("\n\n")
-    assert [block.count("too few contacts") for block in blocks[:2]] == [5, 0]
+    assert [block.count("too few contacts") for block in blocks[:2]] == [6, 0]
 
 
 @pytest.mark.parametrize(("height", "told"), [(3.4, True), (1.0, False)])
@@ -220,3 +221,45 @@ def test_few_contacts_are_told_beside_the_theory(make_scene, height, told):
     (found,) = solutions(scene, "load", [float(scene.theory.mean("load", height))])
     assert (found.theory["contacts"] < 30) == told
     assert ("few for theory, which is of a large one; give more area" in repr(found)) == told
+
+
+SPECTRAL = {"m0": 1e-12, "m2": 5e-4, "m4": 2.5e6}  # alpha = 10
+
+
+@pytest.mark.parametrize("reference", [None, "body", "mean-plane"])
+@pytest.mark.parametrize("spectral", [True, False])
+def test_the_mean_gap(spectral, reference, make_scene):
+    """From the mean plane of the surface where it is known: summits lie 4 sqrt(m0/(pi alpha)) above it.
+
+    With interaction it is what the asperities feel, or the nominal separation from a periodic cell's plane.
+    """
+    rise = 0.0
+    scene = make_scene(n_surfaces=3, n_asperities=30000, separations=1.0, grading=None)
+    if spectral:
+        m = analytic.SpectralMoments(*SPECTRAL.values())
+        rise = 4 * np.sqrt(m.m0 / (np.pi * m.alpha))
+        surface = analytic.Surface(m.sigma, m.radius, m.eta, 30000 / m.eta, 1e9)
+        scene = scene.replace(surface=surface, heights=analytic.Nayak(m.alpha))
+    if reference is not None:
+        scene = scene.replace(interaction=analytic.Interaction(reference))
+    solved = mcgw.solve(scene, area_fraction=[3e-4, 1e-2])
+    for found in solved:
+        name = "nominal_separation" if reference == "mean-plane" else "separation"
+        for values in (found.theory, found.surfaces):
+            expected = scene.surface.sigma * values[name] + rise
+            np.testing.assert_allclose(values["mean_gap"], expected, rtol=1e-12)
+        assert "mean_gap" in repr(found)
+    assert ("from the mean plane of the surface" in solutions_text(scene, solved)) == spectral
+
+
+def test_notes_are_about_the_load_and_not_the_scenes_separations(make_scene, tmp_path, capsys):
+    """A scene down to h = -2, where most summits touch, and a light load; one at h = 3, and a heavy load."""
+    low, high = (make_scene(separations=h, n_surfaces=3, grading=None) for h in ((-2.0, 3.0), 3.0))
+    for scene, pressure, crowded in ((low, "1 kPa", False), (high, "1 GPa", True)):
+        (tmp_path / "s.toml").write_text(mcgw.scene_text(scene))
+        assert main(["solve", str(tmp_path / "s.toml"), "--pressure", pressure]) == 0
+        told = capsys.readouterr()
+        notes = [line for line in told.err.splitlines() if line.startswith("mcgw: note: ")]
+        assert any("more than half of all summits touch" in line for line in notes) == crowded, notes
+        assert "mean gap: of the rigid plane" in told.out
+        assert "mean_gap" in told.out

@@ -143,10 +143,11 @@ def test_what_is_told_belongs_to_the_law():
     scene = mcgw.Scene(SURFACE, separations=0.0, law=law, n_surfaces=3, seed=1)
     found = mcgw.solve(scene, pressure="1 MPa")
     assert list(found.theory) == [
-        "separation", "load", "area", "stiffness", "contacts", "conductance", "load_slope", "yielded",
+        "separation", "mean_gap", "load", "area", "stiffness", "contacts", "conductance", "load_slope",
+        "yielded",
     ]  # fmt: skip
     assert 0 < found.theory["yielded"] < found.theory["contacts"]
     assert list(found.surfaces) == list(found.theory)
     plain = mcgw.solve(scene.replace(law=mcgw.Hertz()), pressure="1 MPa")
-    assert len(plain.theory) == 6
+    assert len(plain.theory) == 7
     assert plain.theory["separation"] > found.theory["separation"]

@@ -28,6 +28,7 @@ def execute(args: argparse.Namespace) -> int:
     from mcgw.commands.outputs import check_outputs
     from mcgw.commands.table_option import table_output, write_table
     from mcgw.ensemble.solution import solutions
+    from mcgw.ensemble.solved import at_solutions
     from mcgw.formats.units import parse
     from mcgw.machine.progress import bar
     from mcgw.reports.solution import solutions_table, solutions_text
@@ -44,9 +45,9 @@ def execute(args: argparse.Namespace) -> int:
         given, values = "load", [parse(p, "Pa", "--pressure") * area for p in args.pressure]
     else:
         given, values = "area", [parse(a, "1", "--area-fraction") * area for a in args.area_fraction]
-    tell_notes(scene)
     with bar("surfaces", terminal=True) as tell:
         found = solutions(scene, given, values, tell)
+    tell_notes(at_solutions(scene, found))
     print(solutions_text(scene, found))
     write_table(args.csv, lambda: solutions_table(scene, found))
     return 0

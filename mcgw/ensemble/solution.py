@@ -12,7 +12,7 @@ from analytic.laws import LoadingBranch, term_of
 from analytic.laws.elastic_plastic import ElasticPlastic
 from mcgw.ensemble.law_separation import LawSum
 from mcgw.ensemble.separation import LOWEST, crossing, separation_on
-from mcgw.ensemble.solved import Solution, with_half_space
+from mcgw.ensemble.solved import Solution, with_half_space, with_mean_gap
 from mcgw.machine.progress import Progress, told
 from mcgw.sampling.asperities import summits, touching_summits
 from mcgw.scene.reading import argument, as_toml
@@ -153,11 +153,10 @@ def solutions(
         rows.append(_surface(scene, drawn, number, q, values))
         if tell is not None:
             tell(number + 1, drawn.n_surfaces)
+    surfaces = [{x: np.array([row[k][x] for row in rows]) for x in at} for k, at in enumerate(theory)]
     return [
-        Solution(
-            scene, given, float(value), at, {x: np.array([row[k][x] for row in rows]) for x in at}, drawn
-        )
-        for k, (value, at) in enumerate(zip(values, theory, strict=True))
+        Solution(scene, given, float(value), with_mean_gap(scene, at), with_mean_gap(scene, on), drawn)
+        for value, at, on in zip(values, theory, surfaces, strict=True)
     ]
 
 

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import stdtrit
 
-from analytic import SEPARATIONS, quantity_of
+from analytic import SEPARATIONS, Nayak, quantity_of
 from mcgw.ensemble.intervals import FEWEST, MANY, interval_column
 from mcgw.formats.sheet import Sheet, Shown
 from mcgw.formats.table import Column, Table
@@ -17,7 +17,14 @@ from mcgw.sampling.asperities import summits, touching_summits
 from mcgw.scene.scene import Scene
 from mcgw.scene.validity import Validity, validity_of
 
-__all__ = ["Solution", "against_elasticity", "with_half_space"]
+__all__ = [
+    "Solution",
+    "against_elasticity",
+    "at_solutions",
+    "rise_of_summits",
+    "with_half_space",
+    "with_mean_gap",
+]
 
 Array = NDArray[np.float64]
 
@@ -36,7 +43,8 @@ class Solution(Shown):
         Its value, N or m^2.
     theory : dict of str to float
         "separation" (d/sigma) and every quantity (SI) of the mean surface, on loading. Where asperities press
-        each other down the separation is what they feel, and "nominal_separation" there besides.
+        each other down the separation is what they feel, and "nominal_separation" there besides. "mean_gap"
+        is the distance of the mean planes, m: see `with_mean_gap`.
     surfaces : dict of str to ndarray
         The same on every surface at its own separation, shape (surfaces,).
     drawn : Scene
@@ -134,6 +142,8 @@ class Solution(Shown):
 
 
 def _unit(name: str) -> str:
+    if name == "mean_gap":
+        return "m"
     return "sigma" if name in ("separation", *SEPARATIONS) else quantity_of(name).unit
 
 
@@ -142,10 +152,39 @@ def against_elasticity(solutions: Sequence[Solution]) -> Validity:
     return validity_of(solutions[0].scene, [each.theory["separation"] for each in solutions], felt=True)
 
 
+def at_solutions(scene: Scene, solutions: Sequence[Solution]) -> Scene:
+    """The scene at the separations of its mean surface there: what is said of them is said of the loads."""
+    nominal = scene.interaction is not None and scene.interaction.nominal
+    name = "nominal_separation" if nominal else "separation"
+    return scene.replace(separations=sorted({each.theory[name] for each in solutions}), unload_from=None)
+
+
 def with_half_space(scene: Scene, alone: Solution) -> Solution:
     """What holds where the asperities press each other down: all but the separation and stiffnesses alike."""
     from mcgw.ensemble.interacting import at_loads  # for those scenes alone
 
-    return replace(
-        alone, scene=scene, theory=at_loads(scene, alone.theory), surfaces=at_loads(scene, alone.surfaces)
+    theory, surfaces = (
+        with_mean_gap(scene, at_loads(scene, {k: v for k, v in found.items() if k != "mean_gap"}))
+        for found in (alone.theory, alone.surfaces)
     )
+    return replace(alone, scene=scene, theory=theory, surfaces=surfaces)
+
+
+def with_mean_gap(scene: Scene, found: dict[str, Any]) -> dict[str, Any]:
+    """The same of what holds at given loads: with "mean_gap", m, after the separations.
+
+    That is how far the rigid plane lies from the mean plane of the surface, or from that of its summits where
+    the scene does not tell the other. Where asperities press each other down it is the separation that they
+    feel, or the nominal one if that counts from the mean plane itself (`reference = "mean-plane"`).
+    """
+    nominal = scene.interaction is not None and scene.interaction.reference == "mean-plane"
+    h = found["nominal_separation" if nominal else "separation"]
+    gap = scene.surface.sigma * (h + (rise_of_summits(scene) or 0.0))
+    ahead = {name: found[name] for name in found if name in ("separation", *SEPARATIONS)}
+    return {**ahead, "mean_gap": gap, **found}
+
+
+def rise_of_summits(scene: Scene) -> float | None:
+    """Of the mean plane of the summits above that of the surface, over sigma; None if no one told."""
+    heights = scene.heights
+    return heights.mean / heights.std if isinstance(heights, Nayak) else None

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from mcgw.ensemble.intervals import MANY
-from mcgw.ensemble.solved import Solution, against_elasticity
+from mcgw.ensemble.solved import Solution, against_elasticity, rise_of_summits
 from mcgw.formats.table import Column, Table, joined
 from mcgw.reports.elasticity import two_questions
 from mcgw.scene.contact_text import contact_facts
@@ -24,6 +24,8 @@ def solutions_text(scene: Scene, solutions: Sequence[Solution]) -> str:
             "Few contacts: finite surfaces differ from theory, whose surface is infinite, by more than noise."
         )
     lines += [f"{word}: {what}" for word, what in contact_facts(scene) if word in _SHOWN]
+    plane = "summits, which lies above that of the surface" if rise_of_summits(scene) is None else "surface"
+    lines.append(f"mean gap: of the rigid plane from the mean plane of the {plane}")
     if scene.unload_from is not None:
         lines.append("each surface is loaded from far away; nothing of it is on the way back")
     lines.append(
