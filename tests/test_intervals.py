@@ -44,7 +44,7 @@ def intervals(ensemble, surfaces):
     found = {}
     for name in scene.quantities:
         parts = ensemble.values(name).reshape(SEEDS, surfaces).T
-        wide = Scene(**{**vars(scene), "n_surfaces": surfaces, "separations": scene.separations * SEEDS})
+        wide = scene.replace(n_surfaces=surfaces, separations=scene.separations * SEEDS)
         found[name] = (parts, Ensemble(wide, "cells", MemoryResults({name: parts})).interval(name))
     return found
 
@@ -196,7 +196,7 @@ def test_where_hardly_any_asperity_does_not_touch(make_scene, contacts):
     missing = np.random.default_rng(1).binomial(1000, contacts / 1000, SEEDS)
     share = (1000 - missing) / (1000 - contacts)
     assert np.mean((low <= share) & (share <= high)) >= 0.93
-    assert forecast(make_scene(**vars(scene) | {"rel_err": 0.1, "n_surfaces": 10**6})).surfaces == 64
+    assert forecast(scene.replace(rel_err=0.1, n_surfaces=10**6)).surfaces == 64
 
 
 def test_one_surface_has_an_interval(make_scene):

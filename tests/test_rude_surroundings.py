@@ -76,8 +76,8 @@ def test_a_file_made_by_a_child_keeps_to_its_schema(tmp_path):
     assert str(file) in done.stdout
     units = {"load": "N", "area": "m^2", "stiffness": "N/m", "contacts": "1", "conductance": "m"}
     with h5py.File(file) as data:
-        assert data.attrs["filetype"] == "mcgw-ensemble"
-        assert tuple(data.attrs["format"]) == (1, 1)
+        assert data.attrs["filetype"] == "mcgw-results"
+        assert tuple(data.attrs["format"]) == (2, 0)
         assert data.attrs["seed"] == 1
         assert bool(data.attrs["complete"])
         for key in ("scene", "sampler", "versions", "commit", "date", "cpu", "wall_seconds"):

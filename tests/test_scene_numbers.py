@@ -29,6 +29,7 @@ BASE = {
     "contact": {"separations": [TOP - 0.5]},
     "interaction": {},
     "ensemble": {"n_asperities": 3, "n_surfaces": 1, "seed": 1, "sampler": "'direct'"},
+    "fitted": {},
 }
 FREE = {"heights": None, "resample": None}  # of a list of heights
 AUTO = {"ensemble": {"sampler": None}}
@@ -149,6 +150,15 @@ def sunk(bulk, area, factor):
 
 
 # Key, its value, other keys beside it, what is looked at, and what it must be.
+FITTED = {"m0": 1e-12, "m2": 1e-2, "m4": 1e9, "skewness": 0.0, "kurtosis": 3.0, "independent": 1e4,
+          "agreement": 1.05, "lay": 1.1, "area": 1e-6}  # fmt: skip
+
+
+def not_measured(words):
+    """Whether nothing is stated against elasticity for this reason."""
+    return lambda scene: words in scene.validity().unknown
+
+
 ROWS = [
     ("title", "'Mine'", {}, lambda s: s.title, "Mine"),
     ("surface.sigma", 2e-6, {}, simulated(), hertz(sigma=2e-6)),
@@ -267,6 +277,19 @@ ROWS = [
     ("interaction.bulk_modulus", 1e9, {"interaction": {"reference": "'body'", "at": "'nominal'"}},
      simulated(),
      sunk(1e9, 1e-6, 0.9464020088186771)),
+    ("fitted.m0", 2e-12, {"fitted": FITTED}, lambda s: s.fitted.moments.alpha, 20),
+    ("fitted.m2", 2e-2, {"fitted": FITTED}, lambda s: s.fitted.moments.alpha, 2.5),
+    ("fitted.m4", 4e9, {"fitted": FITTED}, lambda s: s.fitted.moments.alpha, 40),
+    ("fitted.skewness", 0.5, {**GAUSS, "fitted": FITTED}, not_measured("skewness 0.50"), True),
+    ("fitted.kurtosis", 4.0, {**GAUSS, "fitted": FITTED}, not_measured("kurtosis 4.00"), True),
+    # By chance a hundred independent heights have twice sqrt(6/100) = 0.49.
+    ("fitted.independent", 100.0, {**GAUSS, "fitted": FITTED | {"skewness": 0.48}},
+     not_measured("skewness"), False),
+    ("fitted.independent", 90.0, {**GAUSS, "fitted": FITTED | {"skewness": 0.52}},
+     not_measured("skewness"), True),
+    ("fitted.agreement", 1.5, {**GAUSS, "fitted": FITTED}, not_measured("1.5 times apart"), True),
+    ("fitted.lay", 3.0, {**GAUSS, "fitted": FITTED}, not_measured("slopes 3 : 1"), True),
+    ("fitted.area", "'4 mm^2'", {"fitted": FITTED}, lambda s: s.fitted.area, 4e-6),
 ]  # fmt: skip
 
 
