@@ -49,6 +49,8 @@ class Quantity:
         The quantity that this one is on the way back from the lowest separation.
     counts : bool, optional
         Whether it is a number of asperities.
+    words, symbol : str, optional
+        Few words for people, and its letter; default: the name, and none.
     """
 
     name: str
@@ -61,6 +63,16 @@ class Quantity:
     of: str = ""
     unloading: str = ""
     counts: bool = False
+    words: str = ""
+    symbol: str = ""
+
+    @property
+    def title(self) -> str:
+        """Words, symbol and unit, as over a panel: "Real area A (m²)"."""
+        words = (self.words or (self.unloading or self.name).replace("_", " ")).capitalize()
+        unit = "" if self.unit == "1" else f"({self.unit.replace('^2', '²')})"
+        way = ", unloading" if self.unloading else ""
+        return " ".join(filter(None, (words, self.symbol, unit))) + way
 
     @property
     def base(self) -> str:
@@ -91,9 +103,9 @@ def _conductance(x: Surface) -> float:
 QUANTITIES = {
     q.name: q
     for q in (
-        Quantity("load", "normal load", "N", 1.5, 1, 0.5, _load),
-        Quantity("area", "real contact area", "m^2", 1.0, 0, 1.0, _area),
-        Quantity("stiffness", "normal stiffness", "N/m", 0.5, 1, 0.5, _stiffness),
+        Quantity("load", "normal load", "N", 1.5, 1, 0.5, _load, symbol="P"),
+        Quantity("area", "real contact area", "m^2", 1.0, 0, 1.0, _area, words="real area", symbol="A"),
+        Quantity("stiffness", "normal stiffness", "N/m", 0.5, 1, 0.5, _stiffness, symbol="K"),
         Quantity("contacts", "number of contacts", "1", 0.0, 0, 0.0, _one, counts=True),
         Quantity(
             "conductance",
@@ -103,6 +115,7 @@ QUANTITIES = {
             0,
             0.5,
             _conductance,
+            symbol="Cρ",
         ),
     )
 }
@@ -138,7 +151,16 @@ PER_AREA = {
 LAW_QUANTITIES = {
     q.name: q
     for q in (
-        Quantity("load_slope", "slope -dP/dd of the loads of the spots", "N/m", 0.5, 1, 0.5, _stiffness),
+        Quantity(
+            "load_slope",
+            "slope -dP/dd of the loads of the spots",
+            "N/m",
+            0.5,
+            1,
+            0.5,
+            _stiffness,
+            words="slope of the loads",
+        ),
         Quantity(
             "conductance_si",
             "contact conductance of the spots and their films",
@@ -147,8 +169,20 @@ LAW_QUANTITIES = {
             0,
             0.5,
             _conductance,
+            words="conductance",
+            symbol="C",
         ),
-        Quantity("yielded", "number of contacts that have yielded", "1", 0.0, 0, 0.0, _one, counts=True),
+        Quantity(
+            "yielded",
+            "number of contacts that have yielded",
+            "1",
+            0.0,
+            0,
+            0.0,
+            _one,
+            counts=True,
+            words="yielded contacts",
+        ),
     )
 }
 

@@ -14,7 +14,7 @@ from scipy.stats import norm
 
 import analytic
 import mcgw
-from mcgw.figures.comparison import quantity_figure, save_comparison, title_of
+from mcgw.figures.comparison import quantity_figure, save_comparison
 from mcgw.figures.convergence import save_convergence
 from mcgw.figures.data import FigureData, Panel, Points, Series
 from mcgw.figures.drawing import draw
@@ -349,9 +349,9 @@ def check_residual(axis, curve):
 def test_every_title_has_the_unit_of_its_quantity():
     """As the ensemble gives it: N and m², never mN or mm²."""
     names = (*QUANTITIES, "load_slope", "conductance_si", "yielded", "load_unloading", "area_unloading")
-    found = [re.search(r" \((.+?)\)|$", title_of(name))[1] for name in names]
+    found = [re.search(r" \((.+?)\)|$", analytic.quantity_of(name).title)[1] for name in names]
     assert found == ["N", "m²", "N/m", None, "m", "N/m", "S or W/K", None, "N", "m²"]
-    assert title_of("area_unloading") == "Real area A (m²), unloading"
+    assert analytic.quantity_of("area_unloading").title == "Real area A (m²), unloading"
 
 
 def test_comparison(comparison, kept, tmp_path):

@@ -25,7 +25,7 @@ from mcgw.statistics.comparison import Comparison, Curve
 if TYPE_CHECKING:
     from mcgw.statistics.sweep_comparison import SweepComparison
 
-__all__ = ["draw_curve", "quantity_figure", "save_comparison", "title_of"]
+__all__ = ["draw_curve", "quantity_figure", "save_comparison"]
 
 _MOST_COLUMNS = 3  # more are too small to read on a page
 # Inches: from column to column, the least width, the label at the left, ticks with labels; a band of panels.
@@ -34,22 +34,6 @@ _TITLE, _CURVE, _BETWEEN, _RESIDUAL, _UNDER = 0.3, 2.83, 0.21, 0.93, 0.3
 _BAND = _TITLE + _CURVE + _BETWEEN + _RESIDUAL + _UNDER
 _HEAD, _FOOT = 0.36, 0.36  # two lines each
 _BELOW = 0.01  # of the smallest mean that is drawn: how far down its axis goes
-_TITLES = {
-    "load": "Load P (N)",
-    "area": "Real area A (m²)",
-    "stiffness": "Stiffness K (N/m)",
-    "contacts": "Contacts",
-    "conductance": "Conductance Cρ (m)",
-    "load_slope": "Slope of the loads (N/m)",
-    "conductance_si": "Conductance (S or W/K)",
-    "yielded": "Yielded contacts",
-}
-
-
-def title_of(quantity: str) -> str:
-    """A quantity as the title of a panel."""
-    q = quantity_of(quantity)
-    return f"{_TITLES[q.base]}, unloading" if q.unloading else _TITLES[quantity]
 
 
 def save_comparison(comparison: "Comparison | SweepComparison", path: str | Path) -> None:
@@ -111,7 +95,7 @@ def _with_panels(comparison: Comparison) -> Figure:
         above = panel(left, bottom + _RESIDUAL + _BETWEEN, _CURVE, below)
         first = first or below
         draw_curve(above, h, curve)
-        above.set_title(title_of(name))
+        above.set_title(quantity_of(name).title)
         above.tick_params(labelbottom=False)
         _draw_residual(below, h, curve)
         if k % columns == 0:
@@ -142,7 +126,7 @@ def quantity_figure(comparison: Comparison, name: str) -> Figure:
         above, below = figure.subplots(2, 1, sharex=True, height_ratios=[3, 1])
         draw_curve(above, h, curve)
         _draw_residual(below, h, curve)
-        above.set_title(title_of(name), loc="left")
+        above.set_title(quantity_of(name).title, loc="left")
         above.legend(loc="lower left")
         below.set(xlabel="separation d/σ", ylabel="residual\n(std. errors)")
     return figure

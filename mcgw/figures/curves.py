@@ -56,16 +56,16 @@ def gradings(f: Compared) -> FigureData:
 
 def load(f: Compared) -> FigureData:
     """Show the load over the separation."""
-    return _against_separation(f, "Load at a given separation (Eq. 7)", "load", "pressure $P/A_n$", "Pa")
+    return _against_separation(f, "Load at a given separation (Eq. 7)", "load", "pressure", "Pa")
 
 
 def stiffness(f: Compared) -> FigureData:
     """Show the stiffness over the separation."""
     title = "Stiffness at a given separation; the paper's “conductance”"
-    return _against_separation(f, title, "stiffness", "stiffness $K/A_n$", "Pa/m")
+    return _against_separation(f, title, "stiffness", "stiffness", "Pa/m")
 
 
-def _against_separation(f: Compared, title: str, quantity: str, symbol: str, unit: str) -> FigureData:
+def _against_separation(f: Compared, title: str, quantity: str, words: str, unit: str) -> FigureData:
     """Means: of a sweep as the paper's integrals, else per nominal area."""
     q, area = quantity_of(quantity), f.scene.surface.nominal_area
     top = max(float(np.abs(f.theory(label, quantity, f.line)).max()) for label in f.all)
@@ -76,7 +76,7 @@ def _against_separation(f: Compared, title: str, quantity: str, symbol: str, uni
         )
     else:
         factor, prefix = prefixed(top / area)
-        size, ylabel = area * factor, f"{symbol} ({prefix}{unit})"
+        size, ylabel = area * factor, f"{words} ${q.symbol}/A_n$ ({prefix}{unit})"
     panels = []
     for name, labels in f.groups:
         lines = {label: f.theory(label, quantity, f.line) / size for label in labels}

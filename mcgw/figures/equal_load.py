@@ -5,7 +5,7 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from analytic import Exponential
+from analytic import Exponential, quantity_of
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.separation import separation_on
 from mcgw.ensemble.simulation import simulate
@@ -21,12 +21,17 @@ Array = NDArray[np.float64]
 _GROUPS = 10  # of surfaces, for the jackknife
 _AT = np.array([1.0, 2.0, 3.0])
 _LINE, _GAMMAS = np.linspace(0.2, 2, 46), np.array([0.2, 0.4, 0.6, 0.8, 1.2, 1.5, 2.0])
-_SYMBOLS = {"conductance": "C", "area": "A", "stiffness": "K"}
+_SHOWN = ("conductance", "area", "stiffness")
 
 
 def equal_load(f: Compared) -> FigureData:
     """Show conductance, area and stiffness over the reference's, where both carry the same load."""
     return _over_gamma(f) if f.swept else _over_separation(f)
+
+
+def _over(name: str, reference: str) -> str:
+    symbol = quantity_of(name).symbol.removesuffix("ρ")  # the resistivity is that of both
+    return rf"${symbol}/{symbol}_\mathrm{{{reference}}}$"
 
 
 def _exact(f: Compared, name: str, key: str | float, h: Array) -> Array:
@@ -36,13 +41,13 @@ def _exact(f: Compared, name: str, key: str | float, h: Array) -> Array:
 def _over_separation(f: Compared) -> FigureData:
     drawn = {label: _drawn_at(f.all[label], f.at_load_of_reference(label, f.h)) for label in f.others}
     panels = []
-    for key, (name, symbol) in zip("abc", _SYMBOLS.items(), strict=True):
+    for key, name in zip("abc", _SHOWN, strict=True):
         here, series = f.drawn(f.reference).values(name), []
         for label, there in drawn.items():
             exact, curve = (_exact(f, name, label, h) for h in (f.h, f.line))
             points = f.points(partial(ratio_of_sums, there.values(name), here), exact) if there else None
             series.append(Series(label, f.line, curve, points))
-        ylabel = rf"${symbol}/{symbol}_\mathrm{{ref}}$"
+        ylabel = _over(name, "ref")
         panels.append(Panel(f"{key}  {name}", SEPARATION, ylabel, tuple(series), level=1.0))
     caption = f"d/σ is that of the reference ({f.reference}, the same surface) and sets the load. {f.caption}"
     return FigureData("At the same load", caption, tuple(panels))
@@ -63,10 +68,10 @@ def _over_gamma(f: Compared) -> FigureData:
     title = "a  equal separation: stiffness (Eq. 15)"
     panels = [Panel(title, GAMMA, r"$K/K_\mathrm{hom}$", series, level=1.0)]
     found = np.array([_jackknifed(f.listed, float(h)) for h in _AT])  # (separation, 2, gamma, quantity)
-    for k, (name, symbol) in enumerate(_SYMBOLS.items()):
+    for k, name in enumerate(_SHOWN):
         mean, stderr = found[..., k].transpose(1, 2, 0)
         series = over_gamma(_LINE, _GAMMAS, _AT, partial(_exact, f, name), (mean, stderr))
-        ylabel = rf"${symbol}/{symbol}_\mathrm{{hom}}$"
+        ylabel = _over(name, "hom")
         panels.append(Panel(f"{'bcd'[k]}  equal load: {name}", GAMMA, ylabel, series, level=1.0))
     return FigureData(
         "At equal load the trend turns round: stiffer tips conduct less",

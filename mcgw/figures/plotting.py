@@ -11,7 +11,7 @@ from analytic import quantity_of
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.paired import Paired
 from mcgw.ensemble.solved import Solution
-from mcgw.figures.comparison import draw_curve, title_of
+from mcgw.figures.comparison import draw_curve
 from mcgw.figures.convergence import draw_checks
 from mcgw.figures.style import MONTE_CARLO, SAMPLE, STYLE, THEORY, shown_title, step
 from mcgw.figures.sweep_comparison import draw_residuals
@@ -94,7 +94,7 @@ def _(result: Ensemble, ax: Any, *, quantity: str) -> None:
 def _(result: Comparison, ax: Any, *, quantity: str) -> None:
     draw_curve(ax, result.ensemble.separations, result.curves[quantity])
     word = "agree" if result.verdict.agrees else "DISAGREE"
-    ax.set(xlabel=_SEPARATION, ylabel=title_of(quantity))
+    ax.set(xlabel=_SEPARATION, ylabel=quantity_of(quantity).title)
     ax.set_title(f"Monte Carlo and theory of this model {word}: p = {result.verdict.p:.3g} over all means")
     ax.legend()
 

@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 from numpy.typing import NDArray
 
+from analytic import quantity_of
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.equal_pressure import at_pressures, common_pressures
 from mcgw.ensemble.results import MemoryResults
@@ -24,6 +25,12 @@ Array = NDArray[np.float64]
 MOST_SURFACES = 2000  # that mean and band are of: more would move them by less than a line is wide
 _POINTS = 60
 _BAND = (0.05, 0.95)
+_PER_AREA = (  # name, factor from SI, title, unit
+    ("area", 100, "Real contact area", "%"),
+    ("stiffness", 1e-12, "Normal stiffness", "MPa/µm"),
+    ("conductance_si", 1, "Contact conductance", "W/(m² K), or S/m²"),
+    ("conductance", 1, "Contact conductance times ρ", "1/m"),
+)
 _FEW = 1.5  # decades, below which powers of ten are too few ticks
 
 
@@ -93,14 +100,9 @@ def _asked(ensemble: Ensemble) -> Iterator[tuple[str, float, str, str]]:
     scene = ensemble.scene
     per_area, held = 1 / scene.surface.nominal_area, scene.quantities
     yield "separation", 1.0, "Load: pressure at a separation", "separation d/σ"
-    if "area" in held:
-        yield "area", 100 * per_area, "Real contact area", "A/Aₙ (%)"
-    if "stiffness" in held:
-        yield "stiffness", 1e-12 * per_area, "Normal stiffness", "K/Aₙ (MPa/µm)"
-    if "conductance_si" in held:
-        yield "conductance_si", per_area, "Contact conductance", "C/Aₙ (W/(m² K), or S/m²)"
-    elif "conductance" in held:
-        yield "conductance", per_area, "Contact conductance times ρ", "Cρ/Aₙ (1/m)"
+    for name, factor, title, unit in _PER_AREA:
+        if name in held and not (name == "conductance" and "conductance_si" in held):
+            yield name, factor * per_area, title, f"{quantity_of(name).symbol}/Aₙ ({unit})"
 
 
 def pressure_figure(curve: PressureCurve) -> Figure:

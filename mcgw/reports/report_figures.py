@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from analytic import quantity_of
 from mcgw.ensemble.ensemble import Ensemble
-from mcgw.figures.comparison import quantity_figure, title_of
+from mcgw.figures.comparison import quantity_figure
 from mcgw.figures.data import FigureData, Panel, Points, Series
 from mcgw.figures.drawing import draw
 from mcgw.figures.patch import patch_figures
@@ -75,7 +75,9 @@ def means_figures(ensemble: Ensemble) -> list[PageFigure]:
         h, mean = ensemble.separations[order], ensemble.mean(name)[order]
         exact = ensemble.scene.theory.mean(name, h)
         series = Series("theory, and means", h, exact, Points(h, mean, np.zeros(len(h)), exact))
-        panel = Panel(title_of(name), "separation d/σ", quantity_of(name).unit, (series,), ("linear", "log"))
+        panel = Panel(
+            quantity_of(name).title, "separation d/σ", quantity_of(name).unit, (series,), ("linear", "log")
+        )
         figure = draw(FigureData("", "Line: exact. Markers: means.", (panel,), columns=1))
         found.append(line_figure(figure, quantity_of(name).long_name))
     return found
