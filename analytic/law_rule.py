@@ -47,7 +47,11 @@ def law_ends(
     low, high = max(low, law.support[0]), law.support[1]
     start = max(low, float(law.from_below(np.array(_NOTHING), np.inf)))
     top = min(float(law.from_above(np.array(_NOTHING), start)), high)
-    if not (start < top and law.above(np.array(start)) > _RAREST):
+    if np.isinf(top):  # as isf of 1 - p, where 1 - p is 1: the density tells how far heights go
+        top = start + 1.0 if law.density(np.array(start)) > 0 else start
+    elif not (start < top and law.above(np.array(start)) > _RAREST):
+        return start, top
+    if not start < top:
         return start, top
 
     def log_density(s: Array) -> Array:

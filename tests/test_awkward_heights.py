@@ -3,6 +3,7 @@
 import tracemalloc
 from itertools import pairwise
 
+import mpmath
 import numpy as np
 import pytest
 import scipy.stats
@@ -45,6 +46,29 @@ def test_the_tail_of_f_is_that_of_its_sf():
     law = mcgw.ScipyHeights(scipy.stats.f(10, 20))
     shares = np.array([0.7, 0.2, 1e-9, 1e-16, 1e-30])
     np.testing.assert_allclose(law.above(law.from_above(shares, -np.inf)), shares, rtol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("shape", "h", "digits"), [(5, 1, 1e-12), (5, 8, 1e-12), (1, 9, 1e-11), (20, 12, 1e-6)]
+)
+def test_tails_that_scipy_loses_altogether_are_those_of_the_density(shape, h, digits):
+    """Rice: sf is 1 - cdf and isf infinite below 1e-16, but the density is good. Against mpmath."""
+    law = scipy.stats.rice(shape)
+    theory = mcgw.Scene(SURFACE, separations=0.0, heights=law, n_asperities=3000, seed=1).theory
+
+    def mean(h):
+        with mpmath.workdps(25):
+            start = mpmath.mpf(law.mean()) + h * mpmath.mpf(law.std())
+
+            def under(x):
+                density = x * mpmath.exp(-(x * x + shape * shape) / 2) * mpmath.besseli(0, x * shape)
+                return ((x - start) / law.std()) ** 1.5 * density
+
+            return float(mpmath.quad(under, [start, start + 0.5, start + 2, start + 6, start + 20]))
+
+    found = theory.mean("load", h) / theory.mean("load", 0.5)
+    assert found == pytest.approx(mean(h) / mean(0.5), rel=digits)
+    assert theory.mean("contacts", float(theory.separation_at("load", 1.0))) > 0
 
 
 def stiffer(s):
