@@ -5,6 +5,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from scipy import ndimage
 
 import mcgw
 from analytic import MeasuredHeights
@@ -246,6 +247,31 @@ def test_skewed_heights_and_alpha_below_its_bound_are_doubted(without_caps):
 def test_maps_that_cannot_be_fitted_are_refused(heights, cutoff, told):
     with pytest.raises(ValueError, match=told):
         fit_map(Topography(heights, PIXEL), cutoff=cutoff)
+
+
+@pytest.mark.parametrize("bits", [0, 0.3])
+def test_summits_of_one_height_are_refused_in_one_line(bits):
+    """A pattern; and one with lower ripples, where all of those that may be caps have one height."""
+    one = np.zeros((80, 80))
+    one[4::8, 4::8] = 1e-6
+    one[8::16, 8::16] = bits * 1e-6
+    z = ndimage.gaussian_filter(one, 1.5, mode="wrap")
+    if bits:
+        assert "caps" not in mcgw.fit(Topography(z, PIXEL), cutoff=None, form="none").estimates
+    else:
+        with pytest.raises(ValueError, match=r"all \d+ summits have one height, as of a pattern"):
+            mcgw.fit(Topography(z, PIXEL), cutoff=None, form="none")
+
+
+@pytest.mark.parametrize("more", [{}, {"pixel": "1 um"}])
+def test_an_array_of_points_is_taken_for_no_map(more, tmp_path):
+    np.save(tmp_path / "points.npy", rng().normal(size=(64, 3)) * 1e-6)
+    (tmp_path / "points.json").write_text('{"pixel": [1e-6, 1e-6]}')
+    with pytest.raises(ValueError, match=r"points.npy: three numbers a line, 64 lines: x, y and z"):
+        mcgw.fit(tmp_path / "points.npy", cutoff=None, **more)
+    np.save(tmp_path / "points.npy", rng().normal(size=(3, 64)) * 1e-6)
+    with pytest.raises(ValueError, match="are left: too few"):
+        mcgw.fit(tmp_path / "points.npy", cutoff=None, **more)
 
 
 def test_a_map_of_few_summits_has_moments_alone(without_caps):

@@ -13,7 +13,7 @@ from mcgw.machine.terminal import one_line
 from mcgw.maps.asperities import Asperities
 from mcgw.maps.foreign import ForeignError
 from mcgw.maps.height_unit import height_unit
-from mcgw.maps.topography import Topography, checked_shape
+from mcgw.maps.topography import Topography, checked_shape, single_points
 
 __all__ = ["read_h5", "read_npy", "sidecar_of", "write_h5", "write_npy"]
 
@@ -56,6 +56,8 @@ def read_npy(path: Path, pixel: tuple[float, float] | None = None, unit: str | N
     if array.ndim != 2:
         raise ValueError(f"{path}: holds {array.ndim} dimension(s); a map has rows and columns")
     checked_shape(*array.shape)
+    if points := single_points(*array.shape):
+        raise ValueError(f"{path}: {points}")
     periodic, told = False, None
     if pixel is None:
         pixel, periodic, told = _sidecar(path)

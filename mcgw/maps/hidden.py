@@ -98,8 +98,10 @@ def unhidden(eta: float, radius: float, sigma: float, blur: float = 0.0) -> tupl
     Returns
     -------
     (float, float) or None
-        None if no field of independent caps shows so many.
+        None if no field of independent caps shows so many, or all have one height.
     """
+    if not sigma > 0:
+        return None
     reduced = blur / math.sqrt(2 * radius * sigma)
 
     def misfit(overlap: float) -> float:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from mcgw.maps.foreign import ForeignError
 from mcgw.maps.height_unit import height_unit, metres_in
-from mcgw.maps.topography import Topography, checked_shape
+from mcgw.maps.topography import Topography, checked_shape, single_points
 
 __all__ = ["lines_of", "numbers_of", "read_text", "words_of"]
 
@@ -24,7 +24,6 @@ _COMMA_TOO = re.compile(r"[ \f\v]*[;,\t][ \f\v]*|[ \f\v]+")
 _WITHOUT_COMMA = re.compile(r"[ \f\v]*[;\t][ \f\v]*|[ \f\v]+")
 _DECIMAL_COMMA = re.compile(r"[-+]?\d+,\d*(?:[eE][-+]?\d+)?")
 _MORE_COMMAS = re.compile(r"[-+.,\deE]*\d,+[-+.\d][-+.,\deE]*")
-_XYZ = 3  # numbers a line, if there are more lines than that: no map is three pixels wide
 _MISSING = ("", "BAD", "---")
 
 
@@ -66,11 +65,8 @@ def read_text(path: Path, pixel: tuple[float, float] | None = None, unit: str | 
         checked_shape(1, total)
     if not rows:
         raise ForeignError(f"{path}: holds no numbers")
-    if rows[0].size == _XYZ < len(rows):
-        raise ForeignError(
-            f"{path}: three numbers a line, {len(rows)} lines: x, y and z of single points are no map; give "
-            "rows of heights on a grid"
-        )
+    if points := single_points(len(rows), rows[0].size):
+        raise ForeignError(f"{path}: {points}")
     metre, assumed = height_unit(path, told, unit)
     heights = np.array(rows) * metre
     # every row begins or ends with a separator: there is no column beyond it
