@@ -63,6 +63,8 @@ def test_the_notebook_runs(whole, capsys, tmp_path, monkeypatch, request):
 
     Word for word in the slow tier; else of fewer surfaces and separations, and without studies and maps.
     """
+    for package in ("xarray", "pandas"):
+        pytest.importorskip(package)
     monkeypatch.chdir(tmp_path)
     if whole:
         request.getfixturevalue("map_file")

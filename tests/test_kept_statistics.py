@@ -245,8 +245,9 @@ def test_a_run_in_progress_can_be_looked_at(tmp_path):
 
 
 def test_the_file_is_read_by_others_and_says_when_it_is_damaged(tmp_path):
-    import xarray
-
+    xarray = pytest.importorskip("xarray")
+    for package in ("h5netcdf", "pandas"):
+        pytest.importorskip(package)
     path = tmp_path / "a.h5"
     e = run(scene(tangential=PUSHED), path, keep="statistics")
     with xarray.open_dataset(path, engine="h5netcdf") as file:

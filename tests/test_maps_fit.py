@@ -250,17 +250,13 @@ def test_maps_that_cannot_be_fitted_are_refused(heights, cutoff, told):
 
 
 @pytest.mark.parametrize("bits", [0, 0.3])
-def test_summits_of_one_height_are_refused_in_one_line(bits):
+def test_summits_of_one_height_are_no_field_of_caps(bits):
     """A pattern; and one with lower ripples, where all of those that may be caps have one height."""
     one = np.zeros((80, 80))
     one[4::8, 4::8] = 1e-6
     one[8::16, 8::16] = bits * 1e-6
     z = ndimage.gaussian_filter(one, 1.5, mode="wrap")
-    if bits:
-        assert "caps" not in mcgw.fit(Topography(z, PIXEL), cutoff=None, form="none").estimates
-    else:
-        with pytest.raises(ValueError, match=r"all \d+ summits have one height, as of a pattern"):
-            mcgw.fit(Topography(z, PIXEL), cutoff=None, form="none")
+    assert "caps" not in mcgw.fit(Topography(z, PIXEL), cutoff=None, form="none").estimates
 
 
 @pytest.mark.parametrize("more", [{}, {"pixel": "1 um"}])

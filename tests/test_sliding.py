@@ -89,6 +89,7 @@ def test_what_the_theorem_does_not_cover_is_refused(changes, said):
 def test_a_file_has_the_third_axis(tmp_path):
     """Written, gone on with, in shards, merged: the same numbers, opened by xarray as they are."""
     xarray = pytest.importorskip("xarray")
+    pytest.importorskip("h5netcdf")
     scene, path = scene_of(n_surfaces=700), tmp_path / "pushed.h5"
     memory = mcgw.simulate(scene)
     mcgw.run(scene.replace(n_surfaces=300), path)

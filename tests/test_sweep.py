@@ -218,6 +218,7 @@ def test_scenes_that_share_nothing_are_simulated():
 
 
 def test_labels_and_zipped_axes():
+    pytest.importorskip("xarray")
     over = {GAMMA: [1.0, 2.0], "surface.sigma": ["1 um", "2 um"]}
     sweep = mcgw.sweep(SCENE, over, zipped=True, statistics=["mean"])
     data = sweep.to_xarray()

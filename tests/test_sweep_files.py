@@ -76,6 +76,7 @@ def flip(path, share=0.5):
 
 
 def test_a_file_has_the_bits_of_memory(tmp_path):
+    pytest.importorskip("xarray")
     tables = [mcgw.Table((-1, k, 6), (1.0, 1.5, 3.0)) for k in (0.33, 0.7)]
     for over in (OVER, {"grading": tables, "surface.E_star": ["70 GPa", 8e10]}):
         path = tmp_path / f"{len(over)}-{'grading' in over}.h5"
@@ -95,8 +96,8 @@ def test_a_file_has_the_bits_of_memory(tmp_path):
 
 
 def test_other_programs_read_it(tmp_path):
-    import xarray
-
+    xarray = pytest.importorskip("xarray")
+    pytest.importorskip("h5netcdf")
     sweep = mcgw.sweep(SCENE, OVER, path=tmp_path / "a.h5")
     with xarray.open_dataset(tmp_path / "a.h5", engine="h5netcdf") as data:
         assert data.load_std.dims == ("point", "separation")

@@ -229,10 +229,6 @@ def fit_prepared(ready: Prepared, *, across: int = 4) -> Fit:
     if not number:
         form_too = ", or --form quadratic" if form_left(ready.levelled, form) else ""
         raise ValueError(f"the map has no summit; give a larger map or a shorter cutoff{form_too}")
-    if number >= _FEWEST and not np.ptp(counted.heights) > 0:
-        raise ValueError(
-            f"all {number} summits have one height, as of a pattern: there is no spread; give a rough map"
-        )
     if number < _A_LITTLE * across**2:
         fewer = min(across, max(math.isqrt(number // _A_LITTLE), _FEW_ACROSS))
         counted = summit_sums_of(used, across=fewer, seen=ready.seen)
