@@ -76,8 +76,6 @@ simulate().mean("load")
 tell("simulate")
 simulate(n_asperities=10**5, law_error=1e-2)
 tell("law_error")
-simulate(sampler="cells", n_asperities=10**5, accuracy=1e-6)
-tell("accuracy")
 simulate(keep="statistics")
 tell("statistics")
 main("show", "--plan", scene)
@@ -117,8 +115,6 @@ FEATURES = {
     "mcgw.ensemble.summary": "statistics", "mcgw.ensemble.summarised": "statistics",
     "mcgw.ensemble.summarising": "statistics", "mcgw.ensemble.bins": "statistics",
     "mcgw.sampling.crowding": "law_error",
-    "mcgw.sampling.few_bits": "accuracy", "mcgw.sampling.short_sums": "accuracy",
-    "mcgw.sampling.short_prices": "accuracy",
     "mcgw.sampling.radius_table": None, "mcgw.sampling.families": None, "mcgw.sampling.shared": None,
     "mcgw.sampling.weighted_sums": None, "mcgw.sampling.with_radii": None, "mcgw.sweeps.sweep": None,
 }  # fmt: skip
@@ -143,7 +139,6 @@ def test_who_does_not_ask_for_a_feature_imports_nothing_of_it(after):
     for name, step in FEATURES.items():
         assert (ROOT / f"{name.replace('.', '/')}.py").exists(), name
         assert step is None or name in after[step], name
-    assert "mcgw.sampling.few_bits" not in after["law_error"]
 
 
 def test_who_asks_for_hertz_loads_no_other_law(after):

@@ -57,14 +57,3 @@ def test_samplers_that_draw_all_and_hardly_any(make_scene):
     assert huge.moments <= huge.drawn < huge.moments + 0.1
     assert huge.moments < 5000
     assert plan_of(make_scene(rel_err=0.01, n_surfaces=10**6, separations=(0.0,))).surfaces < 10**6
-
-
-def test_bits_of_uniforms_are_told_where_cells_draw_them(make_scene):
-    """Not of samplers that draw heights one by one; shares of the bits add up to all asperities."""
-    asked = {"accuracy": 1e-3, "separations": (3.5, 4.0)}
-    plain, short = (make_scene(sampler=name, n_asperities=10**5, **asked) for name in ("tail", "cells"))
-    assert plan_of(plain).bits == {}
-    assert "  accuracy      0.001 of every value\n" in plan_text(plain, plan_of(plain)) + "\n"
-    plan = plan_of(short)
-    assert sum(plan.bits.values()) == pytest.approx(1, rel=1e-9)
-    assert "of every value; asperities: " in plan_text(short, plan)

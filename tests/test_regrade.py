@@ -10,7 +10,7 @@ import mcgw
 from mcgw.ensemble.paired import paired_ratio
 from mcgw.ensemble.regrading import regrade
 from mcgw.jobs.running import run
-from mcgw.sampling import cells
+from mcgw.sampling import cells, spacing
 from mcgw.store.saving import save
 
 H = tuple(np.linspace(0, 4, 21))
@@ -130,7 +130,7 @@ def test_a_ratio_of_the_same_surfaces_by_hand(make_scene):
 
 def test_moments_of_another_version(base, monkeypatch):
     """Cells priced otherwise are other cells: their moments must not be taken for these."""
-    monkeypatch.setattr(cells, "EXACTLY", dataclasses.replace(cells.EXACTLY, cell=4000.0))
+    monkeypatch.setattr(spacing, "_CELL", 4000.0)
     cells._edges.cache_clear()
     with pytest.raises(ValueError, match="another version of mcgw"):
         regrade(base, analytic.Exponential(0.5))

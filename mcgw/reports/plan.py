@@ -2,8 +2,6 @@
 
 from dataclasses import dataclass
 
-import numpy as np
-
 from analytic import QUANTITIES
 from mcgw.ensemble.forecast import forecast
 from mcgw.jobs.duration import in_words, seconds_for
@@ -19,8 +17,6 @@ from mcgw.scene.samplers import promise_of
 from mcgw.scene.scene import Scene
 
 __all__ = ["Plan", "plan_of", "plan_text"]
-
-_FEW = 0.005  # share of the asperities that is not worth a word
 
 
 @dataclass(frozen=True)
@@ -45,8 +41,6 @@ class Plan:
         Of the results of all surfaces, before compression.
     seconds : float
         Expected for all surfaces on this machine.
-    bits : dict of int to float
-        Share of the asperities in cells that are drawn from uniforms of so many bits.
     law_error : float
         Distance from the exact laws that was spent, of what `Scene.law_error` allows.
     at : dict of float to float
@@ -62,7 +56,6 @@ class Plan:
     moments: int
     bytes: int
     seconds: float
-    bits: dict[int, float]
     law_error: float
     at: dict[float, float]
 
@@ -83,7 +76,6 @@ def plan_of(scene: Scene) -> Plan:
         sampler.moments,
         _bytes(scene, sampler, columns, surfaces),
         seconds_for(scene, sampler, surfaces),
-        _bits(sampler),
         float(getattr(sampler, "law_error", 0.0)) if scene.law_error else 0.0,
         _at_others(scene, sampler, surfaces),
     )
@@ -96,15 +88,6 @@ def _bytes(scene: Scene, sampler: Sampler, columns: int, surfaces: int) -> int:
     from mcgw.ensemble.summarising import block_rows, joined_bytes  # for those scenes alone
 
     return joined_bytes(scene, surfaces, block_rows(scene, sampler))
-
-
-def _bits(sampler: Sampler) -> dict[int, float]:
-    """Share of the asperities in cells by the bits of their uniforms; none where all have a whole word."""
-    bits, mesh = getattr(sampler, "bits", None), getattr(sampler, "mesh", None)
-    if bits is None or mesh is None:
-        return {}
-    share = mesh.probability / mesh.probability.sum()
-    return {int(number): float(share[bits == number].sum()) for number in np.unique(bits)}
 
 
 def _at_others(scene: Scene, sampler: Sampler, surfaces: int) -> dict[float, float]:
@@ -154,9 +137,7 @@ def _size(scene: Scene, plan: Plan) -> str:
 
 def _accuracy_lines(scene: Scene, plan: Plan) -> list[str]:
     """What was chosen of the accuracy, and what others would cost."""
-    shares = (f"{share:.0%} from {bits} bits" for bits, share in plan.bits.items() if share > _FEW)
-    drawn = f"; asperities: {', '.join(shares)}" if plan.bits else ""
-    lines = [f"  accuracy      {scene.accuracy:g} of every value{drawn}"]
+    lines = [f"  accuracy      {scene.accuracy:g} of every value"]
     if plan.at:
         ratios = ", ".join(f"{a:g}: {t / plan.seconds:.2g} x" for a, t in plan.at.items())
         lines.append(f"                time at others: {ratios}")

@@ -1,6 +1,6 @@
 """The heights themselves: the very asperities whose sums the samplers ``tail`` and ``cells`` give."""
 
-from typing import TYPE_CHECKING, Any, Protocol, cast
+from typing import TYPE_CHECKING, Protocol, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,7 +31,6 @@ __all__ = [
 ]
 
 Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
 Listed = tuple[Array, Array | None]  # reduced heights; radii over the surface's, where summits have their own
 
 
@@ -109,11 +108,6 @@ class Listing(Protocol):
 
     mesh: Mesh
 
-    @property
-    def bits(self) -> Ints | None:
-        """Of the uniforms of each cell; None: 32."""
-        ...
-
 
 def listing_sampler(scene: Scene) -> Listing:
     """The sampler of a scene, if it can tell the heights.
@@ -136,17 +130,8 @@ def same_heights(one: Scene, other: Scene) -> bool:
 
     Cells are edged by the breaks of contact laws, and each cell has uniforms of its own.
     """
-    first, second = (_cells_and_bits(sampler_of(scene)) for scene in (one, other))
-    return not (first and second) or all(np.array_equal(*pair) for pair in zip(first, second, strict=True))
-
-
-def _cells_and_bits(sampler: Any) -> tuple[Array, Ints] | None:
-    """Edges of its cells and bits of the uniforms in them; None if it has none."""
-    mesh: Mesh | None = getattr(sampler, "mesh", None)
-    if mesh is None:
-        return None
-    bits = getattr(sampler, "bits", None)
-    return mesh.edges, np.full(mesh.size, 32) if bits is None else bits
+    first, second = (getattr(sampler_of(scene), "mesh", None) for scene in (one, other))
+    return not (first and second) or np.array_equal(first.edges, second.edges)
 
 
 def touching_summits(scene: Scene, surface: int) -> Listed:
@@ -176,22 +161,13 @@ def summits_drawn(scene: Scene, sampler: Listing, surface: int) -> Listed:
     heights, ratios = [], []
     for cell in np.flatnonzero(counts.cells[:, 0]).tolist():
         n = int(counts.cells[cell, 0])
-        u = _uniforms(scene, sampler, surface, cell, n)
+        u = uniforms(scene.seed, CELLS, surface, cell, n)
         heights.append(mesh.edges[cell] + mesh.offsets(cell, u))
         if table:
             words = (2 * uniforms(scene.seed, stream, surface, cell, n) - 1 for stream in (RADII, RADII_LOW))
             ratios.append(table.root_ratios(heights[-1], *words) ** 2)
     s = np.concatenate([*heights, outside[:, 1]])
     return s, np.concatenate([*ratios, outside[:, 3]]) if table else None
-
-
-def _uniforms(scene: Scene, sampler: Listing, surface: int, cell: int, n: int) -> Array:
-    """Those of a cell, of as many bits as it takes."""
-    if sampler.bits is None:
-        return uniforms(scene.seed, CELLS, surface, cell, n)
-    from mcgw.sampling.few_bits import few_bit_uniforms  # for those scenes alone
-
-    return few_bit_uniforms(scene.seed, surface, cell, n, int(sampler.bits[cell]))
 
 
 def _table(scene: Scene, lowest: float) -> "RadiusTable | None":

@@ -25,7 +25,7 @@ from mcgw.machine.in_threads import in_threads
 from mcgw.machine.kept import kept
 from mcgw.sampling.exp_log import weigh_exponentials, weigh_normal_densities
 from mcgw.sampling.rules import chebyshev_points, chebyshev_transform, gauss_legendre, product
-from mcgw.sampling.spacing import EXACTLY, Gaps, Pricing, cuts
+from mcgw.sampling.spacing import DIGITS, Gaps, cuts
 from mcgw.sampling.stretches import begins_and_breaks
 from mcgw.scene.fields import EXACT
 from mcgw.scene.scene import Scene
@@ -139,15 +139,8 @@ def mesh_of(scene: Scene, *, split: bool = True, rare: float = 0.1) -> Mesh:
 def _edges(law: HeightLaw, n: int, accuracy: float, *asked: bytes) -> Array:
     """Edges that suit the height law and the contact law, whatever the grading."""
     begins, breaks, marks = (np.frombuffer(part) for part in asked)
-    return _refined(law, begins, _spaced(law, n, _pricing(accuracy), begins, breaks, marks))
-
-
-def _pricing(accuracy: float) -> Pricing:
-    if accuracy <= EXACT:
-        return EXACTLY
-    from mcgw.sampling.short_prices import short_pricing  # for those scenes alone
-
-    return short_pricing(series_accuracy(accuracy), accuracy)
+    digits = DIGITS - math.log10(series_accuracy(accuracy) / EXACT)
+    return _refined(law, begins, _spaced(law, n, digits, begins, breaks, marks))
 
 
 def halved(scene: Scene, mesh: Mesh, starts: Array) -> Mesh:
@@ -227,7 +220,7 @@ def _widest(law: HeightLaw, a: float, distance: float) -> float:
     return width
 
 
-def _spaced(law: HeightLaw, n: int, pricing: Pricing, begins: Array, breaks: Array, marks: Array) -> Array:
+def _spaced(law: HeightLaw, n: int, digits: float, begins: Array, breaks: Array, marks: Array) -> Array:
     """Marks, and cells where contacts begin or change their law such that drawing costs the least."""
     low = marks[:-1]
     k = np.searchsorted(begins, low)
@@ -235,7 +228,7 @@ def _spaced(law: HeightLaw, n: int, pricing: Pricing, begins: Array, breaks: Arr
     before = low - np.concatenate([[-np.inf], begins])[k]
     some = root | (np.isin(low, breaks) & np.isfinite(before))
     gaps = Gaps(low[some], marks[1:][some], before[some], root[some])
-    return np.unique(np.concatenate([marks, cuts(law, n, gaps, pricing)]))
+    return np.unique(np.concatenate([marks, cuts(law, n, gaps, digits)]))
 
 
 def _refined(law: HeightLaw, begins: Array, marks: Array) -> Array:

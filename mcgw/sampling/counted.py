@@ -80,11 +80,6 @@ class Counted:
         return self.drawing.distance
 
     @property
-    def bits(self) -> Ints | None:
-        """Of the uniforms of each cell; None: 32."""
-        return self.drawing.bits
-
-    @property
     def words(self) -> int:
         """Numbers in memory for a surface, besides its results."""
         return self.moments + 2 * self.cells + _WORDS * int(min(self._outside, 1e12))

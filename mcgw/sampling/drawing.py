@@ -1,11 +1,10 @@
-"""From the numbers of asperities in the cells to their moments: four ways.
+"""From the numbers of asperities in the cells to their moments: three ways.
 
 ``OneByOne``   a uniform for each asperity
-``Shortly``    the same, with fewer moments and uniforms of fewer bits
 ``InStrata``   a uniform in each of as many equal strata of the cell, with the weight it stands for
 ``Crowds``     for cells with few asperities as `OneByOne`, else one Gaussian number a moment
 
-Where summits have radii of their own there is a fifth, `mcgw.sampling.with_radii`.
+Where summits have radii of their own there is a fourth, `mcgw.sampling.with_radii`.
 """
 
 from dataclasses import dataclass
@@ -19,22 +18,13 @@ from mcgw.sampling.counts import Counts
 from mcgw.sampling.layout import Layout
 from mcgw.sampling.moments import cell_moments
 
-__all__ = ["Crowds", "Drawing", "InStrata", "OneByOne", "Shortly"]
+__all__ = ["Crowds", "Drawing", "InStrata", "OneByOne"]
 
 Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 
 class Drawing(Protocol):
-    """A way to draw the moments of the cells.
-
-    `bits` tells how many each uniform has in each cell, if they are not those of a word.
-    """
-
-    @property
-    def bits(self) -> Ints | None:
-        """Of the uniforms of each cell; None: 32."""
-        ...
+    """A way to draw the moments of the cells."""
 
     @property
     def distance(self) -> float:
@@ -54,7 +44,7 @@ class Drawing(Protocol):
 class OneByOne:
     """A uniform for each asperity."""
 
-    bits, distance = None, 0.0
+    distance = 0.0
 
     def moments(self, seed: int, first: int, counts: Counts, layout: Layout) -> Array:
         """Sums over the uniforms of each cell."""
@@ -65,35 +55,11 @@ class OneByOne:
         return asperities if layout.sizes.any() else 0.0
 
 
-@dataclass(frozen=True, eq=False)
-class Shortly:
-    """A uniform for each asperity, of as few bits as what is asked allows.
-
-    Parameters
-    ----------
-    bits : ndarray of int
-        Of the uniforms of each cell.
-    """
-
-    bits: Ints
-    distance = 0.0
-
-    def moments(self, seed: int, first: int, counts: Counts, layout: Layout) -> Array:
-        """Sums over the uniforms of each cell."""
-        from mcgw.sampling.short_sums import short_moments  # compiled for those scenes alone
-
-        return short_moments(seed, first, counts.cells, layout, self.bits)
-
-    def draws(self, asperities: float, layout: Layout) -> float:
-        """All of them, unless nobody asks for a moment."""
-        return asperities if layout.sizes.any() else 0.0
-
-
 @dataclass(frozen=True)
 class InStrata:
     """A uniform in each of as many equal strata of the cell."""
 
-    bits, distance = None, 0.0
+    distance = 0.0
 
     def moments(self, seed: int, first: int, counts: Counts, layout: Layout) -> Array:
         """Sums over the uniforms of each cell, with the weight that each of them stands for."""

@@ -49,7 +49,6 @@ class CellsAtNominal:
     scene: Scene
     mesh: Mesh
     name: str = "cells"
-    bits = None
     seconds_per_draw: float = 2e-9
 
     @classmethod

@@ -26,7 +26,7 @@ from mcgw.sampling.cells import Mesh, halved, mesh_of, no_cells, series_accuracy
 from mcgw.sampling.counted import Counted
 from mcgw.sampling.counts import Counts, counts_of, strata_of
 from mcgw.sampling.direct import Direct
-from mcgw.sampling.drawing import Crowds, InStrata, OneByOne, Shortly
+from mcgw.sampling.drawing import Crowds, InStrata, OneByOne
 from mcgw.sampling.layout import Layout
 from mcgw.sampling.response.response import Precision, Response, layout_of, response_of
 from mcgw.sampling.response.walk import UnresolvedError
@@ -101,13 +101,7 @@ def tail_of(scene: Scene) -> Counted:
 
 def cells_of(scene: Scene) -> Counted:
     """Prepare ``cells``."""
-    sampler = _counted("cells", scene, mesh_of(scene))
-    if scene.exact or scene.curvature:
-        return sampler
-    from mcgw.sampling.few_bits import bits_for  # for those scenes alone
-
-    expected = scene.n_asperities * sampler.mesh.probability
-    return replace(sampler, drawing=Shortly(bits_for(expected, scene.accuracy)))
+    return _counted("cells", scene, mesh_of(scene))
 
 
 def stratified_of(scene: Scene) -> Counted:

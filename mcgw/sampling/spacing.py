@@ -6,7 +6,6 @@ distance to the next separation below need about fifteen, cells half as wide ten
 geometrically from a separation upwards, and how fast, and to how many, is chosen for each gap.
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
 
@@ -15,11 +14,12 @@ from numpy.typing import NDArray
 
 from analytic import HeightLaw
 
-__all__ = ["EXACTLY", "SURE", "Gaps", "Pricing", "cuts", "price"]
+__all__ = ["DIGITS", "SURE", "Gaps", "cuts", "price"]
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
+DIGITS = 11.4  # that moments must give for values to the last digit: of a law, or of the sum of a surface
 SURE = 400  # so many expected contacts are never fewer than half
 _GROWTHS = (2.0, 1.8, 1.6, 1.5, 1.45, 1.4, 1.3, 1.2)  # with 2 each cell is as wide as it may be
 _MORE = 8  # cells than the fewest possible
@@ -29,31 +29,6 @@ _TIE = 1e-9  # share of a price that is no difference
 # take four now, and `runs/bench/prices.py` finds cells cheaper and many moments dearer, by up to a half.
 # Other prices would make other cells, and so other draws.
 _CELL, _TWO_MORE, _FIVE_MORE, _ROOT, _FIVE_ROOTS_MORE = 250.0, 0.1, 0.25, 0.3, 0.2
-
-
-@dataclass(frozen=True)
-class Pricing:
-    """What there is to pay.
-
-    Parameters
-    ----------
-    digits : float
-        That the moments must give, of a law or of the sum of a surface.
-    cell : float
-        To begin a cell.
-    asperity : callable
-        Plain moments, rooted ones and asperities of cells to the price of one of them.
-    least : float, optional
-        A bound that the price of an asperity is never below.
-    fewest : float, optional
-        A bound that the digits of a cell are never below.
-    """
-
-    digits: float
-    cell: float
-    asperity: Callable[[Array, Array, Array], Array]
-    least: float = 0.0
-    fewest: float = -np.inf
 
 
 @dataclass(frozen=True)
@@ -102,7 +77,7 @@ class _Cells:
         return np.asarray(self.width <= self.distance * (1 + 1e-9))
 
 
-def cuts(law: HeightLaw, n: int, gaps: Gaps, pricing: Pricing | None = None) -> Array:
+def cuts(law: HeightLaw, n: int, gaps: Gaps, digits: float = DIGITS) -> Array:
     """Cut gaps into cells.
 
     Parameters
@@ -113,32 +88,32 @@ def cuts(law: HeightLaw, n: int, gaps: Gaps, pricing: Pricing | None = None) -> 
         Asperities of a surface; none asks for the fewest cells.
     gaps : Gaps
         What to cut.
-    pricing : Pricing, optional
-        What there is to pay. Default: for moments to the last digit.
+    digits : float, optional
+        That the moments must give.
 
     Returns
     -------
     ndarray
         Where, inside the gaps. No cell is wider than its distance to the nearest separation below.
     """
-    found, fewest, pricing = [np.empty(0)], gaps.fewest, pricing or EXACTLY
+    found, fewest = [np.empty(0)], gaps.fewest
     for number in np.unique(fewest).tolist():
         some = gaps.take(fewest == number)
         if number == 1:
-            some = some.take(_worth_cutting(law, n, some, pricing))
-        found.append(_cut(law, n, some, number, pricing))
+            some = some.take(_worth_cutting(law, n, some, digits))
+        found.append(_cut(law, n, some, number, digits))
     return np.concatenate(found)
 
 
-def _worth_cutting(law: HeightLaw, n: int, gaps: Gaps, pricing: Pricing) -> NDArray[np.bool_]:
-    """Whether two cells might cost less than one, if an asperity in them cost the least there is."""
+def _worth_cutting(law: HeightLaw, n: int, gaps: Gaps, digits: float) -> NDArray[np.bool_]:
+    """Whether two cells might cost less than one, if an asperity in them cost the least there is: 1."""
     above, beyond = law.above(gaps.low), law.above(gaps.high)
     whole = _Cells(gaps.low, gaps.high - gaps.low, gaps.before, above, beyond)
-    two = 2 * pricing.cell + pricing.least * n * (above - beyond)
-    return np.asarray(_prices(law, n, whole, gaps.root, pricing) > two * (1 - _TIE))
+    two = 2 * _CELL + n * (above - beyond)
+    return np.asarray(_prices(law, n, whole, gaps.root, digits) > two * (1 - _TIE))
 
 
-def _cut(law: HeightLaw, n: int, gaps: Gaps, fewest: int, pricing: Pricing) -> Array:
+def _cut(law: HeightLaw, n: int, gaps: Gaps, fewest: int, digits: float) -> Array:
     """Cut gaps that need so many cells: arrays are (gaps, growths, cells), the highest cell first."""
     low, high, before = (part[:, None, None] for part in (gaps.low, gaps.high, gaps.before))
     root = gaps.root[:, None, None]
@@ -153,9 +128,9 @@ def _cut(law: HeightLaw, n: int, gaps: Gaps, fewest: int, pricing: Pricing) -> A
         beyond=above[..., :-1],
     )
     lowest = _Cells(low, length * rungs[:, fewest - 1 :], before, least, above[..., fewest - 1 :])
-    uppers = np.cumsum(np.where(upper.allowed, _prices(law, n, upper, np.False_, pricing), np.inf), axis=2)
+    uppers = np.cumsum(np.where(upper.allowed, _prices(law, n, upper, np.False_, digits), np.inf), axis=2)
     uppers = np.concatenate([np.zeros((*uppers.shape[:2], 1)), uppers], axis=2)[..., fewest - 1 :]
-    prices = uppers + np.where(lowest.allowed, _prices(law, n, lowest, root, pricing), np.inf)
+    prices = uppers + np.where(lowest.allowed, _prices(law, n, lowest, root, digits), np.inf)
     prices = prices.reshape(len(prices), len(_GROWTHS) * (_MORE + 1))
     cheapest = np.argmax(prices <= prices.min(axis=1, keepdims=True, initial=np.inf) * (1 + _TIE), axis=1)
     growth, more = np.divmod(cheapest, _MORE + 1)  # the first one of the cheapest: rounding breaks no tie
@@ -170,7 +145,7 @@ def _rungs(most: int) -> Array:
 
 
 def _prices(
-    law: HeightLaw, n: int, cells: _Cells, root: NDArray[np.bool_] | np.bool_, pricing: Pricing
+    law: HeightLaw, n: int, cells: _Cells, root: NDArray[np.bool_] | np.bool_, digits: float
 ) -> Array:
     """What the asperities of a surface cost in each cell; contacts begin where it starts, or not."""
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
@@ -179,10 +154,9 @@ def _prices(
         touching, expected = n * cells.above, n * (cells.above - cells.beyond)
         reach = np.where(np.isfinite(cells.distance), cells.distance, 0.0) + cells.width
         share = np.log10(np.where(touching > SURE, expected / touching * np.sqrt(reach), 1.0))
-        digits = np.maximum(pricing.digits + share, pricing.fewest)
-        plain = digits / _rate(np.minimum(1 + 2 * cells.distance / cells.width, 2 / bend))
-        rooted = np.where(root, 1 + digits / _rate(2 / bend), 0.0)
-    return np.asarray(pricing.cell + expected * pricing.asperity(plain, rooted, expected))
+        plain = (digits + share) / _rate(np.minimum(1 + 2 * cells.distance / cells.width, 2 / bend))
+        rooted = np.where(root, 1 + (digits + share) / _rate(2 / bend), 0.0)
+    return np.asarray(_CELL + expected * price(plain, rooted))
 
 
 def price(plain: Array | Ints, rooted: Array | Ints) -> Array:
@@ -190,9 +164,6 @@ def price(plain: Array | Ints, rooted: Array | Ints) -> Array:
     roots = np.where(rooted > 0, _ROOT + _FIVE_ROOTS_MORE * _steps(rooted - 6), 0.0)
     more = np.where(plain > 12, _FIVE_MORE * _steps(plain - 10), _TWO_MORE * (plain > 10))
     return np.asarray(1 + more + roots)
-
-
-EXACTLY = Pricing(11.4, _CELL, lambda plain, rooted, _: price(plain, rooted), least=1.0)
 
 
 def _rate(z: Array) -> Array:

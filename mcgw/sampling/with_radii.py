@@ -55,7 +55,7 @@ class WithRadii:
     table: RadiusTable
     families: Families
     strata: bool = False
-    bits, distance = None, 0.0
+    distance = 0.0
 
     def moments(self, seed: int, first: int, counts: Counts, layout: Layout) -> Array:
         """Sums over the uniforms of each cell, each with a power of its radius."""

@@ -12,11 +12,7 @@ from numba import njit, prange
 from scenes import S1, block, script
 from timing import Job, against, job, parser_of, show, timed
 
-from mcgw.sampling.counted import Counted
-from mcgw.sampling.drawing import Shortly
 from mcgw.sampling.philox import centred
-from mcgw.sampling.samplers import cells_of
-from mcgw.scene.scene import Scene
 
 
 @njit(parallel=True)
@@ -89,17 +85,10 @@ def aggregates() -> dict[str, Job]:
     return {name: block(scene) for name, scene in scenes.items()} | {"NumPy script, N = 1e4": script(10**4)}
 
 
-def words_alone(scene: Scene) -> Counted:
-    """Its sampler with a word of the generator for each uniform."""
-    sampler = cells_of(scene)
-    return replace(sampler, drawing=Shortly(np.full(sampler.cells, 32)))
-
-
 def accuracies() -> dict[str, Job]:
     """Values of S1 to the last digits, and to fewer."""
     asked = {"1e-13": 1e-13, "1e-10": 1e-10, "1e-6": 1e-6, "1e-3": 1e-3}
-    jobs = {f"accuracy {name}": block(replace(S1, accuracy=value)) for name, value in asked.items()}
-    return jobs | {"accuracy 1e-6, 32 bits": block(replace(S1, accuracy=1e-6), make=words_alone)}
+    return {f"accuracy {name}": block(replace(S1, accuracy=value)) for name, value in asked.items()}
 
 
 def ratios(rounds: int) -> dict[str, float]:

@@ -12,7 +12,7 @@ from timing import Job, job, seconds
 
 import analytic
 from mcgw.ensemble.drawing import at_a_time, block_size, drawn_blocks
-from mcgw.sampling.block import Block, Sampler
+from mcgw.sampling.block import Block
 from mcgw.sampling.samplers import cells_of, sampler_of
 from mcgw.scene.scene import Scene
 
@@ -37,10 +37,9 @@ def fresh(scene: Scene) -> Scene:
 def block(
     scene: Scene,
     then: Callable[[Block], object] = lambda drawn: drawn,
-    make: Callable[[Scene], Sampler] = sampler_of,
 ) -> Job:
     """Blocks as a run draws them, and what is done with each; prepared when first called."""
-    prepared = cache(lambda: make(scene))
+    prepared = cache(lambda: sampler_of(scene))
 
     def draw() -> float:
         sampler = prepared()
