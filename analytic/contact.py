@@ -14,7 +14,6 @@ from analytic.height_rule import Count
 from analytic.heights import GAUSSIAN, HeightLaw
 from analytic.integrals import quotient
 from analytic.model import Cumulants, Model
-from analytic.renamed import takes_heights
 from analytic.surface import Surface
 
 __all__ = [
@@ -52,7 +51,6 @@ def _model(
     )
 
 
-@takes_heights
 def mean(
     surface: Surface,
     quantity: str,
@@ -65,7 +63,6 @@ def mean(
     return _model(surface, grading, heights).mean(quantity, h)
 
 
-@takes_heights
 def load(
     surface: Surface, h: ArrayLike, grading: Grading | None = None, *, heights: HeightLaw = GAUSSIAN
 ) -> Array:
@@ -73,19 +70,16 @@ def load(
     return mean(surface, "load", h, grading, heights=heights)
 
 
-@takes_heights
 def area(surface: Surface, h: ArrayLike, *, heights: HeightLaw = GAUSSIAN) -> Array:
     """Real contact area A, m^2: Eq. (1a), ``pi A_n eta sigma R F_1(h)``. The grading does not enter."""
     return mean(surface, "area", h, heights=heights)
 
 
-@takes_heights
 def contacts(surface: Surface, h: ArrayLike, *, heights: HeightLaw = GAUSSIAN) -> Array:
     """Mean number of asperities in contact, ``A_n eta F_0(h)``."""
     return mean(surface, "contacts", h, heights=heights)
 
 
-@takes_heights
 def stiffness(
     surface: Surface, h: ArrayLike, grading: Grading | None = None, *, heights: HeightLaw = GAUSSIAN
 ) -> Array:
@@ -96,7 +90,6 @@ def stiffness(
     return mean(surface, "stiffness", h, grading, heights=heights)
 
 
-@takes_heights
 def conductance(surface: Surface, h: ArrayLike, *, rho: float = 1.0, heights: HeightLaw = GAUSSIAN) -> Array:
     """Contact conductance of the spots, each 4 a / rho: ``(4/rho) A_n eta (R sigma)^(1/2) F_{1/2}(h)``.
 
@@ -113,7 +106,6 @@ def conductance(surface: Surface, h: ArrayLike, *, rho: float = 1.0, heights: He
     return mean(surface, "conductance", h, heights=heights) / rho
 
 
-@takes_heights
 def barber_conductance(
     surface: Surface,
     h: ArrayLike,
@@ -144,7 +136,6 @@ def barber_conductance(
     return 2 * stiffness(surface, h, grading, heights=heights) / (surface.E_star * rho)
 
 
-@takes_heights
 def area_per_load(
     surface: Surface, h: ArrayLike, grading: Grading | None = None, *, heights: HeightLaw = GAUSSIAN
 ) -> Array:
@@ -156,7 +147,6 @@ def area_per_load(
     return np.asarray(factor * quotient(h, (1, None), (1.5, grading), heights))
 
 
-@takes_heights
 def area_per_load_ratio(h: ArrayLike, grading: Grading, *, heights: HeightLaw = GAUSSIAN) -> Array:
     """A/P of the graded surface relative to the homogeneous one at the same separation, Eq. (12).
 
@@ -165,7 +155,6 @@ def area_per_load_ratio(h: ArrayLike, grading: Grading, *, heights: HeightLaw = 
     return quotient(h, (1.5, None), (1.5, grading), heights)
 
 
-@takes_heights
 def stiffness_ratio(h: ArrayLike, grading: Grading, *, heights: HeightLaw = GAUSSIAN) -> Array:
     """Stiffness of the graded surface relative to the homogeneous one at the same separation, Eq. (15).
 
@@ -177,7 +166,6 @@ def stiffness_ratio(h: ArrayLike, grading: Grading, *, heights: HeightLaw = GAUS
     return quotient(h, (0.5, grading), (0.5, None), heights)
 
 
-@takes_heights
 def cumulants(
     surface: Surface,
     quantity: str,
@@ -192,7 +180,6 @@ def cumulants(
     return _model(surface, grading, heights, n_asperities, count).cumulants(quantity, h)
 
 
-@takes_heights
 def covariance(
     surface: Surface,
     quantities: Sequence[str],
@@ -207,7 +194,6 @@ def covariance(
     return _model(surface, grading, heights, n_asperities, count).covariance(quantities, separations)
 
 
-@takes_heights
 def separation_at(
     surface: Surface,
     quantity: str,

@@ -89,17 +89,17 @@ class RandomCurvature:
         """Range of reduced heights over which the density at one curvature hardly bends."""
         return tables_of(float(self.alpha)).width / self.heights.std / 2
 
-    def density(self, g: ArrayLike, s: ArrayLike) -> Array:
+    def pdf(self, g: ArrayLike, s: ArrayLike) -> Array:
         """Probability density of the curvature at given heights, broadcast."""
-        return self._broadcast(lambda a, x: CurvatureGivenHeight(self.alpha, x).density(a), g, s)
+        return self._broadcast(lambda a, x: CurvatureGivenHeight(self.alpha, x).pdf(a), g, s)
 
-    def below(self, g: ArrayLike, s: ArrayLike) -> Array:
+    def cdf(self, g: ArrayLike, s: ArrayLike) -> Array:
         """Probability of a smaller curvature, to full relative accuracy."""
         return self._broadcast(lambda a, x: CurvatureGivenHeight(self.alpha, x).between(0 * a, a), g, s)
 
-    def above(self, g: ArrayLike, s: ArrayLike) -> Array:
+    def sf(self, g: ArrayLike, s: ArrayLike) -> Array:
         """Probability of a larger curvature, to full relative accuracy."""
-        return self._broadcast(lambda a, x: CurvatureGivenHeight(self.alpha, x).above(a), g, s)
+        return self._broadcast(lambda a, x: CurvatureGivenHeight(self.alpha, x).sf(a), g, s)
 
     def at(self, t: ArrayLike, s: ArrayLike) -> Array:
         """Curvature below which the share ``1 - (1 + t^2) exp(-t^2)`` lies: smooth in t, and 0 at 0.
@@ -171,7 +171,7 @@ class RandomCurvature:
         s, g = self.heights.summits(rng, n)
         return s, self.ratio(g)
 
-    def sample(self, rng: np.random.Generator, s: ArrayLike) -> Array:
+    def rvs(self, s: ArrayLike, rng: np.random.Generator) -> Array:
         """Radius ratios of summits of given heights."""
         s = np.asarray(s, dtype=np.float64)
         return self.ratio(self.at(np.sqrt(rng.standard_gamma(2.0, s.shape)), s))

@@ -77,7 +77,7 @@ class CurvatureGivenHeight:
         above = np.maximum(g - self._mu, 0.0)
         return np.asarray(self._mu + np.hypot(above, (_WIDE + 0.5) * math.sqrt(self._v)))
 
-    def density(self, g: Array) -> Array:
+    def pdf(self, g: Array) -> Array:
         """Probability density at `g`, shape (n,)."""
         return g**3 * self._parts(g) / self._whole
 
@@ -93,7 +93,7 @@ class CurvatureGivenHeight:
         g, w = panelled(self.edges(low, high))
         return np.asarray((w * g**3 * self._parts(g)).sum(axis=0) / self._whole)
 
-    def above(self, low: Array) -> Array:
+    def sf(self, low: Array) -> Array:
         """Probability of a larger curvature."""
         return self.between(low, np.maximum(self.highest(low), low))
 
@@ -150,10 +150,10 @@ class CurvatureGivenHeight:
             if not left.size:
                 break
             at, law = g[left], CurvatureGivenHeight(self.alpha, x[left])
-            seen = law.between(0 * at, at) if lower else law.above(at)
+            seen = law.between(0 * at, at) if lower else law.sf(at)
             with np.errstate(all="ignore"):
                 excess = np.log(seen / share[left]) * (1 if lower else -1)
-                moved = at - excess * seen / law.density(at)
+                moved = at - excess * seen / law.pdf(at)
             low, high = np.where(excess < 0, at, low), np.where(excess > 0, at, high)
             trusted = (low < moved) & (moved < high) | (np.abs(moved - at) < _SAME * at)
             g[left] = np.where(trusted, moved, (low + high) / 2)
@@ -188,9 +188,9 @@ def _guesses(alpha: float) -> tuple[Array, Array]:
     g = shape[:, None] * top
     nodes, weights = np.polynomial.legendre.leggauss(6)
     inner = g[:-1, None] + np.diff(g, axis=0)[:, None] * (1 + nodes[:, None]) / 2
-    parts = np.array([given.density(row) for row in inner.reshape(-1, x.size)]).reshape(inner.shape)
+    parts = np.array([given.pdf(row) for row in inner.reshape(-1, x.size)]).reshape(inner.shape)
     mass = (parts * weights[:, None]).sum(axis=1) * np.diff(g, axis=0) / 2
-    below = np.cumsum(np.vstack([g[:1] / 4 * given.density(g[0]), mass]), axis=0)
+    below = np.cumsum(np.vstack([g[:1] / 4 * given.pdf(g[0]), mass]), axis=0)
     above = np.cumsum(np.vstack([1e-24 + 0 * x[None], mass[::-1]]), axis=0)[::-1]
     low = below < 0.5
     t = np.sqrt(

@@ -51,7 +51,7 @@ def extent(grading: Grading, heights: HeightLaw, separations: Sequence[float]) -
     h = np.unique(np.asarray(separations, dtype=np.float64))
     end = heights.support[1]
     sure = min(max(_above(heights, _SURE, -math.inf), h[-1] + 1), end)
-    bottom = max(float(heights.from_below(np.array(_RARE[0]), math.inf)), heights.support[0])
+    bottom = max(float(heights.ppf(np.array(_RARE[0]))), heights.support[0])
     low = max(float(h[0]), bottom)
     high = max([sure, *(_above(heights, _RARE[0], start) for start in (-math.inf, h[-1]))])
     if not isinstance(heights, MeasuredHeights):
@@ -65,7 +65,7 @@ def _above(heights: HeightLaw, share: float, start: float) -> float:
     """Height at a share of those above `start`, or at the rarest one that the law can tell."""
     for rare in (share, *(r for r in _RARE if r > share)):
         with np.errstate(all="ignore"):
-            found = float(heights.from_above(np.array(rare), start))
+            found = float(heights.isf(np.array(rare), start))
         if math.isfinite(found):
             return found
     return -math.inf

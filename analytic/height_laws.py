@@ -61,7 +61,7 @@ class ExponentialHeights:
     Examples
     --------
     >>> import numpy as np
-    >>> float(ExponentialHeights().above(np.array(-1.0)))
+    >>> float(ExponentialHeights().sf(np.array(-1.0)))
     1.0
     """
 
@@ -73,11 +73,11 @@ class ExponentialHeights:
         """One half: the logarithm of the density is linear."""
         return _BEND
 
-    def sample(self, rng: np.random.Generator, n: int) -> Array:
+    def rvs(self, n: int, rng: np.random.Generator) -> Array:
         """Standard exponential numbers, less their mean."""
         return rng.standard_exponential(n) - 1
 
-    def density(self, s: Array) -> Array:
+    def pdf(self, s: Array) -> Array:
         """``exp(-1 - s)`` for s >= -1."""
         return np.asarray(np.where(s >= -1, exp(-1 - np.maximum(s, -1.0)), 0.0))
 
@@ -85,21 +85,21 @@ class ExponentialHeights:
         """``-t``."""
         return -t + 0 * s
 
-    def below(self, s: Array) -> Array:
+    def cdf(self, s: Array) -> Array:
         """``1 - exp(-1 - s)``."""
         return np.asarray(-expm1(-1 - np.maximum(s, -1.0)))
 
-    def above(self, s: Array) -> Array:
+    def sf(self, s: Array) -> Array:
         """``exp(-1 - s)``."""
         return np.asarray(exp(-1 - np.maximum(s, -1.0)))
 
-    def from_below(self, p: Array, s: float) -> Array:
-        """``-1 - log(1 - p below(s))``."""
-        return np.asarray(-1 - log1p(-p * self.below(np.array(s))))
+    def ppf(self, p: Array, below: float = math.inf) -> Array:
+        """``-1 - log(1 - p cdf(below))``."""
+        return np.asarray(-1 - log1p(-p * self.cdf(np.array(below))))
 
-    def from_above(self, p: Array, s: float) -> Array:
-        """``max(s, -1) - log(p)``."""
-        return np.asarray(max(s, -1.0) - log(p))
+    def isf(self, p: Array, above: float = -math.inf) -> Array:
+        """``max(above, -1) - log(p)``."""
+        return np.asarray(max(above, -1.0) - log(p))
 
 
 @dataclass(frozen=True)
@@ -170,11 +170,11 @@ class Weibull:
         with np.errstate(divide="ignore"):
             return np.asarray(np.expm1((np.log(power) - log_mean) / self.shape) / spread)
 
-    def sample(self, rng: np.random.Generator, n: int) -> Array:
+    def rvs(self, n: int, rng: np.random.Generator) -> Array:
         """Powers of NumPy's standard exponential numbers, reduced."""
         return self._s(rng.standard_exponential(n))
 
-    def density(self, s: Array) -> Array:
+    def pdf(self, s: Array) -> Array:
         """``k x^(k-1) exp(-x^k)`` times the standard deviation of x."""
         spread, log_mean = self._spread
         rise = (self.shape - 1) * self._log_x(s) if self.shape > 1 else 0.0
@@ -190,21 +190,21 @@ class Weibull:
         step = np.log1p(t / (np.asarray(s) - self.support[0]))
         return np.asarray((k - 1) * step - self._power(s) * np.expm1(k * step))
 
-    def below(self, s: Array) -> Array:
+    def cdf(self, s: Array) -> Array:
         """``1 - exp(-x^k)``."""
         return np.asarray(-np.expm1(-self._power(s)))
 
-    def above(self, s: Array) -> Array:
+    def sf(self, s: Array) -> Array:
         """``exp(-x^k)``."""
         return np.asarray(np.exp(-self._power(s)))
 
-    def from_below(self, p: Array, s: float) -> Array:
-        """``(-log(1 - p below(s)))^(1/k)``, reduced."""
-        return self._s(-np.log1p(-p * self.below(np.array(s))))
+    def ppf(self, p: Array, below: float = math.inf) -> Array:
+        """``(-log(1 - p cdf(below)))^(1/k)``, reduced."""
+        return self._s(-np.log1p(-p * self.cdf(np.array(below))))
 
-    def from_above(self, p: Array, s: float) -> Array:
-        """``(x(s)^k - log(p))^(1/k)``, reduced."""
-        return self._s(self._power(np.array(s)) - np.log(p))
+    def isf(self, p: Array, above: float = -math.inf) -> Array:
+        """``(x(above)^k - log(p))^(1/k)``, reduced."""
+        return self._s(self._power(np.array(above)) - np.log(p))
 
 
 def _weibull_spread(k: float) -> tuple[float, float]:
@@ -304,7 +304,7 @@ class ScipyHeights:
     @cached_property
     def breaks(self) -> tuple[float, ...]:
         """Heights that cut the density, between its 1e-9 quantiles, into smooth curves."""
-        low, high = self.from_below(np.array(1e-9), math.inf), self.from_above(np.array(1e-9), -math.inf)
+        low, high = self.ppf(np.array(1e-9)), self.isf(np.array(1e-9))
         found = partial(resolved_breaks, _Density(self), float(low), float(high), _NOISE)
         return self._in_time(_SECONDS, found, "jumps and kinks of the density")
 
@@ -325,11 +325,11 @@ class ScipyHeights:
         mean, std = self._mean_std
         return np.asarray((np.asarray(x) - mean) / std)
 
-    def sample(self, rng: np.random.Generator, n: int) -> Array:
+    def rvs(self, n: int, rng: np.random.Generator) -> Array:
         """Its own random variates, reduced."""
         return self._s(self.distribution.rvs(size=n, random_state=rng))
 
-    def density(self, s: Array) -> Array:
+    def pdf(self, s: Array) -> Array:
         """Its ``pdf``, reduced."""
         return np.asarray(self._mean_std[1] * self.distribution.pdf(self._x(s)))
 
@@ -343,21 +343,21 @@ class ScipyHeights:
         after, before = logarithm[: moved.size], logarithm[moved.size :]
         return np.asarray(after.reshape(moved.shape) - before.reshape(start.shape))
 
-    def below(self, s: Array) -> Array:
+    def cdf(self, s: Array) -> Array:
         """Its ``cdf``."""
         return np.asarray(self.distribution.cdf(self._x(s)))
 
-    def above(self, s: Array) -> Array:
+    def sf(self, s: Array) -> Array:
         """Its ``sf``."""
         return np.asarray(self.distribution.sf(self._x(s)))
 
-    def from_below(self, p: Array, s: float) -> Array:
+    def ppf(self, p: Array, below: float = math.inf) -> Array:
         """Its ``ppf``."""
-        return self._s(self.distribution.ppf(p * self.below(np.array(s))))
+        return self._s(self.distribution.ppf(p * self.cdf(np.array(below))))
 
-    def from_above(self, p: Array, s: float) -> Array:
+    def isf(self, p: Array, above: float = -math.inf) -> Array:
         """Its ``isf``, or where that loses the tail the inverse of its ``sf``."""
-        share = np.asarray(p * self.above(np.array(s)))
+        share = np.asarray(p * self.sf(np.array(above)))
         return self._s(self._halved(share) if self._loses_tail else self.distribution.isf(share))
 
     @cached_property
@@ -404,4 +404,4 @@ class _Density:
     smooth: bool = False
 
     def __call__(self, s: Array) -> Array:
-        return self.law.density(s)
+        return self.law.pdf(s)

@@ -30,7 +30,6 @@ from analytic.laws.ways import Ways
 from analytic.measured_radii import MeasuredRadii
 from analytic.quantities import quantity_of
 from analytic.reach import Weight, tame
-from analytic.renamed import takes_heights
 from analytic.resolution import resolved_breaks
 from analytic.towards import above_neighbours
 
@@ -111,7 +110,6 @@ class HeightRule:
     ratios: Array | None = None
 
     @classmethod
-    @takes_heights
     def over(
         cls,
         separations: ArrayLike,
@@ -128,7 +126,7 @@ class HeightRule:
         further = partial(cuts_of, branches, grading, h)
         h = np.unique([*h, *(branch.lowest(h[0]) for branch in branches)])
         if not isinstance(heights, Gaussian):
-            return cls(*law_rule(heights, h, grading, further=further), float(heights.below(h[0])))
+            return cls(*law_rule(heights, h, grading, further=further), float(heights.cdf(h[0])))
         low, top = normal_ends(h, grading)
         regular = _STEP * np.arange(np.floor(low / _STEP) + 1, np.ceil(top / _STEP))
         varied = max(low, -_REACH)

@@ -38,11 +38,11 @@ class HeightLaw(Protocol):
         """Width of a cell above `s` on which the density hardly bends; breaks and ends left aside."""
         ...
 
-    def sample(self, rng: np.random.Generator, n: int) -> Array:
+    def rvs(self, n: int, rng: np.random.Generator) -> Array:
         """`n` heights from NumPy's generator."""
         ...
 
-    def density(self, s: Array) -> Array:
+    def pdf(self, s: Array) -> Array:
         """Probability density at `s`, at a jump that above it."""
         ...
 
@@ -50,20 +50,20 @@ class HeightLaw(Protocol):
         """``log(density(s + t)/density(s))``, accurate for small `t`."""
         ...
 
-    def below(self, s: Array) -> Array:
+    def cdf(self, s: Array) -> Array:
         """Probability of a height below `s`, to full relative accuracy."""
         ...
 
-    def above(self, s: Array) -> Array:
+    def sf(self, s: Array) -> Array:
         """Probability of a height above `s`, to full relative accuracy."""
         ...
 
-    def from_below(self, p: Array, s: float) -> Array:
-        """Height at the share `p` of the heights below `s`."""
+    def ppf(self, p: Array, below: float = np.inf) -> Array:
+        """Height at the share `p` of the heights below one, or of all."""
         ...
 
-    def from_above(self, p: Array, s: float) -> Array:
-        """Height at the share `p` of the heights above `s`, counted from the top."""
+    def isf(self, p: Array, above: float = -np.inf) -> Array:
+        """Height at the share `p` of the heights above one, or of all, counted from the top."""
         ...
 
 
@@ -79,7 +79,7 @@ class Gaussian:
     Examples
     --------
     >>> import numpy as np
-    >>> float(Gaussian().above(np.array(0.0)))
+    >>> float(Gaussian().sf(np.array(0.0)))
     0.5
     """
 
@@ -91,11 +91,11 @@ class Gaussian:
         """Where the logarithm of the density changes by about 0.8."""
         return 0.8 / (1 + abs(s))
 
-    def sample(self, rng: np.random.Generator, n: int) -> Array:
+    def rvs(self, n: int, rng: np.random.Generator) -> Array:
         """Standard normal numbers."""
         return rng.standard_normal(n)
 
-    def density(self, s: Array) -> Array:
+    def pdf(self, s: Array) -> Array:
         """``exp(-s^2/2)/sqrt(2 pi)``."""
         return np.asarray(exp_minus_half_square(s) / np.sqrt(2 * np.pi))
 
@@ -103,23 +103,23 @@ class Gaussian:
         """``-t (s + t/2)``."""
         return np.asarray(normal_log_ratio(s, t))
 
-    def below(self, s: Array) -> Array:
+    def cdf(self, s: Array) -> Array:
         """``Phi(s)``."""
         return ndtr(s)
 
-    def above(self, s: Array) -> Array:
+    def sf(self, s: Array) -> Array:
         """``Phi(-s)``."""
         return ndtr(-s)
 
-    def from_below(self, p: Array, s: float) -> Array:
-        """``Phi^-1(p Phi(s))``, by logarithms where that underflows."""
-        if s > _FAR:
-            return ndtri(p * ndtr(s))
-        return np.asarray(ndtri_exp(np.log(p) + log_ndtr(s)))
+    def ppf(self, p: Array, below: float = np.inf) -> Array:
+        """``Phi^-1(p Phi(below))``, by logarithms where that underflows."""
+        if below > _FAR:
+            return ndtri(p * ndtr(below))
+        return np.asarray(ndtri_exp(np.log(p) + log_ndtr(below)))
 
-    def from_above(self, p: Array, s: float) -> Array:
-        """``-Phi^-1(p Phi(-s))``."""
-        return -self.from_below(p, -s)
+    def isf(self, p: Array, above: float = -np.inf) -> Array:
+        """``-Phi^-1(p Phi(-above))``."""
+        return -self.ppf(p, -above)
 
 
 GAUSSIAN = Gaussian()

@@ -19,7 +19,6 @@ from analytic.law_rule import law_integral
 from analytic.magnitude import log_unit
 from analytic.panels import panels
 from analytic.reach import Weight, tame
-from analytic.renamed import takes_heights
 from analytic.resolution import resolved_breaks
 
 __all__ = ["fn", "fn_between", "fn_paper", "fn_scaled", "quotient"]
@@ -113,7 +112,6 @@ def quotient(
         return np.asarray(a / b * np.exp(unit_a - unit_b))
 
 
-@takes_heights
 def fn_scaled(
     n: float,
     h: ArrayLike,
@@ -151,7 +149,6 @@ def fn_scaled(
     return np.asarray(value * np.exp(unit))
 
 
-@takes_heights
 def fn(
     n: float,
     h: ArrayLike,
@@ -213,7 +210,6 @@ def fn(
     return np.asarray(value * np.exp(unit) * density)
 
 
-@takes_heights
 def fn_between(
     n: float,
     h: ArrayLike,

@@ -45,21 +45,21 @@ def law_ends(
         If the grading rises too steeply for sums of such powers.
     """
     low, high = max(low, law.support[0]), law.support[1]
-    start = max(low, float(law.from_below(np.array(_NOTHING), np.inf)))
-    top = min(float(law.from_above(np.array(_NOTHING), start)), high)
+    start = max(low, float(law.ppf(np.array(_NOTHING))))
+    top = min(float(law.isf(np.array(_NOTHING), start)), high)
     if np.isinf(top):  # as isf of 1 - p, where 1 - p is 1: the density tells how far heights go
-        top = start + 1.0 if law.density(np.array(start)) > 0 else start
-    elif not (start < top and law.above(np.array(start)) > _RAREST):
+        top = start + 1.0 if law.pdf(np.array(start)) > 0 else start
+    elif not (start < top and law.sf(np.array(start)) > _RAREST):
         return start, top
     if not start < top:
         return start, top
 
     def log_density(s: Array) -> Array:
         with np.errstate(divide="ignore"):
-            return np.maximum(np.log(law.density(s)), _UNDERFLOW)
+            return np.maximum(np.log(law.pdf(s)), _UNDERFLOW)
 
     weight = Weight(log_density, grading, power, exponent)
-    middle = float(np.clip(law.from_above(np.array(0.5), start), start, top))
+    middle = float(np.clip(law.isf(np.array(0.5), start), start, top))
     return weight.reach(middle, start, low), weight.reach(start, top, high)
 
 
@@ -136,7 +136,7 @@ def law_rule(
         weights.append(2 * v * (v1 - v0) * w)
     s, weight = np.concatenate([np.empty(0), *heights]), np.concatenate([np.empty(0), *weights])
     at, mass = np.array(lumps, dtype=np.float64).reshape(-1, 2).T
-    s, probabilities = np.append(s, at), np.append(weight * law.density(s), mass)
+    s, probabilities = np.append(s, at), np.append(weight * law.pdf(s), mass)
     order = np.argsort(s, kind="stable")
     return s[order], probabilities[order]
 
@@ -144,8 +144,8 @@ def law_rule(
 def _mass(law: HeightLaw, left: float, right: float) -> float:
     """Probability between two heights at an end of the support."""
     if left in law.singular:
-        return float(law.below(np.array(right)))
-    return float(law.above(np.array(left)))
+        return float(law.cdf(np.array(right)))
+    return float(law.sf(np.array(left)))
 
 
 def law_integral(

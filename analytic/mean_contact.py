@@ -60,7 +60,7 @@ class MeanContact:
 
     def mean(self, quantity: str, h: Array) -> Array:
         """Mean at separations of any shape."""
-        beyond = np.isfinite(h) & (self.heights.above(h) == 0)  # far ones would make a rule long
+        beyond = np.isfinite(h) & (self.heights.sf(h) == 0)  # far ones would make a rule long
         result = np.zeros(np.shape(h))
         result[~beyond] = self._in_parts(h[~beyond], lambda part: self._sums(part, quantity).mean(quantity))
         return result
@@ -151,7 +151,7 @@ class MeanContact:
         if isinstance(self.heights, MeasuredHeights):
             top = self.heights.support[1]
         else:
-            top = min(float(self.heights.from_above(np.array(_RAREST), 0.0)), _HIGHEST)
+            top = min(float(self.heights.isf(np.array(_RAREST), 0.0)), _HIGHEST)
         near = min(top, 12.0)
         far = np.geomspace(near, top, 25)[1:] if top > near else np.empty(0)
         grid = np.concatenate([np.linspace(_LOWEST, -4, 10)[:-1], np.linspace(-4, near, 41), far])
@@ -215,5 +215,5 @@ class _Sums:
             met = [jumps_of_radii(quantity, branch, grading, law, x, top) for x in self.h.tolist()]
             return np.asarray(within + met)
         ends = float(s[0]), float(s[-1])
-        jumps = jump_terms(quantity, branch, grading, lambda t, _: heights.density(t), self.h, ends)
+        jumps = jump_terms(quantity, branch, grading, lambda t, _: heights.pdf(t), self.h, ends)
         return np.asarray(within + jumps)

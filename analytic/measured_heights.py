@@ -130,11 +130,11 @@ class HeightTable:
         x, p = np.array(self.s), np.array(self.share)
         return x, p, np.diff(p) / np.diff(x)
 
-    def sample(self, rng: np.random.Generator, n: int) -> Array:
+    def rvs(self, n: int, rng: np.random.Generator) -> Array:
         """Interpolated between the points at uniform shares."""
         return np.asarray(np.interp(rng.random(n), self._points[1], self._points[0]))
 
-    def density(self, s: Array) -> Array:
+    def pdf(self, s: Array) -> Array:
         """Slope of the distribution function."""
         x, _, slope = self._points
         piece = np.searchsorted(x, s, side="right") - 1
@@ -145,25 +145,25 @@ class HeightTable:
         """0 up to the next point, which no cell reaches beyond."""
         return 0 * t + 0 * s
 
-    def below(self, s: Array) -> Array:
+    def cdf(self, s: Array) -> Array:
         """The distribution function."""
         x, p, _ = self._points
         return np.asarray(np.interp(s, x, p))
 
-    def above(self, s: Array) -> Array:
+    def sf(self, s: Array) -> Array:
         """Counted from the top, so that the last shares keep their digits."""
         x, p, _ = self._points
         return np.asarray(np.interp(-np.asarray(s), -x[::-1], 1 - p[::-1]))
 
-    def from_below(self, p: Array, s: float) -> Array:
+    def ppf(self, p: Array, below: float = np.inf) -> Array:
         """Its inverse."""
         x, share, _ = self._points
-        return np.asarray(np.interp(p * self.below(np.array(s)), share, x))
+        return np.asarray(np.interp(p * self.cdf(np.array(below)), share, x))
 
-    def from_above(self, p: Array, s: float) -> Array:
+    def isf(self, p: Array, above: float = -np.inf) -> Array:
         """Its inverse from the top."""
         x, share, _ = self._points
-        return np.asarray(np.interp(p * self.above(np.array(s)), 1 - share[::-1], x[::-1]))
+        return np.asarray(np.interp(p * self.sf(np.array(above)), 1 - share[::-1], x[::-1]))
 
 
 def _mean_std(x: Array, p: Array) -> tuple[float, float]:
@@ -240,7 +240,7 @@ class MeasuredHeights:
         """
         raise ValueError(f"measured heights have no density at s = {s:g}; make a HeightTable, or add them up")
 
-    def sample(self, rng: np.random.Generator, n: int) -> Array:
+    def rvs(self, n: int, rng: np.random.Generator) -> Array:
         """The heights themselves, in their own order; or `n` of them, drawn with replacement.
 
         Raises
@@ -254,29 +254,29 @@ class MeasuredHeights:
             raise ValueError(f"n = {n}: there are {len(self.heights)} measured heights")
         return np.array(self.heights)
 
-    def density(self, s: Array) -> Array:
+    def pdf(self, s: Array) -> Array:
         """There is none; see `span`."""
         self.span(float(np.ravel(s)[0]))
         raise AssertionError
 
     def log_ratio(self, s: Array, t: Array) -> Array:  # noqa: ARG002 - there is no density
         """There is none; see `span`."""
-        return self.density(s)
+        return self.pdf(s)
 
-    def below(self, s: Array) -> Array:
+    def cdf(self, s: Array) -> Array:
         """Share of lower heights."""
         return np.asarray(np.searchsorted(self._sorted, s, side="right") / len(self.heights))
 
-    def above(self, s: Array) -> Array:
+    def sf(self, s: Array) -> Array:
         """Share of higher heights."""
-        return np.asarray(1 - self.below(s))
+        return np.asarray(1 - self.cdf(s))
 
-    def from_below(self, p: Array, s: float) -> Array:
-        """The height at the share `p` of those below `s`."""
-        n = int(np.searchsorted(self._sorted, s, side="right"))
+    def ppf(self, p: Array, below: float = np.inf) -> Array:
+        """The height at the share `p` of those below one."""
+        n = int(np.searchsorted(self._sorted, below, side="right"))
         return np.asarray(self._sorted[np.clip((p * n).astype(np.int64), 0, max(n - 1, 0))])
 
-    def from_above(self, p: Array, s: float) -> Array:
-        """The height at the share `p` of those above `s`, counted from the top."""
-        n = len(self.heights) - int(np.searchsorted(self._sorted, s, side="right"))
+    def isf(self, p: Array, above: float = -np.inf) -> Array:
+        """The height at the share `p` of those above one, counted from the top."""
+        n = len(self.heights) - int(np.searchsorted(self._sorted, above, side="right"))
         return np.asarray(self._sorted[::-1][np.clip((p * n).astype(np.int64), 0, max(n - 1, 0))])

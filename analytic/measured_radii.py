@@ -60,7 +60,7 @@ class MeasuredRadii:
         """
         s, c = self._pairs
         if not self.heights.resampled:
-            return self.heights.sample(rng, n), c
+            return self.heights.rvs(n, rng), c
         which = rng.integers(0, c.size, n)
         return s[which], c[which]
 

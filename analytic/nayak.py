@@ -209,7 +209,7 @@ class Nayak:
     Examples
     --------
     >>> import numpy as np
-    >>> round(float(Nayak(5.0).above(np.array(0.0))), 6)
+    >>> round(float(Nayak(5.0).sf(np.array(0.0))), 6)
     0.498232
     """
 
@@ -247,7 +247,7 @@ class Nayak:
         """Where the logarithm of the density changes evenly, by at most one half."""
         return narrowest(self, s)
 
-    def sample(self, rng: np.random.Generator, n: int) -> Array:
+    def rvs(self, n: int, rng: np.random.Generator) -> Array:
         """Drawn with their curvatures."""
         return self.summits(rng, n)[0]
 
@@ -268,7 +268,7 @@ class Nayak:
         x = tables.rho / math.sqrt(2) * tau + tables.width * rng.standard_normal(n)
         return np.asarray((x - self.mean) / self.std), np.sqrt(product[:n])
 
-    def density(self, s: Array) -> Array:
+    def pdf(self, s: Array) -> Array:
         """Nayak's, reduced."""
         x = self.over_rms(s)
         return np.asarray(self.std * self._tables.density(x) * self._tables.envelope(x))
@@ -279,27 +279,27 @@ class Nayak:
         rest = np.log(self._tables.density(x + step) / self._tables.density(x))
         return np.asarray(self._tables.log_envelope_step(x, step) + rest)
 
-    def below(self, s: Array) -> Array:
+    def cdf(self, s: Array) -> Array:
         """Integral of the density from below."""
         return self._tables.shares(self.over_rms(s))[0]
 
-    def above(self, s: Array) -> Array:
+    def sf(self, s: Array) -> Array:
         """Integral of the density from above."""
         return self._tables.shares(self.over_rms(s))[1]
 
-    def from_below(self, p: Array, s: float) -> Array:
-        """By Newton's method on the logarithm of the smaller probability; `s` where there is none."""
-        below, above = self._tables.shares(self.over_rms(s))
+    def ppf(self, p: Array, below: float = np.inf) -> Array:
+        """Newton's method on the logarithm of the smaller probability; `below` where there is none."""
+        lower, higher = self._tables.shares(self.over_rms(below))
         p = np.asarray(p, dtype=np.float64)
-        found = self._at(p * below, above + (1 - p) * below)
-        return np.minimum(found if below > 0 else s + 0 * p, s)
+        found = self._at(p * lower, higher + (1 - p) * lower)
+        return np.minimum(found if lower > 0 else below + 0 * p, below)
 
-    def from_above(self, p: Array, s: float) -> Array:
-        """The same from the top."""
-        below, above = self._tables.shares(self.over_rms(s))
+    def isf(self, p: Array, above: float = -np.inf) -> Array:
+        """Find it from the top."""
+        lower, higher = self._tables.shares(self.over_rms(above))
         p = np.asarray(p, dtype=np.float64)
-        found = self._at(below + (1 - p) * above, p * above)
-        return np.maximum(found if above > 0 else s + 0 * p, s)
+        found = self._at(lower + (1 - p) * higher, p * higher)
+        return np.maximum(found if higher > 0 else above + 0 * p, above)
 
     def _at(self, below: Array, above: Array) -> Array:
         """Reduced height with these probabilities on either side."""

@@ -8,14 +8,12 @@ from numpy.typing import ArrayLike, NDArray
 from analytic.gradings import Grading, Squared
 from analytic.heights import GAUSSIAN, HeightLaw
 from analytic.integrals import quotient
-from analytic.renamed import takes_heights
 
 __all__ = ["mean_modulus", "plasticity_index"]
 
 Array = NDArray[np.float64]
 
 
-@takes_heights
 def mean_modulus(
     h: ArrayLike,
     grading: Grading,

@@ -53,7 +53,7 @@ class _Radii:
     @classmethod
     def over(cls, law: RandomCurvature, highest: float) -> "_Radii":
         """Of summits as high as touch at this separation."""
-        top = float(law.heights.from_above(np.array(_RAREST), highest))
+        top = float(law.heights.isf(np.array(_RAREST), highest))
         first = np.sqrt(MEAN_CURVATURE / law.largest)
         last = max(np.sqrt(law.steepest(top)), first)
         x, w = gauss_legendre(int(np.ceil(_NODES * max(1.0, _AS_WIDE / law.narrowest))))
@@ -72,9 +72,9 @@ class _Radii:
         """Density of the heights of summits of some of the radii, with their weights."""
         own = np.empty(s.shape)
         bound = (which == self.curvatures.size - 1) & np.isfinite(self.law.largest)
-        own[bound] = self.law.below(self.curvatures[-1], s[bound])
-        own[~bound] = self.law.density(self.curvatures[which[~bound]], s[~bound])
-        return np.asarray(self.weights[which] * own * self.law.heights.density(s))
+        own[bound] = self.law.cdf(self.curvatures[-1], s[bound])
+        own[~bound] = self.law.pdf(self.curvatures[which[~bound]], s[~bound])
+        return np.asarray(self.weights[which] * own * self.law.heights.pdf(s))
 
 
 def rule_of_radii(
@@ -96,7 +96,7 @@ def rule_of_radii(
     branches, h, heights = tuple(branches), np.unique(separations), law.heights
     radii = _Radii.over(law, float(h[-1]))
     lowest = np.unique([*h, *(branch.lowest(float(h[0])) for branch in branches)])
-    below = float(heights.below(lowest[0]))
+    below = float(heights.cdf(lowest[0]))
     start, top = law_ends(heights, float(lowest[0]), grading, _POWER, 0.0)
     if not start < top:
         return HeightRule(np.empty(0), np.empty(0), below, np.empty(0))

@@ -47,30 +47,30 @@ class WeightedHeights:
         """As the law's."""
         return self.law.span(s)
 
-    def sample(self, rng: np.random.Generator, n: int) -> Array:
+    def rvs(self, n: int, rng: np.random.Generator) -> Array:
         """Heights of the law, without the weight."""
-        return self.law.sample(rng, n)
+        return self.law.rvs(n, rng)
 
-    def density(self, s: Array) -> Array:
+    def pdf(self, s: Array) -> Array:
         """Density times weight."""
-        return self.law.density(s) * self.weight(s)
+        return self.law.pdf(s) * self.weight(s)
 
     def log_ratio(self, s: Array, t: Array) -> Array:
         """As the law's."""
         return self.law.log_ratio(s, t)
 
-    def below(self, s: Array) -> Array:
+    def cdf(self, s: Array) -> Array:
         """As the law's."""
-        return self.law.below(s)
+        return self.law.cdf(s)
 
-    def above(self, s: Array) -> Array:
+    def sf(self, s: Array) -> Array:
         """As the law's."""
-        return self.law.above(s)
+        return self.law.sf(s)
 
-    def from_below(self, p: Array, s: float) -> Array:
-        """As the law's."""
-        return self.law.from_below(p, s)
+    def ppf(self, p: Array, below: float = np.inf) -> Array:
+        """As the law'below."""
+        return self.law.ppf(p, below)
 
-    def from_above(self, p: Array, s: float) -> Array:
-        """As the law's."""
-        return self.law.from_above(p, s)
+    def isf(self, p: Array, above: float = -np.inf) -> Array:
+        """As the law'above."""
+        return self.law.isf(p, above)

@@ -138,7 +138,7 @@ def test_other_height_laws_in_another_variable(law, h):
     n, low = 1.25, max(h, law.support[0])
 
     def term(v):
-        return 4 * v**3 * v**5 * float(law.density(np.array(h + v**4)))
+        return 4 * v**3 * v**5 * float(law.pdf(np.array(h + v**4)))
 
     top = min(law.support[1], 20.0)
     truth = quad(term, (low - h) ** 0.25, (top - h) ** 0.25, epsabs=0, epsrel=1e-12, limit=400)[0]

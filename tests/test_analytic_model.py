@@ -87,22 +87,13 @@ CALLS = {
 }  # fmt: skip
 
 
-def test_the_old_keyword_of_the_height_law_warns_and_works():
+def test_every_function_takes_the_height_law():
     law = Weibull(1.7)
     for name, given in CALLS.items():
         function = getattr(analytic, name)
-        with pytest.warns(DeprecationWarning, match=rf"{name}: the law of the heights is now heights="):
-            old = function(*given, law=law)
-        np.testing.assert_array_equal(old, function(*given, heights=law))
-        assert not np.array_equal(old, function(*given)), name
-    with pytest.warns(DeprecationWarning, match="heights="):
-        cumulants = analytic.cumulants(SURFACE, "load", 1.0, law=law)
-    assert cumulants == analytic.cumulants(SURFACE, "load", 1.0, heights=law)
-    with pytest.warns(DeprecationWarning, match="heights="):
-        rule = analytic.HeightRule.over([1.0], Exponential(2.0), law=law)
-    np.testing.assert_array_equal(
-        rule.heights, analytic.HeightRule.over([1.0], Exponential(2.0), law).heights
-    )
+        assert not np.array_equal(function(*given, heights=law), function(*given)), name
+        with pytest.raises(TypeError, match="law"):
+            function(*given, law=law)
 
 
 def test_no_source_imports_the_simulator():

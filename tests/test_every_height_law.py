@@ -70,7 +70,7 @@ def literal(scene, quantity, h):
     half = np.diff(roots)[:, None] / 2
     v = roots[:-1, None] + half * (1 + x)
     s = np.minimum(h + v * v, np.nextafter(high, h))
-    terms = 2 * v ** (2 * q.exponent + 1) * scene.grading(s) ** q.modulus * law.density(s)
+    terms = 2 * v ** (2 * q.exponent + 1) * scene.grading(s) ** q.modulus * law.pdf(s)
     return unit * float(np.sum(half * w * terms))
 
 
@@ -142,7 +142,7 @@ def test_theory_is_zero_where_nothing_touches(name, make_scene):
             assert np.all(exact.variance[3:] == 0)
         assert np.all(exact.mean[:3] > 0)
         np.testing.assert_allclose(model.mean(quantity, h), exact.mean, rtol=1e-9, atol=1e-300)
-    np.testing.assert_allclose(model.mean("contacts", h), model.number * law.above(np.array(h)), rtol=1e-9)
+    np.testing.assert_allclose(model.mean("contacts", h), model.number * law.sf(np.array(h)), rtol=1e-9)
 
 
 AROUND = [  # laws with one end, with two and with none in each of the three samplers

@@ -69,17 +69,17 @@ def test_functions_of_a_law_fit_each_other(law):
     assert mean == pytest.approx(0, abs=1e-8)
     p = np.array([1e-6, 0.1, 0.5, 0.9])
     for s in (max(-1.1, law.support[0] + 0.1), 0.3, 1.1):
-        low, high = law.from_below(p, s), law.from_above(p, s)
+        low, high = law.ppf(p, s), law.isf(p, s)
         # scipy's ppf stops within 1e-9 of some shares
-        assert law.below(low) == pytest.approx(p * law.below(np.array(s)), rel=1e-8, abs=1e-13)
-        assert law.above(high) == pytest.approx(p * law.above(np.array(s)), rel=1e-8, abs=1e-13)
+        assert law.cdf(low) == pytest.approx(p * law.cdf(np.array(s)), rel=1e-8, abs=1e-13)
+        assert law.sf(high) == pytest.approx(p * law.sf(np.array(s)), rel=1e-8, abs=1e-13)
         assert np.all((low <= s) & (s <= high))
     a, b = 0.31, 0.62
     breaks = [x for x in law.breaks if a < x < b] or None
-    area = quad(lambda s: float(law.density(np.array(s))), a, b, points=breaks, limit=300, epsrel=1e-11)[0]
-    assert area == pytest.approx(float(law.below(np.array(b)) - law.below(np.array(a))), rel=1e-9)
+    area = quad(lambda s: float(law.pdf(np.array(s))), a, b, points=breaks, limit=300, epsrel=1e-11)[0]
+    assert area == pytest.approx(float(law.cdf(np.array(b)) - law.cdf(np.array(a))), rel=1e-9)
     t = np.array([1e-9, 1e-3]) * min(law.span(a), 1e-3)
-    expected = np.log(law.density(a + t) / law.density(np.array(a)))
+    expected = np.log(law.pdf(a + t) / law.pdf(np.array(a)))
     # absolute: the quotient of densities is known to a few last digits
     assert law.log_ratio(np.array(a), t) == pytest.approx(expected, abs=1e-13)
 
@@ -239,7 +239,7 @@ def literal(alpha, x):
 @pytest.mark.parametrize("alpha", DENSITIES)
 def test_published_densities(alpha):
     law = Nayak(alpha)
-    found = law.density((np.array([0.0, 2.0]) - law.mean) / law.std) / law.std
+    found = law.pdf((np.array([0.0, 2.0]) - law.mean) / law.std) / law.std
     assert found == pytest.approx(DENSITIES[alpha], rel=2e-14)
 
 
@@ -257,7 +257,7 @@ def test_density_in_both_tails(alpha):
         s = height(alpha, y)
         with mp.workdps(40):
             exact = float(literal(alpha, float(law.over_rms(s))))
-        assert float(law.density(s)) / law.std == pytest.approx(exact, rel=1e-14 * (1 + y * y / 10)), y
+        assert float(law.pdf(s)) / law.std == pytest.approx(exact, rel=1e-14 * (1 + y * y / 10)), y
 
 
 @pytest.mark.parametrize("alpha", ALPHAS)
@@ -275,13 +275,13 @@ def test_shares_are_sums_over_the_density(alpha, y):
         )
         ends = np.unique(np.clip(ends, min(s, to), max(s, to)))
         a, b = ends[:-1, None], ends[1:, None]
-        return float(np.sum((b - a) / 2 * W * law.density(a + (b - a) * (1 + X) / 2)))
+        return float(np.sum((b - a) / 2 * W * law.pdf(a + (b - a) * (1 + X) / 2)))
 
     lowest = min(y, 0.0) - 14 / max(1, -y / 10)
     below, above = share((lowest * unit - law.mean) / law.std), share(max(s, 0.0) + 14)
     if y < 3:
-        assert float(law.below(np.array(s))) == pytest.approx(below, rel=known)
-    assert float(law.above(np.array(s))) == pytest.approx(above if y > -1 else 1 - below, rel=known)
+        assert float(law.cdf(np.array(s))) == pytest.approx(below, rel=known)
+    assert float(law.sf(np.array(s))) == pytest.approx(above if y > -1 else 1 - below, rel=known)
 
 
 @pytest.mark.parametrize("alpha", ALPHAS)
@@ -289,17 +289,17 @@ def test_quantiles_give_their_shares_back(alpha):
     law = Nayak(alpha)
     p = np.concatenate([10.0 ** -np.arange(1.0, 290.0, 13.0), np.linspace(0.01, 0.5, 50)])
     for find, share, start in (
-        (law.from_below, law.below, np.inf),
-        (law.from_above, law.above, -np.inf),
-        (law.from_above, law.above, 2.0),
+        (law.ppf, law.cdf, np.inf),
+        (law.isf, law.sf, -np.inf),
+        (law.isf, law.sf, 2.0),
     ):
         q = p if np.isinf(start) else p[p > 1e-270]
         s, wanted = find(q, start), q * share(np.array(start))
         # what the last digits of a height make of a share
-        known = 1e-14 + 4e-16 * law.density(s) / wanted * (np.abs(s) + law.mean / law.std)
+        known = 1e-14 + 4e-16 * law.pdf(s) / wanted * (np.abs(s) + law.mean / law.std)
         assert np.all(np.abs(share(s) / wanted - 1) < known)
-    assert law.from_below(np.array([0.0, 1.0]), 0.4) == pytest.approx([-np.inf, 0.4], rel=1e-14)
-    assert np.all(law.from_above(np.array([0.5, 1.0]), 99.0) == 99.0)  # nothing is there
+    assert law.ppf(np.array([0.0, 1.0]), 0.4) == pytest.approx([-np.inf, 0.4], rel=1e-14)
+    assert np.all(law.isf(np.array([0.5, 1.0]), 99.0) == 99.0)  # nothing is there
 
 
 @pytest.mark.parametrize("alpha", ALPHAS)
@@ -316,18 +316,18 @@ def test_the_limit_is_gaussian():
     s = np.linspace(-8, 12, 81)
     for alpha, off in ((1e6, 1e-3), (1e10, 1e-7)):  # as alpha^(-3/2), times a polynomial of the height
         law = Nayak(alpha)
-        assert np.abs(law.density(s) / Gaussian().density(s) - 1).max() < off
+        assert np.abs(law.pdf(s) / Gaussian().pdf(s) - 1).max() < off
         assert analytic.fn(1.5, 2.0, heights=law) == pytest.approx(analytic.fn(1.5, 2.0), rel=off)
 
 
 @pytest.mark.parametrize("alpha", [1.51, 5.0])
 def test_samples_follow_the_law(alpha):
     """p > 1e-4: a false alarm in 5000 for two seeds; a mean or a deviation off by 8 % fails."""
-    s = Nayak(alpha).sample(np.random.default_rng(5), 25_000)
+    s = Nayak(alpha).rvs(25_000, np.random.default_rng(5))
     assert s.shape == (25_000,)
-    assert scipy.stats.kstest(Nayak(alpha).below(s), "uniform").pvalue > 1e-4
+    assert scipy.stats.kstest(Nayak(alpha).cdf(s), "uniform").pvalue > 1e-4
     for wrong in (s + 0.08, 1.08 * s):
-        assert scipy.stats.kstest(Nayak(alpha).below(wrong), "uniform").pvalue < 1e-4
+        assert scipy.stats.kstest(Nayak(alpha).cdf(wrong), "uniform").pvalue < 1e-4
 
 
 @pytest.mark.parametrize("s", [-8.0, -2.6, -1.1, 0.3, 5.0])

@@ -30,7 +30,7 @@ CONTACTS = (0.01, 0.03, 0.1, 0.3, 1.0, 3.8, 10.0, 30.0, 100.0, 300.0, 1000.0)
 def cut(expected, surfaces, law, count, gamma, seed=7):
     """One ensemble, long enough to be cut into 4000 of so many contacts each."""
     n = 2000
-    h = float(law.from_above(np.array(expected / (surfaces * n)), -np.inf))
+    h = float(law.isf(np.array(expected / (surfaces * n))))
     scene = Scene(
         surface=SURFACE, separations=(h,), grading=Exponential(gamma), heights=law, n_asperities=n,
         count=count, n_surfaces=SEEDS * surfaces, seed=seed, sampler="cells",
@@ -189,7 +189,7 @@ def test_a_few_equal_terms_are_covered(share):
 @pytest.mark.parametrize("contacts", [0.01, 0.5, 3.0])
 def test_where_hardly_any_asperity_does_not_touch(make_scene, contacts):
     """The number of contacts is N but for a rare one: too skew for a gamma law, within Chebyshev's bound."""
-    h = -float(Gaussian().from_above(np.array(contacts / 1000), -np.inf))
+    h = -float(Gaussian().isf(np.array(contacts / 1000)))
     scene = make_scene(separations=(h,), grading=Exponential(1.0), n_asperities=1000, n_surfaces=1)
     spread = spread_of(scene, "contacts")
     low, high = spread.ratio(1)

@@ -63,7 +63,7 @@ def summits(h, yields=()):
     law_of_g = (
         2 * r * dr * g**3 * np.exp(g * g / 2 + log_ndtr((mu / (1 + var) - g) / math.sqrt(var / (1 + var))))
     )
-    law_of_g *= (2 * v * dv * law.density(s) / law_of_g.sum(axis=1))[:, None]
+    law_of_g *= (2 * v * dv * law.pdf(s) / law_of_g.sum(axis=1))[:, None]
     return np.broadcast_to(s[:, None], g.shape).ravel(), (MEAN_CURVATURE / g).ravel(), law_of_g.ravel()
 
 

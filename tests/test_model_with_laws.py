@@ -76,7 +76,7 @@ def literal(f, law, grading, heights, h, top=9.5):
 
     def integrand(v):
         s = h + v * v
-        return 2 * v * float(f(np.array(s))) * float(heights.density(np.array(s)))
+        return 2 * v * float(f(np.array(s))) * float(heights.pdf(np.array(s)))
 
     parts = [quad(integrand, a, b, epsabs=1e-17, epsrel=1e-13, limit=200)[0] for a, b in pairwise(edges)]
     return math.fsum(parts)
@@ -203,7 +203,7 @@ def test_covariance_across_separations_is_literal():
         def integrand(s, i=i, j=j):
             s = np.array(s)
             both = term("load", law, s - h[i], grading(s)) * term("yielded", law, s - h[j], grading(s))
-            return float(both * Gaussian().density(s))
+            return float(both * Gaussian().pdf(s))
 
         truth = math.fsum(quad(integrand, a, b, epsabs=1e-17, epsrel=1e-12)[0] for a, b in pairwise(edges))
         assert matrix[0, i, 1, j] / scale == pytest.approx(truth, rel=1e-9)

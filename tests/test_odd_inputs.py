@@ -59,7 +59,7 @@ def test_many_asperities(make_scene):
     for change in ({"separations": (6.5,)}, {"separations": (1.0,), "sampler": "aggregate"}):
         scene = make_scene(n_asperities=10**12, n_surfaces=3, **change)
         contacts = mcgw.simulate(scene).contacts
-        expected = 10**12 * float(scene.heights.above(np.array(scene.lowest)))
+        expected = 10**12 * float(scene.heights.sf(np.array(scene.lowest)))
         assert (np.abs(contacts - expected) < 6 * np.sqrt(expected)).all()
 
 

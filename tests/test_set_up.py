@@ -45,7 +45,7 @@ def cheapest_by_loops(n, low, high, before, root):
 
 def cell_price(n, a, width, distance, *, first):
     """A cell takes time to begin, and so does each asperity, the more the more moments are needed."""
-    above, beyond = (float(LAW.above(np.array(x))) for x in (a, a + width))
+    above, beyond = (float(LAW.sf(np.array(x))) for x in (a, a + width))
     expected, digits = n * (above - beyond), 11.4
     if n * above > 400:
         reach = (distance if math.isfinite(distance) else 0.0) + width

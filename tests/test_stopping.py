@@ -90,10 +90,10 @@ def test_stopped_ensembles_cover(make_scene, rel_err, n_asperities):
 
 def by_hand(scene, n, above):
     """Mean load over `n` surfaces of what lies above a height, 2500 times, drawn and summed here."""
-    rng, share = np.random.default_rng(1), float(scene.heights.above(np.array(above)))
+    rng, share = np.random.default_rng(1), float(scene.heights.sf(np.array(above)))
     number = rng.binomial(n * scene.n_asperities, share, SEEDS)
     assert number.min() > 0
-    heights = scene.heights.from_above(1 - rng.random(number.sum()), above)
+    heights = scene.heights.isf(1 - rng.random(number.sum()), above)
     one = scene.grading(heights) * (heights - scene.lowest) ** 1.5
     sums = np.add.reduceat(one, np.concatenate([[0], number.cumsum()[:-1]]))
     return sums * analytic.QUANTITIES["load"].scale(scene.surface) / n
@@ -130,7 +130,7 @@ def test_stopped_ensembles_cover_with_very_rare_very_stiff_tips(make_scene):
     low, high = ensemble.interval("load")
     assert low[0] < exact < high[0]
     # The companion: a look after 64 surfaces mostly sees the body alone, and that as well as asked.
-    assert float(scene.heights.above(np.array(4.5))) * 64 * 300 < 0.1
+    assert float(scene.heights.sf(np.array(4.5))) * 64 * 300 < 0.1
     assert spread_of(plain, "load").reach(64)[0] < 0.1
 
 

@@ -76,7 +76,7 @@ def test_moments_of_the_curvatures():
         law, rule = RandomCurvature(alpha), HeightRule.over([-60.0], Homogeneous(), Nayak(alpha))
         g, w = np.polynomial.legendre.leggauss(100)
         g, w = 10 * (1 + g), 10 * w
-        marginal = law.density(g[:, None], rule.heights) @ rule.probabilities
+        marginal = law.pdf(g[:, None], rule.heights) @ rule.probabilities
         assert w @ marginal == pytest.approx(1, rel=1e-12)
         assert (w * g) @ marginal == pytest.approx(2.34902690068464, rel=1e-12)
 
@@ -124,12 +124,12 @@ def test_the_law_at_a_height_against_quadrature(alpha, s):
             _, own, other = points(density, [0.0, end / 2, end])
             below = own.sum() * float(other / unit)
         if below < above:
-            exact, found, share = below / p.sum(), law.below(end, s), mp.gammainc(2, 0, q)
+            exact, found, share = below / p.sum(), law.cdf(end, s), mp.gammainc(2, 0, q)
         else:
-            exact, found, share = above / p.sum(), law.above(end, s), mp.gammainc(2, q)
+            exact, found, share = above / p.sum(), law.sf(end, s), mp.gammainc(2, q)
         assert float(found) == pytest.approx(exact, rel=1e-12)
         # what an error of 1e-12 in g makes of the share
-        steep = abs(float(law.density(end, s))) * end / exact
+        steep = abs(float(law.pdf(end, s))) * end / exact
         assert exact == pytest.approx(float(share), rel=1e-12 * (1 + steep))
 
 
@@ -156,8 +156,8 @@ def ks(alpha, z, g):
     s = (z - heights.mean) / heights.std
     law = RandomCurvature(alpha)
     return (
-        scipy.stats.kstest(heights.below(s), "uniform").pvalue,
-        scipy.stats.kstest(law.below(g, s), "uniform").pvalue,
+        scipy.stats.kstest(heights.cdf(s), "uniform").pvalue,
+        scipy.stats.kstest(law.cdf(g, s), "uniform").pvalue,
     )
 
 
@@ -172,11 +172,11 @@ def test_same_law_as_four_gaussians(alpha):
 def test_draws_follow_the_law():
     """Heights and ratios by their own samplers: p > 1e-4, a false alarm in 3000."""
     rng, heights, law = np.random.default_rng(8), Nayak(3.0), RandomCurvature(3.0)
-    s = heights.sample(rng, 8_000)
-    g = MEAN_CURVATURE / law.sample(rng, s)
-    assert scipy.stats.kstest(heights.below(s), "uniform").pvalue > 1e-4
-    assert scipy.stats.kstest(law.below(g, s), "uniform").pvalue > 1e-4
-    assert scipy.stats.pearsonr(heights.below(s), law.below(g, s)).pvalue > 1e-4
+    s = heights.rvs(8_000, rng)
+    g = MEAN_CURVATURE / law.rvs(s, rng)
+    assert scipy.stats.kstest(heights.cdf(s), "uniform").pvalue > 1e-4
+    assert scipy.stats.kstest(law.cdf(g, s), "uniform").pvalue > 1e-4
+    assert scipy.stats.pearsonr(heights.cdf(s), law.cdf(g, s)).pvalue > 1e-4
 
 
 def test_bounded_radii():
@@ -187,10 +187,10 @@ def test_bounded_radii():
     g = np.concatenate([kink * (1 + x) / 2, kink + (14 - kink) * (1 + x) / 2])
     weights = np.concatenate([kink / 2 * w, (14 - kink) / 2 * w])
     for power in (0.5, 2, 4):
-        sums = (weights * bounded.ratio(g) ** power) @ free.density(g[:, None], s)
+        sums = (weights * bounded.ratio(g) ** power) @ free.pdf(g[:, None], s)
         assert bounded.mean(power, s) == pytest.approx(sums, rel=1e-12)
     assert np.all(bounded.mean(1, s) < free.mean(1, s))
-    assert bounded.sample(np.random.default_rng(1), np.full(500, -2.0)).max() == 2.0
+    assert bounded.rvs(np.full(500, -2.0), np.random.default_rng(1)).max() == 2.0
 
 
 def test_what_there_is_not_is_refused():

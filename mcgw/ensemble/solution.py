@@ -180,7 +180,7 @@ def _drawn(scene: Scene, q: Quantity, separations: Sequence[float]) -> Scene:
     That is some standard deviations, to first order, below the solution of the mean surface, or all
     heights. What the modulus is there does not matter yet.
     """
-    bottom = float(scene.heights.from_below(np.array(_NOTHING), np.inf))
+    bottom = float(scene.heights.ppf(np.array(_NOTHING)))
     starts = []
     for h in separations:
         spread = float(scene.theory.std(q.name, h) / scene.theory.slope(q.name, h))

@@ -112,7 +112,7 @@ def distribution(f: Compared) -> FigureData:
 
 def _load_panel(f: Compared, key: str, contacts: float) -> Panel:
     h, m = 2.5, 100_000
-    n = round(contacts / float(f.scene.heights.above(np.array(h))))
+    n = round(contacts / float(f.scene.heights.sf(np.array(h))))
     scene = f.scene.replace(keep="sums", separations=h, quantities=("load",), n_asperities=n, n_surfaces=m)
     exact = scene.theory.cumulants("load", h)
     mean, std = float(exact.mean), float(np.sqrt(exact.variance))
@@ -131,7 +131,7 @@ def _load_panel(f: Compared, key: str, contacts: float) -> Panel:
     fine = np.linspace(max(0.0, 2 - top), top, 201)
     bell = np.exp(-(((fine - 1) * mean / std) ** 2) / 2) / np.sqrt(2 * np.pi) * mean / std
     none = (
-        f"; no contact: {float(np.exp(n * np.log1p(-scene.heights.above(np.array(h))))):.1%}"
+        f"; no contact: {float(np.exp(n * np.log1p(-scene.heights.sf(np.array(h))))):.1%}"
         if contacts < 10
         else ""
     )

@@ -147,9 +147,9 @@ def _draw_heights(axis: Any, fit: Fit) -> None:
 
 def height_laws(fit: Fit) -> list[tuple[str, Any]]:
     """Densities of summit heights, mean 0 and standard deviation 1, that are drawn."""
-    laws: list[tuple[str, Any]] = [("Gaussian", Gaussian().density)]
+    laws: list[tuple[str, Any]] = [("Gaussian", Gaussian().pdf)]
     with suppress(ValueError):  # no isotropic surface has such an alpha
-        laws.append((f"Nayak, α = {fit.alpha.value:.3g}", Nayak(fit.alpha.value).density))
+        laws.append((f"Nayak, α = {fit.alpha.value:.3g}", Nayak(fit.alpha.value).pdf))
     return laws
 
 

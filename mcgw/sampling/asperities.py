@@ -184,12 +184,12 @@ def _below(scene: Scene, surface: int, touching: int) -> Array:
     rest = _untouched(scene, surface, touching)
     check_memory("the heights of one surface", 24 * rest)
     u = uniforms(scene.seed, REST, surface, 0, rest)
-    return np.asarray(scene.heights.from_below(u, scene.lowest))
+    return np.asarray(scene.heights.ppf(u, scene.lowest))
 
 
 def _untouched(scene: Scene, surface: int, touching: int) -> int:
     """Number of asperities below every separation."""
     if scene.count == "fixed":
         return scene.n_asperities - touching
-    expected = scene.n_asperities * float(scene.heights.below(np.array(scene.lowest)))
+    expected = scene.n_asperities * float(scene.heights.cdf(np.array(scene.lowest)))
     return int(generator(scene.seed, REST, surface).poisson(expected))

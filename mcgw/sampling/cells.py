@@ -165,9 +165,9 @@ def _mesh(law: HeightLaw, lowest: float, asked: bytes) -> Mesh:
     """The mesh on these edges."""
     edges = np.frombuffer(asked)
     mass = _mass(law, edges[:-1], np.diff(edges)[:, None])[:, 0]
-    probability = law.density(edges[:-1]) * mass
+    probability = law.pdf(edges[:-1]) * mass
     stretch = _stretch(law, edges[:-1], np.diff(edges), mass)
-    below = float(law.below(np.array(edges[0])) - law.below(np.array(lowest))) if edges[0] > lowest else 0.0
+    below = float(law.cdf(np.array(edges[0])) - law.cdf(np.array(lowest))) if edges[0] > lowest else 0.0
     return Mesh(edges, probability, stretch, below, _above(law, float(edges[-1])))
 
 
@@ -177,7 +177,7 @@ def no_cells(scene: Scene) -> Mesh:
 
 
 def _above(law: HeightLaw, s: float) -> float:
-    return float(law.above(np.array(s)))
+    return float(law.sf(np.array(s)))
 
 
 def _range(law: HeightLaw, share: float, lowest: float) -> tuple[float, float]:
@@ -202,7 +202,7 @@ def _range(law: HeightLaw, share: float, lowest: float) -> tuple[float, float]:
 def _rare_heights(law: HeightLaw, share: float) -> tuple[float, float]:
     """Heights that this share of all lies below, and above."""
     rare = np.array(share)
-    return float(law.from_below(rare, np.inf)), float(law.from_above(rare, -np.inf))
+    return float(law.ppf(rare)), float(law.isf(rare))
 
 
 def _power_of_two_below(distance: float) -> float:

@@ -68,7 +68,7 @@ class Direct:
         """Heights of so many summits, and ratios of their radii where they have their own."""
         if self.scene.curvature:
             return self.scene.curvature.summits(rng, n)
-        return self.scene.heights.sample(rng, n), None
+        return self.scene.heights.rvs(n, rng), None
 
     def _balanced(self, number: int, heights: Array, ratios: Array | None) -> dict[str, Array]:
         """The surface at the separations that its asperities feel."""

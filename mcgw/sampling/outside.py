@@ -52,16 +52,16 @@ def extra_heights(
     if number > _MANY:
         check_memory(f"ensemble.sampler: to list {number:.4g} heights one by one", _BYTES * number)
     edge = float(mesh.edges[-1]) if mesh.size else scene.lowest
-    heights = law.from_above(_wide_uniforms(scene.seed, first, _HIGH, counts.high_extras), edge)
+    heights = law.isf(_wide_uniforms(scene.seed, first, _HIGH, counts.high_extras), edge)
     rows = _rows(first, counts.high_extras, heights, counts.weights[-1])
     if table:
         rows = _with_radii(rows, table, scene.seed, first, _HIGH, counts.high_extras)
     if not counts.low_extras.any():
         return rows
     bottom = float(mesh.edges[0])
-    least = float(law.below(np.array(scene.lowest)) / law.below(np.array(bottom)))
+    least = float(law.cdf(np.array(scene.lowest)) / law.cdf(np.array(bottom)))
     share = least + (1 - least) * _wide_uniforms(scene.seed, first, _LOW, counts.low_extras)
-    low = _rows(first, counts.low_extras, law.from_below(share, bottom), counts.weights[0])
+    low = _rows(first, counts.low_extras, law.ppf(share, bottom), counts.weights[0])
     if table:
         low = _with_radii(low, table, scene.seed, first, _LOW, counts.low_extras)
     rows = np.concatenate([low, rows])

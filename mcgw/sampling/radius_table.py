@@ -64,8 +64,8 @@ class RadiusTable:
 def radius_table(curvature: RandomCurvature, lowest: float) -> RadiusTable:
     """Tabulate the radii of summits above `lowest`."""
     heights = Nayak(curvature.alpha)
-    low = max(lowest, float(heights.from_below(np.array(_NEVER), np.inf)))
-    high = max(float(heights.from_above(np.array(_NEVER), -np.inf)), low)
+    low = max(lowest, float(heights.ppf(np.array(_NEVER))))
+    high = max(float(heights.isf(np.array(_NEVER))), low)
     first, last = np.floor(_PANELS * low), np.floor(_PANELS * high) + 1
     points = chebyshev_points(_IN_HEIGHT)
     s = (np.arange(first, last)[:, None] + (1 + points) / 2) / _PANELS
@@ -106,8 +106,8 @@ def _inverted(alpha: float, s: Array, share: Array) -> Array:
     law = CurvatureGivenHeight(alpha, Nayak(alpha).over_rms(s))
     g = _evenly_likely(law)
     inner = g[:-1, None] + np.diff(g, axis=0)[:, None] * _X[:, None]
-    mass = (law.density(inner) * _W[:, None]).sum(axis=1) * np.diff(g, axis=0)
-    density, bend = law.density(g), 1 + law.elasticity(g)
+    mass = (law.pdf(inner) * _W[:, None]).sum(axis=1) * np.diff(g, axis=0)
+    density, bend = law.pdf(g), 1 + law.elasticity(g)
     below = np.cumsum(np.concatenate([g[:1] * density[:1] / bend[:1], mass]), axis=0)
     above = np.cumsum(np.concatenate([mass, -g[-1:] * density[-1:] / bend[-1:]])[::-1], axis=0)[::-1]
     wanted, found = np.log(share.ravel()), np.empty((s.size, 2, share.size))
@@ -125,7 +125,7 @@ def _evenly_likely(law: CurvatureGivenHeight) -> Array:
     """Curvatures between which about the same share lies, on a logarithmic scale to either end."""
     top = law.highest(0 * law.x)
     g = np.concatenate([np.geomspace(1e-8, 0.1, 100), np.linspace(0.1, 1.05, 400)[1:]])[:, None] * top
-    rise = law.density(g)
+    rise = law.pdf(g)
     mass = (rise[1:] + rise[:-1]) / 2 * np.diff(g, axis=0)
     below = np.cumsum(np.concatenate([g[:1] * rise[:1] / 4, mass]), axis=0)
     above = np.cumsum(np.concatenate([mass, 1e-3 * rise[-1:]])[::-1], axis=0)[::-1]

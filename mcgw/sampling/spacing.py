@@ -107,7 +107,7 @@ def cuts(law: HeightLaw, n: int, gaps: Gaps, digits: float = DIGITS) -> Array:
 
 def _worth_cutting(law: HeightLaw, n: int, gaps: Gaps, digits: float) -> NDArray[np.bool_]:
     """Whether two cells might cost less than one, if an asperity in them cost the least there is: 1."""
-    above, beyond = law.above(gaps.low), law.above(gaps.high)
+    above, beyond = law.sf(gaps.low), law.sf(gaps.high)
     whole = _Cells(gaps.low, gaps.high - gaps.low, gaps.before, above, beyond)
     two = 2 * _CELL + n * (above - beyond)
     return np.asarray(_prices(law, n, whole, gaps.root, digits) > two * (1 - _TIE))
@@ -119,7 +119,7 @@ def _cut(law: HeightLaw, n: int, gaps: Gaps, fewest: int, digits: float) -> Arra
     root = gaps.root[:, None, None]
     length, rungs = high - low, _rungs(fewest + _MORE)
     heights = low + length * rungs
-    above, least = law.above(heights), law.above(low)
+    above, least = law.sf(heights), law.sf(low)
     upper = _Cells(
         start=heights[..., 1:],
         width=length * -np.diff(rungs),

@@ -62,7 +62,7 @@ def _crowd(scene: Scene) -> Iterator[str]:
 
 def _half(scene: Scene) -> Iterator[str]:
     h = np.array(scene.separations)
-    most = h[scene.heights.above(h) > 0.5]
+    most = h[scene.heights.sf(h) > 0.5]
     if most.size:
         yield (
             f"up to d/sigma = {most.max():.3g} more than half of all summits touch; the model does not merge "
@@ -73,7 +73,7 @@ def _half(scene: Scene) -> Iterator[str]:
 def _depth(scene: Scene) -> Iterator[str]:
     surface, lowest = scene.surface, scene.lowest
     touching, deep = (
-        float(scene.heights.above(np.array(h))) for h in (lowest, lowest + surface.radius / surface.sigma)
+        float(scene.heights.sf(np.array(h))) for h in (lowest, lowest + surface.radius / surface.sigma)
     )
     share = deep / touching if touching > 0 else 0.0
     if share > _DEEP or surface.sigma >= surface.radius:
@@ -84,7 +84,7 @@ def _depth(scene: Scene) -> Iterator[str]:
 
 
 def _slope(scene: Scene) -> Iterator[str]:
-    top = float(scene.heights.from_above(np.array(1 / scene.n_asperities), -40.0))
+    top = float(scene.heights.isf(np.array(1 / scene.n_asperities), -40.0))
     steepest = float(np.sqrt(max(top - scene.lowest, 0.0) * scene.surface.sigma / scene.surface.radius))
     if steepest > _STEEP:
         yield (
@@ -106,7 +106,7 @@ def _metals(scene: Scene) -> str:
 
 def _few_contacts(scene: Scene) -> Iterator[str]:
     h = np.array(scene.separations)
-    few = h[scene.n_asperities * scene.heights.above(h) < _FEW]
+    few = h[scene.n_asperities * scene.heights.sf(h) < _FEW]
     if few.size:
         yield (
             f"from d/sigma = {few.min():.3g} fewer than {_FEW:.0f} contacts are expected on a surface: "

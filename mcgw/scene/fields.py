@@ -215,11 +215,11 @@ def _clearly_positive(grading: Grading, low: float, high: float) -> bool:
 @kept(64)  # the same for all scenes of a sweep
 def share_above(heights: HeightLaw, h: float) -> float:
     """Share of the heights of a law that lie above one."""
-    return float(heights.above(np.array(h)))
+    return float(heights.sf(np.array(h)))
 
 
 @kept(64)  # every scene asks, a few times
 def _ends(heights: HeightLaw) -> tuple[float, float]:
     """Heights that hardly an asperity of a law falls below, or exceeds."""
     share = np.array(_BEYOND)
-    return float(heights.from_below(share, math.inf)), float(heights.from_above(share, -math.inf))
+    return float(heights.ppf(share)), float(heights.isf(share))

@@ -45,7 +45,7 @@ def _choice(scene: Scene) -> Iterator[str]:
 def _yielded(scene: Scene) -> Iterator[str]:
     """Contacts of which elasticity says nothing."""
     h = _deepest(scene)
-    if not isinstance(scene.law, ElasticPlastic) or not scene.heights.above(np.array(h)) > 0:
+    if not isinstance(scene.law, ElasticPlastic) or not scene.heights.sf(np.array(h)) > 0:
         return
     share = 1 - float(scene.theory.share(0, h))
     if share > _DEEP:
@@ -98,9 +98,9 @@ def _share(scene: Scene, multiple: float) -> float:
     """Contacts at the deepest separation that are deeper than a multiple of the critical penetration."""
     h, law = _deepest(scene), scene.contact
     assert isinstance(law, ElasticPlastic)
-    if not scene.heights.above(np.array(h)) > 0:
+    if not scene.heights.sf(np.array(h)) > 0:
         return 0.0
-    s = scene.heights.from_above((np.arange(_QUANTILES) + 0.5) / _QUANTILES, h)  # of those that touch
+    s = scene.heights.isf((np.arange(_QUANTILES) + 0.5) / _QUANTILES, h)  # of those that touch
     return float(np.mean(s - h > multiple * law.delta_c(scene.modulus(s))))
 
 
@@ -129,9 +129,9 @@ def _radius(scene: Scene) -> Iterator[str]:
     if not isinstance(law, JacksonGreen):
         return
     h = _deepest(scene)
-    if not scene.heights.above(np.array(h)) > 0:
+    if not scene.heights.sf(np.array(h)) > 0:
         return
-    s = scene.heights.from_above(np.array([_DEEP]), h)
+    s = scene.heights.isf(np.array([_DEEP]), h)
     y, e = np.sqrt(np.maximum(s - h, 0)), scene.modulus(s)
     piece = int(np.sum(law.limits(e)[:, 0] <= s - h))
     a = float(law.radius(piece, y, e)[0]) * np.sqrt(scene.surface.sigma / scene.surface.radius)

@@ -110,7 +110,7 @@ def _of_table(table: Table, scene: "Fields") -> Iterator[str]:
             "number near 1, and E_star in Pa unless the header of the file says E_star (GPa)"
         )
     low, high = min(scene.separations), max(scene.separations)
-    touch, from_first, over_last = scene.heights.above(np.maximum(low, (low, table.s[0], table.s[-1])))
+    touch, from_first, over_last = scene.heights.sf(np.maximum(low, (low, table.s[0], table.s[-1])))
     share = float(touch - from_first + over_last) / float(touch) if touch > 0 else 0.0
     if share > _UNTOLD or high > table.s[-1]:
         where, share = (high, 1.0) if high > table.s[-1] else (low, share)

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 __all__ = ["argument", "as_toml", "read_values"]
 
-_LAW_OF_HEIGHTS = ("support", "breaks", "density", "from_below", "from_above")
+_LAW_OF_HEIGHTS = ("support", "breaks", "span", "log_ratio", "pdf")
 
 
 def read_values(given: Mapping[str, Any]) -> tuple[dict[str, Any], list[str]]:

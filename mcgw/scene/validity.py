@@ -123,7 +123,7 @@ def _share(scene: Fields, place: Place, found: Expected, felt: Array) -> dict[st
     """
     area = scene.n_asperities / scene.surface.eta
     with np.errstate(divide="ignore", invalid="ignore"):
-        contacts = np.sqrt(found.contacts / (scene.n_asperities * scene.heights.above(felt)))
+        contacts = np.sqrt(found.contacts / (scene.n_asperities * scene.heights.sf(felt)))
     waves = np.sqrt(found.waves * place.correlation_area / area)
     return {name: contacts if name == "area" else np.fmax(contacts, waves) for name in COLUMNS}
 

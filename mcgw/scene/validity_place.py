@@ -166,7 +166,7 @@ def reduced_pressure(scene: Fields, h: Array) -> Array:
     start = np.maximum(h, scene.least)[:, None]
     reach = np.maximum(scene.highest - start, 1.0)
     s = start + reach * v**2  # the integrand begins as a root
-    weight = scene.heights.density(s)
+    weight = scene.heights.pdf(s)
     if isinstance(scene.curvature, RandomCurvature):
         weight = weight * scene.curvature.mean(0.5, s)
     mean = np.sum(weight * (s - h[:, None]) ** 1.5 * 2 * v * w * reach, axis=1)

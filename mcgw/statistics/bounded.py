@@ -25,6 +25,6 @@ def bounded_theory(scene: Scene, surfaces: int) -> Model:
     theory, law = scene.theory, scene.curvature
     if not isinstance(law, RandomCurvature) or np.isfinite(law.largest):
         return theory
-    flatter = float(law.below(_FLAT, max(scene.lowest, scene.least))) * max(scene.touching, 1.0) * surfaces
+    flatter = float(law.cdf(_FLAT, max(scene.lowest, scene.least))) * max(scene.touching, 1.0) * surfaces
     flattest = _FLAT * min((_SELDOM / flatter) ** 0.25, 1.0)
     return replace(theory, curvature=RandomCurvature(law.alpha, MEAN_CURVATURE / flattest))

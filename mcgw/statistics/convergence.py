@@ -231,7 +231,7 @@ def _contacts(scene: Scene, sums: Sums) -> list[Check]:
     if "contacts" not in scene.quantities:
         return []
     total = np.rint(np.asarray(sums["contacts"], dtype=np.float64).sum(axis=0))
-    share = scene.heights.above(np.array(scene.separations))
+    share = scene.heights.sf(np.array(scene.separations))
     tried = float(scene.n_surfaces) * scene.n_asperities
     exact = binom(tried, share) if scene.count == "fixed" else poisson(tried * share)
     p = np.minimum(2 * np.minimum(exact.cdf(total), exact.sf(total - 1)), 1.0)

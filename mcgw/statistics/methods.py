@@ -145,7 +145,7 @@ def _integrand(scene: Scene, q: analytic.Quantity, h: float, v: Array | float) -
     """Of the mean of one asperity in v, the root of how far it rises above the lowest that can touch."""
     v = np.asarray(v)
     s = lowest(scene, q, h) + v * v
-    return np.asarray(2 * v * added(scene, q, h, s) * scene.heights.density(s))
+    return np.asarray(2 * v * added(scene, q, h, s) * scene.heights.pdf(s))
 
 
 def _by_quad(scene: Scene, q: analytic.Quantity, h: float, accuracy: float) -> float:

@@ -94,4 +94,4 @@ def _share(scene: Scene, q: Quantity, h: Array) -> Array:
         return scene.theory.mean("yielded", h) / scene.n_asperities
     if q.unloading and not scene.law.elastic:
         return scene.theory.mean("contacts_unloading", h) / scene.n_asperities
-    return scene.heights.above(h)
+    return scene.heights.sf(h)

@@ -45,7 +45,7 @@ def reference(scene: Scene, chosen: tuple[int, ...]) -> Array:
 def quantiles(scene: Scene, h: float, t: Array) -> Array:
     """Heights above which the share ``exp(-t)`` of the heights above `h` lies, rising with t."""
     with np.errstate(under="ignore"):  # a share of 0 is the end of the support
-        return np.maximum(scene.heights.from_above(np.exp(-t), h), h)
+        return np.maximum(scene.heights.isf(np.exp(-t), h), h)
 
 
 def _one_asperity(scene: Scene, q: Quantity, h: float) -> float:
@@ -54,7 +54,7 @@ def _one_asperity(scene: Scene, q: Quantity, h: float) -> float:
     if isinstance(heights, MeasuredHeights):
         s = np.array(heights.heights)
         return float(np.sum(added(scene, q, h, s[s > low]))) / s.size
-    touching = float(heights.above(np.array(low)))
+    touching = float(heights.sf(np.array(low)))
     if not touching > 0:
         return 0.0
     x, w = leggauss(_POINTS)
@@ -110,7 +110,7 @@ def formula_ends(scene: Scene, q: Quantity, h: float, low: float, high: float) -
 
 def _edges(scene: Scene, q: Quantity, h: float, touching: float) -> Array:
     """Ends of the panels in t: small ones first, and one at every kink of density, modulus and formula."""
-    above, range_ends = scene.heights.above, quantiles(scene, lowest(scene, q, h), np.array([0.0, _BREAKS]))
+    above, range_ends = scene.heights.sf, quantiles(scene, lowest(scene, q, h), np.array([0.0, _BREAKS]))
     low, high = range_ends.tolist()
     kinks = [*scene.heights.breaks, *resolved_breaks(scene.modulus, low, high)]
     share = above(np.array([b for b in kinks if low < b < high])) / touching

@@ -288,7 +288,7 @@ def tradeoff(
 def _chosen(scene: Scene) -> tuple[int, ...]:
     """The lowest, a middle and the highest separation that something reaches in 1e9 asperities."""
     order = np.argsort(scene.separations, kind="stable")
-    share = scene.heights.above(np.array(scene.separations))[order]
+    share = scene.heights.sf(np.array(scene.separations))[order]
     reached = order[share > 1e-9] if (share > 1e-9).any() else order[:1]
     return tuple(int(k) for k in dict.fromkeys(reached[[0, len(reached) // 2, -1]]))
 

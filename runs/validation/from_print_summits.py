@@ -45,7 +45,7 @@ def _moments_of_heights(alpha):
     law = analytic.Nayak(alpha)
     x, w = np.polynomial.legendre.leggauss(400)
     height = HIGHEST * x
-    weight = HIGHEST * w * law.density((height - law.mean) / law.std) / law.std
+    weight = HIGHEST * w * law.pdf((height - law.mean) / law.std) / law.std
     mean = weight @ height
     return mean, weight @ (height - mean) ** 2
 

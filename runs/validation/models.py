@@ -111,7 +111,7 @@ def summits_of(model: str, m0: float, m2: float, m4: float) -> Summits:
     moments = SpectralMoments(m0, m2, m4)
     edges, step = np.linspace(LOWEST, HIGHEST, HEIGHTS + 1, retstep=True)
     s, law, radius = (edges[1:] + edges[:-1]) / 2, Nayak(moments.alpha), moments.radius
-    density = np.exp(-s * s / 2) / math.sqrt(2 * math.pi) if model == "one radius" else law.density(s)
+    density = np.exp(-s * s / 2) / math.sqrt(2 * math.pi) if model == "one radius" else law.pdf(s)
     root, whole = np.ones_like(s), np.ones_like(s)
     if model == "own radii":
         curvature = RandomCurvature(moments.alpha, 1 / radius)

@@ -62,9 +62,9 @@ def raise_to(exponent: Any, x: Any, result: Any) -> None:
 def _quantiles(law: HeightLaw, separations: bytes) -> tuple[Array, Array]:
     """Share of heights above each separation, and 16 equally likely distances of those from it."""
     h, share = np.frombuffer(separations), (np.arange(16) + 0.5) / 16
-    touching = law.above(h)
+    touching = law.sf(h)
     rank = np.maximum(touching[:, None] * share, np.finfo(float).tiny)
-    return touching, np.maximum(law.from_above(rank, -np.inf) - h[:, None], 0.0)
+    return touching, np.maximum(law.isf(rank) - h[:, None], 0.0)
 
 
 def _totals(scene: Scene, chosen: list[Quantity], h: Array) -> Array:

@@ -145,9 +145,9 @@ class _Sixteen:
     def of(cls, scene: Scene) -> "_Sixteen":
         """Of the separations of a scene."""
         share, h = (np.arange(16) + 0.5) / 16, np.array(scene.all_separations)
-        touching = scene.heights.above(h)
+        touching = scene.heights.sf(h)
         rank = np.maximum(touching[:, None] * share, np.finfo(float).tiny)
-        s = np.maximum(scene.heights.from_above(rank, -np.inf), h[:, None])
+        s = np.maximum(scene.heights.isf(rank), h[:, None])
         return cls(h, touching, s, scene.modulus(s))
 
     def totals(self, scene: Scene, name: str, branch: Branch) -> Array:
