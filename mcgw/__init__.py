@@ -118,7 +118,7 @@ if TYPE_CHECKING:
     from mcgw.jobs.merging import merge
     from mcgw.jobs.sweeping import sweep
     from mcgw.maps.fitted_scene import fitted_scene
-    from mcgw.maps.from_file import fit
+    from mcgw.maps.fitting import fit
     from mcgw.sampling.asperities import heights, radii
     from mcgw.scene.scene import Scene
     from mcgw.scene.scene_file import load_scene, scene_from, scene_text
@@ -207,7 +207,7 @@ _HOME = {
     "compare": "statistics.compared",
     "converge": "statistics.convergence",
     "export": "exports.writing",
-    "fit": "maps.from_file",
+    "fit": "maps.fitting",
     "fitted_scene": "maps.fitted_scene",
     "heights": "sampling.asperities",
     "load_scene": "scene.scene_file",

@@ -26,8 +26,8 @@ from scipy.optimize import root
 import mcgw
 from mcgw.figures.style import HOMOGENEOUS, STYLE, look
 from mcgw.formats.pictures import save_figure
-from mcgw.maps.asperities import Asperities, asperities_of
 from mcgw.maps.envelope import envelope
+from mcgw.maps.synthetic import Asperities, asperities_of
 
 HERE = Path(__file__).parent
 POINTS = 2048

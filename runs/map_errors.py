@@ -18,7 +18,7 @@ import numpy as np
 
 from analytic import SpectralMoments
 from mcgw.maps.fit import Fit, fit_map
-from mcgw.maps.spectrum import Spectrum, gaussian_map, moments_on_grid
+from mcgw.maps.synthetic import Spectrum, gaussian_map, moments_on_grid
 from mcgw.maps.topography import Topography
 
 FOLDER = Path(__file__).parent / "out" / "map_errors"

@@ -18,7 +18,7 @@ import scipy.stats
 import analytic
 import mcgw
 from mcgw.maps.files import write_map
-from mcgw.maps.spectrum import gaussian_map, spectrum_from
+from mcgw.maps.synthetic import gaussian_map, spectrum_from
 from mcgw.statistics import tradeoff
 
 SURFACE = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "1 mm^2", "78.6 GPa")

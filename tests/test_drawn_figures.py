@@ -247,7 +247,7 @@ def test_tradeoff(make_scene, kept, tmp_path):
 def test_contact_map(make_scene, kept, tmp_path):
     """Spots to scale at their places in micrometres, coloured by their loads in millinewtons."""
     from mcgw.figures.contact_map import _DPI, contact_map_figure, save_contact_map, spots_at
-    from mcgw.maps.asperities import Asperities
+    from mcgw.maps.synthetic import Asperities
 
     scene = make_scene(grading=analytic.Exponential(2.0))
     sigma, radius = scene.surface.sigma, scene.surface.radius

@@ -10,11 +10,10 @@ from scipy.stats import t as t_law
 
 from analytic import SpectralMoments
 from mcgw.maps.fit import fit_map
-from mcgw.maps.flaws import _waves
-from mcgw.maps.spectrum import Spectrum, gaussian_map, moments_on_grid
+from mcgw.maps.fit_cautions import _waves
+from mcgw.maps.synthetic import Spectrum, gaussian_map, moments_on_grid
 from mcgw.maps.topography import Topography
-from mcgw.maps.uncertain import Spread, uncertain
-from mcgw.maps.waves import Waves, _legendre_shares, _taken, waves_of
+from mcgw.maps.waves import Spread, Waves, _legendre_shares, _taken, uncertain, waves_of
 
 PARAMETERS = ("eta", "radius", "sigma")
 MOMENTS = ("m0", "m2", "m4", "alpha")

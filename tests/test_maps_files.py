@@ -17,7 +17,7 @@ from mcgw.formats.units import METRES
 from mcgw.maps.files import read_map, write_map
 from mcgw.maps.form import smooth
 from mcgw.maps.sdf import read_sdf
-from mcgw.maps.spectrum import Spectrum, gaussian_map
+from mcgw.maps.synthetic import Spectrum, gaussian_map
 from mcgw.maps.topography import Topography
 
 NAMES = ["map.sdf", "map.ascii.sdf", "map.x3p", "map.npy", "map.h5"]

@@ -10,11 +10,10 @@ from scipy import ndimage
 import mcgw
 from analytic import MeasuredHeights
 from mcgw.cli import main
-from mcgw.maps.asperities import Asperities
 from mcgw.maps.envelope import envelope, hidden_summits
 from mcgw.maps.files import write_map
 from mcgw.maps.fit import fit_map
-from mcgw.maps.spectrum import Spectrum, gaussian_map, moments_on_grid
+from mcgw.maps.synthetic import Asperities, Spectrum, gaussian_map, moments_on_grid
 from mcgw.maps.topography import Topography
 
 PIXEL = (1e-6, 1e-6)

@@ -5,11 +5,10 @@ import pytest
 
 import mcgw
 from mcgw.cli import main
-from mcgw.maps.edges import bad_edges
+from mcgw.maps.bad_points import bad_edges, spikes_of
 from mcgw.maps.fit import fit_map
 from mcgw.maps.levels import form_left, step_of
-from mcgw.maps.spectrum import Spectrum, gaussian_map
-from mcgw.maps.spikes import spikes_of
+from mcgw.maps.synthetic import Spectrum, gaussian_map
 from mcgw.maps.topography import Topography
 
 N, PIXEL = 240, (1e-6, 2e-6)

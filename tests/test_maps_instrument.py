@@ -5,12 +5,12 @@ import pytest
 from scipy import ndimage
 
 import mcgw
+from mcgw.maps.bad_points import recorded
 from mcgw.maps.fit import fit_map
 from mcgw.maps.form import smooth
 from mcgw.maps.instrument import CHECKS, _kept_of_noise
 from mcgw.maps.preparation import Preparation, prepared
-from mcgw.maps.recorded import recorded
-from mcgw.maps.spectrum import Spectrum, gaussian_map
+from mcgw.maps.synthetic import Spectrum, gaussian_map
 from mcgw.maps.topography import Topography
 
 PIXEL = (1e-6, 1e-6)

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 import mcgw
+from mcgw.maps.bad_points import filled
 from mcgw.maps.fit import fit_map
 from mcgw.maps.form import FORMS, gaussian_transmission, smooth, without_form
-from mcgw.maps.holes import filled
 from mcgw.maps.preparation import Preparation, prepared
-from mcgw.maps.spectrum import Spectrum, gaussian_map
+from mcgw.maps.synthetic import Spectrum, gaussian_map
 from mcgw.maps.topography import Topography
 
 N, PIXEL = 200, (1e-6, 1.5e-6)

@@ -12,13 +12,12 @@ from scipy.stats import t as t_law
 import mcgw
 from analytic import Nayak, SpectralMoments
 from mcgw.cli import main
-from mcgw.maps.areal_weights import areal_weights, filter_variance, stencil_weights
-from mcgw.maps.form import gaussian_transmission
+from mcgw.maps.form import filter_variance, gaussian_transmission
 from mcgw.maps.profile import Profile, profile_at, smooth_profile, without_profile_form
 from mcgw.maps.profile_files import holds_profile, read_profile
 from mcgw.maps.profile_fit import fit_profiles
-from mcgw.maps.profile_waves import waves_of_profile
-from mcgw.maps.spectrum import Spectrum, gaussian_map
+from mcgw.maps.profile_waves import areal_weights, stencil_weights, waves_of_profile
+from mcgw.maps.synthetic import Spectrum, gaussian_map
 
 UM = 1e-6
 SMOOTH = 3  # neighbouring waves whose power is averaged

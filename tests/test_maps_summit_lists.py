@@ -11,11 +11,10 @@ import mcgw
 from mcgw.cli import main
 from mcgw.maps.files import write_map
 from mcgw.maps.fit import fit_map
-from mcgw.maps.spectrum import Spectrum, gaussian_map
-from mcgw.maps.summit_contact import summit_contact
+from mcgw.maps.sub_areas import tiles_of
 from mcgw.maps.summit_sums import summit_sums_of
-from mcgw.maps.summits import summits_of
-from mcgw.maps.tiles import tiles_of
+from mcgw.maps.summits import summit_contact, summits_of
+from mcgw.maps.synthetic import Spectrum, gaussian_map
 from mcgw.maps.topography import Topography
 
 UM = 1e-6

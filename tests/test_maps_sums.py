@@ -23,7 +23,7 @@ from mcgw.maps.estimates import (
     skewness_of,
 )
 from mcgw.maps.fit import fit_map
-from mcgw.maps.hidden import unhidden, visible
+from mcgw.maps.hidden_caps import unhidden, visible
 from mcgw.maps.summit_sums import SUMS, SummitSums, _apex, coarse_sums_of, summit_sums_of
 from mcgw.maps.topography import Topography
 

@@ -16,11 +16,17 @@ import analytic
 import mcgw
 from mcgw.cli import main
 from mcgw.figures.contact_map import spots_at
-from mcgw.maps.asperities import Asperities, asperities_of
 from mcgw.maps.envelope import envelope, hidden_summits
 from mcgw.maps.files import read_map
-from mcgw.maps.hidden import visible
-from mcgw.maps.spectrum import Spectrum, gaussian_map, moments_on_grid, spectrum_from
+from mcgw.maps.hidden_caps import visible
+from mcgw.maps.synthetic import (
+    Asperities,
+    Spectrum,
+    asperities_of,
+    gaussian_map,
+    moments_on_grid,
+    spectrum_from,
+)
 from mcgw.scene.scene_file import scene_text
 
 RUNS = Path(__file__).parents[1] / "runs"

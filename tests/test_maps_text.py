@@ -7,9 +7,8 @@ import numpy as np
 import pytest
 
 from mcgw.cli import main
-from mcgw.maps.array_files import write_h5
-from mcgw.maps.files import read_map
-from mcgw.maps.spectrum import Spectrum, gaussian_map
+from mcgw.maps.files import read_map, write_h5
+from mcgw.maps.synthetic import Spectrum, gaussian_map
 from mcgw.maps.topography import Topography
 
 NAN = np.nan

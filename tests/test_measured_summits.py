@@ -8,8 +8,7 @@ from law_means import own_terms
 
 import analytic
 import mcgw
-from mcgw.maps.summit_contact import summit_contact
-from mcgw.maps.summits import Summits, write_summits
+from mcgw.maps.summits import Summits, summit_contact, write_summits
 from mcgw.store import layout
 
 K = 200

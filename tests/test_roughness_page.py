@@ -11,7 +11,7 @@ from scipy.optimize import brentq
 import analytic
 from analytic import SpectralMoments
 from mcgw.maps.form import gaussian_transmission
-from mcgw.maps.spectrum import Spectrum
+from mcgw.maps.synthetic import Spectrum
 
 PAGE = (Path(__file__).parent.parent / "runs" / "ROUGHNESS.md").read_text(encoding="utf-8")
 TEXT = " ".join(PAGE.split())

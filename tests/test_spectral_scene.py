@@ -9,8 +9,8 @@ import analytic
 import mcgw
 from mcgw.cli import main
 from mcgw.maps.fit import fit_map
-from mcgw.maps.spectrum import Spectrum, gaussian_map
-from mcgw.maps.summit_contact import summit_contact
+from mcgw.maps.summits import summit_contact
+from mcgw.maps.synthetic import Spectrum, gaussian_map
 
 
 @pytest.fixture(scope="module")

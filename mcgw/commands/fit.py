@@ -63,9 +63,9 @@ def execute(args: argparse.Namespace) -> int:
     from mcgw.commands.preparation import preparation
     from mcgw.formats.units import parse
     from mcgw.machine.progress import stages
-    from mcgw.maps.cautions import cautions
     from mcgw.maps.files import files_of_map, read_map
     from mcgw.maps.fit import fit_prepared
+    from mcgw.maps.fit_cautions import cautions
     from mcgw.maps.fitted_scene import fitted_scene, heights_beside, write_scene
     from mcgw.maps.preparation import prepared
     from mcgw.maps.profile_files import holds_profile
@@ -120,8 +120,8 @@ def execute(args: argparse.Namespace) -> int:
 
 def _write_tables(fit: "Fit", summits: Path | None, tiles: Path | None) -> None:
     """The tables that were asked for, and where they are."""
+    from mcgw.maps.sub_areas import write_tiles
     from mcgw.maps.summits import write_summits
-    from mcgw.maps.tiles import write_tiles
 
     if summits is not None:
         write_summits(fit.listed, summits)

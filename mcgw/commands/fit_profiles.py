@@ -20,8 +20,8 @@ def fit_of_profiles(
     """Print what the profiles tell, with warnings, write the scene, and say where it is."""
     from mcgw.commands.outputs import TOML, Output, check_outputs
     from mcgw.formats.units import parse
+    from mcgw.maps.fit_cautions import profile_cautions
     from mcgw.maps.fitted_scene import fitted_scene, write_scene
-    from mcgw.maps.profile_cautions import profile_cautions
     from mcgw.maps.profile_files import read_profile
     from mcgw.maps.profile_fit import fit_profiles
 

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from mcgw.maps.asperities import Asperities
+    from mcgw.maps.synthetic import Asperities
     from mcgw.maps.topography import Topography
     from mcgw.scene.scene import Scene
 
@@ -79,9 +79,9 @@ def _asperities(args: argparse.Namespace) -> int:
     from mcgw.commands.notes import tell_notes
     from mcgw.figures.contact_map import save_contact_map, spots_at
     from mcgw.formats.units import parse
-    from mcgw.maps.asperities import asperities_of
     from mcgw.maps.envelope import envelope
     from mcgw.maps.files import write_map
+    from mcgw.maps.synthetic import asperities_of
     from mcgw.scene.scene_file import load_scene, scene_text
 
     scene = load_scene(args.scene)
@@ -108,7 +108,7 @@ def _asperities(args: argparse.Namespace) -> int:
 def _account(scene: "Scene", field: "Asperities", topography: "Topography") -> str:
     """How well the map shows independent asperities."""
     from mcgw.maps.envelope import hidden_summits
-    from mcgw.maps.hidden import CROWDED
+    from mcgw.maps.hidden_caps import CROWDED
 
     hidden = hidden_summits(field, periodic=topography.periodic)
     touching = field.z > scene.lowest * scene.surface.sigma
@@ -136,7 +136,7 @@ def _spectrum(args: argparse.Namespace) -> int:
 
     from mcgw.formats.units import parse
     from mcgw.maps.files import write_map
-    from mcgw.maps.spectrum import gaussian_map, moments_on_grid, spectrum_from
+    from mcgw.maps.synthetic import gaussian_map, moments_on_grid, spectrum_from
 
     if args.at is not None or args.scene is not None:
         raise ValueError("--from-spectrum: draws a map without asperities; leave out SCENE and --at")

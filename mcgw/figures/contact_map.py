@@ -15,8 +15,8 @@ from analytic import Hertz, quantity_of
 from analytic.laws import Ways
 from mcgw.figures.style import STYLE
 from mcgw.formats.pictures import save_figure
-from mcgw.maps.asperities import Asperities
 from mcgw.maps.envelope import envelope
+from mcgw.maps.synthetic import Asperities
 from mcgw.maps.topography import Topography
 from mcgw.scene.scene import Scene
 

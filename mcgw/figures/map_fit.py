@@ -19,7 +19,7 @@ from mcgw.maps.form import smooth
 from mcgw.maps.preparation import Prepared
 from mcgw.maps.summit_sums import summit_sums_of
 from mcgw.maps.topography import Topography
-from mcgw.maps.uncertain import Uncertain
+from mcgw.maps.waves import Uncertain
 
 __all__ = ["save_fit_picture"]
 

@@ -6,8 +6,8 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from mcgw.figures.contact_map import contact_map_figure, spots_at
-from mcgw.maps.asperities import Asperities, asperities_of
 from mcgw.maps.envelope import envelope
+from mcgw.maps.synthetic import Asperities, asperities_of
 from mcgw.scene.scene import Scene
 
 __all__ = ["Patch", "patch_figures"]

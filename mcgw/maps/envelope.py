@@ -14,7 +14,7 @@ from numba import prange
 from numpy.typing import NDArray
 
 from mcgw.machine.compiling import njit
-from mcgw.maps.asperities import Asperities
+from mcgw.maps.synthetic import Asperities
 from mcgw.maps.topography import Topography, checked_shape
 
 __all__ = ["Bins", "bins_of", "envelope", "hidden_summits"]

@@ -1,5 +1,6 @@
-"""Density, radius and spread of the summits, by three methods, with the errors that sub-areas tell."""
+"""Density, radius and spread of the summits by three methods, with their errors; and roughness."""
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Protocol, Self, TypeVar
@@ -10,14 +11,14 @@ from scipy.special import ndtr, stdtrit
 
 from analytic import SpectralMoments
 from mcgw.formats.table import Column, Table
-from mcgw.maps.hidden import unhidden
+from mcgw.maps.hidden_caps import unhidden
 from mcgw.maps.summit_sums import SUMS, SummitSums
-from mcgw.maps.uncertain import Uncertain, uncertain
-from mcgw.maps.waves import Waves
+from mcgw.maps.waves import Uncertain, Waves, uncertain
 
 __all__ = [
     "METHODS",
     "Estimate",
+    "Roughness",
     "Scales",
     "by_caps",
     "by_moments",
@@ -26,6 +27,7 @@ __all__ = [
     "jackknife",
     "mean_squares",
     "moments_of",
+    "roughness_of",
     "skewness_of",
 ]
 
@@ -40,6 +42,39 @@ METHODS = {
 _UNSURE = 0.25  # of a correction, measured for hidden caps and for summits between pixels
 _ORDER = 3  # what is lost goes as the square of the pixel: of two pixels less one, a third is lost by one
 _FLAT = 0.5  # of the median curvature
+
+
+@dataclass(frozen=True, slots=True)
+class Roughness:
+    """Of heights about their mean (ISO 25178-2 for maps, ISO 21920-2 for profiles).
+
+    Parameters
+    ----------
+    a : float
+        Arithmetic mean deviation, Sa or Pa, m.
+    q : float
+        Root mean square deviation, Sq or Pq, m.
+    sk, ku : float
+        Skewness and kurtosis, Ssk and Sku or Psk and Pku.
+    """
+
+    a: float
+    q: float
+    sk: float
+    ku: float
+
+    def text(self, kind: str) -> str:
+        """Named as of a map ("S") or a profile ("P")."""
+        return f"{kind}a = {self.a:.4g} m, {kind}q = {self.q:.4g} m, {kind}sk = {self.sk:.2f}"
+
+
+def roughness_of(heights: NDArray[np.float64]) -> Roughness:
+    """Of an array of any shape without missing points, m."""
+    z = (heights - heights.mean()).ravel()  # the one copy of a large map
+    q = math.sqrt(float(z @ z) / z.size)
+    powers = (float(np.einsum(f"i{',i' * (k - 1)}", *k * (z,))) / z.size for k in (3, 4))
+    sk, ku = (power / q**k if q > 0 else 0.0 for k, power in zip((3, 4), powers, strict=True))
+    return Roughness(float(np.abs(z, out=z).mean()), q, sk, ku)
 
 
 @dataclass(frozen=True)

@@ -1,23 +1,155 @@
-"""Which reader and writer a map's file needs: its ending says so."""
+"""Maps in files: which reader and writer an ending needs; arrays with a JSON sidecar, and HDF5."""
 
+import json
 from pathlib import Path
+from typing import Any
 
+import h5py
 import numpy as np
 
-from mcgw.maps.array_files import read_h5, read_npy, sidecar_of, write_h5, write_npy
-from mcgw.maps.asperities import Asperities
+from mcgw.formats.files import whole_file
+from mcgw.formats.npy_file import open_npy
+from mcgw.machine.terminal import one_line
 from mcgw.maps.foreign import ForeignError, UnreadableError, read_foreign
-from mcgw.maps.height_unit import height_unit
 from mcgw.maps.sdf import read_sdf, write_sdf
+from mcgw.maps.synthetic import Asperities
 from mcgw.maps.text_file import read_text
-from mcgw.maps.topography import STEEPEST, Topography
+from mcgw.maps.topography import STEEPEST, Topography, checked_shape, height_unit, single_points
 from mcgw.maps.x3p import read_x3p, write_x3p
 
-__all__ = ["WRITTEN", "files_of_map", "read_map", "write_map"]
+__all__ = ["WRITTEN", "files_of_map", "read_map", "read_npy", "write_h5", "write_map"]
 
+_FILETYPE = "mcgw-surface"
+_MOST_JSON = 2**16
 WRITTEN = (".sdf", ".ascii.sdf", ".x3p", ".npy", ".h5")
 _READERS = {".sdf": read_sdf, ".x3p": read_x3p}  # of formats that tell the size of a pixel, and heights in m
 _TEXT = (".txt", ".csv", ".asc", ".dat", ".tsv")
+
+
+def sidecar_of(path: Path) -> Path:
+    """Where the pixel size of an array lies: ``map.json`` beside ``map.npy``."""
+    return path.with_suffix(".json")
+
+
+def write_npy(topography: Topography, path: Path) -> None:
+    """Write an array and its sidecar."""
+    dx, dy = topography.pixel
+    facts = {
+        "filetype": _FILETYPE,
+        "pixel": [dx, dy],
+        "unit": "m",
+        "periodic": topography.periodic,
+        "axes": ["y", "x"],
+    }
+    with whole_file(path) as unfinished, whole_file(sidecar_of(path)) as beside:
+        with open(unfinished, "wb") as file:
+            np.save(file, topography.heights)
+        beside.write_text(json.dumps(facts, indent=2) + "\n", encoding="utf-8")
+
+
+def read_npy(path: Path, pixel: tuple[float, float] | None = None, unit: str | None = None) -> Topography:
+    """Read an array; its pixel size and the unit of its heights from the sidecar, unless given.
+
+    Raises
+    ------
+    ValueError
+        If it is not a matrix of real numbers, or no pixel size is known.
+    OSError
+        If a file cannot be read.
+    """
+    array = open_npy(path)
+    if array.ndim != 2:
+        raise ValueError(f"{path}: holds {array.ndim} dimension(s); a map has rows and columns")
+    checked_shape(*array.shape)
+    if points := single_points(*array.shape):
+        raise ValueError(f"{path}: {points}")
+    periodic, told = False, None
+    if pixel is None:
+        pixel, periodic, told = _sidecar(path)
+    metre, assumed = height_unit(path, told, unit)
+    return Topography(np.array(array, dtype=np.float64) * metre, pixel, periodic, assumed)
+
+
+def _sidecar(path: Path) -> tuple[tuple[float, float], bool, str | None]:
+    """Pixel, whether the map is periodic, and the unit of heights."""
+    beside = sidecar_of(path)
+    if not beside.is_file():
+        raise ValueError(f"{path}: no {beside.name} beside it tells the size of a pixel; give --pixel")
+    if beside.stat().st_size > _MOST_JSON:
+        raise ValueError(f"{beside}: longer than {_MOST_JSON} bytes, which no sidecar is")
+    try:
+        facts: Any = json.loads(beside.read_text(encoding="utf-8"))
+        pixel, periodic, unit = facts["pixel"], facts.get("periodic", False), facts.get("unit")
+    except (AttributeError, KeyError, RecursionError, TypeError, ValueError) as error:
+        raise ValueError(f'{beside}: must hold "pixel": [dx, dy] in m: {error}') from None
+    if unit not in (None, "m"):
+        raise ValueError(f"{beside}: unit = {unit!r}: must be 'm'")
+    return _pixel(beside, pixel), _periodic(beside, periodic), unit
+
+
+def _pixel(path: Path, told: Any) -> tuple[float, float]:
+    """What a file tells of the size of a pixel, if it is two numbers: no text of two digits is."""
+    values = told.tolist() if isinstance(told, np.ndarray) else told
+    if not (isinstance(values, list) and len(values) == 2 and all(type(p) in (int, float) for p in values)):
+        raise ValueError(f"{path}: pixel = {told!r}: must be [dx, dy], two numbers in m")
+    return float(values[0]), float(values[1])
+
+
+def _periodic(path: Path, told: Any) -> bool:
+    """Whether a file tells that its map is periodic; no text is an answer, though "no" is true to Python."""
+    if not isinstance(told, bool | np.bool_):
+        raise ValueError(f"{path}: periodic = {told!r}: must be true or false")
+    return bool(told)
+
+
+def write_h5(topography: Topography, path: Path, field: Asperities | None = None, *, scene: str = "") -> None:
+    """Write a map, and the asperities it was made of, as HDF5.
+
+    Datasets ``height`` (y, x), and ``asperities/x``, ``y``, ``z``, all in m; attributes ``pixel``,
+    ``periodic``, ``radius`` and ``scene`` (TOML).
+
+    Raises
+    ------
+    OSError
+        If the file cannot be written.
+    """
+    with whole_file(path) as unfinished, h5py.File(unfinished, "w") as file:
+        file.attrs.update(
+            filetype=_FILETYPE, format=[1, 0], pixel=topography.pixel, periodic=topography.periodic
+        )
+        data = file.create_dataset("height", data=topography.heights, compression="gzip", compression_opts=1)
+        data.attrs.update(units="m", long_name="height above the mean of the summits", axes=["y", "x"])
+        if field is not None:
+            group = file.create_group("asperities")
+            group.attrs.update(radius=field.radius, size=field.size, units="m")
+            for name, values in (("x", field.x), ("y", field.y), ("z", field.z)):
+                group.create_dataset(name, data=values).attrs["units"] = "m"
+        file["scene"] = scene  # a dataset: an attribute ends at 64 kB
+
+
+def read_h5(path: Path, unit: str | None = None) -> Topography:
+    """Read the map of such a file; `unit` is that of heights, where it tells none.
+
+    Raises
+    ------
+    ValueError
+        If it is not one, or damaged.
+    """
+    if not h5py.is_hdf5(path):
+        raise ForeignError(f"{path}: is not a sound HDF5 file")
+    try:
+        with h5py.File(path, "r") as file:
+            if file.attrs.get("filetype") != _FILETYPE:
+                raise ForeignError(f"{path}: is not a {_FILETYPE} file; it was not written by mcgw surface")
+            data = file["height"]
+            checked_shape(*data.shape, held=data.id.get_storage_size())
+            pixel, periodic = _pixel(path, file.attrs["pixel"]), _periodic(path, file.attrs["periodic"])
+            told = data.attrs.get("units")
+            metre, assumed = height_unit(path, None if told is None else str(told), unit)
+            heights = data[...].astype(np.float64) * metre
+            return Topography(heights, pixel, periodic, assumed)
+    except (AttributeError, KeyError, OSError, RuntimeError, TypeError) as error:  # as HDF5 tells of damage
+        raise ValueError(f"{path}: is a damaged {_FILETYPE} file: {one_line(str(error))}") from None
 
 
 def files_of_map(path: Path) -> list[Path]:

@@ -14,6 +14,7 @@ from mcgw.machine.notebook import plotted
 from mcgw.maps.estimates import (
     METHODS,
     Estimate,
+    Roughness,
     Scales,
     by_caps,
     by_moments,
@@ -22,20 +23,18 @@ from mcgw.maps.estimates import (
     jackknife,
     mean_squares,
     moments_of,
+    roughness_of,
     skewness_of,
 )
 from mcgw.maps.form import ORDERS, Form
-from mcgw.maps.hidden import Visible, visible
+from mcgw.maps.hidden_caps import Visible, visible
 from mcgw.maps.levels import form_left
-from mcgw.maps.leverage import Alone, alone_of
 from mcgw.maps.preparation import Preparation, Prepared, prepared
-from mcgw.maps.roughness import Roughness, roughness_of
+from mcgw.maps.sub_areas import Alone, Tiles, alone_of, tiles_of
 from mcgw.maps.summit_sums import EDGE, SummitSums, coarse_sums_of, summit_sums_of
 from mcgw.maps.summits import Summits, summits_of
-from mcgw.maps.tiles import Tiles, tiles_of
 from mcgw.maps.topography import Topography
-from mcgw.maps.uncertain import Uncertain, uncertain
-from mcgw.maps.waves import Waves, waves_of
+from mcgw.maps.waves import Uncertain, Waves, uncertain, waves_of
 
 __all__ = ["Fit", "fit_map", "fit_prepared"]
 
@@ -202,7 +201,7 @@ def fit_map(
     Returns
     -------
     Fit
-        By all methods; `mcgw.maps.cautions.cautions` says why not to trust it.
+        By all methods; `mcgw.maps.fit_cautions.cautions` says why not to trust it.
 
     Raises
     ------

@@ -1,25 +1,35 @@
 """The scene of a fit: it runs as it is."""
 
+import math
 from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
 import tomli_w
 
-from analytic import Gaussian, HeightLaw, HeightTable, MeasuredHeights, MeasuredRadii, Surface
+from analytic import (
+    Gaussian,
+    HeightLaw,
+    HeightTable,
+    MeasuredHeights,
+    MeasuredRadii,
+    Nayak,
+    RandomCurvature,
+    SpectralMoments,
+    Surface,
+)
 from mcgw.formats.files import whole_file
 from mcgw.maps.fit import Fit
 from mcgw.maps.profile_fit import ProfileFit
-from mcgw.maps.profile_scene import profile_scene
-from mcgw.maps.spectral_scene import FITTED, spectral_scene
 from mcgw.scene.fitted_section import Fitted
 from mcgw.scene.reading import argument
 from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_document
 
-__all__ = ["fitted_scene", "heights_beside", "write_scene"]
+__all__ = ["FITTED", "fitted_scene", "heights_beside", "write_scene"]
 
 Heights = Literal["gaussian", "nayak", "table", "measured", "summits"]
+FITTED = ("load", "area", "stiffness", "contacts", "conductance")  # what a fitted scene asks for
 
 
 def fitted_scene(
@@ -188,3 +198,55 @@ def write_scene(scene: Scene, path: Path, measured: Fit | None, comments: list[s
             np.save(file, measured.summits)
         unfinished.write_text(text, encoding="utf-8")
     return [path, beside]
+
+
+def spectral_scene(moments: SpectralMoments, area: float, modulus: float, title: str) -> Scene:
+    """Make a scene of the isotropic Gaussian surface with these moments.
+
+    Parameters
+    ----------
+    moments : SpectralMoments
+        Of a map or of profiles.
+    area : float
+        What was looked at, m^2: no summit is flatter than that is long.
+    modulus : float
+        Composite modulus, Pa.
+    title : str
+        For people.
+
+    Raises
+    ------
+    ValueError
+        If no isotropic Gaussian surface has these moments.
+    """
+    heights, surface = Nayak(moments.alpha), moments.surface(area, modulus)
+    return Scene(
+        surface=surface,
+        separations=np.linspace(0, 3, 31),
+        heights=heights,
+        curvature=RandomCurvature(heights.alpha, math.sqrt(area) / surface.radius),
+        title=title,
+        quantities=FITTED,
+        seed=1,
+    )
+
+
+def profile_scene(fit: ProfileFit, modulus: float, title: str, *, nayak: bool = False) -> Scene:
+    """Make a scene of the surface that profiles were taken from, on a square as long as they are.
+
+    Parameters
+    ----------
+    fit : ProfileFit
+        Of the profiles.
+    modulus : float
+        Composite modulus, which no profile tells, Pa.
+    title : str
+        For people.
+    nayak : bool, optional
+        Give each summit a radius of its own, as Gaussian surfaces have them.
+    """
+    m = fit.moments
+    if nayak:
+        return spectral_scene(m, fit.area, modulus, title)
+    surface = Surface(m.sigma, m.radius, m.eta, fit.area, modulus)
+    return Scene(surface, separations=np.linspace(0, 3, 31), title=title, quantities=FITTED, seed=1)

@@ -1,10 +1,12 @@
 """Maps in the many formats that SurfaceTopography reads, where it is installed.
 
 Its readers believe what a file declares, so they work in a process of their own, with as much memory and time
-as a file of that size may take.
+as a file of that size may take: ``python -m mcgw.maps.foreign FILE HEIGHTS MEMORY`` writes heights to a
+``.npy`` file and tells the rest as JSON.
 """
 
 import json
+import sys
 from importlib.util import find_spec
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -13,9 +15,8 @@ from typing import Any
 import numpy as np
 
 from mcgw.formats.npy_file import open_npy
-from mcgw.machine.child_process import ChildError, run_child
-from mcgw.maps.height_unit import height_unit
-from mcgw.maps.topography import Topography
+from mcgw.machine.child_process import ChildError, limit_memory, run_child
+from mcgw.maps.topography import Topography, checked_shape, height_unit
 
 __all__ = ["ForeignError", "UnreadableError", "read_foreign"]
 
@@ -75,7 +76,7 @@ def _read(
     size, heights = file.stat().st_size, folder / "heights.npy"
     memory, seconds = _MEMORY + _A_BYTE * size, _SECONDS + size / _BYTES_A_SECOND
     try:
-        said = run_child("mcgw.maps.foreign_reader", str(file), str(heights), str(memory), seconds=seconds)
+        said = run_child("mcgw.maps.foreign", str(file), str(heights), str(memory), seconds=seconds)
     except ChildError as error:
         raise UnreadableError(f"reading it {error.how}") from None
     found: dict[str, Any] = json.loads(said.splitlines()[-1])
@@ -108,3 +109,40 @@ def _with_points(path: Path, folder: Path) -> Path | None:
     copy = folder / path.name
     copy.write_text(text.replace(",", ".").replace(";", "\t"), encoding="utf-8")
     return copy
+
+
+def _read_here(path: Path, heights: Path) -> dict[str, Any]:
+    """Facts about a map whose heights are written, rows of y from below; of a profile its dimension alone."""
+    from SurfaceTopography import open_topography  # type: ignore[import-not-found, import-untyped, unused-ignore]
+
+    channel = open_topography(str(path)).default_channel
+    if channel.dim != 2:
+        return {"dim": channel.dim}
+    columns, rows = (int(n) for n in channel.nb_grid_pts)
+    checked_shape(rows, columns, held=path.stat().st_size)
+    told = channel.physical_sizes is not None
+    found = channel.topography(**({} if told else {"physical_sizes": (columns, rows)}))
+    checked_shape(*found.nb_grid_pts[::-1])
+    np.save(heights, np.ma.filled(np.ma.masked_invalid(found.heights()), np.nan).T)
+    return {
+        "dim": 2,
+        "unit": None if found.unit is None else str(found.unit),
+        "pixel": [float(p) for p in found.pixel_size] if told else None,
+        "periodic": bool(found.is_periodic),
+    }
+
+
+def _main(path: str, heights: str, memory: int) -> None:
+    memory = limit_memory(memory)
+    try:
+        answer = _read_here(Path(path), Path(heights))
+    except MemoryError:
+        answer = {"refused": f"it may take {memory >> 20} MiB of memory, and it asks for more"}
+    except Exception as error:  # its readers raise errors of many kinds
+        answer = {"refused": " ".join(str(error).split())[:160] or type(error).__name__}
+    sys.stdout.write("\n" + json.dumps(answer) + "\n")
+
+
+if __name__ == "__main__":
+    _path, _heights, _memory = sys.argv[1:]
+    _main(_path, _heights, int(_memory))

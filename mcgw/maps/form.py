@@ -1,4 +1,4 @@
-"""What is taken off a measured map before it is looked at: its form, and what is finer than the cutoff."""
+"""What is taken off a measured map: its form, offsets of its lines, and waves finer than a cutoff."""
 
 import math
 from dataclasses import replace
@@ -6,12 +6,24 @@ from typing import Literal, get_args
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import gaussian_filter
+from scipy.ndimage import gaussian_filter, gaussian_filter1d
+from scipy.optimize import least_squares
 
-from mcgw.maps.round_forms import round_form
 from mcgw.maps.topography import Topography
 
-__all__ = ["FORMS", "ORDERS", "Form", "gaussian_transmission", "lowpass", "smooth", "without_form"]
+__all__ = [
+    "FORMS",
+    "LINES",
+    "ORDERS",
+    "Form",
+    "LinesTo",
+    "filter_variance",
+    "gaussian_transmission",
+    "lowpass",
+    "smooth",
+    "without_form",
+    "without_offsets",
+]
 
 Array = NDArray[np.float64]
 Form = Literal["none", "plane", "quadratic", "cubic", "quartic", "sphere", "cylinder"]
@@ -20,6 +32,12 @@ ORDERS = {"none": -1, "plane": 1, "quadratic": 2, "cubic": 3, "quartic": 4, "sph
 
 _ALPHA = math.sqrt(math.log(2) / math.pi)  # ISO 16610-61: half the amplitude is left at the cutoff
 _REACH = 1.0  # of the filter's window, in cutoffs: beyond lies a share of 5e-7
+_POINTS = 96  # along each axis that are looked at: a form is smooth
+_AXES = 4  # directions that are tried first
+LinesTo = Literal["keep", "rows", "columns"]
+LINES: tuple[str, ...] = get_args(LinesTo)
+
+_WIDTH = 10.0  # lines, standard deviation: of waves as long as 53 lines half is kept
 
 
 def without_form(topography: Topography, form: Form) -> Topography:
@@ -64,6 +82,11 @@ def _powers(n: int, order: int) -> Array:
 def gaussian_transmission(q: Array, cutoff: float) -> Array:
     """Share of the amplitude that `smooth` leaves to the wave number `q`, 1/m."""
     return np.asarray(np.exp(-math.pi * (_ALPHA * cutoff * q / (2 * math.pi)) ** 2))
+
+
+def filter_variance(cutoff: float) -> float:
+    """Of the window of the Gaussian filter, m^2: it leaves ``exp(-a q^2/2)`` of an amplitude."""
+    return -2 * math.log(float(gaussian_transmission(np.array(1 / cutoff), cutoff))) * cutoff**2
 
 
 def smooth(topography: Topography, cutoff: float) -> Topography:
@@ -111,3 +134,81 @@ def _window(topography: Topography, cutoff: float) -> tuple[int, int]:
     """Half its size along y and x, in points."""
     dx, dy = topography.pixel
     return max(math.ceil(_REACH * cutoff / dy), 1), max(math.ceil(_REACH * cutoff / dx), 1)
+
+
+def round_form(topography: Topography, *, axis: bool) -> Array:
+    """Heights of the sphere, or of the cylinder along an axis, that is nearest to a map, in m.
+
+    Least squares of distances along z. It may be tilted, hollow or flat: its parameters are height, two
+    slopes and curvature in the middle of the map, and the direction of the axis.
+
+    Raises
+    ------
+    ValueError
+        If the map does not lie on one sheet of the form.
+    """
+    rows, columns = topography.heights.shape
+    unit = max(topography.size) / 2
+    y, x = (
+        (np.arange(n) + 0.5 - n / 2) * p / unit
+        for n, p in zip((rows, columns), topography.pixel[::-1], strict=True)
+    )
+    j, i = (np.unique(np.linspace(0, n - 1, _POINTS).astype(int)) for n in (rows, columns))
+    some = topography.heights[np.ix_(j, i)] / unit
+    there = np.isfinite(some)
+    u, v = (np.broadcast_to(t, some.shape)[there] for t in (x[i], y[j][:, None]))
+    level, scale = float(some[there].mean()), float(np.ptp(some[there])) or 1.0
+
+    def misfit(p: Array) -> Array:
+        return np.asarray((level + scale * _height(u, v, p, scale, axis=axis) - some[there]) / scale)
+
+    turns = [math.pi * k / _AXES for k in range(_AXES)] if axis else [0.0]
+    starts = (np.array([0.0, 0.0, 0.0, bend, turn]) for turn in turns for bend in (1.0, -1.0))
+    found = min((least_squares(misfit, start, method="lm") for start in starts), key=lambda f: float(f.cost))
+    shape = unit * (level + scale * _height(x, y[:, None], found.x, scale, axis=axis))
+    return np.asarray(shape)
+
+
+def _height(u: Array, v: Array, p: Array, scale: float, *, axis: bool) -> Array:
+    """Of a sphere or cylinder above the middle of a map, over `scale`; u and v are lengths.
+
+    With curvature c and unit normal n in the middle, points X of a sphere have ``c |X|^2 = 2 n X``; of a
+    cylinder, whose axis has the direction a, ``c (|X|^2 - (a X)^2) = 2 n X``: a quadratic equation for the
+    height, whose smaller root stays regular where c vanishes.
+    """
+    height, slope_x, slope_y, bend, turn = p
+    along, across = scale * slope_x, scale * slope_y
+    upright = 1 / math.sqrt(1 + along**2 + across**2)
+    flat = -upright * (along * u + across * v)  # n X without the height
+    c = scale * bend
+    square, with_height, of_height = u * u + v * v, 0.0, 1.0
+    if axis:
+        cos, sin = math.cos(turn), math.sin(turn)
+        rise = along * cos + across * sin
+        length = math.sqrt(1 + rise**2)
+        beside = (cos * u + sin * v) / length  # a X without the height
+        up = rise / length
+        square, with_height, of_height = square - beside**2, up * beside, 1 - up**2
+    first = upright + c * with_height
+    under = first**2 - of_height * c * (c * square - 2 * flat)
+    root = np.sqrt(np.maximum(under, 0.0))
+    return np.asarray(height + (c * square - 2 * flat) / (first + root) / scale)
+
+
+def without_offsets(topography: Topography, lines: LinesTo) -> tuple[Topography, float]:
+    """A map whose lines are shifted by the medians of their differences; and the rms of the shifts, m.
+
+    Medians of the differences between neighbouring lines add up to offsets, and to waves that run across all
+    lines. Those that a Gaussian window of ten lines lets pass are kept.
+    """
+    z = topography.heights if lines == "rows" else topography.heights.T
+    level, last = np.zeros(len(z)), z[0]
+    for j in range(1, len(z)):
+        steps = z[j] - last
+        steps = steps[np.isfinite(steps)]
+        level[j] = level[j - 1] + (np.median(steps) if steps.size else 0.0)
+        last = z[j] if steps.size else last  # a line without heights is passed over
+    offsets = level - gaussian_filter1d(level, _WIDTH, mode="nearest")
+    shifted = z - offsets[:, None]
+    heights = shifted if lines == "rows" else np.ascontiguousarray(shifted.T)
+    return replace(topography, heights=heights), float(np.sqrt(np.mean(offsets**2)))

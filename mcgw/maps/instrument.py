@@ -15,9 +15,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import fft
 
+from mcgw.maps.bad_points import BENT, usual_bend
 from mcgw.maps.form import gaussian_transmission
 from mcgw.maps.preparation import Prepared
-from mcgw.maps.spikes import BENT, usual_bend
 
 __all__ = ["CHECKS", "Check", "faults"]
 

@@ -7,12 +7,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
-from mcgw.maps.form import Form, lowpass, smooth, without_form
-from mcgw.maps.holes import filled
+from mcgw.maps.bad_points import Recorded, filled, recorded, small_spike_heights, spike_heights
+from mcgw.maps.form import LINES, Form, LinesTo, lowpass, smooth, without_form, without_offsets
 from mcgw.maps.levels import step_of
-from mcgw.maps.lines import LINES, LinesTo, without_offsets
-from mcgw.maps.recorded import Recorded, recorded
-from mcgw.maps.spikes import small_spike_heights, spike_heights
 from mcgw.maps.topography import SMALLEST, Topography
 
 __all__ = [
@@ -58,7 +55,7 @@ class Preparation:
         neighbours are missing count; with ``fill`` all do; ``auto`` masks them while half of the measured
         points is left.
     spikes : {"keep", "remove"}, optional
-        Whether points that stand out (`mcgw.maps.spikes`) become missing; then also those that bend
+        Whether points that stand out (`mcgw.maps.bad_points`) become missing; then also those that bend
         unlike all others.
     step : {"keep", "crop"}, optional
         Whether of two terraces only the larger is kept.
@@ -67,7 +64,7 @@ class Preparation:
     long_cutoff : float or None, optional
         Longest wavelength that counts, m.
     lines : {"keep", "rows", "columns"}, optional
-        Of which lines the offsets are taken off (`mcgw.maps.lines`).
+        Of which lines the offsets are taken off (`mcgw.maps.form`).
     """
 
     cutoff: float | None

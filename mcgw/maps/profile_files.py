@@ -1,20 +1,196 @@
-"""Whether a file holds a map or a profile, and profiles from files of all kinds."""
+"""Profiles from files: text of one column or two, arrays, and what SurfaceTopography reads."""
 
+import math
+import re
+from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from mcgw.formats.npy_file import open_npy
-from mcgw.maps.height_unit import height_unit
+from mcgw.formats.units import METRES
 from mcgw.maps.profile import Profile, profile_at
-from mcgw.maps.profile_text import columns_of_text, read_profile_text
+from mcgw.maps.text_file import lines_of, numbers_of, words_of
+from mcgw.maps.topography import height_unit
 
 __all__ = ["holds_profile", "read_profile"]
 
+Array = NDArray[np.float64]
+
+_MOST_HEADER = 500  # lines
+_MOST_POINTS = 2**26
+_UNITS = {name: name for name in METRES} | {"Nanometer": "nm", "Micrometer": "um", "Millimeter": "mm"}
+_UNIT_NAMES = "|".join(sorted(map(re.escape, _UNITS), key=len, reverse=True))
+_UNIT = re.compile(
+    rf"[\[(/]\s*({_UNIT_NAMES})\s*(?=[\])\s;,\t]|$)|\bin ({_UNIT_NAMES})\b|^(?:Lateral|Raw) ({_UNIT_NAMES})$"
+)
+_LOOKED_AT = 20  # lines of numbers
+_COMMA_ALONE = re.compile(r"\s*[-+]?\d+(?:,\d+)?(?:[eE][-+]?\d+)?\s*")
 _TEXT = (".txt", ".csv", ".asc", ".dat", ".tsv", ".prf", ".xy")
 _MAPS = (".sdf", ".x3p", ".h5")  # which tell of no profiles
+
+
+@dataclass(frozen=True)
+class _Table:
+    """Numbers of a file, and what stands above them."""
+
+    header: list[str]
+    lines: list[tuple[int, str]]
+
+    @property
+    def commas_alone(self) -> bool:
+        """Whether every line may be one number with a decimal comma."""
+        return all(_COMMA_ALONE.fullmatch(line) for _, line in self.lines)
+
+
+def columns_of_text(path: Path) -> int:
+    """How many columns stand on the first lines that hold numbers alone; 0: there is none.
+
+    Separators at the end of all of them, as a Dektak writes, make no column.
+
+    Raises
+    ------
+    OSError
+        If the file cannot be read.
+    """
+    columns = looked_at = 0
+    for count, (number, line) in enumerate(lines_of(path)):
+        if not line.startswith("#") and (looked_at or _is_numbers(path, number, line)):
+            if not looked_at and _COMMA_ALONE.fullmatch(line):
+                return 1
+            words = words_of(path, number, line)
+            columns, looked_at = max(columns, _filled(words)), looked_at + 1
+            if _filled(words) == len(words) or looked_at == _LOOKED_AT:
+                break
+        if count > _MOST_HEADER:
+            break
+    return columns
+
+
+def read_profile_text(path: Path, spacing: float | None = None, unit: str | None = None) -> Profile:
+    """Read heights, or places x and heights z, one pair a line; lengths in m.
+
+    Numbers are written as in maps (`mcgw.maps.text_file.read_text`). Lines above them that are not
+    numbers are a header; units are taken from it where they stand in brackets, after a slash or alone: of
+    heights in one column, of x and of z in two. Lines like 1,25 are x and z if what stands before the comma
+    rises, and heights with decimal commas otherwise.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    spacing : float, optional
+        Between points, m, where the file has no x, or x without a unit, which then is not looked at.
+    unit : str, optional
+        Of the heights, where the file tells none; m if left out.
+
+    Raises
+    ------
+    ValueError
+        If there are more than two columns, a line is not numbers, no spacing is known, or x does not rise or
+        fall.
+    """
+    table = _table(path)
+    values = _values(path, table)
+    told = _units(table.header, values.shape[1])
+    metre, assumed = height_unit(path, told[-1], unit)
+    if values.shape[1] == 1:
+        if spacing is None:
+            raise ValueError(f"{path}: has one column, of heights; give --pixel, the distance of two points")
+        places = spacing * np.arange(len(values), dtype=np.float64)
+    elif spacing is not None:
+        if told[0] is not None:
+            raise ValueError(f"{path}: tells x in {told[0]} itself; leave --pixel out")
+        places = spacing * np.arange(len(values), dtype=np.float64)
+    else:
+        of_x, assumed_x = height_unit(path, told[0], None)
+        places, assumed = values[:, 0] * of_x, assumed or assumed_x
+    try:
+        return profile_at(places, values[:, -1] * metre, assumed)
+    except ValueError as error:
+        raise ValueError(f"{path}: {error}") from None
+
+
+def _table(path: Path) -> _Table:
+    """Header and lines of numbers."""
+    header: list[str] = []
+    lines: list[tuple[int, str]] = []
+    for number, line in lines_of(path):
+        if line.startswith("#"):
+            header += [] if lines else [line.lstrip("# ")]
+        elif lines or _is_numbers(path, number, line):
+            lines.append((number, line))
+            if len(lines) > _MOST_POINTS:
+                raise ValueError(f"{path}: more than {_MOST_POINTS} lines; cut it first")
+        else:
+            header.append(line)
+            if len(header) > _MOST_HEADER:
+                raise ValueError(f"{path}: the first {_MOST_HEADER} lines are no numbers; is it a profile?")
+    if not lines:
+        raise ValueError(f"{path}: holds no numbers")
+    return _Table(header, lines)
+
+
+def _is_numbers(path: Path, number: int, line: str) -> bool:
+    if _COMMA_ALONE.fullmatch(line):
+        return True
+    try:
+        return bool(np.isfinite(numbers_of(path, number, words_of(path, number, line))).any())
+    except ValueError:
+        return False
+
+
+def _values(path: Path, table: _Table) -> Array:
+    """Shape (points, columns), one or two of them."""
+    if table.commas_alone:
+        x, _, z = zip(*(line.partition(",") for _, line in table.lines), strict=True)
+        if not (all(z) and _rises([int(text) if text.isdigit() else math.nan for text in x])):
+            return np.array([[float(line.replace(",", "."))] for _, line in table.lines])
+    cells = [(n, words_of(path, n, line)) for n, line in table.lines]
+    width = max(_filled(words) for _, words in cells)
+    rows = [numbers_of(path, n, words[: max(width, 1)]) for n, words in cells]
+    widths = np.array([row.size for row in rows])
+    other = np.nonzero(widths != widths[0])[0]
+    if widths[0] > 2:
+        raise ValueError(f"{path}: {widths[0]} numbers a line; a profile has z, or x and z")
+    if other.size:
+        number = table.lines[int(other[0])][0]
+        raise ValueError(f"{path}: line {number} has {widths[other[0]]} numbers, the first {widths[0]}")
+    return np.array(rows)
+
+
+def _filled(words: list[str]) -> int:
+    """How many there are up to the last one that is not empty."""
+    return max((k for k, word in enumerate(words, 1) if word), default=0)
+
+
+def _rises(places: list[float]) -> bool:
+    steps = np.diff(places)
+    return bool(np.all(steps > 0) or np.all(steps < 0))
+
+
+def _units(header: list[str], columns: int) -> list[str | None]:
+    """Of each column, by the last line above them that names units and has no digits."""
+    for line in reversed([line for line in header if not re.search(r"\d", line)]):
+        cells = [cell for cell in re.split(r"[;,\t]|\s{2,}", line) if cell.strip()]
+        units = [_unit(cell) for cell in cells]
+        if len(cells) == columns and any(units):
+            return [unit[0] if unit else None for unit in units]
+        found = [unit for cell in units for unit in cell]
+        if found:
+            return [*found[:columns]] if len(found) >= columns else [found[0]] * columns
+    return [None] * columns
+
+
+def _unit(cell: str) -> list[str]:
+    """Units in a cell, or in a line of several with single spaces."""
+    words = cell.split()
+    if not all(word in _UNITS for word in words):
+        words = [next(filter(None, found)) for found in _UNIT.findall(cell)]
+    return [_UNITS[word] for word in words]
 
 
 def holds_profile(path: Path) -> bool:

@@ -18,12 +18,11 @@ from analytic import SpectralMoments
 from mcgw.formats.sheet import Sheet, Shown
 from mcgw.formats.table import Column, Table
 from mcgw.machine.notebook import plotted
-from mcgw.maps.estimates import Estimate
+from mcgw.maps.estimates import Estimate, Roughness, roughness_of
 from mcgw.maps.form import Form
 from mcgw.maps.profile import Profile, smooth_profile, without_profile_form
 from mcgw.maps.profile_waves import ProfileWaves, waves_of_profile
-from mcgw.maps.roughness import Roughness, roughness_of
-from mcgw.maps.uncertain import Uncertain
+from mcgw.maps.waves import Uncertain
 
 __all__ = ["ProfileFit", "fit_profiles"]
 
@@ -133,7 +132,7 @@ def fit_profiles(profiles: Sequence[Profile], *, cutoff: float | None, form: For
     Returns
     -------
     ProfileFit
-        `mcgw.maps.profile_cautions` says why not to trust it.
+        `mcgw.maps.fit_cautions` says why not to trust it.
 
     Raises
     ------

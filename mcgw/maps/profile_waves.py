@@ -1,4 +1,21 @@
-"""Moments of a surface from the waves of one profile, and what each stretch of it adds to them."""
+"""Moments of an isotropic surface, filtered as a map is, from the waves of one profile.
+
+A profile sees a wave of the surface the longer, the more obliquely it crosses it. So the profile of a
+filtered surface is not a filtered profile: filtered along itself, a profile keeps short waves that it
+crosses slantwise, and its m2 and m4 are too large by tenths. What is the same in both is the
+autocorrelation. Of an isotropic surface it depends on the distance alone, and to filter the surface with
+exp(-a q^2), in power, is to take the mean of it under a plane Gaussian of variance 2a. For a wave k of the
+profile that mean is
+
+    w0(k) = integral of cos(k r) exp(-r^2/(4a)) r/(2a) over r from 0 on = F'(x),  x = k sqrt(a),
+
+with Dawson's integral F, for which F' = 1 - 2 x F. Derivatives with respect to a bring q^2 down, so that
+
+    w2 = -1/2 dw0/da = k^2 (F + x F')/(2 x),      w4 = 3/8 d^2w0/da^2 = k^4 3/32 (x F''' - F'')/x^3.
+
+Sums of the profile's power with these weights are the areal moments m0, m2 and m4 of `mcgw.maps.fit`,
+without bias. They are negative for short waves: those take back what the longer ones have too much.
+"""
 
 import math
 from dataclasses import dataclass
@@ -6,20 +23,66 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 from scipy import fft
+from scipy.special import dawsn
 
-from mcgw.maps.areal_weights import areal_weights, stencil_weights
+from mcgw.maps.form import filter_variance
 from mcgw.maps.profile import Profile
 
-__all__ = ["ProfileWaves", "waves_of_profile"]
+__all__ = ["ProfileWaves", "areal_weights", "stencil_weights", "waves_of_profile"]
 
 Array = NDArray[np.float64]
 
+_SERIES = 0.02  # below, two terms of the series have 1e-9
 _REACH = 1.5  # cutoffs that the weights of distances reach: beyond, exp(-16)
 _LEAST = 24  # points: with a short cutoff, weights fall off slowly at the shortest wave
 _STENCIL = 4  # points, without a cutoff
 _FINE = 16  # points of a spectrum to each weight of a distance
 _ENDS = 0.1  # of a profile, faded out before its waves are counted
 _LOW = slice(1, 5)  # waves that tell what the form took off
+
+
+def areal_weights(wave_numbers: Array, cutoff: float) -> Array:
+    """Weights of waves of a profile in m0, m2 and m4, the latter two over ``k^2`` and ``k^4``.
+
+    Parameters
+    ----------
+    wave_numbers : ndarray
+        k, 1/m, shape (waves,).
+    cutoff : float
+        Of the areal Gaussian filter (ISO 16610-61), m.
+
+    Returns
+    -------
+    ndarray
+        Shape (3, waves).
+    """
+    x = wave_numbers * math.sqrt(filter_variance(cutoff))
+    few = x < _SERIES
+    y = np.where(few, 1.0, x)
+    f = dawsn(y)
+    first = 1 - 2 * y * f
+    second = -2 * f - 2 * y * first
+    third = -4 * first - 2 * y * second
+    return np.array(
+        [
+            np.where(few, 1 - 2 * x**2 + 4 / 3 * x**4, first),
+            np.where(few, 1 - 4 / 3 * x**2 + 4 / 5 * x**4, (f + y * first) / (2 * y)),
+            np.where(few, 1 - 6 / 5 * x**2 + 24 / 35 * x**4, 3 / 32 * (y * third - second) / y**3),
+        ]
+    )
+
+
+def stencil_weights(phases: Array) -> Array:
+    """The same without a cutoff: what the differences of the fourth order see, as a map is looked at.
+
+    Parameters
+    ----------
+    phases : ndarray
+        Wave number times spacing, from 0 to pi.
+    """
+    c, half = np.cos(phases), np.sinc(phases / (2 * math.pi))
+    slope, bend = np.cos(phases / 2) * (4 - c) / 3, (7 - c) / 6  # over those of plain differences
+    return np.array([np.ones_like(c), (slope * half) ** 2, (bend * half**2) ** 2])
 
 
 @dataclass(frozen=True)

@@ -9,8 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mcgw.maps.foreign import ForeignError
-from mcgw.maps.height_unit import height_unit, metres_in
-from mcgw.maps.topography import Topography, checked_shape, single_points
+from mcgw.maps.topography import Topography, checked_shape, height_unit, metres_in, single_points
 
 __all__ = ["lines_of", "numbers_of", "read_text", "words_of"]
 

@@ -1,12 +1,15 @@
-"""A height map: what every reader gives and every writer takes."""
+"""A height map: what every reader gives and every writer takes; and units of heights in files."""
 
 import math
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["MOST_PIXELS", "SMALLEST", "STEEPEST", "Topography", "checked_shape", "single_points"]
+from mcgw.formats.units import METRES
+
+__all__ = ["SMALLEST", "STEEPEST", "Topography", "checked_shape", "height_unit", "metres_in", "single_points"]
 
 Array = NDArray[np.float64]
 
@@ -119,3 +122,30 @@ def single_points(rows: int, columns: int) -> str:
         f"three numbers a line, {rows} lines: x, y and z of single points are no map; give rows of heights "
         "on a grid"
     )
+
+
+def height_unit(path: Path, told: str | None, given: str | None) -> tuple[float, str]:
+    """Size of the unit of heights, m, and the unit that was assumed ("m") if neither file nor user tells one.
+
+    Raises
+    ------
+    ValueError
+        If a unit is unknown, or the file and the user contradict each other.
+    """
+    if given is not None and told is not None and metres_in(path, given) != metres_in(path, told):
+        raise ValueError(f"{path}: heights are in {told} as the file says, not in {given}; leave --unit out")
+    unit = told or given
+    return (1.0, "m") if unit is None else (metres_in(path, unit), "")
+
+
+def metres_in(path: Path, unit: str) -> float:
+    """Size of a unit of length, m.
+
+    Raises
+    ------
+    ValueError
+        If it is unknown.
+    """
+    if unit not in METRES:
+        raise ValueError(f"{path}: {unit!r} is not a unit of length known here: {', '.join(METRES)}")
+    return METRES[unit]

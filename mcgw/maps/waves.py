@@ -3,6 +3,7 @@
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,9 +12,8 @@ from scipy.special import gammaincinv, ndtr, polygamma, spherical_jn, stdtrit
 
 from analytic import SpectralMoments
 from mcgw.maps.topography import Topography
-from mcgw.maps.uncertain import Spread
 
-__all__ = ["Waves", "block_means", "waves_of"]
+__all__ = ["Spread", "Uncertain", "Waves", "block_means", "uncertain", "waves_of"]
 
 Array = NDArray[np.float64]
 
@@ -22,6 +22,55 @@ _FEWEST = 0.5  # waves: one that is cut in two
 _LEAST_FREEDOM = 2.0
 _BAND = 16  # rows that are looked at together: what is made of them stays in the cache
 _OUTSIDE = 0.025  # at either end of an interval
+
+
+class Uncertain(NamedTuple):
+    """A positive number that a map tells.
+
+    Parameters
+    ----------
+    value, error : float
+        ``error/value`` is the standard error of its logarithm.
+    low, high : float
+        Interval that holds the truth 95 times of 100.
+    """
+
+    value: float
+    error: float
+    low: float
+    high: float
+
+
+@dataclass(frozen=True, slots=True)
+class Spread:
+    """How far the truth may lie from an estimate, in logarithms.
+
+    Parameters
+    ----------
+    error : float
+        Standard error.
+    down, up : float
+        How far below and above the estimate an interval of 95 % reaches.
+    """
+
+    error: float
+    down: float
+    up: float
+
+
+def uncertain(value: float, error: float, waves: Spread) -> Uncertain:
+    """Put together an error seen between sub-areas, two of which hold 95 %, and that of few long waves.
+
+    The larger one counts: sub-areas see the short waves twice and the long ones not at all.
+    """
+    relative = error / value
+    down, up = max(2 * relative, waves.down), max(2 * relative, waves.up)
+    return Uncertain(value, value * max(relative, waves.error), value * math.exp(-down), value * _exp(up))
+
+
+def _exp(x: float) -> float:
+    """Infinite, where an arm has no end."""
+    return math.exp(x) if x < 700 else math.inf
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,7 +3,7 @@
 from mcgw.maps.estimates import METHODS, estimates_table
 from mcgw.maps.fit import Fit
 from mcgw.maps.preparation import Preparation
-from mcgw.maps.uncertain import Uncertain
+from mcgw.maps.waves import Uncertain
 
 __all__ = ["fit_lines", "map_line"]
 

@@ -21,10 +21,9 @@ from scipy import fft
 from timing import Job, Times, against, parser_of, seconds, timed
 
 import analytic
-from mcgw.maps.asperities import Asperities, asperities_of
 from mcgw.maps.envelope import envelope
 from mcgw.maps.files import write_map
-from mcgw.maps.spectrum import Spectrum, gaussian_map
+from mcgw.maps.synthetic import Asperities, Spectrum, asperities_of, gaussian_map
 from mcgw.maps.topography import Topography
 from mcgw.scene.scene import Scene
 

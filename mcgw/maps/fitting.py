@@ -4,9 +4,9 @@ from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from mcgw.maps.cautions import cautions
 from mcgw.maps.files import read_map
 from mcgw.maps.fit import Fit, fit_prepared
+from mcgw.maps.fit_cautions import cautions, profile_cautions
 from mcgw.maps.form import FORMS, Form
 from mcgw.maps.preparation import (
     LINES,
@@ -22,7 +22,6 @@ from mcgw.maps.preparation import (
     prepared,
 )
 from mcgw.maps.profile import Profile
-from mcgw.maps.profile_cautions import profile_cautions
 from mcgw.maps.profile_files import holds_profile, read_profile
 from mcgw.maps.profile_fit import ProfileFit, fit_profiles
 from mcgw.maps.topography import Topography

@@ -1,4 +1,4 @@
-"""How much a map varies: what each of its sub-areas tells by itself."""
+"""What each sub-area of a map tells by itself, and whether one of them carries the whole map."""
 
 import math
 from dataclasses import dataclass
@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from mcgw.formats.table import Column, Table
 from mcgw.maps.summit_sums import SUMS, SummitSums
 
-__all__ = ["Tiles", "tiles_of", "write_tiles"]
+__all__ = ["Alone", "Tiles", "alone_of", "tiles_of", "write_tiles"]
 
 Array = NDArray[np.float64]
 
@@ -19,6 +19,7 @@ _UNITS = (
     "eta in 1/m^2, radius and sigma in m, by the summits of the tile; m0 in m^2, m2, m4 in 1/m^2; heights "
     "are about the mean of the tile"
 )
+_HALF = 0.5
 
 
 @dataclass(frozen=True)
@@ -85,3 +86,48 @@ def write_tiles(tiles: Tiles, path: Path) -> None:
     counted = {"tile": tile, "column": tile % tiles.across, "row": tile // tiles.across}
     columns = counted | {name: getattr(tiles, name) for name in _MEASURED}
     Table(tuple(Column(name, values) for name, values in columns.items())).write(path, comment=_UNITS)
+
+
+@dataclass(frozen=True, slots=True)
+class Alone:
+    """A sub-area without which a mean square is less than half.
+
+    Parameters
+    ----------
+    moment : {"m0", "m2", "m4"}
+        Of heights, slopes or second derivatives.
+    left : float
+        Share of it that is left without this sub-area.
+    column, row : int
+        Which sub-area, from 0.
+    across : int
+        Sub-areas along each axis.
+    """
+
+    moment: str
+    left: float
+    column: int
+    row: int
+    across: int
+
+
+def alone_of(counted: SummitSums) -> Alone | None:
+    """The sub-area that most of a mean square stands on, if there is one; m4 before m2 before m0."""
+    sums = dict(zip(SUMS, counted.sums, strict=True))
+    points = sums["points"]
+    if np.count_nonzero(points) == 1:
+        return None
+    mean = sums["z"].sum() / points.sum()
+    squares = {
+        "m4": sums["bend"],
+        "m2": sums["slope_x"] + sums["slope_y"],
+        "m0": sums["z2"] - 2 * mean * sums["z"] + mean**2 * points,
+    }
+    across = round(counted.parts**0.5)
+    for moment, square in squares.items():
+        part = int(np.argmax(square))
+        rest = (square.sum() - square[part]) / (points.sum() - points[part])
+        left = float(rest / (square.sum() / points.sum()))
+        if left < _HALF:
+            return Alone(moment, left, part % across, part // across, across)
+    return None

@@ -1,0 +1,241 @@
+"""Points of a map that are wrong: missing, out of their surroundings, at a bad edge, or cut off."""
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import ndimage
+from scipy.sparse import coo_matrix
+from scipy.sparse.linalg import cg
+
+from mcgw.maps.topography import Topography
+
+__all__ = [
+    "BENT",
+    "Recorded",
+    "bad_edges",
+    "filled",
+    "recorded",
+    "small_spike_heights",
+    "spike_heights",
+    "spikes_of",
+    "usual_bend",
+]
+
+Array = NDArray[np.float64]
+
+_STEPS, _CLOSE = 2000, 1e-8
+_REACH = 3  # pixels from a point to the ring around it: a spike is narrower than five
+BENT = 7.0  # usual bends: once in 4e11 points of a Gaussian map
+_OF_MEDIAN = 0.6745  # of a Gaussian deviation
+_BAND = 64  # rows that are looked at together: what is made of them stays in the cache
+_OUT = 3.0  # ranges of the ring: 12 deviations of white noise beyond it; ridges, pits and peaks stay below
+_MOST = 8  # points from an edge that are looked at
+_JUMP = 5.0  # times the usual difference between neighbouring lines
+_LINES = 32  # fewer have no usual difference
+_LOOKED_AT = 2**18  # points tell the steps of up to some thousand levels
+_MOST_LEVELS = 2**12
+_MORE = 1.3  # times the points of the next level: of a summit that a step cuts, no level has more
+
+
+def filled(heights: Array) -> Array:
+    """Fill missing points: each is the mean of its neighbours left, right, above and below.
+
+    That is Laplace's equation on the pixels. Neighbours beyond the map do not count. In holes wider than
+    some thousand points the iteration ends before its limit, near the height of the nearest edge.
+
+    Parameters
+    ----------
+    heights : ndarray
+        Two-dimensional; missing points are nan, not all of them.
+    """
+    missing = ~np.isfinite(heights)
+    number = int(np.count_nonzero(missing))
+    if not number:
+        return heights
+    nearest = ndimage.distance_transform_edt(missing, return_distances=False, return_indices=True)
+    result = heights[tuple(nearest)]
+    index = np.full(heights.shape, -1, dtype=np.int64)
+    index[missing] = np.arange(number)
+    neighbours, known = np.zeros(number), np.zeros(number)
+    pairs = []
+    for here, other in _neighbours():
+        holes = missing[here]
+        at, beside = index[here][holes], index[other][holes]
+        neighbours[at] += 1
+        inside = beside >= 0
+        pairs.append((at[inside], beside[inside]))
+        known[at[~inside]] += result[other][holes][~inside]
+    rows, columns = (np.concatenate(found) for found in zip(*pairs, strict=True))
+    own = np.arange(number)
+    matrix = coo_matrix(
+        (
+            np.concatenate([neighbours, np.full(rows.size, -1.0)]),
+            (np.concatenate([own, rows]), np.concatenate([own, columns])),
+        ),
+        shape=(number, number),
+    ).tocsr()
+    start = result[missing]
+    away = known - matrix @ start  # solved for the difference: heights may lie far from zero
+    scale = float(np.abs(away).max())
+    if scale > 0:
+        found = cg(matrix, away / scale, rtol=_CLOSE, maxiter=min(_STEPS, 10 * math.isqrt(number) + 50))[0]
+        result[missing] = start + scale * found
+    return np.asarray(result)
+
+
+def _neighbours() -> list[tuple[tuple[slice, slice], tuple[slice, slice]]]:
+    """Views of a map, and of itself one point further, four ways."""
+    every, first, last = slice(None), slice(None, -1), slice(1, None)
+    ways = []
+    for here, other in ((first, last), (last, first)):
+        ways.append(((here, every), (other, every)))
+        ways.append(((every, here), (every, other)))
+    return ways
+
+
+@dataclass(frozen=True, slots=True)
+class Spikes:
+    """What stands out of a map.
+
+    Parameters
+    ----------
+    number : int
+        Places; adjacent points are one.
+    x, y : float
+        Where the highest or deepest of them lies, m.
+    height : float
+        Of that one above (or, below 0, under) the ring of points around it, m.
+    """
+
+    number: int
+    x: float
+    y: float
+    height: float
+
+
+def spikes_of(topography: Topography) -> Spikes | None:
+    """Find points that stand out of the ring three pixels around them, on a map that lacks no points.
+
+    By more than three times the range of heights on that ring, and on half of all rings of the map: the
+    scale is that of the surface next to the point, and a few spikes do not change it.
+    """
+    above = spike_heights(topography)
+    out = above != 0
+    if not out.any():
+        return None
+    _, number = ndimage.label(out, structure=np.ones((3, 3)))
+    j, i = np.unravel_index(int(np.argmax(np.abs(above))), above.shape)
+    dx, dy = topography.pixel
+    return Spikes(number, (int(i) + 0.5) * dx, (int(j) + 0.5) * dy, float(above[j, i]))
+
+
+def spike_heights(topography: Topography) -> Array:
+    """How far every point of a spike stands above (or, below 0, under) its ring, m; 0 for all others."""
+    heights = topography.heights
+    above = np.zeros(heights.shape)
+    if min(heights.shape) <= 2 * _REACH:
+        return above
+    ranges, places, found = np.empty(heights.shape), [], []
+    rows = np.pad(np.arange(len(heights)), _REACH, mode="reflect")
+    for first in range(0, len(heights), _BAND):
+        around = heights[rows[first : first + _BAND + 2 * _REACH]]
+        padded = np.pad(around, ((0, 0), (_REACH, _REACH)), mode="reflect")
+        low, high = _ring(padded, np.minimum), _ring(padded, np.maximum)
+        here = slice(first, first + _BAND)
+        ranges[here] = high - low
+        out = np.maximum(heights[here] - high, 0.0) + np.minimum(heights[here] - low, 0.0)
+        at = np.flatnonzero(np.abs(out) > _OUT * ranges[here])
+        places.append(at + first * heights.shape[1])
+        found.append(out.ravel()[at])
+    usual = float(np.median(ranges, overwrite_input=True)) or float(ranges.mean())  # 0: most of it is flat
+    at, out = np.concatenate(places), np.concatenate(found)
+    most = np.abs(out) > _OUT * usual
+    above.flat[at[most]] = out[most]
+    return above
+
+
+def small_spike_heights(topography: Topography) -> Array:
+    """The same about the mean of the four neighbours, for points that bend unlike all others.
+
+    A spike may be lower than its surroundings are high and still have most of the curvature of a map. Its
+    second differences lie beyond seven times the usual ones, and beyond those of the points next to it.
+    """
+    bends = ndimage.laplace(topography.heights, mode="nearest")
+    size = np.abs(bends)
+    out = (size > BENT * usual_bend(bends)) & (size == ndimage.maximum_filter(size, 3))
+    return np.asarray(np.where(out, bends / -4, 0.0))
+
+
+def usual_bend(bends: Array) -> float:
+    """Standard deviation of Gaussian bends that have the median of these; some may be nan."""
+    return float(np.nanmedian(np.abs(bends - np.nanmedian(bends)))) / _OF_MEDIAN
+
+
+def _ring(padded: Array, extreme: Any) -> Array:
+    """Lowest or highest value on the square of seven points around every one."""
+    along, down = _of_seven(padded, extreme), _of_seven(padded.T, extreme).T
+    rows = extreme(along[: -2 * _REACH], along[2 * _REACH :])
+    return np.asarray(extreme(rows, extreme(down[:, : -2 * _REACH], down[:, 2 * _REACH :])))
+
+
+def _of_seven(z: Array, extreme: Any) -> Array:
+    """Lowest or highest of seven neighbours along a line: of two, of two pairs, and of four and four."""
+    two = extreme(z[:, :-1], z[:, 1:])
+    four = extreme(two[:, :-2], two[:, 2:])
+    return np.asarray(extreme(four[:, :-3], four[:, 3:]))
+
+
+def bad_edges(heights: NDArray[np.float64]) -> int:
+    """How many points from an edge reach the last line that differs from its neighbour unlike all others.
+
+    Root mean squares of the differences between neighbouring rows, and columns, are compared with their
+    median over the map. No point may be missing.
+    """
+    worst = 0
+    for z in (heights, heights.T):
+        if len(z) < _LINES:
+            continue
+        jumps = np.array([np.sqrt(np.mean((z[k + 1] - z[k]) ** 2)) for k in range(len(z) - 1)])
+        wild = jumps > _JUMP * np.median(jumps)
+        if wild[_MOST:-_MOST].any():
+            continue  # such lines lie everywhere
+        for side in (wild, wild[::-1]):
+            worst = max(worst, int(np.flatnonzero(np.append(False, side[:_MOST])).max(initial=0)))
+    return worst
+
+
+@dataclass(frozen=True, slots=True)
+class Recorded:
+    """Of a map as it was read.
+
+    Parameters
+    ----------
+    step : float
+        Between two heights that follow each other, m; 0 if they are as good as continuous.
+    at_end : float
+        Share of the points that have the greatest height, or the least, where they are more than a range
+        that holds all heights leaves there; else 0.
+    """
+
+    step: float
+    at_end: float
+
+
+def recorded(heights: Array) -> Recorded:
+    """Look at a map before anything is taken off it; points may be missing, not all."""
+    some = heights.ravel()[:: max(heights.size // _LOOKED_AT, 1)]
+    levels = np.unique(some[np.isfinite(some)])
+    steps = np.diff(levels)
+    step = float(np.median(steps)) if 1 < levels.size < min(_MOST_LEVELS, some.size / 8) else 0.0
+    ends = ((np.nanmax(heights), -step), (np.nanmin(heights), step))
+    return Recorded(step, max(_at_end(heights, *end) for end in ends))
+
+
+def _at_end(heights: Array, end: float, step: float) -> float:
+    """Share of the points at one end of the heights, if the next level has clearly fewer."""
+    number = np.count_nonzero(heights == end)
+    below = np.count_nonzero(np.abs(heights - (end + step)) < abs(step) / 2) if step else 0
+    return number / heights.size if number > max(_MORE * below, 1) else 0.0

@@ -1,0 +1,239 @@
+"""Why a fit may not be trusted: what lies on the map, its pixel, heights and summits, a line each."""
+
+from collections.abc import Sequence
+
+from mcgw.maps.bad_points import bad_edges, spikes_of
+from mcgw.maps.fit import Fit
+from mcgw.maps.hidden_caps import CROWDED, visible
+from mcgw.maps.instrument import faults
+from mcgw.maps.levels import form_left, step_of
+from mcgw.maps.preparation import Prepared
+from mcgw.maps.profile import Profile
+from mcgw.maps.profile_fit import ProfileFit
+from mcgw.maps.topography import STEEPEST, Topography
+
+__all__ = ["cautions", "profile_cautions"]
+
+_WIDEST = 1e-2  # m
+_FEW_WAVES = 50  # sigma known to a tenth
+_PIXELS = 10.0  # a cutoff wavelength should have
+_RESOLVED = 0.05  # that two ways to m4 may differ by: at about ten pixels a wavelength
+_LOST = 0.1  # of the summits
+_SKEW, _ALPHA = 0.3, 1.5
+_FEW, _STREAKY = 100, 1.5
+_PEAKS, _UNSURE = 1.2, 0.2
+
+
+def flaws(fit: Fit, ready: Prepared) -> list[str]:
+    """Warnings about what lies on a map, each in one line that says what to do."""
+    level = ready.levelled
+    return [
+        *_units(level),
+        *_edges(level),
+        *_spikes(level),
+        *_alone(fit, level),
+        *(_step(level) or _form(fit, level) or _waves(fit)),
+    ]
+
+
+def _units(topography: Topography) -> list[str]:
+    lines = []
+    if topography.steepness > STEEPEST:
+        lines.append(
+            f"slope: {topography.steepness:.3g} is usual on this map; are heights or pixel in another unit?"
+        )
+    if max(topography.pixel) > _WIDEST:
+        lines.append(f"pixel: {max(topography.pixel):g} m; was um or mm meant?")
+    return lines
+
+
+def _edges(topography: Topography) -> list[str]:
+    number = bad_edges(topography.heights)
+    if not number:
+        return []
+    points = "outermost points" if number == 1 else f"outermost {number} points"
+    return [f"edge: the {points} of the map jump unlike all others; leave them off by --trim {number}"]
+
+
+def _spikes(topography: Topography) -> list[str]:
+    spikes = spikes_of(topography)
+    if spikes is None:
+        return []
+    places = "1 place stands" if spikes.number == 1 else f"{spikes.number} places stand"
+    kind = "high" if spikes.height > 0 else "deep"
+    return [
+        f"spikes: {places} out of the map, the largest at x = {spikes.x:.4g} m, y = {spikes.y:.4g} m, "
+        f"{abs(spikes.height):.3g} m {kind} and narrower than five pixels; one alone can set R, eta and "
+        "sigma: take them out by --spikes remove, or crop the map"
+    ]
+
+
+def _alone(fit: Fit, topography: Topography) -> list[str]:
+    alone = fit.alone
+    if alone is None:
+        return []
+    place = (
+        f"{axis} = {size * n / alone.across:.4g} to {size * (n + 1) / alone.across:.4g} m"
+        for axis, size, n in zip("xy", topography.size, (alone.column, alone.row), strict=True)
+    )
+    return [
+        f"sub-area: without the one at {', '.join(place)} {alone.moment} is {alone.left:.2g} of itself; the "
+        "errors stated say little where one sub-area counts alone: look there, and crop it"
+    ]
+
+
+def _step(topography: Topography) -> list[str]:
+    step = step_of(topography)
+    if step is None:
+        return []
+    return [
+        f"step: two levels {step.height:.3g} m apart meet near {step.axis} = {step.place:.3g} m; keep the "
+        "larger terrace by --step crop"
+    ]
+
+
+def _form(fit: Fit, topography: Topography) -> list[str]:
+    left = form_left(topography, fit.form)
+    if left is None:
+        return []
+    kind = "a tilt or a curved form" if fit.form == "none" else "a curved form"
+    return [
+        f"form: {kind} of {left.height:.3g} m from peak to valley was left and holds "
+        f"{100 * left.share:.0f} % of the variance; give --form {left.form}"
+    ]
+
+
+def _waves(fit: Fit) -> list[str]:
+    number = fit.waves.independent
+    if number >= _FEW_WAVES:
+        return []
+    return [
+        f"waves: the longest are so few that m0 is known as from {number:.2g} heights: sigma may be another "
+        f"one elsewhere, by {100 * fit.waves.sigma.error:.2g} % or more; give a longer map"
+    ]
+
+
+def cautions(fit: Fit, ready: Prepared, use: str = "auto") -> list[str]:
+    """Warnings about the fit of a map, and the estimate to `use`, each in one line that says what to do."""
+    return [
+        *flaws(fit, ready),
+        *faults(ready, _longer(ready)),
+        *_of_the_pixel(fit, ready),
+        *_of_the_heights(fit),
+        *_of_the_summits(fit, use if use in fit.estimates else fit.best),
+    ]
+
+
+def _longer(ready: Prepared) -> float:
+    """A cutoff that takes more of the shortest waves, in pixels."""
+    return max(_PIXELS, 1.5 * (ready.asked.cutoff or 0.0) / max(ready.used.pixel))
+
+
+def _of_the_pixel(fit: Fit, ready: Prepared) -> list[str]:
+    pixel, cutoff = max(ready.used.pixel), ready.asked.cutoff
+    if cutoff is not None and cutoff < _PIXELS * pixel:
+        return [
+            f"cutoff: {cutoff / pixel:.3g} pixels a wavelength; below {_PIXELS:g} the pixel sets eta and R, "
+            "not the specimen; give a longer cutoff or finer pixels"
+        ]
+    more = fit.mean_squares["bend"] / fit.mean_squares["bend_1"] - 1
+    if more > _RESOLVED:
+        return [
+            f"pixel: m4 by differences of fourth order is {100 * more:.2g} % above that by plain ones; it "
+            f"has a say in m4, R and eta; give a cutoff of {_longer(ready):.3g} pixels or more"
+        ]
+    return []
+
+
+def _of_the_heights(fit: Fit) -> list[str]:
+    warnings = []
+    skewness, error = fit.skewness
+    if abs(skewness) > max(_SKEW, 3 * error):
+        warnings.append(
+            f"skewness: {skewness:.2f} of the heights; spectral moments tell of summits for Gaussian heights "
+            "only; count them, and keep their heights (--heights table)"
+        )
+    if fit.alpha.value < _ALPHA:
+        warnings.append(f"alpha: {fit.alpha.value:.3g} is below 1.5, which no isotropic Gaussian surface has")
+    if fit.lay > _STREAKY:
+        warnings.append(
+            f"lay: mean square slopes across and along it have the ratio {fit.lay:.3g}; it is not isotropic"
+        )
+    return warnings
+
+
+def _of_the_summits(fit: Fit, used: str) -> list[str]:
+    warnings = []
+    if fit.summits.size < _FEW:
+        warnings.append(f"summits: only {fit.summits.size} were found; give a larger map or a shorter cutoff")
+    overlap = fit.estimates[used].overlap
+    if used == "caps" and fit.visible is not None:
+        sharp = visible(overlap).share
+        lost = sharp - fit.visible.share
+        if lost > _LOST:
+            warnings.append(
+                f"blur: {100 * lost:.0f} % of caps like these are lost where a valley is nearer than a pixel "
+                "or a third of a cutoff; give finer pixels, and a shorter cutoff"
+            )
+        hidden = f" of caps like these {100 * (1 - sharp):.0f} % hide under others,"
+    else:
+        hidden = " summits are as broad as they are far apart,"
+    if overlap > CROWDED:
+        warnings.append(f"overlap: eta R sigma = {overlap:.2g};{hidden} so asperities do not act one by one")
+    return warnings
+
+
+def profile_cautions(fit: ProfileFit, profiles: Sequence[Profile], cutoff: float | None) -> list[str]:
+    """Warnings about the fit of these profiles."""
+    return [*_of_profile_points(profiles, cutoff), *_of_profile_heights(fit), *_of_profile_waves(fit)]
+
+
+def _of_profile_points(profiles: Sequence[Profile], cutoff: float | None) -> list[str]:
+    lines = []
+    filled, points = sum(p.filled for p in profiles), sum(p.heights.size for p in profiles)
+    if filled:
+        lines.append(f"missing: {filled} of {points} heights lie on straight lines between their neighbours")
+    spacing = max(p.spacing for p in profiles)
+    if any(p.resampled for p in profiles):
+        lines.append("x: the points were not evenly spaced; heights between them were interpolated")
+    if cutoff is None:
+        lines.append(
+            "cutoff: none, so that noise and the tip set m4, R and eta; give ten points "
+            f"({10 * spacing:.2g} m) or more, and no less than the radius of the tip"
+        )
+    elif cutoff < _PIXELS * spacing:
+        lines.append(
+            f"cutoff: {cutoff / spacing:.3g} points a wavelength; below {_PIXELS:g} the spacing sets eta and "
+            "R, not the specimen; give a longer cutoff"
+        )
+    return lines
+
+
+def _of_profile_heights(fit: ProfileFit) -> list[str]:
+    lines = []
+    if abs(fit.roughness.sk) > max(_SKEW, 6 * fit.errors["m0"]):
+        lines.append(
+            f"skewness: {fit.roughness.sk:.2f} of the heights; moments tell of summits for Gaussian heights "
+            "only; measure a map, and count them"
+        )
+    counted, expected = fit.peaks
+    if not 1 / _PEAKS < counted / expected < _PEAKS:
+        lines.append(
+            f"peaks: {counted:.3g} a metre are counted, and {expected:.3g} follow from the profile's own "
+            "moments; it is not Gaussian, or noise makes peaks: measure a map"
+        )
+    if fit.moments.alpha < _ALPHA:
+        lines.append(
+            f"alpha: {fit.moments.alpha:.3g} is below 1.5, which no isotropic Gaussian surface has; a turned "
+            "or ground surface needs a map"
+        )
+    return lines
+
+
+def _of_profile_waves(fit: ProfileFit) -> list[str]:
+    if fit.errors["sigma"] < _UNSURE:
+        return []
+    return [
+        f"waves: sigma is known to {100 * fit.errors['sigma']:.2g} % only, since the longest are few; give "
+        "longer profiles, or more of them"
+    ]
