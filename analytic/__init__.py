@@ -30,7 +30,8 @@ Eq. (15)  `analytic.stiffness_ratio`           its ratio: that of the stiffnesse
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from analytic.contact import (
+from analytic.curvature import RandomCurvature
+from analytic.equations import (
     area,
     area_per_load,
     area_per_load_ratio,
@@ -41,24 +42,23 @@ from analytic.contact import (
     cumulants,
     load,
     mean,
+    mean_modulus,
+    plasticity_index,
     separation_at,
     stiffness,
     stiffness_ratio,
 )
-from analytic.curvature import RandomCurvature
 from analytic.extent import extent
 from analytic.gradings import Clipped, Custom, Exponential, Grading, Homogeneous
-from analytic.height_laws import ExponentialHeights, ScipyHeights, Weibull
 from analytic.height_rule import Fluctuations, HeightRule
-from analytic.heights import Gaussian, HeightLaw
+from analytic.height_table import HeightTable
+from analytic.heights import ExponentialHeights, Gaussian, HeightLaw, Weibull
 from analytic.integrals import fn, fn_between, fn_paper, fn_scaled
 from analytic.inversion import ratio_at_equal_load
-from analytic.measured_heights import HeightTable, MeasuredHeights
-from analytic.measured_radii import MeasuredRadii
+from analytic.measured_summits import MeasuredHeights, MeasuredRadii
 from analytic.model import Cumulants, Model
 from analytic.nayak import Nayak
 from analytic.piecewise import PiecewiseSeries
-from analytic.plasticity import mean_modulus, plasticity_index
 from analytic.quantities import (
     ALL_QUANTITIES,
     LAW_QUANTITIES,
@@ -71,9 +71,9 @@ from analytic.quantities import (
     quantity_of,
 )
 from analytic.resolution import first_negative, resolved_breaks
+from analytic.scipy_heights import ScipyHeights
 from analytic.series import bends, is_data, name_of, resolved
-from analytic.spectral_moments import SpectralMoments
-from analytic.surface import Body, Surface, composite_modulus
+from analytic.surface import Body, SpectralMoments, Surface, composite_modulus
 from analytic.tables import Table
 
 if TYPE_CHECKING:

@@ -10,7 +10,7 @@ from analytic.gradings import Grading
 from analytic.height_rule import normal_ends
 from analytic.heights import Gaussian, HeightLaw
 from analytic.law_rule import law_ends
-from analytic.measured_heights import MeasuredHeights
+from analytic.measured_summits import MeasuredHeights
 
 __all__ = ["extent"]
 

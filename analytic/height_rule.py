@@ -18,7 +18,6 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from analytic.elementary import exp_minus_half_square
-from analytic.gauss_legendre import gauss_legendre
 from analytic.gradings import Grading
 from analytic.heights import GAUSSIAN, Gaussian, HeightLaw
 from analytic.integrals import fn
@@ -27,11 +26,11 @@ from analytic.laws.branch import Branch, term_of
 from analytic.laws.cuts import cuts_of
 from analytic.laws.law import ContactLaw
 from analytic.laws.ways import Ways
-from analytic.measured_radii import MeasuredRadii
+from analytic.measured_summits import MeasuredRadii
+from analytic.quadrature import above_neighbours, gauss_legendre
 from analytic.quantities import quantity_of
-from analytic.reach import Weight, tame
 from analytic.resolution import resolved_breaks
-from analytic.towards import above_neighbours
+from analytic.steep import Weight, tame
 
 __all__ = ["Count", "Fluctuations", "HeightRule", "normal_ends"]
 

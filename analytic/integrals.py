@@ -12,14 +12,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from analytic.elementary import exp_minus_half_square
-from analytic.gauss_legendre import gauss_legendre
 from analytic.gradings import Grading, Homogeneous
 from analytic.heights import GAUSSIAN, Gaussian, HeightLaw
 from analytic.law_rule import law_integral
-from analytic.magnitude import log_unit
-from analytic.panels import panels
-from analytic.reach import Weight, tame
+from analytic.quadrature import gauss_legendre, panels
 from analytic.resolution import resolved_breaks
+from analytic.steep import Weight, log_unit, tame
 
 __all__ = ["fn", "fn_between", "fn_paper", "fn_scaled", "quotient"]
 

@@ -1,5 +1,6 @@
 """Given the load (or area, ...), the separation; and comparisons at equal load."""
 
+from collections.abc import Callable
 from functools import cache
 
 import numpy as np
@@ -11,15 +12,16 @@ from analytic.integrals import fn, quotient
 from analytic.law_rule import law_rule
 from analytic.quantities import QUANTITIES, Quantity
 
-__all__ = ["ratio_at_equal_load", "separations_at"]
+__all__ = ["ratio_at_equal_load", "separations_at", "separations_of_means"]
 
 Array = NDArray[np.float64]
 
 _RANGE = (-40.0, 1000.0)
 _GRID = np.concatenate([np.linspace(_RANGE[0], 10, 251), np.geomspace(10.5, _RANGE[1], 60)])
 _LAST_DIGITS = 4 * np.finfo(float).eps
-
 Problem = tuple[float, Grading | None, HeightLaw, float]
+
+_FARTHEST = 20.0  # distance of a separation from that of one radius
 
 
 def separations_at(
@@ -133,3 +135,38 @@ def ratio_at_equal_load(
     # Relative to the loads, which are equal: hardly sensitive to the last digits of h2, and no underflow.
     graded = quotient(other, (q.exponent, grading if q.modulus else None), (1.5, grading), heights)
     return graded / quotient(h, (q.exponent, None), (1.5, None), heights)
+
+
+def separations_of_means(mean: Callable[[float], Array], starts: Array, values: Array, name: str) -> Array:
+    """Find the separations of given means, looking around those of one radius.
+
+    Parameters
+    ----------
+    mean : callable
+        Takes a separation to the mean, which falls.
+    starts, values : ndarray
+        Where to begin, and what is looked for; of one shape.
+    name : str
+        Of the quantity, for the message.
+
+    Raises
+    ------
+    ValueError
+        If a value is not reached.
+    """
+    from scipy.optimize import brentq  # imports half of SciPy, which few separations are asked for
+
+    found = []
+    for middle, value in zip(starts.ravel().tolist(), values.ravel().tolist(), strict=True):
+
+        def excess(h: float, value: float = value) -> float:
+            with np.errstate(divide="ignore"):
+                return float(np.fmax(np.log(mean(h) / value), -100.0))
+
+        width = 0.25
+        while not excess(middle - width) > 0 > excess(middle + width):
+            width *= 2
+            if width > _FARTHEST:
+                raise ValueError(f"{name}: {value:g} is not reached; give another value")
+        found.append(brentq(excess, middle - width, middle + width, xtol=1e-13, rtol=1e-14))
+    return np.array(found, dtype=np.float64).reshape(values.shape)

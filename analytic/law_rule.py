@@ -11,14 +11,12 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from analytic.gauss_legendre import gauss_legendre
 from analytic.gradings import Grading
 from analytic.heights import HeightLaw
-from analytic.magnitude import log_unit, over_unit
-from analytic.measured_heights import MeasuredHeights
-from analytic.reach import Weight
+from analytic.measured_summits import MeasuredHeights
+from analytic.quadrature import NEAREST, above_neighbours, gauss_legendre, towards
 from analytic.resolution import resolved_breaks
-from analytic.towards import NEAREST, above_neighbours, towards
+from analytic.steep import Weight, log_unit, over_unit
 
 __all__ = ["law_ends", "law_integral", "law_rule"]
 

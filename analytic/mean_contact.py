@@ -13,11 +13,10 @@ from analytic.gradings import Grading
 from analytic.height_rule import HeightRule
 from analytic.heights import Gaussian, HeightLaw
 from analytic.laws.branch import Branch, UnloadingBranch
+from analytic.laws.law import piece_of
 from analytic.laws.slopes import jump_terms, slope_term
-from analytic.laws.spot import piece_of
 from analytic.laws.ways import Ways
-from analytic.measured_heights import MeasuredHeights
-from analytic.measured_radii import MeasuredRadii
+from analytic.measured_summits import MeasuredHeights, MeasuredRadii
 from analytic.quantities import quantity_of
 from analytic.radii_rule import jumps_of_radii, rule_of_radii
 

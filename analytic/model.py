@@ -7,23 +7,21 @@ from functools import cached_property, partial
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from analytic.curvature import RandomCurvature
+from analytic.curvature import RandomCurvature, WeightedHeights
 from analytic.gradings import Grading, Homogeneous
 from analytic.height_rule import Count, Fluctuations, HeightRule
 from analytic.heights import Gaussian, HeightLaw
 from analytic.integrals import fn
-from analytic.inversion import separations_at
+from analytic.inversion import separations_at, separations_of_means
 from analytic.laws.film import Film
-from analytic.laws.law import ContactLaw
-from analytic.laws.plain import is_hertz
+from analytic.laws.law import ContactLaw, is_hertz
 from analytic.laws.tangential import Tangential, half_spaces
 from analytic.laws.ways import Ways
 from analytic.mean_contact import MeanContact
-from analytic.measured_radii import MeasuredRadii
+from analytic.measured_summits import MeasuredRadii
 from analytic.quantities import LAW_QUANTITIES, Quantity, quantity_of
-from analytic.summits import separations_of_means, with_radii
+from analytic.radii_rule import with_radii
 from analytic.surface import Surface
-from analytic.weighted_heights import WeightedHeights
 
 __all__ = ["Cumulants", "Model"]
 

@@ -22,11 +22,10 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.special import erfcx, ndtr
 
 from analytic.elementary import exp_minus_half_square
-from analytic.fitted import fitted
-from analytic.gauss_legendre import gauss_legendre
-from analytic.height_laws import narrowest
-from analytic.piecewise import PiecewiseSeries
-from analytic.spectral_moments import LEAST_ALPHA, SUMMIT_SPREAD
+from analytic.heights import narrowest
+from analytic.piecewise import PiecewiseSeries, fitted
+from analytic.quadrature import gauss_legendre
+from analytic.surface import LEAST_ALPHA, SUMMIT_SPREAD
 
 __all__ = ["Nayak", "NayakTables", "panelled", "tables_of", "upper_tail"]
 

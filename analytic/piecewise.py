@@ -1,14 +1,15 @@
-"""A grading as Chebyshev series on pieces: what is left of a Python function once it lies in a file."""
+"""Chebyshev series on pieces: what is left of a slow or unknown function once it is evaluated."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import ClassVar
 
 import numpy as np
+from numpy.polynomial import chebyshev
 from numpy.typing import NDArray
 
-__all__ = ["MOST_PIECES", "PiecewiseSeries"]
+__all__ = ["MOST_PIECES", "PiecewiseSeries", "fitted"]
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -18,6 +19,7 @@ _MOST_TERMS, _MOST_NAME = 64, 200
 _SAME, _SAME_END = 4e-13, 0.1  # of two resolutions: of the largest value next by, and of their ends
 _INSIDE = np.array([0.1, 0.3, 0.5, 0.7, 0.9])
 _HALVINGS, _MOST_PARTS = 40, 4096  # in the search for zeros
+_NOISE = 3e-16
 
 
 @dataclass(frozen=True, repr=False)
@@ -171,3 +173,34 @@ def _clenshaw(c: Array, piece: Ints, x: Array) -> Array:
     for row in c[:0:-1]:
         last, value = value, row[piece] + (twice * value - last)
     return np.asarray(c[0][piece] + (x * value - last))
+
+
+def fitted(function: Callable[[Array], Array], edges: Array, terms: int) -> PiecewiseSeries:
+    """Interpolate at the Chebyshev points of every interval.
+
+    Parameters
+    ----------
+    function : callable
+        Takes an array, shape (n,), to its values.
+    edges : ndarray
+        Ends of the intervals, increasing.
+    terms : int
+        Of each series.
+
+    Returns
+    -------
+    PiecewiseSeries
+        To the last digits where the function has no feature much narrower than its interval.
+    """
+    nodes = chebyshev.chebpts1(terms)
+    places = edges[:-1, None] + np.diff(edges)[:, None] * (1 + nodes) / 2
+    values = function(places.ravel()).reshape(places.shape)
+    basis = chebyshev.chebvander(nodes, terms - 1) * (2 / terms)  # orthogonal over these points
+    basis[:, 0] /= 2
+    return PiecewiseSeries(edges.tolist(), [_without_noise(c) for c in values @ basis])
+
+
+def _without_noise(c: Array) -> list[float]:
+    """Coefficients up to the last that is more than rounding: at the ends of an interval they add up."""
+    size = np.flatnonzero(np.abs(c) > _NOISE * np.abs(c).max(initial=0.0))
+    return c[: size[-1] + 1].tolist() if size.size else [0.0]

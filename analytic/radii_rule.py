@@ -12,18 +12,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analytic.curvature import MEAN_CURVATURE, RandomCurvature
-from analytic.gauss_legendre import gauss_legendre
 from analytic.gradings import Grading
 from analytic.height_rule import HeightRule
 from analytic.law_rule import law_ends
 from analytic.laws.branch import Branch, LoadingBranch
 from analytic.laws.cuts import cuts_of_each
 from analytic.laws.slopes import jump_terms
+from analytic.quadrature import above_neighbours, gauss_legendre
 from analytic.quantities import quantity_of
 from analytic.resolution import resolved_breaks
-from analytic.towards import above_neighbours
 
-__all__ = ["jumps_of_radii", "rule_of_radii"]
+__all__ = ["jumps_of_radii", "rule_of_radii", "with_radii"]
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -140,3 +139,14 @@ def jumps_of_radii(
     at = np.full(ratios.shape, h)
     found = jump_terms(quantity, branch.with_radii(ratios), grading, radii.density, at, ends)
     return float(found @ ratios ** quantity_of(quantity).radius)
+
+
+def with_radii(rule: HeightRule, curvature: RandomCurvature) -> HeightRule:
+    """Spread a rule over heights to heights and radii of summits.
+
+    Exact for sums, their products and third powers where one summit adds a power of its radius, up to 1;
+    fourth powers of the radius have a mean only if it is bounded.
+    """
+    ratio, probability = curvature.rule(rule.heights)
+    heights = np.broadcast_to(rule.heights, ratio.shape)
+    return HeightRule(heights.ravel(), (rule.probabilities * probability).ravel(), rule.below, ratio.ravel())

@@ -98,7 +98,7 @@ def test_every_function_takes_the_height_law():
 
 def test_no_source_imports_the_simulator():
     paths = sorted(Path(analytic.__file__).parent.rglob("*.py"))
-    assert len(paths) > 50
+    assert paths
     for path in paths:
         imported = re.findall(r"^\s*(?:from|import)\s+(\w+)", path.read_text(encoding="utf-8"), re.MULTILINE)
         assert set(imported) <= {"analytic", "numpy", "scipy", *sys.stdlib_module_names}, path

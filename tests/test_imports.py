@@ -120,9 +120,7 @@ FEATURES = {
 }  # fmt: skip
 # Laws of contact and height, and interaction: by the last part of their names.
 LAWS = {
-    "adhesion", "bridge", "chang_etsion_bogy", "coated", "custom", "elastic_plastic",
-    "etsion_kligerman_kadin", "hardness", "jackson_green", "kogut_etsion", "law_rows",
-    "power_law_graded", "root_series", "zhao_maietta_chang",
+    "adhesion", "custom", "elastic", "elastic_plastic", "elastic_plastic_laws", "law_rows",
     "balance", "interacting", "interaction", "interaction_mistakes", "interaction_section", "lowest_felt",
     "nominal", "nominal_literal", "own_balance",
 }  # fmt: skip

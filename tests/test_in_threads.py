@@ -10,7 +10,7 @@ import scipy.stats
 from numba import get_num_threads
 
 import analytic
-from analytic.in_time import in_time
+from analytic.scipy_heights import in_time
 from mcgw.ensemble.drawing import use_threads
 from mcgw.machine.in_threads import in_threads, pieces
 from mcgw.machine.one_ahead import one_ahead

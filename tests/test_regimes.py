@@ -9,9 +9,8 @@ from scipy.optimize import brentq
 
 from analytic import Clipped, Custom, Exponential, Homogeneous, Table
 from analytic.laws.crossings import crossings_of
-from analytic.laws.law import ContactLaw
+from analytic.laws.law import ContactLaw, piece_of
 from analytic.laws.regimes import merged_heights, regimes_of
-from analytic.laws.spot import piece_of
 
 
 class Yielding(ContactLaw):

@@ -376,7 +376,7 @@ SLOW_LAWS = [
 @pytest.mark.parametrize("law", SLOW_LAWS, ids=lambda law: law.dist.name)
 def test_slow_laws_are_given_up_after_their_time(law, monkeypatch):
     """By a bound of a tenth of a second here; their moments take minutes."""
-    monkeypatch.setattr("analytic.height_laws._SECONDS", 0.1)
+    monkeypatch.setattr("analytic.scipy_heights._SECONDS", 0.1)
     profile = sys.getprofile()
     with pytest.raises(
         ValueError, match=r"^\w+: mean and deviation take scipy longer than 0\.1 s; give another"

@@ -1,4 +1,4 @@
-"""Laws of contact of one asperity, one file each; they are loaded when they are asked for."""
+"""Laws of contact of one asperity; they are loaded when they are asked for."""
 
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
@@ -6,21 +6,20 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from analytic.laws.adhesion import DerjaguinMullerToporov, JohnsonKendallRoberts
     from analytic.laws.branch import Branch, LoadingBranch, UnloadingBranch, term_of
-    from analytic.laws.chang_etsion_bogy import ChangEtsionBogy
-    from analytic.laws.coated import Coated
     from analytic.laws.custom import CustomLaw
+    from analytic.laws.elastic import Coated, PowerLawGraded
+    from analytic.laws.elastic_plastic_laws import (
+        ChangEtsionBogy,
+        JacksonGreen,
+        KogutEtsion,
+        ZhaoMaiettaChang,
+    )
     from analytic.laws.film import Film, SpotConductance, crowding_factor, film_conductance, film_parameter
-    from analytic.laws.hertz import Hertz
-    from analytic.laws.jackson_green import JacksonGreen
-    from analytic.laws.kogut_etsion import KogutEtsion
-    from analytic.laws.law import ContactLaw
-    from analytic.laws.power_law_graded import PowerLawGraded
+    from analytic.laws.law import ContactLaw, Hertz, of_spot, piece_of
     from analytic.laws.regimes import Regimes, merged_heights, regimes_of
-    from analytic.laws.spot import of_spot, piece_of
     from analytic.laws.tangential import Tangential, half_spaces, masing
     from analytic.laws.unloading import Unloading
     from analytic.laws.ways import Ways
-    from analytic.laws.zhao_maietta_chang import ZhaoMaiettaChang
 
     by_name: dict[str, type[ContactLaw]]
 
@@ -35,21 +34,15 @@ __all__ = [
 _FILES = {
     "adhesion": ("DerjaguinMullerToporov", "JohnsonKendallRoberts"),
     "branch": ("Branch", "LoadingBranch", "UnloadingBranch", "term_of"),
-    "chang_etsion_bogy": ("ChangEtsionBogy",),
-    "coated": ("Coated",),
     "custom": ("CustomLaw",),
+    "elastic": ("Coated", "PowerLawGraded"),
+    "elastic_plastic_laws": ("ChangEtsionBogy", "JacksonGreen", "KogutEtsion", "ZhaoMaiettaChang"),
     "film": ("Film", "SpotConductance", "crowding_factor", "film_conductance", "film_parameter"),
-    "hertz": ("Hertz",),
-    "jackson_green": ("JacksonGreen",),
-    "kogut_etsion": ("KogutEtsion",),
-    "law": ("ContactLaw",),
-    "power_law_graded": ("PowerLawGraded",),
+    "law": ("ContactLaw", "Hertz", "of_spot", "piece_of"),
     "regimes": ("Regimes", "merged_heights", "regimes_of"),
-    "spot": ("of_spot", "piece_of"),
     "tangential": ("Tangential", "half_spaces", "masing"),
     "unloading": ("Unloading",),
     "ways": ("Ways",),
-    "zhao_maietta_chang": ("ZhaoMaiettaChang",),
 }
 _HOMES = {name: file for file, names in _FILES.items() for name in names}
 _LAWS = (

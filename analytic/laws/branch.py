@@ -14,9 +14,8 @@ from numpy.typing import ArrayLike, NDArray
 from analytic.gradings import Grading
 from analytic.laws.crossings import crossings_of
 from analytic.laws.film import SpotConductance
-from analytic.laws.law import ContactLaw
+from analytic.laws.law import ContactLaw, of_spot, of_unloading, piece_of
 from analytic.laws.regimes import Regimes, merged_heights, regimes_of
-from analytic.laws.spot import of_spot, of_unloading, piece_of
 
 __all__ = ["Branch", "LoadingBranch", "UnloadingBranch", "term_of"]
 

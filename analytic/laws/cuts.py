@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from analytic.gradings import Grading
 from analytic.laws.branch import Branch
 from analytic.laws.regimes import Regimes
-from analytic.towards import NEAREST, towards
+from analytic.quadrature import NEAREST, towards
 
 __all__ = ["cuts_of", "cuts_of_each"]
 

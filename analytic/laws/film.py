@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from analytic.laws.positive import is_positive
+from analytic.laws.law import is_positive
 from analytic.surface import Surface
 
 __all__ = ["Film", "SpotConductance", "crowding_factor", "film_conductance", "film_parameter"]

@@ -9,19 +9,30 @@ Everything is in reduced units. An asperity of height s under a plane at the sep
 import math
 from collections.abc import Callable
 from copy import copy
-from dataclasses import fields, is_dataclass
+from dataclasses import dataclass, fields, is_dataclass
+from numbers import Real
 from typing import Any, ClassVar, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
-from analytic.laws.derivative import slope_in_root
-from analytic.laws.unloading import Unloading
+from analytic.laws.unloading import Unloading, slope_in_root
 from analytic.surface import Surface
 
-__all__ = ["ContactLaw"]
+__all__ = [
+    "ContactLaw",
+    "Hertz",
+    "checked_poisson",
+    "is_hertz",
+    "is_positive",
+    "of_spot",
+    "of_unloading",
+    "piece_of",
+]
 
 Array = NDArray[np.float64]
+
+_FORMULAS = ("limits", "load", "radius", "stiffness", "slope", "unloading")
 
 
 class ContactLaw:
@@ -149,3 +160,104 @@ class ContactLaw:
                 "take 'kogut-etsion', which has one, or an elastic law"
             )
         return Unloading(self)
+
+
+@dataclass(frozen=True)
+class Hertz(ContactLaw):
+    """Hertz's contact: load ``e delta^(3/2)``, area ``delta``, stiffness ``e delta^(1/2)``.
+
+    Valid for frictionless elastic spheres whose radius of contact is small against R. Nothing is known
+    to be wrong with it; metals seldom stay elastic (see the laws that yield).
+
+    Notes
+    -----
+    Source: H. Hertz, J. reine angew. Math. 92 (1882) 156.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> float(Hertz().load(0, np.sqrt(4.0), np.array(1.0)))
+    8.0
+    """
+
+    name: ClassVar[str] = "hertz"
+
+
+def is_hertz(law: ContactLaw) -> bool:
+    """Whether it has none of its own formulas."""
+    return all(getattr(type(law), name, None) is getattr(ContactLaw, name, None) for name in _FORMULAS)
+
+
+def is_positive(value: Any) -> bool:
+    """False also for texts, which only scene files read."""
+    return isinstance(value, Real) and 0 < float(value) < math.inf
+
+
+def checked_poisson(poisson: float) -> float:
+    """Poisson's ratio, if it is one.
+
+    Raises
+    ------
+    ValueError
+        If not.
+    """
+    if not -1 < poisson <= 0.5:
+        raise ValueError(f"poisson = {poisson!r}: give a Poisson's ratio between -1 and 0.5")
+    return poisson
+
+
+def of_spot(quantity: str, law: ContactLaw, piece: int, y: Array, e: Array) -> Array:
+    """What a contact of this piece of the law adds, as the piece's formula goes on beyond its ends.
+
+    Parameters
+    ----------
+    quantity : str
+        Its name: one of `analytic.QUANTITIES` or `analytic.LAW_QUANTITIES`.
+    law : ContactLaw
+        In reduced units.
+    piece : int
+        Which formula.
+    y, e : ndarray
+        Root of the penetration and modulus E*(s)/E*, of any shapes that broadcast.
+
+    Returns
+    -------
+    ndarray
+        In their common shape.
+
+    Raises
+    ------
+    KeyError
+        If there is no such quantity.
+    """
+    return _added(quantity, law, piece, y, e)
+
+
+def of_unloading(
+    quantity: str, unloading: Unloading, piece: int, y: Array, deepest: Array, e: Array
+) -> Array:
+    """As `of_spot`, on the way back from `deepest`; y is the root of the penetration left to lift-off."""
+    return _added(quantity, unloading, piece, y, deepest, e)
+
+
+def _added(quantity: str, formulas: Any, piece: int, *at: Array) -> Array:
+    """A quantity by the formulas of load, radius, stiffness and slope, on either way."""
+    shape = np.broadcast_shapes(*map(np.shape, at))
+    known: dict[str, Any] = {
+        "load": lambda: formulas.load(piece, *at),
+        "area": lambda: formulas.radius(piece, *at) ** 2,
+        "stiffness": lambda: formulas.stiffness(piece, *at),
+        "contacts": lambda: np.ones(shape),
+        "conductance": lambda: formulas.radius(piece, *at),
+        "load_slope": lambda: formulas.slope(piece, *at) * (2 / 3),
+        "yielded": lambda: np.full(shape, float(piece > 0)),
+    }
+    return np.asarray(known[quantity]())
+
+
+def piece_of(law: ContactLaw, penetration: Array, e: Array) -> NDArray[np.int64]:
+    """Which piece of the law holds at these penetrations, in the shape of both."""
+    penetration, e = np.broadcast_arrays(penetration, e)
+    with np.errstate(divide="ignore", over="ignore"):  # without a modulus nothing yields
+        limits = law.limits(e)
+    return np.asarray((limits <= penetration).sum(axis=0), dtype=np.int64)

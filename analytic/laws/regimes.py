@@ -7,8 +7,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from analytic.gradings import Grading
 from analytic.laws.crossings import Bound, crossings_of
-from analytic.laws.law import ContactLaw
-from analytic.laws.spot import piece_of
+from analytic.laws.law import ContactLaw, piece_of
 
 __all__ = ["Regimes", "merged_heights", "regimes_of"]
 

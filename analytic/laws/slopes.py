@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from analytic.gradings import Grading
 from analytic.laws.branch import LoadingBranch
 from analytic.laws.crossings import Bound, Crossings, crossings_of
-from analytic.laws.spot import piece_of
+from analytic.laws.law import piece_of
 from analytic.resolution import resolved_breaks
 
 __all__ = ["jump_terms", "slope_term"]

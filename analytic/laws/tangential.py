@@ -6,8 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from analytic.laws.law import ContactLaw
-from analytic.laws.plain import is_hertz
+from analytic.laws.law import ContactLaw, is_hertz
 from analytic.surface import Surface
 
 __all__ = ["Tangential", "half_spaces", "masing"]

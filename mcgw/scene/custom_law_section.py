@@ -2,8 +2,7 @@
 
 from typing import Any
 
-from analytic.laws.custom import CustomLaw
-from analytic.laws.root_series import RootSeries
+from analytic.laws.custom import CustomLaw, RootSeries
 from mcgw.scene.section import Section
 
 __all__ = ["custom_law", "custom_table"]

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analytic import Gaussian, Hertz, Nayak, RandomCurvature, SpectralMoments, Surface
-from analytic.spectral_moments import LEAST_ALPHA, SUMMIT_SPREAD
+from analytic.surface import LEAST_ALPHA, SUMMIT_SPREAD
 from mcgw.scene.fields import Fields
 from mcgw.scene.fitted_section import Fitted
 from mcgw.scene.law_text import law_text

@@ -22,7 +22,7 @@ from scipy.special import ndtr
 from solve_list import STEP
 
 import mcgw
-from analytic.spectral_moments import LEAST_ALPHA
+from analytic.surface import LEAST_ALPHA
 from mcgw.maps.fit import fit_prepared
 from mcgw.maps.fitted_scene import fitted_scene
 from mcgw.maps.preparation import Preparation, prepared

@@ -1,4 +1,4 @@
-"""Integrals over one range of heights, between a separation or a cut and the next cut, for many separations.
+"""Gauss rules on pieces of the heights, and integrals over them for many separations.
 
 With s = h + v^2 the integrand is ``2 v^(2n+1)`` times a smooth function of v. For half-integer n the whole of
 it is smooth and Gauss-Legendre converges exponentially. For other n ranges that begin at the separation take
@@ -7,21 +7,50 @@ begin, where the power is smooth again.
 """
 
 from functools import cache
+from itertools import pairwise
 
 import numpy as np
+from numpy.polynomial.legendre import leggauss
 from numpy.typing import NDArray
 from scipy.special import roots_jacobi
 
-from analytic.gauss_legendre import gauss_legendre
 from analytic.gradings import Grading, Homogeneous
-from analytic.magnitude import over_unit
+from analytic.steep import over_unit
 
-__all__ = ["panels"]
+__all__ = ["NEAREST", "above_neighbours", "gauss_legendre", "panels", "towards"]
 
 Array = NDArray[np.float64]
 
+NEAREST = 2.0**-30  # below, a power >= 0 is 1e-9 of the whole, and integrated to 1e-7
+_GROWTH = 8.0  # of a piece to its distance from the separation below
 _NODES = 64
-_RATIO = 256.0  # of the approaches s - h at the ends of a range, for powers that are no half-integers
+_FARTHEST = 256.0  # of the approaches s - h at the ends of a range, for powers that are no half-integers
+
+
+@cache
+def gauss_legendre(nodes: int) -> tuple[Array, Array]:
+    """Points and weights, read-only."""
+    x, w = leggauss(nodes)
+    x, w = (1 + x) / 2, w / 2
+    x.flags.writeable = w.flags.writeable = False
+    return x, w
+
+
+def towards(separation: float, nearest: float) -> list[float]:
+    """Heights from as near as `nearest`, each 8 times as far from the separation, up to a distance of 1."""
+    edges, distance = [], nearest
+    while distance < 1:
+        edges.append(float(separation + distance))
+        distance *= _GROWTH
+    return edges
+
+
+def above_neighbours(separations: Array) -> list[float]:
+    """The same above close separations, as near to the upper one as the lower one is.
+
+    The root of the approach to the lower one almost has its kink inside the next piece.
+    """
+    return [edge for lower, upper in pairwise(separations) for edge in towards(upper, upper - lower)]
 
 
 def panels(n: float, h: Array, grading: Grading, unit: Array, low: Array, high: Array) -> Array:
@@ -50,7 +79,7 @@ def panels(n: float, h: Array, grading: Grading, unit: Array, low: Array, high: 
     result = np.zeros_like(h)
     while (left := np.flatnonzero(low < high)).size:
         first = (low == h)[left, 0]
-        stop = np.where(low == h, high, np.minimum(high, h + _RATIO * (low - h)))
+        stop = np.where(low == h, high, np.minimum(high, h + _FARTHEST * (low - h)))
         stop = np.where(stop > low, stop, high)  # steps lost in rounding
         for i in (left[first], left[~first]):
             if i.size:

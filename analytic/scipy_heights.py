@@ -1,226 +1,29 @@
-"""Laws of summit heights beside the Gaussian: exponential, Weibull, and any of scipy.stats.
-
-All are reduced: s = (z - mean)/(standard deviation). Separations stay d/sigma from the mean height.
-"""
+"""Any law of scipy.stats as a law of heights, and a watch over calls that take too long."""
 
 import math
+import sys
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property, lru_cache, partial
+from functools import cached_property, partial
+from time import thread_time
+from types import FrameType
 from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.special import gammaln, zeta
 
-from analytic.elementary import exp, expm1, log, log1p
-from analytic.heights import HeightLaw
-from analytic.in_time import in_time
+from analytic.heights import narrowest
 from analytic.resolution import resolved_breaks
 
-__all__ = ["ExponentialHeights", "ScipyHeights", "Weibull", "narrowest"]
+__all__ = ["ScipyHeights", "in_time"]
 
 Array = NDArray[np.float64]
 T = TypeVar("T")
 
-_SERIES = 4.0  # shape of a Weibull law from which on its spread is summed in powers of its inverse
-_BEND = 0.5  # change of the logarithm of the density over a span
 _SECONDS = 5.0  # for moments, or jumps, of a law of scipy: some are integrals of integrals
 _NOISE = 2.0**-30  # of a density that is the exponential of large terms, as of gamma(1e4)
 _RARE = np.array([1e-3, 1e-9, 1e-15, 1e-24, 1e-36])
 _TRIAL, _TRIAL_SECONDS = np.array([1e-9, 0.1, 0.5, 0.9]), 1.0  # a few of the thousands of calls to come
-
-
-@lru_cache(maxsize=4096)  # every quantity asks for the same heights, and a call of scipy's laws is slow
-def narrowest(law: HeightLaw, s: float) -> float:
-    """Width, halved until no quarter changes the logarithm of the density by more than 1/8."""
-    width = max(_BEND, abs(s) / 8)  # far out in a heavy tail, a share of the height
-    parts = np.array([0.0, 0.25, 0.5, 0.75, 1.0])
-    for _ in range(5):
-        widths = width / 2.0 ** np.arange(8)  # at once: a call of scipy's laws takes a millisecond
-        with np.errstate(all="ignore"):
-            change = np.abs(np.diff(law.log_ratio(np.array(s), widths[:, None] * parts)))
-        even = np.flatnonzero(np.all(change <= _BEND / 4, axis=1))
-        if even.size:
-            return float(widths[even[0]])
-        width = float(widths[-1]) / 2
-    if np.isnan(change).all():  # there would be no end of ever smaller cells
-        raise ValueError(
-            f"heights: their density is 0 at s = {s:.6g}, inside the support; fill the gap, say by wider bins"
-        )
-    return width
-
-
-@dataclass(frozen=True)
-class ExponentialHeights:
-    """Exponential law: ``exp(-1 - s)`` for s > -1.
-
-    Greenwood and Williamson (1966) used it for its closed form, ``F_n(h) = Gamma(n+1) exp(-1 - h)``
-    for h >= -1: load, area and number of contacts are proportional to each other.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> float(ExponentialHeights().sf(np.array(-1.0)))
-    1.0
-    """
-
-    support: tuple[float, float] = (-1.0, math.inf)
-    breaks: tuple[float, ...] = (-1.0,)
-    singular: tuple[float, ...] = ()
-
-    def span(self, s: float) -> float:  # noqa: ARG002 - the same everywhere
-        """One half: the logarithm of the density is linear."""
-        return _BEND
-
-    def rvs(self, n: int, rng: np.random.Generator) -> Array:
-        """Standard exponential numbers, less their mean."""
-        return rng.standard_exponential(n) - 1
-
-    def pdf(self, s: Array) -> Array:
-        """``exp(-1 - s)`` for s >= -1."""
-        return np.asarray(np.where(s >= -1, exp(-1 - np.maximum(s, -1.0)), 0.0))
-
-    def log_ratio(self, s: Array, t: Array) -> Array:
-        """``-t``."""
-        return -t + 0 * s
-
-    def cdf(self, s: Array) -> Array:
-        """``1 - exp(-1 - s)``."""
-        return np.asarray(-expm1(-1 - np.maximum(s, -1.0)))
-
-    def sf(self, s: Array) -> Array:
-        """``exp(-1 - s)``."""
-        return np.asarray(exp(-1 - np.maximum(s, -1.0)))
-
-    def ppf(self, p: Array, below: float = math.inf) -> Array:
-        """``-1 - log(1 - p cdf(below))``."""
-        return np.asarray(-1 - log1p(-p * self.cdf(np.array(below))))
-
-    def isf(self, p: Array, above: float = -math.inf) -> Array:
-        """``max(above, -1) - log(p)``."""
-        return np.asarray(max(above, -1.0) - log(p))
-
-
-@dataclass(frozen=True)
-class Weibull:
-    """Weibull law of a given shape (McCool 1992, Int. J. Mach. Tools Manuf. 32, 115).
-
-    Parameters
-    ----------
-    shape : float
-        1 is exponential, 3.6 has no skewness (0 at 3.60235, +1 at 1.56391, -1 at 40.743).
-
-    Raises
-    ------
-    ValueError
-        If the shape is not between 1 and 100.
-
-    Examples
-    --------
-    >>> Weibull(2.0).support
-    (-1.9130583802711005, inf)
-    """
-
-    shape: float
-
-    def __post_init__(self) -> None:
-        if not 1 <= self.shape <= 100:
-            raise ValueError(f"shape = {self.shape!r}: give a number from 1 to 100")
-
-    @cached_property
-    def _spread(self) -> tuple[float, float]:
-        """Deviation over mean of the unreduced x of scale 1, and the logarithm of the mean of x times k."""
-        return _weibull_spread(self.shape)
-
-    @property
-    def support(self) -> tuple[float, float]:
-        """From x = 0 on."""
-        return (-1 / self._spread[0], math.inf)
-
-    @property
-    def breaks(self) -> tuple[float, ...]:
-        """The lower end, where the density is smooth from above for shape 1 only."""
-        return self.support[:1] if self.shape == 1 else ()
-
-    @property
-    def singular(self) -> tuple[float, ...]:
-        """The lower end, a broken power unless the shape is 1."""
-        return () if self.shape == 1 else self.support[:1]
-
-    def span(self, s: float) -> float:
-        """Where the logarithm of the density changes evenly, by at most one half."""
-        return narrowest(self, s)
-
-    def _log_x(self, s: Array) -> Array:
-        """Logarithm of x over its mean: neither near 1 nor near the lower end does a digit cancel."""
-        spread = self._spread[0]
-        relative = np.maximum(spread * np.asarray(s), -1.0)
-        above_end = np.maximum(spread * (np.asarray(s) - self.support[0]), 0.0)
-        with np.errstate(divide="ignore"):
-            return np.where(relative > -0.5, np.log1p(relative), np.log(above_end))
-
-    def _power(self, s: Array) -> Array:
-        """``x^k``."""
-        return np.asarray(np.exp(self.shape * self._log_x(s) + self._spread[1]))
-
-    def _s(self, power: Array) -> Array:
-        """Height of a given ``x^k``."""
-        spread, log_mean = self._spread
-        with np.errstate(divide="ignore"):
-            return np.asarray(np.expm1((np.log(power) - log_mean) / self.shape) / spread)
-
-    def rvs(self, n: int, rng: np.random.Generator) -> Array:
-        """Powers of NumPy's standard exponential numbers, reduced."""
-        return self._s(rng.standard_exponential(n))
-
-    def pdf(self, s: Array) -> Array:
-        """``k x^(k-1) exp(-x^k)`` times the standard deviation of x."""
-        spread, log_mean = self._spread
-        rise = (self.shape - 1) * self._log_x(s) if self.shape > 1 else 0.0
-        slope = self.shape * spread * np.exp(rise + log_mean)
-        inside = np.asarray(s) >= self.support[0]
-        return np.asarray(np.where(inside, slope * np.exp(-self._power(s)), 0.0))
-
-    def log_ratio(self, s: Array, t: Array) -> Array:
-        """Of the density, by the relative change of x."""
-        k = self.shape
-        if k == 1:
-            return np.asarray(-t + 0 * np.asarray(s))
-        step = np.log1p(t / (np.asarray(s) - self.support[0]))
-        return np.asarray((k - 1) * step - self._power(s) * np.expm1(k * step))
-
-    def cdf(self, s: Array) -> Array:
-        """``1 - exp(-x^k)``."""
-        return np.asarray(-np.expm1(-self._power(s)))
-
-    def sf(self, s: Array) -> Array:
-        """``exp(-x^k)``."""
-        return np.asarray(np.exp(-self._power(s)))
-
-    def ppf(self, p: Array, below: float = math.inf) -> Array:
-        """``(-log(1 - p cdf(below)))^(1/k)``, reduced."""
-        return self._s(-np.log1p(-p * self.cdf(np.array(below))))
-
-    def isf(self, p: Array, above: float = -math.inf) -> Array:
-        """``(x(above)^k - log(p))^(1/k)``, reduced."""
-        return self._s(self._power(np.array(above)) - np.log(p))
-
-
-def _weibull_spread(k: float) -> tuple[float, float]:
-    """Deviation over mean of a Weibull variable of scale 1, and k times the logarithm of its mean.
-
-    ``x^k`` makes k times an error of the first, so it is summed in powers of 1/k, whose coefficients are
-    zeta functions, where the difference of logarithms of Gamma functions would cancel.
-    """
-    if k < _SERIES:
-        logs = gammaln(1 + 1 / k), gammaln(1 + 2 / k)
-        return math.sqrt(math.expm1(logs[1] - 2 * logs[0])), float(k * logs[0])
-    m = np.arange(2, 80)
-    terms = (-1.0) ** m * zeta(m) / m
-    log_square = math.fsum(terms * (2.0**m - 2) * k ** (-1.0 * m))
-    log_mean = math.fsum([-np.euler_gamma, *(terms * k ** (1.0 - m))])
-    return math.sqrt(math.expm1(log_square)), log_mean
 
 
 @dataclass(frozen=True, eq=False)
@@ -405,3 +208,44 @@ class _Density:
 
     def __call__(self, s: Array) -> Array:
         return self.law.pdf(s)
+
+
+def in_time(seconds: float, call: Callable[[], T], problem: str) -> T:
+    """Result of a call that takes no more than so many seconds of this thread's own CPU time.
+
+    Looks at the clock at each Python function that the call enters. So it does not depend on what else
+    the machine does, and works in any thread; only a single compiled function cannot be interrupted. No
+    bound under a profiler.
+
+    Parameters
+    ----------
+    seconds : float
+        Bound.
+    call : callable
+        Takes no arguments.
+    problem : str
+        What to say if it takes longer.
+
+    Returns
+    -------
+    object
+        What the call returns.
+
+    Raises
+    ------
+    ValueError
+        With `problem`, if it takes longer.
+    """
+    if sys.getprofile() is not None:  # a profiler at work would be thrown out: whoever runs it sees the time
+        return call()
+    end = thread_time() + seconds
+
+    def look(frame: FrameType, event: str, arg: Any) -> None:  # noqa: ARG001 - the interpreter's own form
+        if thread_time() > end:
+            raise ValueError(problem)
+
+    sys.setprofile(look)
+    try:
+        return call()
+    finally:
+        sys.setprofile(None)

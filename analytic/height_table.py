@@ -1,4 +1,4 @@
-"""Measured summit heights as a law: resampled from a smooth table, or used as they are."""
+"""A law of heights that is linear between points: resampled measured heights."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -7,7 +7,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["HeightTable", "MeasuredHeights", "checked_heights", "reduced"]
+__all__ = ["HeightTable", "checked_heights", "reduced"]
 
 Array = NDArray[np.float64]
 
@@ -180,103 +180,3 @@ def _ranks(k: int) -> NDArray[np.int64]:
         ranks.append(max(ranks[-1] + 1, int(np.ceil(_GROWTH * ranks[-1]))))
     kept = np.array([r for r in ranks if 2 * r < k - 1], dtype=np.int64)
     return np.unique(np.concatenate([kept, k - 1 - kept]))
-
-
-@dataclass(frozen=True)
-class MeasuredHeights:
-    """Measured heights themselves: one surface, nothing drawn; or drawn from these very heights.
-
-    Parameters
-    ----------
-    heights : sequence of float
-        In any unit; reduced to mean 0 and standard deviation 1 (divisor K).
-    resampled : bool, optional
-        Whether each asperity of a surface has one of the heights, drawn with replacement. Default: the
-        surface has each height once.
-
-    Raises
-    ------
-    ValueError
-        If there are fewer than two, or they are not finite, or all alike.
-
-    Examples
-    --------
-    >>> MeasuredHeights([1.0, 3.0]).heights
-    (-1.0, 1.0)
-    """
-
-    heights: tuple[float, ...]
-    resampled: bool = False
-    singular: tuple[float, ...] = ()
-
-    def __init__(self, heights: Sequence[float] | Array, *, resampled: bool = False) -> None:
-        z = checked_heights(heights)
-        if abs(z.mean()) > 1e-12 or abs(z.std() - 1) > 1e-12:
-            z = reduced(z)
-        object.__setattr__(self, "heights", tuple(z.tolist()))
-        object.__setattr__(self, "resampled", resampled)
-
-    @cached_property
-    def _sorted(self) -> Array:
-        return np.sort(np.array(self.heights))
-
-    @property
-    def support(self) -> tuple[float, float]:
-        """Lowest and highest of them."""
-        return float(self._sorted[0]), float(self._sorted[-1])
-
-    @property
-    def breaks(self) -> tuple[float, ...]:
-        """None: there is no density."""
-        return ()
-
-    def span(self, s: float) -> float:
-        """There is no density.
-
-        Raises
-        ------
-        ValueError
-            Always.
-        """
-        raise ValueError(f"measured heights have no density at s = {s:g}; make a HeightTable, or add them up")
-
-    def rvs(self, n: int, rng: np.random.Generator) -> Array:
-        """The heights themselves, in their own order; or `n` of them, drawn with replacement.
-
-        Raises
-        ------
-        ValueError
-            If they are not drawn, and `n` is not their number.
-        """
-        if self.resampled:
-            return np.array(self.heights)[rng.integers(0, len(self.heights), n)]
-        if n != len(self.heights):
-            raise ValueError(f"n = {n}: there are {len(self.heights)} measured heights")
-        return np.array(self.heights)
-
-    def pdf(self, s: Array) -> Array:
-        """There is none; see `span`."""
-        self.span(float(np.ravel(s)[0]))
-        raise AssertionError
-
-    def log_ratio(self, s: Array, t: Array) -> Array:  # noqa: ARG002 - there is no density
-        """There is none; see `span`."""
-        return self.pdf(s)
-
-    def cdf(self, s: Array) -> Array:
-        """Share of lower heights."""
-        return np.asarray(np.searchsorted(self._sorted, s, side="right") / len(self.heights))
-
-    def sf(self, s: Array) -> Array:
-        """Share of higher heights."""
-        return np.asarray(1 - self.cdf(s))
-
-    def ppf(self, p: Array, below: float = np.inf) -> Array:
-        """The height at the share `p` of those below one."""
-        n = int(np.searchsorted(self._sorted, below, side="right"))
-        return np.asarray(self._sorted[np.clip((p * n).astype(np.int64), 0, max(n - 1, 0))])
-
-    def isf(self, p: Array, above: float = -np.inf) -> Array:
-        """The height at the share `p` of those above one, counted from the top."""
-        n = len(self.heights) - int(np.searchsorted(self._sorted, above, side="right"))
-        return np.asarray(self._sorted[::-1][np.clip((p * n).astype(np.int64), 0, max(n - 1, 0))])

@@ -1,0 +1,319 @@
+"""Laws of asperities that yield: Hertz's up to the critical penetration, then what was fitted or assumed."""
+
+import math
+from dataclasses import KW_ONLY, dataclass, replace
+from typing import Any, ClassVar, Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from analytic.laws.elastic_plastic import Bridgeable, EtsionKligermanKadin, FromHardness, kogut_etsion_factor
+from analytic.laws.law import checked_poisson, is_positive
+from analytic.surface import Surface
+
+__all__ = ["ChangEtsionBogy", "JacksonGreen", "KogutEtsion", "ZhaoMaiettaChang"]
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, kw_only=True)
+class ChangEtsionBogy(FromHardness, Bridgeable):
+    """Chang, Etsion and Bogy (1987): beyond delta_c the volume is conserved and the mean pressure is K H.
+
+    ``A = pi R (2 delta - delta_c)``, ``P = A K H``; in reduced units load
+    ``(3/2) sqrt(delta_c) (2 delta - delta_c) e``, area ``2 delta - delta_c``. Meant for any
+    penetration that is small against R.
+
+    Known defects: the load jumps by the factor 1.5 at delta_c, from a mean pressure of (2/3) K H to K H;
+    the area is continuous. ``bridge = "hermite"`` joins them.
+
+    Parameters
+    ----------
+    critical : float, optional
+        delta_c/sigma of an asperity of modulus E*. Give it, or `hardness`.
+    hardness : float, optional
+        H of the softer body, Pa.
+    poisson : float, optional
+        Its Poisson's ratio, for ``K = 0.454 + 0.41 nu``; K = 0.6 if it is not given.
+    bridge : {None, "hermite"}, optional
+        Whether the jump is bridged, from delta_c to 1.5 delta_c.
+
+    Raises
+    ------
+    ValueError
+        If not exactly one of `critical` and `hardness` is given, or a value is out of range.
+
+    Notes
+    -----
+    Source: W. R. Chang, I. Etsion, D. B. Bogy, J. Tribol. 109 (1987) 257 [mem: constants recalled].
+
+    Examples
+    --------
+    >>> law = ChangEtsionBogy(critical=0.05)
+    >>> law.limits(np.array(2.0))  # a stiffer asperity of the same hardness yields earlier
+    array([0.0125])
+    """
+
+    name: ClassVar[str] = "chang-etsion-bogy"
+    poisson: float | None = None
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.poisson is not None:
+            checked_poisson(self.poisson)
+
+    @property
+    def yield_factor(self) -> float:
+        """K, the greatest contact pressure at the onset of yield over the hardness."""
+        return 0.6 if self.poisson is None else kogut_etsion_factor(self.poisson)
+
+    def load_over_hertz(self, fit: int, x: Any, e: Array) -> Any:
+        """``1.5 (2 x - 1)/x^1.5``."""
+        return 1.5 * self.area_over_hertz(fit, x, e) / np.sqrt(x)
+
+    def area_over_hertz(self, fit: int, x: Any, e: Array) -> Any:
+        """``(2 x - 1)/x``."""
+        return 2 - 1 / x
+
+
+@dataclass(frozen=True, kw_only=True)
+class ZhaoMaiettaChang(FromHardness):
+    """Zhao, Maietta and Chang (2000): Hertz up to delta_1, fully plastic beyond 54 delta_1.
+
+    Yield begins at the mean pressure k H, k = 0.4: ``delta_1 = (3 pi k H/(4 E*))^2 R``. In between, with
+    ``t = (delta - delta_1)/(delta_2 - delta_1)``, the area over pi R delta is ``1 + 3 t^2 - 2 t^3`` and
+    the mean pressure over H ``1 - (1 - k) ln(delta_2/delta)/ln(delta_2/delta_1)``; beyond, these are 2
+    and 1. Meant for any penetration that is small against R; delta_2 = 54 delta_1 is the least that the
+    paper allows, and what it takes.
+
+    Known defects: continuous, but the slope of the load has kinks: right over left it is .91736 at
+    delta_1 and .86925 at delta_2.
+
+    Parameters
+    ----------
+    critical : float, optional
+        delta_1/sigma of an asperity of modulus E*. Give it, or `hardness`.
+    hardness : float, optional
+        H of the softer body, Pa.
+
+    Raises
+    ------
+    ValueError
+        If not exactly one of them is given, or it is not positive.
+
+    Notes
+    -----
+    Source: Y. Zhao, D. M. Maietta, L. Chang, J. Tribol. 122 (2000) 86 [mem: constants recalled; names and
+    inputs compared with a public script].
+
+    Examples
+    --------
+    >>> ZhaoMaiettaChang(critical=0.05).limits(np.array(1.0)).round(12)
+    array([0.05, 2.7 ])
+    """
+
+    name: ClassVar[str] = "zhao-maietta-chang"
+    starts: ClassVar[tuple[float, ...]] = (1.0, 54.0)
+    first_yield: ClassVar[float] = 0.4  # k: mean pressure at first yield over hardness
+
+    @property
+    def yield_factor(self) -> float:
+        """K, the greatest contact pressure at the onset of yield over the hardness: 1.5 k."""
+        return 1.5 * self.first_yield
+
+    def load_over_hertz(self, fit: int, x: Any, e: Array) -> Any:
+        """Area times mean pressure: where x = 1, the pressure is k H."""
+        pressure, k = 1.0, self.first_yield
+        if fit == 1:
+            pressure = 1 - (1 - k) * np.log(self.starts[1] / x) / math.log(self.starts[1])
+        return self.area_over_hertz(fit, x, e) * pressure / (k * np.sqrt(x))
+
+    def area_over_hertz(self, fit: int, x: Any, e: Array) -> Any:
+        """From 1 to 2, by the template."""
+        if fit == 2:
+            return 2.0 + 0 * x
+        t = (x - 1) / (self.starts[1] - 1)
+        return 1 + t * t * (3 - 2 * t)
+
+
+@dataclass(frozen=True, kw_only=True)
+class KogutEtsion(FromHardness, Bridgeable):
+    """Kogut and Etsion (2002): powers of ``x = delta/delta_c``, then the hardness on ``2 pi R delta``.
+
+    ==========  ========================  ========================
+    x           load over that at yield   area over that at yield
+    ==========  ========================  ========================
+    0 to 1      x^1.5                     x
+    1 to 6      1.03 x^1.425              0.93 x^1.136
+    6 to 110    1.40 x^1.263              0.94 x^1.146
+    above 110   3 x/K                     2 x
+    ==========  ========================  ========================
+
+    ``K = 0.454 + 0.41 nu``. Fitted for x up to 110, frictionless, no hardening, E/Y from 100 to 1000.
+
+    Known defects: the load jumps, x 1.03 at 1, x 1.0168 at 6, x 1.0788 at 110 (nu = 0.3), and the area,
+    x 0.93, x 1.0290, x 1.0712: at yield a contact *shrinks* by 7 %. ``bridge = "hermite"`` joins them.
+
+    Parameters
+    ----------
+    critical : float, optional
+        delta_c/sigma of an asperity of modulus E*. Give it, or `hardness`.
+    hardness : float, optional
+        H of the softer body, Pa.
+    poisson : float, optional
+        Its Poisson's ratio; it enters K, so also the load beyond x = 110.
+    bridge : {None, "hermite"}, optional
+        Whether jumps are bridged, each from its penetration to 1.5 times that.
+
+    Raises
+    ------
+    ValueError
+        If not exactly one of `critical` and `hardness` is given, or a value is out of range.
+
+    Notes
+    -----
+    Source: L. Kogut, I. Etsion, J. Appl. Mech. 69 (2002) 657. [Load: constants compared with a public
+    script; area, K: mem, recalled.]
+
+    Examples
+    --------
+    >>> KogutEtsion(critical=0.05).limits(np.array(1.0)).round(12)
+    array([0.05, 0.3 , 5.5 ])
+    """
+
+    name: ClassVar[str] = "kogut-etsion"
+    starts: ClassVar[tuple[float, ...]] = (1.0, 6.0, 110.0)
+    load_fits: ClassVar[tuple[tuple[float, float], ...]] = ((1.03, 1.425), (1.40, 1.263))
+    area_fits: ClassVar[tuple[tuple[float, float], ...]] = ((0.93, 1.136), (0.94, 1.146))
+
+    poisson: float = 0.3
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        checked_poisson(self.poisson)
+
+    @property
+    def yield_factor(self) -> float:
+        """K, the greatest contact pressure at the onset of yield over the hardness."""
+        return kogut_etsion_factor(self.poisson)
+
+    def unloading(self) -> EtsionKligermanKadin:
+        """Etsion, Kligerman and Kadin's, which was fitted for this law; with a bridge, from its load."""
+        return EtsionKligermanKadin(self)
+
+    def load_over_hertz(self, fit: int, x: Any, e: Array) -> Any:
+        """From the powers of x, or the hardness."""
+        factor, power = self.load_fits[fit - 1] if fit < 3 else (3 / self.yield_factor, 1.0)
+        return factor * x ** (power - 1.5)
+
+    def area_over_hertz(self, fit: int, x: Any, e: Array) -> Any:
+        """From the powers of x; at last 2."""
+        factor, power = self.area_fits[fit - 1] if fit < 3 else (2.0, 1.0)
+        return factor * x ** (power - 1.0)
+
+
+@dataclass(frozen=True)
+class JacksonGreen(Bridgeable):
+    """Jackson and Green (2005): Hertz up to 1.9 delta_c, then exponentials with H_G(a/R).
+
+    With ``C = 1.295 exp(0.736 nu)`` and ``e_y = S_y/E*(s)``, ``delta_c = (pi C e_y/2)^2 R``. Beyond
+    ``x = delta/delta_c = 1.9`` the area over that at yield is ``x (x/1.9)^B``, ``B = 0.14 exp(23 e_y)``,
+    and the load over that at yield ::
+
+        exp(-x^(5/12)/4) x^1.5 + (4 H_G/(C S_y)) (1 - exp(-x^(5/9)/25)) x
+
+    with ``H_G/S_y = 2.84 (1 - exp(-0.82 (a/R)^-0.7))`` at the radius of contact a. On a graded surface
+    e_y = yield_strain/e enters delta_c, B and H_G. Fitted for steel-like materials, e_y from about 0.001
+    to 0.01 and a/R up to about 0.4, without hardening.
+
+    Known defects: at x = 1.9 the load jumps by 0.47 % (e_y = 0.004), and its slope is .9468 of what it
+    was; ``bridge = "hermite"`` joins them. B explodes where the modulus is low: a grading that falls
+    below e_y = 0.05 leaves the fit by far.
+
+    Parameters
+    ----------
+    yield_strength : float, optional
+        S_y of the softer body, Pa. Give it, or `yield_strain` and `critical`.
+    poisson : float, optional
+        Its Poisson's ratio.
+    yield_strain : float, optional
+        S_y/E*.
+    critical : float, optional
+        delta_c/sigma of an asperity of modulus E*.
+    bridge : {None, "hermite"}, optional
+        Whether the jump is bridged, from 1.9 delta_c to 2.85 delta_c.
+
+    Raises
+    ------
+    ValueError
+        If neither or both are given, or a value is out of range.
+
+    Notes
+    -----
+    Source: R. L. Jackson, I. Green, J. Tribol. 127 (2005) 343 [mem: constants recalled].
+
+    Examples
+    --------
+    >>> surface = Surface(sigma=1e-6, radius=1e-3, eta=1e9, nominal_area=1e-6, E_star=100e9)
+    >>> law = JacksonGreen(yield_strength=400e6, poisson=0.3).on(surface)
+    >>> law.yield_strain, round(law.critical, 5)
+    (0.004, 0.10296)
+    """
+
+    name: ClassVar[str] = "jackson-green"
+    starts: ClassVar[tuple[float, ...]] = (1.9,)
+    powers: ClassVar[tuple[float, float]] = (5 / 12, 5 / 9)
+
+    yield_strength: float | None = None
+    poisson: float = 0.3
+    _: KW_ONLY
+    yield_strain: float | None = None
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        checked_poisson(self.poisson)
+        for name in ("yield_strength", "yield_strain"):
+            value = getattr(self, name)
+            if value is not None and not is_positive(value):
+                raise ValueError(f"{name} = {value!r}: give a finite number > 0")
+        reduced = (self.yield_strain is not None, self.critical is not None)
+        if reduced[0] != reduced[1] or reduced[0] == (self.yield_strength is not None):
+            raise ValueError(
+                f"yield_strength = {self.yield_strength!r}, yield_strain = {self.yield_strain!r}, "
+                f"critical = {self.critical!r}: give a yield strength in Pa, or both of the others"
+            )
+
+    @property
+    def yield_factor(self) -> float:
+        """C, the greatest contact pressure at the onset of yield over the yield strength."""
+        return 1.295 * math.exp(0.736 * self.poisson)
+
+    def on(self, surface: Surface) -> Self:
+        """The law on this surface, in reduced units: without `yield_strength`."""
+        if self.yield_strength is None:
+            return self
+        strain = self.yield_strength / surface.E_star
+        critical = (math.pi * self.yield_factor * strain / 2) ** 2 * surface.radius / surface.sigma
+        return replace(self, yield_strength=None, yield_strain=strain, critical=critical)
+
+    def load_over_hertz(self, fit: int, x: Any, e: Array) -> Any:
+        """What is left of Hertz's, and the hardness on what has yielded."""
+        left, gone = self.powers
+        hardness = self._hardness(x, e) * (-np.expm1(-(x**gone) / 25)) / np.sqrt(x)
+        return np.exp(-(x**left) / 4) + 4 / self.yield_factor * hardness
+
+    def area_over_hertz(self, fit: int, x: Any, e: Array) -> Any:
+        """``(x/1.9)^B``."""
+        with np.errstate(over="ignore"):  # infinite where the fit has no meaning
+            return (x / self.starts[0]) ** (0.14 * np.exp(23 * self._strain(e)))
+
+    def _hardness(self, x: Any, e: Array) -> Any:
+        """H_G over the yield strength."""
+        with np.errstate(over="ignore"):
+            at_yield = math.pi * self.yield_factor / 2 * self._strain(e)  # radius of contact over R
+            radius = at_yield * np.sqrt(x * self.area_over_hertz(1, x, e))
+            return -2.84 * np.expm1(-0.82 * radius**-0.7)
+
+    def _strain(self, e: Array) -> Array:
+        assert self.yield_strain is not None  # `x` has said so
+        return np.asarray(self.yield_strain / e)
