@@ -7,9 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analytic.gradings import Grading
-from analytic.height_rule import normal_ends
-from analytic.heights import Gaussian, HeightLaw
-from analytic.law_rule import law_ends
+from analytic.heights import HeightLaw
+from analytic.law_rule import ends_of
 from analytic.measured_summits import MeasuredHeights
 
 __all__ = ["extent"]
@@ -75,9 +74,7 @@ def _of_moments(grading: Grading, heights: HeightLaw, h: Array) -> tuple[float, 
     """Range of the highest moments that there are in double precision."""
     for power, exponent in _SUMS:
         try:
-            if isinstance(heights, Gaussian):
-                return normal_ends(h, grading, power)
-            return law_ends(heights, float(h[0]), grading, power, exponent)
+            return ends_of(heights, h, grading, power, exponent)
         except ValueError:  # its message is for those who ask for this moment
             continue
     return math.inf, -math.inf

@@ -1,79 +1,34 @@
 """A quadrature rule over the heights, and what makes a sum over independent asperities fluctuate.
 
 One surface has N independent asperities (or a Poisson number of them with mean N), so a quantity is
-a sum of N independent terms ``f(s_i)``. Its cumulants follow from integrals over one asperity. These
-are taken with a fixed set of heights and probabilities (`HeightRule`): Gauss-Legendre in
-``sqrt(s - h_k)`` on pieces that no separation and no break divides, neither of the grading nor of the law
-of contact, graded towards separations with a close neighbour. Means and variances underflow with the
-density, beyond h = 37.
+a sum of N independent terms ``f(s_i)``. Its cumulants follow from integrals over one asperity, taken with a
+fixed set of heights and probabilities (`HeightRule`).
 """
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import partial, reduce
-from itertools import pairwise
 from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from analytic.elementary import exp_minus_half_square
 from analytic.gradings import Grading
-from analytic.heights import GAUSSIAN, Gaussian, HeightLaw
-from analytic.integrals import fn
+from analytic.heights import GAUSSIAN, HeightLaw
 from analytic.law_rule import law_rule
 from analytic.laws.branch import Branch, term_of
 from analytic.laws.cuts import cuts_of
 from analytic.laws.law import ContactLaw
 from analytic.laws.ways import Ways
 from analytic.measured_summits import MeasuredRadii
-from analytic.quadrature import above_neighbours, gauss_legendre
 from analytic.quantities import quantity_of
-from analytic.resolution import resolved_breaks
-from analytic.steep import Weight, tame
 
-__all__ = ["Count", "Fluctuations", "HeightRule", "normal_ends"]
+__all__ = ["Count", "Fluctuations", "HeightRule"]
 
 Array = NDArray[np.float64]
 Count = Literal["fixed", "poisson"]
 
-_REACH = 13.0
-_NODES = 64
-_POWER = 4  # of the modulus in the kurtosis
 _DIVERGES = 4  # power of the radius of a summit that has no mean
-_STEP = 4.0  # widest piece, on which the density is resolved as far down as s = -40
-
-
-def normal_ends(h: Array, grading: Grading, power: int = _POWER) -> tuple[float, float]:
-    """Range of the rule under the normal law: from the lowest separation to where nothing is left.
-
-    Parameters
-    ----------
-    h : ndarray
-        Reduced separations, increasing.
-    grading : Grading
-        E*(s)/E*.
-    power : int, optional
-        Of the modulus in what is summed.
-
-    Returns
-    -------
-    (float, float)
-        Reduced heights.
-
-    Raises
-    ------
-    ValueError
-        If the grading rises too steeply for such a sum.
-    """
-    low, last = float(h[0]), max(float(h[-1]), 0.0)
-    top = last + _REACH**2 / (last + np.hypot(last, _REACH))
-    if tame(grading):
-        return low, top
-    weight = Weight(lambda s: -s * s / 2, grading, power)
-    start = max(low, -_REACH)
-    top = max(weight.reach(max(x, start), top, np.inf) for x in (low, last))
-    return (weight.reach(0.0, -_REACH, low) if low < -_REACH else low), top
 
 
 def _check(s: Array, modulus: Array, contact: ContactLaw) -> None:
@@ -124,24 +79,7 @@ class HeightRule:
         branches, h = tuple(branches), np.unique(np.asarray(separations, dtype=np.float64))
         further = partial(cuts_of, branches, grading, h)
         h = np.unique([*h, *(branch.lowest(h[0]) for branch in branches)])
-        if not isinstance(heights, Gaussian):
-            return cls(*law_rule(heights, h, grading, further=further), float(heights.cdf(h[0])))
-        low, top = normal_ends(h, grading)
-        regular = _STEP * np.arange(np.floor(low / _STEP) + 1, np.ceil(top / _STEP))
-        varied = max(low, -_REACH)
-        cuts = [low, *h, *above_neighbours(h), *regular, *resolved_breaks(grading, varied, top), top]
-        edges = np.unique([c for c in (*cuts, *further(varied, top)) if low <= c <= top])
-        x, w = gauss_legendre(_NODES)
-        pieces = []
-        for left, right in pairwise(edges):
-            anchor = h[h <= left][-1]
-            start, stop = np.sqrt(left - anchor), np.sqrt(right - anchor)
-            v = start + (stop - start) * x
-            s = anchor + v * v
-            pieces.append((s, 2 * v * (stop - start) * w))
-        s, weights = (np.concatenate(part) for part in zip(*pieces, strict=True))
-        density = exp_minus_half_square(s) / np.sqrt(2 * np.pi)
-        return cls(s, weights * density, float(fn(0, -h[0])))
+        return cls(*law_rule(heights, h, grading, further=further), float(heights.cdf(h[0])))
 
     @classmethod
     def of_summits(

@@ -1,30 +1,32 @@
 """Integrals over any law of heights: pieces on which the density is one smooth curve.
 
-A piece is at most eight spans of the law wide, ends at every break of the law and of the grading, and
-shrinks towards the ends where the density is a broken power. What such an end leaves over, less than
-the last digit of a height, counts with its exact probability.
+A piece is at most six spans of the law wide, ends at every separation, at every break of the law, of the
+grading and of the law of contact, and shrinks towards the ends where the density is a broken power. What such
+an end leaves over, less than the last digit of a height, counts with its exact probability. The normal law is
+entire: its pieces have one width. Means and variances underflow with its density, beyond h = 37.
 """
 
 from collections.abc import Callable, Sequence
-from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
 from analytic.gradings import Grading
-from analytic.heights import HeightLaw
+from analytic.heights import Gaussian, HeightLaw
 from analytic.measured_summits import MeasuredHeights
-from analytic.quadrature import NEAREST, above_neighbours, gauss_legendre, towards
+from analytic.quadrature import NEAREST, above_neighbours, rooted, towards
 from analytic.resolution import resolved_breaks
-from analytic.steep import Weight, log_unit, over_unit
+from analytic.steep import Weight, log_unit, over_unit, tame
 
-__all__ = ["law_ends", "law_integral", "law_rule"]
+__all__ = ["POWER", "ends_of", "law_integral", "law_rule"]
 
 Array = NDArray[np.float64]
 
+POWER = 4  # of the modulus in the kurtosis
 _NODES = 64
 _SPANS = 6.0  # a piece over which the density changes by a factor of 50 needs some 30 nodes
-_WIDEST = 4.0
+_WIDEST = 4.0  # on which the normal density is resolved as far down as s = -40
+_REACH = 13.0  # no lower or rarer normal height counts: 2e-37 of the density at the mean
 _GROWTH = 8.0  # of the pieces away from a singular end
 _TINY = 1e-14  # distance from such an end, below which heights are not told apart
 _UNDERFLOW = -745.0  # logarithm of the least density
@@ -32,17 +34,35 @@ _RAREST = 1e-290  # share of the heights next to which densities underflow
 _NOTHING = 1e-32  # share of the touching heights that can be left out
 
 
-def law_ends(
-    law: HeightLaw, low: float, grading: Grading, power: int, exponent: float
+def ends_of(
+    law: HeightLaw, separations: Array, grading: Grading, power: int = POWER, exponent: float = 0.0
 ) -> tuple[float, float]:
-    """Range of the rule: from `low` or the lowest height there is to where nothing is left.
+    """Range of the rule: from the lowest separation, or height there is, to where nothing is left.
+
+    Parameters
+    ----------
+    law : HeightLaw
+        Law of the heights.
+    separations : ndarray
+        Reduced separations, increasing.
+    grading : Grading
+        E*(s)/E*.
+    power, exponent : optional
+        Highest powers of the modulus and of the approach that are summed.
+
+    Returns
+    -------
+    (float, float)
+        Reduced heights; under other laws than the normal one, of what counts at the lowest separation.
 
     Raises
     ------
     ValueError
         If the grading rises too steeply for sums of such powers.
     """
-    low, high = max(low, law.support[0]), law.support[1]
+    if isinstance(law, Gaussian):
+        return _normal_ends(float(separations[0]), max(float(separations[-1]), 0.0), grading, power)
+    low, high = max(float(separations[0]), law.support[0]), law.support[1]
     start = max(low, float(law.ppf(np.array(_NOTHING))))
     top = min(float(law.isf(np.array(_NOTHING), start)), high)
     if np.isinf(top):  # as isf of 1 - p, where 1 - p is 1: the density tells how far heights go
@@ -59,6 +79,16 @@ def law_ends(
     weight = Weight(log_density, grading, power, exponent)
     middle = float(np.clip(law.isf(np.array(0.5), start), start, top))
     return weight.reach(middle, start, low), weight.reach(start, top, high)
+
+
+def _normal_ends(low: float, last: float, grading: Grading, power: int) -> tuple[float, float]:
+    top = last + _REACH**2 / (last + np.hypot(last, _REACH))
+    if tame(grading):
+        return low, top
+    weight = Weight(lambda s: -s * s / 2, grading, power)
+    start = max(low, -_REACH)
+    top = max(weight.reach(max(x, start), top, np.inf) for x in (low, last))
+    return (weight.reach(0.0, -_REACH, low) if low < -_REACH else low), top
 
 
 def _edges(law: HeightLaw, start: float, top: float) -> list[float]:
@@ -86,55 +116,45 @@ def law_rule(
     separations: Array,
     grading: Grading,
     *,
-    power: int = 4,
+    power: int = POWER,
     exponent: float = 0.0,
     further: Callable[[float, float], Sequence[float]] = lambda *_: (),
 ) -> tuple[Array, Array]:
-    """Heights and probabilities: ``E f(s) = probabilities @ f(heights)`` for sums of Hertz terms.
+    """Heights and probabilities: ``E f(s) = probabilities @ f(heights)`` for sums of contacts.
 
     Parameters
     ----------
-    law : HeightLaw
-        Law of the heights.
-    separations : ndarray
-        Reduced separations, increasing; f may have a root above each.
-    grading : Grading
-        Its breaks are ends of pieces.
-    power, exponent : optional
-        Highest powers of the modulus and of the approach that are summed, for gradings that rise as fast
-        as heights become rare; 4 is that of the kurtosis.
+    law, separations, grading, power, exponent
+        As of `ends_of`; f may have a root above each separation, and bend at breaks of the grading.
     further : callable, optional
         Takes the lowest and the highest height of the rule and gives further ends of pieces.
 
     Returns
     -------
     (ndarray, ndarray)
-        Of the heights above the lowest separation.
+        Of the heights above the lowest separation, increasing.
     """
     if isinstance(law, MeasuredHeights):
         s = np.array(law.heights)
         s = s[s > separations[0]]
         return s, np.full(s.size, 1 / len(law.heights))
-    start, top = law_ends(law, float(separations[0]), grading, power, exponent)
+    start, top = ends_of(law, separations, grading, power, exponent)
     if not start < top:
         return np.empty(0), np.empty(0)
-    cuts = {*_edges(law, start, top), *resolved_breaks(grading, start, top)}
-    inside = [*separations.tolist(), *above_neighbours(separations), *further(start, top)]
-    cuts |= {s for s in inside if start < s < top}
-    x, w = gauss_legendre(_NODES)
-    heights, weights, lumps = [], [], []
-    for left, right in pairwise(sorted(cuts)):
-        if right - left <= 2 * _TINY and (left in law.singular or right in law.singular):
-            lumps.append((left, _mass(law, left, right)))
-            continue
-        anchor = separations[separations <= left][-1]
-        v0, v1 = np.sqrt(left - anchor), np.sqrt(right - anchor)
-        v = v0 + (v1 - v0) * x
-        heights.append(np.clip(anchor + v * v, left, np.nextafter(right, left)))
-        weights.append(2 * v * (v1 - v0) * w)
-    s, weight = np.concatenate([np.empty(0), *heights]), np.concatenate([np.empty(0), *weights])
-    at, mass = np.array(lumps, dtype=np.float64).reshape(-1, 2).T
-    s, probabilities = np.append(s, at), np.append(weight * law.pdf(s), mass)
+    if isinstance(law, Gaussian):
+        lowest = max(start, -_REACH)
+        regular = [start, *_WIDEST * np.arange(np.floor(start / _WIDEST) + 1, np.ceil(top / _WIDEST)), top]
+    else:
+        lowest, regular = start, _edges(law, start, top)
+    inside = [*separations, *above_neighbours(separations), *further(lowest, top)]
+    cuts = [*regular, *resolved_breaks(grading, lowest, top), *(s for s in inside if start < s < top)]
+    edges = np.unique(cuts)
+    left, right = edges[:-1], edges[1:]
+    at_end = np.isin(left, law.singular) | np.isin(right, law.singular)
+    lump = (right - left <= 2 * _TINY) & at_end
+    s, weights = rooted(left[~lump], right[~lump], separations, _NODES)
+    mass = [_mass(law, *ends) for ends in zip(left[lump].tolist(), right[lump].tolist(), strict=True)]
+    s, probabilities = np.append(s, left[lump]), np.append(weights * law.pdf(s), mass)
     order = np.argsort(s, kind="stable")
     return s[order], probabilities[order]
 
@@ -172,26 +192,12 @@ def law_integral(
     """
     rows = []
     for x in h.ravel():
-        marks = [float(b) for b in between if np.isfinite(b) and b > x]
-        cut = _Cut(grading, tuple(marks))
-        finer = [] if (2 * n) % 1 == 0 else towards(float(x), NEAREST)
-        s, p = law_rule(
-            law, np.array([x]), cut, power=1, exponent=n + 1, further=lambda *_, finer=finer: finer
-        )
+        finer = () if (2 * n) % 1 == 0 else towards(float(x), NEAREST)
+        cuts = [*finer, *(b for b in between if np.isfinite(b))]
+        s, p = law_rule(law, np.array([x]), grading, power=1, exponent=n + 1, further=lambda *_, c=cuts: c)
         unit = log_unit(grading, s[:1]) if s.size else np.zeros(1)
         terms = (s - x) ** n * over_unit(grading, s, unit)
         inside = (s >= between[0]) & (s <= between[1])
         rows.append((float(p @ np.where(inside, terms, 0.0)), float(unit[0])))
     value, units = np.array(rows, dtype=np.float64).reshape(-1, 2).T
     return value.reshape(h.shape), units.reshape(h.shape)
-
-
-class _Cut:
-    """A grading with further heights at which pieces end."""
-
-    def __init__(self, grading: Grading, marks: tuple[float, ...]) -> None:
-        self.grading, self.smooth = grading, grading.smooth
-        self.breaks = tuple(sorted({*grading.breaks, *marks}))
-
-    def __call__(self, s: Array) -> Array:
-        return self.grading(s)

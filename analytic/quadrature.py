@@ -17,7 +17,7 @@ from scipy.special import roots_jacobi
 from analytic.gradings import Grading, Homogeneous
 from analytic.steep import over_unit
 
-__all__ = ["NEAREST", "above_neighbours", "gauss_legendre", "panels", "towards"]
+__all__ = ["NEAREST", "above_neighbours", "gauss_legendre", "panels", "rooted", "towards"]
 
 Array = NDArray[np.float64]
 
@@ -34,6 +34,31 @@ def gauss_legendre(nodes: int) -> tuple[Array, Array]:
     x, w = (1 + x) / 2, w / 2
     x.flags.writeable = w.flags.writeable = False
     return x, w
+
+
+def rooted(left: Array, right: Array, separations: Array, nodes: int) -> tuple[Array, Array]:
+    """Points and weights in the root of the approach to the next separation below, piece by piece.
+
+    Parameters
+    ----------
+    left, right : ndarray
+        Ends of the pieces, none of which a separation divides, shape (k,).
+    separations : ndarray
+        Increasing; the first one is below all pieces.
+    nodes : int
+        Points of a piece.
+
+    Returns
+    -------
+    (ndarray, ndarray)
+        Shape (k nodes,); every point lies inside its piece.
+    """
+    x, w = gauss_legendre(nodes)
+    anchor = separations[np.searchsorted(separations, left, side="right") - 1]
+    v0, v1 = np.sqrt(left - anchor)[:, None], np.sqrt(right - anchor)[:, None]
+    v = v0 + (v1 - v0) * x
+    s = np.clip(anchor[:, None] + v * v, left[:, None], np.nextafter(right, left)[:, None])
+    return s.ravel(), (2 * v * (v1 - v0) * w).ravel()
 
 
 def towards(separation: float, nearest: float) -> list[float]:

@@ -14,11 +14,11 @@ from numpy.typing import NDArray
 from analytic.curvature import MEAN_CURVATURE, RandomCurvature
 from analytic.gradings import Grading
 from analytic.height_rule import HeightRule
-from analytic.law_rule import law_ends
+from analytic.law_rule import ends_of
 from analytic.laws.branch import Branch, LoadingBranch
 from analytic.laws.cuts import cuts_of_each
 from analytic.laws.slopes import jump_terms
-from analytic.quadrature import above_neighbours, gauss_legendre
+from analytic.quadrature import above_neighbours, gauss_legendre, rooted
 from analytic.quantities import quantity_of
 from analytic.resolution import resolved_breaks
 
@@ -29,7 +29,6 @@ Ints = NDArray[np.int64]
 
 _NODES, _AS_WIDE = 64, 0.6  # points for curvatures, if their density bends over so many heights
 _HEIGHTS, _SPANS, _WIDEST = 32, 6.0, 4.0  # points of a piece, over which densities change by so much
-_POWER = 4  # of the modulus in the kurtosis
 _RAREST = 1e-18  # share of the touching heights above which curvatures are left out
 
 
@@ -96,7 +95,7 @@ def rule_of_radii(
     radii = _Radii.over(law, float(h[-1]))
     lowest = np.unique([*h, *(branch.lowest(float(h[0])) for branch in branches)])
     below = float(heights.cdf(lowest[0]))
-    start, top = law_ends(heights, float(lowest[0]), grading, _POWER, 0.0)
+    start, top = ends_of(heights, lowest, grading)
     if not start < top:
         return HeightRule(np.empty(0), np.empty(0), below, np.empty(0))
     widest = min(_SPANS * law.narrowest, _WIDEST)
@@ -111,12 +110,8 @@ def rule_of_radii(
             cuts.append(found[0])
             which.append(found[1])
     left, right, of = _pieces(np.concatenate(cuts), np.concatenate(which), start, top)
-    anchor = lowest[np.searchsorted(lowest, left, side="right") - 1]
-    v0, v1 = np.sqrt(left - anchor)[:, None], np.sqrt(right - anchor)[:, None]
-    x, w = gauss_legendre(_HEIGHTS)
-    v = v0 + (v1 - v0) * x
-    s = np.clip(anchor[:, None] + v * v, left[:, None], np.nextafter(right, left)[:, None]).ravel()
-    weights, of = (2 * v * (v1 - v0) * w).ravel(), np.repeat(of, _HEIGHTS)
+    s, weights = rooted(left, right, lowest, _HEIGHTS)
+    of = np.repeat(of, _HEIGHTS)
     return HeightRule(s, weights * radii.density(s, of), below, radii.ratios[of])
 
 
