@@ -4,8 +4,9 @@ import threading
 
 import pytest
 
+from mcgw.ensemble.reducers import Values
+from mcgw.ensemble.summarising import Statistics
 from mcgw.errors import StoreError
-from mcgw.jobs.job import Job
 from mcgw.jobs.running import run, run_part
 from mcgw.jobs.session import Part
 from mcgw.store import chunks, ensembles, structure
@@ -31,7 +32,8 @@ def look_here(patch):
 
 
 def in_small_blocks(patch, size=SIZE):
-    patch.setattr(Job, "rows", size)
+    for kept in (Values, Statistics):
+        patch.setattr(kept, "rows", size)
     patch.setattr(chunks, "CHUNK_ROWS", size // 2)
     look_here(patch)
 

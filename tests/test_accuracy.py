@@ -16,8 +16,8 @@ from test_random_radii import spectral
 import analytic
 import mcgw
 from analytic import laws
+from mcgw.ensemble.reducers import Values
 from mcgw.ensemble.regrading import regrade
-from mcgw.jobs.job import Job
 from mcgw.jobs.merging import merge
 from mcgw.jobs.running import run, run_part
 from mcgw.jobs.session import Part
@@ -235,7 +235,7 @@ class HaltError(Exception):
 @every_wish
 def test_stored_in_any_way_the_digest_is_one(make_scene, wish, tmp_path, monkeypatch):
     """At once, halted and gone on with, in shards; what is read is what is drawn; another wish is refused."""
-    monkeypatch.setattr(Job, "rows", SIZE)
+    monkeypatch.setattr(Values, "rows", SIZE)
     scene = make_scene(n_surfaces=NUMBER, **wish)
     run(scene, tmp_path / "whole.h5")
 

@@ -12,8 +12,8 @@ import pytest
 from begun_runs import digest
 
 import mcgw
+from mcgw.ensemble.reducers import Values
 from mcgw.jobs.dask_engine import Dask
-from mcgw.jobs.job import Job
 from mcgw.machine.progress import bar
 
 distributed = pytest.importorskip("distributed")
@@ -23,7 +23,7 @@ SIZE = 8
 
 @pytest.fixture(autouse=True)
 def _small_blocks(monkeypatch):
-    monkeypatch.setattr(Job, "rows", SIZE)
+    monkeypatch.setattr(Values, "rows", SIZE)
     monkeypatch.setenv("PYTHONPATH", str(Path(__file__).parents[1]))
 
 

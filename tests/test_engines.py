@@ -15,11 +15,11 @@ from begun_runs import digest
 from lost_workers import deadly, deadly_once
 
 import mcgw
+from mcgw.ensemble.reducers import Values
 from mcgw.errors import RunError
 from mcgw.jobs.dask_engine import Dask, check_address
 from mcgw.jobs.driver import Signals, drive
 from mcgw.jobs.engines import Processes, Threads
-from mcgw.jobs.job import Job
 from mcgw.jobs.running import run
 from mcgw.store.run_folder import parts_of
 from mcgw.store.shards import Span
@@ -31,7 +31,7 @@ SPANS = [Span(8 * i, 8) for i in range(6)]
 
 @pytest.fixture(autouse=True)
 def _small_blocks(monkeypatch):
-    monkeypatch.setattr(Job, "rows", SIZE)
+    monkeypatch.setattr(Values, "rows", SIZE)
     # Spawned workers import this package from here.
     monkeypatch.setenv("PYTHONPATH", str(HERE.parent))
 

@@ -7,7 +7,7 @@ import pytest
 
 import mcgw
 from mcgw.cli import main
-from mcgw.jobs.job import Job
+from mcgw.ensemble.reducers import Values
 from mcgw.scene.law_text import law_text
 
 SURFACE = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "0.1 mm^2", "78.6 GPa")
@@ -21,7 +21,7 @@ def out_of(capsys, *words):
 
 
 def test_a_run_half_done_tells_surfaces_from_asperities(tmp_path, capsys, monkeypatch):
-    monkeypatch.setattr(Job, "rows", 16)
+    monkeypatch.setattr(Values, "rows", 16)
     path = tmp_path / "a.h5"
     left = mcgw.run(SCENE, path, shard="1/2")
     done = 100 - left

@@ -12,13 +12,12 @@ from conftest import SURFACE
 
 import mcgw
 from mcgw.cli import main
-from mcgw.ensemble import summarising
+from mcgw.ensemble import simulation, summarising
 from mcgw.ensemble.bins import Bins
 from mcgw.ensemble.summary import Summary, push, total
 from mcgw.errors import StoreError
 from mcgw.jobs.from_python import run
 from mcgw.machine.memory import peak_growth
-from mcgw.sampling.samplers import sampler_of
 from mcgw.scene.section import SceneError
 from mcgw.store.ensembles import read_attributes, verify
 
@@ -333,7 +332,7 @@ def test_memory_does_not_grow_with_surfaces():
 def test_time_ends_between_pieces_and_the_same_number_gives_the_same_bits(monkeypatch):
     """By a clock that stands still until 1000 surfaces are drawn, and is late then."""
     told = []
-    monkeypatch.setattr(summarising, "monotonic", lambda: float(max(told, default=0) >= 1000) * 1e12)
+    monkeypatch.setattr(simulation, "monotonic", lambda: float(max(told, default=0) >= 1000) * 1e12)
     asked = scene(n_surfaces=10**5, keep="statistics", max_seconds=1e9)
     e = mcgw.simulate(asked, progress=lambda done, _: told.append(done))
     assert e.n_surfaces == told[-1] == 32 * 32
@@ -344,7 +343,8 @@ def test_time_ends_between_pieces_and_the_same_number_gives_the_same_bits(monkey
 def test_a_block_takes_seconds_however_large_a_surface_is():
     for n in (10, 10**5, 10**9):
         asked = scene(n_asperities=n, keep="statistics")
-        rows = summarising.block_rows(asked, sampler := sampler_of(asked))
+        reducer = summarising.Statistics(asked)
+        rows, sampler = reducer.rows, reducer.sampler
         assert 1 <= rows <= 2**20
         assert rows == 1 or rows * sampler.draws <= 1e9
 

@@ -9,9 +9,9 @@ import pytest
 
 import analytic
 import mcgw
+from mcgw.ensemble.reducers import Values
 from mcgw.errors import StoreError
 from mcgw.formats.files import check_output
-from mcgw.jobs.disk_space import check_space
 from mcgw.jobs.running import run
 from mcgw.machine.memory import memory_available
 from mcgw.scene.scene import SceneError
@@ -77,15 +77,17 @@ def test_beyond_64_bits(make_scene, tmp_path):
     assert not list(tmp_path.iterdir())
 
 
-def test_more_asperities_than_memory(make_scene, tmp_path):
+def test_more_asperities_than_memory(make_scene, tmp_path, monkeypatch):
     scene = make_scene(
         n_surfaces=4, n_asperities=memory_available() // 8, separations=(4.0,), sampler="aggregate"
     )
     assert run(scene, tmp_path / "e.h5").n_surfaces == 4
     with pytest.raises(ValueError, match=r"the heights of one surface needs .* GiB of memory and .* GiB are"):
         mcgw.heights(replace(scene, sampler="cells"), 0, untouched=True)
+    reducer = Values(scene)
+    monkeypatch.setattr(Values, "columns", memory_available())
     with pytest.raises(StoreError, match=r"a block of 4 surfaces needs .* GiB of memory"):
-        check_space(scene, tmp_path / "e.h5", rows=4, columns=memory_available())
+        reducer.check()
 
 
 def test_more_than_the_disk(make_scene, tmp_path):

@@ -15,6 +15,7 @@ import pytest
 
 import mcgw
 from mcgw.cli import main
+from mcgw.ensemble.reducers import Values
 from mcgw.errors import RunError, StoreError
 from mcgw.formats.files import state_of
 from mcgw.jobs import merging
@@ -35,7 +36,7 @@ SIZE = 16
 
 @pytest.fixture(autouse=True)
 def _small_blocks_and_no_patience(looked_at_here, monkeypatch):
-    monkeypatch.setattr(Job, "rows", SIZE)
+    monkeypatch.setattr(Values, "rows", SIZE)
     monkeypatch.setattr(lock, "PATIENCE", 0.0)
 
 

@@ -155,7 +155,7 @@ def test_a_run_goes_on_where_it_was_drawn(make_scene, tmp_path, monkeypatch, hei
     more = make_scene(heights=heights, sampler="tail", n_surfaces=8)
     whole, begun = tmp_path / "whole.h5", tmp_path / "begun.h5"
     run(scene, whole)
-    monkeypatch.setattr("mcgw.jobs.job.Job.rows", 4)
+    monkeypatch.setattr("mcgw.ensemble.reducers.Values.rows", 4)
     run_part(more, begun, Part(1, 2))
     monkeypatch.setattr(arithmetic, "kind_of_processor", lambda: "00000000")
     blocks._prepared.cache_clear()  # as in a worker that starts on such a processor

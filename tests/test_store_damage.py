@@ -168,7 +168,7 @@ def test_a_digest_that_is_written_wrong_is_seen(scene, tmp_path, monkeypatch):
 
     monkeypatch.setattr(merged_file, "describe", forged)
     with pytest.raises(OSError, match="reads otherwise than written"):
-        merged_file.merge_into(parts_of(path), path, tmp_path / "x.tmp", nobody)
+        merged_file.merge_into(RunFolder.open(parts_of(path)), path, tmp_path / "x.tmp", nobody)
 
 
 @pytest.mark.parametrize("gone", [0, 3, 6])
@@ -176,7 +176,7 @@ def test_a_shard_that_is_gone_is_missing(scene, tmp_path, gone):
     path = tmp_path / "e.h5"
     begun(scene, path, jobs=2)[gone].unlink()
     with pytest.raises(StoreError):
-        merged_file.merge_into(parts_of(path), path, tmp_path / "x.tmp", nobody)
+        merged_file.merge_into(RunFolder.open(parts_of(path)), path, tmp_path / "x.tmp", nobody)
     with pytest.raises(RunError, match=f"surfaces are missing, from {16 * gone} on"):
         merge(path)
     assert not path.exists()

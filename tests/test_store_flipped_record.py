@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import mcgw
+from mcgw.ensemble.reducers import Values
 from mcgw.errors import StoreError
 from mcgw.jobs.job import Job
 from mcgw.store.run_folder import RunFolder, parts_of
@@ -20,7 +21,7 @@ def flip(path, bit):
 @pytest.fixture
 def begun(make_scene, tmp_path, monkeypatch):
     """A run of three blocks, two of which are drawn."""
-    monkeypatch.setattr(Job, "rows", 4)
+    monkeypatch.setattr(Values, "rows", 4)
     scene = make_scene(separations=(2.0,), sampler="tail", n_surfaces=12)
     mcgw.run(scene, tmp_path / "e.h5", shard="1/2")
     return scene, tmp_path / "e.h5"

@@ -10,8 +10,8 @@ from pathlib import Path
 import pytest
 
 import mcgw
+from mcgw.ensemble.reducers import Values
 from mcgw.errors import StoreError
-from mcgw.jobs.job import Job
 from mcgw.jobs.running import run
 from mcgw.store import lock
 from mcgw.store.lock import LOCK_FILES, locked
@@ -137,7 +137,7 @@ def test_nothing_planted_is_followed(tmp_path):
 
 def test_a_run_in_a_folder_open_to_all_leaves_nothing(tmp_path, make_scene, monkeypatch):
     """The lock would make names of its own in a folder that others can write."""
-    monkeypatch.setattr(Job, "rows", 4)
+    monkeypatch.setattr(Values, "rows", 4)
     tmp_path.chmod(0o777)
     before = os.umask(0)
     try:
@@ -165,7 +165,7 @@ except ModuleNotFoundError:
 from pathlib import Path
 import mcgw, numpy
 from mcgw import cli
-from mcgw.jobs.job import Job
+from mcgw.ensemble.reducers import Values
 from mcgw.errors import StoreError
 from mcgw.store.lock import locked
 for found in pkgutil.walk_packages(mcgw.__path__, "mcgw."):
@@ -174,7 +174,7 @@ for found in pkgutil.walk_packages(mcgw.__path__, "mcgw."):
 scene = mcgw.load_scene(sys.argv[1])
 loads = mcgw.simulate(scene).load
 for size, name in ((10**6, "whole.h5"), (64, "blocks.h5")):
-    Job.rows = size
+    Values.rows = size
     assert cli.main(["run", sys.argv[1], "-o", name]) == 0
     assert cli.main(["show", name]) == 0
     assert numpy.array_equal(mcgw.open_ensemble(name).load, loads)

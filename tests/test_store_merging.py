@@ -12,9 +12,9 @@ import pytest
 from begun_runs import SIZE, SURFACES, begun, digest, in_small_blocks
 
 import mcgw
+from mcgw.ensemble.reducers import Values
 from mcgw.errors import RunError, StoppedError
 from mcgw.jobs import merging
-from mcgw.jobs.job import Job
 from mcgw.jobs.merging import merge
 from mcgw.jobs.running import run, run_part
 from mcgw.jobs.session import Part
@@ -202,10 +202,10 @@ def test_blocks_of_any_number_of_chunks_make_the_same(
 
 def test_blocks_that_begin_within_a_chunk_go_on_as_well(scene, tmp_path, expected, copied, monkeypatch):
     """As in a run that another version began: blocks of 20, every second one in step with chunks of 8."""
-    monkeypatch.setattr(Job, "rows", 20)
+    monkeypatch.setattr(Values, "rows", 20)
     path = tmp_path / "e.h5"
     begun(scene, path)
-    monkeypatch.setattr(Job, "rows", SIZE)
+    monkeypatch.setattr(Values, "rows", SIZE)
     assert made(run, scene, path) == expected
     assert sum(copied) == 60 * (len(scene.quantities) + 2)
 
@@ -258,10 +258,10 @@ def test_a_damaged_chunk_is_never_copied_into_the_file(scene, tmp_path, expected
     path, merged = tmp_path / "e.h5", merging.merge_into
     begun(scene, path)
 
-    def damage_first(folder, *rest):
+    def damage_first(run_of, *rest):
         monkeypatch.setattr(merging, "merge_into", merged)
-        damaged(sorted(folder.glob("shards/*.h5"))[2], name, sealed=sealed)
-        merged(folder, *rest)
+        damaged(sorted(run_of.folder.glob("shards/*.h5"))[2], name, sealed=sealed)
+        merged(run_of, *rest)
 
     monkeypatch.setattr(merging, "merge_into", damage_first)
     with pytest.raises(RunError, match="a shard is damaged; run the jobs again"):

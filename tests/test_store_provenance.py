@@ -10,7 +10,7 @@ import scipy.stats
 
 import analytic
 import mcgw
-from mcgw.jobs.job import Job
+from mcgw.ensemble.reducers import Values
 from mcgw.jobs.running import run
 from mcgw.machine.memory import peak_growth
 from mcgw.sampling.samplers import sampler_of
@@ -115,7 +115,7 @@ def test_memory_does_not_grow_with_the_ensemble(make_scene, tmp_path, monkeypatc
 
     The larger file has 80 MB of numbers; 25 MB is what allocators differ by from run to run.
     """
-    monkeypatch.setattr(Job, "rows", 256)
+    monkeypatch.setattr(Values, "rows", 256)
 
     def peak(m, n):
         separations = tuple(np.linspace(2, 4, 40))

@@ -188,11 +188,11 @@ def test_damage_is_put_aside_and_drawn_again(scene, tmp_path, expected):
 def test_damage_found_while_merging_is_mended(scene, tmp_path, expected, monkeypatch):
     path, merged = tmp_path / "e.h5", merging.merge_into
 
-    def damage_first(folder, *rest):
+    def damage_first(run_of, *rest):
         monkeypatch.setattr(merging, "merge_into", merged)
-        shard = min(folder.glob("shards/*.h5"))
+        shard = min(run_of.folder.glob("shards/*.h5"))
         shard.write_bytes(shard.read_bytes()[:-1])
-        merged(folder, *rest)
+        merged(run_of, *rest)
 
     monkeypatch.setattr(merging, "merge_into", damage_first)
     run(scene, path)
@@ -261,7 +261,7 @@ def test_room_is_asked_for_what_is_not_there_yet(scene, tmp_path, monkeypatch):
     halted(scene, path, 64)
     half = 8 * SURFACES * len(scene.separations) * len(scene.quantities)
     free = shutil.disk_usage(tmp_path)._replace(free=2 * half - 1)
-    monkeypatch.setattr("mcgw.jobs.disk_space.shutil.disk_usage", lambda folder: free)
+    monkeypatch.setattr("mcgw.jobs.job.shutil.disk_usage", lambda folder: free)
     with pytest.raises(StoreError, match="make room"):
         run(scene, tmp_path / "other.h5")
     run(scene, path)
@@ -331,8 +331,9 @@ KILLED = """
 import os, signal, sys
 import numpy
 from mcgw.jobs import blocks
+from mcgw.ensemble.reducers import Values
 from mcgw.jobs.job import Job
-Job.rows = 16
+Values.rows = 16
 commit, committed = blocks.commit_shard, []
 
 def killed_at_the_fourth(*words):

@@ -15,7 +15,7 @@ from begun_runs import settle
 
 import mcgw
 from mcgw.cli import main
-from mcgw.jobs import blocks, sweep_job
+from mcgw.jobs import blocks
 from mcgw.jobs.blocks import commit_block
 from mcgw.jobs.engines import Processes
 from mcgw.store.ensembles import read_attributes
@@ -49,13 +49,13 @@ def _small_chunks(monkeypatch):
 @pytest.fixture
 def drawn(monkeypatch):
     """First surfaces of the blocks that are drawn, within their groups."""
-    found, plain = [], sweep_job.pooled_of
+    found, plain = [], drawing.Pooling.tables
 
-    def counted(group, source, first, n):
+    def counted(pooling, first, *rest):
         found.append(first)
-        return plain(group, source, first, n)
+        return plain(pooling, first, *rest)
 
-    monkeypatch.setattr(sweep_job, "pooled_of", counted)
+    monkeypatch.setattr(drawing.Pooling, "tables", counted)
     return found
 
 
@@ -118,7 +118,7 @@ def test_a_sweep_of_tangential_loads_has_a_file(tmp_path):
 @pytest.mark.parametrize("after", [1, 6])
 def test_interrupted_anywhere_it_goes_on_to_the_same_digest(tmp_path, monkeypatch, drawn, expected, after):
     """A damaged chunk is drawn again; a finished file is not."""
-    path, counted = tmp_path / "a.h5", sweep_job.pooled_of
+    path, counted = tmp_path / "a.h5", drawing.Pooling.tables
 
     def stopped(*words):
         if len(drawn) == after:
@@ -126,7 +126,7 @@ def test_interrupted_anywhere_it_goes_on_to_the_same_digest(tmp_path, monkeypatc
         return counted(*words)
 
     with monkeypatch.context() as patch:
-        patch.setattr(sweep_job, "pooled_of", stopped)
+        patch.setattr(drawing.Pooling, "tables", stopped)
         with pytest.raises(KeyboardInterrupt):
             mcgw.sweep(SCENE, OVER, path=path)
         settle()

@@ -4,13 +4,11 @@ from dataclasses import replace
 from time import monotonic
 from typing import Any
 
-from mcgw.ensemble.drawing import blocks, kept, use_threads
+from mcgw.ensemble.drawing import use_threads
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.forecast import without_rule
-from mcgw.ensemble.results import MemoryResults, joined
-from mcgw.machine.memory import check_memory
+from mcgw.ensemble.reducers import drawn, reducer_of
 from mcgw.machine.progress import Progress, told
-from mcgw.sampling.samplers import sampler_of
 from mcgw.scene.scene import LeftOut, Scene
 from mcgw.scene.storable import storable
 from mcgw.scene.wrong_object import check_object
@@ -62,31 +60,23 @@ def simulate(
     scene = storable(scene)
     if scene.rel_err is not None or scene.max_seconds is not None:
         scene = without_rule(scene)
-    sampler = sampler_of(scene)
-    if scene.keep == "statistics":
-        from mcgw.ensemble.summarising import simulated  # for those scenes alone
+    reducer, done_before = reducer_of(scene), 0
+    sampler = reducer.sampler.name
+    reducer.check(scene.n_surfaces if until is None else 0)
 
-        with use_threads(threads), told(progress, "surfaces") as tell:
-            return simulated(scene, sampler, until, tell)
-    if until is None:
-        _check_memory(scene, scene.n_surfaces)
-    parts, drawn = [], 0
+    def go_on(done: int) -> bool:
+        nonlocal done_before
+        tell(done, scene.n_surfaces)
+        if until is None:
+            return True
+        reducer.check(done - done_before)  # how many there is time for is not known beforehand
+        done_before = done
+        return monotonic() <= until
+
     with use_threads(threads), told(progress, "surfaces") as tell:
         tell(0, scene.n_surfaces)
-        for block in blocks(scene, sampler):
-            parts.append(kept(scene, block))
-            n = len(parts[-1][scene.quantities[0]])
-            _check_memory(scene, n)  # how many there is time for is not known beforehand
-            drawn += n
-            tell(drawn, scene.n_surfaces)
-            if until is not None and monotonic() > until:
-                break
-    if drawn != scene.n_surfaces or isinstance(scene.n_surfaces, LeftOut):
-        scene = replace(scene, n_surfaces=drawn)
-    return Ensemble(scene, sampler.name, MemoryResults(joined(parts)))
-
-
-def _check_memory(scene: Scene, n_surfaces: int) -> None:
-    quantities, separations = len(scene.quantities), len(scene.separations)
-    what = f"ensemble.n_surfaces = {n_surfaces}: {quantities} quantities at {separations} separations"
-    check_memory(what, 2 * 8 * n_surfaces * scene.width)  # the blocks, and all of them joined
+        held = drawn(reducer, go_on)
+    n = held.rows()
+    if n != scene.n_surfaces or isinstance(scene.n_surfaces, LeftOut):
+        scene = replace(scene, n_surfaces=n)
+    return Ensemble(scene, sampler, held)

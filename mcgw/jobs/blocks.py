@@ -7,9 +7,7 @@ from time import perf_counter
 
 from mcgw.errors import RunError
 from mcgw.formats.files import State, state_of
-from mcgw.jobs.job import Job, Making
-from mcgw.sampling.samplers import sampler_of
-from mcgw.store.disk import file_of
+from mcgw.jobs.job import Job
 from mcgw.store.identity import difference
 from mcgw.store.run_folder import RunFolder
 from mcgw.store.shards import Span, commit_shard
@@ -24,35 +22,23 @@ def commit_block(folder: str, first: int, n: int, threads: int | None = 1) -> st
 
 def draw_block(folder: str, first: int, n: int, threads: int | None = 1) -> Callable[[], str]:
     """The first half of `commit_block`; what it returns is the second, which another thread may do."""
-    run, making = _prepared(folder, state_of(Path(folder) / "run.toml"))
+    run, job = _prepared(folder, state_of(Path(folder) / "run.toml"))
     span = Span(first, n)
     if shard := run.held(span):
         digest = shard.digest
         return lambda: digest
     started = perf_counter()
-    tables = making.draw(span, threads)
+    tables = job.draw(span, threads)
     path, seconds = run.shards_folder / span.file_name, perf_counter() - started
     return lambda: commit_shard(path, run.identity, span, tables, seconds).digest
 
 
 @lru_cache(maxsize=1)
-def _prepared(folder: str, _state: State | None) -> tuple[RunFolder, Making]:
+def _prepared(folder: str, _state: State | None) -> tuple[RunFolder, Job]:
     """A run and its job, as long as its run.toml is the same: preparing them may take as long as a block."""
     run = RunFolder.open(Path(folder))
-    making = _making_of(run)
-    mine = making.record
-    if mine.identity != run.identity:
-        there, here = ((x.text, x.axes, x.drawn_with) for x in (run, mine))
+    job = Job.again(run)
+    if job.record.identity != run.identity:
+        there, here = ((x.text, x.axes, x.drawn_with) for x in (run, job.record))
         raise RunError(f"{folder}: this worker cannot draw for that run: {difference(there, here)}")
-    return run, making
-
-
-def _making_of(run: RunFolder) -> Making:
-    """What a folder says that is drawn into it."""
-    path = file_of(run.folder)
-    if not run.axes:
-        return Job(run.scene, sampler_of(run.scene), path)
-    from mcgw.jobs.sweep_job import SweepJob  # of which most runs are none
-    from mcgw.sweeps.asked import Asked
-
-    return SweepJob(Asked.from_texts(run.text, run.axes), path)
+    return run, job

@@ -1,61 +1,132 @@
-"""A scene on its way into a file: asked by whoever runs it, draws a part of it, or merges it."""
+"""What is on its way into a file, asked by whoever runs it, draws a part of it, or merges it."""
 
-from abc import ABC, abstractmethod
+import hashlib
+import shutil
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
-from functools import cached_property
+from itertools import groupby
+from operator import itemgetter
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from analytic import PiecewiseSeries
-from mcgw.ensemble.drawing import block_size, drawn_blocks, kept, use_threads
+from mcgw.ensemble.drawing import use_threads
 from mcgw.ensemble.ensemble import Ensemble
-from mcgw.ensemble.results import Held, MemoryResults, joined
+from mcgw.ensemble.reducers import Reducer, Tables, reducer_of
 from mcgw.errors import StoreError
 from mcgw.formats.files import check_output
-from mcgw.jobs.disk_space import check_disk, check_space
-from mcgw.sampling.samplers import Sampler, sampler_of
+from mcgw.machine.memory import gibibytes
+from mcgw.sampling.samplers import name_of
 from mcgw.scene.scene import Scene
-from mcgw.scene.scene_file import scene_from
 from mcgw.scene.storable import storable
-from mcgw.store.chunks import CHUNK_ROWS
-from mcgw.store.ensembles import finished, recorded_scene
-from mcgw.store.layout import stored_text
+from mcgw.store.arithmetic import drawn_with
+from mcgw.store.ensembles import held_by, recorded_scene
 from mcgw.store.plan import Plan
+from mcgw.store.provenance import now
 from mcgw.store.run_folder import RunFolder, parts_of
-from mcgw.store.saving import write_ensemble
-from mcgw.store.shards import Span, Tables
+from mcgw.store.saving import body_of
+from mcgw.store.shards import Span
 
 if TYPE_CHECKING:
-    from mcgw.ensemble.bins import Bins
+    from mcgw.sweeps.asked import Asked
 
-__all__ = ["Job", "Making", "as_recorded"]
-
-_BYTES = 2**23  # of a shard: large enough that its flushing costs little
-_DRAWS = 4e8  # numbers drawn for a shard: a second or so
-_OUTSIDE = 3  # numbers kept of an asperity outside the cells: surface, height, weight
+__all__ = ["Job", "as_recorded"]
 
 
-class Making(ABC):
-    """A file in the making, of one scene or of the points of a sweep: what the loop over blocks asks."""
+@dataclass(frozen=True)
+class Job:
+    """A file in the making: of one scene, or of groups of scenes that share their surfaces.
 
-    path: Path
+    Parameters
+    ----------
+    record : RunFolder
+        What is drawn and in which blocks, as the folder beside the file will say it.
+    reducers : tuple of Reducer
+        What draws each group, and what of it is kept; a scene is one group.
+    """
+
+    record: RunFolder
+    reducers: tuple[Reducer, ...]
+
+    @classmethod
+    def of(cls, scene: Scene, path: Path) -> "Job":
+        """That of a scene with a number of surfaces, not a rule for it.
+
+        Raises
+        ------
+        StoreError
+            If the scene cannot be told by a file, or none can be there.
+        """
+        check_output(path)
+        one = reducer_of(scene)
+        record = RunFolder.of(parts_of(path), scene, one.sampler.name, _plan((one,)))
+        if record.scene != scene:
+            raise StoreError(
+                f"{path}: this scene would be read otherwise than it is; give the values it shows"
+            )
+        return cls(record, (one,))
+
+    @classmethod
+    def of_sweep(cls, asked: "Asked", path: Path) -> "Job":
+        """That of a sweep.
+
+        Raises
+        ------
+        SceneError
+            With the mistakes of all points.
+        """
+        check_output(path)
+        reducers, texts = _of_groups(asked), asked.texts()
+        known = {drawn_with(scene, name_of(scene)) for group in asked.groups for scene in group.computed}
+        draws = max(known, key=len)  # with the kind of processor, if any has it
+        identity = hashlib.sha256("\0".join((*texts, draws)).encode()).hexdigest()
+        return cls(RunFolder(parts_of(path), *texts, "", _plan(reducers), identity, draws, now()), reducers)
+
+    @classmethod
+    def begun(cls, record: RunFolder) -> "Job":
+        """That of which a folder holds blocks, to be merged."""
+        if not record.axes:
+            return cls(record, (reducer_of(record.scene),))
+        return cls(record, _of_groups(_asked(record)))
+
+    @classmethod
+    def again(cls, record: RunFolder) -> "Job":
+        """What this process makes of the words of a folder, whoever wrote them."""
+        if not record.axes:
+            return cls.of(record.scene, record.path)
+        return cls.of_sweep(_asked(record), record.path)
+
+    def check(self) -> None:
+        """Refuse what fits neither the place, nor the memory, nor the disk.
+
+        Raises
+        ------
+        StoreError
+            With the numbers, or with what is there.
+        """
+        self.done()
+        for one in self.reducers:
+            one.check()
+        there = [self.path, *self.record.folder.glob("shards/block-*.h5")]
+        held = sum(file.stat().st_size for file in there if file.is_file())
+        needed, free = sum(one.disk for one in self.reducers) - held, shutil.disk_usage(self.path.parent).free
+        if needed > free:
+            raise StoreError(
+                f"{self.path}: needs up to {gibibytes(needed)} more on the disk while made and "
+                f"{gibibytes(free)} are free; make room, choose another -o, or ask for fewer surfaces or "
+                "separations"
+            )
 
     @property
-    @abstractmethod
+    def path(self) -> Path:
+        """The file to be."""
+        return self.record.path
+
+    @property
     def plan(self) -> Plan:
         """Blocks of all surfaces that are asked for."""
+        return self.record.plan
 
-    @property
-    @abstractmethod
-    def record(self) -> RunFolder:
-        """What is drawn, and in which blocks, as its folder will say it."""
-
-    @property
-    def folder(self) -> Path:
-        """Where its blocks lie while it runs."""
-        return parts_of(self.path)
-
-    @abstractmethod
     def done(self) -> int:
         """Surfaces that its file holds.
 
@@ -64,131 +135,48 @@ class Making(ABC):
         StoreError
             If the file is another's, damaged, or holds more than is asked.
         """
-
-    @abstractmethod
-    def draw(self, span: Span, threads: int | None) -> Tables:
-        """What is kept of some surfaces, in pieces that fit the memory; it does not depend on `threads`."""
-
-    @abstractmethod
-    def write(self, tables: Tables, seconds: float) -> None:
-        """Write the file in one step, of all surfaces drawn as one block. Only with the lock."""
+        return held_by(self.path, self.record)
 
     def work(self, span: Span) -> float:
-        """What some surfaces take, in any unit."""
-        return span.n
-
-
-@dataclass(frozen=True)
-class Job(Making):
-    """One scene: what is drawn, by what, in which pieces, and where it goes.
-
-    Parameters
-    ----------
-    scene : Scene
-        With a number of surfaces, not a rule for it.
-    sampler : Sampler
-        The scene's.
-    path : Path
-        The file to be. Until it is there, blocks lie in `folder`.
-    """
-
-    scene: Scene
-    sampler: Sampler
-    path: Path
-
-    @classmethod
-    def of(cls, scene: Scene, path: Path) -> "Job":
-        """Prepare a job, everything checked.
-
-        Raises
-        ------
-        StoreError
-            If the scene cannot be told by a file, the place belongs to something else, or the memory or the
-            disk does not suffice.
-        """
-        _check_readable(scene, path)
-        job = cls(scene, sampler_of(scene), path)
-        check_output(path)
-        job.done()
-        job._check_space()
-        return job
-
-    def _check_space(self) -> None:
-        """Refuse what does not fit the memory or the disk."""
-        if self.scene.keep == "statistics":
-            from mcgw.ensemble.summarising import check_width, stored_bytes  # for those scenes alone
-
-            check_width(self.scene)
-            check_disk(self.path, stored_bytes(self.scene, self.rows) - self._bytes())
-        else:
-            check_space(self.scene, self.path, rows=self.rows, columns=self.columns, held=self._bytes())
-
-    @cached_property
-    def record(self) -> RunFolder:
-        """What is drawn, and in which blocks, as its folder will say it."""
-        return RunFolder.of(self.folder, self.scene, self.sampler.name, self.plan)
-
-    @cached_property
-    def plan(self) -> Plan:
-        """Blocks of all surfaces that are asked for."""
-        return Plan(((self.scene.n_surfaces, self.rows),), whole=self.scene.keep == "statistics")
-
-    @cached_property
-    def rows(self) -> int:
-        """Surfaces a block: a function of the scene alone, however many of them are asked; whole chunks."""
-        if self.scene.keep == "statistics":
-            from mcgw.ensemble.summarising import block_rows  # for those scenes alone
-
-            return block_rows(self.scene, self.sampler)
-        size, row = block_size(self.scene, self.sampler), 8 * self.columns
-        fitting = min(_BYTES / (size * row), _DRAWS / (size * (self.sampler.draws + 1)))
-        rows = size * int(max(fitting, 1))
-        return rows - rows % CHUNK_ROWS if rows > CHUNK_ROWS else rows
-
-    @property
-    def columns(self) -> int:
-        """Numbers kept of a surface."""
-        sums = self.scene.width
-        if self.scene.keep != "moments":
-            return sums
-        return sums + self.sampler.moments + self.sampler.cells + _OUTSIDE
-
-    def done(self) -> int:
-        """Surfaces that its file holds."""
-        return finished(self.path, self.scene, self.sampler.name)
+        """What some surfaces of one group take, in any unit."""
+        return span.n * self.reducers[self.plan.group(span)[0]].work
 
     def draw(self, span: Span, threads: int | None) -> Tables:
-        """Results of some surfaces, in pieces that fit the memory; they do not depend on `threads`."""
-        size = block_size(self.scene, self.sampler)
+        """What is kept of some surfaces of one group; it does not depend on `threads`."""
+        g, first = self.plan.group(span)
         with use_threads(threads):
-            if self.scene.keep == "statistics":
-                from mcgw.ensemble.summarising import summary_of  # for those scenes alone
+            return self.reducers[g].tables(first, first + span.n)
 
-                return summary_of(self.scene, self.sampler, self.bins, span.first, span.stop).tables()
-            blocks = drawn_blocks(self.sampler, span.first, span.stop, size)
-            return joined([kept(self.scene, block) for block in blocks])
+    def body(self, blocks: Iterable[tuple[int, Tables]], seconds: float) -> tuple[bytes, bytes]:
+        """The file and its trailer, of all blocks in their order, each with the number of its group."""
+        groups = groupby(blocks, itemgetter(0))
+        held = [
+            one.held(tables for _, tables in some)
+            for one, (_, some) in zip(self.reducers, groups, strict=True)
+        ]
+        run = self.record
+        about = {"run": run.identity, "draws": run.drawn_with, "wall_seconds": seconds}
+        if not run.axes:
+            return body_of(Ensemble(run.scene, run.sampler, held[0]), **about)
+        from mcgw.sweeps.file import body_of_sweep  # of which most runs are none
 
-    @cached_property
-    def bins(self) -> "Bins":
-        """In which values are counted where statistics are kept."""
-        from mcgw.ensemble.bins import Bins  # for those scenes alone
+        return body_of_sweep(run, held, **about)
 
-        return Bins.of(self.scene)
 
-    def write(self, tables: Tables, seconds: float) -> None:
-        """Write the file in one step, of all surfaces drawn as one block. Only with the lock."""
-        results: Held = MemoryResults(tables)
-        if self.scene.keep == "statistics":
-            from mcgw.ensemble.summarised import Summarised  # for those scenes alone
-            from mcgw.ensemble.summary import Summary
+def _plan(reducers: tuple[Reducer, ...]) -> Plan:
+    return Plan(tuple((one.n_surfaces, one.rows) for one in reducers), whole=reducers[0].whole)
 
-            results = Summarised(self.scene, (Summary.from_tables(tables),))
-        write_ensemble(Ensemble(self.scene, self.sampler.name, results), self.path, wall_seconds=seconds)
 
-    def _bytes(self) -> int:
-        """What lies there already: the file, and shards of a run."""
-        files = [self.path, *self.folder.glob("shards/block-*.h5")]
-        return sum(file.stat().st_size for file in files if file.is_file())
+def _asked(record: RunFolder) -> "Asked":
+    from mcgw.sweeps.asked import Asked  # of which most runs are none
+
+    return Asked.from_texts(record.text, record.axes)
+
+
+def _of_groups(asked: "Asked") -> tuple[Reducer, ...]:
+    from mcgw.sweeps.drawing import Pooling
+
+    return tuple(map(Pooling, asked.groups))
 
 
 def as_recorded(scene: Scene, path: Path) -> Scene:
@@ -206,8 +194,3 @@ def as_recorded(scene: Scene, path: Path) -> Scene:
     if resolved.law.agrees(there.law):
         resolved = replace(resolved, law=there.law)
     return resolved
-
-
-def _check_readable(scene: Scene, path: Path) -> None:
-    if scene_from(stored_text(scene)) != scene:
-        raise StoreError(f"{path}: this scene would be read otherwise than it is; give the values it shows")

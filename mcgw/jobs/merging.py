@@ -1,14 +1,16 @@
 """From the blocks of a run to its file."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from mcgw.ensemble.reducers import Tables
 from mcgw.errors import RunError, StoreError
-from mcgw.formats.files import rename_over, state_of, sync, temporary_beside
+from mcgw.formats.files import rename_over, state_of, sync, temporary_beside, write_whole
 from mcgw.jobs.driver import Signals, heed_signals
-from mcgw.store.ensembles import held_by
+from mcgw.jobs.job import Job
+from mcgw.store.ensembles import whole_blocks
 from mcgw.store.leftovers import tidy
 from mcgw.store.lock import locked
 from mcgw.store.merged_file import merge_into
@@ -64,28 +66,33 @@ def merge(path: str | Path) -> "Ensemble | Sweep":
             return open_results(path)
         raise StoreError(f"{path}: neither this file nor blocks of it ({parts_of(path)}) are there")
     with heed_signals() as signals, locked(parts_of(path)):
-        started = RunFolder.open(parts_of(path))
-        gaps = started.missing(held_by(path, started), started.sweep())
+        job = Job.begun(RunFolder.open(parts_of(path)))
+        started = job.record
+        gaps = started.missing(job.done(), started.sweep())
         if gaps:
             raise RunError(
                 f"{path}: {sum(span.n for span in gaps)} of {started.plan.total} surfaces are missing, "
                 f"from {gaps[0].first} on; run the jobs that make them again"
             )
-        if not merge_once(started, path, signals):
+        if not merge_once(job, signals):
             raise RunError(f"{started.folder}: a shard is damaged; run the jobs again, which draw it anew")
     return open_results(path)
 
 
-def merge_once(started: RunFolder, path: Path, signals: Signals) -> bool:
+def merge_once(job: Job, signals: Signals) -> bool:
     """Make the file and remove the shards; False if a shard turned out damaged. Only with the lock."""
+    started, path = job.record, job.path
     temporary, before = temporary_beside(started.folder / path.name), state_of(path)
-    held_by(path, started)
+    job.done()
 
     def check() -> None:
         signals.check(f"all blocks are kept in {started.folder}; the same command merges them")
 
     try:
-        _merge_of(started)(started.folder, path, temporary, check)
+        if started.plan.whole:
+            _merge_in_memory(job, temporary, check)
+        else:
+            merge_into(started, path, temporary, check)
         rename_over(temporary, path, before)
         sync(path.parent)
     except StoreError:
@@ -109,17 +116,31 @@ def merge_once(started: RunFolder, path: Path, signals: Signals) -> bool:
     return True
 
 
-def _merge_of(started: RunFolder) -> Callable[[Path, Path, Path, Callable[[], None]], None]:
-    """How the shards of a run become a file."""
-    if started.axes:
-        from mcgw.sweeps.file import merge_sweep  # of which most runs are none
+def _merge_in_memory(job: Job, temporary: Path, check: Callable[[], None]) -> None:
+    """Write a file that holds no surfaces: of the blocks in the one that is there, then those of the shards.
 
-        return merge_sweep
-    if started.scene.keep != "statistics":
-        return merge_into
-    from mcgw.store.merged_statistics import merge_statistics  # for those scenes alone
+    Raises
+    ------
+    StoreError
+        If a shard is missing or damaged.
+    OSError
+        If the disk does not take it.
+    """
+    run = job.record
+    before, seconds = whole_blocks(job.path, run)
+    shards = {shard.span: shard for shard in run.shards(bodies=False)}
+    spans = run.missing(sum(block.n for block in before), [])
+    if lost := [span for span in spans if span not in shards]:
+        raise StoreError(f"{run.folder}: {lost[0]} are missing")
 
-    return merge_statistics
+    def blocks() -> Iterator[tuple[int, Tables]]:
+        yield from ((0, block.tables()) for block in before)
+        for span in spans:
+            check()
+            yield run.plan.group(span)[0], shards[span].arrays()
+
+    seconds += sum(shards[span].seconds for span in spans)
+    write_whole(temporary, job.body(blocks(), seconds), expected=None)
 
 
 def _why(error: OSError | RuntimeError) -> str:

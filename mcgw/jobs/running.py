@@ -10,17 +10,18 @@ from typing import Any
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.forecast import checkpoints, without_rule
 from mcgw.errors import RunError, StoreError
+from mcgw.formats.files import state_of
 from mcgw.jobs.blocks import commit_block, draw_block
-from mcgw.jobs.driver import drive
-from mcgw.jobs.engines import Engine
-from mcgw.jobs.job import Job, Making, as_recorded
+from mcgw.jobs.engines import Engine, Threads
+from mcgw.jobs.job import Job, as_recorded
 from mcgw.jobs.merging import merge_once
-from mcgw.jobs.session import By, Part, Progress, Session
+from mcgw.jobs.session import By, Part, Progress
 from mcgw.scene.scene import Scene
 from mcgw.store.ensembles import open_ensemble
 from mcgw.store.leftovers import drop_leftovers, tidy
 from mcgw.store.lock import locked
 from mcgw.store.run_folder import RunFolder
+from mcgw.store.saving import write_body
 from mcgw.store.shards import Shard, Span
 
 __all__ = ["make", "run", "run_part"]
@@ -71,40 +72,41 @@ def _stages(scene: Scene, path: Path) -> Iterator[Scene]:
         yield replace(fixed, n_surfaces=last)
 
 
-def make(making: Making, by: By, part: Part | None = None) -> int:
+def make(job: Job, by: By, part: Part | None = None) -> int:
     """Draw what is missing of a file and make it; or of its blocks a share, for `mcgw.merge` to make it of.
 
     Returns
     -------
     int
         How many surfaces are then missing of the whole.
+
+    Raises
+    ------
+    StoreError
+        If the place belongs to something else, or the memory or the disk does not suffice.
+    RunError
+        If it could not be finished; what is done is kept.
     """
-    total, blocks = making.plan.total, making.plan.missing([])
-    if making.done() < total:
+    job.check()
+    total, blocks, folder = job.plan.total, job.plan.missing([]), job.record.folder
+    if job.done() < total:
         if part:
-            tidy(making.path)
-        with by.at_work() as session, locked(making.folder, shared=part is not None):
+            tidy(job.path)
+        with by.at_work() as at_work, locked(folder, shared=part is not None):
             if not part:
-                drop_leftovers(making.path)
-            if making.done() < total:  # no other process was quicker
-                return _make(making, session, part, at_once=by.engine is None and len(blocks) == 1)
-    tidy(making.path)
-    by.progress(sum(map(making.work, blocks)))
+                drop_leftovers(job.path)
+            if job.done() < total:  # no other process was quicker
+                with _what_is_kept(job):
+                    if part:
+                        return _share(job, at_work, part)
+                    if by.engine is None and len(blocks) == 1 and not (folder / "run.toml").exists():
+                        _at_once(job, at_work)
+                    else:
+                        _in_blocks(job, at_work)
+                return 0
+    tidy(job.path)
+    by.progress(sum(map(job.work, blocks)))
     return 0
-
-
-def _make(making: Making, session: Session, part: Part | None, *, at_once: bool) -> int:
-    """Only with the lock."""
-    with _what_is_kept(making):
-        if part:
-            started, done = making.record.begin(), making.done()
-            _draw_missing(making, started, started.missing(done, started.shards()), session, part)
-            return sum(span.n for span in started.missing(done, started.shards()))
-        if at_once and not (making.folder / "run.toml").exists():
-            _at_once(making, session)
-        else:
-            _in_blocks(making, session)
-        return 0
 
 
 def run_part(
@@ -125,55 +127,57 @@ def run_part(
         )
     by = By(None, threads, progress or _silent)
     scene = as_recorded(scene, Path(path))
-    job = Job.of(without_rule(scene) if scene.rel_err is not None else scene, Path(path))
-    return make(job, by, part)
+    return make(Job.of(without_rule(scene) if scene.rel_err is not None else scene, Path(path)), by, part)
 
 
 def _silent(done: int) -> None:
     """Tell nobody."""
 
 
-def _at_once(making: Making, session: Session) -> None:
+def _at_once(job: Job, by: By) -> None:
     """All surfaces as one block, and their file in one step. Only with the lock."""
     answers: list[Any] = []
-    started, (span,) = perf_counter(), making.plan.missing([])
-    session.progress(0)
-    drive(
-        session.engine,
-        [span],
-        making.draw,
-        lambda span: (span, session.threads),
-        lambda _, tables: answers.append(tables),
-        session.signals,
-    )
-    session.signals.check("nothing was kept, the run is one block; the same command starts it again")
-    making.write(answers[0], perf_counter() - started)
-    session.progress(making.work(span))
+    started, (span,) = perf_counter(), job.plan.missing([])
+    by.progress(0)
+    by.drive([span], job.draw, lambda span: (span, by.threads), lambda _, tables: answers.append(tables))
+    by.signals.check("nothing was kept, the run is one block; the same command starts it again")
+    before = state_of(job.path)
+    job.done()  # or what is there now is another's
+    write_body(job.path, job.body([(0, answers[0])], perf_counter() - started), before)
+    by.progress(job.work(span))
 
 
-def _in_blocks(making: Making, session: Session) -> None:
+def _in_blocks(job: Job, by: By) -> None:
     """Shards until none is missing, then the file. Only with the lock."""
-    started = making.record.begin()
+    started = job.record.begin()
     started.freeze()
     for _ in range(_ROUNDS):
         shards = started.sweep()
-        done = making.done()
+        done = job.done()
         _refuse_more(started, shards)
-        _draw_missing(making, started, started.missing(done, shards), session)
-        if merge_once(started, making.path, session.signals):
+        _draw_missing(job, started, started.missing(done, shards), by)
+        if merge_once(replace(job, record=started), by.signals):
             return
-    raise RunError(f"{making.folder}: shards are damaged again and again; is the disk failing?")
+    raise RunError(f"{job.record.folder}: shards are damaged again and again; is the disk failing?")
+
+
+def _share(job: Job, by: By, part: Part) -> int:
+    """A share of the blocks that are missing; how many surfaces then are. Only with the lock."""
+    started, done = job.record.begin(), job.done()
+    missing = started.missing(done, started.shards())
+    _draw_missing(job, started, missing, by, part)
+    return sum(span.n for span in started.missing(done, started.shards()))
 
 
 @contextmanager
-def _what_is_kept(making: Making) -> Iterator[None]:
+def _what_is_kept(job: Job) -> Iterator[None]:
     """An error of the disk, with what it leaves."""
     try:
         yield
     except OSError as error:
         raise RunError(
-            f"{error.filename or making.path}: {error.strerror or error}; finished blocks are kept in "
-            f"{making.folder}, the same command goes on once that is mended"
+            f"{error.filename or job.path}: {error.strerror or error}; finished blocks are kept in "
+            f"{job.record.folder}, the same command goes on once that is mended"
         ) from None
 
 
@@ -187,30 +191,22 @@ def _refuse_more(started: RunFolder, shards: list[Shard]) -> None:
         )
 
 
-def _draw_missing(
-    making: Making, started: RunFolder, spans: list[Span], session: Session, part: Part | None = None
-) -> None:
+def _draw_missing(job: Job, started: RunFolder, spans: list[Span], by: By, part: Part | None = None) -> None:
     """Commit every block that is missing, or of these a job's share."""
     plan, left = started.plan, sum(span.n for span in spans)
-    done = sum(map(making.work, plan.missing(spans)))
+    done = sum(map(job.work, plan.missing(spans)))
     if part:
         spans = [span for span in spans if part.mine(plan.number(span))]
     folder = str(started.folder.resolve())
 
     def note(span: Span, _: str) -> None:
         nonlocal done, left
-        done, left = done + making.work(span), left - span.n
-        session.progress(done)
+        done, left = done + job.work(span), left - span.n
+        by.progress(done)
 
-    session.progress(done)
-    drive(
-        session.engine,
-        spans,
-        draw_block if session.alone else commit_block,
-        lambda span: (folder, span.first, span.n, session.threads),
-        note,
-        session.signals,
-    )
-    session.signals.check(
+    by.progress(done)
+    task = draw_block if isinstance(by.engine, Threads) else commit_block
+    by.drive(spans, task, lambda span: (folder, span.first, span.n, by.threads), note)
+    by.signals.check(
         f"{plan.total - left} of {plan.total} surfaces are kept in {started.folder}; the same command goes on"
     )

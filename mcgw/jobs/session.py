@@ -1,14 +1,15 @@
 """Blocks at work: who draws what is missing, which share of it, and who hears how far it has come."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import closing, contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from typing import Any
 
-from mcgw.jobs.driver import Signals, heed_signals
+from mcgw.jobs.driver import Signals, drive, heed_signals
 from mcgw.jobs.engines import Engine, Threads
+from mcgw.store.shards import Span
 
-__all__ = ["By", "Part", "Progress", "Session", "part_of"]
+__all__ = ["By", "Part", "Progress", "part_of"]
 
 Progress = Callable[[Any], Any]
 
@@ -55,15 +56,13 @@ def part_of(shard: str) -> Part:
 
 
 @dataclass(frozen=True)
-class Session:
-    """Who is at work on blocks, until a signal comes.
+class By:
+    """Who draws blocks this time, and who hears of it.
 
     Parameters
     ----------
-    engine : Engine
-        Who draws.
-    alone : bool
-        Whether these are threads of this process, of which one may write a block while others draw the next.
+    engine : Engine, optional
+        Who draws; default: threads of this process, of which one writes a block while others draw the next.
     threads : int, optional
         Of a block.
     progress : callable
@@ -72,31 +71,28 @@ class Session:
         What has come.
     """
 
-    engine: Engine
-    alone: bool
-    threads: int | None
-    progress: Progress
-    signals: Signals
-
-
-@dataclass(frozen=True)
-class By:
-    """Who draws this time, and who hears of it."""
-
     engine: Engine | None
     threads: int | None
     progress: Progress
+    signals: Signals = field(default_factory=Signals)
 
     def __post_init__(self) -> None:
         if self.threads is not None and self.threads < 1:
             raise ValueError(f"threads = {self.threads}: give a whole number >= 1")
 
     @contextmanager
-    def at_work(self) -> Iterator[Session]:
-        """The engine given, left open; or threads of this process."""
+    def at_work(self) -> Iterator["By"]:
+        """With the engine given, left open, or with own threads; signals are heeded."""
         with heed_signals() as signals:
             if self.engine is not None:
-                yield Session(self.engine, False, 1, self.progress, signals)
+                yield replace(self, threads=1, signals=signals)
                 return
             with closing(Threads()) as own:
-                yield Session(own, True, self.threads, self.progress, signals)
+                yield replace(self, engine=own, signals=signals)
+
+    def drive(
+        self, spans: Sequence[Span], task: Any, arguments: Any, done: Callable[[Span, Any], None]
+    ) -> None:
+        """Have the engine draw blocks, as `mcgw.jobs.driver.drive`."""
+        assert self.engine is not None
+        drive(self.engine, spans, task, arguments, done, self.signals)

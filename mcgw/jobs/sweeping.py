@@ -135,8 +135,8 @@ def sweep(
         with use_threads(threads), told(progress, "surfaces") as tell:
             asked = Asked.of(scene, axes)
             return asked.answered(draw(asked.groups, tell), chosen)
+    from mcgw.jobs.job import Job
     from mcgw.jobs.running import make  # files, which a sweep in memory has none of
-    from mcgw.jobs.sweep_job import SweepJob
     from mcgw.store.ensembles import recorded_seed
     from mcgw.sweeps.file import open_sweep
 
@@ -148,7 +148,6 @@ def sweep(
         told(progress, "surfaces", dashboard_of(draws)) as tell,
     ):
         asked = Asked.from_texts(*Asked.of(scene, axes).texts())  # as workers read it
-        job = SweepJob.of(asked, path)
-        by = By(draws, threads, weighted(asked.groups, tell))
-        left = make(job, by, part)
+        job = Job.of_sweep(asked, path)
+        left = make(job, By(draws, threads, weighted(job.reducers, tell)), part)
     return left if part else open_sweep(path, chosen)

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 from analytic import QUANTITIES
 from mcgw.ensemble.forecast import forecast
+from mcgw.ensemble.reducers import reducer_of
 from mcgw.jobs.duration import in_words, seconds_for
 from mcgw.machine.progress import steps
 from mcgw.machine.terminal import one_line
@@ -62,9 +63,8 @@ class Plan:
 
 def plan_of(scene: Scene) -> Plan:
     """Look at what a scene needs, and time a small block of it, of which nothing is kept."""
-    sampler = sampler_of(scene)
-    columns = scene.width
-    columns += (sampler.moments + sampler.cells) * (scene.keep == "moments")
+    reducer = reducer_of(scene)
+    sampler = reducer.sampler
     surfaces = forecast(scene).surfaces
     return Plan(
         sampler.name,
@@ -74,20 +74,11 @@ def plan_of(scene: Scene) -> Plan:
         sampler.draws,
         sampler.cells,
         sampler.moments,
-        _bytes(scene, sampler, columns, surfaces),
+        reducer.joined_bytes(surfaces),
         seconds_for(scene, sampler, surfaces),
         float(getattr(sampler, "law_error", 0.0)) if scene.law_error else 0.0,
         _at_others(scene, sampler, surfaces),
     )
-
-
-def _bytes(scene: Scene, sampler: Sampler, columns: int, surfaces: int) -> int:
-    """Of the results."""
-    if scene.keep != "statistics":
-        return 8 * columns * surfaces
-    from mcgw.ensemble.summarising import block_rows, joined_bytes  # for those scenes alone
-
-    return joined_bytes(scene, surfaces, block_rows(scene, sampler))
 
 
 def _at_others(scene: Scene, sampler: Sampler, surfaces: int) -> dict[float, float]:

@@ -7,7 +7,7 @@ from mcgw.jobs.duration import in_words
 from mcgw.machine.terminal import one_line
 from mcgw.sampling.shared import shared
 from mcgw.sweeps.asked import Asked
-from mcgw.sweeps.drawing import work_of
+from mcgw.sweeps.drawing import Pooling
 from mcgw.sweeps.groups import Group
 
 __all__ = ["plan_text"]
@@ -33,11 +33,11 @@ def plan_text(asked: Asked) -> str:
 
 def _seconds(groups: list[Group]) -> float:
     """Of all groups, from the one that takes the longest."""
-    longest = max(groups, key=lambda group: group.n_surfaces * work_of(group))
+    work = [group.n_surfaces * Pooling(group).work for group in groups]
+    longest = groups[work.index(max(work))]
     started = perf_counter()
     source = shared(longest.computed)
     preparing = perf_counter() - started
     each = seconds_per_surface(longest.computed[0], source)
-    work = sum(group.n_surfaces * work_of(group) for group in groups)
     scenes = sum(len(group.computed) for group in groups)
-    return preparing * scenes / len(longest.computed) + each * work / work_of(longest)
+    return preparing * scenes / len(longest.computed) + each * longest.n_surfaces * sum(work) / max(work)

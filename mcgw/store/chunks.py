@@ -31,9 +31,10 @@ import h5py
 import numpy as np
 from numpy.typing import NDArray
 
+from mcgw.ensemble.reducers import CHUNK_ROWS
+
 __all__ = ["CHUNK_ROWS", "PACKED", "add_rows", "chunk_rows", "empty_table", "stored"]
 
-CHUNK_ROWS = 256  # surfaces of a chunk; fewer, by powers of two, where a chunk would be too large
 _CHUNK = 2**20  # bytes of a chunk, at most
 _SAMPLE = 2**14  # bytes that tell whether compression pays
 _PIECE = 2**23  # bytes of numbers in hand at a time

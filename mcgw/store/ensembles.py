@@ -2,7 +2,7 @@
 
 import re
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import h5py
 import numpy as np
@@ -29,6 +29,9 @@ from mcgw.store.stored import FileResults, ShardResults
 from mcgw.store.trailer import check_trailer, read_trailer
 from mcgw.store.untrusted import examine
 
+if TYPE_CHECKING:
+    from mcgw.ensemble.summary import Summary
+
 __all__ = [
     "finished",
     "held_by",
@@ -38,6 +41,7 @@ __all__ = [
     "recorded_seed",
     "unfinished_sweep",
     "verify",
+    "whole_blocks",
 ]
 
 
@@ -260,6 +264,17 @@ def held_by(path: Path, run: RunFolder) -> int:
     if _described(path)[0].get("run") != run.identity:
         raise StoreError(f"{path}: holds something else than this sweep; choose another -o, or remove it")
     return run.plan.total
+
+
+def whole_blocks(path: Path, run: RunFolder) -> tuple[list["Summary"], float]:
+    """Of a file that keeps statistics, the joined blocks that more may follow; and the seconds all took."""
+    if run.axes or not path.exists():
+        return [], 0.0
+    from mcgw.store.statistics_file import read_blocks  # for those scenes alone
+
+    ((_, size),) = run.plan.groups
+    blocks = [block for block in read_blocks(path, run.scene).blocks if block.n % size == 0]
+    return blocks, float(_described(path)[0]["wall_seconds"])
 
 
 def finished(path: Path, scene: Scene, sampler: str) -> int:

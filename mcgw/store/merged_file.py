@@ -26,7 +26,7 @@ __all__ = ["merge_into"]
 _CACHE = 2**25  # of chunks that a shard fills only in part
 
 
-def merge_into(folder: Path, target: Path, temporary: Path, check: Callable[[], None]) -> None:
+def merge_into(run: RunFolder, target: Path, temporary: Path, check: Callable[[], None]) -> None:
     """Write the ensemble of a run under a temporary name: the surfaces of `target`, then those of the shards.
 
     `check` is called often, and raises if this is to end.
@@ -38,7 +38,6 @@ def merge_into(folder: Path, target: Path, temporary: Path, check: Callable[[], 
     OSError, RuntimeError
         If the disk does not take it, or what was written reads otherwise.
     """
-    run = RunFolder.open(folder)
     held, _ = _before(target)
     shards = [shard for shard in run.shards(bodies=False) if shard.span.first >= held]
     with closing(SteadyFile(temporary)) as raw:

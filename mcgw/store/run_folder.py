@@ -28,10 +28,11 @@ from mcgw.errors import RunError, StoreError
 from mcgw.formats.files import Expected, sync, write_whole
 from mcgw.formats.toml_text import loads
 from mcgw.scene.scene import Scene, SceneError
-from mcgw.scene.scene_file import scene_from, scene_text
+from mcgw.scene.scene_file import scene_from
 from mcgw.store.arithmetic import drawn_with
-from mcgw.store.disk import parts_of
+from mcgw.store.disk import file_of, parts_of
 from mcgw.store.identity import difference, identity_of
+from mcgw.store.layout import stored_text
 from mcgw.store.lock import refuse_link
 from mcgw.store.plan import Plan
 from mcgw.store.provenance import now
@@ -81,12 +82,17 @@ class RunFolder:
     def of(cls, folder: Path, scene: Scene, sampler: str, plan: Plan) -> "RunFolder":
         """That of one scene; nothing is written yet."""
         draws, identity = drawn_with(scene, sampler), identity_of(scene, sampler)
-        return cls(folder, scene_text(scene), "", sampler, plan, identity, draws, now())
+        return cls(folder, stored_text(scene), "", sampler, plan, identity, draws, now())
 
     @cached_property
     def scene(self) -> Scene:
         """What is drawn; of a sweep what its points come from."""
         return scene_from(self.text)
+
+    @property
+    def path(self) -> Path:
+        """The file that it makes."""
+        return file_of(self.folder)
 
     @property
     def shards_folder(self) -> Path:

@@ -7,7 +7,7 @@ import h5py
 
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.errors import RunError, StoreError
-from mcgw.formats.files import check_output, state_of, write_whole
+from mcgw.formats.files import State, check_output, state_of, write_whole
 from mcgw.scene.scene_file import scene_text
 from mcgw.scene.wrong_object import check_object
 from mcgw.store.arithmetic import drawn_with
@@ -18,7 +18,7 @@ from mcgw.store.layout import describe, digest_of, fill, sealed
 from mcgw.store.lock import locked
 from mcgw.store.shards import DRAWN, Span
 
-__all__ = ["save", "write_ensemble"]
+__all__ = ["body_of", "save", "write_body"]
 
 
 def save(ensemble: Ensemble, path: str | Path, *, wall_seconds: float = 0.0) -> Ensemble:
@@ -65,30 +65,25 @@ def save(ensemble: Ensemble, path: str | Path, *, wall_seconds: float = 0.0) -> 
                 f"{path}: a run that makes this file is not finished; finish it, choose another -o, "
                 f"or remove {parts_of(path)}"
             )
-        write_ensemble(ensemble, path, wall_seconds=wall_seconds)
+        before, asked = state_of(path), (ensemble.scene, ensemble.sampler)
+        finished(path, *asked)
+        about = {"run": identity_of(*asked), "draws": drawn_with(*asked), "wall_seconds": wall_seconds}
+        write_body(path, body_of(ensemble, **about), before)
     return open_ensemble(path)
 
 
-def write_ensemble(ensemble: Ensemble, path: Path, *, wall_seconds: float) -> None:
-    """Write an ensemble in one atomic step, over none but a part of itself. Only with the lock.
+def write_body(path: Path, body: tuple[bytes, bytes], before: State | None) -> None:
+    """Write a file and its trailer in one atomic step, over what `before` says that was there. With the lock.
 
     Raises
     ------
     StoreError
-        If another ensemble, or anything else, has this name.
+        If something else has this name by now.
     RunError
         If the disk does not take it.
     """
-    scene, before = ensemble.scene, state_of(path)
-    finished(path, scene, ensemble.sampler)
-    more = {
-        "run": identity_of(scene, ensemble.sampler),
-        "draws": drawn_with(scene, ensemble.sampler),
-        "wall_seconds": wall_seconds,
-        **({} if ensemble.drawn_for is None else {"drawn_for": scene_text(ensemble.drawn_for)}),
-    }
     try:
-        write_whole(path, _body_of(ensemble, more), expected=before)
+        write_whole(path, body, expected=before)
     except FileExistsError as error:
         raise StoreError(f"{path}: {error.strerror}; it is left as it is, choose another -o") from None
     except OSError as error:
@@ -97,18 +92,20 @@ def write_ensemble(ensemble: Ensemble, path: Path, *, wall_seconds: float) -> No
         ) from None
 
 
-def _body_of(ensemble: Ensemble, more: dict[str, Any]) -> tuple[bytes, bytes]:
-    """The file and its trailer."""
+def body_of(ensemble: Ensemble, **about: Any) -> tuple[bytes, bytes]:
+    """The file of an ensemble, with more attributes, and its trailer."""
     scene = ensemble.scene
+    if ensemble.drawn_for is not None:
+        about["drawn_for"] = scene_text(ensemble.drawn_for)
     if scene.keep == "statistics":
-        from mcgw.store.statistics_file import body_of  # for those scenes alone
+        from mcgw.store.statistics_file import body_of_statistics  # for those scenes alone
 
-        return body_of(ensemble, **more)
+        return body_of_statistics(ensemble, **about)
     names = [*scene.shapes, *(DRAWN if scene.keep == "moments" else ())]
     arrays = {name: ensemble.sums.read(name, 0, None) for name in names}
 
     def make(file: h5py.File) -> None:
         fill(file, scene, [(Span(0, ensemble.n_surfaces), arrays)])
-        describe(file, scene, ensemble.sampler, digest_of(file, scene, [arrays]), **more)
+        describe(file, scene, ensemble.sampler, digest_of(file, scene, [arrays]), **about)
 
     return sealed(make)

@@ -16,8 +16,8 @@ from typing import Any
 
 import h5py
 import numpy as np
-from numpy.typing import NDArray
 
+from mcgw.ensemble.reducers import Tables
 from mcgw.errors import StoreError
 from mcgw.formats.files import write_whole
 from mcgw.store.chunks import stored
@@ -38,8 +38,6 @@ __all__ = [
     "pack",
     "tables_in",
 ]
-
-Tables = dict[str, NDArray[Any]]
 
 RAGGED = "extras"  # the one table whose rows are not surfaces
 DRAWN = ("moments", "cells", RAGGED)  # what `keep = "moments"` adds to the quantities

@@ -45,12 +45,12 @@ from mcgw.scene.scene_file import scene_text
 from mcgw.store.layout import body_of_kept, drawn_tables, scales_of
 from mcgw.store.shards import Shard
 
-__all__ = ["blocks_of", "body_of", "read_blocks", "shapes_of"]
+__all__ = ["blocks_of", "body_of_statistics", "read_blocks", "shapes_of"]
 
 _COLUMNS = ("column", "other_column")  # of the covariance
 
 
-def body_of(ensemble: Ensemble, **attributes: Any) -> tuple[bytes, bytes]:
+def body_of_statistics(ensemble: Ensemble, **attributes: Any) -> tuple[bytes, bytes]:
     """The file of an ensemble that keeps statistics, and its trailer."""
     sums, scene, found = ensemble.sums, ensemble.scene, ensemble.labelled()
     assert isinstance(sums, Summarised)

@@ -28,7 +28,7 @@ With ``keep = "statistics"`` also ``/load_skewness``, and ``/load_quantile`` wit
 versions in `draws`. After the HDF5 data stands a trailer, as in the files of ensembles.
 """
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -39,7 +39,6 @@ from numpy.typing import NDArray
 
 from mcgw.ensemble.labelled import AXES, Labelled, Variable, axis
 from mcgw.errors import StoreError
-from mcgw.formats.files import write_whole
 from mcgw.formats.toml_text import loads
 from mcgw.scene.section import SceneError
 from mcgw.store.ensembles import read_attributes
@@ -47,61 +46,23 @@ from mcgw.store.layout import body_of_kept, drawn_digest, drawn_tables
 from mcgw.store.run_folder import RunFolder
 from mcgw.sweeps.asked import Asked
 from mcgw.sweeps.axes import Axes
-from mcgw.sweeps.drawing import added_up
 from mcgw.sweeps.groups import Place
 from mcgw.sweeps.points import Points
 from mcgw.sweeps.pooled import Pooled
 from mcgw.sweeps.sweep import STATISTICS, Sweep
 
-__all__ = ["merge_sweep", "open_sweep", "write_sweep"]
+__all__ = ["body_of_sweep", "open_sweep"]
 
 Tables = dict[str, NDArray[Any]]
 
 
-def write_sweep(
-    run: RunFolder, asked: Asked, pooled: Sequence[Pooled], path: Path, *, wall_seconds: float
-) -> None:
-    """Write the file of a sweep in one atomic step, over none.
-
-    Raises
-    ------
-    OSError
-        If it cannot be written, or another file has this name.
-    """
-    sweep = asked.answered(pooled, STATISTICS)
-    of_run = {"run": run.identity, "draws": run.drawn_with, "wall_seconds": wall_seconds}
-    texts = {"scene": run.text, "axes": run.axes}
-    body = body_of_kept(
-        _by_point(sweep), _drawn(sweep), tuple(texts.values()), run.scene, "", **texts, **of_run
+def body_of_sweep(record: RunFolder, pooled: Sequence[Pooled], **about: Any) -> tuple[bytes, bytes]:
+    """The file of a sweep, with more attributes, and its trailer."""
+    sweep = Asked.from_texts(record.text, record.axes).answered(pooled, STATISTICS)
+    texts = {"scene": record.text, "axes": record.axes}
+    return body_of_kept(
+        _by_point(sweep), _drawn(sweep), tuple(texts.values()), record.scene, "", **texts, **about
     )
-    write_whole(path, body, expected=None)
-
-
-def merge_sweep(folder: Path, _target: Path, temporary: Path, check: Callable[[], None]) -> None:
-    """Write the file of a sweep under a temporary name, out of its shards: as a whole, never onto another.
-
-    `check` is called often, and raises if this is to end.
-
-    Raises
-    ------
-    StoreError
-        If a shard is missing or damaged.
-    OSError
-        If the disk does not take it.
-    """
-    run, seconds = RunFolder.open(folder), 0.0
-
-    def held() -> Iterator[tuple[int, Pooled]]:
-        nonlocal seconds
-        for span in run.plan.missing([]):
-            check()
-            if (shard := run.held(span)) is None:
-                raise StoreError(f"{folder}: {span} are missing")
-            seconds += shard.seconds
-            yield run.plan.group(span)[0], Pooled.from_shard(shard.arrays())
-
-    pooled = added_up(held())
-    write_sweep(run, Asked.from_texts(run.text, run.axes), pooled, temporary, wall_seconds=seconds)
 
 
 def _by_point(sweep: Sweep) -> Labelled:

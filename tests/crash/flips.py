@@ -14,8 +14,8 @@ import h5py
 import numpy as np
 from harness import ROWS, forked, prepare, scene_of
 
+from mcgw.ensemble.reducers import Values
 from mcgw.errors import StoreError
-from mcgw.jobs.job import Job
 from mcgw.jobs.running import run, run_part
 from mcgw.jobs.session import Part
 from mcgw.store import ensembles, structure
@@ -27,9 +27,9 @@ BLOCKS = 5
 def made(folder):
     """A file of one block, one that was merged, and a run in progress."""
     scene, files = scene_of(BLOCKS), [folder / f"{name}.h5" for name in ("one-block", "merged", "begun")]
-    in_blocks, Job.rows = Job.rows, BLOCKS * ROWS
+    in_blocks, Values.rows = Values.rows, BLOCKS * ROWS
     run(scene, files[0])
-    Job.rows = in_blocks
+    Values.rows = in_blocks
     run(scene, files[1])
     run_part(scene, files[2], Part(1, 2))
     return files

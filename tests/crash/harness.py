@@ -17,6 +17,7 @@ from pathlib import Path
 import numpy as np
 
 import analytic
+from mcgw.ensemble.reducers import Values
 from mcgw.errors import RunError, StoreError
 from mcgw.jobs import running
 from mcgw.jobs.job import Job
@@ -48,8 +49,8 @@ def made_up(job, span, threads):
 def prepare():
     Job.draw = made_up
     lock.PATIENCE = 0.0  # a second driver is refused at once
-    Job.rows = chunks.CHUNK_ROWS = ROWS  # blocks are merged by their packed chunks
-    Job.columns = 6
+    Values.rows = chunks.CHUNK_ROWS = ROWS  # blocks are merged by their packed chunks
+    Values.columns = 6
     ensembles.examine = lambda path: structure.describe(str(path))
     if "MCGW_IN_PLACE" in os.environ:  # the wrong way, which the harness must notice
         shards.write_whole = written_in_place
