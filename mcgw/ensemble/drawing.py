@@ -1,7 +1,10 @@
 """Surfaces block by block: how many at a time, by which threads, and what of a block is kept."""
 
-from collections.abc import Iterator
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass
+from functools import cached_property
 from time import perf_counter
 from typing import Any, TypeVar
 
@@ -9,17 +12,24 @@ import numba
 import numpy as np
 
 from analytic import quantity_of
+from mcgw.ensemble.results import Tables
 from mcgw.machine.in_threads import in_threads, pieces
 from mcgw.sampling.block import Block, Sampler, Source
 from mcgw.sampling.counts import GROUP
+from mcgw.sampling.samplers import sampler_of
 from mcgw.scene.samplers import promise_of
 from mcgw.scene.scene import Scene
 
 __all__ = [
+    "GoOn",
+    "OfScene",
+    "Reducer",
+    "always",
     "answered",
     "at_a_time",
     "block_size",
     "blocks",
+    "drawn",
     "drawn_blocks",
     "kept",
     "seconds_per_surface",
@@ -27,6 +37,7 @@ __all__ = [
 ]
 
 _Drawn = TypeVar("_Drawn")
+GoOn = Callable[[int], bool]  # told the surface after those that are drawn, says whether to draw more
 
 _WORDS = 4_000_000  # numbers of a block that stay in the outer cache
 _MOST_WORDS = 20_000_000  # numbers a block may hold
@@ -115,3 +126,90 @@ def use_threads(threads: int | None) -> Iterator[None]:
         yield
     finally:
         numba.set_num_threads(before)
+
+
+def always(_: int) -> bool:
+    """Go on."""
+    return True
+
+
+class Reducer(ABC):
+    """Draws surfaces of one scene, or of several that share them, and keeps of each block what is asked.
+
+    Blocks are a function of the scenes alone and are joined in their order: the same bits whoever draws them,
+    and wherever that was interrupted.
+    """
+
+    whole = True  # whether a block is of use as a whole only, since nothing is kept of a single surface
+    work = 1.0  # what a surface takes, in any unit
+    disk = 0  # bytes that blocks and their file take at most, as far as they count
+
+    @property
+    @abstractmethod
+    def n_surfaces(self) -> int:
+        """How many surfaces are asked for."""
+
+    @property
+    @abstractmethod
+    def rows(self) -> int:
+        """Surfaces of a block, however many of them are asked for."""
+
+    @abstractmethod
+    def tables(self, first: int, stop: int, go_on: GoOn = always) -> Tables:
+        """What is kept of a block, or of its beginning; it does not depend on the number of threads.
+
+        `go_on` is asked after each piece that fits the memory.
+        """
+
+    @abstractmethod
+    def held(self, blocks: Iterable[Tables]) -> Any:
+        """What all blocks make, each read when its turn comes."""
+
+    @abstractmethod
+    def check(self, surfaces: int | None = None) -> None:
+        """Refuse what does not fit the memory: so many surfaces, or if they go into a file a block.
+
+        Raises
+        ------
+        StoreError
+            With the numbers.
+        """
+
+
+def drawn(reducer: Reducer, go_on: GoOn) -> Any:
+    """What is kept of all surfaces, or as many as `go_on` lets be drawn, in memory."""
+    more = True
+
+    def asked(done: int) -> bool:
+        nonlocal more
+        more = go_on(done)
+        return more
+
+    def blocks() -> Iterator[Tables]:
+        n, rows = reducer.n_surfaces, reducer.rows
+        for first in range(0, n, rows):
+            if more:
+                yield reducer.tables(first, min(first + rows, n), asked)
+
+    return reducer.held(blocks())
+
+
+@dataclass(frozen=True)
+class OfScene(Reducer):
+    """Of the surfaces of one scene, with a number of them."""
+
+    scene: Scene
+
+    @cached_property
+    def sampler(self) -> Sampler:
+        """The scene's."""
+        return sampler_of(self.scene)
+
+    @property
+    def n_surfaces(self) -> int:
+        """How many surfaces are asked for."""
+        return self.scene.n_surfaces
+
+    @abstractmethod
+    def joined_bytes(self, surfaces: int) -> int:
+        """About what the file of so many surfaces takes, before compression."""

@@ -1,117 +1,19 @@
-"""What is kept of surfaces that are drawn block by block, and what many blocks make."""
+"""What is kept of the surfaces of a scene as they are drawn: all their numbers, or what statistics need."""
 
-from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass
+from collections.abc import Iterable
 from functools import cached_property
-from typing import Any
 
-from numpy.typing import NDArray
-
-from mcgw.ensemble.drawing import block_size, drawn_blocks, kept
-from mcgw.ensemble.results import MemoryResults, joined
+from mcgw.ensemble.drawing import GoOn, OfScene, always, block_size, drawn_blocks, kept
+from mcgw.ensemble.results import CHUNK_ROWS, MemoryResults, Tables, joined
 from mcgw.errors import StoreError
 from mcgw.machine.memory import check_memory
-from mcgw.sampling.samplers import Sampler, sampler_of
 from mcgw.scene.scene import Scene
 
-__all__ = ["CHUNK_ROWS", "GoOn", "OfScene", "Reducer", "Tables", "Values", "always", "drawn", "reducer_of"]
+__all__ = ["Values", "reducer_of"]
 
-Tables = dict[str, NDArray[Any]]
-GoOn = Callable[[int], bool]  # told the surface after those that are drawn, says whether to draw more
-
-CHUNK_ROWS = 256  # surfaces of a chunk of a file; fewer, by powers of two, where a chunk would be too large
 _BYTES = 2**23  # of a block: large enough that its flushing costs little
 _DRAWS = 4e8  # numbers drawn for a block: a second or so
-_OUTSIDE = 3  # numbers kept of an asperity outside the cells: surface, height, weight
 _MOST = 2**63 - 1
-
-
-def always(_: int) -> bool:
-    """Go on."""
-    return True
-
-
-class Reducer(ABC):
-    """Draws surfaces of one scene, or of several that share them, and keeps of each block what is asked.
-
-    Blocks are a function of the scenes alone and are joined in their order: the same bits whoever draws them,
-    and wherever that was interrupted.
-    """
-
-    whole = True  # whether a block is of use as a whole only, since nothing is kept of a single surface
-    work = 1.0  # what a surface takes, in any unit
-    disk = 0  # bytes that blocks and their file take at most, as far as they count
-
-    @property
-    @abstractmethod
-    def n_surfaces(self) -> int:
-        """How many surfaces are asked for."""
-
-    @property
-    @abstractmethod
-    def rows(self) -> int:
-        """Surfaces of a block, however many of them are asked for."""
-
-    @abstractmethod
-    def tables(self, first: int, stop: int, go_on: GoOn = always) -> Tables:
-        """What is kept of a block, or of its beginning; it does not depend on the number of threads.
-
-        `go_on` is asked after each piece that fits the memory.
-        """
-
-    @abstractmethod
-    def held(self, blocks: Iterable[Tables]) -> Any:
-        """What all blocks make, each read when its turn comes."""
-
-    @abstractmethod
-    def check(self, surfaces: int | None = None) -> None:
-        """Refuse what does not fit the memory: so many surfaces, or if they go into a file a block.
-
-        Raises
-        ------
-        StoreError
-            With the numbers.
-        """
-
-
-def drawn(reducer: Reducer, go_on: GoOn) -> Any:
-    """What is kept of all surfaces, or as many as `go_on` lets be drawn, in memory."""
-    more = True
-
-    def asked(done: int) -> bool:
-        nonlocal more
-        more = go_on(done)
-        return more
-
-    def blocks() -> Iterator[Tables]:
-        n, rows = reducer.n_surfaces, reducer.rows
-        for first in range(0, n, rows):
-            if more:
-                yield reducer.tables(first, min(first + rows, n), asked)
-
-    return reducer.held(blocks())
-
-
-@dataclass(frozen=True)
-class OfScene(Reducer):
-    """Of the surfaces of one scene, with a number of them."""
-
-    scene: Scene
-
-    @cached_property
-    def sampler(self) -> Sampler:
-        """The scene's."""
-        return sampler_of(self.scene)
-
-    @property
-    def n_surfaces(self) -> int:
-        """How many surfaces are asked for."""
-        return self.scene.n_surfaces
-
-    @abstractmethod
-    def joined_bytes(self, surfaces: int) -> int:
-        """About what the file of so many surfaces takes, before compression."""
 
 
 class Values(OfScene):
@@ -133,7 +35,7 @@ class Values(OfScene):
         sums = self.scene.width
         if self.scene.keep != "moments":
             return sums
-        return sums + self.sampler.moments + self.sampler.cells + _OUTSIDE
+        return sums + self.sampler.moments + self.sampler.cells
 
     @property
     def disk(self) -> int:  # type: ignore[override]

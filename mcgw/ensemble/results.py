@@ -8,13 +8,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["PROBABILITIES", "Held", "MemoryResults", "Results", "joined"]
+__all__ = ["CHUNK_ROWS", "PROBABILITIES", "Held", "MemoryResults", "Results", "Tables", "joined"]
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
+Tables = dict[str, NDArray[Any]]  # numbers of surfaces by name, a row each
 
 PROBABILITIES = (0.0, 0.001, 0.01, 0.025, 0.05, 0.25, 0.5, 0.75, 0.95, 0.975, 0.99, 0.999, 1.0)
 
+CHUNK_ROWS = 256  # surfaces of a chunk of a file; fewer, by powers of two, where a chunk would be too large
 _ROWS = 8192  # surfaces at a time, for ensembles larger than the memory
 _LOW = 2**32 - 1  # the lower half of an integer: sums of halves do not overflow
 
@@ -133,6 +135,6 @@ class MemoryResults(Results):
         return len(next(iter(self.arrays.values())))
 
 
-def joined(parts: Sequence[Mapping[str, NDArray[Any]]]) -> dict[str, NDArray[Any]]:
+def joined(parts: Sequence[Mapping[str, NDArray[Any]]]) -> Tables:
     """The tables of several blocks of surfaces, one below the other."""
     return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}

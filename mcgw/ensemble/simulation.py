@@ -4,10 +4,10 @@ from dataclasses import replace
 from time import monotonic
 from typing import Any
 
-from mcgw.ensemble.drawing import use_threads
+from mcgw.ensemble.drawing import drawn, use_threads
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.forecast import without_rule
-from mcgw.ensemble.reducers import drawn, reducer_of
+from mcgw.ensemble.reducers import reducer_of
 from mcgw.machine.progress import Progress, told
 from mcgw.scene.scene import LeftOut, Scene
 from mcgw.scene.storable import storable

@@ -8,9 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mcgw.ensemble.bins import Bins
-from mcgw.ensemble.drawing import block_size, drawn_blocks, kept
-from mcgw.ensemble.reducers import GoOn, OfScene, Tables, always
-from mcgw.ensemble.results import joined
+from mcgw.ensemble.drawing import GoOn, OfScene, always, block_size, drawn_blocks, kept
+from mcgw.ensemble.results import Tables, joined
 from mcgw.ensemble.summarised import Summarised
 from mcgw.ensemble.summary import Summary, push, size_of, total
 from mcgw.machine.memory import check_memory

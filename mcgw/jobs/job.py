@@ -10,9 +10,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from analytic import PiecewiseSeries
-from mcgw.ensemble.drawing import use_threads
+from mcgw.ensemble.drawing import Reducer, use_threads
 from mcgw.ensemble.ensemble import Ensemble
-from mcgw.ensemble.reducers import Reducer, Tables, reducer_of
+from mcgw.ensemble.reducers import reducer_of
+from mcgw.ensemble.results import Tables
 from mcgw.errors import StoreError
 from mcgw.formats.files import check_output
 from mcgw.machine.memory import gibibytes

@@ -5,7 +5,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from mcgw.ensemble.reducers import Tables
+from mcgw.ensemble.results import Tables
 from mcgw.errors import RunError, StoreError
 from mcgw.formats.files import rename_over, state_of, sync, temporary_beside, write_whole
 from mcgw.jobs.driver import Signals, heed_signals

@@ -31,7 +31,7 @@ import h5py
 import numpy as np
 from numpy.typing import NDArray
 
-from mcgw.ensemble.reducers import CHUNK_ROWS
+from mcgw.ensemble.results import CHUNK_ROWS
 
 __all__ = ["CHUNK_ROWS", "PACKED", "add_rows", "chunk_rows", "empty_table", "stored"]
 

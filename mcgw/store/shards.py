@@ -17,7 +17,7 @@ from typing import Any
 import h5py
 import numpy as np
 
-from mcgw.ensemble.reducers import Tables
+from mcgw.ensemble.results import Tables
 from mcgw.errors import StoreError
 from mcgw.formats.files import write_whole
 from mcgw.store.chunks import stored

@@ -5,9 +5,8 @@ from dataclasses import dataclass, replace
 from functools import lru_cache, reduce
 from operator import add
 
-from mcgw.ensemble.drawing import block_size, drawn_blocks, kept
-from mcgw.ensemble.reducers import GoOn, Reducer, Tables, always, drawn
-from mcgw.ensemble.results import joined
+from mcgw.ensemble.drawing import GoOn, Reducer, always, block_size, drawn, drawn_blocks, kept
+from mcgw.ensemble.results import Tables, joined
 from mcgw.ensemble.summary import size_of
 from mcgw.machine.memory import check_memory
 from mcgw.sampling.shared import Alone, Shared, shared
