@@ -15,7 +15,7 @@ from scipy.stats import binom, chi2, norm
 import analytic
 import mcgw
 from mcgw.cli import main
-from mcgw.figures.convergence import save_convergence
+from mcgw.figures.studies import save_convergence
 from mcgw.statistics import convergence
 from mcgw.statistics.checks import coverage, independence, skewness, variances
 from mcgw.statistics.comparison import FALSE_ALARM

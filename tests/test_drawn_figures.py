@@ -14,12 +14,11 @@ from scipy.stats import norm
 
 import analytic
 import mcgw
-from mcgw.figures.comparison import quantity_figure, save_comparison
-from mcgw.figures.convergence import save_convergence
+from mcgw.figures.against_theory import quantity_figure, save_comparison
 from mcgw.figures.data import FigureData, Panel, Points, Series
 from mcgw.figures.drawing import draw
+from mcgw.figures.studies import save_convergence, save_tradeoff
 from mcgw.figures.style import power_of_ten
-from mcgw.figures.tradeoff import save_tradeoff
 from mcgw.statistics.checks import Check, Slope
 from mcgw.statistics.comparison import Comparison, Curve, Verdict, compare
 from mcgw.statistics.convergence import Convergence

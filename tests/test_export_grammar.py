@@ -13,11 +13,9 @@ from new_trailer import trailer_again
 import mcgw
 from mcgw.cli import main
 from mcgw.errors import StoreError
-from mcgw.exports.curves import Curve
-from mcgw.exports.kinds import KINDS
+from mcgw.exports.curves import KINDS, Curve
 from mcgw.exports.programs import PROGRAMS
-from mcgw.exports.table_text import table_text
-from mcgw.exports.unit_systems import UNIT_SYSTEMS
+from mcgw.exports.table_text import UNIT_SYSTEMS, table_text
 from mcgw.formats.table import Column, Table
 from mcgw.store import ensembles, structure
 from mcgw.store.plan import Plan

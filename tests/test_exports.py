@@ -14,11 +14,10 @@ from mcgw.cli import main
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.equal_pressure import at_pressures, loaded_part
 from mcgw.ensemble.results import MemoryResults
-from mcgw.exports.curves import quantile_name
-from mcgw.exports.kinds import KINDS
+from mcgw.exports.curves import KINDS, quantile_name
 from mcgw.exports.programs import PROGRAMS
-from mcgw.exports.surfaces import surfaces_for
-from mcgw.exports.unit_systems import UNIT_SYSTEMS
+from mcgw.exports.table_text import UNIT_SYSTEMS
+from mcgw.exports.writing import surfaces_for
 from mcgw.store.ensembles import read_attributes
 
 SURFACE = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "10 mm^2", "78.6 GPa")

@@ -16,7 +16,7 @@ from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.forecast import forecast
 from mcgw.ensemble.intervals import FEWEST, TOO_FEW, Spread, count_interval, pearson3_quantile, spread_of
 from mcgw.ensemble.results import MemoryResults
-from mcgw.figures.comparison import quantity_figure
+from mcgw.figures.against_theory import quantity_figure
 from mcgw.formats.table import stacked
 from mcgw.reports.text import comparison_text
 from mcgw.scene.scene import Scene

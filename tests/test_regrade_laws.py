@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import mcgw
-from mcgw.ensemble.from_heights import sums_of_heights
+from mcgw.ensemble.regrading import sums_of_heights
 from mcgw.sampling.asperities import same_heights
 
 H = (0.0, 0.5, 1.0, 2.0)

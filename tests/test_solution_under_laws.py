@@ -12,7 +12,7 @@ import pytest
 
 import mcgw
 from analytic.laws import LoadingBranch
-from mcgw.ensemble.law_separation import LawSum
+from mcgw.ensemble.separation import LawSum
 from mcgw.ensemble.solution import solutions
 
 YIELD_OF_STEEL = by_hand.yields_at(0.004)

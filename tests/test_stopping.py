@@ -16,7 +16,7 @@ from mcgw.errors import StoreError
 from mcgw.jobs.merging import merge
 from mcgw.jobs.running import run, run_part
 from mcgw.jobs.session import Part
-from mcgw.reports.stop_rule import after, before, upper_contacts
+from mcgw.reports.side_notes import after, before, upper_contacts
 from mcgw.scene.scene import SceneError
 from mcgw.store.ensembles import read_attributes
 

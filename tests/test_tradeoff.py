@@ -10,7 +10,7 @@ import pytest
 from scipy.stats import norm
 
 import analytic
-from mcgw.figures.tradeoff import save_tradeoff
+from mcgw.figures.studies import save_tradeoff
 from mcgw.statistics import tradeoff as study
 from mcgw.statistics.tradeoff import tradeoff
 from mcgw.statistics.ways import Way, ways_for

@@ -13,7 +13,7 @@ import analytic
 import mcgw
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.results import MemoryResults
-from mcgw.figures.comparison import save_comparison
+from mcgw.figures.against_theory import save_comparison
 from mcgw.sampling.samplers import sampler_of
 from mcgw.statistics import comparison
 from mcgw.statistics.comparison import FALSE_ALARM, Verdict, compare, verdict

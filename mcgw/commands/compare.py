@@ -18,9 +18,14 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def execute(args: argparse.Namespace) -> int:
     """Print table and verdict, save the figure."""
-    from mcgw.commands.notes import tell_notes
-    from mcgw.commands.outputs import Output, check_outputs, figure_format
-    from mcgw.commands.table_option import table_output, write_table
+    from mcgw.commands.outputs import (
+        Output,
+        check_outputs,
+        figure_format,
+        table_output,
+        tell_notes,
+        write_table,
+    )
     from mcgw.machine.progress import bar
     from mcgw.statistics.compared import compare
     from mcgw.sweeps.opening import open_results
@@ -28,14 +33,14 @@ def execute(args: argparse.Namespace) -> int:
     path = args.output or args.file.with_suffix(".png")
     result = open_results(args.file)
     check_outputs([Output(path, figure_format()), *table_output(args.csv)], inputs=[args.file])
-    from mcgw.figures.comparison import save_comparison
-    from mcgw.reports.compared import told
+    from mcgw.figures.against_theory import save_comparison
+    from mcgw.reports.text import comparison_summary
 
     tell_notes(result)
     with bar("points", terminal=True) as show:
         comparison = compare(result, progress=show)
     save_comparison(comparison, path)
-    text, table, verdict = told(comparison)
+    text, table, verdict = comparison_summary(comparison)
     print(text)
     write_table(args.csv, table)
     print("", *verdict, f"{path}: figure", sep="\n")

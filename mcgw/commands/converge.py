@@ -19,9 +19,8 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def execute(args: argparse.Namespace) -> int:
     """Print every check and the verdict, save the figure."""
-    from mcgw.commands.notes import tell_notes
-    from mcgw.commands.outputs import Output, check_outputs, figure_format
-    from mcgw.figures.convergence import save_convergence
+    from mcgw.commands.outputs import Output, check_outputs, figure_format, tell_notes
+    from mcgw.figures.studies import save_convergence
     from mcgw.machine.progress import bar
     from mcgw.scene.scene_file import files_of, load_scene
     from mcgw.statistics.comparison import FALSE_ALARM

@@ -40,8 +40,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def execute(args: argparse.Namespace) -> int:
     """Write the files and say where they are."""
-    from mcgw.commands.notes import tell_notes
-    from mcgw.commands.outputs import CSV, Format, Output, check_outputs
+    from mcgw.commands.outputs import CSV, Format, Output, check_outputs, tell_notes
     from mcgw.exports.curves import quantile_name
     from mcgw.exports.programs import PROGRAMS, check_name
     from mcgw.exports.writing import DEFAULT_QUANTILES, export, files_of_export

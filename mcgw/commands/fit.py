@@ -1,4 +1,4 @@
-"""``mcgw fit``: a scene from a measured map."""
+"""``mcgw fit``: a scene from a measured map, or from profiles."""
 
 import argparse
 from dataclasses import replace
@@ -7,15 +7,21 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from mcgw.maps.fit import Fit
+    from mcgw.maps.preparation import Preparation
+    from mcgw.maps.profile_fit import ProfileFit
+
 
 HELP = "fit summit density, radius and spread to a measured height map, and write a scene"
 EXAMPLE = "mcgw fit map.sdf --cutoff 5um -o fitted.toml"
+_UNITS = {"m0": " m^2", "m4": " 1/m^2", "eta": " 1/m^2", "radius": " m", "sigma": " m"}
+_ASSUMED = (
+    "of a surface alike in all directions, with Gaussian heights (Nayak, McCool), after the areal filter"
+)
+_FORMS = ("plane", "none", "quadratic", "cubic", "quartic", "sphere", "cylinder")
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of this command."""
-    from mcgw.commands.preparation import preparation_arguments
-
     parser.add_argument(
         "map", type=Path, nargs="+", metavar="MAP",
         help="SDF, X3P, .npy, .h5 or text; or profiles of one surface (x, z text), told by their shape",
@@ -58,9 +64,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def execute(args: argparse.Namespace) -> int:
     """Print the estimates side by side with warnings, write the scene, and say where it is."""
-    from mcgw.commands.fit_profiles import fit_of_profiles
     from mcgw.commands.outputs import CSV, NPY, TOML, Output, check_outputs, figure_format
-    from mcgw.commands.preparation import preparation
     from mcgw.formats.units import parse
     from mcgw.machine.progress import stages
     from mcgw.maps.files import files_of_map, read_map
@@ -129,3 +133,114 @@ def _write_tables(fit: "Fit", summits: Path | None, tiles: Path | None) -> None:
     if tiles is not None:
         write_tiles(fit.tiles, tiles)
         print(tiles)
+
+
+def fit_of_profiles(
+    args: argparse.Namespace, cutoff: float | None, E_star: float, on: dict[str, float]
+) -> int:
+    """Print what the profiles tell, with warnings, write the scene, and say where it is."""
+    from mcgw.commands.outputs import TOML, Output, check_outputs
+    from mcgw.formats.units import parse
+    from mcgw.maps.fit_cautions import profile_cautions
+    from mcgw.maps.fitted_scene import fitted_scene, write_scene
+    from mcgw.maps.profile_files import read_profile
+    from mcgw.maps.profile_fit import fit_profiles
+
+    for option, given in (("--summits", args.summits), ("--tiles", args.tiles), ("--picture", args.picture)):
+        if given is not None:
+            raise ValueError(
+                f"{option} {given}: a profile shows no summits, and has no sub-areas; give a map"
+            )
+    for option in ("long_cutoff", "missing", "spikes", "step", "lines", "trim"):
+        if getattr(args, option) not in (None, "auto", "keep", 0):
+            raise ValueError(f"--{option.replace('_', '-')}: is for maps; prepare a profile before")
+    spacing = None if args.pixel is None else parse(args.pixel, "m", "--pixel")
+    profiles = [read_profile(path, spacing=spacing, unit=args.unit) for path in args.map]
+    check_outputs([Output(args.output, TOML)], inputs=args.map)
+    fit = fit_profiles(profiles, cutoff=cutoff, form=args.form)
+    filtered = "none" if cutoff is None else f"{cutoff:g} m (Gaussian)"
+    names = ", ".join(path.name for path in args.map)
+    taken = {"none": "mean", "plane": "line", "quadratic": "parabola"}[args.form]
+    head = f"{names}: profile; taken off: {taken}; cutoff: {filtered}"
+    if unit := next((p.assumed_unit for p in profiles if p.assumed_unit), ""):
+        head += f"; lengths taken in {unit} where the file tells no unit"
+    text = [head, *_table(fit), *(f"warning: {line}" for line in profile_cautions(fit, profiles, cutoff))]
+    print("\n".join(text))
+    title = f"Fitted to {head}"
+    scene = fitted_scene(fit, use=args.use, heights=args.heights, E_star=E_star, title=title, **on)
+    for path in write_scene(scene, args.output, None, text):
+        print(path)
+    return 0
+
+
+def _table(fit: "ProfileFit") -> list[str]:
+    """What the profiles are, and what they tell of the surface, one number a line."""
+    counted, expected = fit.peaks
+    number = len(fit.lengths)
+    lines = [
+        f"{number} profile{'s' if number > 1 else ''}, {sum(fit.lengths):.4g} m together; filtered along the "
+        f"line: {fit.roughness.text('P')} (primary profile; they are Ra, Rq, Rsk if waves beyond a cutoff "
+        "lambda_c were taken off before)",
+        f"{counted:.4g} peaks a metre of profile; its own moments let expect {expected:.4g}",
+        _ASSUMED + ":",
+        f"{'':8}{'value':26}95 % interval",
+    ]
+    for name in fit.errors:
+        low, high = fit.interval(name)
+        value = f"{getattr(fit.moments, name):.4g}{_UNITS.get(name, '')}"
+        lines.append(f"{name:8}{value:26}{low:.3g} to {high:.3g}")
+    mean = fit.moments.mean_height
+    lines.append(
+        f"summits lie {mean:.3g} m above the mean plane on average; sigma is theirs, about that mean"
+    )
+    return lines
+
+
+def preparation_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add them."""
+    parser.add_argument(
+        "--cutoff", required=True, metavar="LENGTH",
+        help="shortest wavelength that counts, as 5um (Gaussian filter, ISO 16610-61); or none",
+    )  # fmt: skip
+    parser.add_argument(
+        "--long-cutoff", metavar="LENGTH", help="longest wavelength that counts, as 80um; default: all do"
+    )
+    parser.add_argument("--form", choices=_FORMS, default="plane", help="what is taken off; default: plane")
+    parser.add_argument(
+        "--missing", choices=("auto", "mask", "fill"), default="auto",
+        help="missing points are filled from the edges of their holes; mask: they and their neighbours do "
+        "not count, fill: they do; auto: mask, while half of the others are left; default: auto",
+    )  # fmt: skip
+    parser.add_argument(
+        "--spikes", choices=("keep", "remove"), default="keep",
+        help="whether points that stand out become missing; default: keep",
+    )  # fmt: skip
+    parser.add_argument(
+        "--step", choices=("keep", "crop"), default="keep",
+        help="whether of two terraces only the larger is kept; default: keep",
+    )  # fmt: skip
+    parser.add_argument(
+        "--lines", choices=("keep", "rows", "columns"), default="keep",
+        help="take off offsets between rows or columns, as of a scan line by line; default: keep",
+    )  # fmt: skip
+    parser.add_argument(
+        "--trim", type=int, default=0, metavar="N", help="points left off along each edge; default: 0"
+    )
+
+
+def preparation(args: argparse.Namespace) -> "Preparation":
+    """What they say.
+
+    Raises
+    ------
+    ValueError
+        If a length or a number is none.
+    """
+    from mcgw.formats.units import parse
+    from mcgw.maps.preparation import Preparation
+
+    if args.trim < 0:
+        raise ValueError(f"--trim {args.trim}: give a whole number >= 0")
+    cutoff = None if args.cutoff == "none" else parse(args.cutoff, "m", "--cutoff")
+    long = None if args.long_cutoff is None else parse(args.long_cutoff, "m", "--long-cutoff")
+    return Preparation(cutoff, args.form, args.missing, args.spikes, args.step, args.trim, long, args.lines)

@@ -1,18 +1,40 @@
-"""What a command may write: asked of all its outputs together, before anything is computed."""
+"""What a command writes: files, asked of all together before anything is computed; tables; and notes."""
 
 import os
 import sys
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from mcgw.errors import StoreError
 from mcgw.formats.files import check_output
+from mcgw.formats.table import Table
+from mcgw.scene.cautions import cautions
+from mcgw.scene.scene import Scene
 from mcgw.store.disk import parts_of
 from mcgw.store.lock import LOCK_FILES
 from mcgw.store.trailer import TRAILER_BYTES, TRAILER_MAGIC
 
-__all__ = ["CSV", "HDF5", "HTML", "JSON", "NPY", "TOML", "Format", "Output", "check_outputs", "figure_format"]
+if TYPE_CHECKING:
+    from mcgw.ensemble.ensemble import Ensemble
+    from mcgw.sweeps.sweep import Sweep
+
+__all__ = [
+    "CSV",
+    "HDF5",
+    "HTML",
+    "JSON",
+    "NPY",
+    "TOML",
+    "Format",
+    "Output",
+    "check_outputs",
+    "figure_format",
+    "table_output",
+    "tell_notes",
+    "write_table",
+]
 
 _SIGNATURE = b"\x89HDF\r\n\x1a\n"
 
@@ -134,3 +156,34 @@ def _refuse_ensemble(output: Output) -> None:
         raise output.refuse("is an ensemble of mcgw, which this would replace")
     if start == _SIGNATURE and not set(HDF5.endings) & set(output.format.endings):
         raise output.refuse("is an HDF5 file, which this would replace")
+
+
+def table_output(path: Path | None) -> list[Output]:
+    """The file that the option asks for, if it is given."""
+    return [Output(path, CSV, "--csv")] if path else []
+
+
+def write_table(path: Path | None, table: Callable[[], Table]) -> None:
+    """Write it if it is asked for, and say where it is."""
+    if path:
+        table().write(path)
+        print(f"{path}: the table")
+
+
+def tell_notes(source: "Scene | Ensemble | Sweep", *more: str) -> None:
+    """Say where the model is strained, which units look wrong, and what else there is to say."""
+    for line in (*cautions_of(source), *more):
+        print(f"mcgw: note: {line}", file=sys.stderr)
+
+
+def cautions_of(source: "Scene | Ensemble | Sweep") -> list[str]:
+    """What a reader should know of a scene, that of an ensemble, or all points of a sweep."""
+    if isinstance(source, Scene):
+        return cautions(source)
+    from mcgw.ensemble.ensemble import Ensemble  # with results, of which many commands have none
+
+    if isinstance(source, Ensemble):
+        return cautions(source.scene)
+    from mcgw.sweeps.cautions import sweep_cautions
+
+    return sweep_cautions(source)

@@ -1,16 +1,30 @@
 """``mcgw regrade``: another grading or contact law on the same surfaces."""
 
 import argparse
+from contextlib import suppress
 from pathlib import Path
-from typing import TYPE_CHECKING
-
-from mcgw.commands.law_options import add_law_options, law_of
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from analytic import Exponential
+    from analytic.laws import ContactLaw
+
 
 HELP = "give the surfaces of a file another grading or contact law"
 EXAMPLE = "mcgw regrade demo.h5 --law kogut-etsion --hardness 1.2GPa -o metal.h5"
+_CONSTANTS = {
+    "critical": ("X", "penetration over sigma at which asperities yield"),
+    "hardness": ("H", "of the softer body, as 1.2GPa"),
+    "yield-strength": ("SY", "of the softer body, as 400MPa (jackson-green)"),
+    "poisson": ("NU", "Poisson's ratio"),
+    "bridge": ("hermite", "join fits that jump"),
+    "k": ("K", "exponent of the depth (power-law-graded)"),
+    "c0": ("DEPTH", "depth of the modulus E*, as 1um (power-law-graded)"),
+    "thickness": ("T", "of the coating, as 0.5um (coated)"),
+    "ratio": ("R", "modulus of the coating over that of the substrate (coated)"),
+    "work": ("W", "of adhesion, J/m^2 (the laws that stick)"),
+    "pull-off": ("D", "stretch over sigma at which contacts break off (the laws that stick)"),
+}
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
@@ -30,9 +44,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def execute(args: argparse.Namespace) -> int:
     """Write the new ensemble and print its ratios to the old one."""
-    from mcgw.commands.notes import tell_notes
-    from mcgw.commands.outputs import HDF5, Output, check_outputs
-    from mcgw.commands.table_option import table_output, write_table
+    from mcgw.commands.outputs import HDF5, Output, check_outputs, table_output, tell_notes, write_table
     from mcgw.ensemble.regrading import regrade, regraded_scene
     from mcgw.formats.table import stacked
     from mcgw.reports.text import ratio_tables
@@ -64,3 +76,40 @@ def _exponential(gamma: float | None) -> "Exponential | None":
     from analytic import Exponential
 
     return None if gamma is None else Exponential(gamma)
+
+
+def add_law_options(parser: argparse.ArgumentParser) -> None:
+    """A group of options; the values are checked as those of a scene file."""
+    group = parser.add_argument_group("another contact law, and its constants as in a scene file")
+    group.add_argument("--law", metavar="LAW", help="its name, as kogut-etsion; a wrong one gets the list")
+    for name, (metavar, what) in _CONSTANTS.items():
+        group.add_argument(f"--{name}", metavar=metavar, help=what)
+
+
+def law_of(args: argparse.Namespace) -> "ContactLaw | None":
+    """The law that was asked for, or None.
+
+    Raises
+    ------
+    ValueError
+        If a constant is given without a law.
+    SceneError
+        If a value is wrong; the line names the key.
+    """
+    from mcgw.scene.law_section import read_law
+
+    given = {key: getattr(args, key) for key in (name.replace("-", "_") for name in _CONSTANTS)}
+    constants = {key: _plain(value) for key, value in given.items() if value is not None}
+    if args.law is None:
+        if constants:
+            key = next(iter(constants)).replace("_", "-")
+            raise ValueError(f"--{key}: is a constant of a contact law; give --law too")
+        return None
+    return read_law({"law": args.law, **constants})
+
+
+def _plain(text: str) -> Any:
+    """A number where it is one; else the text, with its unit."""
+    with suppress(ValueError):
+        return float(text)
+    return text

@@ -15,8 +15,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def execute(args: argparse.Namespace) -> int:
     """Write the page and say where it is."""
-    from mcgw.commands.notes import tell_notes
-    from mcgw.commands.outputs import HTML, Output, check_outputs
+    from mcgw.commands.outputs import HTML, Output, check_outputs, tell_notes
     from mcgw.ensemble.ensemble import Ensemble
     from mcgw.formats.files import write_whole
     from mcgw.machine.progress import bar
@@ -33,7 +32,7 @@ def execute(args: argparse.Namespace) -> int:
 
         page = report_html(result, attributes)
     else:
-        from mcgw.reports.sweep_html import sweep_report_html  # of which most files are none
+        from mcgw.reports.html import sweep_report_html  # of which most files are none
 
         with bar("points", terminal=True) as show:
             page = sweep_report_html(result, attributes, progress=show)

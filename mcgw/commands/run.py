@@ -33,14 +33,13 @@ def execute(args: argparse.Namespace) -> int:
 
 
 def _execute(args: argparse.Namespace) -> int:
-    from mcgw.commands.notes import tell_notes
-    from mcgw.commands.outputs import HDF5, Output, check_outputs
+    from mcgw.commands.outputs import HDF5, Output, check_outputs, tell_notes
     from mcgw.ensemble.forecast import forecast
     from mcgw.jobs.chosen_engine import dashboard_of
     from mcgw.jobs.from_python import run
     from mcgw.jobs.session import part_of
     from mcgw.machine.progress import bar
-    from mcgw.reports.elasticity import two_questions
+    from mcgw.reports.side_notes import two_questions
     from mcgw.scene.scene_file import files_of, load_scene
     from mcgw.store.ensembles import recorded_seed
 
@@ -64,7 +63,7 @@ def _execute(args: argparse.Namespace) -> int:
         return tell_share(args.shard, path, left)
     print(f"{path}: {ensemble.n_surfaces} surfaces of {scene.n_asperities:g} asperities, seed {scene.seed}")
     if ruled:
-        from mcgw.reports.stop_rule import after
+        from mcgw.reports.side_notes import after
 
         for line in after(ensemble, scene):
             print(line)
@@ -75,7 +74,7 @@ def _execute(args: argparse.Namespace) -> int:
 def _tell_forecast(scene: "Scene", expected: "Forecast") -> None:
     """Say what the rule will take."""
     from mcgw.ensemble.drawing import seconds_per_surface
-    from mcgw.reports.stop_rule import before
+    from mcgw.reports.side_notes import before
     from mcgw.sampling.samplers import sampler_of
 
     print(f"forecast: {before(expected, seconds_per_surface(scene, sampler_of(scene)))}")

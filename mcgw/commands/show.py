@@ -28,9 +28,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def execute(args: argparse.Namespace) -> int:
     """Print to standard output; with --csv, write the table there."""
-    from mcgw.commands.notes import tell_notes
-    from mcgw.commands.outputs import check_outputs
-    from mcgw.commands.table_option import table_output, write_table
+    from mcgw.commands.outputs import check_outputs, table_output, tell_notes, write_table
     from mcgw.store.ensembles import read_attributes, unfinished_sweep, verify
     from mcgw.store.leftovers import tidy
 
@@ -61,7 +59,7 @@ def execute(args: argparse.Namespace) -> int:
     elif args.digest:
         print(attributes["digest"])
     else:
-        from mcgw.reports.summaries import summary_of
+        from mcgw.reports.text import summary_of
         from mcgw.sweeps.opening import open_results
 
         result = open_results(args.file)
@@ -82,7 +80,7 @@ def _show_unfinished(args: argparse.Namespace, begun: "RunFolder") -> int:
         If something is asked for that only a finished one has.
     """
     from mcgw.errors import StoreError
-    from mcgw.reports.summaries import progress_of
+    from mcgw.reports.text import progress_of
 
     if args.verify or args.digest or args.csv:
         raise StoreError(f"{args.file}: is a sweep in the making; mcgw sweep goes on, then ask again")

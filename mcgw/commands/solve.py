@@ -24,9 +24,7 @@ def execute(args: argparse.Namespace) -> int:
     """Print a table for each load; write it as CSV if asked to."""
     from dataclasses import replace
 
-    from mcgw.commands.notes import tell_notes
-    from mcgw.commands.outputs import check_outputs
-    from mcgw.commands.table_option import table_output, write_table
+    from mcgw.commands.outputs import check_outputs, table_output, tell_notes, write_table
     from mcgw.ensemble.solution import solutions
     from mcgw.ensemble.solved import at_solutions
     from mcgw.formats.units import parse

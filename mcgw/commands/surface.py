@@ -76,7 +76,7 @@ def _shape(text: str) -> tuple[int, int | None]:
 
 
 def _asperities(args: argparse.Namespace) -> int:
-    from mcgw.commands.notes import tell_notes
+    from mcgw.commands.outputs import tell_notes
     from mcgw.figures.contact_map import save_contact_map, spots_at
     from mcgw.formats.units import parse
     from mcgw.maps.envelope import envelope

@@ -70,10 +70,10 @@ def execute(args: argparse.Namespace) -> int:
 
 
 def _plan(scene: "Scene", axes: "Axes") -> str:
-    from mcgw.reports.sweep_plan import plan_text
+    from mcgw.reports.plan import sweep_plan_text
     from mcgw.sweeps.asked import Asked
 
-    return plan_text(Asked.of(scene, axes))
+    return sweep_plan_text(Asked.of(scene, axes))
 
 
 def _axis(text: str) -> tuple[str, list[Any]]:

@@ -18,9 +18,8 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def execute(args: argparse.Namespace) -> int:
     """Print the table and the advice, save the record and the figure."""
-    from mcgw.commands.notes import tell_notes
-    from mcgw.commands.outputs import CSV, Output, check_outputs, figure_format
-    from mcgw.figures.tradeoff import save_tradeoff
+    from mcgw.commands.outputs import CSV, Output, check_outputs, figure_format, tell_notes
+    from mcgw.figures.studies import save_tradeoff
     from mcgw.formats.units import parse
     from mcgw.machine.progress import bar
     from mcgw.scene.scene_file import files_of, load_scene

@@ -7,8 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analytic import PER_AREA, quantity_of
-from mcgw.ensemble.interval_of import interval_of
-from mcgw.ensemble.intervals import CONFIDENCE
+from mcgw.ensemble.intervals import CONFIDENCE, interval_of
 from mcgw.ensemble.labelled import Labelled, axes_of, axis, statistic, values_of
 from mcgw.ensemble.results import PROBABILITIES, Held
 from mcgw.formats.sheet import Sheet, Shown

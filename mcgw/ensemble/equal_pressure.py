@@ -1,13 +1,20 @@
 """What each surface of an ensemble has at given nominal pressures: read off its own curve."""
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 
 from mcgw.ensemble.ensemble import Ensemble
+from mcgw.ensemble.simulation import simulate
+from mcgw.sampling.samplers import sampler_of
+from mcgw.scene.drawn_by import drawn_by
 
-__all__ = ["at_pressures", "common_pressures", "loaded_part"]
+__all__ = ["at_pressures", "common_pressures", "loaded_part", "with_values"]
 
 Array = NDArray[np.float64]
+_DRAWS = 1e9  # numbers drawn for it: a second or two
+_FEWEST = 20
 
 
 def at_pressures(
@@ -71,3 +78,12 @@ def common_pressures(ensemble: Ensemble) -> tuple[float, float] | None:
         return None
     low, high = max(float(p[0]) for p in parts), min(float(p[-1]) for p in parts)
     return (low, high) if low < high else None
+
+
+def with_values(ensemble: Ensemble, most: int) -> Ensemble:
+    """The ensemble itself; or if it keeps statistics alone, so many of its first surfaces, drawn again."""
+    if ensemble.scene.keep != "statistics":
+        return ensemble
+    scene = replace(drawn_by(ensemble.scene, ensemble.sampler), keep="sums")
+    fitting = int(_DRAWS / (sampler_of(scene).draws + 1))
+    return simulate(replace(scene, n_surfaces=min(ensemble.n_surfaces, most, max(fitting, _FEWEST))))

@@ -1,4 +1,4 @@
-"""Results as named arrays with axes, units and words: what files, xarray and pandas are told alike."""
+"""Results as named arrays with axes, units and words, for files, xarray and pandas; and as tables."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -8,10 +8,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analytic import quantity_of
+from mcgw.ensemble.results import PROBABILITIES
+from mcgw.formats.table import SEPARATION, Column, Table
 from mcgw.machine.notebook import optional
 from mcgw.scene.scene import Scene
 
-__all__ = ["AXES", "Labelled", "Variable", "axes_of", "axis", "statistic", "values_of"]
+__all__ = [
+    "AXES",
+    "Labelled",
+    "Variable",
+    "axes_of",
+    "axis",
+    "heading",
+    "statistic",
+    "statistics_table",
+    "values_of",
+]
 
 AXES = {  # of tables, in their order: unit and long name
     "point": ("1", "number of the point"),
@@ -117,3 +129,23 @@ def statistic(name: str, kind: str, values: NDArray[Any], lead: tuple[str, ...] 
     lead = (*lead, "probability") if kind == "quantile" else lead
     dims = (*lead, *_OF_A_SURFACE)[: values.ndim]
     return Variable(dims, values, "1" if kind == "skewness" else q.unit, _WORDS[kind].format(q.long_name))
+
+
+def heading(quantity: str) -> str:
+    """Long name and unit of a quantity, over its table."""
+    q = quantity_of(quantity)
+    return q.long_name if q.unit == "1" else f"{q.long_name} ({q.unit})"
+
+
+def statistics_table(ensemble: Any, name: str) -> Table:
+    """Of a quantity at every separation: mean, std, stderr; and where values are not kept, what else is."""
+    unit = quantity_of(name).unit
+    found = [("mean", ensemble.mean(name), ".6g"), ("std", ensemble.std(name), ".3g")]
+    found.append(("stderr", ensemble.stderr(name), ".3g"))
+    columns = [Column(kind, values, unit=unit, form=form) for kind, values, form in found]
+    if ensemble.scene.keep == "statistics":
+        columns.append(Column("skewness", ensemble.skewness(name), form=".3g"))
+        quantiles = ((f"quantile_{share:g}", ensemble.quantile(name, share)) for share in PROBABILITIES)
+        columns += [Column(kind, values, unit=unit) for kind, values in quantiles]
+    separation = Column("separation", ensemble.separations, SEPARATION, form="g")
+    return Table((separation, *columns), heading(name))

@@ -12,11 +12,11 @@ from analytic.laws import ContactLaw, half_spaces
 from mcgw.ensemble.asperities_alone import scene_alone
 from mcgw.ensemble.drawing import answered, blocks, kept
 from mcgw.ensemble.ensemble import Ensemble
-from mcgw.ensemble.from_heights import sums_of_heights
 from mcgw.ensemble.results import MemoryResults, joined
-from mcgw.ensemble.same_surfaces import check_same
+from mcgw.sampling.asperities import listing_sampler, summits_drawn
 from mcgw.sampling.block import Block
 from mcgw.sampling.counted import Counted
+from mcgw.sampling.law_sums import asperity_sums
 from mcgw.sampling.samplers import regraded, sampler_of
 from mcgw.scene.drawn_by import drawn_by
 from mcgw.scene.law_section import read_law
@@ -25,7 +25,7 @@ from mcgw.scene.scene import Scene
 from mcgw.scene.storable import storable
 from mcgw.scene.wrong_object import check_object
 
-__all__ = ["regrade", "regraded_scene"]
+__all__ = ["regrade", "regraded_scene", "sums_of_heights"]
 
 Array = NDArray[np.float64]
 Drawn = tuple[Array, Array, Array]  # moments, counts and single asperities of some surfaces
@@ -33,6 +33,8 @@ Tables = dict[str, NDArray[Any]]
 
 _ROWS = 1024  # surfaces at a time
 _CONTACT = ("unload_from", "film", "tangential", "interaction")
+_HEIGHTS = 2**18  # at a time, or one surface
+_SAME = 1e-9  # relative difference of sums that are only rounded differently
 
 
 def regrade(
@@ -242,3 +244,55 @@ def _check_cells(drawn: Counted, ensemble: Ensemble) -> None:
             "the moments kept are of other cells, as another version of mcgw makes them; "
             "regrade with that version, or simulate the scene anew"
         )
+
+
+def sums_of_heights(ensemble: Ensemble, scene: Scene) -> Iterator[dict[str, NDArray[np.float64]]]:
+    """Sums that a scene asks for over the asperities of an ensemble, some surfaces at a time.
+
+    At the lowest separation, sums under the ensemble's own law are compared with those that it holds.
+
+    Raises
+    ------
+    ValueError
+        If the sampler keeps no heights, a separation is lower than all for which they were drawn, or they
+        are not those of the ensemble.
+    """
+    origin = replace(drawn_by(ensemble.surfaces_of, ensemble.sampler), n_surfaces=ensemble.n_surfaces)
+    sampler, old = listing_sampler(origin), ensemble.scene
+    if scene.lowest < origin.lowest:
+        raise ValueError(
+            f"separation {scene.lowest:g} is lower than {origin.lowest:g}, down to which the asperities of "
+            "these surfaces were drawn; give higher ones, or simulate the scene anew"
+        )
+    lowest = replace(old, separations=(old.lowest,), tangential=None)
+    where = old.separations.index(old.lowest)
+    step = max(int(_HEIGHTS / max(origin.touching, 1.0)), 1)
+    for first in range(0, ensemble.n_surfaces, step):
+        surfaces = range(first, min(first + step, ensemble.n_surfaces))
+        listed = [summits_drawn(origin, sampler, number) for number in surfaces]
+        numbers = np.array([s.size for s, _ in listed])
+        heights, own = np.concatenate([s for s, _ in listed]), [c for _, c in listed if c is not None]
+        drawn = numbers, heights, np.ones(heights.size), np.concatenate(own) if own else None
+        again = asperity_sums(lowest, *drawn)
+        check_same(ensemble, first, answered(lowest, again), slice(where, where + 1))
+        yield asperity_sums(scene, *drawn)
+
+
+def check_same(
+    ensemble: Ensemble, first: int, sums: dict[str, NDArray[np.float64]], columns: slice = slice(None)
+) -> None:
+    """Compare sums of surfaces from `first` on, at some columns, with those that the ensemble holds.
+
+    Raises
+    ------
+    ValueError
+        If they differ.
+    """
+    for name, values in sums.items():
+        held = ensemble.sums.read(name, first, first + len(values))[:, columns]
+        same = max(_SAME, 2 * ensemble.scene.accuracy)
+        if not np.allclose(values, held, rtol=same, atol=same * float(np.abs(held).mean())):
+            raise ValueError(
+                f"the surfaces cannot be drawn again: their {name} differs (another version of "
+                'mcgw, or a run that is not finished); simulate them with keep = "moments"'
+            )

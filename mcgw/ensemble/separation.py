@@ -1,18 +1,24 @@
-"""The separation at which a sum over given heights has a given value."""
+"""The separation at which a sum over given heights has a given value, under Hertz's law and any other."""
 
 from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 
-__all__ = ["LOWEST", "crossing", "separation_on"]
+from analytic import quantity_of
+from analytic.laws import LoadingBranch, Ways, term_of
+
+__all__ = ["LOWEST", "LawSum", "crossing", "separation_on"]
 
 Array = NDArray[np.float64]
 
 _ENOUGH = 1e-14  # relative excess of load where Newton's steps are rounding errors
 _FINE = 1 / 64  # step of the search where a negative modulus makes the sum rise and fall
 LOWEST = -40.0  # separation where searches end
+_LAST_DIGITS = 4 * np.finfo(float).eps
 
 
 def separation_on(heights: Array, modulus: Array, exponent: float, target: float, start: float) -> float:
@@ -57,3 +63,113 @@ def crossing(excess: Callable[[float], float], high: float) -> float | None:
         if excess(low) >= 0:
             return float(brentq(excess, low, low + _FINE, xtol=1e-15, rtol=1e-14))
     return None
+
+
+@dataclass(frozen=True, eq=False)
+class LawSum:
+    """A sum over given asperities as the separation falls.
+
+    Each piece of the law rises with the penetration. From one piece to the next, and where it begins, a
+    contact may jump, up or down: so the sum need not be monotone, and may pass a value without having it.
+
+    Parameters
+    ----------
+    quantity : str
+        Load or area.
+    branch : LoadingBranch
+        With the law in reduced units.
+    heights, modulus : ndarray
+        Reduced heights in falling order, and E*(s)/E* >= 0 of each; shape (n,).
+    ratios : ndarray, optional
+        Radius of each over that of the surface, where summits have their own.
+    """
+
+    quantity: str
+    branch: LoadingBranch
+    heights: Array
+    modulus: Array
+    ratios: Array | None = None
+
+    def largest_separation(self, value: float, start: float) -> float | None:
+        """Largest separation from `start` on at which the sum is `value`, or jumps past it, or None.
+
+        Where it jumps past, the sum there is beyond the value.
+        """
+        if not self.heights.size or self.heights[0] <= start:
+            return None
+        return self._within(value, start, float(self.heights[0]))
+
+    def _within(self, value: float, low: float, high: float) -> float | None:
+        """As above between two separations, at the higher one of which the sum is less than the value."""
+        at_low, most, smooth = self._between(low, high)
+        if most < value:
+            return None
+        if smooth:
+            return float(brentq(lambda h: self._at(h) - value, low, high, xtol=1e-15, rtol=_LAST_DIGITS))
+        middle = low + (high - low) / 2
+        if not low < middle < high:
+            return low if at_low >= value else None
+        found = self._within(value, middle, high)
+        return self._within(value, low, middle) if found is None else found
+
+    def _between(self, low: float, high: float) -> tuple[float, float, bool]:
+        """The sum at `low`, what it does not exceed up to `high`, and whether each contact keeps its piece.
+
+        Each contact is at most what it is at `low`, or where one of its pieces ends.
+        """
+        n = self._touching(low)
+        s, e, terms = self.heights[:n], self.modulus[:n], self._terms(low, n)
+        at_low = float(np.sum(terms))
+        first, last = self._pieces(high, n), self._pieces(low, n)
+        if self._snaps:
+            terms = np.where(first < 0, np.maximum(terms, 0.0), terms)
+        else:  # a contact begins as nothing
+            first = np.maximum(first, 0)
+        changed = np.flatnonzero(first < last)
+        if not changed.size:
+            return at_low, at_low, True
+        for j, limit in enumerate(self._branch(changed).law.limits(e[changed])):
+            ends = (first[changed] <= j) & (j < last[changed])
+            here, limit = changed[ends], limit[ends]
+            at_end = self._branch(here).value(self.quantity, j, s[here] - limit, limit, e[here])
+            terms[here] = np.maximum(terms[here], self._weight(here) * at_end)
+        return at_low, float(np.sum(terms)), False
+
+    @cached_property
+    def _snaps(self) -> bool:
+        """Whether contacts begin with a load or area of their own."""
+        none = np.zeros(1)
+        return bool(self.branch.value(self.quantity, 0, none, none, np.ones(1))[0] != 0)
+
+    def _at(self, h: float) -> float:
+        return float(np.sum(self._terms(h, self._touching(h))))
+
+    def _touching(self, h: float) -> int:
+        """How many rise above a separation: they come first."""
+        return int(np.searchsorted(-self.heights, -h))
+
+    def _terms(self, h: float, n: int) -> Array:
+        """What each of the first `n` adds."""
+        s, e = self.heights[:n], self.modulus[:n]
+        if self.ratios is None:
+            return term_of(self.quantity, self.branch, h, s, e)
+        return self._ways.term(self.quantity, h, s, e, self.ratios[:n])
+
+    def _pieces(self, h: float, n: int) -> NDArray[np.int64]:
+        s, e = self.heights[:n], self.modulus[:n]
+        return self._branch(slice(n)).pieces(np.full(n, h), s - h, e)
+
+    @property
+    def _ways(self) -> Ways:
+        return Ways(self.branch.law, None, self.branch.conductance)
+
+    def _branch(self, which: slice | NDArray[np.int64]) -> LoadingBranch:
+        """That of some asperities, each by the law of its own radius."""
+        if self.ratios is None:
+            return self.branch
+        ways = self._ways.with_radii(self.ratios[which])
+        return LoadingBranch(ways.law, ways.conductance)
+
+    def _weight(self, which: NDArray[np.int64]) -> Array | float:
+        """What a load or an area is worth by the radius."""
+        return 1.0 if self.ratios is None else self.ratios[which] ** quantity_of(self.quantity).radius

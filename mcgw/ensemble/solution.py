@@ -10,8 +10,7 @@ from numpy.typing import NDArray
 from analytic import QUANTITIES, Hertz, MeasuredHeights, Quantity, quantity_of
 from analytic.laws import LoadingBranch, term_of
 from analytic.laws.elastic_plastic import ElasticPlastic
-from mcgw.ensemble.law_separation import LawSum
-from mcgw.ensemble.separation import LOWEST, crossing, separation_on
+from mcgw.ensemble.separation import LOWEST, LawSum, crossing, separation_on
 from mcgw.ensemble.solved import Solution, with_half_space, with_mean_gap
 from mcgw.machine.progress import Progress, told
 from mcgw.sampling.asperities import summits, touching_summits

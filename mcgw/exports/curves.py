@@ -1,4 +1,4 @@
-"""Curves of an ensemble against gap or pressure: mean over surfaces, and quantiles, SI."""
+"""What can be tabulated, and its curves: mean and quantiles over surfaces against gap or pressure, SI."""
 
 from dataclasses import dataclass
 
@@ -6,19 +6,50 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mcgw.ensemble.ensemble import Ensemble
-from mcgw.ensemble.equal_pressure import at_pressures, common_pressures
-from mcgw.ensemble.with_values import with_values
-from mcgw.exports.kinds import Kind
-from mcgw.formats.evenly import evenly
+from mcgw.ensemble.equal_pressure import at_pressures, common_pressures, with_values
+from mcgw.formats.table import evenly
 from mcgw.scene.samplers import promise_of
 
-__all__ = ["Curve", "curves_of", "quantile_name"]
+__all__ = ["KINDS", "Curve", "Kind", "curves_of", "quantile_name"]
 
 Array = NDArray[np.float64]
 Range = tuple[float, float]
 
 _MOST = 2000  # surfaces drawn again where an ensemble keeps statistics alone
 _FEWEST = 2  # points of a curve
+
+
+@dataclass(frozen=True)
+class Kind:
+    """A table.
+
+    Parameters
+    ----------
+    name : str
+        As it is asked for: what is tabulated, against what.
+    quantity : {"pressure", "conductance", "stiffness"}
+        What is tabulated.
+    against : {"gap", "pressure"}
+        Its argument.
+    """
+
+    name: str
+    quantity: str
+    against: str
+
+    @property
+    def needs(self) -> tuple[str, ...]:
+        """Quantities of an ensemble that it is made of."""
+        return ("load",) if self.quantity == "pressure" else ("load", self.dataset)
+
+    @property
+    def dataset(self) -> str:
+        """The name of its quantity in an ensemble."""
+        return {"conductance": "conductance_si"}.get(self.quantity, self.quantity)
+
+
+_ALL = (("pressure", "gap"), ("conductance", "pressure"), ("conductance", "gap"), ("stiffness", "pressure"))
+KINDS = {f"{what}-{against}": Kind(f"{what}-{against}", what, against) for what, against in _ALL}
 
 
 @dataclass(frozen=True)

@@ -7,8 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from mcgw.exports.curves import Curve
-from mcgw.exports.kinds import KINDS, Kind
+from mcgw.exports.curves import KINDS, Curve, Kind
 
 __all__ = ["PROGRAMS", "Program", "check_name", "foot_of", "rows_of"]
 

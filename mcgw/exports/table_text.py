@@ -1,18 +1,92 @@
 """A curve as the text of a file that a program reads."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
+from importlib.metadata import PackageNotFoundError, version
 
 import numpy as np
 from numpy.typing import NDArray
 
-from mcgw.exports.curves import Curve
-from mcgw.exports.kinds import Kind
+from analytic import Nayak
+from mcgw.ensemble.ensemble import Ensemble
+from mcgw.exports.curves import Curve, Kind
 from mcgw.exports.programs import Program, foot_of, rows_of
-from mcgw.exports.unit_systems import UnitSystem
+from mcgw.formats.sheet import brief
 from mcgw.formats.table import Column, Table
 from mcgw.machine.terminal import one_line
+from mcgw.scene.scene import Scene
 
-__all__ = ["all_curves", "in_units", "table_text"]
+__all__ = ["UNIT_SYSTEMS", "UnitSystem", "all_curves", "heading", "in_units", "table_text"]
+
+
+@dataclass(frozen=True)
+class UnitSystem:
+    """Factors from SI, and names.
+
+    Parameters
+    ----------
+    length, pressure, stiffness, conductance : tuple of (float, str)
+        What a value in m, Pa, Pa/m and W/(m^2 K), or S/m^2, is multiplied by, and the unit it is in then.
+    """
+
+    length: tuple[float, str]
+    pressure: tuple[float, str]
+    stiffness: tuple[float, str]
+    conductance: tuple[float, str]
+
+
+# Of mm, N and s the unit of power is N mm/s = mW, so that 1 W/(m^2 K) = 1e3 mW / (1e6 mm^2 K). With volts
+# that of currents is mW/V = mA.
+UNIT_SYSTEMS = {
+    "SI": UnitSystem((1.0, "m"), (1.0, "Pa"), (1.0, "Pa/m"), (1.0, "W/(m^2 K), or S/m^2")),
+    "mm-N-s": UnitSystem((1e3, "mm"), (1e-6, "MPa"), (1e-9, "MPa/mm"), (1e-3, "mW/(mm^2 K), or mA/(mm^2 V)")),
+}
+
+
+def heading(ensemble: Ensemble, kind: Kind, curve: Curve, system: UnitSystem, digest: str) -> list[str]:
+    """Lines of plain ASCII text, without the mark of a comment."""
+    scene = ensemble.scene
+    over = f"{ensemble.n_surfaces} surfaces of {scene.n_asperities:g} asperities, seed {scene.seed}"
+    value, argument = (
+        getattr(system, kind.quantity),
+        system.length if kind.against == "gap" else system.pressure,
+    )
+    what = kind.quantity if kind.quantity == "pressure" else f"{kind.quantity} per nominal area"
+    return [
+        f"{kind.name}, {_curve(curve.name)} over {over}, at equal {kind.against}",
+        f"scene: {brief(scene.title) or 'without a title'}",
+        f"mcgw {_version()}; SHA-256 of the {digest}",
+        f"units: {what} in {value[1]}; {kind.against} in {argument[1]}",
+        *(_zero(scene, system) if kind.against == "gap" else ()),
+    ]
+
+
+def _curve(name: str) -> str:
+    return "mean" if name == "mean" else f"{name[1:]} % quantile"
+
+
+def _version() -> str:
+    try:
+        return version("mcgw")
+    except PackageNotFoundError:
+        return "unknown"
+
+
+def _zero(scene: Scene, system: UnitSystem) -> list[str]:
+    """From which plane gaps d count."""
+    factor, unit = system.length
+    lines = ["gap d: of the rigid plane from the mean plane of the summits"]
+    if isinstance(scene.heights, Nayak):
+        rise = factor * scene.surface.sigma * scene.heights.mean / scene.heights.std
+        lines.append(f"(from the mean plane of the surface it is larger by {rise:.9e} {unit})")
+    if scene.interaction is not None:
+        felt = (
+            "nominal"
+            if scene.interaction.nominal
+            else "what the asperities feel, without what the bulk gives"
+        )
+        lines.append(f"asperities press each other down; d is {felt}")
+    return lines
 
 
 def in_units(curve: Curve, kind: Kind, system: UnitSystem) -> Curve:

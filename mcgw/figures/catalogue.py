@@ -6,7 +6,7 @@ from importlib.resources import files
 
 import numpy as np
 
-from mcgw.figures import curves, equal_load, finite, histories, moduli, yielding
+from mcgw.figures import contact_laws, curves, equal_load, finite, moduli
 from mcgw.figures.compared import SCENE, Compared
 from mcgw.figures.data import FigureData
 from mcgw.machine.progress import steps
@@ -96,11 +96,11 @@ CATALOGUE = (
     Row("area-and-load", curves.area_and_load, (_pressing,)),
     Row("who-carries", moduli.carriers, sweep=True),
     Row("negative-modulus", moduli.negative_modulus, sweep=True),
-    Row("who-yields", yielding.who_yields, (_yielding, _pressing)),
-    Row("laws-compared", yielding.laws_compared, sweep=True),
-    Row("way-back", histories.way_back, (_released,)),
-    Row("sliding", histories.sliding, sweep=True),
-    Row("films", histories.films, sweep=True),
+    Row("who-yields", contact_laws.who_yields, (_yielding, _pressing)),
+    Row("laws-compared", contact_laws.laws_compared, sweep=True),
+    Row("way-back", contact_laws.way_back, (_released,)),
+    Row("sliding", contact_laws.sliding, sweep=True),
+    Row("films", contact_laws.films, sweep=True),
 )
 
 

@@ -15,7 +15,7 @@ from mcgw.ensemble.regrading import regrade
 from mcgw.ensemble.simulation import simulate
 from mcgw.figures.data import Estimate, Points
 from mcgw.figures.style import contact_label, short
-from mcgw.formats.evenly import evenly
+from mcgw.formats.table import evenly
 from mcgw.sampling.asperities import heights
 from mcgw.sampling.law_sums import asperity_sums
 from mcgw.scene.law_text import law_text

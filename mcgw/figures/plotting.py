@@ -11,12 +11,10 @@ from analytic import quantity_of
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.paired import Paired
 from mcgw.ensemble.solved import Solution
-from mcgw.figures.comparison import draw_curve
-from mcgw.figures.convergence import draw_checks
+from mcgw.figures.against_theory import draw_curve, draw_residuals
+from mcgw.figures.studies import draw_checks, draw_methods
 from mcgw.figures.style import MONTE_CARLO, SAMPLE, STYLE, THEORY, shown_title, step
-from mcgw.figures.sweep_comparison import draw_residuals
-from mcgw.figures.tradeoff import draw_methods
-from mcgw.formats.evenly import evenly
+from mcgw.formats.table import evenly
 from mcgw.maps.fit import Fit
 from mcgw.maps.profile_fit import ProfileFit
 from mcgw.scene.samplers import promise_of

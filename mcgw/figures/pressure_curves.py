@@ -12,9 +12,8 @@ from numpy.typing import NDArray
 
 from analytic import quantity_of
 from mcgw.ensemble.ensemble import Ensemble
-from mcgw.ensemble.equal_pressure import at_pressures, common_pressures
+from mcgw.ensemble.equal_pressure import at_pressures, common_pressures, with_values
 from mcgw.ensemble.results import MemoryResults
-from mcgw.ensemble.with_values import with_values
 from mcgw.figures.style import MONTE_CARLO, SAMPLE, STYLE, power_of_ten
 from mcgw.scene.samplers import promise_of
 

@@ -9,15 +9,15 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from mcgw.formats.evenly import evenly
 from mcgw.formats.files import whole_file
 from mcgw.formats.numbers import columns as typeset_columns
 from mcgw.formats.numbers import typeset
 from mcgw.machine.notebook import optional
 from mcgw.machine.terminal import one_line
 
-__all__ = ["SEPARATION", "Column", "Table", "joined", "stacked"]
+__all__ = ["SEPARATION", "Column", "Table", "evenly", "joined", "stacked"]
 
 SEPARATION = "d/sigma"  # over a column of separations
 _DIGITS = re.compile(r"\.(\d+)g")
@@ -248,3 +248,8 @@ def _part(column: Column, k: Sequence[int]) -> Column:
 def _stored(column: Column) -> Iterator[str]:
     for x in column.values:
         yield str(x) if isinstance(x, str | int | np.integer) else repr(float(x))
+
+
+def evenly(n: int, most: int) -> NDArray[np.int64]:
+    """Numbers of at most so many of `n` rows, rising."""
+    return np.unique(np.linspace(0, n - 1, min(n, most)).round().astype(np.int64))

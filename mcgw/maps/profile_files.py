@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from mcgw.formats.npy_file import open_npy
 from mcgw.formats.units import METRES
+from mcgw.formats.untrusted import open_npy
 from mcgw.maps.profile import Profile, profile_at
 from mcgw.maps.text_file import lines_of, numbers_of, words_of
 from mcgw.maps.topography import height_unit

@@ -1,32 +1,42 @@
-"""A report of an ensemble: one HTML page that needs no network and no script."""
+"""Reports of an ensemble and of a sweep: one HTML page each, that needs no network and no script."""
 
 import re
 from typing import Any
 
-from analytic import quantity_of
+from analytic import Hertz, quantity_of
 from mcgw.ensemble.ensemble import Ensemble
-from mcgw.ensemble.tables import statistics_table
-from mcgw.formats.numbers import typeset
+from mcgw.ensemble.labelled import statistics_table
+from mcgw.figures.against_theory import sweep_figure
+from mcgw.figures.style import grading_label
+from mcgw.formats.numbers import number, typeset
 from mcgw.formats.table import Column, Table
-from mcgw.machine.progress import stages
+from mcgw.machine.progress import Progress, stages
 from mcgw.machine.terminal import one_line, plain_text
-from mcgw.reports.elasticity import elasticity_words
-from mcgw.reports.laws_section import laws_table
-from mcgw.reports.report_facts import opening_words, provenance_facts, surface_facts
 from mcgw.reports.report_figures import (
     comparison_figures,
+    line_figure,
     means_figures,
     patch_pictures,
     pressure_pictures,
 )
+from mcgw.reports.side_notes import elasticity_words
 from mcgw.reports.text import verdict_line
 from mcgw.scene.cautions import cautions
+from mcgw.scene.contact_text import contact_facts
+from mcgw.scene.law_text import law_text
+from mcgw.scene.other_laws import other_laws
 from mcgw.scene.samplers import promise_of
+from mcgw.scene.scene import Scene
 from mcgw.statistics.comparison import Comparison, compare
+from mcgw.statistics.sweep_comparison import compare_sweep
+from mcgw.sweeps.cautions import sweep_cautions
+from mcgw.sweeps.sweep import Sweep
 
-__all__ = ["rendered", "report_html"]
+__all__ = ["report_html", "sweep_report_html"]
 
 _MOST_ROWS = 9
+_LISTED = 12  # points
+Facts = list[tuple[str, str]]
 
 
 def report_html(ensemble: Ensemble, attributes: dict[str, Any]) -> str:
@@ -108,3 +118,98 @@ def _shorter(scene: str) -> str:
 
 def _one_line(listed: re.Match[str]) -> str:
     return f"[{' '.join(listed.group()[1:-1].split()).rstrip(',')}]"
+
+
+def sweep_report_html(sweep: Sweep, attributes: dict[str, Any], *, progress: Progress = None) -> str:
+    """The page of a sweep and of the attributes of its file: scene, digest, ..."""
+    comparison = compare_sweep(sweep, progress=progress)
+    verdict = comparison.verdict
+    first = sweep.scenes[0]
+    return rendered(
+        "sweep.html.j2",
+        title=one_line(first.title) or "Sweep of scenes",
+        agrees=verdict.agrees,
+        verdict=verdict.line,
+        words=_words(sweep),
+        figure=line_figure(sweep_figure(comparison), "residuals of all points, and of the worst one"),
+        table=comparison.sheet_of(_LISTED).table,
+        cautions=sweep_cautions(sweep),
+        axes=[(key, sweep.axes.summary(key)) for key in sweep.axes.keys],
+        provenance=provenance_facts({**attributes, "sampler": first.sampler}, first.seed),
+        scene=plain_text(attributes["scene"]),
+    )
+
+
+def _words(sweep: Sweep) -> str:
+    h = sweep.separations
+    return (
+        f"{sweep.axes.size} scenes at {len(h)} separations from d/σ = {h.min():g} to {h.max():g}; "
+        f"{sum(group.n for group in sweep.groups)} surfaces were drawn, in {len(sweep.groups)} groups whose "
+        "points share theirs."
+    )
+
+
+def opening_words(ensemble: Ensemble) -> str:
+    """What was drawn, in two sentences."""
+    scene = ensemble.scene
+    count = "" if scene.count == "fixed" else " on average (a Poisson number)"
+    separations = f"{len(scene.separations)} separation{'s' * (len(scene.separations) > 1)}"
+    return (
+        f"{ensemble.n_surfaces} rough surfaces of {scene.n_asperities:g} asperities{count}, "
+        f"{grading_label(scene.grading)}, each pressed on a plane at {separations} from d/σ = "
+        f"{min(scene.separations):g} to {max(scene.separations):g}. {contacts_sentence(scene)}"
+    )
+
+
+def surface_facts(ensemble: Ensemble) -> Facts:
+    """Parameters in SI, and the same in units of sigma."""
+    scene, x = ensemble.scene, ensemble.scene.surface
+    contacts = float(scene.theory.mean("contacts", scene.lowest))
+    return [
+        ("standard deviation σ of the summit heights", f"{number(x.sigma)} m"),
+        ("summit radius R", f"{number(x.radius)} m = {number(x.radius / x.sigma)} σ"),
+        ("summits per area η", f"{number(x.eta)} m⁻²; ηRσ = {number(x.eta * x.radius * x.sigma)}"),
+        (
+            "nominal area Aₙ",
+            f"{number(x.nominal_area)} m² = {number(x.nominal_area / x.sigma**2)} σ²",
+        ),
+        ("composite modulus E*", f"{number(x.E_star)} Pa"),
+        ("grading E*(s)/E*", grading_label(scene.grading)),
+        *contact_facts(scene),
+        ("contacts expected at the lowest separation", number(contacts)),
+    ]
+
+
+def provenance_facts(attributes: dict[str, Any], seed: int) -> Facts:
+    """Of the file; of a run that goes on, what is known."""
+    known = {"seed": seed} | attributes
+    keys = ("digest", "seed", "sampler", "date", "versions", "commit", "cpu")
+    return [(key, str(known[key])) for key in keys]
+
+
+def laws_table(scene: Scene) -> Table | None:
+    """Other laws beside that of a scene, under what its numbers mean; None where nothing yields."""
+    others = other_laws(scene)
+    if others is None:
+        return None
+    low, high = others.spread
+    names = [f"{scene.law.name} (this one)", *others.load]
+    words = (
+        f"Means at d/σ = {others.separation:g} by theory, over those of this report, for the same critical "
+        f"penetration of {others.critical:.4g} σ. Among the laws of asperities that yield the choice is "
+        f"worth {high / low - 1:.0%} of the load."
+    )
+    load, area = ([1.0, *(each[name] for name in others.load)] for each in (others.load, others.area))
+    numbers = (Column(name, x, unit="1", form=".4g") for name, x in (("load", load), ("area", area)))
+    return Table((Column("law", names, "contact law"), *numbers), words)
+
+
+def contacts_sentence(scene: Scene) -> str:
+    """What law holds, and what else is done with the surfaces."""
+    if type(scene.law) is Hertz:
+        words = "Every asperity is a Hertz contact"
+    else:
+        words = f"Every asperity is a contact by {law_text(scene.law)}"
+    if scene.unload_from is not None:
+        words += f"; quantities on the way back start from d/σ = {scene.unload_from:g}"
+    return f"{words}."

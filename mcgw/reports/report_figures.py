@@ -13,10 +13,10 @@ from numpy.typing import NDArray
 
 from analytic import quantity_of
 from mcgw.ensemble.ensemble import Ensemble
-from mcgw.figures.comparison import quantity_figure
+from mcgw.figures.against_theory import quantity_figure
+from mcgw.figures.contact_map import patch_figures
 from mcgw.figures.data import FigureData, Panel, Points, Series
 from mcgw.figures.drawing import draw
-from mcgw.figures.patch import patch_figures
 from mcgw.figures.pressure_curves import pressure_curves, pressure_figure
 from mcgw.figures.style import STYLE
 from mcgw.formats.pictures import write_figure

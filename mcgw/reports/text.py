@@ -1,26 +1,43 @@
-"""Ensembles and comparisons as plain text."""
+"""Ensembles, sweeps and comparisons with theory as plain text."""
 
-from typing import Any
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from analytic import quantity_of
 from mcgw.ensemble.ensemble import Ensemble
+from mcgw.ensemble.labelled import statistics_table
 from mcgw.ensemble.paired import paired_ratio
-from mcgw.ensemble.tables import statistics_table
 from mcgw.formats.sheet import listed
-from mcgw.formats.table import Column, Table
+from mcgw.formats.table import Column, Table, stacked
 from mcgw.machine.terminal import one_line
-from mcgw.reports.elasticity import two_questions
+from mcgw.reports.side_notes import against_elasticity, two_questions
 from mcgw.scene.contact_text import accuracy_facts, contact_facts
 from mcgw.scene.law_text import law_text
 from mcgw.statistics.comparison import FALSE_ALARM, Comparison, Verdict
+from mcgw.store.run_folder import RunFolder
+from mcgw.sweeps.axes import Axes
 
-__all__ = ["comparison_text", "ratio_tables", "summary", "verdict_line"]
+if TYPE_CHECKING:
+    from mcgw.statistics.sweep_comparison import SweepComparison
+    from mcgw.sweeps.sweep import Sweep
+
+__all__ = [
+    "comparison_summary",
+    "comparison_text",
+    "progress_of",
+    "ratio_tables",
+    "summary",
+    "summary_of",
+    "verdict_line",
+]
 
 _MOST_ROWS = 9
 _KEPT = "statistics alone: mean, covariance, skewness, quantiles, extremes"
 _SHOWN = ("separation", "mean", "std", "stderr")
+_LISTED = 12  # points
 
 
 def summary(ensemble: Ensemble, attributes: dict[str, Any]) -> str:
@@ -89,4 +106,41 @@ def verdict_line(verdict: Verdict) -> str:
     return (
         f"Monte Carlo and theory of this model {word}: {verdict.seen}, p = {verdict.p:.3g} (false alarms: "
         f"1 in {1 / FALSE_ALARM:.0f})"
+    )
+
+
+def comparison_summary(
+    comparison: "Comparison | SweepComparison",
+) -> tuple[str, Callable[[], Table], list[str]]:
+    """The table for people, what makes that for programs, and the lines of the verdict."""
+    if not isinstance(comparison, Comparison):
+        return comparison.sheet_of(_LISTED).text(), comparison.table, [comparison.verdict.line]
+    known = against_elasticity(comparison.ensemble.scene.validity())
+    lines = [verdict_line(comparison.verdict), *known]
+    return comparison_text(comparison), lambda: stacked(comparison.tables(), "quantity"), lines
+
+
+def summary_of(result: "Ensemble | Sweep", attributes: dict[str, Any]) -> tuple[str, Callable[[], Table]]:
+    """The summary for people, and what makes the table for programs."""
+    if isinstance(result, Ensemble):
+        names = result.scene.quantities
+        return summary(result, attributes), lambda: stacked(
+            {name: statistics_table(result, name) for name in names}, "quantity"
+        )
+    lines = [
+        str(result),
+        f"  digest  {attributes['digest']}",
+        f"  made    {attributes['date']} in {attributes['wall_seconds']:.3g} s on {attributes['cpu']}",
+        f"  with    {attributes['versions']}; commit {attributes['commit']}",
+    ]
+    return "\n".join(lines), result.table
+
+
+def progress_of(run: RunFolder, path: Path) -> str:
+    """How far a sweep has come."""
+    axes, total = Axes.from_text(run.axes), run.plan.total
+    missing = sum(span.n for span in run.missing(0, run.shards()))
+    return (
+        f"{path}: a sweep of {axes.size} points over {', '.join(axes.keys)}, not finished: "
+        f"{total - missing} of {total} surfaces are drawn; the same mcgw sweep goes on"
     )

@@ -8,8 +8,7 @@ import tomli_w
 
 from analytic import MeasuredRadii
 from analytic.laws import Hertz
-from mcgw.formats.plain_file import HDF5, read_bytes
-from mcgw.formats.toml_text import loads
+from mcgw.formats.untrusted import HDF5, loads, read_bytes
 from mcgw.scene.contact_section import contact_values
 from mcgw.scene.ensemble_section import ensemble_values
 from mcgw.scene.film_section import film_table

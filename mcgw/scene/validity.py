@@ -7,8 +7,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from analytic import Homogeneous
-from mcgw.formats.evenly import evenly
 from mcgw.formats.sheet import Sheet, Shown
+from mcgw.formats.table import evenly
 from mcgw.scene.fields import Fields
 from mcgw.scene.validity_errors import ModelErrors
 from mcgw.scene.validity_place import Place, not_on_the_map, place_of, reduced_pressure

@@ -12,10 +12,9 @@ from analytic import Fluctuations, quantity_of
 from mcgw.ensemble.asperities_alone import asperities_alone
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.intervals import interval_column
-from mcgw.ensemble.tables import heading
-from mcgw.formats.evenly import evenly
+from mcgw.ensemble.labelled import heading
 from mcgw.formats.sheet import Sheet, Shown
-from mcgw.formats.table import SEPARATION, Column, Table, stacked
+from mcgw.formats.table import SEPARATION, Column, Table, evenly, stacked
 from mcgw.machine.notebook import plotted
 from mcgw.scene.samplers import promise_of
 from mcgw.scene.scene import Scene

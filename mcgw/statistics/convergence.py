@@ -14,9 +14,8 @@ from mcgw.ensemble.asperities_alone import scene_alone
 from mcgw.ensemble.drawing import blocks
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.results import MemoryResults, joined
-from mcgw.formats.evenly import evenly
 from mcgw.formats.sheet import Sheet, Shown, brief
-from mcgw.formats.table import Column, Table
+from mcgw.formats.table import Column, Table, evenly
 from mcgw.machine.notebook import plotted
 from mcgw.machine.progress import Progress, told
 from mcgw.sampling.block import Sampler

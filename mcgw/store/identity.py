@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 from typing import Any
 
-from mcgw.formats.toml_text import loads
+from mcgw.formats.untrusted import loads
 from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_from, scene_text
 from mcgw.store.arithmetic import KIND, drawn_with

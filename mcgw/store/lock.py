@@ -19,7 +19,7 @@ from filelock import ReadWriteLock, Timeout
 
 from mcgw.errors import StoreError
 from mcgw.formats.files import write_whole
-from mcgw.formats.plain_file import read_text
+from mcgw.formats.untrusted import read_text
 from mcgw.store.lock_by_name import hold_by_name, keeps_locks, names_of_locks
 
 __all__ = ["LOCK_FILES", "LockedError", "locked", "refuse_link"]

@@ -16,7 +16,7 @@ from pathlib import Path
 
 from mcgw.errors import StoreError
 from mcgw.formats.files import alive, temporary_beside
-from mcgw.formats.plain_file import read_text
+from mcgw.formats.untrusted import read_text
 
 __all__ = ["hold_by_name", "keeps_locks", "names_of_locks"]
 

@@ -26,7 +26,7 @@ import tomli_w
 
 from mcgw.errors import RunError, StoreError
 from mcgw.formats.files import Expected, sync, write_whole
-from mcgw.formats.toml_text import loads
+from mcgw.formats.untrusted import loads
 from mcgw.scene.scene import Scene, SceneError
 from mcgw.scene.scene_file import scene_from
 from mcgw.store.arithmetic import drawn_with

@@ -8,7 +8,7 @@ from typing import Any
 import tomli_w
 
 from mcgw.ensemble.forecast import without_rule
-from mcgw.formats.toml_text import loads
+from mcgw.formats.untrusted import loads
 from mcgw.machine.memory import keep_freed_memory
 from mcgw.scene.scene import Scene
 from mcgw.scene.section import SceneError

@@ -9,9 +9,8 @@ from numpy.typing import NDArray
 from analytic import quantity_of
 from mcgw.ensemble.labelled import Labelled, Variable, axes_of, axis, statistic
 from mcgw.ensemble.results import PROBABILITIES
-from mcgw.formats.evenly import evenly
 from mcgw.formats.sheet import Sheet, Shown
-from mcgw.formats.table import SEPARATION, Column, Table
+from mcgw.formats.table import SEPARATION, Column, Table, evenly
 from mcgw.machine.notebook import plotted
 from mcgw.scene.samplers import promise_of
 from mcgw.scene.scene_file import scene_text

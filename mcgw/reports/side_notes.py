@@ -1,18 +1,50 @@
-"""What a stop rule promises before a run, and what it has to say after one."""
+"""What is said beside the numbers of a model: how far elasticity is, what a stop rule gives."""
+
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from mcgw.ensemble.ensemble import Ensemble
-from mcgw.ensemble.forecast import Forecast
 from mcgw.ensemble.intervals import CONFIDENCE, TOO_FEW, spread_of
 from mcgw.scene.samplers import promise_of
 from mcgw.scene.scene import Scene
 from mcgw.scene.stop_rule import wanted
+from mcgw.scene.validity import Validity
 
-__all__ = ["after", "before", "upper_contacts"]
+if TYPE_CHECKING:
+    from mcgw.ensemble.forecast import Forecast
+
+__all__ = ["after", "against_elasticity", "before", "elasticity_words", "two_questions", "upper_contacts"]
 
 
-def before(forecast: Forecast, seconds_each: float) -> str:
+def two_questions(found: Validity, file: object = "FILE.h5") -> list[str]:
+    """Where nothing was compared: how to, and the verdict against elasticity."""
+    return [
+        f"Whether Monte Carlo and theory of this model agree: mcgw compare {file}",
+        *against_elasticity(found),
+    ]
+
+
+def against_elasticity(found: Validity) -> list[str]:
+    """The verdict, and where it was measured, a line each."""
+    return [found.verdict, *([f"  {found.details}"] if found.details else [])]
+
+
+def elasticity_words(found: Validity) -> list[str]:
+    """The same in paragraphs of a page; the second one tells of a table over the separations."""
+    if not found.measured.any():
+        return [f"{found.verdict}."]
+    details = f"{found.details}."
+    return [
+        f"{details[0].upper()}{details[1:]}",
+        "Model over elasticity, less 1: mean over the maps ± what holds 95 % of surfaces with so many "
+        "contacts and long waves. Area, stiffness and gap are those at the load of that separation; the load "
+        "is that at the separation itself, taken for the mean gap of a periodic cell. Pressure: "
+        f"{found.axis}.",
+    ]
+
+
+def before(forecast: "Forecast", seconds_each: float) -> str:
     """One line: how many surfaces, how long, and what that will not reach."""
     line = f"about {forecast.surfaces:.2g} surfaces, {forecast.surfaces * seconds_each:.2g} s"
     return f"{line}; {forecast.shortfall}" if forecast.shortfall else line
