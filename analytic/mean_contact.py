@@ -1,39 +1,36 @@
-"""What one asperity contributes in the mean, under any law of contact: sums over a rule of heights."""
+"""What one asperity contributes in the mean, per asperity and over the scale of each quantity."""
 
-from collections.abc import Callable
-from dataclasses import dataclass
-from functools import cached_property
-from typing import Any
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+from typing import ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
-from analytic.curvature import RandomCurvature
 from analytic.gradings import Grading
 from analytic.height_rule import HeightRule
-from analytic.heights import Gaussian, HeightLaw
-from analytic.laws.branch import Branch, UnloadingBranch
+from analytic.heights import HeightLaw
+from analytic.integrals import fn
+from analytic.inversion import LOWEST, last_separations, separations_of_powers
+from analytic.laws.branch import UnloadingBranch
 from analytic.laws.law import piece_of
-from analytic.laws.slopes import jump_terms, slope_term
+from analytic.laws.slopes import slope_term
 from analytic.laws.ways import Ways
-from analytic.measured_summits import MeasuredHeights, MeasuredRadii
-from analytic.quantities import quantity_of
-from analytic.radii_rule import jumps_of_radii, rule_of_radii
+from analytic.quantities import Quantity, quantity_of
+from analytic.summits import Summits
 
-__all__ = ["MeanContact"]
+__all__ = ["MeanContact", "MeanPowers"]
 
 Array = NDArray[np.float64]
 
-_LOWEST, _HIGHEST = -40.0, 1000.0  # separations that are looked at
+_HIGHEST = 1000.0  # separation that is looked at
 _COUNTS = 13.0  # no lower height does
-_RAREST = 1e-280  # share of heights above the highest of them
-_KEPT = 4_000_000  # points of rules over heights and radii
-_LAST_DIGITS = 4 * np.finfo(float).eps
 
 
 @dataclass(frozen=True)
 class MeanContact:
-    """Means over the heights, per asperity and over the scale of each quantity.
+    """Means under any law of contact: sums over a rule of heights and radii.
 
     Parameters
     ----------
@@ -41,73 +38,49 @@ class MeanContact:
         Law of contact and history, in reduced units.
     grading : Grading
         E*(s)/E*.
-    heights : HeightLaw
-        Law of the reduced heights.
-    summits : MeasuredRadii or RandomCurvature, optional
-        The very summits, where heights were measured together with radii; or the law of their radii.
+    summits : Summits
+        Their heights and radii.
     """
 
     ways: Ways
     grading: Grading
-    heights: HeightLaw
-    summits: MeasuredRadii | RandomCurvature | None = None
+    summits: Summits
 
     @property
     def together(self) -> int:
-        """How many separations share a rule: other height laws leave out what the lowest hardly needs."""
-        return 8 if isinstance(self.heights, Gaussian) else 1
+        """How many separations share a rule."""
+        return self.summits.together
 
-    def mean(self, quantity: str, h: Array) -> Array:
+    def mean(self, quantity: str, h: ArrayLike) -> Array:
         """Mean at separations of any shape."""
-        beyond = np.isfinite(h) & (self.heights.sf(h) == 0)  # far ones would make a rule long
+        h = np.asarray(h, dtype=np.float64)
+        beyond = np.isfinite(h) & (self.summits.heights.sf(h) == 0)  # far ones would make a rule long
         result = np.zeros(np.shape(h))
-        result[~beyond] = self._in_parts(h[~beyond], lambda part: self._sums(part, quantity).mean(quantity))
+        result[~beyond] = self._in_parts(h[~beyond], quantity, partial(self._mean, quantity))
         return result
 
-    def share(self, piece: int, h: Array) -> Array:
+    def share(self, piece: int, h: ArrayLike) -> Array:
         """Share of the contacts in which this piece of the law holds; nan without a contact."""
-        return self._in_parts(h, lambda part: self._sums(part, "contacts").share(piece))
+        return self._in_parts(h, "contacts", partial(self._share, piece))
 
-    def slope(self, quantity: str, h: Array) -> Array:
-        """How fast the mean falls with the separation, jumps of asperities included; of a loading one."""
-        return self._in_parts(h, lambda part: self._sums(part, quantity).slope(quantity))
+    def slope(self, quantity: str, h: ArrayLike) -> Array:
+        """How fast the mean falls with the separation, jumps of asperities included.
 
-    def _in_parts(self, h: Array, function: Callable[[Array], Array]) -> Array:
-        """A few separations at a time: they share a rule."""
-        flat = np.ravel(h)
-        if not np.all(np.isfinite(flat)):
-            raise ValueError("h: every separation must be finite")
-        order = np.argsort(flat)
-        result = np.empty(flat.size)
-        for k in range(0, flat.size, self.together):
-            part = order[k : k + self.together]
-            result[part] = function(flat[part])
-        return result.reshape(np.shape(h))
+        Raises
+        ------
+        ValueError
+            If asperities have yielded, and other things than the load are asked for on the way back.
+        """
+        q = quantity_of(quantity)
+        if not q.unloading or self.ways.law.elastic:
+            return self._in_parts(h, q.base, partial(self._slope, q.base))
+        if q.base != "load":
+            raise ValueError(f"quantity = {quantity!r}: its slope is not known; give 'load_unloading'")
+        return q.exponent * self.mean("load_slope_unloading", h)
 
-    def _sums(self, h: Array, quantity: str) -> "_Sums":
-        return _Sums(self, h, self.rule(h, self.ways.among([quantity])))
-
-    def rule(self, h: Array, branches: tuple[Branch, ...] = ()) -> HeightRule:
-        """Heights, and radii, for integrals of what is added on these branches at these separations."""
-        if isinstance(self.summits, MeasuredRadii):
-            return HeightRule.of_summits(h, self.summits, branches)
-        if self.summits is None:
-            return HeightRule.over(h, self.grading, self.heights, branches=branches)
-        key = (branches, h.tobytes())
-        if key not in self._rules:
-            while sum(kept.heights.size for kept in self._rules.values()) > _KEPT:
-                self._rules.pop(next(iter(self._rules)))
-            self._rules[key] = rule_of_radii(h, self.grading, self.summits, branches)
-        return self._rules[key]
-
-    @cached_property
-    def _rules(self) -> dict[tuple[tuple[Branch, ...], bytes], HeightRule]:
-        """Those over heights and radii: every quantity and statistic asks again for the same."""
-        return {}
-
-    def __getstate__(self) -> dict[str, Any]:
-        """Without what is kept, which is large: other processes compute their own."""
-        return {name: value for name, value in vars(self).items() if name != "_rules"}
+    def rule(self, h: ArrayLike, quantities: Sequence[str]) -> HeightRule:
+        """Heights, and radii, for integrals of what is added to these quantities at these separations."""
+        return self.summits.rule(np.asarray(h, dtype=np.float64), self.grading, self.ways.among(quantities))
 
     def separations_at(self, quantity: str, values: Array) -> Array:
         """Largest separations with given means, in the shape of `values`.
@@ -118,101 +91,112 @@ class MeanContact:
             If the mean does not have a value where it can be told from 0, at h = -40 or above.
         """
         grid = self._grid(quantity)
-        about = self._in_parts(grid, lambda part: self._roughly(quantity, part))
-        found = [self._separation_at(quantity, x, grid, about) for x in np.ravel(values).tolist()]
-        return np.array(found, dtype=np.float64).reshape(np.shape(values))
+        about = self._in_parts(grid, None, partial(self._mean, quantity))
+        with np.errstate(divide="ignore", invalid="ignore"):
 
-    def _roughly(self, quantity: str, h: Array) -> Array:
-        """Mean by a rule that is not cut where pieces of the law end: to a percent, and soon done."""
-        rule = self.rule(h)
+            def log_mean(h: ArrayLike) -> Array:
+                return np.asarray(np.log(self.mean(quantity, h)))
+
+            return last_separations(log_mean, np.log(values), grid, np.log(about), quantity)
+
+    def _in_parts(
+        self, h: ArrayLike, quantity: str | None, function: Callable[[Array, HeightRule], Array]
+    ) -> Array:
+        """A few separations at a time, which share a rule: without a quantity one that is soon made.
+
+        That one is not cut where pieces of the law end: sums over it are right to a percent.
+        """
+        flat = np.ravel(np.asarray(h, dtype=np.float64))
+        if not np.all(np.isfinite(flat)):
+            raise ValueError("h: every separation must be finite")
+        order = np.argsort(flat)
+        result = np.empty(flat.size)
+        for k in range(0, flat.size, self.together):
+            part = order[k : k + self.together]
+            rule = self.rule(flat[part], [quantity] if quantity else [])
+            result[part] = function(flat[part], rule)
+        return result.reshape(np.shape(h))
+
+    def _mean(self, quantity: str, h: Array, rule: HeightRule) -> Array:
         return np.asarray(rule.probabilities @ rule.terms([quantity], h, self.grading, self.ways))
 
-    def _separation_at(self, quantity: str, value: float, grid: Array, about: Array) -> float:
-        high_enough = np.flatnonzero(about >= value)
-        k = int(high_enough[-1]) if high_enough.size else 0
-        left, right = grid[max(k - 1, 0)], grid[min(k + 2, grid.size - 1)]
-        if not self._excess(left, quantity, value) > 0 > self._excess(right, quantity, value):
-            left, right = self._bracket(grid, quantity, value)
-        from scipy.optimize import brentq  # imports half of SciPy, which few separations are asked for
+    def _share(self, piece: int, h: Array, rule: HeightRule) -> Array:
+        s, e, law = rule.heights, self.grading(rule.heights), self._ways_of(rule).law
+        inside = np.stack([(s > x) & (piece_of(law, s - x, e) == piece) for x in h], axis=1)
+        with np.errstate(invalid="ignore"):
+            return np.asarray(rule.probabilities @ inside / self._mean("contacts", h, rule))
 
-        return float(brentq(self._excess, left, right, (quantity, value), xtol=1e-15, rtol=_LAST_DIGITS))
+    def _slope(self, quantity: str, h: Array, rule: HeightRule) -> Array:
+        s, p = rule.heights, rule.probabilities
+        if not s.size:
+            return np.zeros(h.shape)
+        if rule.ratios is not None:
+            p = p * rule.ratios ** quantity_of(quantity).radius
+        branch, e = self._ways_of(rule).loading, self.grading(s)
+        within = p @ np.stack([slope_term(quantity, branch, s - x, e) for x in h], axis=1)
+        return np.asarray(within + self.summits.jumps(quantity, self.ways.loading, self.grading, h, rule))
 
-    def _bracket(self, grid: Array, quantity: str, value: float) -> tuple[float, float]:
-        high_enough = np.flatnonzero(self.mean(quantity, grid) >= value)
-        if not high_enough.size or high_enough[-1] == grid.size - 1:
-            raise ValueError(
-                f"{quantity}: not reached between h = {grid[0]:g} and {grid[-1]:.4g}; give another value"
-            )
-        return float(grid[high_enough[-1]]), float(grid[high_enough[-1] + 1])
+    def _ways_of(self, rule: HeightRule) -> Ways:
+        """In units of each summit, where radii differ."""
+        return self.ways if rule.ratios is None else self.ways.with_radii(rule.ratios)
 
     def _grid(self, quantity: str) -> Array:
         """Separations from where all touches to where probabilities underflow, or the highest height."""
-        if isinstance(self.heights, MeasuredHeights):
-            top = self.heights.support[1]
-        else:
-            top = min(float(self.heights.isf(np.array(_RAREST), 0.0)), _HIGHEST)
+        top = min(self.summits.highest, _HIGHEST)
         near = min(top, 12.0)
         far = np.geomspace(near, top, 25)[1:] if top > near else np.empty(0)
-        grid = np.concatenate([np.linspace(_LOWEST, -4, 10)[:-1], np.linspace(-4, near, 41), far])
+        grid = np.concatenate([np.linspace(LOWEST, -4, 10)[:-1], np.linspace(-4, near, 41), far])
         low = self._lowest(quantity, near)
         return np.concatenate([[low], grid[grid > low]])
 
     def _lowest(self, quantity: str, near: float) -> float:
         """Lowest separation of the grid: that of the turn, or above it one that has no negative modulus."""
         if self.ways.law.elastic:
-            return _LOWEST
+            return LOWEST
         branch = self.ways.of(quantity)
-        lowest = branch.deepest if isinstance(branch, UnloadingBranch) else _LOWEST
-        s = np.linspace(max(self.heights.support[0], -_COUNTS), near, 4001)
+        lowest = branch.deepest if isinstance(branch, UnloadingBranch) else LOWEST
+        s = np.linspace(max(self.summits.heights.support[0], -_COUNTS), near, 4001)
         negative = np.flatnonzero(self.grading(s) < 0)
         return max(lowest, float(s[min(negative[-1] + 1, s.size - 1)])) if negative.size else lowest
 
-    def _excess(self, h: float, quantity: str, value: float) -> float:
-        """Logarithm relative to the value; -100 also where the mean is not positive."""
-        with np.errstate(divide="ignore", invalid="ignore"):
-            return float(np.fmax(np.log(self.mean(quantity, np.array(h)) / value), -100.0))
-
 
 @dataclass(frozen=True)
-class _Sums:
-    """Sums over the rule of a few separations."""
+class MeanPowers:
+    """Means where an asperity adds a power of its approach, as under Hertz's law: integrals over heights.
+
+    Parameters
+    ----------
+    contact : MeanContact
+        The same asperities by their formulas.
+    """
 
     contact: MeanContact
-    h: Array
-    rule: HeightRule
+    together: ClassVar[int] = 1
+    ways: ClassVar[None] = None
 
-    def mean(self, quantity: str) -> Array:
-        terms = self.rule.terms([quantity], self.h, self.contact.grading, self.contact.ways)
-        return np.asarray(self.rule.probabilities @ terms)
+    def mean(self, quantity: str, h: ArrayLike) -> Array:
+        """Mean at separations of any shape."""
+        q = quantity_of(quantity)
+        return fn(q.exponent, h, self._grading(q), heights=self._heights(q))
 
-    def share(self, piece: int) -> Array:
-        s, e, law = self.rule.heights, self.contact.grading(self.rule.heights), self._ways.law
-        inside = np.stack([(s > h) & (piece_of(law, s - h, e) == piece) for h in self.h], axis=1)
-        with np.errstate(invalid="ignore"):
-            return np.asarray(self.rule.probabilities @ inside / self.mean("contacts"))
+    def slope(self, quantity: str, h: ArrayLike) -> Array:
+        """How fast the mean falls with the separation."""
+        q = quantity_of(quantity)
+        if q.exponent >= 1:
+            return q.exponent * fn(q.exponent - 1, h, self._grading(q), heights=self._heights(q))
+        return replace(self.contact, summits=Summits(self._heights(q))).slope(q.base, h)
 
-    @property
-    def _ways(self) -> Ways:
-        """In units of each summit, where radii differ."""
-        ways = self.contact.ways
-        return ways if self.rule.ratios is None else ways.with_radii(self.rule.ratios)
+    def rule(self, h: ArrayLike, quantities: Sequence[str]) -> HeightRule:  # noqa: ARG002 - the same for all
+        """Heights, and radii, for integrals of powers at these separations."""
+        return self.contact.summits.rule(np.asarray(h, dtype=np.float64), self.contact.grading)
 
-    def slope(self, quantity: str) -> Array:
-        grading, heights = self.contact.grading, self.contact.heights
-        branch = self._ways.loading
-        s, p = self.rule.heights, self.rule.probabilities
-        if not s.size:
-            return np.zeros(self.h.shape)
-        if self.rule.ratios is not None:
-            p = p * self.rule.ratios ** quantity_of(quantity).radius
-        e = grading(s)
-        within = p @ np.stack([slope_term(quantity, branch, s - h, e) for h in self.h], axis=1)
-        if isinstance(heights, MeasuredHeights):
-            return np.asarray(within)  # between the separations at which one of them jumps
-        if isinstance(self.contact.summits, RandomCurvature):
-            branch, law, top = self.contact.ways.loading, self.contact.summits, float(s.max())
-            met = [jumps_of_radii(quantity, branch, grading, law, x, top) for x in self.h.tolist()]
-            return np.asarray(within + met)
-        ends = float(s[0]), float(s[-1])
-        jumps = jump_terms(quantity, branch, grading, lambda t, _: heights.pdf(t), self.h, ends)
-        return np.asarray(within + jumps)
+    def separations_at(self, quantity: str, values: Array) -> Array:
+        """Largest separations with given means, in the shape of `values`."""
+        q = quantity_of(quantity)
+        return separations_of_powers(q, np.log(values), self._grading(q), self._heights(q))
+
+    def _grading(self, q: Quantity) -> Grading | None:
+        return self.contact.grading if q.modulus else None
+
+    def _heights(self, q: Quantity) -> HeightLaw:
+        return self.contact.summits.weighted(q.radius)

@@ -2,25 +2,23 @@
 
 from collections.abc import Sequence
 from dataclasses import KW_ONLY, dataclass, field, replace
-from functools import cached_property, partial
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from analytic.curvature import RandomCurvature, WeightedHeights
+from analytic.curvature import RandomCurvature
 from analytic.gradings import Grading, Homogeneous
 from analytic.height_rule import Count, Fluctuations, HeightRule
 from analytic.heights import Gaussian, HeightLaw
-from analytic.integrals import fn
-from analytic.inversion import separations_at, separations_of_means
 from analytic.laws.film import Film
 from analytic.laws.law import ContactLaw, is_hertz
 from analytic.laws.tangential import Tangential, half_spaces
 from analytic.laws.ways import Ways
-from analytic.mean_contact import MeanContact
+from analytic.mean_contact import MeanContact, MeanPowers
 from analytic.measured_summits import MeasuredRadii
 from analytic.quantities import LAW_QUANTITIES, Quantity, quantity_of
-from analytic.radii_rule import with_radii
+from analytic.summits import Summits, summits_of
 from analytic.surface import Surface
 
 __all__ = ["Cumulants", "Model"]
@@ -153,9 +151,7 @@ class Model:
             If the way back is asked for and not known, or starts above `h`.
         """
         q = self._asked(quantity, h)
-        if self._by_powers(q):
-            return self._unit(q) * fn(q.exponent, h, self._grading(q), heights=self._weighted(q))
-        return self._unit(q) * self._contact.mean(quantity, np.asarray(h, dtype=np.float64))
+        return self._unit(q) * self._means(q).mean(quantity, h)
 
     def slope(self, quantity: str, h: ArrayLike) -> Array:
         """How fast the mean falls with the separation, per unit of h.
@@ -185,21 +181,7 @@ class Model:
         q = self._asked(quantity, h)
         if q.base == "load_slope":
             raise ValueError(f"quantity = {quantity!r}: its own slope is not known; give another quantity")
-        if self._by_powers(q) and q.exponent >= 1:
-            return (
-                self._unit(q)
-                * q.exponent
-                * fn(q.exponent - 1, h, self._grading(q), heights=self._weighted(q))
-            )
-        h = np.asarray(h, dtype=np.float64)
-        if self._by_powers(q):
-            weighted = replace(self._contact, heights=self._weighted(q), summits=None)
-            return self._unit(q) * weighted.slope(q.base, h)
-        if not q.unloading or self.ways.law.elastic:
-            return self._unit(q) * self._contact.slope(q.base, h)
-        if q.base != "load":
-            raise ValueError(f"quantity = {quantity!r}: its slope is not known; give 'load_unloading'")
-        return self._unit(q) * q.exponent * self._contact.mean("load_slope_unloading", h)
+        return self._unit(q) * self._means(q).slope(quantity, h)
 
     def share(self, piece: int, h: ArrayLike) -> Array:
         """Mean share of the contacts in which a piece of the law holds: who has yielded, and how far.
@@ -216,12 +198,12 @@ class Model:
         ndarray
             In the shape of `h`; nan where no contact is to be expected in double precision.
         """
-        return self._contact.share(piece, np.asarray(h, dtype=np.float64))
+        return self._contact.share(piece, h)
 
     def cumulants(self, quantity: str, h: ArrayLike) -> Cumulants:
         """Mean, variance, skewness and excess kurtosis over surfaces, in the shape of `h`."""
         h = np.asarray(h, dtype=np.float64)
-        step = 1 if self._by_powers(self._asked(quantity, h)) else self._contact.together
+        step = self._means(self._asked(quantity, h)).together
         parts = np.split(h.ravel(), range(step, h.size, step)) if h.size else []
         rows = np.concatenate([np.empty((0, 4)), *(self._one_asperity(quantity, x) for x in parts)])
         k1, k2, k3, k4 = rows.reshape(*h.shape, 4).transpose(-1, *range(h.ndim))
@@ -306,48 +288,26 @@ class Model:
         target = np.asarray(value, dtype=np.float64)
         if not np.all(np.isfinite(target) & (target > 0)):
             raise ValueError(f"{quantity} = {value!r}: give finite values > 0 {q.unit}")
-        if self._by_powers(q):
-            return separations_at(q, np.log(target / self._unit(q)), self._grading(q), self._weighted(q))
-        if isinstance(self.curvature, RandomCurvature):
-            starts = replace(self, curvature=None).separation_at(quantity, target)
-            return separations_of_means(partial(self.mean, quantity), starts, target, quantity)
-        return self._contact.separations_at(quantity, target / self._unit(q))
+        return self._means(q).separations_at(quantity, target / self._unit(q))
 
     def rule(self, separations: ArrayLike, quantities: Sequence[str] = ("load",)) -> HeightRule:
         """Heights and probabilities for integrals of these quantities of an asperity at these separations."""
-        powers = all(self._by_powers(self._asked(name, separations)) for name in quantities)
-        contact = replace(self._contact, summits=None) if powers else self._contact
-        branches = () if powers else self.ways.among(quantities)
-        return contact.rule(np.asarray(separations, dtype=np.float64), branches)
+        return self._means(*(self._asked(name, separations) for name in quantities)).rule(
+            separations, quantities
+        )
 
     def fluctuations(self, quantities: Sequence[str], separations: ArrayLike) -> Fluctuations:
         """What one asperity adds to each quantity at each separation, over its scale.
 
         Columns are quantity by quantity, at increasing number of the separation.
         """
-        powers = all(self._by_powers(quantity_of(name)) for name in quantities)
-        rule = self.rule(separations, quantities)
-        if isinstance(self.curvature, RandomCurvature):
-            h = np.asarray(separations, dtype=np.float64)
-            return self._random_fluctuations(rule, quantities, h, powers=powers)
-        terms = rule.terms(quantities, separations, self.grading, None if powers else self.ways)
-        return rule.fluctuations(terms, self.count)
-
-    def _random_fluctuations(
-        self, rule: HeightRule, quantities: Sequence[str], h: Array, *, powers: bool
-    ) -> Fluctuations:
-        """Of summits of random curvature; `powers`: one adds powers of its approach and of its radius.
-
-        The rule is over the heights; unless powers are added, over the radii too.
-        """
-        assert isinstance(self.curvature, RandomCurvature)
-        if powers:
-            rule = with_radii(rule, self.curvature)
-        terms = rule.terms(quantities, h, self.grading, None if powers else self.ways)
-        result = rule.fluctuations(terms, self.count)
-        if not np.isinf(self.curvature.largest):
+        asked = [self._asked(name, separations) for name in quantities]
+        means, h = self._means(*asked), np.asarray(separations, dtype=np.float64)
+        rule = means.rule(h, quantities)
+        result = rule.fluctuations(rule.terms(quantities, h, self.grading, means.ways), self.count)
+        if not self._summits.unbounded:
             return result
-        return replace(result, radius=np.repeat([quantity_of(name).radius for name in quantities], h.size))
+        return replace(result, radius=np.repeat([q.radius for q in asked], h.size))
 
     @cached_property
     def _hertz(self) -> bool:
@@ -360,8 +320,17 @@ class Model:
         return Ways(law, self.unload_from, None if self.film is None else self.film.on(self.surface))
 
     @cached_property
+    def _summits(self) -> Summits:
+        return summits_of(self.heights, self.curvature)
+
+    @cached_property
     def _contact(self) -> MeanContact:
-        return MeanContact(self.ways, self.grading, self.heights, self.curvature)
+        return MeanContact(self.ways, self.grading, self._summits)
+
+    def _means(self, *quantities: Quantity) -> MeanContact | MeanPowers:
+        """What one asperity adds to all of these in the mean, by powers of its approach if that is true."""
+        powers = all(self._by_powers(q) for q in quantities)
+        return MeanPowers(self._contact) if powers else self._contact
 
     def _asked(self, quantity: str, h: ArrayLike = np.inf) -> Quantity:
         """A quantity that is known at these separations."""
@@ -376,20 +345,10 @@ class Model:
 
     def _by_powers(self, q: Quantity) -> bool:
         """Whether one asperity carries a power of its approach, whose mean is an integral over heights."""
-        listed = isinstance(self.curvature, MeasuredRadii)
-        return self._hertz and q.base not in LAW_QUANTITIES and not listed
+        return self._hertz and q.base not in LAW_QUANTITIES and self._summits.powers
 
     def _unit(self, q: Quantity) -> float:
         return self.number * q.scale(self.surface)
-
-    def _weighted(self, q: Quantity) -> HeightLaw:
-        """The heights, each with the mean of the power of the radius that counts in a quantity."""
-        if not isinstance(self.curvature, RandomCurvature) or q.radius == 0:
-            return self.heights
-        return WeightedHeights(self.heights, partial(self.curvature.mean, q.radius))
-
-    def _grading(self, q: Quantity) -> Grading | None:
-        return self.grading if q.modulus else None
 
     def _one_asperity(self, quantity: str, h: Array) -> Array:
         """First four cumulants that one asperity contributes, over the scale: shape (separations, 4)."""

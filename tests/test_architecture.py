@@ -155,8 +155,8 @@ def test_the_root_has_only_the_door():
 
 
 # Theory, as modules of `analytic`; the first three are Gaussian unless they are told another law.
-GAUSSIAN = {"contact", "integrals", "inversion"}
-THEORY = GAUSSIAN | {"height_rule", "interacting", "law_rule", "mean_contact", "model", "plasticity"}
+GAUSSIAN = {"equations", "integrals", "inversion"}
+THEORY = GAUSSIAN | {"height_rule", "interacting", "law_rule", "mean_contact", "model"}
 
 
 def from_theory(tree, modules):

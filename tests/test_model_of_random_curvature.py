@@ -131,7 +131,7 @@ def test_moments_by_curvatures_one_by_one():
     m, h = model(largest=3.0, grading=GRADED), H[1:2]
     names = ["load", "area"]
     by_rule, radii = m.fluctuations(names, h), rule_of_radii(h, GRADED, m.curvature, m.ways.among(names))
-    one_by_one = m._random_fluctuations(radii, names, h, powers=False)
+    one_by_one = radii.fluctuations(radii.terms(names, h, GRADED, m.ways), m.count)
     np.testing.assert_allclose(one_by_one.products(), by_rule.products(), rtol=1e-12)
     np.testing.assert_allclose(one_by_one.moment(3), by_rule.moment(3), rtol=1e-11)
 

@@ -297,7 +297,7 @@ def test_pressures_and_values_beyond_reach():
 def test_shares_of_the_pieces_are_shares_of_heights():
     """Homogeneous: beyond fixed penetrations. Graded: above the root of s - h = dc/e(s)^2."""
     both, dc = np.array([0.9, 0.4]), 0.05
-    law, above = KogutEtsion(dc), Gaussian().above
+    law, above = KogutEtsion(dc), Gaussian().sf
     ends = both + dc * np.array([0.0, 1.0, 6.0, 110.0, np.inf])[:, None]
     shares = [Model(SURFACE, law=law).share(piece, both) for piece in range(4)]
     np.testing.assert_allclose(shares, -np.diff(above(ends), axis=0) / above(both), rtol=1e-11)

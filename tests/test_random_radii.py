@@ -9,7 +9,7 @@ from scipy import stats
 
 import analytic
 import mcgw
-from analytic import mean_contact
+from analytic.radii_rule import rule_of_radii
 from mcgw.ensemble import solution
 from mcgw.sampling.asperities import summits, summits_drawn, touching_summits
 from mcgw.sampling.radius_table import radius_table
@@ -196,8 +196,8 @@ def test_each_summit_has_the_law_of_its_own_radius(law):
 
 def test_a_comparison_asks_once_for_each_rule_over_heights_and_radii(monkeypatch):
     """One for each separation, and two for all: of means that may have no kurtosis, and of those that do."""
-    made, build = [], mean_contact.rule_of_radii
-    monkeypatch.setattr(mean_contact, "rule_of_radii", lambda *asked: made.append(asked) or build(*asked))
+    made, build = [], rule_of_radii
+    monkeypatch.setattr("analytic.summits.rule_of_radii", lambda *asked: made.append(asked) or build(*asked))
     scene = spectral(law=LAWS[0], n_asperities=1000, separations=(0.0, 1.0), quantities=("load", "area"))
     assert mcgw.compare(mcgw.simulate(scene)).verdict.agrees
     assert len(made) == 4
