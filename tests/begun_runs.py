@@ -4,7 +4,7 @@ import threading
 
 import pytest
 
-from mcgw.ensemble.reducers import Values
+from mcgw.ensemble.simulation import Values
 from mcgw.ensemble.summarising import Statistics
 from mcgw.errors import StoreError
 from mcgw.jobs.running import run, run_part

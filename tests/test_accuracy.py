@@ -16,8 +16,8 @@ from test_random_radii import spectral
 import analytic
 import mcgw
 from analytic import laws
-from mcgw.ensemble.reducers import Values
 from mcgw.ensemble.regrading import regrade
+from mcgw.ensemble.simulation import Values
 from mcgw.jobs.merging import merge
 from mcgw.jobs.running import run, run_part
 from mcgw.jobs.session import Part

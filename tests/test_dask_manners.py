@@ -12,7 +12,7 @@ import pytest
 from begun_runs import digest
 
 import mcgw
-from mcgw.ensemble.reducers import Values
+from mcgw.ensemble.simulation import Values
 from mcgw.jobs.dask_engine import Dask
 from mcgw.machine.progress import bar
 

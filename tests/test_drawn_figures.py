@@ -186,8 +186,7 @@ def test_convergence_without_slopes(make_scene, kept, tmp_path):
 def test_tradeoff(make_scene, kept, tmp_path):
     from mcgw.statistics.methods import Method
     from mcgw.statistics.tradeoff import Point, Tradeoff
-    from mcgw.statistics.ways import Way
-    from mcgw.statistics.wishes import Advice, Wish
+    from mcgw.statistics.wishes import Advice, Way, Wish
 
     def none(size, seed):
         return np.zeros(2)

@@ -15,7 +15,7 @@ from begun_runs import digest
 from lost_workers import deadly, deadly_once
 
 import mcgw
-from mcgw.ensemble.reducers import Values
+from mcgw.ensemble.simulation import Values
 from mcgw.errors import RunError
 from mcgw.jobs.dask_engine import Dask, check_address
 from mcgw.jobs.driver import Signals, drive

@@ -7,7 +7,7 @@ import pytest
 
 import mcgw
 from mcgw.cli import main
-from mcgw.ensemble.reducers import Values
+from mcgw.ensemble.simulation import Values
 from mcgw.scene.law_text import law_text
 
 SURFACE = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "0.1 mm^2", "78.6 GPa")

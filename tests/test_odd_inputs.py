@@ -9,7 +9,7 @@ import pytest
 
 import analytic
 import mcgw
-from mcgw.ensemble.reducers import Values
+from mcgw.ensemble.simulation import Values
 from mcgw.errors import StoreError
 from mcgw.formats.files import check_output
 from mcgw.jobs.running import run

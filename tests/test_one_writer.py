@@ -15,7 +15,7 @@ import pytest
 
 import mcgw
 from mcgw.cli import main
-from mcgw.ensemble.reducers import Values
+from mcgw.ensemble.simulation import Values
 from mcgw.errors import RunError, StoreError
 from mcgw.formats.files import state_of
 from mcgw.jobs import merging
@@ -24,8 +24,8 @@ from mcgw.jobs.merging import merge
 from mcgw.jobs.running import run, run_part
 from mcgw.jobs.session import Part
 from mcgw.store import ensembles, lock
-from mcgw.store.leftovers import tidy
 from mcgw.store.lock import LockedError, locked
+from mcgw.store.place import tidy
 from mcgw.store.plan import Plan
 from mcgw.store.run_folder import RunFolder, parts_of
 from mcgw.store.saving import save

@@ -15,8 +15,8 @@ from numpy._core import _multiarray_umath as umath
 import analytic
 import mcgw
 from mcgw.errors import RunError, StoreError
-from mcgw.jobs import blocks
-from mcgw.jobs.blocks import commit_block
+from mcgw.jobs import job
+from mcgw.jobs.job import commit_block
 from mcgw.jobs.running import run, run_part
 from mcgw.jobs.session import Part
 from mcgw.sampling.layout import Layout
@@ -24,7 +24,7 @@ from mcgw.sampling.moments import cell_moments
 from mcgw.sampling.samplers import sampler_of
 from mcgw.scene.samplers import SAMPLERS
 from mcgw.scene.scene import Scene
-from mcgw.store import arithmetic
+from mcgw.store import identity
 
 GRADINGS = {
     "homogeneous": analytic.Homogeneous(),
@@ -78,7 +78,7 @@ def digests():
 
 
 def report():
-    return {"digests": digests(), "kind": arithmetic.kind_of_processor()}
+    return {"digests": digests(), "kind": identity.kind_of_processor()}
 
 
 @pytest.fixture(scope="module")
@@ -141,8 +141,8 @@ def test_the_compiler_neither_fuses_nor_reorders():
 def test_what_depends_on_the_processor(make_scene, change, depends):
     scene = make_scene(**change)
     sampler = "cells" if scene.sampler == "auto" else scene.sampler
-    assert arithmetic.depends_on_processor(scene, sampler) == depends
-    assert (arithmetic.kind_of_processor() in arithmetic.drawn_with(scene, sampler)) == depends
+    assert identity.depends_on_processor(scene, sampler) == depends
+    assert (identity.kind_of_processor() in identity.drawn_with(scene, sampler)) == depends
 
 
 WHY = "another kind of processor, which rounds exponentials and logarithms otherwise"
@@ -155,10 +155,10 @@ def test_a_run_goes_on_where_it_was_drawn(make_scene, tmp_path, monkeypatch, hei
     more = make_scene(heights=heights, sampler="tail", n_surfaces=8)
     whole, begun = tmp_path / "whole.h5", tmp_path / "begun.h5"
     run(scene, whole)
-    monkeypatch.setattr("mcgw.ensemble.reducers.Values.rows", 4)
+    monkeypatch.setattr("mcgw.ensemble.simulation.Values.rows", 4)
     run_part(more, begun, Part(1, 2))
-    monkeypatch.setattr(arithmetic, "kind_of_processor", lambda: "00000000")
-    blocks._prepared.cache_clear()  # as in a worker that starts on such a processor
+    monkeypatch.setattr(identity, "kind_of_processor", lambda: "00000000")
+    job._prepared.cache_clear()  # as in a worker that starts on such a processor
     going_on = [
         (StoreError, lambda: run(more, whole)),
         (StoreError, lambda: run_part(more, begun, Part(2, 2))),

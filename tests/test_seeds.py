@@ -16,7 +16,7 @@ from mcgw.sampling.asperities import heights
 from mcgw.sampling.samplers import sampler_of
 from mcgw.scene.samplers import SAMPLERS
 from mcgw.statistics.convergence import converge
-from mcgw.store import ensembles
+from mcgw.store import ensembles, place
 
 SMALL, LARGE = 1, [2**63 - 1, 2**63, 2**64 - 1]
 QUICK = (Path(__file__).parent.parent / "runs" / "quick.toml").read_text()
@@ -41,7 +41,7 @@ def test_a_file_keeps_the_seed_and_goes_on_with_it(make_scene, tmp_path, sampler
     path, whole = tmp_path / "a.h5", tmp_path / "b.h5"
     run(make_scene(seed=SMALL, n_surfaces=3), tmp_path / "small.h5")
     run(scene, path)
-    assert ensembles.recorded_seed(path) == seed == mcgw.open_ensemble(path).scene.seed
+    assert place.recorded_seed(path) == seed == mcgw.open_ensemble(path).scene.seed
     with h5py.File(path) as file:
         assert file.attrs["seed"].dtype == np.uint64
         assert int(file.attrs["seed"]) == seed

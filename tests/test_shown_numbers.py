@@ -252,8 +252,7 @@ def test_solve(scene, words, given, pressure, title, tmp_path, capsys):
 def study(scene):
     from mcgw.statistics.methods import methods_for
     from mcgw.statistics.tradeoff import Point, Tradeoff
-    from mcgw.statistics.ways import Way
-    from mcgw.statistics.wishes import Advice, Wish
+    from mcgw.statistics.wishes import Advice, Way, Wish
 
     small = dataclasses.replace(scene, keep="sums", quantities=("load", "area"))
     points = (

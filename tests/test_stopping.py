@@ -152,8 +152,8 @@ def test_whoever_draws_it_is_one_ensemble(make_scene, tmp_path, monkeypatch, cap
     assert f"{n} surfaces" in capsys.readouterr().out
     monkeypatch.setattr("mcgw.ensemble.drawing.block_size", lambda *_: 37)
     again = simulate(scene, threads=2)
-    monkeypatch.setattr("mcgw.ensemble.reducers.block_size", lambda *_: 37)
-    monkeypatch.setattr("mcgw.ensemble.reducers._BYTES", 1)
+    monkeypatch.setattr("mcgw.ensemble.simulation.block_size", lambda *_: 37)
+    monkeypatch.setattr("mcgw.ensemble.simulation._BYTES", 1)
     assert [run_part(scene, tmp_path / "g.h5", Part(k, 2)) > 0 for k in (1, 2)] == [True, False]
     merge(tmp_path / "g.h5")
     np.testing.assert_array_equal(first.load, again.load)

@@ -15,7 +15,7 @@ from mcgw.errors import RunError, StoreError
 from mcgw.jobs.merging import merge
 from mcgw.jobs.running import run, run_part
 from mcgw.jobs.session import Part
-from mcgw.store import ensembles, layout, lock, merged_file, run_folder, shards, structure, untrusted
+from mcgw.store import ensembles, layout, lock, run_folder, saving, shards, structure, untrusted
 from mcgw.store.disk import SteadyFile
 from mcgw.store.run_folder import RunFolder, parts_of
 from mcgw.store.trailer import TRAILER_BYTES, check_trailer, read_checked, trailer_of
@@ -160,15 +160,15 @@ def test_a_shard_of_other_contents_never_becomes_a_file(scene, tmp_path, way):
 def test_a_digest_that_is_written_wrong_is_seen(scene, tmp_path, monkeypatch):
     path = tmp_path / "e.h5"
     begun(scene, path)
-    describe = merged_file.describe
+    describe = saving.describe
 
     def forged(file, *arguments, **options):
         describe(file, *arguments, **options)
         file.attrs["digest"] = "0" * 64
 
-    monkeypatch.setattr(merged_file, "describe", forged)
+    monkeypatch.setattr(saving, "describe", forged)
     with pytest.raises(OSError, match="reads otherwise than written"):
-        merged_file.merge_into(RunFolder.open(parts_of(path)), path, tmp_path / "x.tmp", nobody)
+        saving.merge_into(RunFolder.open(parts_of(path)), path, tmp_path / "x.tmp", nobody)
 
 
 @pytest.mark.parametrize("gone", [0, 3, 6])
@@ -176,7 +176,7 @@ def test_a_shard_that_is_gone_is_missing(scene, tmp_path, gone):
     path = tmp_path / "e.h5"
     begun(scene, path, jobs=2)[gone].unlink()
     with pytest.raises(StoreError):
-        merged_file.merge_into(RunFolder.open(parts_of(path)), path, tmp_path / "x.tmp", nobody)
+        saving.merge_into(RunFolder.open(parts_of(path)), path, tmp_path / "x.tmp", nobody)
     with pytest.raises(RunError, match=f"surfaces are missing, from {16 * gone} on"):
         merge(path)
     assert not path.exists()

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import mcgw
-from mcgw.ensemble.reducers import Values
+from mcgw.ensemble.simulation import Values
 from mcgw.errors import StoreError
 from mcgw.jobs.job import Job
 from mcgw.store.run_folder import RunFolder, parts_of

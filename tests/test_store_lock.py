@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 import mcgw
-from mcgw.ensemble.reducers import Values
+from mcgw.ensemble.simulation import Values
 from mcgw.errors import StoreError
 from mcgw.jobs.running import run
 from mcgw.store import lock
@@ -165,7 +165,7 @@ except ModuleNotFoundError:
 from pathlib import Path
 import mcgw, numpy
 from mcgw import cli
-from mcgw.ensemble.reducers import Values
+from mcgw.ensemble.simulation import Values
 from mcgw.errors import StoreError
 from mcgw.store.lock import locked
 for found in pkgutil.walk_packages(mcgw.__path__, "mcgw."):

@@ -12,7 +12,7 @@ import pytest
 from begun_runs import SIZE, SURFACES, begun, digest, in_small_blocks
 
 import mcgw
-from mcgw.ensemble.reducers import Values
+from mcgw.ensemble.simulation import Values
 from mcgw.errors import RunError, StoppedError
 from mcgw.jobs import merging
 from mcgw.jobs.merging import merge

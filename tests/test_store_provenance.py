@@ -10,7 +10,7 @@ import scipy.stats
 
 import analytic
 import mcgw
-from mcgw.ensemble.reducers import Values
+from mcgw.ensemble.simulation import Values
 from mcgw.jobs.running import run
 from mcgw.machine.memory import peak_growth
 from mcgw.sampling.samplers import sampler_of

@@ -21,8 +21,7 @@ import mcgw
 from mcgw.cli import main
 from mcgw.errors import RunError, StoppedError, StoreError
 from mcgw.jobs import merging
-from mcgw.jobs.blocks import commit_block
-from mcgw.jobs.job import Job
+from mcgw.jobs.job import Job, commit_block
 from mcgw.jobs.merging import merge
 from mcgw.jobs.running import run, run_part
 from mcgw.jobs.session import Part
@@ -162,7 +161,7 @@ def test_another_scene_or_seed_in_that_place_is_refused(scene, tmp_path, change,
 def test_another_version_is_refused(scene, tmp_path, monkeypatch):
     path = tmp_path / "e.h5"
     halted(scene, path, 40)
-    monkeypatch.setattr("mcgw.store.arithmetic.versions", lambda **_: "mcgw 99")
+    monkeypatch.setattr("mcgw.store.identity.versions", lambda **_: "mcgw 99")
     with pytest.raises(StoreError, match=r"drawn with .*, this is mcgw 99"):
         run(scene, path)
 
@@ -330,11 +329,11 @@ def test_signals_stop_a_run_that_then_goes_on(
 KILLED = """
 import os, signal, sys
 import numpy
-from mcgw.jobs import blocks
-from mcgw.ensemble.reducers import Values
+from mcgw.jobs import job
+from mcgw.ensemble.simulation import Values
 from mcgw.jobs.job import Job
 Values.rows = 16
-commit, committed = blocks.commit_shard, []
+commit, committed = job.commit_shard, []
 
 def killed_at_the_fourth(*words):
     if len(committed) == 3:
@@ -342,7 +341,7 @@ def killed_at_the_fourth(*words):
     committed.append(words)
     return commit(*words)
 
-blocks.commit_shard = killed_at_the_fourth
+job.commit_shard = killed_at_the_fourth
 drawn = dict(numpy.load(sys.argv[3]))  # so that no loop is loaded
 Job.draw = lambda job, span, threads: {name: x[span.first : span.stop] for name, x in drawn.items()}
 from mcgw.jobs.running import run
@@ -366,7 +365,7 @@ def test_killed_at_a_block_it_goes_on(scene, tmp_path, expected, drawn):
 
 
 FULL = [
-    ("jobs.blocks.commit_shard", "finished blocks are kept"),
+    ("jobs.job.commit_shard", "finished blocks are kept"),
     ("jobs.merging.merge_into", "cannot be merged"),
 ]
 

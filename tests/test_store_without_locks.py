@@ -18,8 +18,8 @@ import mcgw
 from mcgw.errors import StoreError
 from mcgw.jobs.running import run
 from mcgw.store import lock
-from mcgw.store.leftovers import tidy
 from mcgw.store.lock import LockedError, locked
+from mcgw.store.place import tidy
 
 # What filelock makes of ENOLCK and of ENOSYS: SQLite takes the first for a lock that somebody has.
 REFUSALS = {errno.ENOLCK: Timeout("lock.db"), errno.ENOSYS: sqlite3.OperationalError("disk I/O error")}

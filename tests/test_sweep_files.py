@@ -15,9 +15,9 @@ from begun_runs import settle
 
 import mcgw
 from mcgw.cli import main
-from mcgw.jobs import blocks
-from mcgw.jobs.blocks import commit_block
+from mcgw.jobs import job
 from mcgw.jobs.engines import Processes
+from mcgw.jobs.job import commit_block
 from mcgw.store.ensembles import read_attributes
 from mcgw.store.run_folder import RunFolder, parts_of
 from mcgw.sweeps import drawing
@@ -238,7 +238,7 @@ def test_a_disk_that_is_full(tmp_path, monkeypatch):
         raise OSError(28, "No space left on device")
 
     with monkeypatch.context() as patch:
-        patch.setattr(blocks, "commit_shard", full)
+        patch.setattr(job, "commit_shard", full)
         with pytest.raises(mcgw.RunError, match="No space left on device; finished blocks are kept in"):
             mcgw.sweep(SCENE, OVER, path=tmp_path / "a.h5")
     assert not (tmp_path / "a.h5").exists()
@@ -311,10 +311,10 @@ SWEEPING = """
 import os, signal, sys
 import numpy as np
 import mcgw
-from mcgw.jobs import blocks
+from mcgw.jobs import job
 from mcgw.sweeps import drawing
 drawing._ROWS = 50
-commit, committed = blocks.commit_shard, []
+commit, committed = job.commit_shard, []
 
 def killed_at_the_next(*words):
     if len(committed) == int(sys.argv[3]):
@@ -322,7 +322,7 @@ def killed_at_the_next(*words):
     committed.append(words)
     return commit(*words)
 
-blocks.commit_shard = killed_at_the_next
+job.commit_shard = killed_at_the_next
 if __name__ == "__main__":
     over = {"grading.gamma": np.linspace(0.5, 1.7, 9), "ensemble.n_asperities": [200, 2000]}
     how = {"run": {}, "1/1": {"shard": "1/1"}}

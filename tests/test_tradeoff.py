@@ -13,8 +13,7 @@ import analytic
 from mcgw.figures.studies import save_tradeoff
 from mcgw.statistics import tradeoff as study
 from mcgw.statistics.tradeoff import tradeoff
-from mcgw.statistics.ways import Way, ways_for
-from mcgw.statistics.wishes import Wish, _Quantile, advise
+from mcgw.statistics.wishes import Way, Wish, _Quantile, advise, ways_for
 
 
 @pytest.fixture(scope="module")

@@ -49,7 +49,8 @@ def execute(args: argparse.Namespace) -> int:
     from mcgw.formats.table import stacked
     from mcgw.reports.text import ratio_tables
     from mcgw.scene.grading_section import read_grading
-    from mcgw.store.ensembles import finished, open_ensemble
+    from mcgw.store.ensembles import open_ensemble
+    from mcgw.store.place import finished
     from mcgw.store.saving import save
 
     table, gamma, law = args.grading, args.gamma, law_of(args)

@@ -35,13 +35,12 @@ def execute(args: argparse.Namespace) -> int:
 def _execute(args: argparse.Namespace) -> int:
     from mcgw.commands.outputs import HDF5, Output, check_outputs, tell_notes
     from mcgw.ensemble.forecast import forecast
-    from mcgw.jobs.chosen_engine import dashboard_of
     from mcgw.jobs.from_python import run
-    from mcgw.jobs.session import part_of
+    from mcgw.jobs.session import dashboard_of, part_of
     from mcgw.machine.progress import bar
     from mcgw.reports.side_notes import two_questions
     from mcgw.scene.scene_file import files_of, load_scene
-    from mcgw.store.ensembles import recorded_seed
+    from mcgw.store.place import recorded_seed
 
     path = args.output or args.scene.parent / "out" / f"{args.scene.stem}.h5"
     part = None if args.shard is None else part_of(args.shard)
@@ -92,7 +91,7 @@ def _of_threads(threads: int | None) -> list[str]:
 
 def _of_time(scene: "Scene") -> list[str]:
     """How long it will take, where that is more than a minute."""
-    from mcgw.jobs.duration import in_words, seconds_for
+    from mcgw.ensemble.drawing import in_words, seconds_for
     from mcgw.sampling.samplers import sampler_of
 
     if scene.rel_err is not None or scene.max_seconds is not None:

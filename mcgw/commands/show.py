@@ -30,7 +30,7 @@ def execute(args: argparse.Namespace) -> int:
     """Print to standard output; with --csv, write the table there."""
     from mcgw.commands.outputs import check_outputs, table_output, tell_notes, write_table
     from mcgw.store.ensembles import read_attributes, unfinished_sweep, verify
-    from mcgw.store.leftovers import tidy
+    from mcgw.store.place import tidy
 
     if args.csv and (args.scene or args.digest or args.plan or args.verify):
         raise ValueError(f"--csv {args.csv}: writes the table of the summary; leave out the other option")

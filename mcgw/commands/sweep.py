@@ -42,11 +42,11 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 def execute(args: argparse.Namespace) -> int:
     """Draw and say where the file is."""
     from mcgw.commands.outputs import HDF5, Output, check_outputs
-    from mcgw.jobs.chosen_engine import dashboard_of
+    from mcgw.jobs.session import dashboard_of
     from mcgw.jobs.sweeping import sweep
     from mcgw.machine.progress import bar
     from mcgw.scene.scene_file import files_of, load_scene
-    from mcgw.store.ensembles import recorded_seed
+    from mcgw.store.place import recorded_seed
     from mcgw.sweeps.axes import axes_of
 
     path = args.output or args.scene.parent / "out" / f"{args.scene.stem}.sweep.h5"
@@ -71,7 +71,7 @@ def execute(args: argparse.Namespace) -> int:
 
 def _plan(scene: "Scene", axes: "Axes") -> str:
     from mcgw.reports.plan import sweep_plan_text
-    from mcgw.sweeps.asked import Asked
+    from mcgw.sweeps.points import Asked
 
     return sweep_plan_text(Asked.of(scene, axes))
 

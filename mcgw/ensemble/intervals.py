@@ -5,6 +5,8 @@ skewness theory gives. So the ratio of a mean to its exact value follows, closel
 that spread and skewness, shifted (Pearson's type III); over many contacts, the Gaussian one. Its quantiles
 turned round are the interval: it needs no second surface, and it ends where values can. The number of
 contacts is binomial or Poisson, and its interval exact (Clopper and Pearson 1934, Garwood 1936).
+
+Which confidence interval a quantity of an ensemble has.
 """
 
 from collections.abc import Callable
@@ -35,7 +37,6 @@ __all__ = [
 ]
 
 Array = NDArray[np.float64]
-
 CONFIDENCE = 0.95
 FEWEST = 10.0  # effective contacts in the whole ensemble, below which there is no interval
 MANY = 30.0  # below it a sum of nearly equal terms is still discrete: half of the tails is left for that

@@ -6,13 +6,12 @@ from typing import Any, overload
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.forecast import forecast
 from mcgw.jobs import running
-from mcgw.jobs.chosen_engine import chosen_engine, dashboard_of
-from mcgw.jobs.session import part_of
+from mcgw.jobs.session import chosen_engine, dashboard_of, part_of
 from mcgw.machine.progress import Progress, told
 from mcgw.scene.ensemble_section import LeftOut
 from mcgw.scene.scene import Scene
 from mcgw.scene.wrong_object import check_object
-from mcgw.store.ensembles import recorded_seed
+from mcgw.store.place import recorded_seed
 
 __all__ = ["run"]
 

@@ -1,37 +1,41 @@
-"""What is on its way into a file, asked by whoever runs it, draws a part of it, or merges it."""
+"""What is on its way into a file, asked by whoever runs it, draws a part of it, or merges it.
+
+What a worker does: draw a block of surfaces. The same, whoever asks and however often.
+"""
 
 import hashlib
 import shutil
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from itertools import groupby
 from operator import itemgetter
 from pathlib import Path
+from time import perf_counter
 from typing import TYPE_CHECKING
 
 from analytic import PiecewiseSeries
 from mcgw.ensemble.drawing import Reducer, use_threads
 from mcgw.ensemble.ensemble import Ensemble
-from mcgw.ensemble.reducers import reducer_of
 from mcgw.ensemble.results import Tables
-from mcgw.errors import StoreError
-from mcgw.formats.files import check_output
+from mcgw.ensemble.simulation import reducer_of
+from mcgw.errors import RunError, StoreError
+from mcgw.formats.files import State, check_output, state_of
 from mcgw.machine.memory import gibibytes
 from mcgw.sampling.samplers import name_of
 from mcgw.scene.scene import Scene
 from mcgw.scene.storable import storable
-from mcgw.store.arithmetic import drawn_with
-from mcgw.store.ensembles import held_by, recorded_scene
+from mcgw.store.identity import difference, drawn_with, now
+from mcgw.store.place import held_by, recorded_scene
 from mcgw.store.plan import Plan
-from mcgw.store.provenance import now
 from mcgw.store.run_folder import RunFolder, parts_of
 from mcgw.store.saving import body_of
-from mcgw.store.shards import Span
+from mcgw.store.shards import Span, commit_shard
 
 if TYPE_CHECKING:
-    from mcgw.sweeps.asked import Asked
+    from mcgw.sweeps.points import Asked
 
-__all__ = ["Job", "as_recorded"]
+__all__ = ["Job", "as_recorded", "commit_block", "draw_block"]
 
 
 @dataclass(frozen=True)
@@ -169,7 +173,7 @@ def _plan(reducers: tuple[Reducer, ...]) -> Plan:
 
 
 def _asked(record: RunFolder) -> "Asked":
-    from mcgw.sweeps.asked import Asked  # of which most runs are none
+    from mcgw.sweeps.points import Asked  # of which most runs are none
 
     return Asked.from_texts(record.text, record.axes)
 
@@ -195,3 +199,32 @@ def as_recorded(scene: Scene, path: Path) -> Scene:
     if resolved.law.agrees(there.law):
         resolved = replace(resolved, law=there.law)
     return resolved
+
+
+def commit_block(folder: str, first: int, n: int, threads: int | None = 1) -> str:
+    """Draw a block of a run into its folder, unless a valid shard is there; returns its digest."""
+    return draw_block(folder, first, n, threads)()
+
+
+def draw_block(folder: str, first: int, n: int, threads: int | None = 1) -> Callable[[], str]:
+    """The first half of `commit_block`; what it returns is the second, which another thread may do."""
+    run, job = _prepared(folder, state_of(Path(folder) / "run.toml"))
+    span = Span(first, n)
+    if shard := run.held(span):
+        digest = shard.digest
+        return lambda: digest
+    started = perf_counter()
+    tables = job.draw(span, threads)
+    path, seconds = run.shards_folder / span.file_name, perf_counter() - started
+    return lambda: commit_shard(path, run.identity, span, tables, seconds).digest
+
+
+@lru_cache(maxsize=1)
+def _prepared(folder: str, _state: State | None) -> tuple[RunFolder, Job]:
+    """A run and its job, as long as its run.toml is the same: preparing them may take as long as a block."""
+    run = RunFolder.open(Path(folder))
+    job = Job.again(run)
+    if job.record.identity != run.identity:
+        there, here = ((x.text, x.axes, x.drawn_with) for x in (run, job.record))
+        raise RunError(f"{folder}: this worker cannot draw for that run: {difference(there, here)}")
+    return run, job

@@ -11,15 +11,14 @@ from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.forecast import checkpoints, without_rule
 from mcgw.errors import RunError, StoreError
 from mcgw.formats.files import state_of
-from mcgw.jobs.blocks import commit_block, draw_block
 from mcgw.jobs.engines import Engine, Threads
-from mcgw.jobs.job import Job, as_recorded
+from mcgw.jobs.job import Job, as_recorded, commit_block, draw_block
 from mcgw.jobs.merging import merge_once
 from mcgw.jobs.session import By, Part, Progress
 from mcgw.scene.scene import Scene
 from mcgw.store.ensembles import open_ensemble
-from mcgw.store.leftovers import drop_leftovers, tidy
 from mcgw.store.lock import locked
+from mcgw.store.place import drop_leftovers, tidy
 from mcgw.store.run_folder import RunFolder
 from mcgw.store.saving import write_body
 from mcgw.store.shards import Shard, Span

@@ -1,4 +1,7 @@
-"""Blocks at work: who draws what is missing, which share of it, and who hears how far it has come."""
+"""Blocks at work: who draws what is missing, which share of it, and who hears how far it has come.
+
+The engine that a call asks for: by a word, an address, a client of dask or as it is.
+"""
 
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import closing, contextmanager
@@ -6,12 +9,13 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from mcgw.jobs.driver import Signals, drive, heed_signals
-from mcgw.jobs.engines import Engine, Threads
+from mcgw.jobs.engines import Engine, Processes, Threads
 from mcgw.store.shards import Span
 
-__all__ = ["By", "Part", "Progress", "part_of"]
+__all__ = ["By", "Part", "Progress", "chosen_engine", "dashboard_of", "part_of"]
 
 Progress = Callable[[Any], Any]
+_ENGINES = ("threads", "processes", "dask")
 
 
 @dataclass(frozen=True)
@@ -96,3 +100,56 @@ class By:
         """Have the engine draw blocks, as `mcgw.jobs.driver.drive`."""
         assert self.engine is not None
         drive(self.engine, spans, task, arguments, done, self.signals)
+
+
+@contextmanager
+def chosen_engine(engine: Any, threads: int | None) -> Iterator[Engine | None]:
+    """The engine that is given, or that a word or an address names; None for threads of this process.
+
+    One that is made here is closed at the end; one that is given, a client of dask too, is left open.
+
+    Raises
+    ------
+    ValueError
+        If it is none of these.
+    """
+    draws = _engine_of(engine, threads)
+    try:
+        yield draws
+    finally:
+        if draws is not None and draws is not engine:
+            draws.close()
+
+
+def dashboard_of(engine: Engine | None) -> str:
+    """What to say of where an engine is seen at work; empty if there is no such page."""
+    link = getattr(engine, "dashboard", "")
+    return f"dashboard: {link}" if link else ""
+
+
+def _engine_of(engine: Any, threads: int | None) -> Engine | None:
+    from mcgw.jobs.dask_engine import Dask, is_client
+
+    match engine:
+        case None | "threads":
+            return None
+        case "processes":
+            return Processes(_cores() if threads is None else threads)
+        case str() if engine == "dask" or "://" in engine:
+            return Dask(
+                None if engine == "dask" else engine, workers=_cores() if threads is None else threads
+            )
+        case _ if is_client(engine):
+            return Dask(engine)
+        case _ if not isinstance(engine, str) and hasattr(engine, "submit") and hasattr(engine, "width"):
+            return engine  # type: ignore[no-any-return]
+    raise ValueError(
+        f"engine = {engine!r}: give one of {', '.join(_ENGINES)}, tcp://ADDRESS of a scheduler, or a "
+        "distributed.Client"
+    )
+
+
+def _cores() -> int:
+    import numba
+
+    return int(numba.get_num_threads())

@@ -5,14 +5,13 @@ from pathlib import Path
 from typing import Any, overload
 
 from mcgw.ensemble.drawing import use_threads
-from mcgw.jobs.chosen_engine import chosen_engine, dashboard_of
-from mcgw.jobs.session import By, part_of
+from mcgw.jobs.session import By, chosen_engine, dashboard_of, part_of
 from mcgw.machine.progress import Progress, told
 from mcgw.scene.scene import LeftOut, Scene
 from mcgw.scene.wrong_object import check_object
-from mcgw.sweeps.asked import Asked
 from mcgw.sweeps.axes import axes_of
 from mcgw.sweeps.drawing import draw, weighted
+from mcgw.sweeps.points import Asked
 from mcgw.sweeps.sweep import STATISTICS, Sweep
 
 __all__ = ["sweep"]
@@ -137,7 +136,7 @@ def sweep(
             return asked.answered(draw(asked.groups, tell), chosen)
     from mcgw.jobs.job import Job
     from mcgw.jobs.running import make  # files, which a sweep in memory has none of
-    from mcgw.store.ensembles import recorded_seed
+    from mcgw.store.place import recorded_seed
     from mcgw.sweeps.file import open_sweep
 
     path = Path(path)

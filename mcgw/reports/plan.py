@@ -4,10 +4,9 @@ from dataclasses import dataclass
 from time import perf_counter
 
 from analytic import QUANTITIES
-from mcgw.ensemble.drawing import seconds_per_surface
+from mcgw.ensemble.drawing import in_words, seconds_for, seconds_per_surface
 from mcgw.ensemble.forecast import forecast
-from mcgw.ensemble.reducers import reducer_of
-from mcgw.jobs.duration import in_words, seconds_for
+from mcgw.ensemble.simulation import reducer_of
 from mcgw.machine.progress import steps
 from mcgw.machine.terminal import one_line
 from mcgw.reports.side_notes import two_questions
@@ -19,9 +18,9 @@ from mcgw.scene.fields import EXACT
 from mcgw.scene.mistakes import COARSEST
 from mcgw.scene.samplers import promise_of
 from mcgw.scene.scene import Scene
-from mcgw.sweeps.asked import Asked
 from mcgw.sweeps.drawing import Pooling
 from mcgw.sweeps.groups import Group
+from mcgw.sweeps.points import Asked
 
 __all__ = ["Plan", "plan_of", "plan_text", "sweep_plan_text"]
 

@@ -18,8 +18,7 @@ from mcgw.formats.table import SEPARATION, Column, Table, evenly, stacked
 from mcgw.machine.notebook import plotted
 from mcgw.scene.samplers import promise_of
 from mcgw.scene.scene import Scene
-from mcgw.statistics.bounded import bounded_theory
-from mcgw.statistics.within_accuracy import allowance, beyond, farthest, told_apart
+from mcgw.statistics.bounded import allowance, beyond, bounded_theory, farthest, told_apart
 
 __all__ = ["FALSE_ALARM", "Comparison", "Curve", "Tested", "Verdict", "compare", "tested", "verdict"]
 

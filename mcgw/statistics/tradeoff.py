@@ -1,7 +1,7 @@
 """Error against time for one scene on this machine, and what to run: a work-precision study in bounded time.
 
 Two frontiers: of the mean of its first quantity, by every method there is; and of the values of single
-surfaces, by every pair of sampler and accuracy (`mcgw.statistics.ways`).
+surfaces, by every pair of sampler and accuracy (`mcgw.statistics.wishes`).
 """
 
 from dataclasses import dataclass, replace
@@ -22,8 +22,7 @@ from mcgw.scene.reading import argument
 from mcgw.scene.scene import Scene
 from mcgw.scene.wrong_object import check_object
 from mcgw.statistics.methods import Method, methods_for
-from mcgw.statistics.ways import Way, ways_for
-from mcgw.statistics.wishes import Advice, advise
+from mcgw.statistics.wishes import Advice, Way, advise, ways_for
 
 __all__ = ["Advice", "Point", "Tradeoff", "tradeoff"]
 

@@ -39,8 +39,8 @@ there. Chunked, each chunk with a checksum (Fletcher); a table is shuffled and c
 saves half of it (`chunks`). `digest` is over scene and data, `run` over what the
 numbers of a surface depend on (scene but for the number of surfaces, sampler, and the versions in `draws`).
 After the HDF5 data stand 512 bytes, the trailer (`trailer`), with the digest of the file's bytes and that of
-its head (`head`: attributes, types, shapes, scales). That of the head is checked on every opening, that of
-all bytes by ``mcgw show --verify``.
+its head (`structure`: attributes, types, shapes, scales). That of the head is checked on every opening, that
+of all bytes by ``mcgw show --verify``.
 
 A run that fits one block is written in one atomic step. Any other grows as shards in ``FILE.parts/``, which
 are merged at the end and then removed. What each mechanism is for:
@@ -50,15 +50,14 @@ are merged at the end and then removed. What each mechanism is for:
 ``shards``       a killed run loses at most the blocks in hand; workers elsewhere share no open file
 ``run_folder``   a run goes on only with what it was begun with: scene, sampler, versions
 ``plan``         which surfaces are drawn together, of a run or of all groups of a sweep
-``identity``     which scenes, samplers and versions those are
-``merged_file``  the file is made under another name, and read back before it gets its own
-``statistics_file``, ``merged_statistics``  the same for scenes that keep statistics and no surface
+``identity``     which scenes, samplers, versions and kinds of processor those are; and who made a file
+``saving``       a file is made in memory, or of blocks under another name, and read back
+``statistics_file``  that of scenes that keep statistics and no surface
 ``disk``         HDF5 may crash on a full disk: it never sees an error of it
 ``trailer``      whether a file is whole and unchanged, without HDF5
-``head``         whether scene, units and scales are as written, on every opening
-``untrusted``    a file of a stranger is looked at by a child first, as `structure` says what it may hold
+``structure``    what a file may hold, and whether scene, units and scales are as written, on every opening
+``untrusted``    a file of a stranger is looked at by a child first
+``ensembles``    files and runs in progress opened, and verified
 ``lock``         two processes never write one file; shared by jobs that each make a share
-``leftovers``    what a killed process leaves is cleared by the next command
-``arithmetic``   surfaces of two kinds of processor never mix where their last digits differ
-``provenance``   versions, commit, date and processor, for people
+``place``        what is there already: surfaces, a seed, and leftovers of the dead, which are cleared
 """

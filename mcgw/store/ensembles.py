@@ -1,20 +1,22 @@
-"""Ensemble files: opened and verified; the schema stands in `mcgw.store`."""
+"""Ensemble files: opened and verified; the schema stands in `mcgw.store`.
+
+The sums of an ensemble where they lie: in its file, or in the shards of a run in progress.
+"""
 
 import re
+from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import h5py
 import numpy as np
+from numpy.typing import NDArray
 
 from mcgw.ensemble.ensemble import Ensemble
-from mcgw.ensemble.results import Held
+from mcgw.ensemble.results import Held, Results
 from mcgw.errors import StoreError
 from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_from, scene_text
-from mcgw.store.arithmetic import drawn_with
-from mcgw.store.head import MOST_SCALE
-from mcgw.store.identity import difference, identity_of
 from mcgw.store.layout import (
     FILETYPE,
     FORMAT,
@@ -23,25 +25,22 @@ from mcgw.store.layout import (
     numbers,
     scales_of,
     values_digest,
+    where,
 )
 from mcgw.store.run_folder import RunFolder, parts_of
-from mcgw.store.stored import FileResults, ShardResults
+from mcgw.store.shards import RAGGED, Shard
+from mcgw.store.structure import MOST_SCALE
 from mcgw.store.trailer import check_trailer, read_trailer
 from mcgw.store.untrusted import examine
 
-if TYPE_CHECKING:
-    from mcgw.ensemble.summary import Summary
-
 __all__ = [
-    "finished",
-    "held_by",
+    "FileResults",
+    "ShardResults",
+    "described",
     "open_ensemble",
     "read_attributes",
-    "recorded_scene",
-    "recorded_seed",
     "unfinished_sweep",
     "verify",
-    "whole_blocks",
 ]
 
 
@@ -85,7 +84,7 @@ def open_ensemble(path: str | Path) -> Ensemble:
         from mcgw.store.statistics_file import blocks_of
 
         return Ensemble(run.scene, run.sampler, Summarised.of(run.scene, blocks_of(shards)))
-    attributes, scene = _described(path)
+    attributes, scene = described(path)
     if "axes" in attributes:
         raise StoreError(f"{path}: holds a sweep; mcgw.open_sweep opens it")
     results: Held = FileResults(path)
@@ -117,7 +116,7 @@ def read_attributes(path: Path) -> dict[str, Any]:
         If it is not an ensemble file, damaged, or of another format.
     """
     if path.exists() or not parts_of(path).is_dir():
-        return _described(path)[0]
+        return described(path)[0]
     run = _run_of(path)
     seconds = sum(shard.seconds for shard in run.shards())
     known = {"versions": run.drawn_with, "commit": "unknown", "cpu": "its workers", "wall_seconds": seconds}
@@ -149,7 +148,7 @@ def _run_of(path: Path) -> RunFolder:
     return run
 
 
-def _described(path: Path) -> tuple[dict[str, Any], Scene]:
+def described(path: Path) -> tuple[dict[str, Any], Scene]:
     """Attributes and scene of a file that are as they were written, with the datasets that they declare."""
     answer = examine(path)
     attributes = answer["attributes"]
@@ -218,7 +217,7 @@ def verify(path: Path) -> tuple[str, str]:
     except StoreError as error:
         problem = str(error).removeprefix(f"{path}: ")
     try:
-        attributes, scene = _described(path)
+        attributes, scene = described(path)
         found = _digest_now(path, attributes, scene)
         if found != attributes["digest"]:
             problem = problem or "digest mismatch of its data"
@@ -238,67 +237,50 @@ def _digest_now(path: Path, attributes: dict[str, Any], scene: Scene) -> str:
         return values_digest(file, scene)
 
 
-def recorded_scene(path: Path) -> Scene | None:
-    """Scene of the ensemble or run that is at a place, if there is one."""
-    if path.is_file():
-        return _described(path)[1]
-    return RunFolder.open(parts_of(path)).scene if (parts_of(path) / "run.toml").is_file() else None
+@dataclass(frozen=True)
+class FileResults(Results):
+    """The datasets of an ensemble file, opened for each reading."""
+
+    path: Path
+
+    def read(self, name: str, start: int, stop: int | None) -> NDArray[Any]:
+        """Rows `start` to `stop` (None: to the end) of a dataset."""
+        try:
+            with h5py.File(self.path, "r") as file:
+                return np.asarray(file[where(name)][start:stop])
+        except OSError:
+            raise StoreError(f"{self.path}: cannot be read; is it damaged? See mcgw show --verify") from None
+
+    def rows(self) -> int:
+        """Number of surfaces."""
+        with h5py.File(self.path, "r") as file:
+            return int(file["surface"].shape[0])
 
 
-def recorded_seed(path: Path) -> int | None:
-    """Its seed, for scenes that give none."""
-    there = recorded_scene(path)
-    return there.seed if there else None
+@dataclass(frozen=True)
+class ShardResults(Results):
+    """The blocks that a run had committed when it was looked at."""
 
+    shards: tuple[Shard, ...]
 
-def held_by(path: Path, run: RunFolder) -> int:
-    """Number of surfaces that a file holds of a run; of a sweep all or none.
+    def read(self, name: str, start: int, stop: int | None) -> NDArray[Any]:
+        """Rows `start` to `stop` of what is there; of the ragged table all."""
+        rows, parts, first = self.rows() if stop is None else stop, [], 0
+        for shard in self.shards:
+            low, high = max(start - first, 0), min(rows - first, shard.span.n)
+            if name == RAGGED:
+                parts.append(self._arrays(shard)[name])
+            elif low < high:
+                parts.append(self._arrays(shard)[name][low:high])
+            first += shard.span.n
+        return np.concatenate(parts)[slice(start, stop) if name == RAGGED else slice(None)]
 
-    Raises
-    ------
-    StoreError
-        As `finished`.
-    """
-    if not run.axes or not path.exists():
-        return finished(path, run.scene, run.sampler)
-    if _described(path)[0].get("run") != run.identity:
-        raise StoreError(f"{path}: holds something else than this sweep; choose another -o, or remove it")
-    return run.plan.total
+    def rows(self) -> int:
+        """Number of surfaces."""
+        return sum(shard.span.n for shard in self.shards)
 
-
-def whole_blocks(path: Path, run: RunFolder) -> tuple[list["Summary"], float]:
-    """Of a file that keeps statistics, the joined blocks that more may follow; and the seconds all took."""
-    if run.axes or not path.exists():
-        return [], 0.0
-    from mcgw.store.statistics_file import read_blocks  # for those scenes alone
-
-    ((_, size),) = run.plan.groups
-    blocks = [block for block in read_blocks(path, run.scene).blocks if block.n % size == 0]
-    return blocks, float(_described(path)[0]["wall_seconds"])
-
-
-def finished(path: Path, scene: Scene, sampler: str) -> int:
-    """Number of surfaces that a file holds of a scene; 0 if there is no file.
-
-    Raises
-    ------
-    StoreError
-        If the file is damaged, holds another ensemble, or more surfaces than asked for.
-    """
-    if not path.exists():
-        return 0
-    attributes, there = _described(path)
-    if "axes" in attributes:
-        raise StoreError(f"{path}: holds a sweep; choose another -o, or remove it")
-    if attributes.get("run") != identity_of(scene, sampler):
-        before = scene_text(there), "", str(attributes.get("draws", "another version"))
-        what = difference(before, (scene_text(scene), "", drawn_with(scene, sampler)))
-        raise StoreError(f"{path}: holds a different ensemble: {what}; choose another -o, or remove it")
-    if there.n_surfaces > scene.n_surfaces:
-        raise StoreError(
-            f"{path}: holds {there.n_surfaces} surfaces already, more than ensemble.n_surfaces = "
-            f"{scene.n_surfaces}; ask for as many or more, or choose another -o"
-        )
-    if there.n_surfaces < scene.n_surfaces:
-        check_trailer(path)  # it is about to be copied
-    return there.n_surfaces
+    @staticmethod
+    def _arrays(shard: Shard) -> dict[str, NDArray[Any]]:
+        if not shard.path.exists():
+            raise StoreError(f"{shard.path}: is gone; its run has ended, open the file again")
+        return shard.arrays()

@@ -16,10 +16,9 @@ from mcgw.errors import StoreError
 from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_text
 from mcgw.store.chunks import PACKED, add_rows, empty_table
-from mcgw.store.head import MOST_TEXT, head_digest
-from mcgw.store.provenance import now, provenance
+from mcgw.store.identity import now, provenance
 from mcgw.store.shards import DRAWN, RAGGED, Span, Tables, content_digest, in_memory
-from mcgw.store.structure import GROUP, check_plain
+from mcgw.store.structure import GROUP, MOST_TEXT, check_plain, head_digest
 from mcgw.store.trailer import trailer_of
 
 __all__ = [

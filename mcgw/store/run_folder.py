@@ -29,13 +29,11 @@ from mcgw.formats.files import Expected, sync, write_whole
 from mcgw.formats.untrusted import loads
 from mcgw.scene.scene import Scene, SceneError
 from mcgw.scene.scene_file import scene_from
-from mcgw.store.arithmetic import drawn_with
 from mcgw.store.disk import file_of, parts_of
-from mcgw.store.identity import difference, identity_of
+from mcgw.store.identity import difference, drawn_with, identity_of, now
 from mcgw.store.layout import stored_text
 from mcgw.store.lock import refuse_link
 from mcgw.store.plan import Plan
-from mcgw.store.provenance import now
 from mcgw.store.shards import Shard, Span, open_shard
 
 __all__ = ["RunFolder", "parts_of", "remove_run"]

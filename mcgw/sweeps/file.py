@@ -44,10 +44,9 @@ from mcgw.scene.section import SceneError
 from mcgw.store.ensembles import read_attributes
 from mcgw.store.layout import body_of_kept, drawn_digest, drawn_tables
 from mcgw.store.run_folder import RunFolder
-from mcgw.sweeps.asked import Asked
 from mcgw.sweeps.axes import Axes
 from mcgw.sweeps.groups import Place
-from mcgw.sweeps.points import Points
+from mcgw.sweeps.points import Asked, Points
 from mcgw.sweeps.pooled import Pooled
 from mcgw.sweeps.sweep import STATISTICS, Sweep
 

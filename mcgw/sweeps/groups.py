@@ -1,4 +1,13 @@
-"""Points of a sweep that share their surfaces, and those of them whose sums must be computed."""
+"""Points of a sweep that share their surfaces, and those of them whose sums must be computed.
+
+Exponential gradings as combinations of two: under Hertz's law every sum is linear in the modulus.
+
+``E*(s)/E* = gamma - (gamma - 1) exp(-s)`` is linear in gamma (a homogeneous surface has gamma = 1). So every
+grading lies between the softest and the stiffest of a sweep: its load on a surface is the same weighted mean
+of their loads there, and over the surfaces its mean and variance follow from their means, variances and
+covariance. A thousand more gradings cost no product with the surfaces. Weights from 0 to 1 and moduli that
+are not negative let nothing cancel: the last digits are those of the two.
+"""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields
@@ -8,20 +17,20 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from analytic import quantity_of
+from analytic import Exponential, Grading, Homogeneous, quantity_of
 from mcgw.machine.progress import steps
 from mcgw.sampling.shared import on_common_cells, to_be_shared
 from mcgw.scene.scene import Scene
-from mcgw.sweeps.exponentials import between_two
 
 if TYPE_CHECKING:
     from mcgw.ensemble.bins import Bins
 
-__all__ = ["Group", "Place", "groups_of"]
+__all__ = ["Group", "Place", "between_two", "groups_of"]
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 _Item = TypeVar("_Item")
+_MANY = 8  # gradings: fewer are computed each by itself, with the bits that it has alone
 
 
 @dataclass(frozen=True)
@@ -130,3 +139,33 @@ def _alike(items: Sequence[_Item], key: Callable[[_Item], Any]) -> list[list[_It
         else:
             found[at].append(item)
     return found
+
+
+def between_two(scenes: Sequence[Scene]) -> tuple[tuple[int, int], NDArray[np.float64]] | None:
+    """Scenes that differ in their gradings alone, as weighted means of two of them.
+
+    Returns
+    -------
+    ((int, int), ndarray) or None
+        The two, and the weights of each scene on them, shape (scenes, 2). None if there are few scenes, a
+        grading is no exponential one, or sums are not linear in it.
+    """
+    gammas = [_gamma(scene.grading) for scene in scenes]
+    if len(set(gammas)) < _MANY or None in gammas or not _linear(scenes[0]):
+        return None
+    x = np.array(gammas, dtype=np.float64)
+    low, high = int(np.argmin(x)), int(np.argmax(x))
+    share = (x - x[low]) / (x[high] - x[low])
+    return (low, high), np.column_stack([1 - share, share])
+
+
+def _gamma(grading: Grading) -> float | None:
+    if isinstance(grading, Homogeneous):
+        return 1.0
+    return grading.gamma if isinstance(grading, Exponential) else None
+
+
+def _linear(scene: Scene) -> bool:
+    """Whether all that is kept follows from sums linear in a modulus that is not negative."""
+    plain = scene.hertzian and scene.tangential is None and scene.interaction is None
+    return plain and scene.negative == "error" and scene.keep != "statistics"

@@ -16,8 +16,7 @@ from scenes import SURFACE
 import mcgw
 from mcgw.sampling.law_sums import asperity_sums
 from mcgw.scene.scene import Scene
-from mcgw.statistics.ways import ways_for
-from mcgw.statistics.wishes import Advice, Wish, advise
+from mcgw.statistics.wishes import Advice, Wish, advise, ways_for
 
 WISHES = (Wish("mean", 1e-3), Wish("quantile", 1e-2), Wish("surfaces", 1e-6))
 _MORE = 20  # times as many surfaces, for a quantile that is known

@@ -14,7 +14,7 @@ import h5py
 import numpy as np
 from harness import ROWS, forked, prepare, scene_of
 
-from mcgw.ensemble.reducers import Values
+from mcgw.ensemble.simulation import Values
 from mcgw.errors import StoreError
 from mcgw.jobs.running import run, run_part
 from mcgw.jobs.session import Part

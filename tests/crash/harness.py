@@ -17,7 +17,7 @@ from pathlib import Path
 import numpy as np
 
 import analytic
-from mcgw.ensemble.reducers import Values
+from mcgw.ensemble.simulation import Values
 from mcgw.errors import RunError, StoreError
 from mcgw.jobs import running
 from mcgw.jobs.job import Job

@@ -1,0 +1,124 @@
+"""What lies at the place of a file: surfaces, a seed, and what processes that died left behind."""
+
+from contextlib import suppress
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from mcgw.errors import StoreError
+from mcgw.formats.files import remove_stale
+from mcgw.scene.scene import Scene
+from mcgw.scene.scene_file import scene_from, scene_text
+from mcgw.store.ensembles import described, read_attributes
+from mcgw.store.identity import difference, drawn_with, identity_of
+from mcgw.store.lock import locked
+from mcgw.store.run_folder import RunFolder, parts_of, remove_run
+from mcgw.store.trailer import check_trailer
+
+if TYPE_CHECKING:
+    from mcgw.ensemble.summary import Summary
+
+__all__ = ["drop_leftovers", "finished", "held_by", "recorded_scene", "recorded_seed", "tidy", "whole_blocks"]
+
+
+def recorded_scene(path: Path) -> Scene | None:
+    """Scene of the ensemble or run that is at a place, if there is one."""
+    if path.is_file():
+        return described(path)[1]
+    return RunFolder.open(parts_of(path)).scene if (parts_of(path) / "run.toml").is_file() else None
+
+
+def recorded_seed(path: Path) -> int | None:
+    """Its seed, for scenes that give none."""
+    there = recorded_scene(path)
+    return there.seed if there else None
+
+
+def held_by(path: Path, run: RunFolder) -> int:
+    """Number of surfaces that a file holds of a run; of a sweep all or none.
+
+    Raises
+    ------
+    StoreError
+        As `finished`.
+    """
+    if not run.axes or not path.exists():
+        return finished(path, run.scene, run.sampler)
+    if described(path)[0].get("run") != run.identity:
+        raise StoreError(f"{path}: holds something else than this sweep; choose another -o, or remove it")
+    return run.plan.total
+
+
+def whole_blocks(path: Path, run: RunFolder) -> tuple[list["Summary"], float]:
+    """Of a file that keeps statistics, the joined blocks that more may follow; and the seconds all took."""
+    if run.axes or not path.exists():
+        return [], 0.0
+    from mcgw.store.statistics_file import read_blocks  # for those scenes alone
+
+    ((_, size),) = run.plan.groups
+    blocks = [block for block in read_blocks(path, run.scene).blocks if block.n % size == 0]
+    return blocks, float(described(path)[0]["wall_seconds"])
+
+
+def finished(path: Path, scene: Scene, sampler: str) -> int:
+    """Number of surfaces that a file holds of a scene; 0 if there is no file.
+
+    Raises
+    ------
+    StoreError
+        If the file is damaged, holds another ensemble, or more surfaces than asked for.
+    """
+    if not path.exists():
+        return 0
+    attributes, there = described(path)
+    if "axes" in attributes:
+        raise StoreError(f"{path}: holds a sweep; choose another -o, or remove it")
+    if attributes.get("run") != identity_of(scene, sampler):
+        before = scene_text(there), "", str(attributes.get("draws", "another version"))
+        what = difference(before, (scene_text(scene), "", drawn_with(scene, sampler)))
+        raise StoreError(f"{path}: holds a different ensemble: {what}; choose another -o, or remove it")
+    if there.n_surfaces > scene.n_surfaces:
+        raise StoreError(
+            f"{path}: holds {there.n_surfaces} surfaces already, more than ensemble.n_surfaces = "
+            f"{scene.n_surfaces}; ask for as many or more, or choose another -o"
+        )
+    if there.n_surfaces < scene.n_surfaces:
+        check_trailer(path)  # it is about to be copied
+    return there.n_surfaces
+
+
+def tidy(path: Path) -> None:
+    """Remove what dead processes left of the making of a file; nothing that a command could go on from.
+
+    Nothing is done, and nothing said, where another process works on that file or nothing may be removed.
+    """
+    remove_stale(path)
+    folder = parts_of(path)
+    if folder.is_dir() and not folder.is_symlink():
+        with suppress(StoreError, OSError), locked(folder, patience=0):
+            drop_leftovers(path)
+
+
+def drop_leftovers(path: Path) -> None:
+    """As `tidy`, for who has the lock."""
+    folder = parts_of(path)
+    for left in (*folder.glob(".*.tmp"), *(folder / "shards").glob(".*.tmp")):
+        left.unlink(missing_ok=True)
+    if not _of_use(path):
+        remove_run(folder)
+
+
+def _of_use(path: Path) -> bool:
+    """Whether a run has a block that its file does not have."""
+    folder = parts_of(path)
+    begun = (folder / "run.toml").exists()  # without it nobody knows what the blocks are
+    shards = list((folder / "shards").glob("block-*.h5")) if begun else []
+    if not shards or not path.exists():
+        return bool(shards)
+    try:
+        run, attributes = RunFolder.open(folder), read_attributes(path)
+        same = attributes.get("run") == run.identity
+        here = run.plan.total if run.axes else scene_from(attributes["scene"]).n_surfaces
+        held = here if same else 0
+    except StoreError:
+        return True  # a person must look
+    return any(int(shard.stem.removeprefix("block-")) >= held for shard in shards)
