@@ -17,7 +17,7 @@ from mcgw.formats.units import METRES
 from mcgw.maps.files import read_map, write_map
 from mcgw.maps.form import smooth
 from mcgw.maps.sdf import read_sdf
-from mcgw.maps.synthetic import Spectrum, gaussian_map
+from mcgw.maps.synthetic import Spectrum, gaussian_map, spectrum_from
 from mcgw.maps.topography import Topography
 
 NAMES = ["map.sdf", "map.ascii.sdf", "map.x3p", "map.npy", "map.h5"]
@@ -318,15 +318,20 @@ def test_what_a_file_tells_is_not_told_again(name, topography, tmp_path):
     ("1 inf\n", "infinite"),
     ("# nothing\n", "holds no numbers"),
     ("# Width: 1 furlong\n", "not a unit of length"),
-])  # fmt: skip
+    ("1" * 2**24, r"map\.txt: line 1 has 16777216 characters or more; is it a map\?"),
+], ids=["short row", "word", "infinite", "nothing", "unit", "one line"])  # fmt: skip
 def test_damaged_text_is_refused(content, told, tmp_path):
     (tmp_path / "map.txt").write_text(content)
     with pytest.raises(ValueError, match=told):
         read_map(tmp_path / "map.txt", pixel=(1.0, 1.0))
 
 
+SOUND = '{"pixel": [1, 1]}'
+
+
 @pytest.mark.parametrize(
-    "sidecar", [None, "{", '{"pixel": [1]}', '{"pixel": [1, 1], "unit": "um"}', "[]", "3"]
+    "sidecar",
+    [None, "{", '{"pixel": [1]}', '{"pixel": [1, 1], "unit": "um"}', "[]", "3", SOUND + " " * 2**16],
 )
 def test_an_array_needs_a_sound_sidecar(sidecar, topography, tmp_path):
     write_map(topography, tmp_path / "map.npy")
@@ -342,9 +347,16 @@ def test_what_makes_no_map_is_refused(tmp_path):
         np.save(tmp_path / name, array)
         return tmp_path / name
 
-    def sdf(*scales, code=7):
-        (tmp_path / "s.sdf").write_bytes(sdf_head(1, 1, code, *scales) + bytes(8))
+    def sdf(*scales, code=7, packed=0):
+        head = bytearray(sdf_head(1, 1, code, *scales))
+        head[-3] = packed
+        (tmp_path / "s.sdf").write_bytes(head + bytes(8))
         return tmp_path / "s.sdf"
+
+    def words(columns, body, more=""):
+        head = f"NumPoints={columns}\nNumProfiles=1\nXscale=1e-6\nYscale=1e-6\nZscale=1\nDataType=7\n{more}"
+        (tmp_path / "w.sdf").write_text(f"aISO-1.0\n{head}*\n{body}")
+        return tmp_path / "w.sdf"
 
     def other_h5():
         h5py.File(tmp_path / "o.h5", "w").close()
@@ -359,11 +371,18 @@ def test_what_makes_no_map_is_refused(tmp_path):
         (lambda: read_map(saved("v.npy", np.zeros(3)), pixel=(1.0, 1.0)), "a map has rows and columns"),
         (lambda: read_map(sdf(1e-6, 0.0, 1.0)), "all must be > 0"),
         (lambda: read_map(sdf(1e-6, 1e-6, 1.0, code=8)), "DataType = 8: SDF knows 0 to 7"),
+        (lambda: read_map(sdf(1e-6, 1e-6, 1.0, packed=1)), r"s\.sdf: compressed SDF files are not read"),
+        (lambda: read_map(words(2, "1 2\n*\n", "Compression=2\n")), r"w\.sdf: compressed SDF files are not"),
+        (lambda: read_map(words(2, "1 2 3\n*\n")), "holds more than the 2 points it declares"),
+        (lambda: read_map(words(3, "1 2   \n*\n")), "declares 3 points, but holds 2; it is cut short"),
+        (lambda: read_map(words(2, "1" * 2**21 + "2")), "a megabyte without a space"),
         (lambda: read_map(other_h5()), "not a mcgw-surface file|SurfaceTopography"),
         (lambda: Spectrum(0.0, 30e-6, 5e-6), "give a length > 0 m"),
         (lambda: Spectrum(1e-6, 30e-6, 5e-6, 2.0), "hurst"),
         (lambda: gaussian_map(narrow, (64, 64), (3e-6, 1e-6), rng), "shows 2 pixels or more"),
         (lambda: gaussian_map(narrow, (64, 20), (1e-6, 1e-6), rng), "longer than the map"),
+        (lambda: gaussian_map(Spectrum(1e-6, 28e-6, 23e-6), (64, 64), (1e-6, 1e-6), rng), "give more pixels"),
+        (lambda: spectrum_from("rms=1um,long=30um,short=5um,hurst=x"), "hurst = 'x': give a number"),
         (lambda: smooth(wave, 30e-6), "longer than the map"),
     ):
         with pytest.raises(ValueError, match=told):

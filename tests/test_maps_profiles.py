@@ -2,6 +2,7 @@
 
 import math
 import re
+import sys
 
 import matplotlib.pyplot as plt
 import mpmath
@@ -287,6 +288,10 @@ def test_the_command_tells_a_profile_by_its_shape(files, tmp_path, capsys):
 
 @pytest.mark.parametrize(("words", "told"), [
     (["--summits", "s.csv"], "--summits s.csv: a profile shows no summits"),
+    *(([f"--{name}", value], f"--{name}: is for maps") for name, value in (
+        ("long-cutoff", "1mm"), ("missing", "fill"), ("spikes", "remove"), ("step", "crop"),
+        ("lines", "rows"), ("trim", "3"),
+    )),
     (["--heights", "table"], "profiles show no summits"),
     (["--pixel", "1um"], "tells x in mm itself; leave --pixel out"),
     (["--unit", "nm"], "heights are in .m as the file says, not in nm"),
@@ -386,6 +391,7 @@ def test_text_of_every_kind(name, encoding, tmp_path):
     ("0 1\n1 2\nend\n", {}, "line 3: could not convert"),
     ("0 1 2\n1 2 3\n", {}, "3 numbers a line; a profile has z, or x and z"),
     ("x z\n", {}, "holds no numbers"),
+    ("word\n" * 501 + "0 1\n1 2\n", {}, "the first 500 lines are no numbers; is it a profile"),
     ("\n".join(f"{i} {'nan' if i % 3 else 1}" for i in range(30)), {}, "lacks 18 of its 28 heights"),
 ])  # fmt: skip
 def test_what_is_no_profile_is_refused_in_one_line(text, given, told, tmp_path):
@@ -397,7 +403,7 @@ def test_what_is_no_profile_is_refused_in_one_line(text, given, told, tmp_path):
     assert "p.txt" in str(error.value)
 
 
-def test_maps_are_no_profiles(tmp_path):
+def test_maps_are_no_profiles(tmp_path, monkeypatch):
     (tmp_path / "m.txt").write_text("1 2 3\n4 5 6\n")
     (tmp_path / "gaps.csv").write_text("1,2,,\n3,4,5,6\n")
     assert not holds_profile(tmp_path / "gaps.csv")
@@ -413,6 +419,13 @@ def test_maps_are_no_profiles(tmp_path):
         read_profile(tmp_path / "p.npy")
     with pytest.raises(ValueError, match="no such file"):
         read_profile(tmp_path / "absent.txt")
+    np.save(tmp_path / "short.npy", np.zeros(7))
+    with pytest.raises(ValueError, match=r"short\.npy: 7 points: a profile has 8 or more"):
+        read_profile(tmp_path / "short.npy", spacing=UM)
+    monkeypatch.setitem(sys.modules, "SurfaceTopography", None)  # as where it is not installed
+    (tmp_path / "p.xyz").write_text("0 1\n" * 9)
+    with pytest.raises(ValueError, match=r"p\.xyz: \.xyz is not read here; install SurfaceTopography"):
+        read_profile(tmp_path / "p.xyz")
 
 
 def test_gaps_are_filled_and_uneven_places_resampled():
