@@ -277,7 +277,10 @@ def test_contact_map(make_scene, kept, tmp_path):
         assert np.max(image.get_array()) == pytest.approx(1e6 * sigma * 2, rel=1e-2)
         assert image.origin == "lower"
     pixels = 20e-6 / np.median(spots.radius)  # so many to a radius, and the window is 20 um wide
-    axis, *_ = contact_map_figure(field, spots, inches=1.0, visible=_DPI / pixels).axes
+    beside = dataclasses.replace(spots, x=np.array([25e-6, 30e-6]))
+    for drawn, number in ((beside, 2), (spots, 1)):
+        axis, *_ = contact_map_figure(field, drawn, inches=1.0, visible=_DPI / pixels).axes
+        assert axis.get_title() == f"2 contacts at $d/\\sigma$ = 1, {number} in this window of the map"
     (circles,) = axis.collections
     np.testing.assert_allclose(circles.get_array(), 1e3 * load[1:], rtol=1e-12)
     assert circles.norm.vmax == pytest.approx(1e3 * load[0], rel=1e-12)  # colours are those of the whole map
