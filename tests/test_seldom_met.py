@@ -1,0 +1,166 @@
+"""What no other test meets: mistakes that few make, facts that few scenes have, statistics of values."""
+
+import numpy as np
+import pytest
+from scipy import stats
+
+import analytic
+import mcgw
+from mcgw.scene.contact_text import accuracy_facts, contact_facts
+from mcgw.scene.law_text import law_text
+from mcgw.statistics.comparison import verdict
+
+SPECTRAL = mcgw.SpectralSurface(1e-12, 1e-3, 5e6, "1 mm^2", "78.6 GPa")
+FILE = """
+surface = {{sigma = 1e-6, radius = 1e-5, eta = 1e9, nominal_area = 1e-6, E_star = 1e11{surface}}}
+contact = {{separations = [0.0, 1.0]{contact}}}
+ensemble = {{n_surfaces = 10, n_asperities = 100, seed = 1}}
+"""
+
+PUSHED = "{friction = 0.3, poisson = 0.25, displacements = [1e-8, 3e-8]}"
+# Of a scene file: what is added to a table, and the line that names it with what would do.
+ADDED = [
+    ("surface", ", bodies = [{E = 7e10}, {E = inf}]",
+     "surface.E_star = 100000000000.0: give either E_star or bodies, not both"),
+    ("contact", ", resistivity = 1e-7, conductivities = [1.0, 2.0]",
+     "contact.resistivity = 1e-07: give it, or conductivities, not both"),
+    ("contact", ", film_resistance = 1e-12",
+     "contact.film_resistance = 1e-12: give resistivity in ohm m, or conductivities = [k1, k2]"),
+    ("contact", ', law = "power-law-graded", c0 = "10 um"',
+     'contact.k: missing; law = "power-law-graded" needs it'),
+    ("contact", ', law = "kogut-etsion", critical = 0.05, hardness = 1e9', "give one of them"),
+    ("contact", ', law = "coated", ratio = 2.0', "give one of them, in m or over sqrt(R sigma)"),
+    ("contact", ', quantities = ["conductance_si"]',
+     '"conductance_si" needs resistivity, or conductivities = [k1, k2]; give one'),
+    ("contact", ', quantities = ["load", "yielded"]', 'no contact yields with law = "hertz"; leave it out'),
+    ("contact", f', quantities = ["area"], tangential = {PUSHED}',
+     'it is a difference of normal loads; add "load" to contact.quantities'),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("table", "more", "told"), ADDED)
+def test_a_mistake_is_one_line(table, more, told):
+    mcgw.scene_from(FILE.format(surface="", contact=""))
+    with pytest.raises(mcgw.SceneError) as caught:
+        mcgw.scene_from(FILE.format(**{"surface": "", "contact": "", table: more}))
+    assert any(told in line for line in caught.value.problems), caught.value.problems
+    assert len(caught.value.problems) == 1
+
+
+def with_radii(**changes):
+    radii = mcgw.RandomCurvature(5.0)
+    return lambda scene: mcgw.Scene(SPECTRAL, separations=[0, 1], curvature=radii, **changes)
+
+
+# In Python: a call with a scene, and what its line says.
+CALLS = [
+    (lambda scene: scene.replace(film=3), "contact.film = 3: give resistivity and film_resistance"),
+    (lambda scene: scene.replace(law={"critical": 0.05}), "contact.law = None: choose one of hertz"),
+    (lambda scene: mcgw.SpectralSurface(-1.0, 1e-3, 5e6, 1e-6, 1e11), "surface.m0 = -1"),
+    (lambda scene: scene.replace(separations=np.zeros(100_001)), "give at most 100000 of them, not 100001"),
+    (with_radii(heights=analytic.Gaussian()), 'it goes with heights.law = "nayak", alpha = 5;'),
+    (with_radii(heights=analytic.Nayak(4.0)), 'it goes with heights.law = "nayak", alpha = 5;'),
+    (lambda scene: mcgw.sweep(scene, over={"ensemble.seed": [1, 2]}).slopes("load", "grading.gamma"),
+     "'grading.gamma' is no axis of this sweep; it has ensemble.seed"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("call", "told"), CALLS)
+def test_a_mistake_in_python_is_one_line(call, told, make_scene):
+    with pytest.raises(ValueError) as caught:  # noqa: PT011
+        call(make_scene(n_surfaces=3))
+    assert told in str(caught.value)
+
+
+SIDEWAYS = {"friction": 0.3, "poisson": 0.25, "displacements": [1e-8, 3e-8]}
+FACTS = [
+    ({"tangential": SIDEWAYS}, ("sideways", "friction 0.3, Poisson's ratio 0.25, u up to 3e-08 m")),
+    ({"unload_from": -0.5}, ("way back", "from d/sigma = -0.5")),
+    ({"film": mcgw.Film(1e-7)}, ("film", "resistivity 1e-07 ohm m")),
+    ({"film": mcgw.Film(1e-7, 2e-12)}, ("film", "resistivity 1e-07 ohm m, film 2e-12 ohm m^2")),
+    ({"interaction": analytic.Interaction("body")},
+     ("interaction", "from the undeformed body, separations as asperities feel them")),
+    ({"interaction": analytic.Interaction("mean-plane", at="nominal")},
+     ("interaction", "from the mean deformed plane, separations as nominal ones")),
+    ({"law": mcgw.KogutEtsion(critical=0.05)}, ("contact law", "KogutEtsion(critical=0.05, poisson=0.3)")),
+    ({"accuracy": 1e-5}, ("accuracy", "1e-05 of every value of a surface")),
+    ({"law_error": 1e-3, "sampler": "auto"}, ("law_error", "up to 0.001 from the exact laws")),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("changes", "fact"), FACTS)
+def test_a_scene_says_what_it_has_and_nothing_else(changes, fact, make_scene):
+    def facts(scene):
+        return {*contact_facts(scene), *accuracy_facts(scene)}
+
+    assert facts(make_scene()) == set()
+    assert facts(make_scene(**changes)) == {fact}
+
+
+def test_laws_are_told_by_name_and_numbers():
+    for law, told in (
+        (analytic.MeasuredHeights([0.0, 1.0, 3.0]), "3 measured ones, as they are"),
+        (analytic.MeasuredHeights([0.0, 1.0, 3.0], resampled=True), "3 measured ones, drawn again"),
+        (stats.norm, repr(stats.norm)),
+    ):
+        assert law_text(law) == told
+
+
+def test_statistics_of_values_are_those_of_numpy(make_scene):
+    """Of an ensemble in memory, in one piece and in several, of one table and between two."""
+    for n in (50, 9000):
+        ensemble = mcgw.simulate(make_scene(n_surfaces=n, separations=(0.0, 2.0), n_asperities=300))
+        load, area = ensemble.load, ensemble.area
+        both = np.cov(np.hstack([load, area]).T)
+        np.testing.assert_allclose(ensemble.covariance("load"), both[:2, :2], rtol=1e-11)
+        np.testing.assert_allclose(ensemble.covariance("load", "area"), both[:2, 2:], rtol=1e-11)
+        np.testing.assert_allclose(ensemble.skewness("load"), stats.skew(load), rtol=1e-9)
+    alone = mcgw.simulate(make_scene(n_surfaces=1, separations=(0.0, 2.0)))
+    assert np.isnan(alone.covariance("load")).all()
+
+
+def test_an_ensemble_that_is_stratified_shows_no_errors(make_scene):
+    """Its surfaces are not independent: how they scatter tells nothing of the mean."""
+    plain, strata = (mcgw.simulate(make_scene(n_surfaces=4, sampler=s)) for s in ("cells", "stratified"))
+    for ensemble, told in ((plain, True), (strata, False)):
+        (line,) = (
+            line.strip() for line in repr(ensemble).splitlines() if line.strip().startswith("load (N)")
+        )
+        assert (" +- " in line) == told, line
+    with pytest.raises(ValueError, match="stratified surfaces have no interval"):
+        strata.interval("load")
+
+
+def test_the_other_separation_is_as_sure_as_the_load(pressed):
+    """Where asperities feel the separations of the scene, nominal ones differ by a multiple of the load."""
+    ensemble = mcgw.simulate(pressed(3.0, "effective", n_surfaces=30))
+    h = ensemble.separations
+    low, high = ensemble.interval("nominal_separation")
+    sunk = h - ensemble.mean("nominal_separation")
+    ends = [h - sunk * end / ensemble.mean("load") for end in ensemble.interval("load")]
+    np.testing.assert_allclose([low, high], [np.minimum(*ends), np.maximum(*ends)], rtol=1e-12)
+    assert np.all(low < high)
+
+
+def test_a_half_space_at_effective_separations_changes_no_verdict(pressed):
+    """The sums are those of the same asperities without it, which theory knows."""
+    scene = pressed(3.0, "effective", n_surfaces=30)
+    with_it, without = (verdict(mcgw.simulate(x)) for x in (scene, scene.replace(interaction=None)))
+    assert with_it.p == pytest.approx(without.p, rel=1e-6)
+    assert with_it.agrees
+    kept = scene.replace(keep="statistics", quantities=("load", "stiffness", "area"))
+    rest = kept.replace(interaction=None, quantities=("load", "area"))  # no surface's stiffness is there
+    assert verdict(mcgw.simulate(kept)).p == pytest.approx(verdict(mcgw.simulate(rest)).p, rel=1e-6)
+
+
+@pytest.mark.parametrize("count", ["fixed", "poisson"])
+def test_the_interval_of_the_contacts_is_exact_for_each_count(count, make_scene):
+    """Clopper and Pearson's where N is fixed, Garwood's where it is Poisson: half of all touch at h = 0."""
+    scene = make_scene(count=count, separations=(0.0,), n_asperities=40, n_surfaces=5)
+    ensemble = mcgw.simulate(scene)
+    k = int(ensemble.contacts.sum())
+    tails = {
+        "fixed": np.array(stats.binomtest(k, 200).proportion_ci(method="exact")) * 200,
+        "poisson": stats.chi2.ppf([0.025, 0.975], [2 * k, 2 * k + 2]) / 2,
+    }
+    np.testing.assert_allclose(np.ravel(ensemble.interval("contacts")), tails[count] / 5, rtol=1e-9)
