@@ -55,6 +55,11 @@ def many(data, folder):
         data[f"x{i}"] = np.zeros(1)
 
 
+def notes(data, folder):
+    data["load"] = ONES
+    data.attrs.update({f"x{i}": i for i in range(200)})
+
+
 def load(value):
     """A dataset of this value."""
     return lambda data, folder: data.__setitem__("load", value(folder) if callable(value) else value)
@@ -90,6 +95,10 @@ HOSTILE = {
     "bomb": (made(data=np.zeros((2 * 10**5, 8)), chunks=(10**4, 8), compression="gzip"),
      r"load has shape \[200000, 8\], its scene declares \[20, 2\]"),
     "hollow": (made((20, 2), "<f8", chunks=(20, 2)), "load: 1 chunks declared, 0 stored"),
+    "never written": (made((20, 2), "<f8"), "load: 320 bytes declared, 0 stored"),
+    "large chunks": (made((10**6, 40), "<f8", chunks=(10**6, 40)), "load: chunks of 320000000 bytes"),
+    "shrunk": (made(data=np.zeros((10**6, 2)), chunks=(10**5, 2), compression="gzip"),
+     r"load has shape \[1000000, 2\]|load: 16000000 bytes declared"),
     "odd filter": (made(data=ONES, chunks=(20, 2), scaleoffset=2), r"load: unknown filter \[6\]"),
     "group": (lambda data, folder: data.create_group("load"), "load: not a dataset"),
     "text": (made(data=["a"] * 20), "load: type object, not 64-bit numbers"),
@@ -103,6 +112,8 @@ HOSTILE = {
     "missing": (lambda data, folder: None, "load has shape none, its scene declares"),
     "many": (many, "datasets; at most 128 are allowed"),
     "large attribute": (attribute("date", np.zeros(1000)), "attribute date: too large"),
+    "bytes": (attribute("date", np.bytes_(b"x")), "attribute date: neither text nor number"),
+    "many attributes": (notes, "refused: [0-9]+ attributes"),
     "scene bomb": (attribute("scene", "[" * 5000), "its scene cannot be read: not a TOML scene"),
     "no scene": (attribute("scene", None), "an attribute is missing"),
     "odd attribute": (attribute("wall_seconds", h5py.Empty("f8")),

@@ -164,3 +164,37 @@ def test_the_interval_of_the_contacts_is_exact_for_each_count(count, make_scene)
         "poisson": stats.chi2.ppf([0.025, 0.975], [2 * k, 2 * k + 2]) / 2,
     }
     np.testing.assert_allclose(np.ravel(ensemble.interval("contacts")), tails[count] / 5, rtol=1e-9)
+
+
+def test_files_of_the_other_kind_are_refused(make_scene, tmp_path):
+    scene, over = make_scene(n_surfaces=3), {"grading.gamma": [1.0, 2.0]}
+    one, many = tmp_path / "one.h5", tmp_path / "many.h5"
+    mcgw.run(scene, one)
+    mcgw.sweep(scene, over, path=many)
+    for call, told in (
+        (lambda: mcgw.open_sweep(one), "not the file of a sweep; mcgw.open_ensemble opens it"),
+        (lambda: mcgw.run(scene, many), "holds a sweep; choose another -o, or remove it"),
+        (
+            lambda: mcgw.sweep(scene, over, path=one),
+            "holds something else than this sweep; choose another -o",
+        ),
+    ):
+        with pytest.raises(mcgw.StoreError) as caught:
+            call()
+        assert told in str(caught.value)
+    np.testing.assert_array_equal(
+        mcgw.open_sweep(many).mean("load")[0, 0], mcgw.sweep(scene, over).mean("load")[0, 0]
+    )
+
+
+@pytest.mark.parametrize("at", ["nominal", "effective"])
+@pytest.mark.parametrize("quantity", ["load", "stiffness"])
+def test_means_under_an_interaction_fall_as_their_slopes_say(at, quantity, pressed):
+    theory = pressed(3.0, at).theory
+    h, step = np.array([0.3, 1.5]), 1e-3
+    fall = (theory.mean(quantity, h - step) - theory.mean(quantity, h + step)) / (2 * step)
+    np.testing.assert_allclose(theory.slope(quantity, h), fall, rtol=1e-4)
+    with pytest.raises(ValueError, match="give a load, an area, or another sum of the asperities"):
+        theory.separation_at("stiffness", 1.0)
+    h = theory.separation_at("area", theory.balanced("area", 0.7))
+    assert h == pytest.approx(0.7, abs=1e-9)
