@@ -124,7 +124,7 @@ if TYPE_CHECKING:
     from mcgw.scene.scene_file import load_scene, scene_from, scene_text
     from mcgw.scene.section import SceneError
     from mcgw.scene.surface import SpectralSurface, Surface
-    from mcgw.statistics.compared import compare
+    from mcgw.statistics.comparison import compare
     from mcgw.statistics.convergence import converge
     from mcgw.statistics.tradeoff import tradeoff
     from mcgw.store.ensembles import open_ensemble
@@ -204,7 +204,7 @@ _HOME = {
     "SpectralSurface": "scene.surface",
     "StoreError": "errors",
     "Surface": "scene.surface",
-    "compare": "statistics.compared",
+    "compare": "statistics.comparison",
     "converge": "statistics.convergence",
     "export": "exports.writing",
     "fit": "maps.fitting",

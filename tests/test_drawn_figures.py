@@ -20,8 +20,9 @@ from mcgw.figures.drawing import draw
 from mcgw.figures.studies import save_convergence, save_tradeoff
 from mcgw.figures.style import power_of_ten
 from mcgw.statistics.checks import Check, Slope
-from mcgw.statistics.comparison import Comparison, Curve, Verdict, compare
+from mcgw.statistics.comparison import Comparison, Curve, compare
 from mcgw.statistics.convergence import Convergence
+from mcgw.statistics.verdict import Verdict
 
 
 def bars_of(axis):

@@ -22,7 +22,7 @@ from mcgw.ensemble.forecast import forecast, relative_spread
 from mcgw.ensemble.solution import solutions
 from mcgw.reports.html import report_html
 from mcgw.reports.plan import plan_of
-from mcgw.reports.text import comparison_text, summary, verdict_line
+from mcgw.reports.text import comparison_text, summary
 from mcgw.scene.cautions import cautions
 from mcgw.statistics.comparison import compare
 from mcgw.statistics.convergence import converge
@@ -164,7 +164,7 @@ def test_everything_takes_separations_around_the_support(name, sampler, ensemble
         for show in (report_html, summary):
             show(e, ATTRIBUTES)
         cautions(e.scene)
-        verdict_line(comparison.verdict)
+        assert comparison.verdict.line
         for quantity, curve in comparison.curves.items():
             nothing = curve.theory == 0
             assert np.all(e.values(quantity)[:, nothing] == 0)

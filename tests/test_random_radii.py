@@ -284,7 +284,7 @@ def test_what_does_not_go_together_gets_one_line(text, says):
 
 def test_a_wrong_area_is_seen_though_its_kurtosis_is_infinite(monkeypatch):
     """The verdict holds areas to theory: were each summit 5 % too large, it would say so."""
-    from mcgw.statistics.comparison import verdict
+    from mcgw.statistics.verdict import verdict
 
     scene = spectral(n_surfaces=400, n_asperities=5000, sampler="cells", separations=(0.0, 1.0, 2.0))
     ensemble = mcgw.simulate(scene)

@@ -3,6 +3,7 @@
 import dataclasses
 import html
 import re
+from dataclasses import replace
 from html.parser import HTMLParser
 from pathlib import Path
 
@@ -11,8 +12,7 @@ import pytest
 
 import mcgw
 from mcgw.cli import main
-from mcgw.statistics.comparison import FALSE_ALARM, verdict
-from mcgw.statistics.sweep_comparison import SweepVerdict
+from mcgw.statistics.verdict import FALSE_ALARM, verdict
 from mcgw.store.ensembles import read_attributes
 from mcgw.sweeps.cautions import sweep_cautions
 
@@ -40,25 +40,27 @@ def test_each_point_is_tested_as_its_ensemble_is(sweep):
     compared = mcgw.compare(sweep)
     for one in compared.points:
         alone = mcgw.simulate(sweep.scenes[one.number])
-        assert one.tested.verdict == verdict(alone)
-        for q, name in enumerate(one.tested.quantities):
-            h = one.tested.separations
+        assert one.verdict == verdict(alone)
+        for q, name in enumerate(one.quantities):
+            h = one.separations
             exact = alone.scene.theory.cumulants(name, h)
             index = [alone.scene.separations.index(x) for x in h]
             residual = (alone.mean(name)[index] - exact.mean) / np.sqrt(exact.variance / 200)
-            np.testing.assert_allclose(one.tested.residual[q], residual, rtol=1e-7, atol=1e-9)
-            np.testing.assert_allclose(one.tested.theory[q], alone.scene.theory.mean(name, h), rtol=1e-11)
-            np.testing.assert_array_equal(one.tested.mean[q], alone.mean(name)[index])
+            np.testing.assert_allclose(one.residual[q], residual, rtol=1e-7, atol=1e-9)
+            np.testing.assert_allclose(one.theory[q], alone.scene.theory.mean(name, h), rtol=1e-11)
+            np.testing.assert_array_equal(one.mean[q], alone.mean(name)[index])
 
 
 def test_one_verdict_on_all_is_bonferroni_s(sweep):
     compared = mcgw.compare(sweep)
     smallest = min(verdict(mcgw.simulate(scene)).p for scene in sweep.scenes)
-    assert compared.verdict == SweepVerdict(smallest, 9)
+    assert compared.verdict.points == 9
     assert compared.verdict.p == min(1.0, 9 * smallest)
     assert compared.verdict.agrees
-    assert not SweepVerdict(FALSE_ALARM / 9.01, 9).agrees
-    assert SweepVerdict(FALSE_ALARM / 8.99, 9).agrees
+    for p, agrees in ((FALSE_ALARM / 9.01, False), (FALSE_ALARM / 8.99, True)):
+        less_likely = replace(compared.points[4], verdict=replace(compared.points[4].verdict, p=p))
+        points = (*compared.points[:4], less_likely, *compared.points[5:])
+        assert replace(compared, points=points).verdict.agrees == agrees
 
 
 @pytest.mark.parametrize("name", ["load", "area", "stiffness", "contacts"])
@@ -71,7 +73,7 @@ def test_one_mean_of_one_point_that_is_off_breaks_it(sweep, name):
         "grading.gamma": 2.0,
         "ensemble.seed": 2,
     }
-    assert worst.tested.quantities[worst.worst[0]] == name
+    assert worst.quantities[worst.worst[0]] == name
     assert compared.sheet().table.columns[0].values[0] == "2, 2"
     assert "DISAGREE" in repr(compared)
     assert len(repr(compared).splitlines()) <= 12
@@ -109,10 +111,10 @@ def test_points_whose_asperities_press_each_other_down(pressed, at):
     scene = pressed(0.05, at, n_surfaces=100)
     compared = mcgw.compare(mcgw.sweep(scene, {"grading.gamma": [1.0, 1.5]}))
     assert compared.verdict.agrees
-    names = set(compared.points[0].tested.quantities)
+    names = set(compared.points[0].quantities)
     assert "load" in names
     assert ("stiffness" in names) == (at == "nominal")
-    assert all(one.tested.verdict.degrees for one in compared.points)
+    assert all(one.verdict.degrees for one in compared.points)
 
 
 def test_cautions_are_counted():
@@ -135,7 +137,7 @@ def test_the_command(sweep, tmp_path, monkeypatch, capsys):
     mcgw.sweep(SCENE, OVER, path="w.h5")
     assert main(["compare", "w.h5", "--csv", "w.csv"]) == 0
     said = capsys.readouterr()
-    assert "for 9 points together (false alarms: at most 1 in 1000)" in said.out
+    assert re.search(r"the least likely of 9 points, p = .* \(false alarms: at most 1 in 1000\)", said.out)
     assert "w.png: figure" in said.out
     assert "9 of 9 points: " in said.err
     assert (tmp_path / "w.png").stat().st_size > 10_000
@@ -153,7 +155,7 @@ def test_the_commands_see_what_is_wrong(sweep, tmp_path, monkeypatch, capsys):
         monkeypatch.setattr("mcgw.sweeps.opening.open_results", lambda path: off(sweep, 1.03))
         assert main([command, "w.h5", "-o", name]) == code
         assert "DISAGREE" in (tmp_path / name).read_text()
-    assert "DISAGREE: p = " in capsys.readouterr().out
+    assert "DISAGREE: chi-square" in capsys.readouterr().out
     assert 'class="verdict bad">Monte Carlo and theory of this model DISAGREE' in Path("w.html").read_text()
 
 
@@ -170,7 +172,7 @@ def test_the_page_of_a_sweep(tmp_path, capsys):
     assert not re.search(r"<script|https?://(?!www\.w3\.org)", page)
     text = html.unescape(re.sub(r"<[^>]*>", "\n", page))
     compared = mcgw.compare(sweep)
-    assert f"p = {compared.verdict.p:.3g} for 6 points together (false alarms: at most 1 in 1000)." in text
+    assert f"of 6 points, p = {compared.verdict.p:.3g} (false alarms: at most 1 in 1000)." in text
     table = compared.sheet_of(12).table.only("point", "quantity", "residual")
     for column in table.columns:
         assert all(cell in text for cell in column.typeset())

@@ -16,7 +16,8 @@ from mcgw.ensemble.results import MemoryResults
 from mcgw.figures.against_theory import save_comparison
 from mcgw.sampling.samplers import sampler_of
 from mcgw.statistics import comparison
-from mcgw.statistics.comparison import FALSE_ALARM, Verdict, compare, verdict
+from mcgw.statistics.comparison import compare
+from mcgw.statistics.verdict import FALSE_ALARM, Verdict, verdict
 
 QUANTITIES = tuple(analytic.QUANTITIES)
 H = (2.0, 0.0, 1.0)  # in no order: a verdict that sorts one of two lists would show

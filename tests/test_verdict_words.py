@@ -6,8 +6,7 @@ from scipy.special import chdtrc, ndtr
 
 import mcgw
 from mcgw.ensemble.ensemble import Ensemble
-from mcgw.reports.text import verdict_line
-from mcgw.statistics.comparison import Verdict
+from mcgw.statistics.verdict import Verdict
 
 SURFACE = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "3 mm^2", "78.6 GPa")
 H = [0.0, 0.5, 1.0]
@@ -41,7 +40,7 @@ def test_without_combinations_the_farthest_mean_is_told(accuracy, wrong):
     assert verdict.p == pytest.approx(min(1, 4 * 12 * ndtr(-z.max())), rel=1e-4)
     said = f"the farthest of 12 means is {z.max():.1f} standard errors beyond the accuracy asked for, p = "
     assert said in comparison.sheet().text()
-    line = verdict_line(verdict)
+    line = verdict.line
     assert f"{'agree' if wrong == 1 else 'DISAGREE'}: {said}" in line
     assert "chi-square" not in line
 
@@ -53,7 +52,7 @@ def test_at_the_last_digits_chi_square_is(wrong):
     assert verdict.p == pytest.approx(chdtrc(verdict.degrees, verdict.chi_square), rel=1e-12)
     assert (verdict.means, verdict.farthest) == (0, 0.0)
     said = f"chi-square {verdict.chi_square:.1f} for {verdict.degrees} degrees of freedom"
-    assert said in verdict_line(verdict)
+    assert said in verdict.line
     assert verdict.agrees == (wrong == 1)
 
 
@@ -61,4 +60,4 @@ def test_at_the_last_digits_chi_square_is(wrong):
 def test_nothing_that_can_be_tested_is_said(accuracy):
     verdict = compared(accuracy, separations=[12.0]).verdict
     assert verdict == Verdict(0.0, 0, 1.0)
-    assert "agree: no mean is near enough to Gaussian to be tested, p = 1" in verdict_line(verdict)
+    assert "agree: no mean is near enough to Gaussian to be tested, p = 1" in verdict.line

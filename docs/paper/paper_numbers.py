@@ -17,7 +17,7 @@ import analytic
 import mcgw
 from analytic.laws import by_name
 from mcgw.scene.heights_section import LAWS as HEIGHT_LAWS
-from mcgw.statistics.comparison import FALSE_ALARM
+from mcgw.statistics.verdict import FALSE_ALARM
 
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parents[1]

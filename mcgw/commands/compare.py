@@ -27,7 +27,7 @@ def execute(args: argparse.Namespace) -> int:
         write_table,
     )
     from mcgw.machine.progress import bar
-    from mcgw.statistics.compared import compare
+    from mcgw.statistics.comparison import compare
     from mcgw.sweeps.opening import open_results
 
     path = args.output or args.file.with_suffix(".png")

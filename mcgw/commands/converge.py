@@ -23,8 +23,8 @@ def execute(args: argparse.Namespace) -> int:
     from mcgw.figures.studies import save_convergence
     from mcgw.machine.progress import bar
     from mcgw.scene.scene_file import files_of, load_scene
-    from mcgw.statistics.comparison import FALSE_ALARM
     from mcgw.statistics.convergence import SEEDS, converge
+    from mcgw.statistics.verdict import FALSE_ALARM
 
     scene = load_scene(args.scene)
     folder = args.output or args.scene.parent / "out"

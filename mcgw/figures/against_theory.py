@@ -29,7 +29,7 @@ from mcgw.machine.terminal import one_line
 from mcgw.statistics.comparison import Comparison, Curve
 
 if TYPE_CHECKING:
-    from mcgw.statistics.sweep_comparison import SweepComparison
+    from mcgw.statistics.comparison import SweepComparison
 
 __all__ = ["draw_curve", "draw_residuals", "quantity_figure", "save_comparison", "sweep_figure"]
 
@@ -183,7 +183,7 @@ def sweep_figure(comparison: "SweepComparison") -> Figure:
     Parameters
     ----------
     comparison : SweepComparison
-        From `mcgw.statistics.sweep_comparison.compare_sweep`.
+        From `mcgw.statistics.comparison.compare`.
 
     Returns
     -------
@@ -226,7 +226,7 @@ def draw_residuals(comparison: "SweepComparison", axis: Any) -> None:
 def _draw_worst(comparison: "SweepComparison", axis: Any) -> None:
     """Residuals of the point that is the least likely by chance; those that count have a marker."""
     one = comparison.worst[0]
-    t = one.tested
+    t = one
     axis.axhspan(-2, 2, color=BAND, zorder=0)
     axis.axhline(0, color=LEVEL, lw=0.8)
     for name, residual, counts in zip(t.quantities, t.residual, t.counts, strict=True):

@@ -18,9 +18,8 @@ from mcgw.formats.table import evenly
 from mcgw.maps.fit import Fit
 from mcgw.maps.profile_fit import ProfileFit
 from mcgw.scene.samplers import promise_of
-from mcgw.statistics.comparison import Comparison
+from mcgw.statistics.comparison import Comparison, SweepComparison
 from mcgw.statistics.convergence import Convergence
-from mcgw.statistics.sweep_comparison import SweepComparison
 from mcgw.statistics.tradeoff import Tradeoff
 from mcgw.sweeps.pairs import Slopes
 from mcgw.sweeps.sweep import Sweep

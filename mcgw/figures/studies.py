@@ -10,9 +10,9 @@ from matplotlib.figure import Figure
 from mcgw.figures.style import BACK, BAND, MONTE_CARLO, SAMPLE, STYLE, THEORY, look, shown_title
 from mcgw.formats.pictures import save_figure
 from mcgw.statistics.checks import Slope
-from mcgw.statistics.comparison import FALSE_ALARM
 from mcgw.statistics.convergence import Convergence
 from mcgw.statistics.tradeoff import Tradeoff
+from mcgw.statistics.verdict import FALSE_ALARM
 
 __all__ = ["draw_checks", "draw_methods", "save_convergence", "save_tradeoff"]
 

@@ -20,7 +20,6 @@ from mcgw.reports.report_figures import (
     pressure_pictures,
 )
 from mcgw.reports.side_notes import elasticity_words
-from mcgw.reports.text import verdict_line
 from mcgw.scene.cautions import cautions
 from mcgw.scene.contact_text import contact_facts
 from mcgw.scene.law_text import law_text
@@ -28,7 +27,6 @@ from mcgw.scene.other_laws import other_laws
 from mcgw.scene.samplers import promise_of
 from mcgw.scene.scene import Scene
 from mcgw.statistics.comparison import Comparison, compare
-from mcgw.statistics.sweep_comparison import compare_sweep
 from mcgw.sweeps.cautions import sweep_cautions
 from mcgw.sweeps.sweep import Sweep
 
@@ -107,7 +105,7 @@ def _means(ensemble: Ensemble) -> list[Table]:
 
 def _verdict(ensemble: Ensemble, comparison: Comparison | None) -> str:
     if comparison is not None:
-        return verdict_line(comparison.verdict)
+        return comparison.verdict.line
     return f"These are {ensemble.sampler} surfaces: their means serve, nothing tests them against theory"
 
 
@@ -122,7 +120,7 @@ def _one_line(listed: re.Match[str]) -> str:
 
 def sweep_report_html(sweep: Sweep, attributes: dict[str, Any], *, progress: Progress = None) -> str:
     """The page of a sweep and of the attributes of its file: scene, digest, ..."""
-    comparison = compare_sweep(sweep, progress=progress)
+    comparison = compare(sweep, progress=progress)
     verdict = comparison.verdict
     first = sweep.scenes[0]
     return rendered(

@@ -16,12 +16,12 @@ from mcgw.machine.terminal import one_line
 from mcgw.reports.side_notes import against_elasticity, two_questions
 from mcgw.scene.contact_text import accuracy_facts, contact_facts
 from mcgw.scene.law_text import law_text
-from mcgw.statistics.comparison import FALSE_ALARM, Comparison, Verdict
+from mcgw.statistics.comparison import Comparison
 from mcgw.store.run_folder import RunFolder
 from mcgw.sweeps.axes import Axes
 
 if TYPE_CHECKING:
-    from mcgw.statistics.sweep_comparison import SweepComparison
+    from mcgw.statistics.comparison import SweepComparison
     from mcgw.sweeps.sweep import Sweep
 
 __all__ = [
@@ -31,7 +31,6 @@ __all__ = [
     "ratio_tables",
     "summary",
     "summary_of",
-    "verdict_line",
 ]
 
 _MOST_ROWS = 9
@@ -100,23 +99,14 @@ def ratio_tables(new: Ensemble, old: Ensemble) -> dict[str, Table]:
     return found
 
 
-def verdict_line(verdict: Verdict) -> str:
-    """One line: do they agree, and how sure is that."""
-    word = "agree" if verdict.agrees else "DISAGREE"
-    return (
-        f"Monte Carlo and theory of this model {word}: {verdict.seen}, p = {verdict.p:.3g} (false alarms: "
-        f"1 in {1 / FALSE_ALARM:.0f})"
-    )
-
-
 def comparison_summary(
     comparison: "Comparison | SweepComparison",
 ) -> tuple[str, Callable[[], Table], list[str]]:
     """The table for people, what makes that for programs, and the lines of the verdict."""
+    lines = [comparison.verdict.line]
     if not isinstance(comparison, Comparison):
-        return comparison.sheet_of(_LISTED).text(), comparison.table, [comparison.verdict.line]
-    known = against_elasticity(comparison.ensemble.scene.validity())
-    lines = [verdict_line(comparison.verdict), *known]
+        return comparison.sheet_of(_LISTED).text(), comparison.table, lines
+    lines += against_elasticity(comparison.ensemble.scene.validity())
     return comparison_text(comparison), lambda: stacked(comparison.tables(), "quantity"), lines
 
 

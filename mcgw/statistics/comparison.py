@@ -1,35 +1,36 @@
-"""Monte Carlo against theory: where both meet."""
+"""``mcgw.compare``: an ensemble, or all points of a sweep, against theory."""
 
-from collections.abc import Callable
-from dataclasses import dataclass
-from typing import Any, cast
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.special import chdtrc
 
-from analytic import Fluctuations, quantity_of
-from mcgw.ensemble.asperities_alone import asperities_alone
+from analytic import quantity_of
+from mcgw.ensemble.asperities_alone import scene_alone
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.intervals import interval_column
 from mcgw.ensemble.labelled import heading
 from mcgw.formats.sheet import Sheet, Shown
-from mcgw.formats.table import SEPARATION, Column, Table, evenly, stacked
+from mcgw.formats.table import SEPARATION, Column, Table, stacked
 from mcgw.machine.notebook import plotted
+from mcgw.machine.progress import Progress, told
 from mcgw.scene.samplers import promise_of
-from mcgw.scene.scene import Scene
-from mcgw.statistics.bounded import allowance, beyond, bounded_theory, farthest, told_apart
+from mcgw.scene.wrong_object import check_object
+from mcgw.statistics.verdict import Tested, Verdict, tested, verdict
+from mcgw.sweeps.axes import label
 
-__all__ = ["FALSE_ALARM", "Comparison", "Curve", "Tested", "Verdict", "compare", "tested", "verdict"]
+if TYPE_CHECKING:
+    from mcgw.sweeps.sweep import Sweep
+
+__all__ = ["Comparison", "Curve", "SweepComparison", "compare"]
 
 Array = NDArray[np.float64]
 
-FALSE_ALARM = 1e-3
-_MOST_SEPARATIONS = 48
-_SKEW, _KURTOSIS = 0.1, 0.1  # so nearly Gaussian must a combination of means be to count
-_SMALL, _THIRD = 0.2, 3.0  # standard errors that theory may be off by, and what it leaves out, at most
-_COMING_AND_GOING = 20.0  # over a separation: a twentieth of the variance comes and goes
-_INDEPENDENT = 1e-9  # variance of a combination that is not a rounding error
+_SEPARATIONS = 12  # of a point, at most: what theory takes grows as their square
+_LISTED = 7
 
 
 @dataclass(frozen=True)
@@ -55,78 +56,6 @@ class Curve:
         """(mean - theory)/stderr; 0 where neither fluctuates."""
         difference = self.mean - self.theory
         return np.divide(difference, self.stderr, out=np.zeros_like(difference), where=self.stderr > 0)
-
-
-@dataclass(frozen=True)
-class Verdict:
-    """A chi-square test of all means at once, or of the farthest of them where that tells more.
-
-    Parameters
-    ----------
-    chi_square : float
-        Sum of squares of independent standard normal numbers if theory holds.
-    degrees : int
-        How many: independent combinations of the means that are Gaussian to within 0.1 in skewness
-        and excess kurtosis.
-    p : float
-        Probability of so large a chi-square by chance; or of so far a mean.
-    means, farthest : int, float
-        How many means were looked at one by one, and by how many standard errors the farthest of them lies
-        beyond what the scene's accuracy allows; 0 where chi-square decided.
-    """
-
-    chi_square: float
-    degrees: int
-    p: float
-    means: int = 0
-    farthest: float = 0.0
-
-    @property
-    def agrees(self) -> bool:
-        """False in one of `1/FALSE_ALARM` ensembles that follow the theory."""
-        return self.p > FALSE_ALARM
-
-    @property
-    def seen(self) -> str:
-        """What p is of, in words."""
-        if self.means:
-            return (
-                f"the farthest of {self.means} means is {self.farthest:.1f} standard errors beyond the "
-                "accuracy asked for"
-            )
-        if not self.degrees:
-            return "no mean is near enough to Gaussian to be tested"
-        return f"chi-square {self.chi_square:.1f} for {self.degrees} degrees of freedom"
-
-
-@dataclass(frozen=True)
-class Tested:
-    """What a verdict is on: means at some separations, arrays of shape (quantities, separations).
-
-    Parameters
-    ----------
-    quantities : tuple of str
-        Their names.
-    separations : ndarray
-        In order.
-    mean, theory : ndarray
-        Monte-Carlo and exact means, in SI units.
-    residual : ndarray
-        Their difference over the exact standard error, beyond what the scene's accuracy allows; 0 where
-        nothing fluctuates.
-    counts : ndarray of bool
-        Whether the mean is Gaussian enough for that to be read as a normal number.
-    verdict : Verdict
-        On all of them.
-    """
-
-    quantities: tuple[str, ...]
-    separations: Array
-    mean: Array
-    theory: Array
-    residual: Array
-    counts: NDArray[np.bool_]
-    verdict: Verdict
 
 
 @dataclass(frozen=True, repr=False)
@@ -193,8 +122,135 @@ class Comparison(Shown):
         return Table(columns, heading(quantity))
 
 
-def compare(ensemble: Ensemble) -> Comparison:
-    """As `mcgw.compare`, of an ensemble."""
+@dataclass(frozen=True, repr=False)
+class SweepComparison(Shown):
+    """A comparison of a sweep with theory.
+
+    Parameters
+    ----------
+    sweep : Sweep
+        What was compared.
+    points : tuple of Tested
+        Those that can be: whose surfaces fluctuate as real ones do.
+    """
+
+    sweep: "Sweep"
+    points: tuple[Tested, ...]
+
+    @property
+    def verdict(self) -> Verdict:
+        """On all points together."""
+        least, n = self.worst[0].verdict, len(self.points)
+        return replace(least, p=min(1.0, n * least.p), points=n)
+
+    @cached_property
+    def worst(self) -> list[Tested]:
+        """The points, those first whose means are the least likely by chance."""
+        return sorted(self.points, key=lambda one: one.unlikely)
+
+    @property
+    def residuals(self) -> Array:
+        """Of all points, quantities and separations that count: standard normal each, and not independent."""
+        return np.concatenate([one.residual[one.counts] for one in self.points])
+
+    def plot(self, ax: Any = None) -> Any:
+        """Draw how the residuals of all points are distributed; returns the axes."""
+        return plotted(self, ax)
+
+    def sheet(self) -> Sheet:
+        """The verdict, and the points that are farthest from theory."""
+        return self.sheet_of(_LISTED)
+
+    def sheet_of(self, most: int) -> Sheet:
+        """As `sheet`, with so many points."""
+        v = self.verdict
+        word = "agree" if v.agrees else "DISAGREE"
+        left = self.sweep.axes.size - v.points
+        smallest = self.worst[0].verdict.p
+        beyond = int((np.abs(self.residuals) > 3).sum())
+        facts = [
+            ("all points", f"p = {v.p:.3g}: {v.points} times the smallest p of a point, {smallest:.3g}"),
+            ("residuals", f"{beyond} of {len(self.residuals)} beyond 3 standard errors"),
+            *([("left out", f"{left} stratified points, whose surfaces are no real ones")] if left else []),
+        ]
+        where = list(self.sweep.axes.points())
+        shown = [(one, *one.worst) for one in self.worst[:most]]
+        at = [self.sweep.axes.values_text(where[one.number]) for one, *_ in shown]
+        columns = (Column("point", at, ", ".join(self.sweep.axes.keys)), *_columns(shown))
+        title = f"Monte Carlo and theory of {v.points} scenes {word}"
+        return Sheet(title, facts, Table(columns))
+
+    def table(self) -> Table:
+        """A row for each point, quantity and separation."""
+        where, axes = list(self.sweep.axes.points()), self.sweep.axes
+        rows = [
+            (one, q, k)
+            for one in self.points
+            for q, k in np.ndindex(len(one.quantities), len(one.separations))
+        ]
+        at = [axes.at(where[one.number]) for one, *_ in rows]
+        keys = (Column(key, [label(values[key]) for values in at]) for key in axes.keys)
+        return Table((*keys, *_columns(rows)))
+
+
+def _columns(rows: Sequence[tuple[Tested, int, int]]) -> tuple[Column, ...]:
+    """Of points, each at a quantity and a separation, by number."""
+    names = [t.quantities[q] for t, q, _ in rows]
+    return (
+        Column("quantity", names),
+        Column("unit", [quantity_of(name).unit for name in names]),
+        Column("separation", [t.separations[k] for t, _, k in rows], SEPARATION, form="g"),
+        Column("mean", [t.mean[q, k] for t, q, k in rows]),
+        Column("theory", [t.theory[q, k] for t, q, k in rows]),
+        Column("residual", [t.residual[q, k] for t, q, k in rows], form="+.2f"),
+        Column("p_of_point", [t.verdict.p for t, *_ in rows], form=".2g"),
+    )
+
+
+@overload
+def compare(result: Ensemble, *, progress: Progress = None) -> Comparison: ...
+@overload
+def compare(result: "Sweep", *, progress: Progress = None) -> "SweepComparison": ...
+def compare(result: "Ensemble | Sweep", *, progress: Progress = None) -> "Comparison | SweepComparison":
+    """Compare the means of an ensemble, or those of every point of a sweep, with theory.
+
+    Parameters
+    ----------
+    result : Ensemble or Sweep
+        Of independent surfaces.
+    progress : bool or callable, optional
+        Of a sweep. True: a bar; a function: called with (done, total) points.
+
+    Returns
+    -------
+    Comparison or SweepComparison
+        Curves and verdict; of a sweep its points, with one verdict on all of them.
+
+    Raises
+    ------
+    ValueError
+        If the surfaces are stratified: their fluctuations are not those of an ensemble.
+
+    Examples
+    --------
+    >>> import mcgw
+    >>> surface = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "1 mm^2", "78.6 GPa")
+    >>> scene = mcgw.Scene(surface, separations=[0, 1], n_surfaces=100, seed=1)
+    >>> mcgw.compare(mcgw.simulate(scene)).verdict.agrees
+    True
+    >>> mcgw.compare(mcgw.sweep(scene, {"grading.gamma": [0.5, 2.0]})).verdict.agrees
+    True
+    """
+    if not isinstance(result, Ensemble):
+        from mcgw.sweeps.sweep import Sweep  # which loads what draws
+
+        if isinstance(result, Sweep):
+            return _of_sweep(result, progress)
+    check_object("compare", result, Ensemble)
+    return _of_ensemble(result)
+
+
+def _of_ensemble(ensemble: Ensemble) -> Comparison:
     if not promise_of(ensemble.sampler).real_surfaces:
         raise ValueError("a stratified file holds means, not an ensemble; compare takes another sampler")
     scene = ensemble.scene
@@ -209,110 +265,31 @@ def compare(ensemble: Ensemble) -> Comparison:
     return Comparison(ensemble, curves, verdict(ensemble))
 
 
-def verdict(ensemble: Ensemble) -> Verdict:
-    """Test all means at once, with their exact covariance.
+def _of_sweep(sweep: "Sweep", progress: Progress) -> SweepComparison:
+    """Each point tested as an ensemble is, at twelve separations at most.
 
-    The means are turned to the principal axes of their exact correlation. Of these, those count
-    along which the mean of all asperities is Gaussian, which its exact skewness and kurtosis tell:
-    so the false-alarm rate is the stated one also where few asperities touch. Of asperities that press each
-    other down the sums are tested, without the half-space; where each surface finds its own balance, those
-    means that theory knows well enough. Of a scene that asks for less than the last digits, what is beyond
-    its accuracy counts, of the means one by one and of their combinations in which it cannot be seen.
+    Of asperities that press each other down, stiffnesses are left out: of the surfaces only their means in
+    series with the half-space are kept.
     """
+    found = []
+    with told(progress, "points") as tell:
+        for i, point in enumerate(sweep.axes.points()):
+            tell(i, sweep.axes.size)
+            one = sweep.ensemble(point)
+            if promise_of(one.scene.sampler).real_surfaces:
+                found.append(replace(_tested(one), number=i))
+        tell(sweep.axes.size, sweep.axes.size)
+    if not found:
+        raise ValueError("stratified points hold means, not ensembles; compare takes another sampler")
+    return SweepComparison(sweep, tuple(found))
+
+
+def _tested(ensemble: Ensemble) -> Tested:
+    """A point as its asperities are by themselves, where these press each other down."""
     scene = ensemble.scene
     if scene.interaction is not None and not scene.interaction.nominal:
-        return verdict(asperities_alone(ensemble))
-    return tested(scene, ensemble.n_surfaces, ensemble.mean, _MOST_SEPARATIONS).verdict
+        from analytic.interacting import is_stiffness  # who asks for no interaction needs none of it
 
-
-def tested(scene: Scene, surfaces: int, mean: Callable[[str], Array], most: int) -> Tested:
-    """Means over so many surfaces against theory, as `verdict` does, at the given number of separations.
-
-    Parameters
-    ----------
-    scene : Scene
-        Whose asperities do not press each other down, or find a balance on each surface.
-    surfaces : int
-        How many there are.
-    mean : callable
-        Means of a quantity in SI units, shape (separations,), by its name.
-    most : int
-        Separations to take, evenly.
-    """
-    h = np.unique(scene.separations)
-    h = h[evenly(len(h), most)]
-    parts = bounded_theory(scene, surfaces).fluctuations(scene.quantities, h)
-    index = [scene.separations.index(x) for x in h]
-    scale = np.repeat([quantity_of(q).scale(scene.surface) for q in scene.quantities], len(h))
-    exact = scene.n_asperities * parts.mean
-    means = np.concatenate([mean(q)[index] for q in scene.quantities])
-    difference = means / scale - exact
-    asperities = float(scene.n_asperities) * surfaces
-
-    variance = parts.moment(2)
-    varies = np.flatnonzero(variance > 0)
-    unit = np.sqrt(variance[varies])
-    parts = parts.take(varies, unit)
-    errors = np.sqrt(surfaces / scene.n_asperities) / unit
-    z = difference[varies] * errors
-    usable = _gaussian(parts, asperities) & (_left_out(scene, h)[varies] * errors < _SMALL)
-    allowed = allowance(scene, exact[varies], 1 / errors)
-    residual, counts = np.zeros(len(means)), np.zeros(len(means), dtype=np.bool_)
-    residual[varies], counts[varies] = beyond(z, allowed), usable
-    parts, z, allowed = parts.take(usable), beyond(z, allowed)[usable], allowed[usable]
-    axes = parts.whitening(max(_resolved(scene, h), told_apart(allowed)))
-    axes = axes[:, _gaussian(parts.turned(axes), asperities)]
-    chi_square = float(np.sum((z @ axes) ** 2))
-    degrees = axes.shape[1]
-    p = float(chdtrc(degrees, chi_square)) if degrees else 1.0
-    found = Verdict(chi_square, degrees, p)
-    if not scene.exact:
-        alone = farthest(z)
-        told = (z.size, float(np.abs(z).max(initial=0.0))) if alone < p or not degrees else (0, 0.0)
-        found = Verdict(chi_square, degrees, min(1.0, 2 * min(p, alone)), *told)
-    shape = len(scene.quantities), len(h)
-    return Tested(
-        quantities=scene.quantities,
-        separations=h,
-        mean=means.reshape(shape),
-        theory=(exact * scale).reshape(shape),
-        residual=residual.reshape(shape),
-        counts=counts.reshape(shape),
-        verdict=found,
-    )
-
-
-def _resolved(scene: Scene, h: Array) -> float:
-    """Variance of a combination from which theory knows it.
-
-    Where each surface has a separation of its own, single asperities come and go between it and that of the
-    mean surface. Theory is linear in what surfaces differ by, and knows nothing of that.
-    """
-    if scene.interaction is None:
-        return _INDEPENDENT
-    widest = float(np.max(scene.theory.std("effective_separation", h)))
-    return min(max(_INDEPENDENT, _COMING_AND_GOING * widest), 0.5)
-
-
-def _left_out(scene: Scene, h: Array) -> Array:
-    """What theory may be off by for each quantity and separation, over its scale: nothing, where it is exact.
-
-    Of means that it knows to second order, the third: as the second is to the mean, so it is to the second.
-    """
-    if scene.interaction is None:
-        return np.zeros(len(scene.quantities) * len(h))
-    found, theory = [], cast(Any, scene.theory)
-    for name in scene.quantities:
-        mean, first = theory.mean(name, h), theory.balanced(name, h)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            third = np.nan_to_num(_THIRD * (mean - first) ** 2 / np.abs(mean), nan=np.inf)
-        found.append(third / quantity_of(name).scale(scene.surface))
-    return np.concatenate(found)
-
-
-def _gaussian(parts: Fluctuations, asperities: float) -> NDArray[np.bool_]:
-    """Which terms (columns of unit variance) have a nearly Gaussian mean over so many asperities."""
-    with np.errstate(over="ignore", invalid="ignore"):  # where nothing ever touches
-        third, fourth = parts.moment(3), parts.moment(4)
-    skew = np.abs(third) / np.sqrt(asperities)
-    return np.asarray((skew < _SKEW) & (fourth / asperities < _KURTOSIS))
+        names = tuple(name for name in scene.quantities if not is_stiffness(name))
+        scene = scene_alone(scene, "this").replace(quantities=names)
+    return tested(scene, ensemble.n_surfaces, ensemble.mean, _SEPARATIONS)

@@ -34,8 +34,8 @@ from mcgw.statistics.checks import (
     slope,
     variances,
 )
-from mcgw.statistics.comparison import FALSE_ALARM, verdict
 from mcgw.statistics.principal_components import PrincipalComponents
+from mcgw.statistics.verdict import FALSE_ALARM, verdict
 
 __all__ = ["SEEDS", "Convergence", "Draw", "converge"]
 

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from analytic import Quantity, quantity_of
 from mcgw.scene.scene import Scene
-from mcgw.statistics.bounded import allowance, bounded_theory, told_apart
+from mcgw.statistics.verdict import allowance, bounded_theory, told_apart
 
 __all__ = ["PrincipalComponents"]
 

@@ -1,0 +1,297 @@
+"""Whether means follow theory: one test of all of them at once, for an ensemble or a point of a sweep.
+
+Theory to hold an ensemble to: with a bound on radii that hardly any ensemble meets.
+
+Where each summit has a radius of its own, the fourth moment of the area is infinite, by the logarithm of the
+flattest summit. Whether a mean is Gaussian cannot be told from the kurtosis of all summits then, but from
+that of those an ensemble has. Left out are summits flatter than a bound, of which there is one in ten
+thousand ensembles: means and variances change by less than a thousandth of their errors.
+
+Tests of means whose values are only as accurate as the scene asks (`Scene.accuracy`).
+
+Every value may be off by its share, and so may the mean, in the same direction for all surfaces.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Any, cast
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.special import chdtrc, ndtr
+
+from analytic import Fluctuations, Model, RandomCurvature, quantity_of
+from analytic.curvature import MEAN_CURVATURE
+from mcgw.ensemble.asperities_alone import asperities_alone
+from mcgw.ensemble.ensemble import Ensemble
+from mcgw.formats.table import evenly
+from mcgw.scene.scene import Scene
+
+__all__ = ["FALSE_ALARM", "Tested", "Verdict", "allowance", "bounded_theory", "tested", "told_apart"]
+__all__ += ["verdict"]
+
+Array = NDArray[np.float64]
+
+FALSE_ALARM = 1e-3
+_MOST_SEPARATIONS = 48
+_SKEW, _KURTOSIS = 0.1, 0.1  # so nearly Gaussian must a combination of means be to count
+_SMALL, _THIRD = 0.2, 3.0  # standard errors that theory may be off by, and what it leaves out, at most
+_COMING_AND_GOING = 20.0  # over a separation: a twentieth of the variance comes and goes
+_INDEPENDENT = 1e-9  # variance of a combination that is not a rounding error
+_SELDOM = 1e-4  # summits flatter than the bound, in an ensemble
+_FLAT = 1e-3  # curvature down to which the share of flatter summits goes as its fourth power
+_UNSEEN = 0.3  # standard errors by which a combination may be off without being seen
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """A chi-square test of all means at once, or of the farthest of them where that tells more.
+
+    Parameters
+    ----------
+    chi_square : float
+        Sum of squares of independent standard normal numbers if theory holds.
+    degrees : int
+        How many: independent combinations of the means that are Gaussian to within 0.1 in skewness
+        and excess kurtosis.
+    p : float
+        Probability of so large a chi-square by chance; or of so far a mean.
+    means, farthest : int, float
+        How many means were looked at one by one, and by how many standard errors the farthest of them lies
+        beyond what the scene's accuracy allows; 0 where chi-square decided.
+    points : int
+        Of a sweep how many are tested: then all else is of the least likely one, and p is so many times its
+        own (Bonferroni), whatever points have in common. 0 for an ensemble.
+    """
+
+    chi_square: float
+    degrees: int
+    p: float
+    means: int = 0
+    farthest: float = 0.0
+    points: int = 0
+
+    @property
+    def agrees(self) -> bool:
+        """False in one of `1/FALSE_ALARM` ensembles that follow the theory."""
+        return self.p > FALSE_ALARM
+
+    @property
+    def seen(self) -> str:
+        """What p is of, in words."""
+        return self._seen + f" at the least likely of {self.points} points" * (self.points > 0)
+
+    @property
+    def line(self) -> str:
+        """Do they agree, and how sure is that."""
+        word = "agree" if self.agrees else "DISAGREE"
+        most = "at most " if self.points else ""
+        return (
+            f"Monte Carlo and theory of this model {word}: {self.seen}, p = {self.p:.3g} (false alarms: "
+            f"{most}1 in {1 / FALSE_ALARM:.0f})"
+        )
+
+    @property
+    def _seen(self) -> str:
+        if self.means:
+            return (
+                f"the farthest of {self.means} means is {self.farthest:.1f} standard errors beyond the "
+                "accuracy asked for"
+            )
+        if not self.degrees:
+            return "no mean is near enough to Gaussian to be tested"
+        return f"chi-square {self.chi_square:.1f} for {self.degrees} degrees of freedom"
+
+
+@dataclass(frozen=True)
+class Tested:
+    """What a verdict is on: means at some separations, arrays of shape (quantities, separations).
+
+    Parameters
+    ----------
+    quantities : tuple of str
+        Their names.
+    separations : ndarray
+        In order.
+    mean, theory : ndarray
+        Monte-Carlo and exact means, in SI units.
+    residual : ndarray
+        Their difference over the exact standard error, beyond what the scene's accuracy allows; 0 where
+        nothing fluctuates.
+    counts : ndarray of bool
+        Whether the mean is Gaussian enough for that to be read as a normal number.
+    verdict : Verdict
+        On all of them.
+    number : int
+        Of a point of a sweep, the last axis fastest.
+    """
+
+    quantities: tuple[str, ...]
+    separations: Array
+    mean: Array
+    theory: Array
+    residual: Array
+    counts: NDArray[np.bool_]
+    verdict: Verdict
+    number: int = 0
+
+    @property
+    def worst(self) -> tuple[int, int]:
+        """Quantity and separation, by number, of the mean that is farthest off, of those that count."""
+        off = np.where(self.counts, np.abs(self.residual), -1.0)
+        quantity, separation = divmod(int(np.argmax(off)), len(self.separations))
+        return quantity, separation
+
+    @property
+    def unlikely(self) -> tuple[float, float]:
+        """What orders points: the probability by chance, and for equal ones how far off the worst mean is."""
+        return self.verdict.p, -abs(float(self.residual[self.worst]))
+
+
+def verdict(ensemble: Ensemble) -> Verdict:
+    """Test all means at once, with their exact covariance.
+
+    The means are turned to the principal axes of their exact correlation. Of these, those count
+    along which the mean of all asperities is Gaussian, which its exact skewness and kurtosis tell:
+    so the false-alarm rate is the stated one also where few asperities touch. Of asperities that press each
+    other down the sums are tested, without the half-space; where each surface finds its own balance, those
+    means that theory knows well enough. Of a scene that asks for less than the last digits, what is beyond
+    its accuracy counts, of the means one by one and of their combinations in which it cannot be seen.
+    """
+    scene = ensemble.scene
+    if scene.interaction is not None and not scene.interaction.nominal:
+        return verdict(asperities_alone(ensemble))
+    return tested(scene, ensemble.n_surfaces, ensemble.mean, _MOST_SEPARATIONS).verdict
+
+
+def tested(scene: Scene, surfaces: int, mean: Callable[[str], Array], most: int) -> Tested:
+    """Means over so many surfaces against theory, as `verdict` does, at the given number of separations.
+
+    Parameters
+    ----------
+    scene : Scene
+        Whose asperities do not press each other down, or find a balance on each surface.
+    surfaces : int
+        How many there are.
+    mean : callable
+        Means of a quantity in SI units, shape (separations,), by its name.
+    most : int
+        Separations to take, evenly.
+    """
+    h = np.unique(scene.separations)
+    h = h[evenly(len(h), most)]
+    parts = bounded_theory(scene, surfaces).fluctuations(scene.quantities, h)
+    index = [scene.separations.index(x) for x in h]
+    scale = np.repeat([quantity_of(q).scale(scene.surface) for q in scene.quantities], len(h))
+    exact = scene.n_asperities * parts.mean
+    means = np.concatenate([mean(q)[index] for q in scene.quantities])
+    difference = means / scale - exact
+    asperities = float(scene.n_asperities) * surfaces
+
+    variance = parts.moment(2)
+    varies = np.flatnonzero(variance > 0)
+    unit = np.sqrt(variance[varies])
+    parts = parts.take(varies, unit)
+    errors = np.sqrt(surfaces / scene.n_asperities) / unit
+    z = difference[varies] * errors
+    usable = _gaussian(parts, asperities) & (_left_out(scene, h)[varies] * errors < _SMALL)
+    allowed = allowance(scene, exact[varies], 1 / errors)
+    residual, counts = np.zeros(len(means)), np.zeros(len(means), dtype=np.bool_)
+    residual[varies], counts[varies] = beyond(z, allowed), usable
+    parts, z, allowed = parts.take(usable), beyond(z, allowed)[usable], allowed[usable]
+    axes = parts.whitening(max(_resolved(scene, h), told_apart(allowed)))
+    axes = axes[:, _gaussian(parts.turned(axes), asperities)]
+    chi_square = float(np.sum((z @ axes) ** 2))
+    degrees = axes.shape[1]
+    p = float(chdtrc(degrees, chi_square)) if degrees else 1.0
+    found = Verdict(chi_square, degrees, p)
+    if not scene.exact:
+        alone = farthest(z)
+        told = (z.size, float(np.abs(z).max(initial=0.0))) if alone < p or not degrees else (0, 0.0)
+        found = Verdict(chi_square, degrees, min(1.0, 2 * min(p, alone)), *told)
+    shape = len(scene.quantities), len(h)
+    return Tested(
+        quantities=scene.quantities,
+        separations=h,
+        mean=means.reshape(shape),
+        theory=(exact * scale).reshape(shape),
+        residual=residual.reshape(shape),
+        counts=counts.reshape(shape),
+        verdict=found,
+    )
+
+
+def _resolved(scene: Scene, h: Array) -> float:
+    """Variance of a combination from which theory knows it.
+
+    Where each surface has a separation of its own, single asperities come and go between it and that of the
+    mean surface. Theory is linear in what surfaces differ by, and knows nothing of that.
+    """
+    if scene.interaction is None:
+        return _INDEPENDENT
+    widest = float(np.max(scene.theory.std("effective_separation", h)))
+    return min(max(_INDEPENDENT, _COMING_AND_GOING * widest), 0.5)
+
+
+def _left_out(scene: Scene, h: Array) -> Array:
+    """What theory may be off by for each quantity and separation, over its scale: nothing, where it is exact.
+
+    Of means that it knows to second order, the third: as the second is to the mean, so it is to the second.
+    """
+    if scene.interaction is None:
+        return np.zeros(len(scene.quantities) * len(h))
+    found, theory = [], cast(Any, scene.theory)
+    for name in scene.quantities:
+        mean, first = theory.mean(name, h), theory.balanced(name, h)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            third = np.nan_to_num(_THIRD * (mean - first) ** 2 / np.abs(mean), nan=np.inf)
+        found.append(third / quantity_of(name).scale(scene.surface))
+    return np.concatenate(found)
+
+
+def _gaussian(parts: Fluctuations, asperities: float) -> NDArray[np.bool_]:
+    """Which terms (columns of unit variance) have a nearly Gaussian mean over so many asperities."""
+    with np.errstate(over="ignore", invalid="ignore"):  # where nothing ever touches
+        third, fourth = parts.moment(3), parts.moment(4)
+    skew = np.abs(third) / np.sqrt(asperities)
+    return np.asarray((skew < _SKEW) & (fourth / asperities < _KURTOSIS))
+
+
+def bounded_theory(scene: Scene, surfaces: int) -> Model:
+    """The scene's own model, with a bound on the radii where there is none."""
+    theory, law = scene.theory, scene.curvature
+    if not isinstance(law, RandomCurvature) or np.isfinite(law.largest):
+        return theory
+    flatter = float(law.cdf(_FLAT, max(scene.lowest, scene.least))) * max(scene.touching, 1.0) * surfaces
+    flattest = _FLAT * min((_SELDOM / flatter) ** 0.25, 1.0)
+    return replace(theory, curvature=RandomCurvature(law.alpha, MEAN_CURVATURE / flattest))
+
+
+def allowance(scene: Scene, mean: Array, stderr: Array) -> Array:
+    """How many standard errors each mean may be off by: none, where nothing but the last digit is.
+
+    Parameters
+    ----------
+    scene : Scene
+        What was asked.
+    mean, stderr : ndarray
+        Exact means and standard errors, in the same units.
+    """
+    if scene.exact:
+        return np.zeros(np.shape(mean))
+    return np.asarray(scene.accuracy * np.abs(mean) / stderr)
+
+
+def beyond(z: Array, allowed: Array) -> Array:
+    """What of each deviation is beyond what is allowed."""
+    return np.asarray(z - np.clip(z, -allowed, allowed))
+
+
+def told_apart(allowed: Array) -> float:
+    """Variance of a combination of means, each of variance 1, from which on their errors are not seen."""
+    return float(4 * (allowed**2).sum() / _UNSEEN**2)
+
+
+def farthest(z: Array) -> float:
+    """Probability that the largest of some deviations is as large by chance, whatever their correlation."""
+    return min(1.0, 2 * z.size * float(ndtr(-np.abs(z).max(initial=0.0)))) if z.size else 1.0
