@@ -65,11 +65,9 @@ def ends_of(
     low, high = max(float(separations[0]), law.support[0]), law.support[1]
     start = max(low, float(law.ppf(np.array(_NOTHING))))
     top = min(float(law.isf(np.array(_NOTHING), start)), high)
-    if np.isinf(top):  # as isf of 1 - p, where 1 - p is 1: the density tells how far heights go
-        top = start + 1.0 if law.pdf(np.array(start)) > 0 else start
+    if start < high and not start < top and law.pdf(np.array(start)) > 0:  # SciPy has lost this tail
+        top = min(start + 1.0, high)
     elif not (start < top and law.sf(np.array(start)) > _RAREST):
-        return start, top
-    if not start < top:
         return start, top
 
     def log_density(s: Array) -> Array:

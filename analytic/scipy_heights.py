@@ -22,7 +22,9 @@ T = TypeVar("T")
 
 _SECONDS = 5.0  # for moments, or jumps, of a law of scipy: some are integrals of integrals
 _NOISE = 2.0**-30  # of a density that is the exponential of large terms, as of gamma(1e4)
-_RARE = np.array([1e-3, 1e-9, 1e-15, 1e-24, 1e-36])
+_RARE, _RARER = np.array([1e-3, 1e-9, 1e-15, 1e-24, 1e-36]), 10.0 ** -np.arange(1.0, 37.0)
+_ALIKE, _NEARLY = 1e-6, 1e-2  # how near a share comes to itself by way of its height, at all of these; at some
+_MOST_STEPS, _SETTLED = 100, 2.0**-30  # of Newton, halving where one leaves the bracket; a step whose square is nothing
 _TRIAL, _TRIAL_SECONDS = np.array([1e-9, 0.1, 0.5, 0.9]), 1.0  # a few of the thousands of calls to come
 
 
@@ -159,31 +161,47 @@ class ScipyHeights:
         return self._s(self.distribution.ppf(p * self.cdf(np.array(below))))
 
     def isf(self, p: Array, above: float = -math.inf) -> Array:
-        """Its ``isf``, or where that loses the tail the inverse of its ``sf``."""
-        share = np.asarray(p * self.sf(np.array(above)))
-        return self._s(self._halved(share) if self._loses_tail else self.distribution.isf(share))
+        """Its ``isf``, or where that loses the tail the inverse of its ``sf``, as far as that is good."""
+        inverse, rarest = self._from_share
+        return self._s(inverse(np.maximum(p * self.sf(np.array(above)), rarest)))
 
     @cached_property
-    def _loses_tail(self) -> bool:
-        """Whether ``isf`` does not invert a good ``sf``: SciPy's of F takes 1 - p, and is infinite soon."""
+    def _from_share(self) -> tuple[Callable[[Array], Array], float]:
+        """An inverse of ``sf``, and the least share that it is good for.
 
-        def good(inverse: Callable[[Array], Array]) -> bool:
-            with np.errstate(all="ignore"):
-                return bool(np.allclose(self.distribution.sf(inverse(_RARE)), _RARE, rtol=1e-6, atol=0))
+        SciPy's of F takes 1 - p, and is infinite soon; that of the inverse Gaussian is noise, as is its ``sf``.
+        """
+        if math.isfinite(self.support[1]):
+            return self.distribution.isf, 0.0
+        for inverse in (self.distribution.isf, self._newton):
+            if self._good_to(inverse, _RARE, _ALIKE) == _RARE[-1]:
+                return inverse, 0.0
+        return self.distribution.isf, self._good_to(self.distribution.isf, _RARER, _NEARLY)
 
-        return math.isinf(self.support[1]) and not good(self.distribution.isf) and good(self._halved)
-
-    def _halved(self, share: Array) -> Array:
-        """Where ``sf`` has these values: above the median by halving, as far up as it takes."""
+    def _good_to(self, inverse: Callable[[Array], Array], shares: Array, near: float) -> float:
+        """The last of some shares, ever smaller, up to which ``sf`` of an inverse gives each again."""
         with np.errstate(all="ignore"):
-            low = np.full(share.shape, float(self.distribution.median()))
-            high, step = low, float(self.distribution.std())
-            while np.any(far := (self.distribution.sf(high) > share) & (high < np.inf)):
-                low, high, step = np.where(far, high, low), np.where(far, high + step, high), 2 * step
-            while np.any(inside := (low < (middle := low + (high - low) / 2)) & (middle < high)):
-                above = self.distribution.sf(middle) > share
-                low, high = np.where(inside & above, middle, low), np.where(inside & ~above, middle, high)
-            return np.where(share < 0.5, high, self.distribution.isf(share))
+            good = np.isclose(self.distribution.sf(inverse(shares)), shares, rtol=near, atol=0)
+        return float(shares[max(np.cumprod(good).sum() - 1, 0)])
+
+    def _newton(self, share: Array) -> Array:
+        """Where ``sf`` has these values, by Newton's steps on its logarithm inside a bracket."""
+        law, wanted, sign = self.distribution, np.log(share), np.where(share < 0.5, 1.0, -1.0)
+        low = high = np.full(share.shape, float(law.median()))
+        step = float(law.std())
+        with np.errstate(all="ignore"):
+            while np.any(far := sign * (law.sf(high) - share) > 0):
+                low, high, step = np.where(far, high, low), np.where(far, high + sign * step, high), 2 * step
+            low, high = np.minimum(low, high), np.maximum(low, high)
+            x = low + (high - low) / 2
+            for _ in range(_MOST_STEPS):
+                found = np.log(law.sf(x))  # logsf may take a thousand times as long
+                low, high = np.where(found > wanted, x, low), np.where(found > wanted, high, x)
+                last, x = x, x + (found - wanted) * np.exp(found - law.logpdf(x))
+                x = np.where((low <= x) & (x <= high), x, low + (high - low) / 2)
+                if np.all(np.abs(x - last) <= _SETTLED * np.abs(x)):
+                    break
+        return x
 
 
 def _without_place(distribution: Any) -> Any:

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import scipy.stats
 
 import analytic
 import mcgw
@@ -20,6 +21,17 @@ SCENES = {
     "powers": {**BELOW_ONE, "law": mcgw.KogutEtsion(critical=0.0018)},
     "and back": {**BELOW_ONE, "law": mcgw.KogutEtsion(critical=0.0018), "unload_from": "loop"},
     "a table": {"grading": STEP, "separations": [1.0, 2.0]},
+    "plastic at first touch": {
+        "law": mcgw.ZhaoMaiettaChang(critical=0.015),
+        "grading": analytic.Custom(lambda s: np.exp(29 * (s - 1))),
+        "separations": [0.2, 1.3, 2.2],
+        "quantities": ["load", "area", "stiffness", "load_slope"],
+    },
+    "up and down": {
+        "law": mcgw.KogutEtsion(critical=0.4),
+        "grading": analytic.Custom(lambda s: 1 + 0.5 * np.sin(30 * s)),
+        "separations": [0.5, 2.0],
+    },
     "sticks": {
         "law": mcgw.JohnsonKendallRoberts(pull_off=0.5),
         "unload_from": "loop",
@@ -52,6 +64,42 @@ def test_scenes_that_share_surfaces_share_the_cells_that_were_cut_further(scene_
     scenes = [scene_of(**{**CLIPPED, "law": mcgw.ChangEtsionBogy(critical=c)}) for c in (0.08, 0.1)]
     one, other = shared(on_common_cells(scenes)).scenes
     np.testing.assert_array_equal(one.mesh.edges, other.mesh.edges)
+
+
+def test_crowds_where_cells_that_are_wide_do_not_tell_which_moments_vary(scene_of):
+    law, grading = mcgw.Coated(reduced_thickness=0.002, ratio=3.0), analytic.Custom(
+        lambda s: 1 + 0.9 * np.tanh(29 * (s - 1.47))
+    )
+    scene = scene_of(law=law, grading=grading, accuracy=1e-2, sampler="aggregate", separations=[0.3, 1.9])
+    assert mcgw.simulate(scene)["load"].shape == (2, 2)
+
+
+@pytest.mark.parametrize(
+    ("asked", "line"),
+    [
+        ({"grading": lambda s: 1 + 0.1 * np.sin(1e6 * s)}, "grading: not resolved by 4096 pieces .* Smooth it"),
+        (
+            {"law": mcgw.ZhaoMaiettaChang(critical=0.01), "unload_from": "loop", "quantities": ["load"]},
+            "contact.unload_from = 0: .* unloading is not known; take 'kogut-etsion'",
+        ),
+        (
+            {**CLIPPED, "law": mcgw.JohnsonKendallRoberts(pull_off=0.1)},
+            'grading.negative = "clip": from s = .* pulls them in without bound; raise the separations',
+        ),
+        (
+            {
+                "grading": lambda s: 1 + 0.5 * np.sin(3 * s),
+                "heights": scipy.stats.t(3.5),
+                "interaction": "body",
+                "separations": [0.0],
+            },
+            "grading: not resolved by 4096 pieces .* Smooth it",
+        ),
+    ],
+)
+def test_what_cannot_be_drawn_is_refused_when_it_is_made(scene_of, asked, line):
+    with pytest.raises(mcgw.SceneError, match=line):
+        scene_of(**asked)
 
 
 @pytest.mark.parametrize("wish", [{}, {"law_error": 1e-2}])

@@ -44,6 +44,10 @@ class Branch(Protocol):
         """Whether a contact of this piece is analytic in the root of the penetration where it begins."""
         ...
 
+    def root_at_touch(self, piece: int) -> bool:
+        """The same where it begins from nothing, so that its formulas take negative roots as well."""
+        ...
+
     def with_radii(self, ratios: Array) -> "Branch":
         """That of summits whose radii are these multiples of the surface's, one for each separation asked."""
         ...
@@ -97,6 +101,10 @@ class LoadingBranch:
     def root(self, piece: int) -> bool:
         """As `Branch.root`."""
         return piece > 0 or self.law.root
+
+    def root_at_touch(self, piece: int) -> bool:
+        """As `Branch.root_at_touch`: only those of the first piece do, the others are powers."""
+        return piece == 0 and self.law.root
 
     def left(self, h: Array, above: Array, e: Array) -> Array:
         """As `Branch.left`."""
@@ -195,6 +203,10 @@ class UnloadingBranch:
     def root(self, piece: int) -> bool:
         """As `Branch.root`."""
         return self.law.root if piece == 0 else self.law.unloading().root
+
+    def root_at_touch(self, piece: int) -> bool:
+        """As `Branch.root_at_touch`: formulas of the way back take the root of what is left."""
+        return self.root(piece)
 
     def left(self, h: Array, above: Array, e: Array) -> Array:
         """As `Branch.left`."""

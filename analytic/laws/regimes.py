@@ -15,7 +15,6 @@ Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 _SAME = 8  # spacings of floating-point numbers between heights that are not told apart
-_MOST = 16  # intervals at one separation
 
 
 @dataclass(frozen=True)
@@ -68,11 +67,6 @@ def regimes_of(law: ContactLaw, grading: Grading, separations: ArrayLike, low: f
     -------
     Regimes
         From the separation, or `low`, up to `high`; nothing for separations above that.
-
-    Raises
-    ------
-    ValueError
-        If one separation has more than 16 intervals.
     """
     h = np.asarray(separations, dtype=np.float64)
     count = len(law.limits(np.ones(h.shape)))
@@ -106,7 +100,6 @@ def _intervals(index: Ints, height: Array, step: Ints, high: float) -> Regimes:
     index, low, piece = index[held], low[held], piece[held]
     new = np.append(True, (np.diff(index) > 0) | (np.diff(piece) != 0))[: index.size]
     index, low, piece = index[new], low[new], piece[new]
-    _check(index)
     return Regimes(index, low, _ends(index, low, high), piece)
 
 
@@ -114,15 +107,6 @@ def _ends(index: Ints, low: Array, high: float) -> Array:
     """Where the next interval of the same separation begins, or the range ends."""
     last = np.append(np.diff(index) > 0, True)
     return np.where(last, high, np.append(low[1:], high))[: index.size]
-
-
-def _check(index: Ints) -> None:
-    most = int(np.bincount(index).max(initial=0))
-    if most > _MOST:
-        raise ValueError(
-            f"law: its pieces hold on {most} intervals of heights at one separation, and {_MOST} are the "
-            "most; the modulus goes up and down too often: smooth the grading"
-        )
 
 
 def merged_heights(heights: Array, separations: Array, anchors: Array) -> Array:

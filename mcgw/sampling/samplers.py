@@ -12,6 +12,7 @@ name            cells        numbers in them  moments     for
 """
 
 from collections.abc import Callable, Iterable, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -147,8 +148,9 @@ def aggregate_of(scene: Scene, crowded: int = CROWDED, distance: float = np.nan)
     mesh, response = _resolved(scene, mesh_of(scene, split=False))
     varying = response.layout
     if scene.keep != "moments":
-        varying = layout_of(scene, mesh, _summed(scene.quantities), precision=Precision(VARYING))
-        varying = varying.at_most(response.layout)
+        with suppress(UnresolvedError):  # all of them vary where cells are too wide to tell
+            needed = layout_of(scene, mesh, _summed(scene.quantities), precision=Precision(VARYING))
+            varying = needed.at_most(response.layout)
     return Counted("aggregate", scene, mesh, response, drawing=Crowds(varying, crowded, distance))
 
 

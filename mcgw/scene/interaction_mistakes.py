@@ -70,11 +70,10 @@ def _balance(scene: Fields) -> Iterator[str]:
     theory: Any = scene.theory
     h = np.unique(scene.separations)
     try:
-        x = theory.effective(h)
+        rate = 1 + theory.compliance * theory.alone.slope("load", theory.effective(h))
     except ValueError as error:
         yield str(error)
         return
-    rate = 1 + theory.compliance * theory.alone.slope("load", x)
     if np.any(rate <= 0):
         yield (
             f"interaction: at d/sigma = {h[rate <= 0].max():g} the mean plane sinks faster than it is "

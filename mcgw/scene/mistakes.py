@@ -15,12 +15,14 @@ from analytic import (
     MeasuredRadii,
     Nayak,
     PiecewiseSeries,
+    is_data,
     quantity_of,
 )
-from analytic.laws import half_spaces
+from analytic.laws import JohnsonKendallRoberts, half_spaces
 from mcgw.formats.sheet import brief
 from mcgw.scene.fields import EXACT, Fields
 from mcgw.scene.samplers import promise_of
+from mcgw.scene.section import SceneError
 from mcgw.scene.stop_rule import rel_err_mistakes
 
 __all__ = ["COARSEST", "mistakes"]
@@ -41,6 +43,7 @@ def mistakes(scene: Fields) -> list[str]:
         (_range,),
         (_modulus,),
         (_sums,),
+        (_resolved,),
     ):
         if found := [line for check in checks for line in check(scene)]:
             return found
@@ -100,8 +103,9 @@ def _history(scene: Fields) -> Iterator[str]:
             'give the lowest that was reached, or "loop"'
         )
     try:
+        way = scene.contact.unloading()
         stiff = [name for name in ("stiffness", "load_slope") if name in scene.quantities]
-        if stiff and not scene.contact.unloading().stiff:
+        if stiff and not way.stiff:
             yield (
                 f"contact.quantities: {stiff[0]!r} of contacts that break off has no variance (law = "
                 f'"{scene.law.name}"); leave it out, or unload_from'
@@ -249,8 +253,9 @@ def _range(scene: Fields) -> Iterator[str]:
 
 
 def _modulus(scene: Fields) -> Iterator[str]:
-    """Negative moduli among the heights that touch."""
-    if scene.negative != "error":
+    """Negative moduli among the heights that touch; none where contacts stick."""
+    sticks = isinstance(scene.law, JohnsonKendallRoberts)
+    if scene.negative != "error" and not (sticks and scene.negative == "clip"):
         return
     try:
         where = scene.negative_above(scene.lowest)
@@ -261,6 +266,12 @@ def _modulus(scene: Fields) -> Iterator[str]:
         return
     if isinstance(scene.grading, Exponential) and scene.grading.gamma < 0:
         where = scene.grading.zero
+    if scene.negative == "clip":
+        yield (
+            f'grading.negative = "clip": from s = {where:.4g} asperities have no modulus, and contact.law = '
+            f'"{scene.law.name}" pulls them in without bound; raise the separations, or take another grading'
+        )
+        return
     yield (
         f"{_key(scene)}: E*(s) is negative from s = {where:.4g}, which touches at h = {scene.lowest:g}; "
         'raise the separations, or say negative = "clip" or "allow" under [grading]'
@@ -282,6 +293,18 @@ def _sums(scene: Fields) -> Iterator[str]:
             f"{_key(scene)}: E*(s)/E* reaches {steepest:.3g}, and sums leave double precision; give a modest "
             "one"
         )
+
+
+def _resolved(scene: Fields) -> Iterator[str]:
+    """A Python function that no series resolves over all heights that count."""
+    if scene.law.is_data and is_data(scene.grading):
+        return
+    from mcgw.scene.storable import storable  # for those scenes alone, and it takes a scene
+
+    try:
+        storable(scene)
+    except SceneError as error:
+        yield from error.problems
 
 
 def _key(scene: Fields) -> str:

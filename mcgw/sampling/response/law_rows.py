@@ -99,7 +99,7 @@ def law_rows(scene: Scene, quantities: tuple[str, ...], mesh: Mesh, *, lasting: 
         if branch not in stretches:
             stretches[branch] = stretches_of(scene, branch, *mesh.range)
         found = stretches[branch]
-        roots = np.array([branch.root(int(piece)) for piece in found.piece], dtype=bool)
+        roots = np.array([branch.root_at_touch(int(piece)) for piece in found.piece], dtype=bool)
         total = np.zeros(len(separations)) if sixteen is None else sixteen.totals(scene, name, branch)
         parts.append(
             (
