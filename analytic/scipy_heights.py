@@ -2,6 +2,7 @@
 
 import math
 import sys
+import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property, partial
@@ -23,8 +24,14 @@ T = TypeVar("T")
 _SECONDS = 5.0  # for moments, or jumps, of a law of scipy: some are integrals of integrals
 _NOISE = 2.0**-30  # of a density that is the exponential of large terms, as of gamma(1e4)
 _RARE, _RARER = np.array([1e-3, 1e-9, 1e-15, 1e-24, 1e-36]), 10.0 ** -np.arange(1.0, 37.0)
-_ALIKE, _NEARLY = 1e-6, 1e-2  # how near a share comes to itself by way of its height, at all of these; at some
-_MOST_STEPS, _SETTLED = 100, 2.0**-30  # of Newton, halving where one leaves the bracket; a step whose square is nothing
+_ALIKE, _NEARLY = (
+    1e-6,
+    1e-2,
+)  # how near a share comes to itself by way of its height, at all of these; at some
+_MOST_STEPS, _SETTLED = (
+    100,
+    2.0**-30,
+)  # of Newton, halving where one leaves the bracket; a step whose square is nothing
 _TRIAL, _TRIAL_SECONDS = np.array([1e-9, 0.1, 0.5, 0.9]), 1.0  # a few of the thousands of calls to come
 
 
@@ -169,7 +176,7 @@ class ScipyHeights:
     def _from_share(self) -> tuple[Callable[[Array], Array], float]:
         """An inverse of ``sf``, and the least share that it is good for.
 
-        SciPy's of F takes 1 - p, and is infinite soon; that of the inverse Gaussian is noise, as is its ``sf``.
+        SciPy's of F takes 1 - p, and is infinite soon; of Rice's law ``sf`` is 1 - ``cdf`` as well.
         """
         if math.isfinite(self.support[1]):
             return self.distribution.isf, 0.0
@@ -180,7 +187,8 @@ class ScipyHeights:
 
     def _good_to(self, inverse: Callable[[Array], Array], shares: Array, near: float) -> float:
         """The last of some shares, ever smaller, up to which ``sf`` of an inverse gives each again."""
-        with np.errstate(all="ignore"):
+        with np.errstate(all="ignore"), warnings.catch_warnings():
+            warnings.simplefilter("ignore", RuntimeWarning)  # Boost's, of what it does not find
             good = np.isclose(self.distribution.sf(inverse(shares)), shares, rtol=near, atol=0)
         return float(shares[max(np.cumprod(good).sum() - 1, 0)])
 
@@ -201,7 +209,7 @@ class ScipyHeights:
                 x = np.where((low <= x) & (x <= high), x, low + (high - low) / 2)
                 if np.all(np.abs(x - last) <= _SETTLED * np.abs(x)):
                     break
-        return x
+        return np.asarray(x)
 
 
 def _without_place(distribution: Any) -> Any:

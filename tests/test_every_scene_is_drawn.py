@@ -67,8 +67,9 @@ def test_scenes_that_share_surfaces_share_the_cells_that_were_cut_further(scene_
 
 
 def test_crowds_where_cells_that_are_wide_do_not_tell_which_moments_vary(scene_of):
-    law, grading = mcgw.Coated(reduced_thickness=0.002, ratio=3.0), analytic.Custom(
-        lambda s: 1 + 0.9 * np.tanh(29 * (s - 1.47))
+    law, grading = (
+        mcgw.Coated(reduced_thickness=0.002, ratio=3.0),
+        analytic.Custom(lambda s: 1 + 0.9 * np.tanh(29 * (s - 1.47))),
     )
     scene = scene_of(law=law, grading=grading, accuracy=1e-2, sampler="aggregate", separations=[0.3, 1.9])
     assert mcgw.simulate(scene)["load"].shape == (2, 2)
@@ -77,7 +78,10 @@ def test_crowds_where_cells_that_are_wide_do_not_tell_which_moments_vary(scene_o
 @pytest.mark.parametrize(
     ("asked", "line"),
     [
-        ({"grading": lambda s: 1 + 0.1 * np.sin(1e6 * s)}, "grading: not resolved by 4096 pieces .* Smooth it"),
+        (
+            {"grading": lambda s: 1 + 0.1 * np.sin(1e6 * s)},
+            "grading: not resolved by 4096 pieces .* Smooth it",
+        ),
         (
             {"law": mcgw.ZhaoMaiettaChang(critical=0.01), "unload_from": "loop", "quantities": ["load"]},
             "contact.unload_from = 0: .* unloading is not known; take 'kogut-etsion'",

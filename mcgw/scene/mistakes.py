@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Iterator
+from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
@@ -24,6 +25,9 @@ from mcgw.scene.fields import EXACT, Fields
 from mcgw.scene.samplers import promise_of
 from mcgw.scene.section import SceneError
 from mcgw.scene.stop_rule import rel_err_mistakes
+
+if TYPE_CHECKING:
+    from mcgw.scene.scene import Scene
 
 __all__ = ["COARSEST", "mistakes"]
 
@@ -299,10 +303,10 @@ def _resolved(scene: Fields) -> Iterator[str]:
     """A Python function that no series resolves over all heights that count."""
     if scene.law.is_data and is_data(scene.grading):
         return
-    from mcgw.scene.storable import storable  # for those scenes alone, and it takes a scene
+    from mcgw.scene.storable import storable  # for those scenes alone
 
     try:
-        storable(scene)
+        storable(cast("Scene", scene))
     except SceneError as error:
         yield from error.problems
 
