@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
@@ -25,9 +24,6 @@ from mcgw.scene.fields import EXACT, Fields
 from mcgw.scene.samplers import promise_of
 from mcgw.scene.section import SceneError
 from mcgw.scene.stop_rule import rel_err_mistakes
-
-if TYPE_CHECKING:
-    from mcgw.scene.scene import Scene
 
 __all__ = ["COARSEST", "mistakes"]
 
@@ -306,7 +302,7 @@ def _resolved(scene: Fields) -> Iterator[str]:
     from mcgw.scene.storable import storable  # for those scenes alone
 
     try:
-        storable(cast("Scene", scene))
+        storable(scene)
     except SceneError as error:
         yield from error.problems
 

@@ -1,21 +1,24 @@
 """A scene made of numbers alone, whatever Python gave: what is simulated, and what a file keeps."""
 
 from dataclasses import replace
+from typing import TypeVar
 
 import numpy as np
 
 from analytic import extent, is_data, resolved
 from analytic.laws import ContactLaw
-from mcgw.scene.scene import Scene
+from mcgw.scene.fields import Fields
 from mcgw.scene.section import SceneError
 
 __all__ = ["storable"]
+
+AnyScene = TypeVar("AnyScene", bound=Fields)
 
 _LOOKED_AT, _BEYOND = 4001, 1.1  # heights for the stiffest; and how much farther series reach
 _MARGIN = 1 / 16  # the lowest that is felt is a multiple of this, and may change by one with the series
 
 
-def storable(scene: Scene) -> Scene:
+def storable(scene: AnyScene) -> AnyScene:
     """The scene with its grading and contact law resolved, unless a file holds them as they are.
 
     All samplers draw with this one, so that in memory, in a file, and gone on with from there, a scene has
@@ -39,7 +42,7 @@ def storable(scene: Scene) -> Scene:
         raise SceneError([str(error)]) from None
 
 
-def _extent(scene: Scene) -> tuple[float, float]:
+def _extent(scene: Fields) -> tuple[float, float]:
     """Lowest and highest height that count; asperities may have felt lower separations than those asked."""
     asked = scene.separations
     if scene.lowest < min(asked):
@@ -48,7 +51,7 @@ def _extent(scene: Scene) -> tuple[float, float]:
     return extent(scene.grading, scene.heights, asked)
 
 
-def _resolved_law(scene: Scene) -> ContactLaw:
+def _resolved_law(scene: Fields) -> ContactLaw:
     """The series of a law up to the deepest penetration of the stiffest asperity."""
     low, high = _extent(scene)
     deepest = high - min(scene.lowest, low if scene.unload_from is None else scene.unload_from)
