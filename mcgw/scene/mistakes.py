@@ -18,7 +18,7 @@ from analytic import (
     is_data,
     quantity_of,
 )
-from analytic.laws import JohnsonKendallRoberts, half_spaces
+from analytic.laws import half_spaces
 from mcgw.formats.sheet import brief
 from mcgw.scene.fields import EXACT, Fields
 from mcgw.scene.samplers import promise_of
@@ -254,7 +254,7 @@ def _range(scene: Fields) -> Iterator[str]:
 
 def _modulus(scene: Fields) -> Iterator[str]:
     """Negative moduli among the heights that touch; none where contacts stick."""
-    sticks = isinstance(scene.law, JohnsonKendallRoberts)
+    sticks = scene.law.name == "johnson-kendall-roberts"
     if scene.negative != "error" and not (sticks and scene.negative == "clip"):
         return
     try:
