@@ -12,8 +12,8 @@ from analytic.gradings import Grading, Homogeneous
 from analytic.height_rule import Count, Fluctuations, HeightRule
 from analytic.heights import Gaussian, HeightLaw
 from analytic.laws.film import Film
-from analytic.laws.law import ContactLaw, is_hertz
-from analytic.laws.tangential import Tangential, half_spaces
+from analytic.laws.law import ContactLaw
+from analytic.laws.tangential import Tangential
 from analytic.laws.ways import Ways
 from analytic.mean_contact import MeanContact, MeanPowers
 from analytic.measured_summits import MeasuredRadii
@@ -252,7 +252,7 @@ class Model:
         ValueError
             If the law is not that of elastic half-spaces.
         """
-        if not half_spaces(self.ways.law):
+        if not self.ways.law.half_space:
             raise ValueError(
                 f"law = {self.ways.law.name!r}: tangential loads need elastic half-spaces; take 'hertz' or "
                 "'power-law-graded'"
@@ -310,10 +310,6 @@ class Model:
         return replace(result, radius=np.repeat([q.radius for q in asked], h.size))
 
     @cached_property
-    def _hertz(self) -> bool:
-        return self.law is None or is_hertz(self.law)
-
-    @cached_property
     def ways(self) -> Ways:
         """Law of contact, history and film, in reduced units."""
         law = ContactLaw() if self.law is None else self.law.on(self.surface)
@@ -345,7 +341,7 @@ class Model:
 
     def _by_powers(self, q: Quantity) -> bool:
         """Whether one asperity carries a power of its approach, whose mean is an integral over heights."""
-        return self._hertz and q.base not in LAW_QUANTITIES and self._summits.powers
+        return self.ways.law.hertz and q.base not in LAW_QUANTITIES and self._summits.powers
 
     def _unit(self, q: Quantity) -> float:
         return self.number * q.scale(self.surface)

@@ -170,7 +170,7 @@ def test_spots_crowd_by_their_area():
 @pytest.mark.parametrize(("make", "words"), [
     (lambda: PowerLawGraded(1.0, 1e-6), "k = 1.0: give"),
     (lambda: PowerLawGraded(0.5), "c0 = None, reduced_c0 = None: give one"),
-    (lambda: PowerLawGraded(0.5, 0.0), "c0 = 0.0: give a depth > 0"),
+    (lambda: PowerLawGraded(0.5, 0.0), "c0 = 0.0: give a finite number > 0"),
     (lambda: PowerLawGraded(0.5, 1e-6, 0.6), "poisson = 0.6: give"),
     (lambda: PowerLawGraded(0.5, 1e-6).load(0, ONE, ONE), "c0=1e-06.*law.on"),
     (lambda: Coated(ratio=2.0), "thickness = None, reduced_thickness = None: give one"),

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from analytic.laws.film import Film, SpotConductance, crowding_factor, film_conductance, film_parameter
     from analytic.laws.law import ContactLaw, Hertz, of_spot, piece_of
     from analytic.laws.regimes import Regimes, merged_heights, regimes_of
-    from analytic.laws.tangential import Tangential, half_spaces, masing
+    from analytic.laws.tangential import Tangential, masing
     from analytic.laws.unloading import Unloading
     from analytic.laws.ways import Ways
 
@@ -28,7 +28,7 @@ __all__ = [
     "Hertz", "JacksonGreen", "JohnsonKendallRoberts", "KogutEtsion", "LoadingBranch", "PowerLawGraded",
     "Regimes", "SpotConductance", "Tangential", "Unloading", "UnloadingBranch", "Ways",
     "ZhaoMaiettaChang", "by_name", "crowding_factor", "film_conductance", "film_parameter",
-    "half_spaces", "masing", "merged_heights", "of_spot", "piece_of", "regimes_of", "term_of",
+    "masing", "merged_heights", "of_spot", "piece_of", "regimes_of", "term_of",
 ]  # fmt: skip
 
 _FILES = {
@@ -40,7 +40,7 @@ _FILES = {
     "film": ("Film", "SpotConductance", "crowding_factor", "film_conductance", "film_parameter"),
     "law": ("ContactLaw", "Hertz", "of_spot", "piece_of"),
     "regimes": ("Regimes", "merged_heights", "regimes_of"),
-    "tangential": ("Tangential", "half_spaces", "masing"),
+    "tangential": ("Tangential", "masing"),
     "unloading": ("Unloading",),
     "ways": ("Ways",),
 }

@@ -1,8 +1,8 @@
 """Elastic contacts that stick: Derjaguin, Muller and Toporov's, and Johnson, Kendall and Roberts'."""
 
 import math
-from dataclasses import dataclass, replace
-from typing import Any, ClassVar, Self
+from dataclasses import dataclass
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,33 +32,19 @@ class _Adhesive(ContactLaw):
     """
 
     of_radius: ClassVar[tuple[str, float]] = ("pull_off", 1 / 3)
+    in_si: ClassVar[tuple[str, str]] = ("work", "a work of adhesion in J/m^2 or a stretch over sigma")
 
     work: float | None = None
     pull_off: float | None = None
 
     def __post_init__(self) -> None:
-        if (self.work is None) == (self.pull_off is None):
-            raise ValueError(
-                f"work = {self.work!r}, pull_off = {self.pull_off!r}: give one of them, a work of adhesion "
-                "in J/m^2 or a stretch over sigma"
-            )
-        for name in ("work", "pull_off"):
-            value = getattr(self, name)
-            if value is not None and not 0 < value < math.inf:
-                raise ValueError(f"{name} = {value!r}: give a finite number > 0")
+        self.check_constants()
 
-    def on(self, surface: Surface) -> Self:
-        """The law on this surface, in reduced units: with `pull_off` in place of `work`."""
-        if self.work is None:
-            return self
-        stretch = 0.75 * (math.pi**2 * self.work**2 * surface.radius / surface.E_star**2) ** (1 / 3)
-        return replace(self, work=None, pull_off=stretch / surface.sigma)
-
-    @property
-    def _stretch(self) -> Any:
-        if self.pull_off is None:
-            raise ValueError(f"{self}: put it on a surface first, law.on(surface), or give `pull_off`")
-        return self.pull_off
+    def reduced_on(self, surface: Surface) -> float:
+        """D, over sigma."""
+        assert self.work is not None
+        stretch: float = 0.75 * (math.pi**2 * self.work**2 * surface.radius / surface.E_star**2) ** (1 / 3)
+        return stretch / surface.sigma
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -95,7 +81,7 @@ class DerjaguinMullerToporov(_Adhesive):
 
     def load(self, piece: int, y: Any, e: Array) -> Any:
         """Hertz's load less a constant: the pull knows no modulus."""
-        return super().load(piece, y, e) - 12 * (self._stretch / 3) ** 1.5
+        return super().load(piece, y, e) - 12 * (self.reduced / 3) ** 1.5
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -143,12 +129,12 @@ class JohnsonKendallRoberts(_Adhesive):
     @property
     def finest(self) -> float:
         """The formulas end where contacts break off."""
-        return float(np.min(self._stretch))
+        return float(np.min(self.reduced))
 
     def stretch(self, e: Array) -> Array:
         """D_e, in the shape of `e`; infinite without stiffness."""
         with np.errstate(divide="ignore"):
-            return np.asarray(self._stretch * np.asarray(e, dtype=np.float64) ** (-2 / 3))
+            return np.asarray(self.reduced * np.asarray(e, dtype=np.float64) ** (-2 / 3))
 
     def load(self, piece: int, y: Any, e: Array) -> Any:
         """Load of a contact, in the shape of `y` and `e`."""

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from analytic.gradings import Grading
 from analytic.laws.crossings import crossings_of
 from analytic.laws.film import SpotConductance
-from analytic.laws.law import ContactLaw, of_spot, of_unloading, piece_of
+from analytic.laws.law import ContactLaw, of_spot, piece_of
 from analytic.laws.regimes import Regimes, merged_heights, regimes_of
 
 __all__ = ["Branch", "LoadingBranch", "UnloadingBranch", "term_of"]
@@ -227,7 +227,7 @@ class UnloadingBranch:
             return _conducted(self.conductance, self.value("conductance", piece, h, above, e, sign=sign))
         unloading, deepest = self.law.unloading(), above + (h - self.deepest)
         y = sign * np.sqrt(np.maximum(above - unloading.residual(piece, deepest, e), 0.0))
-        return of_unloading(quantity, unloading, piece, y, deepest, e)
+        return of_spot(quantity, unloading, piece, y, deepest, e)
 
 
 def _with_radii(branch: Way, ratios: Array) -> Way:

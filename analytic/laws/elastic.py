@@ -1,14 +1,13 @@
 """Elastic asperities beside Hertz's: a modulus that grows with depth, and a coating."""
 
-import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from math import cos, gamma, pi, sin, sqrt
-from typing import Any, ClassVar, Self
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from analytic.laws.law import ContactLaw, checked_poisson, is_positive
+from analytic.laws.law import ContactLaw, check_poisson
 from analytic.quadrature import gauss_legendre
 from analytic.surface import Surface
 
@@ -63,6 +62,7 @@ class PowerLawGraded(ContactLaw):
     root: ClassVar[bool] = False
     half_space: ClassVar[bool] = True
     of_radius: ClassVar[tuple[str, float]] = ("reduced_c0", -0.5)
+    in_si: ClassVar[tuple[str, str]] = ("c0", "a depth in m or over sqrt(R sigma)")
 
     k: float
     c0: float | None = None
@@ -72,22 +72,13 @@ class PowerLawGraded(ContactLaw):
     def __post_init__(self) -> None:
         if not 0 <= self.k < 1:
             raise ValueError(f"k = {self.k!r}: give an exponent of the depth from 0 to below 1")
-        checked_poisson(self.poisson)
-        if (self.c0 is None) == (self.reduced_c0 is None):
-            raise ValueError(
-                f"c0 = {self.c0!r}, reduced_c0 = {self.reduced_c0!r}: give one of them, "
-                "a depth in m or over sqrt(R sigma)"
-            )
-        for name in ("c0", "reduced_c0"):
-            value = getattr(self, name)
-            if value is not None and not is_positive(value):
-                raise ValueError(f"{name} = {value!r}: give a depth > 0")
+        check_poisson(self.poisson)
+        self.check_constants()
 
-    def on(self, surface: Surface) -> Self:
-        """The law on this surface, in reduced units: with `reduced_c0` in place of `c0`."""
-        if self.c0 is None:
-            return self
-        return replace(self, c0=None, reduced_c0=self.c0 / sqrt(surface.radius * surface.sigma))
+    def reduced_on(self, surface: Surface) -> float:
+        """c0 over sqrt(R sigma)."""
+        assert self.c0 is not None
+        return self.c0 / sqrt(surface.radius * surface.sigma)
 
     @property
     def H(self) -> float:  # noqa: N802
@@ -113,9 +104,7 @@ class PowerLawGraded(ContactLaw):
 
     @property
     def _scale(self) -> Any:
-        if self.reduced_c0 is None:
-            raise ValueError(f"{self}: put it on a surface first, law.on(surface), or give `reduced_c0`")
-        return self.H / self.reduced_c0**self.k
+        return self.H / self.reduced**self.k
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -163,6 +152,7 @@ class Coated(ContactLaw):
 
     name: ClassVar[str] = "coated"
     of_radius: ClassVar[tuple[str, float]] = ("reduced_thickness", -0.5)
+    in_si: ClassVar[tuple[str, str]] = ("thickness", "in m or over sqrt(R sigma)")
 
     thickness: float | None = None
     ratio: float
@@ -170,53 +160,37 @@ class Coated(ContactLaw):
     reduced_thickness: float | None = None
 
     def __post_init__(self) -> None:
-        checked_poisson(self.poisson)
-        if (self.thickness is None) == (self.reduced_thickness is None):
-            raise ValueError(
-                f"thickness = {self.thickness!r}, reduced_thickness = {self.reduced_thickness!r}: "
-                "give one of them, in m or over sqrt(R sigma)"
-            )
-        for name in ("thickness", "ratio", "reduced_thickness"):
-            value = getattr(self, name)
-            if value is not None and not is_positive(value):
-                raise ValueError(f"{name} = {value!r}: give a finite number > 0")
+        check_poisson(self.poisson)
+        self.check_constants("ratio")
 
-    def on(self, surface: Surface) -> Self:
-        """The law on this surface, in reduced units: with `reduced_thickness` in place of `thickness`."""
-        if self.thickness is None:
-            return self
-        reduced = self.thickness / math.sqrt(surface.radius * surface.sigma)
-        return replace(self, thickness=None, reduced_thickness=reduced)
+    def reduced_on(self, surface: Surface) -> float:
+        """Thickness over sqrt(R sigma)."""
+        assert self.thickness is not None
+        return self.thickness / sqrt(surface.radius * surface.sigma)
 
     @property
     def finest(self) -> float:
         """How far above first touch the formulas are analytic: arctan(a/t) up to ``|a|`` = t."""
-        return float(np.min(self._t)) ** 2
+        return float(np.min(self.reduced)) ** 2
 
     def load(self, piece: int, y: Any, e: Array) -> Any:
         """Load of a contact, in the shape of `y` and `e`: three times the integral of its stiffness y dy."""
-        w, nu = np.asarray(y) / self._t, self.poisson
+        w, nu = np.asarray(y) / self.reduced, self.poisson
         _, tail, rise = _logarithms(w * w)
-        atan = w**3 / 3 * (math.pi / 2 - np.arctan(w)) + tail / 6
-        integral = 2 / math.pi * atan + ((1 - 2 * nu) * rise - tail) / (4 * math.pi * (1 - nu))
-        return e * (y * y * y + 3 * (self.ratio - 1) * self._t**3 * integral)
+        atan = w**3 / 3 * (pi / 2 - np.arctan(w)) + tail / 6
+        integral = 2 / pi * atan + ((1 - 2 * nu) * rise - tail) / (4 * pi * (1 - nu))
+        return e * (y * y * y + 3 * (self.ratio - 1) * self.reduced**3 * integral)
 
     def stiffness(self, piece: int, y: Array, e: Array) -> Array:
         """Stiffness of a spot over 2 E* sqrt(R sigma)."""
-        w = np.asarray(y) / self._t
+        w = np.asarray(y) / self.reduced
         return np.asarray(e * (y * (1 + (self.ratio - 1) * self._share(w))))
 
     def _share(self, w: Any) -> Any:
         """Weight I0 of the coating at the radius of contact w over its thickness."""
         z, nu = w * w, self.poisson
         mixed = (1 - 2 * nu) * w * _logarithms(z)[0] - w / (1 + z)
-        return 1 - 2 / math.pi * np.arctan(w) + mixed / (2 * math.pi * (1 - nu))
-
-    @property
-    def _t(self) -> Any:
-        if self.reduced_thickness is None:
-            raise ValueError(f"{self}: put it on a surface first, law.on(surface)")
-        return self.reduced_thickness
+        return 1 - 2 / pi * np.arctan(w) + mixed / (2 * pi * (1 - nu))
 
 
 def _logarithms(z: Any) -> tuple[Any, Any, Any]:

@@ -2,13 +2,13 @@
 
 import math
 from collections.abc import Callable
-from dataclasses import KW_ONLY, dataclass, replace
-from typing import Any, ClassVar, Literal, Self
+from dataclasses import KW_ONLY, dataclass
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
-from analytic.laws.law import ContactLaw, is_positive
+from analytic.laws.law import ContactLaw
 from analytic.laws.unloading import Unloading, derivative
 from analytic.surface import Surface
 
@@ -49,8 +49,7 @@ class ElasticPlastic(ContactLaw):
     starts: ClassVar[tuple[float, ...]] = (1.0,)
 
     def __post_init__(self) -> None:
-        if self.critical is not None and not is_positive(self.critical):
-            raise ValueError(f"critical = {self.critical!r}: give a critical penetration over sigma > 0")
+        self.check_constants()
 
     @property
     def edges(self) -> tuple[float, ...]:
@@ -59,9 +58,7 @@ class ElasticPlastic(ContactLaw):
 
     @property
     def _root_of_critical(self) -> Any:
-        if self.critical is None:
-            raise ValueError(f"{self}: put it on a surface first, law.on(surface), or give `critical`")
-        return np.sqrt(self.critical)
+        return np.sqrt(self.reduced)
 
     def delta_c(self, e: Array) -> Array:
         """Critical penetration, infinite where there is no stiffness; in the shape of `e`."""
@@ -121,27 +118,21 @@ class FromHardness(ElasticPlastic):
     _: KW_ONLY
     hardness: float | None = None
 
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        if (self.hardness is None) == (self.critical is None):
-            raise ValueError(
-                f"hardness = {self.hardness!r}, critical = {self.critical!r}: give one of them, "
-                "a hardness in Pa or a critical penetration over sigma"
-            )
-        if self.hardness is not None and not is_positive(self.hardness):
-            raise ValueError(f"hardness = {self.hardness!r}: give a hardness > 0 Pa, as a number")
+    in_si: ClassVar[tuple[str, str]] = (
+        "hardness",
+        "a hardness in Pa or a critical penetration over sigma",
+    )
 
     @property
     def yield_factor(self) -> float:
         """K, the greatest contact pressure at the onset of yield over the hardness."""
         raise NotImplementedError
 
-    def on(self, surface: Surface) -> Self:
-        """The law on this surface, in reduced units: with `critical` in place of `hardness`."""
-        if self.hardness is None:
-            return self
+    def reduced_on(self, surface: Surface) -> float:
+        """delta_c of an asperity of modulus E*, over sigma."""
+        assert self.hardness is not None
         strain = math.pi * self.yield_factor * self.hardness / (2 * surface.E_star)
-        return replace(self, hardness=None, critical=strain**2 * surface.radius / surface.sigma)
+        return strain**2 * surface.radius / surface.sigma
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analytic.laws.elastic_plastic import Bridgeable, EtsionKligermanKadin, FromHardness, kogut_etsion_factor
-from analytic.laws.law import checked_poisson, is_positive
+from analytic.laws.law import check_poisson
 from analytic.surface import Surface
 
 __all__ = ["ChangEtsionBogy", "JacksonGreen", "KogutEtsion", "ZhaoMaiettaChang"]
@@ -60,7 +60,7 @@ class ChangEtsionBogy(FromHardness, Bridgeable):
     def __post_init__(self) -> None:
         super().__post_init__()
         if self.poisson is not None:
-            checked_poisson(self.poisson)
+            check_poisson(self.poisson)
 
     @property
     def yield_factor(self) -> float:
@@ -190,7 +190,7 @@ class KogutEtsion(FromHardness, Bridgeable):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        checked_poisson(self.poisson)
+        check_poisson(self.poisson)
 
     @property
     def yield_factor(self) -> float:
@@ -271,11 +271,8 @@ class JacksonGreen(Bridgeable):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        checked_poisson(self.poisson)
-        for name in ("yield_strength", "yield_strain"):
-            value = getattr(self, name)
-            if value is not None and not is_positive(value):
-                raise ValueError(f"{name} = {value!r}: give a finite number > 0")
+        check_poisson(self.poisson)
+        self.check_constants("yield_strength", "yield_strain")
         reduced = (self.yield_strain is not None, self.critical is not None)
         if reduced[0] != reduced[1] or reduced[0] == (self.yield_strength is not None):
             raise ValueError(

@@ -9,7 +9,7 @@ Everything is in reduced units. An asperity of height s under a plane at the sep
 import math
 from collections.abc import Callable
 from copy import copy
-from dataclasses import dataclass, fields, is_dataclass
+from dataclasses import dataclass, fields, is_dataclass, replace
 from numbers import Real
 from typing import Any, ClassVar, Self
 
@@ -22,11 +22,9 @@ from analytic.surface import Surface
 __all__ = [
     "ContactLaw",
     "Hertz",
-    "checked_poisson",
-    "is_hertz",
+    "check_poisson",
     "is_positive",
     "of_spot",
-    "of_unloading",
     "piece_of",
 ]
 
@@ -55,8 +53,8 @@ class ContactLaw:
     of_radius : (str, float) or None
         The constant that follows the radius of a summit on one surface, and the power of the radius that it
         goes as.
-    half_space : bool
-        Whether bodies are elastic half-spaces though the law is not Hertz's.
+    in_si : (str, str) or None
+        The constant in SI units that may stand for that one, and words for the two.
     root : bool
         False if piece 0 is no analytic function of y next to y = 0, as a power that is no half-integer.
     """
@@ -64,7 +62,7 @@ class ContactLaw:
     name: ClassVar[str] = "hertz"
     elastic: ClassVar[bool] = True
     root: ClassVar[bool] = True
-    half_space: ClassVar[bool] = False
+    in_si: ClassVar[tuple[str, str] | None] = None
     of_radius: ClassVar[tuple[str, float] | None] = None
 
     @property
@@ -90,9 +88,54 @@ class ContactLaw:
         known: list[str] = [field.name for field in fields(self)] if is_dataclass(self) else []
         return {name: getattr(self, name) for name in known if getattr(self, name) is not None}
 
-    def on(self, surface: Surface) -> "ContactLaw":
+    @property
+    def hertz(self) -> bool:
+        """Whether it has none of its own formulas: there are closed forms then."""
+        return all(getattr(type(self), name) is getattr(ContactLaw, name) for name in _FORMULAS)
+
+    @property
+    def half_space(self) -> bool:
+        """Whether bodies are elastic half-spaces."""
+        return self.hertz
+
+    def check_constants(self, *others: str) -> None:
+        """Refuse constants that are no numbers > 0, or not exactly one of two that say the same."""
+        names = [pair[0] for pair in (self.in_si, self.of_radius) if pair]
+        given = {name: getattr(self, name) for name in (*names, *others)}
+        if self.in_si and sum(given[name] is None for name in names) != 1:
+            told = ", ".join(f"{name} = {given[name]!r}" for name in names)
+            raise ValueError(f"{told}: give one of them, {self.in_si[1]}")
+        for name, value in given.items():
+            if value is not None and not is_positive(value):
+                raise ValueError(f"{name} = {value!r}: give a finite number > 0")
+
+    def on(self, surface: Surface) -> Self:
         """The law on this surface, in reduced units: without anything in Pa or m left."""
-        return self
+        if not (self.in_si and self.of_radius) or getattr(self, self.in_si[0]) is None:
+            return self
+        law: Any = self
+        return replace(law, **{self.in_si[0]: None, self.of_radius[0]: self.reduced_on(surface)})  # type: ignore[no-any-return]
+
+    def reduced_on(self, surface: Surface) -> float:
+        """The constant that follows the radius, on this surface, from that in SI units."""
+        raise NotImplementedError
+
+    @property
+    def reduced(self) -> Any:
+        """The constant that follows the radius: one number, or one for each summit.
+
+        Raises
+        ------
+        ValueError
+            If it was given in SI units and the law is not on a surface.
+        """
+        assert self.of_radius
+        value = getattr(self, self.of_radius[0])
+        if value is None:
+            raise ValueError(
+                f"{self}: put it on a surface first, law.on(surface), or give `{self.of_radius[0]}`"
+            )
+        return value
 
     def with_radii(self, ratios: Array) -> Self:
         """The law in the units of summits whose radii are these multiples of the surface's.
@@ -183,65 +226,42 @@ class Hertz(ContactLaw):
     name: ClassVar[str] = "hertz"
 
 
-def is_hertz(law: ContactLaw) -> bool:
-    """Whether it has none of its own formulas."""
-    return all(getattr(type(law), name, None) is getattr(ContactLaw, name, None) for name in _FORMULAS)
-
-
 def is_positive(value: Any) -> bool:
     """False also for texts, which only scene files read."""
     return isinstance(value, Real) and 0 < float(value) < math.inf
 
 
-def checked_poisson(poisson: float) -> float:
-    """Poisson's ratio, if it is one.
-
-    Raises
-    ------
-    ValueError
-        If not.
-    """
+def check_poisson(poisson: float) -> None:
+    """Refuse what is no Poisson's ratio."""
     if not -1 < poisson <= 0.5:
-        raise ValueError(f"poisson = {poisson!r}: give a Poisson's ratio between -1 and 0.5")
-    return poisson
+        raise ValueError(f"poisson = {poisson!r}: give a Poisson's ratio, above -1 and at most 0.5")
 
 
-def of_spot(quantity: str, law: ContactLaw, piece: int, y: Array, e: Array) -> Array:
-    """What a contact of this piece of the law adds, as the piece's formula goes on beyond its ends.
+def of_spot(quantity: str, formulas: "ContactLaw | Unloading", piece: int, *at: Array) -> Array:
+    """Evaluate what a contact of this piece adds, as the piece's formula goes on beyond its ends.
 
     Parameters
     ----------
     quantity : str
         Its name: one of `analytic.QUANTITIES` or `analytic.LAW_QUANTITIES`.
-    law : ContactLaw
-        In reduced units.
+    formulas : ContactLaw or Unloading
+        Of load, radius, stiffness and slope, in reduced units.
     piece : int
         Which formula.
-    y, e : ndarray
-        Root of the penetration and modulus E*(s)/E*, of any shapes that broadcast.
+    *at : ndarray
+        What they take: the root of the penetration, on the way back that of what is left to lift-off and the
+        deepest penetration, and the modulus E*(s)/E*; of any shapes that broadcast.
 
     Returns
     -------
     ndarray
-        In their common shape.
+        In their common shape, over the scale of the quantity.
 
     Raises
     ------
     KeyError
         If there is no such quantity.
     """
-    return _added(quantity, law, piece, y, e)
-
-
-def of_unloading(
-    quantity: str, unloading: Unloading, piece: int, y: Array, deepest: Array, e: Array
-) -> Array:
-    """As `of_spot`, on the way back from `deepest`; y is the root of the penetration left to lift-off."""
-    return _added(quantity, unloading, piece, y, deepest, e)
-
-
-def _added(quantity: str, formulas: Any, piece: int, *at: Array) -> Array:
-    """A quantity by the formulas of load, radius, stiffness and slope, on either way."""
     shape = np.broadcast_shapes(*map(np.shape, at))
     known: dict[str, Any] = {
         "load": lambda: formulas.load(piece, *at),

@@ -6,10 +6,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from analytic.laws.law import ContactLaw, is_hertz
+from analytic.laws.law import check_poisson
 from analytic.surface import Surface
 
-__all__ = ["Tangential", "half_spaces", "masing"]
+__all__ = ["Tangential", "masing"]
 
 Array = NDArray[np.float64]
 
@@ -65,8 +65,7 @@ class Tangential:
         object.__setattr__(self, "displacements", tuple(np.ravel(displacements).astype(np.float64).tolist()))
         if not 0 < friction < math.inf:
             raise ValueError(f"friction = {friction!r}: give a coefficient of friction > 0")
-        if not -1 < poisson <= 0.5:
-            raise ValueError(f"poisson = {poisson!r}: give a Poisson's ratio, above -1 and at most 0.5")
+        check_poisson(poisson)
         if not self.displacements:
             raise ValueError("displacements = []: give at least one, in m")
         wrong = [u for u in self.displacements if not 0 <= u < math.inf]
@@ -85,11 +84,6 @@ class Tangential:
     def load(self, load: Array, shifted: Array) -> Array:
         """Tangential loads from the normal load, and those at the separations shifted."""
         return np.asarray(self.friction * (load - shifted))
-
-
-def half_spaces(law: ContactLaw) -> bool:
-    """Whether bodies are elastic half-spaces, which the theorem needs: Hertz's law and the graded one."""
-    return law.half_space or is_hertz(law)
 
 
 def masing(virgin: ArrayLike) -> Array:

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from analytic import Grading, quantity_of
-from analytic.laws import ContactLaw, half_spaces
+from analytic.laws import ContactLaw
 from mcgw.ensemble.asperities_alone import scene_alone
 from mcgw.ensemble.drawing import answered, blocks, kept
 from mcgw.ensemble.ensemble import Ensemble
@@ -148,7 +148,7 @@ def regraded_scene(
 
 def _unknown_under(law: ContactLaw) -> dict[str, None]:
     """What there cannot be under a law."""
-    unknown: dict[str, None] = {} if half_spaces(law) else {"tangential": None}
+    unknown: dict[str, None] = {} if law.half_space else {"tangential": None}
     try:
         law.unloading()
     except ValueError:

@@ -18,7 +18,6 @@ from analytic import (
     is_data,
     quantity_of,
 )
-from analytic.laws import half_spaces
 from mcgw.formats.sheet import brief
 from mcgw.scene.fields import EXACT, Fields
 from mcgw.scene.samplers import promise_of
@@ -116,7 +115,7 @@ def _history(scene: Fields) -> Iterator[str]:
 
 def _law(scene: Fields) -> Iterator[str]:
     """A law that means nothing for this surface."""
-    if scene.tangential and not half_spaces(scene.law):
+    if scene.tangential and not scene.law.half_space:
         yield (
             f'contact.tangential: the theorem needs elastic half-spaces, not law = "{scene.law.name}"; take '
             '"hertz" or "power-law-graded"'
