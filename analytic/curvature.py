@@ -17,6 +17,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -43,7 +44,7 @@ class WeightedHeights:
     Parameters
     ----------
     law : HeightLaw
-        The law itself, which all but `density` is of.
+        The law itself, which all but `pdf` is of.
     weight : callable
         Takes reduced heights to their weights.
     """
@@ -51,52 +52,15 @@ class WeightedHeights:
     law: HeightLaw
     weight: Callable[[Array], Array]
 
-    @property
-    def support(self) -> tuple[float, float]:
-        """As the law's."""
-        return self.law.support
-
-    @property
-    def breaks(self) -> tuple[float, ...]:
-        """As the law's."""
-        return self.law.breaks
-
-    @property
-    def singular(self) -> tuple[float, ...]:
-        """As the law's."""
-        return self.law.singular
-
-    def span(self, s: float) -> float:
-        """As the law's."""
-        return self.law.span(s)
-
-    def rvs(self, n: int, rng: np.random.Generator) -> Array:
-        """Heights of the law, without the weight."""
-        return self.law.rvs(n, rng)
-
     def pdf(self, s: Array) -> Array:
         """Density times weight."""
         return self.law.pdf(s) * self.weight(s)
 
-    def log_ratio(self, s: Array, t: Array) -> Array:
+    def __getattr__(self, name: str) -> Any:
         """As the law's."""
-        return self.law.log_ratio(s, t)
-
-    def cdf(self, s: Array) -> Array:
-        """As the law's."""
-        return self.law.cdf(s)
-
-    def sf(self, s: Array) -> Array:
-        """As the law's."""
-        return self.law.sf(s)
-
-    def ppf(self, p: Array, below: float = np.inf) -> Array:
-        """As the law'below."""
-        return self.law.ppf(p, below)
-
-    def isf(self, p: Array, above: float = -np.inf) -> Array:
-        """As the law'above."""
-        return self.law.isf(p, above)
+        if name.startswith("__"):  # what copying asks for before there is a law
+            raise AttributeError(name)
+        return getattr(self.law, name)
 
 
 @dataclass(frozen=True)

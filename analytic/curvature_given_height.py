@@ -2,11 +2,11 @@
 
 import math
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.special import erfcx, gammainc, gammaincc, gammainccinv, gammaincinv, ndtr
+from scipy.special import erfcx, gammainc, gammaincc, ndtr
 
 from analytic.nayak import NayakTables, panelled, tables_of, upper_tail
 
@@ -18,10 +18,6 @@ _WIDE = 9.5  # standard deviations, beyond which a normal density is 1e-20 of it
 _MEDIAN = 1.6783469900166605  # of the gamma law of shape 2
 _MOST_STEPS, _NEAR, _SAME = 100, 1e-8, 1e-12
 _FLATTEST = 1e-7  # curvature of which there is none flatter in 1e27 summits
-_LOWEST, _HIGHEST, _STEP = -12.0, 16.0, 0.125  # heights over sqrt(m0) of the table of guesses
-_GUESSED = np.concatenate(
-    [np.linspace(-14.0, -2.0, 120, endpoint=False), np.log(np.linspace(np.exp(-2), 7.5, 150))]
-)
 
 
 @dataclass(frozen=True, eq=False)
@@ -136,7 +132,8 @@ class CurvatureGivenHeight:
         q = t * t
         is_low = q < _MEDIAN
         share = np.where(is_low, gammainc(2, q), gammaincc(2, q))
-        found = np.where(q > 0, t * np.exp(_guess(self.alpha, t, self.x)), 0.0)
+        flat = (2 / self._parts(0 * t) * self._whole) ** 0.25  # the law begins as g^4, the share as t^4/2
+        found = np.minimum(flat * t, self.highest(0 * t))
         for lower in (True, False):
             some = np.flatnonzero((q > 0) & np.isfinite(q) & (is_low == lower))
             found[some] = self._found(found[some], share[some], self.x[some], lower=lower)
@@ -176,41 +173,3 @@ def _gauss(y: Array, mass: Array, nodes: int) -> tuple[Array, Array]:
             matrix[:, k, k + 1] = matrix[:, k + 1, k] = np.sqrt(size / smaller)
     values, vectors = np.linalg.eigh(matrix)
     return values.T, (total[:, None] * vectors[:, 0] ** 2).T
-
-
-@lru_cache(maxsize=16)
-def _guesses(alpha: float) -> tuple[Array, Array]:
-    """Heights, and the logarithm of g/t at each (first axis) and at given t."""
-    x = np.arange(_LOWEST, _HIGHEST + _STEP, _STEP)
-    given, columns = CurvatureGivenHeight(alpha, x), []
-    top = given.highest(0 * x)
-    shape = np.concatenate([np.geomspace(_FLATTEST, 0.02, 60, endpoint=False), np.linspace(0.02, 1, 200)])
-    g = shape[:, None] * top
-    nodes, weights = np.polynomial.legendre.leggauss(6)
-    inner = g[:-1, None] + np.diff(g, axis=0)[:, None] * (1 + nodes[:, None]) / 2
-    parts = np.array([given.pdf(row) for row in inner.reshape(-1, x.size)]).reshape(inner.shape)
-    mass = (parts * weights[:, None]).sum(axis=1) * np.diff(g, axis=0) / 2
-    below = np.cumsum(np.vstack([g[:1] / 4 * given.pdf(g[0]), mass]), axis=0)
-    above = np.cumsum(np.vstack([1e-24 + 0 * x[None], mass[::-1]]), axis=0)[::-1]
-    low = below < 0.5
-    t = np.sqrt(
-        np.where(low, gammaincinv(2, np.where(low, below, 0.5)), gammainccinv(2, np.where(low, 0.5, above)))
-    )
-    for k in range(x.size):
-        rising = np.maximum.accumulate(t[:, k])
-        columns.append(np.interp(_GUESSED, np.log(rising), np.log(g[:, k] / rising)))
-    return x, np.array(columns)
-
-
-def _guess(alpha: float, t: Array, x: Array) -> Array:
-    """Logarithm of g/t, to a percent or so."""
-    heights, table = _guesses(alpha)
-    with np.errstate(divide="ignore"):
-        u = np.clip(np.log(t), _GUESSED[0], _GUESSED[-1])
-    i = np.clip(np.searchsorted(_GUESSED, u) - 1, 0, _GUESSED.size - 2)
-    along = (u - _GUESSED[i]) / (_GUESSED[i + 1] - _GUESSED[i])
-    place = np.clip((x - heights[0]) / _STEP, 0, heights.size - 1.000001)
-    j = place.astype(np.int64)
-    across = place - j
-    rows = [table[j + k, i] * (1 - along) + table[j + k, i + 1] * along for k in (0, 1)]
-    return np.asarray(rows[0] * (1 - across) + rows[1] * across)

@@ -7,6 +7,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from analytic.heights import HeightLaw
+
 __all__ = ["HeightTable", "checked_heights", "reduced"]
 
 Array = NDArray[np.float64]
@@ -38,7 +40,7 @@ def checked_heights(heights: ArrayLike) -> Array:
 
 
 @dataclass(frozen=True)
-class HeightTable:
+class HeightTable(HeightLaw):
     """A law whose distribution function is linear between points: resampled measured heights.
 
     The density is constant between neighbouring points. The heights are shifted and scaled so that
@@ -65,7 +67,6 @@ class HeightTable:
 
     s: tuple[float, ...]
     share: tuple[float, ...]
-    singular: tuple[float, ...] = ()
 
     def __init__(self, s: Sequence[float], share: Sequence[float]) -> None:
         x, p = np.array(s, dtype=np.float64), np.array(share, dtype=np.float64)

@@ -24,26 +24,29 @@ _BEND = 0.5  # change of the logarithm of the density over a span
 
 
 class HeightLaw(Protocol):
-    """Distribution of the reduced height s = z/sigma, of mean 0 and standard deviation 1."""
+    """Distribution of the reduced height s = z/sigma, of mean 0 and standard deviation 1.
+
+    A law that inherits from it gives `pdf`, `cdf`, `sf`, `ppf`, `isf` and `rvs`; the rest where it differs.
+    """
 
     @property
     def support(self) -> tuple[float, float]:
         """Lowest and highest height there are; infinite for no bound."""
-        ...
+        return -math.inf, math.inf
 
     @property
     def breaks(self) -> tuple[float, ...]:
         """Heights where the density or a derivative of it jumps, smooth on either side."""
-        ...
+        return ()
 
     @property
     def singular(self) -> tuple[float, ...]:
         """Ends of the support where the density is a broken power of the distance from the end."""
-        ...
+        return ()
 
     def span(self, s: float) -> float:
         """Width of a cell above `s` on which the density hardly bends; breaks and ends left aside."""
-        ...
+        return narrowest(self, s)  # type: ignore[arg-type]  # laws are frozen
 
     def rvs(self, n: int, rng: np.random.Generator) -> Array:
         """`n` heights from NumPy's generator."""
@@ -54,8 +57,8 @@ class HeightLaw(Protocol):
         ...
 
     def log_ratio(self, s: Array, t: Array) -> Array:
-        """``log(density(s + t)/density(s))``, accurate for small `t`."""
-        ...
+        """``log(pdf(s + t)/pdf(s))``, accurate for small `t`."""
+        return np.asarray(np.log(self.pdf(s + t) / self.pdf(s)))
 
     def cdf(self, s: Array) -> Array:
         """Probability of a height below `s`, to full relative accuracy."""
@@ -75,12 +78,12 @@ class HeightLaw(Protocol):
 
 
 def normal_log_ratio(s: Any, t: Any) -> Any:
-    """``log(density(s + t)/density(s))`` of the normal law, of arrays or of numbers: it may be compiled."""
+    """``log(pdf(s + t)/pdf(s))`` of the normal law, of arrays or of numbers: it may be compiled."""
     return -t * (s + t / 2)
 
 
 @dataclass(frozen=True)
-class Gaussian:
+class Gaussian(HeightLaw):
     """The normal law of Greenwood and Williamson.
 
     Examples
@@ -89,10 +92,6 @@ class Gaussian:
     >>> float(Gaussian().sf(np.array(0.0)))
     0.5
     """
-
-    support: ClassVar[tuple[float, float]] = (-np.inf, np.inf)
-    breaks: ClassVar[tuple[float, ...]] = ()
-    singular: ClassVar[tuple[float, ...]] = ()
 
     def span(self, s: float) -> float:
         """Where the logarithm of the density changes by about 0.8."""
@@ -133,7 +132,7 @@ GAUSSIAN = Gaussian()
 
 
 @lru_cache(maxsize=4096)  # every quantity asks for the same heights, and a call of scipy's laws is slow
-def narrowest(law: HeightLaw, s: float) -> float:
+def narrowest(law: Any, s: float) -> float:
     """Width, halved until no quarter changes the logarithm of the density by more than 1/8."""
     width = max(_BEND, abs(s) / 8)  # far out in a heavy tail, a share of the height
     parts = np.array([0.0, 0.25, 0.5, 0.75, 1.0])
@@ -153,7 +152,7 @@ def narrowest(law: HeightLaw, s: float) -> float:
 
 
 @dataclass(frozen=True)
-class ExponentialHeights:
+class ExponentialHeights(HeightLaw):
     """Exponential law: ``exp(-1 - s)`` for s > -1.
 
     Greenwood and Williamson (1966) used it for its closed form, ``F_n(h) = Gamma(n+1) exp(-1 - h)``
@@ -166,9 +165,8 @@ class ExponentialHeights:
     1.0
     """
 
-    support: tuple[float, float] = (-1.0, math.inf)
-    breaks: tuple[float, ...] = (-1.0,)
-    singular: tuple[float, ...] = ()
+    support: ClassVar[tuple[float, float]] = (-1.0, math.inf)
+    breaks: ClassVar[tuple[float, ...]] = (-1.0,)
 
     def span(self, s: float) -> float:  # noqa: ARG002 - the same everywhere
         """One half: the logarithm of the density is linear."""
@@ -204,7 +202,7 @@ class ExponentialHeights:
 
 
 @dataclass(frozen=True)
-class Weibull:
+class Weibull(HeightLaw):
     """Weibull law of a given shape (McCool 1992, Int. J. Mach. Tools Manuf. 32, 115).
 
     Parameters
@@ -248,10 +246,6 @@ class Weibull:
     def singular(self) -> tuple[float, ...]:
         """The lower end, a broken power unless the shape is 1."""
         return () if self.shape == 1 else self.support[:1]
-
-    def span(self, s: float) -> float:
-        """Where the logarithm of the density changes evenly, by at most one half."""
-        return narrowest(self, s)
 
     def _log_x(self, s: Array) -> Array:
         """Logarithm of x over its mean: neither near 1 nor near the lower end does a digit cancel."""

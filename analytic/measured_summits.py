@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analytic.height_table import checked_heights, reduced
+from analytic.heights import HeightLaw
 
 __all__ = ["MeasuredHeights", "MeasuredRadii"]
 
@@ -15,7 +16,7 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class MeasuredHeights:
+class MeasuredHeights(HeightLaw):
     """Measured heights themselves: one surface, nothing drawn; or drawn from these very heights.
 
     Parameters
@@ -39,7 +40,6 @@ class MeasuredHeights:
 
     heights: tuple[float, ...]
     resampled: bool = False
-    singular: tuple[float, ...] = ()
 
     def __init__(self, heights: Sequence[float] | Array, *, resampled: bool = False) -> None:
         z = checked_heights(heights)
@@ -56,11 +56,6 @@ class MeasuredHeights:
     def support(self) -> tuple[float, float]:
         """Lowest and highest of them."""
         return float(self._sorted[0]), float(self._sorted[-1])
-
-    @property
-    def breaks(self) -> tuple[float, ...]:
-        """None: there is no density."""
-        return ()
 
     def span(self, s: float) -> float:
         """There is no density.
@@ -90,10 +85,6 @@ class MeasuredHeights:
         """There is none; see `span`."""
         self.span(float(np.ravel(s)[0]))
         raise AssertionError
-
-    def log_ratio(self, s: Array, t: Array) -> Array:  # noqa: ARG002 - there is no density
-        """There is none; see `span`."""
-        return self.pdf(s)
 
     def cdf(self, s: Array) -> Array:
         """Share of lower heights."""

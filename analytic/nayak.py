@@ -15,14 +15,13 @@ fall, and held as Chebyshev series.
 import math
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
-from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.special import erfcx, ndtr
 
 from analytic.elementary import exp_minus_half_square
-from analytic.heights import narrowest
+from analytic.heights import HeightLaw
 from analytic.piecewise import PiecewiseSeries, fitted
 from analytic.quadrature import gauss_legendre
 from analytic.surface import LEAST_ALPHA, SUMMIT_SPREAD
@@ -191,7 +190,7 @@ def tables_of(alpha: float) -> NayakTables:
 
 
 @dataclass(frozen=True)
-class Nayak:
+class Nayak(HeightLaw):
     """Law of the summit heights of an isotropic Gaussian surface.
 
     Parameters
@@ -213,9 +212,6 @@ class Nayak:
     """
 
     alpha: float
-    support: ClassVar[tuple[float, float]] = (-np.inf, np.inf)
-    breaks: ClassVar[tuple[float, ...]] = ()
-    singular: ClassVar[tuple[float, ...]] = ()
 
     def __post_init__(self) -> None:
         if not _LEAST <= self.alpha <= _MOST:
@@ -241,10 +237,6 @@ class Nayak:
     def over_rms(self, s: ArrayLike) -> Array:
         """Heights above the mean plane of the surface over sqrt(m0), of reduced ones."""
         return np.asarray(self.mean + self.std * np.asarray(s, dtype=np.float64))
-
-    def span(self, s: float) -> float:
-        """Where the logarithm of the density changes evenly, by at most one half."""
-        return narrowest(self, s)
 
     def rvs(self, n: int, rng: np.random.Generator) -> Array:
         """Drawn with their curvatures."""

@@ -13,7 +13,7 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from analytic.heights import narrowest
+from analytic.heights import HeightLaw
 from analytic.resolution import resolved_breaks
 
 __all__ = ["ScipyHeights", "in_time"]
@@ -36,7 +36,7 @@ _TRIAL, _TRIAL_SECONDS = np.array([1e-9, 0.1, 0.5, 0.9]), 1.0  # a few of the th
 
 
 @dataclass(frozen=True, eq=False)
-class ScipyHeights:
+class ScipyHeights(HeightLaw):
     """Any frozen continuous distribution of scipy.stats, reduced by its own mean and variance.
 
     Parameters
@@ -124,10 +124,6 @@ class ScipyHeights:
     def singular(self) -> tuple[float, ...]:
         """Every finite end of the support."""
         return tuple(end for end in self.support if math.isfinite(end))
-
-    def span(self, s: float) -> float:
-        """Where the logarithm of the density changes evenly, by at most one half."""
-        return narrowest(self, s)
 
     def _x(self, s: Array) -> Array:
         mean, std = self._mean_std
