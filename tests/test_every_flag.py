@@ -349,6 +349,7 @@ ROWS = [
     ("solve", "--pressure", "@s.toml --pressure 1MPa", "@s.toml --pressure 2MPa",
      says("load 2 N = pressure 2 MPa")),
     ("solve", "--load", "@s.toml --pressure 1MPa", "@s.toml --load 250mN", says("0.25 N = ")),
+    ("solve", "--area", "@s.toml --pressure 1MPa", "@s.toml --area 2000um^2", says("2e-09 m^2 = ")),
     ("solve", "--area-fraction", "@s.toml --pressure 1MPa", "@s.toml --area-fraction 0.2%",
      says("2e-09 m^2 = ")),
     ("solve", "--surfaces", "@s.toml --load 1N", "+ --surfaces 9", says("std: over 9 surfaces")),

@@ -6,14 +6,21 @@ from pathlib import Path
 HELP = "find separation, area, stiffness, contacts and conductance at given loads"
 EXAMPLE = "mcgw solve runs/demo.toml --pressure 100kPa 1MPa --csv solved.csv"
 
+# What may be given, by the words of `mcgw.solve`: a letter for it, and what it is.
+_GIVEN = {
+    "pressure": ("P", "load per nominal area: Pa, kPa, MPa, GPa"),
+    "load": ("F", "mN, N, kN, MN"),
+    "area": ("A", "real area: um^2, mm^2, cm^2"),
+    "area_fraction": ("A", "real over nominal area: 0.01 or 1%%"),
+}
+
 
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of this command."""
     parser.add_argument("scene", type=Path, metavar="SCENE", help="TOML file, SI units")
     given = parser.add_mutually_exclusive_group(required=True)
-    given.add_argument("--pressure", nargs="+", metavar="P", help="load per nominal area: Pa, kPa, MPa, GPa")
-    given.add_argument("--load", nargs="+", metavar="F", help="mN, N, kN, MN")
-    given.add_argument("--area-fraction", nargs="+", metavar="A", help="real over nominal area: 0.01 or 1%%")
+    for name, (letter, words) in _GIVEN.items():
+        given.add_argument(f"--{name.replace('_', '-')}", nargs="+", metavar=letter, help=words)
     parser.add_argument(
         "--surfaces", type=int, metavar="M", help="how many to solve; default: those of the scene"
     )
@@ -25,7 +32,7 @@ def execute(args: argparse.Namespace) -> int:
     from dataclasses import replace
 
     from mcgw.commands.outputs import check_outputs, table_output, tell_notes, write_table
-    from mcgw.ensemble.solution import solutions
+    from mcgw.ensemble.solution import given_values, solutions
     from mcgw.ensemble.solved import at_solutions
     from mcgw.formats.units import parse
     from mcgw.machine.progress import bar
@@ -36,13 +43,9 @@ def execute(args: argparse.Namespace) -> int:
     check_outputs(table_output(args.csv), inputs=files_of(args.scene))
     if args.surfaces is not None:
         scene = replace(scene, n_surfaces=args.surfaces)
-    area = scene.surface.nominal_area
-    if args.load:
-        given, values = "load", [parse(text, "N", "--load") for text in args.load]
-    elif args.pressure:
-        given, values = "load", [parse(p, "Pa", "--pressure") * area for p in args.pressure]
-    else:
-        given, values = "area", [parse(a, "1", "--area-fraction") * area for a in args.area_fraction]
+    key = next(name for name in _GIVEN if getattr(args, name))
+    option = f"--{key.replace('_', '-')}"
+    given, values = given_values(scene, key, getattr(args, key), lambda x, unit: parse(x, unit, option))
     with bar("surfaces", terminal=True) as tell:
         found = solutions(scene, given, values, tell)
     tell_notes(at_solutions(scene, found))

@@ -19,7 +19,7 @@ from mcgw.scene.scene import Scene
 from mcgw.scene.section import nearest
 from mcgw.scene.wrong_object import check_object
 
-__all__ = ["Solution", "solutions", "solve"]
+__all__ = ["Solution", "given_values", "solutions", "solve"]
 
 Array = NDArray[np.float64]
 
@@ -94,13 +94,21 @@ def solve(
     if len(known) != 1:
         raise ValueError(f"solve: give one of {', '.join(asked)}, not {' and '.join(known) or 'none'}")
     ((key, value),) = known.items()
-    scene = scene.replace(**changes)
-    unit, given, per_area = _GIVEN[key]
-    plain, factor = as_toml(value), scene.surface.nominal_area if per_area else 1.0
-    values = [factor * argument(key, x, unit) for x in (plain if isinstance(plain, list) else [plain])]
+    scene, plain = scene.replace(**changes), as_toml(value)
+    several = plain if isinstance(plain, list) else [plain]
+    given, values = given_values(scene, key, several, lambda x, unit: argument(key, x, unit))
     with told(progress, "surfaces") as tell:
         found = solutions(scene, given, values, tell)
     return found if isinstance(plain, list) else found[0]
+
+
+def given_values(
+    scene: Scene, key: str, values: Sequence[Any], read: Callable[[Any, str], float]
+) -> tuple[str, list[float]]:
+    """Loads ("load", N) or real areas ("area", m^2) of what is given, each read as a number in a unit."""
+    unit, given, per_area = _GIVEN[key]
+    factor = scene.surface.nominal_area if per_area else 1.0
+    return given, [factor * read(value, unit) for value in values]
 
 
 def solutions(

@@ -7,17 +7,7 @@ from typing import Any, Literal
 import numpy as np
 import tomli_w
 
-from analytic import (
-    Gaussian,
-    HeightLaw,
-    HeightTable,
-    MeasuredHeights,
-    MeasuredRadii,
-    Nayak,
-    RandomCurvature,
-    SpectralMoments,
-    Surface,
-)
+from analytic import HeightTable, MeasuredHeights, MeasuredRadii, Nayak, RandomCurvature, Surface
 from mcgw.formats.files import whole_file
 from mcgw.maps.fit import Fit
 from mcgw.maps.profile_fit import ProfileFit
@@ -26,10 +16,10 @@ from mcgw.scene.reading import argument
 from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_document
 
-__all__ = ["FITTED", "fitted_scene", "heights_beside", "write_scene"]
+__all__ = ["fitted_scene", "heights_beside", "write_scene"]
 
 Heights = Literal["gaussian", "nayak", "table", "measured", "summits"]
-FITTED = ("load", "area", "stiffness", "contacts", "conductance")  # what a fitted scene asks for
+_FITTED = ("load", "area", "stiffness", "contacts", "conductance")  # what a fitted scene asks for
 
 
 def fitted_scene(
@@ -111,65 +101,59 @@ def _known(fit: Fit | ProfileFit) -> Fitted:
 
 
 def _as_fitted(fit: Fit | ProfileFit, use: str, heights: Heights, modulus: float, title: str) -> Scene:
-    """The scene with nothing but what the fit tells."""
+    """The scene with nothing but what the fit tells; profiles stand for a square as long as they are."""
     if isinstance(fit, ProfileFit):
         if use == "caps" or heights not in ("gaussian", "nayak"):
             raise ValueError(
                 f'use = "{use}", heights = "{heights}": profiles show no summits; they give moments, and '
                 "gaussian heights or nayak"
             )
-        return profile_scene(fit, modulus, title, nayak=heights == "nayak")
+        use = "moments"
     if heights == "nayak":
         if use not in ("auto", "moments"):
             raise ValueError(f'use = "{use}": heights = "nayak" follow from the "moments"')
-        return spectral_scene(fit.moments, fit.area, modulus, title)
-    if heights == "summits":
-        return _of_summits(fit, modulus, title)
-    if use == "auto":
-        use = fit.best if heights == "gaussian" else "summits"
-    if use not in fit.estimates:
+        law, surface = Nayak(fit.moments.alpha), fit.moments.surface(fit.area, modulus)
+        flattest = (
+            math.sqrt(fit.area) / surface.radius
+        )  # no summit is flatter than what was looked at is long
+        return _scene(surface, title, heights=law, curvature=RandomCurvature(law.alpha, flattest))
+    if use == "auto" and heights != "summits":
+        use = fit.best if isinstance(fit, Fit) and heights == "gaussian" else "summits"
+    if heights != "summits" and use not in fit.estimates:
         raise ValueError(
             f"use = {use!r}: there is no such estimate of this map; {', '.join(fit.estimates)} are"
         )
-    estimate = fit.estimates[use]
-    drawn: HeightLaw = Gaussian()
-    sigma, eta = estimate.sigma.value, estimate.eta.value
-    if heights != "gaussian":
-        sigma = float(fit.summits.std())
-        drawn = HeightTable.of(fit.summits) if heights == "table" else MeasuredHeights(fit.summits)
-    if heights == "measured":
-        if use != "summits":
-            raise ValueError(f'use = "{use}": measured heights as they are need "summits", their own number')
-        eta = fit.summits.size / fit.area  # those between pixels have no heights
-    surface = Surface(sigma, estimate.radius.value, eta, fit.area, modulus)
-    separations = tuple(np.linspace(0, 3, 31).tolist())
-    if heights == "measured":
-        return Scene(
-            surface=surface, separations=separations, title=title, heights=drawn, quantities=FITTED,
-            n_surfaces=1, n_asperities=fit.summits.size, sampler="direct", seed=1,
-        )  # fmt: skip
-    return Scene(
-        surface=surface, separations=separations, title=title, heights=drawn, quantities=FITTED, seed=1
-    )
+    if isinstance(fit, Fit) and heights != "gaussian":
+        return _of_summits(fit, use, heights, modulus, title)
+    found = fit.estimates[use]
+    return _scene(Surface(found.sigma.value, found.radius.value, found.eta.value, fit.area, modulus), title)
 
 
-def _of_summits(fit: Fit, modulus: float, title: str) -> Scene:
-    """The very summits of the map: their heights and radii, nothing drawn."""
-    z, radii = fit.listed.heights, fit.listed.radii
-    radius = float(1 / np.mean(1 / radii))
-    heights = MeasuredHeights(z)
-    return Scene(
-        surface=Surface(float(z.std()), radius, z.size / fit.area, fit.area, modulus),
-        separations=np.linspace(0, 3, 31),
-        heights=heights,
-        curvature=MeasuredRadii(heights, radii / radius),
-        title=title,
-        quantities=FITTED,
-        n_surfaces=1,
-        n_asperities=z.size,
-        sampler="direct",
-        seed=1,
-    )
+def _of_summits(fit: Fit, use: str, heights: Heights, modulus: float, title: str) -> Scene:
+    """With the heights of the summits: drawn from their table, or just as they are, with their radii too."""
+    z, sigma = fit.summits, float(fit.summits.std())
+    if heights == "table":
+        found = fit.estimates[use]
+        surface = Surface(sigma, found.radius.value, found.eta.value, fit.area, modulus)
+        return _scene(surface, title, heights=HeightTable.of(z))
+    law = MeasuredHeights(z)
+    curvature: MeasuredRadii | None = None
+    if heights == "summits":
+        radius = float(1 / np.mean(1 / fit.radii))
+        curvature = MeasuredRadii(law, fit.radii / radius)
+    elif use == "summits":
+        radius = fit.estimates[use].radius.value
+    else:
+        raise ValueError(f'use = "{use}": measured heights as they are need "summits", their own number')
+    surface = Surface(
+        sigma, radius, z.size / fit.area, fit.area, modulus
+    )  # those between pixels have no heights
+    alone = {"n_surfaces": 1, "n_asperities": z.size, "sampler": "direct"}
+    return _scene(surface, title, heights=law, curvature=curvature, **alone)
+
+
+def _scene(surface: Surface, title: str, **more: Any) -> Scene:
+    return Scene(surface, separations=np.linspace(0, 3, 31), title=title, quantities=_FITTED, seed=1, **more)
 
 
 def heights_beside(path: Path) -> Path:
@@ -198,55 +182,3 @@ def write_scene(scene: Scene, path: Path, measured: Fit | None, comments: list[s
             np.save(file, measured.summits)
         unfinished.write_text(text, encoding="utf-8")
     return [path, beside]
-
-
-def spectral_scene(moments: SpectralMoments, area: float, modulus: float, title: str) -> Scene:
-    """Make a scene of the isotropic Gaussian surface with these moments.
-
-    Parameters
-    ----------
-    moments : SpectralMoments
-        Of a map or of profiles.
-    area : float
-        What was looked at, m^2: no summit is flatter than that is long.
-    modulus : float
-        Composite modulus, Pa.
-    title : str
-        For people.
-
-    Raises
-    ------
-    ValueError
-        If no isotropic Gaussian surface has these moments.
-    """
-    heights, surface = Nayak(moments.alpha), moments.surface(area, modulus)
-    return Scene(
-        surface=surface,
-        separations=np.linspace(0, 3, 31),
-        heights=heights,
-        curvature=RandomCurvature(heights.alpha, math.sqrt(area) / surface.radius),
-        title=title,
-        quantities=FITTED,
-        seed=1,
-    )
-
-
-def profile_scene(fit: ProfileFit, modulus: float, title: str, *, nayak: bool = False) -> Scene:
-    """Make a scene of the surface that profiles were taken from, on a square as long as they are.
-
-    Parameters
-    ----------
-    fit : ProfileFit
-        Of the profiles.
-    modulus : float
-        Composite modulus, which no profile tells, Pa.
-    title : str
-        For people.
-    nayak : bool, optional
-        Give each summit a radius of its own, as Gaussian surfaces have them.
-    """
-    m = fit.moments
-    if nayak:
-        return spectral_scene(m, fit.area, modulus, title)
-    surface = Surface(m.sigma, m.radius, m.eta, fit.area, modulus)
-    return Scene(surface, separations=np.linspace(0, 3, 31), title=title, quantities=FITTED, seed=1)

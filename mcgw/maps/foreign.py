@@ -1,25 +1,30 @@
 """Maps in the many formats that SurfaceTopography reads, where it is installed.
 
 Its readers believe what a file declares, so they work in a process of their own, with as much memory and time
-as a file of that size may take: ``python -m mcgw.maps.foreign FILE HEIGHTS MEMORY`` writes heights to a
+as a file of that size may take: ``python -m mcgw.maps.foreign FILE HEIGHTS WHAT MEMORY`` writes heights to a
 ``.npy`` file and tells the rest as JSON.
 """
 
 import json
 import sys
+from contextlib import suppress
 from importlib.util import find_spec
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from mcgw.formats.untrusted import open_npy
 from mcgw.machine.child_process import ChildError, limit_memory, run_child
 from mcgw.maps.topography import Topography, checked_shape, height_unit
 
-__all__ = ["ForeignError", "UnreadableError", "read_foreign"]
+__all__ = ["ForeignError", "UnreadableError", "is_foreign_line", "read_foreign", "read_foreign_line"]
 
+Array = NDArray[np.float64]
+
+_HEIGHTS = "heights.npy"
 _MOST_TEXT = 2**28  # bytes
 _MEMORY, _A_BYTE = 2**30, 64  # address space of the child, a third of it for imports; and of each byte
 _SECONDS, _BYTES_A_SECOND = 60.0, 1e6
@@ -51,49 +56,75 @@ def read_foreign(path: Path, pixel: tuple[float, float] | None = None, unit: str
         If it is not installed or cannot read the file, or the file holds a profile, or tells another unit
         or the size of a pixel that was given, or none that was not.
     """
+    with TemporaryDirectory() as folder:
+        found = _read(path, Path(folder))
+        if found["dim"] != 2:
+            raise ValueError(f"{path}: is a profile along a line; a map has rows and columns")
+        metre, assumed = height_unit(path, found["unit"], unit)  # of lengths along x and y too
+        told = found["pixel"]
+        if told and pixel is not None:
+            raise ValueError(f"{path}: tells the size of a pixel itself; leave --pixel out")
+        if not told and pixel is None:
+            raise ValueError(f"{path}: does not tell the size of a pixel; give --pixel")
+        dx, dy = pixel or (p * metre for p in told)
+        z = np.array(open_npy(Path(folder) / _HEIGHTS), dtype=np.float64, order="C")
+    z *= metre
+    return Topography(z, (dx, dy), found["periodic"], assumed)
+
+
+def read_foreign_line(path: Path, unit: str | None = None) -> tuple[Array, Array, str]:
+    """Places and heights along a line, m, and the unit that was assumed; arguments as of `read_foreign`.
+
+    Raises
+    ------
+    ValueError
+        If SurfaceTopography is not installed or cannot read the file, or the file holds a map.
+    """
+    with TemporaryDirectory() as folder:
+        found = _read(path, Path(folder))
+        if found["dim"] != 1:
+            raise ValueError(f"{path}: is a map, not a profile; leave --profile out")
+        metre, assumed = height_unit(path, found["unit"], unit)
+        places, heights = np.array(open_npy(Path(folder) / _HEIGHTS), dtype=np.float64) * metre
+    return places, heights, assumed
+
+
+def is_foreign_line(path: Path) -> bool:
+    """Whether SurfaceTopography finds heights along a line in a file."""
+    with TemporaryDirectory() as folder:
+        return bool(_read(path, Path(folder), "kind")["dim"] == 1)
+
+
+def _read(path: Path, folder: Path, what: str = "all") -> dict[str, Any]:
+    """Facts about a file, whose heights are written to a folder, if not its kind alone is asked for."""
     if find_spec("SurfaceTopography") is None:
         raise UnreadableError(
             f"{path}: {path.suffix or 'no ending'} is not read here; install SurfaceTopography "
-            "(the extra mcgw[maps]), or save the map as SDF, X3P, .npy or text"
+            "(the extra mcgw[maps]), or save it as SDF, X3P, .npy or text"
         )
-    with TemporaryDirectory() as folder:
-        try:
-            return _read(path, Path(folder), pixel, unit, path)
-        except UnreadableError as error:
-            points = _with_points(path, Path(folder))
-            if points is not None:
-                try:
-                    return _read(points, Path(folder), pixel, unit, path)
-                except UnreadableError:
-                    pass
-            raise UnreadableError(f"{path}: SurfaceTopography cannot read it: {error}") from None
-
-
-def _read(
-    file: Path, folder: Path, pixel: tuple[float, float] | None, unit: str | None, path: Path
-) -> Topography:
-    """A file, which errors call by its own path; what the child writes lies in a folder."""
-    size, heights = file.stat().st_size, folder / "heights.npy"
-    memory, seconds = _MEMORY + _A_BYTE * size, _SECONDS + size / _BYTES_A_SECOND
     try:
-        said = run_child("mcgw.maps.foreign", str(file), str(heights), str(memory), seconds=seconds)
+        return _from_child(path, folder, what)
+    except UnreadableError as error:
+        points = _with_points(path, folder)
+        if points is not None:
+            with suppress(UnreadableError):
+                return _from_child(points, folder, what)
+        raise UnreadableError(f"{path}: SurfaceTopography cannot read it: {error}") from None
+
+
+def _from_child(path: Path, folder: Path, what: str) -> dict[str, Any]:
+    """What a process of its own tells of a file."""
+    size = path.stat().st_size
+    memory, seconds = _MEMORY + _A_BYTE * size, _SECONDS + size / _BYTES_A_SECOND
+    words = str(path), str(folder / _HEIGHTS), what, str(memory)
+    try:
+        said = run_child("mcgw.maps.foreign", *words, seconds=seconds)
     except ChildError as error:
         raise UnreadableError(f"reading it {error.how}") from None
     found: dict[str, Any] = json.loads(said.splitlines()[-1])
     if "refused" in found:
         raise UnreadableError(found["refused"])
-    if found["dim"] != 2:
-        raise ValueError(f"{path}: is a profile along a line; a map has rows and columns")
-    metre, assumed = height_unit(path, found["unit"], unit)  # of lengths along x and y too
-    told = found["pixel"]
-    if told and pixel is not None:
-        raise ValueError(f"{path}: tells the size of a pixel itself; leave --pixel out")
-    if not told and pixel is None:
-        raise ValueError(f"{path}: does not tell the size of a pixel; give --pixel")
-    dx, dy = pixel or (p * metre for p in told)
-    z = np.array(open_npy(heights), dtype=np.float64, order="C")
-    z *= metre
-    return Topography(z, (dx, dy), found["periodic"], assumed)
+    return found
 
 
 def _with_points(path: Path, folder: Path) -> Path | None:
@@ -111,15 +142,21 @@ def _with_points(path: Path, folder: Path) -> Path | None:
     return copy
 
 
-def _read_here(path: Path, heights: Path) -> dict[str, Any]:
-    """Facts about a map whose heights are written, rows of y from below; of a profile its dimension alone."""
+def _read_here(path: Path, heights: Path, what: str) -> dict[str, Any]:
+    """Facts about a file whose heights are written: rows of y from below; of a profile places and heights."""
     from SurfaceTopography import open_topography  # type: ignore[import-not-found, import-untyped, unused-ignore]
 
-    channel = open_topography(str(path)).default_channel
-    if channel.dim != 2:
+    channel, size = open_topography(str(path)).default_channel, path.stat().st_size
+    if what == "kind":
         return {"dim": channel.dim}
+    if channel.dim == 1:
+        found = channel.topography()
+        x, z = found.positions_and_heights()
+        checked_shape(1, x.size, held=size)
+        np.save(heights, np.array([x, np.ma.filled(z, np.nan)], dtype=np.float64))
+        return {"dim": 1, "unit": None if found.unit is None else str(found.unit)}
     columns, rows = (int(n) for n in channel.nb_grid_pts)
-    checked_shape(rows, columns, held=path.stat().st_size)
+    checked_shape(rows, columns, held=size)
     told = channel.physical_sizes is not None
     found = channel.topography(**({} if told else {"physical_sizes": (columns, rows)}))
     checked_shape(*found.nb_grid_pts[::-1])
@@ -132,10 +169,10 @@ def _read_here(path: Path, heights: Path) -> dict[str, Any]:
     }
 
 
-def _main(path: str, heights: str, memory: int) -> None:
+def _main(path: str, heights: str, what: str, memory: int) -> None:
     memory = limit_memory(memory)
     try:
-        answer = _read_here(Path(path), Path(heights))
+        answer = _read_here(Path(path), Path(heights), what)
     except MemoryError:
         answer = {"refused": f"it may take {memory >> 20} MiB of memory, and it asks for more"}
     except Exception as error:  # its readers raise errors of many kinds
@@ -144,5 +181,5 @@ def _main(path: str, heights: str, memory: int) -> None:
 
 
 if __name__ == "__main__":
-    _path, _heights, _memory = sys.argv[1:]
-    _main(_path, _heights, int(_memory))
+    _path, _heights, _what, _memory = sys.argv[1:]
+    _main(_path, _heights, _what, int(_memory))

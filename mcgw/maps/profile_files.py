@@ -3,15 +3,14 @@
 import math
 import re
 from dataclasses import dataclass
-from importlib import import_module
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mcgw.formats.units import METRES
 from mcgw.formats.untrusted import open_npy
+from mcgw.maps.foreign import is_foreign_line, read_foreign_line
 from mcgw.maps.profile import Profile, profile_at
 from mcgw.maps.text_file import lines_of, numbers_of, words_of
 from mcgw.maps.topography import height_unit
@@ -97,21 +96,16 @@ def read_profile_text(path: Path, spacing: float | None = None, unit: str | None
     values = _values(path, table)
     told = _units(table.header, values.shape[1])
     metre, assumed = height_unit(path, told[-1], unit)
-    if values.shape[1] == 1:
-        if spacing is None:
-            raise ValueError(f"{path}: has one column, of heights; give --pixel, the distance of two points")
-        places = spacing * np.arange(len(values), dtype=np.float64)
-    elif spacing is not None:
-        if told[0] is not None:
-            raise ValueError(f"{path}: tells x in {told[0]} itself; leave --pixel out")
+    if values.shape[1] == 1 and spacing is None:
+        raise ValueError(f"{path}: has one column, of heights; give --pixel, the distance of two points")
+    if values.shape[1] > 1 and spacing is not None and told[0] is not None:
+        raise ValueError(f"{path}: tells x in {told[0]} itself; leave --pixel out")
+    if spacing is not None:
         places = spacing * np.arange(len(values), dtype=np.float64)
     else:
         of_x, assumed_x = height_unit(path, told[0], None)
         places, assumed = values[:, 0] * of_x, assumed or assumed_x
-    try:
-        return profile_at(places, values[:, -1] * metre, assumed)
-    except ValueError as error:
-        raise ValueError(f"{path}: {error}") from None
+    return _profile(path, places, values[:, -1] * metre, assumed)
 
 
 def _table(path: Path) -> _Table:
@@ -206,7 +200,7 @@ def holds_profile(path: Path) -> bool:
             return open_npy(path).ndim == 1
         if ending in _MAPS or not path.is_file():
             return False
-        return bool(_of_surface_topography(path).dim == 1)
+        return is_foreign_line(path)
     except (OSError, ValueError):
         return False
 
@@ -249,16 +243,7 @@ def _read(path: Path, spacing: float | None, unit: str | None) -> Profile:
         return _array(path, spacing, unit)
     if spacing is not None:
         raise ValueError(f"{path}: tells the distance of its points itself; leave --pixel out")
-    found = _of_surface_topography(path)
-    if found.dim != 1:
-        raise ValueError(f"{path}: is a map, not a profile; leave --profile out")
-    metre, assumed = height_unit(path, found.unit, unit)
-    x, z = found.positions_and_heights()
-    places, heights = np.array(x, dtype=np.float64), np.array(np.ma.filled(z, np.nan), dtype=np.float64)
-    try:
-        return profile_at(places * metre, heights * metre, assumed)
-    except ValueError as error:
-        raise ValueError(f"{path}: {error}") from None
+    return _profile(path, *read_foreign_line(path, unit))
 
 
 def _array(path: Path, spacing: float | None, unit: str | None) -> Profile:
@@ -268,23 +253,12 @@ def _array(path: Path, spacing: float | None, unit: str | None) -> Profile:
     if spacing is None:
         raise ValueError(f"{path}: does not tell the distance of its points; give --pixel")
     metre, assumed = height_unit(path, None, unit)
+    return _profile(path, spacing * np.arange(z.size, dtype=np.float64), z * metre, assumed)
+
+
+def _profile(path: Path, places: Array, heights: Array, assumed: str) -> Profile:
+    """Of a file, which what is wrong with it names."""
     try:
-        return profile_at(spacing * np.arange(z.size, dtype=np.float64), z * metre, assumed)
+        return profile_at(places, heights, assumed)
     except ValueError as error:
         raise ValueError(f"{path}: {error}") from None
-
-
-def _of_surface_topography(path: Path) -> Any:
-    """What that library makes of a file."""
-    try:
-        library = import_module("SurfaceTopography")
-    except ImportError:
-        raise ValueError(
-            f"{path}: {path.suffix or 'no ending'} is not read here; install SurfaceTopography "
-            "(the extra mcgw[maps]), or save the profile as text"
-        ) from None
-    try:
-        return library.read_topography(str(path))
-    except Exception as error:  # its readers raise errors of many kinds
-        reason = " ".join(str(error).split())[:160]
-        raise ValueError(f"{path}: SurfaceTopography cannot read it: {reason}") from None
