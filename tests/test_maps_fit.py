@@ -329,7 +329,7 @@ def test_a_command_writes_the_scene_with_measured_heights(sparse, tmp_path, caps
 @pytest.mark.parametrize(("arguments", "told"), [
     (["--cutoff", "5"], "leaves nothing"),
     (["--cutoff", "wide"], "--cutoff = 'wide': give a number > 0 with its unit"),
-    (["--cutoff", "none", "--parts", "1"], "--parts"),
+    (["--cutoff", "none", "--parts", "1"], "parts = 1: give a whole number >= 2"),
     (["--cutoff", "none", "--heights", "measured", "--use", "caps"], "measured heights"),
     (["--cutoff", "none", "--E-star", "-1"], "--E-star = '-1': give a number > 0"),
 ])  # fmt: skip

@@ -173,4 +173,4 @@ def test_less_than_no_points_cannot_be_trimmed(tmp_path, capsys):
     np.save(tmp_path / "z.npy", rng(1).normal(size=(40, 40)))
     given = ["--pixel", "1um", "--cutoff", "none", "--E-star", "1GPa", "-o", str(tmp_path / "s.toml")]
     assert main(["fit", str(tmp_path / "z.npy"), *given, "--trim=-1"]) == 2
-    assert "--trim -1: give a whole number >= 0" in capsys.readouterr().err
+    assert "trim = -1: give a whole number >= 0" in capsys.readouterr().err

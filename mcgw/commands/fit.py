@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from mcgw.maps.fit import Fit
-    from mcgw.maps.preparation import Preparation
     from mcgw.maps.profile_fit import ProfileFit
 
 
@@ -17,17 +16,27 @@ _UNITS = {"m0": " m^2", "m4": " 1/m^2", "eta": " 1/m^2", "radius": " m", "sigma"
 _ASSUMED = (
     "of a surface alike in all directions, with Gaussian heights (Nayak, McCool), after the areal filter"
 )
-_FORMS = ("plane", "none", "quadratic", "cubic", "quartic", "sphere", "cylinder")
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of this command."""
+    from mcgw.maps.steps import STEPS
+
     parser.add_argument(
         "map", type=Path, nargs="+", metavar="MAP",
         help="SDF, X3P, .npy, .h5 or text; or profiles of one surface (x, z text), told by their shape",
     )  # fmt: skip
     parser.add_argument("--profile", action="store_true", help="read each file as a profile in any case")
-    preparation_arguments(parser)
+    for step in STEPS:
+        told = f"; default: {step.kinds[0]}" if step.kinds else ""
+        parser.add_argument(
+            f"--{step.name.replace('_', '-')}", required=step.name == "cutoff", help=step.words + told,
+            choices=step.kinds or None, default=step.kinds[0] if step.kinds else None,
+            metavar=None if step.kinds else "LENGTH",
+        )  # fmt: skip
+    parser.add_argument(
+        "--trim", type=int, default=0, metavar="N", help="points left off along each edge; default: 0"
+    )
     parser.add_argument("--pixel", metavar="LENGTH", help="size of a pixel, where the file does not tell it")
     parser.add_argument(
         "--unit", metavar="UNIT", help="of the heights, as um, where the file does not tell it; default: m"
@@ -71,13 +80,13 @@ def execute(args: argparse.Namespace) -> int:
     from mcgw.maps.fit import fit_prepared
     from mcgw.maps.fit_cautions import cautions
     from mcgw.maps.fitted_scene import fitted_scene, heights_beside, write_scene
-    from mcgw.maps.preparation import prepared
+    from mcgw.maps.preparation import preparation_of, prepared
     from mcgw.maps.profile_files import holds_profile
     from mcgw.reports.fitted import fit_lines, map_line
 
-    if args.parts < 2:
-        raise ValueError(f"--parts {args.parts}: give 2 or more, to have sub-areas to compare")
-    asked = preparation(args)
+    asked, across = preparation_of(
+        vars(args), lambda key, text: parse(text, "m", f"--{key.replace('_', '-')}")
+    )
     E_star = parse(args.E_star, "Pa", "--E-star")
     area = None if args.nominal_area is None else parse(args.nominal_area, "m^2", "--nominal-area")
     on = {} if area is None else {"nominal_area": area}
@@ -100,7 +109,7 @@ def execute(args: argparse.Namespace) -> int:
         done()
         ready = prepared(read.pop(), asked)  # which keeps no map as it was read: large ones fill the memory
         done()
-        fit = fit_prepared(ready, across=args.parts)
+        fit = fit_prepared(ready, across=across)
         done()
         fit = replace(fit, cautions=tuple(cautions(fit, ready, args.use)))
         done()
@@ -194,53 +203,3 @@ def _table(fit: "ProfileFit") -> list[str]:
         f"summits lie {mean:.3g} m above the mean plane on average; sigma is theirs, about that mean"
     )
     return lines
-
-
-def preparation_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add them."""
-    parser.add_argument(
-        "--cutoff", required=True, metavar="LENGTH",
-        help="shortest wavelength that counts, as 5um (Gaussian filter, ISO 16610-61); or none",
-    )  # fmt: skip
-    parser.add_argument(
-        "--long-cutoff", metavar="LENGTH", help="longest wavelength that counts, as 80um; default: all do"
-    )
-    parser.add_argument("--form", choices=_FORMS, default="plane", help="what is taken off; default: plane")
-    parser.add_argument(
-        "--missing", choices=("auto", "mask", "fill"), default="auto",
-        help="missing points are filled from the edges of their holes; mask: they and their neighbours do "
-        "not count, fill: they do; auto: mask, while half of the others are left; default: auto",
-    )  # fmt: skip
-    parser.add_argument(
-        "--spikes", choices=("keep", "remove"), default="keep",
-        help="whether points that stand out become missing; default: keep",
-    )  # fmt: skip
-    parser.add_argument(
-        "--step", choices=("keep", "crop"), default="keep",
-        help="whether of two terraces only the larger is kept; default: keep",
-    )  # fmt: skip
-    parser.add_argument(
-        "--lines", choices=("keep", "rows", "columns"), default="keep",
-        help="take off offsets between rows or columns, as of a scan line by line; default: keep",
-    )  # fmt: skip
-    parser.add_argument(
-        "--trim", type=int, default=0, metavar="N", help="points left off along each edge; default: 0"
-    )
-
-
-def preparation(args: argparse.Namespace) -> "Preparation":
-    """What they say.
-
-    Raises
-    ------
-    ValueError
-        If a length or a number is none.
-    """
-    from mcgw.formats.units import parse
-    from mcgw.maps.preparation import Preparation
-
-    if args.trim < 0:
-        raise ValueError(f"--trim {args.trim}: give a whole number >= 0")
-    cutoff = None if args.cutoff == "none" else parse(args.cutoff, "m", "--cutoff")
-    long = None if args.long_cutoff is None else parse(args.long_cutoff, "m", "--long-cutoff")
-    return Preparation(cutoff, args.form, args.missing, args.spikes, args.step, args.trim, long, args.lines)

@@ -12,11 +12,10 @@ from analytic import quantity_of
 from mcgw.ensemble.intervals import TOO_FEW
 from mcgw.figures.drawing import draw_residual
 from mcgw.figures.style import (
-    BAND,
     LEVEL,
-    MONTE_CARLO,
     PAPER,
     SAMPLE,
+    SEEN,
     STYLE,
     THEORY,
     contact_label,
@@ -151,18 +150,7 @@ def draw_curve(axis: Any, h: np.ndarray, curve: Curve) -> None:
         mean, low, high = (x[shown] for x in (curve.mean, curve.low, curve.high))
         bars = np.nan_to_num([mean - low if pulls else np.minimum(mean - low, 0.999 * mean), high - mean])
         if shown.any() or marker == "o":
-            axis.errorbar(
-                h[shown],
-                mean,
-                bars,
-                fmt=marker,
-                ms=3,
-                mfc="none",
-                color=MONTE_CARLO,
-                lw=1,
-                label=label,
-                zorder=3,
-            )
+            axis.errorbar(h[shown], mean, bars, fmt=marker, **SEEN, lw=1, label=label, zorder=3)
     if pulls:
         axis.axhline(0, color=LEVEL, lw=0.8, zorder=1)
     elif np.any(seen) or np.any(curve.theory > 0):
@@ -173,7 +161,7 @@ def draw_curve(axis: Any, h: np.ndarray, curve: Curve) -> None:
 
 
 def _draw_residual(axis: Any, h: np.ndarray, curve: Curve) -> None:
-    axis.plot(h, curve.residual, "o", ms=3, mfc="none", color=MONTE_CARLO)
+    axis.plot(h, curve.residual, "o", **SEEN)
     draw_residual(axis, max(4, 1.1 * float(np.abs(curve.residual).max())))
 
 
@@ -227,13 +215,11 @@ def _draw_worst(comparison: "SweepComparison", axis: Any) -> None:
     """Residuals of the point that is the least likely by chance; those that count have a marker."""
     one = comparison.worst[0]
     t = one
-    axis.axhspan(-2, 2, color=BAND, zorder=0)
-    axis.axhline(0, color=LEVEL, lw=0.8)
     for name, residual, counts in zip(t.quantities, t.residual, t.counts, strict=True):
         shown = np.where(counts, residual, np.nan)
         axis.plot(t.separations, shown, ms=3, mfc="none", lw=1, label=name, **look(name))
     largest = np.abs(t.residual[t.counts]).max(initial=0.0)
-    axis.set_ylim(-max(4, 1.5 * largest), max(4, 1.5 * largest))
+    draw_residual(axis, max(4, 1.5 * largest))
     point = list(comparison.sweep.axes.points())[one.number]
     at = one_line(comparison.sweep.axes.text(point)).replace("$", r"\$")
     axis.set_title(textwrap.fill(f"worst: {at}; p = {t.verdict.p:.2g} of this point alone", 48), fontsize=9)

@@ -24,6 +24,7 @@ __all__ = ["Spots", "contact_map_figure", "patch_figures", "save_contact_map", "
 
 Array = NDArray[np.float64]
 Colour = Literal["load", "modulus"]
+Window = tuple[float, float, float, float]
 
 _INCHES = 6.0
 _DPI = 160
@@ -99,7 +100,7 @@ def _load_and_radius(scene: Scene, delta: Array, modulus: Array, radii: Array) -
     return scale * load, np.sqrt(surface.radius * surface.sigma) * radius
 
 
-def _window(spots: Spots, size: tuple[float, float], most: float) -> tuple[float, float, float, float]:
+def _window(spots: Spots, size: tuple[float, float], most: float) -> Window:
     """Left, right, bottom, top: all of the map, or as many radii of the median spot as there is room for."""
     width, height = size
     if not spots.radius.size:
@@ -107,8 +108,13 @@ def _window(spots: Spots, size: tuple[float, float], most: float) -> tuple[float
     side = np.median(spots.radius) * most
     if side >= max(size):
         return 0.0, width, 0.0, height
-    left, bottom = max(width - side, 0) / 2, max(height - side, 0) / 2
-    return left, min(left + side, width), bottom, min(bottom + side, height)
+    return _middle(size, side)
+
+
+def _middle(size: tuple[float, float], side: float) -> Window:
+    """Of a map, a square of this side, where there is room for it."""
+    left, bottom = (max(n - side, 0) / 2 for n in size)
+    return left, min(left + side, size[0]), bottom, min(bottom + side, size[1])
 
 
 def save_contact_map(
@@ -158,7 +164,7 @@ def contact_map_figure(
     topography = envelope(field, (_POINTS, _POINTS), periodic=periodic, window=window)
     figure = Figure(figsize=(inches + 2.2, inches + 0.6), layout="constrained")
     axes = figure.add_subplot()
-    _draw_heights(figure, axes, topography, window)
+    _draw_heights(figure, axes, topography, window, float(np.percentile(topography.heights, 5)))
     inside = _inside(spots, window)
     values, norm, label, scale = _values(spots, inside, colour)
     diameters = 2e6 * spots.radius[inside]
@@ -175,7 +181,7 @@ def contact_map_figure(
     return figure
 
 
-def _inside(spots: Spots, window: tuple[float, float, float, float]) -> NDArray[np.bool_]:
+def _inside(spots: Spots, window: Window) -> NDArray[np.bool_]:
     left, right, bottom, top = window
     r = spots.radius
     return np.asarray(
@@ -194,18 +200,16 @@ def _values(spots: Spots, inside: NDArray[np.bool_], colour: Colour) -> tuple[Ar
 
 
 def _draw_heights(
-    figure: Figure, axes: Any, topography: Topography, window: tuple[float, float, float, float]
+    figure: Figure, axes: Any, topography: Topography, window: Window, lowest: float, **look: Any
 ) -> None:
-    """The height map in grey."""
+    """The height map, its colours from the lowest height on, m."""
     extent = tuple(1e6 * edge for edge in window)
-    z = 1e6 * topography.heights
     image = axes.imshow(
-        z, cmap="gray", origin="lower", interpolation="nearest", extent=extent,
-        vmin=np.percentile(z, 5), vmax=z.max(),
+        1e6 * topography.heights, origin="lower", interpolation="nearest", extent=extent, vmin=1e6 * lowest,
+        cmap=look.get("cmap", "gray"),
     )  # fmt: skip
-    axes.set(xlabel="x (µm)", ylabel="y (µm)", xlim=extent[:2], ylim=extent[2:])
-    axes.set_aspect("equal")
-    figure.colorbar(image, ax=axes, label="height (µm)", shrink=0.85, pad=0.02)
+    axes.set(xlabel="x (µm)", ylabel="y (µm)", xlim=extent[:2], ylim=extent[2:], aspect="equal")
+    figure.colorbar(image, ax=axes, label=look.get("label", "height (µm)"), shrink=0.85, pad=0.02)
 
 
 @dataclass(frozen=True)
@@ -255,17 +259,10 @@ def _moderate(scene: Scene, field: Asperities) -> float | None:
 def _patch_heights(field: Asperities, sigma: float) -> Figure:
     """The middle of the map, as large as some hundred summits are."""
     width, height = field.size
-    side = min(np.sqrt(_SHOWN * width * height / max(field.number, 1)), width, height)
-    left, bottom = (width - side) / 2, (height - side) / 2
-    window = (left, left + side, bottom, bottom + side)
-    z = 1e6 * envelope(field, (_PATCH_POINTS, _PATCH_POINTS), window=window).heights
+    window = _middle(field.size, min(np.sqrt(_SHOWN * width * height / max(field.number, 1)), width, height))
+    topography = envelope(field, (_PATCH_POINTS, _PATCH_POINTS), window=window)
     figure = Figure(figsize=(4.9, 4.2), layout="constrained")
-    axes = figure.add_subplot()
-    lowest = max(float(np.percentile(z, 1)), -1e6 * _DEPTH * sigma)
-    extent = tuple(1e6 * edge for edge in window)
-    image = axes.imshow(
-        z, cmap="viridis", origin="lower", interpolation="nearest", vmin=lowest, extent=extent
-    )
-    axes.set(xlabel="x (µm)", ylabel="y (µm)")
-    figure.colorbar(image, ax=axes, label="height above the mean summit (µm)", shrink=0.9, pad=0.02)
+    lowest = max(float(np.percentile(topography.heights, 1)), -_DEPTH * sigma)
+    above = "height above the mean summit (µm)"
+    _draw_heights(figure, figure.add_subplot(), topography, window, lowest, cmap="viridis", label=above)
     return figure

@@ -13,7 +13,7 @@ from mcgw.ensemble.paired import Paired
 from mcgw.ensemble.solved import Solution
 from mcgw.figures.against_theory import draw_curve, draw_residuals
 from mcgw.figures.studies import draw_checks, draw_methods
-from mcgw.figures.style import MONTE_CARLO, SAMPLE, STYLE, THEORY, shown_title, step
+from mcgw.figures.style import MONTE_CARLO, SAMPLE, SEEN, STYLE, THEORY, shown_title, step
 from mcgw.formats.table import evenly
 from mcgw.maps.fit import Fit
 from mcgw.maps.profile_fit import ProfileFit
@@ -73,13 +73,11 @@ def _(result: Ensemble, ax: Any, *, quantity: str) -> None:
             h[order], low, (mean + std)[order], color=MONTE_CARLO, alpha=0.18, lw=0, label="std over surfaces"
         )
     if not promise_of(result.sampler).real_surfaces:
-        ax.plot(h[order], mean[order], "o-", ms=3, mfc="none", color=MONTE_CARLO, label="mean")
+        ax.plot(h[order], mean[order], "o-", **SEEN, label="mean")
     else:
         low, high = result.interval(quantity)
         bars = np.nan_to_num([np.minimum(mean - low, 0.999 * mean), high - mean])[:, order]
-        ax.errorbar(
-            h[order], mean[order], bars, fmt="o-", ms=3, mfc="none", color=MONTE_CARLO, label="mean, 95 %"
-        )
+        ax.errorbar(h[order], mean[order], bars, fmt="o-", **SEEN, label="mean, 95 %")
     if np.any(mean > 0):
         ax.set_yscale("log")
     ax.set(xlabel=_SEPARATION, ylabel=f"{quantity.replace('_', ' ')} ({q.unit})")
@@ -100,7 +98,7 @@ def _(result: Comparison, ax: Any, *, quantity: str) -> None:
 def _(result: Paired, ax: Any) -> None:
     order = np.argsort(result.separations, kind="stable")
     columns = (x[order] for x in (result.separations, result.ratio, 1.96 * result.stderr))
-    ax.errorbar(*columns, fmt="o-", ms=3, mfc="none", color=MONTE_CARLO, label="same surfaces, 95 %")
+    ax.errorbar(*columns, fmt="o-", **SEEN, label="same surfaces, 95 %")
     ax.set(xlabel=_SEPARATION, ylabel=f"ratio of the mean {result.quantity}")
     ax.legend()
 
@@ -129,16 +127,7 @@ def _(result: Slopes, ax: Any, *, k: int) -> None:
         np.moveaxis(x, result.axis, 0)[..., k].reshape(len(result.at), -1)[:, 0]
         for x in (result.value, result.stderr, result.theory)
     )
-    ax.errorbar(
-        result.at,
-        value,
-        1.96 * error,
-        fmt="o",
-        ms=3,
-        mfc="none",
-        color=MONTE_CARLO,
-        label="same surfaces, 95 %",
-    )
+    ax.errorbar(result.at, value, 1.96 * error, fmt="o", **SEEN, label="same surfaces, 95 %")
     ax.plot(result.at, theory, color=THEORY, label="theory")
     ax.set(xlabel=result.key, ylabel=f"change of the mean {result.quantity.replace('_', ' ')}")
     ax.legend()

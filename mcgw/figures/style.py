@@ -18,12 +18,13 @@ from mcgw.scene.scene import Scene
 
 __all__ = [
     "BACK", "BAND", "CATEGORIES", "FAMILIES", "GRADINGS", "HOMOGENEOUS", "LEVEL", "MARKED", "MEANINGS",
-    "MISSING", "MONTE_CARLO", "PAIRS", "PAPER", "SAMPLE", "SEPARATIONS", "STEPS", "STYLE", "THEORY",
+    "MISSING", "MONTE_CARLO", "PAIRS", "PAPER", "SAMPLE", "SEEN", "SEPARATIONS", "STEPS", "STYLE", "THEORY",
     "contact_label", "grading_label", "line", "look", "power_of_ten", "prefixed", "short", "shown_title",
     "step",
 ]  # fmt: skip
 
 THEORY, MONTE_CARLO = "#00598F", "#E0701A"
+SEEN: Any = {"color": MONTE_CARLO, "mfc": "none", "ms": 3}  # markers of means, on what theory says
 SAMPLE = "#9CCBEB"  # bars and bands of what was drawn, with lines upon them
 HOMOGENEOUS = "#000000"  # and every other reference: Hertz's law, boundary elements
 LEVEL, BAND, BACK = "0.55", "0.93", "0.35"  # a value worth a line; where residuals may lie; lesser lines

@@ -26,10 +26,11 @@ from mcgw.maps.estimates import (
     roughness_of,
     skewness_of,
 )
-from mcgw.maps.form import ORDERS, Form
+from mcgw.maps.form import ORDERS
 from mcgw.maps.hidden_caps import Visible, visible
 from mcgw.maps.levels import form_left
 from mcgw.maps.preparation import Preparation, Prepared, prepared
+from mcgw.maps.steps import Form
 from mcgw.maps.sub_areas import Alone, Tiles, alone_of, tiles_of
 from mcgw.maps.summit_sums import EDGE, SummitSums, coarse_sums_of, summit_sums_of
 from mcgw.maps.summits import Summits, summits_of
@@ -76,7 +77,7 @@ class Fit(Shown):
     mean_squares : dict of str to float
         Of slopes and second derivatives, by the names of `mcgw.maps.summit_sums.SUMS`.
     form : str
-        What was taken off, one of `mcgw.maps.form.FORMS`.
+        What was taken off, a form of `mcgw.maps.steps`.
     waves : Waves
         Errors that follow from how few waves the map holds.
     alone : Alone or None

@@ -7,26 +7,13 @@ from pathlib import Path
 from mcgw.maps.files import read_map
 from mcgw.maps.fit import Fit, fit_prepared
 from mcgw.maps.fit_cautions import cautions, profile_cautions
-from mcgw.maps.form import FORMS, Form
-from mcgw.maps.preparation import (
-    LINES,
-    MISSING,
-    SPIKES,
-    STEP,
-    LinesTo,
-    Missing,
-    Preparation,
-    Prepared,
-    SpikesTo,
-    StepTo,
-    prepared,
-)
+from mcgw.maps.preparation import Prepared, preparation_of, prepared
 from mcgw.maps.profile import Profile
 from mcgw.maps.profile_files import holds_profile, read_profile
 from mcgw.maps.profile_fit import ProfileFit, fit_profiles
+from mcgw.maps.steps import Form, LinesTo, Missing, SpikesTo, StepTo
 from mcgw.maps.topography import Topography
-from mcgw.scene.reading import argument, as_toml
-from mcgw.scene.section import SceneError, Section
+from mcgw.scene.reading import argument
 
 __all__ = ["fit"]
 
@@ -106,21 +93,12 @@ def fit(
     >>> sorted(found.estimates)
     ['moments', 'summits']
     """
-    given = {"parts": as_toml(parts), "trim": as_toml(trim)}
-    given |= {"form": form, "missing": missing, "spikes": spikes, "step": step, "lines": lines}
-    section = Section("", given, [])
-    across, trimmed = section.whole("parts", least=2), section.whole("trim", least=0)
-    choices = {"form": FORMS, "missing": MISSING, "spikes": SPIKES, "step": STEP, "lines": LINES}
-    for key, kinds in choices.items():
-        section.choice(key, kinds[0], kinds)
-    if section.problems:
-        raise SceneError(section.problems)
-    short, long = (
-        None if length is None or length == "none" else argument(name, length, "m")
-        for name, length in (("cutoff", cutoff), ("long_cutoff", long_cutoff))
-    )
+    given = {
+        "cutoff": cutoff, "form": form, "missing": missing, "spikes": spikes, "step": step, "trim": trim,
+        "long_cutoff": long_cutoff, "lines": lines, "parts": parts,
+    }  # fmt: skip
+    asked, across = preparation_of(given, lambda key, value: argument(key, value, "m"))
     length = None if pixel is None else argument("pixel", pixel, "m")
-    asked = Preparation(short, form, missing, spikes, step, trimmed, long, lines)
     if isinstance(heights, Topography):
         return _of_map(prepared(heights, asked), across)
     if isinstance(heights, str | Path) and not (profile or holds_profile(Path(heights))):
@@ -130,8 +108,8 @@ def fit(
     read = [
         p if isinstance(p, Profile) else read_profile(Path(p), spacing=length, unit=unit) for p in several
     ]
-    of_profiles = fit_profiles(read, cutoff=short, form=form)
-    return replace(of_profiles, cautions=tuple(profile_cautions(of_profiles, read, short)))
+    of_profiles = fit_profiles(read, cutoff=asked.cutoff, form=form)
+    return replace(of_profiles, cautions=tuple(profile_cautions(of_profiles, read, asked.cutoff)))
 
 
 def _of_map(ready: Prepared, across: int) -> Fit:

@@ -2,21 +2,18 @@
 
 import math
 from dataclasses import replace
-from typing import Literal, get_args
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter, gaussian_filter1d
 from scipy.optimize import least_squares
 
+from mcgw.maps.steps import Form, LinesTo
 from mcgw.maps.topography import Topography
 
 __all__ = [
-    "FORMS",
-    "LINES",
     "ORDERS",
-    "Form",
-    "LinesTo",
     "filter_variance",
     "gaussian_transmission",
     "lowpass",
@@ -26,16 +23,12 @@ __all__ = [
 ]
 
 Array = NDArray[np.float64]
-Form = Literal["none", "plane", "quadratic", "cubic", "quartic", "sphere", "cylinder"]
-FORMS: tuple[str, ...] = get_args(Form)
 ORDERS = {"none": -1, "plane": 1, "quadratic": 2, "cubic": 3, "quartic": 4, "sphere": 2, "cylinder": 2}
 
 _ALPHA = math.sqrt(math.log(2) / math.pi)  # ISO 16610-61: half the amplitude is left at the cutoff
 _REACH = 1.0  # of the filter's window, in cutoffs: beyond lies a share of 5e-7
 _POINTS = 96  # along each axis that are looked at: a form is smooth
 _AXES = 4  # directions that are tried first
-LinesTo = Literal["keep", "rows", "columns"]
-LINES: tuple[str, ...] = get_args(LinesTo)
 
 _WIDTH = 10.0  # lines, standard deviation: of waves as long as 53 lines half is kept
 

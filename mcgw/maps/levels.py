@@ -6,7 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import fft
 
-from mcgw.maps.form import ORDERS, Form, without_form
+from mcgw.maps.form import ORDERS, without_form
+from mcgw.maps.steps import Form
 from mcgw.maps.topography import Topography
 from mcgw.maps.waves import block_means
 

@@ -1,37 +1,25 @@
 """What is done to a measured map before it is looked at, step by step, each with a line that tells it."""
 
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from typing import Literal, get_args
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
 from mcgw.maps.bad_points import Recorded, filled, recorded, small_spike_heights, spike_heights
-from mcgw.maps.form import LINES, Form, LinesTo, lowpass, smooth, without_form, without_offsets
+from mcgw.maps.form import lowpass, smooth, without_form, without_offsets
 from mcgw.maps.levels import step_of
+from mcgw.maps.steps import STEPS, Form, LinesTo, Missing, SpikesTo, StepTo
 from mcgw.maps.topography import SMALLEST, Topography
+from mcgw.scene.reading import as_toml
+from mcgw.scene.section import SceneError, Section
 
-__all__ = [
-    "LINES",
-    "MISSING",
-    "SPIKES",
-    "STEP",
-    "LinesTo",
-    "Missing",
-    "Preparation",
-    "Prepared",
-    "SpikesTo",
-    "StepTo",
-    "prepared",
-]
+__all__ = ["Preparation", "Prepared", "preparation_of", "prepared"]
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
-Missing = Literal["auto", "mask", "fill"]
-SpikesTo = Literal["keep", "remove"]
-StepTo = Literal["keep", "crop"]
-MISSING, SPIKES, STEP = (get_args(t) for t in (Missing, SpikesTo, StepTo))
 
 _NEIGHBOURS = 2  # pixels on each side that differences need
 _LEAST = 0.5  # of the measured points must have all neighbours, or filled ones count too
@@ -75,6 +63,27 @@ class Preparation:
     trim: int = 0
     long_cutoff: float | None = None
     lines: LinesTo = "keep"
+
+
+def preparation_of(given: Mapping[str, Any], length: Callable[[str, Any], float]) -> tuple[Preparation, int]:
+    """What the keywords of `mcgw.fit` ask for, and ``parts``; `length` reads those that are a length.
+
+    Raises
+    ------
+    SceneError
+        If words or numbers are none of those known, all of them told at once.
+    """
+    section = Section("", {key: as_toml(value) for key, value in given.items()}, [])
+    numbers = [section.whole(key, least=least) for key, least in (("parts", 2), ("trim", 0))]
+    chosen: dict[str, Any] = {
+        step.name: section.choice(step.name, step.kinds[0], step.kinds) for step in STEPS if step.kinds
+    }
+    if section.problems:
+        raise SceneError(section.problems)
+    for key in (step.name for step in STEPS if not step.kinds):
+        value = given[key]
+        chosen[key] = None if value is None or value == "none" else length(key, value)
+    return Preparation(**chosen, trim=numbers[1]), numbers[0]
 
 
 @dataclass(frozen=True)

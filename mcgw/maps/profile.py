@@ -7,7 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter1d
 
-from mcgw.maps.form import Form, filter_variance
+from mcgw.maps.form import filter_variance
+from mcgw.maps.steps import Form
 from mcgw.maps.topography import STEEPEST
 
 __all__ = ["Profile", "profile_at", "smooth_profile", "without_profile_form"]

@@ -19,9 +19,9 @@ from mcgw.formats.sheet import Sheet, Shown
 from mcgw.formats.table import Column, Table
 from mcgw.machine.notebook import plotted
 from mcgw.maps.estimates import Estimate, Roughness, roughness_of
-from mcgw.maps.form import Form
 from mcgw.maps.profile import Profile, smooth_profile, without_profile_form
 from mcgw.maps.profile_waves import ProfileWaves, waves_of_profile
+from mcgw.maps.steps import Form
 from mcgw.maps.waves import Uncertain
 
 __all__ = ["ProfileFit", "fit_profiles"]
