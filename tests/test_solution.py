@@ -150,7 +150,7 @@ def test_the_branch_below_the_margin_is_entered(scene, monkeypatch):
 
     Six standard deviations leave none, one leaves a sixth. Each against a bisection over all its heights.
     """
-    from mcgw.ensemble import solution
+    from mcgw.ensemble import separation, solution
 
     few = replace(scene, n_asperities=3, grading=analytic.Homogeneous(), n_surfaces=200)
     monkeypatch.setattr(solution, "_MARGIN", 0.5)
@@ -165,7 +165,7 @@ def test_the_branch_below_the_margin_is_entered(scene, monkeypatch):
         return separation_on(s, modulus, exponent, target, start)
 
     monkeypatch.setattr(solution, "summits", spy)
-    monkeypatch.setattr(solution, "separation_on", newton)
+    monkeypatch.setattr(separation, "separation_on", newton)
     (found,) = solutions(few, "load", [2.0])
     assert 0 < len(drawn_whole) < 200
     assert len(set(drawn_whole)) == len(drawn_whole)

@@ -1,21 +1,21 @@
 """``mcgw fit``: a scene from a measured map, or from profiles."""
 
 import argparse
+from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from mcgw.maps.fit import Fit
+    from mcgw.maps.preparation import Preparation, Prepared
     from mcgw.maps.profile_fit import ProfileFit
 
+    Fitted = tuple[Fit | ProfileFit, list[str], Callable[[], None]]  # what is said, and what is written too
 
 HELP = "fit summit density, radius and spread to a measured height map, and write a scene"
 EXAMPLE = "mcgw fit map.sdf --cutoff 5um -o fitted.toml"
-_UNITS = {"m0": " m^2", "m4": " 1/m^2", "eta": " 1/m^2", "radius": " m", "sigma": " m"}
-_ASSUMED = (
-    "of a surface alike in all directions, with Gaussian heights (Nayak, McCool), after the areal filter"
-)
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
@@ -73,39 +73,61 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def execute(args: argparse.Namespace) -> int:
     """Print the estimates side by side with warnings, write the scene, and say where it is."""
-    from mcgw.commands.outputs import CSV, NPY, TOML, Output, check_outputs, figure_format
     from mcgw.formats.units import parse
-    from mcgw.machine.progress import stages
-    from mcgw.maps.files import files_of_map, read_map
-    from mcgw.maps.fit import fit_prepared
-    from mcgw.maps.fit_cautions import cautions
-    from mcgw.maps.fitted_scene import fitted_scene, heights_beside, write_scene
-    from mcgw.maps.preparation import preparation_of, prepared
+    from mcgw.maps.fit import Fit
+    from mcgw.maps.fitted_scene import fitted_scene, write_scene
+    from mcgw.maps.preparation import preparation_of
     from mcgw.maps.profile_files import holds_profile
-    from mcgw.reports.fitted import fit_lines, map_line
 
     asked, across = preparation_of(
         vars(args), lambda key, text: parse(text, "m", f"--{key.replace('_', '-')}")
     )
     E_star = parse(args.E_star, "Pa", "--E-star")
     area = None if args.nominal_area is None else parse(args.nominal_area, "m^2", "--nominal-area")
+    pixel = None if args.pixel is None else parse(args.pixel, "m", "--pixel")
+    of_profiles = args.profile or holds_profile(args.map[0])
+    fit, lines, write = (
+        _of_profiles(args, asked, pixel) if of_profiles else _of_map(args, asked, pixel, across)
+    )
+    text = [*lines, *(f"warning: {line}" for line in fit.cautions)]
+    print("\n".join(text))
     on = {} if area is None else {"nominal_area": area}
-    if args.profile or holds_profile(args.map[0]):
-        return fit_of_profiles(args, asked.cutoff, E_star, on)
+    title = f"Fitted to {lines[0]}"
+    scene = fitted_scene(fit, use=args.use, heights=args.heights, E_star=E_star, title=title, **on)
+    comments = [*text, "", "units: sigma and radius in m, eta in 1/m^2, nominal_area in m^2, E_star in Pa"]
+    measured = fit if isinstance(fit, Fit) and args.heights == "measured" else None
+    for path in write_scene(scene, args.output, measured, comments):
+        print(path)
+    write()
+    print(f"next: mcgw run {args.output} -o {args.output.with_suffix('.h5')}")
+    return 0
+
+
+def _of_map(args: argparse.Namespace, asked: "Preparation", pixel: float | None, across: int) -> "Fitted":
+    """What a map tells."""
+    from mcgw.commands.outputs import CSV, NPY, TOML, Output, check_outputs, figure_format
+    from mcgw.machine.progress import stages
+    from mcgw.maps.files import files_of_map, read_map
+    from mcgw.maps.fit import fit_prepared
+    from mcgw.maps.fit_cautions import cautions
+    from mcgw.maps.fitted_scene import heights_beside
+    from mcgw.maps.preparation import prepared
+    from mcgw.reports.fitted import fit_lines, map_line
+
     if len(args.map) > 1:
         raise ValueError(
             f"{args.map[1]}: the first of {len(args.map)} files is a map; give one map, or profiles"
         )
     (path_of_map,) = args.map
-    pixel = None if args.pixel is None else (parse(args.pixel, "m", "--pixel"),) * 2
     beside = [Output(heights_beside(args.output), NPY)] if args.heights == "measured" else []
     tables = {"--summits": args.summits, "--tiles": args.tiles}
     beside += [Output(path, CSV, option) for option, path in tables.items() if path is not None]
     if args.picture is not None:
         beside.append(Output(args.picture, figure_format(), "--picture"))
     check_outputs([Output(args.output, TOML), *beside], inputs=files_of_map(path_of_map))
+    square = None if pixel is None else (pixel, pixel)
     with stages(4) as done:
-        read = [read_map(path_of_map, pixel=pixel, unit=args.unit)]
+        read = [read_map(path_of_map, pixel=square, unit=args.unit)]
         done()
         ready = prepared(read.pop(), asked)  # which keeps no map as it was read: large ones fill the memory
         done()
@@ -114,46 +136,37 @@ def execute(args: argparse.Namespace) -> int:
         fit = replace(fit, cautions=tuple(cautions(fit, ready, args.use)))
         done()
     head = map_line(path_of_map.name, asked, ready.levelled.assumed_unit)
-    text = [head, *fit.notes, *fit_lines(fit), *(f"warning: {line}" for line in fit.cautions)]
-    print("\n".join(text))
-    title = f"Fitted to {head}"
-    scene = fitted_scene(fit, use=args.use, heights=args.heights, E_star=E_star, title=title, **on)
-    comments = [*text, "", "units: sigma and radius in m, eta in 1/m^2, nominal_area in m^2, E_star in Pa"]
-    for path in write_scene(scene, args.output, fit if args.heights == "measured" else None, comments):
-        print(path)
-    _write_tables(fit, args.summits, args.tiles)
-    if args.picture is not None:
-        from mcgw.figures.map_fit import save_fit_picture
-
-        save_fit_picture(fit, read_map(path_of_map, pixel=pixel, unit=args.unit), ready, args.picture)
-        print(f"{args.picture}: figure")
-    print(f"next: mcgw run {args.output} -o {args.output.with_suffix('.h5')}")
-    return 0
+    return fit, [head, *fit.notes, *fit_lines(fit)], partial(_write_beside, args, fit, ready, square)
 
 
-def _write_tables(fit: "Fit", summits: Path | None, tiles: Path | None) -> None:
-    """The tables that were asked for, and where they are."""
+def _write_beside(
+    args: argparse.Namespace, fit: "Fit", ready: "Prepared", pixel: tuple[float, float] | None
+) -> None:
+    """Write the tables and the picture that were asked for, and say where they are."""
+    from mcgw.maps.files import read_map
     from mcgw.maps.sub_areas import write_tiles
     from mcgw.maps.summits import write_summits
 
-    if summits is not None:
-        write_summits(fit.listed, summits)
-        print(summits)
-    if tiles is not None:
-        write_tiles(fit.tiles, tiles)
-        print(tiles)
+    if args.summits is not None:
+        write_summits(fit.listed, args.summits)
+        print(args.summits)
+    if args.tiles is not None:
+        write_tiles(fit.tiles, args.tiles)
+        print(args.tiles)
+    if args.picture is not None:
+        from mcgw.figures.map_fit import save_fit_picture
+
+        save_fit_picture(fit, read_map(args.map[0], pixel=pixel, unit=args.unit), ready, args.picture)
+        print(f"{args.picture}: figure")
 
 
-def fit_of_profiles(
-    args: argparse.Namespace, cutoff: float | None, E_star: float, on: dict[str, float]
-) -> int:
-    """Print what the profiles tell, with warnings, write the scene, and say where it is."""
+def _of_profiles(args: argparse.Namespace, asked: "Preparation", spacing: float | None) -> "Fitted":
+    """What profiles tell."""
     from mcgw.commands.outputs import TOML, Output, check_outputs
-    from mcgw.formats.units import parse
     from mcgw.maps.fit_cautions import profile_cautions
-    from mcgw.maps.fitted_scene import fitted_scene, write_scene
     from mcgw.maps.profile_files import read_profile
     from mcgw.maps.profile_fit import fit_profiles
+    from mcgw.reports.fitted import profile_line, profile_lines
 
     for option, given in (("--summits", args.summits), ("--tiles", args.tiles), ("--picture", args.picture)):
         if given is not None:
@@ -163,43 +176,9 @@ def fit_of_profiles(
     for option in ("long_cutoff", "missing", "spikes", "step", "lines", "trim"):
         if getattr(args, option) not in (None, "auto", "keep", 0):
             raise ValueError(f"--{option.replace('_', '-')}: is for maps; prepare a profile before")
-    spacing = None if args.pixel is None else parse(args.pixel, "m", "--pixel")
     profiles = [read_profile(path, spacing=spacing, unit=args.unit) for path in args.map]
     check_outputs([Output(args.output, TOML)], inputs=args.map)
-    fit = fit_profiles(profiles, cutoff=cutoff, form=args.form)
-    filtered = "none" if cutoff is None else f"{cutoff:g} m (Gaussian)"
-    names = ", ".join(path.name for path in args.map)
-    taken = {"none": "mean", "plane": "line", "quadratic": "parabola"}[args.form]
-    head = f"{names}: profile; taken off: {taken}; cutoff: {filtered}"
-    if unit := next((p.assumed_unit for p in profiles if p.assumed_unit), ""):
-        head += f"; lengths taken in {unit} where the file tells no unit"
-    text = [head, *_table(fit), *(f"warning: {line}" for line in profile_cautions(fit, profiles, cutoff))]
-    print("\n".join(text))
-    title = f"Fitted to {head}"
-    scene = fitted_scene(fit, use=args.use, heights=args.heights, E_star=E_star, title=title, **on)
-    for path in write_scene(scene, args.output, None, text):
-        print(path)
-    return 0
-
-
-def _table(fit: "ProfileFit") -> list[str]:
-    """What the profiles are, and what they tell of the surface, one number a line."""
-    counted, expected = fit.peaks
-    number = len(fit.lengths)
-    lines = [
-        f"{number} profile{'s' if number > 1 else ''}, {sum(fit.lengths):.4g} m together; filtered along the "
-        f"line: {fit.roughness.text('P')} (primary profile; they are Ra, Rq, Rsk if waves beyond a cutoff "
-        "lambda_c were taken off before)",
-        f"{counted:.4g} peaks a metre of profile; its own moments let expect {expected:.4g}",
-        _ASSUMED + ":",
-        f"{'':8}{'value':26}95 % interval",
-    ]
-    for name in fit.errors:
-        low, high = fit.interval(name)
-        value = f"{getattr(fit.moments, name):.4g}{_UNITS.get(name, '')}"
-        lines.append(f"{name:8}{value:26}{low:.3g} to {high:.3g}")
-    mean = fit.moments.mean_height
-    lines.append(
-        f"summits lie {mean:.3g} m above the mean plane on average; sigma is theirs, about that mean"
-    )
-    return lines
+    fit = fit_profiles(profiles, cutoff=asked.cutoff, form=args.form)
+    fit = replace(fit, cautions=tuple(profile_cautions(fit, profiles, asked.cutoff)))
+    head = profile_line([path.name for path in args.map], asked, profiles)
+    return fit, [head, *profile_lines(fit)], lambda: None

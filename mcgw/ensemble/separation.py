@@ -1,6 +1,6 @@
 """The separation at which a sum over given heights has a given value, under Hertz's law and any other."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -8,16 +8,18 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 
-from analytic import quantity_of
+from analytic import Hertz, Quantity, quantity_of
 from analytic.laws import LoadingBranch, Ways, term_of
+from mcgw.scene.scene import Scene
 
-__all__ = ["LOWEST", "LawSum", "crossing", "separation_on"]
+__all__ = ["LawSum", "Summits", "separation_on"]
 
 Array = NDArray[np.float64]
 
 _ENOUGH = 1e-14  # relative excess of load where Newton's steps are rounding errors
 _FINE = 1 / 64  # step of the search where a negative modulus makes the sum rise and fall
-LOWEST = -40.0  # separation where searches end
+_LOWEST = -40.0  # separation where searches end
+_STEP = 0.5  # by which the search for a start goes down, where the margin was not enough
 _LAST_DIGITS = 4 * np.finfo(float).eps
 
 
@@ -59,7 +61,7 @@ def separation_on(heights: Array, modulus: Array, exponent: float, target: float
 
 def crossing(excess: Callable[[float], float], high: float) -> float | None:
     """Largest root below `high`, where the function is negative; None down to the end of theory's range."""
-    for low in np.arange(high - _FINE, LOWEST, -_FINE).tolist():
+    for low in np.arange(high - _FINE, _LOWEST, -_FINE).tolist():
         if excess(low) >= 0:
             return float(brentq(excess, low, low + _FINE, xtol=1e-15, rtol=1e-14))
     return None
@@ -173,3 +175,106 @@ class LawSum:
     def _weight(self, which: NDArray[np.int64]) -> Array | float:
         """What a load or an area is worth by the radius."""
         return 1.0 if self.ratios is None else self.ratios[which] ** quantity_of(self.quantity).radius
+
+
+@dataclass(frozen=True, eq=False)
+class Summits:
+    """Asperities of one surface of a scene.
+
+    Parameters
+    ----------
+    scene : Scene
+        Whose grading and contact law they have.
+    s : ndarray
+        Reduced heights in falling order.
+    ratios : ndarray or None
+        Radii over that of the surface, where summits have their own.
+    """
+
+    scene: Scene
+    s: Array
+    ratios: Array | None
+
+    @classmethod
+    def of(cls, scene: Scene, s: Array, ratios: Array | None) -> "Summits":
+        """In falling order."""
+        order = np.argsort(-s, kind="stable")
+        return cls(scene, s[order], None if ratios is None else ratios[order])
+
+    def above(self, h: float) -> "Summits":
+        """The first of them, that rise above a separation."""
+        n = int(np.searchsorted(-self.s, -h))
+        return Summits(self.scene, self.s[:n], None if self.ratios is None else self.ratios[:n])
+
+    def largest_separation(self, q: Quantity, target: float, start: float) -> float | None:
+        """The solution among separations from `start` on at which no modulus is negative, or None.
+
+        These are all summits above `start`. Above the highest one of negative modulus Hertz's sum falls with
+        the separation: so there is no larger solution.
+        """
+        if not self._by_powers:
+            e = self.scene.modulus(self.s)
+            start = float(self.s[e < 0].max(initial=start))
+            return LawSum(q.base, self._loading, self.s, e, self.ratios).largest_separation(target, start)
+        weights = self._weights(q)
+        start = float(self.s[weights < 0].max(initial=start))
+        if self._power_sum(q, weights, start) < target:
+            return None
+        return separation_on(self.s, weights, q.exponent, target, start)
+
+    def separation_anywhere(self, q: Quantity, target: float, start: float) -> float | None:
+        """The largest solution on all heights of a surface; None if there is none."""
+        if not self._by_powers:
+            return self._going_down(q, target, start)
+        weights = self._weights(q)
+        negative = self.s[weights < 0]
+        if negative.size:
+            found = self.largest_separation(q, target, -np.inf)
+            if found is not None or self.scene.negative == "error":
+                return found
+            return crossing(lambda h: self._power_sum(q, weights, h) - target, float(negative.max()))
+        while self._power_sum(q, weights, start) < target:
+            start -= _STEP
+        return separation_on(self.s, weights, q.exponent, target, start)
+
+    def sums(self, names: Iterable[str], h: float) -> dict[str, float]:
+        """Quantities at one separation, SI."""
+        touching, found = self.above(h), {}
+        s, modulus = touching.s, self.scene.modulus(touching.s)
+        for name in names:
+            q = quantity_of(name)
+            if self.scene.hertzian:
+                terms = touching._weights(q) * (s - h) ** q.exponent
+            elif touching.ratios is None:
+                terms = term_of(name, self._loading, h, s, modulus)
+            else:
+                terms = self.scene.ways.term(name, h, s, modulus, touching.ratios)
+            found[name] = q.scale(self.scene.surface) * float(np.sum(terms))
+        return found
+
+    def _going_down(self, q: Quantity, target: float, start: float) -> float | None:
+        """As `separation_anywhere` under any law, step by step."""
+        softest = float(self.s[self.scene.modulus(self.s) < 0].max(initial=_LOWEST))
+        while start > softest:
+            start = max(start - _STEP, softest)
+            if (found := self.above(start).largest_separation(q, target, start)) is not None:
+                return found
+        return None
+
+    @property
+    def _by_powers(self) -> bool:
+        """Whether load and area are sums of powers of the approaches."""
+        return type(self.scene.law) is Hertz
+
+    @property
+    def _loading(self) -> LoadingBranch:
+        film = None if self.scene.film is None else self.scene.film.on(self.scene.surface)
+        return LoadingBranch(self.scene.contact, film)
+
+    def _weights(self, q: Quantity) -> Array:
+        modulus = self.scene.modulus(self.s) if q.modulus else np.ones_like(self.s)
+        return modulus if self.ratios is None else modulus * self.ratios**q.radius
+
+    def _power_sum(self, q: Quantity, weights: Array, h: float) -> float:
+        touching = self.s > h
+        return float(np.sum(weights[touching] * (self.s[touching] - h) ** q.exponent))

@@ -1,16 +1,15 @@
 """The separation at a given load or real area: by theory, and on every surface for itself."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from analytic import QUANTITIES, Hertz, MeasuredHeights, Quantity, quantity_of
-from analytic.laws import LoadingBranch, term_of
 from analytic.laws.elastic_plastic import ElasticPlastic
-from mcgw.ensemble.separation import LOWEST, LawSum, crossing, separation_on
+from mcgw.ensemble.separation import Summits
 from mcgw.ensemble.solved import Solution, with_half_space, with_mean_gap
 from mcgw.machine.progress import Progress, told
 from mcgw.sampling.asperities import summits, touching_summits
@@ -25,7 +24,6 @@ Array = NDArray[np.float64]
 
 _MARGIN = 6.0  # standard deviations of a surface's separation that are drawn at once
 _MOST_HEIGHTS = 3e9
-_STEP = 0.5  # by which the search for a start goes down, where the margin was not enough
 _LAST_DIGITS = 64 * float(np.finfo(float).eps)  # of a reduced height
 _NOTHING = 1e-16  # share of the heights below all that are drawn
 _NEGATIVE = (
@@ -210,117 +208,23 @@ def _surface(
     scene: Scene, drawn: Scene, number: int, q: Quantity, values: Sequence[float]
 ) -> list[dict[str, float]]:
     """All quantities of one surface at each value."""
-    touching = _sorted(*touching_summits(drawn, number))
-    whole: _Summits | None = None
+    touching = Summits.of(scene, *touching_summits(drawn, number))
+    whole: Summits | None = None
     rows = []
     for value in values:
         target = value / q.scale(scene.surface)
         on = touching
-        h = _above(scene, q, on, target, drawn.lowest)
+        h = on.largest_separation(q, target, drawn.lowest)
         if h is None:  # rare: it lies below what was drawn
-            whole = _sorted(*summits(drawn, number)) if whole is None else whole
+            whole = Summits.of(scene, *summits(drawn, number)) if whole is None else whole
             on = whole
             if not on.s.size:
                 raise ValueError(f"surface {number} has not one asperity; give more n_asperities")
-            h = _anywhere(scene, q, on, target, drawn.lowest)
+            h = on.separation_anywhere(q, target, drawn.lowest)
         negative = on.s[scene.modulus(on.s) < 0]
         if h is None and not negative.size:
             raise ValueError(f"{q.name} = {value:g} {q.unit}: surface {number} does not reach it; give less")
         if h is None or (scene.negative == "error" and np.any(negative > h)):
             raise ValueError(_NEGATIVE.format(q.name, value, q.unit, f"surface {number}", negative.max()))
-        rows.append({"separation": h, **dict(_sums(scene, on, h))})
+        rows.append({"separation": h, **on.sums(_quantities(scene), h)})
     return rows
-
-
-def _above(scene: Scene, q: Quantity, on: "_Summits", target: float, start: float) -> float | None:
-    """The solution among separations from `start` on at which no modulus is negative, or None.
-
-    `on` are all summits above `start`, in falling order. Above the highest one of negative modulus Hertz's
-    sum falls with the separation: so there is no larger solution.
-    """
-    if not _by_powers(scene):
-        e = scene.modulus(on.s)
-        start = float(on.s[e < 0].max(initial=start))
-        return LawSum(q.base, _loading(scene), on.s, e, on.ratios).largest_separation(target, start)
-    weights = _weights(scene, q, on)
-    start = float(on.s[weights < 0].max(initial=start))
-    if _power_sum(q, on.s, weights, start) < target:
-        return None
-    return separation_on(on.s, weights, q.exponent, target, start)
-
-
-def _anywhere(scene: Scene, q: Quantity, on: "_Summits", target: float, start: float) -> float | None:
-    """The largest solution on all heights of a surface, in falling order; None if there is none."""
-    if not _by_powers(scene):
-        return _going_down(scene, q, on, target, start)
-    weights = _weights(scene, q, on)
-    negative = on.s[weights < 0]
-    if negative.size:
-        found = _above(scene, q, on, target, -np.inf)
-        if found is not None or scene.negative == "error":
-            return found
-        return crossing(lambda h: _power_sum(q, on.s, weights, h) - target, float(negative.max()))
-    while _power_sum(q, on.s, weights, start) < target:
-        start -= _STEP
-    return separation_on(on.s, weights, q.exponent, target, start)
-
-
-def _going_down(scene: Scene, q: Quantity, on: "_Summits", target: float, start: float) -> float | None:
-    """As `_anywhere` under any law, step by step."""
-    softest = float(on.s[scene.modulus(on.s) < 0].max(initial=LOWEST))
-    while start > softest:
-        start = max(start - _STEP, softest)
-        if (found := _above(scene, q, on.above(start), target, start)) is not None:
-            return found
-    return None
-
-
-def _by_powers(scene: Scene) -> bool:
-    """Whether load and area are sums of powers of the approaches."""
-    return type(scene.law) is Hertz
-
-
-def _loading(scene: Scene) -> LoadingBranch:
-    return LoadingBranch(scene.contact, None if scene.film is None else scene.film.on(scene.surface))
-
-
-class _Summits(NamedTuple):
-    """Reduced heights in falling order, and radii over that of the surface where summits have their own."""
-
-    s: Array
-    ratios: Array | None
-
-    def above(self, h: float) -> "_Summits":
-        """The first of them, that rise above a separation."""
-        n = int(np.searchsorted(-self.s, -h))
-        return _Summits(self.s[:n], None if self.ratios is None else self.ratios[:n])
-
-
-def _sorted(s: Array, ratios: Array | None) -> _Summits:
-    order = np.argsort(-s, kind="stable")
-    return _Summits(s[order], None if ratios is None else ratios[order])
-
-
-def _weights(scene: Scene, q: Quantity, on: _Summits) -> Array:
-    modulus = scene.modulus(on.s) if q.modulus else np.ones_like(on.s)
-    return modulus if on.ratios is None else modulus * on.ratios**q.radius
-
-
-def _power_sum(q: Quantity, s: Array, modulus: Array, h: float) -> float:
-    touching = s > h
-    return float(np.sum(modulus[touching] * (s[touching] - h) ** q.exponent))
-
-
-def _sums(scene: Scene, on: _Summits, h: float) -> Iterator[tuple[str, float]]:
-    """All quantities of some summits at one separation, SI."""
-    s, ratios = touching = on.above(h)
-    modulus = scene.modulus(s)
-    for name in _quantities(scene):
-        q = quantity_of(name)
-        if scene.hertzian:
-            terms = _weights(scene, q, touching) * (s - h) ** q.exponent
-        elif ratios is None:
-            terms = term_of(name, _loading(scene), h, s, modulus)
-        else:
-            terms = scene.ways.term(name, h, s, modulus, ratios)
-        yield name, q.scale(scene.surface) * float(np.sum(terms))

@@ -96,10 +96,17 @@ class ProfileFit(Shown):
 
     def sheet(self) -> Sheet:
         """Each number with its 95 % interval, and the first of the cautions."""
+        facts = [("profiles", self.roughness.text("P"))]
+        facts += [("caution", line) for line in self.cautions[:2]]
+        title = f"Fit of {len(self.lengths)} profile(s), {sum(self.lengths):.4g} m together"
+        return Sheet(title, facts, self.table())
+
+    def table(self) -> Table:
+        """A row for each number, with its 95 % interval."""
         units = {"m0": "m^2", "m4": "1/m^2", "eta": "1/m^2", "radius": "m", "sigma": "m"}
         low, high = np.array([self.interval(name) for name in _NAMES]).T
         end = Column("high_95", high, form=".3g")
-        table = Table(
+        return Table(
             (
                 Column("name", _NAMES, " "),
                 Column("unit", [units.get(name, "1") for name in _NAMES]),
@@ -107,10 +114,6 @@ class ProfileFit(Shown):
                 Column("low_95", low, "95 %", form=".3g", beside=end, between=" to "),
             )
         )
-        facts = [("profiles", self.roughness.text("P"))]
-        facts += [("caution", line) for line in self.cautions[:2]]
-        title = f"Fit of {len(self.lengths)} profile(s), {sum(self.lengths):.4g} m together"
-        return Sheet(title, facts, table)
 
 
 def fit_profiles(profiles: Sequence[Profile], *, cutoff: float | None, form: Form = "plane") -> ProfileFit:

@@ -1,11 +1,15 @@
-"""What a map told, as lines of text."""
+"""What a map or profiles told, as lines of text."""
+
+from collections.abc import Sequence
 
 from mcgw.maps.estimates import METHODS, estimates_table
 from mcgw.maps.fit import Fit
 from mcgw.maps.preparation import Preparation
+from mcgw.maps.profile import Profile
+from mcgw.maps.profile_fit import ProfileFit
 from mcgw.maps.waves import Uncertain
 
-__all__ = ["fit_lines", "map_line"]
+__all__ = ["fit_lines", "map_line", "profile_line", "profile_lines"]
 
 
 def map_line(name: str, asked: Preparation, assumed_unit: str) -> str:
@@ -43,6 +47,33 @@ def fit_lines(fit: Fit) -> list[str]:
             f"{100 * (fit.visible.std - 1):+.2g} % in sigma"
         )
     return lines
+
+
+def profile_line(names: Sequence[str], asked: Preparation, profiles: Sequence[Profile]) -> str:
+    """Which profiles they were, their form and cutoff, and the unit that was taken where none was told."""
+    filtered = "none" if asked.cutoff is None else f"{asked.cutoff:g} m (Gaussian)"
+    taken = {"none": "mean", "plane": "line", "quadratic": "parabola"}[asked.form]
+    line = f"{', '.join(names)}: profile; taken off: {taken}; cutoff: {filtered}"
+    if unit := next((p.assumed_unit for p in profiles if p.assumed_unit), ""):
+        line += f"; lengths taken in {unit} where the file tells no unit"
+    return line
+
+
+def profile_lines(fit: ProfileFit) -> list[str]:
+    """What the profiles are, and what they tell of the surface, one number a line."""
+    counted, expected = fit.peaks
+    number = len(fit.lengths)
+    return [
+        f"{number} profile{'s' if number > 1 else ''}, {sum(fit.lengths):.4g} m together; filtered along the "
+        f"line: {fit.roughness.text('P')} (primary profile; they are Ra, Rq, Rsk if waves beyond a cutoff "
+        "lambda_c were taken off before)",
+        f"{counted:.4g} peaks a metre of profile; its own moments let expect {expected:.4g}",
+        "of a surface alike in all directions, with Gaussian heights (Nayak, McCool), after the areal "
+        "filter:",
+        *fit.table().text().splitlines(),
+        f"summits lie {fit.moments.mean_height:.3g} m above the mean plane on average; sigma is theirs, "
+        "about that mean",
+    ]
 
 
 def _told(x: Uncertain) -> str:
