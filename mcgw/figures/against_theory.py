@@ -213,14 +213,13 @@ def draw_residuals(comparison: "SweepComparison", axis: Any) -> None:
 
 def _draw_worst(comparison: "SweepComparison", axis: Any) -> None:
     """Residuals of the point that is the least likely by chance; those that count have a marker."""
-    one = comparison.worst[0]
-    t = one
+    t = comparison.worst[0]
     for name, residual, counts in zip(t.quantities, t.residual, t.counts, strict=True):
         shown = np.where(counts, residual, np.nan)
         axis.plot(t.separations, shown, ms=3, mfc="none", lw=1, label=name, **look(name))
     largest = np.abs(t.residual[t.counts]).max(initial=0.0)
     draw_residual(axis, max(4, 1.5 * largest))
-    point = list(comparison.sweep.axes.points())[one.number]
+    point = list(comparison.sweep.axes.points())[t.number]
     at = one_line(comparison.sweep.axes.text(point)).replace("$", r"\$")
     axis.set_title(textwrap.fill(f"worst: {at}; p = {t.verdict.p:.2g} of this point alone", 48), fontsize=9)
     axis.set(xlabel="separation d/σ", ylabel="residual (standard errors)")
