@@ -17,7 +17,8 @@ from pathlib import Path
 import numpy as np
 
 from analytic import SpectralMoments
-from mcgw.maps.fit import Fit, fit_map
+from mcgw.maps.fit import Fit, fit_prepared
+from mcgw.maps.preparation import Preparation, prepared
 from mcgw.maps.synthetic import Spectrum, gaussian_map, moments_on_grid
 from mcgw.maps.topography import Topography
 
@@ -66,7 +67,7 @@ def case(alpha: int, waves: int, cut: bool, maps: int) -> np.ndarray:
     for seed in range(len(done), maps):
         whole = gaussian_map(spectrum, (size, size), PIXEL, np.random.default_rng(seed))
         part = Topography(np.ascontiguousarray(whole.heights[:n, :n]), PIXEL)
-        done.append(np.array(numbers(fit_map(part, cutoff=None), truth)))
+        done.append(np.array(numbers(fit_prepared(prepared(part, Preparation(None))), truth)))
         if seed % 20 == 19 or seed == maps - 1:
             np.save(path, np.array(done))
     return np.array(done[:maps])

@@ -17,7 +17,7 @@ import scipy.stats
 
 import analytic
 import mcgw
-from mcgw.maps.files import write_map
+from mcgw.maps.map_files import write_map
 from mcgw.maps.synthetic import gaussian_map, spectrum_from
 from mcgw.statistics import tradeoff
 

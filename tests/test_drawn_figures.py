@@ -16,7 +16,7 @@ import analytic
 import mcgw
 from mcgw.figures.against_theory import quantity_figure, save_comparison
 from mcgw.figures.data import FigureData, Panel, Points, Series
-from mcgw.figures.drawing import draw
+from mcgw.figures.panels import draw
 from mcgw.figures.studies import save_convergence, save_tradeoff
 from mcgw.figures.style import power_of_ten
 from mcgw.statistics.checks import Check, Slope

@@ -19,7 +19,7 @@ import mcgw
 from mcgw.cli import _parser, main
 from mcgw.figures.contact_map import EllipseCollection
 from mcgw.jobs.running import run
-from mcgw.maps.files import read_map
+from mcgw.maps.map_files import read_map
 from mcgw.store.ensembles import read_attributes
 
 pytestmark = pytest.mark.usefixtures("blank_figures", "looked_at_here", "without_layout")

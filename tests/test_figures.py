@@ -17,8 +17,8 @@ import mcgw
 from mcgw.figures.catalogue import CATALOGUE, figures_of, rows_of
 from mcgw.figures.compared import Compared
 from mcgw.figures.data import FigureData, ratio_of_sums
-from mcgw.figures.drawing import draw, save_figure_files
 from mcgw.figures.finite import law_of_load, spread
+from mcgw.figures.panels import draw, save_figure_files
 from mcgw.figures.style import prefixed, short
 from mcgw.scene.scene_file import scene_from
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from mcgw.machine.memory import peak_growth
-from mcgw.maps.files import read_map
+from mcgw.maps.map_files import read_map
 
 STAND_IN = """
 import os

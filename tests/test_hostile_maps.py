@@ -10,7 +10,7 @@ import pytest
 
 import mcgw
 from mcgw.maps import summit_sums
-from mcgw.maps.files import read_map, write_map
+from mcgw.maps.map_files import read_map, write_map
 from mcgw.maps.summit_sums import summit_sums_of
 from mcgw.maps.topography import Topography
 

@@ -4,12 +4,12 @@ import math
 
 import numpy as np
 import pytest
+from fit_of_maps import fit_map
 from scipy.special import polygamma
 from scipy.stats import gamma, norm
 from scipy.stats import t as t_law
 
 from analytic import SpectralMoments
-from mcgw.maps.fit import fit_map
 from mcgw.maps.fit_cautions import _waves
 from mcgw.maps.synthetic import Spectrum, gaussian_map, moments_on_grid
 from mcgw.maps.topography import Topography

@@ -14,8 +14,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from mcgw.formats.units import METRES
-from mcgw.maps.files import read_map, write_map
 from mcgw.maps.form import smooth
+from mcgw.maps.map_files import read_map, write_map
 from mcgw.maps.sdf import read_sdf
 from mcgw.maps.synthetic import Spectrum, gaussian_map, spectrum_from
 from mcgw.maps.topography import Topography

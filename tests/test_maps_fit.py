@@ -5,14 +5,14 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from fit_of_maps import fit_map
 from scipy import ndimage
 
 import mcgw
 from analytic import MeasuredHeights
 from mcgw.cli import main
 from mcgw.maps.envelope import envelope, hidden_summits
-from mcgw.maps.files import write_map
-from mcgw.maps.fit import fit_map
+from mcgw.maps.map_files import write_map
 from mcgw.maps.synthetic import Asperities, Spectrum, gaussian_map, moments_on_grid
 from mcgw.maps.topography import Topography
 

@@ -2,11 +2,11 @@
 
 import numpy as np
 import pytest
+from fit_of_maps import fit_map
 
 import mcgw
 from mcgw.cli import main
 from mcgw.maps.bad_points import bad_edges, spikes_of
-from mcgw.maps.fit import fit_map
 from mcgw.maps.levels import form_left, step_of
 from mcgw.maps.synthetic import Spectrum, gaussian_map
 from mcgw.maps.topography import Topography

@@ -2,11 +2,11 @@
 
 import numpy as np
 import pytest
+from fit_of_maps import fit_map
 from scipy import ndimage
 
 import mcgw
 from mcgw.maps.bad_points import recorded
-from mcgw.maps.fit import fit_map
 from mcgw.maps.form import smooth
 from mcgw.maps.instrument import CHECKS, _kept_of_noise
 from mcgw.maps.preparation import Preparation, prepared

@@ -1,15 +1,17 @@
 """What is done to a map before it is looked at: each step against a map that never needed it."""
 
 import math
+from typing import get_args
 
 import numpy as np
 import pytest
+from fit_of_maps import fit_map
 
 import mcgw
 from mcgw.maps.bad_points import filled
-from mcgw.maps.fit import fit_map
-from mcgw.maps.form import FORMS, gaussian_transmission, smooth, without_form
+from mcgw.maps.form import gaussian_transmission, smooth, without_form
 from mcgw.maps.preparation import Preparation, prepared
+from mcgw.maps.steps import Form
 from mcgw.maps.synthetic import Spectrum, gaussian_map
 from mcgw.maps.topography import Topography
 
@@ -144,7 +146,7 @@ def tilted_cylinder(radius, x, y):
     return (-linear + np.sqrt(linear**2 - square * rest)) / square
 
 
-@pytest.mark.parametrize("kind", FORMS)
+@pytest.mark.parametrize("kind", get_args(Form))
 def test_a_form_comes_off_and_the_roughness_stays(kind):
     """Each form over the roughness, and nothing else: what is left is within what it takes of roughness."""
     n = 160

@@ -5,12 +5,12 @@ import math
 
 import numpy as np
 import pytest
+from fit_of_maps import fit_map
 from scipy.optimize import brentq
 
 import mcgw
 from mcgw.cli import main
-from mcgw.maps.files import write_map
-from mcgw.maps.fit import fit_map
+from mcgw.maps.map_files import write_map
 from mcgw.maps.sub_areas import tiles_of
 from mcgw.maps.summit_sums import summit_sums_of
 from mcgw.maps.summits import summit_contact, summits_of

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from fit_of_maps import fit_map
 from numpy.polynomial.legendre import leggauss
 from numpy.polynomial.polynomial import polyder, polyval2d
 from scipy.integrate import quad
@@ -22,7 +23,6 @@ from mcgw.maps.estimates import (
     moments_of,
     skewness_of,
 )
-from mcgw.maps.fit import fit_map
 from mcgw.maps.hidden_caps import unhidden, visible
 from mcgw.maps.summit_sums import SUMS, SummitSums, _apex, coarse_sums_of, summit_sums_of
 from mcgw.maps.topography import Topography

@@ -17,8 +17,8 @@ import mcgw
 from mcgw.cli import main
 from mcgw.figures.contact_map import spots_at
 from mcgw.maps.envelope import envelope, hidden_summits
-from mcgw.maps.files import read_map
 from mcgw.maps.hidden_caps import visible
+from mcgw.maps.map_files import read_map
 from mcgw.maps.synthetic import (
     Asperities,
     Spectrum,

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from mcgw.cli import main
-from mcgw.maps.files import read_map, write_h5
+from mcgw.maps.map_files import read_map, write_h5
 from mcgw.maps.synthetic import Spectrum, gaussian_map
 from mcgw.maps.topography import Topography
 

@@ -13,7 +13,7 @@ import mcgw
 from mcgw.figures import style
 from mcgw.figures.catalogue import figures_of
 from mcgw.figures.compared import Compared
-from mcgw.figures.drawing import draw
+from mcgw.figures.panels import draw
 
 # Machado, Oliveira and Fernandes 2009 (doi:10.1109/TVCG.2009.113), severity 1.0, on linear RGB.
 EYES = {

@@ -12,7 +12,7 @@ import mcgw
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.results import MemoryResults
 from mcgw.figures.contact_map import patch_figures
-from mcgw.figures.drawing import draw
+from mcgw.figures.panels import draw
 from mcgw.figures.pressure_curves import pressure_curves, pressure_figure
 from mcgw.reports.report_figures import _relative_error, _spread, line_figure
 from mcgw.statistics.comparison import compare

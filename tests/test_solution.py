@@ -11,7 +11,7 @@ import mcgw
 from mcgw.cli import main
 from mcgw.ensemble.separation import separation_on
 from mcgw.ensemble.solution import solutions
-from mcgw.reports.solution import solutions_text
+from mcgw.reports.solved_loads import solutions_text
 
 LOADS = (3.0, 100.0, 900.0)
 

@@ -4,11 +4,11 @@ import math
 
 import numpy as np
 import pytest
+from fit_of_maps import fit_map
 
 import analytic
 import mcgw
 from mcgw.cli import main
-from mcgw.maps.fit import fit_map
 from mcgw.maps.summits import summit_contact
 from mcgw.maps.synthetic import Spectrum, gaussian_map
 

@@ -23,7 +23,7 @@ def execute(args: argparse.Namespace) -> int:
     from mcgw.commands.outputs import CSV, Output, check_outputs, figure_format
     from mcgw.figures.catalogue import figures_of, of_paper, rows_of
     from mcgw.figures.compared import Compared
-    from mcgw.figures.drawing import figure_files, save_figure_files
+    from mcgw.figures.panels import figure_files, save_figure_files
     from mcgw.scene.scene_file import files_of, load_scene
 
     compared, figure = Compared(load_scene(args.scene)) if args.scene else of_paper(), figure_format()

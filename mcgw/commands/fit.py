@@ -107,10 +107,10 @@ def _of_map(args: argparse.Namespace, asked: "Preparation", pixel: float | None,
     """What a map tells."""
     from mcgw.commands.outputs import CSV, NPY, TOML, Output, check_outputs, figure_format
     from mcgw.machine.progress import stages
-    from mcgw.maps.files import files_of_map, read_map
     from mcgw.maps.fit import fit_prepared
     from mcgw.maps.fit_cautions import cautions
     from mcgw.maps.fitted_scene import heights_beside
+    from mcgw.maps.map_files import files_of_map, read_map
     from mcgw.maps.preparation import prepared
     from mcgw.reports.fitted import fit_lines, map_line
 
@@ -143,7 +143,7 @@ def _write_beside(
     args: argparse.Namespace, fit: "Fit", ready: "Prepared", pixel: tuple[float, float] | None
 ) -> None:
     """Write the tables and the picture that were asked for, and say where they are."""
-    from mcgw.maps.files import read_map
+    from mcgw.maps.map_files import read_map
     from mcgw.maps.sub_areas import write_tiles
     from mcgw.maps.summits import write_summits
 

@@ -36,7 +36,7 @@ def execute(args: argparse.Namespace) -> int:
     from mcgw.ensemble.solved import at_solutions
     from mcgw.formats.units import parse
     from mcgw.machine.progress import bar
-    from mcgw.reports.solution import solutions_table, solutions_text
+    from mcgw.reports.solved_loads import solutions_table, solutions_text
     from mcgw.scene.scene_file import files_of, load_scene
 
     scene = load_scene(args.scene)

@@ -55,7 +55,7 @@ def execute(args: argparse.Namespace) -> int:
 
 def _check_output(args: argparse.Namespace) -> None:
     from mcgw.commands.outputs import JSON, Format, Output, check_outputs, figure_format
-    from mcgw.maps.files import WRITTEN, files_of_map
+    from mcgw.maps.map_files import WRITTEN, files_of_map
     from mcgw.scene.scene_file import files_of
 
     inputs = files_of(args.scene) if args.scene else []
@@ -80,7 +80,7 @@ def _asperities(args: argparse.Namespace) -> int:
     from mcgw.figures.contact_map import save_contact_map, spots_at
     from mcgw.formats.units import parse
     from mcgw.maps.envelope import envelope
-    from mcgw.maps.files import write_map
+    from mcgw.maps.map_files import write_map
     from mcgw.maps.synthetic import asperities_of
     from mcgw.scene.scene_file import load_scene, scene_text
 
@@ -135,7 +135,7 @@ def _spectrum(args: argparse.Namespace) -> int:
     import numpy as np
 
     from mcgw.formats.units import parse
-    from mcgw.maps.files import write_map
+    from mcgw.maps.map_files import write_map
     from mcgw.maps.synthetic import gaussian_map, moments_on_grid, spectrum_from
 
     if args.at is not None or args.scene is not None:

@@ -92,7 +92,7 @@ def answered(scene: Scene, sums: dict[str, Any]) -> dict[str, Any]:
     """What surfaces answer with these sums of their asperities."""
     if scene.interaction is None:
         return dict(sums)
-    from mcgw.ensemble.interacting import with_interaction  # for those scenes alone
+    from mcgw.ensemble.half_space import with_interaction  # for those scenes alone
 
     return with_interaction(scene, sums)
 

@@ -163,7 +163,7 @@ def at_solutions(scene: Scene, solutions: Sequence[Solution]) -> Scene:
 
 def with_half_space(scene: Scene, alone: Solution) -> Solution:
     """What holds where the asperities press each other down: all but the separation and stiffnesses alike."""
-    from mcgw.ensemble.interacting import at_loads  # for those scenes alone
+    from mcgw.ensemble.half_space import at_loads  # for those scenes alone
 
     theory, surfaces = (
         with_mean_gap(scene, at_loads(scene, {k: v for k, v in found.items() if k != "mean_gap"}))

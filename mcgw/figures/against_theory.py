@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 from analytic import quantity_of
 from mcgw.ensemble.intervals import TOO_FEW
-from mcgw.figures.drawing import draw_residual
+from mcgw.figures.panels import draw_residual
 from mcgw.figures.style import (
     LEVEL,
     PAPER,

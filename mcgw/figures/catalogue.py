@@ -6,7 +6,7 @@ from importlib.resources import files
 
 import numpy as np
 
-from mcgw.figures import contact_laws, curves, equal_load, finite, moduli
+from mcgw.figures import contact_laws, finite, moduli, ratios
 from mcgw.figures.compared import SCENE, Compared
 from mcgw.figures.data import FigureData
 from mcgw.machine.progress import steps
@@ -84,16 +84,16 @@ def _released(f: Compared) -> str:
 
 
 CATALOGUE = (
-    Row("figure-1", curves.gradings, (_grading,)),
-    Row("figure-2", curves.load),
-    Row("figure-3", curves.area_per_load, (_reference, _pressing)),
+    Row("figure-1", ratios.gradings, (_grading,)),
+    Row("figure-2", ratios.load),
+    Row("figure-3", ratios.area_per_load, (_reference, _pressing)),
     Row("figure-4", moduli.mean_moduli, (_grading,)),
-    Row("figure-5", curves.stiffness),
-    Row("figure-6", curves.stiffness_ratios, (_reference,)),
-    Row("equal-load", equal_load.equal_load, (_reference, _pressing, _same_load)),
+    Row("figure-5", ratios.stiffness),
+    Row("figure-6", ratios.stiffness_ratios, (_reference,)),
+    Row("equal-load", ratios.equal_load, (_reference, _pressing, _same_load)),
     Row("fluctuations", finite.fluctuations, (_several,)),
     Row("distribution", finite.distribution, sweep=True),
-    Row("area-and-load", curves.area_and_load, (_pressing,)),
+    Row("area-and-load", ratios.area_and_load, (_pressing,)),
     Row("who-carries", moduli.carriers, sweep=True),
     Row("negative-modulus", moduli.negative_modulus, sweep=True),
     Row("who-yields", contact_laws.who_yields, (_yielding, _pressing)),

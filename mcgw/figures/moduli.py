@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 import analytic
 from analytic import Exponential, Grading, mean_modulus
 from mcgw.figures.compared import Compared, of_gamma
-from mcgw.figures.curves import over_gamma
 from mcgw.figures.data import GAMMA, SEPARATION, Estimate, FigureData, Panel, Points, Series, ratio_of_sums
+from mcgw.figures.ratios import over_gamma
 
 __all__ = ["carriers", "mean_moduli", "negative_modulus"]
 

@@ -29,7 +29,7 @@ from mcgw.maps.estimates import (
 from mcgw.maps.form import ORDERS
 from mcgw.maps.hidden_caps import Visible, visible
 from mcgw.maps.levels import form_left
-from mcgw.maps.preparation import Preparation, Prepared, prepared
+from mcgw.maps.preparation import Prepared
 from mcgw.maps.steps import Form
 from mcgw.maps.sub_areas import Alone, Tiles, alone_of, tiles_of
 from mcgw.maps.summit_sums import EDGE, SummitSums, coarse_sums_of, summit_sums_of
@@ -37,7 +37,7 @@ from mcgw.maps.summits import Summits, summits_of
 from mcgw.maps.topography import Topography
 from mcgw.maps.waves import Uncertain, Waves, uncertain, waves_of
 
-__all__ = ["Fit", "fit_map", "fit_prepared"]
+__all__ = ["Fit", "fit_prepared"]
 
 # Of caps placed at random 12 and 20 pixels apart, so many were lost as if a summit had to be 0.7 to 1.2
 # pixels from a valley, and 0.2 to 0.45 cutoffs.
@@ -183,33 +183,6 @@ class Fit(Shown):
         facts += [("", f"and {more} more in .cautions")] if more > 0 else []
         title = f"Fit of {self.summits.size} summits on {self.area:.4g} m^2"
         return Sheet(title, facts, estimates_table(self.estimates).only("method", "eta", "radius", "sigma"))
-
-
-def fit_map(
-    topography: Topography, *, cutoff: float | None, form: Form = "plane", across: int = 4, **steps: Any
-) -> Fit:
-    """Estimate eta, R and sigma of a map.
-
-    Parameters
-    ----------
-    topography : Topography
-        As measured.
-    cutoff, form, **steps : optional
-        What is done to it first: the parameters of `mcgw.maps.preparation.Preparation`.
-    across : int, optional
-        Sub-areas along each axis, at most; there are fewer where summits are few.
-
-    Returns
-    -------
-    Fit
-        By all methods; `mcgw.maps.fit_cautions.cautions` says why not to trust it.
-
-    Raises
-    ------
-    ValueError
-        As `prepared` and `fit_prepared` do.
-    """
-    return fit_prepared(prepared(topography, Preparation(cutoff, form, **steps)), across=across)
 
 
 def fit_prepared(ready: Prepared, *, across: int = 4) -> Fit:

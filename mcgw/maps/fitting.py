@@ -4,9 +4,9 @@ from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from mcgw.maps.files import read_map
 from mcgw.maps.fit import Fit, fit_prepared
 from mcgw.maps.fit_cautions import cautions, profile_cautions
+from mcgw.maps.map_files import read_map
 from mcgw.maps.preparation import Prepared, preparation_of, prepared
 from mcgw.maps.profile import Profile
 from mcgw.maps.profile_files import holds_profile, read_profile

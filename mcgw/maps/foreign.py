@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from mcgw.formats.untrusted import open_npy
+from mcgw.formats.named_files import open_npy
 from mcgw.machine.child_process import ChildError, limit_memory, run_child
 from mcgw.maps.topography import Topography, checked_shape, height_unit
 

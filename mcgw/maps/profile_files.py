@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from mcgw.formats.named_files import open_npy
 from mcgw.formats.units import METRES
-from mcgw.formats.untrusted import open_npy
 from mcgw.maps.foreign import is_foreign_line, read_foreign_line
 from mcgw.maps.profile import Profile, profile_at
 from mcgw.maps.text_file import lines_of, numbers_of, words_of

@@ -16,7 +16,7 @@ from mcgw.ensemble.ensemble import Ensemble
 from mcgw.figures.against_theory import quantity_figure
 from mcgw.figures.contact_map import patch_figures
 from mcgw.figures.data import FigureData, Panel, Points, Series
-from mcgw.figures.drawing import draw
+from mcgw.figures.panels import draw
 from mcgw.figures.pressure_curves import pressure_curves, pressure_figure
 from mcgw.figures.style import STYLE
 from mcgw.formats.pictures import write_figure

@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import Any
 
 from analytic import Exponential, Grading, Homogeneous, PiecewiseSeries, Surface, Table
+from mcgw.formats.named_files import read_text
 from mcgw.formats.units import signed
-from mcgw.formats.untrusted import read_text
 from mcgw.scene.section import Section
 from mcgw.scene.series_section import read_series, series_table
 

@@ -16,7 +16,7 @@ from analytic import (
     ScipyHeights,
     Weibull,
 )
-from mcgw.formats.untrusted import open_npy, read_text
+from mcgw.formats.named_files import open_npy, read_text
 from mcgw.scene.section import SceneError, Section
 
 __all__ = ["LAWS", "heights_law", "heights_table", "read_heights"]

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analytic import MeasuredHeights, MeasuredRadii, Surface
-from mcgw.formats.untrusted import read_text
+from mcgw.formats.named_files import read_text
 from mcgw.scene.section import Section
 
 __all__ = ["ListedSummits", "listed_table", "lists_summits", "read_listed"]

@@ -8,7 +8,7 @@ import tomli_w
 
 from analytic import MeasuredRadii
 from analytic.laws import Hertz
-from mcgw.formats.untrusted import HDF5, loads, read_bytes
+from mcgw.formats.named_files import HDF5, loads, read_bytes
 from mcgw.scene.contact_section import contact_values
 from mcgw.scene.ensemble_section import ensemble_values
 from mcgw.scene.film_section import film_table

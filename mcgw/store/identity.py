@@ -38,7 +38,7 @@ from analytic import (
     PiecewiseSeries,
     Table,
 )
-from mcgw.formats.untrusted import loads
+from mcgw.formats.named_files import loads
 from mcgw.scene.samplers import promise_of
 from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_from, scene_text

@@ -29,7 +29,7 @@ from filelock import ReadWriteLock, Timeout
 
 from mcgw.errors import StoreError
 from mcgw.formats.files import alive, temporary_beside, write_whole
-from mcgw.formats.untrusted import read_text
+from mcgw.formats.named_files import read_text
 
 __all__ = [
     "LOCK_FILES",

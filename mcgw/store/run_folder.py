@@ -26,7 +26,7 @@ import tomli_w
 
 from mcgw.errors import RunError, StoreError
 from mcgw.formats.files import Expected, sync, write_whole
-from mcgw.formats.untrusted import loads
+from mcgw.formats.named_files import loads
 from mcgw.scene.scene import Scene, SceneError
 from mcgw.scene.scene_file import scene_from
 from mcgw.store.disk import file_of, parts_of

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from mcgw.errors import StoreError
-from mcgw.formats.untrusted import open_regular
+from mcgw.formats.named_files import open_regular
 
 __all__ = [
     "TRAILER_BYTES",

@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from mcgw.errors import StoreError
-from mcgw.formats.untrusted import open_regular
+from mcgw.formats.named_files import open_regular
 from mcgw.machine.child_process import ChildError, memory_limit, run_child
 from mcgw.store.trailer import check_trailer, read_trailer
 

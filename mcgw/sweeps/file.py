@@ -39,7 +39,7 @@ from numpy.typing import NDArray
 
 from mcgw.ensemble.labelled import AXES, Labelled, Variable, axis
 from mcgw.errors import StoreError
-from mcgw.formats.untrusted import loads
+from mcgw.formats.named_files import loads
 from mcgw.scene.section import SceneError
 from mcgw.store.ensembles import read_attributes
 from mcgw.store.layout import body_of_kept, drawn_digest, drawn_tables

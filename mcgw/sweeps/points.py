@@ -11,7 +11,7 @@ from typing import Any, overload
 import tomli_w
 
 from mcgw.ensemble.forecast import without_rule
-from mcgw.formats.untrusted import loads
+from mcgw.formats.named_files import loads
 from mcgw.machine.memory import keep_freed_memory
 from mcgw.machine.progress import steps
 from mcgw.scene.scene import Scene

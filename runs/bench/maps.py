@@ -22,7 +22,7 @@ from timing import Job, Times, against, parser_of, seconds, timed
 
 import analytic
 from mcgw.maps.envelope import envelope
-from mcgw.maps.files import write_map
+from mcgw.maps.map_files import write_map
 from mcgw.maps.synthetic import Asperities, Spectrum, asperities_of, gaussian_map
 from mcgw.maps.topography import Topography
 from mcgw.scene.scene import Scene

@@ -8,7 +8,7 @@ import h5py
 import numpy as np
 
 from mcgw.formats.files import whole_file
-from mcgw.formats.untrusted import open_npy
+from mcgw.formats.named_files import open_npy
 from mcgw.machine.terminal import one_line
 from mcgw.maps.foreign import ForeignError, UnreadableError, read_foreign
 from mcgw.maps.sdf import read_sdf, write_sdf
