@@ -32,6 +32,13 @@ SCENES = {
         "grading": analytic.Custom(lambda s: 1 + 0.5 * np.sin(30 * s)),
         "separations": [0.5, 2.0],
     },
+    "comes off where it softens": {
+        "law": mcgw.KogutEtsion(critical=0.0191),
+        "grading": analytic.Custom(lambda s: 1 + 0.8 * np.sin(8 * s - 0.376)),
+        "separations": [0.0, 1.1],
+        "unload_from": -1.6,
+        "sampler": "cells",
+    },
     "sticks": {
         "law": mcgw.JohnsonKendallRoberts(pull_off=0.5),
         "unload_from": "loop",
@@ -109,7 +116,7 @@ def test_what_cannot_be_drawn_is_refused_when_it_is_made(scene_of, asked, line):
 @pytest.mark.parametrize("wish", [{}, {"law_error": 1e-2}])
 def test_what_no_cell_resolves_is_drawn_one_by_one(scene_of, monkeypatch, wish):
     """Cells alone say what to do instead."""
-    monkeypatch.setattr("mcgw.sampling.samplers._HALVINGS", 0)
+    monkeypatch.setattr("mcgw.sampling.samplers._CUTS", 0)
     assert sampler_of(scene_of(**SCENES["powers"], **wish)).name == "tail"
     with pytest.raises(UnresolvedError, match=r'not resolved near s = .*; take sampler = "tail"'):
         sampler_of(scene_of(**SCENES["powers"], sampler="cells"))

@@ -26,7 +26,7 @@ from mcgw.machine.kept import kept
 from mcgw.sampling.exp_log import weigh_exponentials, weigh_normal_densities
 from mcgw.sampling.rules import chebyshev_points, chebyshev_transform, gauss_legendre, product
 from mcgw.sampling.spacing import DIGITS, Gaps, cuts
-from mcgw.sampling.stretches import begins_and_breaks
+from mcgw.sampling.stretches import SMALLEST, begins_and_breaks, losses
 from mcgw.scene.fields import EXACT
 from mcgw.scene.scene import Scene
 
@@ -35,8 +35,8 @@ __all__ = [
     "NODES",
     "TO_COEFFICIENTS",
     "Mesh",
+    "cut",
     "evenness",
-    "halved",
     "height_noise",
     "mesh_of",
     "no_cells",
@@ -143,11 +143,15 @@ def _edges(law: HeightLaw, n: int, accuracy: float, *asked: bytes) -> Array:
     return _refined(law, begins, _spaced(law, n, digits, begins, breaks, marks))
 
 
-def halved(scene: Scene, mesh: Mesh, starts: Array) -> Mesh:
-    """The mesh with the cells that begin at these heights cut in half."""
+def cut(scene: Scene, mesh: Mesh, starts: Array) -> Mesh:
+    """The mesh with the cells that begin at these heights cut in four, or towards where contacts are lost."""
     cell = np.searchsorted(mesh.edges, starts)
-    middle = (mesh.edges[cell] + mesh.edges[cell + 1]) / 2
-    edges = np.unique(np.concatenate([mesh.edges, middle]))
+    low, high = mesh.edges[cell], mesh.edges[cell + 1]
+    parts, width = [(low + (high - low) * part) for part in (0.25, 0.5, 0.75)], high - low
+    for end in np.flatnonzero(np.isin(high, losses(scene, *mesh.range)) & (width > 2 * SMALLEST)):
+        nearer = width[end] * 2.0 ** -np.arange(1, math.floor(math.log2(width[end] / SMALLEST)) + 1)
+        parts.append(high[end] - nearer)
+    edges = np.unique(np.concatenate([mesh.edges, *parts]))
     return _mesh(scene.heights, float(scene.lowest), edges.tobytes())
 
 

@@ -23,7 +23,7 @@ from analytic import QUANTITIES, UNLOADING, Exponential, Hertz, MeasuredHeights,
 from mcgw.machine.memory import keep_freed_memory
 from mcgw.sampling.aggregate import CROWDED, VARYING
 from mcgw.sampling.block import Sampler
-from mcgw.sampling.cells import Mesh, halved, mesh_of, no_cells, series_accuracy
+from mcgw.sampling.cells import Mesh, cut, mesh_of, no_cells, series_accuracy
 from mcgw.sampling.counted import Counted
 from mcgw.sampling.counts import Counts, counts_of, strata_of
 from mcgw.sampling.direct import Direct
@@ -41,7 +41,7 @@ if TYPE_CHECKING:
 __all__ = ["Sampler", "aggregate_of", "cells_of", "law_error_of", "name_of", "regraded", "sampler_of"]
 
 _GAUSSIAN, _WORTH = 300, 1.5  # asperities that a crowded cell takes as long as; times that much faster
-_HALVINGS = 24  # of a cell on which the modulus, and the law of contact under it, are not resolved
+_CUTS = 16  # in four, of a cell on which the modulus, and the law of contact under it, are not resolved
 _SAME = 1e-10  # a kink so near to an edge was found, not told: no value is off by more
 
 
@@ -224,11 +224,11 @@ def _check_edges(what: str, wanted: Sequence[float], edges: NDArray[np.float64],
 
 def _resolved(scene: Scene, mesh: Mesh) -> "tuple[Mesh, Response | Families]":
     """The mesh, cut further where the law of contact bends with the modulus; and the response on it."""
-    for _ in range(_HALVINGS):
+    for _ in range(_CUTS):
         try:
             return mesh, _response(scene, mesh)
         except UnresolvedError as error:
-            mesh = halved(scene, mesh, error.starts)
+            mesh = cut(scene, mesh, error.starts)
     return mesh, _response(scene, mesh)
 
 

@@ -10,13 +10,13 @@ from analytic.laws import Branch
 from mcgw.machine.kept import kept
 from mcgw.scene.scene import Scene
 
-__all__ = ["Stretches", "begins_and_breaks", "stretches_of"]
+__all__ = ["SMALLEST", "Stretches", "begins_and_breaks", "losses", "stretches_of"]
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 _NOTHING = 1e-12  # penetration
-_SMALLEST = 2.0**-30  # cell above the beginning of a power that no series resolves
+SMALLEST = 2.0**-30  # cell next to the beginning, or the loss, of a power that no series resolves
 _ANALYTIC = 4.0  # how far a formula is analytic, in widths of the cell at which it begins
 
 
@@ -36,6 +36,8 @@ class Stretches:
         Whether contact begins at `low` from nothing, rather than with a jump or from another piece.
     root : ndarray
         About where it would begin from nothing, next to which formulas are singular: at `low` or below.
+    lost : ndarray of bool
+        Whether contact dwindles to nothing towards `high`, as on the way back where asperities soften.
     """
 
     separation: Ints
@@ -44,6 +46,7 @@ class Stretches:
     piece: Ints
     begins: NDArray[np.bool_]
     root: Array
+    lost: NDArray[np.bool_]
 
 
 def stretches_of(scene: Scene, branch: Branch, low: float, high: float) -> Stretches:
@@ -60,6 +63,8 @@ def _stretches(branch: Branch, grading: Grading, separations: bytes, low: float,
     at = h[found.separation]
     left = branch.left(at, found.low - at, grading(found.low))
     nothing = np.abs(left) <= _NOTHING
+    last = np.nextafter(found.high, -np.inf)
+    dwindling = np.abs(branch.left(at, last - at, grading(last))) <= _NOTHING
     return Stretches(
         separation=found.separation,
         low=np.where(inside, found.low, -np.inf),
@@ -67,6 +72,7 @@ def _stretches(branch: Branch, grading: Grading, separations: bytes, low: float,
         piece=found.piece,
         begins=inside & nothing & ~goes_on[: len(inside)],
         root=np.where(nothing, found.low, _snapped(found.low - left, at)),
+        lost=dwindling & (found.high < high) & (found.low < last),
     )
 
 
@@ -100,8 +106,16 @@ def begins_and_breaks(scene: Scene, low: float, high: float) -> tuple[Array, Arr
         begins.append(found.root)
         breaks += [found.low, found.high]
         rough = np.array([not branch.root_at_touch(int(piece)) for piece in pieces], dtype=bool)
-        breaks.append(starts[rough] + _SMALLEST)
+        breaks.append(starts[rough] + SMALLEST)
         if np.isfinite(branch.finest):
             breaks.append(starts[~rough] + branch.finest / _ANALYTIC)
     edges = np.unique(np.concatenate([np.empty(0), *breaks]))
     return np.unique(np.concatenate(begins)), edges[np.isfinite(edges)]
+
+
+def losses(scene: Scene, low: float, high: float) -> Array:
+    """Heights towards which contacts dwindle to nothing, increasing."""
+    if scene.hertzian:
+        return np.empty(0)
+    found = [stretches_of(scene, branch, low, high) for branch in scene.ways.among(scene.quantities)]
+    return np.unique(np.concatenate([np.empty(0), *(each.high[each.lost] for each in found)]))

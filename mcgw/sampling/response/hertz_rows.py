@@ -35,6 +35,7 @@ def hertz_rows(scene: Scene, quantities: tuple[str, ...], *, lasting: bool) -> R
         begins=np.ones(len(h), dtype=bool),
         rooted=exponent % 1 != 0,
         rough=np.zeros(len(h), dtype=bool),
+        lost=np.zeros(len(h), dtype=bool),
         graded=graded,
         kind=np.repeat(np.arange(len(chosen)), len(once)),
         answer=np.arange(len(h)),

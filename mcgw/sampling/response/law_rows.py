@@ -109,6 +109,7 @@ def law_rows(scene: Scene, quantities: tuple[str, ...], mesh: Mesh, *, lasting: 
                 found.begins & roots,
                 found.begins & roots,
                 found.begins & ~roots,
+                found.lost,
                 len(kinds) + found.piece,
                 number * len(separations) + found.separation,
                 total[found.separation],
@@ -116,12 +117,12 @@ def law_rows(scene: Scene, quantities: tuple[str, ...], mesh: Mesh, *, lasting: 
         )
         scale = q.scale(scene.surface)
         kinds += [(branch, q.base, piece, scale) for piece in range(int(found.piece.max(initial=-1)) + 1)]
-    h, low, high, begins, rooted, rough, kind, answer, total = (
+    h, low, high, begins, rooted, rough, lost, kind, answer, total = (
         np.concatenate(x) for x in zip(*parts, strict=True)
     )
     graded = np.full(len(h), not isinstance(scene.modulus, Homogeneous))
     formulas = _Pieces(tuple(kinds), kind, h, low)
-    return Rows(h, low, high, begins, rooted, rough, graded, kind, answer, total, formulas)
+    return Rows(h, low, high, begins, rooted, rough, lost, graded, kind, answer, total, formulas)
 
 
 @dataclass(frozen=True)

@@ -24,6 +24,7 @@ from mcgw.sampling.response.series import (
     series_of,
 )
 from mcgw.sampling.response.tree import Tree
+from mcgw.sampling.stretches import SMALLEST
 
 __all__ = ["LawWalk"]
 
@@ -105,8 +106,9 @@ class LawWalk:
         """Series of rows that are smooth on nodes, where resolved; how many coefficients count; and which."""
         rows, parent = self._rows, self._nodes.parent[node]
         c, needed = self._smooth(node, row)
-        begins = rows.rough[row] & (rows.low[row] == self._nodes.start[node]) & ~parent
-        needed[begins] = np.minimum(needed[begins], MOST_IN_CELL)
+        rough = rows.rough[row] & (rows.low[row] == self._nodes.start[node])
+        smallest = (rough | (self._nodes.end[node] - self._nodes.start[node] <= 2 * SMALLEST)) & ~parent
+        needed[smallest] = np.minimum(needed[smallest], MOST_IN_CELL)
         which = np.flatnonzero(needed <= np.where(parent, MOST, MOST_IN_CELL))
         return _entries(node[which], row[which], c[which]), needed[which], which
 

@@ -108,10 +108,14 @@ class Nodes:
         return self.even, self.noise, self.crowd, rows.graded, rows.total, *self.precision
 
     def rough_noise(self, node: Ints, row: Ints, rows: Rows) -> Array:
-        """What the last digit of a height makes of a power of its small distance from where a row begins."""
-        noise, rough = np.zeros(len(row)), rows.rough[row]
-        start, low = self.start[node[rough]], rows.low[row[rough]]
-        near = np.isfinite(low) & (start > low)
-        share = np.spacing(np.abs(start[near])) / (start[near] - low[near])
-        noise[np.flatnonzero(rough)[near]] = np.minimum(_DIGITS * share, 1.0)
+        """What the last digit of a height makes of a power of its distance from the end of a row."""
+        noise = np.zeros(len(row))
+        start, end, low, high = self.start[node], self.end[node], rows.low[row], rows.high[row]
+        for at, distance, which in (
+            (start, start - low, rows.rough[row] & np.isfinite(low)),
+            (end, high - end, rows.lost[row]),
+        ):
+            near = np.flatnonzero(which & (distance > 0))
+            share = np.spacing(np.abs(at[near])) / distance[near]
+            noise[near] = np.maximum(noise[near], np.minimum(_DIGITS * share, 1.0))
         return noise

@@ -81,6 +81,8 @@ class Rows:
         Whether it has a root there, as a part of it or as a factor.
     rough : ndarray of bool
         Whether it begins with a power that no series resolves: on the smallest of cells it is taken as it is.
+    lost : ndarray of bool
+        Whether it ends with such a power at `high`, on the smallest of cells alike.
     graded : ndarray of bool
         Whether it depends on the modulus.
     kind : ndarray of int
@@ -99,6 +101,7 @@ class Rows:
     begins: NDArray[np.bool_]
     rooted: NDArray[np.bool_]
     rough: NDArray[np.bool_]
+    lost: NDArray[np.bool_]
     graded: NDArray[np.bool_]
     kind: Ints
     answer: Ints
