@@ -2,7 +2,6 @@
 
 import importlib
 import importlib.util
-import subprocess
 import sys
 
 import numpy as np
@@ -61,50 +60,6 @@ def test_lanes_of_what_is_not_contiguous_are_refused():
     assert first(x) == 0 + 1 + 2 + 3
     with pytest.raises(TypeError, match="lanes are neighbours"):
         first(x.T)
-
-
-VERSIONS = """
-from mcgw.machine.compiling import njit
-
-def make(n):
-    @njit(cache=True, version=str(n))
-    def ramp(x):
-        total = 0.0
-        for i in range(n):
-            total += x * i
-        return total
-    return ramp
-
-two, three = make(2), make(3)
-
-@njit(cache=True)
-def both(x):
-    return two(x), three(x)
-"""
-
-
-def test_versions_of_one_function_have_names_of_their_own():
-    """By which one that was compiled finds what it calls."""
-
-    def named(n):
-        def ramp(x):
-            return n * x
-
-        return njit(cache=True, version=str(n))(ramp)
-
-    names = {named(n).py_func.__qualname__ for n in (2, 3)}
-    assert len(names) == 2
-
-
-@pytest.mark.slow
-def test_versions_kept_by_several_processes_are_not_called_for_each_other(tmp_path):
-    """By a loop that calls two versions of one function, which two processes compiled before."""
-    (tmp_path / "versions.py").write_text(VERSIONS)
-    for call in ("two(1.0)", "three(1.0)", "both(1.0)"):
-        code = f"import sys; sys.path.insert(0, '.'); import versions; print(versions.{call})"
-        words = [sys.executable, "-c", code]
-        done = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True, check=True)
-    assert done.stdout.strip() == "(1.0, 3.0)"
 
 
 def test_a_loop_whose_callee_has_changed_is_compiled_anew(tmp_path, monkeypatch):

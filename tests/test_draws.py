@@ -10,12 +10,14 @@ from numpy.polynomial.chebyshev import chebvander
 from scipy.stats import binom, chi2, kstest
 from test_binomial import draw
 
+from mcgw.machine.compiling import njit
 from mcgw.sampling import counts
+from mcgw.sampling.chebyshev_sums import BUFFER, PLAIN, ROOTED, WORDS, _12_6
+from mcgw.sampling.lanes import LANES
 from mcgw.sampling.layout import Layout
 from mcgw.sampling.moments import _PIECE, add_compensated, cell_moments
 from mcgw.sampling.philox import CELLS, centred, philox, uniforms
 from mcgw.sampling.samplers import sampler_of
-from mcgw.sampling.uniform_sums import PLAIN, ROOTED, WORDS, sum_uniforms
 from mcgw.scene.samplers import SAMPLERS
 
 FALSE_ALARM = 1e-6  # of each chi-square test; the seeds are fixed
@@ -77,13 +79,28 @@ def test_uniforms_do_not_repeat():
 def test_a_compensated_sum_is_the_exact_one():
     """Terms of all sizes, the larger first and last; a plain sum is wrong in the first digit."""
     terms = np.array([[1.0, 1e16], [1e16, 1.0], [1.0, -1e16], [-1e16, 3.0], [2.0**-40, 2.0**-40]])
-    total, carry = np.zeros(2), np.zeros(2)
+    sums = np.zeros(4)
     for row in terms:
-        add_compensated(total, carry, row)
+        add_compensated(sums, row.copy(), 0, 2)
+    total, carry = sums.reshape(2, 2)
     exact = [math.fsum(column) for column in terms.T]
     np.testing.assert_array_equal(total + carry, exact)
     assert (total != exact).all()
     assert (carry != 0).all()
+
+
+@njit()
+def piece_of_a_cell(start, stop):
+    """Its eleven T_j and six R_j, folded, by a plain sum."""
+    w = np.zeros(WORDS)
+    for first in range(start, stop, BUFFER):
+        n = min(BUFFER, stop - first)
+        filled = -n % LANES
+        centred(w, np.uint64(5), CELLS, 0, 0, first, n)
+        w[n : n + filled] = 1.0
+        _12_6(w, n + filled, filled, ROOTED, ROOTED)
+    w[PLAIN] = stop - start
+    return w
 
 
 def test_pieces_of_a_huge_cell_lose_no_digit():
@@ -91,8 +108,7 @@ def test_pieces_of_a_huge_cell_lose_no_digit():
     n, orders = 6 * _PIECE + 77, (11, 6)
     parts = []
     for start in range(0, n, _PIECE):
-        w = np.ones(WORDS)
-        sum_uniforms(w, np.uint64(5), 0, 0, start, min(start + _PIECE, n), 0, orders)
+        w = piece_of_a_cell(start, min(start + _PIECE, n))
         parts.append(np.concatenate([w[PLAIN : PLAIN + 6], w[ROOTED : ROOTED + 6]]))  # what is not unfolded
     moments = cell_moments(5, 0, np.array([[n]]), Layout(*(np.array([order]) for order in orders)))[:, 0]
     found = np.concatenate([moments[:6], moments[11:17]])

@@ -167,10 +167,10 @@ def test_sums_of_many_terms(make_scene):
 def test_pieces_of_1e12_terms():
     """A sum of 1e12 terms is one of 4e6 pieces: compensated, it is the exactly rounded one of the pieces."""
     pieces = np.random.default_rng(1).uniform(0.0, 2.6e5, (2000, 1))
-    total, carry = np.zeros(1), np.zeros(1)
+    sums = np.zeros(2)
     for piece in pieces:
-        add_compensated(total, carry, piece)
-    assert (total + carry)[0] == math.fsum(pieces[:, 0])
+        add_compensated(sums, piece.copy(), 0, 1)
+    assert sums.sum() == math.fsum(pieces[:, 0])
     naive = np.add.accumulate(pieces[:, 0])[-1]  # the companion: plain addition loses digits
     assert naive != math.fsum(pieces[:, 0])
 

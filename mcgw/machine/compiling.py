@@ -1,9 +1,10 @@
 """Compiled loops, kept on the disk where that can be done.
 
 What Numba keeps is the machine code of a loop with that of all loops it calls, under names it takes from
-module, function and types. Three things can make it go wrong without a word, and are seen to here: a loop
-called has changed in another file (`_stamp_of_package`), two processes give the versions of a loop one
-number (`_name_by_contents`), and two versions of one inner function have one name (`version` of `njit`).
+module, function and types. Two things can make it go wrong without a word, and are seen to here: a loop
+called has changed in another file (`_stamp_of_package`), and two processes give the versions of a loop one
+number (`_name_by_contents`). A function inside a function, which is made several times, would be a third:
+all that are made have one name, and there are none (`tests/test_architecture.py`).
 """
 
 import hashlib
@@ -16,6 +17,7 @@ from pathlib import Path
 from typing import Any
 
 import numba
+from numba import types
 from numba.core.runtime.nrt import rtsys
 
 from mcgw.errors import RunError
@@ -30,28 +32,24 @@ if numba.config.DISABLE_JIT:  # type: ignore[attr-defined, unused-ignore]
     )
 
 
-def njit(*, version: str = "", **options: Any) -> Callable[[Any], Any]:
+def njit(**options: Any) -> Callable[[Any], Any]:
     """As `numba.njit`; where a compiled loop cannot be kept for the next time, it is only said.
 
     Parameters
     ----------
-    version : str, optional
-        Needed for a function inside a function, which is made several times: another word each time. Of two
-        versions of one name, kept by different processes, one would be called in the place of the other.
     **options
         Those of `numba.njit`.
     """
 
     def decorate(function: Any) -> Any:
-        if version:
-            function.__name__ = function.__qualname__ = f"{function.__name__}_{version}"
         try:
-            compiled = numba.njit(**options)(function)
+            compiled = numba.njit(**{"no_cfunc_wrapper": True, **options})(function)
         except RuntimeError as error:  # no folder can be written to
             if not options.get("cache"):
                 raise
             _say("any folder", str(error))
             return numba.njit(**{**options, "cache": False})(function)
+        _compile_for_any_number(compiled)
         if options.get("cache"):
             kept = compiled._cache._cache_file
             layer = ".".join(function.__module__.split(".")[:2])
@@ -62,6 +60,16 @@ def njit(*, version: str = "", **options: Any) -> Callable[[Any], Any]:
         return compiled
 
     return decorate
+
+
+def _compile_for_any_number(compiled: Any) -> None:
+    """Let loops that call this one with a constant call the version for any number of that kind."""
+    template = compiled.get_call_template
+
+    def for_any_number(args: Any, keywords: Any) -> Any:
+        return template(tuple(map(types.unliteral, args)), keywords)
+
+    compiled.get_call_template = for_any_number
 
 
 @lru_cache

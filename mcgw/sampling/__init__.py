@@ -2,7 +2,7 @@
 
 ``cells``      the heights that touch, cut where a law of contact has a root (`spacing` says where else)
 ``counts``     how many asperities fall into each cell, exactly (`halving`, `binomial`)
-``moments``    sums over the uniforms of a cell (`philox`, `uniform_sums`), or from their Gaussian limit
+``moments``    sums over the uniforms of a cell (`philox`, `chebyshev_sums`), or from their Gaussian limit
                (`aggregate`): all that a surface keeps, as many of each cell as its `layout` says
 ``response``   physics as a sparse matrix: `series` on the cells and on a `tree` over them, put together
                (`assembly`) to rows that follow from each other (`product`; `dense` is the same, plainly)

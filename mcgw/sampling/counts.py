@@ -5,12 +5,10 @@ halving (`mcgw.sampling.halving`), so the cells are multinomial, or independent 
 """
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from mcgw.machine.compiling import njit
 from mcgw.sampling.cells import Mesh
 from mcgw.sampling.halving import halvings_of, share_out
 from mcgw.scene.scene import Scene
@@ -110,21 +108,9 @@ def contacts_above(counts: Array, cells: Ints) -> Array:
     ndarray
         Shape (surfaces, lowest ones).
     """
-    return np.asarray(_above(counts, cells))
-
-
-@njit(nogil=True, cache=True)
-def _above(counts: Any, lowest: Any) -> Any:
-    cells, surfaces = counts.shape
-    above = np.zeros((cells + 1, surfaces))
-    for cell in range(cells - 1, -1, -1):
-        for i in range(surfaces):
-            above[cell, i] = above[cell + 1, i] + counts[cell, i]
-    result = np.empty((surfaces, lowest.size))
-    for i in range(surfaces):
-        for k in range(lowest.size):
-            result[i, k] = above[lowest[k], i]
-    return result
+    above = np.zeros((len(counts) + 1, counts.shape[1]))
+    np.cumsum(counts[::-1], axis=0, out=above[-2::-1])
+    return np.ascontiguousarray(above[cells].T)
 
 
 def generator(seed: int, purpose: int, number: int) -> np.random.Generator:

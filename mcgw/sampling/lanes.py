@@ -16,7 +16,22 @@ from numba.core import cgutils
 from numba.core.typing.templates import ConcreteTemplate, infer_global, signature
 from numba.extending import intrinsic, lower_builtin, models, register_model
 
-__all__ = ["LANES", "alike", "bits", "fused", "load", "number", "roots", "store", "total"]
+__all__ = [
+    "LANES",
+    "alike",
+    "bits",
+    "called",
+    "fused",
+    "intrinsic_of",
+    "load",
+    "number",
+    "place",
+    "roots",
+    "same",
+    "store",
+    "sum_of",
+    "total",
+]
 
 LANES = 4
 
@@ -61,12 +76,12 @@ _operate((operator.sub, operator.isub), "fsub")
 _operate((operator.mul, operator.imul), "fmul")
 
 
-def _intrinsic(function: Callable[..., Any]) -> Any:
+def intrinsic_of(function: Callable[..., Any]) -> Any:
     """Make a function of code that writes instructions; what it takes is not what its caller gives."""
     return intrinsic(function)
 
 
-def _called(builder: Any, name: str, *args: Any) -> Any:
+def called(builder: Any, name: str, *args: Any) -> Any:
     """Call one of LLVM's own functions, of numbers or of lanes."""
     kind = args[0].type
     suffix = "f64" if kind == _DOUBLE else f"v{LANES}f64"
@@ -74,35 +89,51 @@ def _called(builder: Any, name: str, *args: Any) -> Any:
     return builder.call(cgutils.get_or_insert_function(builder.module, function, f"{name}.{suffix}"), args)
 
 
-def _element(context: Any, builder: Any, array_type: Any, array: Any, index: Any) -> Any:
-    """Pointer to the vector that begins at a number of an array in C's order, counted through all rows."""
+def place(context: Any, builder: Any, array_type: Any, array: Any) -> Callable[..., Any]:
+    """Pointer by index, counted through all rows of an array in C's order, to `one` number or to lanes."""
     if array_type.layout != "C":
         raise TypeError(f"lanes are neighbours: not of {array_type}")
     data = context.make_array(array_type)(context, builder, array).data
-    return builder.bitcast(builder.gep(data, [index]), _VECTOR.as_pointer())
+
+    def at(index: Any, *, one: bool = False) -> Any:
+        number = builder.gep(data, [index])
+        return number if one else builder.bitcast(number, _VECTOR.as_pointer())
+
+    return at
 
 
-@_intrinsic
+def same(number: float) -> Any:
+    """A constant in each lane."""
+    return ir.Constant(_VECTOR, [number] * LANES)
+
+
+def sum_of(builder: Any, lanes: Any) -> Any:
+    """Sum of the lanes, in one order: ``(0 + 2) + (1 + 3)``."""
+    x = [builder.extract_element(lanes, ir.IntType(32)(i)) for i in range(LANES)]
+    return builder.fadd(builder.fadd(x[0], x[2]), builder.fadd(x[1], x[3]))
+
+
+@intrinsic_of
 def fused(_typing: Any, a: Any, b: Any, c: Any) -> Any:
     """``a b + c``, rounded once; of numbers or of lanes."""
 
     def code(_context: Any, builder: Any, _sig: Any, args: Any) -> Any:
-        return _called(builder, "llvm.fma", *args)
+        return called(builder, "llvm.fma", *args)
 
     return a(a, b, c), code
 
 
-@_intrinsic
+@intrinsic_of
 def roots(_typing: Any, a: Any) -> Any:
     """Square root of each lane."""
 
     def code(_context: Any, builder: Any, _sig: Any, args: Any) -> Any:
-        return _called(builder, "llvm.sqrt", *args)
+        return called(builder, "llvm.sqrt", *args)
 
     return a(a), code
 
 
-@_intrinsic
+@intrinsic_of
 def alike(_typing: Any, _number: Any) -> Any:
     """The same number in each lane."""
 
@@ -114,39 +145,38 @@ def alike(_typing: Any, _number: Any) -> Any:
     return _lanes(types.float64), code
 
 
-@_intrinsic
+@intrinsic_of
 def load(_typing: Any, array: Any, _index: Any) -> Any:
     """Numbers `index` ... `index + 3` of a contiguous array."""
 
     def code(context: Any, builder: Any, sig: Any, args: Any) -> Any:
-        return builder.load(_element(context, builder, sig.args[0], *args), align=_ALIGNED)
+        return builder.load(place(context, builder, sig.args[0], args[0])(args[1]), align=_ALIGNED)
 
     return _lanes(array, types.intp), code
 
 
-@_intrinsic
+@intrinsic_of
 def store(_typing: Any, array: Any, _index: Any, value: Any) -> Any:
     """Write them."""
 
     def code(context: Any, builder: Any, sig: Any, args: Any) -> Any:
-        builder.store(args[2], _element(context, builder, sig.args[0], *args[:2]), align=_ALIGNED)
+        builder.store(args[2], place(context, builder, sig.args[0], args[0])(args[1]), align=_ALIGNED)
         return context.get_dummy_value()
 
     return types.void(array, types.intp, value), code
 
 
-@_intrinsic
+@intrinsic_of
 def total(_typing: Any, a: Any) -> Any:
-    """Sum of the lanes, in one order: ``(0 + 2) + (1 + 3)``."""
+    """`sum_of` the lanes."""
 
     def code(_context: Any, builder: Any, _sig: Any, args: Any) -> Any:
-        x = [builder.extract_element(args[0], ir.IntType(32)(i)) for i in range(LANES)]
-        return builder.fadd(builder.fadd(x[0], x[2]), builder.fadd(x[1], x[3]))
+        return sum_of(builder, *args)
 
     return types.float64(a), code
 
 
-@_intrinsic
+@intrinsic_of
 def bits(_typing: Any, a: Any) -> Any:
     """The word that holds a number: sign, exponent, fraction."""
 
@@ -156,7 +186,7 @@ def bits(_typing: Any, a: Any) -> Any:
     return types.int64(a), code
 
 
-@_intrinsic
+@intrinsic_of
 def number(_typing: Any, _word: Any) -> Any:
     """The number that a word holds: the way back."""
 

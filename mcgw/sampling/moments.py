@@ -19,9 +19,10 @@ from numpy.typing import NDArray
 from mcgw.machine.aligned import aligned
 from mcgw.machine.compiling import njit
 from mcgw.machine.in_threads import in_threads
+from mcgw.sampling.chebyshev_sums import BUFFER, PLAIN, ROOTED, WORDS, add_uniforms, stratify, unfold
 from mcgw.sampling.layout import Layout
+from mcgw.sampling.philox import CELLS, centred
 from mcgw.sampling.spacing import price
-from mcgw.sampling.uniform_sums import PLAIN, ROOTED, WORDS, sum_uniforms, unfold
 
 __all__ = ["add_compensated", "cell_moments", "in_runs_of_cells"]
 
@@ -30,63 +31,37 @@ _ALONE = 1e6  # asperities' work that a thread does before another one has begun
 _PIECE = 512 * 512  # a plain sum of so many terms is good to 1e-14; beyond, it is compensated
 
 
-@njit(nogil=True, cache=True)
-def add_compensated(total: Any, carry: Any, sums: Any) -> None:
-    """Neumaier's sum: what rounding drops from `total` is kept in `carry`."""
-    for j in range(total.size):
-        new = total[j] + sums[j]
-        if abs(total[j]) >= abs(sums[j]):
-            carry[j] += (total[j] - new) + sums[j]
-        else:
-            carry[j] += (sums[j] - new) + total[j]
-        total[j] = new
+@njit(inline="always")
+def add_compensated(totals: Any, w: Any, first: Any, size: Any) -> None:
+    """Neumaier's sums: `size` totals, then what rounding dropped from each. Numbers of `w` move there."""
+    for j in range(size):
+        total, term = totals[j], w[first + j]
+        new = total + term
+        totals[size + j] += (total - new) + term if abs(total) >= abs(term) else (term - new) + total
+        totals[j] = new
+        w[first + j] = 0.0
 
 
-@njit(nogil=True, cache=True)
-def _sum_pieces(w: Any, seed: Any, surface: Any, cell: Any, n: Any, strata: Any, orders: Any) -> None:
-    """Sum all `n` uniforms of a cell that has very many, in pieces; else as `sum_uniforms`."""
-    sums = w[PLAIN:WORDS]
-    total, carry = np.zeros(sums.size), np.zeros(sums.size)
-    for start in range(0, n, _PIECE):
-        sum_uniforms(w, seed, surface, cell, start, min(start + _PIECE, n), strata, orders)
-        add_compensated(total, carry, sums)
-    for j in range(sums.size):
-        sums[j] = total[j] + carry[j]
-
-
-@njit(nogil=True, cache=True)
+@njit(inline="always")
 def _sum_cell(
-    w: Any,
-    seed: Any,
-    first: Any,
-    cell: Any,
-    counts: Any,
-    start: Any,
-    orders: Any,
-    stratified: Any,
-    moments: Any,
+    w: Any, carries: Any, seed: Any, surface: Any, cell: Any, n: Any, plain: Any, rooted: Any, strata: Any
 ) -> None:
-    """Sum a cell of some consecutive surfaces, each to its own column, from row `start` on."""
-    plain, rooted = orders
-    drawn = 0
-    for n in counts:  # a reduction by NumPy's name imports half of SciPy when it is loaded
-        drawn += n
-    if drawn == 0:
-        moments[start : start + np.uint64(plain + rooted)] = 0.0
-        return
-    for surface in range(counts.size):
-        n = counts[surface]
-        strata = n if stratified else 0
-        if n <= _PIECE:
-            sum_uniforms(w, seed, first + surface, cell, 0, n, strata, orders)
-        else:
-            _sum_pieces(w, seed, first + surface, cell, n, strata, orders)
-        for j in range(plain):
-            moments[start + np.uint64(j), np.uint64(surface)] = w[np.uint64(PLAIN + j)]
-        for j in range(rooted):
-            moments[start + np.uint64(plain + j), np.uint64(surface)] = w[np.uint64(ROOTED + j)]
-    unfold(moments, start, plain)
-    unfold(moments, start + plain, rooted)
+    """Leave the sums over the `n` uniforms of a cell in the workspace, folded; very many in pieces."""
+    for k in range(PLAIN, WORDS):
+        w[k] = 0.0
+    for k in range(carries.size if n > _PIECE else 0):
+        carries[k] = 0.0
+    for first in range(0, n, BUFFER):
+        some = min(BUFFER, n - first)
+        centred(w, seed, CELLS, surface, cell, first, some)
+        if strata:
+            stratify(w, some, first, strata)
+        add_uniforms(w, some, plain, rooted)
+        if n > _PIECE and ((first + BUFFER) % _PIECE == 0 or first + some == n):
+            add_compensated(carries, w, PLAIN, WORDS - PLAIN)
+    for k in range(WORDS - PLAIN if n > _PIECE else 0):
+        w[PLAIN + k] = carries[k] + carries[WORDS - PLAIN + k]
+    w[PLAIN] = n
 
 
 @njit(nogil=True, cache=True)
@@ -94,26 +69,28 @@ def _sum_cells(
     seed: Any, first: Any, counts: Any, starts: Any, orders: Any, bounds: Any, stratified: Any, moments: Any
 ) -> None:
     """Sum a run of cells, all surfaces of one after the other."""
-    w = np.ones(WORDS)
+    w, carries = np.ones(WORDS), np.empty(2 * (WORDS - PLAIN))
     surfaces = counts.shape[1]
     at, end = bounds
     while at < end:
-        cell, surface = at // surfaces, at % surfaces
-        stop = min(surfaces, surface + end - at)
-        some = slice(surface, stop)
-        needed = (orders[cell, 0], orders[cell, 1])
-        _sum_cell(
-            w,
-            seed,
-            first + surface,
-            cell,
-            counts[cell, some],
-            np.uint64(starts[cell]),
-            needed,
-            stratified,
-            moments[:, some],
-        )
-        at += stop - surface
+        cell, start = at // surfaces, at % surfaces
+        stop = min(surfaces, start + end - at)
+        row, plain, rooted = starts[cell], orders[cell, 0], orders[cell, 1]
+        drawn = 0
+        for surface in range(start, stop):
+            n = counts[cell, surface]
+            drawn += n
+            if n:
+                strata = n if stratified else 0
+                _sum_cell(w, carries, seed, first + surface, cell, n, plain, rooted, strata)
+            for j in range(plain):
+                moments[row + j, surface] = w[PLAIN + j] if n else 0.0
+            for j in range(rooted):
+                moments[row + plain + j, surface] = w[ROOTED + j] if n else 0.0
+        if drawn:
+            unfold(moments, row, plain, start, stop)
+            unfold(moments, row + plain, rooted, start, stop)
+        at += stop - start
 
 
 def cell_moments(

@@ -21,23 +21,22 @@ from mcgw.machine.aligned import aligned
 from mcgw.machine.compiling import njit
 from mcgw.machine.in_threads import in_threads
 from mcgw.sampling.cells import Mesh
-from mcgw.sampling.lanes import LANES, alike, fused, load, roots, store, total
+from mcgw.sampling.chebyshev_sums import BUFFER, add_weighted, stratify, unfold
+from mcgw.sampling.lanes import LANES, alike, fused, load, roots, store
 from mcgw.sampling.layout import Layout
 from mcgw.sampling.moments import add_compensated
 from mcgw.sampling.philox import CELLS, RADII, RADII_LOW, centred
 from mcgw.sampling.radius_table import RadiusTable, root_ratio
-from mcgw.sampling.uniform_sums import five, five_more, stratify, unfold
 
 __all__ = ["weighted_moments"]
 
-_BUFFER = 1024  # uniforms at a time
 _MOST = 32  # sums of one kind: there are 21
 # A thread's workspace: x, sqrt(u), two uniforms of the radius, weights, factors; then sums and their carries
-_ROOT, _FINE, _COARSE, _WEIGHT, _FACTOR, _SUMS, _WORDS = (k * _BUFFER for k in range(1, 8))
+_ROOT, _FINE, _COARSE, _WEIGHT, _FACTOR, _SUMS, _WORDS = (k * BUFFER for k in range(1, 8))
 _ALONE = 2e5  # summits that a thread draws before another one has begun
 
 
-@njit(nogil=True, cache=True)
+@njit(inline="always")
 def _factor(w: Any, n: Any, squared: Any, rooted: Any) -> None:
     """Weight of each uniform, 0 for what fills the last lanes."""
     for i in range(0, n, LANES):
@@ -49,30 +48,7 @@ def _factor(w: Any, n: Any, squared: Any, rooted: Any) -> None:
         store(w, _FACTOR + i, f)
 
 
-@njit(nogil=True, cache=True)
-def _eleven(w: Any, n: Any, sums: Any) -> None:
-    """Add the sums of f T_0 ... f T_5, then f T_5 T_1 ... f T_5 T_5."""
-    r0 = r1 = r2 = r3 = r4 = r5 = s1 = s2 = s3 = s4 = s5 = alike(0.0)
-    for i in range(0, n, LANES):
-        t1, t2, t3, t4, t5 = five(load(w, i))
-        f = load(w, _FACTOR + i)
-        r0 += f
-        r1 = fused(f, t1, r1)
-        r2 = fused(f, t2, r2)
-        r3 = fused(f, t3, r3)
-        r4 = fused(f, t4, r4)
-        r5 = fused(f, t5, r5)
-        s = f * t5
-        s1 = fused(s, t1, s1)
-        s2 = fused(s, t2, s2)
-        s3 = fused(s, t3, s3)
-        s4 = fused(s, t4, s4)
-        s5 = fused(s, t5, s5)
-    for k, lanes in enumerate((r0, r1, r2, r3, r4, r5, s1, s2, s3, s4, s5)):
-        w[sums + k] += total(lanes)
-
-
-@njit(nogil=True, cache=True)
+@njit(inline="always")
 def _weigh(w: Any, n: Any, edge: Any, series: Any, table: Any) -> Any:
     """Roots and weights of `n` uniforms; returns how many lanes hold, the last ones filled with nothing."""
     coefficients, bottom, largest = table
@@ -99,7 +75,7 @@ def _weigh(w: Any, n: Any, edge: Any, series: Any, table: Any) -> Any:
     return whole
 
 
-@njit(nogil=True, cache=True)
+@njit(inline="always")
 def _sum_cell(
     w: Any,
     seed: Any,
@@ -114,31 +90,22 @@ def _sum_cell(
     table: Any,
 ) -> None:
     """Leave the sums over the uniforms of a cell in the workspace: 32 for each kind, and their carries."""
-    kinds = orders.size
-    for k in range(_SUMS, _SUMS + 3 * _MOST * kinds):
+    for k in range(_SUMS, _SUMS + 3 * _MOST * orders.size):
         w[k] = 0.0
-    for first in range(0, n, _BUFFER):
-        m = min(_BUFFER, n - first)
+    for first in range(0, n, BUFFER):
+        m = min(BUFFER, n - first)
         centred(w, seed, CELLS, surface, cell, first, m)
         centred(w[_COARSE:], seed, RADII, surface, cell, first, m)
         centred(w[_FINE:], seed, RADII_LOW, surface, cell, first, m)
         if strata:
             stratify(w, m, first, n)
         whole = _weigh(w, m, edge, series, table)
-        for kind in range(kinds):
-            wanted, sums = orders[kind], _SUMS + 3 * _MOST * kind
-            if wanted == 0:
-                continue
-            _factor(w, whole, squares[kind // 2], kind % 2)
-            for k in range(_MOST):
-                w[sums + k] = 0.0
-            _eleven(w, whole, sums)
-            if wanted > 11:
-                five_more(w, whole, 0, 2, _FACTOR, sums)
-            if wanted > 16:
-                five_more(w, whole, 0, 3, _FACTOR, sums)
-            kept, carry = sums + _MOST, sums + 2 * _MOST
-            add_compensated(w[kept:carry], w[carry : carry + _MOST], w[sums:kept])
+        for kind in range(orders.size):
+            if orders[kind]:
+                sums = _SUMS + 3 * _MOST * kind
+                _factor(w, whole, squares[kind // 2], kind % 2)
+                add_weighted(w, whole, orders[kind], _FACTOR, sums)
+                add_compensated(w[sums + _MOST : sums + 3 * _MOST], w, sums, _MOST)
 
 
 @njit(nogil=True, cache=True)
@@ -176,9 +143,10 @@ def _sum_cells(
             table,
         )
         for kind in range(orders.shape[1]):
-            sums, row = _SUMS + (3 * kind + 1) * _MOST, starts[cell, kind]
-            for j in range(orders[cell, kind]):
+            sums, row, many = _SUMS + (3 * kind + 1) * _MOST, starts[cell, kind], orders[cell, kind]
+            for j in range(many):
                 moments[row + j, surface] = w[sums + j] + w[sums + _MOST + j]
+            unfold(moments, row, many, surface, surface + 1)
 
 
 def weighted_moments(
@@ -251,8 +219,6 @@ def weighted_moments(
         )
 
     in_threads(sum_share, list(pairwise(_shares(counts).tolist())))
-    for row, number in zip(starts.ravel().tolist(), orders.ravel().tolist(), strict=True):
-        unfold(moments, row, number)
     return moments
 
 

@@ -66,7 +66,7 @@ class HertzWalk:
 
         parts = in_threads(share, range(0, max(rows, 1), _ROWS))
         found, coefficients, plain, rooted, unresolved, inside = zip(*parts, strict=True)
-        node, row, root, length = np.concatenate(found).T.copy()
+        node, row, root, length = np.concatenate(found).reshape(-1, 4).T.copy()
         entries = Entries(node, row, root.astype(bool), length, np.concatenate(coefficients))
         lost = np.unique(unresolved)
         lost = lost[np.isfinite(lost)]
@@ -77,7 +77,7 @@ class HertzWalk:
         return np.asarray(_needed(node, row, self._rows, self._nodes, self._limits, TABLES))
 
 
-@njit(inline="always")
+@njit(nogil=True, cache=True)
 def _series(row: Any, node: Any, rows: Any, nodes: Any, limits: Any, tables: Any, work: Any) -> Any:
     """Series of a row on a node, the last one of `work`, and how many coefficients of it count.
 
@@ -140,12 +140,13 @@ def _walk(ends: Any, rows: Any, links: Any, nodes: Any, limits: Any, tables: Any
                     found, coefficients = _with_room(found, n, 4), _with_room(coefficients, used, order)
                     length = length_of(c)
                     found[n], found[n + 1], found[n + 2], found[n + 3] = node, row, how != WHOLE, length
-                    coefficients[used : used + length] = c[0, :length]
+                    for k in range(length):
+                        coefficients[used + k] = c[0, k]
                     n, used = n + 4, used + length
                     continue
             waiting[many], waiting[many + 1] = right[node], left[node]
             many += 2
-    return found[:n].reshape(-1, 4), coefficients[:used], plain, rooted, unresolved, inside
+    return found[:n], coefficients[:used], plain, rooted, unresolved, inside
 
 
 @njit(nogil=True, cache=True)
@@ -154,7 +155,8 @@ def _with_room(numbers: Any, used: Any, more: Any) -> Any:
     if used + more <= numbers.size:
         return numbers
     longer = np.empty(2 * numbers.size + more, numbers.dtype)
-    longer[:used] = numbers[:used]
+    for k in range(used):
+        longer[k] = numbers[k]
     return longer
 
 

@@ -189,6 +189,7 @@ def _packed(series: Any) -> Any:
     coefficients = np.empty(series.size)
     for k in range(len(series)):
         n = length_of(series[k : k + 1])
-        coefficients[used : used + n] = series[k, :n]
+        for i in range(n):
+            coefficients[used + i] = series[k, i]
         length[k], used = n, used + n
     return length, coefficients[:used]

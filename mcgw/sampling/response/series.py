@@ -130,10 +130,15 @@ def series_of(
 
 @njit(nogil=True, cache=True)
 def raised(c: Any, power: Any, times_u: Any) -> None:
-    """Put a whole power of u into a series that was cut without it: accurate to the row down to u = 0."""
+    """Put a whole power of u into a series that was cut without it: accurate to the row down to u = 0.
+
+    Here and elsewhere numbers are copied one by one: what Numba compiles for a slice set to an array, with
+    the text of an error message in it, takes 4 s.
+    """
     before = np.empty(c.shape)
     for _ in range(power):
-        before[:] = c
+        for k in range(c.shape[1]):
+            before[0, k] = c[0, k]
         multiply(before, times_u, c)
 
 

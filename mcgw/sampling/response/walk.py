@@ -1,11 +1,8 @@
 """From the root down: give each row to the coarsest nodes that resolve it."""
 
-from typing import Any
-
 import numpy as np
 from numpy.typing import NDArray
 
-from mcgw.machine.compiling import njit
 from mcgw.sampling.cells import Mesh
 from mcgw.sampling.response.entries import Entries
 from mcgw.sampling.response.hertz_walk import HertzWalk
@@ -75,14 +72,15 @@ def walk(mesh: Mesh, tree: Tree, rows: Rows, nodes: Nodes) -> tuple[Entries, Int
     return entries, plain, rooted[: mesh.size]
 
 
-@njit(nogil=True, cache=True)
-def _inherited(plain: Any, left: Any, right: Any) -> Any:
-    """Moments that each node needs for its parent; parents need as many as theirs."""
-    inherited = np.zeros_like(plain)
-    for node in range(plain.size - 1, -1, -1):  # parents come after their children
-        if left[node] >= 0:
-            for child in (left[node], right[node]):
-                inherited[child] = plain[node]
-                if left[child] >= 0:
-                    plain[child] = max(plain[child], plain[node])
-    return inherited
+def _inherited(plain: Ints, left: Ints, right: Ints) -> Ints:
+    """Moments that each node needs for its parent; parents come to need as many as theirs, in `plain` too."""
+    inherited, needed = [0] * plain.size, plain.tolist()
+    links = zip(range(plain.size - 1, -1, -1), left[::-1].tolist(), right[::-1].tolist(), strict=True)
+    parent = left >= 0
+    for node, *children in links:  # parents come after their children
+        for child in children if parent[node] else ():
+            inherited[child] = needed[node]
+            if parent[child]:
+                needed[child] = max(needed[child], needed[node])
+    plain[:] = needed
+    return np.array(inherited, dtype=np.int64)
