@@ -90,7 +90,7 @@ def after(tmp_path_factory):
     scene = mcgw.load_scene(SCENE)
     mcgw.run(scene, folder / "e.h5")
     for sampler in SAMPLERS[1:]:  # what is compiled already is run without the compiler
-        mcgw.simulate(scene, sampler=sampler, n_surfaces=2, n_asperities=1000)
+        mcgw.simulate(scene, sampler=sampler, n_surfaces=2, n_asperities=10**5)
     words = [SCENE, *(folder / name for name in ("e.h5", "e.png", "made.h5"))]
     call = [sys.executable, "-W", "ignore::DeprecationWarning", "-c", CHILD, *map(str, words)]
     done = subprocess.run(call, capture_output=True, text=True, cwd=ROOT, check=False)
