@@ -16,10 +16,9 @@ from numpy.typing import ArrayLike, NDArray
 from analytic.gradings import Grading
 from analytic.heights import GAUSSIAN, HeightLaw
 from analytic.law_rule import law_rule
-from analytic.laws.branch import Branch, term_of
+from analytic.laws.branch import Branch, Ways, term_of
 from analytic.laws.cuts import cuts_of
 from analytic.laws.law import ContactLaw
-from analytic.laws.ways import Ways
 from analytic.measured_summits import MeasuredRadii
 from analytic.quantities import quantity_of
 

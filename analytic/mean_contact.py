@@ -13,10 +13,9 @@ from analytic.height_rule import HeightRule
 from analytic.heights import HeightLaw
 from analytic.integrals import fn
 from analytic.inversion import LOWEST, last_separations, separations_of_powers
-from analytic.laws.branch import UnloadingBranch
+from analytic.laws.branch import UnloadingBranch, Ways
 from analytic.laws.law import piece_of
 from analytic.laws.slopes import slope_term
-from analytic.laws.ways import Ways
 from analytic.quantities import Quantity, quantity_of
 from analytic.summits import Summits
 

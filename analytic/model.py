@@ -11,10 +11,10 @@ from analytic.curvature import RandomCurvature
 from analytic.gradings import Grading, Homogeneous
 from analytic.height_rule import Count, Fluctuations, HeightRule
 from analytic.heights import Gaussian, HeightLaw
+from analytic.laws.branch import Ways
 from analytic.laws.film import Film
 from analytic.laws.law import ContactLaw
 from analytic.laws.tangential import Tangential
-from analytic.laws.ways import Ways
 from analytic.mean_contact import MeanContact, MeanPowers
 from analytic.measured_summits import MeasuredRadii
 from analytic.quantities import LAW_QUANTITIES, Quantity, quantity_of

@@ -15,7 +15,7 @@ from analytic.curvature import MEAN_CURVATURE, RandomCurvature
 from analytic.gradings import Grading
 from analytic.height_rule import HeightRule
 from analytic.law_rule import ends_of
-from analytic.laws.branch import Branch, LoadingBranch
+from analytic.laws.branch import Branch
 from analytic.laws.cuts import cuts_of_each
 from analytic.laws.slopes import jump_terms
 from analytic.quadrature import above_neighbours, gauss_legendre, rooted
@@ -126,7 +126,7 @@ def _pieces(cuts: Array, which: Ints, start: float, top: float) -> tuple[Array, 
 
 
 def jumps_of_radii(
-    quantity: str, branch: LoadingBranch, grading: Grading, law: RandomCurvature, h: float, top: float
+    quantity: str, branch: Branch, grading: Grading, law: RandomCurvature, h: float, top: float
 ) -> float:
     """What summits add to the slope of the mean by jumping, as `jump_terms`, over all radii."""
     radii = _Radii.over(law, h)

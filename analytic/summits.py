@@ -11,7 +11,7 @@ from analytic.curvature import RandomCurvature, WeightedHeights
 from analytic.gradings import Grading
 from analytic.height_rule import HeightRule
 from analytic.heights import Gaussian, HeightLaw
-from analytic.laws.branch import Branch, LoadingBranch
+from analytic.laws.branch import Branch
 from analytic.laws.slopes import jump_terms
 from analytic.measured_summits import MeasuredHeights, MeasuredRadii
 from analytic.radii_rule import jumps_of_radii, rule_of_radii, with_radii
@@ -65,9 +65,7 @@ class Summits:
         """Heights and radii for sums on these branches; without any, of powers of approach and radius."""
         return HeightRule.over(h, grading, self.heights, branches=branches)
 
-    def jumps(
-        self, quantity: str, branch: LoadingBranch, grading: Grading, h: Array, rule: HeightRule
-    ) -> Array:
+    def jumps(self, quantity: str, branch: Branch, grading: Grading, h: Array, rule: HeightRule) -> Array:
         """What summits add to the slope of a mean by jumping, at each separation of a rule."""
         ends = float(rule.heights[0]), float(rule.heights[-1])
         return jump_terms(quantity, branch, grading, lambda s, _: self.heights.pdf(s), h, ends)
@@ -104,9 +102,7 @@ class _RandomRadii(Summits):
         """Leave out what is kept, which is large: other processes compute their own."""
         return {"heights": self.heights, "curvature": self.curvature}
 
-    def jumps(
-        self, quantity: str, branch: LoadingBranch, grading: Grading, h: Array, rule: HeightRule
-    ) -> Array:
+    def jumps(self, quantity: str, branch: Branch, grading: Grading, h: Array, rule: HeightRule) -> Array:
         top = float(rule.heights.max())
         found = [jumps_of_radii(quantity, branch, grading, self.curvature, x, top) for x in h.tolist()]
         return np.array(found)

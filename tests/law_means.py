@@ -11,7 +11,7 @@ from scipy.optimize import brentq
 from scipy.special import ndtr
 
 from analytic import ChangEtsionBogy, JacksonGreen, KogutEtsion, Surface, ZhaoMaiettaChang, quantity_of
-from analytic.laws import LoadingBranch, term_of
+from analytic.laws import Branch, term_of
 
 ONE = np.array(1.0)
 SURFACE = Surface(sigma=1e-6, radius=1e-3, eta=1e9, nominal_area=1e-6, E_star=100e9)
@@ -37,7 +37,7 @@ def ones(s):
 
 def term(quantity, law, penetration, e):
     """What asperities add that are loaded to a penetration, each by the formula of its piece."""
-    return term_of(quantity, LoadingBranch(law), 0.0, penetration, e)
+    return term_of(quantity, Branch(law), 0.0, penetration, e)
 
 
 def starts(law, h, modulus=ones):
@@ -80,7 +80,7 @@ def own_terms(scene, quantity, heights, radii):
     terms = []
     for s, radius in zip(heights.tolist(), radii.tolist(), strict=True):
         own = replace(scene.surface, radius=radius)
-        branch, e = LoadingBranch(scene.law.on(own)), scene.modulus(np.array(s))
+        branch, e = Branch(scene.law.on(own)), scene.modulus(np.array(s))
         term = term_of(quantity, branch, np.array(scene.separations), s, e)
         terms.append(term * quantity_of(quantity).scale(own))
     return np.array(terms).T

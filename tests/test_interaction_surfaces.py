@@ -166,7 +166,7 @@ def test_law_of_the_load_at_a_nominal_separation(laws_by_sampler):
 
 def test_laws_with_breaks_and_own_radii(make_scene):
     """By `tail`: x = h + c P, and literal sums of the terms of the law."""
-    from analytic.laws import LoadingBranch, term_of
+    from analytic.laws import Branch, term_of
 
     scene = make_scene(separations=(0.3, 1.0), n_surfaces=3, law=analytic.KogutEtsion(critical=0.3))
     scene = scene.replace(interaction=interaction(2.0, scene.surface, 3000))
@@ -174,7 +174,7 @@ def test_laws_with_breaks_and_own_radii(make_scene):
     assert ensemble.sampler == "tail"
     s, felt = mcgw.heights(scene, 2), ensemble["effective_separation"][2]
     for name in ("load", "area"):
-        terms = [term_of(name, LoadingBranch(scene.contact), x, s, scene.modulus(s)).sum() for x in felt]
+        terms = [term_of(name, Branch(scene.contact), x, s, scene.modulus(s)).sum() for x in felt]
         np.testing.assert_allclose(
             ensemble[name][2], factor(scene.surface, name) * np.array(terms), rtol=1e-12
         )

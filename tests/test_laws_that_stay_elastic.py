@@ -8,7 +8,7 @@ from mpmath import mpf
 
 import analytic
 import mcgw
-from analytic.laws import Coated, Hertz, PowerLawGraded, crowding_factor, film_conductance, film_parameter
+from analytic.laws import Coated, Film, Hertz, PowerLawGraded, crowding_factor
 
 ONE = np.array(1.0)
 SURFACE = analytic.Surface(sigma=1e-6, radius=4e-4, eta=1e9, nominal_area=1e-6, E_star=100e9)
@@ -140,11 +140,9 @@ def test_elastic_laws_without_stiffness_carry_nothing(law):
 def test_film_and_constriction_are_in_series():
     """Holm's formula in ohm, for one spot."""
     film, rho, a = 2e-13, 3.5e-8, 1.7e-6
-    b = film_parameter(SURFACE, film_resistance=film, resistivity=rho)
-    conductance = 4 * UNIT / rho * film_conductance(np.array(a / UNIT), b)
+    conductance = 4 * UNIT * Film(rho, film).on(SURFACE)(np.array(a / UNIT))
     assert 1 / conductance == pytest.approx(rho / (4 * a) + film / (np.pi * a**2), rel=1e-14)
-    assert film_conductance(np.array(0.3), 0.0) == 0.3
-    assert film_parameter(SURFACE, film_resistance=0.0, resistivity=rho) == 0
+    assert Film(1.0).on(SURFACE)(np.array(0.3)) == 0.3
 
 
 def test_conductance_of_one_spot_between_two_bodies():
@@ -176,8 +174,8 @@ def test_spots_crowd_by_their_area():
     (lambda: Coated(ratio=2.0), "thickness = None, reduced_thickness = None: give one"),
     (lambda: Coated(ratio=0.0, thickness=1e-6), "ratio = 0.0: give"),
     (lambda: Coated(ratio=2.0, thickness=1e-6).finest, "thickness=1e-06.*law.on"),
-    (lambda: film_parameter(SURFACE, film_resistance=-1.0, resistivity=1.0), "film_resistance = -1.0"),
-    (lambda: film_parameter(SURFACE, film_resistance=1.0, resistivity=0.0), "resistivity = 0.0"),
+    (lambda: Film(1.0, film_resistance=-1.0), "film_resistance = -1.0"),
+    (lambda: Film(0.0, film_resistance=1.0), "resistivity = 0.0"),
     (lambda: crowding_factor([0.2, 1.5]), "area_fraction = 1.5: "),
 ])  # fmt: skip
 def test_errors_name_the_key_the_value_and_what_would_do(make, words):

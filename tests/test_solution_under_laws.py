@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import mcgw
-from analytic.laws import LoadingBranch
+from analytic.laws import Branch
 from mcgw.ensemble.separation import LawSum
 from mcgw.ensemble.solution import solutions
 
@@ -100,7 +100,7 @@ def test_a_literal_search_finds_the_same(name, given, monkeypatch):
 
 def test_a_load_that_is_jumped_over_is_passed():
     """One asperity of Chang, Etsion and Bogy: between Hertz's load at yield and 1.5 times that."""
-    one = LawSum("load", LoadingBranch(mcgw.ChangEtsionBogy(critical=0.5)), np.array([2.0]), np.ones(1))
+    one = LawSum("load", Branch(mcgw.ChangEtsionBogy(critical=0.5)), np.array([2.0]), np.ones(1))
     at_yield = 0.5**1.5
     for value in (1.01 * at_yield, 1.49 * at_yield):
         assert one.largest_separation(value, -3.0) == pytest.approx(1.5, abs=1e-15)
@@ -110,7 +110,7 @@ def test_a_load_that_is_jumped_over_is_passed():
 
 def test_of_several_separations_the_largest_counts():
     """The area of one asperity of Kogut and Etsion falls by 7 % at yield: .049 is met three times."""
-    one = LawSum("area", LoadingBranch(mcgw.KogutEtsion(critical=0.05)), np.array([2.0]), np.ones(1))
+    one = LawSum("area", Branch(mcgw.KogutEtsion(critical=0.05)), np.array([2.0]), np.ones(1))
     assert one.largest_separation(0.049, -3.0) == pytest.approx(2 - 0.049, abs=1e-14)
     after = 2 - 0.05 * (0.0505 / 0.05 / 0.93) ** (1 / 1.136)
     assert one.largest_separation(0.0505, -3.0) == pytest.approx(after, abs=1e-14)

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from analytic.laws.adhesion import DerjaguinMullerToporov, JohnsonKendallRoberts
-    from analytic.laws.branch import Branch, LoadingBranch, UnloadingBranch, term_of
+    from analytic.laws.branch import Branch, UnloadingBranch, Ways, term_of
     from analytic.laws.custom import CustomLaw
     from analytic.laws.elastic import Coated, PowerLawGraded
     from analytic.laws.elastic_plastic_laws import (
@@ -14,35 +14,33 @@ if TYPE_CHECKING:
         KogutEtsion,
         ZhaoMaiettaChang,
     )
-    from analytic.laws.film import Film, SpotConductance, crowding_factor, film_conductance, film_parameter
+    from analytic.laws.film import Film, SpotConductance, crowding_factor
     from analytic.laws.law import ContactLaw, Hertz, of_spot, piece_of
     from analytic.laws.regimes import Regimes, merged_heights, regimes_of
     from analytic.laws.tangential import Tangential, masing
     from analytic.laws.unloading import Unloading
-    from analytic.laws.ways import Ways
 
     by_name: dict[str, type[ContactLaw]]
 
 __all__ = [
     "Branch", "ChangEtsionBogy", "Coated", "ContactLaw", "CustomLaw", "DerjaguinMullerToporov", "Film",
-    "Hertz", "JacksonGreen", "JohnsonKendallRoberts", "KogutEtsion", "LoadingBranch", "PowerLawGraded",
+    "Hertz", "JacksonGreen", "JohnsonKendallRoberts", "KogutEtsion", "PowerLawGraded",
     "Regimes", "SpotConductance", "Tangential", "Unloading", "UnloadingBranch", "Ways",
-    "ZhaoMaiettaChang", "by_name", "crowding_factor", "film_conductance", "film_parameter",
+    "ZhaoMaiettaChang", "by_name", "crowding_factor",
     "masing", "merged_heights", "of_spot", "piece_of", "regimes_of", "term_of",
 ]  # fmt: skip
 
 _FILES = {
     "adhesion": ("DerjaguinMullerToporov", "JohnsonKendallRoberts"),
-    "branch": ("Branch", "LoadingBranch", "UnloadingBranch", "term_of"),
+    "branch": ("Branch", "UnloadingBranch", "Ways", "term_of"),
     "custom": ("CustomLaw",),
     "elastic": ("Coated", "PowerLawGraded"),
     "elastic_plastic_laws": ("ChangEtsionBogy", "JacksonGreen", "KogutEtsion", "ZhaoMaiettaChang"),
-    "film": ("Film", "SpotConductance", "crowding_factor", "film_conductance", "film_parameter"),
+    "film": ("Film", "SpotConductance", "crowding_factor"),
     "law": ("ContactLaw", "Hertz", "of_spot", "piece_of"),
     "regimes": ("Regimes", "merged_heights", "regimes_of"),
     "tangential": ("Tangential", "masing"),
     "unloading": ("Unloading",),
-    "ways": ("Ways",),
 }
 _HOMES = {name: file for file, names in _FILES.items() for name in names}
 _LAWS = (

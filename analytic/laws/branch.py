@@ -4,9 +4,10 @@ A branch says at which heights which formula holds, and gives the formulas at he
 So everything that sums over asperities treats loading, unloading and any law of contact alike.
 """
 
-from dataclasses import dataclass, replace
+from collections.abc import Iterable
+from dataclasses import KW_ONLY, dataclass, replace
 from functools import partial
-from typing import Any, Protocol, TypeVar
+from typing import Any, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -16,49 +17,68 @@ from analytic.laws.crossings import crossings_of
 from analytic.laws.film import SpotConductance
 from analytic.laws.law import ContactLaw, of_spot, piece_of
 from analytic.laws.regimes import Regimes, merged_heights, regimes_of
+from analytic.laws.unloading import Unloading
+from analytic.quantities import quantity_of
 
-__all__ = ["Branch", "LoadingBranch", "UnloadingBranch", "term_of"]
+__all__ = ["Branch", "UnloadingBranch", "Ways", "term_of"]
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
-Way = TypeVar("Way", "LoadingBranch", "UnloadingBranch")
 
 
-class Branch(Protocol):
-    """A way that a surface can have gone to a separation."""
+@dataclass(frozen=True)
+class Branch:
+    """A way that a surface can have gone to a separation: closer than ever before, unless one says otherwise.
+
+    Parameters
+    ----------
+    law : ContactLaw
+        In reduced units.
+    conductance : SpotConductance, optional
+        Of "conductance_si".
+    """
+
+    law: ContactLaw
+    conductance: SpotConductance | None = None
 
     @property
     def finest(self) -> float:
         """How far above first touch formulas are analytic."""
-        ...
+        return min(self.law.finest, self.conductance.finest) if self.conductance else self.law.finest
+
+    def with_radii(self, ratios: Array) -> Self:
+        """That of summits whose radii are these multiples of the surface's, one for each separation asked."""
+        own = None if self.conductance is None else self.conductance.with_radii(ratios)
+        return replace(self, law=self.law.with_radii(ratios), conductance=own)
+
+    def of_some(self, which: NDArray[Any]) -> Self:
+        """That of some of the summits that the law was made for; as it is where all have one radius."""
+        own = None if self.conductance is None else self.conductance.of_some(which)
+        return replace(self, law=self.law.of_some(which), conductance=own)
 
     def lowest(self, h: float) -> float:
         """Height below which nothing touches, at a separation or at higher ones."""
-        ...
+        return h
 
     def regimes(self, grading: Grading, separations: ArrayLike, low: float, high: float) -> Regimes:
         """At which heights there is contact, and which formula holds there."""
-        ...
+        return regimes_of(self.law, grading, separations, low, high)
 
     def root(self, piece: int) -> bool:
         """Whether a contact of this piece is analytic in the root of the penetration where it begins."""
-        ...
+        return piece > 0 or self.law.root
 
     def root_at_touch(self, piece: int) -> bool:
         """The same where it begins from nothing, so that its formulas take negative roots as well."""
-        ...
-
-    def with_radii(self, ratios: Array) -> "Branch":
-        """That of summits whose radii are these multiples of the surface's, one for each separation asked."""
-        ...
+        return piece == 0 and self.law.root
 
     def left(self, h: Array, above: Array, e: Array) -> Array:
         """Penetration left until contact is lost, whose root the formulas take."""
-        ...
+        return above
 
     def pieces(self, h: Array, above: Array, e: Array) -> Ints:
         """Which formula holds at heights `above` the separations, -1 without contact."""
-        ...
+        return np.where(above > 0, piece_of(self.law, above, e), -1)
 
     def value(
         self, quantity: str, piece: int, h: Array, above: Array, e: Array, *, sign: float = 1.0
@@ -67,97 +87,33 @@ class Branch(Protocol):
 
         With a `sign` of -1 the formula goes on to negative roots of the penetration.
         """
-        ...
-
-
-@dataclass(frozen=True)
-class LoadingBranch:
-    """The surface comes closer, or has never been closer.
-
-    Parameters
-    ----------
-    law : ContactLaw
-        In reduced units.
-    conductance : SpotConductance, optional
-        Of "conductance_si".
-    """
-
-    law: ContactLaw
-    conductance: SpotConductance | None = None
-
-    @property
-    def finest(self) -> float:
-        """As `Branch.finest`."""
-        return min(self.law.finest, self.conductance.finest) if self.conductance else self.law.finest
-
-    def lowest(self, h: float) -> float:
-        """As `Branch.lowest`."""
-        return h
-
-    def regimes(self, grading: Grading, separations: ArrayLike, low: float, high: float) -> Regimes:
-        """As `Branch.regimes`."""
-        return regimes_of(self.law, grading, separations, low, high)
-
-    def root(self, piece: int) -> bool:
-        """As `Branch.root`."""
-        return piece > 0 or self.law.root
-
-    def root_at_touch(self, piece: int) -> bool:
-        """As `Branch.root_at_touch`: only those of the first piece do, the others are powers."""
-        return piece == 0 and self.law.root
-
-    def left(self, h: Array, above: Array, e: Array) -> Array:
-        """As `Branch.left`."""
-        return above
-
-    def pieces(self, h: Array, above: Array, e: Array) -> Ints:
-        """As `Branch.pieces`."""
-        return np.where(above > 0, piece_of(self.law, above, e), -1)
-
-    def value(
-        self, quantity: str, piece: int, h: Array, above: Array, e: Array, *, sign: float = 1.0
-    ) -> Array:
-        """As `Branch.value`."""
-        return self.of_root(quantity, piece, sign * np.sqrt(above), e)
-
-    def with_radii(self, ratios: Array) -> "LoadingBranch":
-        """As `Branch.with_radii`."""
-        return _with_radii(self, ratios)
-
-    def of_some(self, which: NDArray[Any]) -> "LoadingBranch":
-        """That of some of the summits that the law was made for; as it is where all have one radius."""
-        conductance = None if self.conductance is None else self.conductance.of_some(which)
-        return LoadingBranch(self.law.of_some(which), conductance)
+        return self.added(quantity, self.law, piece, sign * np.sqrt(above), e)
 
     def of_root(self, quantity: str, piece: int, y: Any, e: Array) -> Array:
-        """The same of the root of the penetration, which may be complex."""
-        if quantity == "conductance_si":
-            return _conducted(self.conductance, self.of_root("conductance", piece, y, e))
-        return of_spot(quantity, self.law, piece, y, e)
+        """The same, closer than ever before, of the root of the penetration, which may be complex."""
+        return self.added(quantity, self.law, piece, y, e)
+
+    def added(self, quantity: str, formulas: ContactLaw | Unloading, piece: int, *at: Any) -> Array:
+        """A quantity by formulas at what they take, and by what spots conduct through."""
+        if quantity != "conductance_si":
+            return of_spot(quantity, formulas, piece, *at)
+        if self.conductance is None:
+            raise ValueError("conductance_si: give a resistivity")
+        return self.conductance(of_spot("conductance", formulas, piece, *at))
 
 
 @dataclass(frozen=True)
-class UnloadingBranch:
+class UnloadingBranch(Branch):
     """The surface goes back from the lowest separation it has reached.
 
     Parameters
     ----------
-    law : ContactLaw
-        In reduced units.
     deepest : float
         That separation, d/sigma.
-    conductance : SpotConductance, optional
-        Of "conductance_si".
     """
 
-    law: ContactLaw
+    _: KW_ONLY
     deepest: float
-    conductance: SpotConductance | None = None
-
-    @property
-    def finest(self) -> float:
-        """As `Branch.finest`."""
-        return LoadingBranch(self.law, self.conductance).finest
 
     def lowest(self, h: float) -> float:
         """As `Branch.lowest`: what has touched may stick."""
@@ -185,11 +141,7 @@ class UnloadingBranch:
         """Penetration at which asperities of a height are lost, under the law of which separation."""
         if self.law.each:
             s, which = np.broadcast_arrays(s, which)
-        return replace(self, law=self.law.of_some(which))._residual(s, grading(s))
-
-    def with_radii(self, ratios: Array) -> "UnloadingBranch":
-        """As `Branch.with_radii`."""
-        return _with_radii(self, ratios)
+        return self.of_some(which)._residual(s, grading(s))
 
     def _residual(self, s: Array, e: Array) -> Array:
         """Penetration at which an asperity is lost; infinite where it was never in contact."""
@@ -223,17 +175,9 @@ class UnloadingBranch:
         self, quantity: str, piece: int, h: Array, above: Array, e: Array, *, sign: float = 1.0
     ) -> Array:
         """As `Branch.value`."""
-        if quantity == "conductance_si":
-            return _conducted(self.conductance, self.value("conductance", piece, h, above, e, sign=sign))
         unloading, deepest = self.law.unloading(), above + (h - self.deepest)
         y = sign * np.sqrt(np.maximum(above - unloading.residual(piece, deepest, e), 0.0))
-        return of_spot(quantity, unloading, piece, y, deepest, e)
-
-
-def _with_radii(branch: Way, ratios: Array) -> Way:
-    film = branch.conductance
-    own = None if film is None else film.with_radii(ratios)
-    return replace(branch, law=branch.law.with_radii(ratios), conductance=own)
+        return self.added(quantity, unloading, piece, y, deepest, e)
 
 
 def _intervals(
@@ -246,12 +190,6 @@ def _intervals(
     where = np.searchsorted(turn, begin, side="right") - 1
     held = contact & (where >= 0)
     return np.full(held.sum(), separation), begin[held], end[held], piece[where[held]]
-
-
-def _conducted(conductance: SpotConductance | None, radius: Array) -> Array:
-    if conductance is None:
-        raise ValueError("conductance_si: give a resistivity")
-    return conductance(radius)
 
 
 def term_of(quantity: str, branch: Branch, h: ArrayLike, heights: ArrayLike, e: ArrayLike) -> Array:
@@ -278,3 +216,86 @@ def term_of(quantity: str, branch: Branch, h: ArrayLike, heights: ArrayLike, e: 
         here = pieces == piece
         result[here] = branch.value(quantity, piece, h[here], above[here], e[here])
     return result
+
+
+@dataclass(frozen=True)
+class Ways:
+    """A law of contact, the history of the surface, and what its spots conduct through.
+
+    Parameters
+    ----------
+    law : ContactLaw
+        In reduced units.
+    unload_from : float, optional
+        Lowest separation reached before quantities on the way back are asked for, d/sigma.
+    conductance : SpotConductance, optional
+        Of "conductance_si".
+    """
+
+    law: ContactLaw
+    unload_from: float | None = None
+    conductance: SpotConductance | None = None
+
+    def with_radii(self, ratios: Array) -> "Ways":
+        """Those of summits whose radii are these multiples of the surface's, each in its own units."""
+        own = self.loading.with_radii(ratios)
+        return replace(self, law=own.law, conductance=own.conductance)
+
+    def term(self, quantity: str, h: float, s: Array, e: Array, ratios: Array) -> Array:
+        """What summits of radii of their own add at a separation, 0 without contact.
+
+        Parameters
+        ----------
+        quantity : str
+            Its name, on whatever way.
+        h : float
+            Reduced separation.
+        s, e, ratios : ndarray
+            Reduced heights, moduli E*(s)/E*, and radii over that of the surface, shape (summits,).
+
+        Returns
+        -------
+        ndarray
+            Over the quantity's scale for the radius of the surface, shape (summits,).
+        """
+        q, above = quantity_of(quantity), s - h
+        pieces, result = self.with_radii(ratios).of(quantity).pieces(np.full(s.shape, h), above, e), 0.0 * s
+        for piece in np.unique(pieces[pieces >= 0]).tolist():
+            here = pieces == piece
+            branch = self.with_radii(ratios[here]).of(quantity)
+            result[here] = branch.value(q.base, piece, np.full(here.sum(), h), above[here], e[here])
+        return np.asarray(ratios**q.radius * result)
+
+    def of(self, quantity: str) -> Branch:
+        """The branch that a quantity is on.
+
+        Where nothing yields the way back is the way there, from whatever separation.
+
+        Raises
+        ------
+        KeyError
+            If there is no such quantity.
+        ValueError
+            If the way back, or what spots conduct through, is not known.
+        """
+        q = quantity_of(quantity)
+        if q.base == "conductance_si" and self.conductance is None:
+            raise ValueError(f"quantity = {quantity!r}: give a film, or at least a resistivity")
+        if not q.unloading or self.law.elastic:
+            return self.loading
+        self.law.unloading()  # a law that has none says so
+        if self.unload_from is None:
+            raise ValueError(
+                f"quantity = {quantity!r}: asperities yield under law = {self.law.name!r}; give unload_from, "
+                "the lowest separation reached before"
+            )
+        return UnloadingBranch(self.law, self.conductance, deepest=self.unload_from)
+
+    @property
+    def loading(self) -> Branch:
+        """The way there."""
+        return Branch(self.law, self.conductance)
+
+    def among(self, quantities: Iterable[str]) -> tuple[Branch, ...]:
+        """The branches of some quantities, each once."""
+        return tuple(dict.fromkeys(self.of(name) for name in quantities))

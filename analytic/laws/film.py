@@ -10,62 +10,9 @@ from numpy.typing import ArrayLike, NDArray
 from analytic.laws.law import is_positive
 from analytic.surface import Surface
 
-__all__ = ["Film", "SpotConductance", "crowding_factor", "film_conductance", "film_parameter"]
+__all__ = ["Film", "SpotConductance", "crowding_factor"]
 
 Array = NDArray[np.float64]
-
-
-def film_parameter(surface: Surface, *, film_resistance: float, resistivity: float) -> float:
-    """Radius of a spot at which film and constriction resist alike: ``b = 4 r_f/(pi rho sqrt(R sigma))``.
-
-    Parameters
-    ----------
-    surface : Surface
-        Its R and sigma.
-    film_resistance : float
-        r_f, of a unit area of film: ohm m^2, or m^2 K/W.
-    resistivity : float
-        rho, the sum of the two bodies' resistivities: ohm m, or m K/W.
-
-    Returns
-    -------
-    float
-        In units of sqrt(R sigma).
-
-    Raises
-    ------
-    ValueError
-        If a resistance is not a number > 0 (the film's may be 0).
-    """
-    Film(resistivity, film_resistance)  # refuses what is no resistance
-    return 4 * film_resistance / (math.pi * resistivity * math.sqrt(surface.radius * surface.sigma))
-
-
-def film_conductance(radius: Array, b: Any) -> Array:
-    """Conductance of a spot over 4 sqrt(R sigma)/rho, ``a^2/(a + b)``.
-
-    In series: ``1/C = rho/(4 a) + r_f/(pi a^2)``.
-
-    Parameters
-    ----------
-    radius : ndarray
-        Radius a of the spot over sqrt(R sigma), not 0; -a and complex numbers go on analytically, up to
-        the pole at -b.
-    b : float
-        As from `film_parameter`; 0 without a film.
-
-    Returns
-    -------
-    ndarray
-        In the shape of `radius`. Where the radius is the root of the penetration, the formula is analytic
-        up to a penetration of b^2.
-
-    Notes
-    -----
-    Source: R. Holm, Electric Contacts (1967). For Sharvin's (or Knudsen's) resistance with the mean free
-    path l, add ``16 l/(3 pi sqrt(R sigma))`` to b.
-    """
-    return np.asarray(radius * (radius / (radius + b)))
 
 
 @dataclass(frozen=True)
@@ -107,22 +54,28 @@ class Film:
 
     def on(self, surface: Surface) -> "SpotConductance":
         """In the reduced units of a surface."""
-        parameter = film_parameter(
-            surface, film_resistance=self.film_resistance, resistivity=self.resistivity
-        )
-        return SpotConductance(parameter, self.resistivity)
+        scale = math.pi * self.resistivity * math.sqrt(surface.radius * surface.sigma)
+        return SpotConductance(4 * self.film_resistance / scale, self.resistivity)
 
 
 @dataclass(frozen=True)
 class SpotConductance:
-    """Conductance of a spot, of its radius.
+    """Conductance of a spot, of its radius: constriction and film in series.
+
+    ``1/C = rho/(4 a) + r_f/(pi a^2)``, so that C over 4 sqrt(R sigma)/rho is ``a^2/(a + b)``.
 
     Parameters
     ----------
     parameter : float
-        Radius over sqrt(R sigma) of a spot whose film and constriction resist alike.
+        Radius over sqrt(R sigma) of a spot whose film and constriction resist alike,
+        ``b = 4 r_f/(pi rho sqrt(R sigma))``.
     resistivity : float
         As that of `Film`.
+
+    Notes
+    -----
+    Source: R. Holm, Electric Contacts (1967). For Sharvin's (or Knudsen's) resistance with the mean free
+    path l, add ``16 l/(3 pi sqrt(R sigma))`` to b.
     """
 
     parameter: Any
@@ -143,8 +96,8 @@ class SpotConductance:
         return replace(self, parameter=self.parameter[which]) if np.ndim(self.parameter) else self
 
     def __call__(self, radius: Array) -> Array:
-        """Conductance over 4 sqrt(R sigma): 1/(ohm m), or W/(m K)."""
-        return film_conductance(radius, self.parameter) / self.resistivity
+        """Conductance over 4 sqrt(R sigma), in 1/(ohm m) or W/(m K), analytic in the radius up to -b."""
+        return np.asarray(radius * (radius / (radius + self.parameter))) / self.resistivity
 
 
 def crowding_factor(area_fraction: ArrayLike) -> Array:

@@ -7,7 +7,7 @@ from numpy.polynomial import chebyshev
 from numpy.typing import NDArray
 
 from analytic.gradings import Grading
-from analytic.laws.branch import LoadingBranch
+from analytic.laws.branch import Branch
 from analytic.laws.crossings import Bound, Crossings, crossings_of
 from analytic.laws.law import piece_of
 from analytic.resolution import resolved_breaks
@@ -23,14 +23,14 @@ _ABOUT, _NODES = 2.0**-6, 16  # of the fit from which the slope of a bound is ta
 _JUMP = 1e-9  # a bound that misses by more jumps over the penetration
 
 
-def slope_term(quantity: str, branch: LoadingBranch, penetration: Array, e: Array) -> Array:
+def slope_term(quantity: str, branch: Branch, penetration: Array, e: Array) -> Array:
     """Derivative by the penetration of what asperities add, within the piece that holds.
 
     Parameters
     ----------
     quantity : str
         Its name.
-    branch : LoadingBranch
+    branch : Branch
         With the law in reduced units.
     penetration, e : ndarray
         Reduced penetration s - h, negative without contact, and modulus E*(s)/E*; of any shapes that
@@ -55,7 +55,7 @@ def slope_term(quantity: str, branch: LoadingBranch, penetration: Array, e: Arra
 
 def jump_terms(
     quantity: str,
-    branch: LoadingBranch,
+    branch: Branch,
     grading: Grading,
     density: Callable[[Array, Ints], Array],
     separations: Array,

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from scipy.optimize import brentq
 
 from analytic import Hertz, Quantity, quantity_of
-from analytic.laws import LoadingBranch, Ways, term_of
+from analytic.laws import Branch, Ways, term_of
 from mcgw.scene.scene import Scene
 
 __all__ = ["LawSum", "Summits", "separation_on"]
@@ -78,7 +78,7 @@ class LawSum:
     ----------
     quantity : str
         Load or area.
-    branch : LoadingBranch
+    branch : Branch
         With the law in reduced units.
     heights, modulus : ndarray
         Reduced heights in falling order, and E*(s)/E* >= 0 of each; shape (n,).
@@ -87,7 +87,7 @@ class LawSum:
     """
 
     quantity: str
-    branch: LoadingBranch
+    branch: Branch
     heights: Array
     modulus: Array
     ratios: Array | None = None
@@ -165,12 +165,12 @@ class LawSum:
     def _ways(self) -> Ways:
         return Ways(self.branch.law, None, self.branch.conductance)
 
-    def _branch(self, which: slice | NDArray[np.int64]) -> LoadingBranch:
+    def _branch(self, which: slice | NDArray[np.int64]) -> Branch:
         """That of some asperities, each by the law of its own radius."""
         if self.ratios is None:
             return self.branch
         ways = self._ways.with_radii(self.ratios[which])
-        return LoadingBranch(ways.law, ways.conductance)
+        return Branch(ways.law, ways.conductance)
 
     def _weight(self, which: NDArray[np.int64]) -> Array | float:
         """What a load or an area is worth by the radius."""
@@ -267,9 +267,9 @@ class Summits:
         return type(self.scene.law) is Hertz
 
     @property
-    def _loading(self) -> LoadingBranch:
+    def _loading(self) -> Branch:
         film = None if self.scene.film is None else self.scene.film.on(self.scene.surface)
-        return LoadingBranch(self.scene.contact, film)
+        return Branch(self.scene.contact, film)
 
     def _weights(self, q: Quantity) -> Array:
         modulus = self.scene.modulus(self.s) if q.modulus else np.ones_like(self.s)
