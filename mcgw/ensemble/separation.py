@@ -169,8 +169,7 @@ class LawSum:
         """That of some asperities, each by the law of its own radius."""
         if self.ratios is None:
             return self.branch
-        ways = self._ways.with_radii(self.ratios[which])
-        return Branch(ways.law, ways.conductance)
+        return self.branch.with_radii(self.ratios[which])
 
     def _weight(self, which: NDArray[np.int64]) -> Array | float:
         """What a load or an area is worth by the radius."""
@@ -215,7 +214,9 @@ class Summits:
         if not self._by_powers:
             e = self.scene.modulus(self.s)
             start = float(self.s[e < 0].max(initial=start))
-            return LawSum(q.base, self._loading, self.s, e, self.ratios).largest_separation(target, start)
+            return LawSum(q.base, self.scene.ways.loading, self.s, e, self.ratios).largest_separation(
+                target, start
+            )
         weights = self._weights(q)
         start = float(self.s[weights < 0].max(initial=start))
         if self._power_sum(q, weights, start) < target:
@@ -246,7 +247,7 @@ class Summits:
             if self.scene.hertzian:
                 terms = touching._weights(q) * (s - h) ** q.exponent
             elif touching.ratios is None:
-                terms = term_of(name, self._loading, h, s, modulus)
+                terms = term_of(name, self.scene.ways.loading, h, s, modulus)
             else:
                 terms = self.scene.ways.term(name, h, s, modulus, touching.ratios)
             found[name] = q.scale(self.scene.surface) * float(np.sum(terms))
@@ -265,11 +266,6 @@ class Summits:
     def _by_powers(self) -> bool:
         """Whether load and area are sums of powers of the approaches."""
         return type(self.scene.law) is Hertz
-
-    @property
-    def _loading(self) -> Branch:
-        film = None if self.scene.film is None else self.scene.film.on(self.scene.surface)
-        return Branch(self.scene.contact, film)
 
     def _weights(self, q: Quantity) -> Array:
         modulus = self.scene.modulus(self.s) if q.modulus else np.ones_like(self.s)
