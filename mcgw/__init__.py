@@ -114,8 +114,8 @@ if TYPE_CHECKING:
     from mcgw.ensemble.solution import solve
     from mcgw.errors import RunError, StoreError
     from mcgw.exports.writing import export
-    from mcgw.jobs.from_python import run
     from mcgw.jobs.merging import merge
+    from mcgw.jobs.running import run
     from mcgw.jobs.sweeping import sweep
     from mcgw.maps.fitted_scene import fitted_scene
     from mcgw.maps.fitting import fit
@@ -217,7 +217,7 @@ _HOME = {
     "paired_ratio": "ensemble.paired",
     "radii": "sampling.asperities",
     "regrade": "ensemble.regrading",
-    "run": "jobs.from_python",
+    "run": "jobs.running",
     "save": "store.saving",
     "scene_from": "scene.scene_file",
     "scene_text": "scene.scene_file",

@@ -7,8 +7,7 @@ import pytest
 from mcgw.ensemble.simulation import Values
 from mcgw.ensemble.summarising import Statistics
 from mcgw.errors import StoreError
-from mcgw.jobs.running import run, run_part
-from mcgw.jobs.session import Part
+from mcgw.jobs.running import run
 from mcgw.store import chunks, ensembles, structure
 from mcgw.store.run_folder import parts_of
 
@@ -48,7 +47,7 @@ def settle():
 def halted(scene, path, surfaces):
     """A run that is ended when so many are done."""
 
-    def progress(done):
+    def progress(done, _):
         if done >= surfaces:
             raise HaltError
 
@@ -61,7 +60,7 @@ def halted(scene, path, surfaces):
 def begun(scene, path, jobs=1):
     """All blocks of a run, not merged yet."""
     for k in range(1, jobs + 1):
-        run_part(scene, path, Part(k, jobs))
+        run(scene, path, shard=f"{k}/{jobs}")
     assert not path.exists()
     return sorted(parts_of(path).glob("shards/block-*.h5"))
 

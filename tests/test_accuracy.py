@@ -19,8 +19,7 @@ from analytic import laws
 from mcgw.ensemble.regrading import regrade
 from mcgw.ensemble.simulation import Values
 from mcgw.jobs.merging import merge
-from mcgw.jobs.running import run, run_part
-from mcgw.jobs.session import Part
+from mcgw.jobs.running import run
 from mcgw.sampling import cells
 from mcgw.sampling.samplers import sampler_of
 from mcgw.scene.scene_file import scene_text
@@ -239,18 +238,18 @@ def test_stored_in_any_way_the_digest_is_one(make_scene, wish, tmp_path, monkeyp
     scene = make_scene(n_surfaces=NUMBER, **wish)
     run(scene, tmp_path / "whole.h5")
 
-    def halt(done):
+    def halt(done, _):
         if done >= 40:
             raise HaltError
 
     halted, done = tmp_path / "halted.h5", []
     with pytest.raises(HaltError):
         run(scene, halted, progress=halt)
-    run(scene, halted, progress=done.append)
+    run(scene, halted, progress=lambda now, _: done.append(now))
     assert done[0] >= 40
     shards = tmp_path / "shards.h5"
     for part in (2, 1):
-        run_part(scene, shards, Part(part, 2))
+        run(scene, shards, shard=f"{part}/2")
     merge(shards)
     assert len({digest(tmp_path / f"{name}.h5") for name in ("whole", "halted", "shards")}) == 1
     found = mcgw.open_ensemble(halted)

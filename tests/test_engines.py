@@ -61,7 +61,7 @@ def kill_one_now_and_then(pids, times):
     """Progress that kills a worker each time a few more blocks are done."""
     killed = []
 
-    def progress(done):
+    def progress(done, _):
         if done and done % (3 * SIZE) == 0 and len(killed) < times:
             alive = [pid for pid in pids() if pid not in killed]
             killed.append(alive[0])
@@ -185,7 +185,7 @@ def test_a_lost_scheduler_is_one_line_and_the_run_goes_on_with_another(scene, tm
     pytest.importorskip("distributed")
     path, first = tmp_path / "e.h5", Cluster(tmp_path)
 
-    def kill_midway(done):
+    def kill_midway(done, _):
         if done >= SURFACES // 3 and first.scheduler.poll() is None:
             os.killpg(first.scheduler.pid, signal.SIGKILL)
 

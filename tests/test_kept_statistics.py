@@ -16,7 +16,7 @@ from mcgw.ensemble import simulation, summarising
 from mcgw.ensemble.bins import Bins
 from mcgw.ensemble.summary import Summary, push, total
 from mcgw.errors import StoreError
-from mcgw.jobs.from_python import run
+from mcgw.jobs.running import run
 from mcgw.machine.memory import peak_growth
 from mcgw.scene.section import SceneError
 from mcgw.store.ensembles import read_attributes, verify

@@ -21,8 +21,7 @@ from mcgw.formats.files import state_of
 from mcgw.jobs import merging
 from mcgw.jobs.job import Job
 from mcgw.jobs.merging import merge
-from mcgw.jobs.running import run, run_part
-from mcgw.jobs.session import Part
+from mcgw.jobs.running import run
 from mcgw.store import ensembles, lock
 from mcgw.store.lock import LockedError, locked
 from mcgw.store.place import tidy
@@ -86,7 +85,7 @@ def others(scene):
         "the same run": lambda path: run(scene, path),
         "another seed": lambda path: run(replace(scene, seed=2), path),
         "in blocks": lambda path: run(blocks, path),
-        "a share": lambda path: run_part(blocks, path, Part(1, 2)),
+        "a share": lambda path: run(blocks, path, shard="1/2"),
         "merge": merge,
         "save": lambda path: save(mcgw.simulate(replace(scene, seed=3)), path),
     }
@@ -130,17 +129,17 @@ def test_a_run_that_waited_sees_what_the_other_wrote(scene, path, drawing, monke
 def test_jobs_share_and_others_wait(scene, path):
     blocks = replace(scene, n_surfaces=3 * SIZE)
     with locked(parts_of(path), shared=True):
-        run_part(blocks, path, Part(1, 2))
+        run(blocks, path, shard="1/2")
         for name in ("in blocks", "merge", "save", "the same run"):
             with pytest.raises(LockedError):
                 others(scene)[name](path)
         tidy(path)
-    assert run_part(blocks, path, Part(2, 2)) == 0
+    assert run(blocks, path, shard="2/2") == 0
     assert merge(path).n_surfaces == 3 * SIZE
 
 
 def test_an_unfinished_run_is_not_replaced(scene, path):
-    run_part(replace(scene, n_surfaces=3 * SIZE), path, Part(1, 2))
+    run(replace(scene, n_surfaces=3 * SIZE), path, shard="1/2")
     with pytest.raises(StoreError, match="a run that makes this file is not finished"):
         save(mcgw.simulate(scene), path)
     with pytest.raises(StoreError, match="holds surfaces up to number 48 already, more than"):
@@ -153,7 +152,7 @@ def test_an_unfinished_run_is_not_replaced(scene, path):
 def test_drawn_surfaces_are_kept_when_fewer_are_asked_for(scene, path):
     """An extension that stopped half-way is not thrown away by the run that it extends."""
     run(scene, path)
-    run_part(replace(scene, n_surfaces=4 * SIZE), path, Part(2, 2))
+    run(replace(scene, n_surfaces=4 * SIZE), path, shard="2/2")
     kept = sorted(p.name for p in parts_of(path).glob("shards/*.h5"))
     assert len(kept) == 2
     for _ in range(2):
@@ -218,7 +217,7 @@ def test_an_empty_run_of_another_scene_gives_way(scene, path):
     folder = parts_of(path)
     with locked(folder):
         RunFolder.of(folder, scene, "tail", Plan(((scene.n_surfaces, SIZE),))).begin()
-    run_part(replace(scene, seed=2, n_surfaces=3 * SIZE), path, Part(1, 2))
+    run(replace(scene, seed=2, n_surfaces=3 * SIZE), path, shard="1/2")
     assert RunFolder.open(folder).scene.seed == 2
 
 

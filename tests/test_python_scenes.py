@@ -14,8 +14,7 @@ from mcgw.cli import main
 from mcgw.ensemble.regrading import regrade
 from mcgw.errors import StoreError
 from mcgw.jobs.merging import merge
-from mcgw.jobs.running import run, run_part
-from mcgw.jobs.session import Part
+from mcgw.jobs.running import run
 from mcgw.scene.scene import SceneError
 from mcgw.scene.storable import storable
 
@@ -81,7 +80,7 @@ def test_memory_file_stopped_and_shared_are_one(make, tmp_path, name):
     run(replace(scene, n_surfaces=20), path)
     halted(scene, path, 2 * SIZE)
     for i in (2, 1, 3):
-        run_part(scene, path, Part(i, 3))
+        run(scene, path, shard=f"{i}/3")
     merge(path)
     assert digest(path) == digest(tmp_path / "whole.h5")
     for quantity in scene.quantities:

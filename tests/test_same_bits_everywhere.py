@@ -17,8 +17,7 @@ import mcgw
 from mcgw.errors import RunError, StoreError
 from mcgw.jobs import job
 from mcgw.jobs.job import commit_block
-from mcgw.jobs.running import run, run_part
-from mcgw.jobs.session import Part
+from mcgw.jobs.running import run
 from mcgw.sampling.layout import Layout
 from mcgw.sampling.moments import cell_moments
 from mcgw.sampling.samplers import sampler_of
@@ -156,12 +155,12 @@ def test_a_run_goes_on_where_it_was_drawn(make_scene, tmp_path, monkeypatch, hei
     whole, begun = tmp_path / "whole.h5", tmp_path / "begun.h5"
     run(scene, whole)
     monkeypatch.setattr("mcgw.ensemble.simulation.Values.rows", 4)
-    run_part(more, begun, Part(1, 2))
+    run(more, begun, shard="1/2")
     monkeypatch.setattr(identity, "kind_of_processor", lambda: "00000000")
     job._prepared.cache_clear()  # as in a worker that starts on such a processor
     going_on = [
         (StoreError, lambda: run(more, whole)),
-        (StoreError, lambda: run_part(more, begun, Part(2, 2))),
+        (StoreError, lambda: run(more, begun, shard="2/2")),
         (RunError, lambda: commit_block(f"{begun}.parts", 4, 4)),
         (StoreError, lambda: run(more, begun)),
     ]

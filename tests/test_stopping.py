@@ -14,8 +14,7 @@ from mcgw.ensemble.intervals import mean_interval, spread_of
 from mcgw.ensemble.simulation import simulate
 from mcgw.errors import StoreError
 from mcgw.jobs.merging import merge
-from mcgw.jobs.running import run, run_part
-from mcgw.jobs.session import Part
+from mcgw.jobs.running import run
 from mcgw.reports.side_notes import after, before, upper_contacts
 from mcgw.scene.scene import SceneError
 from mcgw.store.ensembles import read_attributes
@@ -154,7 +153,7 @@ def test_whoever_draws_it_is_one_ensemble(make_scene, tmp_path, monkeypatch, cap
     again = simulate(scene, threads=2)
     monkeypatch.setattr("mcgw.ensemble.simulation.block_size", lambda *_: 37)
     monkeypatch.setattr("mcgw.ensemble.simulation._BYTES", 1)
-    assert [run_part(scene, tmp_path / "g.h5", Part(k, 2)) > 0 for k in (1, 2)] == [True, False]
+    assert [run(scene, tmp_path / "g.h5", shard=f"{k}/2") > 0 for k in (1, 2)] == [True, False]
     merge(tmp_path / "g.h5")
     np.testing.assert_array_equal(first.load, again.load)
     assert first.scene.rel_err is None
@@ -231,7 +230,7 @@ def test_time_ends_a_run(make_scene, tmp_path):
     assert run(replace(scene, n_surfaces=10**7, max_seconds=1e-9), path).n_surfaces == n
     assert run(replace(scene, n_surfaces=n + 5, max_seconds=600.0), path).n_surfaces == n + 5
     with pytest.raises(ValueError, match="max_seconds: jobs that share a run end at different times"):
-        run_part(scene, path, Part(1, 2))
+        run(scene, path, shard="1/2")
 
 
 @pytest.fixture

@@ -13,8 +13,7 @@ import mcgw
 from mcgw.cli import main
 from mcgw.errors import RunError, StoreError
 from mcgw.jobs.merging import merge
-from mcgw.jobs.running import run, run_part
-from mcgw.jobs.session import Part
+from mcgw.jobs.running import run
 from mcgw.store import ensembles, layout, lock, run_folder, saving, shards, structure, untrusted
 from mcgw.store.disk import SteadyFile
 from mcgw.store.run_folder import RunFolder, parts_of
@@ -90,7 +89,7 @@ DAMAGES = [changed_in_place, flipped_in_a_result, a_changed_load, without_its_tr
 # Every way to put more into a file.
 WAYS = {
     "run": run,
-    "shard job": lambda scene, path: run_part(scene, path, Part(1, 2)),
+    "shard job": lambda scene, path: run(scene, path, shard="1/2"),
     "stop rule": lambda scene, path: run(replace(scene, rel_err=1e-4), path),
 }
 
@@ -125,7 +124,7 @@ def test_a_file_damaged_while_more_is_drawn_is_not_merged(scene, larger, tmp_pat
     """Its own surfaces come first in the file that takes its place: they are looked at again."""
     path = tmp_path / "e.h5"
     run(scene, path)
-    assert run_part(larger, path, Part(1, 1)) == 0
+    assert run(larger, path, shard="1/1") == 0
     assert main(["show", "--verify", str(path)]) == 0
     assert "intact" in capsys.readouterr().out
     damage(path)
@@ -214,7 +213,7 @@ def test_nobody_works_on_a_folder_that_was_just_removed(scene, tmp_path, way, mo
     monkeypatch.setattr(lock, "PATIENCE", 0.0)
     work = {
         "run": lambda: run(scene, path),
-        "shard job": lambda: run_part(scene, path, Part(1, 2)),
+        "shard job": lambda: run(scene, path, shard="1/2"),
         "merge": lambda: merge(path),
     }[way]
     with pytest.raises(
@@ -246,7 +245,7 @@ def test_seconds_of_all_blocks_and_of_the_file_before_add_up(scene, larger, tmp_
     merge(path)
     first = ensembles.read_attributes(path)["wall_seconds"]
     assert first == pytest.approx(sum(each), rel=1e-12)
-    assert run_part(larger, path, Part(1, 1)) == 0
+    assert run(larger, path, shard="1/1") == 0
     more = [shard.seconds for shard in RunFolder.open(parts_of(path)).shards()]
     merge(path)
     assert ensembles.read_attributes(path)["wall_seconds"] == pytest.approx(first + sum(more), rel=1e-12)
@@ -350,7 +349,7 @@ def test_a_changed_number_is_an_error_when_it_is_read(file):
 @pytest.fixture
 def half(scene, tmp_path):
     """A run of which half is done."""
-    run_part(scene, tmp_path / "b.h5", Part(1, 2))
+    run(scene, tmp_path / "b.h5", shard="1/2")
     return parts_of(tmp_path / "b.h5")
 
 

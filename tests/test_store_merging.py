@@ -16,8 +16,7 @@ from mcgw.ensemble.simulation import Values
 from mcgw.errors import RunError, StoppedError
 from mcgw.jobs import merging
 from mcgw.jobs.merging import merge
-from mcgw.jobs.running import run, run_part
-from mcgw.jobs.session import Part
+from mcgw.jobs.running import run
 from mcgw.store import chunks, shards
 from mcgw.store.chunks import add_rows, chunk_rows, empty_table, stored
 from mcgw.store.run_folder import parts_of
@@ -215,7 +214,7 @@ def test_a_run_that_an_older_version_began_goes_on(scene, tmp_path, expected, co
     path = tmp_path / "e.h5"
     with monkeypatch.context() as patch:
         patch.setattr(shards, "stored", lambda file, name, values: file.create_dataset(name, data=values))
-        assert run_part(scene, path, Part(1, 2)) > 0
+        assert run(scene, path, shard="1/2") > 0
     assert made(run, scene, path) == expected
     assert copied
 

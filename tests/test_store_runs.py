@@ -23,7 +23,7 @@ from mcgw.errors import RunError, StoppedError, StoreError
 from mcgw.jobs import merging
 from mcgw.jobs.job import Job, commit_block
 from mcgw.jobs.merging import merge
-from mcgw.jobs.running import run, run_part
+from mcgw.jobs.running import run
 from mcgw.jobs.session import Part
 from mcgw.store import ensembles, layout
 from mcgw.store.plan import Plan
@@ -52,7 +52,7 @@ def expected(scene, tmp_path):
 
 def test_blocks_change_no_bit(scene, tmp_path, expected):
     done = []
-    ensemble = run(scene, tmp_path / "e.h5", progress=done.append)
+    ensemble = run(scene, tmp_path / "e.h5", progress=lambda now, _: done.append(now))
     assert done == [0, 16, 32, 48, 64, 80, 96, 100]
     assert digest(tmp_path / "e.h5") == expected
     assert not parts_of(tmp_path / "e.h5").exists()
@@ -82,7 +82,7 @@ def drawn(monkeypatch):
 def test_going_on_draws_each_missing_block_once(scene, tmp_path, drawn, by, keep):
     """Blocks 0 to 2 and 5 are held: nobody draws them again, whoever goes on."""
     scene, path = replace(scene, keep=keep), tmp_path / "e.h5"
-    run_part(scene, path, Part(1, 1))
+    run(scene, path, shard="1/1")
     blocks = sorted(parts_of(path).glob("shards/block-*.h5"))
     assert drawn == [0, 16, 32, 48, 64, 80, 96]
     for lost in (3, 4, 6):
@@ -90,10 +90,10 @@ def test_going_on_draws_each_missing_block_once(scene, tmp_path, drawn, by, keep
     drawn.clear()
     if by == "run":
         told = []
-        run(scene, path, progress=told.append)
+        run(scene, path, progress=lambda now, _: told.append(now))
         assert (told[0], told[-1]) == (64, 100)
     elif by == "shares":
-        assert [run_part(scene, path, Part(k, 2)) for k in (1, 2, 1)] == [16, 0, 0]
+        assert [run(scene, path, shard=f"{k}/2") for k in (1, 2, 1)] == [16, 0, 0]
     else:
         for first, n in ((0, 16), (48, 16), (64, 16), (48, 16), (96, 4)):
             commit_block(str(parts_of(path)), first, n)
@@ -211,11 +211,11 @@ def test_a_run_in_progress_can_be_read(scene, tmp_path):
 
 def test_jobs_that_share_a_run(scene, tmp_path, expected):
     path = tmp_path / "e.h5"
-    assert run_part(scene, path, Part(2, 3)) == SURFACES - 2 * SIZE
+    assert run(scene, path, shard="2/3") == SURFACES - 2 * SIZE
     with pytest.raises(RunError, match="68 of 100 surfaces are missing, from 0 on"):
         merge(path)
-    assert run_part(scene, path, Part(1, 3)) == 2 * SIZE
-    assert run_part(scene, path, Part(3, 3)) == 0
+    assert run(scene, path, shard="1/3") == 2 * SIZE
+    assert run(scene, path, shard="3/3") == 0
     merge(path)
     assert digest(path) == expected
     with pytest.raises(ValueError, match="--shard 4/3: give i/n"):
@@ -225,7 +225,7 @@ def test_jobs_that_share_a_run(scene, tmp_path, expected):
 def test_the_folder_of_a_run_vanishes(scene, tmp_path):
     path = tmp_path / "e.h5"
 
-    def vanish(done):
+    def vanish(done, _):
         if done:
             shutil.rmtree(parts_of(path), ignore_errors=True)
 

@@ -5,12 +5,12 @@ import logging
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from mcgw.jobs.engines import Engine
 
-__all__ = ["add_engine_options", "engine_asked", "tell_share"]
+__all__ = ["add_engine_options", "drawing", "tell_share"]
 
 
 def add_engine_options(parser: argparse.ArgumentParser) -> None:
@@ -47,6 +47,17 @@ def engine_asked(args: argparse.Namespace) -> Iterator["Engine | None"]:
                 engine.close()
     finally:
         logging.disable(before)
+
+
+@contextmanager
+def drawing(args: argparse.Namespace) -> Iterator[dict[str, Any]]:
+    """Who draws, as `mcgw.run` and `mcgw.sweep` take it, with a bar on the terminal."""
+    from mcgw.jobs.session import dashboard_of
+    from mcgw.machine.progress import bar
+
+    with engine_asked(args) as engine, bar("surfaces", dashboard_of(engine), terminal=True) as show:
+        who = {"engine": engine} if args.shard is None else {"shard": args.shard}
+        yield {"threads": args.threads, "progress": show, **who}
 
 
 def tell_share(shard: str, path: Path, left: int) -> int:

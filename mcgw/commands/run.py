@@ -5,7 +5,7 @@ import warnings
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from mcgw.commands.engine_options import add_engine_options, engine_asked, tell_share
+from mcgw.commands.engine_options import add_engine_options, drawing, tell_share
 
 if TYPE_CHECKING:
     from mcgw.ensemble.forecast import Forecast
@@ -35,31 +35,27 @@ def execute(args: argparse.Namespace) -> int:
 def _execute(args: argparse.Namespace) -> int:
     from mcgw.commands.outputs import HDF5, Output, check_outputs, tell_notes
     from mcgw.ensemble.forecast import forecast
-    from mcgw.jobs.from_python import run
-    from mcgw.jobs.session import dashboard_of, part_of
-    from mcgw.machine.progress import bar
+    from mcgw.jobs.running import run
+    from mcgw.jobs.session import part_of
     from mcgw.reports.side_notes import two_questions
     from mcgw.scene.scene_file import files_of, load_scene
     from mcgw.store.place import recorded_seed
 
     path = args.output or args.scene.parent / "out" / f"{args.scene.stem}.h5"
-    part = None if args.shard is None else part_of(args.shard)
+    if args.shard is not None:
+        part_of(args.shard)  # or nothing is read
     scene = load_scene(args.scene, seed=lambda: recorded_seed(path))
     check_outputs([Output(path, HDF5, grows=True)], inputs=files_of(args.scene))
     expected = forecast(scene)
-    short = [expected.shortfall] if part and expected.shortfall else []
+    short = [expected.shortfall] if args.shard and expected.shortfall else []
     ruled = scene.rel_err is not None or scene.max_seconds is not None
-    with engine_asked(args) as engine:
+    with drawing(args) as how:
         tell_notes(scene, *_of_threads(args.threads), *_of_time(scene), *short)
-        if ruled and not part:
+        if ruled and not args.shard:
             _tell_forecast(scene, expected)
-        with bar("surfaces", dashboard_of(engine), terminal=True) as show:
-            if part:
-                left = run(scene, path, shard=args.shard, threads=args.threads, progress=show)
-            else:
-                ensemble = run(scene, path, threads=args.threads, engine=engine, progress=show)
-    if part:
-        return tell_share(args.shard, path, left)
+        ensemble = run(scene, path, **how)
+    if args.shard:
+        return tell_share(args.shard, path, ensemble)
     print(f"{path}: {ensemble.n_surfaces} surfaces of {scene.n_asperities:g} asperities, seed {scene.seed}")
     if ruled:
         from mcgw.reports.side_notes import after

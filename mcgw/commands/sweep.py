@@ -4,7 +4,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from mcgw.commands.engine_options import add_engine_options, engine_asked, tell_share
+from mcgw.commands.engine_options import add_engine_options, drawing, tell_share
 
 if TYPE_CHECKING:
     from mcgw.scene.scene import Scene
@@ -42,9 +42,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 def execute(args: argparse.Namespace) -> int:
     """Draw and say where the file is."""
     from mcgw.commands.outputs import HDF5, Output, check_outputs
-    from mcgw.jobs.session import dashboard_of
     from mcgw.jobs.sweeping import sweep
-    from mcgw.machine.progress import bar
     from mcgw.scene.scene_file import files_of, load_scene
     from mcgw.store.place import recorded_seed
     from mcgw.sweeps.axes import axes_of
@@ -56,14 +54,10 @@ def execute(args: argparse.Namespace) -> int:
         print(_plan(scene, axes_of(over, zipped=args.zip)))
         return 0
     check_outputs([Output(path, HDF5, grows=True)], inputs=files_of(args.scene))
-    with engine_asked(args) as engine, bar("surfaces", dashboard_of(engine), terminal=True) as show:
-        how: dict[str, Any] = {"zipped": args.zip, "path": path, "threads": args.threads, "progress": show}
-        if args.shard is not None:
-            left = sweep(scene, over, shard=args.shard, **how)
-        else:
-            found = sweep(scene, over, engine=engine, **how)
+    with drawing(args) as how:
+        found = sweep(scene, over, zipped=args.zip, path=path, **how)
     if args.shard is not None:
-        return tell_share(args.shard, path, left)
+        return tell_share(args.shard, path, found)
     print(found)
     print(f"{path}: {found.axes.size} scenes, seed {scene.seed}")
     return 0

@@ -1,54 +1,136 @@
-"""From a scene to its file: begin, go on, extend, until its rule is met."""
+"""``mcgw.run``: from a scene to its file. Begin, go on, extend, until its rule is met."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 from time import monotonic, perf_counter
-from typing import Any
+from typing import Any, overload
 
 from mcgw.ensemble.ensemble import Ensemble
-from mcgw.ensemble.forecast import checkpoints, without_rule
+from mcgw.ensemble.forecast import checkpoints, forecast, without_rule
 from mcgw.errors import RunError, StoreError
 from mcgw.formats.files import state_of
-from mcgw.jobs.engines import Engine, Threads
+from mcgw.jobs.engines import Threads
 from mcgw.jobs.job import Job, as_recorded, commit_block, draw_block
 from mcgw.jobs.merging import merge_once
-from mcgw.jobs.session import By, Part, Progress
+from mcgw.jobs.session import By, Part, asked_of
+from mcgw.machine.progress import Progress
 from mcgw.scene.scene import Scene
+from mcgw.scene.wrong_object import check_object
 from mcgw.store.ensembles import open_ensemble
 from mcgw.store.lock import locked
-from mcgw.store.place import drop_leftovers, tidy
+from mcgw.store.place import drop_leftovers, tidy, with_recorded_seed
 from mcgw.store.run_folder import RunFolder
 from mcgw.store.saving import write_body
 from mcgw.store.shards import Shard, Span
 
-__all__ = ["make", "run", "run_part"]
+__all__ = ["make", "run"]
 
 _ROUNDS = 3  # of merging, if shards turn out damaged
 
 
+@overload
 def run(
     scene: Scene,
     path: str | Path,
     *,
     threads: int | None = None,
-    engine: Engine | None = None,
-    progress: Progress | None = None,
-) -> Ensemble:
-    """As `mcgw.run`: draw the ensemble of a scene into a file; the engine is left open.
+    engine: Any = None,
+    shard: None = None,
+    progress: Progress = None,
+    **changes: Any,
+) -> Ensemble: ...
+@overload
+def run(
+    scene: Scene,
+    path: str | Path,
+    *,
+    threads: int | None = None,
+    shard: str,
+    progress: Progress = None,
+    **changes: Any,
+) -> int: ...
+def run(
+    scene: Scene,
+    path: str | Path,
+    *,
+    threads: int | None = None,
+    engine: Any = None,
+    shard: str | None = None,
+    progress: Progress = None,
+    **changes: Any,
+) -> Ensemble | int:
+    """Draw the ensemble of a scene into a file, going on where an earlier run stopped.
 
-    `progress` is called with the number of surfaces that are done: at the start, and after each block. What
-    a file holds already is never too much. Of a grading that is a Python function the file keeps its series
-    and its name, and never the function.
+    The same call again goes on, or extends the file if the scene now has more surfaces; where nobody gave a
+    seed it takes that of the file.
+
+    Parameters
+    ----------
+    scene : Scene
+        What is asked; `n_surfaces` is the total, or with `rel_err` or `max_seconds` the most.
+    path : str or Path
+        The file; it appears when it is complete. Until then, blocks lie in ``FILE.parts/``.
+    threads : int, optional
+        Cores: threads, or processes or workers of the engine. Default: all there are. The data are the
+        same for any number.
+    engine : {"threads", "processes", "dask"}, address, distributed.Client or Engine, optional
+        Who draws; an address, as ``"tcp://host:8786"``, is that of a dask scheduler. A client is left open,
+        and dask's configuration and logging as they are.
+    shard : str, optional
+        "2/8": draw only the second of eight shares, as one of eight jobs; then `mcgw.merge`.
+    progress : bool or callable, optional
+        True: a bar; a function: called with (done, total) surfaces.
+    **changes
+        Fields of the scene that have other values: see `mcgw.Scene.replace`.
+
+    Returns
+    -------
+    Ensemble
+        That reads from the file; its scene says how many surfaces `rel_err` or `max_seconds` made. With
+        `shard`: the number of surfaces of the whole that are still missing.
+
+    Raises
+    ------
+    SceneError, TypeError
+        As from `mcgw.Scene.replace`.
+    ValueError
+        If another argument is wrong.
+    StoreError
+        If the file cannot be written there, or the place belongs to another run.
+    RunError
+        If the run could not be finished; what is done is kept.
+
+    Examples
+    --------
+    >>> import mcgw, tempfile
+    >>> surface = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "1 mm^2", "78.6 GPa")
+    >>> scene = mcgw.Scene(surface, separations=[0, 1, 2], n_surfaces=20, seed=1)
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     mcgw.run(scene, f"{folder}/demo.h5").n_surfaces
+    ...     mcgw.run(scene, f"{folder}/demo.h5", n_surfaces=30).n_surfaces
+    20
+    30
     """
-    path, by = Path(path), By(engine, threads, progress or _silent)
-    scene = as_recorded(scene, path)
-    started = monotonic()
-    for stage in _stages(scene, path):
-        make(Job.of(stage, path), by)
-        if scene.max_seconds is not None and monotonic() - started > scene.max_seconds:
-            break
+    check_object("run", scene, Scene)
+    path = Path(path)
+    scene = with_recorded_seed(scene.replace(**changes), path)
+    if shard is not None and scene.max_seconds is not None:
+        raise ValueError(
+            "ensemble.max_seconds: jobs that share a run end at different times; give n_surfaces"
+        )
+    total = forecast(scene).surfaces if progress else 0
+    with asked_of(engine, threads, shard, progress) as (draws, part, tell):
+        by = By(draws, threads, lambda done: tell(done, total))
+        scene = as_recorded(scene, path)
+        if part:
+            return make(Job.of(without_rule(scene) if scene.rel_err is not None else scene, path), by, part)
+        started = monotonic()
+        for stage in _stages(scene, path):
+            make(Job.of(stage, path), by)
+            if scene.max_seconds is not None and monotonic() - started > scene.max_seconds:
+                break
     return open_ensemble(path)
 
 
@@ -106,31 +188,6 @@ def make(job: Job, by: By, part: Part | None = None) -> int:
     tidy(job.path)
     by.progress(sum(map(job.work, blocks)))
     return 0
-
-
-def run_part(
-    scene: Scene,
-    path: str | Path,
-    part: Part,
-    *,
-    threads: int | None = None,
-    progress: Progress | None = None,
-) -> int:
-    """Draw one job's share of the blocks, and return how many surfaces are still missing of the whole.
-
-    `mcgw.merge` makes the file once all are there, on a disk that all jobs share.
-    """
-    if scene.max_seconds is not None:
-        raise ValueError(
-            "ensemble.max_seconds: jobs that share a run end at different times; give n_surfaces"
-        )
-    by = By(None, threads, progress or _silent)
-    scene = as_recorded(scene, Path(path))
-    return make(Job.of(without_rule(scene) if scene.rel_err is not None else scene, Path(path)), by, part)
-
-
-def _silent(done: int) -> None:
-    """Tell nobody."""
 
 
 def _at_once(job: Job, by: By) -> None:

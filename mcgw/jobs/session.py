@@ -10,11 +10,11 @@ from typing import Any
 
 from mcgw.jobs.driver import Signals, drive, heed_signals
 from mcgw.jobs.engines import Engine, Processes, Threads
+from mcgw.machine.progress import Progress, Tell, told
 from mcgw.store.shards import Span
 
-__all__ = ["By", "Part", "Progress", "chosen_engine", "dashboard_of", "part_of"]
+__all__ = ["By", "Part", "asked_of", "chosen_engine", "dashboard_of", "part_of"]
 
-Progress = Callable[[Any], Any]
 _ENGINES = ("threads", "processes", "dask")
 
 
@@ -77,7 +77,7 @@ class By:
 
     engine: Engine | None
     threads: int | None
-    progress: Progress
+    progress: Callable[[Any], Any]
     signals: Signals = field(default_factory=Signals)
 
     def __post_init__(self) -> None:
@@ -119,6 +119,27 @@ def chosen_engine(engine: Any, threads: int | None) -> Iterator[Engine | None]:
     finally:
         if draws is not None and draws is not engine:
             draws.close()
+
+
+@contextmanager
+def asked_of(
+    engine: Any, threads: int | None, shard: str | None, progress: Progress
+) -> Iterator[tuple[Engine | None, Part | None, Tell]]:
+    """What a call says of who draws into a file: the engine, the share, and whom to tell.
+
+    Raises
+    ------
+    ValueError
+        If one of them says nothing, or a share is given to an engine.
+    """
+    if shard is not None and engine is not None:
+        raise ValueError(f"shard = {shard!r}: a share is drawn by threads; leave engine out")
+    part = None if shard is None else part_of(shard)
+    with (
+        chosen_engine(engine, threads) as draws,
+        told(progress, "surfaces", dashboard_of(draws)) as tell,
+    ):
+        yield draws, part, tell
 
 
 def dashboard_of(engine: Engine | None) -> str:

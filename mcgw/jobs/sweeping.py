@@ -5,9 +5,9 @@ from pathlib import Path
 from typing import Any, overload
 
 from mcgw.ensemble.drawing import use_threads
-from mcgw.jobs.session import By, chosen_engine, dashboard_of, part_of
+from mcgw.jobs.session import By, asked_of
 from mcgw.machine.progress import Progress, told
-from mcgw.scene.scene import LeftOut, Scene
+from mcgw.scene.scene import Scene
 from mcgw.scene.wrong_object import check_object
 from mcgw.sweeps.axes import axes_of
 from mcgw.sweeps.drawing import draw, weighted
@@ -126,9 +126,6 @@ def sweep(
         raise ValueError(f"statistics = {statistics!r}: give one or both of {', '.join(STATISTICS)}")
     if path is None and (engine not in (None, "threads") or shard is not None):
         raise ValueError("engine, shard: others draw into a file; give path, or leave them out")
-    if shard is not None and engine is not None:
-        raise ValueError(f"shard = {shard!r}: a share is drawn by threads; leave engine out")
-    part = None if shard is None else part_of(shard)
     axes, chosen = axes_of(over, zipped=zipped), tuple(statistics)
     if path is None:
         with use_threads(threads), told(progress, "surfaces") as tell:
@@ -136,16 +133,12 @@ def sweep(
             return asked.answered(draw(asked.groups, tell), chosen)
     from mcgw.jobs.job import Job
     from mcgw.jobs.running import make  # files, which a sweep in memory has none of
-    from mcgw.store.place import recorded_seed
+    from mcgw.store.place import with_recorded_seed
     from mcgw.sweeps.file import open_sweep
 
     path = Path(path)
-    if isinstance(scene.seed, LeftOut) and (recorded := recorded_seed(path)) is not None:
-        scene = scene.replace(seed=recorded)
-    with (
-        chosen_engine(engine, threads) as draws,
-        told(progress, "surfaces", dashboard_of(draws)) as tell,
-    ):
+    scene = with_recorded_seed(scene, path)
+    with asked_of(engine, threads, shard, progress) as (draws, part, tell):
         asked = Asked.from_texts(*Asked.of(scene, axes).texts())  # as workers read it
         job = Job.of_sweep(asked, path)
         left = make(job, By(draws, threads, weighted(job.reducers, tell)), part)

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from mcgw.errors import StoreError
 from mcgw.formats.files import remove_stale
-from mcgw.scene.scene import Scene
+from mcgw.scene.scene import LeftOut, Scene
 from mcgw.scene.scene_file import scene_from, scene_text
 from mcgw.store.ensembles import described, read_attributes
 from mcgw.store.identity import difference, drawn_with, identity_of
@@ -17,7 +17,16 @@ from mcgw.store.trailer import check_trailer
 if TYPE_CHECKING:
     from mcgw.ensemble.summary import Summary
 
-__all__ = ["drop_leftovers", "finished", "held_by", "recorded_scene", "recorded_seed", "tidy", "whole_blocks"]
+__all__ = [
+    "drop_leftovers",
+    "finished",
+    "held_by",
+    "recorded_scene",
+    "recorded_seed",
+    "tidy",
+    "whole_blocks",
+    "with_recorded_seed",
+]
 
 
 def recorded_scene(path: Path) -> Scene | None:
@@ -25,6 +34,12 @@ def recorded_scene(path: Path) -> Scene | None:
     if path.is_file():
         return described(path)[1]
     return RunFolder.open(parts_of(path)).scene if (parts_of(path) / "run.toml").is_file() else None
+
+
+def with_recorded_seed(scene: Scene, path: Path) -> Scene:
+    """The scene; with the seed of what lies there, if nobody gave it one."""
+    recorded = recorded_seed(path) if isinstance(scene.seed, LeftOut) else None
+    return scene if recorded is None else scene.replace(seed=LeftOut(recorded))
 
 
 def recorded_seed(path: Path) -> int | None:

@@ -25,7 +25,6 @@ import harness
 
 from mcgw.errors import RunError, StoreError
 from mcgw.jobs import merging, running
-from mcgw.jobs.session import Part
 from mcgw.store import ensembles, lock
 from mcgw.store.run_folder import RunFolder, parts_of
 
@@ -42,7 +41,7 @@ def run(scene):
 
 def job(number):
     """Draw a share, as `mcgw run --shard` does."""
-    return lambda file: running.run_part(WANTED, file, Part(number, 2))
+    return lambda file: running.run(WANTED, file, shard=f"{number}/2")
 
 
 # What lies there before, what is killed again and again, and what ends it.

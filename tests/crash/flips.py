@@ -16,8 +16,7 @@ from harness import ROWS, forked, prepare, scene_of
 
 from mcgw.ensemble.simulation import Values
 from mcgw.errors import StoreError
-from mcgw.jobs.running import run, run_part
-from mcgw.jobs.session import Part
+from mcgw.jobs.running import run
 from mcgw.store import ensembles, structure
 from mcgw.store.run_folder import parts_of
 
@@ -31,7 +30,7 @@ def made(folder):
     run(scene, files[0])
     Values.rows = in_blocks
     run(scene, files[1])
-    run_part(scene, files[2], Part(1, 2))
+    run(scene, files[2], shard="1/2")
     return files
 
 

@@ -63,7 +63,7 @@ def written_in_place(path, pieces):
     os.close(fd)
 
 
-def attempt(scene, file, progress=lambda done: None):
+def attempt(scene, file, progress=None):
     """Exit code of a run, as the command line would have it."""
     try:
         running.run(scene, file, progress=progress)
@@ -95,7 +95,7 @@ def struck(scene, file, n, mode):
 
     def action():
         shim.crash_arm(str(file.parent).encode(), ctypes.c_long(n), mode)
-        code = attempt(scene, file, lambda done: os.write(write, b"%d\n" % done))
+        code = attempt(scene, file, lambda done, _: os.write(write, b"%d\n" % done))
         shim.crash_calls.restype = ctypes.c_long
         os.write(write, b"calls %d\n" % shim.crash_calls())
         shim.crash_arm(b"", ctypes.c_long(0), -1)
