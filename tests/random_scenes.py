@@ -196,6 +196,10 @@ def far_from_theory(ensemble):
     scene = ensemble.scene
     if scene.as_measured or scene.interaction is not None:
         return ""
+    try:
+        scene.theory.std("load", scene.lowest)
+    except ValueError:  # there is none in double precision
+        return ""
     for name in scene.quantities:
         mean, std = (np.asarray(f(name, scene.separations)) for f in (scene.theory.mean, scene.theory.std))
         rare = np.asarray(scene.theory.mean("contacts", scene.separations)) < 20  # far from Gaussian

@@ -99,6 +99,15 @@ def test_crowds_where_cells_that_are_wide_do_not_tell_which_moments_vary(scene_o
         ),
         (
             {
+                "grading": lambda s: np.exp(4.4 * (s - 1)),
+                "heights": analytic.Nayak(1.92),
+                "keep": "statistics",
+                "separations": [-5.5, 1.0],
+            },
+            'ensemble.keep = "statistics": grading: .* let the grading level off; or say "sums"',
+        ),
+        (
+            {
                 "grading": lambda s: 1 + 0.5 * np.sin(3 * s),
                 "heights": scipy.stats.t(3.5),
                 "interaction": "body",

@@ -184,6 +184,20 @@ def test_laws_with_breaks_and_own_radii(make_scene):
     )
 
 
+def test_a_balance_next_to_the_separation_is_found(make_scene):
+    """Where the load differs by its last digits between the two ends of the search."""
+    for bulk in (1e16, 1e18):
+        weakly = analytic.Interaction("body", at="nominal", bulk_modulus=bulk)
+        scene = make_scene(
+            law=analytic.JacksonGreen(critical=0.004, yield_strain=0.004), n_asperities=30, n_surfaces=3,
+            separations=np.linspace(0, 4, 29), interaction=weakly, quantities=("load",),
+        )  # fmt: skip
+        ensemble = mcgw.simulate(scene)
+        sunk = weakly.compliance(scene.surface, 30) / scene.surface.sigma * ensemble["load"]
+        felt = np.array(scene.separations) + sunk
+        np.testing.assert_allclose(ensemble["effective_separation"], felt, rtol=0, atol=1e-14)
+
+
 def test_own_radii():
     """Each summit with its own: literal Hertz at what it feels."""
     spectral = mcgw.SpectralSurface(1e-12, 1e-3, 5e6, "1 mm^2", "78.6 GPa")

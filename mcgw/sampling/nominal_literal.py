@@ -80,6 +80,8 @@ def _from_below(h: float, c: float, load: Callable[[float], float]) -> float:
     most = h + c * load(h)
     if most <= h:
         return h
+    if most - h <= c * load(most):  # but for rounding, which is all that it sinks less by there
+        return most
     return float(brentq(lambda x: x - h - c * load(x), h, most, xtol=1e-15, rtol=_CLOSE))
 
 

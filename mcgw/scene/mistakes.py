@@ -295,13 +295,18 @@ def _sums(scene: Fields) -> Iterator[str]:
 
 
 def _resolved(scene: Fields) -> Iterator[str]:
-    """A Python function that no series resolves over all heights that count."""
+    """A Python function that no series resolves over all heights that count, or that has no variance."""
+    if scene.keep == "statistics" and not scene.grading.smooth:
+        try:
+            scene._alone.fluctuations(scene.quantities, np.array([scene.lowest]))
+        except ValueError as error:
+            yield f'ensemble.keep = "statistics": {error}; or say "sums"'
     if scene.law.is_data and is_data(scene.grading):
         return
-    from mcgw.scene.storable import storable  # for those scenes alone
+    from mcgw.scene.storable import in_numbers  # for those scenes alone
 
     try:
-        storable(scene)
+        in_numbers(scene)
     except SceneError as error:
         yield from error.problems
 

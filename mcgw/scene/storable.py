@@ -1,7 +1,7 @@
 """A scene made of numbers alone, whatever Python gave: what is simulated, and what a file keeps."""
 
 from dataclasses import replace
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -10,7 +10,7 @@ from analytic.laws import ContactLaw
 from mcgw.scene.fields import Fields
 from mcgw.scene.section import SceneError
 
-__all__ = ["storable"]
+__all__ = ["in_numbers", "storable"]
 
 AnyScene = TypeVar("AnyScene", bound=Fields)
 
@@ -29,15 +29,17 @@ def storable(scene: AnyScene) -> AnyScene:
     SceneError
         If the grading cannot be resolved, as one that is noisy.
     """
-    if not scene.law.is_data:
-        scene = replace(scene, law=_resolved_law(scene))
+    changes = in_numbers(scene)
+    return replace(scene, **changes) if changes else scene
+
+
+def in_numbers(scene: Fields) -> dict[str, Any]:
+    """What of a scene a file does not hold as it is, resolved; raises as `storable`."""
+    changes: dict[str, Any] = {} if scene.law.is_data else {"law": _resolved_law(scene)}
     if is_data(scene.grading):
-        return scene
+        return changes
     try:
-        low, high = _extent(scene)
-        return replace(scene, grading=resolved(scene.grading, low, high))
-    except SceneError:
-        raise
+        return changes | {"grading": resolved(scene.grading, *_extent(scene))}
     except ValueError as error:
         raise SceneError([str(error)]) from None
 
