@@ -164,8 +164,11 @@ def test_edges_that_jump_are_named():
             broken = np.moveaxis(z.copy(), axis, 0)
             broken[side] += 1e-5 * rng(3).normal(size=broken.shape[1])
             assert bad_edges(np.moveaxis(broken, 0, axis)) == 1
-    z[:3] += 1e-5
-    assert "--trim 3" in lines(z, (1e-6, 1e-6))["edge"]
+    for number, points in ((1, "the outermost points of"), (3, "the outermost 3 points of")):
+        z[:number] += 1e-5
+        told = lines(z, (1e-6, 1e-6))["edge"]
+        assert points in told
+        assert f"--trim {number}" in told
     assert "edge" not in lines(z, (1e-6, 1e-6), trim=3)
 
 

@@ -52,12 +52,20 @@ def with_radii(**changes):
     return lambda scene: mcgw.Scene(SPECTRAL, separations=[0, 1], curvature=radii, **changes)
 
 
+def listed(**changes):
+    three = {"heights": analytic.MeasuredHeights([0.0, 1.0, 3.0]), "n_asperities": 3, "n_surfaces": 1}
+    return lambda scene: scene.replace(sampler="direct", **(three | changes))
+
+
 # In Python: a call with a scene, and what its line says.
 CALLS = [
     (lambda scene: scene.replace(film=3), "contact.film = 3: give resistivity and film_resistance"),
     (lambda scene: scene.replace(law={"critical": 0.05}), "contact.law = None: choose one of hertz"),
     (lambda scene: mcgw.SpectralSurface(-1.0, 1e-3, 5e6, 1e-6, 1e11), "surface.m0 = -1"),
     (lambda scene: scene.replace(separations=np.zeros(100_001)), "give at most 100000 of them, not 100001"),
+    (listed(n_surfaces=2), "ensemble.n_surfaces = 2: measured heights as they are need 1; or say resample"),
+    (listed(count="poisson"), "ensemble.count = 'poisson': measured heights as they are need 'fixed'; or"),
+    (listed(n_asperities=4), "ensemble.n_asperities = 4: 3 heights are measured; give that number, or"),
     (with_radii(heights=analytic.Gaussian()), 'it goes with heights.law = "nayak", alpha = 5;'),
     (with_radii(heights=analytic.Nayak(4.0)), 'it goes with heights.law = "nayak", alpha = 5;'),
     (lambda scene: mcgw.sweep(scene, over={"ensemble.seed": [1, 2]}).slopes("load", "grading.gamma"),

@@ -1,6 +1,8 @@
 """All that is needed to repeat a run is in its file; and its memory does not grow with the ensemble."""
 
 import json
+import re
+import sys
 from pathlib import Path
 
 import h5py
@@ -52,6 +54,9 @@ def test_what_is_recorded(make_scene, tmp_path):
     for key in ("commit", "date", "cpu", "wall_seconds", "sampler", "seed", "run", "draws"):
         assert key in known
     assert known["sampler"] != "auto"
+    cores = Path("/proc/cpuinfo").read_text() if sys.platform == "linux" else ""
+    if names := re.findall(r"model name\s*: (.+)", cores):
+        assert known["cpu"].startswith(names[0].strip())
 
 
 class OwnHeights(analytic.ExponentialHeights):
