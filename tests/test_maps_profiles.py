@@ -419,6 +419,10 @@ def test_maps_are_no_profiles(tmp_path, monkeypatch):
         read_profile(tmp_path / "p.npy")
     with pytest.raises(ValueError, match="no such file"):
         read_profile(tmp_path / "absent.txt")
+    (tmp_path / "words.txt").write_text(
+        "word\n" * 500 + "\n".join(f"{i * UM} {i % 3 * UM}" for i in range(9))
+    )
+    assert read_profile(tmp_path / "words.txt").heights[5] == pytest.approx(2 * UM)
     np.save(tmp_path / "short.npy", np.zeros(7))
     with pytest.raises(ValueError, match=r"short\.npy: 7 points: a profile has 8 or more"):
         read_profile(tmp_path / "short.npy", spacing=UM)

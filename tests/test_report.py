@@ -116,6 +116,14 @@ def test_numbers_of_a_table_have_one_format():
     assert len({len(x) for x in (*mean[:2], "6.6982×10⁻⁷")}) == 1  # as wide, with blanks behind
     assert columns([([0.0, 0.0], 5)]) == [["0", "0"]]
     assert columns([([-2.5, 4.0], 3)]) == [["−2.50", "4.00"]]
+    for ends, plain in (
+        ([9e4, 9.9e4], True),
+        ([9e4, 1.2e5], False),
+        ([1e-3, 2e-2], True),
+        ([9e-4, 2e-2], False),
+    ):
+        (found,) = columns([(ends, 3)])
+        assert ("×" not in found[0]) == plain, found  # from 0.001 to 100 000 without powers of ten
 
 
 def test_every_column_of_every_table(ensemble, page):

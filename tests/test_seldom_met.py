@@ -1,11 +1,14 @@
 """What no other test meets: mistakes that few make, facts that few scenes have, statistics of values."""
 
+import pickle
+
 import numpy as np
 import pytest
 from scipy import stats
 
 import analytic
 import mcgw
+from mcgw.cli import main
 from mcgw.scene.contact_text import accuracy_facts, contact_facts
 from mcgw.scene.law_text import law_text
 from mcgw.statistics.comparison import verdict
@@ -63,6 +66,9 @@ CALLS = [
     (lambda scene: scene.replace(law={"critical": 0.05}), "contact.law = None: choose one of hertz"),
     (lambda scene: mcgw.SpectralSurface(-1.0, 1e-3, 5e6, 1e-6, 1e11), "surface.m0 = -1"),
     (lambda scene: scene.replace(separations=np.zeros(100_001)), "give at most 100000 of them, not 100001"),
+    (lambda scene: mcgw.run(scene, "e.h5", threads=0), "threads = 0: give a whole number >= 1"),
+    (lambda scene: mcgw.sweep(scene, {"grading.gamma": [1, 2]}, path="s.h5", threads=-1),
+     "threads = -1: give a whole number >= 1"),
     (listed(n_surfaces=2), "ensemble.n_surfaces = 2: measured heights as they are need 1; or say resample"),
     (listed(count="poisson"), "ensemble.count = 'poisson': measured heights as they are need 'fixed'; or"),
     (listed(n_asperities=4), "ensemble.n_asperities = 4: 3 heights are measured; give that number, or"),
@@ -71,6 +77,15 @@ CALLS = [
     (lambda scene: mcgw.sweep(scene, over={"ensemble.seed": [1, 2]}).slopes("load", "grading.gamma"),
      "'grading.gamma' is no axis of this sweep; it has ensemble.seed"),
 ]  # fmt: skip
+
+
+def test_many_unknown_keys_are_counted():
+    keys = "".join(f", k{i} = 1" for i in range(30))
+    with pytest.raises(mcgw.SceneError) as caught:
+        mcgw.scene_from(FILE.format(surface=keys, contact=""))
+    told = caught.value.problems
+    assert all(line.startswith("surface.k") for line in told[:-1])
+    assert told[-1] == f"[surface]: {31 - len(told)} more unknown keys"
 
 
 @pytest.mark.parametrize(("call", "told"), CALLS)
@@ -172,6 +187,22 @@ def test_the_interval_of_the_contacts_is_exact_for_each_count(count, make_scene)
         "poisson": stats.chi2.ppf([0.025, 0.975], [2 * k, 2 * k + 2]) / 2,
     }
     np.testing.assert_allclose(np.ravel(ensemble.interval("contacts")), tails[count] / 5, rtol=1e-9)
+
+
+def test_theory_of_summits_with_their_own_radii_is_the_same_in_another_process():
+    """What is kept between questions stays behind."""
+    scene = mcgw.Scene(SPECTRAL, separations=[0.0, 1.0], curvature=mcgw.RandomCurvature(5.0))
+    theory = scene.theory
+    mean = theory.mean("load", [0.0, 1.0])
+    np.testing.assert_array_equal(pickle.loads(pickle.dumps(theory)).mean("load", [0.0, 1.0]), mean)
+
+
+def test_a_run_that_ends_by_time_makes_no_forecast(make_scene, tmp_path, capsys):
+    """Of a billion surfaces: the end is known."""
+    scene = make_scene(n_surfaces=10**9, keep="statistics", separations=(3.0,), quantities=("load",))
+    (tmp_path / "s.toml").write_text(mcgw.scene_text(scene.replace(max_seconds=0.01)))
+    assert main(["run", str(tmp_path / "s.toml"), "-o", str(tmp_path / "e.h5")]) == 0
+    assert "Ctrl-C keeps what is done" not in capsys.readouterr().err
 
 
 def test_files_of_the_other_kind_are_refused(make_scene, tmp_path):
