@@ -13,7 +13,7 @@ from mcgw.cli import main
 from mcgw.maps.map_files import write_map
 from mcgw.maps.sub_areas import tiles_of
 from mcgw.maps.summit_sums import summit_sums_of
-from mcgw.maps.summits import summit_contact, summits_of
+from mcgw.maps.summits import summits_of
 from mcgw.maps.synthetic import Spectrum, gaussian_map
 from mcgw.maps.topography import Topography
 
@@ -179,37 +179,3 @@ def test_tiles_tell_a_map_that_varies():
     (alone,) = tiles_of(summit_sums_of(even, across=1)).m0
     assert alone == pytest.approx(even.heights.var(), rel=1e-12)
     assert math.isnan(tiles_of(summit_sums_of(even, across=1)).variation("sigma"))
-
-
-def test_contacts_of_measured_summits_are_hertzian():
-    """By the radius a of each spot: P = 4 E a^3/(3 R), A = pi a^2, K = 2 E a; in plain Python."""
-    rng = np.random.default_rng(2)
-    z, R, tile = rng.normal(size=300) * UM, rng.lognormal(size=300) * 1e-5, rng.integers(0, 4, 300)
-    separations = np.array([-1.0, 0.0, 1.5, 9.0]) * UM
-    found = summit_contact(z, R, 1e11, separations, tile=tile)
-    assert found.load.shape == (4, 4)
-    for t in range(4):
-        for k, d in enumerate(separations):
-            spots = [
-                (math.sqrt(r * (s - d)), r) for s, r, u in zip(z, R, tile, strict=True) if u == t and s > d
-            ]
-            assert found.contacts[t, k] == len(spots)
-            load = math.fsum(4e11 * a**3 / (3 * r) for a, r in spots)
-            assert found.load[t, k] == pytest.approx(load, rel=1e-12)
-            assert found.area[t, k] == pytest.approx(math.fsum(math.pi * a * a for a, _ in spots), rel=1e-12)
-            assert found.stiffness[t, k] == pytest.approx(math.fsum(2e11 * a for a, _ in spots), rel=1e-12)
-    whole = summit_contact(z, R, 1e11, separations)
-    np.testing.assert_allclose(whole.load[0], found.load.sum(axis=0), rtol=1e-12)
-    step = 1e-13
-    ahead, behind = (summit_contact(z, R, 1e11, separations[1] + s).load[0, 0] for s in (step, -step))
-    assert (behind - ahead) / (2 * step) == pytest.approx(whole.stiffness[0, 1], rel=1e-5)
-
-
-@pytest.mark.parametrize(("arguments", "told"), [
-    (([1.0, 2.0], [1.0], 1.0, 0.0), "one list each"),
-    (([1.0], [0.0], 1.0, 0.0), "numbers > 0"),
-    (([1.0], [1.0], -1.0, 0.0), "numbers > 0"),
-])  # fmt: skip
-def test_what_makes_no_contact_is_refused(arguments, told):
-    with pytest.raises(ValueError, match=told):
-        summit_contact(*arguments)

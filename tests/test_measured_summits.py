@@ -5,10 +5,11 @@ import math
 import numpy as np
 import pytest
 from law_means import own_terms
+from summits_by_hand import summit_contact
 
 import analytic
 import mcgw
-from mcgw.maps.summits import Summits, summit_contact, write_summits
+from mcgw.maps.summits import Summits, write_summits
 from mcgw.store import layout
 
 K = 200

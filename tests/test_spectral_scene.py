@@ -5,11 +5,11 @@ import math
 import numpy as np
 import pytest
 from fit_of_maps import fit_map
+from summits_by_hand import summit_contact
 
 import analytic
 import mcgw
 from mcgw.cli import main
-from mcgw.maps.summits import summit_contact
 from mcgw.maps.synthetic import Spectrum, gaussian_map
 
 

@@ -9,6 +9,7 @@ from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.simulation import simulate
 from mcgw.figures.compared import ENOUGH, SCENE, Compared
 from mcgw.figures.data import SEPARATION, FigureData, Panel, Points, Series
+from mcgw.figures.style import power_of_ten
 from mcgw.scene.scene import Scene
 
 __all__ = ["distribution", "fluctuations", "law_of_load", "spread"]
@@ -32,7 +33,7 @@ def fluctuations(f: Compared) -> FigureData:
     line, panels = np.linspace(0, 4, 41), []
     for key, name in zip("abc", scene.quantities, strict=True):
         series = tuple(
-            _spreads(f"N = {_power(n)}", scene.replace(n_asperities=n), name, line, drawn.get(n), 400)
+            _spreads(f"N = {power_of_ten(n)}", scene.replace(n_asperities=n), name, line, drawn.get(n), 400)
             for n in (100, 1000, 10_000, 100_000, 1_000_000)
         )
         room = float(series[-1].theory.min()) / 2, 50 * float(series[0].theory.max())  # for the legend
@@ -43,10 +44,6 @@ def fluctuations(f: Compared) -> FigureData:
         "95 % intervals, where the ensemble has 400 contacts or more.",
         tuple(panels),
     )
-
-
-def _power(n: int) -> str:
-    return "10" + "⁰¹²³⁴⁵⁶"[len(str(n)) - 1]
 
 
 def _spreads(

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from analytic import Gaussian, Nayak
-from mcgw.figures.style import HOMOGENEOUS, MARKED, MISSING, SAMPLE, STYLE, THEORY, look
+from mcgw.figures.style import HOMOGENEOUS, MARKED, MISSING, SAMPLE, STYLE, THEORY, look, prefixed
 from mcgw.formats.pictures import save_figure
 from mcgw.maps.estimates import moments_of
 from mcgw.maps.fit import Fit
@@ -87,10 +87,8 @@ def _draw_map(figure: Figure, axis: Any, topography: Topography, seen: NDArray[n
 
 def _unit(length: float) -> tuple[str, float]:
     """A unit in which a length is 1 to 1000, and how many of it a metre has."""
-    for name, size in (("m", 1.0), ("mm", 1e-3), ("µm", 1e-6), ("nm", 1e-9)):
-        if length >= size:
-            return name, 1 / size
-    return "pm", 1e12
+    size, prefix = prefixed(length)
+    return f"{prefix}m", 1 / size
 
 
 def _draw_summits(axis: Any, fit: Fit, ready: Prepared) -> None:

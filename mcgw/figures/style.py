@@ -12,6 +12,7 @@ import numpy as np
 from cycler import cycler
 
 from analytic import Exponential, Grading, Hertz, Homogeneous, PiecewiseSeries
+from mcgw.formats.numbers import RAISED
 from mcgw.machine.terminal import one_line
 from mcgw.scene.law_text import law_text
 from mcgw.scene.scene import Scene
@@ -97,7 +98,6 @@ STYLE: Any = {
     "pdf.fonttype": 42,
 }
 
-_RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _LOWERED = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹", "0123456789")
 
 
@@ -180,7 +180,7 @@ def _hex(rgb: Any) -> str:
 def power_of_ten(x: float, _: Any = None) -> str:
     """Label of a tick of a logarithmic axis as plain text: to read formulas takes a quarter of a second."""
     power = round(math.log10(x))
-    return f"10{str(power).translate(_RAISED)}" if math.isclose(x, 10.0**power) else f"{x:g}"
+    return f"10{str(power).translate(RAISED)}" if math.isclose(x, 10.0**power) else f"{x:g}"
 
 
 def shown_title(scene: Scene, otherwise: str) -> str:

@@ -6,9 +6,9 @@ from collections.abc import Iterable
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["columns", "number", "typeset"]
+__all__ = ["RAISED", "columns", "number", "typeset"]
 
-_RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _POWER, _MINUS = re.compile(r"(?<=\d)e([+-]\d+)\b"), re.compile(r"(?<![\w⁻])-(?=[\d.])")
 _PRINTED = {"d/sigma": "d/σ", "gap/sigma": "gap/σ", "^2": "²", "+-": "±", " ... ": " … "}
 _PLAIN = 30.0  # largest over smallest number of a table that is written without powers of ten
@@ -22,7 +22,7 @@ def number(x: float, digits: int = 4) -> str:
     if "e" not in text:
         return text.replace("-", "−")
     mantissa, power = text.split("e")
-    return f"{mantissa}×10{str(int(power)).translate(_RAISED)}".replace("-", "−")
+    return f"{mantissa}×10{str(int(power)).translate(RAISED)}".replace("-", "−")
 
 
 def typeset(text: str) -> str:
@@ -33,7 +33,7 @@ def typeset(text: str) -> str:
     >>> typeset("d/sigma = -1.5 +- 2e-05 m^2")
     'd/σ = −1.5 ± 2×10⁻⁵ m²'
     """
-    text = _POWER.sub(lambda found: f"×10{str(int(found[1])).translate(_RAISED)}", text)
+    text = _POWER.sub(lambda found: f"×10{str(int(found[1])).translate(RAISED)}", text)
     for plain, printed in _PRINTED.items():
         text = text.replace(plain, printed)
     return _MINUS.sub("−", text)
@@ -80,7 +80,7 @@ def _decimals(x: NDArray[np.float64], digits: int) -> int | None:
 
 def _powers(x: NDArray[np.float64], digits: int) -> list[str]:
     parts = [f"{v:.{digits - 1}e}".split("e") if np.isfinite(v) and v else None for v in x.tolist()]
-    powers = [str(int(part[1])).translate(_RAISED) if part else "" for part in parts]
+    powers = [str(int(part[1])).translate(RAISED) if part else "" for part in parts]
     longest = max(map(len, powers), default=0)
     return [
         _shown(v, f"{part[0]}×10{power}{_BLANK * (longest - len(power))}" if part else "0")

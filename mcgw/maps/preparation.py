@@ -30,29 +30,16 @@ _ROUNDING = 1e-12  # of the range that was taken off
 
 @dataclass(frozen=True)
 class Preparation:
-    """What is asked for.
+    """What is asked for, by the keywords of `mcgw.fit`.
 
     Parameters
     ----------
-    cutoff : float or None
-        Shortest wavelength that counts, m (ISO 16610-61); None: as measured.
-    form : {"plane", "none", "quadratic", "cubic", "quartic", "sphere", "cylinder"}, optional
-        What is taken off.
-    missing : {"auto", "mask", "fill"}, optional
-        Missing points are filled from the edges of their holes. With ``mask`` neither they nor points whose
-        neighbours are missing count; with ``fill`` all do; ``auto`` masks them while half of the measured
-        points is left.
-    spikes : {"keep", "remove"}, optional
-        Whether points that stand out (`mcgw.maps.bad_points`) become missing; then also those that bend
-        unlike all others.
-    step : {"keep", "crop"}, optional
-        Whether of two terraces only the larger is kept.
+    cutoff, long_cutoff : float or None
+        Shortest and longest wavelength that counts, m; None: as measured.
+    form, missing, spikes, step, lines : str, optional
+        Each by one of the words that its row of `mcgw.maps.steps.STEPS` knows.
     trim : int, optional
         Points that are left off along each edge.
-    long_cutoff : float or None, optional
-        Longest wavelength that counts, m.
-    lines : {"keep", "rows", "columns"}, optional
-        Of which lines the offsets are taken off (`mcgw.maps.form`).
     """
 
     cutoff: float | None
