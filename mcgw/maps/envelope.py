@@ -52,6 +52,11 @@ class Bins:
     size: tuple[float, float]
     sharpness: Array
 
+    @property
+    def arrays(self) -> tuple[Any, ...]:
+        """What the loops take of it, in their order."""
+        return self.x, self.y, self.z, self.starts, self.shape, self.size, self.sharpness
+
 
 def bins_of(field: Asperities) -> Bins:
     """Sort asperities into about as many bins, as square as they come."""
@@ -105,18 +110,9 @@ def _highest(
 
 @njit(parallel=True, cache=True)
 def _map(
-    shape: Any,
-    pixel: Any,
-    origin: Any,
-    x: Any,
-    y: Any,
-    z: Any,
-    starts: Any,
-    bins: Any,
-    size: Any,
-    per: Any,
+    shape: Any, pixel: Any, origin: Any, x: Any, y: Any, z: Any, starts: Any, bins: Any, size: Any, per: Any,
     periodic: Any,
-) -> Any:
+) -> Any:  # fmt: skip
     """Envelope above the centre of every pixel."""
     result = np.empty(shape)
     top, flattest = z.max(), per.min()
@@ -171,20 +167,7 @@ def envelope(
         raise ValueError("the surface has no asperity: nothing to map")
     left, right, bottom, top = window or (0.0, field.size[0], 0.0, field.size[1])
     pixel = ((right - left) / columns, (top - bottom) / rows)
-    b = bins_of(field)
-    heights = _map(
-        (rows, columns),
-        pixel,
-        (left, bottom),
-        b.x,
-        b.y,
-        b.z,
-        b.starts,
-        b.shape,
-        b.size,
-        b.sharpness,
-        periodic,
-    )
+    heights = _map((rows, columns), pixel, (left, bottom), *bins_of(field).arrays, periodic)
     return Topography(heights, pixel, periodic and window is None)
 
 
@@ -192,5 +175,5 @@ def hidden_summits(field: Asperities, *, periodic: bool = False) -> NDArray[np.b
     """Which summits of a field lie below the cap of a taller neighbour, across the edges too if periodic."""
     b = bins_of(field)
     hidden = np.empty(field.number, dtype=np.bool_)
-    hidden[b.order] = _hidden(b.x, b.y, b.z, b.starts, b.shape, b.size, b.sharpness, periodic)
+    hidden[b.order] = _hidden(*b.arrays, periodic)
     return hidden

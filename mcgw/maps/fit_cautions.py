@@ -1,6 +1,6 @@
 """Why a fit may not be trusted: what lies on the map, its pixel, heights and summits, a line each."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 from mcgw.maps.bad_points import bad_edges, spikes_of
 from mcgw.maps.fit import Fit
@@ -36,15 +36,13 @@ def flaws(fit: Fit, ready: Prepared) -> list[str]:
     ]
 
 
-def _units(topography: Topography) -> list[str]:
-    lines = []
+def _units(topography: Topography) -> Iterator[str]:
     if topography.steepness > STEEPEST:
-        lines.append(
+        yield (
             f"slope: {topography.steepness:.3g} is usual on this map; are heights or pixel in another unit?"
         )
     if max(topography.pixel) > _WIDEST:
-        lines.append(f"pixel: {max(topography.pixel):g} m; was um or mm meant?")
-    return lines
+        yield f"pixel: {max(topography.pixel):g} m; was um or mm meant?"
 
 
 def _edges(topography: Topography) -> list[str]:
@@ -145,33 +143,30 @@ def _of_the_pixel(fit: Fit, ready: Prepared) -> list[str]:
     return []
 
 
-def _of_the_heights(fit: Fit) -> list[str]:
-    warnings = []
+def _of_the_heights(fit: Fit) -> Iterator[str]:
     skewness, error = fit.skewness
     if abs(skewness) > max(_SKEW, 3 * error):
-        warnings.append(
+        yield (
             f"skewness: {skewness:.2f} of the heights; spectral moments tell of summits for Gaussian heights "
             "only; count them, and keep their heights (--heights table)"
         )
     if fit.alpha.value < _ALPHA:
-        warnings.append(f"alpha: {fit.alpha.value:.3g} is below 1.5, which no isotropic Gaussian surface has")
+        yield f"alpha: {fit.alpha.value:.3g} is below 1.5, which no isotropic Gaussian surface has"
     if fit.lay > _STREAKY:
-        warnings.append(
+        yield (
             f"lay: mean square slopes across and along it have the ratio {fit.lay:.3g}; it is not isotropic"
         )
-    return warnings
 
 
-def _of_the_summits(fit: Fit, used: str) -> list[str]:
-    warnings = []
+def _of_the_summits(fit: Fit, used: str) -> Iterator[str]:
     if fit.summits.size < _FEW:
-        warnings.append(f"summits: only {fit.summits.size} were found; give a larger map or a shorter cutoff")
+        yield f"summits: only {fit.summits.size} were found; give a larger map or a shorter cutoff"
     overlap = fit.estimates[used].overlap
     if used == "caps" and fit.visible is not None:
         sharp = visible(overlap).share
         lost = sharp - fit.visible.share
         if lost > _LOST:
-            warnings.append(
+            yield (
                 f"blur: {100 * lost:.0f} % of caps like these are lost where a valley is nearer than a pixel "
                 "or a third of a cutoff; give finer pixels, and a shorter cutoff"
             )
@@ -179,8 +174,7 @@ def _of_the_summits(fit: Fit, used: str) -> list[str]:
     else:
         hidden = " summits are as broad as they are far apart,"
     if overlap > CROWDED:
-        warnings.append(f"overlap: eta R sigma = {overlap:.2g};{hidden} so asperities do not act one by one")
-    return warnings
+        yield f"overlap: eta R sigma = {overlap:.2g};{hidden} so asperities do not act one by one"
 
 
 def profile_cautions(fit: ProfileFit, profiles: Sequence[Profile], cutoff: float | None) -> list[str]:
@@ -188,46 +182,42 @@ def profile_cautions(fit: ProfileFit, profiles: Sequence[Profile], cutoff: float
     return [*_of_profile_points(profiles, cutoff), *_of_profile_heights(fit), *_of_profile_waves(fit)]
 
 
-def _of_profile_points(profiles: Sequence[Profile], cutoff: float | None) -> list[str]:
-    lines = []
+def _of_profile_points(profiles: Sequence[Profile], cutoff: float | None) -> Iterator[str]:
     filled, points = sum(p.filled for p in profiles), sum(p.heights.size for p in profiles)
     if filled:
-        lines.append(f"missing: {filled} of {points} heights lie on straight lines between their neighbours")
+        yield f"missing: {filled} of {points} heights lie on straight lines between their neighbours"
     spacing = max(p.spacing for p in profiles)
     if any(p.resampled for p in profiles):
-        lines.append("x: the points were not evenly spaced; heights between them were interpolated")
+        yield "x: the points were not evenly spaced; heights between them were interpolated"
     if cutoff is None:
-        lines.append(
+        yield (
             "cutoff: none, so that noise and the tip set m4, R and eta; give ten points "
             f"({10 * spacing:.2g} m) or more, and no less than the radius of the tip"
         )
     elif cutoff < _PIXELS * spacing:
-        lines.append(
+        yield (
             f"cutoff: {cutoff / spacing:.3g} points a wavelength; below {_PIXELS:g} the spacing sets eta and "
             "R, not the specimen; give a longer cutoff"
         )
-    return lines
 
 
-def _of_profile_heights(fit: ProfileFit) -> list[str]:
-    lines = []
+def _of_profile_heights(fit: ProfileFit) -> Iterator[str]:
     if abs(fit.roughness.sk) > max(_SKEW, 6 * fit.errors["m0"]):
-        lines.append(
+        yield (
             f"skewness: {fit.roughness.sk:.2f} of the heights; moments tell of summits for Gaussian heights "
             "only; measure a map, and count them"
         )
     counted, expected = fit.peaks
     if not 1 / _PEAKS < counted / expected < _PEAKS:
-        lines.append(
+        yield (
             f"peaks: {counted:.3g} a metre are counted, and {expected:.3g} follow from the profile's own "
             "moments; it is not Gaussian, or noise makes peaks: measure a map"
         )
     if fit.moments.alpha < _ALPHA:
-        lines.append(
+        yield (
             f"alpha: {fit.moments.alpha:.3g} is below 1.5, which no isotropic Gaussian surface has; a turned "
             "or ground surface needs a map"
         )
-    return lines
 
 
 def _of_profile_waves(fit: ProfileFit) -> list[str]:

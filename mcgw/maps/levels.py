@@ -75,7 +75,7 @@ def step_of(topography: Topography) -> Step | None:
     change their level everywhere, and a ridge rises and falls. It must be larger than the standard deviation
     of all heights without plane. No point may be missing.
     """
-    medians = _medians(block_means(topography.heights, _COARSE))
+    medians = block_means(block_means(topography.heights, _COARSE), _BLOCKS, np.median)
     found = []
     for axis, size, levels in zip("xy", topography.size, (medians, medians.T), strict=True):
         changes = levels[:, 2:] - levels[:, :-2]  # over two, since a step may cross an area
@@ -94,14 +94,6 @@ def step_of(topography: Topography) -> Step | None:
     if step is None or not step.height > float(without_form(topography, "plane").heights.std()):
         return None
     return step
-
-
-def _medians(z: Array) -> Array:
-    """Of at most 24 areas along each axis, or more by half."""
-    down, along = (max(n // _BLOCKS, 1) for n in z.shape)
-    rows, columns = z.shape[0] // down, z.shape[1] // along
-    areas = z[: rows * down, : columns * along].reshape(rows, down, columns, along)
-    return np.asarray(np.median(areas, axis=(1, 3)))
 
 
 def form_left(topography: Topography, form: Form) -> FormLeft | None:
