@@ -27,6 +27,7 @@ Array = NDArray[np.float64]
 Estimate = tuple[Array, Array]  # means and their standard errors
 
 GAMMA, SEPARATION, PRESSURE = "grading factor γ", "separation d/σ", "pressure $P/A_n$ (MPa)"
+_ROUNDING = 1e-14  # of a ratio of sums that are the same: no residual is told in units of it
 _COLUMNS = ("panel", "series", "kind", "x", "theory", "mean", "stderr")
 
 
@@ -104,12 +105,13 @@ def ratio_of_sums(b: Array, a: Array) -> Estimate:
     Returns
     -------
     (ndarray, ndarray)
-        Of shape (...); nan where there is nothing.
+        Of shape (...); nan where there is nothing. An error of the last digits alone is 0.
     """
     with np.errstate(invalid="ignore", divide="ignore"):
         mean = a.mean(axis=0)
         ratio = b.mean(axis=0) / mean
-        return ratio, (b - ratio * a).std(axis=0, ddof=1) / np.sqrt(len(a)) / mean
+        stderr = (b - ratio * a).std(axis=0, ddof=1) / np.sqrt(len(a)) / mean
+    return ratio, np.where(stderr <= _ROUNDING * np.abs(ratio), 0.0, stderr)
 
 
 def quotient_of_sums(above: tuple[Array, Array], below: tuple[Array, Array]) -> Estimate:
