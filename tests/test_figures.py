@@ -300,8 +300,10 @@ def drawn(scene):
 
 
 def residuals(figures):
+    """Of points that scatter by more than rounding."""
     every = [p for x in figures for p in points(x)]
-    return np.concatenate([((p.mean - p.exact)[p.stderr > 0] / p.stderr[p.stderr > 0]) for p in every])
+    scatter = [p.stderr > 1e-14 * np.abs(p.mean) for p in every]
+    return np.concatenate([(p.mean - p.exact)[s] / p.stderr[s] for p, s in zip(every, scatter, strict=True)])
 
 
 YIELDS = {"law": mcgw.KogutEtsion(hardness=1.2e9, poisson=0.3), "grading": mcgw.Exponential(1.5)}

@@ -7,18 +7,17 @@ import tomllib
 import warnings
 from pathlib import Path
 from tokenize import TokenError
-from typing import Any, Literal
-
-import numpy as np
-from numpy.typing import NDArray
+from typing import TYPE_CHECKING, Any, Literal
 
 from mcgw.errors import StoreError
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
 
 __all__ = ["HDF5", "loads", "open_npy", "open_regular", "read_bytes", "read_text"]
 
 HDF5 = b"\x89HDF\r\n"  # how such a file begins
 _UNSOUND = (EOFError, KeyError, MemoryError, OverflowError, SyntaxError, TokenError, TypeError, ValueError)
-_HEADERS = {(1, 0): np.lib.format.read_array_header_1_0, (2, 0): np.lib.format.read_array_header_2_0}
 _MOST_PARTS = 100  # of a dotted key: the parser's time grows as their square
 _DEEPEST = 100  # brackets within brackets: the parser calls itself for each
 _ASIDE = re.compile(
@@ -82,7 +81,7 @@ def read_text(path: Path, most: int) -> str:
         raise StoreError(f"{path}: is not text in UTF-8 (byte {error.start})") from None
 
 
-def open_npy(path: Path) -> NDArray[Any]:
+def open_npy(path: Path) -> "NDArray[Any]":
     """Map integers or floats of any shape into memory, read-only; nothing is allocated or unpickled.
 
     Raises
@@ -90,11 +89,14 @@ def open_npy(path: Path) -> NDArray[Any]:
     ValueError
         If the file cannot be read, is damaged, or holds anything else.
     """
+    import numpy as np  # the child that looks at files with little memory does without
+
+    headers = {(1, 0): np.lib.format.read_array_header_1_0, (2, 0): np.lib.format.read_array_header_2_0}
     try:
         with os.fdopen(open_regular(path), "rb") as file, warnings.catch_warnings():
             warnings.simplefilter("ignore")  # a header in the style of Python 2 is as good
             version = np.lib.format.read_magic(file)
-            shape, by_columns, dtype = _HEADERS[version](file)
+            shape, by_columns, dtype = headers[version](file)
             if dtype.kind not in "fiu":
                 raise ValueError("its numbers are not real")
             order: Literal["F", "C"] = "F" if by_columns else "C"
