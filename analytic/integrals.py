@@ -15,7 +15,7 @@ from analytic.elementary import exp_minus_half_square
 from analytic.gradings import Grading, Homogeneous
 from analytic.heights import GAUSSIAN, Gaussian, HeightLaw
 from analytic.law_rule import law_integral
-from analytic.quadrature import gauss_legendre, panels
+from analytic.quadrature import REACH, WIDEST, gauss_legendre, panels
 from analytic.resolution import resolved_breaks
 from analytic.steep import Weight, log_unit, tame
 
@@ -23,8 +23,6 @@ __all__ = ["fn", "fn_between", "fn_paper", "fn_scaled", "quotient"]
 
 Array = NDArray[np.float64]
 
-_REACH = 13.0  # phi(13)/phi(0) = 2e-37: enough for any modulus up to exp(3|s|); steeper ones reach farther
-_WIDEST = 4.0
 _TRIED = 9  # separations of a column at which the reach is looked for
 _ALL = (-np.inf, np.inf)
 _BLOCK = 192  # separations at a time: nodes x block x 8 bytes stay in the cache
@@ -38,18 +36,18 @@ def _top(above: Array, reach: float) -> Array:
 def _reaches(grading: Grading, h: Array, above: Array, between: tuple[float, float]) -> tuple[float, float]:
     """Reach on either side that serves all separations of a sorted column."""
     if tame(grading):
-        return _REACH, _REACH
+        return REACH, REACH
     weight = Weight(lambda s: -s * s / 2, grading, 1)
-    upper = lower = _REACH
+    upper = lower = REACH
     for k in np.unique(np.linspace(0, len(h) - 1, _TRIED).astype(int)):
         start = max(float(above[k, 0]), 0.0)
-        end = min(float(_top(np.array(start), _REACH)), between[1])
+        end = min(float(_top(np.array(start), REACH)), between[1])
         if start < end < between[1]:
             found = weight.reach(start, end, between[1])
             upper = max(upper, float(np.sqrt(found**2 - start**2)))
     bottom = max(float(h[0, 0]), between[0])
-    if bottom < -_REACH:
-        lower = -weight.reach(0.0, -_REACH, bottom)
+    if bottom < -REACH:
+        lower = -weight.reach(0.0, -REACH, bottom)
     return upper, lower
 
 
@@ -60,8 +58,8 @@ def _sorted(n: float, h: Array, grading: Grading, unit: Array, between: tuple[fl
     top = np.minimum(_top(np.maximum(first, 0.0), upper), between[1])
     bottom = np.minimum(np.maximum(first, -lower), top)
     cuts = {0.0, *resolved_breaks(grading, float(bottom[0, 0]), float(top[-1, 0]))}
-    if max(upper, lower) > _REACH:  # farther than what one rule resolves of the density
-        cuts |= set(np.arange(np.ceil(bottom[0, 0] / _WIDEST), top[-1, 0] / _WIDEST) * _WIDEST)
+    if max(upper, lower) > REACH:  # farther than what one rule resolves of the density
+        cuts |= set(np.arange(np.ceil(bottom[0, 0] / WIDEST), top[-1, 0] / WIDEST) * WIDEST)
     result = np.zeros_like(h)
     for left, right in pairwise([-np.inf, *sorted(cuts), np.inf]):
         low, high = np.clip(left, bottom, top), np.clip(right, bottom, top)
@@ -90,12 +88,12 @@ def _in_units(
         return law_integral(n, h, heights, grading, between)
     unit = np.zeros(h.shape)
     if not isinstance(grading, Homogeneous):
-        unit = log_unit(grading, np.maximum(h, -_REACH))
+        unit = log_unit(grading, np.maximum(h, -REACH))
     order = np.argsort(h, axis=None)
     ordered = h.reshape(-1, 1)[order] + 0.0  # makes -0.0 the same as 0.0
     units = unit.reshape(-1, 1)[order]
     result = np.empty(h.size)
-    gaps = np.flatnonzero(np.diff(ordered[:, 0]) > 2 * _REACH) + 1  # no need to know the grading in between
+    gaps = np.flatnonzero(np.diff(ordered[:, 0]) > 2 * REACH) + 1  # no need to know the grading in between
     for i in np.split(np.arange(h.size), gaps) if h.size else ():
         result[order[i]] = _sorted(n, ordered[i], grading, units[i], between)[:, 0]
     return result.reshape(h.shape), unit

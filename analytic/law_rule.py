@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from analytic.gradings import Grading
 from analytic.heights import Gaussian, HeightLaw
 from analytic.measured_summits import MeasuredHeights
-from analytic.quadrature import NEAREST, above_neighbours, rooted, towards
+from analytic.quadrature import NEAREST, NODES, REACH, SPANS, WIDEST, above_neighbours, rooted, towards
 from analytic.resolution import resolved_breaks
 from analytic.steep import Weight, log_unit, over_unit, tame
 
@@ -23,10 +23,6 @@ __all__ = ["POWER", "ends_of", "law_integral", "law_rule"]
 Array = NDArray[np.float64]
 
 POWER = 4  # of the modulus in the kurtosis
-_NODES = 64
-_SPANS = 6.0  # a piece over which the density changes by a factor of 50 needs some 30 nodes
-_WIDEST = 4.0  # on which the normal density is resolved as far down as s = -40
-_REACH = 13.0  # no lower or rarer normal height counts: 2e-37 of the density at the mean
 _GROWTH = 8.0  # of the pieces away from a singular end
 _TINY = 1e-14  # distance from such an end, below which heights are not told apart
 _UNDERFLOW = -745.0  # logarithm of the least density
@@ -80,13 +76,13 @@ def ends_of(
 
 
 def _normal_ends(low: float, last: float, grading: Grading, power: int) -> tuple[float, float]:
-    top = last + _REACH**2 / (last + np.hypot(last, _REACH))
+    top = last + REACH**2 / (last + np.hypot(last, REACH))
     if tame(grading):
         return low, top
     weight = Weight(lambda s: -s * s / 2, grading, power)
-    start = max(low, -_REACH)
+    start = max(low, -REACH)
     top = max(weight.reach(max(x, start), top, np.inf) for x in (low, last))
-    return (weight.reach(0.0, -_REACH, low) if low < -_REACH else low), top
+    return (weight.reach(0.0, -REACH, low) if low < -REACH else low), top
 
 
 def _edges(law: HeightLaw, start: float, top: float) -> list[float]:
@@ -98,9 +94,7 @@ def _edges(law: HeightLaw, start: float, top: float) -> list[float]:
     for mark in marks:
         while edges[-1] < mark:
             a = edges[-1]
-            step = (
-                min(_SPANS * law.span(a), max(_WIDEST, abs(a))) if not (below and a == below[0]) else _WIDEST
-            )
+            step = min(SPANS * law.span(a), max(WIDEST, abs(a))) if not (below and a == below[0]) else WIDEST
             if below:
                 step = min(step, max((_GROWTH - 1) * (a - below[0]), _TINY))
             if above:
@@ -140,8 +134,8 @@ def law_rule(
     if not start < top:
         return np.empty(0), np.empty(0)
     if isinstance(law, Gaussian):
-        lowest = max(start, -_REACH)
-        regular = [start, *_WIDEST * np.arange(np.floor(start / _WIDEST) + 1, np.ceil(top / _WIDEST)), top]
+        lowest = max(start, -REACH)
+        regular = [start, *WIDEST * np.arange(np.floor(start / WIDEST) + 1, np.ceil(top / WIDEST)), top]
     else:
         lowest, regular = start, _edges(law, start, top)
     inside = [*separations, *above_neighbours(separations), *further(lowest, top)]
@@ -150,7 +144,7 @@ def law_rule(
     left, right = edges[:-1], edges[1:]
     at_end = np.isin(left, law.singular) | np.isin(right, law.singular)
     lump = (right - left <= 2 * _TINY) & at_end
-    s, weights = rooted(left[~lump], right[~lump], separations, _NODES)
+    s, weights = rooted(left[~lump], right[~lump], separations, NODES)
     mass = [_mass(law, *ends) for ends in zip(left[lump].tolist(), right[lump].tolist(), strict=True)]
     s, probabilities = np.append(s, left[lump]), np.append(weights * law.pdf(s), mass)
     order = np.argsort(s, kind="stable")

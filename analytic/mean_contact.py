@@ -16,6 +16,7 @@ from analytic.inversion import LOWEST, last_separations, separations_of_powers
 from analytic.laws.branch import UnloadingBranch, Ways
 from analytic.laws.law import piece_of
 from analytic.laws.slopes import slope_term
+from analytic.quadrature import REACH
 from analytic.quantities import Quantity, quantity_of
 from analytic.summits import Summits
 
@@ -24,7 +25,6 @@ __all__ = ["MeanContact", "MeanPowers"]
 Array = NDArray[np.float64]
 
 _HIGHEST = 1000.0  # separation that is looked at
-_COUNTS = 13.0  # no lower height does
 
 
 @dataclass(frozen=True)
@@ -154,7 +154,7 @@ class MeanContact:
             return LOWEST
         branch = self.ways.of(quantity)
         lowest = branch.deepest if isinstance(branch, UnloadingBranch) else LOWEST
-        s = np.linspace(max(self.summits.heights.support[0], -_COUNTS), near, 4001)
+        s = np.linspace(max(self.summits.heights.support[0], -REACH), near, 4001)
         negative = np.flatnonzero(self.grading(s) < 0)
         return max(lowest, float(s[min(negative[-1] + 1, s.size - 1)])) if negative.size else lowest
 

@@ -23,14 +23,14 @@ from scipy.special import erfcx, ndtr
 from analytic.elementary import exp_minus_half_square
 from analytic.heights import HeightLaw
 from analytic.piecewise import PiecewiseSeries, fitted
-from analytic.quadrature import gauss_legendre
+from analytic.quadrature import NODES, gauss_legendre
 from analytic.surface import LEAST_ALPHA, SUMMIT_SPREAD
 
 __all__ = ["Nayak", "NayakTables", "panelled", "tables_of", "upper_tail"]
 
 Array = NDArray[np.float64]
 
-_NODES, _TERMS = 64, 24
+_TERMS = 24
 _WIDE = 9.5  # standard deviations, beyond which a normal density is 1e-20 of its largest value
 _LARGEST = 13.5  # curvature tau: exp(-tau^2/4) is 1e-20
 _FAR = 40.0  # standard deviations: beyond, densities underflow
@@ -53,7 +53,7 @@ def panelled(edges: Array) -> tuple[Array, Array]:
     (ndarray, ndarray)
         Each of shape (64 m, n), m <= k - 1: pieces that have no width in any column are left out.
     """
-    x, w = gauss_legendre(_NODES)
+    x, w = gauss_legendre(NODES)
     width = np.diff(edges, axis=0)
     some = width.any(axis=1)
     width = width[some][:, None]

@@ -17,13 +17,27 @@ from scipy.special import roots_jacobi
 from analytic.gradings import Grading, Homogeneous
 from analytic.steep import over_unit
 
-__all__ = ["NEAREST", "above_neighbours", "gauss_legendre", "panels", "rooted", "towards"]
+__all__ = [
+    "NEAREST",
+    "NODES",
+    "REACH",
+    "SPANS",
+    "WIDEST",
+    "above_neighbours",
+    "gauss_legendre",
+    "panels",
+    "rooted",
+    "towards",
+]
 
 Array = NDArray[np.float64]
 
 NEAREST = 2.0**-30  # below, a power >= 0 is 1e-9 of the whole, and integrated to 1e-7
 _GROWTH = 8.0  # of a piece to its distance from the separation below
-_NODES = 64
+NODES = 64  # of a piece
+SPANS = 6.0  # of a law in it: a density that changes by a factor of 50 over a piece needs some 30 nodes
+WIDEST = 4.0  # piece, on which they resolve the normal density as far down as s = -40
+REACH = 13.0  # no lower or rarer normal height counts: 2e-37 of the density, times a modulus up to exp(3|s|)
 _FARTHEST = 256.0  # of the approaches s - h at the ends of a range, for powers that are no half-integers
 
 
@@ -121,7 +135,7 @@ def _panel(n: float, h: Array, grading: Grading, unit: Array, low: Array, high: 
     width = np.sqrt(high - h) - start
     later = bool(start.any())
     if later:
-        x, w = gauss_legendre(_NODES)
+        x, w = gauss_legendre(NODES)
         v = start + width * x
         approach = v * v
     else:  # the panel begins at the separation: v^(2n+1) goes into the weights
@@ -148,7 +162,7 @@ def _panel(n: float, h: Array, grading: Grading, unit: Array, low: Array, high: 
 def _with_power(power: float) -> tuple[Array, Array]:
     """Points on [0, 1], and weights that contain ``x^power``."""
     if power % 1 == 0:
-        x, w = gauss_legendre(_NODES)
+        x, w = gauss_legendre(NODES)
         return x, w * x ** int(power)
-    x, w = roots_jacobi(_NODES, 0.0, power)
+    x, w = roots_jacobi(NODES, 0.0, power)
     return (1 + x) / 2, w / 2 ** (power + 1)

@@ -18,7 +18,7 @@ from analytic.law_rule import ends_of
 from analytic.laws.branch import Branch
 from analytic.laws.cuts import cuts_of_each
 from analytic.laws.slopes import jump_terms
-from analytic.quadrature import above_neighbours, gauss_legendre, rooted
+from analytic.quadrature import SPANS, WIDEST, above_neighbours, gauss_legendre, rooted
 from analytic.quantities import quantity_of
 from analytic.resolution import resolved_breaks
 
@@ -28,7 +28,7 @@ Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 _NODES, _AS_WIDE = 64, 0.6  # points for curvatures, if their density bends over so many heights
-_HEIGHTS, _SPANS, _WIDEST = 32, 6.0, 4.0  # points of a piece, over which densities change by so much
+_HEIGHTS = 32  # points of a piece
 _RAREST = 1e-18  # share of the touching heights above which curvatures are left out
 
 
@@ -98,7 +98,7 @@ def rule_of_radii(
     start, top = ends_of(heights, lowest, grading)
     if not start < top:
         return HeightRule(np.empty(0), np.empty(0), below, np.empty(0))
-    widest = min(_SPANS * law.narrowest, _WIDEST)
+    widest = min(SPANS * law.narrowest, WIDEST)
     regular = np.linspace(start, top, int(np.ceil((top - start) / widest)) + 1)
     breaks = resolved_breaks(grading, start, top)
     common = np.concatenate([regular, breaks, lowest, above_neighbours(lowest)])

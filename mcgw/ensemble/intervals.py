@@ -190,7 +190,7 @@ def interval_of(scene: Scene, sampler: str, sums: Held, name: str, level: float)
         return mean, mean
     if name in scene.other_separations:
         return _of_separation(scene, sampler, sums, name, level)
-    balanced = scene.interaction is not None and scene.interaction.nominal
+    balanced = scene.nominal
     if quantity_of(name).counts and not balanced:
         contacts, asperities = sums.total_number(name), float(scene.n_asperities) * m
         ends = count_interval(contacts, asperities, poisson=scene.count == "poisson", level=level)

@@ -154,8 +154,7 @@ def against_elasticity(solutions: Sequence[Solution]) -> Validity:
 
 def at_solutions(scene: Scene, solutions: Sequence[Solution]) -> Scene:
     """The scene at the separations of its mean surface there: what is said of them is said of the loads."""
-    nominal = scene.interaction is not None and scene.interaction.nominal
-    name = "nominal_separation" if nominal else "separation"
+    name = "nominal_separation" if scene.nominal else "separation"
     h = sorted({each.theory[name] for each in solutions})
     loading = [q for q in scene.quantities if not quantity_of(q).unloading] or ["load"]
     return scene.replace(separations=h, unload_from=None, quantities=loading)

@@ -53,7 +53,7 @@ class Direct:
         scene = self.scene
         rng = generator(scene.seed, _PURPOSE, number)
         left = scene.n_asperities if scene.count == "fixed" else int(rng.poisson(scene.n_asperities))
-        if scene.interaction and scene.interaction.nominal:
+        if scene.nominal:
             return self._balanced(number, *self._summits(rng, left))
         total = asperity_sums(scene, np.array([0]), np.empty(0), np.empty(0))
         while left:

@@ -32,6 +32,7 @@ from mcgw.sampling.layout import Layout
 from mcgw.sampling.response.response import Precision, Response, layout_of, response_of
 from mcgw.sampling.response.walk import UnresolvedError
 from mcgw.sampling.stretches import begins_and_breaks
+from mcgw.scene.samplers import Promise, promise_of
 from mcgw.scene.scene import Scene
 from mcgw.scene.storable import storable
 
@@ -61,7 +62,7 @@ def sampler_of(scene: Scene) -> Sampler:
     scene = storable(scene)
     keep_freed_memory()
     name = name_of(scene)
-    if scene.interaction and scene.interaction.nominal:
+    if scene.nominal:
         return _at_nominal(name, scene)
     try:
         if scene.law_error and scene.sampler == "auto" and name == "cells" and scene.curvature is None:
@@ -290,13 +291,15 @@ def _every_sum(scene: Scene, power: float | None) -> tuple[str, ...]:
 
 
 def _cheapest(scene: Scene) -> str:
-    """Cells, unless most of them would be empty (`runs/bench/auto.py`)."""
-    if isinstance(scene.heights, MeasuredHeights):
-        return "direct"  # cells need a density
-    nominal = scene.interaction is not None and scene.interaction.nominal
-    if scene.curvature and (nominal or not scene.hertzian):
-        return "tail"  # each summit has breaks of its own
-    if nominal:
-        return "cells" if scene.hertzian else "tail"
-    few = scene.touching < min(5 + len(scene.separations) / 20, 20)
-    return "tail" if few and scene.keep != "moments" else "cells"
+    """The first that fits: cells, unless most of them would be empty (`runs/bench/auto.py`)."""
+    most = min(5 + len(scene.separations) / 20, 20)
+    few = scene.keep != "moments" and not scene.nominal and scene.touching < most
+    names = ("tail", "cells", "direct") if few else ("cells", "tail", "direct")
+    return next(name for name in names if _fits(promise_of(name), scene))
+
+
+def _fits(promise: Promise, scene: Scene) -> bool:
+    """Whether a sampler can draw a scene: where two of three meet, each summit has breaks of its own."""
+    breaks = (scene.curvature is not None) + (not scene.hertzian) + scene.nominal
+    listed = isinstance(scene.heights, MeasuredHeights)
+    return (promise.own_laws or breaks < 2) and not (promise.needs_density and listed)

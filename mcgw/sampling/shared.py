@@ -90,10 +90,9 @@ def to_be_shared(scene: Scene) -> tuple[Any, ...] | None:
     Crowds depend on what is asked, and balances of their own on more than heights and radii.
     """
     name = name_of(scene)
-    nominal = scene.interaction is not None and scene.interaction.nominal
     perhaps_crowded = scene.law_error > 0 and scene.sampler == "auto"
     listed = isinstance(scene.curvature, MeasuredRadii)
-    if name not in ("cells", "tail") or listed or nominal or perhaps_crowded:
+    if name not in ("cells", "tail") or listed or scene.nominal or perhaps_crowded:
         return None
     drawn = scene.n_asperities, scene.seed, scene.count, scene.n_surfaces
     powers = {quantity_of(name).radius for name in scene.quantities} if scene.curvature else None

@@ -101,6 +101,11 @@ class Fields:
         return InteractingModel.of(self._alone, self.interaction)
 
     @property
+    def nominal(self) -> bool:
+        """Whether its separations are nominal ones, at which each surface finds its own balance."""
+        return self.interaction is not None and self.interaction.nominal
+
+    @property
     def compliance(self) -> float:
         """How much farther down the asperities feel the plane for each newton on the surface, m/N."""
         if self.interaction is None:
@@ -173,8 +178,7 @@ class Fields:
     @property
     def lowest(self) -> float:
         """The lowest separation there is or was that asperities feel: what lies below it never touches."""
-        sinking = self.interaction is not None and self.interaction.nominal
-        lowest = self._felt if sinking else min(self.separations)
+        lowest = self._felt if self.nominal else min(self.separations)
         return lowest if self.unload_from is None else min(lowest, self.unload_from)
 
     @cached_property

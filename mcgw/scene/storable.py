@@ -48,8 +48,7 @@ def _extent(scene: Fields) -> tuple[float, float]:
     """Lowest and highest height that count; asperities may have felt lower separations than those asked."""
     asked = scene.separations
     if scene.lowest < min(asked):
-        nominal = scene.interaction is not None and scene.interaction.nominal
-        asked = (*asked, scene.lowest - (_MARGIN if nominal else 0.0))
+        asked = (*asked, scene.lowest - (_MARGIN if scene.nominal else 0.0))
     return extent(scene.grading, scene.heights, asked)
 
 

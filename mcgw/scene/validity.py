@@ -130,7 +130,7 @@ def _share(scene: Fields, place: Place, found: Expected, felt: Array) -> dict[st
 
 def _felt(scene: Fields, h: Array) -> Array:
     """Separations that the asperities of the mean surface feel."""
-    if scene.interaction is None or not scene.interaction.nominal:
+    if not scene.nominal:
         return h
     theory: Any = scene.theory  # an `InteractingModel`, loaded for those scenes alone
     return np.asarray(theory.effective(h))
