@@ -160,8 +160,16 @@ class ScipyHeights(HeightLaw):
         return np.asarray(self.distribution.sf(self._x(s)))
 
     def ppf(self, p: Array, below: float = math.inf) -> Array:
-        """Its ``ppf``."""
-        return self._s(self.distribution.ppf(p * self.cdf(np.array(below))))
+        """Its ``ppf``, or the lower end where that is lost: of the inverse Gaussian it is 1e248 at 1e-36."""
+        share = np.asarray(p * self.cdf(np.array(below)))
+        with np.errstate(all="ignore"), warnings.catch_warnings():
+            warnings.simplefilter("ignore", RuntimeWarning)  # Boost's, of what it does not find
+            s = self._s(self.distribution.ppf(share))
+        return np.where((share < 0.5) & ~(s <= self._median), self.support[0], s)
+
+    @cached_property
+    def _median(self) -> float:
+        return float(self._s(self.distribution.median()))
 
     def isf(self, p: Array, above: float = -math.inf) -> Array:
         """Its ``isf``, or where that loses the tail the inverse of its ``sf``, as far as that is good."""
@@ -190,10 +198,11 @@ class ScipyHeights(HeightLaw):
 
     def _newton(self, share: Array) -> Array:
         """Where ``sf`` has these values, by Newton's steps on its logarithm inside a bracket."""
-        law, wanted, sign = self.distribution, np.log(share), np.where(share < 0.5, 1.0, -1.0)
+        law, sign = self.distribution, np.where(share < 0.5, 1.0, -1.0)
         low = high = np.full(share.shape, float(law.median()))
         step = float(law.std())
         with np.errstate(all="ignore"):
+            wanted = np.log(share)
             while np.any(far := sign * (law.sf(high) - share) > 0):
                 low, high, step = np.where(far, high, low), np.where(far, high + sign * step, high), 2 * step
             low, high = np.minimum(low, high), np.maximum(low, high)

@@ -65,6 +65,15 @@ def test_tails_that_scipy_searches_one_by_one_are_found_at_once(law):
     np.testing.assert_allclose(heights.sf(s), shares, rtol=1e-12)
 
 
+def test_low_heights_that_scipy_loses_are_at_the_lower_end():
+    law = mcgw.ScipyHeights(scipy.stats.invgauss(0.3))
+    assert law.ppf(np.array([0.0, 1e-37])).tolist() == [law.support[0]] * 2
+    scene = mcgw.Scene(SURFACE, separations=[0.0], heights=law, grading=stiffer, n_asperities=300, seed=1)
+    literal = scene.modulus(s := mcgw.heights(scene, 0)) * np.maximum(s, 0) ** 1.5
+    scale = 4 / 3 * SURFACE.E_star * SURFACE.radius**0.5 * SURFACE.sigma**1.5
+    assert mcgw.simulate(scene, n_surfaces=1).load[0, 0] == pytest.approx(scale * literal.sum(), rel=1e-12)
+
+
 def counting(function, calls):
     def counted(*args):
         calls.append(1)
