@@ -9,7 +9,7 @@ then to second order in what surfaces differ by, fluctuations to leading order.
 from collections.abc import Sequence
 from dataclasses import KW_ONLY, dataclass, fields
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -19,6 +19,9 @@ from analytic.interaction import Interaction, in_series
 from analytic.model import Cumulants, Model
 from analytic.own_balance import OwnBalance, derivative
 from analytic.quantities import SEPARATIONS, quantity_of
+
+if TYPE_CHECKING:
+    from analytic.distribution import Along, Counted, Distribution, Mapped
 
 __all__ = ["InteractingModel", "is_stiffness"]
 
@@ -145,6 +148,32 @@ class InteractingModel(Model):
         if not self.interaction.nominal:
             return x
         return np.asarray(x - self.compliance * self.alone.mean("load", x))
+
+    def distribution(self, quantity: str, h: float) -> "Distribution | Counted | Along | Mapped":
+        """As `Model.distribution`, also of the other separation.
+
+        At nominal separations from the body of the load, P(P <= p | h) = P(S(h + c p) <= p), and of what
+        rises with it; what else a surface has there depends on two sums at once.
+        """
+        from analytic.distribution import interacting_distribution  # few ask
+
+        if quantity in SEPARATIONS:
+            self._check_separation(quantity)
+        else:
+            self._asked(quantity, h)
+        return interacting_distribution(self, quantity, float(h))
+
+    def separation_law(self, load: float, quantity: str = "load") -> "Along | Mapped":
+        """As `Model.separation_law`: at a given load only the separation differs, by the same on all."""
+        from analytic.distribution import Mapped
+
+        felt = self.alone.separation_law(load, quantity)
+        if not self.interaction.nominal:
+            return felt
+        if quantity != "load":
+            raise ValueError(f"quantity = {quantity!r}: at nominal separations give a load")
+        shift = self.compliance * load
+        return Mapped(felt, lambda x: x - shift, lambda h: h + shift)
 
     def fluctuations(self, quantities: Sequence[str], separations: ArrayLike) -> Fluctuations:
         """As `Model.fluctuations`, to leading order where a surface answers by itself."""

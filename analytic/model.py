@@ -1,8 +1,9 @@
 """The exact statistics of one rough surface in contact: means, fluctuations and their inversion."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import KW_ONLY, dataclass, field, replace
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -20,6 +21,9 @@ from analytic.measured_summits import MeasuredRadii
 from analytic.quantities import LAW_QUANTITIES, Quantity, quantity_of
 from analytic.summits import Summits, summits_of
 from analytic.surface import Surface
+
+if TYPE_CHECKING:
+    from analytic.distribution import Along, Counted, Distribution, Mapped
 
 __all__ = ["Cumulants", "Model"]
 
@@ -308,6 +312,71 @@ class Model:
         if not self._summits.unbounded:
             return result
         return replace(result, radius=np.repeat([q.radius for q in asked], h.size))
+
+    def asperities(
+        self, quantity: str, h: float, farther: Sequence[float] = ()
+    ) -> tuple[HeightRule, Callable[[HeightRule], Array]]:
+        """A rule over the asperities at one separation, and what takes rules to what one at each node adds.
+
+        Over the scale. The rule is over radii too, where they differ, and finer with heights `farther` above
+        the separation that divide it.
+        """
+        q = self._asked(quantity, h)
+        means = self._means(q) if self.curvature is None else self._contact
+        rule = means.rule(h + np.array([0.0, *farther]), [quantity])
+        return rule, lambda nodes: nodes.terms([quantity], [h], self.grading, means.ways)[:, 0]
+
+    def distribution(self, quantity: str, h: float) -> "Distribution | Counted | Along | Mapped":
+        """Exact law of a quantity over surfaces, at one separation, in the manner of `scipy.stats`.
+
+        Parameters
+        ----------
+        quantity : str
+            Its name.
+        h : float
+            Reduced separation.
+
+        Returns
+        -------
+        Distribution or Counted
+            With cdf, sf, pdf (a number of asperities: pmf), ppf, isf, interval, rvs, mean, var, std, in the
+            unit of the quantity; the probability of nothing, `atom`; and `error`, that of the computation.
+
+        Examples
+        --------
+        >>> import analytic
+        >>> surface = analytic.Surface(sigma=1e-6, radius=1e-5, eta=1e9, nominal_area=1e-6, E_star=1e9)
+        >>> law = analytic.Model(surface).distribution("load", 2.0)
+        >>> (law.ppf([0.05, 0.5, 0.95]) / law.mean()).round(4)
+        array([0.5356, 0.9537, 1.592 ])
+        """
+        from analytic.distribution import distribution_of  # few ask
+
+        return distribution_of(self, quantity, float(h))
+
+    def separation_law(self, load: float, quantity: str = "load") -> "Along | Mapped":
+        """Exact law of the separation at a given load: P(h* <= h) = P(S(h) <= load).
+
+        Parameters
+        ----------
+        load : float
+            On each surface, N.
+        quantity : str, optional
+            Another sum that is given instead, in its unit; it falls with the separation.
+
+        Returns
+        -------
+        Along or Mapped
+            As `distribution`, of d/sigma.
+
+        Raises
+        ------
+        ValueError
+            If asperities pull: then several separations may have one load.
+        """
+        from analytic.distribution import separation_law_of
+
+        return separation_law_of(self, load, quantity)
 
     @cached_property
     def ways(self) -> Ways:

@@ -22,7 +22,7 @@ from analytic.quadrature import SPANS, WIDEST, above_neighbours, gauss_legendre,
 from analytic.quantities import quantity_of
 from analytic.resolution import resolved_breaks
 
-__all__ = ["jumps_of_radii", "rule_of_radii", "with_radii"]
+__all__ = ["Radii", "jumps_of_radii", "rule_of_radii", "with_radii"]
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -33,7 +33,7 @@ _RAREST = 1e-18  # share of the touching heights above which curvatures are left
 
 
 @dataclass(frozen=True)
-class _Radii:
+class Radii:
     """Radii of a rule over the curvature, the last of them that of all flatter summits if there is a bound.
 
     Parameters
@@ -49,7 +49,7 @@ class _Radii:
     weights: Array
 
     @classmethod
-    def over(cls, law: RandomCurvature, highest: float) -> "_Radii":
+    def over(cls, law: RandomCurvature, highest: float) -> "Radii":
         """Of summits as high as touch at this separation."""
         top = float(law.heights.isf(np.array(_RAREST), highest))
         first = np.sqrt(MEAN_CURVATURE / law.largest)
@@ -92,7 +92,7 @@ def rule_of_radii(
         Those of what is summed.
     """
     branches, h, heights = tuple(branches), np.unique(separations), law.heights
-    radii = _Radii.over(law, float(h[-1]))
+    radii = Radii.over(law, float(h[-1]))
     lowest = np.unique([*h, *(branch.lowest(float(h[0])) for branch in branches)])
     below = float(heights.cdf(lowest[0]))
     start, top = ends_of(heights, lowest, grading)
@@ -129,7 +129,7 @@ def jumps_of_radii(
     quantity: str, branch: Branch, grading: Grading, law: RandomCurvature, h: float, top: float
 ) -> float:
     """What summits add to the slope of the mean by jumping, as `jump_terms`, over all radii."""
-    radii = _Radii.over(law, h)
+    radii = Radii.over(law, h)
     ratios, ends = radii.ratios, (float(h), top)
     at = np.full(ratios.shape, h)
     found = jump_terms(quantity, branch.with_radii(ratios), grading, radii.density, at, ends)

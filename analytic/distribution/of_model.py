@@ -1,0 +1,141 @@
+"""The laws of the quantities of a model."""
+
+from dataclasses import dataclass, replace
+from functools import cached_property, partial
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from analytic.curvature import RandomCurvature
+from analytic.distribution.counted import Counted
+from analytic.distribution.derived import Along, Mapped
+from analytic.distribution.law import Distribution
+from analytic.distribution.one_asperity import OneAsperity
+from analytic.distribution.touching import Touching
+from analytic.height_rule import HeightRule
+from analytic.measured_summits import MeasuredHeights
+from analytic.quantities import quantity_of
+from analytic.radii_rule import Radii
+from analytic.resolution import resolved_breaks
+
+__all__ = ["distribution_of", "interacting_distribution", "separation_law_of"]
+
+Array = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+_FARTHER = (1.0, 3.0, 6.0, 10.0)  # heights above the separation that divide the rule, and reach on
+_FINER = (0.5, 1.0, 2.0, 3.0, 4.5, 6.0, 8.0, 10.0)
+
+
+def distribution_of(model: Any, quantity: str, h: float) -> Distribution | Counted:
+    """As `analytic.Model.distribution`, of a model whose asperities are independent."""
+    q, poisson = quantity_of(quantity), model.count == "poisson"
+    if q.counts:
+        return Counted(float(model.mean(quantity, h) / model.number), model.number, poisson)
+    rule, added = model.asperities(quantity, h, _FARTHER)
+
+    def one(rule: HeightRule) -> OneAsperity:
+        return OneAsperity.of(added(rule), rule.probabilities, model.number, poisson)
+
+    listed = isinstance(model.heights, MeasuredHeights)
+    mixed = model.curvature is not None and model.law is not None  # breaks of every radius for itself
+    itself = None if listed or mixed else _Asperity(model, quantity, h, rule, added)
+    finer = partial(model.asperities, quantity, h, _FINER)
+    return Distribution(Touching(one(rule), lambda: one(finer()[0]), itself), q.scale(model.surface))
+
+
+def separation_law_of(model: Any, load: float, quantity: str) -> Along:
+    """As `analytic.Model.separation_law`, of a model whose asperities are independent."""
+    if quantity_of(quantity).counts or quantity_of(quantity).unloading:
+        raise ValueError(f"quantity = {quantity!r}: give a sum that falls with the separation, as 'load'")
+    start = float(model.separation_at(quantity, load))
+    _falling(model, quantity, start)
+    spread = float(model.std(quantity, start) / model.slope(quantity, start))
+    return Along(partial(distribution_of, model, quantity), lambda _: load, start, spread)
+
+
+def interacting_distribution(model: Any, quantity: str, h: float) -> Distribution | Counted | Along | Mapped:
+    """As `analytic.Model.distribution`, of a model whose asperities press each other down."""
+    c, alone, q = model.compliance, model.alone, quantity_of(quantity)
+    if not model.interaction.nominal:
+        if quantity == "nominal_separation":
+            return Mapped(
+                distribution_of(alone, "load", h), lambda p: h - c * p, lambda x: (h - x) / c, falls=c > 0
+            )
+        if q.base in ("stiffness", "load_slope"):
+            si = c * alone.surface.sigma
+            of = distribution_of(alone, quantity, h)
+            return Mapped(of, lambda k: k / (1 + si * k), lambda k: k / (1 - si * k))
+        return distribution_of(alone, quantity, h)
+    if c < 0:
+        raise ValueError(
+            f"quantity = {quantity!r}: at nominal separations from the mean plane its law is not closed: "
+            "loads pull the plane down, and a surface may have several balances; take effective separations"
+        )
+    if q.base != "load" or q.unloading:
+        if quantity != "effective_separation":
+            raise ValueError(
+                f"quantity = {quantity!r}: at nominal separations the laws of 'load', 'pressure' and "
+                "'effective_separation' are known; take effective separations for others"
+            )
+        return Mapped(interacting_distribution(model, "load", h), lambda p: h + c * p, lambda x: (x - h) / c)
+    each = c * alone.surface.nominal_area if q.of else c  # of d/sigma for each unit of the quantity
+    _falling(alone, quantity, h)
+    felt = float(model.effective(h))
+    start, spread = float(alone.mean(quantity, felt)), float(alone.std(quantity, felt))
+    return Along(lambda p: distribution_of(alone, quantity, h + each * p), lambda p: p, start, spread)
+
+
+def _falling(model: Any, quantity: str, h: float) -> None:
+    """Refuse sums that may rise with the separation."""
+    rule, added = model.asperities(quantity, h)
+    if np.any(added(rule) < 0):
+        raise ValueError(
+            f"quantity = {quantity!r}: some asperities have a negative one, and sums may rise with the "
+            "separation; take a modulus >= 0 and a law without adhesion"
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class _Asperity:
+    """One asperity of a model, as `Asperity`."""
+
+    model: Any
+    quantity: str
+    h: float
+    rule: HeightRule
+    terms: Any
+
+    @cached_property
+    def _radii(self) -> Radii | None:
+        summits = self.model.curvature
+        return Radii.over(summits, self.h) if isinstance(summits, RandomCurvature) else None
+
+    @property
+    def radii(self) -> int:
+        """How many there are."""
+        return 1 if self._radii is None else self._radii.ratios.size
+
+    @cached_property
+    def breaks(self) -> tuple[float, ...]:
+        """Of the grading, the heights and the law of contact."""
+        low, high = max(self.h, self.model.heights.support[0]), self.model.heights.support[1]
+        top = min(high, float(self.rule.heights.max(initial=low)))
+        inner = [*resolved_breaks(self.model.grading, low, top), *self.model.heights.breaks]
+        branch = self.model.ways.of(self.quantity)
+        regimes = branch.regimes(self.model.grading, np.array([self.h]), low, top)
+        inner += [*regimes.low.tolist(), *regimes.high.tolist()]
+        start = float(regimes.low.min(initial=top))
+        return (start, *sorted({s for s in inner if start < s < top}), high)
+
+    def added(self, s: Array, which: Ints) -> Array:
+        """As `Asperity.added`."""
+        ratios = None if self._radii is None else self._radii.ratios[which]
+        return np.asarray(self.terms(replace(self.rule, heights=s, probabilities=0 * s, ratios=ratios)))
+
+    def density(self, s: Array, which: Ints) -> Array:
+        """As `Asperity.density`."""
+        if self._radii is None:
+            return np.asarray(self.model.heights.pdf(s))
+        return self._radii.density(s, which)

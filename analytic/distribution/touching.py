@@ -1,0 +1,149 @@
+"""What one asperity of a model adds to a sum: at the nodes of a rule, and as a density for few contacts."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from analytic.distribution.few_contacts import FewContacts
+from analytic.distribution.one_asperity import OneAsperity
+from analytic.distribution.panels import POWER, panels
+
+__all__ = ["Asperity", "Touching"]
+
+Array = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+_NODES = 16
+_PANELS, _MOST = ((5, 12), (15, 16), (25, 20)), 24  # by the expected contacts
+_MARKS = 6
+_HALVINGS = 56
+_LOOKED_AT = 129  # heights between two breaks at which values must rise
+_CLOSE = 1e-9  # of the largest value: breaks are not told apart
+_HIGHEST = 1e4
+
+
+class Asperity(Protocol):
+    """One asperity, as the height that makes it add something; of one or more radii."""
+
+    @property
+    def radii(self) -> int:
+        """How many radii there are."""
+        ...
+
+    @property
+    def breaks(self) -> tuple[float, ...]:
+        """From the lowest height that touches to the highest; what is added is smooth in between."""
+        ...
+
+    def added(self, s: Array, which: Ints) -> Array:
+        """What asperities of these heights and radii add."""
+        ...
+
+    def density(self, s: Array, which: Ints) -> Array:
+        """Density of the heights of asperities of these radii, with the weights of the radii."""
+        ...
+
+
+@dataclass(frozen=True, eq=False)
+class Touching:
+    """One asperity, by rules over its heights and, for few contacts, by its density.
+
+    Parameters
+    ----------
+    one : OneAsperity
+        By a rule.
+    finer : callable
+        Gives it by one of more nodes.
+    asperity : Asperity, optional
+        Itself. Without it the law of few contacts is found by its transform, less accurately.
+    """
+
+    one: OneAsperity
+    finer: Callable[[], OneAsperity]
+    asperity: Asperity | None
+
+    @cached_property
+    def rises(self) -> bool:
+        """Whether what is added begins at 0 and rises with the height, piece by piece."""
+        pieces = self._pieces(float(self.one.values.max(initial=0.0)))
+        return bool(pieces) and pieces[0][2] <= _CLOSE * pieces[-1][3]
+
+    def _pieces(self, top: float) -> list[tuple[float, float, float, float]]:
+        """Heights between breaks, and what asperities of the first radius add at both ends; up to a value."""
+        found: list[tuple[float, float, float, float]] = []
+        if self.asperity is None:
+            return found
+        for low, high in pairwise(self._ends(self.asperity, top)):
+            s = low + (high - low) * np.linspace(0, 1, _LOOKED_AT) ** 2
+            s[-1] = np.nextafter(high, low)
+            added = self.asperity.added(s, np.zeros(s.size, dtype=np.int64))
+            if np.any(np.diff(added) < 0) or added[0] < 0:
+                return []
+            if added[-1] > added[0]:
+                found.append((low, float(s[-1]), float(added[0]), float(added[-1])))
+        return found
+
+    @staticmethod
+    def _ends(asperity: Asperity, top: float) -> tuple[float, ...]:
+        """The breaks, the last of them where more than a value is added, if there are such heights."""
+        *inner, last = asperity.breaks
+        if np.isfinite(last):
+            return asperity.breaks
+        step = 1.0
+        every = np.arange(asperity.radii)
+        while step < _HIGHEST and np.any(asperity.added(np.full(every.size, inner[-1] + step), every) <= top):
+            step *= 2
+        return (*inner, inner[-1] + step)
+
+    def few(self, usual: float, doublings: int, tilt: float, *, coarse: bool = False) -> FewContacts:
+        """The law of a sum of few contacts, up to a usual value doubled so many times."""
+        asperity, one, top = self.asperity, self.one, usual * 2.0**doublings
+        assert asperity is not None
+        pieces = self._pieces(top)
+        number = next((panels for most, panels in _PANELS if one.contacts < most), _MOST)
+        number, nodes = (number - 2, _NODES - 2) if coarse else (number, _NODES)
+        on = panels(number, doublings, nodes, _marks(pieces, top))
+        x, density = on.x * top, np.zeros(on.x.shape)
+        which = np.arange(asperity.radii)
+        for low, high, least, most in pieces:
+            inside = (x[:, 0] > least - _CLOSE * top) & (x[:, -1] < most + _CLOSE * top)
+            if not inside.any():
+                continue
+            wanted = x[inside].ravel()
+            of = np.repeat(which, wanted.size)
+            s = _heights(asperity, np.tile(wanted, which.size), of, low, high)
+            shape = (which.size, -1, on.nodes)
+            slopes = on.derivative(s.reshape(shape), inside)
+            density[inside] += (asperity.density(s, of).reshape(shape) * slopes).sum(axis=0)
+        return FewContacts(density, one.share, one.number, one.poisson, top, on, tilt)
+
+
+def _marks(pieces: list[tuple[float, float, float, float]], top: float) -> tuple[float, ...]:
+    """In w, where the density of one asperity jumps or those of some of them have kinks."""
+    ends = {end for piece in pieces for end in piece[2:] if _CLOSE * top < end < top * (1 - _CLOSE)}
+    sums = set(ends)
+    while ends and len(sums) <= _MARKS:
+        more = {a + b for a in ends for b in sums if a + b < top * (1 - _CLOSE)} | sums
+        if len(more) == len(sums):
+            break
+        sums = more
+    marks: list[float] = []
+    for end in sorted(sums):
+        if not marks or end > marks[-1] + _CLOSE * top:
+            marks.append(end)
+    return tuple(((np.array(marks) / top) ** (1 / POWER)).tolist())
+
+
+def _heights(asperity: Asperity, x: Array, which: Ints, low: float, high: float) -> Array:
+    """Where asperities of some radii add x, between two heights."""
+    left, right = np.full(x.shape, low), np.full(x.shape, high)
+    for _ in range(_HALVINGS):
+        middle = (left + right) / 2
+        less = asperity.added(middle, which) < x
+        left, right = np.where(less, middle, left), np.where(less, right, middle)
+    return np.asarray((left + right) / 2)

@@ -1,0 +1,278 @@
+"""The exact law of a finite surface against other ways to it, and the faults that these must see."""
+
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from scipy import stats
+from scipy.integrate import quad
+from scipy.optimize import brentq
+
+import analytic
+from analytic.curvature import MEAN_CURVATURE
+from analytic.distribution.contour import by_contour
+
+GRADED = analytic.Exponential(2.0)
+
+
+def model(n, area=1.0, **more):
+    surface = analytic.Surface(sigma=1e-6, radius=1e-5, eta=n / area, nominal_area=area, E_star=1e9)
+    return analytic.Model(surface, **{"grading": GRADED, **more})
+
+
+def unit(of, quantity):
+    return analytic.quantity_of(quantity).scale(of.surface)
+
+
+# By mpmath: a Bromwich line with Euler's summation, two settings that agree to these digits.
+AT = (0.25, 0.8, 1.0, 1.5)
+BY_MPMATH = [
+    ("load", 3, "fixed", (7.987558487518e-5, 0.241859635747704, 0.53163709288702, 0.955227311677027)),
+    ("load", 3, "poisson", (8.021576157431e-5, 0.241919764395976, 0.53164031879688, 0.955195593753859)),
+    ("load", 2, "fixed", (0, 5.18491754998572e-4, 0.507224828923717, 0.999999999997491)),
+    ("load", 2, "poisson", (0, 5.43992551445528e-4, 0.507240957263101, 0.999999999996989)),
+    ("area", 3, "fixed", (3.364255505342e-6, 0.178056917783268, 0.520400510700854, 0.983967035731227)),
+    ("area", 3, "poisson", (3.389666402617e-6, 0.178153292295308, 0.520409433554682, 0.983936962879777)),
+]
+
+
+@pytest.mark.parametrize(("quantity", "h", "count", "known"), BY_MPMATH)
+def test_the_cdf_is_that_of_another_inversion(quantity, h, count, known):
+    law = model(30_000, count=count).distribution(quantity, h)
+    np.testing.assert_allclose(law.cdf(np.array(AT) * law.mean()), known, rtol=1e-12, atol=2e-14)
+    assert law.error < 1e-12
+
+
+def test_what_is_wrong_by_little_would_be_seen():
+    fixed, poisson = (model(30_000, count=x).distribution("load", 2) for x in ("fixed", "poisson"))
+    x = 0.8 * fixed.mean()
+    assert abs(fixed.cdf(x) - poisson.cdf(x)) > 1e-5
+    stiffer = model(30_000, grading=analytic.Exponential(2.01)).distribution("load", 2)
+    assert abs(stiffer.cdf(x) - fixed.cdf(x)) > 1e-5
+    at_h = model(30_000, grading=analytic.Custom(lambda s: GRADED(0 * s + 2.0))).distribution("load", 2)
+    assert abs(at_h.cdf(x) - fixed.cdf(x)) > 1e-3
+
+
+# By mpmath's quadrature of one asperity and of two.
+ONE_AND_TWO = [
+    (0, 0.5, 0.6929815469329486, 0.47085257832441),
+    (0, 2.0, 0.8697681930421124, 0.73166835057875),
+    (1, 0.5, 0.9239229110893389, 0.85205641598765),
+    (1, 2.0, 0.9796004772597656, 0.95737835710634),
+]
+
+
+@pytest.mark.parametrize(("h", "x", "one", "two"), ONE_AND_TWO)
+def test_one_asperity_and_two(h, x, one, two):
+    for n, known in ((1, one), (2, two)):
+        of = model(n)
+        law = of.distribution("load", h)
+        assert law.cdf(x * unit(of, "load")) == pytest.approx(known, rel=2e-13)
+        assert law.atom == pytest.approx(stats.norm.cdf(h) ** n, rel=1e-14)
+
+
+@pytest.mark.parametrize("quantity", ["load", "area", "conductance"])
+def test_one_asperity_by_its_height(quantity):
+    of, h = model(1), 1.3
+    q, law = analytic.quantity_of(quantity), of.distribution(quantity, h)
+
+    def added(s):
+        return (s - h) ** q.exponent * GRADED(np.array(s)) ** q.modulus
+
+    for x in (1e-3, 0.1, 3.0):
+        s = brentq(lambda s, x=x: added(s) - x, h, 40, xtol=1e-14)
+        assert law.sf(x * unit(of, quantity)) == pytest.approx(stats.norm.sf(s), rel=1e-12)
+
+
+def binomial_gamma(n, share, x, count):
+    k = np.arange(1, 200)
+    ways = stats.poisson(n * share).pmf(k) if count == "poisson" else stats.binom(n, share).pmf(k)
+    return float(ways @ stats.gamma(k).sf(x))
+
+
+@pytest.mark.parametrize("count", ["fixed", "poisson"])
+@pytest.mark.parametrize(("n", "h"), [(30, 2.0), (300, 2.0), (1000, 10.0), (30, 7.0), (2000, 3.0)])
+def test_areas_of_exponential_heights_are_gamma_sums(n, h, count):
+    of = model(n, heights=analytic.ExponentialHeights(), grading=analytic.Homogeneous(), count=count)
+    law, share = of.distribution("area", h), np.exp(-1 - h)
+    for x in (0.1, 1.0, 10.0, 40.0):
+        known = binomial_gamma(n, share, x, count)
+        assert law.sf(x * unit(of, "area")) == pytest.approx(known, rel=1e-10, abs=1e-300)
+        assert law.sf(x * unit(of, "area")) == pytest.approx(known, rel=1e-12, abs=1e-12)
+
+
+@pytest.mark.parametrize("count", ["fixed", "poisson"])
+@pytest.mark.parametrize("h", [0.0, 2.0, 3.5])
+@pytest.mark.parametrize("quantity", ["load", "area", "stiffness", "conductance", "pressure"])
+def test_its_moments_are_the_cumulants(quantity, h, count):
+    of = model(3000, count=count)
+    law, known = of.distribution(quantity, h), of.cumulants(quantity, h)
+    assert law.mean() == pytest.approx(float(known.mean), rel=1e-12)
+    assert law.var() == pytest.approx(float(known.variance), rel=1e-12)
+
+
+@pytest.mark.parametrize("n", [1e4, 1e6, 1e9])
+def test_far_tails_have_their_own_digits(n):
+    law = model(n).distribution("load", 2.0)
+    shares = np.array([1e-30, 1e-12, 1e-3, 0.5])
+    np.testing.assert_allclose(law.sf(law.isf(shares)), shares, rtol=3e-9 if n > 1e8 else 1e-11)
+    np.testing.assert_allclose(law.cdf(law.ppf(shares)), shares, rtol=3e-9 if n > 1e8 else 1e-11)
+    x = law.isf(shares)
+    step = 1e-4 * law.std()
+    by_hand = (law.sf(x[:3] - step) - law.sf(x[:3] + step)) / (2 * step)
+    np.testing.assert_allclose(law.pdf(x[:3]), by_hand, rtol=1e-5)
+
+
+def test_both_ways_meet_where_contacts_are_not_few_any_more():
+    of = model(30_000).distribution("load", 3.05)  # 34 contacts
+    x = of.mean() / of.unit * np.array([0.6, 1.0, 2.0, 4.0])
+    line, few = by_contour(of.touching.one, x), of._values(x)
+    np.testing.assert_allclose(line.cdf, few.cdf, rtol=1e-11)
+    np.testing.assert_allclose(line.sf, few.sf, rtol=1e-10)
+    np.testing.assert_allclose(line.pdf, few.pdf, rtol=1e-10)
+
+
+@pytest.mark.parametrize("n", [1e15, 1e12])
+def test_a_law_of_very_many_is_gaussian_and_no_more(n):
+    of = model(n).distribution("load", 1.0)
+    z = np.array([-3.0, 0.5, 4.0])
+    skewness = of.touching.one.skewness
+    known = stats.norm.cdf(z) - skewness / 6 * (z**2 - 1) * stats.norm.pdf(z)
+    np.testing.assert_allclose(of.cdf(of.mean() + z * of.std()), known, atol=1e-8)
+
+
+def test_a_heavy_tail_is_one_big_jump():
+    of = model(30_000, heights=analytic.ScipyHeights(stats.t(3)), grading=analytic.Homogeneous())
+    law = of.distribution("area", 1.0)
+    x = law.mean() + 3000 * law.std()
+    alone = 30_000 * float(of.heights.sf(np.array(1.0 + (x - law.mean()) / unit(of, "area"))))
+    assert law.sf(x) == pytest.approx(alone, rel=1e-2)
+    assert law.error < 1e-6
+
+
+@pytest.mark.parametrize("count", ["fixed", "poisson"])
+def test_contacts_are_counted(count):
+    of = model(3000, count=count)
+    law, share = of.distribution("contacts", 2.0), stats.norm.sf(2.0)
+    known = stats.poisson(3000 * share) if count == "poisson" else stats.binom(3000, share)
+    np.testing.assert_allclose(law.cdf([40, 68, 90]), known.cdf([40, 68, 90]), rtol=1e-11)
+    assert law.atom == pytest.approx(known.pmf(0), rel=1e-11)
+    assert law.ppf(0.5) == known.ppf(0.5)
+
+
+def test_shapes_ends_and_the_atom():
+    law = model(300).distribution("load", 2.5)
+    np.testing.assert_array_equal(law.cdf([-1.0, np.inf, np.nan]), [0, 1, np.nan])
+    np.testing.assert_array_equal(law.sf([-1.0, np.inf, np.nan]), [1, 0, np.nan])
+    np.testing.assert_array_equal(law.ppf([0, law.atom / 2, 1, -1, 2]), [0, 0, np.inf, np.nan, np.nan])
+    assert law.cdf(0.0) == pytest.approx(law.atom)
+    assert law.cdf(np.full((2, 3), law.mean())).shape == (2, 3)
+    assert np.ndim(law.cdf(law.mean())) == 0
+    drawn = law.rvs(4000, random_state=3)
+    assert np.mean(drawn == 0) == pytest.approx(law.atom, abs=0.03)
+    assert stats.kstest(drawn[drawn > 0], lambda x: (law.cdf(x) - law.atom) / (1 - law.atom)).pvalue > 1e-3
+
+
+def drawn_load(n, h, surfaces, seed):
+    rng = np.random.default_rng(seed)
+    s = rng.standard_normal((surfaces, n))
+    return np.where(s > h, GRADED(s) * np.maximum(s - h, 0) ** 1.5, 0).sum(axis=1)
+
+
+def test_drawn_surfaces_follow_it_and_not_its_neighbours():
+    of, drawn = model(1000), drawn_load(1000, 1.0, 4000, 5)
+    law = of.distribution("load", 1.0)
+    assert stats.kstest(drawn * unit(of, "load"), law.cdf).pvalue > 1e-3
+    other = model(1000, grading=analytic.Exponential(2.2)).distribution("load", 1.0)
+    assert stats.kstest(drawn * unit(of, "load"), other.cdf).pvalue < 1e-3
+
+
+def test_at_nominal_separations_each_surface_has_its_balance():
+    of, h = model(300, area=1e-6), 0.5
+    pressed = analytic.InteractingModel.of(of, analytic.Interaction("body", at="nominal"))
+    law, c = pressed.distribution("load", h), pressed.compliance
+    rng, found = np.random.default_rng(2), []
+    for _ in range(400):
+        s = rng.standard_normal(300)
+
+        def excess(x, s=s):
+            return (
+                x
+                - h
+                - c * unit(of, "load") * np.where(s > x, GRADED(s) * np.maximum(s - x, 0) ** 1.5, 0).sum()
+            )
+
+        x = brentq(excess, h, 60)
+        found.append((x - h) / c)
+    assert stats.kstest(found[:150], law.cdf).pvalue > 1e-3
+    assert stats.kstest(found[:150], of.distribution("load", h).cdf).pvalue < 1e-6
+    felt = pressed.distribution("effective_separation", h)
+    assert felt.cdf(h + c * law.median()) == pytest.approx(0.5, abs=1e-9)
+    with pytest.raises(ValueError, match="effective separations"):
+        pressed.distribution("area", h)
+    plane = analytic.InteractingModel.of(of, analytic.Interaction("mean-plane", at="nominal"))
+    with pytest.raises(ValueError, match="mean plane"):
+        plane.distribution("load", 1.0)
+
+
+def test_stiffness_in_series_and_the_nominal_separation():
+    of = model(3000)
+    pressed = analytic.InteractingModel.of(of, analytic.Interaction("body"))
+    stiff, c = pressed.distribution("stiffness", 1.0), pressed.compliance * of.surface.sigma
+    k = of.distribution("stiffness", 1.0).ppf(0.3)
+    assert stiff.ppf(0.3) == pytest.approx(k / (1 + c * k), rel=1e-12)
+    nominal = pressed.distribution("nominal_separation", 1.0)
+    p = of.distribution("load", 1.0).isf(0.3)
+    assert nominal.ppf(0.3) == pytest.approx(1.0 - pressed.compliance * p, rel=1e-12)
+    assert nominal.mean() == pytest.approx(float(pressed.mean("nominal_separation", 1.0)), rel=1e-9)
+
+
+def test_the_separation_at_a_load():
+    """Known values: Gil-Pelaez on a rule of its own, and 8000 drawn surfaces of 19 contacts."""
+    of = model(3000, grading=analytic.Homogeneous(), count="poisson")
+    law = of.separation_law(float(of.mean("load", 2.5)))
+    np.testing.assert_allclose(law.cdf([2.3, 2.5, 2.7]), [0.04017, 0.54496, 0.94262], atol=6e-6)
+    assert law.cdf(law.ppf(0.05)) == pytest.approx(0.05, rel=1e-9)
+    assert law.mean() - 2.5 == pytest.approx(-4.477e-3, abs=6e-4)
+    assert law.var() == pytest.approx(1.5e-2, rel=0.03)
+
+
+def test_laws_of_contact_and_radii_keep_their_moments():
+    radii = analytic.RandomCurvature(5.0)
+    for more in (
+        {"law": analytic.KogutEtsion(critical=0.05)},
+        {"curvature": radii, "heights": radii.heights},
+        {"heights": analytic.Weibull(3.0)},
+    ):
+        of = model(3000, **more)
+        law, known = of.distribution("load", 1.0), of.cumulants("load", 1.0)
+        assert law.var() == pytest.approx(float(known.variance), rel=1e-11)
+        assert law.error < 1e-11
+        assert law.cdf(law.ppf(0.01)) == pytest.approx(0.01, rel=1e-10)
+
+
+def test_few_contacts_of_radii_of_their_own():
+    radii, h, x = analytic.RandomCurvature(5.0), 1.0, 0.7
+    of = model(1, curvature=radii, heights=radii.heights, grading=analytic.Homogeneous())
+
+    def larger(s):
+        return float(radii.heights.pdf(np.array(s)) * radii.cdf(MEAN_CURVATURE * (s - h) / x, s))
+
+    known = quad(larger, h, 9, epsabs=1e-13, limit=200)[0]
+    assert of.distribution("area", h).sf(x * unit(of, "area")) == pytest.approx(known, rel=1e-8)
+
+
+def test_asperities_that_pull():
+    law = analytic.DerjaguinMullerToporov(pull_off=0.01)
+    of = model(3000, law=law, grading=analytic.Homogeneous())
+    law, known = of.distribution("load", 1.0), of.cumulants("load", 1.0)
+    assert law.mean() == pytest.approx(float(known.mean), rel=1e-10)
+    np.testing.assert_allclose(law.cdf(law.ppf([0.001, 0.5, 0.999])), [0.001, 0.5, 0.999], rtol=1e-9)
+    with pytest.raises(ValueError, match="adhesion"):
+        of.separation_law(float(known.mean))
+
+
+def test_nobody_pays_for_it_who_does_not_ask():
+    code = "import analytic, mcgw.scene.scene, sys; sys.exit('analytic.distribution' in sys.modules)"
+    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
