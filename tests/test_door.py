@@ -193,7 +193,7 @@ def test_what_only_python_can_get_wrong(change, told):
 def test_all_mistakes_are_told_at_once():
     said = problems(lambda: scene(separations="x", grading=3, n_surfaces=0, sampler="cell"))
     assert [line.split(" = ")[0] for line in said] == [
-        "contact.separations", "grading", "ensemble.n_surfaces", "ensemble.sampler",
+        "grading", "contact.separations", "ensemble.n_surfaces", "ensemble.sampler",
     ]  # fmt: skip
     said = problems(lambda: mcgw.Surface(-1, "13 N", 3e8, 1e-6, 1e9))
     assert [line.split(" = ")[0] for line in said] == ["surface.sigma", "surface.radius"]
@@ -219,7 +219,7 @@ CALLS = [
      r"^seconds = '1 m': give a finite number > 0 in s, such as 90 s"),
     (lambda: mcgw.fit("map.x3p", cutoff="5 N"), r"^cutoff = '5 N': give a finite number > 0 in m"),
     (lambda: mcgw.fit("map.x3p", cutoff=None, form="x"),
-     r"^form = 'x': choose one of none, plane, quadratic, cubic, quartic, sphere, cylinder$"),
+     r"^form = 'x': choose one of plane, none, quadratic, cubic, quartic, sphere, cylinder$"),
     (lambda: mcgw.fit("map.x3p", cutoff=None, parts=1), r"^parts = 1: give a whole number >= 2$"),
     (lambda: mcgw.fit("map.x3p", cutoff=None, pixel=-1), r"^pixel = -1: give a finite number > 0 in m"),
     (lambda: mcgw.fit("absent.x3p", cutoff=None), r"^absent\.x3p: no such file$"),

@@ -121,8 +121,8 @@ FEATURES = {
 # Laws of contact and height, and interaction: by the last part of their names.
 LAWS = {
     "adhesion", "custom", "elastic", "elastic_plastic", "elastic_plastic_laws", "law_rows",
-    "balance", "half_space", "interacting", "interaction", "interaction_mistakes", "interaction_section",
-    "lowest_felt", "nominal", "nominal_literal", "own_balance",
+    "balance", "half_space", "interacting", "interaction", "interaction_mistakes",
+    "nominal", "nominal_literal", "own_balance",
 }  # fmt: skip
 
 

@@ -10,8 +10,8 @@ from test_scene_keys import text_of
 
 import analytic
 import mcgw
+from mcgw.scene.keys import SURFACE_UNITS
 from mcgw.scene.scene import Scene, SceneError
-from mcgw.scene.surface import SURFACE_UNITS
 
 GOOD = """
 [surface]
@@ -76,7 +76,7 @@ def put(section, line):
 # Text of a scene, and what its error must say: the key, and what would do.
 BAD = [
     *((separations(f"[0.0, {x}]"), "contact.separations") for x in ("nan", "inf", "-inf", "1e400")),
-    (separations("[]"), "contact.separations = []: give at least one separation d/sigma"),
+    (separations("[]"), "contact.separations = []: give at least one; give a list of finite numbers d/sigma"),
     (separations('[1.0, "a", true]'), "contact.separations"),
     (separations("[2026-11-21]"), "contact.separations"),
     (separations("{start = 0, stop = 4, num = 1000000}"), "at most 100000"),
@@ -91,7 +91,8 @@ BAD = [
     (GOOD + '[grading]\nlaw = "table"\nfile = "absent.csv"',
      "grading.file = 'absent.csv': give a CSV file, or lists s and ratio; absent.csv: No such file"),
     (changed("seed = 5", 'sampler = "cell"'), "ensemble.sampler = 'cell': did you mean cells? choose one"),
-    (put("contact", 'quantities = ["lod"]'), "contact.quantities: 'lod' is not one of load"),
+    (put("contact", 'quantities = ["lod"]'),
+     "contact.quantities = 'lod': did you mean load? choose one of load, area"),
     (changed("E_star = 1e11", "bodies = [{E = 70e9}]"), "give two, as [{E = 70e9, nu = 0.33}, {E = inf}]"),
     (changed("radius = 1e-5", ""), "surface.radius: missing; give it in m"),
     ("", "surface.sigma: missing"),

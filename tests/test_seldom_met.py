@@ -9,8 +9,7 @@ from scipy import stats
 import analytic
 import mcgw
 from mcgw.cli import main
-from mcgw.scene.contact_text import accuracy_facts, contact_facts
-from mcgw.scene.law_text import law_text
+from mcgw.scene.in_words import accuracy_facts, contact_facts, law_text
 from mcgw.statistics.comparison import verdict
 
 SPECTRAL = mcgw.SpectralSurface(1e-12, 1e-3, 5e6, "1 mm^2", "78.6 GPa")
@@ -24,11 +23,11 @@ PUSHED = "{friction = 0.3, poisson = 0.25, displacements = [1e-8, 3e-8]}"
 # Of a scene file: what is added to a table, and the line that names it with what would do.
 ADDED = [
     ("surface", ", bodies = [{E = 7e10}, {E = inf}]",
-     "surface.E_star = 100000000000.0: give either E_star or bodies, not both"),
+     "give it or E_star, not both"),
     ("contact", ", resistivity = 1e-7, conductivities = [1.0, 2.0]",
-     "contact.resistivity = 1e-07: give it, or conductivities, not both"),
+     "contact.resistivity = 1e-07: give it or conductivities, not both"),
     ("contact", ", film_resistance = 1e-12",
-     "contact.film_resistance = 1e-12: give resistivity in ohm m, or conductivities = [k1, k2]"),
+     "contact.film_resistance = 1e-12: give resistivity or conductivities too, or leave it out"),
     ("contact", ', law = "power-law-graded", c0 = "10 um"',
      'contact.k: missing; law = "power-law-graded" needs it'),
     ("contact", ', law = "kogut-etsion", critical = 0.05, hardness = 1e9', "give one of them"),
@@ -65,7 +64,7 @@ CALLS = [
     (lambda scene: scene.replace(film=3), "contact.film = 3: give resistivity and film_resistance"),
     (lambda scene: scene.replace(law={"critical": 0.05}), "contact.law = None: choose one of hertz"),
     (lambda scene: mcgw.SpectralSurface(-1.0, 1e-3, 5e6, 1e-6, 1e11), "surface.m0 = -1"),
-    (lambda scene: scene.replace(separations=np.zeros(100_001)), "give at most 100000 of them, not 100001"),
+    (lambda scene: scene.replace(separations=np.zeros(100_001)), "at most 100000 of them"),
     (lambda scene: mcgw.run(scene, "e.h5", threads=0), "threads = 0: give a whole number >= 1"),
     (lambda scene: mcgw.sweep(scene, {"grading.gamma": [1, 2]}, path="s.h5", threads=-1),
      "threads = -1: give a whole number >= 1"),

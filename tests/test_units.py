@@ -12,9 +12,9 @@ import analytic
 import mcgw
 from mcgw.cli import COMMANDS
 from mcgw.formats.units import _FACTORS, EXAMPLES, METRES, parse
+from mcgw.scene.keys import SURFACE_UNITS
 from mcgw.scene.plausible import RANGES, perhaps_other_units
 from mcgw.scene.scene import Scene
-from mcgw.scene.surface import SURFACE_UNITS
 
 # One of each, in SI. Written out: a table that was computed would repeat the mistakes of the other.
 LITERAL = {

@@ -16,7 +16,7 @@ import numpy as np
 import analytic
 import mcgw
 from analytic.laws import by_name
-from mcgw.scene.heights_section import LAWS as HEIGHT_LAWS
+from mcgw.scene.keys import KEYS
 from mcgw.statistics.verdict import FALSE_ALARM
 
 HERE = Path(__file__).resolve().parent
@@ -179,7 +179,7 @@ def counted() -> Numbers:
     rows = [line for line in errata.splitlines() if line.startswith("| ")]
     return {
         "contact_laws": str(len(by_name)),
-        "height_laws": str(len(HEIGHT_LAWS)),
+        "height_laws": str(len(KEYS["heights"]["law"].kind.known)),
         "errata": str(len(rows) - 1),
     }
 

@@ -48,7 +48,7 @@ def execute(args: argparse.Namespace) -> int:
     from mcgw.ensemble.regrading import regrade, regraded_scene
     from mcgw.formats.table import stacked
     from mcgw.reports.text import ratio_tables
-    from mcgw.scene.grading_section import read_grading
+    from mcgw.scene.files_beside import read_grading
     from mcgw.store.ensembles import open_ensemble
     from mcgw.store.place import finished
     from mcgw.store.saving import save
@@ -97,7 +97,7 @@ def law_of(args: argparse.Namespace) -> "ContactLaw | None":
     SceneError
         If a value is wrong; the line names the key.
     """
-    from mcgw.scene.law_section import read_law
+    from mcgw.scene.laws import read_law
 
     given = {key: getattr(args, key) for key in (name.replace("-", "_") for name in _CONSTANTS)}
     constants = {key: _plain(value) for key, value in given.items() if value is not None}

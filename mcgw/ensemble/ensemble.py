@@ -13,8 +13,7 @@ from mcgw.ensemble.results import PROBABILITIES, Held
 from mcgw.formats.sheet import Sheet, Shown
 from mcgw.formats.table import Column, Table
 from mcgw.machine.notebook import plotted
-from mcgw.scene.contact_text import accuracy_facts, contact_facts
-from mcgw.scene.law_text import law_text
+from mcgw.scene.in_words import accuracy_facts, contact_facts, law_text
 from mcgw.scene.samplers import promise_of
 from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_text

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.simulation import simulate
 from mcgw.sampling.samplers import sampler_of
-from mcgw.scene.drawn_by import drawn_by
+from mcgw.scene.storable import drawn_by
 
 __all__ = ["at_pressures", "common_pressures", "loaded_part", "with_values"]
 

@@ -10,8 +10,8 @@ from mcgw.ensemble.ensemble import Ensemble
 from mcgw.formats.sheet import Sheet, Shown
 from mcgw.formats.table import SEPARATION, Column, Table
 from mcgw.machine.notebook import plotted
-from mcgw.scene.drawn_by import drawn_by
-from mcgw.scene.wrong_object import check_object
+from mcgw.scene.arguments import check_object
+from mcgw.scene.storable import drawn_by
 
 __all__ = ["Paired", "paired_ratio"]
 

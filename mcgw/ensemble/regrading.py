@@ -18,12 +18,10 @@ from mcgw.sampling.block import Block
 from mcgw.sampling.counted import Counted
 from mcgw.sampling.law_sums import asperity_sums
 from mcgw.sampling.samplers import regraded, sampler_of
-from mcgw.scene.drawn_by import drawn_by
-from mcgw.scene.law_section import read_law
-from mcgw.scene.reading import as_toml
+from mcgw.scene.arguments import as_toml, check_object
+from mcgw.scene.laws import read_law
 from mcgw.scene.scene import Scene
-from mcgw.scene.storable import storable
-from mcgw.scene.wrong_object import check_object
+from mcgw.scene.storable import drawn_by, storable
 
 __all__ = ["regrade", "regraded_scene", "sums_of_heights"]
 

@@ -16,9 +16,9 @@ from mcgw.ensemble.results import CHUNK_ROWS, MemoryResults, Tables, joined
 from mcgw.errors import StoreError
 from mcgw.machine.memory import check_memory
 from mcgw.machine.progress import Progress, told
+from mcgw.scene.arguments import check_object
 from mcgw.scene.scene import LeftOut, Scene
 from mcgw.scene.storable import storable
-from mcgw.scene.wrong_object import check_object
 
 __all__ = ["Values", "reducer_of", "simulate"]
 

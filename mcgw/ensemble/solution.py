@@ -13,10 +13,9 @@ from mcgw.ensemble.separation import Summits
 from mcgw.ensemble.solved import Solution, with_half_space, with_mean_gap
 from mcgw.machine.progress import Progress, told
 from mcgw.sampling.asperities import summits, touching_summits
-from mcgw.scene.reading import argument, as_toml
+from mcgw.scene.arguments import argument, as_toml, check_object
 from mcgw.scene.scene import Scene
 from mcgw.scene.section import nearest
-from mcgw.scene.wrong_object import check_object
 
 __all__ = ["Solution", "given_values", "solutions", "solve"]
 

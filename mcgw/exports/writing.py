@@ -15,7 +15,7 @@ from mcgw.exports.curves import KINDS, Kind, curves_of
 from mcgw.exports.programs import PROGRAMS, Program, check_name
 from mcgw.exports.table_text import UNIT_SYSTEMS, UnitSystem, all_curves, heading, in_units, table_text
 from mcgw.formats.files import write_whole
-from mcgw.scene.reading import argument, as_toml
+from mcgw.scene.arguments import argument, as_toml
 from mcgw.scene.samplers import promise_of
 from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_text

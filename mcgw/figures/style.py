@@ -14,7 +14,7 @@ from cycler import cycler
 from analytic import Exponential, Grading, Hertz, Homogeneous, PiecewiseSeries
 from mcgw.formats.numbers import RAISED
 from mcgw.machine.terminal import one_line
-from mcgw.scene.law_text import law_text
+from mcgw.scene.in_words import law_text
 from mcgw.scene.scene import Scene
 
 __all__ = [

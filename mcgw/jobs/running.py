@@ -16,8 +16,8 @@ from mcgw.jobs.job import Job, as_recorded, commit_block, draw_block
 from mcgw.jobs.merging import merge_once
 from mcgw.jobs.session import By, Part, asked_of
 from mcgw.machine.progress import Progress
+from mcgw.scene.arguments import check_object
 from mcgw.scene.scene import Scene
-from mcgw.scene.wrong_object import check_object
 from mcgw.store.ensembles import open_ensemble
 from mcgw.store.lock import locked
 from mcgw.store.place import drop_leftovers, tidy, with_recorded_seed

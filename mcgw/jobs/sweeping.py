@@ -7,8 +7,8 @@ from typing import Any, overload
 from mcgw.ensemble.drawing import use_threads
 from mcgw.jobs.session import By, asked_of
 from mcgw.machine.progress import Progress, told
+from mcgw.scene.arguments import check_object
 from mcgw.scene.scene import Scene
-from mcgw.scene.wrong_object import check_object
 from mcgw.sweeps.axes import axes_of
 from mcgw.sweeps.drawing import draw, weighted
 from mcgw.sweeps.points import Asked

@@ -11,8 +11,8 @@ from analytic import HeightTable, MeasuredHeights, MeasuredRadii, Nayak, RandomC
 from mcgw.formats.files import whole_file
 from mcgw.maps.fit import Fit
 from mcgw.maps.profile_fit import ProfileFit
-from mcgw.scene.fitted_section import Fitted
-from mcgw.scene.reading import argument
+from mcgw.scene.arguments import argument
+from mcgw.scene.fitted import Fitted
 from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_document
 

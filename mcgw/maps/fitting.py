@@ -13,7 +13,7 @@ from mcgw.maps.profile_files import holds_profile, read_profile
 from mcgw.maps.profile_fit import ProfileFit, fit_profiles
 from mcgw.maps.steps import Form, LinesTo, Missing, SpikesTo, StepTo
 from mcgw.maps.topography import Topography
-from mcgw.scene.reading import argument
+from mcgw.scene.arguments import argument
 
 __all__ = ["fit"]
 

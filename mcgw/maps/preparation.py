@@ -13,8 +13,9 @@ from mcgw.maps.form import lowpass, smooth, without_form, without_offsets
 from mcgw.maps.levels import step_of
 from mcgw.maps.steps import STEPS, Form, LinesTo, Missing, SpikesTo, StepTo
 from mcgw.maps.topography import SMALLEST, Topography
-from mcgw.scene.reading import as_toml
-from mcgw.scene.section import SceneError, Section
+from mcgw.scene.arguments import arguments
+from mcgw.scene.kinds import Whole, Word
+from mcgw.scene.section import Kind
 
 __all__ = ["Preparation", "Prepared", "preparation_of", "prepared"]
 
@@ -60,17 +61,14 @@ def preparation_of(given: Mapping[str, Any], length: Callable[[str, Any], float]
     SceneError
         If words or numbers are none of those known, all of them told at once.
     """
-    section = Section("", {key: as_toml(value) for key, value in given.items()}, [])
-    numbers = [section.whole(key, least=least) for key, least in (("parts", 2), ("trim", 0))]
-    chosen: dict[str, Any] = {
-        step.name: section.choice(step.name, step.kinds[0], step.kinds) for step in STEPS if step.kinds
-    }
-    if section.problems:
-        raise SceneError(section.problems)
+    kinds: dict[str, Kind] = {"parts": Whole(2), "trim": Whole()}
+    kinds |= {step.name: Word(tuple(step.kinds)) for step in STEPS if step.kinds}
+    chosen = arguments(given, kinds)
+    parts = chosen.pop("parts")
     for key in (step.name for step in STEPS if not step.kinds):
         value = given[key]
         chosen[key] = None if value is None or value == "none" else length(key, value)
-    return Preparation(**chosen, trim=numbers[1]), numbers[0]
+    return Preparation(**chosen), parts
 
 
 @dataclass(frozen=True)

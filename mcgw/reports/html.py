@@ -21,8 +21,7 @@ from mcgw.reports.report_figures import (
 )
 from mcgw.reports.side_notes import elasticity_words
 from mcgw.scene.cautions import cautions
-from mcgw.scene.contact_text import contact_facts
-from mcgw.scene.law_text import law_text
+from mcgw.scene.in_words import contact_facts, law_text
 from mcgw.scene.other_laws import other_laws
 from mcgw.scene.samplers import promise_of
 from mcgw.scene.scene import Scene

@@ -13,9 +13,8 @@ from mcgw.reports.side_notes import two_questions
 from mcgw.sampling.block import Sampler
 from mcgw.sampling.samplers import sampler_of
 from mcgw.sampling.shared import shared
-from mcgw.scene.contact_text import contact_facts
-from mcgw.scene.fields import EXACT
-from mcgw.scene.mistakes import COARSEST
+from mcgw.scene.fields import COARSEST, EXACT
+from mcgw.scene.in_words import contact_facts
 from mcgw.scene.samplers import promise_of
 from mcgw.scene.scene import Scene
 from mcgw.sweeps.drawing import Pooling

@@ -8,7 +8,7 @@ from mcgw.ensemble.intervals import MANY
 from mcgw.ensemble.solved import Solution, against_elasticity, rise_of_summits
 from mcgw.formats.table import Column, Table, joined
 from mcgw.reports.side_notes import two_questions
-from mcgw.scene.contact_text import contact_facts
+from mcgw.scene.in_words import contact_facts
 from mcgw.scene.scene import Scene
 
 __all__ = ["solutions_table", "solutions_text"]

@@ -14,8 +14,7 @@ from mcgw.formats.sheet import listed
 from mcgw.formats.table import Column, Table, stacked
 from mcgw.machine.terminal import one_line
 from mcgw.reports.side_notes import against_elasticity, two_questions
-from mcgw.scene.contact_text import accuracy_facts, contact_facts
-from mcgw.scene.law_text import law_text
+from mcgw.scene.in_words import accuracy_facts, contact_facts, law_text
 from mcgw.statistics.comparison import Comparison
 from mcgw.store.run_folder import RunFolder
 from mcgw.sweeps.axes import Axes

@@ -4,7 +4,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
@@ -25,16 +25,22 @@ from mcgw.machine.kept import kept
 
 if TYPE_CHECKING:
     from analytic import Interaction
-    from mcgw.scene.fitted_section import Fitted
+    from mcgw.scene.fitted import Fitted
 
-__all__ = ["EXACT", "Fields", "RelErr", "share_above"]
+__all__ = ["COARSEST", "EXACT", "Fields", "LeftOut", "RelErr", "share_above"]
 
 RelErr = float | Mapping[str, float | list[float]]
 
-EXACT = 1e-13  # accuracy where none is asked: the last digits
+EXACT, COARSEST = 1e-13, 1e-2  # accuracy where none is asked: the last digits; and the least there is
 
 _CLEARLY = 1e-6  # no rounding makes such a modulus negative
 _BEYOND = 1e-16  # share of the heights that lie above what is checked for negative moduli
+_MARGIN = 12.0  # standard deviations of a surface's own balance
+_ROUNDED = 16.0  # of what is felt, so that cells do not hang on the last digit of an integral
+
+
+class LeftOut(int):
+    """A whole number that nobody gave: it equals any other, but is found anew when the scene changes."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -66,6 +72,21 @@ class Fields:
     rel_err: RelErr | None
     max_seconds: float | None
     fitted: "Fitted | None"
+
+    def hold(self, values: Mapping[str, Any]) -> None:
+        """Keep these: the one place where values get into a scene."""
+        for key, value in values.items():
+            object.__setattr__(self, key, value)
+
+    @property
+    def left_out(self) -> tuple[str, ...]:
+        """Which of the numbers that depend on something else nobody gave: n_asperities, seed."""
+        return tuple(key for key in ("n_asperities", "seed") if isinstance(getattr(self, key), LeftOut))
+
+    @property
+    def touching(self) -> float:
+        """Asperities of a surface that are expected above the lowest separation."""
+        return self.n_asperities * share_above(self.heights, float(self.lowest))
 
     @property
     def modulus(self) -> Grading:
@@ -183,12 +204,13 @@ class Fields:
 
     @cached_property
     def _felt(self) -> float:
-        """The same where each surface finds its own, and from the mean plane goes down farther than asked."""
+        """The lowest; where surfaces find their own, and sink from the mean plane, hardly one goes below."""
+        asked = min(self.separations)
         if self.interaction is None or self.interaction.reference == "body":
-            return min(self.separations)
-        from mcgw.scene.lowest_felt import lowest_felt  # for those scenes alone
-
-        return lowest_felt(self.theory, min(self.separations))
+            return asked
+        theory: Any = self.theory
+        margin = _MARGIN * float(theory.std("effective_separation", np.array(asked)))
+        return math.floor(_ROUNDED * (float(theory.effective(np.array(asked))) - margin)) / _ROUNDED
 
     @property
     def highest(self) -> float:

@@ -8,7 +8,6 @@ import numpy as np
 from analytic import (
     LAW_QUANTITIES,
     QUANTITIES,
-    UNLOADING,
     Custom,
     Exponential,
     MeasuredHeights,
@@ -19,16 +18,15 @@ from analytic import (
     quantity_of,
 )
 from mcgw.formats.sheet import brief
-from mcgw.scene.fields import EXACT, Fields
+from mcgw.scene.fields import Fields
 from mcgw.scene.samplers import promise_of
 from mcgw.scene.section import SceneError
 from mcgw.scene.stop_rule import rel_err_mistakes
 
-__all__ = ["COARSEST", "mistakes"]
+__all__ = ["mistakes"]
 
 _LEAST = 1e-100  # next to it, powers of a distance are beyond double precision
 _MOST_ASPERITIES = 2**53  # counts are exact in double precision up to here
-COARSEST, _FARTHEST = 1e-2, 0.1  # accuracy of a value, error of its law
 _SAFELY = 1e4  # factor by which the sum over all asperities stays below the largest number
 
 
@@ -50,21 +48,14 @@ def mistakes(scene: Fields) -> list[str]:
 
 
 def _values(scene: Fields) -> Iterator[str]:
-    known = {**QUANTITIES, **LAW_QUANTITIES, **({} if scene.unload_from is None else UNLOADING)}
-    names, sampler = ", ".join({**QUANTITIES, **LAW_QUANTITIES}), scene.sampler
+    known, sampler = {**QUANTITIES, **LAW_QUANTITIES}, scene.sampler
     if "conductance_si" in scene.quantities and scene.film is None:
         yield 'contact.quantities: "conductance_si" needs resistivity, or conductivities = [k1, k2]; give one'
-    if not scene.separations:
-        yield "contact.separations = []: give at least one separation d/sigma"
     if tiny := [h for h in scene.separations if 0 < abs(h) < _LEAST]:
         yield f"contact.separations: {tiny[0]:g} is too close to 0; give 0, or at least {_LEAST:g}"
-    if not scene.quantities:
-        yield f"contact.quantities = []: give one or more of {names}"
     for name in scene.quantities:
-        if name not in known:
-            yield f"contact.quantities: {name!r} is not one of {names}"
-    if len(set(scene.quantities)) < len(scene.quantities):
-        yield f"contact.quantities = {list(scene.quantities)}: name each quantity once"
+        if name not in known and scene.unload_from is None:
+            yield f"contact.quantities: {name!r} is that of the way back; give unload_from too"
     if not 1 <= scene.n_asperities <= _MOST_ASPERITIES:
         yield (
             f"ensemble.n_asperities = {scene.n_asperities}: must lie between 1 and 2^53; "
@@ -73,20 +64,8 @@ def _values(scene: Fields) -> Iterator[str]:
     yield from rel_err_mistakes(scene)
     if scene.rel_err is not None and not promise_of(sampler).real_surfaces:
         yield f'ensemble.rel_err: sampler = "{sampler}" has no variance to stop by; take another'
-    if not EXACT <= scene.accuracy <= COARSEST:
-        yield (
-            f"ensemble.accuracy = {scene.accuracy:g}: give a number from {EXACT:g}, the last digits, to "
-            f"{COARSEST:g}"
-        )
-    if not 0 <= scene.law_error <= _FARTHEST:
-        yield (
-            f"ensemble.law_error = {scene.law_error:g}: give a number from 0, exact samplers only, to "
-            f"{_FARTHEST:g}"
-        )
     if scene.keep == "statistics" and not promise_of(sampler).real_surfaces:
         yield f'ensemble.keep = "statistics": sampler = "{sampler}" has none; take another, or "sums"'
-    if scene.seed >= 2**64:
-        yield f"ensemble.seed = {scene.seed}: give a whole number from 0 to 2^64 - 1"
     listed = isinstance(scene.heights, MeasuredHeights)  # of which no sampler has moments
     if scene.keep == "moments" and not promise_of(sampler).keeps_moments and not listed:
         yield f'ensemble.keep = "moments": sampler = "{sampler}" has none; take "cells"'

@@ -1,163 +1,278 @@
-"""Values of a scene from Python: the same rules and the same messages as for its file."""
+"""The values of a scene out of its tables, which are those of a file or hold the objects of Python."""
 
 import secrets
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Mapping
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from analytic import (
-    Custom,
-    Gaussian,
-    Grading,
-    HeightLaw,
-    Homogeneous,
-    MeasuredRadii,
-    RandomCurvature,
-    ScipyHeights,
-    Surface,
-)
-from mcgw.scene.contact_section import contact_values
-from mcgw.scene.ensemble_section import LeftOut, drawing_values
-from mcgw.scene.grading_section import NEGATIVE
+from analytic import UNLOADING, Gaussian, HeightLaw, MeasuredRadii, RandomCurvature, Surface
+from analytic.laws import ContactLaw, Film, Tangential
+from mcgw.scene.arguments import as_toml
+from mcgw.scene.fields import LeftOut
+from mcgw.scene.fitted import Fitted
+from mcgw.scene.keys import KEYS
+from mcgw.scene.laws import contact_law, grading_given, grading_of, heights_given, heights_of
 from mcgw.scene.section import SceneError, Section
-from mcgw.scene.summits_section import Spectral, curvature_of
+from mcgw.scene.summits import Spectral, curvature_of, datum_shift, listed_of
+from mcgw.scene.surface import read_surface
 
 if TYPE_CHECKING:
     from analytic import Interaction
-    from mcgw.scene.fitted_section import Fitted
 
-__all__ = ["argument", "as_toml", "read_values"]
+__all__ = ["of_arguments", "of_tables"]
 
-_LAW_OF_HEIGHTS = ("support", "breaks", "span", "log_ratio", "pdf")
+Values = dict[str, Any]
+Summits = tuple[Surface | None, HeightLaw | None, RandomCurvature | MeasuredRadii | None]
 
-
-def read_values(given: Mapping[str, Any]) -> tuple[dict[str, Any], list[str]]:
-    """Read what Python gives for the fields of a scene (None: left out) as its file would be read.
-
-    Returns the values, those left out with their defaults, and one line for each mistake.
-    """
-    problems: list[str] = []
-    table = {key: as_toml(value) for key, value in given.items() if value is not None}
-    top, grading, summits, contact, ensemble = (
-        Section(name, table, problems) for name in ("", "grading", "summits", "contact", "ensemble")
-    )
-    surface, heights = given["surface"], given["heights"]
-    spectral = isinstance(surface, Spectral)
-    if spectral:
-        surface, heights = surface.surface, surface.heights if heights is None else heights
-    if heights is None and isinstance(given["curvature"], MeasuredRadii):
-        heights = given["curvature"].heights
-    if not isinstance(surface, Surface):
-        top.fail("surface", given["surface"], "give mcgw.Surface(sigma, radius, eta, nominal_area, E_star)")
-    law = _heights(top, heights)
-    values = {
-        "surface": surface,
-        **contact_values(contact, law),
-        "title": top.text("title", ""),
-        "grading": _grading(top, given["grading"]),
-        "negative": grading.choice("negative", "error", NEGATIVE),
-        "heights": law,
-        "interaction": _interaction(table.get("interaction"), problems),
-        "fitted": _fitted(given["fitted"], problems),
-        "curvature": _curvature(summits, given["curvature"], law, surface, "random" if spectral else "mean"),
-        "n_surfaces": _whole(ensemble, "n_surfaces", given, LeftOut(), least=1),
-        "n_asperities": _whole(ensemble, "n_asperities", given, LeftOut(), least=1),
-        "seed": _whole(ensemble, "seed", given, LeftOut(secrets.randbits(63))),
-        **drawing_values(ensemble),
-    }
-    return values, problems
+# Where arguments of `Scene` stand in a file. Others are whole tables or several keys: objects.
+_PLACES = {key: table for table in ("", "contact", "ensemble") for key in KEYS[table]}
+_PLACES |= {"negative": "grading", "curvature": "summits"}
+_TABLES = ("interaction", "fitted")  # which may be dicts
+_QUANTITIES = ("load", "area", "stiffness", "contacts")
+_DRAWING = ("count", "sampler", "keep", "accuracy", "law_error", "rel_err", "max_seconds")
 
 
-def argument(key: str, value: Any, unit: str) -> float:
-    """An argument that is a positive number, or a text with its unit.
+def of_arguments(**given: Any) -> Values:
+    """Read the arguments of `mcgw.Scene` (None: left out) as its file would be read.
 
     Raises
     ------
     SceneError
-        If it is none; the line names it.
+        With one line for each mistake.
     """
-    section = Section("", {key: as_toml(value)}, [])
-    number = section.number(key, unit=unit)
-    if section.problems:
-        raise SceneError(section.problems)
-    return number
+    document: dict[str, Any] = {}
+    objects: dict[str, Any] = {}
+    for name, value in given.items():
+        plain = as_toml(value)
+        if value is None:
+            continue
+        if name in _PLACES and isinstance(plain, str | bytes | bool | int | float | list | dict):
+            table = document.setdefault(_PLACES[name], {}) if _PLACES[name] else document
+            table[name] = value if isinstance(value, LeftOut) else plain
+        elif name in _TABLES and isinstance(plain, dict):
+            document[name] = plain
+        elif name == "interaction" and isinstance(plain, str):
+            document[name] = {"reference": plain}
+        else:
+            objects[name] = value
+    return _read(document, objects, Path(), None)
 
 
-def as_toml(value: Any) -> Any:
-    """A Python value as a TOML file would give it: arrays, tuples and ranges as lists of plain numbers."""
-    if isinstance(value, str | bytes | bool | int | float):
-        return value.item() if isinstance(value, np.generic) else value
-    if isinstance(value, Mapping):
-        return {key: as_toml(inner) for key, inner in value.items()}
-    if hasattr(value, "__array__"):
-        return np.asarray(value).tolist()
-    if isinstance(value, Iterable) and not isinstance(value, type):
-        return [as_toml(inner) for inner in value]
-    return value
+def of_tables(
+    document: Mapping[str, Any], folder: Path, seed: Callable[[], int | None] | None = None
+) -> Values:
+    """Read the tables of a file, those beside it in `folder`; where it gives no seed, `seed` is asked first.
+
+    Raises
+    ------
+    SceneError
+        With one line for each mistake.
+    """
+    return _read(document, {}, folder, seed)
 
 
-def _whole(section: Section, key: str, given: Mapping[str, Any], default: LeftOut, *, least: int = 0) -> Any:
-    """A whole number; one that nobody gave stays marked as such."""
-    if isinstance(given[key], LeftOut):
-        return given[key]
-    return section.whole(key, default, least=least)
+def _read(
+    document: Mapping[str, Any], objects: Values, folder: Path, seed: Callable[[], int | None] | None
+) -> Values:
+    problems: list[str] = []
+    top = Section("", document, problems, KEYS[""])
+    of = {name: top.section(name, rows) for name, rows in KEYS.items() if name}
+    surface, heights, curvature = _surface_and_summits(top, of, objects, folder)
+    if "grading" in objects:
+        grading = grading_given(top, objects["grading"])
+    else:
+        grading = grading_of(of["grading"], surface, folder)
+    values = {
+        "title": top.read("title"),
+        "surface": surface,
+        "grading": grading,
+        "negative": of["grading"].read("negative"),
+        "heights": heights,
+        "curvature": curvature,
+        **_contact(of["contact"], objects, heights),
+        "interaction": _interaction(top, of["interaction"], objects),
+        "fitted": _fitted(top, of["fitted"], objects),
+        **_ensemble(of["ensemble"], surface, seed),
+    }
+    if "surface" not in objects:  # a file, where more may be wrong than values
+        for section in (top, *of.values()):
+            section.finish()
+    if problems:
+        raise SceneError(problems)
+    return values
 
 
-def _grading(section: Section, given: Any) -> Grading:
-    if given is None:
-        return Homogeneous()
-    if isinstance(given, type) or not callable(given):
-        advice = "give mcgw.Exponential(gamma), mcgw.Table(s, ratio), or a function of an array of heights"
-        section.fail("grading", given, advice)
-        return Homogeneous()
-    if hasattr(given, "breaks") and hasattr(given, "smooth"):
-        return given  # type: ignore[no-any-return]
-    return Custom(given)
+def _surface_and_summits(top: Section, of: Mapping[str, Section], objects: Values, folder: Path) -> Summits:
+    """A surface, the law of its heights, and that of its radii where summits have their own."""
+    summits, radii = of["summits"], objects.get("curvature")
+    if any(key in summits for key in ("file", "heights", "radii", "ratios", "resample")):
+        listed = listed_of(summits, folder)
+        return _with_listed(of, None if listed is None else read_surface(of["surface"], listed), listed)
+    read = objects["surface"] if "surface" in objects else read_surface(of["surface"])
+    surface, default = (read.surface, "random") if isinstance(read, Spectral) else (read, "mean")
+    if "surface" in objects and not isinstance(surface, Surface):
+        top.fail("surface", surface, "give mcgw.Surface(sigma, radius, eta, nominal_area, E_star)")
+        surface = None
+    heights: HeightLaw | None
+    if "heights" in objects:
+        heights = heights_given(top, objects["heights"])
+    elif isinstance(radii, MeasuredRadii):
+        heights = radii.heights
+    elif isinstance(read, Spectral) and not of["heights"].table:
+        heights = read.heights
+    else:
+        heights = heights_of(of["heights"], folder)
+    if isinstance(radii, RandomCurvature | MeasuredRadii):
+        return surface, heights, radii
+    if radii is not None:
+        summits.fail("curvature", radii, 'give "random", "mean", or mcgw.MeasuredRadii(heights, ratios)')
+    return surface, heights, curvature_of(summits, heights, surface, default)
 
 
-def _heights(section: Section, given: Any) -> HeightLaw:
-    if given is None:
-        return Gaussian()
-    if hasattr(given, "dist") and hasattr(given, "kwds"):
-        return _of_scipy(section, given)
-    if all(hasattr(given, name) for name in _LAW_OF_HEIGHTS) and not isinstance(given, type):
-        return given  # type: ignore[no-any-return]
-    advice = (
-        "give mcgw.Weibull(shape), mcgw.Nayak(alpha), mcgw.HeightTable.of(heights), or a frozen distribution "
-        "of scipy.stats, as scipy.stats.lognorm(0.3)"
-    )
-    section.fail("heights", given, advice)
-    return Gaussian()
+def _with_listed(of: Mapping[str, Section], surface: Any, listed: Any) -> Summits:
+    """The same with summits that are given one by one, which tell what the surface leaves out."""
+    heights = of["heights"]
+    heights.known(*heights.table)
+    if heights.table:
+        heights.problems.append("heights: [summits] lists the heights of its summits; leave [heights] out")
+    if surface is None:
+        of["surface"].known(*KEYS["surface"])  # what it lacks, nobody can say
+        return None, Gaussian(), None
+    return surface, *listed.laws(surface)
 
 
-def _interaction(given: Any, problems: list[str]) -> "Interaction | None":
-    if given is None:
-        return None
-    from mcgw.scene.interaction_section import interaction_argument  # for those scenes alone
+def _contact(section: Section, objects: Values, heights: HeightLaw | None) -> Values:
+    shift, given = datum_shift(section, heights), section.read("separations")
+    if isinstance(given, dict):
+        given = np.linspace(given["start"], given["stop"], given["num"]).tolist()
+    listed = [0.0] if given is None else given if isinstance(given, list) else [given]
+    separations = tuple(h - shift + 0.0 for h in listed)  # -0.0 is 0.0
+    back, film = section.read("unload_from"), _film(section, objects)
+    back = min(separations) if back == "loop" else back
+    names = section.read("quantities") or _QUANTITIES
+    names = (*names, *(["conductance_si"] if film and "conductance_si" not in names else []))
+    also = () if back is None else (q.name for n in names for q in UNLOADING.values() if q.unloading == n)
+    return {
+        "separations": separations,
+        "law": _law(section, objects),
+        "unload_from": back,
+        "film": film,
+        "tangential": _tangential(section, objects),
+        "quantities": (*names, *(name for name in also if name not in names)),
+    }
 
-    return interaction_argument(given, problems)
+
+def _law(section: Section, objects: Values) -> ContactLaw:
+    """Of a file, of Python, or by its keys in a dict of Python."""
+    given = objects.get("law", section.table.get("law"))
+    if isinstance(given, dict):
+        inner = Section("contact", {"law": None, **given}, section.problems, section.rows)
+        law = contact_law(inner)
+        inner.finish()
+        return law
+    if given is None or isinstance(given, ContactLaw):
+        return given or contact_law(section)
+    if "law" in objects:
+        section.fail("law", given, "a law of your own is mcgw.CustomLaw(load=..., area=..., ...)")
+    return contact_law(section)
 
 
-def _fitted(given: Any, problems: list[str]) -> "Fitted | None":
-    if given is None:
-        return None
-    from mcgw.scene.fitted_section import fitted_argument  # as above
+def _film(section: Section, objects: Values) -> Film | None:
+    """What spots conduct through; None where nobody asks for conductances."""
+    names = ("resistivity", "conductivities", "film_resistance")
+    if "film" in objects:
+        if isinstance(objects["film"], Film):
+            return objects["film"]
+        advice = "give resistivity and film_resistance; in Python mcgw.Film of them"
+        return section.fail("film", objects["film"], advice)
+    resistivity, conductivities, film = section.read_all(names).values()
+    if conductivities is not None:
+        resistivity = sum(1 / k for k in conductivities)
+    return None if resistivity is None else Film(resistivity, film or 0.0)
 
-    return fitted_argument(given, problems)
 
-
-def _curvature(
-    section: Section, given: Any, heights: HeightLaw, surface: Surface, default: str
-) -> RandomCurvature | MeasuredRadii | None:
-    if isinstance(given, RandomCurvature | MeasuredRadii):
+def _tangential(section: Section, objects: Values) -> Tangential | None:
+    given = objects["tangential"] if "tangential" in objects else section.read("tangential")
+    if given is None or isinstance(given, Tangential):
         return given
-    return curvature_of(section, heights, surface, default)
-
-
-def _of_scipy(section: Section, given: Any) -> HeightLaw:
+    if not isinstance(given, dict):
+        return section.fail("tangential", given, section.rows["tangential"].kind.advice)
     try:
-        return ScipyHeights(given)
-    except (TypeError, ValueError) as error:
-        section.fail("heights", given, f"give a frozen continuous distribution of scipy.stats; {error}")
-        return Gaussian()
+        return Tangential(**given)
+    except ValueError as error:
+        section.problems.append(f"contact.tangential.{error}")
+        return None
+
+
+def _interaction(top: Section, section: Section, objects: Values) -> "Interaction | None":
+    if not section.table and "interaction" not in objects and "interaction" not in top:
+        return None
+    from analytic import Interaction  # for those scenes alone
+
+    given = objects.get("interaction")
+    if isinstance(given, Interaction):
+        return given
+    if given is not None:
+        advice = 'give mcgw.Interaction("body"), or mcgw.Interaction("mean-plane")'
+        return top.fail("interaction", given, advice)
+    before, found = len(section.problems), section.read_all(section.rows)
+    if "surface" in objects:
+        section.finish()
+    return Interaction(**found) if len(section.problems) == before else None
+
+
+def _fitted(top: Section, section: Section, objects: Values) -> Fitted | None:
+    given = objects.get("fitted")
+    if "fitted" not in top and given is None:
+        return None
+    if isinstance(given, Fitted):
+        section = Section(
+            "fitted", {k: v for k, v in vars(given).items() if v is not None}, top.problems, section.rows
+        )
+    elif given is not None:
+        advice = "give what mcgw.fitted_scene gave, or the keys of [fitted] in a scene file"
+        return top.fail("fitted", given, advice)
+    before, found = len(section.problems), section.read_all(section.rows)
+    if "surface" in objects:
+        section.finish()
+    return Fitted(**found) if len(section.problems) == before else None
+
+
+def _ensemble(section: Section, surface: Surface | None, seed: Callable[[], int | None] | None) -> Values:
+    """How many surfaces, and how they are drawn; numbers that nobody gave are marked."""
+    most, number, n = section.read_all(("max_surfaces", "n_surfaces", "n_asperities")).values()
+    values = section.read_all(_DRAWING)
+    values["edges"] = tuple(sorted({s + 0.0 for s in section.read("edges") or ()}))  # -0.0 is 0.0
+    values["n_surfaces"] = _number(section, "n_surfaces", most if number is None else number)
+    values["n_asperities"] = _number(section, "n_asperities", n)
+    if "seed" in section:
+        values["seed"] = _number(section, "seed", section.read("seed"))
+    else:
+        section.known("seed")
+        other = None if seed is None else seed()
+        values["seed"] = LeftOut(secrets.randbits(63) if other is None else other)
+    for key in _left_out(section, surface, n):
+        if values[key] is not None:
+            values[key] = LeftOut(values[key])
+    return values
+
+
+def _number(section: Section, key: str, value: int | None) -> int:
+    """A number; one that nobody gave is marked as such, and stays."""
+    given = section.table.get(key)
+    return given if isinstance(given, LeftOut) else LeftOut() if value is None else value
+
+
+def _left_out(section: Section, surface: Surface | None, n_asperities: int | None) -> list[str]:
+    """Which values, though written here, nobody gave when the scene was asked: see `scene_text`."""
+    given = section.read("left_out") or []
+    if "n_asperities" in given and surface and n_asperities not in (None, round(surface.n_asperities)):
+        advice = (
+            f"left_out says that nobody gave it, but eta * nominal_area is {surface.n_asperities:.10g}; "
+            "take it out of left_out, or leave n_asperities out"
+        )
+        section.fail("n_asperities", n_asperities, advice)
+        return []
+    return given

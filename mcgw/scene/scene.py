@@ -10,21 +10,19 @@ from numpy.typing import ArrayLike
 from analytic import Grading, MeasuredRadii, RandomCurvature, Surface
 from analytic.laws import ContactLaw, Film, Tangential
 from mcgw.formats.sheet import Sheet, Shown
-from mcgw.scene.contact_text import accuracy_facts, contact_facts
-from mcgw.scene.ensemble_section import LeftOut
-from mcgw.scene.fields import EXACT, Fields, share_above
-from mcgw.scene.law_text import law_text
+from mcgw.scene.fields import EXACT, Fields, LeftOut
+from mcgw.scene.in_words import sheet_of
+from mcgw.scene.keys import SURFACE_UNITS
 from mcgw.scene.mistakes import mistakes
 from mcgw.scene.plausible import perhaps_other_units, warn_of_units
-from mcgw.scene.reading import read_values
+from mcgw.scene.reading import of_arguments
 from mcgw.scene.section import SceneError, nearest
-from mcgw.scene.stop_rule import rel_err_text
-from mcgw.scene.summits_section import Spectral
-from mcgw.scene.surface import SURFACE_UNITS, surface_of
+from mcgw.scene.summits import Spectral
+from mcgw.scene.surface import changed_surface
 
 if TYPE_CHECKING:
     from analytic import Interaction
-    from mcgw.scene.fitted_section import Fitted
+    from mcgw.scene.fitted import Fitted
     from mcgw.scene.validity import Validity
 
 __all__ = ["LeftOut", "Scene", "SceneError"]
@@ -166,36 +164,55 @@ class Scene(Fields, Shown):
         max_seconds: float | str | None = None,
         fitted: "Fitted | dict[str, Any] | None" = None,
     ) -> None:
-        given = {key: value for key, value in locals().items() if key != "self"}
-        values, problems = read_values(given)
-        if problems:
-            raise SceneError(problems)
-        for key, value in values.items():
-            object.__setattr__(self, key, value)
-        self._check()
+        values = of_arguments(
+            surface=surface,
+            separations=separations,
+            datum=datum,
+            title=title,
+            grading=grading,
+            negative=negative,
+            heights=heights,
+            curvature=curvature,
+            law=law,
+            unload_from=unload_from,
+            film=film,
+            tangential=tangential,
+            interaction=interaction,
+            quantities=quantities,
+            n_surfaces=n_surfaces,
+            n_asperities=n_asperities,
+            count=count,
+            seed=seed,
+            sampler=sampler,
+            keep=keep,
+            accuracy=accuracy,
+            law_error=law_error,
+            edges=edges,
+            rel_err=rel_err,
+            max_seconds=max_seconds,
+            fitted=fitted,
+        )
+        self._made_of(values)
 
-    def _check(self) -> None:
+    @classmethod
+    def of(cls, values: Mapping[str, Any]) -> "Scene":
+        """The scene of values that were read, checked as any other."""
+        scene = object.__new__(cls)
+        scene._made_of(values)
+        return scene
+
+    def _made_of(self, values: Mapping[str, Any]) -> None:
         """Give what was left out its value, and refuse values that do not go together."""
+        self.hold(values)
         listed = self.curvature if self.as_measured and isinstance(self.curvature, MeasuredRadii) else None
-        if listed and isinstance(self.n_asperities, LeftOut):  # as many as there are, on whatever area
-            object.__setattr__(self, "n_asperities", len(listed.ratios))
-        self._fill("n_asperities", round(min(self.surface.n_asperities, 2.0**62)))
+        number = len(listed.ratios) if listed else round(min(self.surface.n_asperities, 2.0**62))
         most = _SURFACES if self.rel_err is None else _MOST_SURFACES
-        self._fill("n_surfaces", 1 if listed else most)
-        object.__setattr__(self, "separations", tuple(h + 0.0 for h in self.separations))  # -0.0 is 0.0
+        for key, value in (("n_asperities", number), ("n_surfaces", 1 if listed else most)):
+            if isinstance(getattr(self, key), LeftOut):  # now, or in the scene that this one was made of
+                self.hold({key: LeftOut(value)})
         if problems := mistakes(self):
             raise SceneError(problems)
         warn_of_units(perhaps_other_units(self))
-
-    def _fill(self, key: str, value: int) -> None:
-        """Give what was left out, now or in the scene that this one was made of, its value."""
-        if isinstance(getattr(self, key), LeftOut):
-            object.__setattr__(self, key, LeftOut(value))
-
-    @property
-    def left_out(self) -> tuple[str, ...]:
-        """Which of the numbers that depend on something else nobody gave: n_asperities, seed."""
-        return tuple(key for key in ("n_asperities", "seed") if isinstance(getattr(self, key), LeftOut))
 
     def replace(self, **changes: Any) -> "Scene":
         """The scene with other values; what was left out follows.
@@ -233,36 +250,12 @@ class Scene(Fields, Shown):
                 raise TypeError(f"a scene has no {key!r}; {meant}")
         of_surface = {key: changes.pop(key) for key in SURFACE_UNITS if key in changes}
         if of_surface:
-            surface = changes.get("surface", self.surface)
-            changes["surface"] = surface_of(
-                {key: of_surface.get(key, getattr(surface, key)) for key in SURFACE_UNITS}
-            )
+            changes["surface"] = changed_surface(changes.get("surface", self.surface), of_surface)
         return dataclasses.replace(self, **changes)
 
     def sheet(self) -> Sheet:
         """What is shown of it."""
-        x = {key: f"{key} = {getattr(self.surface, key):g} {unit}" for key, unit in SURFACE_UNITS.items()}
-        h, among = self.separations, f"{len(self.separations)} from " if len(self.separations) > 1 else ""
-        ends = " to ".join(f"{end:g}" for end in sorted({min(h), max(h)}))
-        stop = "" if self.rel_err is None else f" until rel_err = {rel_err_text(self.rel_err)}, at most"
-        facts = [
-            ("surface", ", ".join((x["sigma"], x["radius"], x["eta"]))),
-            ("", f"{x['nominal_area']}, {x['E_star']}"),
-            ("grading", law_text(self.grading) + ("" if self.negative == "error" else f", {self.negative}")),
-            ("heights", law_text(self.heights)),
-            *([] if self.curvature is None else [("radii", law_text(self.curvature))]),
-            *([] if self.fitted is None else zip(("fitted to", ""), self.fitted.lines(), strict=True)),
-            *contact_facts(self),
-            ("separations", f"{among}{ends} (d/sigma)"),
-            ("quantities", ", ".join(self.quantities)),
-            (
-                "ensemble",
-                f"{stop} {self.n_surfaces} surfaces of {self.n_asperities} asperities ({self.count}), "
-                f"seed {self.seed}, sampler {self.sampler}".strip(),
-            ),
-            *accuracy_facts(self),
-        ]
-        return Sheet(f"Scene: {self.title}" if self.title else "Scene", facts)
+        return sheet_of(self)
 
     def validity(self, separations: ArrayLike | None = None) -> "Validity":
         """How far this model is expected to be from elasticity: area, gap, stiffness and load.
@@ -287,8 +280,3 @@ class Scene(Fields, Shown):
         from mcgw.scene.validity import validity_of  # reads a table, which not every scene needs
 
         return validity_of(self, separations)
-
-    @property
-    def touching(self) -> float:
-        """Asperities of a surface that are expected above the lowest separation."""
-        return self.n_asperities * share_above(self.heights, float(self.lowest))

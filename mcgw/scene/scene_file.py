@@ -1,38 +1,36 @@
 """Scenes as TOML: read with all mistakes named at once, written so that they read the same."""
 
 from collections.abc import Callable, Mapping
+from dataclasses import asdict, is_dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import tomli_w
 
 from analytic import MeasuredRadii
-from analytic.laws import Hertz
 from mcgw.formats.named_files import HDF5, loads, read_bytes
-from mcgw.scene.contact_section import contact_values
-from mcgw.scene.ensemble_section import ensemble_values
-from mcgw.scene.film_section import film_table
-from mcgw.scene.grading_section import grading_table, grading_values
-from mcgw.scene.heights_section import heights_table
-from mcgw.scene.law_section import law_table
+from mcgw.scene.keys import KEYS, SURFACE_UNITS
+from mcgw.scene.kinds import Word
+from mcgw.scene.laws import contact_law_table, grading_table, heights_table
+from mcgw.scene.reading import of_tables
 from mcgw.scene.scene import Scene
-from mcgw.scene.section import SceneError, Section
+from mcgw.scene.section import SceneError
 from mcgw.scene.storable import storable
-from mcgw.scene.summits_section import summits_table
-from mcgw.scene.surface import SURFACE_UNITS
-from mcgw.scene.surface_and_summits import surface_and_summits
-from mcgw.scene.tangential_section import tangential_table
+from mcgw.scene.summits import summits_table
 
-if TYPE_CHECKING:
-    from analytic import Interaction
-    from mcgw.scene.fitted_section import Fitted
-
-__all__ = ["files_of", "load_scene", "scene_document", "scene_from", "scene_of", "scene_text"]
+__all__ = [
+    "files_of", "load_scene", "scene_document", "scene_from", "scene_of", "scene_text", "with_changes",
+]  # fmt: skip
 
 _MOST_BYTES = 2**21
 
 
-def load_scene(path: str | Path, *, seed: Callable[[], int | None] | None = None) -> Scene:
+def load_scene(
+    path: str | Path,
+    *,
+    seed: Callable[[], int | None] | None = None,
+    changes: Mapping[str, Any] | None = None,
+) -> Scene:
     """Read a scene.
 
     Parameters
@@ -41,6 +39,8 @@ def load_scene(path: str | Path, *, seed: Callable[[], int | None] | None = None
         A TOML file; `runs/demo.toml` shows its keys.
     seed : callable, optional
         Asked for a seed if the scene gives none; where it has none either, one is drawn.
+    changes : mapping, optional
+        Values in the place of those of the file, by their keys, as ``{"grading.gamma": 2.0}``.
 
     Returns
     -------
@@ -70,7 +70,7 @@ def load_scene(path: str | Path, *, seed: Callable[[], int | None] | None = None
         raise SceneError([str(error)]) from None
     if text.startswith(HDF5):
         raise SceneError([f"{path}: holds results, not a scene; mcgw show --scene {path} prints theirs"])
-    return scene_from(text, folder=path.parent, seed=seed)
+    return scene_of(with_changes(_document(text), changes or {}), folder=path.parent, seed=seed)
 
 
 def files_of(path: str | Path) -> list[Path]:
@@ -121,44 +121,40 @@ def scene_from(
     >>> scene.n_asperities
     30000
     """
+    return scene_of(_document(text), folder=folder, seed=seed)
+
+
+def _document(text: str | bytes) -> dict[str, Any]:
+    """Its tables."""
     try:
-        document = loads(text if isinstance(text, str) else text.decode("utf-8"))
+        return loads(text if isinstance(text, str) else text.decode("utf-8"))
     except UnicodeDecodeError as error:
         raise SceneError([f"not a TOML scene: no text in UTF-8 (byte {error.start})"]) from None
     except (ValueError, RecursionError) as error:
         reason = str(error).splitlines()[0] if str(error) else "nested too deeply"
         raise SceneError([f"not a TOML scene: {reason}"]) from None
-    return scene_of(document, folder=folder, seed=seed)
 
 
 def scene_of(
-    document: dict[str, Any], *, folder: Path | None = None, seed: Callable[[], int | None] | None = None
+    document: Mapping[str, Any],
+    *,
+    folder: Path | None = None,
+    seed: Callable[[], int | None] | None = None,
 ) -> Scene:
     """Make a scene of the tables that its TOML text holds; arguments and errors as of `scene_from`."""
-    top = Section("", document, [])
-    sections = {
-        name: top.section(name)
-        for name in ("surface", "grading", "heights", "summits", "contact", "ensemble")
-    }
-    interaction, fitted = top.section("interaction"), top.section("fitted")
-    folder = folder or Path()
-    surface, heights, curvature = surface_and_summits(sections, folder)
-    values = {
-        "title": top.text("title", ""),
-        "surface": surface,
-        **grading_values(sections["grading"], surface, folder),
-        "heights": heights,
-        "curvature": curvature,
-        **contact_values(sections["contact"], heights),
-        "interaction": _interaction(interaction) if "interaction" in top else None,
-        "fitted": _fitted(fitted) if "fitted" in top else None,
-        **ensemble_values(sections["ensemble"], surface, seed),
-    }
-    for section in (top, *sections.values()):
-        section.finish()
-    if top.problems:
-        raise SceneError(top.problems)
-    return Scene(**values)
+    return Scene.of(of_tables(document, folder or Path(), seed))
+
+
+def with_changes(document: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:
+    """Tables with other values at some keys, dotted; a whole table takes the place of one."""
+    changed = dict(document)
+    for key, value in changes.items():
+        table, _, inner = key.partition(".")
+        if inner:
+            held = changed.get(table, {})
+            value = with_changes(held, {inner: value}) if isinstance(held, Mapping) else held
+        changed[table] = value
+    return changed
 
 
 def scene_text(scene: Scene, *, heights_file: str | None = None, left_out: bool = True) -> str:
@@ -199,68 +195,39 @@ def scene_text(scene: Scene, *, heights_file: str | None = None, left_out: bool 
 def scene_document(scene: Scene, *, heights_file: str | None = None, left_out: bool = True) -> dict[str, Any]:
     """The tables that `scene_text` writes; arguments and errors as there."""
     scene = storable(scene)
-    summits = summits_table(scene.curvature, scene.surface, heights_file)
     listed = isinstance(scene.curvature, MeasuredRadii)  # whose heights stand there too
-    return {
+    document: dict[str, Any] = {
         "title": scene.title,
         "surface": {key: float(getattr(scene.surface, key)) for key in SURFACE_UNITS},
         "grading": {**grading_table(scene.grading), "negative": scene.negative},
-        **({} if listed else {"heights": heights_table(scene.heights, heights_file)}),
-        **({"summits": summits} if summits else {}),
-        "contact": _contact_table(scene),
-        **_interaction_table(scene),
-        **_fitted_table(scene),
-        "ensemble": _ensemble_table(scene, left_out),
+        "heights": {} if listed else heights_table(scene.heights, heights_file),
+        "summits": summits_table(scene.curvature, scene.surface, heights_file),
+        "contact": {**contact_law_table(scene.law), **_written(scene.film), **_written(scene, "contact")},
+        "interaction": _written(scene.interaction, "interaction"),
+        "fitted": _written(scene.fitted, "fitted"),
+        "ensemble": _written(scene, "ensemble"),
     }
+    ensemble = document["ensemble"]
+    if scene.rel_err is not None:
+        ensemble["max_surfaces"] = ensemble.pop("n_surfaces")
+    if not left_out:
+        ensemble.pop("left_out", None)
+    return {key: value for key, value in document.items() if value or key == "title"}
 
 
-def _interaction(section: Section) -> "Interaction | None":
-    from mcgw.scene.interaction_section import interaction_values  # for those scenes alone
-
-    return interaction_values(section)
-
-
-def _interaction_table(scene: Scene) -> dict[str, Any]:
-    if scene.interaction is None:
-        return {}
-    from mcgw.scene.interaction_section import interaction_table
-
-    return {"interaction": interaction_table(scene.interaction)}
+def _written(part: Any, table: str = "contact") -> dict[str, Any]:
+    """The keys of a table that are values of a part of a scene; what is not asked for is not written."""
+    found = {}
+    for key, row in KEYS[table].items():
+        value = _plain(getattr(part, key, None)) if key != "law" else None
+        if value is not None and (value != row.default or isinstance(row.kind, Word)):
+            found[key] = value
+    return found
 
 
-def _fitted(section: Section) -> "Fitted | None":
-    from mcgw.scene.fitted_section import fitted_values  # as above
-
-    return fitted_values(section)
-
-
-def _fitted_table(scene: Scene) -> dict[str, Any]:
-    if scene.fitted is None:
-        return {}
-    from mcgw.scene.fitted_section import fitted_table
-
-    return {"fitted": fitted_table(scene.fitted)}
-
-
-def _contact_table(scene: Scene) -> dict[str, Any]:
-    back = {} if scene.unload_from is None else {"unload_from": scene.unload_from}
-    film = {} if scene.film is None else film_table(scene.film)
-    asked = {"separations": list(scene.separations), "quantities": list(scene.quantities)}
-    law = {} if type(scene.law) is Hertz else law_table(scene.law)
-    pushed = {} if scene.tangential is None else {"tangential": tangential_table(scene.tangential)}
-    return {**law, **back, **film, **asked, **pushed}
-
-
-def _ensemble_table(scene: Scene, left_out: bool) -> dict[str, Any]:
-    most = "n_surfaces" if scene.rel_err is None else "max_surfaces"
-    # What is not asked for is not written: the text of a scene without it stays as it was.
-    spent = {"accuracy": None if scene.exact else scene.accuracy, "law_error": scene.law_error or None}
-    stops = {**spent, "rel_err": scene.rel_err, "max_seconds": scene.max_seconds}
-    given = {key: value for key, value in stops.items() if value is not None}
-    return {
-        most: scene.n_surfaces,
-        **{key: getattr(scene, key) for key in ("n_asperities", "count", "seed", "sampler", "keep")},
-        **{key: dict(x) if isinstance(x, Mapping) else float(x) for key, x in given.items()},
-        **({"edges": list(scene.edges)} if scene.edges else {}),
-        **({"left_out": list(scene.left_out)} if left_out and scene.left_out else {}),
-    }
+def _plain(value: Any) -> Any:
+    if is_dataclass(value) and not isinstance(value, type):
+        return _plain(asdict(value))
+    if isinstance(value, Mapping):
+        return {key: _plain(inner) for key, inner in value.items()}
+    return [_plain(inner) for inner in value] if isinstance(value, list | tuple) else value

@@ -1,18 +1,17 @@
-"""One table of a TOML document, read key by key; what is wrong is collected, not raised."""
+"""One table of a scene, read key by key; what is wrong is collected, not raised."""
 
 import difflib
-import math
-from collections.abc import Sequence
-from typing import Any
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any, TypeVar
 
-from mcgw.formats.units import EXAMPLES, parse
 from mcgw.machine.terminal import one_line
 
-__all__ = ["SceneError", "Section", "nearest"]
+__all__ = ["Key", "Kind", "SceneError", "Section", "nearest"]
 
-_MISSING: Any = object()
-_MOST_WHOLE = 10**30  # so that no message has hundreds of digits
 _MOST_NAMED = 20  # unknown keys of a table: more say nothing new
+_FROM_ROW: Any = object()
+_Value = TypeVar("_Value")
 
 
 class SceneError(ValueError):
@@ -34,6 +33,66 @@ class SceneError(ValueError):
         super().__init__("\n".join(problems))
 
 
+class Kind:
+    """What may stand at a key.
+
+    Attributes
+    ----------
+    advice : str
+        What would do, where something else stands or nothing.
+    """
+
+    advice: str = ""
+
+    @property
+    def missing(self) -> str:
+        """What to give where nothing stands."""
+        return self.advice
+
+    def read(self, section: "Section", name: str, value: Any) -> Any:
+        """Read a value; what is wrong is noted in the section, and gives None."""
+        raise NotImplementedError
+
+    def shape(self) -> dict[str, Any]:
+        """The same as JSON Schema."""
+        raise NotImplementedError
+
+
+@dataclass(frozen=True, slots=True)
+class Key:
+    """A row of a table of keys.
+
+    Parameters
+    ----------
+    name : str
+        As it stands in the file.
+    kind : Kind
+        What may stand there.
+    example : str
+        A right value, as TOML.
+    words : str
+        What it means, as Markdown; None for keys inside of a value.
+    default : object, optional
+        What holds where it is left out.
+    required : bool, optional
+        Whether it must be there, in a table that is asked for it.
+    laws : tuple of str, optional
+        The values of ``law`` in its table that it goes with. Default: it goes with all.
+    needs, excludes : tuple of str, optional
+        Keys of its table of which one must be there too, and of which none may.
+    """
+
+    name: str
+    kind: Kind
+    example: str = ""
+    words: str = ""
+    default: Any = None
+    required: bool = False
+    laws: tuple[str, ...] = ()
+    needs: tuple[str, ...] = ()
+    excludes: tuple[str, ...] = ()
+
+
 class Section:
     """A table and the mistakes found in it.
 
@@ -41,120 +100,102 @@ class Section:
     ----------
     name : str
         Its name, "" for the document.
-    table : dict
+    table : mapping
         Its contents.
     problems : list of str
         Shared by all sections of a document; each mistake adds a line.
+    rows : mapping of str to Key
+        The keys that it may have.
     """
 
-    def __init__(self, name: str, table: dict[str, Any], problems: list[str]) -> None:
-        self.name, self.table, self.problems = name, table, problems
-        self._known: list[str] = []
+    def __init__(
+        self, name: str, table: Mapping[str, Any], problems: list[str], rows: Mapping[str, Key]
+    ) -> None:
+        self.name, self.table, self.problems, self.rows = name, table, problems, rows
+        self._asked: list[str] = []
 
-    def section(self, name: str) -> "Section":
+    def section(self, name: str, rows: Mapping[str, Key]) -> "Section":
         """Read a table inside this one, empty if it is not there."""
-        value = self._take(name, {})
+        self.known(name)
+        value = self.table.get(name, {})
         if not isinstance(value, dict):
             self.fail(name, value, f"must be a table: write [{name}] above its keys")
             value = {}
-        return Section(name, value, self.problems)
+        return Section(name, value, self.problems, rows)
 
-    def fail(self, key: str, value: Any, advice: str) -> None:
-        """Note a mistake."""
+    def fail(self, name: str, value: Any, advice: str) -> _Value | None:
+        """Note a mistake; gives None, which is then the value."""
         shown = repr(value)
         shown = shown if len(shown) <= 60 else shown[:57] + "..."
-        self.problems.append(f"{self._path(key)} = {shown}: {advice}")
+        return self.note(f"{self.path(name)} = {shown}: {advice}")
 
-    def __contains__(self, key: str) -> bool:
+    def note(self, line: str) -> _Value | None:
+        """Note a mistake in these words."""
+        self.problems.append(line)
+        return None
+
+    def refuse(self, reason: str, names: Iterable[str]) -> _Value | None:
+        """Note what is wrong with the object that keys make: of the one that it names, or of the first."""
+        key, _, advice = reason.partition(": ")
+        given = [name for name in names if name in self]
+        at = key.partition(" = ")[0].partition(",")[0]
+        if at in given:
+            return self.fail(at, self.table[at], advice)
+        if given:
+            return self.fail(given[0], self.table[given[0]], reason)
+        return self.note(f"{self.name}: {reason}")
+
+    def __contains__(self, name: str) -> bool:
         """Whether the key is given."""
-        return key in self.table
+        return name in self.table
 
-    def number(self, key: str, default: float = _MISSING, *, unit: str = "", positive: bool = True) -> float:
-        """Read a finite number, by default a positive one; with a unit also a text, as "1.37 um"."""
-        value = self._take(key, default, unit)
-        if value is default:
-            return float("nan") if value is _MISSING else value
-        wanted = f"give a finite number{' > 0' if positive else ''}"
-        if unit:
-            wanted += f"{f' in {unit}' if unit != '1' else ''}, such as {EXAMPLES[unit]}"
-        try:
-            if unit and isinstance(value, str):
-                return parse(value, unit)
-            number = float(value) if _is_number(value) else math.nan
-        except OverflowError:
-            number = math.inf
-        except ValueError:
-            number = math.nan
-        if not math.isfinite(number) or (positive and number <= 0):
-            self.fail(key, value, wanted)
-            return math.nan
-        return number
+    def read(self, name: str, default: Any = _FROM_ROW) -> Any:
+        """The value of a key by its row; None where it is wrong, or left out without a default."""
+        row = self.rows[name]
+        self.known(name)
+        if name in self.table:
+            return row.kind.read(self, name, self.table[name])
+        if row.required and default is _FROM_ROW:
+            self.problems.append(f"{self.path(name)}: missing; {row.kind.missing}")
+        return row.default if default is _FROM_ROW else default
 
-    def whole(self, key: str, default: Any = _MISSING, *, least: int = 0) -> Any:
-        """Read a whole number; 1e6 is one, 1.5 and true are not."""
-        value = self._take(key, default)
-        if value is default:
-            return None if value is _MISSING else value
-        whole = _is_number(value) and math.isfinite(value) and value == int(value) if _fits(value) else False
-        if not whole or not least <= value <= _MOST_WHOLE:
-            self.fail(key, value, f"give a whole number >= {least}")
-            return None
-        return int(value)
+    def read_all(self, names: Iterable[str]) -> dict[str, Any]:
+        """The values of several."""
+        return {name: self.read(name) for name in names}
 
-    def text(self, key: str, default: str) -> str:
-        """Read a string."""
-        value = self._take(key, default)
-        if not isinstance(value, str):
-            self.fail(key, value, "give a text in quotes")
-            return default
-        return value
-
-    def choice(self, key: str, default: str, known: Sequence[str]) -> str:
-        """Read one of a few words."""
-        value = self._take(key, default)
-        if value not in known:
-            self.fail(key, value, f"{nearest(value, known)}choose one of {', '.join(known)}")
-            return default
-        return str(value)
-
-    def take(self, key: str) -> Any:
-        """Read any value, None if it is not there."""
-        return self._take(key, None)
-
-    def known(self, *keys: str) -> None:
+    def known(self, *names: str) -> None:
         """Keys that are known here, read or not."""
-        self._known += keys
+        self._asked += names
 
     def finish(self) -> None:
-        """Note every key that was not read."""
-        unknown = [key for key in self.table if key not in self._known]
+        """Note every key that was not read, and those that do not go together."""
+        unknown = [key for key in self.table if key not in self._asked]
         for key in unknown[:_MOST_NAMED]:
-            meant = nearest(key[:99], self._known) or f"known here: {', '.join(self._known)}"
-            self.problems.append(f"{self._path(key)}: unknown key; {meant.removesuffix(' ')}")
+            meant = nearest(key[:99], self._asked) or f"known here: {', '.join(self._asked)}"
+            if key in self.rows and self.rows[key].laws:
+                meant = f"it goes with law = {_either(map(repr, self.rows[key].laws))}; leave it out"
+            self.problems.append(f"{self.path(key)}: unknown key; {meant.removesuffix(' ')}")
         if len(unknown) > _MOST_NAMED:
             self.problems.append(f"[{self.name}]: {len(unknown) - _MOST_NAMED} more unknown keys")
+        if any(line.startswith(f"{self.name}.") for line in self.problems):
+            return  # of which this may be a consequence
+        for row in (self.rows[name] for name in self.table if name in self.rows):
+            if row.needs and not any(other in self for other in row.needs):
+                self.fail(row.name, self.table[row.name], f"give {_either(row.needs)} too, or leave it out")
+            if others := [other for other in row.excludes if other in self]:
+                self.fail(row.name, self.table[row.name], f"give it or {_either(others)}, not both")
 
-    def _path(self, key: str) -> str:
-        shown = one_line(key if len(key) <= 60 else f"{key[:57]}...")
+    def path(self, name: str) -> str:
+        """A key with its table."""
+        shown = one_line(name if len(name) <= 60 else f"{name[:57]}...")
         return f"{self.name}.{shown}" if self.name else shown
 
-    def _take(self, key: str, default: Any, unit: str = "") -> Any:
-        self._known.append(key)
-        if key not in self.table and default is _MISSING:
-            self.problems.append(f"{self._path(key)}: missing; {f'give it in {unit}' if unit else 'give it'}")
-        return self.table.get(key, default)
+
+def _either(words: Iterable[str]) -> str:
+    return " or ".join(words)
 
 
-def _is_number(value: Any) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool)
-
-
-def _fits(value: Any) -> bool:
-    """Whether a value can be compared as a float without overflow."""
-    return not isinstance(value, float) or math.isfinite(value)
-
-
-def nearest(value: Any, known: Sequence[str]) -> str:
+def nearest(value: Any, known: Iterable[str]) -> str:
     """A question for the word that was meant, or nothing."""
-    close = difflib.get_close_matches(str(value), known, n=1)
+    close = difflib.get_close_matches(str(value), list(known), n=1)
     return f"did you mean {close[0]}? " if close else ""

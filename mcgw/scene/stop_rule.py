@@ -9,31 +9,8 @@ from numpy.typing import NDArray
 
 from analytic import quantity_of
 from mcgw.scene.fields import Fields, RelErr
-from mcgw.scene.section import Section
 
-__all__ = ["rel_err_mistakes", "rel_err_of", "rel_err_text", "wanted"]
-
-_MOST = 0.1  # beyond it so few contacts would do that an interval means nothing
-
-
-def rel_err_of(section: Section) -> RelErr | None:
-    """Read it; mistakes are noted in the section."""
-    if "rel_err" not in section:
-        return None
-    given = section.table["rel_err"]
-    if not isinstance(given, Mapping):
-        return section.number("rel_err", unit="1")
-    section.known("rel_err")
-    each = Section("ensemble.rel_err", dict(given), section.problems)
-    return {name: _of_quantity(each, name) for name in given}
-
-
-def _of_quantity(section: Section, name: str) -> float | list[float]:
-    value = section.table[name]
-    if not isinstance(value, list):
-        return section.number(name, unit="1")
-    rows = Section(f"ensemble.rel_err.{name}", {str(k): x for k, x in enumerate(value)}, section.problems)
-    return [math.inf if x == math.inf else rows.number(str(k), unit="1") for k, x in enumerate(value)]
+__all__ = ["rel_err_mistakes", "rel_err_text", "wanted"]
 
 
 def rel_err_mistakes(scene: Fields) -> Iterator[str]:
@@ -50,14 +27,6 @@ def rel_err_mistakes(scene: Fields) -> Iterator[str]:
         listed = value if isinstance(value, list) else [value]
         if isinstance(value, list) and len(value) != len(scene.separations):
             yield f"{key}: has {len(value)} values; give one for each of {len(scene.separations)} separations"
-        for x in listed:
-            if x > _MOST and not (isinstance(value, list) and x == math.inf):
-                yield (
-                    f"{key} = {x}: give a number > 0 and at most {_MOST:g}, beyond which so few contacts "
-                    "would do that an interval means nothing"
-                    + ("; or inf, where nothing is asked" if isinstance(value, list) else "")
-                )
-                break
         if not name or name in scene.quantities:
             yield from _finer_than_values(scene, key, name, [x for x in listed if x < math.inf])
 

@@ -1,4 +1,4 @@
-"""A scene made of numbers alone, whatever Python gave: what is simulated, and what a file keeps."""
+"""A scene with nothing left open: numbers in the place of functions, and the sampler that drew it."""
 
 from dataclasses import replace
 from typing import Any, TypeVar
@@ -8,9 +8,10 @@ import numpy as np
 from analytic import extent, is_data, resolved
 from analytic.laws import ContactLaw
 from mcgw.scene.fields import Fields
+from mcgw.scene.samplers import promise_of
 from mcgw.scene.section import SceneError
 
-__all__ = ["in_numbers", "storable"]
+__all__ = ["drawn_by", "in_numbers", "storable"]
 
 AnyScene = TypeVar("AnyScene", bound=Fields)
 
@@ -61,3 +62,10 @@ def _resolved_law(scene: Fields) -> ContactLaw:
         return scene.law.as_data(_BEYOND * deepest * stiffest**2)
     except ValueError as error:
         raise SceneError([f"contact.law = {type(scene.law).__name__}: {error}"]) from None
+
+
+def drawn_by(scene: AnyScene, sampler: str) -> AnyScene:
+    """The scene that says by which sampler it was drawn, where it left the choice to ``auto``."""
+    if sampler != scene.sampler and scene.law_error and promise_of(sampler).spends:
+        return scene  # its crowds follow from what may be spent
+    return replace(scene, sampler=sampler)

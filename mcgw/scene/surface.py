@@ -1,30 +1,17 @@
 """A surface from numbers or from texts with units."""
 
-import math
 from collections.abc import Mapping
 from typing import Any
 
 from analytic import Body, Nayak, SpectralMoments, composite_modulus
 from analytic import Surface as Plain
-from mcgw.formats.units import quantity
-from mcgw.scene.listed_summits import ListedSummits
+from mcgw.scene.arguments import as_toml
+from mcgw.scene.keys import KEYS, MOMENTS, SUMMITS, SURFACE_UNITS
 from mcgw.scene.plausible import surface_in_other_units, warn_of_units
-from mcgw.scene.reading import as_toml
 from mcgw.scene.section import SceneError, Section
-from mcgw.scene.summits_section import Spectral
+from mcgw.scene.summits import ListedSummits, Spectral
 
-__all__ = [
-    "MOMENTS",
-    "SURFACE_UNITS",
-    "SpectralSurface",
-    "Surface",
-    "read_spectral",
-    "read_surface",
-    "surface_of",
-]
-
-MOMENTS = {"m0": "m^2", "m2": "1", "m4": "1/m^2"}
-SURFACE_UNITS = {"sigma": "m", "radius": "m", "eta": "1/m^2", "nominal_area": "m^2", "E_star": "Pa"}
+__all__ = ["SpectralSurface", "Surface", "changed_surface", "read_surface"]
 
 
 def Surface(  # noqa: N802 - the door to a class of this name
@@ -67,7 +54,9 @@ def Surface(  # noqa: N802 - the door to a class of this name
     0.0001
     """
     given = {"sigma": sigma, "radius": radius, "eta": eta, "nominal_area": nominal_area, "E_star": E_star}
-    return surface_of(given)
+    surface = _read(given)
+    assert isinstance(surface, Plain)
+    return surface
 
 
 def SpectralSurface(  # noqa: N802 - as above
@@ -114,85 +103,67 @@ def SpectralSurface(  # noqa: N802 - as above
     Nayak(alpha=5.0)
     """
     given = {"m0": m0, "m2": m2, "m4": m4, "nominal_area": nominal_area, "E_star": E_star}
-    section = Section("surface", {key: as_toml(value) for key, value in given.items()}, [])
-    spectral = read_spectral(section)
-    if spectral is None:
-        raise SceneError(section.problems)
+    spectral = _read(given)
+    assert isinstance(spectral, Spectral)
     return spectral
 
 
-def surface_of(given: Mapping[str, Any]) -> Plain:
-    """The surface of these five parameters, numbers or texts with units.
+def changed_surface(surface: Plain, changes: Mapping[str, Any]) -> Plain:
+    """A surface with other values of some of its five parameters, numbers or texts with units.
 
     Raises
     ------
     SceneError
         With one line for each mistake.
     """
-    section = Section("surface", {key: as_toml(value) for key, value in given.items()}, [])
+    changed = _read({key: changes.get(key, getattr(surface, key)) for key in SURFACE_UNITS})
+    assert isinstance(changed, Plain)
+    return changed
+
+
+def _read(given: Mapping[str, Any]) -> Plain | Spectral:
+    """Of numbers or texts with units; values that nobody has are asked about."""
+    section = Section("surface", {key: as_toml(value) for key, value in given.items()}, [], KEYS["surface"])
     surface = read_surface(section)
     if surface is None:
         raise SceneError(section.problems)
-    warn_of_units(surface_in_other_units(surface))
+    if isinstance(surface, Plain):
+        warn_of_units(surface_in_other_units(surface))
     return surface
 
 
-def read_surface(section: Section, listed: ListedSummits | None = None) -> Plain | None:
-    """Read the table [surface]; mistakes are noted in the section, and give None.
+def read_surface(section: Section, listed: ListedSummits | None = None) -> Plain | Spectral | None:
+    """Read the table [surface], also by m0, m2 and m4; mistakes are noted in the section, and give None.
 
     What summits that are `listed` tell can be left out.
     """
-    told = {} if listed is None else _told(section, listed)
-    values = told | _values(section, {key: unit for key, unit in SURFACE_UNITS.items() if key not in told})
-    return None if any(map(math.isnan, values.values())) else Plain(**values)
-
-
-def _told(section: Section, listed: ListedSummits) -> dict[str, float]:
-    """The nominal area, and what summits tell on it that the section leaves out."""
-    area = section.number("nominal_area", unit="m^2")
-    told = listed.of_surface(area)
-    section.known(*told)
-    return {"nominal_area": area, **{key: told[key] for key in told if key not in section}}
-
-
-def read_spectral(section: Section) -> Spectral | None:
-    """Read [surface] with m0, m2, m4 for sigma, radius, eta; mistakes are noted, and give None."""
-    values = _values(section, {**MOMENTS, "nominal_area": "m^2", "E_star": "Pa"})
-    for key in ("sigma", "radius", "eta"):
-        if key in section:
-            section.fail(key, section.take(key), "give either m0, m2, m4, or sigma, radius, eta")
-    if any(map(math.isnan, values.values())):
+    before, spectral = len(section.problems), any(key in section for key in MOMENTS)
+    names = [
+        *(MOMENTS if spectral else SUMMITS),
+        "nominal_area",
+        "bodies" if "bodies" in section else "E_star",
+    ]
+    section.known(*SURFACE_UNITS, "bodies")
+    told = {"nominal_area": section.read("nominal_area")}
+    if listed and told["nominal_area"] is None:
         return None
+    if listed:
+        known = listed.of_surface(told["nominal_area"])
+        told |= {key: value for key, value in known.items() if key not in section}
+    if spectral and listed:
+        key = next(key for key in MOMENTS if key in section)
+        section.fail(key, section.table[key], "[summits] lists the summits themselves; leave it out")
+    values = told | section.read_all(name for name in names if name not in told)
+    if len(section.problems) > before:
+        return None
+    if bodies := values.pop("bodies", None):
+        values["E_star"] = composite_modulus([Body(**body) for body in bodies])
     try:
+        if not spectral:
+            return Plain(**values)
         moments = SpectralMoments(*(values[key] for key in MOMENTS))
         Nayak(moments.alpha)
         return Spectral(moments, moments.surface(values["nominal_area"], values["E_star"]))
     except ValueError as error:
         section.problems.append(f"surface: {error}")
         return None
-
-
-def _values(section: Section, units: Mapping[str, str]) -> dict[str, float]:
-    """Numbers by their keys; E_star may be told by two bodies."""
-    return {
-        key: _bodies(section) if key == "E_star" and "bodies" in section else section.number(key, unit=unit)
-        for key, unit in units.items()
-    }
-
-
-def _bodies(section: Section) -> float:
-    given = section.take("bodies")
-    if "E_star" in section:
-        section.fail("E_star", section.take("E_star"), "give either E_star or bodies, not both")
-    try:
-        return composite_modulus([_body(**body) for body in given])
-    except (TypeError, ValueError) as error:
-        reason = str(error) if type(error) is ValueError else "each needs E in Pa and may have nu"
-        section.fail("bodies", given, f"give two, as [{{E = 70e9, nu = 0.33}}, {{E = inf}}]; {reason}")
-        return math.nan
-
-
-def _body(E: float | str, **nu: float) -> Body:
-    if any(isinstance(value, str | bool) for value in nu.values()) or isinstance(E, bool):
-        raise TypeError
-    return Body(quantity(E, "Pa", "E"), **nu)

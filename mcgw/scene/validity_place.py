@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 from analytic import Gaussian, Hertz, Nayak, RandomCurvature, SpectralMoments, Surface
 from analytic.surface import LEAST_ALPHA, SUMMIT_SPREAD
 from mcgw.scene.fields import Fields
-from mcgw.scene.fitted_section import Fitted
-from mcgw.scene.law_text import law_text
+from mcgw.scene.fitted import Fitted
+from mcgw.scene.in_words import law_text
 
 __all__ = ["LEAST_CROWDING", "Place", "moments_of", "not_on_the_map", "place_of", "reduced_pressure"]
 

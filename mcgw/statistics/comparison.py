@@ -17,8 +17,8 @@ from mcgw.formats.sheet import Sheet, Shown
 from mcgw.formats.table import SEPARATION, Column, Table, stacked
 from mcgw.machine.notebook import plotted
 from mcgw.machine.progress import Progress, told
+from mcgw.scene.arguments import check_object
 from mcgw.scene.samplers import promise_of
-from mcgw.scene.wrong_object import check_object
 from mcgw.statistics.verdict import Tested, Verdict, tested, verdict
 from mcgw.sweeps.axes import label
 

@@ -20,9 +20,9 @@ from mcgw.machine.notebook import plotted
 from mcgw.machine.progress import Progress, told
 from mcgw.sampling.block import Sampler
 from mcgw.sampling.samplers import sampler_of
+from mcgw.scene.arguments import check_object
 from mcgw.scene.samplers import promise_of
 from mcgw.scene.scene import Scene
-from mcgw.scene.wrong_object import check_object
 from mcgw.statistics.checks import (
     Check,
     Slope,

@@ -18,9 +18,8 @@ from mcgw.formats.table import Column, Table
 from mcgw.machine.memory import peak_growth
 from mcgw.machine.notebook import plotted
 from mcgw.machine.progress import Progress, told
-from mcgw.scene.reading import argument
+from mcgw.scene.arguments import argument, check_object
 from mcgw.scene.scene import Scene
-from mcgw.scene.wrong_object import check_object
 from mcgw.statistics.methods import Method, methods_for
 from mcgw.statistics.wishes import Advice, Way, advise, ways_for
 

@@ -19,9 +19,9 @@ from mcgw.ensemble.ensemble import Ensemble
 from mcgw.errors import RunError, StoreError
 from mcgw.formats.files import State, check_output, state_of, write_whole
 from mcgw.machine.one_ahead import Items, one_ahead
+from mcgw.scene.arguments import check_object
 from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_text
-from mcgw.scene.wrong_object import check_object
 from mcgw.store.disk import SteadyFile, parts_of
 from mcgw.store.ensembles import open_ensemble
 from mcgw.store.identity import drawn_with, identity_of

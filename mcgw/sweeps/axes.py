@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 from analytic import is_data
 from mcgw.ensemble.labelled import AXES
 from mcgw.formats.sheet import brief
-from mcgw.scene.grading_section import grading_table
-from mcgw.scene.reading import as_toml
+from mcgw.scene.arguments import as_toml
+from mcgw.scene.laws import grading_table
 from mcgw.scene.section import SceneError
 from mcgw.store.structure import GROUP
 

@@ -1,16 +1,11 @@
 """What the fit of a map or of profiles knew of the surface that a scene was made of: the table [fitted]."""
 
 import math
-from dataclasses import asdict, dataclass
-from typing import Any
+from dataclasses import dataclass
 
 from analytic import SpectralMoments, Surface
-from mcgw.scene.section import Section
 
-__all__ = ["Fitted", "fitted_argument", "fitted_table", "fitted_values"]
-
-_MOMENTS = {"m0": "m^2", "m2": "1", "m4": "1/m^2"}
-_PERHAPS = {"agreement": "", "lay": "", "area": "m^2"}  # not of every fit
+__all__ = ["Fitted"]
 
 
 @dataclass(frozen=True)
@@ -64,36 +59,3 @@ class Fitted:
             f"alpha = {self.moments.alpha:.4g}, rms slope {math.sqrt(2 * self.m2):.3g}{lay}",
             f"skewness {self.skewness:.2f}, kurtosis {self.kurtosis:.2f}{apart}",
         )
-
-
-def fitted_values(section: Section) -> Fitted | None:
-    """Read the table; mistakes are noted in the section, and give None."""
-    before = len(section.problems)
-    numbers: dict[str, Any] = {key: section.number(key, unit=unit) for key, unit in _MOMENTS.items()}
-    numbers["skewness"] = section.number("skewness", positive=False)
-    numbers |= {key: section.number(key) for key in ("kurtosis", "independent")}
-    for key, unit in _PERHAPS.items():
-        section.known(key)
-        numbers[key] = section.number(key, unit=unit) if key in section else None
-    section.finish()
-    for key in ("agreement", "lay"):
-        if len(section.problems) == before and section.table.get(key, 1) < 1:
-            section.fail(key, section.table[key], "give the larger over the smaller, a number >= 1")
-    if len(section.problems) > before:
-        return None
-    return Fitted(**numbers)
-
-
-def fitted_argument(given: Any, problems: list[str]) -> Fitted | None:
-    """Read what Python gives: a `Fitted`, or its keys in a scene file."""
-    table = fitted_table(given) if isinstance(given, Fitted) else given
-    if not isinstance(table, dict):
-        advice = "give what mcgw.fitted_scene gave, or the keys of [fitted] in a scene file"
-        Section("", {}, problems).fail("fitted", given, advice)
-        return None
-    return fitted_values(Section("fitted", table, problems))
-
-
-def fitted_table(fitted: Fitted) -> dict[str, Any]:
-    """The table that gives it back."""
-    return {key: float(value) for key, value in asdict(fitted).items() if value is not None}

@@ -1,0 +1,117 @@
+"""A scene in words: its laws by their names and numbers, and what it asks beyond Hertz and exact values."""
+
+from collections.abc import Mapping
+from dataclasses import MISSING, fields, is_dataclass
+from typing import Any
+
+from analytic import Custom, Hertz, MeasuredHeights, MeasuredRadii, PiecewiseSeries, ScipyHeights
+from analytic.laws import ContactLaw
+from mcgw.formats.sheet import Sheet
+from mcgw.scene.fields import Fields
+from mcgw.scene.keys import SURFACE_UNITS
+from mcgw.scene.stop_rule import rel_err_text
+
+__all__ = ["accuracy_facts", "contact_facts", "law_text", "sheet_of"]
+
+_PLANES = {"body": "undeformed body", "mean-plane": "mean deformed plane"}
+_MOST = 4  # numbers of a list that are all said
+
+
+def law_text(law: Any) -> str:
+    """A law by its name and the numbers that were given for it.
+
+    Examples
+    --------
+    >>> from analytic import Exponential
+    >>> law_text(Exponential(2.0))
+    'Exponential(gamma=2.0)'
+    """
+    match law:
+        case ScipyHeights():
+            return f"scipy.stats.{law.distribution.dist.name}({_listed(law.distribution.kwds)})"
+        case PiecewiseSeries():
+            return repr(law)
+        case Custom():
+            return f"Custom({getattr(law.function, '__name__', type(law.function).__name__)})"
+        case MeasuredHeights():
+            return f"{len(law.heights)} measured ones, {'drawn again' if law.resampled else 'as they are'}"
+        case MeasuredRadii():
+            return f"{len(law.ratios)} measured ones, each with its height"
+        case ContactLaw():
+            return f"{type(law).__name__}({_listed(law.given())})"
+    if not is_dataclass(law):
+        return repr(law)
+    given = {field.name: getattr(law, field.name) for field in fields(law) if field.default is MISSING}
+    return f"{type(law).__name__}({_listed(given)})"
+
+
+def _listed(given: Mapping[str, Any]) -> str:
+    return ", ".join(f"{key}={_short(value)}" for key, value in given.items())
+
+
+def _short(value: Any) -> str:
+    """A list of many numbers by their ends: no text that is cut holds half a number."""
+    if isinstance(value, tuple) and len(value) > _MOST and all(isinstance(x, float) for x in value):
+        return f"{len(value)} from {value[0]:.4g} to {value[-1]:.4g}"
+    return repr(value)
+
+
+def contact_facts(scene: Fields) -> list[tuple[str, str]]:
+    """A word and what holds, only for what is not Hertz's contact pressed once; for reports of any kind."""
+    facts = []
+    if type(scene.law) is not Hertz:
+        facts.append(("contact law", law_text(scene.law)))
+    if scene.unload_from is not None:
+        facts.append(("way back", f"from d/sigma = {scene.unload_from:g}"))
+    if scene.film is not None:
+        film = f", film {scene.film.film_resistance:g} ohm m^2" if scene.film.film_resistance else ""
+        facts.append(("film", f"resistivity {scene.film.resistivity:g} ohm m{film}"))
+    if scene.tangential is not None:
+        pushed = scene.tangential
+        facts.append(
+            (
+                "sideways",
+                f"friction {pushed.friction:g}, Poisson's ratio {pushed.poisson:g}, "
+                f"u up to {max(pushed.displacements):g} m",
+            )
+        )
+    if scene.interaction is not None:
+        felt = "as nominal ones" if scene.interaction.nominal else "as asperities feel them"
+        facts.append(("interaction", f"from the {_PLANES[scene.interaction.reference]}, separations {felt}"))
+    return facts
+
+
+def accuracy_facts(scene: Fields) -> list[tuple[str, str]]:
+    """A word and what holds, only for what is not exact; for reports of any kind."""
+    facts = []
+    if not scene.exact:
+        facts.append(("accuracy", f"{scene.accuracy:g} of every value of a surface"))
+    if scene.law_error:
+        facts.append(("law_error", f"up to {scene.law_error:g} from the exact laws"))
+    return facts
+
+
+def sheet_of(scene: Fields) -> Sheet:
+    """What is shown of a scene, at most a dozen lines."""
+    x = {key: f"{key} = {getattr(scene.surface, key):g} {unit}" for key, unit in SURFACE_UNITS.items()}
+    h, among = scene.separations, f"{len(scene.separations)} from " if len(scene.separations) > 1 else ""
+    ends = " to ".join(f"{end:g}" for end in sorted({min(h), max(h)}))
+    stop = "" if scene.rel_err is None else f" until rel_err = {rel_err_text(scene.rel_err)}, at most"
+    facts = [
+        ("surface", ", ".join((x["sigma"], x["radius"], x["eta"]))),
+        ("", f"{x['nominal_area']}, {x['E_star']}"),
+        ("grading", law_text(scene.grading) + ("" if scene.negative == "error" else f", {scene.negative}")),
+        ("heights", law_text(scene.heights)),
+        *([] if scene.curvature is None else [("radii", law_text(scene.curvature))]),
+        *([] if scene.fitted is None else zip(("fitted to", ""), scene.fitted.lines(), strict=True)),
+        *contact_facts(scene),
+        ("separations", f"{among}{ends} (d/sigma)"),
+        ("quantities", ", ".join(scene.quantities)),
+        (
+            "ensemble",
+            f"{stop} {scene.n_surfaces} surfaces of {scene.n_asperities} asperities ({scene.count}), "
+            f"seed {scene.seed}, sampler {scene.sampler}".strip(),
+        ),
+        *accuracy_facts(scene),
+    ]
+    return Sheet(f"Scene: {scene.title}" if scene.title else "Scene", facts)

@@ -1,0 +1,272 @@
+"""Every key of a scene, a row each: reader, writer, checks, schema, page and ``--set`` come from here."""
+
+import math
+from typing import NamedTuple
+
+from analytic import LAW_QUANTITIES, QUANTITIES, UNLOADING
+from mcgw.scene.fields import COARSEST, EXACT
+from mcgw.scene.kinds import ByName, Either, Flag, List, Number, Table, Text, Whole, Word
+from mcgw.scene.samplers import SAMPLERS
+from mcgw.scene.section import Key
+
+__all__ = ["KEYS", "MOMENTS", "SUMMITS", "SURFACE_UNITS", "TABLES", "TableOfKeys"]
+
+_MOST = 100_000
+
+
+class TableOfKeys(NamedTuple):
+    """A table of a scene file: what it says, as Markdown, and its rows."""
+
+    words: str
+    rows: tuple[Key, ...]
+    required: bool = False
+
+
+def _contact_laws() -> tuple[str, ...]:
+    from analytic.laws import by_name  # which imports them all
+
+    return (*by_name, "custom")
+
+
+_ANY, _POSITIVE, _NOT_NEGATIVE = Number(low=-math.inf), Number(), Number(zero=True)
+_POISSON, _FILE = Number(low=-1.0, high=0.5), Text()
+_RATIO = Number(low=1, advice="give the larger over the smaller, a number >= 1")
+_RADII = List(_POSITIVE, advice="give a list of finite numbers > 0")
+_LISTED = List(_ANY)
+_SUMS = tuple({**QUANTITIES, **LAW_QUANTITIES})
+_SEPARATION = Number(low=-1e6, high=1e6)
+_SEPARATIONS = "give a list of finite numbers d/sigma, or {start = 0.0, stop = 4.0, num = 41}"
+_NUM = Whole(1, _MOST, f"give a whole number >= 1, at most {_MOST}")
+_BACK = 'give a number d/sigma, or "loop"'
+_PLANES = '"body", the undeformed body far away, or "mean-plane", the mean of the deformed plane'
+_FORMULA = "give a list of {low, high, coefficients}, one for each piece, as mcgw writes them"
+_ENDS = (Key("low", _ANY, required=True), Key("high", _POSITIVE, required=True))
+_PIECES = List(Table((*_ENDS, Key("coefficients", _LISTED, required=True)), _FORMULA), advice=_FORMULA)
+_PIECES_EXAMPLE = (
+    "[{low = -1.0, high = 1.0, coefficients = [1.0]}, {low = 1.0, high = 3.0, coefficients = [1.0]}]"
+)
+_BODY = Table((Key("E", Number("Pa", infinite=True), required=True), Key("nu", _POISSON, default=0.3)), "")
+_KNOWN_TO = (
+    "give a number > 0 and at most 0.1, beyond which so few contacts would do that an interval means nothing"
+)
+_SHARE = Number("1", high=0.1, advice=_KNOWN_TO)
+_SHARES = List(
+    Number("1", high=0.1, infinite=True),
+    advice=f"{_KNOWN_TO}, for each separation; or inf, where nothing is asked",
+)
+_SHIFTS = Either((List(_NOT_NEGATIVE, advice="give a list of numbers >= 0, in m"), _NOT_NEGATIVE))
+_MOUNTED = (Key("friction", _POSITIVE, required=True), Key("poisson", _POISSON, required=True))
+_PUSHED = Table(
+    (*_MOUNTED, Key("displacements", _SHIFTS, required=True)),
+    "give {friction = 0.3, poisson = 0.3, displacements = [1e-8, 1e-7]} (m)",
+)
+
+# fmt: off
+TABLES: dict[str, TableOfKeys] = {
+"": TableOfKeys("", (
+    Key("title", Text(empty=True), '"My surface"', "for people; stands in figures and reports", ""),
+)),
+"surface": TableOfKeys("Either `sigma`, `radius`, `eta`, or the spectrum by `m0`, `m2`, `m4`; either "
+    "`E_star` or `bodies`.", (
+    Key("sigma", Number("m"), "1.37e-6",
+        "σ, standard deviation of the summit heights (not the roughness of the surface), m", required=True),
+    Key("radius", Number("m"), "13e-6", "R, radius of the summits, m", required=True),
+    Key("eta", Number("1/m^2"), "3.0e8", "η, summits per nominal area, 1/m²", required=True),
+    Key("nominal_area", Number("m^2"), "1e-4", "A_n, nominal area of contact, m²", required=True),
+    Key("E_star", Number("Pa"), "78.6e9", "composite modulus E\\*, Pa", required=True),
+    Key("bodies", List(_BODY, 2, 2, "give two, as [{E = 70e9, nu = 0.33}, {E = inf}], each with its E in Pa"),
+        "[{E = 70e9, nu = 0.33}, {E = inf}]",
+        "instead of `E_star`: Young's modulus (Pa) and Poisson's ratio (0.3 if left out) of the two bodies",
+        excludes=("E_star",)),
+    Key("m0", Number("m^2"), "1e-12", "mean square of the heights of an isotropic Gaussian surface, m²",
+        required=True, needs=("m2",), excludes=("sigma", "radius", "eta")),
+    Key("m2", Number("1"), "1e-3", "mean square of the slope of a profile of it",
+        required=True, needs=("m4",)),
+    Key("m4", Number("1/m^2"), "5e6", "mean square of the second derivative of a profile, 1/m²",
+        required=True, needs=("m0",)),
+), required=True),
+"grading": TableOfKeys("E\\*(s)/E\\* over the reduced height s. Left out: 1 at every height.", (
+    Key("law", Word(("homogeneous", "exponential", "table", "series")), '"exponential"',
+        "`homogeneous`, `exponential` (Eq. 4), `table` or `series`; left out: `exponential` if there is a "
+        "`gamma`, else `homogeneous`", "homogeneous"),
+    Key("gamma", _ANY, "0.5", "γ of E\\*(s)/E\\* = γ − (γ − 1) exp(−s)", required=True,
+        laws=("exponential",)),
+    Key("negative", Word(("error", "clip", "allow")), '"clip"',
+        "where the modulus of a contacting asperity is negative: `error` (default), `clip` to zero, or "
+        "`allow`", "error"),
+    Key("s", _LISTED, "[0.0, 1.0]", "heights of a table, increasing", laws=("table",), needs=("ratio",),
+        excludes=("file",)),
+    Key("ratio", _LISTED, "[1.0, 2.0]",
+        "E\\*(s)/E\\* at these heights; monotone between them, constant outside", laws=("table",),
+        needs=("s",)),
+    Key("file", _FILE, '"moduli.csv"',
+        "a table as CSV beside the scene: columns `s` or `z` (m), and `ratio` or `E_star` (Pa); other units "
+        "in the header, as `z (um)`, or behind a number, as `61.2 GPa`", laws=("table",)),
+    Key("edges", _LISTED, "[0.0, 5.0, 20.0]",
+        "of the pieces of a `series`: what a Python function of s becomes in a file", required=True,
+        laws=("series",)),
+    Key("coefficients", List(_LISTED, advice="give a list of lists of finite numbers"), "[[1.0, 0.5], [1.5]]",
+        "Chebyshev coefficients of each piece", required=True, laws=("series",)),
+    Key("kinks", List(_ANY, 0), "[5.0]", "edges at which it bends or jumps", laws=("series",)),
+    Key("name", Text(empty=True), '"ramp"', "name of that function, for people", laws=("series",)),
+)),
+"heights": TableOfKeys("Law of the summit heights, reduced to mean 0 and standard deviation 1. Left out: "
+    "Gaussian.", (
+    Key("law", Word(("gaussian", "exponential", "weibull", "nayak", "table", "scipy")), '"weibull"',
+        "`gaussian`, `exponential`, `weibull`, `nayak`, `table` or `scipy`", "gaussian"),
+    Key("shape", Number(low=1, high=100, advice="give a number from 1 to 100 (3.6 has no skewness)"), "2.0",
+        "of the Weibull law, 1 to 100; 3.6 has no skewness", required=True, laws=("weibull",)),
+    Key("alpha", Number(low=1.501, high=1e12,
+                        advice="give a number from 1.501 to 1e12, m0 m4/m2^2 of the surface"), "5.0",
+        "of Nayak's law, m0 m4/m2² of the surface, above 1.5", required=True, laws=("nayak",)),
+    Key("heights", _LISTED, "[0.0, 1.0, 3.0]", "measured heights of a `table`, in any unit", laws=("table",),
+        excludes=("file", "s")),
+    Key("file", _FILE, '"heights.csv"', "these from a file beside the scene: `.npy`, or text with one a line",
+        laws=("table",), excludes=("s",)),
+    Key("resample", Flag(), "true",
+        "`true` (default): drawn from the measured law; `false`: one surface, the heights as they are",
+        laws=("table",), needs=("heights", "file")),
+    Key("s", _LISTED, "[0.0, 1.0]", "instead of heights: points of the distribution function",
+        laws=("table",), needs=("share",)),
+    Key("share", _LISTED, "[0.0, 1.0]", "share of the heights below each of these points", laws=("table",),
+        needs=("s",)),
+    Key("name", Text(), '"gamma"', 'of a continuous distribution of `scipy.stats`, for `law = "scipy"`',
+        "norm", laws=("scipy",)),
+    Key("shapes", ByName(_ANY, "give its shapes, as {a = 4.0}"), "{a = 4.0}", "its shape parameters",
+        laws=("scipy",)),
+)),
+"summits": TableOfKeys("Radii of the summits, where they are not all one.", (
+    Key("curvature", Word(("random", "mean")), '"random"',
+        "`random`: each summit has a radius by the exact joint law with its height (default with `m0`, `m2`, "
+        "`m4`); `mean`: one radius"),
+    Key("largest_radius", Number("m"), '"1 mm"', "no summit is flatter, m"),
+    Key("file", _FILE, '"summits.csv"',
+        "measured summits: columns `height` and `radius`, m, as `mcgw fit --summits` writes",
+        excludes=("heights", "radii", "ratios", "curvature", "largest_radius")),
+    Key("heights", _LISTED, "[0.0, 1e-6, 3e-6]", "the same in the scene itself: heights, m",
+        needs=("radii", "ratios"), excludes=("curvature", "largest_radius")),
+    Key("radii", _RADII, "[1e-5, 2e-5, 3e-5]", "and radii, m",
+        needs=("heights",), excludes=("ratios",)),
+    Key("ratios", _RADII, "[1.0, 2.0, 3.0]",
+        "or radii over the mean one", needs=("heights",)),
+    Key("resample", Flag(), "true",
+        "`true`: summits drawn in pairs from the list; `false`: one surface, the summits as they are", False,
+        needs=("heights", "file")),
+)),
+"contact": TableOfKeys("Where the plane stands, what is summed, and by which law of contact. "
+    "[How the laws differ](../copied/contact-laws.md).", (
+    Key("separations",
+        Either((
+            List(_SEPARATION, 1, _MOST, f"{_SEPARATIONS}, at most {_MOST} of them"),
+            Table((Key("start", _ANY, required=True), Key("stop", _ANY, required=True),
+                   Key("num", _NUM, required=True)), _SEPARATIONS),
+            Number(low=-1e6, high=1e6, advice=_SEPARATIONS),
+        ), _SEPARATIONS),
+        "{start = 0.0, stop = 1.0, num = 3}", "d/σ: such a range, a list, or one number", required=True),
+    Key("datum", Word(("summits", "surface")), '"surface"',
+        "separations count from the mean plane of the `summits` (default) or of the `surface` (Nayak's "
+        "heights)", "summits"),
+    Key("quantities",
+        List(Word((*_SUMS, *UNLOADING), f"choose one of {', '.join(_SUMS)}"), once=True,
+             advice="give a list of names, each once"),
+        '["load"]', "any of `load`, `area`, `stiffness`, `contacts` (these four by default), `conductance`, "
+        "`yielded`, `load_slope`"),
+    Key("law", Word(_contact_laws), '"kogut-etsion"', "law of one contact; left out: Hertz's", "hertz"),
+    Key("hardness", Number("Pa"), '"1.2 GPa"', "of the softer body, Pa, for laws that yield"),
+    Key("critical", _POSITIVE, "0.05", "instead of it: δ_c/σ, penetration at which an asperity yields"),
+    Key("yield_strength", Number("Pa"), '"400 MPa"', "of the softer body, Pa (`jackson-green`)"),
+    Key("yield_strain", _POSITIVE, "0.004",
+        "yield strength over E\\*, with `critical` (`jackson-green`; as files hold it)"),
+    Key("poisson", _POISSON, "0.3", "Poisson's ratio of the body that yields or coats"),
+    Key("bridge", Word(("hermite",)), '"hermite"', "joins fits that jump"),
+    Key("k", _POSITIVE, "0.5", "exponent of the depth (`power-law-graded`)"),
+    Key("c0", Number("m"), '"10 um"', "depth at which the modulus is E\\*, m (`power-law-graded`)"),
+    Key("reduced_c0", _POSITIVE, "1.0", "the same over √(Rσ), as files hold it"),
+    Key("thickness", Number("m"), '"1 um"', "of a coating, m (`coated`)"),
+    Key("reduced_thickness", _POSITIVE, "0.5", "the same over √(Rσ), as files hold it"),
+    Key("ratio", _POSITIVE, "3.0", "modulus of the coating over that of the substrate"),
+    Key("work", Number("J/m^2"), '"0.05 J/m^2"', "work of adhesion, J/m² (laws that stick)"),
+    Key("pull_off", _POSITIVE, "0.1", "instead of it: stretch over σ at which contacts break off"),
+    Key("limits", List(_POSITIVE, 0, advice="give a list of numbers > 0 that increase"), "[1.0]",
+        "δ/δ_c at which pieces begin, of a law that is made of formulas (`custom`)", laws=("custom",)),
+    Key("load", _PIECES, _PIECES_EXAMPLE, "series of its load", laws=("custom",)),
+    Key("area", _PIECES, _PIECES_EXAMPLE, "series of its area", laws=("custom",)),
+    Key("unload_from", Either((Word(("loop",), _BACK), _ANY), _BACK), "-0.5",
+        'lowest separation reached before, d/σ, or `"loop"`: the lowest of the scene; adds quantities as '
+        "`load_unloading`"),
+    Key("resistivity", _POSITIVE, "1e-7", "ρ₁ + ρ₂, Ω m; adds `conductance_si`",
+        excludes=("conductivities",)),
+    Key("conductivities",
+        List(_POSITIVE, 2, 2, "give two numbers > 0 in W/(m K) or 1/(ohm m), as [150.0, 16.0]"),
+        "[150.0, 16.0]", "instead of it: those of both bodies, W/(m K) or 1/(Ω m)"),
+    Key("film_resistance", Number(zero=True, advice="give a finite number >= 0, in ohm m^2 or m^2 K/W"),
+        "1e-12", "of a film on the spots, Ω m² or m² K/W", needs=("resistivity", "conductivities")),
+    Key("tangential", _PUSHED, "{friction = 0.3, poisson = 0.3, displacements = [1e-8]}",
+        "pushed sideways by these displacements (m); adds `tangential_load`"),
+), required=True),
+"interaction": TableOfKeys("[Asperities that press each other down](../copied/interaction.md). Left out: "
+    "they are independent.", (
+    Key("reference", Word(("body", "mean-plane"), f"give {_PLANES}"), '"body"',
+        "nominal separations are measured from the undeformed `body`, or from the deformed `mean-plane`",
+        required=True),
+    Key("at", Word(("effective", "nominal")), '"nominal"',
+        "the scene's separations are `effective` (default): those that asperities feel; or `nominal`",
+        "effective"),
+    Key("bulk_modulus", Number("Pa"), "1e11", "composite modulus of the half-space, Pa; default: `E_star`"),
+)),
+"fitted": TableOfKeys("What the fit of a map knew besides: `mcgw fit` writes it, nothing is drawn by it. By "
+    "it a scene says [how far its model is from elasticity](../explanation/validity.md), or that nobody "
+    "measured it on such a map. Left out: the surface is taken for a Gaussian one.", (
+    Key("m0", Number("m^2"), "1e-12", "mean square of all heights, m²", required=True),
+    Key("m2", Number("1"), "1e-3", "mean square of the slope of a profile, over all directions",
+        required=True),
+    Key("m4", Number("1/m^2"), "5e6", "mean square of its second derivative, 1/m²", required=True),
+    Key("skewness", _ANY, "-0.1", "of all heights", required=True),
+    Key("kurtosis", _POSITIVE, "3.0", "of all heights: 3 of Gaussian ones", required=True),
+    Key("independent", _POSITIVE, "800.0",
+        "how many independent heights would tell m0 as well; few where the waves are long", required=True),
+    Key("agreement", _RATIO, "1.02",
+        "largest ratio between the fit's estimates of η, R or σ: by moments, and by counted summits"),
+    Key("lay", _RATIO, "1.1", "mean square slope across the lay over that along it"),
+    Key("area", Number("m^2"), "1e-6", "that was looked at, m²"),
+)),
+"ensemble": TableOfKeys("How many surfaces, and how they are drawn.", (
+    Key("n_surfaces", Whole(1), "10", "how many, default 1000", excludes=("rel_err",)),
+    Key("n_asperities", Whole(1), "100", "asperities on each; default: η A_n, rounded"),
+    Key("count", Word(("fixed", "poisson")), '"poisson"',
+        "`fixed` number on each surface (default), or `poisson`: a window on an unbounded surface", "fixed"),
+    Key("seed", Whole(0, 2**64 - 1, "give a whole number from 0 to 2^64 - 1"), "1",
+        "left out: drawn, and always recorded"),
+    Key("sampler", Word(SAMPLERS), '"cells"',
+        "`auto` (default), `cells`, `tail`, `direct`, `aggregate` or `stratified`: "
+        "[which one](../how-to/choose-a-sampler.md)", "auto"),
+    Key("keep", Word(("sums", "moments", "statistics")), '"moments"',
+        "`sums` (default); `moments`: also what [another grading](../how-to/keep-moments.md) starts from; "
+        "`statistics`: [no surface](../how-to/keep-statistics.md), only mean, covariance, quantiles", "sums"),
+    Key("rel_err", Either((ByName(Either((_SHARES, _SHARE), _KNOWN_TO), "", (*_SUMS, *UNLOADING)), _SHARE),
+                          _KNOWN_TO), "0.01",
+        "instead of `n_surfaces`: draw until every mean is known that well, as a share of it; or a table by "
+        "quantity, as `{load = 1e-3, contacts = [1e-2, 1e-2, inf]}`, with one number or one for each "
+        "separation"),
+    Key("max_surfaces", Whole(1), "50", "with `rel_err`: the most", needs=("rel_err",)),
+    Key("max_seconds", Number("s"), "1.0", "stop after the block that is being drawn then, s"),
+    Key("accuracy", Number("1", EXACT, COARSEST,
+                           advice=f"give a number from {EXACT:g}, the last digits, to {COARSEST:g}"), "1e-13",
+        "how near each value comes to the exact sum over its heights, 1e-13 (default) to 0.01", EXACT),
+    Key("law_error", Number("1", high=0.1, zero=True,
+                            advice="give a number from 0, exact samplers only, to 0.1"), "0.0",
+        "how far from the exact law of each value `auto` may go, 0 (default) to 0.1", 0.0),
+    Key("edges", List(_ANY, 0, advice="give a list of finite heights s = z/sigma, or leave it out"),
+        "[0.5, 1.5]",
+        "heights where cells are cut besides those that the scene needs: what `mcgw.sweep` shares", []),
+    Key("left_out",
+        List(Word(("n_asperities", "seed")), 0, advice="give a list of n_asperities, seed, or leave it out"),
+        '["seed"]', "written by the program: which of `seed`, `n_asperities` nobody gave", []),
+)),
+}
+# fmt: on
+
+KEYS = {table: {row.name: row for row in rows} for table, (_, rows, _) in TABLES.items()}
+MOMENTS, SUMMITS = ("m0", "m2", "m4"), ("sigma", "radius", "eta")  # either tells the summits of a surface
+_SURFACE = {row.name: row.kind for row in TABLES["surface"].rows if row.name not in MOMENTS}
+SURFACE_UNITS = {name: kind.unit for name, kind in _SURFACE.items() if isinstance(kind, Number)}

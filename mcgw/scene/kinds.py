@@ -1,0 +1,305 @@
+"""The kinds of values that keys have: numbers with units, words, lists, tables."""
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from mcgw.formats.sheet import brief
+from mcgw.formats.units import EXAMPLES, parse
+from mcgw.scene.section import Key, Kind, Section, nearest
+
+__all__ = ["ByName", "Either", "Flag", "List", "Number", "Table", "Text", "Whole", "Word", "table_shape"]
+
+_MOST_WHOLE = 10**30  # so that no message has hundreds of digits
+# Which unit does is checked by `parse`, which knows more spellings than a pattern should.
+_WITH_UNIT = {
+    "type": "string",
+    "pattern": r"^\s*\+?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?\s*([^\d\s.].*|1/.*)?$",
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Number(Kind):
+    """A finite number; with a unit also a text, as "1.37 um".
+
+    Parameters
+    ----------
+    unit : str, optional
+        Of `mcgw.formats.units`.
+    low, high : float, optional
+        Its range; 0 itself is outside if `low` is 0 and `zero` false.
+    zero : bool, optional
+        See there.
+    infinite : bool, optional
+        Whether it may be infinite.
+    advice : str, optional
+        What would do. Default: by unit and range.
+    """
+
+    unit: str = ""
+    low: float = 0.0
+    high: float = math.inf
+    zero: bool = False
+    infinite: bool = False
+    advice: str = ""
+
+    def value(self, given: Any) -> float | None:
+        """The number, None if it is no such one."""
+        try:
+            if self.unit and isinstance(given, str):
+                number = parse(given, self.unit)
+            elif isinstance(given, int | float) and not isinstance(given, bool):
+                number = float(given)
+            else:
+                return None
+        except (OverflowError, ValueError):
+            return None
+        inside = self.low <= number <= self.high and (number != self.low or self.zero or self.low != 0)
+        fits = (inside and math.isfinite(number)) or (self.infinite and number == math.inf)
+        return number if fits else None
+
+    def read(self, section: Section, name: str, value: Any) -> Any:
+        """Read it."""
+        number = self.value(value)
+        if number is None:
+            section.fail(name, value, self.advice or self._wanted())
+        return number
+
+    def _wanted(self) -> str:
+        above = (" >= 0" if self.zero else " > 0") if self.low == 0 else ""
+        below = f" and at most {self.high:g}" if self.high < math.inf else ""
+        if self.unit:
+            below += f"{f' in {self.unit}' if self.unit != '1' else ''}, such as {EXAMPLES[self.unit]}"
+        return f"give a finite number{above}{below}"
+
+    @property
+    def missing(self) -> str:
+        """What to give."""
+        return f"give it in {self.unit}" if self.unit else "give it"
+
+    def shape(self) -> dict[str, Any]:
+        """Its range, a text with a unit, and null, which editors see where infinity stands."""
+        shape: dict[str, Any] = {"type": "number"}
+        if self.low > -math.inf:
+            shape["exclusiveMinimum" if self.low == 0 and not self.zero else "minimum"] = self.low
+        if self.high < math.inf and not self.infinite:
+            shape["maximum"] = self.high
+        others = [*([_WITH_UNIT] if self.unit else []), *([{"type": "null"}] if self.infinite else [])]
+        return {"anyOf": [shape, *others]} if others else shape
+
+
+@dataclass(frozen=True, slots=True)
+class Whole(Kind):
+    """A whole number from `least` to `most`; 1e6 is one, 1.5 and true are not."""
+
+    least: int = 0
+    most: int = _MOST_WHOLE
+    advice: str = ""
+
+    def read(self, section: Section, name: str, value: Any) -> int | None:
+        """Read it."""
+        number = isinstance(value, int | float) and not isinstance(value, bool)
+        if not number or not self.least <= value <= self.most or value != int(value):
+            return section.fail(name, value, self.advice or f"give a whole number >= {self.least}")
+        return int(value)
+
+    @property
+    def missing(self) -> str:
+        """What to give."""
+        return "give it"
+
+    def shape(self) -> dict[str, Any]:
+        """An integer."""
+        most = {"maximum": self.most} if self.most < _MOST_WHOLE else {}
+        return {"type": "integer", "minimum": self.least, **most}
+
+
+@dataclass(frozen=True, slots=True)
+class Word(Kind):
+    """One of a few words, or of those that are found when they are asked for."""
+
+    words: tuple[str, ...] | Callable[[], tuple[str, ...]]
+    advice: str = ""
+
+    @property
+    def known(self) -> tuple[str, ...]:
+        """These words."""
+        return self.words() if callable(self.words) else self.words
+
+    def read(self, section: Section, name: str, value: Any) -> str | None:
+        """Read it."""
+        if isinstance(value, str) and value in self.known:
+            return value
+        advice = self.advice or f"choose one of {', '.join(self.known)}"
+        return section.fail(name, value, f"{nearest(value, self.known)}{advice}")
+
+    def shape(self) -> dict[str, Any]:
+        """These words."""
+        return {"enum": list(self.known)}
+
+
+@dataclass(frozen=True, slots=True)
+class Text(Kind):
+    """A text."""
+
+    empty: bool = False
+    advice: str = "give a text in quotes"
+
+    def read(self, section: Section, name: str, value: Any) -> str | None:
+        """Read it."""
+        if isinstance(value, str) and (value or self.empty):
+            return value
+        return section.fail(name, value, self.advice)
+
+    def shape(self) -> dict[str, Any]:
+        """A string."""
+        return {"type": "string", **({} if self.empty else {"minLength": 1})}
+
+
+@dataclass(frozen=True, slots=True)
+class Flag(Kind):
+    """Yes or no."""
+
+    advice: str = "say true or false"
+
+    def read(self, section: Section, name: str, value: Any) -> bool | None:
+        """Read it."""
+        if value is True or value is False:
+            return value
+        return section.fail(name, value, self.advice)
+
+    def shape(self) -> dict[str, Any]:
+        """A boolean."""
+        return {"type": "boolean"}
+
+
+@dataclass(frozen=True, slots=True)
+class List(Kind):
+    """A list of values of one kind, at least and at most so many, perhaps each once."""
+
+    item: Kind
+    least: int = 1
+    most: float = math.inf
+    advice: str = "give a list of finite numbers"
+    once: bool = False
+
+    def read(self, section: Section, name: str, value: Any) -> list[Any] | None:
+        """Read all of them; one that is wrong spoils the list."""
+        reason = ""
+        if isinstance(value, list) and self.least <= len(value) <= self.most:
+            of, found = Section(section.name, {}, [], {}), []
+            for each in value:
+                found.append(self.item.read(of, name, each))
+                if of.problems and isinstance(self.item, Word):
+                    return section.note(of.problems[0])
+                if of.problems:
+                    reason = f"; value {len(found)} is {brief(repr(each))}"
+                    break
+            if not of.problems and not (self.once and len(set(found)) < len(found)):
+                return found
+        few = "give at least one; " if value == [] and self.least == 1 else ""
+        return section.fail(name, value, f"{few}{self.advice}{reason}")
+
+    def shape(self) -> dict[str, Any]:
+        """An array."""
+        shape: dict[str, Any] = {"type": "array", "items": self.item.shape()}
+        shape |= {"minItems": self.least} if self.least else {}
+        shape |= {"maxItems": self.most} if self.most < 1000 else {}
+        return shape | ({"uniqueItems": True} if self.once else {})
+
+
+@dataclass(frozen=True, slots=True)
+class Table(Kind):
+    """A table in braces."""
+
+    rows: tuple[Key, ...]
+    advice: str
+
+    def read(self, section: Section, name: str, value: Any) -> dict[str, Any] | None:
+        """Read its keys."""
+        if not isinstance(value, dict):
+            return section.fail(name, value, self.advice)
+        before = len(section.problems)
+        inner = Section(section.path(name), value, section.problems, {row.name: row for row in self.rows})
+        found = inner.read_all(inner.rows)
+        inner.finish()
+        return found if len(section.problems) == before else None
+
+    def shape(self) -> dict[str, Any]:
+        """An object."""
+        return table_shape(self.rows)
+
+
+@dataclass(frozen=True, slots=True)
+class ByName(Kind):
+    """A table whose keys are any names, or some of `names`, with values of one kind."""
+
+    item: Kind
+    advice: str
+    names: tuple[str, ...] = ()
+
+    def read(self, section: Section, name: str, value: Any) -> dict[str, Any] | None:
+        """Read its values."""
+        if not isinstance(value, Mapping):
+            return section.fail(name, value, self.advice)
+        before = len(section.problems)
+        inner = Section(section.path(name), value, section.problems, {})
+        found = {key: self.item.read(inner, key, each) for key, each in value.items()}
+        return found if len(section.problems) == before else None
+
+    def shape(self) -> dict[str, Any]:
+        """An object."""
+        names = {"propertyNames": {"enum": list(self.names)}, "minProperties": 1} if self.names else {}
+        return {"type": "object", "additionalProperties": self.item.shape(), **names}
+
+
+@dataclass(frozen=True, slots=True)
+class Either(Kind):
+    """A list, a table in braces, or a number or word, whichever stands there: the kinds in this order."""
+
+    kinds: tuple[Kind, ...]
+    advice: str = ""
+
+    def read(self, section: Section, name: str, value: Any) -> Any:
+        """Read it as the kind that it looks like; the last is what is left."""
+        for kind in self.kinds:
+            if isinstance(value, _LOOKS[type(kind)]):
+                return kind.read(section, name, value)
+        return section.fail(name, value, self.advice)
+
+    def shape(self) -> dict[str, Any]:
+        """Any of these."""
+        shapes = [kind.shape() for kind in self.kinds]
+        return {"anyOf": [each for shape in shapes for each in shape.get("anyOf", [shape])]}
+
+
+_LOOKS: dict[type[Kind], Any] = {
+    List: list,
+    Table: Mapping,
+    ByName: Mapping,
+    Word: str,
+    Number: int | float | str,
+}
+
+
+def table_shape(rows: tuple[Key, ...]) -> dict[str, Any]:
+    """An object with these keys and no others, and which of them go together."""
+    shape: dict[str, Any] = {
+        "type": "object",
+        "properties": {
+            row.name: ({"description": row.words} if row.words else {}) | row.kind.shape() for row in rows
+        },
+        "additionalProperties": False,
+    }
+    replaced = {other for row in rows for other in row.excludes}
+    always = [row for row in rows if row.required and not (row.laws or row.needs or row.excludes)]
+    if required := [row.name for row in always if row.name not in replaced]:
+        shape["required"] = required
+    apart: list[dict[str, Any]] = []
+    for row in rows:
+        if row.needs:
+            any_of = [{"required": [other]} for other in row.needs]
+            shape.setdefault("dependentSchemas", {})[row.name] = {"anyOf": any_of}
+        apart += [{"not": {"required": [row.name, other]}} for other in row.excludes]
+    return shape | ({"allOf": apart} if apart else {})

@@ -1,0 +1,279 @@
+"""Gradings, height laws and contact laws: made of the keys of their table, and written as these."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import MISSING, asdict, fields
+from pathlib import Path
+from typing import Any
+
+from analytic import (
+    Custom,
+    Exponential,
+    ExponentialHeights,
+    Gaussian,
+    Grading,
+    HeightLaw,
+    HeightTable,
+    Homogeneous,
+    MeasuredHeights,
+    Nayak,
+    PiecewiseSeries,
+    ScipyHeights,
+    Surface,
+    Table,
+    Weibull,
+)
+from analytic.laws import ContactLaw, Hertz
+from mcgw.scene.files_beside import read_grading, read_heights
+from mcgw.scene.keys import KEYS
+from mcgw.scene.section import SceneError, Section
+
+__all__ = [
+    "contact_law", "contact_law_table", "grading_given", "grading_of", "grading_table", "heights_given",
+    "heights_of", "heights_table", "read_law",
+]  # fmt: skip
+
+_GRADINGS = {
+    "homogeneous": Homogeneous,
+    "exponential": Exponential,
+    "table": Table,
+    "series": PiecewiseSeries,
+}
+_HEIGHTS: dict[str, Any] = {
+    "gaussian": Gaussian,
+    "exponential": ExponentialHeights,
+    "weibull": Weibull,
+    "nayak": Nayak,
+    "table": HeightTable,
+    "scipy": ScipyHeights,
+}
+_LAW_OF_HEIGHTS = ("support", "breaks", "span", "log_ratio", "pdf")
+
+
+def _made(section: Section, law: str | None, make: Callable[..., Any] | None) -> Any:
+    """What the keys of a law make; mistakes are noted in the section, and give None."""
+    if law is None or make is None:
+        section.known(*section.table)  # whose keys they are is not known
+        return None
+    names, before = [row.name for row in section.rows.values() if law in row.laws], len(section.problems)
+    given = {name: value for name, value in section.read_all(names).items() if value is not None}
+    if len(section.problems) > before:
+        return None
+    try:
+        return make(**given)
+    except (TypeError, ValueError) as error:
+        return section.refuse(str(error), names)
+
+
+def _table(table: str, law: str, part: Any) -> dict[str, Any]:
+    """The keys that give a part back."""
+    found = {key: getattr(part, key, None) for key, row in KEYS[table].items() if law in row.laws}
+    return {"law": law} | {key: _plain(value) for key, value in found.items() if value is not None}
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, tuple):
+        return [_plain(each) for each in value]
+    return value if isinstance(value, str) else float(value)
+
+
+# --- gradings ---
+
+
+def grading_of(section: Section, surface: Surface | None, folder: Path) -> Grading:
+    """Read the table [grading]; what is wrong is noted, and gives a homogeneous one."""
+
+    def table(file: str | None = None, s: Any = (), ratio: Any = ()) -> Table | None:
+        try:
+            if file is None:
+                return Table(s, ratio)
+            return read_grading(folder / file, surface) if surface else None
+        except ValueError as error:
+            advice = f"give a CSV file, or lists s and ratio; {error}"
+            raise ValueError(advice if file is None else f"file: {advice}") from None
+
+    law = section.read("law", "exponential" if "gamma" in section else "homogeneous")
+    return _made(section, law, table if law == "table" else _GRADINGS.get(law)) or Homogeneous()
+
+
+def grading_given(section: Section, given: Any) -> Grading:
+    """A grading of Python, or any function of an array of heights."""
+    if isinstance(given, type) or not callable(given):
+        advice = "give mcgw.Exponential(gamma), mcgw.Table(s, ratio), or a function of an array of heights"
+        section.fail("grading", given, advice)
+        return Homogeneous()
+    if hasattr(given, "breaks") and hasattr(given, "smooth"):
+        return given  # type: ignore[no-any-return]
+    return Custom(given)
+
+
+def grading_table(grading: Grading) -> dict[str, Any]:
+    """The table [grading] of one that is data, read again the same."""
+    (law,) = [name for name, kind in _GRADINGS.items() if isinstance(grading, kind)]
+    return _table("grading", law, grading)
+
+
+# --- laws of heights ---
+
+
+def heights_of(section: Section, folder: Path) -> HeightLaw | None:
+    """Read the table [heights]; what is wrong is noted, and gives None."""
+
+    def table(
+        heights: Any = None, file: str | None = None, resample: bool = True, s: Any = (), share: Any = ()
+    ) -> HeightLaw:
+        try:
+            sample = heights if file is None else read_heights(folder / file)
+            if sample is None:
+                return HeightTable(s, share)
+            return HeightTable.of(sample) if resample else MeasuredHeights(sample)
+        except ValueError as error:
+            key = "s" if heights is file is None else "heights" if file is None else "file"
+            advice = "give heights (a list), a file of them, or points s and share"
+            raise ValueError(f"{key}: {advice}; {error}") from None
+
+    law = section.read("law")
+    made: HeightLaw | None = _made(section, law, (_HEIGHTS | {"table": table, "scipy": _of_scipy}).get(law))
+    return made
+
+
+def _of_scipy(name: str = "norm", shapes: Mapping[str, float] | None = None) -> HeightLaw:
+    import scipy.stats  # takes half a second, which other scenes need not wait
+
+    distribution = getattr(scipy.stats, name, None)
+    if not isinstance(distribution, scipy.stats.rv_continuous):
+        raise ValueError('name: give a continuous distribution of scipy.stats, as "gamma"')
+    try:
+        return ScipyHeights(distribution(**(shapes or {})))
+    except (TypeError, ValueError) as error:
+        wanted = distribution.shapes or "none"
+        raise ValueError(f"shapes: give its shapes ({wanted}), as {{a = 4.0}}; {error}") from None
+
+
+def heights_given(section: Section, given: Any) -> HeightLaw:
+    """A height law of Python, or a frozen distribution of scipy.stats."""
+    if hasattr(given, "dist") and hasattr(given, "kwds"):
+        try:
+            return ScipyHeights(given)
+        except (TypeError, ValueError) as error:
+            section.fail("heights", given, f"give a frozen continuous distribution of scipy.stats; {error}")
+            return Gaussian()
+    if all(hasattr(given, name) for name in _LAW_OF_HEIGHTS) and not isinstance(given, type):
+        return given  # type: ignore[no-any-return]
+    advice = (
+        "give mcgw.Weibull(shape), mcgw.Nayak(alpha), mcgw.HeightTable.of(heights), or a frozen distribution "
+        "of scipy.stats, as scipy.stats.lognorm(0.3)"
+    )
+    section.fail("heights", given, advice)
+    return Gaussian()
+
+
+def heights_table(heights: HeightLaw, file: str | None = None) -> dict[str, Any]:
+    """The table [heights] of a height law, read again the same; measured heights by the name of their file.
+
+    Raises
+    ------
+    SceneError
+        If it is a class of the user.
+    """
+    if type(heights) is MeasuredHeights:
+        held = {"heights": list(heights.heights)} if file is None else {"file": file}
+        return {"law": "table", **held, "resample": False}
+    own = heights
+    if type(heights) is ScipyHeights:
+        import scipy.stats  # as above
+
+        own = getattr(heights.distribution, "dist", own)
+        name = getattr(own, "name", None)
+        if name and type(own) is type(getattr(scipy.stats, name, None)):
+            return {"law": "scipy", "name": name, "shapes": heights.shapes}
+    elif type(heights) in _HEIGHTS.values():  # a class made of one may do more
+        (law,) = [name for name, kind in _HEIGHTS.items() if type(heights) is kind]
+        return _table("heights", law, heights)
+    raise SceneError(
+        [
+            f"heights: {type(own).__name__} is a Python class that no file can hold; give a distribution of "
+            "scipy.stats, or points of it as a HeightTable"
+        ]
+    )
+
+
+# --- laws of contact ---
+
+
+def contact_law(section: Section) -> ContactLaw:
+    """Read the law and its constants; mistakes are noted in the section, and give Hertz's."""
+    if section.table.get("law", Hertz.name) == Hertz.name:
+        section.known("law")
+        return Hertz()
+    law = section.read("law")
+    if law == "custom":
+        return _custom(section) or Hertz()
+    if law is None:
+        section.known(*section.table)  # whose constants they are is not known
+        return Hertz()
+    from analytic.laws import by_name
+
+    before, known = len(section.problems), fields(by_name[law])  # type: ignore[arg-type]
+    section.known(*(field.name for field in known))
+    for field in known:
+        if field.default is MISSING and field.name not in section:
+            section.problems.append(f'contact.{field.name}: missing; law = "{law}" needs it')
+    constants = section.read_all(field.name for field in known if field.name in section)
+    if len(section.problems) == before:
+        try:
+            return by_name[law](**constants)
+        except ValueError as error:
+            section.problems.append(f"contact.{error}")
+    return Hertz()
+
+
+def read_law(given: ContactLaw | Mapping[str, Any]) -> ContactLaw:
+    """A law, or one by the keys that it has in a file.
+
+    Raises
+    ------
+    SceneError
+        With one line for each mistake.
+    """
+    if isinstance(given, ContactLaw):
+        return given
+    section = Section("contact", given, [], KEYS["contact"])
+    law = contact_law(section)
+    section.finish()
+    if section.problems:
+        raise SceneError(section.problems)
+    return law
+
+
+def contact_law_table(law: ContactLaw) -> dict[str, Any]:
+    """The keys that give the law back; none for Hertz's."""
+    if law.name != "custom":
+        return {} if type(law) is Hertz else {"law": law.name, **law.given()}
+    custom: Any = law
+    series = {
+        key: [{**asdict(x), "coefficients": list(x.coefficients)} for x in formulas]
+        for key, formulas in (("load", custom.load_of), ("area", custom.area_of))
+    }
+    return {"law": law.name, "critical": custom.critical, "limits": list(custom.beginnings), **series}
+
+
+def _custom(section: Section) -> ContactLaw | None:
+    """What a contact law of a Python script has become in a file."""
+    from analytic.laws.custom import CustomLaw, RootSeries
+
+    def series(key: str) -> list[RootSeries]:
+        found = [RootSeries(x["low"], x["high"], tuple(x["coefficients"])) for x in given[key]]
+        if wrong := [x for x in found if x.low != -x.high and not 0 < x.low < x.high]:
+            raise ValueError(f"{key}: a piece reaches from {wrong[0].low:g} to {wrong[0].high:g}")
+        return found
+
+    before, names = len(section.problems), ("critical", "limits", "load", "area")
+    given = section.read_all(names)
+    for name in (name for name in names if name not in section):
+        section.problems.append(f'contact.{name}: missing; law = "custom" needs it')
+    if len(section.problems) > before:
+        return None
+    try:
+        return CustomLaw(series("load"), series("area"), given["limits"], given["critical"])
+    except ValueError as error:
+        return section.refuse(str(error), names)

@@ -1,0 +1,179 @@
+"""Radii of summits: by the spectrum of the surface, or given one by one with their heights."""
+
+import math
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from analytic import (
+    HeightLaw,
+    MeasuredHeights,
+    MeasuredRadii,
+    Nayak,
+    RandomCurvature,
+    SpectralMoments,
+    Surface,
+)
+from mcgw.scene.files_beside import read_summits
+from mcgw.scene.section import Section
+
+__all__ = ["ListedSummits", "Spectral", "curvature_of", "datum_shift", "listed_of", "summits_table"]
+
+Array = NDArray[np.float64]
+_LISTS = ("file", "heights", "radii", "ratios", "resample")
+
+
+@dataclass(frozen=True)
+class Spectral:
+    """An isotropic Gaussian surface.
+
+    Parameters
+    ----------
+    moments : SpectralMoments
+        Of its spectrum.
+    surface : Surface
+        Its summits, all of the inverse of their mean curvature.
+    """
+
+    moments: SpectralMoments
+    surface: Surface
+
+    @property
+    def heights(self) -> Nayak:
+        """Law of the heights of its summits."""
+        return Nayak(self.moments.alpha)
+
+
+@dataclass(frozen=True, eq=False)
+class ListedSummits:
+    """Heights and radii of summits.
+
+    Parameters
+    ----------
+    heights : ndarray
+        m, above any plane, shape (summits,).
+    radii : ndarray
+        m, or over that of the surface, shape (summits,).
+    resampled : bool
+        Whether asperities are drawn from these, with replacement.
+    over_surface : bool
+        Whether `radii` are over that of the surface.
+    """
+
+    heights: Array
+    radii: Array
+    resampled: bool
+    over_surface: bool
+
+    def of_surface(self, nominal_area: float) -> dict[str, float]:
+        """What they tell of a surface of this area (m^2): eta (1/m^2) and, if in m, sigma and radius (m)."""
+        eta = self.heights.size / nominal_area
+        if self.over_surface:
+            return {"eta": eta}
+        return {"sigma": float(self.heights.std()), "radius": float(1 / np.mean(1 / self.radii)), "eta": eta}
+
+    def laws(self, surface: Surface) -> tuple[MeasuredHeights, MeasuredRadii]:
+        """Laws of the heights and radii on this surface."""
+        heights = MeasuredHeights(self.heights, resampled=self.resampled)
+        return heights, MeasuredRadii(heights, self.radii / (1.0 if self.over_surface else surface.radius))
+
+
+def curvature_of(
+    section: Section, heights: HeightLaw | None, surface: Surface | None, default: str
+) -> RandomCurvature | None:
+    """Read whether summits have radii of their own; mistakes are noted, and give None.
+
+    Parameters
+    ----------
+    section : Section
+        With ``curvature`` and ``largest_radius``.
+    heights : HeightLaw or None
+        Of the summits; None if they were not understood.
+    surface : Surface or None
+        Whose radius is the inverse of the mean curvature.
+    default : {"random", "mean"}
+        Where the section does not say.
+    """
+    word, largest = section.read("curvature", default), section.read("largest_radius")
+    if word == "mean" and largest is not None:
+        section.fail("largest_radius", section.table["largest_radius"], 'needs curvature = "random"')
+    if word != "random" or surface is None or heights is None:
+        return None
+    if not isinstance(heights, Nayak):
+        section.fail("curvature", word, 'needs heights.law = "nayak", or m0, m2, m4 under [surface]')
+        return None
+    try:
+        return RandomCurvature(heights.alpha, math.inf if largest is None else largest / surface.radius)
+    except ValueError as error:
+        return section.fail("largest_radius", section.table.get("largest_radius", largest), str(error))
+
+
+def datum_shift(section: Section, heights: HeightLaw | None) -> float:
+    """What is to be taken off separations d/sigma that count from the plane that ``datum`` names."""
+    if section.read("datum") != "surface" or heights is None:
+        return 0.0
+    if not isinstance(heights, Nayak):
+        advice = 'needs heights.law = "nayak", which knows the mean plane of the surface'
+        section.fail("datum", "surface", advice)
+        return 0.0
+    return heights.mean / heights.std
+
+
+def listed_of(section: Section, folder: Path) -> ListedSummits | None:
+    """Read summits that are given one by one; None if they are not, or if they are wrong, which is noted."""
+    before = len(section.problems)
+    file, heights, radii, ratios, resample = section.read_all(_LISTS).values()
+    section.known("curvature", "largest_radius")
+    radius = ratios if radii is None else radii
+    if len(section.problems) > before or (file is None) is (heights is None or radius is None):
+        return None
+    key = "file" if file is not None else "heights"
+    try:
+        given = (heights, radius) if file is None else read_summits(folder / file)
+        return ListedSummits(*_checked(*given), bool(resample), file is None and radii is None)
+    except (TypeError, ValueError) as error:
+        advice = "give a CSV file with columns height and radius in m, or lists heights and radii"
+        return section.fail(key, section.table.get(key), f"{advice}; {error}")
+
+
+def _checked(heights: Any, radii: Any) -> tuple[Array, Array]:
+    """Both as arrays.
+
+    Raises
+    ------
+    ValueError
+        If a law of them could not be made.
+    """
+    z, radius = (np.asarray(x, dtype=np.float64) for x in (heights, radii))
+    if z.ndim != 1 or z.shape != radius.shape:
+        raise ValueError(f"there are {z.size} heights and {radius.size} radii")
+    for name, values, wrong in (
+        ("height", z, ~np.isfinite(z)),
+        ("radius", radius, ~(np.isfinite(radius) & (radius > 0))),
+    ):
+        if np.any(wrong):
+            k = int(np.flatnonzero(wrong)[0])
+            wanted = "a finite number" + (" > 0" if name == "radius" else "")
+            raise ValueError(f"{name} of summit {k + 1} is {values[k]:g}, not {wanted}")
+    MeasuredHeights(z)
+    return z, radius
+
+
+def summits_table(
+    curvature: RandomCurvature | MeasuredRadii | None, surface: Surface, file: str | None = None
+) -> dict[str, Any]:
+    """The table [summits], read again the same; empty where all summits have one radius.
+
+    Measured ones are told by the name of their file, if they have one; else radii stand there over that of
+    the surface, which has a last digit of its own.
+    """
+    if curvature is None:
+        return {}
+    if isinstance(curvature, MeasuredRadii):
+        lists = {"heights": list(curvature.heights.heights), "ratios": list(curvature.ratios)}
+        return {**(lists if file is None else {"file": file}), "resample": curvature.heights.resampled}
+    bound = {} if math.isinf(curvature.largest) else {"largest_radius": curvature.largest * surface.radius}
+    return {"curvature": "random", **bound}
