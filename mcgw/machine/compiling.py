@@ -1,5 +1,7 @@
 """Compiled loops, kept on the disk where that can be done.
 
+A loop that is called from others alone is not kept by itself: its callers hold it.
+
 What Numba keeps is the machine code of a loop with that of all loops it calls, under names it takes from
 module, function and types. Two things can make it go wrong without a word, and are seen to here: a loop
 called has changed in another file (`_stamp_of_package`), and two processes give the versions of a loop one
@@ -120,10 +122,21 @@ def _load_without_compiler(kept: Any) -> None:
 
     def load(signature: Any, context: Any) -> Any:
         rtsys.initialize(context)  # what allocates arrays
+        found = None
         with kept._guard_against_spurious_io_errors():
-            return kept._load_overload(signature, context)
+            found = kept._load_overload(signature, context)
+        if found is None:
+            _say_once_on_a_terminal()
+        return found
 
     kept.load_overload = load
+
+
+@lru_cache(maxsize=1)
+def _say_once_on_a_terminal() -> None:
+    """Why nothing is seen for a while; in a pipe, or a log, nobody waits."""
+    if sys.stderr and sys.stderr.isatty():
+        sys.stderr.write("compiling the loops, once for this machine: some 20 s\n")
 
 
 _SAID: set[str] = set()

@@ -50,7 +50,7 @@ def _proposal(n: Any, p: Any, u: Any, v: Any) -> Any:
     return k, sure, (v + 0.5) * (2.83 + 5.1 / b) * sd / (a / (end * end) + b)
 
 
-@njit(nogil=True, cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def _propose(work: Any, m: Any, p: Any, seed: Any, first: Any, node: Any, attempt: Any) -> None:
     """Propose numbers; leave what is to be compared with their probability, -1 if they are sure."""
     for i in range(m):
@@ -60,7 +60,7 @@ def _propose(work: Any, m: Any, p: Any, seed: Any, first: Any, node: Any, attemp
         work[_WEIGHT + i] = -1.0 if sure else w
 
 
-@njit(nogil=True, cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def _judge(work: Any, m: Any, p: Any) -> None:
     """Turn weights to -1 where the proposed number is accepted, else to infinity."""
     for i in range(m):
@@ -74,7 +74,7 @@ def _judge(work: Any, m: Any, p: Any) -> None:
             work[_WEIGHT + i] = -1.0 if below else np.inf
 
 
-@njit(nogil=True, cache=True)
+@njit()
 def _settle(work: Any, m: Any) -> Any:
     """Write down what is accepted, gather the others, and count them."""
     left = 0
@@ -88,7 +88,7 @@ def _settle(work: Any, m: Any) -> Any:
     return left
 
 
-@njit(nogil=True, cache=True)
+@njit()
 def _filled(work: Any, m: Any) -> Any:
     """Round up to full vectors, with copies of the first."""
     filled = (m + _VECTOR - 1) // _VECTOR * _VECTOR
@@ -98,7 +98,7 @@ def _filled(work: Any, m: Any) -> Any:
     return filled
 
 
-@njit(nogil=True, cache=True)
+@njit()
 def _reject(work: Any, left: Any, p: Any, seed: Any, first: Any, node: Any) -> None:
     """Propose numbers for the surfaces that are pending until all are accepted."""
     attempt = uint64(0)
@@ -110,7 +110,7 @@ def _reject(work: Any, left: Any, p: Any, seed: Any, first: Any, node: Any) -> N
         attempt += uint64(1)
 
 
-@njit(nogil=True, cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def _invert(work: Any, surfaces: Any, p: Any) -> None:
     """Smallest number with a distribution function of `_LEFT` at least, or beyond which nothing counts."""
     log_q, odds = log_one_minus(p), p / (1.0 - p)

@@ -78,7 +78,7 @@ def ratio_over_mode(n: Any, p: Any, k: Any) -> Any:
     return ratio, known & known_too
 
 
-@njit(nogil=True, cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def _shortfall_anywhere(n: Any, p: Any, k: Any) -> Any:
     """As `_shortfall`, with 1/(2 pi) in place of a number of zero."""
     total = 0.0
@@ -89,7 +89,7 @@ def _shortfall_anywhere(n: Any, p: Any, k: Any) -> Any:
     return total
 
 
-@njit(nogil=True, cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def below_ratio(w: Any, n: Any, p: Any, k: Any) -> Any:
     """Whether w is no more than the probability of k over that of the most probable number, for any k."""
     if not 0 <= k <= n:

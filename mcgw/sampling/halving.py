@@ -118,7 +118,7 @@ def _share_out(seed: Any, first: Any, numbers: Any, shares: Any, turned: Any, si
     return result
 
 
-@njit(nogil=True, cache=True)
+@njit()
 def _halve(node: Any, first: Any, seed: Any, shares: Any, turned: Any, sizes: Any) -> None:
     """Write children in the place of their parents, from the last one on: none is lost."""
     surfaces = node.shape[1]

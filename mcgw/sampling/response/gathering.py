@@ -68,7 +68,7 @@ def gathered(first: Lines, second: Lines, given: int, computed: int) -> tuple[An
     return tuple(_gather(lines, needed, given, computed, tiles))
 
 
-@njit(nogil=True, cache=True)
+@njit()
 def _find_filled(length: Any, at: Any, values: Any, filled: Any) -> None:
     """Which fours of the values of each line are not all zeros, as bits."""
     for line in range(length.size):
@@ -79,7 +79,7 @@ def _find_filled(length: Any, at: Any, values: Any, filled: Any) -> None:
         filled[line] = bits
 
 
-@njit(nogil=True, cache=True)
+@njit()
 def _sorted_by(keys: Any, kinds: Any) -> Any:
     """Where each kind of key begins, and all places in order of their keys; alike ones in their own order."""
     starts = np.zeros(kinds + 1, dtype=np.int64)
@@ -94,7 +94,7 @@ def _sorted_by(keys: Any, kinds: Any) -> Any:
     return starts, order
 
 
-@njit(nogil=True, cache=True)
+@njit()
 def _sources(group: Any, start: Any, filled: Any, given: Any, computed: Any) -> Any:
     """Groups that each computed group needs, increasing; and its lines."""
     firsts, lines = _sorted_by(group, computed)
@@ -124,7 +124,7 @@ def _sources(group: Any, start: Any, filled: Any, given: Any, computed: Any) -> 
     return firsts, lines, ends, sources[:n]
 
 
-@njit(nogil=True, cache=True)
+@njit()
 def _sweep_down(ends: Any, sources: Any, given: Any) -> Any:
     """Computed groups in the order of the lowest given group that each needs, by way of the others too."""
     lowest, highest, first = np.full(ends.size, given), np.empty(ends.size, dtype=np.int64), 0
@@ -135,7 +135,7 @@ def _sweep_down(ends: Any, sources: Any, given: Any) -> Any:
     return _sorted_by(highest, given + 1)[1]
 
 
-@njit(nogil=True, cache=True)
+@njit()
 def _last_steps(order: Any, ends: Any, sources: Any, given: Any) -> Any:
     """The step at which each group is needed for the last time, or computed."""
     last = np.full(given + order.size, -1)
@@ -147,7 +147,7 @@ def _last_steps(order: Any, ends: Any, sources: Any, given: Any) -> Any:
     return last
 
 
-@njit(nogil=True, cache=True)
+@njit()
 def _fill(tiles: Any, tile_of: Any, source: Any, row: Any, values: Any, at: Any, n: Any, filled: Any) -> None:
     """Write the `n` values of a line, from `at` on, into the tiles of its groups, from `source` on."""
     for first in range(0, n, FOUR):

@@ -77,7 +77,7 @@ class HertzWalk:
         return np.asarray(_needed(node, row, self._rows, self._nodes, self._limits, TABLES))
 
 
-@njit(nogil=True, cache=True)
+@njit()
 def _series(row: Any, node: Any, rows: Any, nodes: Any, limits: Any, tables: Any, work: Any) -> Any:
     """Series of a row on a node, the last one of `work`, and how many coefficients of it count.
 
@@ -149,7 +149,7 @@ def _walk(ends: Any, rows: Any, links: Any, nodes: Any, limits: Any, tables: Any
     return found[:n], coefficients[:used], plain, rooted, unresolved, inside
 
 
-@njit(nogil=True, cache=True)
+@njit()
 def _with_room(numbers: Any, used: Any, more: Any) -> Any:
     """The same numbers in an array that more go into."""
     if used + more <= numbers.size:

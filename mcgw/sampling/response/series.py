@@ -38,7 +38,7 @@ def _times_u(order: int) -> Any:
 TABLES = np.ascontiguousarray(TO_COEFFICIENTS.T), _times_u(len(NODES)), U
 
 
-@njit(nogil=True, cache=True)
+@njit()
 def meeting(
     low: Any, high: Any, rooted: Any, split: Any, start: Any, end: Any, parent: Any, of_least: Any
 ) -> Any:
@@ -66,7 +66,7 @@ def meeting(
     return WHOLE if begun and end <= high and not split else _PARTLY
 
 
-@njit(nogil=True, cache=True)
+@njit()
 def _share_of_least(values: Any) -> Any:
     """The least of some values over the largest, but no less than a share where they change their sign."""
     low, high = np.inf, -np.inf
@@ -128,7 +128,7 @@ def series_of(
     return count
 
 
-@njit(nogil=True, cache=True)
+@njit()
 def raised(c: Any, power: Any, times_u: Any) -> None:
     """Put a whole power of u into a series that was cut without it: accurate to the row down to u = 0.
 
@@ -142,7 +142,7 @@ def raised(c: Any, power: Any, times_u: Any) -> None:
         multiply(before, times_u, c)
 
 
-@njit(nogil=True, cache=True)
+@njit()
 def length_of(c: Any) -> Any:
     """How many coefficients there are up to the last that is not zero."""
     n = c.shape[1]
