@@ -12,8 +12,7 @@ from numba import get_num_threads
 import analytic
 from analytic.scipy_heights import in_time
 from mcgw.ensemble.drawing import use_threads
-from mcgw.machine.in_threads import in_threads, pieces
-from mcgw.machine.one_ahead import one_ahead
+from mcgw.machine.in_threads import in_threads, one_ahead, pieces
 
 
 @pytest.mark.parametrize("threads", [1, 2])

@@ -8,7 +8,7 @@ from conftest import SURFACE
 
 import analytic
 import mcgw
-from mcgw.machine.aligned import aligned
+from mcgw.machine.memory import aligned
 from mcgw.sampling.cells import mesh_of
 from mcgw.sampling.response.gathering import FOUR, Lines, in_fours
 from mcgw.sampling.response.hertz_rows import hertz_rows

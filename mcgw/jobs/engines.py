@@ -14,7 +14,7 @@ from functools import partial
 from queue import SimpleQueue
 from typing import Any, Protocol
 
-from mcgw.machine.lifeline import end_with
+from mcgw.machine.child_process import end_with
 
 __all__ = ["Engine", "EngineLostError", "Processes", "Threads", "WorkerDiedError"]
 

@@ -1,12 +1,25 @@
-"""Work in a process of its own, where a crash, a hang or a greed for memory harms nobody else."""
+"""Work in a process of its own, where a crash, a hang or a greed for memory harms nobody else.
+
+A child process ends with its parent, however that dies.
+
+The child holds the reading end of a pipe whose writing end only the parent has. When the parent is gone,
+the kernel closes its end, and that ends the child.
+
+Run as a script, with this pipe as standard input,
+``python -m mcgw.machine.child_process MODULE ARGUMENT ...``
+runs a module as a script that ends with its parent from its first import on.
+"""
 
 import os
+import runpy
 import signal
 import subprocess
 import sys
+import threading
+from collections.abc import Callable
 from pathlib import Path
 
-__all__ = ["ChildError", "limit_memory", "memory_limit", "run_child"]
+__all__ = ["ChildError", "end_with", "limit_memory", "memory_limit", "run_child"]
 
 
 class ChildError(Exception):
@@ -29,7 +42,7 @@ def run_child(module: str, *arguments: str, seconds: float | None = None) -> str
     paths = [home, *filter(None, [os.environ.get("PYTHONPATH")])]
     # One thread: a child that reads a file needs no pool of them, and their stacks count as memory.
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(paths), "OPENBLAS_NUM_THREADS": "1"}
-    call = [sys.executable, "-P", "-m", "mcgw.machine.lifeline", module, *arguments]
+    call = [sys.executable, "-P", "-m", "mcgw.machine.child_process", module, *arguments]
     lifeline, ours = os.pipe()
     try:
         done = subprocess.run(
@@ -74,3 +87,34 @@ def memory_limit() -> int | None:
         return None
     soft, _ = resource.getrlimit(resource.RLIMIT_AS)
     return None if soft == resource.RLIM_INFINITY else soft
+
+
+def end_with(pipe: int, gone: Callable[[], object] | None = None) -> None:
+    """End this process at once when the other end of a pipe is closed; nothing may ever be written into it.
+
+    On Linux the kernel kills it, whatever it is busy with: a call into a C library that holds Python's
+    global lock does not delay it. Elsewhere a thread does, as soon as it can take that lock: when `gone`
+    returns, or reading from the pipe.
+    """
+    try:
+        import fcntl
+
+        fcntl.fcntl(pipe, fcntl.F_SETOWN, os.getpid())
+        fcntl.fcntl(pipe, fcntl.F_SETSIG, signal.SIGKILL)
+        fcntl.fcntl(pipe, fcntl.F_SETFL, fcntl.fcntl(pipe, fcntl.F_GETFL) | os.O_ASYNC)
+    except (ImportError, AttributeError, OSError):
+        pass  # not Linux
+    # Also there: the parent may have died before the kernel was asked.
+    waits = gone or (lambda: os.read(pipe, 1))
+    threading.Thread(target=_follow, args=(waits,), daemon=True, name="mcgw-lifeline").start()
+
+
+def _follow(gone: Callable[[], object]) -> None:
+    gone()
+    os._exit(1)
+
+
+if __name__ == "__main__":
+    end_with(0)
+    del sys.argv[0]
+    runpy.run_module(sys.argv[0], run_name="__main__", alter_sys=True)

@@ -1,19 +1,25 @@
-"""How much memory there is: asked before anything is computed. And how what a block frees is kept."""
+"""How much memory there is: asked before anything is computed. And how what a block frees is kept.
 
+Arrays that begin with a line of the cache.
+"""
+
+import math
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from mcgw.errors import StoreError
 from mcgw.machine.child_process import memory_limit
 
-__all__ = ["check_memory", "gibibytes", "keep_freed_memory", "memory_available", "peak_growth"]
+__all__ = ["aligned", "check_memory", "gibibytes", "keep_freed_memory", "memory_available", "peak_growth"]
 
 _MOST = 2**63 - 1
 _SMALL = 2**24  # bytes; to look how many there are takes half a millisecond
 _LARGE = 31 * 2**20  # bytes; at 32 MiB the GNU C library learns no more
+_LINE = 8  # words
 
 
 def check_memory(what: str, size: int) -> None:
@@ -90,3 +96,14 @@ def keep_freed_memory() -> None:
     """
     piece = np.empty(_LARGE, dtype=np.uint8)
     del piece
+
+
+def aligned(*shape: int) -> NDArray[np.float64]:
+    """Memory for an array of this shape, not filled: its first word begins a line of the cache.
+
+    A full vector that straddles two lines takes twice as long to load.
+    """
+    words = math.prod(shape)
+    memory = np.empty(words + _LINE)
+    start = -(memory.ctypes.data // memory.itemsize) % _LINE
+    return memory[start : start + words].reshape(shape)

@@ -26,7 +26,7 @@ from mcgw.scene.other_laws import other_laws
 from mcgw.scene.samplers import promise_of
 from mcgw.scene.scene import Scene
 from mcgw.statistics.comparison import Comparison, compare
-from mcgw.sweeps.cautions import sweep_cautions
+from mcgw.sweeps.over_points import sweep_cautions
 from mcgw.sweeps.sweep import Sweep
 
 __all__ = ["report_html", "sweep_report_html"]

@@ -16,9 +16,9 @@ import numpy as np
 from numba import get_num_threads
 from numpy.typing import NDArray
 
-from mcgw.machine.aligned import aligned
 from mcgw.machine.compiling import njit
 from mcgw.machine.in_threads import in_threads
+from mcgw.machine.memory import aligned
 from mcgw.sampling.chebyshev_sums import BUFFER, PLAIN, ROOTED, WORDS, add_uniforms, stratify, unfold
 from mcgw.sampling.layout import Layout
 from mcgw.sampling.philox import CELLS, centred

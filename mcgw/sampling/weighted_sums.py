@@ -17,9 +17,9 @@ import numpy as np
 from numba import get_num_threads
 from numpy.typing import NDArray
 
-from mcgw.machine.aligned import aligned
 from mcgw.machine.compiling import njit
 from mcgw.machine.in_threads import in_threads
+from mcgw.machine.memory import aligned
 from mcgw.sampling.cells import Mesh
 from mcgw.sampling.chebyshev_sums import BUFFER, add_weighted, stratify, unfold
 from mcgw.sampling.lanes import LANES, alike, fused, load, roots, store

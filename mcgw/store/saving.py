@@ -18,7 +18,7 @@ import h5py
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.errors import RunError, StoreError
 from mcgw.formats.files import State, check_output, state_of, write_whole
-from mcgw.machine.one_ahead import Items, one_ahead
+from mcgw.machine.in_threads import Items, one_ahead
 from mcgw.scene.arguments import check_object
 from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_text

@@ -1,9 +1,12 @@
 """Statistics over the surfaces of every point of a sweep, arranged along its axes.
 
 What a sweep holds of one of its points, as the numbers of an ensemble.
+
+The cautions of all points of a sweep, each said once: of how many points.
 """
 
-from collections.abc import Iterable, Mapping, Sequence
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -17,15 +20,17 @@ from mcgw.ensemble.intervals import CONFIDENCE
 from mcgw.ensemble.results import Held
 from mcgw.ensemble.summarised import Summarised
 from mcgw.sampling.samplers import name_of
+from mcgw.scene.cautions import cautions
 from mcgw.scene.scene import Scene
 from mcgw.sweeps.axes import Axes, Point
 from mcgw.sweeps.groups import Place
 from mcgw.sweeps.pooled import Pooled
 
-__all__ = ["At", "OverPoints", "PointResults"]
+__all__ = ["At", "OverPoints", "PointResults", "sweep_cautions"]
 
 Array = NDArray[np.float64]
 At = Mapping[str, Any] | Sequence[int] | int
+_NUMBER = re.compile(r"[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
 
 
 @dataclass(frozen=True, repr=False)
@@ -211,3 +216,25 @@ class PointResults(Held):
     def total_number(self, name: str) -> Array:
         """The mean times the number of surfaces, as a whole number."""
         return np.rint(self.pooled.mean(name, *self.place.of(name)) * self.pooled.n)
+
+
+def sweep_cautions(sweep: OverPoints) -> list[str]:
+    """What a reader should know of the scenes, a line each: the most common first.
+
+    Cautions that differ in their numbers alone are one, with those of the first point that has it.
+    """
+    points = list(sweep.axes.points())
+    found: dict[str, list[tuple[int, str]]] = {}
+    for i in range(len(points)):
+        for line in cautions(sweep.scenes[i]):
+            found.setdefault(_NUMBER.sub("#", line), []).append((i, line))
+    return list(_told(sweep, sorted(found.values(), key=len, reverse=True)))
+
+
+def _told(sweep: OverPoints, found: list[list[tuple[int, str]]]) -> Iterator[str]:
+    points = list(sweep.axes.points())
+    for some in found:
+        first, line = some[0]
+        alike = len({text for _, text in some}) == 1
+        where = "" if alike else f" (numbers of {sweep.axes.text(points[first])})"
+        yield f"{len({i for i, _ in some})} of {len(points)} points: {line}{where}"

@@ -12,9 +12,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from mcgw.machine.aligned import aligned
 from mcgw.machine.compiling import njit
 from mcgw.machine.in_threads import in_threads, pieces
+from mcgw.machine.memory import aligned
 from mcgw.sampling.lanes import fused
 from mcgw.sampling.response.gathering import FOUR, Lines, gathered
 
