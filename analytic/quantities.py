@@ -9,7 +9,6 @@ and area fraction are load and area per nominal area.
 """
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 from analytic.surface import Surface
@@ -40,9 +39,9 @@ class Quantity:
     modulus : int
         Power of the grading E*(s)/E*: 1 where the modulus counts, else 0.
     radius : float
-        Power of the asperity's radius, where radii differ: as in `scale`.
-    scale : callable
-        Dimensional factor of one asperity, of the `Surface`.
+        Power of the asperity's radius.
+    factor : float
+        Number in `scale`.
     of : str, optional
         The quantity that this one is per nominal area.
     unloading : str, optional
@@ -59,7 +58,7 @@ class Quantity:
     exponent: float
     modulus: int
     radius: float
-    scale: Callable[[Surface], float]
+    factor: float
     of: str = ""
     unloading: str = ""
     counts: bool = False
@@ -79,34 +78,23 @@ class Quantity:
         """What one contact adds to it, on whatever way: `analytic.laws.of_spot` has the formulas."""
         return self.unloading or self.of or self.name
 
-
-def _load(x: Surface) -> float:
-    return 4 / 3 * x.E_star * math.sqrt(x.radius * x.sigma) * x.sigma
-
-
-def _area(x: Surface) -> float:
-    return math.pi * x.radius * x.sigma
-
-
-def _stiffness(x: Surface) -> float:
-    return 2 * x.E_star * math.sqrt(x.radius * x.sigma)
-
-
-def _one(_: Surface) -> float:
-    return 1.0
-
-
-def _conductance(x: Surface) -> float:
-    return 4 * math.sqrt(x.radius * x.sigma)
+    def scale(self, x: Surface) -> float:
+        """Dimensional factor of one asperity: ``factor E*^modulus R^radius sigma^exponent``, or per area."""
+        if self.name in SEPARATIONS:
+            return 1.0
+        both = x.radius * x.sigma
+        lengths = {0.5: (math.sqrt(both),), 1.0: (x.radius, x.sigma)}.get(self.radius, (both**self.radius,))
+        factors = self.factor, x.E_star**self.modulus, *lengths, x.sigma ** (self.exponent - self.radius)
+        return float(math.prod(factors)) / (x.nominal_area if self.of else 1.0)
 
 
 QUANTITIES = {
     q.name: q
     for q in (
-        Quantity("load", "normal load", "N", 1.5, 1, 0.5, _load, symbol="P"),
-        Quantity("area", "real contact area", "m^2", 1.0, 0, 1.0, _area, words="real area", symbol="A"),
-        Quantity("stiffness", "normal stiffness", "N/m", 0.5, 1, 0.5, _stiffness, symbol="K"),
-        Quantity("contacts", "number of contacts", "1", 0.0, 0, 0.0, _one, counts=True),
+        Quantity("load", "normal load", "N", 1.5, 1, 0.5, 4 / 3, symbol="P"),
+        Quantity("area", "real contact area", "m^2", 1.0, 0, 1.0, math.pi, words="real area", symbol="A"),
+        Quantity("stiffness", "normal stiffness", "N/m", 0.5, 1, 0.5, 2, symbol="K"),
+        Quantity("contacts", "number of contacts", "1", 0.0, 0, 0.0, 1, counts=True),
         Quantity(
             "conductance",
             "contact conductance of the spots, times the resistivity rho",
@@ -114,7 +102,7 @@ QUANTITIES = {
             0.5,
             0,
             0.5,
-            _conductance,
+            4,
             symbol="Cρ",
         ),
     )
@@ -130,7 +118,7 @@ PER_AREA = {
             1.5,
             1,
             0.5,
-            lambda x: _load(x) / x.nominal_area,
+            4 / 3,
             of="load",
         ),
         Quantity(
@@ -140,7 +128,7 @@ PER_AREA = {
             1.0,
             0,
             1.0,
-            lambda x: _area(x) / x.nominal_area,
+            math.pi,
             of="area",
         ),
     )
@@ -158,7 +146,7 @@ LAW_QUANTITIES = {
             0.5,
             1,
             0.5,
-            _stiffness,
+            2,
             words="slope of the loads",
         ),
         Quantity(
@@ -168,7 +156,7 @@ LAW_QUANTITIES = {
             0.5,
             0,
             0.5,
-            _conductance,
+            4,
             words="conductance",
             symbol="C",
         ),
@@ -179,7 +167,7 @@ LAW_QUANTITIES = {
             0.0,
             0,
             0.0,
-            _one,
+            1,
             counts=True,
             words="yielded contacts",
         ),
@@ -197,7 +185,7 @@ UNLOADING = {
 # The other separation of a surface whose asperities press each other down.
 SEPARATIONS = {
     f"{name}{way}": Quantity(
-        f"{name}{way}", f"{long_name}{way and ', unloading'}", "1", 1.5, 1, 0.5, _one, unloading=way and name
+        f"{name}{way}", f"{long_name}{way and ', unloading'}", "1", 1.5, 1, 0.5, 1, unloading=way and name
     )
     for name, long_name, ways in (
         ("nominal_separation", "nominal separation d/sigma", ("", "_unloading")),
@@ -206,7 +194,7 @@ SEPARATIONS = {
     for way in ways
 }
 
-TANGENTIAL = Quantity("tangential_load", "tangential load", "N", 1.5, 1, 0.5, _load)
+TANGENTIAL = Quantity("tangential_load", "tangential load", "N", 1.5, 1, 0.5, 4 / 3)
 
 # All that an ensemble can hold.
 ALL_QUANTITIES = {
