@@ -8,7 +8,6 @@ from scipy import stats
 
 import analytic
 import mcgw
-from mcgw.cli import main
 from mcgw.scene.in_words import accuracy_facts, contact_facts, law_text
 from mcgw.statistics.comparison import verdict
 
@@ -194,14 +193,6 @@ def test_theory_of_summits_with_their_own_radii_is_the_same_in_another_process()
     theory = scene.theory
     mean = theory.mean("load", [0.0, 1.0])
     np.testing.assert_array_equal(pickle.loads(pickle.dumps(theory)).mean("load", [0.0, 1.0]), mean)
-
-
-def test_a_run_that_ends_by_time_makes_no_forecast(make_scene, tmp_path, capsys):
-    """Of a billion surfaces: the end is known."""
-    scene = make_scene(n_surfaces=10**9, keep="statistics", separations=(3.0,), quantities=("load",))
-    (tmp_path / "s.toml").write_text(mcgw.scene_text(scene.replace(max_seconds=0.01)))
-    assert main(["run", str(tmp_path / "s.toml"), "-o", str(tmp_path / "e.h5")]) == 0
-    assert "Ctrl-C keeps what is done" not in capsys.readouterr().err
 
 
 def test_files_of_the_other_kind_are_refused(make_scene, tmp_path):
