@@ -8,12 +8,14 @@ uniform, so its moments follow from theirs: the upward pass of a fast multipole 
 
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from mcgw.machine.compiling import njit
 from mcgw.sampling.cells import NODES, TO_COEFFICIENTS, Mesh
-from mcgw.sampling.rules import product
+from mcgw.sampling.rules import multiply
 
 __all__ = ["Tree", "transfers", "tree_over"]
 
@@ -98,12 +100,30 @@ def transfers(mesh: Mesh, tree: Tree, moments: Ints) -> tuple[Ints, Ints, Ints, 
     wanted = moments[parent]
     pair = np.repeat(np.arange(len(parent)), wanted)
     moment = np.arange(len(pair)) - np.repeat(np.cumsum(wanted) - wanted, wanted)
-    x = (2 * s / (end - start)[:, None] - 1).T
-    powers = [np.ones_like(x), x]  # T_j of the parent's variable at the points of each child
-    while len(powers) < wanted.max(initial=0):
-        powers.append(powers[-1] * (2 * x) - powers[-2])
-    values = np.stack(powers)[moment, :, pair].T
-    coefficients = np.ascontiguousarray(product(TO_COEFFICIENTS, np.ascontiguousarray(values)).T)
-    order = np.arange(len(NODES))
-    coefficients[(tree.left[child] >= 0)[pair, None] & (order > moment[:, None])] = 0.0  # no degree is raised
+    coefficients = np.empty((len(pair), len(NODES)))
+    _transfer(
+        2 * s / (end - start)[:, None] - 1, wanted, tree.left[child] >= 0, TO_COEFFICIENTS, coefficients
+    )
     return parent[pair], child[pair], moment, coefficients
+
+
+@njit(nogil=True, cache=True)
+def _transfer(x: Any, moments: Any, of_parent: Any, to_coefficients: Any, coefficients: Any) -> None:
+    """Series in the variable of each child of T_j(x), x the variable of its parent at the child's points."""
+    order, most = x.shape[1], 2
+    for wanted in moments:  # a reduction by NumPy's name imports half of SciPy
+        most = max(most, wanted)
+    powers, series = np.zeros((order, most)), np.empty((order, most))
+    line = 0
+    for pair in range(moments.size):
+        for i in range(order):
+            powers[i, 0], powers[i, 1] = 1.0, x[pair, i]
+        for j in range(2, moments[pair]):
+            for i in range(order):
+                powers[i, j] = powers[i, j - 1] * (2 * x[pair, i]) - powers[i, j - 2]
+        multiply(to_coefficients, powers, series)
+        for j in range(moments[pair]):
+            for k in range(order):
+                raised = of_parent[pair] and k > j  # no degree is, but for rounding
+                coefficients[line, k] = 0.0 if raised else series[k, j]
+            line += 1
