@@ -139,3 +139,15 @@ def test_hertz_by_another_name_is_hertz():
     ours, theirs = (cells_of(scene).block(0, 1).sums for scene in (twin, hertz))
     for name in hertz.quantities:
         np.testing.assert_allclose(ours[name], theirs[name], rtol=1e-13)
+
+
+@pytest.mark.parametrize(
+    ("name", "way"),
+    [("kogut", {}), ("kogut", {"unload_from": "loop"}), ("chang", {}), ("johnson", {"unload_from": "loop"})],
+)
+def test_contacts_are_counted_where_nothing_else_is_asked(name, way):
+    """Under laws that yield or stick, of the very surfaces whose heights are told."""
+    given = {"law": LAWS[name], "quantities": ["contacts"], "n_surfaces": 2, "n_asperities": 3000, "seed": 5}
+    scene = mcgw.Scene(SURFACE, separations=[0.0, 1.0], sampler="cells", **given, **way)
+    counted = [[np.sum(mcgw.heights(scene, i) > h) for h in scene.separations] for i in range(2)]
+    assert np.array_equal(mcgw.simulate(scene).contacts, counted)

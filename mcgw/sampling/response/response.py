@@ -142,7 +142,7 @@ def layout_of(
 
 def _rows(scene: Scene, mesh: Mesh, quantities: tuple[str, ...], *, lasting: bool) -> Rows:
     """What is asked, each separation once, in increasing order."""
-    if scene.hertzian:
+    if scene.hertzian or not quantities:  # without rows every law is the same
         return hertz_rows(scene, quantities, lasting=lasting)
     from mcgw.sampling.response.law_rows import law_rows
 
