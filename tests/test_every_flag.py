@@ -291,6 +291,15 @@ ROWS = [
     ("init", "PRESET", "", "coating", writes("coating.toml", instead=["demo.toml"])),
     ("init", "--output", "", "-o x.toml", writes("x.toml", instead=["demo.toml"])),
     ("init", "--schema", "", "--schema", writes("scene.schema.json")),
+    ("run", "--set", RUN, "+ --set ensemble.n_surfaces=9", says("a.h5: 9 surfaces")),
+    ("run", "--set", RUN, "+ --set grading.gama=2", refuses("grading.gama: unknown key; did you mean gamma")),
+    ("run", "--set", RUN, "+ --set gamma", refuses("--set gamma: give KEY=VALUE")),
+    ("sweep", "--set", SWEEP, "+ --set ensemble.seed=9", says("seed 9")),
+    ("show", "--set", "@s.toml --plan", "+ --set contact.law=kogut-etsion --set contact.critical=0.05",
+     says("KogutEtsion")),
+    ("solve", "--set", "@s.toml --load 1N", "+ --set ensemble.n_surfaces=9", says("std: over 9 surfaces")),
+    ("show", "--set", E, "+ --set grading.gamma=2", refuses("goes with --plan")),
+    ("export", "--set", INP, "@e.h5 --to abaqus -o a.inp --set grading.gamma=2", refuses("give a scene")),
     ("run", "--output", RUN, "@s.toml -o b.h5", writes("b.h5", instead=["a.h5"])),
     ("run", "--threads", RUN, "+ --threads 99", same_draws),
     ("run", "--threads", RUN, "+ --threads 0", refuses("threads = 0: give")),
@@ -425,6 +434,8 @@ APART = {
     ("surface", "--colour"): "test_colours_tell_what_was_asked",
     ("", "--version"): "test_version",
     ("converge", "--output"): "test_converge_takes_its_folder",
+    ("converge", "--set"): "test_a_study_is_of_the_values_that_are_set",
+    ("tradeoff", "--set"): "test_a_study_is_of_the_values_that_are_set",
 }
 
 
@@ -573,6 +584,13 @@ def test_converge_takes_its_folder(call):
     said = call(["converge", "@s.toml", "-o", "there/deep"])
     assert said.files == ["s-converge.png"]
     assert (said.folder / "there/deep/s-converge.png").is_file()
+
+
+@pytest.mark.parametrize("study", ["converge", "tradeoff"])
+def test_a_study_is_of_the_values_that_are_set(call, study):
+    said = call([study, "@s.toml", "--set", "ensemble.seed=-1"])
+    assert said.code == 2
+    assert "ensemble.seed = -1: give a whole number" in said.err
 
 
 def test_tradeoff_takes_its_folder_and_its_time(call, monkeypatch):

@@ -3,6 +3,8 @@
 import argparse
 from pathlib import Path
 
+from mcgw.commands.set_option import add_set_option, changes_of
+
 HELP = (
     "test statistical convergence: slopes, coverage, variance, covariance, skewness (exit code 1 if it fails)"
 )
@@ -15,6 +17,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "-o", "--output", type=Path, metavar="DIR", help="folder of the figure; default: out beside the scene"
     )
+    add_set_option(parser)
 
 
 def execute(args: argparse.Namespace) -> int:
@@ -26,7 +29,7 @@ def execute(args: argparse.Namespace) -> int:
     from mcgw.statistics.convergence import SEEDS, converge
     from mcgw.statistics.verdict import FALSE_ALARM
 
-    scene = load_scene(args.scene)
+    scene = load_scene(args.scene, changes=changes_of(args))
     folder = args.output or args.scene.parent / "out"
     path = folder / f"{args.scene.stem}-converge.png"
     check_outputs([Output(path, figure_format())], inputs=files_of(args.scene))

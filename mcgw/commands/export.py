@@ -3,6 +3,8 @@
 import argparse
 from pathlib import Path
 
+from mcgw.commands.set_option import add_set_option, changes_of
+
 HELP = "write pressure, conductance or stiffness as a table for a finite-element program"
 EXAMPLE = "mcgw export mine.toml --to calculix --units mm-N-s -o contact.inp"
 
@@ -36,6 +38,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         "-o", "--output", type=Path, required=True, metavar="FILE",
         help="of the mean: .inp, for moose .csv, for comsol .txt; quantiles, and all together, go beside it",
     )  # fmt: skip
+    add_set_option(parser)
 
 
 def execute(args: argparse.Namespace) -> int:
@@ -50,7 +53,9 @@ def execute(args: argparse.Namespace) -> int:
     check_name(args.output.name, PROGRAMS[args.to])
     pressures = None if args.pressures is None else _pressures(args.pressures)
     from_scene = args.scene.suffix.lower() == ".toml"
-    what = load_scene(args.scene) if from_scene else args.scene
+    if args.set and not from_scene:
+        raise ValueError(f"--set {args.set[0]}: {args.scene} holds results; give a scene")
+    what = load_scene(args.scene, changes=changes_of(args)) if from_scene else args.scene
     scene = what if from_scene else open_ensemble(args.scene).scene
     *tables, all_of_them = files_of_export(
         args.output, ["mean", *(quantile_name(q) for q in args.quantile or DEFAULT_QUANTILES)]

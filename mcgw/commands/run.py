@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from mcgw.commands.engine_options import add_engine_options, drawing, tell_share
+from mcgw.commands.set_option import add_set_option, changes_of
 
 if TYPE_CHECKING:
     from mcgw.ensemble.forecast import Forecast
@@ -23,6 +24,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         "-o", "--output", type=Path, metavar="FILE.h5", help="default: out/NAME.h5 beside the scene"
     )
     add_engine_options(parser)
+    add_set_option(parser)
 
 
 def execute(args: argparse.Namespace) -> int:
@@ -44,7 +46,7 @@ def _execute(args: argparse.Namespace) -> int:
     path = args.output or args.scene.parent / "out" / f"{args.scene.stem}.h5"
     if args.shard is not None:
         part_of(args.shard)  # or nothing is read
-    scene = load_scene(args.scene, seed=lambda: recorded_seed(path))
+    scene = load_scene(args.scene, changes=changes_of(args), seed=lambda: recorded_seed(path))
     check_outputs([Output(path, HDF5, grows=True)], inputs=files_of(args.scene))
     expected = forecast(scene)
     short = [expected.shortfall] if args.shard and expected.shortfall else []

@@ -4,6 +4,8 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from mcgw.commands.set_option import add_set_option, changes_of
+
 if TYPE_CHECKING:
     from mcgw.store.run_folder import RunFolder
 
@@ -24,6 +26,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         "--csv", type=Path, metavar="CSV", help="also write the table of all separations there"
     )
     what.add_argument("--verify", action="store_true", help="check every bit by trailer and digest")
+    add_set_option(parser)
 
 
 def execute(args: argparse.Namespace) -> int:
@@ -34,12 +37,14 @@ def execute(args: argparse.Namespace) -> int:
 
     if args.csv and (args.scene or args.digest or args.plan or args.verify):
         raise ValueError(f"--csv {args.csv}: writes the table of the summary; leave out the other option")
+    if args.set and not args.plan:
+        raise ValueError(f"--set {args.set[0]}: goes with --plan, of a scene")
     if args.plan:
         from mcgw.machine.progress import stages
         from mcgw.reports.plan import plan_of, plan_text
         from mcgw.scene.scene_file import load_scene
 
-        scene = load_scene(args.file)
+        scene = load_scene(args.file, changes=changes_of(args))
         with stages(2) as done:
             tell_notes(scene)
             done()

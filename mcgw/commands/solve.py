@@ -3,6 +3,8 @@
 import argparse
 from pathlib import Path
 
+from mcgw.commands.set_option import add_set_option, changes_of
+
 HELP = "find separation, area, stiffness, contacts and conductance at given loads"
 EXAMPLE = "mcgw solve runs/demo.toml --pressure 100kPa 1MPa --csv solved.csv"
 
@@ -25,6 +27,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         "--surfaces", type=int, metavar="M", help="how many to solve; default: those of the scene"
     )
     parser.add_argument("--csv", type=Path, metavar="FILE", help="also write the table there; else no file")
+    add_set_option(parser)
 
 
 def execute(args: argparse.Namespace) -> int:
@@ -39,7 +42,7 @@ def execute(args: argparse.Namespace) -> int:
     from mcgw.reports.solved_loads import solutions_table, solutions_text
     from mcgw.scene.scene_file import files_of, load_scene
 
-    scene = load_scene(args.scene)
+    scene = load_scene(args.scene, changes=changes_of(args))
     check_outputs(table_output(args.csv), inputs=files_of(args.scene))
     if args.surfaces is not None:
         scene = replace(scene, n_surfaces=args.surfaces)

@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from mcgw.commands.engine_options import add_engine_options, drawing, tell_share
+from mcgw.commands.set_option import add_set_option, changes_of
 
 if TYPE_CHECKING:
     from mcgw.scene.scene import Scene
@@ -37,6 +38,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--plan", action="store_true", help="print what would be drawn and how long it takes; write nothing"
     )
+    add_set_option(parser)
 
 
 def execute(args: argparse.Namespace) -> int:
@@ -49,7 +51,7 @@ def execute(args: argparse.Namespace) -> int:
 
     path = args.output or args.scene.parent / "out" / f"{args.scene.stem}.sweep.h5"
     over = dict(map(_axis, args.over))
-    scene = load_scene(args.scene, seed=lambda: recorded_seed(path))
+    scene = load_scene(args.scene, changes=changes_of(args), seed=lambda: recorded_seed(path))
     if args.plan:
         print(_plan(scene, axes_of(over, zipped=args.zip)))
         return 0

@@ -3,6 +3,8 @@
 import argparse
 from pathlib import Path
 
+from mcgw.commands.set_option import add_set_option, changes_of
+
 HELP = "measure error against time of every sampler and quadrature, and say what to run"
 EXAMPLE = "mcgw tradeoff runs/demo.toml -o out"
 
@@ -14,6 +16,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         "-o", "--output", type=Path, metavar="DIR", help="folder of table and figure; default: out beside it"
     )
     parser.add_argument("--seconds", default="60", metavar="TIME", help="bound, as 5 min; default: 60 (s)")
+    add_set_option(parser)
 
 
 def execute(args: argparse.Namespace) -> int:
@@ -26,7 +29,7 @@ def execute(args: argparse.Namespace) -> int:
     from mcgw.statistics.tradeoff import tradeoff
 
     seconds = parse(args.seconds, "s", "--seconds")
-    scene = load_scene(args.scene)
+    scene = load_scene(args.scene, changes=changes_of(args))
     folder = args.output or args.scene.parent / "out"
     table, figure = (folder / f"{args.scene.stem}-tradeoff.{end}" for end in ("csv", "png"))
     check_outputs([Output(table, CSV), Output(figure, figure_format())], inputs=files_of(args.scene))
