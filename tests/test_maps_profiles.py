@@ -271,7 +271,7 @@ def test_the_command_tells_a_profile_by_its_shape(files, tmp_path, capsys):
     assert "Ra, Rq, Rsk" in told
     found = mcgw.fit(paths, cutoff="10 um")
     for name, error in found.errors.items():
-        shown = re.search(rf"^{name} +(\S+) .* (\S+) to (\S+)$", told, re.MULTILINE).groups()
+        shown = re.search(rf"^ +{name} +\S+ +(\S+) +(\S+) to (\S+)$", told, re.MULTILINE).groups()
         ends = getattr(found.moments, name) * np.exp([0, -2 * error, 2 * error])
         np.testing.assert_allclose([float(x) for x in shown], ends, rtol=6e-3)
     scene = mcgw.load_scene(out)

@@ -260,7 +260,7 @@ HEAD = '[surface]\nnominal_area = "1 mm^2"\nE_star = "78.6 GPa"\n'
     [
         (HEAD + "m0 = 1e-12\nm2 = 1e-3\nm4 = 1e6\n" + AT_1, "alpha"),
         (HEAD + "m0 = 1e-12\nm2 = 1e-3\n" + AT_1, "m4: missing"),
-        (HEAD + "m0 = 1e-12\nm2 = 1e-3\nm4 = 5e6\nradius = 1\n" + AT_1, "either m0"),
+        (HEAD + "m0 = 1e-12\nm2 = 1e-3\nm4 = 5e6\nradius = 1\n" + AT_1, "m0 = 1e-12: give it or radius"),
         (HEAD + "m0 = 1e-12\nm2 = 1e-3\nm4 = 5e6\n" + AT_1 + "[ensemble]\nsampler='aggregate'\n",
          "aggregate"),
         (HEAD + "m0 = 1e-12\nm2 = 1e-3\nm4 = 5e6\n[heights]\nlaw = 'gaussian'\n" + AT_1,

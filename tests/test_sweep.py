@@ -158,7 +158,7 @@ def test_summits_keep_their_radii_from_point_to_point():
 
 
 def test_what_no_cells_resolve_is_drawn_one_by_one_at_all_points(monkeypatch):
-    monkeypatch.setattr("mcgw.sampling.samplers._HALVINGS", 0)
+    monkeypatch.setattr("mcgw.sampling.samplers._CUTS", 0)
     steep = mcgw.Scene(
         SURFACE, separations=[-1.2, 1.8], grading=mcgw.Exponential(-1.5), negative="clip", n_surfaces=5,
         n_asperities=3000, seed=7, law=mcgw.KogutEtsion(critical=0.0018),

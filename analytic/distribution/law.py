@@ -48,7 +48,7 @@ class Distribution:
     >>> law = analytic.Model(surface).distribution("load", 2.0)
     >>> low, high = law.interval(0.95)
     >>> round(float(low / law.mean()), 3), round(float(high / law.mean()), 3)
-    (0.461, 1.693)
+    (0.418, 1.776)
     """
 
     touching: Touching
