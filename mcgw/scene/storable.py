@@ -50,7 +50,10 @@ def _extent(scene: Fields) -> tuple[float, float]:
     asked = scene.separations
     if scene.lowest < min(asked):
         asked = (*asked, scene.lowest - (_MARGIN if scene.nominal else 0.0))
-    return extent(scene.grading, scene.heights, asked)
+    low, high = extent(scene.grading, scene.heights, asked)
+    if scene.nominal:  # a balance is sought in cells that begin at separations up to the highest asperity
+        high = max(high, min(scene.highest + 1, scene.heights.support[1]))
+    return low, high
 
 
 def _resolved_law(scene: Fields) -> ContactLaw:
