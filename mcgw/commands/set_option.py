@@ -11,7 +11,6 @@ def add_set_option(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--set",
         action="append",
-        default=[],
         metavar="KEY=VALUE",
         help="another value of a key of the scene, as grading.gamma=2 or contact.law=hertz; again for more",
     )
@@ -28,7 +27,7 @@ def changes_of(args: argparse.Namespace) -> dict[str, Any]:
     from mcgw.formats.named_files import loads
 
     changes: dict[str, Any] = {}
-    for text in args.set:
+    for text in args.set or ():
         key, equals, value = (part.strip() for part in text.partition("="))
         if not (equals and key and value):
             raise ValueError(f"--set {text}: give KEY=VALUE, as grading.gamma=2")
