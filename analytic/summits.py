@@ -61,9 +61,9 @@ class Summits:
         """The heights, each with the mean of this power of its radius over that of the surface."""
         return self.heights
 
-    def rule(self, h: Array, grading: Grading, branches: Branches = ()) -> HeightRule:
-        """Heights and radii for sums on these branches; without any, of powers of approach and radius."""
-        return HeightRule.over(h, grading, self.heights, branches=branches)
+    def rule(self, h: Array, grading: Grading, branches: Branches | None = None) -> HeightRule:
+        """Heights and radii for sums on these branches, rough without any; None: of powers of both."""
+        return HeightRule.over(h, grading, self.heights, branches=branches or ())
 
     def jumps(self, quantity: str, branch: Branch, grading: Grading, h: Array, rule: HeightRule) -> Array:
         """What summits add to the slope of a mean by jumping, at each separation of a rule."""
@@ -84,8 +84,8 @@ class _RandomRadii(Summits):
     def weighted(self, power: float) -> HeightLaw:
         return WeightedHeights(self.heights, partial(self.curvature.mean, power)) if power else self.heights
 
-    def rule(self, h: Array, grading: Grading, branches: Branches = ()) -> HeightRule:
-        if not branches:
+    def rule(self, h: Array, grading: Grading, branches: Branches | None = None) -> HeightRule:
+        if branches is None:
             return with_radii(super().rule(h, grading), self.curvature)
         key = (branches, h.tobytes())  # of one model, every quantity and statistic of which asks again
         if key not in self._rules:
@@ -118,10 +118,10 @@ class _ListedSummits(Summits):
     def powers(self) -> bool:
         return self.radii is None
 
-    def rule(self, h: Array, grading: Grading, branches: Branches = ()) -> HeightRule:
+    def rule(self, h: Array, grading: Grading, branches: Branches | None = None) -> HeightRule:
         if self.radii is None:
             return super().rule(h, grading, branches)
-        return HeightRule.of_summits(h, self.radii, branches)
+        return HeightRule.of_summits(h, self.radii, branches or ())
 
     def jumps(self, *_: Any) -> Array:
         return np.zeros(1)
