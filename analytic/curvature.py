@@ -20,16 +20,13 @@ from functools import lru_cache
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from analytic.arrays import Array
 from analytic.curvature_given_height import CurvatureGivenHeight
 from analytic.heights import HeightLaw
 from analytic.nayak import Nayak, tables_of
 from analytic.piecewise import PiecewiseSeries, fitted
-
-__all__ = ["MEAN_CURVATURE", "RandomCurvature", "WeightedHeights"]
-
-Array = NDArray[np.float64]
 
 MEAN_CURVATURE = 8 / math.sqrt(3 * math.pi)  # of the summits, over sqrt(m4/3)
 _DIVERGES = 4.0  # power of the radius that has no mean: the density of g begins as its cube

@@ -5,14 +5,10 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import erfcx, gammainc, gammaincc, ndtr
 
+from analytic.arrays import Array
 from analytic.nayak import NayakTables, panelled, tables_of, upper_tail
-
-__all__ = ["CurvatureGivenHeight"]
-
-Array = NDArray[np.float64]
 
 _WIDE = 9.5  # standard deviations, beyond which a normal density is 1e-20 of its largest value
 _MEDIAN = 1.6783469900166605  # of the gamma law of shape 2

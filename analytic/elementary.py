@@ -10,12 +10,9 @@ from functools import wraps
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import erfcx
 
-__all__ = ["exp", "exp_minus_half_square", "expm1", "log", "log1p", "ndtr", "ndtri"]
-
-Array = NDArray[np.float64]
+from analytic.arrays import Array
 
 _PIECE = 2048  # numbers at a time: they stay in the innermost cache
 _LOG2_HIGH, _LOG2_LOW = 0.693147180369123816490, 1.90821492927058770002e-10  # the first has 33 bits

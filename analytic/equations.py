@@ -8,34 +8,15 @@ from collections.abc import Sequence
 from typing import Literal
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from analytic.arrays import Array
 from analytic.gradings import Grading, Homogeneous, Squared
 from analytic.height_rule import Count
 from analytic.heights import GAUSSIAN, HeightLaw
 from analytic.integrals import quotient
 from analytic.model import Cumulants, Model
 from analytic.surface import Surface
-
-__all__ = [
-    "area",
-    "area_per_load",
-    "area_per_load_ratio",
-    "barber_conductance",
-    "conductance",
-    "contacts",
-    "covariance",
-    "cumulants",
-    "load",
-    "mean",
-    "mean_modulus",
-    "plasticity_index",
-    "separation_at",
-    "stiffness",
-    "stiffness_ratio",
-]
-
-Array = NDArray[np.float64]
 
 
 def _model(

@@ -4,16 +4,12 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from analytic.arrays import Array
 from analytic.gradings import Grading
 from analytic.heights import HeightLaw
 from analytic.law_rule import ends_of
 from analytic.measured_summits import MeasuredHeights
-
-__all__ = ["extent"]
-
-Array = NDArray[np.float64]
 
 _RARE = (1e-37, 1e-32, 1e-24)  # a share that no sampler draws; others where a law cannot tell
 _SURE = 1e-16  # up to such a rare height a grading must have values

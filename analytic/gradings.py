@@ -10,14 +10,11 @@ from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from analytic.arrays import Array
 from analytic.elementary import exp, log
 from analytic.piecewise import PiecewiseSeries
-
-__all__ = ["Clipped", "Custom", "Exponential", "Grading", "Homogeneous", "Squared"]
-
-Array = NDArray[np.float64]
 
 
 class Grading(Protocol):

@@ -13,6 +13,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from analytic.arrays import Array
 from analytic.gradings import Grading
 from analytic.heights import GAUSSIAN, HeightLaw
 from analytic.law_rule import law_rule
@@ -22,9 +23,6 @@ from analytic.laws.law import ContactLaw
 from analytic.measured_summits import MeasuredRadii
 from analytic.quantities import quantity_of
 
-__all__ = ["Count", "Fluctuations", "HeightRule"]
-
-Array = NDArray[np.float64]
 Count = Literal["fixed", "poisson"]
 
 _DIVERGES = 4  # power of the radius of a summit that has no mean

@@ -5,13 +5,10 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from analytic.arrays import Array, Ints
 from analytic.heights import HeightLaw
-
-__all__ = ["HeightTable", "checked_heights", "reduced"]
-
-Array = NDArray[np.float64]
 
 _GROWTH = 1.1  # ratio of the ranks of neighbouring points, counted from the nearer end
 _FLAT = 1e-9  # reduced heights closer than this are one
@@ -174,7 +171,7 @@ def _mean_std(x: Array, p: Array) -> tuple[float, float]:
     return mean, float(np.sqrt((mass * ((middle - mean) ** 2 + width**2 / 12)).sum()))
 
 
-def _ranks(k: int) -> NDArray[np.int64]:
+def _ranks(k: int) -> Ints:
     """Ranks 0 ... k - 1 to keep: all near both ends, ever fewer towards the middle."""
     ranks = [0]
     while 2 * ranks[-1] < k - 1:

@@ -9,14 +9,10 @@ from functools import cached_property, lru_cache
 from typing import Any, ClassVar, Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import gammaln, log_ndtr, ndtri_exp, zeta
 
+from analytic.arrays import Array
 from analytic.elementary import exp, exp_minus_half_square, expm1, log, log1p, ndtr, ndtri
-
-__all__ = ["GAUSSIAN", "ExponentialHeights", "Gaussian", "HeightLaw", "Weibull", "narrowest"]
-
-Array = NDArray[np.float64]
 
 _FAR = -30.0  # below, where no height is ever drawn, probabilities underflow
 _SERIES = 4.0  # shape of a Weibull law from which on its spread is summed in powers of its inverse

@@ -9,8 +9,9 @@ underflows before the answer does.
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from analytic.arrays import Array
 from analytic.elementary import exp_minus_half_square
 from analytic.gradings import Grading, Homogeneous
 from analytic.heights import GAUSSIAN, Gaussian, HeightLaw
@@ -18,10 +19,6 @@ from analytic.law_rule import law_integral
 from analytic.quadrature import REACH, WIDEST, gauss_legendre, panels
 from analytic.resolution import resolved_breaks
 from analytic.steep import Weight, log_unit, tame
-
-__all__ = ["fn", "fn_between", "fn_paper", "fn_scaled", "quotient"]
-
-Array = NDArray[np.float64]
 
 _TRIED = 9  # separations of a column at which the reach is looked for
 _ALL = (-np.inf, np.inf)

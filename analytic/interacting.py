@@ -12,8 +12,9 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from analytic.arrays import Array
 from analytic.height_rule import Fluctuations, HeightRule
 from analytic.interaction import Interaction, in_series
 from analytic.model import Cumulants, Model
@@ -23,9 +24,6 @@ from analytic.quantities import SEPARATIONS, quantity_of
 if TYPE_CHECKING:
     from analytic.distribution import Along, Counted, Distribution, Mapped
 
-__all__ = ["InteractingModel", "is_stiffness"]
-
-Array = NDArray[np.float64]
 
 _SERIES = ("stiffness", "load_slope")
 

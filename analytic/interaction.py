@@ -24,8 +24,6 @@ from typing import Any, Literal
 
 from analytic.surface import Surface
 
-__all__ = ["Interaction", "in_series"]
-
 Reference = Literal["body", "mean-plane"]
 
 # Mean sinking of a square of side L under the pressure p, over p L/E*: (4 asinh 1 - 4/3 (sqrt 2 - 1))/pi.

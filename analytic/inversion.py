@@ -4,17 +4,14 @@ from collections.abc import Callable
 from functools import cache
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from analytic.arrays import Array
 from analytic.gradings import Grading, Homogeneous
 from analytic.heights import GAUSSIAN, Gaussian, HeightLaw
 from analytic.integrals import fn, quotient
 from analytic.law_rule import law_rule
 from analytic.quantities import QUANTITIES, Quantity
-
-__all__ = ["LOWEST", "last_separations", "ratio_at_equal_load", "separations_of_powers"]
-
-Array = NDArray[np.float64]
 
 LOWEST = -40.0  # separation that is looked at
 _GRID = np.concatenate([np.linspace(LOWEST, 10, 251), np.geomspace(10.5, 1000, 60)])

@@ -9,18 +9,14 @@ entire: its pieces have one width. Means and variances underflow with its densit
 from collections.abc import Callable, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from analytic.arrays import Array
 from analytic.gradings import Grading
 from analytic.heights import Gaussian, HeightLaw
 from analytic.measured_summits import MeasuredHeights
 from analytic.quadrature import NEAREST, NODES, REACH, SPANS, WIDEST, above_neighbours, rooted, towards
 from analytic.resolution import resolved_breaks
 from analytic.steep import Weight, log_unit, over_unit, tame
-
-__all__ = ["POWER", "ends_of", "law_integral", "law_rule"]
-
-Array = NDArray[np.float64]
 
 POWER = 4  # of the modulus in the kurtosis
 _GROWTH = 8.0  # of the pieces away from a singular end

@@ -6,8 +6,9 @@ from functools import partial
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from analytic.arrays import Array
 from analytic.gradings import Grading
 from analytic.height_rule import HeightRule
 from analytic.heights import HeightLaw
@@ -19,10 +20,6 @@ from analytic.laws.slopes import slope_term
 from analytic.quadrature import REACH
 from analytic.quantities import Quantity, quantity_of
 from analytic.summits import Summits
-
-__all__ = ["MeanContact", "MeanPowers"]
-
-Array = NDArray[np.float64]
 
 _HIGHEST = 1000.0  # separation that is looked at
 

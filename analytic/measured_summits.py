@@ -5,14 +5,10 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from analytic.arrays import Array
 from analytic.height_table import checked_heights, reduced
 from analytic.heights import HeightLaw
-
-__all__ = ["MeasuredHeights", "MeasuredRadii"]
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

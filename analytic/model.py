@@ -6,8 +6,9 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from analytic.arrays import Array
 from analytic.curvature import RandomCurvature
 from analytic.gradings import Grading, Homogeneous
 from analytic.height_rule import Count, Fluctuations, HeightRule
@@ -24,10 +25,6 @@ from analytic.surface import Surface
 
 if TYPE_CHECKING:
     from analytic.distribution import Along, Counted, Distribution, Mapped
-
-__all__ = ["Cumulants", "Model"]
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)

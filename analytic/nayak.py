@@ -17,18 +17,15 @@ from dataclasses import dataclass
 from functools import cached_property, lru_cache
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.special import erfcx, ndtr
 
+from analytic.arrays import Array
 from analytic.elementary import exp_minus_half_square
 from analytic.heights import HeightLaw
 from analytic.piecewise import PiecewiseSeries, fitted
 from analytic.quadrature import NODES, gauss_legendre
 from analytic.surface import LEAST_ALPHA, SUMMIT_SPREAD
-
-__all__ = ["Nayak", "NayakTables", "panelled", "tables_of", "upper_tail"]
-
-Array = NDArray[np.float64]
 
 _TERMS = 24
 _WIDE = 9.5  # standard deviations, beyond which a normal density is 1e-20 of its largest value

@@ -20,14 +20,10 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from analytic.arrays import Array
 from analytic.model import Model
 from analytic.quantities import quantity_of
-
-__all__ = ["OwnBalance", "derivative"]
-
-Array = NDArray[np.float64]
 
 _STEP = 0.01  # of the differences that give derivatives by h, whose error is its fourth power
 _WEIGHTS = np.array([[1, -8, 0, 8, -1], [-1, 16, -30, 16, -1]]) / 12.0  # first and second derivative

@@ -7,12 +7,8 @@ from typing import ClassVar
 
 import numpy as np
 from numpy.polynomial import chebyshev
-from numpy.typing import NDArray
 
-__all__ = ["MOST_PIECES", "PiecewiseSeries", "fitted"]
-
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
+from analytic.arrays import Array, Ints
 
 MOST_PIECES = 4096  # as text they stay below two megabytes
 _MOST_TERMS, _MOST_NAME = 64, 200

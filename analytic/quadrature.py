@@ -11,26 +11,11 @@ from itertools import pairwise
 
 import numpy as np
 from numpy.polynomial.legendre import leggauss
-from numpy.typing import NDArray
 from scipy.special import roots_jacobi
 
+from analytic.arrays import Array
 from analytic.gradings import Grading, Homogeneous
 from analytic.steep import over_unit
-
-__all__ = [
-    "NEAREST",
-    "NODES",
-    "REACH",
-    "SPANS",
-    "WIDEST",
-    "above_neighbours",
-    "gauss_legendre",
-    "panels",
-    "rooted",
-    "towards",
-]
-
-Array = NDArray[np.float64]
 
 NEAREST = 2.0**-30  # below, a power >= 0 is 1e-9 of the whole, and integrated to 1e-7
 _GROWTH = 8.0  # of a piece to its distance from the separation below

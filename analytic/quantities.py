@@ -13,18 +13,6 @@ from dataclasses import dataclass, replace
 
 from analytic.surface import Surface
 
-__all__ = [
-    "ALL_QUANTITIES",
-    "LAW_QUANTITIES",
-    "PER_AREA",
-    "QUANTITIES",
-    "SEPARATIONS",
-    "TANGENTIAL",
-    "UNLOADING",
-    "Quantity",
-    "quantity_of",
-]
-
 
 @dataclass(frozen=True, slots=True)
 class Quantity:

@@ -9,8 +9,8 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from analytic.arrays import Array, Ints
 from analytic.curvature import MEAN_CURVATURE, RandomCurvature
 from analytic.gradings import Grading
 from analytic.height_rule import HeightRule
@@ -21,11 +21,6 @@ from analytic.laws.slopes import jump_terms
 from analytic.quadrature import SPANS, WIDEST, above_neighbours, gauss_legendre, rooted
 from analytic.quantities import quantity_of
 from analytic.resolution import resolved_breaks
-
-__all__ = ["Radii", "jumps_of_radii", "rule_of_radii", "with_radii"]
-
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 _NODES, _AS_WIDE = 64, 0.6  # points for curvatures, if their density bends over so many heights
 _HEIGHTS = 32  # points of a piece

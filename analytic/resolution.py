@@ -5,13 +5,9 @@ from functools import cached_property
 
 import numpy as np
 from numpy.polynomial import chebyshev
-from numpy.typing import NDArray
 
+from analytic.arrays import Array
 from analytic.gradings import Grading
-
-__all__ = ["SHORT", "bisected", "first_negative", "marks", "merged", "resolved_breaks", "spread_over"]
-
-Array = NDArray[np.float64]
 
 _WIDEST = 4.0
 _NEAR, _GROWTH = 64.0, 1.25  # heights up to here are looked at in equal steps, then in ever wider ones

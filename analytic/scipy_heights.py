@@ -11,14 +11,11 @@ from types import FrameType
 from typing import Any, TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
+from analytic.arrays import Array
 from analytic.heights import HeightLaw
 from analytic.resolution import resolved_breaks
 
-__all__ = ["ScipyHeights", "in_time"]
-
-Array = NDArray[np.float64]
 T = TypeVar("T")
 
 _SECONDS = 5.0  # for moments, or jumps, of a law of scipy: some are integrals of integrals

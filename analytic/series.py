@@ -3,16 +3,12 @@
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from analytic.arrays import Array, Marks
 from analytic.gradings import Clipped, Custom, Exponential, Grading, Homogeneous, Squared
 from analytic.piecewise import MOST_PIECES, PiecewiseSeries
 from analytic.resolution import SHORT, bisected, marks, merged, resolved_breaks, spread_over
 from analytic.tables import Table
-
-__all__ = ["bends", "is_data", "name_of", "resolved"]
-
-Array = NDArray[np.float64]
 
 _NOTHING = 1e-15  # of the largest value on a piece
 _SLIVER = 64  # spacings of floats: pieces so narrow only close in on a jump
@@ -113,7 +109,7 @@ def _without_slivers(edges: Array, told: Array) -> Array:
     return np.asarray(edges[~drop])
 
 
-def _bends(grading: Grading, edges: Array) -> NDArray[np.bool_]:
+def _bends(grading: Grading, edges: Array) -> Marks:
     """At which inner edges no polynomial describes the grading on both sides."""
     inner = edges[1:-1]
     about = np.maximum(_ABOUT, _SLIVER * np.spacing(np.abs(inner)))

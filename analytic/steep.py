@@ -8,14 +8,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from analytic.arrays import Array
 from analytic.gradings import Clipped, Exponential, Grading, Homogeneous, Squared
 from analytic.tables import Table
-
-__all__ = ["Weight", "log_unit", "over_unit", "tame"]
-
-Array = NDArray[np.float64]
 
 _LOST = 40.0  # logarithm of the weight lost outside: 4e-18 of its largest value
 _STEP = 1.25

@@ -5,8 +5,8 @@ from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from analytic.arrays import Array
 from analytic.curvature import RandomCurvature, WeightedHeights
 from analytic.gradings import Grading
 from analytic.height_rule import HeightRule
@@ -16,9 +16,6 @@ from analytic.laws.slopes import jump_terms
 from analytic.measured_summits import MeasuredHeights, MeasuredRadii
 from analytic.radii_rule import jumps_of_radii, rule_of_radii, with_radii
 
-__all__ = ["Summits", "summits_of"]
-
-Array = NDArray[np.float64]
 Branches = tuple[Branch, ...]
 
 _RAREST = 1e-280  # share of heights above the highest separation that is looked at

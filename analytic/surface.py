@@ -4,8 +4,6 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
 
-__all__ = ["LEAST_ALPHA", "SUMMIT_SPREAD", "Body", "SpectralMoments", "Surface", "composite_modulus"]
-
 LEAST_ALPHA = 1.5  # of an isotropic surface: all its waves have one length
 # Variance of the summit heights is (1 - 0.8968/alpha) m0 (Bush, Gibson and Thomas 1975), exactly:
 SUMMIT_SPREAD = 1 + 16 / math.pi - 3 * math.sqrt(3)

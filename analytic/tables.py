@@ -8,14 +8,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
+
+from analytic.arrays import Array
 
 if TYPE_CHECKING:
     from scipy.interpolate import PchipInterpolator
-
-__all__ = ["Table"]
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

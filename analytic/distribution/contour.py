@@ -17,14 +17,9 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from analytic.arrays import Array, Complex
 from analytic.distribution.one_asperity import OneAsperity
-
-__all__ = ["Line", "Values", "bounded", "by_contour", "saddle"]
-
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 
 _NOTHING = 1e-17
 _DIED = 1e-16

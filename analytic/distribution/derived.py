@@ -6,13 +6,10 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from analytic.arrays import Array
 from analytic.quadrature import gauss_legendre
-
-__all__ = ["Along", "Mapped"]
-
-Array = NDArray[np.float64]
 
 _NODES, _RAREST = 48, 1e-13  # of the integrals that give moments
 _STEP = 1e-3  # of a difference, in interquartile ranges

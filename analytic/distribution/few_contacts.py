@@ -14,15 +14,11 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import gammaln
 
+from analytic.arrays import Array
 from analytic.distribution.contour import Values
 from analytic.distribution.panels import POWER, Panels
-
-__all__ = ["FewContacts"]
-
-Array = NDArray[np.float64]
 
 _ONE_BY_ONE = 64
 

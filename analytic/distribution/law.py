@@ -6,16 +6,13 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.special import gammaincinv, ndtri
 
+from analytic.arrays import Array, Marks
 from analytic.distribution.contour import Line, Values, bounded, by_contour, saddle
 from analytic.distribution.few_contacts import FewContacts
 from analytic.distribution.touching import Touching
-
-__all__ = ["Distribution"]
-
-Array = NDArray[np.float64]
 
 _MANY = -40.0  # logarithm of the probability of no contact, below which the transform has died away
 _MIDDLE = 4.0  # standard deviations around the mean that one line serves
@@ -171,7 +168,7 @@ class Distribution:
                 break
         return x
 
-    def _start(self, tail: Array, from_above: NDArray[np.bool_]) -> Array:
+    def _start(self, tail: Array, from_above: Marks) -> Array:
         """Of a gamma law with the same mean, variance and skewness."""
         one = self.touching.one
         skewness = float(np.clip(one.skewness, 1e-3, 50.0))
@@ -208,14 +205,14 @@ class _Evaluation:
         back[:, order] = found
         return Values(*back)
 
-    def _ways(self, x: Array) -> list[tuple[NDArray[np.bool_], Callable[[Array], Values]]]:
+    def _ways(self, x: Array) -> list[tuple[Marks, Callable[[Array], Values]]]:
         one = self.one
         positive = one.least == 0
         nothing = x < 0 if positive else np.zeros(x.shape, dtype=bool)
         at_zero = (x == 0) & positive if one.values.size else ~nothing
         rest = ~(nothing | at_zero)
         atom = np.exp(one.nothing)
-        ways: list[tuple[NDArray[np.bool_], Callable[[Array], Values]]] = [
+        ways: list[tuple[Marks, Callable[[Array], Values]]] = [
             (nothing, lambda y: Values(0 * y, 0 * y + 1, 0 * y)),
             (at_zero, lambda y: Values(0 * y + atom, 0 * y - np.expm1(one.nothing), 0 * y)),
         ]

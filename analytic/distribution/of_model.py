@@ -5,8 +5,8 @@ from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from analytic.arrays import Array, Ints
 from analytic.curvature import RandomCurvature
 from analytic.distribution.counted import Counted
 from analytic.distribution.derived import Along, Mapped
@@ -18,11 +18,6 @@ from analytic.measured_summits import MeasuredHeights
 from analytic.quantities import quantity_of
 from analytic.radii_rule import Radii
 from analytic.resolution import resolved_breaks
-
-__all__ = ["distribution_of", "interacting_distribution", "separation_law_of"]
-
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 _FARTHER = (1.0, 3.0, 6.0, 10.0)  # heights above the separation that divide the rule, and reach on
 _FINER = (0.5, 1.0, 2.0, 3.0, 4.5, 6.0, 8.0, 10.0)

@@ -6,13 +6,9 @@ from functools import cached_property
 
 import numpy as np
 from numpy.polynomial import chebyshev
-from numpy.typing import NDArray
 from scipy.special import erfc
 
-__all__ = ["OneAsperity"]
-
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
+from analytic.arrays import Array, Complex
 
 _SMALL = 0.5  # exponents below it take a series
 _NEAR = 0.1

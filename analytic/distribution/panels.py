@@ -14,14 +14,9 @@ from dataclasses import dataclass
 from functools import cached_property, lru_cache
 
 import numpy as np
-from numpy.typing import NDArray
 
+from analytic.arrays import Array, Ints, Marks
 from analytic.quadrature import gauss_legendre
-
-__all__ = ["POWER", "Panels", "panels"]
-
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 POWER = 6
 _NARROW = 0.25
@@ -81,7 +76,7 @@ class Panels:
         found = 1 / np.prod(4 * (x[:, None] - x) + np.eye(self.nodes), axis=1)
         return np.asarray(found / np.abs(found).max())
 
-    def derivative(self, values: Array, of: NDArray[np.bool_]) -> Array:
+    def derivative(self, values: Array, of: Marks) -> Array:
         """By w, of values at the points of some panels; shape (..., panels, nodes)."""
         x, b = gauss_legendre(self.nodes)[0], self._barycentric
         matrix = b / b[:, None] / (x[:, None] - x + np.eye(self.nodes))

@@ -7,16 +7,11 @@ from itertools import pairwise
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
+from analytic.arrays import Array, Ints
 from analytic.distribution.few_contacts import FewContacts
 from analytic.distribution.one_asperity import OneAsperity
 from analytic.distribution.panels import POWER, panels
-
-__all__ = ["Asperity", "Touching"]
-
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 _NODES = 16
 _PANELS, _MOST = ((5, 12), (15, 16), (25, 20)), 24  # by the expected contacts

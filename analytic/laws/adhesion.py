@@ -5,15 +5,11 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
+from analytic.arrays import Array
 from analytic.laws.law import ContactLaw
 from analytic.laws.unloading import Unloading
 from analytic.surface import Surface
-
-__all__ = ["DerjaguinMullerToporov", "JohnsonKendallRoberts"]
-
-Array = NDArray[np.float64]
 
 _STEPS = 60  # of Newton's method at most; it takes six
 

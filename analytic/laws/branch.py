@@ -12,6 +12,7 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from analytic.arrays import Array, Ints
 from analytic.gradings import Grading
 from analytic.laws.crossings import crossings_of
 from analytic.laws.film import SpotConductance
@@ -19,11 +20,6 @@ from analytic.laws.law import ContactLaw, of_spot, piece_of
 from analytic.laws.regimes import Regimes, merged_heights, regimes_of
 from analytic.laws.unloading import Unloading
 from analytic.quantities import quantity_of
-
-__all__ = ["Branch", "UnloadingBranch", "Ways", "term_of"]
-
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 
 @dataclass(frozen=True)

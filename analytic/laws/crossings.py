@@ -11,15 +11,11 @@ from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
-from numpy.typing import NDArray
 
+from analytic.arrays import Array, Ints, Marks
 from analytic.gradings import Grading, Homogeneous
 from analytic.resolution import marks, resolved_breaks
 
-__all__ = ["Bound", "Crossings", "crossings_of"]
-
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
 Bound = Callable[[Array, Ints], Array]  # of heights, and of which separation
 Excess = Callable[[Array, Ints], Array]  # penetration beyond the bound, of the same
 
@@ -44,7 +40,7 @@ class Crossings:
 
     separation: Ints
     height: Array
-    begins: NDArray[np.bool_]
+    begins: Marks
 
 
 def crossings_of(
@@ -153,7 +149,7 @@ def _rows(heights: Sequence[Sequence[float]], high: float) -> Array:
     return result
 
 
-def _turns(curve: Callable[[Array], Array], left: Array, right: Array, peak: NDArray[np.bool_]) -> Array:
+def _turns(curve: Callable[[Array], Array], left: Array, right: Array, peak: Marks) -> Array:
     """Highest or lowest points, by golden section."""
     if not left.size:
         return left
@@ -185,7 +181,7 @@ def _halved(excess: Excess, which: Ints, unit: Array, left: Array, right: Array)
 
 
 def _around(
-    excess: Excess, which: Ints, unit: Array, left: Array, right: Array, behind: NDArray[np.bool_]
+    excess: Excess, which: Ints, unit: Array, left: Array, right: Array, behind: Marks
 ) -> tuple[Array, Array]:
     """Two heights next to where secants meet, or the ends given where the sign does not change in between."""
     before, x = left, right

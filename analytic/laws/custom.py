@@ -6,17 +6,14 @@ from typing import Any, ClassVar
 
 import numpy as np
 from numpy.polynomial import chebyshev
-from numpy.typing import NDArray
 
+from analytic.arrays import Array
 from analytic.laws.elastic_plastic import ElasticPlastic
-
-__all__ = ["CustomLaw", "RootSeries", "resolved_in_root"]
 
 _MOST_TERMS = 256
 _NOTHING = 1e-16  # of the largest value
 _ALLOWED = 1e-13
 _BETWEEN = np.linspace(-1, 1, 301)
-Array = NDArray[np.float64]
 Formula = Callable[[Any], Any]
 
 _PROBE = 1e-30j  # slopes are taken by a step into the complex plane

@@ -3,18 +3,12 @@
 from collections.abc import Iterable, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from analytic.arrays import Array, Ints, Marks
 from analytic.gradings import Grading
 from analytic.laws.branch import Branch
 from analytic.laws.regimes import Regimes
 from analytic.quadrature import NEAREST, towards
-
-__all__ = ["cuts_of", "cuts_of_each"]
-
-Array = NDArray[np.float64]
-Marks = NDArray[np.bool_]
-Ints = NDArray[np.int64]
 
 
 def cuts_of(

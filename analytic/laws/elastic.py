@@ -5,15 +5,11 @@ from math import cos, gamma, pi, sin, sqrt
 from typing import Any, ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
+from analytic.arrays import Array
 from analytic.laws.law import ContactLaw, check_poisson
 from analytic.quadrature import gauss_legendre
 from analytic.surface import Surface
-
-__all__ = ["Coated", "PowerLawGraded"]
-
-Array = NDArray[np.float64]
 
 _NODES = 14  # enough for logarithms up to log(2)
 

@@ -6,22 +6,12 @@ from dataclasses import KW_ONLY, dataclass
 from typing import Any, ClassVar, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
+from analytic.arrays import Array
 from analytic.laws.law import ContactLaw
 from analytic.laws.unloading import Unloading, derivative
 from analytic.surface import Surface
 
-__all__ = [
-    "BRIDGE",
-    "Bridgeable",
-    "ElasticPlastic",
-    "EtsionKligermanKadin",
-    "FromHardness",
-    "kogut_etsion_factor",
-]
-
-Array = NDArray[np.float64]
 Formula = Callable[[int, Any, Array], Any]
 
 BRIDGE = 1.5  # a bridge ends at this multiple of the penetration of its jump

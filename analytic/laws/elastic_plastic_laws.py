@@ -5,15 +5,11 @@ from dataclasses import KW_ONLY, dataclass, replace
 from typing import Any, ClassVar, Self
 
 import numpy as np
-from numpy.typing import NDArray
 
+from analytic.arrays import Array
 from analytic.laws.elastic_plastic import Bridgeable, EtsionKligermanKadin, FromHardness, kogut_etsion_factor
 from analytic.laws.law import check_poisson
 from analytic.surface import Surface
-
-__all__ = ["ChangEtsionBogy", "JacksonGreen", "KogutEtsion", "ZhaoMaiettaChang"]
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, kw_only=True)

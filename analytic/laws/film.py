@@ -7,12 +7,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from analytic.arrays import Array
 from analytic.laws.law import is_positive
 from analytic.surface import Surface
-
-__all__ = ["Film", "SpotConductance", "crowding_factor"]
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -16,19 +16,9 @@ from typing import Any, ClassVar, Self
 import numpy as np
 from numpy.typing import NDArray
 
+from analytic.arrays import Array, Ints
 from analytic.laws.unloading import Unloading, slope_in_root
 from analytic.surface import Surface
-
-__all__ = [
-    "ContactLaw",
-    "Hertz",
-    "check_poisson",
-    "is_positive",
-    "of_spot",
-    "piece_of",
-]
-
-Array = NDArray[np.float64]
 
 _FORMULAS = ("limits", "load", "radius", "stiffness", "slope", "unloading")
 
@@ -275,7 +265,7 @@ def of_spot(quantity: str, formulas: "ContactLaw | Unloading", piece: int, *at: 
     return np.asarray(known[quantity]())
 
 
-def piece_of(law: ContactLaw, penetration: Array, e: Array) -> NDArray[np.int64]:
+def piece_of(law: ContactLaw, penetration: Array, e: Array) -> Ints:
     """Which piece of the law holds at these penetrations, in the shape of both."""
     penetration, e = np.broadcast_arrays(penetration, e)
     with np.errstate(divide="ignore", over="ignore"):  # without a modulus nothing yields

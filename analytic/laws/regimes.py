@@ -3,16 +3,12 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from analytic.arrays import Array, Ints
 from analytic.gradings import Grading
 from analytic.laws.crossings import Bound, crossings_of
 from analytic.laws.law import ContactLaw, piece_of
-
-__all__ = ["Regimes", "merged_heights", "regimes_of"]
-
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 _SAME = 8  # spacings of floating-point numbers between heights that are not told apart
 

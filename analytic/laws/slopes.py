@@ -4,18 +4,13 @@ from collections.abc import Callable
 
 import numpy as np
 from numpy.polynomial import chebyshev
-from numpy.typing import NDArray
 
+from analytic.arrays import Array, Ints
 from analytic.gradings import Grading
 from analytic.laws.branch import Branch
 from analytic.laws.crossings import Bound, Crossings, crossings_of
 from analytic.laws.law import piece_of
 from analytic.resolution import resolved_breaks
-
-__all__ = ["jump_terms", "slope_term"]
-
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 _COMPLEX_STEP = 1e-30
 _TOUCH = 1e-60  # root of the penetration at first touch: at 0 itself slopes are 0/0

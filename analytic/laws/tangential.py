@@ -4,14 +4,11 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from analytic.arrays import Array
 from analytic.laws.law import check_poisson
 from analytic.surface import Surface
-
-__all__ = ["Tangential", "masing"]
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -4,11 +4,8 @@ from collections.abc import Callable
 from typing import Any, ClassVar, Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
-__all__ = ["Unloading", "derivative", "slope_in_root"]
-
-Array = NDArray[np.float64]
+from analytic.arrays import Array
 
 _STEP = 1e-30  # of the variable, into the complex plane
 _NEXT_TO_0 = 1e-60  # stands for 0: cubes of it, times a step, are still numbers
