@@ -8,7 +8,7 @@ of the value, whose standard deviation is sigma, then misses
 
 with K3 and K4 the sums over the crowded cells, over sigma^3 and sigma^4 (Petrov, "Sums of Independent
 Random Variables", 1975, VI.1): what the theorem of Berry and Esseen bounds. The largest of each term,
-doubled, is held against what may be spent; `runs/bench/law_error.py` measures the distance itself.
+doubled, is held against what may be spent. The distance itself is half of it (`tests/law_of_crowds.py`).
 """
 
 from dataclasses import dataclass
@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from scipy.special import pdtr, pdtrc
 
 from analytic import quantity_of
+from mcgw.sampling.aggregate import CROWDED
 from mcgw.sampling.cells import Mesh
 from mcgw.sampling.law_sums import asperity_sums
 from mcgw.sampling.rules import gauss_legendre, product
@@ -27,11 +28,11 @@ __all__ = ["Crowding", "crowding"]
 
 Array = NDArray[np.float64]
 
-_FEWEST, _MOST = 16, 2**24  # of a crowd: with fewer, loads at light contact may be negative
+_MOST = 2**24  # of a crowd; fewer than CROWDED are as quickly drawn one by one
 _TOGETHER = 16  # cells whose laws are in memory
 _THIRD, _FOURTH, _SQUARED = 0.3990 / 6, 0.5506 / 24, 2.3071 / 72  # the largest of the three terms
 _SAFELY = 2.0
-_X, _W = gauss_legendre(24)
+_U, _W = gauss_legendre(24)
 
 
 @dataclass(frozen=True)
@@ -72,7 +73,7 @@ def crowding(scene: Scene, mesh: Mesh) -> Crowding | None:
         return None
     variance, third, fourth = _cumulants(scene, mesh)
     expected = scene.n_asperities * mesh.probability
-    threshold = _FEWEST
+    threshold = CROWDED
     while threshold <= _MOST:
         crowded = expected * pdtrc(threshold - 2, expected)  # n P(n - 1 crowd at least) = E[n; n a crowd]
         found = _distance(variance, product(crowded, third), product(crowded, fourth))
@@ -87,17 +88,16 @@ def _cumulants(scene: Scene, mesh: Mesh) -> tuple[Array, Array, Array]:
 
     Shapes (values,) and (cells, values), without values that are counted.
     """
-    u, w = (1 + _X) / 2, _W / 2
     first = second = np.zeros(1)
     thirds: list[Array] = []
     fourths: list[Array] = []
     for start in range(0, mesh.size, _TOGETHER):
         cells = np.arange(start, min(start + _TOGETHER, mesh.size))
-        heights = mesh.edges[cells] + np.stack([mesh.offsets(cells, np.full(len(cells), v)) for v in u])
-        values = _values(scene, heights.T.ravel()).reshape(len(cells), len(u), -1)
-        mean = np.einsum("u,cuv->cv", w, values)
+        heights = mesh.edges[cells] + np.stack([mesh.offsets(cells, np.full(len(cells), v)) for v in _U])
+        values = _values(scene, heights.T.ravel()).reshape(len(cells), len(_U), -1)
+        mean = np.einsum("u,cuv->cv", _W, values)
         apart = values - mean[:, None]
-        square, cube, biquadrate = (np.einsum("u,cuv->cv", w, apart**power) for power in (2, 3, 4))
+        square, cube, biquadrate = (np.einsum("u,cuv->cv", _W, apart**power) for power in (2, 3, 4))
         thirds.append(cube)
         fourths.append(biquadrate - 3 * square**2)
         share = mesh.probability[cells]
