@@ -5,8 +5,7 @@ number is a Poisson variable, with ``q(t) = E exp(i t X) - 1`` of what one adds.
 the law of S; where contacts are few another way leads there.
 """
 
-from analytic.distribution.counted import Counted
-from analytic.distribution.derived import Along, Mapped
+from analytic.distribution.derived import Along, Counted, Mapped
 from analytic.distribution.law import Distribution
 from analytic.distribution.of_model import distribution_of, interacting_distribution, separation_law_of
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
@@ -17,22 +17,37 @@ _DIFFERENCE = np.array([1, -8, 8, -1]) / 12.0
 _MOST = 60
 
 
-class _Derived:
-    """A law of which cdf, sf and quantiles are known."""
+class Law:
+    """The law of a value over surfaces, in the manner of `scipy.stats`; arguments are of any shape."""
 
-    atom = 0.0
+    @property
+    def atom(self) -> float:
+        """Probability of nothing: that no asperity touches."""
+        return 0.0
+
+    def _tail(self, y: ArrayLike, *, upper: bool) -> Array:
+        """Share of the surfaces above y, or up to it."""
+        raise NotImplementedError
+
+    def _quantile(self, q: ArrayLike, *, upper: bool) -> Array:
+        """Value with this share of the surfaces above, or below it."""
+        raise NotImplementedError
 
     def cdf(self, y: ArrayLike) -> Array:
-        raise NotImplementedError
+        """P(Y <= y)."""
+        return self._tail(y, upper=False)
 
     def sf(self, y: ArrayLike) -> Array:
-        raise NotImplementedError
+        """P(Y > y)."""
+        return self._tail(y, upper=True)
 
     def ppf(self, q: ArrayLike) -> Array:
-        raise NotImplementedError
+        """Least value up to which a share q of the surfaces lies."""
+        return self._quantile(q, upper=False)
 
     def isf(self, q: ArrayLike) -> Array:
-        raise NotImplementedError
+        """Least value above which no more than a share q of the surfaces lies."""
+        return self._quantile(q, upper=True)
 
     @cached_property
     def _moments(self) -> tuple[float, float]:
@@ -78,7 +93,7 @@ class _Derived:
 
 
 @dataclass(frozen=True, eq=False)
-class Mapped(_Derived):
+class Mapped(Law):
     """The law of what rises, or falls, with a sum.
 
     Parameters
@@ -101,27 +116,16 @@ class Mapped(_Derived):
         """As of the sum."""
         return float(self.of.error)
 
-    def cdf(self, y: ArrayLike) -> Array:
-        """P(Y <= y)."""
+    def _tail(self, y: ArrayLike, *, upper: bool) -> Array:
         x = self.back(np.asarray(y, dtype=np.float64))
-        return np.asarray(self.of.sf(x) if self.falls else self.of.cdf(x))
+        return np.asarray(self.of.sf(x) if self.falls ^ upper else self.of.cdf(x))
 
-    def sf(self, y: ArrayLike) -> Array:
-        """P(Y > y)."""
-        x = self.back(np.asarray(y, dtype=np.float64))
-        return np.asarray(self.of.cdf(x) if self.falls else self.of.sf(x))
-
-    def ppf(self, q: ArrayLike) -> Array:
-        """Least value up to which a share q of the surfaces lies."""
-        return np.asarray(self.forward(self.of.isf(q) if self.falls else self.of.ppf(q)))
-
-    def isf(self, q: ArrayLike) -> Array:
-        """Least value above which no more than a share q of the surfaces lies."""
-        return np.asarray(self.forward(self.of.ppf(q) if self.falls else self.of.isf(q)))
+    def _quantile(self, q: ArrayLike, *, upper: bool) -> Array:
+        return np.asarray(self.forward(self.of.isf(q) if self.falls ^ upper else self.of.ppf(q)))
 
 
 @dataclass(frozen=True, eq=False)
-class Along(_Derived):
+class Along(Law):
     """The law of where surfaces, whose sum falls with y, meet a value: P(Y <= y) = P(S(y) <= x(y)).
 
     Parameters
@@ -144,21 +148,15 @@ class Along(_Derived):
         """As of the sum at the start."""
         return float(self.law(self.start).error)
 
-    def cdf(self, y: ArrayLike) -> Array:
-        """P(Y <= y)."""
-        return self._each(lambda at: self.law(at).cdf(self.value(at)), y)
+    def _tail(self, y: ArrayLike, *, upper: bool) -> Array:
+        return self._each(partial(self._reached, upper=upper), y)
 
-    def sf(self, y: ArrayLike) -> Array:
-        """P(Y > y)."""
-        return self._each(lambda at: self.law(at).sf(self.value(at)), y)
+    def _quantile(self, q: ArrayLike, *, upper: bool) -> Array:
+        return self._each(partial(self._where, upper=upper), q)
 
-    def ppf(self, q: ArrayLike) -> Array:
-        """Least value up to which a share q of the surfaces lies."""
-        return self._each(lambda share: self._where(share, upper=False), q)
-
-    def isf(self, q: ArrayLike) -> Array:
-        """Least value above which no more than a share q of the surfaces lies."""
-        return self._each(lambda share: self._where(share, upper=True), q)
+    def _reached(self, y: float, *, upper: bool) -> float:
+        law = self.law(y)
+        return float((law.sf if upper else law.cdf)(self.value(y)))
 
     @staticmethod
     def _each(function: Callable[[float], Any], at: ArrayLike) -> Array:
@@ -171,10 +169,9 @@ class Along(_Derived):
         above, tail = upper ^ (share > 0.5), min(share, 1 - share)
 
         def excess(y: float) -> float:
-            at = self.law(y)
-            reached = float(at.sf(self.value(y)) if above else at.cdf(self.value(y)))
             with np.errstate(divide="ignore"):
-                return float(np.fmax(np.log(reached / tail), -700.0)) * (1 if above else -1)
+                log = np.log(self._reached(y, upper=above) / tail)
+            return float(np.fmax(log, -700.0)) * (1 if above else -1)
 
         low, high, step = self.start - self.spread, self.start + self.spread, self.spread
         for _ in range(_MOST):
@@ -186,3 +183,42 @@ class Along(_Derived):
 
             return float(brentq(excess, low, high, xtol=1e-13 * self.spread, rtol=1e-14))
         return np.nan
+
+
+@dataclass(frozen=True)
+class Counted:
+    """The exact law of a number of asperities: that of `scipy.stats`, binomial or Poisson, and its `atom`.
+
+    Parameters
+    ----------
+    share : float
+        Probability that an asperity counts.
+    number : float
+        Asperities on a surface, or their mean number.
+    poisson : bool
+        Whether their number is a Poisson variable.
+    """
+
+    share: float
+    number: float
+    poisson: bool
+    error: float = 1e-14
+
+    @cached_property
+    def _law(self) -> Any:
+        from scipy.stats import binom, poisson  # takes long to import
+
+        if self.poisson:
+            return poisson(self.number * self.share)
+        return binom(round(self.number), self.share)
+
+    @property
+    def atom(self) -> float:
+        """Probability that there is none."""
+        return float(self._law.pmf(0))
+
+    def __getattr__(self, name: str) -> Any:
+        """Whatever a frozen law of `scipy.stats` has: cdf, sf, pmf, ppf, isf, interval, rvs, mean, std."""
+        if name.startswith("_"):
+            raise AttributeError(name)
+        return getattr(self._law, name)

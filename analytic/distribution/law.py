@@ -3,7 +3,6 @@
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -11,6 +10,7 @@ from scipy.special import gammaincinv, ndtri
 
 from analytic.arrays import Array, Marks
 from analytic.distribution.contour import Line, Values, bounded, by_contour, saddle
+from analytic.distribution.derived import Law
 from analytic.distribution.few_contacts import FewContacts
 from analytic.distribution.touching import Touching
 
@@ -25,7 +25,7 @@ _SHARES = np.array([0.001, 0.01, 0.05, 0.25, 0.5, 0.75, 0.95, 0.99, 0.999])
 
 
 @dataclass(frozen=True, eq=False)
-class Distribution:
+class Distribution(Law):
     """The exact law of one quantity of a surface over all surfaces, in the manner of `scipy.stats`.
 
     Arguments are in the unit of the quantity, of any shape. The smaller one of `cdf` and `sf` has its own
@@ -64,51 +64,18 @@ class Distribution:
         """Variance over surfaces."""
         return self.unit**2 * self.touching.one.variance
 
-    def std(self) -> float:
-        """Standard deviation over surfaces."""
-        return self.unit * self.touching.one.std
-
-    def cdf(self, x: ArrayLike) -> Array:
-        """P(S <= x)."""
-        return self._at(x, "cdf")
-
-    def sf(self, x: ArrayLike) -> Array:
-        """P(S > x)."""
-        return self._at(x, "sf")
-
     def pdf(self, x: ArrayLike) -> Array:
         """Density of the values other than 0, which has a probability of its own."""
         return self._at(x, "pdf") / self.unit
 
-    def ppf(self, q: ArrayLike) -> Array:
-        """Least value up to which a share q of the surfaces lies."""
-        return self._quantile(q, upper=False)
-
-    def isf(self, q: ArrayLike) -> Array:
-        """Least value above which no more than a share q of the surfaces lies."""
-        return self._quantile(q, upper=True)
-
-    def median(self) -> float:
-        """Half of the surfaces have less."""
-        return float(self.ppf(0.5))
-
-    def interval(self, confidence: ArrayLike) -> tuple[Array, Array]:
-        """Ends of the range with equal shares of the surfaces below and above."""
-        out = (1 - np.asarray(confidence, dtype=np.float64)) / 2
-        return self.ppf(out), self.isf(out)
-
-    def rvs(self, size: int | tuple[int, ...] | None = None, random_state: Any = None) -> Array:
-        """Values of surfaces, drawn by inversion."""
-        return self.ppf(np.random.default_rng(random_state).random(size))
+    def _tail(self, y: ArrayLike, *, upper: bool) -> Array:
+        return self._at(y, "sf" if upper else "cdf")
 
     @cached_property
     def error(self) -> float:
         """How far `cdf` may be off, seen from a computation with other nodes, between 0.1 and 99.9 %."""
         x = self.ppf(_SHARES) / self.unit
-        return float(np.abs(self._values(x).cdf - self._finer(x)).max())
-
-    def _finer(self, x: Array) -> Array:
-        return _Evaluation(self.touching, finer=True)(x).cdf
+        return float(np.abs(self._values(x).cdf - _Evaluation(self.touching, finer=True)(x).cdf).max())
 
     @cached_property
     def _values(self) -> Callable[[Array], Values]:
@@ -121,7 +88,7 @@ class Distribution:
         known = np.isfinite(flat)
         if known.any():
             found[known] = getattr(self._values(flat[known]), name)
-        found[flat == np.inf], found[flat == -np.inf] = (x := {"cdf": (1, 0), "sf": (0, 1)}.get(name, (0, 0)))
+        found[flat == np.inf], found[flat == -np.inf] = float(name == "cdf"), float(name == "sf")
         return found.reshape(reduced.shape)[()]
 
     def _quantile(self, q: ArrayLike, *, upper: bool) -> Array:

@@ -1,23 +1,17 @@
 """The laws of the quantities of a model."""
 
-from dataclasses import dataclass, replace
-from functools import cached_property, partial
+from functools import partial
 from typing import Any
 
 import numpy as np
 
-from analytic.arrays import Array, Ints
-from analytic.curvature import RandomCurvature
-from analytic.distribution.counted import Counted
-from analytic.distribution.derived import Along, Mapped
+from analytic.distribution.derived import Along, Counted, Mapped
 from analytic.distribution.law import Distribution
 from analytic.distribution.one_asperity import OneAsperity
-from analytic.distribution.touching import Touching
+from analytic.distribution.touching import Asperity, Touching
 from analytic.height_rule import HeightRule
 from analytic.measured_summits import MeasuredHeights
 from analytic.quantities import quantity_of
-from analytic.radii_rule import Radii
-from analytic.resolution import resolved_breaks
 
 _FARTHER = (1.0, 3.0, 6.0, 10.0)  # heights above the separation that divide the rule, and reach on
 _FINER = (0.5, 1.0, 2.0, 3.0, 4.5, 6.0, 8.0, 10.0)
@@ -35,7 +29,7 @@ def distribution_of(model: Any, quantity: str, h: float) -> Distribution | Count
 
     listed = isinstance(model.heights, MeasuredHeights)
     mixed = model.curvature is not None and model.law is not None  # breaks of every radius for itself
-    itself = None if listed or mixed else _Asperity(model, quantity, h, rule, added)
+    itself = None if listed or mixed else Asperity(model, quantity, h, rule, added)
     finer = partial(model.asperities, quantity, h, _FINER)
     return Distribution(Touching(one(rule), lambda: one(finer()[0]), itself), q.scale(model.surface))
 
@@ -90,47 +84,3 @@ def _falling(model: Any, quantity: str, h: float) -> None:
             f"quantity = {quantity!r}: some asperities have a negative one, and sums may rise with the "
             "separation; take a modulus >= 0 and a law without adhesion"
         )
-
-
-@dataclass(frozen=True, eq=False)
-class _Asperity:
-    """One asperity of a model, as `Asperity`."""
-
-    model: Any
-    quantity: str
-    h: float
-    rule: HeightRule
-    terms: Any
-
-    @cached_property
-    def _radii(self) -> Radii | None:
-        summits = self.model.curvature
-        return Radii.over(summits, self.h) if isinstance(summits, RandomCurvature) else None
-
-    @property
-    def radii(self) -> int:
-        """How many there are."""
-        return 1 if self._radii is None else self._radii.ratios.size
-
-    @cached_property
-    def breaks(self) -> tuple[float, ...]:
-        """Of the grading, the heights and the law of contact."""
-        low, high = max(self.h, self.model.heights.support[0]), self.model.heights.support[1]
-        top = min(high, float(self.rule.heights.max(initial=low)))
-        inner = [*resolved_breaks(self.model.grading, low, top), *self.model.heights.breaks]
-        branch = self.model.ways.of(self.quantity)
-        regimes = branch.regimes(self.model.grading, np.array([self.h]), low, top)
-        inner += [*regimes.low.tolist(), *regimes.high.tolist()]
-        start = float(regimes.low.min(initial=top))
-        return (start, *sorted({s for s in inner if start < s < top}), high)
-
-    def added(self, s: Array, which: Ints) -> Array:
-        """As `Asperity.added`."""
-        ratios = None if self._radii is None else self._radii.ratios[which]
-        return np.asarray(self.terms(replace(self.rule, heights=s, probabilities=0 * s, ratios=ratios)))
-
-    def density(self, s: Array, which: Ints) -> Array:
-        """As `Asperity.density`."""
-        if self._radii is None:
-            return np.asarray(self.model.heights.pdf(s))
-        return self._radii.density(s, which)

@@ -1,17 +1,21 @@
 """What one asperity of a model adds to a sum: at the nodes of a rule, and as a density for few contacts."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
-from typing import Protocol
+from typing import Any
 
 import numpy as np
 
 from analytic.arrays import Array, Ints
+from analytic.curvature import RandomCurvature
 from analytic.distribution.few_contacts import FewContacts
 from analytic.distribution.one_asperity import OneAsperity
 from analytic.distribution.panels import POWER, panels
+from analytic.height_rule import HeightRule
+from analytic.radii_rule import Radii
+from analytic.resolution import resolved_breaks
 
 _NODES = 16
 _PANELS, _MOST = ((5, 12), (15, 16), (25, 20)), 24  # by the expected contacts
@@ -22,26 +26,48 @@ _CLOSE = 1e-9  # of the largest value: breaks are not told apart
 _HIGHEST = 1e4
 
 
-class Asperity(Protocol):
-    """One asperity, as the height that makes it add something; of one or more radii."""
+@dataclass(frozen=True, eq=False)
+class Asperity:
+    """One asperity of a model, as the height that makes it add something; of one or more radii."""
+
+    model: Any
+    quantity: str
+    h: float
+    rule: HeightRule
+    terms: Any
+
+    @cached_property
+    def _radii(self) -> Radii | None:
+        summits = self.model.curvature
+        return Radii.over(summits, self.h) if isinstance(summits, RandomCurvature) else None
 
     @property
     def radii(self) -> int:
         """How many radii there are."""
-        ...
+        return 1 if self._radii is None else self._radii.ratios.size
 
-    @property
+    @cached_property
     def breaks(self) -> tuple[float, ...]:
         """From the lowest height that touches to the highest; what is added is smooth in between."""
-        ...
+        low, high = max(self.h, self.model.heights.support[0]), self.model.heights.support[1]
+        top = min(high, float(self.rule.heights.max(initial=low)))
+        inner = [*resolved_breaks(self.model.grading, low, top), *self.model.heights.breaks]
+        branch = self.model.ways.of(self.quantity)
+        regimes = branch.regimes(self.model.grading, np.array([self.h]), low, top)
+        inner += [*regimes.low.tolist(), *regimes.high.tolist()]
+        start = float(regimes.low.min(initial=top))
+        return (start, *sorted({s for s in inner if start < s < top}), high)
 
     def added(self, s: Array, which: Ints) -> Array:
         """What asperities of these heights and radii add."""
-        ...
+        ratios = None if self._radii is None else self._radii.ratios[which]
+        return np.asarray(self.terms(replace(self.rule, heights=s, probabilities=0 * s, ratios=ratios)))
 
     def density(self, s: Array, which: Ints) -> Array:
         """Density of the heights of asperities of these radii, with the weights of the radii."""
-        ...
+        if self._radii is None:
+            return np.asarray(self.model.heights.pdf(s))
+        return self._radii.density(s, which)
 
 
 @dataclass(frozen=True, eq=False)
