@@ -76,91 +76,41 @@ class Quantity:
         return float(math.prod(factors)) / (x.nominal_area if self.of else 1.0)
 
 
-QUANTITIES = {
-    q.name: q
-    for q in (
-        Quantity("load", "normal load", "N", 1.5, 1, 0.5, 4 / 3, symbol="P"),
-        Quantity("area", "real contact area", "m^2", 1.0, 0, 1.0, math.pi, words="real area", symbol="A"),
-        Quantity("stiffness", "normal stiffness", "N/m", 0.5, 1, 0.5, 2, symbol="K"),
-        Quantity("contacts", "number of contacts", "1", 0.0, 0, 0.0, 1, counts=True),
-        Quantity(
-            "conductance",
-            "contact conductance of the spots, times the resistivity rho",
-            "m",
-            0.5,
-            0,
-            0.5,
-            4,
-            symbol="Cρ",
-        ),
-    )
-}
+def _by_name(*quantities: Quantity) -> dict[str, Quantity]:
+    return {q.name: q for q in quantities}
 
-PER_AREA = {
-    q.name: q
-    for q in (
-        Quantity(
-            "pressure",
-            "normal load per nominal area",
-            "Pa",
-            1.5,
-            1,
-            0.5,
-            4 / 3,
-            of="load",
-        ),
-        Quantity(
-            "area_fraction",
-            "real contact area per nominal area",
-            "1",
-            1.0,
-            0,
-            1.0,
-            math.pi,
-            of="area",
-        ),
-    )
-}
 
+QUANTITIES = _by_name(
+    Quantity("load", "normal load", "N", 1.5, 1, 0.5, 4 / 3, symbol="P"),
+    Quantity("area", "real contact area", "m^2", 1.0, 0, 1.0, math.pi, words="real area", symbol="A"),
+    Quantity("stiffness", "normal stiffness", "N/m", 0.5, 1, 0.5, 2, symbol="K"),
+    Quantity("contacts", "number of contacts", "1", 0.0, 0, 0.0, 1, counts=True),
+    Quantity(
+        "conductance", "contact conductance of the spots, times the resistivity rho", "m",
+        0.5, 0, 0.5, 4, symbol="Cρ",
+    ),
+)  # fmt: skip
+
+PER_AREA = _by_name(
+    Quantity("pressure", "normal load per nominal area", "Pa", 1.5, 1, 0.5, 4 / 3, of="load"),
+    Quantity("area_fraction", "real contact area per nominal area", "1", 1.0, 0, 1.0, math.pi, of="area"),
+)
 
 # What only other laws of contact than Hertz's tell apart.
-LAW_QUANTITIES = {
-    q.name: q
-    for q in (
-        Quantity(
-            "load_slope",
-            "slope -dP/dd of the loads of the spots",
-            "N/m",
-            0.5,
-            1,
-            0.5,
-            2,
-            words="slope of the loads",
-        ),
-        Quantity(
-            "conductance_si",
-            "contact conductance of the spots and their films",
-            "S or W/K",
-            0.5,
-            0,
-            0.5,
-            4,
-            words="conductance",
-            symbol="C",
-        ),
-        Quantity(
-            "yielded",
-            "number of contacts that have yielded",
-            "1",
-            0.0,
-            0,
-            0.0,
-            1,
-            counts=True,
-            words="yielded contacts",
-        ),
-    )
-}
+LAW_QUANTITIES = _by_name(
+    Quantity(
+        "load_slope", "slope -dP/dd of the loads of the spots", "N/m",
+        0.5, 1, 0.5, 2, words="slope of the loads",
+    ),
+    Quantity(
+        "conductance_si", "contact conductance of the spots and their films", "S or W/K",
+        0.5, 0, 0.5, 4, words="conductance", symbol="C",
+    ),
+    Quantity(
+        "yielded", "number of contacts that have yielded", "1",
+        0.0, 0, 0.0, 1, counts=True, words="yielded contacts",
+    ),
+)  # fmt: skip
 
 UNLOADING = {
     f"{name}_unloading": replace(
@@ -185,13 +135,7 @@ SEPARATIONS = {
 TANGENTIAL = Quantity("tangential_load", "tangential load", "N", 1.5, 1, 0.5, 4 / 3)
 
 # All that an ensemble can hold.
-ALL_QUANTITIES = {
-    **QUANTITIES,
-    **LAW_QUANTITIES,
-    **UNLOADING,
-    TANGENTIAL.name: TANGENTIAL,
-    **SEPARATIONS,
-}
+ALL_QUANTITIES = {**QUANTITIES, **LAW_QUANTITIES, **UNLOADING, TANGENTIAL.name: TANGENTIAL, **SEPARATIONS}
 
 _KNOWN = {**ALL_QUANTITIES, **PER_AREA}
 

@@ -24,11 +24,11 @@ _RARE, _RARER = np.array([1e-3, 1e-9, 1e-15, 1e-24, 1e-36]), 10.0 ** -np.arange(
 _ALIKE, _NEARLY = (
     1e-6,
     1e-2,
-)  # how near a share comes to itself by way of its height, at all of these; at some
+)  # how near shares come to themselves by way of heights: all of them, some
 _MOST_STEPS, _SETTLED = (
     100,
     2.0**-30,
-)  # of Newton, halving where one leaves the bracket; a step whose square is nothing
+)  # of Newton; a step whose square is nothing
 _TRIAL, _TRIAL_SECONDS = np.array([1e-9, 0.1, 0.5, 0.9]), 1.0  # a few of the thousands of calls to come
 
 

@@ -10,6 +10,7 @@ from analytic.piecewise import MOST_PIECES, PiecewiseSeries
 from analytic.resolution import SHORT, bisected, marks, merged, resolved_breaks, spread_over
 from analytic.tables import Table
 
+_DATA = Homogeneous, Exponential, Table, PiecewiseSeries
 _NOTHING = 1e-15  # of the largest value on a piece
 _SLIVER = 64  # spacings of floats: pieces so narrow only close in on a jump
 _ABOUT = 2.0**-8  # a kink is what no polynomial describes up to here on either side
@@ -17,12 +18,7 @@ _ABOUT = 2.0**-8  # a kink is what no polynomial describes up to here on either 
 
 def is_data(grading: Grading) -> bool:
     """Whether a grading is made of numbers alone, which a file can hold as they are."""
-    return type(grading) in (
-        Homogeneous,
-        Exponential,
-        Table,
-        PiecewiseSeries,
-    )  # a class made of one may do more
+    return type(grading) in _DATA  # a class made of one may do more
 
 
 def bends(grading: Grading, low: float, high: float) -> tuple[float, ...]:

@@ -1,25 +1,131 @@
-"""What differs by the radii of summits: one for all, drawn together with the height, or measured with it."""
+"""What differs by the radii of summits: one for all, drawn together with the height, or measured with it.
 
+Where radii are random, sums over a surface, means as well as those of products, are integrals over the
+curvature, in the root of which they are smooth: the heights at which a contact changes its law depend on the
+radius alone. So there are some radii, each with a rule over the heights of its own; all are found at once.
+"""
+
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
 
-from analytic.arrays import Array
-from analytic.curvature import RandomCurvature, WeightedHeights
+from analytic.arrays import Array, Ints
+from analytic.curvature import MEAN_CURVATURE, RandomCurvature, WeightedHeights
 from analytic.gradings import Grading
 from analytic.height_rule import HeightRule
 from analytic.heights import Gaussian, HeightLaw
+from analytic.law_rule import ends_of
 from analytic.laws.branch import Branch
+from analytic.laws.cuts import cuts_of_each
 from analytic.laws.slopes import jump_terms
 from analytic.measured_summits import MeasuredHeights, MeasuredRadii
-from analytic.radii_rule import jumps_of_radii, rule_of_radii, with_radii
+from analytic.quadrature import SPANS, WIDEST, above_neighbours, gauss_legendre, rooted
+from analytic.quantities import quantity_of
+from analytic.resolution import resolved_breaks
 
 Branches = tuple[Branch, ...]
 
-_RAREST = 1e-280  # share of heights above the highest separation that is looked at
+_HIGHEST = 1e-280  # share of heights above the highest separation that is looked at
+_NODES, _AS_WIDE = 64, 0.6  # points for curvatures, if their density bends over so many heights
+_PER_PIECE = 32  # points of a piece
+_RAREST = 1e-18  # share of the touching heights above which curvatures are left out
 _KEPT = 4_000_000  # points of rules over heights and radii
+
+
+@dataclass(frozen=True)
+class Radii:
+    """Radii of a rule over the curvature, the last of them that of all flatter summits if there is a bound.
+
+    Parameters
+    ----------
+    law : RandomCurvature
+        Of the radii.
+    curvatures, weights : ndarray
+        Points of the rule, and their weights; shape (radii,).
+    """
+
+    law: RandomCurvature
+    curvatures: Array
+    weights: Array
+
+    @classmethod
+    def over(cls, law: RandomCurvature, highest: float) -> "Radii":
+        """Of summits as high as touch at this separation."""
+        top = float(law.heights.isf(np.array(_RAREST), highest))
+        first = np.sqrt(MEAN_CURVATURE / law.largest)
+        last = max(np.sqrt(law.steepest(top)), first)
+        x, w = gauss_legendre(int(np.ceil(_NODES * max(1.0, _AS_WIDE / law.narrowest))))
+        roots = first + (last - first) * x
+        curvatures, weights = roots**2, 2 * roots * (last - first) * w
+        if first > 0:
+            curvatures, weights = np.append(curvatures, first**2), np.append(weights, 1.0)
+        return cls(law, curvatures, weights)
+
+    @property
+    def ratios(self) -> Array:
+        """Over the radius of the surface."""
+        return MEAN_CURVATURE / self.curvatures
+
+    def density(self, s: Array, which: Ints) -> Array:
+        """Density of the heights of summits of some of the radii, with their weights."""
+        own = np.empty(s.shape)
+        bound = (which == self.curvatures.size - 1) & np.isfinite(self.law.largest)
+        own[bound] = self.law.cdf(self.curvatures[-1], s[bound])
+        own[~bound] = self.law.pdf(self.curvatures[which[~bound]], s[~bound])
+        return np.asarray(self.weights[which] * own * self.law.heights.pdf(s))
+
+
+def rule_of_radii(
+    separations: Array, grading: Grading, law: RandomCurvature, branches: Iterable[Branch]
+) -> HeightRule:
+    """The rule for these reduced separations, this grading and law of the radii.
+
+    Parameters
+    ----------
+    separations : ndarray
+        Reduced separations, in any order.
+    grading : Grading
+        E*(s)/E*.
+    law : RandomCurvature
+        Of the radii, given the heights.
+    branches : iterable of Branch
+        Those of what is summed.
+    """
+    branches, h, heights = tuple(branches), np.unique(separations), law.heights
+    radii = Radii.over(law, float(h[-1]))
+    lowest = np.unique([*h, *(branch.lowest(float(h[0])) for branch in branches)])
+    below = float(heights.cdf(lowest[0]))
+    start, top = ends_of(heights, lowest, grading)
+    if not start < top:
+        return HeightRule(np.empty(0), np.empty(0), below, np.empty(0))
+    widest = min(SPANS * law.narrowest, WIDEST)
+    regular = np.linspace(start, top, int(np.ceil((top - start) / widest)) + 1)
+    breaks = resolved_breaks(grading, start, top)
+    common = np.concatenate([regular, breaks, lowest, above_neighbours(lowest)])
+    number = radii.ratios.size
+    cuts, which = [np.tile(common, number)], [np.repeat(np.arange(number), common.size)]
+    for branch in (branch.with_radii(radii.ratios) for branch in branches):
+        for x in h.tolist():
+            found = cuts_of_each(branch, grading, np.full(number, x), start, top)
+            cuts.append(found[0])
+            which.append(found[1])
+    left, right, of = _pieces(np.concatenate(cuts), np.concatenate(which), start, top)
+    s, weights = rooted(left, right, lowest, _PER_PIECE)
+    of = np.repeat(of, _PER_PIECE)
+    return HeightRule(s, weights * radii.density(s, of), below, radii.ratios[of])
+
+
+def _pieces(cuts: Array, which: Ints, start: float, top: float) -> tuple[Array, Array, Ints]:
+    """Ends of the pieces between the cuts of each radius, and the number of the radius."""
+    inside = (cuts >= start) & (cuts <= top)
+    cuts, which = cuts[inside], which[inside]
+    order = np.lexsort((cuts, which))
+    cuts, which = cuts[order], which[order]
+    held = np.flatnonzero((np.diff(which) == 0) & (np.diff(cuts) > 0))
+    return cuts[held], cuts[held + 1], which[held]
 
 
 @dataclass(frozen=True)
@@ -52,7 +158,7 @@ class Summits:
     @property
     def highest(self) -> float:
         """Where probabilities underflow, or the highest of listed heights."""
-        return float(self.heights.isf(np.array(_RAREST), 0.0))
+        return float(self.heights.isf(np.array(_HIGHEST), 0.0))
 
     def weighted(self, power: float) -> HeightLaw:  # noqa: ARG002 - of one radius
         """The heights, each with the mean of this power of its radius over that of the surface."""
@@ -83,13 +189,23 @@ class _RandomRadii(Summits):
 
     def rule(self, h: Array, grading: Grading, branches: Branches | None = None) -> HeightRule:
         if branches is None:
-            return with_radii(super().rule(h, grading), self.curvature)
+            return self._spread(super().rule(h, grading))
         key = (branches, h.tobytes())  # of one model, every quantity and statistic of which asks again
         if key not in self._rules:
             while sum(kept.heights.size for kept in self._rules.values()) > _KEPT:
                 self._rules.pop(next(iter(self._rules)))
             self._rules[key] = rule_of_radii(h, grading, self.curvature, branches)
         return self._rules[key]
+
+    def _spread(self, rule: HeightRule) -> HeightRule:
+        """A rule over heights, spread to heights and radii.
+
+        Exact for sums, their products and third powers where one summit adds a power of its radius, up to 1;
+        fourth powers of the radius have a mean only if it is bounded.
+        """
+        ratio, share = self.curvature.rule(rule.heights)
+        heights = np.broadcast_to(rule.heights, ratio.shape)
+        return HeightRule(heights.ravel(), (rule.probabilities * share).ravel(), rule.below, ratio.ravel())
 
     @cached_property
     def _rules(self) -> dict[tuple[Branches, bytes], HeightRule]:
@@ -100,8 +216,12 @@ class _RandomRadii(Summits):
         return {"heights": self.heights, "curvature": self.curvature}
 
     def jumps(self, quantity: str, branch: Branch, grading: Grading, h: Array, rule: HeightRule) -> Array:
-        top = float(rule.heights.max())
-        found = [jumps_of_radii(quantity, branch, grading, self.curvature, x, top) for x in h.tolist()]
+        top, found = float(rule.heights.max()), []
+        for x in h.tolist():
+            radii = Radii.over(self.curvature, x)
+            own, at = branch.with_radii(radii.ratios), np.full(radii.ratios.shape, x)
+            jumps = jump_terms(quantity, own, grading, radii.density, at, (x, top))
+            found.append(float(jumps @ radii.ratios ** quantity_of(quantity).radius))
         return np.array(found)
 
 

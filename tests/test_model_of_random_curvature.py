@@ -24,7 +24,7 @@ from analytic import (
 )
 from analytic.curvature import MEAN_CURVATURE
 from analytic.laws import Film
-from analytic.radii_rule import rule_of_radii
+from analytic.summits import rule_of_radii
 
 ALPHA = 5.0
 MOMENTS = SpectralMoments(1e-12, 1e-3, ALPHA * 1e6)
@@ -236,7 +236,7 @@ def found_again(law):
 
 def test_separations_and_shares_fit_the_means(monkeypatch):
     """Of two radii, whose sums are no less consistent."""
-    monkeypatch.setattr("analytic.radii_rule._NODES", 1)
+    monkeypatch.setattr("analytic.summits._NODES", 1)
     found_again(ChangEtsionBogy(critical=CRITICAL))
 
 

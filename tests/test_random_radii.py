@@ -9,7 +9,7 @@ from scipy import stats
 
 import analytic
 import mcgw
-from analytic.radii_rule import rule_of_radii
+from analytic.summits import rule_of_radii
 from mcgw.ensemble import solution
 from mcgw.sampling.asperities import summits, summits_drawn, touching_summits
 from mcgw.sampling.radius_table import radius_table

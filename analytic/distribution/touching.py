@@ -14,8 +14,8 @@ from analytic.distribution.few_contacts import FewContacts
 from analytic.distribution.one_asperity import OneAsperity
 from analytic.distribution.panels import POWER, panels
 from analytic.height_rule import HeightRule
-from analytic.radii_rule import Radii
 from analytic.resolution import resolved_breaks
+from analytic.summits import Radii
 
 _NODES = 16
 _PANELS, _MOST = ((5, 12), (15, 16), (25, 20)), 24  # by the expected contacts

@@ -44,16 +44,9 @@ _FILES = {
 }
 _HOMES = {name: file for file, names in _FILES.items() for name in names}
 _LAWS = (
-    "Hertz",
-    "ChangEtsionBogy",
-    "ZhaoMaiettaChang",
-    "KogutEtsion",
-    "JacksonGreen",
-    "PowerLawGraded",
-    "Coated",
-    "DerjaguinMullerToporov",
-    "JohnsonKendallRoberts",
-)
+    "Hertz", "ChangEtsionBogy", "ZhaoMaiettaChang", "KogutEtsion", "JacksonGreen", "PowerLawGraded",
+    "Coated", "DerjaguinMullerToporov", "JohnsonKendallRoberts",
+)  # fmt: skip
 
 
 def __getattr__(name: str) -> Any:

@@ -108,10 +108,7 @@ class FromHardness(ElasticPlastic):
     _: KW_ONLY
     hardness: float | None = None
 
-    in_si: ClassVar[tuple[str, str]] = (
-        "hardness",
-        "a hardness in Pa or a critical penetration over sigma",
-    )
+    in_si: ClassVar[tuple[str, str]] = ("hardness", "a hardness in Pa or a critical penetration over sigma")
 
     @property
     def yield_factor(self) -> float:

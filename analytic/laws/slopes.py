@@ -1,6 +1,7 @@
 """How fast sums grow when a surface comes nearer: within the pieces of a law, and where pieces change."""
 
 from collections.abc import Callable
+from functools import partial
 
 import numpy as np
 from numpy.polynomial import chebyshev
@@ -10,9 +11,9 @@ from analytic.gradings import Grading
 from analytic.laws.branch import Branch
 from analytic.laws.crossings import Bound, Crossings, crossings_of
 from analytic.laws.law import piece_of
+from analytic.laws.unloading import slope_in_root
 from analytic.resolution import resolved_breaks
 
-_COMPLEX_STEP = 1e-30
 _TOUCH = 1e-60  # root of the penetration at first touch: at 0 itself slopes are 0/0
 _ABOUT, _NODES = 2.0**-6, 16  # of the fit from which the slope of a bound is taken
 _JUMP = 1e-9  # a bound that misses by more jumps over the penetration
@@ -41,10 +42,8 @@ def slope_term(quantity: str, branch: Branch, penetration: Array, e: Array) -> A
     result = np.zeros(penetration.shape)
     for j in np.unique(piece[penetration > 0]):
         here = (piece == j) & (penetration > 0)
-        y = np.sqrt(penetration[here])
-        step = _COMPLEX_STEP * y
-        value = branch.of_some(here).of_root(quantity, int(j), y + 1j * step, e[here])
-        result[here] = np.imag(value) / step / (2 * y)
+        of_root = partial(branch.of_some(here).of_root, quantity, int(j), e=e[here])
+        result[here] = slope_in_root(of_root, np.sqrt(penetration[here]))
     return result
 
 

@@ -1,7 +1,7 @@
 """What a contact carries when it is unloaded from its deepest penetration."""
 
 from collections.abc import Callable
-from typing import Any, ClassVar, Protocol
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -21,14 +21,6 @@ def slope_in_root(formula: Callable[[Any], Any], y: Array) -> Array:
     """``d formula/d(y^2)``, at y = 0 its limit."""
     y = np.where(y == 0, _NEXT_TO_0, y)
     return derivative(formula, y) / (2 * y)
-
-
-class _Loading(Protocol):
-    """The formulas of loading."""
-
-    def load(self, piece: int, y: Any, e: Array) -> Any: ...
-    def radius(self, piece: int, y: Any, e: Array) -> Any: ...
-    def stiffness(self, piece: int, y: Array, e: Array) -> Array: ...
 
 
 class Unloading:
@@ -54,7 +46,7 @@ class Unloading:
     root: ClassVar[bool] = True
     stiff: ClassVar[bool] = True
 
-    def __init__(self, loading: _Loading) -> None:
+    def __init__(self, loading: Any) -> None:
         self.loading = loading
 
     def residual(self, piece: int, deepest: Any, e: Array) -> Any:
