@@ -98,20 +98,10 @@ class CurvatureGivenHeight:
         return np.asarray(rest if flattest == 0 else rest + flattest**-power * self.between(0 * low, low))
 
     def root_rule(self, nodes: int, flattest: float) -> tuple[Array, Array]:
-        """Gauss's rule for functions of ``y = max(g, flattest)^(-1/2)``.
+        """Gauss's rule for functions of ``y = max(g, flattest)^(-1/2)``; of shape (nodes, n).
 
-        Parameters
-        ----------
-        nodes : int
-            Powers up to ``y^(2 nodes - 1)`` have their exact means: radii have none from y^8 on, so 4 at most
-            if `flattest` is 0.
-        flattest : float
-            Smallest curvature.
-
-        Returns
-        -------
-        (ndarray, ndarray)
-            Values of y, and their probabilities, shape (nodes, n).
+        Powers up to ``y^(2 nodes - 1)`` have their exact means: radii have none from y^8 on, so there are 4
+        nodes at most if `flattest`, the smallest curvature, is 0.
         """
         low = np.full_like(self.x, flattest)
         high = np.maximum(self.highest(low), low)

@@ -59,18 +59,7 @@ def _power_of_two(k: Array) -> Array:
 
 @_in_pieces
 def exp(x: Array) -> Array:
-    """Exponential function.
-
-    Parameters
-    ----------
-    x : array_like
-        Any numbers.
-
-    Returns
-    -------
-    ndarray
-        In their shape.
-    """
+    """Exponential function of any numbers, in their shape."""
     if x.size and np.abs(x).max() < PLAIN:
         k = np.rint(x * _PER_LOG2)
         return _polynomial(TAYLOR, (x - k * _LOG2_HIGH) - k * _LOG2_LOW) * _power_of_two(k)
@@ -89,18 +78,7 @@ def exp(x: Array) -> Array:
 
 @_in_pieces
 def log(x: Array) -> Array:
-    """Natural logarithm.
-
-    Parameters
-    ----------
-    x : array_like
-        Numbers >= 0.
-
-    Returns
-    -------
-    ndarray
-        In their shape; minus infinity at 0.
-    """
+    """Natural logarithm of numbers >= 0, in their shape; minus infinity at 0."""
     m, k = np.frexp(x)
     low = m < _HALF
     m[low] *= 2
@@ -143,18 +121,7 @@ def exp_minus_half_square(h: Any) -> Array:
 
 
 def ndtr(x: Any) -> Array:
-    """Probability of a standard normal number below `x`, to full relative accuracy.
-
-    Parameters
-    ----------
-    x : array_like
-        Any numbers.
-
-    Returns
-    -------
-    ndarray
-        In their shape.
-    """
+    """Probability of a standard normal number below `x`, to full relative accuracy; in the shape of `x`."""
     x = np.asarray(x, dtype=np.float64)
     far = np.abs(x)
     tail = 0.5 * erfcx(far * _HALF) * exp_minus_half_square(np.minimum(far, 60.0))  # erfcx: series alone
@@ -189,18 +156,7 @@ def _ratio(table: tuple[list[float], list[float]], x: Array) -> Array:
 
 @_in_pieces
 def ndtri(p: Array) -> Array:
-    """Standard normal number below which the share `p` lies.
-
-    Parameters
-    ----------
-    p : array_like
-        Probabilities, 0 to 1.
-
-    Returns
-    -------
-    ndarray
-        In their shape; infinite at 0 and 1.
-    """
+    """Standard normal number below which the share `p` lies, in the shape of `p`; infinite at 0 and 1."""
     q = p - 0.5
     value = q * _ratio(MIDDLE, 0.180625 - q * q)
     outer = np.flatnonzero(np.abs(q) > 0.425)

@@ -21,13 +21,7 @@ def reduced(heights: ArrayLike) -> Array:
 
 
 def checked_heights(heights: ArrayLike) -> Array:
-    """Heights as an array.
-
-    Raises
-    ------
-    ValueError
-        If there are fewer than two, or they are not finite, or all alike.
-    """
+    """Heights as an array; a ValueError if there are fewer than two, or they are not finite, or all alike."""
     z = np.asarray(heights, dtype=np.float64).ravel()
     if z.size < 2 or not np.all(np.isfinite(z)):
         raise ValueError("heights: give two or more finite numbers")

@@ -21,30 +21,12 @@ _LAST_DIGITS = 4 * np.finfo(float).eps
 def last_separations(
     log_mean: Callable[[ArrayLike], Array], log_targets: Array, grid: Array, about: Array, name: str
 ) -> Array:
-    """Find the largest separations at which a mean has given values.
+    """Find the largest separations at which a mean has given values, in the shape of their logarithms.
 
-    Parameters
-    ----------
-    log_mean : callable
-        Takes separations to the logarithm of the mean; nan where that is negative.
-    log_targets : ndarray
-        Logarithms of the values, any shape.
-    grid : ndarray
-        Increasing separations between which they are looked for.
-    about : ndarray
-        ``log_mean(grid)`` to some digits: where the exact means deny what it says they are taken on the grid.
-    name : str
-        Of the quantity, for the message.
-
-    Returns
-    -------
-    ndarray
-        In the shape of `log_targets`.
-
-    Raises
-    ------
-    ValueError
-        If a value is not reached on the grid.
+    `log_mean` takes separations to the logarithm of the mean, nan where that is negative. They are looked for
+    between those of an increasing grid, where `about` is the same to some digits: where the exact means deny
+    what it says they are taken on the grid. A value that is not reached there is a ValueError with the
+    `name`.
     """
     exact = cache(lambda: log_mean(grid))
 

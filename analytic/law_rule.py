@@ -31,26 +31,9 @@ def ends_of(
 ) -> tuple[float, float]:
     """Range of the rule: from the lowest separation, or height there is, to where nothing is left.
 
-    Parameters
-    ----------
-    law : HeightLaw
-        Law of the heights.
-    separations : ndarray
-        Reduced separations, increasing.
-    grading : Grading
-        E*(s)/E*.
-    power, exponent : optional
-        Highest powers of the modulus and of the approach that are summed.
-
-    Returns
-    -------
-    (float, float)
-        Reduced heights; under other laws than the normal one, of what counts at the lowest separation.
-
-    Raises
-    ------
-    ValueError
-        If the grading rises too steeply for sums of such powers.
+    Separations increase; `power` and `exponent` are the highest powers of the modulus and of the approach
+    that are summed. Under other laws than the normal one it is the range of what counts at the lowest
+    separation. A grading that rises too steeply for sums of such powers is a ValueError.
     """
     if isinstance(law, Gaussian):
         return _normal_ends(float(separations[0]), max(float(separations[-1]), 0.0), grading, power)
@@ -110,17 +93,9 @@ def law_rule(
 ) -> tuple[Array, Array]:
     """Heights and probabilities: ``E f(s) = probabilities @ f(heights)`` for sums of contacts.
 
-    Parameters
-    ----------
-    law, separations, grading, power, exponent
-        As of `ends_of`; f may have a root above each separation, and bend at breaks of the grading.
-    further : callable, optional
-        Takes the lowest and the highest height of the rule and gives further ends of pieces.
-
-    Returns
-    -------
-    (ndarray, ndarray)
-        Of the heights above the lowest separation, increasing.
+    Arguments are those of `ends_of`; f may have a root above each separation, and bend at breaks of the
+    grading. `further` takes the lowest and the highest height of the rule and gives further ends of pieces.
+    Heights are those above the lowest separation, increasing.
     """
     if isinstance(law, MeasuredHeights):
         s = np.array(law.heights)
@@ -157,26 +132,10 @@ def _mass(law: HeightLaw, left: float, right: float) -> float:
 def law_integral(
     n: float, h: Array, law: HeightLaw, grading: Grading, between: tuple[float, float]
 ) -> tuple[Array, Array]:
-    """``int_h^inf (s-h)^n density(s) grading(s) ds``, separation by separation.
+    """``int_h^inf (s-h)^n density(s) grading(s) ds``, separation by separation, of heights between two only.
 
-    Parameters
-    ----------
-    n : float
-        Power of the approach.
-    h : ndarray
-        Reduced separations, any shape.
-    law : HeightLaw
-        Law of the heights.
-    grading : Grading
-        E*(s)/E*.
-    between : (float, float)
-        Count only heights between these two.
-
-    Returns
-    -------
-    (ndarray, ndarray)
-        In the shape of `h`: the integral over a unit, and the logarithm of that unit, 0 where the grading
-        is of an ordinary size.
+    In the shape of `h`: the integral over a unit, and the logarithm of that unit, 0 where the grading is of
+    an ordinary size.
     """
     rows = []
     for x in h.ravel():

@@ -62,10 +62,7 @@ class MeanContact:
     def slope(self, quantity: str, h: ArrayLike) -> Array:
         """How fast the mean falls with the separation, jumps of asperities included.
 
-        Raises
-        ------
-        ValueError
-            If asperities have yielded, and other things than the load are asked for on the way back.
+        If asperities have yielded, others than the load are refused on the way back.
         """
         q = quantity_of(quantity)
         if not q.unloading or self.ways.law.elastic:
@@ -81,10 +78,7 @@ class MeanContact:
     def separations_at(self, quantity: str, values: Array) -> Array:
         """Largest separations with given means, in the shape of `values`.
 
-        Raises
-        ------
-        ValueError
-            If the mean does not have a value where it can be told from 0, at h = -40 or above.
+        Refused if the mean does not have a value where it can be told from 0, at h = -40 or above.
         """
         grid = self._grid(quantity)
         about = self._in_parts(grid, None, partial(self._mean, quantity))

@@ -38,17 +38,10 @@ _LEAST, _MOST = 1.501, 1e12
 
 
 def panelled(edges: Array) -> tuple[Array, Array]:
-    """Points and weights of Gauss-Legendre rules between neighbouring edges.
+    """Points and weights of Gauss-Legendre rules between neighbouring edges, each of shape (64 m, n).
 
-    Parameters
-    ----------
-    edges : ndarray
-        Increasing along the first axis, shape (k, n), some of them equal.
-
-    Returns
-    -------
-    (ndarray, ndarray)
-        Each of shape (64 m, n), m <= k - 1: pieces that have no width in any column are left out.
+    Edges increase along the first axis, shape (k, n), some of them equal. There are m <= k - 1 pieces: those
+    that have no width in any column are left out.
     """
     x, w = gauss_legendre(NODES)
     width = np.diff(edges, axis=0)

@@ -58,10 +58,7 @@ class OwnBalance:
     def separation(self, h: Array) -> Array:
         """Separation that the asperities of the mean surface feel.
 
-        Raises
-        ------
-        ValueError
-            If there is none: where loads pull the mean plane down faster than the body follows.
+        A ValueError if there is none: where loads pull the mean plane down faster than the body follows.
         """
         return self._once("separation", h, self._balance)
 

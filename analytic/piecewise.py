@@ -172,21 +172,9 @@ def _clenshaw(c: Array, piece: Ints, x: Array) -> Array:
 
 
 def fitted(function: Callable[[Array], Array], edges: Array, terms: int) -> PiecewiseSeries:
-    """Interpolate at the Chebyshev points of every interval.
+    """Interpolate a function of an array at the Chebyshev points of every interval between increasing edges.
 
-    Parameters
-    ----------
-    function : callable
-        Takes an array, shape (n,), to its values.
-    edges : ndarray
-        Ends of the intervals, increasing.
-    terms : int
-        Of each series.
-
-    Returns
-    -------
-    PiecewiseSeries
-        To the last digits where the function has no feature much narrower than its interval.
+    To the last digits where the function has no feature much narrower than its interval.
     """
     nodes = chebyshev.chebpts1(terms)
     places = edges[:-1, None] + np.diff(edges)[:, None] * (1 + nodes) / 2

@@ -38,19 +38,8 @@ def gauss_legendre(nodes: int) -> tuple[Array, Array]:
 def rooted(left: Array, right: Array, separations: Array, nodes: int) -> tuple[Array, Array]:
     """Points and weights in the root of the approach to the next separation below, piece by piece.
 
-    Parameters
-    ----------
-    left, right : ndarray
-        Ends of the pieces, none of which a separation divides, shape (k,).
-    separations : ndarray
-        Increasing; the first one is below all pieces.
-    nodes : int
-        Points of a piece.
-
-    Returns
-    -------
-    (ndarray, ndarray)
-        Shape (k nodes,); every point lies inside its piece.
+    Pieces go from `left` to `right`, shape (k,); no separation divides one, and the first of them, which
+    increase, is below all pieces. Of shape (k nodes,); every point lies inside its piece.
     """
     x, w = gauss_legendre(nodes)
     anchor = separations[np.searchsorted(separations, left, side="right") - 1]
@@ -80,23 +69,8 @@ def above_neighbours(separations: Array) -> list[float]:
 def panels(n: float, h: Array, grading: Grading, unit: Array, low: Array, high: Array) -> Array:
     """``int (s-h)^n g phi / phi(max(h, 0))`` over s from `low` to `high`, in units of g.
 
-    Parameters
-    ----------
-    n : float
-        Power of the approach, not negative.
-    h : ndarray
-        Reduced separations, a sorted column, shape (k, 1).
-    grading : Grading
-        g.
-    unit : ndarray
-        Logarithm of its unit, like `h`.
-    low, high : ndarray
-        Reduced heights ``h <= low < high``, like `h`.
-
-    Returns
-    -------
-    ndarray
-        Shape (k, 1).
+    Separations are a sorted column, shape (k, 1), and so are the logarithms of the units, the reduced heights
+    ``h <= low < high`` and the result.
     """
     if (2 * n) % 1 == 0:
         return _panel(n, h, grading, unit, low, high)

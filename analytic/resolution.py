@@ -104,12 +104,7 @@ def bisected(fit: _Fit, grading: Grading, edges: Array, most: int, noise_of_one:
     """With further edges, until polynomials describe the grading on all intervals.
 
     What it seems to be off by on ever narrower intervals is its rounding noise, up to `noise_of_one` of its
-    greatest value.
-
-    Raises
-    ------
-    ValueError
-        If that takes more edges than `most`.
+    greatest value. If that takes more edges than `most`, it is a ValueError.
     """
     left, right, noise = edges[:-1], edges[1:], np.zeros(edges.size - 1)
     most_noise = noise_of_one * np.abs(grading(spread_over(left, right))).max()

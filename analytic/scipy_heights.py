@@ -241,28 +241,10 @@ class _Density:
 def in_time(seconds: float, call: Callable[[], T], problem: str) -> T:
     """Result of a call that takes no more than so many seconds of this thread's own CPU time.
 
-    Looks at the clock at each Python function that the call enters. So it does not depend on what else
-    the machine does, and works in any thread; only a single compiled function cannot be interrupted. No
-    bound under a profiler.
-
-    Parameters
-    ----------
-    seconds : float
-        Bound.
-    call : callable
-        Takes no arguments.
-    problem : str
-        What to say if it takes longer.
-
-    Returns
-    -------
-    object
-        What the call returns.
-
-    Raises
-    ------
-    ValueError
-        With `problem`, if it takes longer.
+    Looks at the clock at each Python function that the call enters. So it does not depend on what else the
+    machine does, and works in any thread; only a single compiled function cannot be interrupted. No bound
+    under a profiler. `problem` is what a ValueError says if it
+    takes longer.
     """
     if sys.getprofile() is not None:  # a profiler at work would be thrown out: whoever runs it sees the time
         return call()

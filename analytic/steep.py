@@ -51,20 +51,8 @@ class Weight:
     def reach(self, start: float, end: float, limit: float) -> float:
         """Height beyond which nothing is left: `end`, or as much farther from `start` as it takes.
 
-        Parameters
-        ----------
-        start, end, limit : float
-            From here to there, on either side; never beyond `limit`.
-
-        Returns
-        -------
-        float
-            Between `end` and `limit`.
-
-        Raises
-        ------
-        ValueError
-            If the weight does not fall, or the modulus is then beyond double precision.
+        On either side, never beyond `limit`. A ValueError if the weight does not fall, or the modulus is then
+        beyond double precision.
         """
         steepest = 700.0 - 25.0 * self.power  # leaves room for the power of the approach
         found = end

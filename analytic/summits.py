@@ -81,19 +81,7 @@ class Radii:
 def rule_of_radii(
     separations: Array, grading: Grading, law: RandomCurvature, branches: Iterable[Branch]
 ) -> HeightRule:
-    """The rule for these reduced separations, this grading and law of the radii.
-
-    Parameters
-    ----------
-    separations : ndarray
-        Reduced separations, in any order.
-    grading : Grading
-        E*(s)/E*.
-    law : RandomCurvature
-        Of the radii, given the heights.
-    branches : iterable of Branch
-        Those of what is summed.
-    """
+    """Rule over heights and radii for these separations, in any order, and for sums on these branches."""
     branches, h, heights = tuple(branches), np.unique(separations), law.heights
     radii = Radii.over(law, float(h[-1]))
     lowest = np.unique([*h, *(branch.lowest(float(h[0])) for branch in branches)])

@@ -164,17 +164,7 @@ class Panels:
     def convolution(self, f: Array, of_share: float, constant: float) -> Array:
         """Matrix that takes g to ``int_0^x (of_share y/x + constant) f(y) g(x - y) dy``, densities in w.
 
-        Parameters
-        ----------
-        f : ndarray
-            First factor, at the points.
-        of_share, constant : float
-            Of the weight.
-
-        Returns
-        -------
-        ndarray
-            Shape (points, points), lower triangular by panels.
+        Of shape (points, points), lower triangular by panels; `f` is given at the points.
         """
         result, (y, u, share, weights) = self._points[0], self._pairs
         size = f.size

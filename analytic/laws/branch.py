@@ -210,7 +210,7 @@ def term_of(quantity: str, branch: Branch, h: ArrayLike, heights: ArrayLike, e: 
     pieces = branch.pieces(h, above, e)
     for piece in np.unique(pieces[pieces >= 0]).tolist():
         here = pieces == piece
-        result[here] = branch.value(quantity, piece, h[here], above[here], e[here])
+        result[here] = branch.of_some(here).value(quantity, piece, h[here], above[here], e[here])
     return result
 
 
@@ -254,13 +254,8 @@ class Ways:
         ndarray
             Over the quantity's scale for the radius of the surface, shape (summits,).
         """
-        q, above = quantity_of(quantity), s - h
-        pieces, result = self.with_radii(ratios).of(quantity).pieces(np.full(s.shape, h), above, e), 0.0 * s
-        for piece in np.unique(pieces[pieces >= 0]).tolist():
-            here = pieces == piece
-            branch = self.with_radii(ratios[here]).of(quantity)
-            result[here] = branch.value(q.base, piece, np.full(here.sum(), h), above[here], e[here])
-        return np.asarray(ratios**q.radius * result)
+        q = quantity_of(quantity)
+        return np.asarray(ratios**q.radius * term_of(q.base, self.with_radii(ratios).of(quantity), h, s, e))
 
     def of(self, quantity: str) -> Branch:
         """The branch that a quantity is on.

@@ -51,32 +51,13 @@ def crossings_of(
     high: float,
     kinks: Sequence[Sequence[float]] = ((),),
 ) -> Crossings:
-    """All crossings between two heights, each to the last bit.
+    """All crossings between two heights, each to the last bit; if nothing holds at `low`, the first begins.
 
-    Parameters
-    ----------
-    bound : callable
-        Penetration at which something begins, of the heights, and of the numbers of their separations in an
-        array that broadcasts with them; infinite where it never does. Under one modulus for all it must be
-        constant, or rise by less than the height.
-    grading : Grading
-        The bound has its kinks and jumps where this has them.
-    separations : ndarray
-        Reduced separations h, shape (k,).
-    low, high : float
-        Range of reduced heights.
-    kinks : sequence of sequences of float, optional
-        Further ones, of the one bound there is; or of that of each separation.
-
-    Returns
-    -------
-    Crossings
-        If nothing holds at `low`, the first of each separation begins.
-
-    Raises
-    ------
-    ValueError
-        If the grading is noisy: not resolved by 4096 pieces.
+    `bound` gives the penetration at which something begins, of the heights, and of the numbers of their
+    separations in an array that broadcasts with them; infinite where it never does. Under one modulus for all
+    it must be constant, or rise by less than the height. It has its kinks and jumps where the grading has
+    them, and further `kinks`, of the one bound there is or of that of each separation. A grading that is not
+    resolved by 4096 pieces is a ValueError.
     """
     h = np.asarray(separations, dtype=np.float64)
     if not low < high:

@@ -67,10 +67,7 @@ def _at(t: Any, low: float, high: float) -> Any:
 def resolved_in_root(formula: Callable[[Any], Any], low: float, high: float) -> RootSeries:
     """The series that stands for a formula, to 1e-13 of the largest value of ``formula/u^2``.
 
-    Raises
-    ------
-    ValueError
-        If 256 terms are not enough.
+    If 256 terms are not enough that is a ValueError.
     """
     for terms in (16, 32, 64, 128, _MOST_TERMS):
         nodes = chebyshev.chebpts1(terms)

@@ -14,28 +14,12 @@ from analytic.quadrature import NEAREST, towards
 def cuts_of(
     branches: Iterable[Branch], grading: Grading, separations: Array, low: float, high: float
 ) -> list[float]:
-    """Ends of the regimes, and heights that shrink towards those where a broken power begins.
+    """Ends of the regimes, and heights that shrink towards those where a broken power begins, in no order.
 
     Formulas that begin at the separation and are smooth in the root of s - h are so up to the end of their
     regime, or as far as the branch says. Others are made of powers of the distance from first touch or
-    lift-off, or begin next to such a height: they are smooth on pieces that are no wider than some times
-    that distance.
-
-    Parameters
-    ----------
-    branches : iterable of Branch
-        The ways to the separations.
-    grading : Grading
-        E*(s)/E*.
-    separations : ndarray
-        Reduced separations.
-    low, high : float
-        Range of reduced heights.
-
-    Returns
-    -------
-    list of float
-        In no order, some perhaps outside the range.
+    lift-off, or begin next to such a height: they are smooth on pieces that are no wider than some times that
+    distance. Some are perhaps outside the range from `low` to `high`.
     """
     found = [cuts_of_each(branch, grading, separations, low, high)[0] for branch in branches]
     return [float(x) for x in np.unique(np.concatenate([np.empty(0), *found]))]

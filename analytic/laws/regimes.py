@@ -108,19 +108,7 @@ def _ends(index: Ints, low: Array, high: float) -> Array:
 def merged_heights(heights: Array, separations: Array, anchors: Array) -> Array:
     """Heights, each replaced by the anchor, or the lowest height, that it cannot be told from.
 
-    Parameters
-    ----------
-    heights : ndarray
-        Found from ``s - h``; shape (m,).
-    separations : ndarray
-        The h of each, whose last digit it may be off by too; shape (m,).
-    anchors : ndarray
-        Heights that win.
-
-    Returns
-    -------
-    ndarray
-        Shape (m,).
+    They were found from ``s - h``, so the last digit of their separations counts too.
     """
     if not heights.size:
         return heights

@@ -20,22 +20,9 @@ _JUMP = 1e-9  # a bound that misses by more jumps over the penetration
 
 
 def slope_term(quantity: str, branch: Branch, penetration: Array, e: Array) -> Array:
-    """Derivative by the penetration of what asperities add, within the piece that holds.
+    """Derivative by the penetration of what asperities add, within the piece that holds; 0 without contact.
 
-    Parameters
-    ----------
-    quantity : str
-        Its name.
-    branch : Branch
-        With the law in reduced units.
-    penetration, e : ndarray
-        Reduced penetration s - h, negative without contact, and modulus E*(s)/E*; of any shapes that
-        broadcast.
-
-    Returns
-    -------
-    ndarray
-        In the common shape of penetration and modulus, 0 without contact.
+    Of reduced penetrations s - h, negative without contact, and moduli E*(s)/E*, in their common shape.
     """
     penetration, e = np.broadcast_arrays(penetration, e)
     piece = piece_of(branch.law, penetration, e)
@@ -58,25 +45,9 @@ def jump_terms(
     """What asperities add to the slope of the mean by jumping: at first touch and from piece to piece.
 
     An asperity of height t jumps by D when the separation is that at which ``t - h = limit(e(t))``. As the
-    surface comes nearer by dh, those of a range of ``dh/abs(1 - d limit/dt)`` heights do so.
-
-    Parameters
-    ----------
-    quantity : str
-        Its name.
-    branch, grading
-        In reduced units; the law is one, or one for each separation.
-    density : callable
-        Probability density of the heights, of them and of the numbers of their separations.
-    separations : ndarray
-        Reduced separations, shape (k,).
-    ends : (float, float)
-        Range of heights that count.
-
-    Returns
-    -------
-    ndarray
-        Shape (k,).
+    surface comes nearer by dh, those of a range of ``dh/abs(1 - d limit/dt)`` heights do so, in the range of
+    heights between the ends. `density` is that of heights and of the numbers of their separations; the law is
+    one, or one for each separation. Of shape (separations,).
     """
     (low, high), law, every = ends, branch.law, np.arange(separations.size)
     e = grading(separations)
