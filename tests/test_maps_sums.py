@@ -14,7 +14,6 @@ from scipy.stats import t as t_law
 import analytic
 from analytic import SpectralMoments
 from mcgw.maps.estimates import (
-    Scales,
     by_caps,
     by_moments,
     by_summits,
@@ -209,7 +208,7 @@ def test_what_a_grid_loses_goes_as_the_square_of_the_pixel():
         z *= sigma * (1 - share * loss[2]) / np.tile(z, 4).std(ddof=1)
         return counted(z, np.full(n, (1 - share * loss[1]) / radius))
 
-    found = by_summits(Scales(seen_by(1), seen_by(4)))
+    found = by_summits(seen_by(1), seen_by(4))
     assert [value for value, _ in found] == pytest.approx([eta, radius, sigma], rel=1e-12)
     # The parts are alike: the error is a quarter of what was added, but for the n - 1 of the spread.
     added = [eta * 0.02, radius / 0.97 - radius, sigma * 0.01]
@@ -233,7 +232,7 @@ def test_errors_are_a_jackknifes_widened_by_students_t():
         [40 / (0.1 * (sums[0].sum() - sums[0, k])) for k in range(9)],
     ]
     student = t_law(8).ppf(0.5 + math.erf(math.sqrt(2)) / 2)
-    for (value, error), expected, left in zip(jackknife(whole, statistic), values, without, strict=True):
+    for (value, error), expected, left in zip(jackknife(statistic, whole), values, without, strict=True):
         spread = math.sqrt(8 / 9 * sum((x - sum(left) / 9) ** 2 for x in left))
         assert value == pytest.approx(expected, rel=1e-14)
         assert error == pytest.approx(spread * student / 2, rel=1e-10)

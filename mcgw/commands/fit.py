@@ -144,14 +144,14 @@ def _write_beside(
 ) -> None:
     """Write the tables and the picture that were asked for, and say where they are."""
     from mcgw.maps.map_files import read_map
-    from mcgw.maps.sub_areas import write_tiles
-    from mcgw.maps.summits import write_summits
+    from mcgw.maps.sub_areas import TILES
+    from mcgw.maps.summits import SUMMITS
 
     if args.summits is not None:
-        write_summits(fit.listed, args.summits)
+        fit.listed.table().write(args.summits, comment=SUMMITS)
         print(args.summits)
     if args.tiles is not None:
-        write_tiles(fit.tiles, args.tiles)
+        fit.tiles.write(args.tiles, comment=TILES)
         print(args.tiles)
     if args.picture is not None:
         from mcgw.figures.map_fit import save_fit_picture

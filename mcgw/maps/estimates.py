@@ -3,7 +3,7 @@
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Protocol, Self, TypeVar
+from typing import Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,7 +19,6 @@ __all__ = [
     "METHODS",
     "Estimate",
     "Roughness",
-    "Scales",
     "by_caps",
     "by_moments",
     "by_summits",
@@ -104,41 +103,6 @@ class Estimate:
         )
 
 
-class _InParts(Protocol):
-    """What is known sub-area by sub-area."""
-
-    @property
-    def used(self) -> list[int]: ...
-
-    def without(self, part: int, /) -> Self: ...
-
-
-T = TypeVar("T", bound=_InParts)
-
-
-@dataclass(frozen=True)
-class Scales:
-    """What was counted over every point, and over every second one.
-
-    Parameters
-    ----------
-    fine, coarse : SummitSums
-        Of the same map and sub-areas.
-    """
-
-    fine: SummitSums
-    coarse: SummitSums
-
-    @property
-    def used(self) -> list[int]:
-        """Sub-areas that show anything."""
-        return self.fine.used
-
-    def without(self, part: int) -> "Scales":
-        """All but one sub-area."""
-        return Scales(self.fine.without(part), self.coarse.without(part))
-
-
 def estimates_table(estimates: Mapping[str, Estimate]) -> Table:
     """Estimates by all methods, with standard errors."""
     found = list(estimates.values())
@@ -150,14 +114,15 @@ def estimates_table(estimates: Mapping[str, Estimate]) -> Table:
     return Table((*columns, Column("overlap", [e.overlap for e in found], "eta R sigma", form=".3g")))
 
 
-def jackknife(counted: T, statistic: Callable[[T], Array]) -> Pairs:
-    """Values, and errors by leaving out one sub-area after the other.
+def jackknife(statistic: Callable[..., Array], *counted: SummitSums) -> Pairs:
+    """Values, and errors by leaving out one sub-area after the other, of all that was `counted` on them.
 
     They are standard errors widened as Student's t asks for so few sub-areas: two of them hold 95 %.
     """
-    values = statistic(counted)
-    without = np.array([statistic(counted.without(part)) for part in counted.used])
-    n = len(counted.used)
+    used = counted[0].used
+    n = len(used)
+    values = statistic(*counted)
+    without = np.array([statistic(*(c.without(part) for c in counted)) for part in used])
     errors = np.sqrt((n - 1) / n * ((without - without.mean(axis=0)) ** 2).sum(axis=0))
     errors *= stdtrit(n - 1, ndtr(2.0)) / 2
     return list(zip(values.tolist(), errors.tolist(), strict=True))
@@ -188,26 +153,26 @@ def by_moments(counted: SummitSums) -> Pairs:
         m = moments_of(t)
         return np.array([m.eta, m.radius, m.sigma])
 
-    return jackknife(counted, found)
+    return jackknife(found, counted)
 
 
-def by_summits(scales: Scales) -> Pairs:
-    """Summits as they were counted, and those that lie between pixels.
+def by_summits(fine: SummitSums, coarse: SummitSums) -> Pairs:
+    """Summits as they were counted over every point, and those that lie between pixels.
 
     A grid shows too few summits, too blunt: at eight pixels to the shortest wave it loses 1 to 3 %. What
     every second point loses over that, by three, is added (Richardson).
     """
 
-    def found(t: Scales) -> Array:
-        fine, coarse = _counted(t.fine), _counted(t.coarse)
-        values = fine + (fine - coarse) / _ORDER
+    def found(fine: SummitSums, coarse: SummitSums) -> Array:
+        values = _counted(fine)
+        values += (values - _counted(coarse)) / _ORDER
         values[1] = 1 / values[1]
         return values
 
-    pairs = jackknife(scales, found)
-    counted = _counted(scales.fine)
+    counted = _counted(fine)
     counted[1] = 1 / counted[1]
-    return [_also(pair, pair[0] - float(plain)) for pair, plain in zip(pairs, counted, strict=True)]
+    pairs = zip(jackknife(found, fine, coarse), counted, strict=True)
+    return [_also(pair, pair[0] - float(plain)) for pair, plain in pairs]
 
 
 def _counted(t: SummitSums) -> Array:
@@ -239,7 +204,7 @@ def by_caps(counted: SummitSums, blur: float) -> Pairs | None:
         all_caps = unhidden(caps.size / t.area, float(1 / median), float(caps.std(ddof=1)), blur)
         return np.full(3, np.nan) if all_caps is None else np.array([all_caps[0], 1 / median, all_caps[1]])
 
-    pairs, sharp = jackknife(counted, lambda t: found(t, blur)), found(counted, 0.0)
+    pairs, sharp = jackknife(lambda t: found(t, blur), counted), found(counted, 0.0)
     if not (np.all(np.isfinite(pairs)) and np.all(np.isfinite(sharp))):
         return None
     eta, radius, sigma = pairs

@@ -10,12 +10,12 @@ from numpy.typing import NDArray
 
 from analytic import SpectralMoments
 from mcgw.formats.sheet import Sheet, Shown
+from mcgw.formats.table import Table
 from mcgw.machine.notebook import plotted
 from mcgw.maps.estimates import (
     METHODS,
     Estimate,
     Roughness,
-    Scales,
     by_caps,
     by_moments,
     by_summits,
@@ -31,7 +31,7 @@ from mcgw.maps.hidden_caps import Visible, visible
 from mcgw.maps.levels import form_left
 from mcgw.maps.preparation import Prepared
 from mcgw.maps.steps import Form
-from mcgw.maps.sub_areas import Alone, Tiles, alone_of, tiles_of
+from mcgw.maps.sub_areas import Alone, alone_of, tiles_of
 from mcgw.maps.summit_sums import EDGE, SummitSums, coarse_sums_of, summit_sums_of
 from mcgw.maps.summits import Summits, summits_of
 from mcgw.maps.topography import Topography
@@ -82,8 +82,8 @@ class Fit(Shown):
         Errors that follow from how few waves the map holds.
     alone : Alone or None
         The sub-area that carries the map alone, if one does.
-    tiles : Tiles
-        What each sub-area tells by itself.
+    tiles : Table
+        What each sub-area tells by itself: see `mcgw.maps.sub_areas.tiles_of`.
     roughness : Roughness
         Of all heights of the map, without form and filtered: sigma is that of the summits alone.
     notes : tuple of str, optional
@@ -107,7 +107,7 @@ class Fit(Shown):
     form: Form
     waves: Waves
     alone: Alone | None
-    tiles: Tiles
+    tiles: Table
     roughness: Roughness
     notes: tuple[str, ...] = ()
     cautions: tuple[str, ...] = ()
@@ -211,21 +211,21 @@ def fit_prepared(ready: Prepared, *, across: int = 4) -> Fit:
     blur = math.hypot(max(used.pixel), _BLUR * (ready.asked.cutoff or 0.0))
     peak_to_valley = float(np.ptp(used.heights if ready.seen is None else used.heights[ready.seen]))
     if number >= _FEWEST:
-        scales = _scales(ready, across, counted)
-        estimates["summits"] = Estimate.of(by_summits(scales), waves)
-        caps = by_caps(scales.fine, blur)
+        fine, coarse = _scales(ready, across, counted)
+        estimates["summits"] = Estimate.of(by_summits(fine, coarse), waves)
+        caps = by_caps(fine, blur)
         if caps is not None and caps[2][0] <= peak_to_valley:  # else too many hide for the others to tell
             estimates["caps"] = Estimate.of(caps, waves)
     _check_sigma(estimates, peak_to_valley)
     found = estimates.get("caps")
-    of_moments = jackknife(counted, _of_moments)
+    of_moments = jackknife(_of_moments, counted)
     m0, m2, m4, alpha = (
         uncertain(*pair, getattr(waves, name))
         for pair, name in zip(of_moments, ("m0", "m2", "m4", "alpha"), strict=True)
     )
     return Fit(
         estimates, moments_of(counted), m0, m2, m4, alpha,
-        jackknife(counted, lambda t: np.array([skewness_of(t)]))[0],
+        jackknife(lambda t: np.array([skewness_of(t)]), counted)[0],
         summits_of(used, counted, _origin(ready.levelled, used)),
         float(counted.heights.mean()) - mean_squares(counted)["z"],
         counted.area,
@@ -248,14 +248,14 @@ def _origin(whole: Topography, used: Topography) -> tuple[float, float]:
     return x, y
 
 
-def _scales(ready: Prepared, across: int, counted: SummitSums) -> Scales:
+def _scales(ready: Prepared, across: int, counted: SummitSums) -> tuple[SummitSums, SummitSums]:
     """Summits of every point and of every second one, in fewer sub-areas where they are few."""
     fewer = max(min(across, math.isqrt(counted.heights.size // _A_PART)), _LEAST_ACROSS)
 
     def count(sums_of: Callable[..., SummitSums]) -> SummitSums:
         return _without_summit_form(sums_of(ready.used, across=fewer, seen=ready.seen), ready.asked.form)
 
-    return Scales(counted if counted.parts == fewer**2 else count(summit_sums_of), count(coarse_sums_of))
+    return counted if counted.parts == fewer**2 else count(summit_sums_of), count(coarse_sums_of)
 
 
 def _visible(caps: Estimate, blur: float) -> Visible:

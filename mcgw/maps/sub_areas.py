@@ -2,7 +2,6 @@
 
 import math
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,54 +9,24 @@ from numpy.typing import NDArray
 from mcgw.formats.table import Column, Table
 from mcgw.maps.summit_sums import SUMS, SummitSums
 
-__all__ = ["Alone", "Tiles", "alone_of", "tiles_of", "write_tiles"]
+__all__ = ["TILES", "Alone", "alone_of", "tiles_of", "variation"]
 
 Array = NDArray[np.float64]
 
-_MEASURED = ("summits", "eta", "radius", "sigma", "m0", "m2", "m4")
-_UNITS = (
+TILES = (  # what stands above their table in a file
     "eta in 1/m^2, radius and sigma in m, by the summits of the tile; m0 in m^2, m2, m4 in 1/m^2; heights "
     "are about the mean of the tile"
 )
 _HALF = 0.5
 
 
-@dataclass(frozen=True)
-class Tiles:
-    """Sub-areas of a map, each by itself; arrays of shape (tiles,), counted along x first.
+def tiles_of(counted: SummitSums) -> Table:
+    """What each sub-area tells by itself, a row each, counted along x first.
 
-    Parameters
-    ----------
-    across : int
-        How many there are along each axis.
-    summits : ndarray of int
-        Summits on each.
-    eta, radius, sigma : ndarray
-        Density, inverse mean curvature and standard deviation of heights of the summits counted there,
-        1/m^2, m, m; nan where there are too few.
-    m0, m2, m4 : ndarray
-        Spectral moments, m^2, 1, 1/m^2; heights are taken about the mean of the tile, so that waves longer
-        than it count less than on the whole map.
+    By its summits their number, density, inverse mean curvature and standard deviation of heights, nan where
+    they are too few; and spectral moments of heights about its own mean, so that waves longer than it count
+    less than on the whole map.
     """
-
-    across: int
-    summits: NDArray[np.int64]
-    eta: Array
-    radius: Array
-    sigma: Array
-    m0: Array
-    m2: Array
-    m4: Array
-
-    def variation(self, name: str) -> float:
-        """Standard deviation over the tiles of one of these numbers, over their mean."""
-        values = getattr(self, name)
-        values = values[np.isfinite(values)]
-        return float(values.std(ddof=1) / values.mean()) if values.size > 1 else math.nan
-
-
-def tiles_of(counted: SummitSums) -> Tiles:
-    """What each sub-area tells."""
     points, *sums = np.where(counted.sums[0] > 0, counted.sums, np.nan)  # where nothing was seen
     m = dict(zip(SUMS[1:], sums / points, strict=True))
     number = np.bincount(counted.part, minlength=counted.parts)
@@ -68,24 +37,27 @@ def tiles_of(counted: SummitSums) -> Tiles:
 
     squares = mean((counted.heights - mean(counted.heights)[counted.part]) ** 2)
     several = np.where(number > 1, number / np.maximum(number - 1, 1), np.nan)
-    return Tiles(
-        round(counted.parts**0.5),
-        number,
-        number / (points * counted.pixel_area),
-        1 / mean(counted.curvatures),
-        np.sqrt(squares * several),
-        m["z2"] - m["z"] ** 2,
-        (m["slope_x"] + m["slope_y"]) / 2,
-        m["bend"],
+    tile = np.arange(counted.parts)
+    return Table(
+        (
+            Column("tile", tile),
+            Column("column", tile % counted.across),
+            Column("row", tile // counted.across),
+            Column("summits", number),
+            Column("eta", number / (points * counted.pixel_area), unit="1/m^2"),
+            Column("radius", 1 / mean(counted.curvatures), "R", "m"),
+            Column("sigma", np.sqrt(squares * several), unit="m"),
+            Column("m0", m["z2"] - m["z"] ** 2, unit="m^2"),
+            Column("m2", (m["slope_x"] + m["slope_y"]) / 2),
+            Column("m4", m["bend"], unit="1/m^2"),
+        )
     )
 
 
-def write_tiles(tiles: Tiles, path: Path) -> None:
-    """Write a table with a row for each tile; a comment above it tells the units."""
-    tile = np.arange(tiles.across**2)
-    counted = {"tile": tile, "column": tile % tiles.across, "row": tile // tiles.across}
-    columns = counted | {name: getattr(tiles, name) for name in _MEASURED}
-    Table(tuple(Column(name, values) for name, values in columns.items())).write(path, comment=_UNITS)
+def variation(values: Array) -> float:
+    """Standard deviation over the tiles, over the mean; nan where fewer than two tell anything."""
+    values = values[np.isfinite(values)]
+    return float(values.std(ddof=1) / values.mean()) if values.size > 1 else math.nan
 
 
 @dataclass(frozen=True, slots=True)
@@ -123,11 +95,10 @@ def alone_of(counted: SummitSums) -> Alone | None:
         "m2": sums["slope_x"] + sums["slope_y"],
         "m0": sums["z2"] - 2 * mean * sums["z"] + mean**2 * points,
     }
-    across = round(counted.parts**0.5)
     for moment, square in squares.items():
         part = int(np.argmax(square))
         rest = (square.sum() - square[part]) / (points.sum() - points[part])
         left = float(rest / (square.sum() / points.sum()))
         if left < _HALF:
-            return Alone(moment, left, part % across, part // across, across)
+            return Alone(moment, left, part % counted.across, part // counted.across, counted.across)
     return None

@@ -1,5 +1,6 @@
 """One pass over a map: sums of squares of its derivatives, and its summits, sub-area by sub-area."""
 
+import math
 from dataclasses import dataclass
 from typing import Any
 
@@ -53,6 +54,11 @@ class SummitSums:
         return int(self.sums.shape[1])
 
     @property
+    def across(self) -> int:
+        """Number of sub-areas along each axis."""
+        return math.isqrt(self.parts)
+
+    @property
     def used(self) -> list[int]:
         """Sub-areas that show anything."""
         return np.flatnonzero(self.sums[0]).tolist()
@@ -62,14 +68,8 @@ class SummitSums:
         kept = self.part != part
         sums = self.sums.copy()
         sums[:, part] = 0.0
-        return SummitSums(
-            sums,
-            self.heights[kept],
-            self.curvatures[kept],
-            self.places[:, kept],
-            self.part[kept],
-            self.pixel_area,
-        )
+        of_summits = (self.heights[kept], self.curvatures[kept], self.places[:, kept], self.part[kept])
+        return SummitSums(sums, *of_summits, self.pixel_area)
 
     @property
     def area(self) -> float:

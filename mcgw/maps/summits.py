@@ -1,7 +1,6 @@
 """Every summit of a map: where it is, how high, and how sharp along its two principal directions."""
 
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,12 +9,11 @@ from mcgw.formats.table import Column, Table
 from mcgw.maps.summit_sums import EDGE, SummitSums
 from mcgw.maps.topography import Topography
 
-__all__ = ["Summits", "summits_of", "write_summits"]
+__all__ = ["SUMMITS", "Summits", "summits_of"]
 
 Array = NDArray[np.float64]
 
-_COLUMNS = ("x", "y", "height", "radius", "curvature_1", "curvature_2", "tile")
-_UNITS = (
+SUMMITS = (  # what stands above their table in a file
     "x, y, height and radius in m, curvature_1 and curvature_2 in 1/m; height is above the mean of the "
     "summits, radius is 1/sqrt(curvature_1 curvature_2)"
 )
@@ -54,6 +52,14 @@ class Summits:
     def radii(self) -> Array:
         """Of the spheres that carry nearly what the summits do, ``1/sqrt(k1 k2)``, m (Greenwood 2006)."""
         return np.asarray(1 / np.sqrt(self.curvatures[0] * self.curvatures[1]))
+
+    def table(self) -> Table:
+        """A row for each summit."""
+        lengths = {"x": self.x, "y": self.y, "height": self.heights, "radius": self.radii}
+        sharpness = zip(("curvature_1", "curvature_2"), self.curvatures, strict=True)
+        columns = [Column(name, values, unit="m") for name, values in lengths.items()]
+        columns += [Column(name, values, unit="1/m") for name, values in sharpness]
+        return Table((*columns, Column("tile", self.tile)))
 
 
 def summits_of(used: Topography, counted: SummitSums, origin: tuple[float, float]) -> Summits:
@@ -126,10 +132,3 @@ def _apex(z: Array, j: NDArray[np.int64], i: NDArray[np.int64]) -> tuple[Array, 
     det = np.where(flat, 1.0, det)
     right, up = ((gy * xy - gx * yy) / det, (gx * xy - gy * xx) / det)
     return tuple(np.where(flat, 0.0, np.clip(t, -0.5, 0.5)) for t in (right, up))  # type: ignore[return-value]
-
-
-def write_summits(summits: Summits, path: Path) -> None:
-    """Write a table with a row for each summit; a comment above it tells the units."""
-    found = (summits.x, summits.y, summits.heights, summits.radii, *summits.curvatures, summits.tile)
-    table = Table(tuple(Column(name, values) for name, values in zip(_COLUMNS, found, strict=True)))
-    table.write(path, comment=_UNITS)

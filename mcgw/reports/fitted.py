@@ -7,6 +7,7 @@ from mcgw.maps.fit import Fit
 from mcgw.maps.preparation import Preparation
 from mcgw.maps.profile import Profile
 from mcgw.maps.profile_fit import ProfileFit
+from mcgw.maps.sub_areas import variation
 from mcgw.maps.waves import Uncertain
 
 __all__ = ["fit_lines", "map_line", "profile_line", "profile_lines"]
@@ -32,11 +33,11 @@ def fit_lines(fit: Fit) -> list[str]:
         f"of all heights (sigma below is of the summits): {fit.roughness.text('S')}",
         *estimates_table(fit.estimates).text().splitlines(),
     ]
-    across, *varies = fit.tiles.across, *(fit.tiles.variation(x) for x in ("eta", "radius", "sigma"))
-    shares = zip(("eta", "R", "sigma"), varies, strict=True)
+    across = round(len(fit.tiles) ** 0.5)
+    varies = fit.tiles.only("eta", "radius", "sigma").columns
     lines.append(
         f"from one of {across} x {across} sub-areas to another, counted summits vary (standard deviation): "
-        + ", ".join(f"{name} by {100 * share:.2g} %" for name, share in shares)
+        + ", ".join(f"{c.words or c.name} by {100 * variation(c.values):.2g} %" for c in varies)
     )
     why = f"the summits' curvatures spread by {fit.spread_of_curvatures:.2g}, of Gaussian surfaces by 0.35"
     lines.append(f"best here: {METHODS[fit.best]}; {why}")
