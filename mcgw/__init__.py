@@ -73,7 +73,7 @@ import os
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from mcgw.machine.notebook import bind_drawing
+from mcgw.machine.terminal import bind_drawing
 
 if TYPE_CHECKING:
     from analytic import (

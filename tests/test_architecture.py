@@ -116,11 +116,11 @@ def test_no_imports_go_round_in_a_circle():
     ],
 )
 def test_each_way_of_importing_would_be_seen(text):
-    low, high = "mcgw.machine.notebook", "mcgw.figures.plotting"
+    low, high = "mcgw.machine.terminal", "mcgw.figures.plotting"
     (pair,) = going_up({low: Tree(ast.parse(text))})
     assert pair[0] == low
     if pair[1] == high:
-        back = Tree(ast.parse("from mcgw.machine.notebook import plotted"))
+        back = Tree(ast.parse("from mcgw.machine.terminal import plotted"))
         assert set(around({low: Tree(ast.parse(text)), high: back})) == {low, high}
 
 

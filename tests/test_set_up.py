@@ -10,7 +10,7 @@ import scipy.stats
 import analytic
 import mcgw
 from analytic.elementary import exp
-from mcgw.machine.kept import kept
+from mcgw.machine.memory import kept
 from mcgw.sampling.cells import mesh_of
 from mcgw.sampling.exp_log import weigh_exponentials, weigh_normal_densities
 from mcgw.sampling.rules import gauss_legendre, product

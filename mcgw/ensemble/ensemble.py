@@ -12,7 +12,7 @@ from mcgw.ensemble.labelled import Labelled, axes_of, axis, statistic, values_of
 from mcgw.ensemble.results import PROBABILITIES, Held
 from mcgw.formats.sheet import Sheet, Shown
 from mcgw.formats.table import Column, Table
-from mcgw.machine.notebook import plotted
+from mcgw.machine.terminal import plotted
 from mcgw.scene.in_words import accuracy_facts, contact_facts, law_text
 from mcgw.scene.samplers import promise_of
 from mcgw.scene.scene import Scene

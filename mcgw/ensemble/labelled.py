@@ -9,8 +9,7 @@ from numpy.typing import NDArray
 
 from analytic import quantity_of
 from mcgw.ensemble.results import PROBABILITIES
-from mcgw.formats.table import SEPARATION, Column, Table
-from mcgw.machine.notebook import optional
+from mcgw.formats.table import SEPARATION, Column, Table, optional
 from mcgw.scene.scene import Scene
 
 __all__ = [

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.formats.sheet import Sheet, Shown
 from mcgw.formats.table import SEPARATION, Column, Table
-from mcgw.machine.notebook import plotted
+from mcgw.machine.terminal import plotted
 from mcgw.scene.arguments import check_object
 from mcgw.scene.storable import drawn_by
 

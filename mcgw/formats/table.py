@@ -5,6 +5,7 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from html import escape
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -14,10 +15,9 @@ from numpy.typing import NDArray
 from mcgw.formats.files import whole_file
 from mcgw.formats.numbers import columns as typeset_columns
 from mcgw.formats.numbers import typeset
-from mcgw.machine.notebook import optional
 from mcgw.machine.terminal import one_line
 
-__all__ = ["SEPARATION", "Column", "Table", "evenly", "joined", "stacked"]
+__all__ = ["SEPARATION", "Column", "Table", "evenly", "joined", "optional", "stacked"]
 
 SEPARATION = "d/sigma"  # over a column of separations
 _DIGITS = re.compile(r"\.(\d+)g")
@@ -253,3 +253,17 @@ def _stored(column: Column) -> Iterator[str]:
 def evenly(n: int, most: int) -> NDArray[np.int64]:
     """Numbers of at most so many of `n` rows, rising."""
     return np.unique(np.linspace(0, n - 1, min(n, most)).round().astype(np.int64))
+
+
+def optional(package: str, what: str) -> Any:
+    """Import a package that mcgw does without.
+
+    Raises
+    ------
+    ImportError
+        If it is not installed; the message says what needs it and how to get it.
+    """
+    try:
+        return import_module(package)
+    except ImportError:
+        raise ImportError(f'{what} needs {package}: pip install "mcgw[notebook]"', name=package) from None

@@ -1,12 +1,14 @@
-"""How much memory there is: asked before anything is computed. And how what a block frees is kept.
+"""How much memory there is: asked before anything is computed. And what is kept.
 
-Arrays that begin with a line of the cache.
+Memory that a block frees, for the next; and results, for the next call with the same arguments. Arrays that
+begin with a line of the cache.
 """
 
 import math
 from collections.abc import Callable
-from functools import cache
+from functools import cache, lru_cache, wraps
 from pathlib import Path
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,8 +16,11 @@ from numpy.typing import NDArray
 from mcgw.errors import StoreError
 from mcgw.machine.child_process import memory_limit
 
-__all__ = ["aligned", "check_memory", "gibibytes", "keep_freed_memory", "memory_available", "peak_growth"]
+__all__ = [
+    "aligned", "check_memory", "gibibytes", "keep_freed_memory", "kept", "memory_available", "peak_growth",
+]  # fmt: skip
 
+_Result = TypeVar("_Result")
 _MOST = 2**63 - 1
 _SMALL = 2**24  # bytes; to look how many there are takes half a millisecond
 _LARGE = 31 * 2**20  # bytes; at 32 MiB the GNU C library learns no more
@@ -107,3 +112,33 @@ def aligned(*shape: int) -> NDArray[np.float64]:
     memory = np.empty(words + _LINE)
     start = -(memory.ctypes.data // memory.itemsize) % _LINE
     return memory[start : start + words].reshape(shape)
+
+
+def kept(most: int) -> Callable[[Callable[..., _Result]], Callable[..., _Result]]:
+    """As `functools.lru_cache`, for numbers, bytes and frozen dataclasses; for others there is no memory.
+
+    A height law of somebody's own may be any object, and may have changed since the last call.
+    """
+
+    def decorate(function: Callable[..., _Result]) -> Callable[..., _Result]:
+        remembered = lru_cache(maxsize=most)(function)
+
+        @wraps(function)
+        def call(*arguments: Any) -> _Result:
+            return (remembered if all(map(_never_changes, arguments)) else function)(*arguments)
+
+        call.cache_clear = remembered.cache_clear  # type: ignore[attr-defined]
+        return call
+
+    return decorate
+
+
+def _never_changes(argument: Any) -> bool:
+    facts = getattr(type(argument), "__dataclass_params__", None)
+    if not (facts.frozen if facts else isinstance(argument, int | float | bytes)):
+        return False
+    try:
+        hash(argument)
+    except TypeError:  # it holds an array
+        return False
+    return True

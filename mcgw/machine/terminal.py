@@ -1,4 +1,4 @@
-"""What a command prints: text that cannot steer a terminal, to streams that may be closed or full.
+"""What people see: text that cannot steer a terminal, to streams that may be closed or full; and drawings.
 
 Who reads it decides nothing about the work: what a stream does not take is lost, and its user may ask why.
 """
@@ -6,12 +6,13 @@ Who reads it decides nothing about the work: what a stream does not take is lost
 import os
 import re
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from typing import Any
 
-__all__ = ["Plain", "one_line", "plain_output", "plain_text"]
+__all__ = ["Plain", "bind_drawing", "one_line", "plain_output", "plain_text", "plotted"]
 
+_bound: dict[str, Callable[..., Any]] = {}
 _SHORT = {"\n": "\\n", "\r": "\\r", "\t": "\\t"}
 
 
@@ -104,3 +105,16 @@ def _open_closed() -> None:
             os.open(os.devnull, os.O_RDWR)  # takes the lowest number that is free
         if getattr(sys, name) is None:
             setattr(sys, name, open(number, mode, closefd=False))  # noqa: SIM115 - for as long as the process
+
+
+def bind_drawing(draw: Callable[..., Any]) -> None:
+    """Say how results are drawn: ``draw(result, ax, **options)``."""
+    _bound["draw"] = draw
+
+
+def plotted(result: Any, ax: Any, **options: Any) -> Any:
+    """Draw a result on axes, new ones if `ax` is None, and return them.
+
+    Figures lie above the results that they draw, so these cannot import them: `mcgw` itself binds them.
+    """
+    return _bound["draw"](result, ax, **options)

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from analytic import SpectralMoments
 from mcgw.formats.sheet import Sheet, Shown
 from mcgw.formats.table import Table
-from mcgw.machine.notebook import plotted
+from mcgw.machine.terminal import plotted
 from mcgw.maps.estimates import (
     METHODS,
     Estimate,

@@ -17,7 +17,7 @@ from scipy.special import stdtrit
 from analytic import SpectralMoments
 from mcgw.formats.sheet import Sheet, Shown
 from mcgw.formats.table import Column, Table
-from mcgw.machine.notebook import plotted
+from mcgw.machine.terminal import plotted
 from mcgw.maps.estimates import Estimate, Roughness, roughness_of
 from mcgw.maps.profile import Profile, smooth_profile, without_profile_form
 from mcgw.maps.profile_waves import ProfileWaves, waves_of_profile

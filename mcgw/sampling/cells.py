@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 from analytic import Gaussian, Grading, HeightLaw, PiecewiseSeries, bends
 from analytic.elementary import exp
 from mcgw.machine.in_threads import in_threads
-from mcgw.machine.kept import kept
+from mcgw.machine.memory import kept
 from mcgw.sampling.exp_log import weigh_exponentials, weigh_normal_densities
 from mcgw.sampling.rules import chebyshev_points, chebyshev_transform, gauss_legendre, product
 from mcgw.sampling.spacing import DIGITS, Gaps, cuts

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from analytic import Grading
 from analytic.laws import Branch
-from mcgw.machine.kept import kept
+from mcgw.machine.memory import kept
 from mcgw.scene.scene import Scene
 
 __all__ = ["SMALLEST", "Stretches", "begins_and_breaks", "losses", "stretches_of"]

@@ -21,7 +21,7 @@ from analytic import (
     first_negative,
 )
 from analytic.laws import Branch, ContactLaw, Film, Hertz, Tangential, Ways
-from mcgw.machine.kept import kept
+from mcgw.machine.memory import kept
 
 if TYPE_CHECKING:
     from analytic import Interaction

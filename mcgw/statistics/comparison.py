@@ -15,8 +15,8 @@ from mcgw.ensemble.intervals import interval_column
 from mcgw.ensemble.labelled import heading
 from mcgw.formats.sheet import Sheet, Shown
 from mcgw.formats.table import SEPARATION, Column, Table, stacked
-from mcgw.machine.notebook import plotted
 from mcgw.machine.progress import Progress, told
+from mcgw.machine.terminal import plotted
 from mcgw.scene.arguments import check_object
 from mcgw.scene.samplers import promise_of
 from mcgw.statistics.verdict import Tested, Verdict, tested, verdict

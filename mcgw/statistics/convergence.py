@@ -16,8 +16,8 @@ from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.results import MemoryResults, joined
 from mcgw.formats.sheet import Sheet, Shown, brief
 from mcgw.formats.table import Column, Table, evenly
-from mcgw.machine.notebook import plotted
 from mcgw.machine.progress import Progress, told
+from mcgw.machine.terminal import plotted
 from mcgw.sampling.block import Sampler
 from mcgw.sampling.samplers import sampler_of
 from mcgw.scene.arguments import check_object

@@ -16,8 +16,8 @@ from mcgw.ensemble.asperities_alone import scene_alone
 from mcgw.formats.sheet import Sheet, Shown
 from mcgw.formats.table import Column, Table
 from mcgw.machine.memory import peak_growth
-from mcgw.machine.notebook import plotted
 from mcgw.machine.progress import Progress, told
+from mcgw.machine.terminal import plotted
 from mcgw.scene.arguments import argument, check_object
 from mcgw.scene.scene import Scene
 from mcgw.statistics.methods import Method, methods_for

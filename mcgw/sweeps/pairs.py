@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from mcgw.formats.sheet import Sheet, Shown
 from mcgw.formats.table import Column, Table
-from mcgw.machine.notebook import plotted
+from mcgw.machine.terminal import plotted
 from mcgw.sweeps.groups import Place
 from mcgw.sweeps.pooled import Pooled
 

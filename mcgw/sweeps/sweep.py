@@ -11,7 +11,7 @@ from mcgw.ensemble.labelled import Labelled, Variable, axes_of, axis, statistic
 from mcgw.ensemble.results import PROBABILITIES
 from mcgw.formats.sheet import Sheet, Shown
 from mcgw.formats.table import SEPARATION, Column, Table, evenly
-from mcgw.machine.notebook import plotted
+from mcgw.machine.terminal import plotted
 from mcgw.scene.samplers import promise_of
 from mcgw.scene.scene_file import scene_text
 from mcgw.sweeps.axes import Axes, Point, label

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from analytic import HeightLaw, Quantity, quantity_of
 from mcgw.machine.compiling import njit
-from mcgw.machine.kept import kept
+from mcgw.machine.memory import kept
 from mcgw.sampling.response.rows import Powers, Rows
 from mcgw.sampling.spacing import SURE
 from mcgw.scene.scene import Scene
