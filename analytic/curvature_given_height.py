@@ -8,7 +8,8 @@ import numpy as np
 from scipy.special import erfcx, gammainc, gammaincc, ndtr
 
 from analytic.arrays import Array
-from analytic.nayak import NayakTables, panelled, tables_of, upper_tail
+from analytic.nayak import NayakTables, tables_of, upper_tail
+from analytic.quadrature import panelled
 
 _WIDE = 9.5  # standard deviations, beyond which a normal density is 1e-20 of its largest value
 _MEDIAN = 1.6783469900166605  # of the gamma law of shape 2

@@ -23,16 +23,13 @@ class Grading(Protocol):
     @property
     def breaks(self) -> tuple[float, ...]:
         """Heights where the grading or one of its derivatives jumps."""
-        ...
 
     @property
     def smooth(self) -> bool:
         """True if it varies slowly (on the scale of one sigma) between its breaks."""
-        ...
 
     def __call__(self, s: Array) -> Array:
         """E*(s)/E* at the heights `s`, in the shape of `s`."""
-        ...
 
 
 @dataclass(frozen=True)

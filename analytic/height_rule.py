@@ -106,11 +106,7 @@ class HeightRule:
         return Fluctuations(self, mean, shifted - offset, -usual - offset)
 
     def terms(
-        self,
-        quantities: Sequence[str],
-        separations: ArrayLike,
-        grading: Grading,
-        ways: Ways | None = None,
+        self, quantities: Sequence[str], separations: ArrayLike, grading: Grading, ways: Ways | None = None
     ) -> Array:
         """What one asperity adds to each quantity, over its scale: shape (m, quantities * separations).
 

@@ -46,11 +46,9 @@ class HeightLaw(Protocol):
 
     def rvs(self, n: int, rng: np.random.Generator) -> Array:
         """`n` heights from NumPy's generator."""
-        ...
 
     def pdf(self, s: Array) -> Array:
         """Probability density at `s`, at a jump that above it."""
-        ...
 
     def log_ratio(self, s: Array, t: Array) -> Array:
         """``log(pdf(s + t)/pdf(s))``, accurate for small `t`."""
@@ -58,19 +56,15 @@ class HeightLaw(Protocol):
 
     def cdf(self, s: Array) -> Array:
         """Probability of a height below `s`, to full relative accuracy."""
-        ...
 
     def sf(self, s: Array) -> Array:
         """Probability of a height above `s`, to full relative accuracy."""
-        ...
 
     def ppf(self, p: Array, below: float = np.inf) -> Array:
         """Height at the share `p` of the heights below one, or of all."""
-        ...
 
     def isf(self, p: Array, above: float = -np.inf) -> Array:
         """Height at the share `p` of the heights above one, or of all, counted from the top."""
-        ...
 
 
 def normal_log_ratio(s: Any, t: Any) -> Any:
@@ -84,8 +78,7 @@ class Gaussian(HeightLaw):
 
     Examples
     --------
-    >>> import numpy as np
-    >>> float(Gaussian().sf(np.array(0.0)))
+    >>> float(Gaussian().sf(0.0))
     0.5
     """
 
@@ -156,8 +149,7 @@ class ExponentialHeights(HeightLaw):
 
     Examples
     --------
-    >>> import numpy as np
-    >>> float(ExponentialHeights().sf(np.array(-1.0)))
+    >>> float(ExponentialHeights().sf(-1.0))
     1.0
     """
 
@@ -225,8 +217,20 @@ class Weibull(HeightLaw):
 
     @cached_property
     def _spread(self) -> tuple[float, float]:
-        """Deviation over mean of the unreduced x of scale 1, and the logarithm of the mean of x times k."""
-        return _weibull_spread(self.shape)
+        """Deviation over mean of the unreduced x of scale 1, and k times the logarithm of its mean.
+
+        ``x^k`` makes k times an error of the first, so it is summed in powers of 1/k, whose coefficients are
+        zeta functions, where the difference of logarithms of Gamma functions would cancel.
+        """
+        k = self.shape
+        if k < _SERIES:
+            logs = gammaln(1 + 1 / k), gammaln(1 + 2 / k)
+            return math.sqrt(math.expm1(logs[1] - 2 * logs[0])), float(k * logs[0])
+        m = np.arange(2, 80)
+        terms = (-1.0) ** m * zeta(m) / m
+        log_square = math.fsum(terms * (2.0**m - 2) * k ** (-1.0 * m))
+        log_mean = math.fsum([-np.euler_gamma, *(terms * k ** (1.0 - m))])
+        return math.sqrt(math.expm1(log_square)), log_mean
 
     @property
     def support(self) -> tuple[float, float]:
@@ -296,19 +300,3 @@ class Weibull(HeightLaw):
     def isf(self, p: Array, above: float = -math.inf) -> Array:
         """``(x(above)^k - log(p))^(1/k)``, reduced."""
         return self._s(self._power(np.array(above)) - np.log(p))
-
-
-def _weibull_spread(k: float) -> tuple[float, float]:
-    """Deviation over mean of a Weibull variable of scale 1, and k times the logarithm of its mean.
-
-    ``x^k`` makes k times an error of the first, so it is summed in powers of 1/k, whose coefficients are
-    zeta functions, where the difference of logarithms of Gamma functions would cancel.
-    """
-    if k < _SERIES:
-        logs = gammaln(1 + 1 / k), gammaln(1 + 2 / k)
-        return math.sqrt(math.expm1(logs[1] - 2 * logs[0])), float(k * logs[0])
-    m = np.arange(2, 80)
-    terms = (-1.0) ** m * zeta(m) / m
-    log_square = math.fsum(terms * (2.0**m - 2) * k ** (-1.0 * m))
-    log_mean = math.fsum([-np.euler_gamma, *(terms * k ** (1.0 - m))])
-    return math.sqrt(math.expm1(log_square)), log_mean

@@ -68,11 +68,7 @@ def _sorted(n: float, h: Array, grading: Grading, unit: Array, between: tuple[fl
 
 
 def _in_units(
-    n: float,
-    h: ArrayLike,
-    grading: Grading | None,
-    between: tuple[float, float],
-    heights: HeightLaw,
+    n: float, h: ArrayLike, grading: Grading | None, between: tuple[float, float], heights: HeightLaw
 ) -> tuple[Array, Array]:
     """As `fn_scaled`, over the unit of the grading at each separation; and the logarithm of that unit."""
     h = np.asarray(h, dtype=np.float64)

@@ -24,7 +24,7 @@ from analytic.arrays import Array
 from analytic.elementary import exp_minus_half_square
 from analytic.heights import HeightLaw
 from analytic.piecewise import PiecewiseSeries, fitted
-from analytic.quadrature import NODES, gauss_legendre
+from analytic.quadrature import panelled
 from analytic.surface import LEAST_ALPHA, SUMMIT_SPREAD
 
 _TERMS = 24
@@ -35,20 +35,6 @@ _STEPS = (0.0, 0.6, 1.2, 1.8, 2.5, 3.2, 4.0, 5.0, 6.0, 7.5, 9.0, 11.0, 13.0, 16.
 _PER_PIECE = 8  # points of the first guess of a quantile
 _STEPS_OF_NEWTON = 4
 _LEAST, _MOST = 1.501, 1e12
-
-
-def panelled(edges: Array) -> tuple[Array, Array]:
-    """Points and weights of Gauss-Legendre rules between neighbouring edges, each of shape (64 m, n).
-
-    Edges increase along the first axis, shape (k, n), some of them equal. There are m <= k - 1 pieces: those
-    that have no width in any column are left out.
-    """
-    x, w = gauss_legendre(NODES)
-    width = np.diff(edges, axis=0)
-    some = width.any(axis=1)
-    width = width[some][:, None]
-    points = edges[:-1][some][:, None] + width * x[:, None]
-    return points.reshape(-1, edges.shape[1]), (width * w[:, None]).reshape(-1, edges.shape[1])
 
 
 def upper_tail(z: Array) -> Array:

@@ -35,6 +35,20 @@ def gauss_legendre(nodes: int) -> tuple[Array, Array]:
     return x, w
 
 
+def panelled(edges: Array) -> tuple[Array, Array]:
+    """Points and weights of Gauss-Legendre rules between neighbouring edges, each of shape (64 m, n).
+
+    Edges increase along the first axis, shape (k, n), some of them equal. There are m <= k - 1 pieces: those
+    that have no width in any column are left out.
+    """
+    x, w = gauss_legendre(NODES)
+    width = np.diff(edges, axis=0)
+    some = width.any(axis=1)
+    width = width[some][:, None]
+    points = edges[:-1][some][:, None] + width * x[:, None]
+    return points.reshape(-1, edges.shape[1]), (width * w[:, None]).reshape(-1, edges.shape[1])
+
+
 def rooted(left: Array, right: Array, separations: Array, nodes: int) -> tuple[Array, Array]:
     """Points and weights in the root of the approach to the next separation below, piece by piece.
 

@@ -21,14 +21,8 @@ T = TypeVar("T")
 _SECONDS = 5.0  # for moments, or jumps, of a law of scipy: some are integrals of integrals
 _NOISE = 2.0**-30  # of a density that is the exponential of large terms, as of gamma(1e4)
 _RARE, _RARER = np.array([1e-3, 1e-9, 1e-15, 1e-24, 1e-36]), 10.0 ** -np.arange(1.0, 37.0)
-_ALIKE, _NEARLY = (
-    1e-6,
-    1e-2,
-)  # how near shares come to themselves by way of heights: all of them, some
-_MOST_STEPS, _SETTLED = (
-    100,
-    2.0**-30,
-)  # of Newton; a step whose square is nothing
+_ALIKE, _NEARLY = 1e-6, 1e-2  # how near shares come to themselves by way of heights: all of them, some
+_MOST_STEPS, _SETTLED = 100, 2.0**-30  # of Newton; a step whose square is nothing
 _TRIAL, _TRIAL_SECONDS = np.array([1e-9, 0.1, 0.5, 0.9]), 1.0  # a few of the thousands of calls to come
 
 

@@ -1,6 +1,7 @@
 """Elastic contacts that stick: Derjaguin, Muller and Toporov's, and Johnson, Kendall and Roberts'."""
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
@@ -197,23 +198,26 @@ _NO_STIFFNESS = (
 def _pressed(delta: Any, stretch: Array) -> Any:
     """Root z of ``z^4 - 4 z = 3 delta/D_e``, the larger root."""
     wanted = 3 * delta / stretch
-    z = (wanted + 4 ** (4 / 3)) ** 0.25  # right at first touch, and far beyond it
-    for _ in range(_STEPS):
-        step = (z * (z**3 - 4) - wanted) / (4 * z**3 - 4)
-        z = z - step
-        if np.all(np.abs(step) <= 1e-9 * np.abs(z)):  # the next step would be the square of that
-            break
-    return z
+    start = (wanted + 4 ** (4 / 3)) ** 0.25  # right at first touch, and far beyond it
+    return _settled(start, lambda z: (z * (z**3 - 4) - wanted) / (4 * z**3 - 4))
 
 
 def _pulled(y: Any, stretch: Array) -> Any:
     """Root z of ``(z - 1) sqrt(z^2 + 2 z + 3) = y sqrt(3/D_e)``; below 1 for -y."""
     wanted = y * np.sqrt(3 / stretch)
-    z = 1 + wanted / np.sqrt(6 + np.abs(wanted) * 2)
-    for _ in range(_STEPS):
+
+    def step(z: Any) -> Any:
         root = np.sqrt(z * z + 2 * z + 3)
-        step = ((z - 1) * root - wanted) / (root + (z - 1) * (z + 1) / root)
-        z = z - step
-        if np.all(np.abs(step) <= 1e-9 * np.abs(z)):
+        return ((z - 1) * root - wanted) / (root + (z - 1) * (z + 1) / root)
+
+    return _settled(1 + wanted / np.sqrt(6 + np.abs(wanted) * 2), step)
+
+
+def _settled(z: Any, step: Callable[[Any], Any]) -> Any:
+    """Where Newton's steps lead from z."""
+    for _ in range(_STEPS):
+        taken = step(z)
+        z = z - taken
+        if np.all(np.abs(taken) <= 1e-9 * np.abs(z)):  # the next step would be the square of that
             break
     return z
