@@ -48,13 +48,14 @@ from analytic.equations import (
     stiffness,
     stiffness_ratio,
 )
-from analytic.extent import extent
 from analytic.gradings import Clipped, Custom, Exponential, Grading, Homogeneous
 from analytic.height_rule import Fluctuations, HeightRule
 from analytic.height_table import HeightTable
 from analytic.heights import ExponentialHeights, Gaussian, HeightLaw, Weibull
 from analytic.integrals import fn, fn_between, fn_paper, fn_scaled
 from analytic.inversion import ratio_at_equal_load
+from analytic.law_rule import extent
+from analytic.laws import ContactLaw, Film, Hertz, Tangential, masing
 from analytic.measured_summits import MeasuredHeights, MeasuredRadii
 from analytic.model import Cumulants, Model
 from analytic.nayak import Nayak
@@ -82,18 +83,13 @@ if TYPE_CHECKING:
     from analytic.laws import (
         ChangEtsionBogy,
         Coated,
-        ContactLaw,
         CustomLaw,
         DerjaguinMullerToporov,
-        Film,
-        Hertz,
         JacksonGreen,
         JohnsonKendallRoberts,
         KogutEtsion,
         PowerLawGraded,
-        Tangential,
         ZhaoMaiettaChang,
-        masing,
     )
 
 __all__ = [

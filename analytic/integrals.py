@@ -106,7 +106,6 @@ def fn_scaled(
     h: ArrayLike,
     grading: Grading | None = None,
     *,
-    between: tuple[float, float] = _ALL,
     heights: HeightLaw = GAUSSIAN,
 ) -> Array:
     """F_n or F*_n relative to the density at the separation.
@@ -119,8 +118,6 @@ def fn_scaled(
         Reduced separations d/sigma, any shape.
     grading : Grading, optional
         E*(s)/E*; default: homogeneous.
-    between : (float, float), optional
-        Count only heights between these two.
     heights : HeightLaw, optional
         Law of the heights.
 
@@ -134,7 +131,7 @@ def fn_scaled(
     ValueError
         If `n` is negative or not finite, or a separation is not finite.
     """
-    value, unit = _in_units(n, h, grading, between, heights)
+    value, unit = _in_units(n, h, grading, _ALL, heights)
     return np.asarray(value * np.exp(unit))
 
 

@@ -1,11 +1,17 @@
-"""Laws of contact of one asperity; they are loaded when they are asked for."""
+"""Laws of contact of one asperity; all but Hertz's are loaded when they are asked for."""
 
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
+from analytic.laws.branch import Branch, UnloadingBranch, Ways, term_of
+from analytic.laws.film import Film, SpotConductance, crowding_factor
+from analytic.laws.law import ContactLaw, Hertz, of_spot, piece_of
+from analytic.laws.regimes import Regimes, merged_heights, regimes_of
+from analytic.laws.tangential import Tangential, masing
+from analytic.laws.unloading import Unloading
+
 if TYPE_CHECKING:
     from analytic.laws.adhesion import DerjaguinMullerToporov, JohnsonKendallRoberts
-    from analytic.laws.branch import Branch, UnloadingBranch, Ways, term_of
     from analytic.laws.custom import CustomLaw
     from analytic.laws.elastic import Coated, PowerLawGraded
     from analytic.laws.elastic_plastic_laws import (
@@ -14,11 +20,6 @@ if TYPE_CHECKING:
         KogutEtsion,
         ZhaoMaiettaChang,
     )
-    from analytic.laws.film import Film, SpotConductance, crowding_factor
-    from analytic.laws.law import ContactLaw, Hertz, of_spot, piece_of
-    from analytic.laws.regimes import Regimes, merged_heights, regimes_of
-    from analytic.laws.tangential import Tangential, masing
-    from analytic.laws.unloading import Unloading
 
     by_name: dict[str, type[ContactLaw]]
 
@@ -30,29 +31,23 @@ __all__ = [
     "masing", "merged_heights", "of_spot", "piece_of", "regimes_of", "term_of",
 ]  # fmt: skip
 
-_FILES = {
-    "adhesion": ("DerjaguinMullerToporov", "JohnsonKendallRoberts"),
-    "branch": ("Branch", "UnloadingBranch", "Ways", "term_of"),
-    "custom": ("CustomLaw",),
-    "elastic": ("Coated", "PowerLawGraded"),
-    "elastic_plastic_laws": ("ChangEtsionBogy", "JacksonGreen", "KogutEtsion", "ZhaoMaiettaChang"),
-    "film": ("Film", "SpotConductance", "crowding_factor"),
-    "law": ("ContactLaw", "Hertz", "of_spot", "piece_of"),
-    "regimes": ("Regimes", "merged_heights", "regimes_of"),
-    "tangential": ("Tangential", "masing"),
-    "unloading": ("Unloading",),
+_HOMES = {
+    "ChangEtsionBogy": "elastic_plastic_laws",
+    "ZhaoMaiettaChang": "elastic_plastic_laws",
+    "KogutEtsion": "elastic_plastic_laws",
+    "JacksonGreen": "elastic_plastic_laws",
+    "PowerLawGraded": "elastic",
+    "Coated": "elastic",
+    "DerjaguinMullerToporov": "adhesion",
+    "JohnsonKendallRoberts": "adhesion",
+    "CustomLaw": "custom",
 }
-_HOMES = {name: file for file, names in _FILES.items() for name in names}
-_LAWS = (
-    "Hertz", "ChangEtsionBogy", "ZhaoMaiettaChang", "KogutEtsion", "JacksonGreen", "PowerLawGraded",
-    "Coated", "DerjaguinMullerToporov", "JohnsonKendallRoberts",
-)  # fmt: skip
 
 
 def __getattr__(name: str) -> Any:
-    """A law, or what goes with laws, from its file; `by_name` has those of scene files."""
+    """A law from its file; `by_name` has those of scene files."""
     if name == "by_name":
-        return {law.name: law for law in map(__getattr__, _LAWS)}
+        return {law.name: law for law in (Hertz, *map(__getattr__, _HOMES)) if law.name != "custom"}
     if name not in _HOMES:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     return getattr(import_module(f"{__name__}.{_HOMES[name]}"), name)
