@@ -102,11 +102,11 @@ class OwnBalance:
         return np.asarray(self._second(quantity, self.separation(h)) * spread / 2)
 
     def _load_variance(self, h: Array) -> Array:
-        return self._once("load variance", h, self._variance_of_load)
+        def found(some: Array) -> Array:
+            x = self.separation(some)
+            return np.asarray(self.alone.cumulants("load", x).variance / self.rate(x) ** 2)
 
-    def _variance_of_load(self, h: Array) -> Array:
-        x = self.separation(h)
-        return np.asarray(self.alone.cumulants("load", x).variance / self.rate(x) ** 2)
+        return self._once("load variance", h, found)
 
     def _balance(self, h: Array) -> Array:
         """By Newton from the side of no load, where the balance is monotone and convex or concave."""
@@ -156,12 +156,10 @@ class OwnBalance:
         """Covariance of a sum with the load at separations x, the sum's farther up by `apart`."""
         of_sum, of_load = (quantity_of(name).scale(self.alone.surface) for name in (quantity, "load"))
         parts = np.array_split(x.ravel(), -(-x.size // _TOGETHER)) if x.size else []
-        found = [self._product(quantity, part, apart) for part in parts]
+        found = [np.empty(0)]  # mean products of what one asperity adds to both, over their scales
+        for part in parts:
+            one = self.alone.fluctuations([quantity, "load"], np.concatenate([part + apart, part]))
+            a, b = slice(0, part.size), slice(3 * part.size, 4 * part.size)
+            at_heights = one.rule.probabilities @ (one.at_heights[:, a] * one.at_heights[:, b])
+            found.append(at_heights + one.rule.below * one.below[a] * one.below[b])
         return self.alone.number * of_sum * of_load * np.reshape(np.concatenate(found), x.shape)
-
-    def _product(self, quantity: str, x: Array, apart: float) -> Array:
-        """Mean product of what one asperity adds to a sum and to the load, over their scales."""
-        one = self.alone.fluctuations([quantity, "load"], np.concatenate([x + apart, x]))
-        a, b = slice(0, x.size), slice(3 * x.size, 4 * x.size)
-        at_heights = one.rule.probabilities @ (one.at_heights[:, a] * one.at_heights[:, b])
-        return np.asarray(at_heights + one.rule.below * one.below[a] * one.below[b])

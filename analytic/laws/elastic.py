@@ -7,9 +7,8 @@ from typing import Any, ClassVar
 import numpy as np
 
 from analytic.arrays import Array
-from analytic.laws.law import ContactLaw, check_poisson
+from analytic.laws.law import ContactLaw
 from analytic.quadrature import gauss_legendre
-from analytic.surface import Surface
 
 _NODES = 14  # enough for logarithms up to log(2)
 
@@ -68,13 +67,7 @@ class PowerLawGraded(ContactLaw):
     def __post_init__(self) -> None:
         if not 0 <= self.k < 1:
             raise ValueError(f"k = {self.k!r}: give an exponent of the depth from 0 to below 1")
-        check_poisson(self.poisson)
         self.check_constants()
-
-    def reduced_on(self, surface: Surface) -> float:
-        """c0 over sqrt(R sigma)."""
-        assert self.c0 is not None
-        return self.c0 / sqrt(surface.radius * surface.sigma)
 
     @property
     def H(self) -> float:  # noqa: N802
@@ -156,13 +149,7 @@ class Coated(ContactLaw):
     reduced_thickness: float | None = None
 
     def __post_init__(self) -> None:
-        check_poisson(self.poisson)
         self.check_constants("ratio")
-
-    def reduced_on(self, surface: Surface) -> float:
-        """Thickness over sqrt(R sigma)."""
-        assert self.thickness is not None
-        return self.thickness / sqrt(surface.radius * surface.sigma)
 
     @property
     def finest(self) -> float:

@@ -8,7 +8,6 @@ import numpy as np
 
 from analytic.arrays import Array
 from analytic.laws.elastic_plastic import Bridgeable, EtsionKligermanKadin, FromHardness, kogut_etsion_factor
-from analytic.laws.law import check_poisson
 from analytic.surface import Surface
 
 
@@ -52,11 +51,6 @@ class ChangEtsionBogy(FromHardness, Bridgeable):
 
     name: ClassVar[str] = "chang-etsion-bogy"
     poisson: float | None = None
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        if self.poisson is not None:
-            check_poisson(self.poisson)
 
     @property
     def yield_factor(self) -> float:
@@ -184,10 +178,6 @@ class KogutEtsion(FromHardness, Bridgeable):
 
     poisson: float = 0.3
 
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        check_poisson(self.poisson)
-
     @property
     def yield_factor(self) -> float:
         """K, the greatest contact pressure at the onset of yield over the hardness."""
@@ -232,10 +222,8 @@ class JacksonGreen(Bridgeable):
         S_y of the softer body, Pa. Give it, or `yield_strain` and `critical`.
     poisson : float, optional
         Its Poisson's ratio.
-    yield_strain : float, optional
-        S_y/E*.
-    critical : float, optional
-        delta_c/sigma of an asperity of modulus E*.
+    yield_strain, critical : float, optional
+        S_y/E*, and delta_c/sigma of an asperity of modulus E*.
     bridge : {None, "hermite"}, optional
         Whether the jump is bridged, from 1.9 delta_c to 2.85 delta_c.
 
@@ -267,7 +255,6 @@ class JacksonGreen(Bridgeable):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        check_poisson(self.poisson)
         self.check_constants("yield_strength", "yield_strain")
         reduced = (self.yield_strain is not None, self.critical is not None)
         if reduced[0] != reduced[1] or reduced[0] == (self.yield_strength is not None):

@@ -98,6 +98,9 @@ class ContactLaw:
         for name, value in given.items():
             if value is not None and not is_positive(value):
                 raise ValueError(f"{name} = {value!r}: give a finite number > 0")
+        poisson = getattr(self, "poisson", None)
+        if poisson is not None:
+            check_poisson(poisson)
 
     def on(self, surface: Surface) -> Self:
         """The law on this surface, in reduced units: without anything in Pa or m left."""
@@ -107,8 +110,9 @@ class ContactLaw:
         return replace(law, **{self.in_si[0]: None, self.of_radius[0]: self.reduced_on(surface)})  # type: ignore[no-any-return]
 
     def reduced_on(self, surface: Surface) -> float:
-        """The constant that follows the radius, on this surface, from that in SI units."""
-        raise NotImplementedError
+        """The constant that follows the radius, on this surface: a length in SI units over sqrt(R sigma)."""
+        length: float = getattr(self, self.in_si[0])  # type: ignore[index]
+        return length / math.sqrt(surface.radius * surface.sigma)
 
     @property
     def reduced(self) -> Any:
