@@ -1,24 +1,23 @@
 """What is drawn is what was computed: lines, error bars, labels, legends and verdicts, read from the axes."""
 
 import dataclasses
-import itertools
 import math
 import re
 
 import numpy as np
 import pytest
 from conftest import SURFACE
-from matplotlib.backends.backend_agg import FigureCanvasAgg
+from crowding import crowded
 from matplotlib.collections import LineCollection, PathCollection
 from scipy.stats import norm
 
 import analytic
 import mcgw
-from mcgw.figures.against_theory import quantity_figure, save_comparison
+from mcgw.figures.against_theory import quantity_panel, save_comparison
 from mcgw.figures.data import FigureData, Panel, Points, Series
 from mcgw.figures.panels import draw
 from mcgw.figures.studies import save_convergence, save_tradeoff
-from mcgw.figures.style import power_of_ten
+from mcgw.figures.style import THEORY, plain, power_of_ten
 from mcgw.statistics.checks import Check, Slope
 from mcgw.statistics.comparison import Comparison, Curve, compare
 from mcgw.statistics.convergence import Convergence
@@ -115,13 +114,12 @@ def test_legends_name_the_line_that_is_drawn_so():
     assert drawn[2].get_color() == "#000000"  # homogeneous, in every figure alike
 
 
-@pytest.mark.parametrize("side", ["below", "above"])
-def test_the_shaded_side(side):
-    series = Series("edge", X, X, None, side)
+def test_a_band_is_shaded():
+    series = Series("edge", X, X, band=(X - 3, 2 * X))
     (axis,) = draw(FigureData("", "", (Panel("p", "x", "y", (series,), ylim=(-3.0, 9.0)),))).axes
     (patch,) = axis.collections
-    y = patch.get_paths()[0].vertices[:, 1]
-    assert (y.min(), y.max()) == ((-3.0, 4.0) if side == "below" else (1.0, 9.0))
+    corners = {tuple(xy) for xy in patch.get_paths()[0].vertices.tolist()}
+    assert corners >= set(zip(X, X - 3, strict=True)) | set(zip(X, 2 * X, strict=True))
     assert axis.get_ylim() == (-3.0, 9.0)
 
 
@@ -290,6 +288,7 @@ def test_contact_map(make_scene, kept, tmp_path):
 @pytest.mark.parametrize(("x", "label"), [(1e-12, "10⁻¹²"), (1.0, "10⁰"), (1e308, "10³⁰⁸"), (30.0, "30")])
 def test_labels_of_decades_are_plain_text(x, label):
     assert power_of_ten(x) == label
+    assert plain(-2.5e-12) == "−2.5e−12"
 
 
 # --- comparisons ----------------------------------------------------------------------------------------
@@ -326,6 +325,7 @@ def check_curve(axis, curve, title):
     assert axis.get_title() + axis.get_title(loc="left") == title
     assert axis.get_yscale() == "log"
     (line,) = (x for x in axis.get_lines() if x.get_label() == "theory")
+    assert line.get_color() == THEORY
     np.testing.assert_array_equal(line.get_xdata(), h[order])
     np.testing.assert_array_equal(line.get_ydata(), curve.theory[order])
     (points,) = markers_of(axis)
@@ -360,11 +360,13 @@ def test_comparison(comparison, kept, tmp_path):
     save_comparison(comparison, tmp_path / "x.png")
     (figure,) = kept
     assert len(figure.axes) == 2 * len(QUANTITIES)
-    below, above = figure.axes[::2], figure.axes[1::2]
+    above, below = figure.axes[::2], figure.axes[1::2]
     for k, name in enumerate(QUANTITIES):
         check_curve(above[k], comparison.curves[name], TITLES[name])
         check_residual(below[k], comparison.curves[name])
-    assert below[0].get_ylabel() == "residual\n(standard errors)"
+    assert {axis.get_xlabel() for axis in below} == {"separation d/σ"}
+    assert below[0].get_ylabel() == "residual\n(std. errors)"
+    assert [axis.get_legend() is None for axis in above] == [False, *[True] * (len(QUANTITIES) - 1)]
     legend = [text.get_text() for text in above[0].get_legend().get_texts()]
     assert legend == ["theory", "Monte Carlo, 95 %"]
     verdict = comparison.verdict
@@ -373,9 +375,14 @@ def test_comparison(comparison, kept, tmp_path):
         f"{verdict.degrees} degrees of freedom, p = {verdict.p:.3g}"
     )
     assert figure.get_supxlabel() == (
-        "separation d/σ\n60 surfaces of 3000 asperities, exponential grading, γ = 2; "
+        "60 surfaces of 3000 asperities, exponential grading, γ = 2; "
         f"sampler {comparison.ensemble.sampler}, seed 4"
     )
+
+
+def drawn(comparison, name="load"):
+    """One quantity alone, as in a report."""
+    return draw(FigureData("", "", (quantity_panel(comparison, name),))).axes
 
 
 def one_of(comparison, curve):
@@ -384,8 +391,7 @@ def one_of(comparison, curve):
 
 
 def test_one_quantity(comparison):
-    figure = quantity_figure(comparison, "area")
-    above, below = figure.axes
+    above, below = drawn(comparison, "area")
     check_curve(above, comparison.curves["area"], TITLES["area"])
     check_residual(below, comparison.curves["area"])
     assert (below.get_xlabel(), below.get_ylabel()) == ("separation d/σ", "residual\n(std. errors)")
@@ -398,9 +404,9 @@ def test_a_large_residual_stays_in_sight_and_the_verdict_says_so(comparison, kep
     off = Curve(curve.mean + shift, curve.low + shift, curve.high + shift, curve.theory, curve.stderr)
     wrong = dataclasses.replace(one_of(comparison, off), verdict=Verdict(99.0, 15, 1e-9))
     save_comparison(wrong, tmp_path / "x.png")
-    low, high = kept[0].axes[0].get_ylim()
+    low, high = kept[0].axes[1].get_ylim()
     assert low < off.residual.min() < off.residual.max() < high
-    assert "theory of this model DISAGREE: χ² = 99.0 for 15" in kept[0].get_suptitle()
+    assert "theory of this model DISAGREE: χ² = 99.0 for 15" in kept[0].get_suptitle().replace("\n", " ")
 
 
 def test_lopsided_intervals_are_drawn_lopsided(comparison):
@@ -408,39 +414,28 @@ def test_lopsided_intervals_are_drawn_lopsided(comparison):
     curve = comparison.curves["load"]
     low, high = curve.mean * [0.9, 0.7, 0.99], curve.mean * [1.3, 1.1, 1.5]
     lopsided = Curve(curve.mean, low, high, curve.theory, curve.stderr)
-    check_curve(quantity_figure(one_of(comparison, lopsided), "load").axes[0], lopsided, TITLES["load"])
+    check_curve(drawn(one_of(comparison, lopsided))[0], lopsided, TITLES["load"])
 
 
 def test_too_few_contacts_have_a_marker_of_their_own_and_pulls_a_linear_axis(comparison):
     curve = comparison.curves["load"]
     few = dataclasses.replace(curve, low=curve.low * [1, 1, np.nan], high=curve.high * [1, 1, np.nan])
-    axis = quantity_figure(one_of(comparison, few), "load").axes[0]
-    (points,), (cross,) = markers_of(axis), [x for x in axis.get_lines() if x.get_marker() == "x"]
+    axis = drawn(one_of(comparison, few))[0]
+    (points,) = markers_of(axis)
+    (cross,) = (x for x in axis.get_lines() if x.get_marker() == "x" and len(x.get_xdata()))
     np.testing.assert_array_equal(points.get_xdata(), H[:2])
     np.testing.assert_array_equal(cross.get_xydata(), [(H[2], curve.mean[2])])
     assert [t.get_text() for t in axis.get_legend().get_texts()][-1] == "too few contacts"
     pull = Curve(-curve.mean, -curve.high, -curve.low, -curve.theory, curve.stderr)
-    axis = quantity_figure(one_of(comparison, pull), "load").axes[0]
+    axis = drawn(one_of(comparison, pull))[0]
     assert axis.get_yscale() == "linear"
     np.testing.assert_allclose(bars_of(axis)[:, 1:], np.column_stack([pull.low, pull.high]), rtol=1e-12)
     touches_nowhere = dataclasses.replace(curve, mean=curve.mean * [1, 1, 0])
-    axis = quantity_figure(one_of(comparison, touches_nowhere), "load").axes[0]
+    axis = drawn(one_of(comparison, touches_nowhere))[0]
     assert axis.get_ylim()[0] == pytest.approx(0.01 * curve.mean[:2].min())
 
 
 # --- drawn ------------------------------------------------------------------------------------------------
-
-
-def crowded(figure):
-    """What runs out of a figure or into a neighbour, as matplotlib measures all of each panel."""
-    canvas = FigureCanvasAgg(figure)
-    canvas.draw()
-    texts = [text for text in (figure._suptitle, figure._supxlabel) if text]
-    boxes = [part.get_tightbbox(canvas.get_renderer()) for part in (*figure.axes, *texts)]
-    out = [
-        box for box in boxes if box.x0 < 0 or box.y0 < 0 or box.x1 > figure.bbox.x1 or box.y1 > figure.bbox.y1
-    ]
-    return out + [pair for pair in itertools.combinations(boxes, 2) if pair[0].overlaps(pair[1])]
 
 
 # Panels, sign of the mean, and how far theory is: linear axes of pulls, exponents at the side.
@@ -458,5 +453,5 @@ def test_panels_of_a_comparison_have_room(comparison, kept, tmp_path, panels, si
     save_comparison(dataclasses.replace(comparison, curves=dict.fromkeys(names, curve)), tmp_path / "x.png")
     assert len(kept[0].axes) == 2 * panels
     assert not crowded(kept[0])
-    kept[0].axes[1].set_title("A title for which there is no room " * 9)  # which would be seen
+    kept[0].axes[0].set_title("A title for which there is no room " * 9)  # which would be seen
     assert crowded(kept[0])

@@ -9,6 +9,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from conftest import SURFACE
+from crowding import crowded
 from scipy.integrate import quad
 from scipy.stats import norm
 
@@ -46,6 +47,14 @@ def test_all_are_there(figures):
         "who-yields", "laws-compared", "way-back", "sliding", "films",
     }  # fmt: skip
     assert {name for name, data in figures.items() if not points(data)} == THEORY_ALONE
+
+
+@pytest.mark.parametrize(
+    "name",
+    [pytest.param(row.name, marks=() if row.name == "films" else pytest.mark.site) for row in CATALOGUE],
+)
+def test_panels_have_room(figures, name):
+    assert not crowded(draw(figures[name]))
 
 
 def test_every_point_agrees_with_theory(figures):

@@ -16,7 +16,9 @@ from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.forecast import forecast
 from mcgw.ensemble.intervals import FEWEST, TOO_FEW, Spread, count_interval, pearson3_quantile, spread_of
 from mcgw.ensemble.results import MemoryResults
-from mcgw.figures.against_theory import quantity_figure
+from mcgw.figures.against_theory import quantity_panel
+from mcgw.figures.data import FigureData
+from mcgw.figures.panels import draw
 from mcgw.formats.table import stacked
 from mcgw.reports.text import comparison_text
 from mcgw.scene.scene import Scene
@@ -232,10 +234,10 @@ def test_too_few_is_said_wherever_intervals_are(make_scene):
     pages = [comparison.tables()[name].html().count(TOO_FEW) for name in ("load", "contacts")]
     assert pages == [2, 0]
     assert comparison.curves["load"].mean[1] > 0  # so that the figure has something to mark
-    shown = [text.get_text() for text in quantity_figure(comparison, "load").axes[0].get_legend().get_texts()]
-    assert shown == ["theory", "Monte Carlo, 95 %", TOO_FEW]
-    shown = quantity_figure(comparison, "contacts").axes[0].get_legend().get_texts()
-    assert [text.get_text() for text in shown] == ["theory", "Monte Carlo, 95 %"]
+    keys = ["theory", "Monte Carlo, 95 %"]
+    for name, shown in (("load", [*keys, TOO_FEW]), ("contacts", keys)):
+        axis, _ = draw(FigureData("", "", (quantity_panel(comparison, name),))).axes
+        assert [text.get_text() for text in axis.get_legend().get_texts()] == shown
 
 
 @pytest.mark.parametrize("share", [1e-4, 0.0125, 0.025, 0.3, 0.5, 0.975])

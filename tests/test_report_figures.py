@@ -13,7 +13,7 @@ from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.results import MemoryResults
 from mcgw.figures.contact_map import patch_figures
 from mcgw.figures.panels import draw
-from mcgw.figures.pressure_curves import pressure_curves, pressure_figure
+from mcgw.figures.pressure_curves import pressure_curves
 from mcgw.reports.report_figures import _relative_error, _spread, line_figure
 from mcgw.statistics.comparison import compare
 
@@ -92,30 +92,35 @@ def test_curves_are_those_of_surfaces_whose_laws_are_known(scene):
         ("Contact conductance", "C/Aₙ (W/(m² K), or S/m²)", 0.3 / area, 0.95),
     ]
     for curve, (title, label, scale, power) in zip(others, expected, strict=True):
-        assert (curve.title, curve.label) == (title, label)
-        exact_curves = scale * factor * (1e6 * curve.pressure * area) ** power
-        np.testing.assert_allclose(curve.mean, exact_curves.mean(axis=0), rtol=1e-10)
-        for side, q in zip(curve.band, (0.05, 0.95), strict=True):
+        (panel,) = curve.panels
+        (series,) = panel.series
+        assert (panel.title, panel.ylabel) == (title, label)
+        exact_curves = scale * factor * (1e6 * series.x * area) ** power
+        np.testing.assert_allclose(series.theory, exact_curves.mean(axis=0), rtol=1e-10)
+        for side, q in zip(series.band, (0.05, 0.95), strict=True):
             np.testing.assert_allclose(side, np.quantile(exact_curves, q, axis=0), rtol=1e-10)
-    assert (first.title, first.label) == ("Load: pressure at a separation", "separation d/σ")
-    separations = np.log(50.0 * own / (1e6 * first.pressure * area)) / 2
-    np.testing.assert_allclose(first.mean, separations.mean(axis=0), atol=1e-10)
+    ((panel,), (series,)) = first.panels, first.panels[0].series
+    assert (panel.title, panel.ylabel) == ("Load: pressure at a separation", "separation d/σ")
+    separations = np.log(50.0 * own / (1e6 * series.x * area)) / 2
+    np.testing.assert_allclose(series.theory, separations.mean(axis=0), atol=1e-10)
     ends = 1e-6 / area * np.array([load[:, -1].max(), load[:, 0].min()])
-    assert first.pressure[[0, -1]] == pytest.approx(ends, rel=1e-12)
-    (axes,) = pressure_figure(first).axes
+    assert series.x[[0, -1]] == pytest.approx(ends, rel=1e-12)
+    figure = draw(first)
+    (axes,) = figure.axes
     assert (axes.get_xlabel(), axes.get_ylabel()) == ("nominal pressure P/Aₙ (MPa)", "separation d/σ")
     assert (axes.get_xscale(), axes.get_yscale()) == ("log", "linear")
-    assert [x.get_text() for x in axes.get_legend().get_texts()] == ["5 to 95 % of the surfaces", "mean"]
-    (axes,) = pressure_figure(others[0]).axes
+    assert figure.get_supxlabel() == "Line: mean. Band: 5 to 95 % of the surfaces."
+    (axes,) = draw(others[0]).axes
     assert (axes.get_xscale(), axes.get_yscale()) == ("log", "log")
-    np.testing.assert_array_equal(axes.lines[0].get_ydata(), others[0].mean)
+    np.testing.assert_array_equal(axes.lines[0].get_ydata(), others[0].panels[0].series[0].theory)
 
 
 @pytest.mark.parametrize("changes", [{"n_surfaces": 1}, {"sampler": "stratified"}])
 def test_there_is_no_band_where_there_are_not_several_surfaces(scene, changes):
     curves = pressure_curves(mcgw.simulate(scene, **changes))
     assert len(curves) == 4
-    assert all(curve.band is None for curve in curves)
+    assert all(curve.panels[0].series[0].band is None for curve in curves)
+    assert {curve.caption for curve in curves} == {"Line: mean."}
 
 
 @pytest.mark.parametrize(
@@ -139,10 +144,12 @@ def test_every_kind_has_its_curves(scene, changes):
     curves = pressure_curves(mcgw.simulate(scene, **changes))
     assert len(curves) >= 4
     for curve in curves:
-        rising = -1 if "separation" in curve.label else 1
-        assert np.all(rising * np.diff(curve.mean) > 0), curve.title
-        assert np.all(curve.band[0] <= curve.mean)
-        assert np.all(curve.mean <= curve.band[1])
+        (panel,) = curve.panels
+        (series,) = panel.series
+        rising = -1 if "separation" in panel.ylabel else 1
+        assert np.all(rising * np.diff(series.theory) > 0), panel.title
+        assert np.all(series.band[0] <= series.theory)
+        assert np.all(series.theory <= series.band[1])
 
 
 def test_contacts_of_the_picture_are_those_of_the_file(scene):

@@ -208,7 +208,10 @@ class Compared:
     def points(self, found: Callable[[], Estimate], exact: Array, of: Scene | None = None) -> Points | None:
         """Points at the separations where the ensemble of a scene has enough for an error."""
         known = self.enough(of or self.scene)
-        return Points(*(x[known] for x in (self.h, *found(), exact))) if known.any() else None
+        if not known.any():
+            return None
+        mean, stderr = found()
+        return Points(self.h[known], mean[known], stderr[known], exact[known])
 
     def means(self, label: str, quantity: str, unit: float) -> Points | None:
         """Means over the surfaces, in this unit."""

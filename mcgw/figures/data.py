@@ -1,7 +1,6 @@
 """What a figure shows, as numbers: lines of theory and Monte-Carlo points, ready to draw, test or export."""
 
 from dataclasses import dataclass
-from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -38,31 +37,41 @@ class Points:
     Parameters
     ----------
     x, mean, stderr : ndarray
-        Where, what, and its standard error, from the surfaces alone.
+        Where, what, and its standard error.
     exact : ndarray
         What theory says there.
+    interval : (ndarray, ndarray), optional
+        Ends of 95 % intervals, nan where there are too few contacts for one; default: those of a normal law.
     """
 
     x: Array
     mean: Array
     stderr: Array
     exact: Array
+    interval: tuple[Array, Array] | None = None
 
     @property
     def residual(self) -> Array:
         """(mean - exact)/stderr."""
         return (self.mean - self.exact) / self.stderr
 
+    @property
+    def arms(self) -> tuple[Array, Array]:
+        """How far the intervals reach below and above the means."""
+        if self.interval is None:
+            return 1.96 * self.stderr, 1.96 * self.stderr
+        return self.mean - self.interval[0], self.interval[1] - self.mean
+
 
 @dataclass(frozen=True)
 class Series:
-    """A line of theory, points on it if it has a counterpart by Monte Carlo, and the side shaded."""
+    """A line of theory, points on it if it has a counterpart by Monte Carlo, and ends of a shaded band."""
 
     label: str
     x: Array
     theory: Array
     points: Points | None = None
-    shaded: Literal["", "below", "above"] = ""
+    band: tuple[Array, Array] | None = None
 
 
 @dataclass(frozen=True)

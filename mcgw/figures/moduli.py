@@ -126,15 +126,16 @@ def _shares(listed: tuple[Array, ...], h: float, e: Grading, edges: Array) -> Es
 
 def negative_modulus(_: Compared) -> FigureData:
     """Show the heights where the exponential grading is below zero."""
-    above = np.linspace(1.02, 4, 150)
-    below = np.linspace(-2, -0.02, 100)
+    end = 4.0
+    above, below = np.linspace(1.02, end, 150), np.linspace(-2, -0.02, 100)
+    low, high = -np.log(above / (above - 1)), np.log(1 + 1 / np.abs(below))
     series = (
-        Series("negative below this height", above, -np.log(above / (above - 1)), None, "below"),
-        Series("negative above this height", below, np.log(1 + 1 / np.abs(below)), None, "above"),
+        Series("negative below this height", above, low, band=(np.full_like(low, -end), low)),
+        Series("negative above this height", below, high, band=(high, np.full_like(high, end))),
     )
     return FigureData(
         "Where the modulus turns negative (shaded)",
         "Exponential grading. A scene whose contacts reach the shaded heights is refused, unless it says "
         'negative = "clip" or "allow". γ from 0 to 1 is safe at every height; γ > 1 from d/σ = 0 up. Theory.',
-        (Panel("", GAMMA, "summit height s = z/σ", series, ylim=(-4, 4)),),
+        (Panel("", GAMMA, "summit height s = z/σ", series, ylim=(-end, end)),),
     )

@@ -11,7 +11,8 @@ from analytic import quantity_of
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.paired import Paired
 from mcgw.ensemble.solved import Solution
-from mcgw.figures.against_theory import draw_curve, draw_residuals
+from mcgw.figures.against_theory import draw_residuals, quantity_panel
+from mcgw.figures.panels import draw_panel
 from mcgw.figures.studies import draw_checks, draw_methods
 from mcgw.figures.style import MONTE_CARLO, SAMPLE, SEEN, STYLE, THEORY, shown_title, step
 from mcgw.formats.table import evenly
@@ -87,11 +88,12 @@ def _(result: Ensemble, ax: Any, *, quantity: str) -> None:
 
 @_draw.register
 def _(result: Comparison, ax: Any, *, quantity: str) -> None:
-    draw_curve(ax, result.ensemble.separations, result.curves[quantity])
+    draw_panel(ax, quantity_panel(result, quantity), keyed=True)
     word = "agree" if result.verdict.agrees else "DISAGREE"
-    ax.set(xlabel=_SEPARATION, ylabel=quantity_of(quantity).title)
-    ax.set_title(f"Monte Carlo and theory of this model {word}: p = {result.verdict.p:.3g} over all means")
-    ax.legend()
+    ax.set(ylabel=quantity_of(quantity).title)
+    ax.set_title(
+        f"Monte Carlo and theory of this model {word}: p = {result.verdict.p:.3g} over all means", loc="left"
+    )
 
 
 @_draw.register

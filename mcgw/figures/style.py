@@ -20,8 +20,8 @@ from mcgw.scene.scene import Scene
 __all__ = [
     "BACK", "BAND", "CATEGORIES", "FAMILIES", "GRADINGS", "HOMOGENEOUS", "LEVEL", "MARKED", "MEANINGS",
     "MISSING", "MONTE_CARLO", "PAIRS", "PAPER", "SAMPLE", "SEEN", "SEPARATIONS", "STEPS", "STYLE", "THEORY",
-    "contact_label", "grading_label", "line", "look", "power_of_ten", "prefixed", "short", "shown_title",
-    "step",
+    "contact_label", "grading_label", "line", "look", "plain", "power_of_ten", "prefixed", "short",
+    "shown_title", "step",
 ]  # fmt: skip
 
 THEORY, MONTE_CARLO = "#00598F", "#E0701A"
@@ -77,6 +77,7 @@ MEANINGS = {
     "homogeneous": _of(HOMOGENEOUS, 1) | {"marker": "v"},
     "homogeneous, Hertz": _of(LEVEL, 3),
     "Hertz": _of(HOMOGENEOUS, 0) | {"marker": "v"},
+    "mean": _of(MONTE_CARLO, 0),
     "no film": _of(HOMOGENEOUS, 0) | {"marker": "v"},
 }
 
@@ -181,6 +182,11 @@ def power_of_ten(x: float, _: Any = None) -> str:
     """Label of a tick of a logarithmic axis as plain text: to read formulas takes a quarter of a second."""
     power = round(math.log10(x))
     return f"10{str(power).translate(RAISED)}" if math.isclose(x, 10.0**power) else f"{x:g}"
+
+
+def plain(x: float, _: Any = None) -> str:
+    """Label of a tick of a linear axis, with its power of ten: beside the axis it would meet the title."""
+    return f"{x:.4g}".replace("-", "−")
 
 
 def shown_title(scene: Scene, otherwise: str) -> str:

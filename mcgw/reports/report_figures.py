@@ -13,11 +13,11 @@ from numpy.typing import NDArray
 
 from analytic import quantity_of
 from mcgw.ensemble.ensemble import Ensemble
-from mcgw.figures.against_theory import quantity_figure
+from mcgw.figures.against_theory import quantity_panel
 from mcgw.figures.contact_map import patch_figures
 from mcgw.figures.data import FigureData, Panel, Points, Series
 from mcgw.figures.panels import draw
-from mcgw.figures.pressure_curves import pressure_curves, pressure_figure
+from mcgw.figures.pressure_curves import pressure_curves
 from mcgw.figures.style import STYLE
 from mcgw.formats.pictures import write_figure
 from mcgw.scene.scene import Scene
@@ -60,8 +60,10 @@ class PageFigure:
 
 def comparison_figures(comparison: Comparison) -> list[PageFigure]:
     """Each quantity with its theory, and how far surfaces spread."""
-    names = comparison.ensemble.scene.quantities
-    found = [line_figure(quantity_figure(comparison, name), quantity_of(name).long_name) for name in names]
+    found = []
+    for name in comparison.ensemble.scene.quantities:
+        figure = draw(FigureData("", "", (quantity_panel(comparison, name),)))
+        found.append(line_figure(figure, quantity_of(name).long_name))
     if comparison.ensemble.n_surfaces > 1:
         found.append(line_figure(draw(_spread(comparison)), "std over mean against separation"))
     return found
@@ -85,10 +87,11 @@ def means_figures(ensemble: Ensemble) -> list[PageFigure]:
 
 def pressure_pictures(ensemble: Ensemble) -> Iterator[PageFigure]:
     """What holds at equal nominal pressure."""
-    for curve in pressure_curves(ensemble):
-        low, high = curve.pressure[[0, -1]]
-        label = f"{curve.title} against nominal pressure from {low:.3g} to {high:.3g} MPa"
-        yield line_figure(pressure_figure(curve), label)
+    for data in pressure_curves(ensemble):
+        (panel,) = data.panels
+        low, high = panel.series[0].x[[0, -1]]
+        label = f"{panel.title} against nominal pressure from {low:.3g} to {high:.3g} MPa"
+        yield line_figure(draw(data), label)
 
 
 def patch_pictures(ensemble: Ensemble) -> list[PageFigure]:
