@@ -7,7 +7,7 @@ or a derivative jumps, and `smooth`, whether it is resolved by a fixed quadratur
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Protocol
+from typing import ClassVar, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -73,17 +73,14 @@ class Exponential:
     array([1., 2.])
     """
 
+    breaks: ClassVar[tuple[float, ...]] = ()
+
     gamma: float
     smooth: bool = True
 
     def __post_init__(self) -> None:
         if not math.isfinite(self.gamma):
             raise ValueError(f"gamma = {self.gamma!r}: give a finite number (1 is homogeneous)")
-
-    @property
-    def breaks(self) -> tuple[float, ...]:
-        """No height is special."""
-        return ()
 
     def __call__(self, s: Array) -> Array:
         """``gamma - (gamma - 1) exp(-s)``, Eq. (4)."""

@@ -73,6 +73,13 @@ def composite_modulus(bodies: Sequence[Body]) -> float:
     return 1 / compliance
 
 
+def _check_positive(of: "Surface | SpectralMoments") -> None:
+    for field in fields(of):
+        value = getattr(of, field.name)
+        if not (math.isfinite(value) and value > 0):
+            raise ValueError(f"{field.name} = {value!r}: give a finite number > 0")
+
+
 @dataclass(frozen=True, slots=True)
 class Surface:
     """The equivalent rough surface of Greenwood and Williamson, pressed on a rigid plane.
@@ -103,10 +110,7 @@ class Surface:
     E_star: float
 
     def __post_init__(self) -> None:
-        for field in fields(self):
-            value = getattr(self, field.name)
-            if not (math.isfinite(value) and value > 0):
-                raise ValueError(f"{field.name} = {value!r}: give a finite number > 0")
+        _check_positive(self)
 
     @property
     def n_asperities(self) -> float:
@@ -142,10 +146,7 @@ class SpectralMoments:
     m4: float
 
     def __post_init__(self) -> None:
-        for name in ("m0", "m2", "m4"):
-            value = getattr(self, name)
-            if not (math.isfinite(value) and value > 0):
-                raise ValueError(f"{name} = {value!r}: give a finite number > 0")
+        _check_positive(self)
 
     @property
     def alpha(self) -> float:

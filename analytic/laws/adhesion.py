@@ -164,35 +164,26 @@ class _Stuck(Unloading):
 
     stiff: ClassVar[bool] = False
 
-    def __init__(self, loading: JohnsonKendallRoberts) -> None:
-        super().__init__(loading)
-        self.law = loading
-
     def residual(self, piece: int, deepest: Any, e: Array) -> Any:
         """Penetration at which contact is lost, in the shape of `deepest` and `e`."""
-        return -self.law.stretch(e) + 0.0 * deepest
+        return -self.loading.stretch(e) + 0.0 * deepest
 
     def load(self, piece: int, y: Any, deepest: Any, e: Array) -> Any:
         """Load of a contact, in the shape of all."""
-        return self.law.load_at(_pulled(y, self.law.stretch(e)), e) + 0.0 * deepest
+        return self.loading.load_at(_pulled(y, self.loading.stretch(e)), e) + 0.0 * deepest
 
     def radius(self, piece: int, y: Any, deepest: Any, e: Array) -> Any:
         """Radius of a contact; its square is the area over pi R sigma."""
-        return self.law.radius_at(_pulled(y, self.law.stretch(e)), e) + 0.0 * deepest
+        return self.loading.radius_at(_pulled(y, self.loading.stretch(e)), e) + 0.0 * deepest
 
     def stiffness(self, piece: int, y: Array, deepest: Array, e: Array) -> Array:
         """Refused: its variance is infinite."""
-        raise ValueError(_NO_STIFFNESS)
+        raise ValueError(
+            "the stiffness of contacts that break off has no variance (johnson-kendall-roberts); leave "
+            "stiffness and load_slope out, or unload_from"
+        )
 
-    def slope(self, piece: int, y: Array, deepest: Array, e: Array) -> Array:
-        """Refused: its variance is infinite."""
-        raise ValueError(_NO_STIFFNESS)
-
-
-_NO_STIFFNESS = (
-    "the stiffness of contacts that break off has no variance (johnson-kendall-roberts); leave stiffness and "
-    "load_slope out, or unload_from"
-)
+    slope = stiffness
 
 
 def _pressed(delta: Any, stretch: Array) -> Any:

@@ -204,10 +204,6 @@ class EtsionKligermanKadin(Unloading):
 
     root: ClassVar[bool] = False
 
-    def __init__(self, loading: ElasticPlastic) -> None:
-        super().__init__(loading)
-        self.law = loading
-
     def residual(self, piece: int, deepest: Any, e: Array) -> Any:
         """Penetration at which contact is lost, in the shape of `deepest` and `e`."""
         if piece == 0:
@@ -220,14 +216,14 @@ class EtsionKligermanKadin(Unloading):
         if piece == 0:
             return super().load(piece, y, deepest, e)
         power = 1.5 * self._x(deepest, e) ** -0.0331
-        return self.law.load(piece, np.sqrt(deepest), e) * self._share(y, piece, deepest, e) ** power
+        return self.loading.load(piece, np.sqrt(deepest), e) * self._share(y, piece, deepest, e) ** power
 
     def radius(self, piece: int, y: Any, deepest: Any, e: Array) -> Any:
         """Radius of a contact; its square is the area over pi R sigma."""
         if piece == 0:
             return super().radius(piece, y, deepest, e)
         power = self._x(deepest, e) ** -0.12 / 2
-        return self.law.radius(piece, np.sqrt(deepest), e) * self._share(y, piece, deepest, e) ** power
+        return self.loading.radius(piece, np.sqrt(deepest), e) * self._share(y, piece, deepest, e) ** power
 
     def stiffness(self, piece: int, y: Array, deepest: Array, e: Array) -> Array:
         """Stiffness of a spot over 2 E* sqrt(R sigma)."""
@@ -235,7 +231,7 @@ class EtsionKligermanKadin(Unloading):
 
     def _x(self, deepest: Any, e: Array) -> Any:
         """Deepest penetration over the critical one."""
-        return self.law.x(np.sqrt(deepest), e)
+        return self.loading.x(np.sqrt(deepest), e)
 
     def _share(self, y: Any, piece: int, deepest: Any, e: Array) -> Any:
         """How much is left of the penetration that springs back."""
