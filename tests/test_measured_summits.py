@@ -9,7 +9,7 @@ from summits_by_hand import summit_contact
 
 import analytic
 import mcgw
-from mcgw.maps.summits import Summits, write_summits
+from mcgw.maps.summits import SUMMITS, Summits
 from mcgw.store import layout
 
 K = 200
@@ -50,7 +50,7 @@ def table(tmp_path):
     curvatures = np.array([1.25 / RADII, 0.8 / RADII])
     place = np.linspace(0, 1e-3, K)
     summits = Summits(place, place, Z, curvatures, np.zeros(K, dtype=np.int64), 0)
-    write_summits(summits, tmp_path / "summits.csv")
+    summits.table().write(tmp_path / "summits.csv", comment=SUMMITS)
     return tmp_path / "summits.csv"
 
 
