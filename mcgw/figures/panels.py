@@ -188,7 +188,7 @@ def _draw_residuals(axis: Any, panel: Panel, *, labelled: bool) -> None:
     draw_residual(axis, reach)
     axis.set_xlabel(panel.xlabel)
     if labelled:
-        axis.set_ylabel("residual\n(std. errors)", fontsize=8)
+        axis.set_ylabel("residual\n(std. errors)", fontsize=8, labelpad=0)
 
 
 def draw_residual(axis: Any, reach: float) -> None:
@@ -197,6 +197,7 @@ def draw_residual(axis: Any, reach: float) -> None:
     axis.axhline(0, color=LEVEL, lw=0.8, zorder=1)
     axis.set_ylim(-reach, reach)
     axis.yaxis.set_major_locator(FixedLocator([-2, 0, 2]) if reach < 8 else MaxNLocator(4, symmetric=True))
+    axis.yaxis.set_major_formatter(FuncFormatter(plain))
 
 
 def figure_files(folder: Path, name: str, *, csv: bool) -> list[Path]:

@@ -186,7 +186,7 @@ def power_of_ten(x: float, _: Any = None) -> str:
 
 def plain(x: float, _: Any = None) -> str:
     """Label of a tick of a linear axis, with its power of ten: beside the axis it would meet the title."""
-    return f"{x:.4g}".replace("-", "−")
+    return f"{x:.4g}".replace("e+0", "e").replace("e-0", "e-").replace("-", "−")
 
 
 def shown_title(scene: Scene, otherwise: str) -> str:
