@@ -1,6 +1,7 @@
 """Stated errors: those of few waves and of sub-areas, literally; and against the scatter over maps."""
 
 import math
+from collections import defaultdict
 
 import numpy as np
 import pytest
@@ -60,7 +61,7 @@ def test_errors_of_a_few_waves():
         ends = sorted(-wider * math.log(gamma.ppf(p, number) / number) for p in (0.025, 0.975))
         error = abs(wider) * math.sqrt(polygamma(1, number))
         expected = (error, -ends[0], ends[1])
-        spread = getattr(found, name)
+        spread = found.spreads[name]
         assert (spread.error, spread.down, spread.up) == pytest.approx(expected, rel=1e-9), name
     squares = sum(s**2 / w for s, w in zip(of_m0, waves, strict=True))
     assert found.independent == pytest.approx(2 * (1 / squares - 1), rel=1e-9)
@@ -87,12 +88,14 @@ def test_a_ramp_has_no_waves():
     drawn = gaussian_map(Spectrum(1e-6, 30e-6, 12e-6), (60, 80), PIXEL, np.random.default_rng(3))
     moments = SpectralMoments(1e-12, 0.04, 5e9)
     ramp = 1e-8 * np.add.outer(np.arange(60.0), 2 * np.arange(80.0))
-    plain, tilted = (waves_of(Topography(z, PIXEL), moments) for z in (drawn.heights, drawn.heights + ramp))
-    assert plain.radius.error == pytest.approx(tilted.radius.error, rel=0.05)
-    levelled = waves_of(drawn, moments, 1)
-    assert levelled.m0.up > plain.m0.up
-    assert levelled.m0.down == pytest.approx(plain.m0.down, rel=0.05)
-    assert levelled.m4.up == pytest.approx(plain.m4.up, rel=1e-12)
+    plain, tilted = (
+        waves_of(Topography(z, PIXEL), moments).spreads for z in (drawn.heights, drawn.heights + ramp)
+    )
+    assert plain["radius"].error == pytest.approx(tilted["radius"].error, rel=0.05)
+    levelled = waves_of(drawn, moments, 1).spreads
+    assert levelled["m0"].up > plain["m0"].up
+    assert levelled["m0"].down == pytest.approx(plain["m0"].down, rel=0.05)
+    assert levelled["m4"].up == pytest.approx(plain["m4"].up, rel=1e-12)
 
 
 def test_the_larger_error_counts_and_arms_are_those_of_logarithms():
@@ -152,7 +155,7 @@ def test_sub_areas_alone_would_not_hold_it(without_caps, monkeypatch):
     """With the jackknife alone many of the intervals of one-wave maps miss; with the waves hardly any."""
     whole = compared(fits_of(10, 1, 160, number=12))
     nothing = Spread(1e-9, 1e-9, 1e-9)
-    monkeypatch.setattr("mcgw.maps.fit.waves_of", lambda *_: Waves(*[nothing] * 7, independent=1e9))
+    monkeypatch.setattr("mcgw.maps.fit.waves_of", lambda *_: Waves(defaultdict(lambda: nothing), 1e9))
     alone = compared(fits_of(10, 1, 160, number=12))
     assert max(12 - rows[:, 1].sum() for rows in alone.values()) >= 4
     assert max(12 - rows[:, 1].sum() for rows in whole.values()) <= 2

@@ -138,7 +138,7 @@ def test_errors_of_a_fit_literally():
         freedom = max(sum(squares) ** 2 / sum(q * q for q in squares) / 2, 2)
         by_waves = math.sqrt(sum(squares) / (1 + 1 / SMOOTH)) * t_law.ppf(0.975, freedom) / 2
         by_stretches = np.std(stretches, ddof=1) / 4 * t_law.ppf(0.975, 15) / 2
-        assert fit.errors[name] == pytest.approx(max(by_waves, by_stretches), rel=1e-9), name
+        assert fit.numbers[name].relative == pytest.approx(max(by_waves, by_stretches), rel=1e-9), name
 
 
 CASES = {  # spectrum, cutoff, profiles together: 10 of the longest waves on a profile, or 4
@@ -164,14 +164,18 @@ def test_intervals_hold_on_profiles_cut_from_maps(case):
     np.random.default_rng(5).shuffle(profiles)
     fits = [fit_profiles(profiles[i * together : (i + 1) * together], cutoff=cutoff) for i in range(120)]
     for name in NAMES:
-        z = [math.log(getattr(f.moments, name) / getattr(expected, name)) / f.errors[name] for f in fits]
+        z = [
+            math.log(getattr(f.moments, name) / getattr(expected, name)) / f.numbers[name].relative
+            for f in fits
+        ]
         assert np.mean(np.abs(z) > 2) <= 0.11, name
         assert 0.6 < np.std(z) < 1.25, name
         assert abs(np.mean(z)) < 0.4, name  # logarithms of few waves: minus half a variance
     if case == "noisy":  # the companion: filtered along the line instead
         wrong = [np.mean((np.diff(smooth_profile(p, cutoff).heights, 2) / UM**2) ** 2) for p in profiles[:40]]
         outside = [
-            abs(math.log(w / expected.m4)) > 2 * f.errors["m4"] for w, f in zip(wrong, fits, strict=False)
+            abs(math.log(w / expected.m4)) > 2 * f.numbers["m4"].relative
+            for w, f in zip(wrong, fits, strict=False)
         ]
         assert np.mean(outside) > 0.5
 
@@ -184,7 +188,7 @@ def test_a_profile_and_its_map_agree(without_caps):
     for name in ("eta", "radius", "sigma"):
         (a, da), (b, db) = (getattr(f.estimates["moments"], name)[:2] for f in (of_map, of_profiles))
         assert abs(math.log(a / b)) < 3 * math.hypot(da / a, db / b)
-        low, high = of_profiles.interval(name)
+        *_, low, high = of_profiles.numbers[name]
         assert low < b < high
         assert math.sqrt(low * high) == pytest.approx(b, rel=1e-12)
 
@@ -270,9 +274,9 @@ def test_the_command_tells_a_profile_by_its_shape(files, tmp_path, capsys):
     assert "Pa = " in told
     assert "Ra, Rq, Rsk" in told
     found = mcgw.fit(paths, cutoff="10 um")
-    for name, error in found.errors.items():
+    for name, number in found.numbers.items():
         shown = re.search(rf"^ +{name} +\S+ +(\S+) +(\S+) to (\S+)$", told, re.MULTILINE).groups()
-        ends = getattr(found.moments, name) * np.exp([0, -2 * error, 2 * error])
+        ends = getattr(found.moments, name) * np.exp(np.array([0, -2, 2]) * number.relative)
         np.testing.assert_allclose([float(x) for x in shown], ends, rtol=6e-3)
     scene = mcgw.load_scene(out)
     assert scene.surface.radius == found.moments.radius

@@ -98,9 +98,8 @@ class Estimate:
     @classmethod
     def of(cls, pairs: Pairs, waves: Waves) -> Self:
         """From values and errors over sub-areas, and the errors of few long waves."""
-        return cls(
-            *(uncertain(*p, w) for p, w in zip(pairs, (waves.eta, waves.radius, waves.sigma), strict=True))
-        )
+        spreads = (waves.spreads[name] for name in ("eta", "radius", "sigma"))
+        return cls(*(uncertain(*pair, spread) for pair, spread in zip(pairs, spreads, strict=True)))
 
 
 def estimates_table(estimates: Mapping[str, Estimate]) -> Table:

@@ -220,7 +220,7 @@ def fit_prepared(ready: Prepared, *, across: int = 4) -> Fit:
     found = estimates.get("caps")
     of_moments = jackknife(_of_moments, counted)
     m0, m2, m4, alpha = (
-        uncertain(*pair, getattr(waves, name))
+        uncertain(*pair, waves.spreads[name])
         for pair, name in zip(of_moments, ("m0", "m2", "m4", "alpha"), strict=True)
     )
     return Fit(

@@ -107,7 +107,7 @@ def _waves(fit: Fit) -> list[str]:
         return []
     return [
         f"waves: the longest are so few that m0 is known as from {number:.2g} heights: sigma may be another "
-        f"one elsewhere, by {100 * fit.waves.sigma.error:.2g} % or more; give a longer map"
+        f"one elsewhere, by {100 * fit.waves.spreads['sigma'].error:.2g} % or more; give a longer map"
     ]
 
 
@@ -202,7 +202,7 @@ def _of_profile_points(profiles: Sequence[Profile], cutoff: float | None) -> Ite
 
 
 def _of_profile_heights(fit: ProfileFit) -> Iterator[str]:
-    if abs(fit.roughness.sk) > max(_SKEW, 6 * fit.errors["m0"]):
+    if abs(fit.roughness.sk) > max(_SKEW, 6 * fit.numbers["m0"].relative):
         yield (
             f"skewness: {fit.roughness.sk:.2f} of the heights; moments tell of summits for Gaussian heights "
             "only; measure a map, and count them"
@@ -221,9 +221,10 @@ def _of_profile_heights(fit: ProfileFit) -> Iterator[str]:
 
 
 def _of_profile_waves(fit: ProfileFit) -> list[str]:
-    if fit.errors["sigma"] < _UNSURE:
+    error = fit.numbers["sigma"].relative
+    if error < _UNSURE:
         return []
     return [
-        f"waves: sigma is known to {100 * fit.errors['sigma']:.2g} % only, since the longest are few; give "
+        f"waves: sigma is known to {100 * error:.2g} % only, since the longest are few; give "
         "longer profiles, or more of them"
     ]

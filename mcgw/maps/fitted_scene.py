@@ -87,17 +87,13 @@ def fitted_scene(
 
 def _known(fit: Fit | ProfileFit) -> Fitted:
     """What the fit knew besides the summits of the scene."""
-    m = fit.moments
+    m, heights = fit.moments, fit.roughness
+    known = m.m0, m.m2, m.m4, heights.sk, heights.ku
     if isinstance(fit, ProfileFit):
         counted, expected = fit.peaks
         agreement = max(counted, expected) / min(counted, expected) if counted > 0 else None
-        return Fitted(
-            m.m0, m.m2, m.m4, fit.roughness.sk, fit.roughness.ku, 2 / fit.errors["m0"] ** 2, agreement
-        )
-    return Fitted(
-        m.m0, m.m2, m.m4, fit.roughness.sk, fit.roughness.ku, fit.waves.independent,
-        fit.agreement, fit.lay, fit.area,
-    )  # fmt: skip
+        return Fitted(*known, 2 / fit.numbers["m0"].relative ** 2, agreement)
+    return Fitted(*known, fit.waves.independent, fit.agreement, fit.lay, fit.area)
 
 
 def _as_fitted(fit: Fit | ProfileFit, use: str, heights: Heights, modulus: float, title: str) -> Scene:

@@ -22,7 +22,7 @@ from mcgw.maps.estimates import Estimate, Roughness, roughness_of
 from mcgw.maps.profile import Profile, smooth_profile, without_profile_form
 from mcgw.maps.profile_waves import ProfileWaves, waves_of_profile
 from mcgw.maps.steps import Form
-from mcgw.maps.waves import Uncertain
+from mcgw.maps.waves import Uncertain, log_derivatives, uncertain
 
 __all__ = ["ProfileFit", "fit_profiles"]
 
@@ -32,7 +32,6 @@ _TERMS = {"none": 1, "plane": 2, "quadratic": 3}
 _PIECES = 16
 _SMOOTH = 3  # waves over which power is averaged
 _LEAST_ALPHA = 0.9  # below, summit heights would have no variance
-_NAMES = ("m0", "m2", "m4", "alpha", "eta", "radius", "sigma")
 
 
 @dataclass(frozen=True, repr=False)
@@ -43,9 +42,9 @@ class ProfileFit(Shown):
     ----------
     moments : SpectralMoments
         Of the surface, filtered as `mcgw.fit` filters a map.
-    errors : dict of str to float
-        Standard errors of the logarithms of m0, m2, m4, alpha, eta, radius and sigma, widened so that two of
-        them to both sides hold 95 %.
+    numbers : dict of str to Uncertain
+        m0, m2, m4, alpha, eta, radius and sigma; errors are widened so that two of them to both sides hold
+        95 %.
     roughness : Roughness
         Of the profiles themselves, without form and filtered along the line.
     peaks : (float, float)
@@ -59,7 +58,7 @@ class ProfileFit(Shown):
     """
 
     moments: SpectralMoments
-    errors: dict[str, float]
+    numbers: dict[str, Uncertain]
     roughness: Roughness
     peaks: tuple[float, float]
     lengths: tuple[float, ...]
@@ -74,21 +73,7 @@ class ProfileFit(Shown):
     @property
     def estimates(self) -> dict[str, Estimate]:
         """The one estimate there is, as a map's fit names it: ``moments``."""
-        m = self.moments
-        values = {"eta": m.eta, "radius": m.radius, "sigma": m.sigma}
-        told = {k: Uncertain(v, v * self.errors[k], *self.interval(k)) for k, v in values.items()}
-        return {"moments": Estimate(**told)}
-
-    def interval(self, name: str) -> tuple[float, float]:
-        """Ends of the 95 % interval of m0, m2, m4, alpha, eta, radius or sigma, SI units.
-
-        Raises
-        ------
-        KeyError
-            If there is no such number.
-        """
-        value, error = getattr(self.moments, name), self.errors[name]
-        return value * math.exp(-2 * error), value * math.exp(2 * error)
+        return {"moments": Estimate(*(self.numbers[name] for name in ("eta", "radius", "sigma")))}
 
     def plot(self, ax: Any = None) -> Any:
         """Draw the law of all heights and that of the summits that follows; returns the axes."""
@@ -104,13 +89,13 @@ class ProfileFit(Shown):
     def table(self) -> Table:
         """A row for each number, with its 95 % interval."""
         units = {"m0": "m^2", "m4": "1/m^2", "eta": "1/m^2", "radius": "m", "sigma": "m"}
-        low, high = np.array([self.interval(name) for name in _NAMES]).T
+        value, _, low, high = zip(*self.numbers.values(), strict=True)
         end = Column("high_95", high, form=".3g")
         return Table(
             (
-                Column("name", _NAMES, " "),
-                Column("unit", [units.get(name, "1") for name in _NAMES]),
-                Column("value", [getattr(self.moments, name) for name in _NAMES], form=".4g"),
+                Column("name", list(self.numbers), " "),
+                Column("unit", [units.get(name, "1") for name in self.numbers]),
+                Column("value", value, form=".4g"),
                 Column("low_95", low, "95 %", form=".3g", beside=end, between=" to "),
             )
         )
@@ -158,11 +143,15 @@ def fit_profiles(profiles: Sequence[Profile], *, cutoff: float | None, form: For
         raise ValueError(f"{shortest} points: too few for {pieces} stretches; give a longer profile")
     seen = [waves_of_profile(p, cutoff=cutoff, terms=_TERMS[form], pieces=pieces) for p in plain]
     shares = np.array([w.length for w in seen]) / sum(w.length for w in seen)
-    values = sum(share * w.moments for share, w in zip(shares, seen, strict=True))
-    moments = _checked(np.asarray(values))
+    values = np.asarray(sum(share * w.moments for share, w in zip(shares, seen, strict=True)))
+    moments = _checked(values)
+    numbers = {}
+    for name, derivative in log_derivatives(moments).items():
+        value = getattr(moments, name)
+        numbers[name] = uncertain(value, value * _error(derivative / values, seen, shares))
     return ProfileFit(
         moments,
-        {name: _error(d, np.asarray(values), seen, shares) for name, d in _derivatives(moments).items()},
+        numbers,
         roughness_of(np.concatenate([p.heights for p in filtered])),
         _peaks(filtered),
         tuple(p.length for p in profiles),
@@ -186,24 +175,11 @@ def _checked(values: Array) -> SpectralMoments:
     return moments
 
 
-def _derivatives(moments: SpectralMoments) -> dict[str, Array]:
-    """Of the logarithms of all numbers by those of m0, m2 and m4."""
-    share = moments.sigma**2 / moments.m0
-    alpha, m0 = np.array([1.0, -2.0, 1.0]), np.array([1.0, 0.0, 0.0])
-    return {
-        "m0": m0,
-        "m2": np.array([0.0, 1.0, 0.0]),
-        "m4": np.array([0.0, 0.0, 1.0]),
-        "alpha": alpha,
-        "eta": np.array([0.0, -1.0, 1.0]),
-        "radius": np.array([0.0, 0.0, -0.5]),
-        "sigma": (m0 + (1 / share - 1) * alpha) / 2,  # sigma^2 is m0 (1 - c/alpha)
-    }
+def _error(derivative: Array, seen: list[ProfileWaves], shares: Array) -> float:
+    """Of the logarithm of a number with these derivatives by the moments, widened by Student's t.
 
-
-def _error(derivative: Array, values: Array, seen: list[ProfileWaves], shares: Array) -> float:
-    """Of the logarithm of a number, widened by Student's t: two of them hold 95 %."""
-    derivative = derivative / values
+    Two of them hold 95 %.
+    """
     squares = np.concatenate(
         [
             (share * _smooth(derivative @ w.weights, w.power)) ** 2

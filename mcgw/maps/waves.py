@@ -13,7 +13,7 @@ from scipy.special import gammaincinv, ndtr, polygamma, spherical_jn, stdtrit
 from analytic import SpectralMoments
 from mcgw.maps.topography import Topography
 
-__all__ = ["Spread", "Uncertain", "Waves", "block_means", "uncertain", "waves_of"]
+__all__ = ["Spread", "Uncertain", "Waves", "block_means", "log_derivatives", "uncertain", "waves_of"]
 
 Array = NDArray[np.float64]
 
@@ -21,6 +21,7 @@ _ACROSS = 2048  # points that are looked at; of the waves shorter than that ther
 _FEWEST = 0.5  # waves: one that is cut in two
 _LEAST_FREEDOM = 2.0
 _BAND = 16  # rows that are looked at together: what is made of them stays in the cache
+_ROOTS = ("radius", "sigma")  # which go as the root of a power
 _OUTSIDE = 0.025  # at either end of an interval
 
 
@@ -40,6 +41,11 @@ class Uncertain(NamedTuple):
     low: float
     high: float
 
+    @property
+    def relative(self) -> float:
+        """Standard error of the logarithm."""
+        return self.error / self.value
+
 
 @dataclass(frozen=True, slots=True)
 class Spread:
@@ -58,7 +64,7 @@ class Spread:
     up: float
 
 
-def uncertain(value: float, error: float, waves: Spread) -> Uncertain:
+def uncertain(value: float, error: float, waves: Spread = Spread(0.0, 0.0, 0.0)) -> Uncertain:
     """Put together an error seen between sub-areas, two of which hold 95 %, and that of few long waves.
 
     The larger one counts: sub-areas see the short waves twice and the long ones not at all.
@@ -79,22 +85,25 @@ class Waves:
 
     Parameters
     ----------
-    m0, m2, m4, alpha : Spread
-        Of the spectral moments, and of ``m0 m4/m2^2``.
-    eta, radius, sigma : Spread
-        Of what the spectral moments give.
+    spreads : dict of str to Spread
+        Of m0, m2, m4, alpha, eta, radius and sigma by spectral moments.
     independent : float
         How many independent heights would tell m0 as well.
     """
 
-    m0: Spread
-    m2: Spread
-    m4: Spread
-    alpha: Spread
-    eta: Spread
-    radius: Spread
-    sigma: Spread
+    spreads: dict[str, Spread]
     independent: float
+
+
+def log_derivatives(moments: SpectralMoments) -> dict[str, Array]:
+    """Of the logarithms of all that moments tell, by those of m0, m2 and m4."""
+    m0, m2, m4 = np.eye(3)
+    alpha = m0 + m4 - 2 * m2
+    share = moments.sigma**2 / moments.m0  # sigma^2 is m0 - c m2^2/m4
+    sigma = (m0 + (1 / share - 1) * alpha) / 2 if share > 0 else m0 / 2
+    return {
+        "m0": m0, "m2": m2, "m4": m4, "alpha": alpha, "eta": m4 - m2, "radius": -m4 / 2, "sigma": sigma
+    }  # fmt: skip
 
 
 def block_means(heights: Array, most: int, of: Callable[..., Any] = np.mean) -> Array:
@@ -131,14 +140,10 @@ def waves_of(topography: Topography, moments: SpectralMoments, order: int = -1) 
     power, waves = _power(z)
     total = float((power @ waves).sum())
     # edges leave a little power to the very short waves, which would stand for most of m4
-    of_m0, of_m2, of_m4 = np.diag([1 / total, 0.5 / moments.m2, 0.5 / moments.m4])
-    of_alpha = of_m0 + of_m4 - 2 * of_m2
-    # sigma^2 is m0 - c m2^2/m4
-    share = moments.sigma**2 / moments.m0
-    of_sigma = (of_m0 + (1 / share - 1) * of_alpha) / 2 if share > 0 else of_m0 / 2
+    by_moments = log_derivatives(moments)
+    kinds = np.array(list(by_moments.values())) * [1 / total, 0.5 / moments.m2, 0.5 / moments.m4]
     x = (2 * math.pi / dx * fft.rfftfreq(z.shape[1])) ** 2
     y = (2 * math.pi / dy * fft.fftfreq(z.shape[0]))[:, None] ** 2
-    kinds = np.array([of_m0, of_m2, of_m4, of_alpha, of_m4 - of_m2, -of_m4 / 2, of_sigma])
     down, along = _legendre_shares(z.shape, order)
     sums, taken = np.zeros((3, len(kinds))), 0.0
     for band in _bands(len(z)):
@@ -148,23 +153,15 @@ def waves_of(topography: Topography, moments: SpectralMoments, order: int = -1) 
         sums += [(t @ waves).sum(axis=1) for t in (squares, squares * terms, squares * squares)]
         taken += float((power[band] * _taken(down[band], along) @ waves).sum())
     low = taken / total
-    m0, m2, m4, alpha, eta, radius, sigma = sums.T.tolist()
 
-    def spread(of: list[float], degree: float = 1.0, with_m0: float = 0.0) -> Spread:
+    def spread(of: list[float], name: str) -> Spread:
         seen, third, fourth = of
+        degree = 0.5 if name in _ROOTS else 1.0
         seen, fourth, sign = seen / degree**2, fourth / degree**4, math.copysign(degree, third)
-        return _spread(_number(seen), _freedom(seen, fourth), sign, with_m0 * low)
+        return _spread(_number(seen), _freedom(seen, fourth), sign, float(by_moments[name][0]) * low)
 
-    return Waves(
-        m0=spread(m0, with_m0=1.0),
-        m2=spread(m2),
-        m4=spread(m4),
-        alpha=spread(alpha, with_m0=1.0),
-        eta=spread(eta),
-        radius=spread(radius, 0.5),
-        sigma=spread(sigma, 0.5, with_m0=0.5 / share if share > 0 else 0.5),
-        independent=2 * _number(m0[0]),
-    )
+    spreads = {name: spread(of, name) for name, of in zip(by_moments, sums.T.tolist(), strict=True)}
+    return Waves(spreads, 2 * _number(float(sums[0, 0])))
 
 
 def _bands(rows: int) -> Iterator[slice]:
