@@ -308,6 +308,12 @@ def test_what_a_profile_cannot_be_asked(words, told, files, tmp_path, capsys, mo
     assert re.search(told, error), error
 
 
+@pytest.mark.parametrize("step", [{"missing": "fill"}, {"long_cutoff": "1 mm"}, {"trim": 3}])
+def test_python_refuses_what_the_command_does(step, files):
+    with pytest.raises(ValueError, match="is for maps; prepare a profile before"):
+        mcgw.fit(files / "p0.txt", cutoff="10 um", **step)
+
+
 def test_two_maps_are_one_too_many(tmp_path, capsys):
     np.save(tmp_path / "m.npy", np.zeros((9, 9)))
     words = ["fit", str(tmp_path / "m.npy"), str(tmp_path / "n.npy"), "--cutoff", "none"]

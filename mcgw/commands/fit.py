@@ -2,7 +2,6 @@
 
 import argparse
 from collections.abc import Callable
-from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -106,12 +105,9 @@ def execute(args: argparse.Namespace) -> int:
 def _of_map(args: argparse.Namespace, asked: "Preparation", pixel: float | None, across: int) -> "Fitted":
     """What a map tells."""
     from mcgw.commands.outputs import CSV, NPY, TOML, Output, check_outputs, figure_format
-    from mcgw.machine.progress import stages
-    from mcgw.maps.fit import fit_prepared
-    from mcgw.maps.fit_cautions import cautions
     from mcgw.maps.fitted_scene import heights_beside
-    from mcgw.maps.map_files import files_of_map, read_map
-    from mcgw.maps.preparation import prepared
+    from mcgw.maps.fitting import fit_map
+    from mcgw.maps.map_files import files_of_map
     from mcgw.reports.fitted import fit_lines, map_line
 
     if len(args.map) > 1:
@@ -125,23 +121,12 @@ def _of_map(args: argparse.Namespace, asked: "Preparation", pixel: float | None,
     if args.picture is not None:
         beside.append(Output(args.picture, figure_format(), "--picture"))
     check_outputs([Output(args.output, TOML), *beside], inputs=files_of_map(path_of_map))
-    square = None if pixel is None else (pixel, pixel)
-    with stages(4) as done:
-        read = [read_map(path_of_map, pixel=square, unit=args.unit)]
-        done()
-        ready = prepared(read.pop(), asked)  # which keeps no map as it was read: large ones fill the memory
-        done()
-        fit = fit_prepared(ready, across=across)
-        done()
-        fit = replace(fit, cautions=tuple(cautions(fit, ready, args.use)))
-        done()
+    fit, ready = fit_map(path_of_map, asked, across, pixel=pixel, unit=args.unit, use=args.use)
     head = map_line(path_of_map.name, asked, ready.levelled.assumed_unit)
-    return fit, [head, *fit.notes, *fit_lines(fit)], partial(_write_beside, args, fit, ready, square)
+    return fit, [head, *fit.notes, *fit_lines(fit)], partial(_write_beside, args, fit, ready, pixel)
 
 
-def _write_beside(
-    args: argparse.Namespace, fit: "Fit", ready: "Prepared", pixel: tuple[float, float] | None
-) -> None:
+def _write_beside(args: argparse.Namespace, fit: "Fit", ready: "Prepared", pixel: float | None) -> None:
     """Write the tables and the picture that were asked for, and say where they are."""
     from mcgw.maps.map_files import read_map
     from mcgw.maps.sub_areas import TILES
@@ -156,16 +141,15 @@ def _write_beside(
     if args.picture is not None:
         from mcgw.figures.map_fit import save_fit_picture
 
-        save_fit_picture(fit, read_map(args.map[0], pixel=pixel, unit=args.unit), ready, args.picture)
+        size = None if pixel is None else (pixel, pixel)
+        save_fit_picture(fit, read_map(args.map[0], pixel=size, unit=args.unit), ready, args.picture)
         print(f"{args.picture}: figure")
 
 
 def _of_profiles(args: argparse.Namespace, asked: "Preparation", spacing: float | None) -> "Fitted":
     """What profiles tell."""
     from mcgw.commands.outputs import TOML, Output, check_outputs
-    from mcgw.maps.fit_cautions import profile_cautions
-    from mcgw.maps.profile_files import read_profile
-    from mcgw.maps.profile_fit import fit_profiles
+    from mcgw.maps.fitting import fit_lines
     from mcgw.reports.fitted import profile_line, profile_lines
 
     for option, given in (("--summits", args.summits), ("--tiles", args.tiles), ("--picture", args.picture)):
@@ -173,12 +157,7 @@ def _of_profiles(args: argparse.Namespace, asked: "Preparation", spacing: float 
             raise ValueError(
                 f"{option} {given}: a profile shows no summits, and has no sub-areas; give a map"
             )
-    for option in ("long_cutoff", "missing", "spikes", "step", "lines", "trim"):
-        if getattr(args, option) not in (None, "auto", "keep", 0):
-            raise ValueError(f"--{option.replace('_', '-')}: is for maps; prepare a profile before")
-    profiles = [read_profile(path, spacing=spacing, unit=args.unit) for path in args.map]
     check_outputs([Output(args.output, TOML)], inputs=args.map)
-    fit = fit_profiles(profiles, cutoff=asked.cutoff, form=args.form)
-    fit = replace(fit, cautions=tuple(profile_cautions(fit, profiles, asked.cutoff)))
+    fit, profiles = fit_lines(args.map, asked, spacing=spacing, unit=args.unit)
     head = profile_line([path.name for path in args.map], asked, profiles)
     return fit, [head, *profile_lines(fit)], lambda: None

@@ -1,13 +1,14 @@
 """From the file of a map to its fit, in one call."""
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import fields, replace
 from pathlib import Path
 
+from mcgw.machine.progress import stages
 from mcgw.maps.fit import Fit, fit_prepared
 from mcgw.maps.fit_cautions import cautions, profile_cautions
 from mcgw.maps.map_files import read_map
-from mcgw.maps.preparation import Prepared, preparation_of, prepared
+from mcgw.maps.preparation import Preparation, Prepared, preparation_of, prepared
 from mcgw.maps.profile import Profile
 from mcgw.maps.profile_files import holds_profile, read_profile
 from mcgw.maps.profile_fit import ProfileFit, fit_profiles
@@ -15,7 +16,7 @@ from mcgw.maps.steps import Form, LinesTo, Missing, SpikesTo, StepTo
 from mcgw.maps.topography import Topography
 from mcgw.scene.arguments import argument
 
-__all__ = ["fit"]
+__all__ = ["fit", "fit_lines", "fit_map"]
 
 
 def fit(
@@ -99,20 +100,55 @@ def fit(
     }  # fmt: skip
     asked, across = preparation_of(given, lambda key, value: argument(key, value, "m"))
     length = None if pixel is None else argument("pixel", pixel, "m")
-    if isinstance(heights, Topography):
-        return _of_map(prepared(heights, asked), across)
-    if isinstance(heights, str | Path) and not (profile or holds_profile(Path(heights))):
-        square = None if length is None else (length, length)
-        return _of_map(prepared(read_map(Path(heights), pixel=square, unit=unit), asked), across)
-    several = [heights] if isinstance(heights, str | Path | Profile) else heights
-    read = [
-        p if isinstance(p, Profile) else read_profile(Path(p), spacing=length, unit=unit) for p in several
+    if isinstance(heights, str):
+        heights = Path(heights)
+    if isinstance(heights, Topography) or (
+        isinstance(heights, Path) and not (profile or holds_profile(heights))
+    ):
+        return fit_map(heights, asked, across, pixel=length, unit=unit)[0]
+    several = [heights] if isinstance(heights, Path | Profile) else heights
+    return fit_lines(several, asked, spacing=length, unit=unit)[0]
+
+
+def fit_map(
+    source: Path | Topography,
+    asked: Preparation,
+    across: int,
+    *,
+    pixel: float | None = None,
+    unit: str | None = None,
+    use: str = "auto",
+) -> tuple[Fit, Prepared]:
+    """Fit a map, with what speaks against the estimate to `use`; and the map as it was looked at."""
+    size = None if pixel is None else (pixel, pixel)
+    with stages(4) as done:
+        read = [source if isinstance(source, Topography) else read_map(source, pixel=size, unit=unit)]
+        done()
+        ready = prepared(read.pop(), asked)  # which keeps no map as it was read: large ones fill the memory
+        done()
+        found = fit_prepared(ready, across=across)
+        done()
+        found = replace(found, cautions=tuple(cautions(found, ready, use)))
+        done()
+    return found, ready
+
+
+def fit_lines(
+    sources: Sequence[str | Path | Profile], asked: Preparation, *, spacing: float | None, unit: str | None
+) -> tuple[ProfileFit, list[Profile]]:
+    """Fit profiles, read from files or in memory, with what speaks against it; and the profiles.
+
+    Raises
+    ------
+    ValueError
+        If a step is asked for that maps alone have, or a profile cannot be read or fitted.
+    """
+    plain = Preparation(asked.cutoff, asked.form)
+    for field in fields(asked):
+        if getattr(asked, field.name) != getattr(plain, field.name):
+            raise ValueError(f"--{field.name.replace('_', '-')}: is for maps; prepare a profile before")
+    profiles = [
+        p if isinstance(p, Profile) else read_profile(Path(p), spacing=spacing, unit=unit) for p in sources
     ]
-    of_profiles = fit_profiles(read, cutoff=asked.cutoff, form=form)
-    return replace(of_profiles, cautions=tuple(profile_cautions(of_profiles, read, asked.cutoff)))
-
-
-def _of_map(ready: Prepared, across: int) -> Fit:
-    """With what speaks against it."""
-    found = fit_prepared(ready, across=across)
-    return replace(found, cautions=tuple(cautions(found, ready)))
+    found = fit_profiles(profiles, cutoff=asked.cutoff, form=asked.form)
+    return replace(found, cautions=tuple(profile_cautions(found, profiles, asked.cutoff))), profiles
