@@ -1,11 +1,13 @@
 """Compiled loops kept on the disk are those that are asked for, whoever compiles at the same time."""
 
+import gc
 import importlib
 import importlib.util
 import sys
 
 import numpy as np
 import pytest
+from numba.core.errors import TypingError
 
 from mcgw.machine import compiling
 from mcgw.machine.compiling import njit
@@ -60,6 +62,40 @@ def test_lanes_of_what_is_not_contiguous_are_refused():
     assert first(x) == 0 + 1 + 2 + 3
     with pytest.raises(TypeError, match="lanes are neighbours"):
         first(x.T)
+
+
+def test_what_loops_call_is_no_machine_code_of_its_own():
+    """It has none that Python could call, and gives the same; Python's form is compiled when Python asks."""
+
+    @njit()
+    def third(x):
+        return x / 3
+
+    @njit()
+    def ninth(x):
+        return third(third(x))
+
+    assert ninth(0.7) == 0.7 / 3 / 3
+    assert not third.overloads
+    assert third(0.7) == 0.7 / 3
+    assert list(third.overloads) == list(ninth.overloads)
+
+
+@pytest.mark.parametrize("searching", [True, False])
+def test_garbage_is_looked_for_as_before(searching):
+    """Not while a loop is compiled, and again after one that cannot be."""
+
+    @njit()
+    def wrong(x):
+        return x.nothing
+
+    (gc.enable if searching else gc.disable)()
+    try:
+        with pytest.raises(TypingError):
+            wrong(1.0)
+        assert gc.isenabled() == searching
+    finally:
+        gc.enable()
 
 
 def test_a_loop_whose_callee_has_changed_is_compiled_anew(tmp_path, monkeypatch):

@@ -1,6 +1,8 @@
 """Compiled loops, kept on the disk where that can be done.
 
-A loop that is called from others alone is not kept by itself: its callers hold it.
+A loop has two compiled forms. What Python calls is machine code, which is kept. What other loops call is
+code that is optimised and made machine code as a part of theirs alone (`_ForLoops`): as Numba has it, each
+loop on the way was so by itself before, which nobody runs.
 
 What Numba keeps is the machine code of a loop with that of all loops it calls, under names it takes from
 module, function and types. Two things can make it go wrong without a word, and are seen to here: a loop
@@ -9,6 +11,7 @@ number (`_name_by_contents`). A function inside a function, which is made severa
 all that are made have one name, and there are none (`tests/test_architecture.py`).
 """
 
+import gc
 import hashlib
 import os
 import sys
@@ -20,7 +23,12 @@ from typing import Any
 
 import numba
 from numba import types
+from numba.core.codegen import JITCodeLibrary
+from numba.core.compiler import CompilerBase, DefaultPassBuilder
+from numba.core.compiler_lock import global_compiler_lock
+from numba.core.compiler_machinery import register_pass
 from numba.core.runtime.nrt import rtsys
+from numba.core.typed_passes import NativeLowering
 
 from mcgw.errors import RunError
 
@@ -42,36 +50,98 @@ def njit(**options: Any) -> Callable[[Any], Any]:
     **options
         Those of `numba.njit`.
     """
+    options = {"no_cfunc_wrapper": True, **options}
+    kept = options.pop("cache", False)
 
     def decorate(function: Any) -> Any:
-        try:
-            compiled = numba.njit(**{"no_cfunc_wrapper": True, **options})(function)
-        except RuntimeError as error:  # no folder can be written to
-            if not options.get("cache"):
-                raise
-            _say("any folder", str(error))
-            return numba.njit(**{**options, "cache": False})(function)
-        _compile_for_any_number(compiled)
-        if options.get("cache"):
-            kept = compiled._cache._cache_file
-            layer = ".".join(function.__module__.split(".")[:2])
-            kept._source_stamp = _stamp_of_package(layer) or kept._source_stamp
-            _name_by_contents(kept)
-            _go_on_when_full(compiled._cache)
-            _load_without_compiler(compiled._cache)
+        compiled = numba.njit(**options)(function)
+        _hand_to_loops(compiled, numba.njit(pipeline_class=_ForLoops, **options)(function))
+        if kept:
+            try:
+                compiled.enable_caching()
+            except RuntimeError as error:  # no folder can be written to
+                _say("any folder", str(error))
+            else:
+                _keep(compiled._cache, function.__module__)
         return compiled
 
     return decorate
 
 
-def _compile_for_any_number(compiled: Any) -> None:
-    """Let loops that call this one with a constant call the version for any number of that kind."""
-    template = compiled.get_call_template
+def _hand_to_loops(compiled: Any, within: Any) -> None:
+    """Let loops that call one take its other form, with a constant that for any number of that kind."""
 
-    def for_any_number(args: Any, keywords: Any) -> Any:
-        return template(tuple(map(types.unliteral, args)), keywords)
+    def template(args: Any, keywords: Any) -> Any:
+        return within.get_call_template(tuple(map(types.unliteral, args)), keywords)
 
-    compiled.get_call_template = for_any_number
+    compiled.get_call_template, compiled.get_overload = template, within.get_overload
+    for loop in (compiled, within):
+        _compile_without_looking_for_garbage(loop._compiler)
+
+
+def _compile_without_looking_for_garbage(compiler: Any) -> None:
+    """Numba makes a million objects for a loop and drops few, which took a seventh of its time to find."""
+    compile_loop = compiler.compile
+
+    def undisturbed(*args: Any) -> Any:
+        with global_compiler_lock:  # one at a time: none takes another's pause for how it was
+            searching = gc.isenabled()
+            gc.disable()
+            try:
+                return compile_loop(*args)
+            finally:
+                if searching:
+                    gc.enable()
+
+    compiler.compile = undisturbed
+
+
+class _CodeForLoops(JITCodeLibrary):  # type: ignore[misc, unused-ignore]
+    """Code of a loop, to go into that of others."""
+
+    def finalize(self) -> None:
+        """Only take in what the loop calls."""
+        for library in dict.fromkeys(self._linking_libraries):
+            self._final_module.link_in(library._get_module_for_linking(), preserve=True)
+        self._finalized = True
+
+
+@register_pass(mutates_CFG=True, analysis_only=False)
+class _LoweringForLoops(NativeLowering):  # type: ignore[misc, unused-ignore]
+    """Makes such code, without what Python would need to call it."""
+
+    _name = "lowering_for_loops"
+
+    def run_pass(self, state: Any) -> bool:
+        """As Numba calls it."""
+        state.library = _CodeForLoops(state.targetctx.codegen(), state.func_id.func_qualname)
+        state.flags.no_compile = state.flags.no_cpython_wrapper = True
+        super().run_pass(state)
+        key: Any = {}.update  # some function of C, for that of the loop: by it others find its code
+        state["cr"] = state["cr"]._replace(cfunc=key)
+        state.targetctx.insert_user_function(key, state["cr"].fndesc, [state.library])
+        return True
+
+
+class _ForLoops(CompilerBase):  # type: ignore[misc, unused-ignore]
+    """Numba's steps, with that one in place of its own."""
+
+    def define_pipelines(self) -> list[Any]:
+        """As Numba calls it."""
+        steps = DefaultPassBuilder.define_nopython_pipeline(self.state)
+        own = {NativeLowering: _LoweringForLoops}
+        steps.passes = [(own.get(step, step), what) for step, what in steps.passes]
+        steps.finalize()
+        return [steps]
+
+
+def _keep(loops: Any, module: str) -> None:
+    """Have the compiled forms of a loop found again, under all that they are made of."""
+    file = loops._cache_file
+    file._source_stamp = _stamp_of_package(".".join(module.split(".")[:2])) or file._source_stamp
+    _name_by_contents(file)
+    _go_on_when_full(loops)
+    _load_without_compiler(loops)
 
 
 @lru_cache
@@ -136,7 +206,7 @@ def _load_without_compiler(kept: Any) -> None:
 def _say_once_on_a_terminal() -> None:
     """Why nothing is seen for a while; in a pipe, or a log, nobody waits."""
     if sys.stderr and sys.stderr.isatty():
-        sys.stderr.write("compiling the loops, once for this machine: some 20 s\n")
+        sys.stderr.write("compiling the loops, once for this machine: some 10 s\n")
 
 
 _SAID: set[str] = set()
@@ -150,6 +220,6 @@ def _say(folder: str, reason: str) -> None:
     where = os.environ.get("NUMBA_CACHE_DIR")
     advice = "make room there" if where else "make room there, or set NUMBA_CACHE_DIR to another folder"
     warnings.warn(
-        f"compiled loops cannot be kept in {folder} ({reason}) and take 15 s in every process; {advice}",
+        f"compiled loops cannot be kept in {folder} ({reason}) and take 10 s in every process; {advice}",
         stacklevel=2,
     )
