@@ -20,7 +20,6 @@ from analytic.law_rule import law_rule
 from analytic.laws.branch import Branch, Ways, term_of
 from analytic.laws.cuts import cuts_of
 from analytic.laws.law import ContactLaw
-from analytic.measured_summits import MeasuredRadii
 from analytic.quantities import quantity_of
 
 Count = Literal["fixed", "poisson"]
@@ -77,18 +76,6 @@ class HeightRule:
         further = partial(cuts_of, branches, grading, h)
         h = np.unique([*h, *(branch.lowest(h[0]) for branch in branches)])
         return cls(*law_rule(heights, h, grading, further=further), float(heights.cdf(h[0])))
-
-    @classmethod
-    def of_summits(
-        cls, separations: ArrayLike, summits: MeasuredRadii, branches: Iterable[Branch]
-    ) -> "HeightRule":
-        """The rule over the very summits of a list, each as probable as another; otherwise as `over`."""
-        h = float(np.min(separations))
-        h = min([h, *(branch.lowest(h) for branch in branches)])
-        s, ratios = np.array(summits.heights.heights), np.array(summits.ratios)
-        touching = s > h
-        number = int(touching.sum())
-        return cls(s[touching], np.full(number, 1 / s.size), 1 - number / s.size, ratios[touching])
 
     def fluctuations(self, f: Array, count: Count) -> "Fluctuations":
         """What makes sums of the columns of `f` fluctuate.

@@ -41,25 +41,20 @@ def last_separations(
                 continue
             last = int(high_enough[-1])
             left, right = grid[max(last - farther, 0)], grid[min(last + 1 + farther, grid.size - 1)]
-            if not farther or excess(left) > 0 > excess(right):
-                return _root(excess, float(left), float(right))
+            if excess(left) > 0 > excess(right):
+                from scipy.optimize import (
+                    brentq,  # imports half of SciPy, which few separations are asked for
+                )
+
+                return float(brentq(excess, left, right, xtol=1e-15, rtol=_LAST_DIGITS))
+            if not farther:  # right at an end of the bracket a target may lie beyond it by a last digit
+                return float(left if excess(left) <= 0 else right)
         raise ValueError(
             f"{name}: not reached between h = {grid[0]:g} and {grid[-1]:.4g}; give another value"
         )
 
     roots = [found(target) for target in log_targets.ravel().tolist()]
     return np.array(roots, dtype=np.float64).reshape(log_targets.shape)
-
-
-def _root(excess: Callable[[float], float], left: float, right: float) -> float:
-    # A target right at the end of the bracket may lie beyond it by a last digit.
-    if excess(left) <= 0:
-        return left
-    if excess(right) >= 0:
-        return right
-    from scipy.optimize import brentq  # imports half of SciPy, which few separations are asked for
-
-    return float(brentq(excess, left, right, xtol=1e-15, rtol=_LAST_DIGITS))
 
 
 def separations_of_powers(

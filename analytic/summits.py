@@ -226,7 +226,12 @@ class _ListedSummits(Summits):
     def rule(self, h: Array, grading: Grading, branches: Branches | None = None) -> HeightRule:
         if self.radii is None:
             return super().rule(h, grading, branches)
-        return HeightRule.of_summits(h, self.radii, branches or ())
+        lowest = float(h.min())
+        lowest = min([lowest, *(branch.lowest(lowest) for branch in branches or ())])
+        s, ratios = np.array(self.radii.heights.heights), np.array(self.radii.ratios)
+        touching = s > lowest
+        number = int(touching.sum())
+        return HeightRule(s[touching], np.full(number, 1 / s.size), 1 - number / s.size, ratios[touching])
 
     def jumps(self, *_: Any) -> Array:
         return np.zeros(1)
