@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
-from scipy.sparse import coo_matrix
+from scipy.sparse import coo_array, diags_array
 from scipy.sparse.linalg import cg
 
 from mcgw.maps.topography import Topography
@@ -57,26 +57,17 @@ def filled(heights: Array) -> Array:
         return heights
     nearest = ndimage.distance_transform_edt(missing, return_distances=False, return_indices=True)
     result = heights[tuple(nearest)]
-    index = np.full(heights.shape, -1, dtype=np.int64)
-    index[missing] = np.arange(number)
-    neighbours, known = np.zeros(number), np.zeros(number)
-    pairs = []
-    for here, other in _neighbours():
-        holes = missing[here]
-        at, beside = index[here][holes], index[other][holes]
-        neighbours[at] += 1
-        inside = beside >= 0
-        pairs.append((at[inside], beside[inside]))
-        known[at[~inside]] += result[other][holes][~inside]
-    rows, columns = (np.concatenate(found) for found in zip(*pairs, strict=True))
-    own = np.arange(number)
-    matrix = coo_matrix(
-        (
-            np.concatenate([neighbours, np.full(rows.size, -1.0)]),
-            (np.concatenate([own, rows]), np.concatenate([own, columns])),
-        ),
-        shape=(number, number),
-    ).tocsr()
+    own, index = np.arange(number), np.full(heights.shape, -1, dtype=np.int64)
+    index[missing] = own
+    matrix: Any = diags_array(np.full(number, 4.0), format="csr")
+    known = np.zeros(number)
+    places, last = np.argwhere(missing), np.array(heights.shape) - 1
+    for way in ((0, 1), (0, -1), (1, 0), (-1, 0)):
+        at = tuple(np.clip(places + way, 0, last).T)
+        beside, height = index[at], result[at]
+        hole = beside >= 0  # beyond an edge lies the point itself, which takes one of its four neighbours off
+        matrix -= coo_array((np.ones(hole.sum()), (own[hole], beside[hole])), shape=(number, number)).tocsr()
+        known[~hole] += height[~hole]
     start = result[missing]
     away = known - matrix @ start  # solved for the difference: heights may lie far from zero
     scale = float(np.abs(away).max())
@@ -84,16 +75,6 @@ def filled(heights: Array) -> Array:
         found = cg(matrix, away / scale, rtol=_CLOSE, maxiter=min(_STEPS, 10 * math.isqrt(number) + 50))[0]
         result[missing] = start + scale * found
     return np.asarray(result)
-
-
-def _neighbours() -> list[tuple[tuple[slice, slice], tuple[slice, slice]]]:
-    """Views of a map, and of itself one point further, four ways."""
-    every, first, last = slice(None), slice(None, -1), slice(1, None)
-    ways = []
-    for here, other in ((first, last), (last, first)):
-        ways.append(((here, every), (other, every)))
-        ways.append(((every, here), (every, other)))
-    return ways
 
 
 @dataclass(frozen=True, slots=True)

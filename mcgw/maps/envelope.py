@@ -6,7 +6,6 @@ to the number of pixels plus that of asperities.
 """
 
 import math
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -17,49 +16,17 @@ from mcgw.machine.compiling import njit
 from mcgw.maps.synthetic import Asperities
 from mcgw.maps.topography import Topography, checked_shape
 
-__all__ = ["Bins", "bins_of", "envelope", "hidden_summits"]
+__all__ = ["envelope", "hidden_summits"]
 
-Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 
-@dataclass(frozen=True)
-class Bins:
-    """Asperities sorted into the bins of a regular grid.
+def _binned(field: Asperities) -> tuple[Ints, Any, tuple[int, int]]:
+    """Sort asperities into about as many bins, as square as they come.
 
-    Parameters
-    ----------
-    x, y, z : ndarray
-        Of the asperities, bin by bin.
-    order : ndarray of int
-        Which asperity each of them is.
-    starts : ndarray of int
-        First asperity of each bin, and the number of all.
-    shape : (int, int)
-        Bins along y and x.
-    size : (float, float)
-        Extent of the area along x and y, m.
-    sharpness : ndarray
-        1/(2R) of the caps, bin by bin, 1/m.
+    Gives the order that this is; places, heights and sharpness 1/(2R) bin by bin, with the first asperity of
+    each bin and the number of all; and how many bins there are along y and x.
     """
-
-    x: Array
-    y: Array
-    z: Array
-    order: Ints
-    starts: Ints
-    shape: tuple[int, int]
-    size: tuple[float, float]
-    sharpness: Array
-
-    @property
-    def arrays(self) -> tuple[Any, ...]:
-        """What the loops take of it, in their order."""
-        return self.x, self.y, self.z, self.starts, self.shape, self.size, self.sharpness
-
-
-def bins_of(field: Asperities) -> Bins:
-    """Sort asperities into about as many bins, as square as they come."""
     per_length = math.sqrt(max(field.number, 1) / (field.size[0] * field.size[1]))
     columns, rows = (min(max(int(length * per_length), 1), 2**15) for length in field.size)
     i = np.minimum((field.x / field.size[0] * columns).astype(np.int64), columns - 1)
@@ -67,15 +34,15 @@ def bins_of(field: Asperities) -> Bins:
     order = np.argsort(j * columns + i, kind="stable")
     starts = np.concatenate([[0], np.cumsum(np.bincount(j * columns + i, minlength=rows * columns))])
     x, y, z, radii = (each[order] for each in (field.x, field.y, field.z, field.radii))
-    return Bins(x, y, z, order, starts, (rows, columns), field.size, 0.5 / radii)
+    return order, (x, y, z, 0.5 / radii, starts), (rows, columns)
 
 
 @njit(nogil=True, cache=True)
 def _highest(
-    px: Any, py: Any, best: Any, asperities: Any, starts: Any, shape: Any, size: Any, per: Any, periodic: Any
+    px: Any, py: Any, best: Any, caps: Any, top: Any, flattest: Any, shape: Any, size: Any, periodic: Any
 ) -> Any:
     """Height of the envelope above (px, py), `best` or more; `per` is 1/(2R) of each cap."""
-    x, y, z, top, flattest = asperities
+    x, y, z, per, starts = caps
     rows, columns = shape
     bx, by = size[0] / columns, size[1] / rows
     ci, cj = min(int(px / bx), columns - 1), min(int(py / by), rows - 1)
@@ -109,31 +76,28 @@ def _highest(
 
 
 @njit(parallel=True, cache=True)
-def _map(
-    shape: Any, pixel: Any, origin: Any, x: Any, y: Any, z: Any, starts: Any, bins: Any, size: Any, per: Any,
-    periodic: Any,
-) -> Any:  # fmt: skip
+def _map(pixels: Any, pixel: Any, origin: Any, caps: Any, shape: Any, size: Any, periodic: Any) -> Any:
     """Envelope above the centre of every pixel."""
-    result = np.empty(shape)
+    x, y, z, per, starts = caps
+    result = np.empty(pixels)
     top, flattest = z.max(), per.min()
-    for j in prange(shape[0]):
-        for i in range(shape[1]):
+    for j in prange(pixels[0]):
+        for i in range(pixels[1]):
             px, py = origin[0] + (i + 0.5) * pixel[0], origin[1] + (j + 0.5) * pixel[1]
-            result[j, i] = _highest(
-                px, py, -np.inf, (x, y, z, top, flattest), starts, bins, size, per, periodic
-            )
+            mine = (x, y, z, per, starts)
+            result[j, i] = _highest(px, py, -np.inf, mine, top, flattest, shape, size, periodic)
     return result
 
 
 @njit(parallel=True, cache=True)
-def _hidden(x: Any, y: Any, z: Any, starts: Any, bins: Any, size: Any, per: Any, periodic: Any) -> Any:
+def _hidden(caps: Any, shape: Any, size: Any, periodic: Any) -> Any:
     """Whether a taller neighbour's cap rises above each summit."""
+    x, y, z, per, starts = caps
     result = np.zeros(z.size, dtype=np.bool_)
     top, flattest = z.max(), per.min()
     for k in prange(z.size):
-        result[k] = (
-            _highest(x[k], y[k], z[k], (x, y, z, top, flattest), starts, bins, size, per, periodic) > z[k]
-        )
+        mine = (x, y, z, per, starts)
+        result[k] = _highest(x[k], y[k], z[k], mine, top, flattest, shape, size, periodic) > z[k]
     return result
 
 
@@ -167,13 +131,13 @@ def envelope(
         raise ValueError("the surface has no asperity: nothing to map")
     left, right, bottom, top = window or (0.0, field.size[0], 0.0, field.size[1])
     pixel = ((right - left) / columns, (top - bottom) / rows)
-    heights = _map((rows, columns), pixel, (left, bottom), *bins_of(field).arrays, periodic)
+    heights = _map((rows, columns), pixel, (left, bottom), *_binned(field)[1:], field.size, periodic)
     return Topography(heights, pixel, periodic and window is None)
 
 
 def hidden_summits(field: Asperities, *, periodic: bool = False) -> NDArray[np.bool_]:
     """Which summits of a field lie below the cap of a taller neighbour, across the edges too if periodic."""
-    b = bins_of(field)
+    order, caps, shape = _binned(field)
     hidden = np.empty(field.number, dtype=np.bool_)
-    hidden[b.order] = _hidden(*b.arrays, periodic)
+    hidden[order] = _hidden(caps, shape, field.size, periodic)
     return hidden

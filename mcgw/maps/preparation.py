@@ -143,9 +143,7 @@ def _trimmed(topography: Topography, trim: int, notes: list[str]) -> Topography:
     if 2 * trim >= min(rows, columns):
         raise ValueError(f"trim = {trim}: leaves nothing of {columns} x {rows} points")
     notes.append(f"trim: {trim} points left off along each edge")
-    return Topography(
-        topography.heights[trim:-trim, trim:-trim], topography.pixel, assumed_unit=topography.assumed_unit
-    )
+    return replace(topography, heights=topography.heights[trim:-trim, trim:-trim], periodic=False)
 
 
 def _within(topography: Topography, notes: list[str]) -> Topography:
@@ -159,7 +157,7 @@ def _within(topography: Topography, notes: list[str]) -> Topography:
     box = topography.heights[j0 : j1 + 1, i0 : i1 + 1]
     if box.size < there.size:
         notes.append(f"edges: {box.shape[1]} x {box.shape[0]} points kept, beyond which all are missing")
-        return Topography(box, topography.pixel, assumed_unit=topography.assumed_unit)
+        return replace(topography, heights=box, periodic=False)
     return topography
 
 
@@ -181,7 +179,7 @@ def _terrace(topography: Topography, notes: list[str]) -> Topography:
     notes.append(
         f"step: {step.height:.3g} m near {step.axis} = {step.place:.4g} m; only the map {end} m kept"
     )
-    return Topography(heights, topography.pixel, assumed_unit=topography.assumed_unit)
+    return replace(topography, heights=heights, periodic=False)
 
 
 def _levelled(topography: Topography, asked: Preparation, notes: list[str]) -> tuple[Topography, Mask | None]:

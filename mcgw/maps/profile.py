@@ -11,7 +11,7 @@ from mcgw.maps.form import filter_variance
 from mcgw.maps.steps import Form
 from mcgw.maps.topography import STEEPEST
 
-__all__ = ["Profile", "profile_at", "smooth_profile", "without_profile_form"]
+__all__ = ["PROFILE_ORDERS", "Profile", "profile_at", "smooth_profile", "without_profile_form"]
 
 Array = NDArray[np.float64]
 
@@ -19,7 +19,7 @@ _EVEN = 0.1  # of a step, which places may lie beside an even grid
 _MOST_MISSING = 0.1  # of all points
 _LEAST = 8
 _WIDEST, _LONGEST = 1e-2, 0.2  # m, between points and of a profile: no stylus goes farther
-_ORDER = {"none": 0, "plane": 1, "quadratic": 2}
+PROFILE_ORDERS = {"none": 0, "plane": 1, "quadratic": 2}
 
 
 @dataclass(frozen=True)
@@ -130,7 +130,7 @@ def profile_at(places: Array, heights: Array, assumed_unit: str = "") -> Profile
 def without_profile_form(profile: Profile, form: Form) -> Profile:
     """Subtract the line, or the parabola, of least squares; the mean in any case."""
     t = np.linspace(-1, 1, profile.heights.size)
-    basis = np.polynomial.legendre.legvander(t, _ORDER[form])
+    basis = np.polynomial.legendre.legvander(t, PROFILE_ORDERS[form])
     found = np.linalg.lstsq(basis, profile.heights, rcond=None)[0]
     return replace(profile, heights=profile.heights - basis @ found)
 

@@ -19,7 +19,7 @@ from mcgw.formats.sheet import Sheet, Shown
 from mcgw.formats.table import Column, Table
 from mcgw.machine.terminal import plotted
 from mcgw.maps.estimates import Estimate, Roughness, roughness_of
-from mcgw.maps.profile import Profile, smooth_profile, without_profile_form
+from mcgw.maps.profile import PROFILE_ORDERS, Profile, smooth_profile, without_profile_form
 from mcgw.maps.profile_waves import ProfileWaves, waves_of_profile
 from mcgw.maps.steps import Form
 from mcgw.maps.waves import Uncertain, log_derivatives, uncertain
@@ -28,7 +28,6 @@ __all__ = ["ProfileFit", "fit_profiles"]
 
 Array = NDArray[np.float64]
 
-_TERMS = {"none": 1, "plane": 2, "quadratic": 3}
 _PIECES = 16
 _SMOOTH = 3  # waves over which power is averaged
 _LEAST_ALPHA = 0.9  # below, summit heights would have no variance
@@ -127,7 +126,7 @@ def fit_profiles(profiles: Sequence[Profile], *, cutoff: float | None, form: For
     ValueError
         If there is no profile, or they are flat, or too short for the cutoff.
     """
-    if form not in _TERMS:
+    if form not in PROFILE_ORDERS:
         raise ValueError(f"form = {form!r}: a profile has plane (a line), quadratic (a parabola) or none")
     if not profiles:
         raise ValueError("no profile was given")
@@ -141,7 +140,7 @@ def fit_profiles(profiles: Sequence[Profile], *, cutoff: float | None, form: For
     shortest = min(p.heights.size for p in profiles)
     if shortest < 4 * pieces:
         raise ValueError(f"{shortest} points: too few for {pieces} stretches; give a longer profile")
-    seen = [waves_of_profile(p, cutoff=cutoff, terms=_TERMS[form], pieces=pieces) for p in plain]
+    seen = [waves_of_profile(p, cutoff=cutoff, terms=PROFILE_ORDERS[form] + 1, pieces=pieces) for p in plain]
     shares = np.array([w.length for w in seen]) / sum(w.length for w in seen)
     values = np.asarray(sum(share * w.moments for share, w in zip(shares, seen, strict=True)))
     moments = _checked(values)

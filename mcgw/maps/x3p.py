@@ -44,39 +44,25 @@ def _description(topography: Topography, md5: str) -> bytes:
     """The file main.xml."""
     rows, columns = topography.heights.shape
     date = datetime.now(UTC).strftime("%Y-%m-%dT%H:%M:%S.0+00:00")
-    dx, dy = topography.pixel
-    axes = {
-        name: {"AxisType": kind, "DataType": "D", "Increment": repr(float(step)), "Offset": "0.0"}
-        for name, kind, step in (("CX", "I", dx), ("CY", "I", dy), ("CZ", "A", 1.0))
-    }
-    instrument = {"Manufacturer": "mcgw", "Model": "synthetic", "Serial": "none", "Version": "1"}
-    tree = {
-        "Record1": {"Revision": "ISO5436 - 2000", "FeatureType": "SUR", "Axes": axes},
-        "Record2": {
-            "Date": date,
-            "Instrument": instrument,
-            "CalibrationDate": date,
-            "ProbingSystem": {"Type": "Software", "Identification": "mcgw"},
-        },
-        "Record3": {
-            "MatrixDimension": {"SizeX": str(columns), "SizeY": str(rows), "SizeZ": "1"},
-            "DataLink": {"PointDataLink": _DATA, "MD5ChecksumPointData": md5.upper()},
-        },
-        "Record4": {"ChecksumFile": _SUMS},
-    }
-    ElementTree.register_namespace("p", _NAMESPACE)
-    root = ElementTree.Element(f"{{{_NAMESPACE}}}ISO5436_2")
-    _add(root, tree)
-    return bytes(ElementTree.tostring(root, encoding="UTF-8", xml_declaration=True))
-
-
-def _add(parent: ElementTree.Element, tree: dict[str, object]) -> None:
-    for name, value in tree.items():
-        element = ElementTree.SubElement(parent, name)
-        if isinstance(value, dict):
-            _add(element, value)
-        else:
-            element.text = str(value)
+    steps = zip(("CX", "CY", "CZ"), "IIA", (*topography.pixel, 1.0), strict=True)
+    axes = "".join(
+        f"<{name}><AxisType>{kind}</AxisType><DataType>D</DataType>"
+        f"<Increment>{float(step)!r}</Increment><Offset>0.0</Offset></{name}>"
+        for name, kind, step in steps
+    )
+    return f"""<?xml version="1.0" encoding="UTF-8"?>
+<p:ISO5436_2 xmlns:p="{_NAMESPACE}">
+<Record1><Revision>ISO5436 - 2000</Revision><FeatureType>SUR</FeatureType><Axes>{axes}</Axes></Record1>
+<Record2><Date>{date}</Date>
+<Instrument><Manufacturer>mcgw</Manufacturer><Model>synthetic</Model><Serial>none</Serial>
+<Version>1</Version></Instrument><CalibrationDate>{date}</CalibrationDate>
+<ProbingSystem><Type>Software</Type><Identification>mcgw</Identification></ProbingSystem></Record2>
+<Record3><MatrixDimension><SizeX>{columns}</SizeX><SizeY>{rows}</SizeY><SizeZ>1</SizeZ></MatrixDimension>
+<DataLink><PointDataLink>{_DATA}</PointDataLink>
+<MD5ChecksumPointData>{md5.upper()}</MD5ChecksumPointData></DataLink></Record3>
+<Record4><ChecksumFile>{_SUMS}</ChecksumFile></Record4>
+</p:ISO5436_2>
+""".encode()
 
 
 def read_x3p(path: Path) -> Topography:
