@@ -1,7 +1,5 @@
 """What can go wrong while a run or its files are handled, and the exit code of each."""
 
-__all__ = ["RunError", "StoppedError", "StoreError"]
-
 
 class StoreError(ValueError):
     """A file that cannot be read or written, is not an ensemble, or asks for another place.

@@ -9,7 +9,7 @@ from mcgw.ensemble.summarising import Statistics
 from mcgw.errors import StoreError
 from mcgw.jobs.running import run
 from mcgw.store import chunks, ensembles, structure
-from mcgw.store.run_folder import parts_of
+from mcgw.store.disk import parts_of
 
 SIZE, SURFACES = 16, 100  # seven blocks, the last one short
 

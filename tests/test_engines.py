@@ -21,7 +21,7 @@ from mcgw.jobs.dask_engine import Dask, check_address
 from mcgw.jobs.driver import Signals, drive
 from mcgw.jobs.engines import Processes, Threads
 from mcgw.jobs.running import run
-from mcgw.store.run_folder import parts_of
+from mcgw.store.disk import parts_of
 from mcgw.store.shards import Span
 
 SIZE, SURFACES = 8, 72

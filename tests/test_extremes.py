@@ -18,7 +18,7 @@ from mcgw.sampling.counts import counts_of
 from mcgw.sampling.layout import Layout
 from mcgw.sampling.moments import add_compensated, cell_moments
 from mcgw.sampling.samplers import sampler_of
-from mcgw.scene.scene import SceneError
+from mcgw.scene.section import SceneError
 
 GAMMA_STAR = math.exp(0.5) / (math.exp(0.5) - 1)
 

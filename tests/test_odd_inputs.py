@@ -14,7 +14,7 @@ from mcgw.errors import StoreError
 from mcgw.formats.files import check_output
 from mcgw.jobs.running import run
 from mcgw.machine.memory import memory_available
-from mcgw.scene.scene import SceneError
+from mcgw.scene.section import SceneError
 
 
 def load_share(scene):

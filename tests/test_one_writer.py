@@ -23,10 +23,11 @@ from mcgw.jobs.job import Job
 from mcgw.jobs.merging import merge
 from mcgw.jobs.running import run
 from mcgw.store import ensembles, lock
+from mcgw.store.disk import parts_of
 from mcgw.store.lock import LockedError, locked
 from mcgw.store.place import tidy
 from mcgw.store.plan import Plan
-from mcgw.store.run_folder import RunFolder, parts_of
+from mcgw.store.run_folder import RunFolder
 from mcgw.store.saving import save
 
 HERE = Path(__file__).parent

@@ -11,7 +11,8 @@ from test_scene_keys import text_of
 import analytic
 import mcgw
 from mcgw.scene.keys import SURFACE_UNITS
-from mcgw.scene.scene import Scene, SceneError
+from mcgw.scene.scene import Scene
+from mcgw.scene.section import SceneError
 
 GOOD = """
 [surface]

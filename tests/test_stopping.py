@@ -16,7 +16,7 @@ from mcgw.errors import StoreError
 from mcgw.jobs.merging import merge
 from mcgw.jobs.running import run
 from mcgw.reports.side_notes import after, before, upper_contacts
-from mcgw.scene.scene import SceneError
+from mcgw.scene.section import SceneError
 from mcgw.store.ensembles import read_attributes
 
 SEEDS = 2500

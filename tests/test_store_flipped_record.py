@@ -9,7 +9,8 @@ import mcgw
 from mcgw.ensemble.simulation import Values
 from mcgw.errors import StoreError
 from mcgw.jobs.job import Job
-from mcgw.store.run_folder import RunFolder, parts_of
+from mcgw.store.disk import parts_of
+from mcgw.store.run_folder import RunFolder
 
 
 def flip(path, bit):

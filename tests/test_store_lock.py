@@ -14,8 +14,8 @@ from mcgw.ensemble.simulation import Values
 from mcgw.errors import StoreError
 from mcgw.jobs.running import run
 from mcgw.store import lock
+from mcgw.store.disk import parts_of
 from mcgw.store.lock import LOCK_FILES, locked
-from mcgw.store.run_folder import parts_of
 
 ROOT = Path(mcgw.__file__).parents[1]
 ENV = os.environ | {"PYTHONPATH": str(ROOT)}

@@ -26,8 +26,8 @@ from mcgw.jobs.merging import merge
 from mcgw.jobs.running import run
 from mcgw.jobs.session import Part
 from mcgw.store import ensembles, layout
+from mcgw.store.disk import parts_of
 from mcgw.store.plan import Plan
-from mcgw.store.run_folder import parts_of
 from mcgw.store.shards import Span
 
 HERE = Path(__file__).parent

@@ -18,8 +18,9 @@ from mcgw.cli import main
 from mcgw.jobs import job
 from mcgw.jobs.engines import Processes
 from mcgw.jobs.job import commit_block
+from mcgw.store.disk import parts_of
 from mcgw.store.ensembles import read_attributes
-from mcgw.store.run_folder import RunFolder, parts_of
+from mcgw.store.run_folder import RunFolder
 from mcgw.sweeps import drawing
 
 SURFACE = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "1 mm^2", "78.6 GPa")

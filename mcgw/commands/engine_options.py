@@ -10,8 +10,6 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from mcgw.jobs.engines import Engine
 
-__all__ = ["add_engine_options", "drawing", "tell_share"]
-
 
 def add_engine_options(parser: argparse.ArgumentParser) -> None:
     """Add --threads, --processes, --workers, --scheduler, --shard and --insecure."""

@@ -20,21 +20,6 @@ if TYPE_CHECKING:
     from mcgw.ensemble.ensemble import Ensemble
     from mcgw.sweeps.sweep import Sweep
 
-__all__ = [
-    "CSV",
-    "HDF5",
-    "HTML",
-    "JSON",
-    "NPY",
-    "TOML",
-    "Format",
-    "Output",
-    "check_outputs",
-    "figure_format",
-    "table_output",
-    "tell_notes",
-    "write_table",
-]
 
 _SIGNATURE = b"\x89HDF\r\n\x1a\n"
 

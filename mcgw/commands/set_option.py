@@ -3,8 +3,6 @@
 import argparse
 from typing import Any
 
-__all__ = ["add_set_option", "changes_of"]
-
 
 def add_set_option(parser: argparse.ArgumentParser) -> None:
     """Add it."""

@@ -3,15 +3,11 @@
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from analytic.arrays import Array
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.results import Held, Results
 from mcgw.scene.scene import Scene
-
-__all__ = ["asperities_alone", "scene_alone"]
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

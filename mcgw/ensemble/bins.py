@@ -8,15 +8,10 @@ numbers, so that a value falls into the same bin on every processor.
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analytic import quantity_of
+from analytic.arrays import Array, Ints
 from mcgw.scene.scene import Scene
-
-__all__ = ["NUMBER", "Bins"]
-
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 _BITS = 7  # of a distance that tell its bin: 128 bins for each doubling
 _DOUBLINGS = 14  # of the distance; what lies beyond is in the last bin, and the extremes are known

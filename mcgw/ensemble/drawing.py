@@ -23,24 +23,6 @@ from mcgw.sampling.samplers import sampler_of
 from mcgw.scene.samplers import promise_of
 from mcgw.scene.scene import Scene
 
-__all__ = [
-    "GoOn",
-    "OfScene",
-    "Reducer",
-    "always",
-    "answered",
-    "at_a_time",
-    "block_size",
-    "blocks",
-    "drawn",
-    "drawn_blocks",
-    "in_words",
-    "kept",
-    "seconds_for",
-    "seconds_per_surface",
-    "use_threads",
-]
-
 _Drawn = TypeVar("_Drawn")
 GoOn = Callable[[int], bool]  # told the surface after those that are drawn, says whether to draw more
 _WORDS = 4_000_000  # numbers of a block that stay in the outer cache

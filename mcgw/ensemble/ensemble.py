@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analytic import PER_AREA, quantity_of
+from analytic.arrays import Array
 from mcgw.ensemble.intervals import CONFIDENCE, interval_of
 from mcgw.ensemble.labelled import Labelled, axes_of, axis, statistic, values_of
 from mcgw.ensemble.results import PROBABILITIES, Held
@@ -17,10 +18,6 @@ from mcgw.scene.in_words import accuracy_facts, contact_facts, law_text
 from mcgw.scene.samplers import promise_of
 from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_text
-
-__all__ = ["STATISTICS", "Ensemble"]
-
-Array = NDArray[np.float64]
 
 STATISTICS = ("mean", "std", "skewness")  # that are kept where values are not, besides quantiles
 

@@ -5,14 +5,12 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from analytic.arrays import Array
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.simulation import simulate
 from mcgw.sampling.samplers import sampler_of
 from mcgw.scene.storable import drawn_by
 
-__all__ = ["at_pressures", "common_pressures", "loaded_part", "with_values"]
-
-Array = NDArray[np.float64]
 _DRAWS = 1e9  # numbers drawn for it: a second or two
 _FEWEST = 20
 

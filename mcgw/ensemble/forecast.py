@@ -10,16 +10,12 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from analytic.arrays import Array
 from mcgw.ensemble.intervals import MANY, Spread, chebyshev, spread_of
 from mcgw.sampling.counts import GROUP
 from mcgw.scene.scene import Scene
 from mcgw.scene.stop_rule import wanted
-
-__all__ = ["Forecast", "checkpoints", "forecast", "relative_spread", "without_rule"]
-
-Array = NDArray[np.float64]
 
 _STEP = 16  # numbers of surfaces lie 1/16 apart
 _ANY = 0.1  # in the place of a share that is not asked for

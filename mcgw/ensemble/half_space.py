@@ -9,8 +9,6 @@ from analytic.interacting import is_stiffness
 from analytic.interaction import in_series
 from mcgw.scene.scene import Scene
 
-__all__ = ["at_loads", "with_interaction"]
-
 
 def with_interaction(scene: Scene, sums: dict[str, NDArray[Any]]) -> dict[str, Any]:
     """Sums of the asperities, with stiffnesses in series with the half-space, and the other separation.

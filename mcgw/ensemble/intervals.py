@@ -17,26 +17,12 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.special import betainc, betaincc, gammainccinv, gammaincinv, ndtri
 
 from analytic import TANGENTIAL, quantity_of
+from analytic.arrays import Array
 from mcgw.ensemble.results import Held
 from mcgw.formats.table import Column
 from mcgw.scene.samplers import promise_of
 from mcgw.scene.scene import Scene
 
-__all__ = [
-    "CONFIDENCE",
-    "FEWEST",
-    "MANY",
-    "TOO_FEW",
-    "Spread",
-    "chebyshev",
-    "count_interval",
-    "interval_column",
-    "interval_of",
-    "mean_interval",
-    "spread_of",
-]
-
-Array = NDArray[np.float64]
 CONFIDENCE = 0.95
 FEWEST = 10.0  # effective contacts in the whole ensemble, below which there is no interval
 MANY = 30.0  # below it a sum of nearly equal terms is still discrete: half of the tails is left for that

@@ -12,18 +12,6 @@ from mcgw.ensemble.results import PROBABILITIES
 from mcgw.formats.table import SEPARATION, Column, Table, optional
 from mcgw.scene.scene import Scene
 
-__all__ = [
-    "AXES",
-    "Labelled",
-    "Variable",
-    "axes_of",
-    "axis",
-    "heading",
-    "statistic",
-    "statistics_table",
-    "values_of",
-]
-
 AXES = {  # of tables, in their order: unit and long name
     "point": ("1", "number of the point"),
     "surface": ("1", "number of the surface"),

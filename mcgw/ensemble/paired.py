@@ -4,18 +4,14 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from analytic.arrays import Array
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.formats.sheet import Sheet, Shown
 from mcgw.formats.table import SEPARATION, Column, Table
 from mcgw.machine.terminal import plotted
 from mcgw.scene.arguments import check_object
 from mcgw.scene.storable import drawn_by
-
-__all__ = ["Paired", "paired_ratio"]
-
-Array = NDArray[np.float64]
 
 _PAIRED = ("surface", "separations", "heights", "n_asperities", "count", "seed")
 _MOST_ROWS = 9

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from analytic import Grading, quantity_of
+from analytic.arrays import Array
 from analytic.laws import ContactLaw
 from mcgw.ensemble.asperities_alone import scene_alone
 from mcgw.ensemble.drawing import answered, blocks, kept
@@ -23,9 +24,6 @@ from mcgw.scene.laws import read_law
 from mcgw.scene.scene import Scene
 from mcgw.scene.storable import drawn_by, storable
 
-__all__ = ["regrade", "regraded_scene", "sums_of_heights"]
-
-Array = NDArray[np.float64]
 Drawn = tuple[Array, Array, Array]  # moments, counts and single asperities of some surfaces
 Tables = dict[str, NDArray[Any]]
 

@@ -8,10 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["CHUNK_ROWS", "PROBABILITIES", "Held", "MemoryResults", "Results", "Tables", "joined"]
+from analytic.arrays import Array, Ints
 
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
 Tables = dict[str, NDArray[Any]]  # numbers of surfaces by name, a row each
 
 PROBABILITIES = (0.0, 0.001, 0.01, 0.025, 0.05, 0.25, 0.5, 0.75, 0.95, 0.975, 0.99, 0.999, 1.0)

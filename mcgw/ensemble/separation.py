@@ -9,12 +9,9 @@ from numpy.typing import NDArray
 from scipy.optimize import brentq
 
 from analytic import Hertz, Quantity, quantity_of
+from analytic.arrays import Array
 from analytic.laws import Branch, Ways, term_of
 from mcgw.scene.scene import Scene
-
-__all__ = ["LawSum", "Summits", "separation_on"]
-
-Array = NDArray[np.float64]
 
 _ENOUGH = 1e-14  # relative excess of load where Newton's steps are rounding errors
 _FINE = 1 / 64  # step of the search where a negative modulus makes the sum rise and fall

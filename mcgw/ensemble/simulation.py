@@ -17,10 +17,9 @@ from mcgw.errors import StoreError
 from mcgw.machine.memory import check_memory
 from mcgw.machine.progress import Progress, told
 from mcgw.scene.arguments import check_object
-from mcgw.scene.scene import LeftOut, Scene
+from mcgw.scene.fields import LeftOut
+from mcgw.scene.scene import Scene
 from mcgw.scene.storable import storable
-
-__all__ = ["Values", "reducer_of", "simulate"]
 
 _BYTES = 2**23  # of a block: large enough that its flushing costs little
 _DRAWS = 4e8  # numbers drawn for a block: a second or so

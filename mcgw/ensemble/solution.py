@@ -5,7 +5,6 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analytic import QUANTITIES, Hertz, MeasuredHeights, Quantity, quantity_of
 from analytic.laws.elastic_plastic import ElasticPlastic
@@ -16,10 +15,6 @@ from mcgw.sampling.asperities import summits, touching_summits
 from mcgw.scene.arguments import argument, as_toml, check_object
 from mcgw.scene.scene import Scene
 from mcgw.scene.section import nearest
-
-__all__ = ["Solution", "given_values", "solutions", "solve"]
-
-Array = NDArray[np.float64]
 
 _MARGIN = 6.0  # standard deviations of a surface's separation that are drawn at once
 _MOST_HEIGHTS = 3e9

@@ -5,10 +5,10 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import stdtrit
 
 from analytic import SEPARATIONS, Nayak, quantity_of
+from analytic.arrays import Array
 from mcgw.ensemble.intervals import FEWEST, MANY, interval_column
 from mcgw.formats.sheet import Sheet, Shown
 from mcgw.formats.table import Column, Table
@@ -16,17 +16,6 @@ from mcgw.machine.terminal import plotted
 from mcgw.sampling.asperities import summits, touching_summits
 from mcgw.scene.scene import Scene
 from mcgw.scene.validity import Validity, validity_of
-
-__all__ = [
-    "Solution",
-    "against_elasticity",
-    "at_solutions",
-    "rise_of_summits",
-    "with_half_space",
-    "with_mean_gap",
-]
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, repr=False)

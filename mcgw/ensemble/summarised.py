@@ -5,18 +5,13 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analytic import quantity_of
+from analytic.arrays import Array, Ints
 from mcgw.ensemble.bins import Bins
 from mcgw.ensemble.results import Held
 from mcgw.ensemble.summary import Summary, push, total
 from mcgw.scene.scene import Scene
-
-__all__ = ["Summarised"]
-
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 
 @dataclass(frozen=True)

@@ -15,8 +15,6 @@ from mcgw.ensemble.summary import Summary, push, size_of, total
 from mcgw.machine.memory import check_memory
 from mcgw.scene.scene import Scene
 
-__all__ = ["Statistics", "summary_of_values"]
-
 _ROWS = 2**13  # surfaces whose values lie in memory at once
 _BYTES = 2**26  # of these values
 _DRAWS = 1e9  # numbers drawn for a block: what an interruption may cost

@@ -18,14 +18,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from analytic.arrays import Array, Ints
 from mcgw.ensemble.bins import NUMBER, Bins
 from mcgw.machine.compiling import njit
 from mcgw.machine.in_threads import in_threads
 
-__all__ = ["ROW", "Summary", "packed", "products", "push", "size_of", "total", "unpacked"]
-
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
 ROW = "block_"  # before the names of tables with one row for a whole block of surfaces
 _ROWS = 256  # of a column at a time: those of all columns stay near
 _BANDS = 16  # that threads share

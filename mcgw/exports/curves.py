@@ -3,16 +3,13 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from analytic.arrays import Array
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.equal_pressure import at_pressures, common_pressures, with_values
 from mcgw.formats.table import evenly
 from mcgw.scene.samplers import promise_of
 
-__all__ = ["KINDS", "Curve", "Kind", "curves_of", "quantile_name"]
-
-Array = NDArray[np.float64]
 Range = tuple[float, float]
 
 _MOST = 2000  # surfaces drawn again where an ensemble keeps statistics alone

@@ -5,13 +5,9 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from analytic.arrays import Array
 from mcgw.exports.curves import KINDS, Curve, Kind
-
-__all__ = ["PROGRAMS", "Program", "check_name", "foot_of", "rows_of"]
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -16,8 +16,6 @@ from mcgw.formats.table import Column, Table
 from mcgw.machine.terminal import one_line
 from mcgw.scene.scene import Scene
 
-__all__ = ["UNIT_SYSTEMS", "UnitSystem", "all_curves", "heading", "in_units", "table_text"]
-
 
 @dataclass(frozen=True)
 class UnitSystem:

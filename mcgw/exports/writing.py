@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from analytic.arrays import Array
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.simulation import simulate
 from mcgw.exports.curves import KINDS, Kind, curves_of
@@ -20,10 +21,6 @@ from mcgw.scene.samplers import promise_of
 from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_text
 from mcgw.store.ensembles import open_ensemble, read_attributes
-
-__all__ = ["DEFAULT_QUANTILES", "checked", "export", "files_of_export", "surfaces_for"]
-
-Array = NDArray[np.float64]
 
 DEFAULT_POINTS, DEFAULT_QUANTILES = 40, (0.05, 0.95)
 _MOST_POINTS = 10_000

@@ -12,8 +12,6 @@ from mcgw.figures.data import FigureData
 from mcgw.machine.progress import steps
 from mcgw.scene.scene_file import scene_from
 
-__all__ = ["CATALOGUE", "Row", "figures_of", "of_paper", "rows_of"]
-
 _SURFACES = 2000  # of the paper's figures
 
 

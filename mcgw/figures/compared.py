@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analytic import QUANTITIES, Exponential, Hertz, Homogeneous, MeasuredHeights, Model
+from analytic.arrays import Array
 from analytic.laws import ContactLaw
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.regrading import regrade
@@ -21,10 +22,6 @@ from mcgw.sampling.law_sums import asperity_sums
 from mcgw.scene.in_words import law_text
 from mcgw.scene.samplers import promise_of
 from mcgw.scene.scene import Scene
-
-__all__ = ["ENOUGH", "SCENE", "Compared", "of_gamma"]
-
-Array = NDArray[np.float64]
 
 SCENE = "this scene"
 _STIFFER, _SOFTER = (2.0, 1.5, 1.2, 1.0), (1.0, 0.8, 0.5, 0.2)

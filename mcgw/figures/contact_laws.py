@@ -5,9 +5,9 @@ from functools import partial
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analytic import Exponential, Model
+from analytic.arrays import Array
 from analytic.laws import (
     ChangEtsionBogy,
     ContactLaw,
@@ -34,10 +34,6 @@ from mcgw.figures.data import (
     ratio_of_sums,
 )
 from mcgw.figures.style import prefixed
-
-__all__ = ["films", "laws_compared", "sliding", "way_back", "who_yields"]
-
-Array = NDArray[np.float64]
 
 _CRITICAL = 0.02
 _STRAIN = 0.004

@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from analytic import Hertz, quantity_of
+from analytic.arrays import Array
 from analytic.laws import Ways
 from mcgw.figures.style import STYLE
 from mcgw.formats.pictures import save_figure
@@ -20,9 +21,6 @@ from mcgw.maps.synthetic import Asperities, asperities_of
 from mcgw.maps.topography import Topography
 from mcgw.scene.scene import Scene
 
-__all__ = ["Spots", "contact_map_figure", "patch_figures", "save_contact_map", "spots_at"]
-
-Array = NDArray[np.float64]
 Colour = Literal["load", "modulus"]
 Window = tuple[float, float, float, float]
 

@@ -3,26 +3,10 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from analytic.arrays import Array
 from mcgw.formats.table import Column, Table
 
-__all__ = [
-    "GAMMA",
-    "PRESSURE",
-    "SEPARATION",
-    "Estimate",
-    "FigureData",
-    "Panel",
-    "Points",
-    "Series",
-    "figure_table",
-    "mean_points",
-    "quotient_of_sums",
-    "ratio_of_sums",
-]
-
-Array = NDArray[np.float64]
 Estimate = tuple[Array, Array]  # means and their standard errors
 
 GAMMA, SEPARATION, PRESSURE = "grading factor γ", "separation d/σ", "pressure $P/A_n$ (MPa)"

@@ -1,20 +1,16 @@
 """How finite surfaces differ from each other."""
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import ndtr
 
 from analytic import quantity_of
+from analytic.arrays import Array
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.simulation import simulate
 from mcgw.figures.compared import ENOUGH, SCENE, Compared
 from mcgw.figures.data import SEPARATION, FigureData, Panel, Points, Series
 from mcgw.figures.style import power_of_ten
 from mcgw.scene.scene import Scene
-
-__all__ = ["distribution", "fluctuations", "law_of_load", "spread"]
-
-Array = NDArray[np.float64]
 
 _SPREADING = ("load", "area", "stiffness")
 _FINE = 2048  # steps of the exact law in a bin: rounding each contact to a step shifts the mean by 1e-4

@@ -21,10 +21,6 @@ from mcgw.maps.summit_sums import summit_sums_of
 from mcgw.maps.topography import Topography
 from mcgw.maps.waves import Uncertain
 
-__all__ = ["save_fit_picture"]
-
-Array = NDArray[np.float64]
-
 _SIZE, _DPI = (11.0, 6.8), 160
 _POINTS = 700  # of a map along each side: more are not seen
 _MOST_MARKS = 3000

@@ -3,17 +3,13 @@
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
 import analytic
 from analytic import Exponential, Grading, mean_modulus
+from analytic.arrays import Array
 from mcgw.figures.compared import Compared, of_gamma
 from mcgw.figures.data import GAMMA, SEPARATION, Estimate, FigureData, Panel, Points, Series, ratio_of_sums
 from mcgw.figures.ratios import over_gamma
-
-__all__ = ["carriers", "mean_moduli", "negative_modulus"]
-
-Array = NDArray[np.float64]
 
 _PSI = r"$\psi/\psi_\mathrm{hom}$"
 _POWERS = {"number": 0.0, "area": 1.0, "load": 1.5}

@@ -16,8 +16,6 @@ from mcgw.figures.data import FigureData, Panel, Points, Series, figure_table
 from mcgw.figures.style import BACK, BAND, LEVEL, PAPER, STYLE, look, plain, power_of_ten
 from mcgw.formats.pictures import save_figure
 
-__all__ = ["draw", "draw_panel", "draw_residual", "figure_files", "save_figure_files"]
-
 # Inches. Places are given, not looked for: that takes as long as to draw.
 _WIDTH, _NARROWEST = 3.7, 4.4  # of a panel with its labels, and of a figure
 _LEFT, _RIGHT = 0.85, 0.12  # labels and ticks beside a panel

@@ -25,8 +25,6 @@ from mcgw.statistics.tradeoff import Tradeoff
 from mcgw.sweeps.pairs import Slopes
 from mcgw.sweeps.sweep import Sweep
 
-__all__ = ["draw"]
-
 _SEPARATION = "separation $d/\\sigma$"
 _MOST_LINES = 7
 

@@ -3,7 +3,6 @@
 from collections.abc import Iterator
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analytic import quantity_of
 from mcgw.ensemble.ensemble import Ensemble
@@ -11,10 +10,6 @@ from mcgw.ensemble.equal_pressure import at_pressures, common_pressures, with_va
 from mcgw.ensemble.results import MemoryResults
 from mcgw.figures.data import FigureData, Panel, Series
 from mcgw.scene.samplers import promise_of
-
-__all__ = ["MOST_SURFACES", "pressure_curves"]
-
-Array = NDArray[np.float64]
 
 MOST_SURFACES = 2000  # that mean and band are of: more would move them by less than a line is wide
 _POINTS = 60

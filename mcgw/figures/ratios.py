@@ -5,9 +5,9 @@ from dataclasses import replace
 from functools import partial
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analytic import Exponential, quantity_of
+from analytic.arrays import Array
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.separation import separation_on
 from mcgw.ensemble.simulation import simulate
@@ -25,14 +25,9 @@ from mcgw.figures.data import (
     ratio_of_sums,
 )
 from mcgw.figures.style import prefixed
-from mcgw.scene.scene import Scene, SceneError
+from mcgw.scene.scene import Scene
+from mcgw.scene.section import SceneError
 
-__all__ = [
-    "area_and_load", "area_per_load", "equal_load", "gradings", "load", "over_gamma", "stiffness",
-    "stiffness_ratios",
-]  # fmt: skip
-
-Array = NDArray[np.float64]
 Exact = Callable[[str | float, Array], Array]  # of a label or gamma at separations
 
 _BESIDE = 1.5  # sigma above the highest separation that a grading is shown

@@ -14,8 +14,6 @@ from mcgw.statistics.convergence import Convergence
 from mcgw.statistics.tradeoff import Tradeoff
 from mcgw.statistics.verdict import FALSE_ALARM
 
-__all__ = ["draw_checks", "draw_methods", "save_convergence", "save_tradeoff"]
-
 _TITLES = {"M": "surfaces $M$", "N": "asperities $N$"}
 _FLOOR = 1e-16
 _WIDE = 20  # times that are better told apart by their logarithms

@@ -17,13 +17,6 @@ from mcgw.machine.terminal import one_line
 from mcgw.scene.in_words import law_text
 from mcgw.scene.scene import Scene
 
-__all__ = [
-    "BACK", "BAND", "CATEGORIES", "FAMILIES", "GRADINGS", "HOMOGENEOUS", "LEVEL", "MARKED", "MEANINGS",
-    "MISSING", "MONTE_CARLO", "PAIRS", "PAPER", "SAMPLE", "SEEN", "SEPARATIONS", "STEPS", "STYLE", "THEORY",
-    "contact_label", "grading_label", "line", "look", "plain", "power_of_ten", "prefixed", "short",
-    "shown_title", "step",
-]  # fmt: skip
-
 THEORY, MONTE_CARLO = "#00598F", "#E0701A"
 SEEN: Any = {"color": MONTE_CARLO, "mfc": "none", "ms": 3}  # markers of means, on what theory says
 SAMPLE = "#9CCBEB"  # bars and bands of what was drawn, with lines upon them

@@ -17,20 +17,6 @@ from typing import Literal
 
 from mcgw.errors import StoreError
 
-__all__ = [
-    "Expected",
-    "State",
-    "alive",
-    "check_output",
-    "remove_stale",
-    "rename_over",
-    "state_of",
-    "sync",
-    "temporary_beside",
-    "whole_file",
-    "write_whole",
-]
-
 # What tells a file from another that has taken its name: inode, size, time of the last change.
 State = tuple[int, int, int]
 Expected = State | None | Literal["anything"]

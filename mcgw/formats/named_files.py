@@ -14,7 +14,6 @@ from mcgw.errors import StoreError
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["HDF5", "loads", "open_npy", "open_regular", "read_bytes", "read_text"]
 
 HDF5 = b"\x89HDF\r\n"  # how such a file begins
 _UNSOUND = (EOFError, KeyError, MemoryError, OverflowError, SyntaxError, TokenError, TypeError, ValueError)

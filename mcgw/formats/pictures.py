@@ -10,8 +10,6 @@ from matplotlib.figure import Figure
 
 from mcgw.formats.files import whole_file
 
-__all__ = ["figure_endings", "save_figure", "write_figure"]
-
 # No file knows when it was written, so that the same figure gives the same bytes.
 _UNDATED: dict[str, dict[str, Any]] = {"pdf": {"CreationDate": None}, "svg": {"Date": None}}
 

@@ -7,8 +7,6 @@ from html import escape
 from mcgw.formats.table import Table
 from mcgw.machine.terminal import one_line
 
-__all__ = ["Facts", "Sheet", "Shown", "brief", "listed"]
-
 Facts = Sequence[tuple[str, str]]
 _LONGEST = 88  # characters of one fact
 

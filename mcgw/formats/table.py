@@ -17,8 +17,6 @@ from mcgw.formats.numbers import columns as typeset_columns
 from mcgw.formats.numbers import typeset
 from mcgw.machine.terminal import one_line
 
-__all__ = ["SEPARATION", "Column", "Table", "evenly", "joined", "optional", "stacked"]
-
 SEPARATION = "d/sigma"  # over a column of separations
 _DIGITS = re.compile(r"\.(\d+)g")
 

@@ -5,8 +5,6 @@ import re
 import unicodedata
 from fractions import Fraction
 
-__all__ = ["EXAMPLES", "METRES", "parse", "quantity", "signed"]
-
 # Powers of ten as text: a product of fractions rounds once, so that "1.37 um" is 1.37e-6 to the last bit.
 _PREFIXES = {
     "": "1", "f": "1e-15", "p": "1e-12", "n": "1e-9", "u": "1e-6", "\N{GREEK SMALL LETTER MU}": "1e-6",

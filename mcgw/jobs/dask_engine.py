@@ -14,8 +14,6 @@ from urllib.parse import urlsplit
 from mcgw.errors import RunError
 from mcgw.jobs.engines import EngineLostError, pass_on
 
-__all__ = ["Dask", "check_address", "is_client"]
-
 # Of our own workers: the profiler holds frames, and with them HDF5 handles.
 _WORKERS = {"distributed.worker.profile.enabled": False}
 _ASK_AGAIN = 5.0  # seconds after which the workers are counted anew

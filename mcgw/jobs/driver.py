@@ -13,8 +13,6 @@ from typing import Any, TypeVar
 from mcgw.errors import RunError, StoppedError
 from mcgw.jobs.engines import Engine, EngineLostError, WorkerDiedError
 
-__all__ = ["Signals", "drive", "heed_signals"]
-
 _Block = TypeVar("_Block")
 
 _TRIES = 3

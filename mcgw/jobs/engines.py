@@ -16,8 +16,6 @@ from typing import Any, Protocol
 
 from mcgw.machine.child_process import end_with
 
-__all__ = ["Engine", "EngineLostError", "Processes", "Threads", "WorkerDiedError"]
-
 
 class WorkerDiedError(Exception):
     """The worker that had a block died; the block may be tried again."""

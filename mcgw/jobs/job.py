@@ -25,17 +25,16 @@ from mcgw.machine.memory import gibibytes
 from mcgw.sampling.samplers import name_of
 from mcgw.scene.scene import Scene
 from mcgw.scene.storable import storable
+from mcgw.store.disk import parts_of
 from mcgw.store.identity import difference, drawn_with, now
 from mcgw.store.place import held_by, recorded_scene
 from mcgw.store.plan import Plan
-from mcgw.store.run_folder import RunFolder, parts_of
+from mcgw.store.run_folder import RunFolder
 from mcgw.store.saving import body_of
 from mcgw.store.shards import Span, commit_shard
 
 if TYPE_CHECKING:
     from mcgw.sweeps.points import Asked
-
-__all__ = ["Job", "as_recorded", "commit_block", "draw_block"]
 
 
 @dataclass(frozen=True)

@@ -10,16 +10,15 @@ from mcgw.errors import RunError, StoreError
 from mcgw.formats.files import rename_over, state_of, sync, temporary_beside, write_whole
 from mcgw.jobs.driver import Signals, heed_signals
 from mcgw.jobs.job import Job
+from mcgw.store.disk import parts_of
 from mcgw.store.lock import locked
 from mcgw.store.place import tidy, whole_blocks
-from mcgw.store.run_folder import RunFolder, parts_of
+from mcgw.store.run_folder import RunFolder
 from mcgw.store.saving import merge_into
 
 if TYPE_CHECKING:
     from mcgw.ensemble.ensemble import Ensemble
     from mcgw.sweeps.sweep import Sweep
-
-__all__ = ["merge", "merge_once"]
 
 
 def merge(path: str | Path) -> "Ensemble | Sweep":

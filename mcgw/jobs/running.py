@@ -25,8 +25,6 @@ from mcgw.store.run_folder import RunFolder
 from mcgw.store.saving import write_body
 from mcgw.store.shards import Shard, Span
 
-__all__ = ["make", "run"]
-
 _ROUNDS = 3  # of merging, if shards turn out damaged
 
 

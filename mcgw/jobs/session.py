@@ -13,8 +13,6 @@ from mcgw.jobs.engines import Engine, Processes, Threads
 from mcgw.machine.progress import Progress, Tell, told
 from mcgw.store.shards import Span
 
-__all__ = ["By", "Part", "asked_of", "chosen_engine", "dashboard_of", "part_of"]
-
 _ENGINES = ("threads", "processes", "dask")
 
 

@@ -14,8 +14,6 @@ from mcgw.sweeps.drawing import draw, weighted
 from mcgw.sweeps.points import Asked
 from mcgw.sweeps.sweep import STATISTICS, Sweep
 
-__all__ = ["sweep"]
-
 
 @overload
 def sweep(

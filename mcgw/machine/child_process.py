@@ -19,8 +19,6 @@ import threading
 from collections.abc import Callable
 from pathlib import Path
 
-__all__ = ["ChildError", "end_with", "limit_memory", "memory_limit", "run_child"]
-
 
 class ChildError(Exception):
     """The child ended badly; the message says how, `said` is its last line."""

@@ -32,8 +32,6 @@ from numba.core.typed_passes import NativeLowering
 
 from mcgw.errors import RunError
 
-__all__ = ["njit"]
-
 if numba.config.DISABLE_JIT:  # type: ignore[attr-defined, unused-ignore]
     raise RunError(
         "NUMBA_DISABLE_JIT is set, but the loops of mcgw count in unsigned words that only compiled code "

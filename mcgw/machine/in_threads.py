@@ -18,8 +18,6 @@ from typing import TypeVar
 import numpy as np
 from numba import get_num_threads, set_num_threads
 
-__all__ = ["Items", "in_threads", "one_ahead", "pieces"]
-
 _Item = TypeVar("_Item")
 _Result = TypeVar("_Result")
 Items = Generator[_Item, None, None]

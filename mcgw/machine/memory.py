@@ -16,10 +16,6 @@ from numpy.typing import NDArray
 from mcgw.errors import StoreError
 from mcgw.machine.child_process import memory_limit
 
-__all__ = [
-    "aligned", "check_memory", "gibibytes", "keep_freed_memory", "kept", "memory_available", "peak_growth",
-]  # fmt: skip
-
 _Result = TypeVar("_Result")
 _MOST = 2**63 - 1
 _SMALL = 2**24  # bytes; to look how many there are takes half a millisecond

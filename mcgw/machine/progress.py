@@ -7,8 +7,6 @@ from contextvars import ContextVar
 from itertools import count
 from typing import Any, TypeVar
 
-__all__ = ["Progress", "bar", "stages", "steps", "told", "watched"]
-
 _Item = TypeVar("_Item")
 _WATCHED = ContextVar("_WATCHED", default=False)
 Tell = Callable[[float, float], Any]

@@ -10,8 +10,6 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from typing import Any
 
-__all__ = ["Plain", "bind_drawing", "one_line", "plain_output", "plain_text", "plotted"]
-
 _bound: dict[str, Callable[..., Any]] = {}
 _SHORT = {"\n": "\\n", "\r": "\\r", "\t": "\\t"}
 

@@ -12,18 +12,6 @@ from scipy.sparse.linalg import cg
 
 from mcgw.maps.topography import Topography
 
-__all__ = [
-    "BENT",
-    "Recorded",
-    "bad_edges",
-    "filled",
-    "recorded",
-    "small_spike_heights",
-    "spike_heights",
-    "spikes_of",
-    "usual_bend",
-]
-
 Array = NDArray[np.float64]
 
 _STEPS, _CLOSE = 2000, 1e-8

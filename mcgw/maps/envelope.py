@@ -16,8 +16,6 @@ from mcgw.machine.compiling import njit
 from mcgw.maps.synthetic import Asperities
 from mcgw.maps.topography import Topography, checked_shape
 
-__all__ = ["envelope", "hidden_summits"]
-
 Ints = NDArray[np.int64]
 
 

@@ -15,21 +15,6 @@ from mcgw.maps.hidden_caps import unhidden
 from mcgw.maps.summit_sums import SUMS, SummitSums
 from mcgw.maps.waves import Uncertain, Waves, uncertain
 
-__all__ = [
-    "METHODS",
-    "Estimate",
-    "Roughness",
-    "by_caps",
-    "by_moments",
-    "by_summits",
-    "estimates_table",
-    "jackknife",
-    "mean_squares",
-    "moments_of",
-    "roughness_of",
-    "skewness_of",
-]
-
 Array = NDArray[np.float64]
 Pairs = list[tuple[float, float]]
 

@@ -37,8 +37,6 @@ from mcgw.maps.summits import Summits, summits_of
 from mcgw.maps.topography import Topography
 from mcgw.maps.waves import Uncertain, Waves, uncertain, waves_of
 
-__all__ = ["Fit", "fit_prepared"]
-
 # Of caps placed at random 12 and 20 pixels apart, so many were lost as if a summit had to be 0.7 to 1.2
 # pixels from a valley, and 0.2 to 0.45 cutoffs.
 _BLUR = 0.3

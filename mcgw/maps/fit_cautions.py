@@ -12,8 +12,6 @@ from mcgw.maps.profile import Profile
 from mcgw.maps.profile_fit import ProfileFit
 from mcgw.maps.topography import STEEPEST, Topography
 
-__all__ = ["cautions", "profile_cautions"]
-
 _WIDEST = 1e-2  # m
 _FEW_WAVES = 50  # sigma known to a tenth
 _PIXELS = 10.0  # a cutoff wavelength should have

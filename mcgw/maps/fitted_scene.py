@@ -16,8 +16,6 @@ from mcgw.scene.fitted import Fitted
 from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_document
 
-__all__ = ["fitted_scene", "heights_beside", "write_scene"]
-
 Heights = Literal["gaussian", "nayak", "table", "measured", "summits"]
 _FITTED = ("load", "area", "stiffness", "contacts", "conductance")  # what a fitted scene asks for
 

@@ -16,8 +16,6 @@ from mcgw.maps.steps import Form, LinesTo, Missing, SpikesTo, StepTo
 from mcgw.maps.topography import Topography
 from mcgw.scene.arguments import argument
 
-__all__ = ["fit", "fit_lines", "fit_map"]
-
 
 def fit(
     heights: str | Path | Topography | Profile | Sequence[str | Path | Profile],

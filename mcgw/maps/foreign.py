@@ -20,8 +20,6 @@ from mcgw.formats.named_files import open_npy
 from mcgw.machine.child_process import ChildError, limit_memory, run_child
 from mcgw.maps.topography import Topography, checked_shape, height_unit
 
-__all__ = ["ForeignError", "UnreadableError", "is_foreign_line", "read_foreign", "read_foreign_line"]
-
 Array = NDArray[np.float64]
 
 _HEIGHTS = "heights.npy"

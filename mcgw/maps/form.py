@@ -12,16 +12,6 @@ from scipy.optimize import least_squares
 from mcgw.maps.steps import Form, LinesTo
 from mcgw.maps.topography import Topography
 
-__all__ = [
-    "ORDERS",
-    "filter_variance",
-    "gaussian_transmission",
-    "lowpass",
-    "smooth",
-    "without_form",
-    "without_offsets",
-]
-
 Array = NDArray[np.float64]
 ORDERS = {"none": -1, "plane": 1, "quadratic": 2, "cubic": 3, "quartic": 4, "sphere": 2, "cylinder": 2}
 

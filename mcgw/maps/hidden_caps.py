@@ -17,8 +17,6 @@ from numpy.typing import NDArray
 from scipy.optimize import brentq
 from scipy.special import ndtr
 
-__all__ = ["CROWDED", "Visible", "unhidden", "visible"]
-
 CROWDED = 0.05  # eta R sigma, from which one summit in six is hidden: the asperities are no longer apart
 Array = NDArray[np.float64]
 

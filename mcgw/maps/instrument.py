@@ -19,8 +19,6 @@ from mcgw.maps.bad_points import BENT, usual_bend
 from mcgw.maps.form import gaussian_transmission
 from mcgw.maps.preparation import Prepared
 
-__all__ = ["CHECKS", "Check", "faults"]
-
 Array = NDArray[np.float64]
 
 _ENOUGH = 2**20  # second differences

@@ -11,8 +11,6 @@ from mcgw.maps.steps import Form
 from mcgw.maps.topography import Topography
 from mcgw.maps.waves import block_means
 
-__all__ = ["FormLeft", "Step", "form_left", "step_of"]
-
 Array = NDArray[np.float64]
 
 _COARSE, _BLOCKS = 192, 24

@@ -17,8 +17,6 @@ from mcgw.maps.text_file import read_text
 from mcgw.maps.topography import STEEPEST, Topography, checked_shape, height_unit, single_points
 from mcgw.maps.x3p import read_x3p, write_x3p
 
-__all__ = ["WRITTEN", "files_of_map", "read_map", "read_npy", "write_h5", "write_map"]
-
 _FILETYPE = "mcgw-surface"
 _MOST_JSON = 2**16
 WRITTEN = (".sdf", ".ascii.sdf", ".x3p", ".npy", ".h5")

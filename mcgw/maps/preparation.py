@@ -17,8 +17,6 @@ from mcgw.scene.arguments import arguments
 from mcgw.scene.kinds import Whole, Word
 from mcgw.scene.section import Kind
 
-__all__ = ["Preparation", "Prepared", "preparation_of", "prepared"]
-
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 

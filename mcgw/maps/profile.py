@@ -11,8 +11,6 @@ from mcgw.maps.form import filter_variance
 from mcgw.maps.steps import Form
 from mcgw.maps.topography import STEEPEST
 
-__all__ = ["PROFILE_ORDERS", "Profile", "profile_at", "smooth_profile", "without_profile_form"]
-
 Array = NDArray[np.float64]
 
 _EVEN = 0.1  # of a step, which places may lie beside an even grid

@@ -15,8 +15,6 @@ from mcgw.maps.profile import Profile, profile_at
 from mcgw.maps.text_file import lines_of, numbers_of, words_of
 from mcgw.maps.topography import height_unit
 
-__all__ = ["holds_profile", "read_profile"]
-
 Array = NDArray[np.float64]
 
 _MOST_HEADER = 500  # lines

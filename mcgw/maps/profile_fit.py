@@ -24,8 +24,6 @@ from mcgw.maps.profile_waves import ProfileWaves, waves_of_profile
 from mcgw.maps.steps import Form
 from mcgw.maps.waves import Uncertain, log_derivatives, uncertain
 
-__all__ = ["ProfileFit", "fit_profiles"]
-
 Array = NDArray[np.float64]
 
 _PIECES = 16

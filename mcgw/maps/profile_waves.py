@@ -28,8 +28,6 @@ from scipy.special import dawsn
 from mcgw.maps.form import filter_variance
 from mcgw.maps.profile import Profile
 
-__all__ = ["ProfileWaves", "areal_weights", "stencil_weights", "waves_of_profile"]
-
 Array = NDArray[np.float64]
 
 _SERIES = 0.02  # below, two terms of the series have 1e-9

@@ -22,8 +22,6 @@ from mcgw.formats.files import whole_file
 from mcgw.maps.foreign import ForeignError
 from mcgw.maps.topography import Topography, checked_shape
 
-__all__ = ["read_sdf", "write_sdf"]
-
 _HEADER = struct.Struct("<8s10s12s12sHHddddBBB")
 _TYPES = ("u1", "<u2", "<u4", "<f4", "i1", "<i2", "<i4", "<f8")
 _MISSING = {"<u2": 2**16 - 1, "<u4": 2**32 - 1, "<i2": -(2**15), "<i4": -(2**31)}

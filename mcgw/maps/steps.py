@@ -3,8 +3,6 @@
 from dataclasses import dataclass
 from typing import Literal, get_args
 
-__all__ = ["STEPS", "Form", "LinesTo", "Missing", "SpikesTo", "Step", "StepTo"]
-
 Form = Literal["plane", "none", "quadratic", "cubic", "quartic", "sphere", "cylinder"]
 Missing = Literal["auto", "mask", "fill"]
 SpikesTo = Literal["keep", "remove"]

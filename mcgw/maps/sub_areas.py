@@ -9,8 +9,6 @@ from numpy.typing import NDArray
 from mcgw.formats.table import Column, Table
 from mcgw.maps.summit_sums import SUMS, SummitSums
 
-__all__ = ["TILES", "Alone", "alone_of", "tiles_of", "variation"]
-
 Array = NDArray[np.float64]
 
 TILES = (  # what stands above their table in a file

@@ -11,8 +11,6 @@ from scipy import ndimage
 from mcgw.machine.compiling import njit
 from mcgw.maps.topography import Topography
 
-__all__ = ["EDGE", "SUMS", "SummitSums", "coarse_sums_of", "summit_sums_of"]
-
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 

@@ -9,8 +9,6 @@ from mcgw.formats.table import Column, Table
 from mcgw.maps.summit_sums import EDGE, SummitSums
 from mcgw.maps.topography import Topography
 
-__all__ = ["SUMMITS", "Summits", "summits_of"]
-
 Array = NDArray[np.float64]
 
 SUMMITS = (  # what stands above their table in a file

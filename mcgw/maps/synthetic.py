@@ -15,8 +15,6 @@ from mcgw.sampling.asperities import summits
 from mcgw.sampling.philox import POSITIONS, uniforms
 from mcgw.scene.scene import Scene
 
-__all__ = ["Asperities", "Spectrum", "asperities_of", "gaussian_map", "moments_on_grid", "spectrum_from"]
-
 _HURST = 0.8
 _UNITS = {"rms": "m", "long": "m", "short": "m", "m0": "m^2", "m4": "1/m^2"}
 _NARROWEST, _WIDEST = 1 + 1e-6, 1e6  # ratio of the long to the short wavelength

@@ -11,8 +11,6 @@ from numpy.typing import NDArray
 from mcgw.maps.foreign import ForeignError
 from mcgw.maps.topography import Topography, checked_shape, height_unit, metres_in, single_points
 
-__all__ = ["lines_of", "numbers_of", "read_text", "words_of"]
-
 _MOST_LINE = 2**24
 _LENGTH = re.compile(r"#\s*(Width|Height|Breite|Höhe)\s*:\s*([-+.,\deE]+)\s*(\S+)\s*$")
 _ENGLISH = {"Breite": "Width", "Höhe": "Height"}

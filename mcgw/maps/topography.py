@@ -9,8 +9,6 @@ from numpy.typing import NDArray
 
 from mcgw.formats.units import METRES
 
-__all__ = ["SMALLEST", "STEEPEST", "Topography", "checked_shape", "height_unit", "metres_in", "single_points"]
-
 Array = NDArray[np.float64]
 
 MOST_PIXELS = 2**28  # 16384 x 16384: 2 GiB as float64

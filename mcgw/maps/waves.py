@@ -13,8 +13,6 @@ from scipy.special import gammaincinv, ndtr, polygamma, spherical_jn, stdtrit
 from analytic import SpectralMoments
 from mcgw.maps.topography import Topography
 
-__all__ = ["Spread", "Uncertain", "Waves", "block_means", "log_derivatives", "uncertain", "waves_of"]
-
 Array = NDArray[np.float64]
 
 _ACROSS = 2048  # points that are looked at; of the waves shorter than that there are always many

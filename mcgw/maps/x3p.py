@@ -18,8 +18,6 @@ from numpy.typing import NDArray
 from mcgw.formats.files import whole_file
 from mcgw.maps.topography import Topography, checked_shape
 
-__all__ = ["read_x3p", "write_x3p"]
-
 _NAMESPACE = "http://www.opengps.eu/2008/ISO5436_2"
 _TYPES = {"I": "<i2", "L": "<i4", "F": "<f4", "D": "<f8"}
 _MAIN, _DATA, _SUMS = "main.xml", "bindata/data.bin", "md5checksum.hex"

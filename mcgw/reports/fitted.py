@@ -10,8 +10,6 @@ from mcgw.maps.profile_fit import ProfileFit
 from mcgw.maps.sub_areas import variation
 from mcgw.maps.waves import Uncertain
 
-__all__ = ["fit_lines", "map_line", "profile_line", "profile_lines"]
-
 
 def map_line(name: str, asked: Preparation, assumed_unit: str) -> str:
     """Which map it was, its form and cutoff, and the unit that was taken where none was told."""

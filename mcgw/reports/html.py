@@ -29,8 +29,6 @@ from mcgw.statistics.comparison import Comparison, compare
 from mcgw.sweeps.over_points import sweep_cautions
 from mcgw.sweeps.sweep import Sweep
 
-__all__ = ["report_html", "sweep_report_html"]
-
 _MOST_ROWS = 9
 _LISTED = 12  # points
 Facts = list[tuple[str, str]]

@@ -21,8 +21,6 @@ from mcgw.sweeps.drawing import Pooling
 from mcgw.sweeps.groups import Group
 from mcgw.sweeps.points import Asked
 
-__all__ = ["Plan", "plan_of", "plan_text", "sweep_plan_text"]
-
 
 @dataclass(frozen=True)
 class Plan:

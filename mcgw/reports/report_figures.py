@@ -23,15 +23,6 @@ from mcgw.formats.pictures import write_figure
 from mcgw.scene.scene import Scene
 from mcgw.statistics.comparison import Comparison
 
-__all__ = [
-    "PageFigure",
-    "comparison_figures",
-    "line_figure",
-    "means_figures",
-    "patch_pictures",
-    "pressure_pictures",
-]
-
 _DPI = 150
 _FITTED = "Fitted to "  # how titles of scenes that mcgw fit writes begin, before the name of the map
 

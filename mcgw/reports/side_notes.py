@@ -14,8 +14,6 @@ from mcgw.scene.validity import Validity
 if TYPE_CHECKING:
     from mcgw.ensemble.forecast import Forecast
 
-__all__ = ["after", "against_elasticity", "before", "elasticity_words", "two_questions", "upper_contacts"]
-
 
 def two_questions(found: Validity, file: object = "FILE.h5") -> list[str]:
     """Where nothing was compared: how to, and the verdict against elasticity."""

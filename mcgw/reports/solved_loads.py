@@ -11,8 +11,6 @@ from mcgw.reports.side_notes import two_questions
 from mcgw.scene.in_words import contact_facts
 from mcgw.scene.scene import Scene
 
-__all__ = ["solutions_table", "solutions_text"]
-
 _SHOWN = ("contact law", "film", "interaction")  # what of the contacts counts at a given load
 
 

@@ -23,14 +23,6 @@ if TYPE_CHECKING:
     from mcgw.statistics.comparison import SweepComparison
     from mcgw.sweeps.sweep import Sweep
 
-__all__ = [
-    "comparison_summary",
-    "comparison_text",
-    "progress_of",
-    "ratio_tables",
-    "summary",
-    "summary_of",
-]
 
 _MOST_ROWS = 9
 _KEPT = "statistics alone: mean, covariance, skewness, quantiles, extremes"

@@ -17,18 +17,13 @@ from typing import Any
 
 import numpy as np
 from numpy.polynomial import chebyshev
-from numpy.typing import NDArray
 
+from analytic.arrays import Array, Ints
 from mcgw.machine.compiling import njit
 from mcgw.sampling.exp_log import make_normal
 from mcgw.sampling.layout import Layout
 from mcgw.sampling.philox import MOMENTS, centred, made_for
 from mcgw.sampling.rules import gauss_legendre, product, triangle
-
-__all__ = ["CROWDED", "VARYING", "add_gaussian_moments"]
-
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 CROWDED = 256  # asperities in a cell, from which its moments count as Gaussian
 VARYING = 1e-6  # accuracy of the laws up to which moments vary, if only sums are kept

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analytic import MeasuredHeights
+from analytic.arrays import Array
 from mcgw.machine.memory import check_memory
 from mcgw.sampling.cells import Mesh
 from mcgw.sampling.counts import counts_of, generator
@@ -19,18 +20,7 @@ from mcgw.scene.storable import storable
 if TYPE_CHECKING:
     from mcgw.sampling.radius_table import RadiusTable
 
-__all__ = [
-    "Listing",
-    "heights",
-    "listing_sampler",
-    "radii",
-    "same_heights",
-    "summits",
-    "summits_drawn",
-    "touching_summits",
-]
 
-Array = NDArray[np.float64]
 Listed = tuple[Array, Array | None]  # reduced heights; radii over the surface's, where summits have their own
 
 

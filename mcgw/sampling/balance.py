@@ -18,8 +18,6 @@ from mcgw.machine.compiling import njit
 from mcgw.sampling.lanes import LANES, alike, fused, load, roots, total
 from mcgw.sampling.philox import CELLS, centred, made_for
 
-__all__ = ["FAILED", "POINTS", "SUMS", "balance_surfaces", "no_balance"]
-
 POINTS = 16  # of a cell; the error falls as 5.8 to their number
 SUMS = 5  # load, slope of the load, area, conductance (all reduced) and contacts
 FAILED = -1.0  # in place of the contacts: the surface has no balance

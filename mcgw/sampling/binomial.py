@@ -26,8 +26,6 @@ from mcgw.sampling.binomial_ratio import below_ratio, ratio_over_mode
 from mcgw.sampling.exp_log import exp_minus, log_one_minus
 from mcgw.sampling.philox import COUNTS, two_wide
 
-__all__ = ["SURFACES", "TRIALS", "WORDS", "binomials"]
-
 SURFACES = 64  # at a time, whoever asks for more of them
 TRIALS, _SURFACE, _PENDING, _PROPOSED, _WEIGHT, WORDS = (SURFACES * part for part in range(1, 7))
 _LEFT, _PROBABILITY = _PROPOSED, _WEIGHT

@@ -13,8 +13,6 @@ import numpy as np
 from mcgw.machine.compiling import njit
 from mcgw.sampling.exp_log import log
 
-__all__ = ["below_ratio", "ratio_over_mode"]
-
 _ZERO = 0.5 / math.pi  # stands for 0 in Stirling's formula, which makes it exact
 # Logarithms of k! / (sqrt(2 pi k) (k/e)^k) for k = 0 ... 15, rounded from 40 digits.
 _ERRORS = np.array(

@@ -3,12 +3,8 @@
 from dataclasses import dataclass
 from typing import Protocol, TypeVar
 
-import numpy as np
-from numpy.typing import NDArray
+from analytic.arrays import Array
 
-__all__ = ["Block", "Sampler", "Source"]
-
-Array = NDArray[np.float64]
 Drawn = TypeVar("Drawn", covariant=True)
 
 

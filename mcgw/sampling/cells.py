@@ -20,6 +20,7 @@ from numpy.polynomial import chebyshev
 from numpy.typing import NDArray
 
 from analytic import Gaussian, Grading, HeightLaw, PiecewiseSeries, bends
+from analytic.arrays import Array
 from analytic.elementary import exp
 from mcgw.machine.in_threads import in_threads
 from mcgw.machine.memory import kept
@@ -29,21 +30,6 @@ from mcgw.sampling.spacing import DIGITS, Gaps, cuts
 from mcgw.sampling.stretches import SMALLEST, begins_and_breaks, losses
 from mcgw.scene.fields import EXACT
 from mcgw.scene.scene import Scene
-
-__all__ = [
-    "CHANGING",
-    "NODES",
-    "TO_COEFFICIENTS",
-    "Mesh",
-    "cut",
-    "evenness",
-    "height_noise",
-    "mesh_of",
-    "no_cells",
-    "series_accuracy",
-]
-
-Array = NDArray[np.float64]
 
 _ROUNDING = 1e-9  # of the width of a cell
 _CONVERGED = 1e-9  # a step of Newton whose square is nothing

@@ -32,8 +32,6 @@ from numba.core import cgutils
 from mcgw.machine.compiling import njit
 from mcgw.sampling.lanes import LANES, called, intrinsic_of, place, same, sum_of
 
-__all__ = ["BUFFER", "PLAIN", "ROOTED", "WORDS", "add_uniforms", "add_weighted", "stratify", "unfold"]
-
 BUFFER = 1024  # uniforms at a time: they stay in the innermost cache
 _variable: Any = cgutils.alloca_once_value
 _ROOT, PLAIN, ROOTED, WORDS = 1024, 2048, 2080, 2112  # see above

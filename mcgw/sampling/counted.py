@@ -6,9 +6,9 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analytic import quantity_of
+from analytic.arrays import Array, Ints
 from mcgw.sampling.block import Block
 from mcgw.sampling.cells import Mesh
 from mcgw.sampling.counts import Counts, contacts_above, counts_of
@@ -25,10 +25,6 @@ if TYPE_CHECKING:
     from mcgw.sampling.families import Families
     from mcgw.sampling.radius_table import RadiusTable
 
-__all__ = ["Counted"]
-
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 _WORDS = 12  # numbers in memory for an asperity drawn by itself
 

@@ -9,14 +9,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from analytic.arrays import Array, Ints
 from mcgw.sampling.cells import Mesh
 from mcgw.sampling.halving import halvings_of, share_out
 from mcgw.scene.scene import Scene
-
-__all__ = ["GROUP", "Counts", "contacts_above", "counts_of", "generator", "strata_of"]
-
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 GROUP = 64  # surfaces whose total numbers come from one generator of NumPy, which takes longer to make
 _RARE = 1e-8  # below, binomial and Poisson differ less than 1 - p is rounded

@@ -14,19 +14,15 @@ doubled, is held against what may be spent. The distance itself is half of it (`
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import pdtr, pdtrc
 
 from analytic import quantity_of
+from analytic.arrays import Array
 from mcgw.sampling.aggregate import CROWDED
 from mcgw.sampling.cells import Mesh
 from mcgw.sampling.law_sums import asperity_sums
 from mcgw.sampling.rules import gauss_legendre, product
 from mcgw.scene.scene import Scene
-
-__all__ = ["Crowding", "crowding"]
-
-Array = NDArray[np.float64]
 
 _MOST = 2**24  # of a crowd; fewer than CROWDED are as quickly drawn one by one
 _TOGETHER = 16  # cells whose laws are in memory

@@ -3,16 +3,12 @@
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from analytic.arrays import Array
 from mcgw.sampling.block import Block
 from mcgw.sampling.counts import generator
 from mcgw.sampling.law_sums import asperity_sums
 from mcgw.scene.scene import Scene
-
-__all__ = ["Direct"]
-
-Array = NDArray[np.float64]
 
 _PURPOSE = 1  # of NumPy's generator; the counts have 0
 _PIECE = 2**20  # heights at a time

@@ -11,16 +11,12 @@ from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
+from analytic.arrays import Array
 from mcgw.sampling.aggregate import add_gaussian_moments
 from mcgw.sampling.counts import Counts
 from mcgw.sampling.layout import Layout
 from mcgw.sampling.moments import cell_moments
-
-__all__ = ["Crowds", "Drawing", "InStrata", "OneByOne"]
-
-Array = NDArray[np.float64]
 
 
 class Drawing(Protocol):

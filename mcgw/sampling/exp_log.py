@@ -14,8 +14,6 @@ from analytic.heights import normal_log_ratio
 from mcgw.machine.compiling import njit
 from mcgw.sampling.lanes import bits, fused, number
 
-__all__ = ["exp_minus", "log", "log_one_minus", "make_normal", "weigh_exponentials", "weigh_normal_densities"]
-
 _LOG2_HIGH, _LOG2_LOW = 0.693147180369123816490, 1.90821492927058770002e-10  # the first has 33 bits
 _HALF = math.sqrt(0.5)
 _TAYLOR = np.array(TAYLOR)

@@ -9,15 +9,11 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analytic import quantity_of
+from analytic.arrays import Array
 from mcgw.sampling.layout import Layout
 from mcgw.sampling.response.response import Response
-
-__all__ = ["POWERS", "Families"]
-
-Array = NDArray[np.float64]
 
 POWERS = (0.5, 1.0)  # of the radius, that quantities have
 

@@ -12,13 +12,10 @@ import numpy as np
 from numba import uint64
 from numpy.typing import NDArray
 
+from analytic.arrays import Ints
 from mcgw.machine.compiling import njit
 from mcgw.sampling.binomial import SURFACES, TRIALS, WORDS, binomials
 from mcgw.sampling.cells import Mesh
-
-__all__ = ["Halvings", "halvings_of", "share_out"]
-
-Ints = NDArray[np.int64]
 
 _BITS = 2.0**46  # of a probability: of a law of scipy.stats the last ones differ between kinds of CPU
 

@@ -6,12 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analytic import quantity_of
+from analytic.arrays import Array
 from mcgw.machine.compiling import njit
 from mcgw.scene.scene import Scene
-
-__all__ = ["hertz_sums"]
-
-Array = NDArray[np.float64]
 
 
 @njit(cache=True, inline="always")

@@ -16,23 +16,6 @@ from numba.core import cgutils
 from numba.core.typing.templates import ConcreteTemplate, infer_global, signature
 from numba.extending import intrinsic, lower_builtin, models, register_model
 
-__all__ = [
-    "LANES",
-    "alike",
-    "bits",
-    "called",
-    "fused",
-    "intrinsic_of",
-    "load",
-    "number",
-    "place",
-    "roots",
-    "same",
-    "store",
-    "sum_of",
-    "total",
-]
-
 LANES = 4
 
 _DOUBLE = ir.DoubleType()

@@ -6,14 +6,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analytic import quantity_of
+from analytic.arrays import Array
 from analytic.laws import term_of
 from mcgw.sampling.hertz import hertz_sums
 from mcgw.sampling.sideways import tangential_loads
 from mcgw.scene.scene import Scene
-
-__all__ = ["asperity_sums"]
-
-Array = NDArray[np.float64]
 
 
 def asperity_sums(

@@ -24,8 +24,6 @@ from mcgw.sampling.layout import Layout
 from mcgw.sampling.philox import CELLS, centred
 from mcgw.sampling.spacing import price
 
-__all__ = ["add_compensated", "cell_moments", "in_runs_of_cells"]
-
 _START = 80.0  # asperities that take as long to draw as a cell takes to begin
 _ALONE = 1e6  # asperities' work that a thread does before another one has begun
 _PIECE = 512 * 512  # a plain sum of so many terms is good to 1e-14; beyond, it is compensated

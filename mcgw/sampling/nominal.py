@@ -5,9 +5,9 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analytic import quantity_of
+from analytic.arrays import Array
 from mcgw.sampling.balance import FAILED, POINTS, balance_surfaces, no_balance
 from mcgw.sampling.block import Block
 from mcgw.sampling.cells import NODES, TO_COEFFICIENTS, Mesh, mesh_of
@@ -17,10 +17,6 @@ from mcgw.sampling.moments import cell_moments
 from mcgw.sampling.outside import extra_heights
 from mcgw.sampling.rules import chebyshev_points, chebyshev_transform, product
 from mcgw.scene.scene import Scene
-
-__all__ = ["CellsAtNominal"]
-
-Array = NDArray[np.float64]
 
 _POINTS = chebyshev_points(POINTS)
 _TRANSFORM = chebyshev_transform(_POINTS)

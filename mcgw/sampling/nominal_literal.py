@@ -9,10 +9,10 @@ from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import brentq
 
 from analytic import quantity_of
+from analytic.arrays import Array
 from analytic.laws import term_of
 from mcgw.sampling.balance import no_balance
 from mcgw.sampling.block import Block
@@ -20,10 +20,6 @@ from mcgw.sampling.counted import Counted
 from mcgw.sampling.counts import counts_of
 from mcgw.sampling.outside import extra_heights
 from mcgw.scene.scene import Scene
-
-__all__ = ["TailAtNominal", "balanced_sums"]
-
-Array = NDArray[np.float64]
 
 _CLOSE = 4e-15
 _MOST_STEPS = 10_000

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from analytic.arrays import Array
 from mcgw.machine.compiling import njit
 from mcgw.machine.memory import check_memory
 from mcgw.sampling.cells import Mesh
@@ -15,9 +16,6 @@ from mcgw.scene.scene import Scene
 if TYPE_CHECKING:
     from mcgw.sampling.radius_table import RadiusTable
 
-__all__ = ["extra_heights"]
-
-Array = NDArray[np.float64]
 
 _HIGH, _LOW, _RADII = 0, 1, 2  # streams, and what leads from one of heights to that of their radii
 _MANY, _BYTES = 10**7, 100  # heights that are worth asking whether there is room; bytes of one

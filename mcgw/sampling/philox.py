@@ -27,25 +27,6 @@ from numpy.typing import NDArray
 from mcgw.machine.compiling import njit
 from mcgw.sampling.lanes import number
 
-__all__ = [
-    "AT_ONCE",
-    "CELLS",
-    "COUNTS",
-    "EXTRAS",
-    "MOMENTS",
-    "POSITIONS",
-    "RADII",
-    "RADII_LOW",
-    "REST",
-    "TAIL",
-    "centred",
-    "made_for",
-    "philox",
-    "stream_of",
-    "two_wide",
-    "uniforms",
-]
-
 AT_ONCE = 64  # words that are made together
 
 # Purposes: streams of the same surface that must not overlap.

@@ -14,18 +14,14 @@ from typing import Any
 
 import numpy as np
 from numpy.polynomial import chebyshev
-from numpy.typing import NDArray
 
 from analytic import Nayak, RandomCurvature
+from analytic.arrays import Array
 from analytic.curvature import MEAN_CURVATURE
 from analytic.curvature_given_height import CurvatureGivenHeight
 from mcgw.machine.compiling import njit
 from mcgw.sampling.lanes import bits, fused
 from mcgw.sampling.rules import chebyshev_points, chebyshev_transform, gauss_legendre, product
-
-__all__ = ["RadiusTable", "radius_table", "root_ratio"]
-
-Array = NDArray[np.float64]
 
 _PANELS = 4  # in a unit of height
 _OCTAVES, _FINE, _PARTS = 64, 8, 4  # of a uniform; those that are cut, and into how many parts

@@ -9,14 +9,10 @@ from typing import Any
 
 import numpy as np
 from numpy.polynomial import chebyshev
-from numpy.typing import NDArray
 
+from analytic.arrays import Array
 from mcgw.machine.compiling import njit
 from mcgw.sampling.lanes import LANES, alike, fused, load, store
-
-__all__ = ["chebyshev_points", "chebyshev_transform", "gauss_legendre", "multiply", "product", "triangle"]
-
-Array = NDArray[np.float64]
 
 _TOGETHER = 4 * LANES  # columns
 

@@ -29,7 +29,8 @@ from mcgw.sampling.counts import Counts, counts_of, strata_of
 from mcgw.sampling.direct import Direct
 from mcgw.sampling.drawing import Crowds, InStrata, OneByOne
 from mcgw.sampling.layout import Layout
-from mcgw.sampling.response.response import Precision, Response, layout_of, response_of
+from mcgw.sampling.response.nodes import Precision
+from mcgw.sampling.response.response import Response, layout_of, response_of
 from mcgw.sampling.response.walk import UnresolvedError
 from mcgw.sampling.stretches import begins_and_breaks
 from mcgw.scene.samplers import Promise, promise_of
@@ -39,7 +40,6 @@ from mcgw.scene.storable import storable
 if TYPE_CHECKING:
     from mcgw.sampling.families import Families
 
-__all__ = ["Sampler", "aggregate_of", "cells_of", "law_error_of", "name_of", "regraded", "sampler_of"]
 
 _GAUSSIAN, _WORTH = 300, 1.5  # asperities that a crowded cell takes as long as; times that much faster
 _CUTS = 16  # in four, of a cell on which the modulus, and the law of contact under it, are not resolved

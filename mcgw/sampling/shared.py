@@ -21,8 +21,6 @@ from mcgw.sampling.response.walk import UnresolvedError
 from mcgw.sampling.samplers import cells_of, name_of, sampler_of, tail_of
 from mcgw.scene.scene import Scene
 
-__all__ = ["Alone", "Shared", "on_common_cells", "shared", "to_be_shared"]
-
 
 @dataclass(frozen=True)
 class Alone:

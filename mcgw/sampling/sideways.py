@@ -1,13 +1,9 @@
 """Tangential loads of surfaces, from their normal loads at the separations of a scene and shifted ones."""
 
 import numpy as np
-from numpy.typing import NDArray
 
+from analytic.arrays import Array
 from mcgw.scene.scene import Scene
-
-__all__ = ["tangential_loads"]
-
-Array = NDArray[np.float64]
 
 
 def tangential_loads(scene: Scene, loads: Array) -> Array:

@@ -13,11 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analytic import HeightLaw
-
-__all__ = ["DIGITS", "SURE", "Gaps", "cuts", "price"]
-
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
+from analytic.arrays import Array, Ints
 
 DIGITS = 11.4  # that moments must give for values to the last digit: of a law, or of the sum of a surface
 SURE = 400  # so many expected contacts are never fewer than half

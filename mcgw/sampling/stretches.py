@@ -6,14 +6,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analytic import Grading
+from analytic.arrays import Array, Ints
 from analytic.laws import Branch
 from mcgw.machine.memory import kept
 from mcgw.scene.scene import Scene
-
-__all__ = ["SMALLEST", "Stretches", "begins_and_breaks", "losses", "stretches_of"]
-
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 _NOTHING = 1e-12  # penetration
 SMALLEST = 2.0**-30  # cell next to the beginning, or the loss, of a power that no series resolves

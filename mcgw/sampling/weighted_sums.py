@@ -28,8 +28,6 @@ from mcgw.sampling.moments import add_compensated
 from mcgw.sampling.philox import CELLS, RADII, RADII_LOW, centred
 from mcgw.sampling.radius_table import RadiusTable, root_ratio
 
-__all__ = ["weighted_moments"]
-
 _MOST = 32  # sums of one kind: there are 21
 # A thread's workspace: x, sqrt(u), two uniforms of the radius, weights, factors; then sums and their carries
 _ROOT, _FINE, _COARSE, _WEIGHT, _FACTOR, _SUMS, _WORDS = (k * BUFFER for k in range(1, 8))

@@ -4,8 +4,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from analytic.arrays import Array
 from mcgw.sampling.cells import Mesh
 from mcgw.sampling.counted import Counted
 from mcgw.sampling.counts import Counts
@@ -14,10 +14,6 @@ from mcgw.sampling.layout import Layout
 from mcgw.sampling.radius_table import RadiusTable, radius_table
 from mcgw.sampling.weighted_sums import weighted_moments
 from mcgw.scene.scene import Scene
-
-__all__ = ["WithRadii", "with_radii"]
-
-Array = NDArray[np.float64]
 
 
 def with_radii(

@@ -10,8 +10,6 @@ from mcgw.formats.sheet import brief
 from mcgw.scene.kinds import Number
 from mcgw.scene.section import Key, Kind, SceneError, Section
 
-__all__ = ["argument", "arguments", "as_toml", "check_object"]
-
 _DRAWN = "mcgw.simulate(scene) draws one"
 _MAKES = {
     "Scene": {

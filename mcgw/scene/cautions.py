@@ -9,8 +9,6 @@ from mcgw.scene.plausible import perhaps_other_units
 from mcgw.scene.scene import Scene
 from mcgw.scene.validity_cautions import off_elasticity
 
-__all__ = ["cautions"]
-
 _DEEP = 1e-3  # share of the contacts compressed by more than their radius
 _CROWDED = 0.05  # real over nominal area: Gaussian maps and caps are far beyond 10 % of load there
 _STEEP = 0.3  # contact radius over summit radius from which a paraboloid is not a sphere and strain is large

@@ -27,7 +27,6 @@ if TYPE_CHECKING:
     from analytic import Interaction
     from mcgw.scene.fitted import Fitted
 
-__all__ = ["COARSEST", "EXACT", "Fields", "LeftOut", "RelErr", "share_above"]
 
 RelErr = float | Mapping[str, float | list[float]]
 

@@ -13,8 +13,6 @@ from analytic import Surface, Table
 from mcgw.formats.named_files import open_npy, read_text
 from mcgw.formats.units import signed
 
-__all__ = ["read_grading", "read_heights", "read_summits"]
-
 _MOST_BYTES, _MOST_OF_MODULI = 2**28, 2**24
 _COLUMNS = {"s": "1", "z": "m", "ratio": "1", "E_star": "Pa"}
 _SUMMITS = ("height", "radius")

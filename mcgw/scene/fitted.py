@@ -5,8 +5,6 @@ from dataclasses import dataclass
 
 from analytic import SpectralMoments, Surface
 
-__all__ = ["Fitted"]
-
 
 @dataclass(frozen=True)
 class Fitted:

@@ -11,8 +11,6 @@ from mcgw.scene.fields import Fields
 from mcgw.scene.keys import SURFACE_UNITS
 from mcgw.scene.stop_rule import rel_err_text
 
-__all__ = ["accuracy_facts", "contact_facts", "law_text", "sheet_of"]
-
 _PLANES = {"body": "undeformed body", "mean-plane": "mean deformed plane"}
 _MOST = 4  # numbers of a list that are all said
 

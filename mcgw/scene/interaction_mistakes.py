@@ -8,8 +8,6 @@ import numpy as np
 from mcgw.scene.fields import Fields
 from mcgw.scene.samplers import promise_of
 
-__all__ = ["interaction_mistakes"]
-
 
 def interaction_mistakes(scene: Fields) -> Iterator[str]:
     """A line for each."""

@@ -9,8 +9,6 @@ from mcgw.scene.kinds import ByName, Either, Flag, List, Number, Table, Text, Wh
 from mcgw.scene.samplers import SAMPLERS
 from mcgw.scene.section import Key
 
-__all__ = ["KEYS", "MOMENTS", "SUMMITS", "SURFACE_UNITS", "TABLES", "TableOfKeys"]
-
 _MOST = 100_000
 
 

@@ -9,8 +9,6 @@ from mcgw.formats.sheet import brief
 from mcgw.formats.units import EXAMPLES, parse
 from mcgw.scene.section import Key, Kind, Section, nearest
 
-__all__ = ["ByName", "Either", "Flag", "List", "Number", "Table", "Text", "Whole", "Word", "table_shape"]
-
 _MOST_WHOLE = 10**30  # so that no message has hundreds of digits
 # Which unit does is checked by `parse`, which knows more spellings than a pattern should.
 _WITH_UNIT = {

@@ -10,8 +10,6 @@ from analytic.laws.elastic_plastic import ElasticPlastic
 from mcgw.scene.other_laws import other_laws
 from mcgw.scene.scene import Scene
 
-__all__ = ["law_cautions"]
-
 _DEEP = 1e-3  # share of the contacts beyond the range of a fit
 _FITTED, _UNLOADED = 110.0, 170.0  # delta/delta_c up to which Kogut-Etsion, and its unloading, were fitted
 _STRAINS, _WIDEST = (1e-3, 1e-2), 0.4  # S_y/E* and a/R of Jackson and Green's finite elements

@@ -27,11 +27,6 @@ from mcgw.scene.files_beside import read_grading, read_heights
 from mcgw.scene.keys import KEYS
 from mcgw.scene.section import SceneError, Section
 
-__all__ = [
-    "contact_law", "contact_law_table", "grading_given", "grading_of", "grading_table", "heights_given",
-    "heights_of", "heights_table", "read_law",
-]  # fmt: skip
-
 _GRADINGS = {
     "homogeneous": Homogeneous,
     "exponential": Exponential,

@@ -23,8 +23,6 @@ from mcgw.scene.samplers import promise_of
 from mcgw.scene.section import SceneError
 from mcgw.scene.stop_rule import rel_err_mistakes
 
-__all__ = ["mistakes"]
-
 _LEAST = 1e-100  # next to it, powers of a distance are beyond double precision
 _MOST_ASPERITIES = 2**53  # counts are exact in double precision up to here
 _SAFELY = 1e4  # factor by which the sum over all asperities stays below the largest number

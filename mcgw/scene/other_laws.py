@@ -10,8 +10,6 @@ from analytic import ChangEtsionBogy, ContactLaw, Hertz, JacksonGreen, KogutEtsi
 from analytic.laws.elastic_plastic import ElasticPlastic
 from mcgw.scene.scene import Scene
 
-__all__ = ["OtherLaws", "other_laws"]
-
 _POISSON = 0.3  # where the law of the scene has none
 
 

@@ -13,8 +13,6 @@ from mcgw.formats.units import parse
 if TYPE_CHECKING:
     from mcgw.scene.fields import Fields
 
-__all__ = ["RANGES", "perhaps_other_units", "surface_in_other_units", "warn_of_units"]
-
 
 @dataclass(frozen=True)
 class Range:

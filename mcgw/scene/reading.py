@@ -21,7 +21,6 @@ from mcgw.scene.surface import read_surface
 if TYPE_CHECKING:
     from analytic import Interaction
 
-__all__ = ["of_arguments", "of_tables"]
 
 Values = dict[str, Any]
 Summits = tuple[Surface | None, HeightLaw | None, RandomCurvature | MeasuredRadii | None]

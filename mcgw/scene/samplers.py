@@ -2,8 +2,6 @@
 
 from dataclasses import dataclass
 
-__all__ = ["SAMPLERS", "Promise", "promise_of"]
-
 
 @dataclass(frozen=True)
 class Promise:

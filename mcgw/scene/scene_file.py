@@ -18,10 +18,6 @@ from mcgw.scene.section import SceneError
 from mcgw.scene.storable import storable
 from mcgw.scene.summits import summits_table
 
-__all__ = [
-    "files_of", "load_scene", "scene_document", "scene_from", "scene_of", "scene_text", "with_changes",
-]  # fmt: skip
-
 _MOST_BYTES = 2**21
 
 

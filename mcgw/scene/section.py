@@ -7,8 +7,6 @@ from typing import Any, TypeVar
 
 from mcgw.machine.terminal import one_line
 
-__all__ = ["Key", "Kind", "SceneError", "Section", "nearest"]
-
 _MOST_NAMED = 20  # unknown keys of a table: more say nothing new
 _FROM_ROW: Any = object()
 _Value = TypeVar("_Value")

@@ -10,8 +10,6 @@ from numpy.typing import NDArray
 from analytic import quantity_of
 from mcgw.scene.fields import Fields, RelErr
 
-__all__ = ["rel_err_mistakes", "rel_err_text", "wanted"]
-
 
 def rel_err_mistakes(scene: Fields) -> Iterator[str]:
     """What does not go with the scene."""

@@ -11,8 +11,6 @@ from mcgw.scene.fields import Fields
 from mcgw.scene.samplers import promise_of
 from mcgw.scene.section import SceneError
 
-__all__ = ["drawn_by", "in_numbers", "storable"]
-
 AnyScene = TypeVar("AnyScene", bound=Fields)
 
 _LOOKED_AT, _BEYOND = 4001, 1.1  # heights for the stiffest; and how much farther series reach

@@ -6,7 +6,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analytic import (
     HeightLaw,
@@ -17,12 +16,10 @@ from analytic import (
     SpectralMoments,
     Surface,
 )
+from analytic.arrays import Array
 from mcgw.scene.files_beside import read_summits
 from mcgw.scene.section import Section
 
-__all__ = ["ListedSummits", "Spectral", "curvature_of", "datum_shift", "listed_of", "summits_table"]
-
-Array = NDArray[np.float64]
 _LISTS = ("file", "heights", "radii", "ratios", "resample")
 
 

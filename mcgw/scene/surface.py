@@ -11,8 +11,6 @@ from mcgw.scene.plausible import surface_in_other_units, warn_of_units
 from mcgw.scene.section import SceneError, Section
 from mcgw.scene.summits import ListedSummits, Spectral
 
-__all__ = ["SpectralSurface", "Surface", "changed_surface", "read_surface"]
-
 
 def Surface(  # noqa: N802 - the door to a class of this name
     sigma: float | str,

@@ -4,9 +4,10 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from analytic import Homogeneous
+from analytic.arrays import Array
 from mcgw.formats.sheet import Sheet, Shown
 from mcgw.formats.table import evenly
 from mcgw.scene.fields import Fields
@@ -14,10 +15,6 @@ from mcgw.scene.validity_errors import ModelErrors
 from mcgw.scene.validity_place import Place, not_on_the_map, place_of, reduced_pressure
 from mcgw.scene.validity_table import COLUMNS, Expected, Grid, grid_of
 from mcgw.scene.validity_text import details, short_verdict, table_of, verdict
-
-__all__ = ["Validity", "farthest", "validity_of"]
-
-Array = NDArray[np.float64]
 
 _MOST_SEPARATIONS = 64
 _SURE = 2.1  # standard deviations that hold 95 % of maps left out: light loads have long tails

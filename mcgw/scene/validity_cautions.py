@@ -8,8 +8,6 @@ from numpy.typing import NDArray
 from mcgw.scene.validity_errors import ModelErrors
 from mcgw.scene.validity_text import percent, span
 
-__all__ = ["off_elasticity"]
-
 Mask = NDArray[np.bool_]
 
 _OFF = 0.1  # error of area, stiffness or load from which on it is said

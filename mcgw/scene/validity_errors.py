@@ -5,11 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from analytic.arrays import Array
 from mcgw.scene.validity_table import COLUMNS
 
-__all__ = ["ModelErrors"]
-
-Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
 

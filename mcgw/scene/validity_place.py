@@ -4,17 +4,13 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analytic import Gaussian, Hertz, Nayak, RandomCurvature, SpectralMoments, Surface
+from analytic.arrays import Array
 from analytic.surface import LEAST_ALPHA, SUMMIT_SPREAD
 from mcgw.scene.fields import Fields
 from mcgw.scene.fitted import Fitted
 from mcgw.scene.in_words import law_text
-
-__all__ = ["LEAST_CROWDING", "Place", "moments_of", "not_on_the_map", "place_of", "reduced_pressure"]
-
-Array = NDArray[np.float64]
 
 _CROWDING = 1 / (16 * math.sqrt(3 * math.pi))  # eta R sigma over sqrt(alpha - SUMMIT_SPREAD)
 LEAST_CROWDING = _CROWDING * math.sqrt(LEAST_ALPHA - SUMMIT_SPREAD)  # 0.0158: all waves have one length

@@ -8,12 +8,9 @@ from functools import cache
 from importlib.resources import files
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import digamma
 
-__all__ = ["COLUMNS", "Expected", "Grid", "Scatter", "grid_of", "rows"]
-
-Array = NDArray[np.float64]
+from analytic.arrays import Array
 
 COLUMNS = ("area", "stiffness", "separation", "load")  # what has an error
 _OF_GAP = ("separation", "load")

@@ -9,8 +9,6 @@ from numpy.typing import NDArray
 from mcgw.formats.table import SEPARATION, Column, Table
 from mcgw.scene.validity_errors import ModelErrors
 
-__all__ = ["details", "percent", "rounded_up", "short_verdict", "span", "table_of", "verdict"]
-
 _MOST_ROWS = 9
 _AT_LOAD = {"area": "area", "stiffness": "stiffness", "separation": "gap"}  # columns at a given load
 _COLUMNS = {"area": "area", "stiffness": "stiffness", "separation": "gap/sigma", "load": "load at d"}

@@ -7,26 +7,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import polygamma, psi
 from scipy.stats import binom, chi2, kstest, norm
 from scipy.stats import t as student
 
+from analytic.arrays import Array
 from mcgw.statistics.principal_components import PrincipalComponents
-
-__all__ = [
-    "Check",
-    "Slope",
-    "covariances",
-    "coverage",
-    "independence",
-    "scores",
-    "skewness",
-    "slope",
-    "variances",
-]
-
-Array = NDArray[np.float64]
 
 _LAGS = (1, 2, 4, 8, 16, 32, 64)
 

@@ -6,9 +6,9 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analytic import quantity_of
+from analytic.arrays import Array
 from mcgw.ensemble.asperities_alone import scene_alone
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.intervals import interval_column
@@ -25,9 +25,6 @@ from mcgw.sweeps.axes import label
 if TYPE_CHECKING:
     from mcgw.sweeps.sweep import Sweep
 
-__all__ = ["Comparison", "Curve", "SweepComparison", "compare"]
-
-Array = NDArray[np.float64]
 
 _SEPARATIONS = 12  # of a point, at most: what theory takes grows as their square
 _LISTED = 7

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from scipy.stats import binom, poisson
 
 from analytic import quantity_of
+from analytic.arrays import Array
 from mcgw.ensemble.asperities_alone import scene_alone
 from mcgw.ensemble.drawing import blocks
 from mcgw.ensemble.ensemble import Ensemble
@@ -37,9 +38,6 @@ from mcgw.statistics.checks import (
 from mcgw.statistics.principal_components import PrincipalComponents
 from mcgw.statistics.verdict import FALSE_ALARM, verdict
 
-__all__ = ["SEEDS", "Convergence", "Draw", "converge"]
-
-Array = NDArray[np.float64]
 Sums = Mapping[str, NDArray[Any]]
 Draw = Callable[[Scene], Sums]
 

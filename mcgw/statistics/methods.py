@@ -9,19 +9,16 @@ from functools import partial
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.integrate import quad
 
 import analytic
+from analytic.arrays import Array
 from mcgw.ensemble.drawing import blocks
 from mcgw.errors import RunError
-from mcgw.sampling.samplers import Sampler, sampler_of
+from mcgw.sampling.block import Sampler
+from mcgw.sampling.samplers import sampler_of
 from mcgw.scene.scene import Scene
 from mcgw.statistics.reference import added, by_powers, formula_ends, lowest, quantiles, reference
-
-__all__ = ["Method", "methods_for", "reference"]
-
-Array = NDArray[np.float64]
 
 _MOST_DRAWS = 1e7  # asperities of one surface, beyond which a sampler is not even tried
 _PIECES = (

@@ -12,12 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analytic import Quantity, quantity_of
+from analytic.arrays import Array
 from mcgw.scene.scene import Scene
 from mcgw.statistics.verdict import allowance, bounded_theory, told_apart
-
-__all__ = ["PrincipalComponents"]
-
-Array = NDArray[np.float64]
 
 _TOUCHING = 100  # asperities expected in contact, so that a single surface is nearly Gaussian
 _INDEPENDENT = 1e-6  # variance of a combination that is more than a difference of nearly equal columns

@@ -9,7 +9,6 @@ panels shrink towards both sides of every height at which another formula begins
 
 import numpy as np
 from numpy.polynomial.legendre import leggauss
-from numpy.typing import NDArray
 
 from analytic import (
     LAW_QUANTITIES,
@@ -19,12 +18,9 @@ from analytic import (
     quantity_of,
     resolved_breaks,
 )
+from analytic.arrays import Array
 from analytic.laws import Hertz, term_of
 from mcgw.scene.scene import Scene
-
-__all__ = ["added", "by_powers", "formula_ends", "lowest", "quantiles", "reference"]
-
-Array = NDArray[np.float64]
 
 _POINTS = 24
 _SMALLEST = -50  # power of two of the panel next to t = 0, which is left out

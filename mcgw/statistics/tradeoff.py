@@ -10,8 +10,8 @@ from time import monotonic, perf_counter, process_time
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from analytic.arrays import Array
 from mcgw.ensemble.asperities_alone import scene_alone
 from mcgw.formats.sheet import Sheet, Shown
 from mcgw.formats.table import Column, Table
@@ -22,10 +22,6 @@ from mcgw.scene.arguments import argument, check_object
 from mcgw.scene.scene import Scene
 from mcgw.statistics.methods import Method, methods_for
 from mcgw.statistics.wishes import Advice, Way, advise, ways_for
-
-__all__ = ["Advice", "Point", "Tradeoff", "tradeoff"]
-
-Array = NDArray[np.float64]
 
 SECONDS = 60.0
 _MOST_ROUNDS, _ROUNDS = 24, 6

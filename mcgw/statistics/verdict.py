@@ -21,16 +21,12 @@ from numpy.typing import NDArray
 from scipy.special import chdtrc, ndtr
 
 from analytic import Fluctuations, Model, RandomCurvature, quantity_of
+from analytic.arrays import Array
 from analytic.curvature import MEAN_CURVATURE
 from mcgw.ensemble.asperities_alone import asperities_alone
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.formats.table import evenly
 from mcgw.scene.scene import Scene
-
-__all__ = ["FALSE_ALARM", "Tested", "Verdict", "allowance", "bounded_theory", "tested", "told_apart"]
-__all__ += ["verdict"]
-
-Array = NDArray[np.float64]
 
 FALSE_ALARM = 1e-3
 _MOST_SEPARATIONS = 48

@@ -13,7 +13,6 @@ from time import perf_counter
 from typing import Any, cast
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import ndtri
 
 from mcgw.ensemble.drawing import seconds_per_surface
@@ -25,11 +24,9 @@ from mcgw.sampling.law_sums import asperity_sums
 from mcgw.sampling.samplers import sampler_of
 from mcgw.scene.fields import EXACT
 from mcgw.scene.samplers import promise_of
-from mcgw.scene.scene import Scene, SceneError
+from mcgw.scene.scene import Scene
+from mcgw.scene.section import SceneError
 
-__all__ = ["WISHES", "Advice", "Way", "Wish", "advise", "ways_for"]
-
-Array = NDArray[np.float64]
 _SHARE = 0.1  # of a wish that the accuracy of values may take
 _PROBABILITY = 0.99  # whose quantile is wished for
 _SEEN, _FEWEST = 4000, 2000  # surfaces that show a quantile's spread; with fewer there are not 20 beyond it

@@ -33,8 +33,6 @@ from numpy.typing import NDArray
 
 from mcgw.ensemble.results import CHUNK_ROWS
 
-__all__ = ["CHUNK_ROWS", "PACKED", "add_rows", "chunk_rows", "empty_table", "stored"]
-
 _CHUNK = 2**20  # bytes of a chunk, at most
 _SAMPLE = 2**14  # bytes that tell whether compression pays
 _PIECE = 2**23  # bytes of numbers in hand at a time

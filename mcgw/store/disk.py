@@ -4,8 +4,6 @@ import os
 from pathlib import Path
 from typing import Any
 
-__all__ = ["SteadyFile", "file_of", "parts_of"]
-
 
 def parts_of(path: Path) -> Path:
     """Folder of the run that makes a file."""

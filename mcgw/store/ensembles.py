@@ -17,6 +17,7 @@ from mcgw.ensemble.results import Held, Results
 from mcgw.errors import StoreError
 from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_from, scene_text
+from mcgw.store.disk import parts_of
 from mcgw.store.layout import (
     FILETYPE,
     FORMAT,
@@ -27,21 +28,11 @@ from mcgw.store.layout import (
     values_digest,
     where,
 )
-from mcgw.store.run_folder import RunFolder, parts_of
+from mcgw.store.run_folder import RunFolder
 from mcgw.store.shards import RAGGED, Shard
 from mcgw.store.structure import MOST_SCALE
 from mcgw.store.trailer import check_trailer, read_trailer
 from mcgw.store.untrusted import examine
-
-__all__ = [
-    "FileResults",
-    "ShardResults",
-    "described",
-    "open_ensemble",
-    "read_attributes",
-    "unfinished_sweep",
-    "verify",
-]
 
 
 def open_ensemble(path: str | Path) -> Ensemble:

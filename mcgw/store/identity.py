@@ -43,20 +43,6 @@ from mcgw.scene.samplers import promise_of
 from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_from, scene_text
 
-__all__ = [
-    "KIND",
-    "Question",
-    "depends_on_processor",
-    "difference",
-    "drawn_with",
-    "identity_of",
-    "kind_of_processor",
-    "now",
-    "processor",
-    "provenance",
-    "versions",
-]
-
 Question = tuple[str, str, str]  # text of a scene, axes of a sweep or none, versions that draw
 KIND = ", processor "  # stands between the versions and the kind
 _HEIGHTS = (Gaussian, ExponentialHeights, HeightTable, MeasuredHeights)

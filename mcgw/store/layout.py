@@ -12,35 +12,15 @@ from numpy.typing import NDArray
 
 from analytic import ALL_QUANTITIES
 from mcgw.ensemble.labelled import AXES, Labelled
+from mcgw.ensemble.results import Tables
 from mcgw.errors import StoreError
 from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_text
 from mcgw.store.chunks import PACKED, add_rows, empty_table
 from mcgw.store.identity import now, provenance
-from mcgw.store.shards import DRAWN, RAGGED, Span, Tables, content_digest, in_memory
+from mcgw.store.shards import DRAWN, RAGGED, Span, content_digest, in_memory
 from mcgw.store.structure import GROUP, MOST_TEXT, check_plain, head_digest
 from mcgw.store.trailer import trailer_of
-
-__all__ = [
-    "FILETYPE",
-    "FORMAT",
-    "body_of_kept",
-    "describe",
-    "digest_of",
-    "drawn_digest",
-    "drawn_tables",
-    "file_pieces",
-    "fill",
-    "numbers",
-    "rows_of",
-    "scales_of",
-    "sealed",
-    "stored_tables",
-    "stored_text",
-    "trailer_notes",
-    "values_digest",
-    "where",
-]
 
 FILETYPE, FORMAT = "mcgw-results", (2, 0)
 

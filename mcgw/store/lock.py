@@ -31,16 +31,6 @@ from mcgw.errors import StoreError
 from mcgw.formats.files import alive, temporary_beside, write_whole
 from mcgw.formats.named_files import read_text
 
-__all__ = [
-    "LOCK_FILES",
-    "LockedError",
-    "hold_by_name",
-    "keeps_locks",
-    "locked",
-    "names_of_locks",
-    "refuse_link",
-]
-
 PATIENCE = 1.0  # seconds: a process that was killed may need a moment to die
 _LOCK, _HOLDER = "lock.db", "holder"
 LOCK_FILES = (_HOLDER, _LOCK)

@@ -6,27 +6,18 @@ from typing import TYPE_CHECKING
 
 from mcgw.errors import StoreError
 from mcgw.formats.files import remove_stale
-from mcgw.scene.scene import LeftOut, Scene
+from mcgw.scene.fields import LeftOut
+from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_from, scene_text
+from mcgw.store.disk import parts_of
 from mcgw.store.ensembles import described, read_attributes
 from mcgw.store.identity import difference, drawn_with, identity_of
 from mcgw.store.lock import locked
-from mcgw.store.run_folder import RunFolder, parts_of, remove_run
+from mcgw.store.run_folder import RunFolder, remove_run
 from mcgw.store.trailer import check_trailer
 
 if TYPE_CHECKING:
     from mcgw.ensemble.summary import Summary
-
-__all__ = [
-    "drop_leftovers",
-    "finished",
-    "held_by",
-    "recorded_scene",
-    "recorded_seed",
-    "tidy",
-    "whole_blocks",
-    "with_recorded_seed",
-]
 
 
 def recorded_scene(path: Path) -> Scene | None:

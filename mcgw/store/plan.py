@@ -8,8 +8,6 @@ from itertools import accumulate
 
 from mcgw.store.shards import Span
 
-__all__ = ["Plan"]
-
 
 @dataclass(frozen=True)
 class Plan:

@@ -27,16 +27,15 @@ import tomli_w
 from mcgw.errors import RunError, StoreError
 from mcgw.formats.files import Expected, sync, write_whole
 from mcgw.formats.named_files import loads
-from mcgw.scene.scene import Scene, SceneError
+from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_from
-from mcgw.store.disk import file_of, parts_of
+from mcgw.scene.section import SceneError
+from mcgw.store.disk import file_of
 from mcgw.store.identity import difference, drawn_with, identity_of, now
 from mcgw.store.layout import stored_text
 from mcgw.store.lock import refuse_link
 from mcgw.store.plan import Plan
 from mcgw.store.shards import Shard, Span, open_shard
-
-__all__ = ["RunFolder", "parts_of", "remove_run"]
 
 _FILETYPE, _FORMAT = "mcgw-run", [2, 0]
 _CHECKSUM = 'sha256 = "'

@@ -16,6 +16,7 @@ from typing import Any
 import h5py
 
 from mcgw.ensemble.ensemble import Ensemble
+from mcgw.ensemble.results import Tables
 from mcgw.errors import RunError, StoreError
 from mcgw.formats.files import State, check_output, state_of, write_whole
 from mcgw.machine.in_threads import Items, one_ahead
@@ -38,10 +39,8 @@ from mcgw.store.layout import (
 from mcgw.store.lock import locked
 from mcgw.store.place import finished
 from mcgw.store.run_folder import RunFolder
-from mcgw.store.shards import DRAWN, LIBVER, Shard, Span, Tables, content_digest, tables_in
+from mcgw.store.shards import DRAWN, LIBVER, Shard, Span, content_digest, tables_in
 from mcgw.store.trailer import Trailer, sha256_of
-
-__all__ = ["body_of", "merge_into", "save", "write_body"]
 
 _CACHE = 2**25  # of chunks that a shard fills only in part
 

@@ -23,22 +23,6 @@ from mcgw.formats.files import write_whole
 from mcgw.store.chunks import stored
 from mcgw.store.trailer import Trailer, read_checked, read_trailer, trailer_of
 
-__all__ = [
-    "BLOCK",
-    "DRAWN",
-    "LIBVER",
-    "RAGGED",
-    "Shard",
-    "Span",
-    "Tables",
-    "commit_shard",
-    "content_digest",
-    "in_memory",
-    "open_shard",
-    "pack",
-    "tables_in",
-]
-
 RAGGED = "extras"  # the one table whose rows are not surfaces
 DRAWN = ("moments", "cells", RAGGED)  # what `keep = "moments"` adds to the quantities
 BLOCK = "block_"  # begins the names of tables with one row for all surfaces of a block

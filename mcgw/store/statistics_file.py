@@ -45,8 +45,6 @@ from mcgw.scene.scene_file import scene_text
 from mcgw.store.layout import body_of_kept, drawn_tables, scales_of
 from mcgw.store.shards import Shard
 
-__all__ = ["blocks_of", "body_of_statistics", "read_blocks", "shapes_of"]
-
 _COLUMNS = ("column", "other_column")  # of the covariance
 
 

@@ -26,8 +26,6 @@ from typing import Any
 import h5py
 import numpy as np
 
-__all__ = ["MOST_SCALE", "MOST_TEXT", "RefusedError", "check_plain", "describe", "head_digest"]
-
 GROUP = "drawn"
 _FILTERS = {h5py.h5z.FILTER_DEFLATE, h5py.h5z.FILTER_SHUFFLE, h5py.h5z.FILTER_FLETCHER32, h5py.h5z.FILTER_LZF}
 _MOST_ATTRIBUTES = 64

@@ -16,17 +16,6 @@ from typing import Any
 from mcgw.errors import StoreError
 from mcgw.formats.named_files import open_regular
 
-__all__ = [
-    "TRAILER_BYTES",
-    "TRAILER_MAGIC",
-    "Trailer",
-    "check_trailer",
-    "read_checked",
-    "read_trailer",
-    "sha256_of",
-    "trailer_of",
-]
-
 TRAILER_BYTES = 512
 TRAILER_MAGIC = b"MCGWSEAL"
 _HEAD = TRAILER_BYTES - hashlib.sha256().digest_size

@@ -19,8 +19,6 @@ from mcgw.formats.named_files import open_regular
 from mcgw.machine.child_process import ChildError, memory_limit, run_child
 from mcgw.store.trailer import check_trailer, read_trailer
 
-__all__ = ["examine"]
-
 _MEMORY = 2**31  # address space of the child; HDF5 and NumPy take a tenth of it
 _SECONDS, _BYTES_A_SECOND = 20.0, 50e6  # a busy machine takes seconds to start a process
 _SMALL = 2**24  # bytes up to which all of a file is checked: a hundredth of a second

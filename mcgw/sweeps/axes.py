@@ -18,8 +18,6 @@ from mcgw.scene.laws import grading_table
 from mcgw.scene.section import SceneError
 from mcgw.store.structure import GROUP
 
-__all__ = ["Axes", "Point", "axes_of", "label"]
-
 Point = tuple[int, ...]
 
 _SECTIONS = ("surface", "grading", "heights", "summits", "contact", "interaction", "ensemble")

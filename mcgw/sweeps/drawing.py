@@ -13,8 +13,6 @@ from mcgw.sampling.shared import Alone, Shared, shared
 from mcgw.sweeps.groups import Group
 from mcgw.sweeps.pooled import Pooled
 
-__all__ = ["Pooling", "draw", "weighted"]
-
 _ROWS = 8192  # surfaces whose values are pooled at once, as an ensemble does
 _BYTES = 2**28  # of those values
 _DRAWS = 1e10  # asperities of a block: what an interruption may cost

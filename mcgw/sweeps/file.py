@@ -50,8 +50,6 @@ from mcgw.sweeps.points import Asked, Points
 from mcgw.sweeps.pooled import Pooled
 from mcgw.sweeps.sweep import STATISTICS, Sweep
 
-__all__ = ["body_of_sweep", "open_sweep"]
-
 Tables = dict[str, NDArray[Any]]
 
 

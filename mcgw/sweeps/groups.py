@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analytic import Exponential, Grading, Homogeneous, quantity_of
+from analytic.arrays import Array, Ints
 from mcgw.machine.progress import steps
 from mcgw.sampling.shared import on_common_cells, to_be_shared
 from mcgw.scene.scene import Scene
@@ -25,10 +26,7 @@ from mcgw.scene.scene import Scene
 if TYPE_CHECKING:
     from mcgw.ensemble.bins import Bins
 
-__all__ = ["Group", "Place", "between_two", "groups_of"]
 
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
 _Item = TypeVar("_Item")
 _MANY = 8  # gradings: fewer are computed each by itself, with the bits that it has alone
 

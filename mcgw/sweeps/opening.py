@@ -9,8 +9,6 @@ from mcgw.store.ensembles import open_ensemble, read_attributes
 if TYPE_CHECKING:
     from mcgw.sweeps.sweep import Sweep
 
-__all__ = ["open_results"]
-
 
 def open_results(path: Path) -> "Ensemble | Sweep":
     """Open whatever a file holds, or a run in progress; errors as of `open_ensemble` and `open_sweep`."""

@@ -12,9 +12,9 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analytic import PER_AREA
+from analytic.arrays import Array
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.intervals import CONFIDENCE
 from mcgw.ensemble.results import Held
@@ -26,9 +26,6 @@ from mcgw.sweeps.axes import Axes, Point
 from mcgw.sweeps.groups import Place
 from mcgw.sweeps.pooled import Pooled
 
-__all__ = ["At", "OverPoints", "PointResults", "sweep_cautions"]
-
-Array = NDArray[np.float64]
 At = Mapping[str, Any] | Sequence[int] | int
 _NUMBER = re.compile(r"[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
 

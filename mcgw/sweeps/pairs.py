@@ -4,17 +4,13 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from analytic.arrays import Array
 from mcgw.formats.sheet import Sheet, Shown
 from mcgw.formats.table import Column, Table
 from mcgw.machine.terminal import plotted
 from mcgw.sweeps.groups import Place
 from mcgw.sweeps.pooled import Pooled
-
-__all__ = ["Difference", "Slopes"]
-
-Array = NDArray[np.float64]
 
 _SHOWN = 9
 

@@ -22,8 +22,6 @@ from mcgw.sweeps.groups import Group, Place, groups_of
 from mcgw.sweeps.pooled import Pooled
 from mcgw.sweeps.sweep import Sweep
 
-__all__ = ["Asked", "Points", "document_of", "scenes_of"]
-
 _MOST_TOLD = 20  # mistakes: more say nothing new
 
 

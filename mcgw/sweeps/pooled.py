@@ -7,13 +7,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from analytic.arrays import Array, Ints
 from mcgw.ensemble.summary import ROW, Summary, push, total
 from mcgw.store.shards import BLOCK
 
-__all__ = ["Pooled"]
-
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
 Values = dict[str, Array]
 Blocks = tuple[tuple[Summary, ...], ...]
 

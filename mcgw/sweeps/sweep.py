@@ -18,10 +18,6 @@ from mcgw.sweeps.axes import Axes, Point, label
 from mcgw.sweeps.over_points import At, OverPoints
 from mcgw.sweeps.pairs import Difference, Slopes
 
-__all__ = ["STATISTICS", "Sweep"]
-
-Array = NDArray[np.float64]
-
 STATISTICS = ("mean", "std")
 _SHOWN = 7  # points of a sheet
 

@@ -26,7 +26,8 @@ import harness
 from mcgw.errors import RunError, StoreError
 from mcgw.jobs import merging, running
 from mcgw.store import ensembles, lock
-from mcgw.store.run_folder import RunFolder, parts_of
+from mcgw.store.disk import parts_of
+from mcgw.store.run_folder import RunFolder
 
 BLOCKS = 12
 WANTED = harness.scene_of(BLOCKS)

@@ -18,7 +18,7 @@ from mcgw.ensemble.simulation import Values
 from mcgw.errors import StoreError
 from mcgw.jobs.running import run
 from mcgw.store import ensembles, structure
-from mcgw.store.run_folder import parts_of
+from mcgw.store.disk import parts_of
 
 BLOCKS = 5
 

@@ -23,7 +23,8 @@ from mcgw.jobs import running
 from mcgw.jobs.job import Job
 from mcgw.scene.scene import Scene
 from mcgw.store import chunks, ensembles, lock, shards, structure
-from mcgw.store.run_folder import RunFolder, parts_of
+from mcgw.store.disk import parts_of
+from mcgw.store.run_folder import RunFolder
 
 MODES = {"kill": 1, "torn": 2, "ENOSPC": 3, "EIO": 4}
 ROWS = 8

@@ -15,7 +15,8 @@ from pathlib import Path
 from harness import ROWS, attempt, forked, prepare, scene_of
 
 from mcgw.store import ensembles
-from mcgw.store.run_folder import RunFolder, parts_of
+from mcgw.store.disk import parts_of
+from mcgw.store.run_folder import RunFolder
 
 
 def begun(scene, file):

@@ -23,7 +23,7 @@ from mcgw.errors import StoreError
 from mcgw.jobs.running import run
 from mcgw.maps.map_files import WRITTEN, write_map
 from mcgw.maps.topography import Topography
-from mcgw.scene.scene import SceneError
+from mcgw.scene.section import SceneError
 from mcgw.store import ensembles, structure
 
 MEMORY, SECONDS, OF_MAPS = 2**31, 4, 2**30

@@ -3,16 +3,12 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from analytic.arrays import Ints
 from mcgw.sampling.response.dense import Parts
 from mcgw.sampling.response.gathering import FOUR, Lines, in_fours
 from mcgw.sampling.response.product import Tiles
 from mcgw.sampling.response.tree import transfers
-
-__all__ = ["tiles_of"]
-
-Ints = NDArray[np.int64]
 
 
 def tiles_of(parts: Parts, order: Ints) -> Tiles:

@@ -7,18 +7,13 @@ sparse product (`mcgw.sampling.response.product`) to.
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from analytic.arrays import Array, Ints
 from mcgw.sampling.cells import Mesh
 from mcgw.sampling.layout import Layout
 from mcgw.sampling.response.entries import Entries
 from mcgw.sampling.response.tree import Tree, transfers
 from mcgw.sampling.rules import product
-
-__all__ = ["Parts"]
-
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 
 @dataclass(frozen=True)

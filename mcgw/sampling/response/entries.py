@@ -5,10 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["Entries"]
-
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
+from analytic.arrays import Array, Ints
 
 
 @dataclass(frozen=True)

@@ -3,14 +3,9 @@
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from analytic.arrays import Array, Ints
 from mcgw.machine.compiling import njit
-
-__all__ = ["FOUR", "Lines", "gathered", "in_fours"]
-
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 FOUR = 4  # rows and columns of a tile
 

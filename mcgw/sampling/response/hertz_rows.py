@@ -3,19 +3,14 @@
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analytic import HeightLaw, Quantity, quantity_of
+from analytic.arrays import Array
 from mcgw.machine.compiling import njit
 from mcgw.machine.memory import kept
 from mcgw.sampling.response.rows import Powers, Rows
 from mcgw.sampling.spacing import SURE
 from mcgw.scene.scene import Scene
-
-__all__ = ["hertz_rows", "raise_to"]
-
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 
 def hertz_rows(scene: Scene, quantities: tuple[str, ...], *, lasting: bool) -> Rows:

@@ -3,8 +3,8 @@
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from analytic.arrays import Array, Ints
 from mcgw.machine.compiling import njit
 from mcgw.machine.in_threads import in_threads
 from mcgw.sampling.response.entries import Entries
@@ -23,11 +23,6 @@ from mcgw.sampling.response.series import (
     series_of,
 )
 from mcgw.sampling.response.tree import Tree
-
-__all__ = ["HertzWalk"]
-
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 _ROWS = 512  # worth another thread; what is found of them stays in memory that the process has
 _DEEPEST = 128  # nodes that wait: one a level, and a tree has no more than 64

@@ -8,17 +8,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analytic import Homogeneous, quantity_of
+from analytic.arrays import Array, Ints
 from analytic.laws import Branch, term_of
 from mcgw.sampling.cells import Mesh
 from mcgw.sampling.response.rows import Rows, Start
 from mcgw.sampling.spacing import SURE
 from mcgw.sampling.stretches import Stretches, stretches_of
 from mcgw.scene.scene import Scene
-
-__all__ = ["law_rows"]
-
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 
 @dataclass(frozen=True)

@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from analytic.arrays import Array, Ints
 from mcgw.machine.compiling import njit
 from mcgw.machine.in_threads import in_threads
 from mcgw.sampling.response.entries import Entries
@@ -25,11 +26,6 @@ from mcgw.sampling.response.series import (
 )
 from mcgw.sampling.response.tree import Tree
 from mcgw.sampling.stretches import SMALLEST
-
-__all__ = ["LawWalk"]
-
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 _PAIRS = 1024  # of a row and a node, at a time
 _MANY = 16  # times that many: worth another thread

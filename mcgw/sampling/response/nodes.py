@@ -7,15 +7,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analytic import Grading, resolved_breaks
+from analytic.arrays import Array, Ints
 from mcgw.sampling.cells import Mesh, evenness, height_noise
 from mcgw.sampling.response.rows import Rows
 from mcgw.sampling.response.tree import Tree
 from mcgw.scene.fields import EXACT
-
-__all__ = ["LAST_DIGITS", "Nodes", "Precision"]
-
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 _SCATTER = 8  # asperities more than expected
 _DIGITS = 8.0  # last digits of a height that a formula may lose

@@ -12,16 +12,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from analytic.arrays import Array, Ints
 from mcgw.machine.compiling import njit
 from mcgw.machine.in_threads import in_threads, pieces
 from mcgw.machine.memory import aligned
 from mcgw.sampling.lanes import fused
 from mcgw.sampling.response.gathering import FOUR, Lines, gathered
-
-__all__ = ["Tiles"]
-
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 _WIDTH = 64  # surfaces at a time: what they need of the table stays in the innermost cache
 

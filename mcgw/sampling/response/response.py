@@ -10,8 +10,8 @@ Python E*(s) is evaluated at 20 heights a node.
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from analytic.arrays import Array
 from mcgw.sampling.cells import Mesh
 from mcgw.sampling.layout import Layout
 from mcgw.sampling.response.assembly import tiles_of
@@ -23,10 +23,6 @@ from mcgw.sampling.response.rows import Rows
 from mcgw.sampling.response.tree import tree_over
 from mcgw.sampling.response.walk import walk
 from mcgw.scene.scene import Scene
-
-__all__ = ["Precision", "Response", "layout_of", "response_of"]
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -10,10 +10,7 @@ from typing import NamedTuple, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["Formulas", "Powers", "Rows", "Start"]
-
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
+from analytic.arrays import Array, Ints
 
 
 class Start(NamedTuple):

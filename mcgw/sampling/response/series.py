@@ -9,19 +9,6 @@ from mcgw.sampling.cells import CHANGING, NODES, TO_COEFFICIENTS
 from mcgw.sampling.rules import multiply
 from mcgw.scene.fields import EXACT
 
-__all__ = [
-    "APART",
-    "MOST",
-    "MOST_IN_CELL",
-    "TABLES",
-    "WHOLE",
-    "U",
-    "length_of",
-    "meeting",
-    "raised",
-    "series_of",
-]
-
 MOST, MOST_IN_CELL = 12, 19  # moments: what is not resolved by so many is left to the children, or refused
 APART, _PARTLY, WHOLE = 0, 1, 2
 U = (1 + NODES) / 2

@@ -13,14 +13,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from analytic.arrays import Array, Ints
 from mcgw.machine.compiling import njit
 from mcgw.sampling.cells import NODES, TO_COEFFICIENTS, Mesh
 from mcgw.sampling.rules import multiply
-
-__all__ = ["Tree", "transfers", "tree_over"]
-
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 
 @dataclass(frozen=True)

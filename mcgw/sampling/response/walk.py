@@ -1,8 +1,8 @@
 """From the root down: give each row to the coarsest nodes that resolve it."""
 
 import numpy as np
-from numpy.typing import NDArray
 
+from analytic.arrays import Array, Ints
 from mcgw.sampling.cells import Mesh
 from mcgw.sampling.response.entries import Entries
 from mcgw.sampling.response.hertz_walk import HertzWalk
@@ -10,11 +10,6 @@ from mcgw.sampling.response.law_walk import LawWalk
 from mcgw.sampling.response.nodes import Nodes
 from mcgw.sampling.response.rows import Powers, Rows
 from mcgw.sampling.response.tree import Tree
-
-__all__ = ["UnresolvedError", "walk"]
-
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 
 class UnresolvedError(ValueError):
