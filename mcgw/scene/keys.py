@@ -1,29 +1,47 @@
 """Every key of a scene, a row each: reader, writer, checks, schema, page and ``--set`` come from here."""
 
 import math
-from typing import NamedTuple
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, NamedTuple
 
-from analytic import LAW_QUANTITIES, QUANTITIES, UNLOADING
+from analytic import LAW_QUANTITIES, QUANTITIES, UNLOADING, Body
+from analytic.laws import Tangential
 from mcgw.scene.fields import COARSEST, EXACT
+from mcgw.scene.fitted import Fitted
 from mcgw.scene.kinds import ByName, Either, Flag, List, Number, Table, Text, Whole, Word
 from mcgw.scene.samplers import SAMPLERS
 from mcgw.scene.section import Key
+
+if TYPE_CHECKING:
+    from analytic import Interaction
 
 _MOST = 100_000
 
 
 class TableOfKeys(NamedTuple):
-    """A table of a scene file: what it says, as Markdown, and its rows."""
+    """A table of a scene file: what it says, as Markdown, and its rows.
+
+    Where all its keys `make` an object, the scene holds that in a field of its name, and Python gives it; or
+    else hears the `advice`.
+    """
 
     words: str
     rows: tuple[Key, ...]
     required: bool = False
+    make: Callable[..., Any] | None = None
+    advice: str = ""
 
 
 def _contact_laws() -> tuple[str, ...]:
     from analytic.laws import by_name  # which imports them all
 
     return (*by_name, "custom")
+
+
+def _interaction(**keys: Any) -> "Interaction":
+    from analytic import Interaction  # for those scenes alone
+
+    return Interaction(**keys)
 
 
 _ANY, _POSITIVE, _NOT_NEGATIVE = Number(low=-math.inf), Number(), Number(zero=True)
@@ -43,7 +61,9 @@ _PIECES = List(Table((*_ENDS, Key("coefficients", _LISTED, required=True)), _FOR
 _PIECES_EXAMPLE = (
     "[{low = -1.0, high = 1.0, coefficients = [1.0]}, {low = 1.0, high = 3.0, coefficients = [1.0]}]"
 )
-_BODY = Table((Key("E", Number("Pa", infinite=True), required=True), Key("nu", _POISSON, default=0.3)), "")
+_BODY = Table(
+    (Key("E", Number("Pa", infinite=True), required=True), Key("nu", _POISSON, default=0.3)), "", Body
+)
 _KNOWN_TO = (
     "give a number > 0 and at most 0.1, beyond which so few contacts would do that an interval means nothing"
 )
@@ -57,6 +77,7 @@ _MOUNTED = (Key("friction", _POSITIVE, required=True), Key("poisson", _POISSON, 
 _PUSHED = Table(
     (*_MOUNTED, Key("displacements", _SHIFTS, required=True)),
     "give {friction = 0.3, poisson = 0.3, displacements = [1e-8, 1e-7]} (m)",
+    Tangential,
 )
 
 # fmt: off
@@ -211,7 +232,7 @@ TABLES: dict[str, TableOfKeys] = {
         "the scene's separations are `effective` (default): those that asperities feel; or `nominal`",
         "effective"),
     Key("bulk_modulus", Number("Pa"), "1e11", "composite modulus of the half-space, Pa; default: `E_star`"),
-)),
+), make=_interaction, advice='give mcgw.Interaction("body"), or mcgw.Interaction("mean-plane")'),
 "fitted": TableOfKeys("What the fit of a map knew besides: `mcgw fit` writes it, nothing is drawn by it. By "
     "it a scene says [how far its model is from elasticity](../explanation/validity.md), or that nobody "
     "measured it on such a map. Left out: the surface is taken for a Gaussian one.", (
@@ -227,7 +248,7 @@ TABLES: dict[str, TableOfKeys] = {
         "largest ratio between the fit's estimates of η, R or σ: by moments, and by counted summits"),
     Key("lay", _RATIO, "1.1", "mean square slope across the lay over that along it"),
     Key("area", Number("m^2"), "1e-6", "that was looked at, m²"),
-)),
+), make=Fitted, advice="give what mcgw.fitted_scene gave, or the keys of [fitted] in a scene file"),
 "ensemble": TableOfKeys("How many surfaces, and how they are drawn.", (
     Key("n_surfaces", Whole(1), "10", "how many, default 1000", excludes=("rel_err",)),
     Key("n_asperities", Whole(1), "100", "asperities on each; default: η A_n, rounded"),
@@ -264,7 +285,7 @@ TABLES: dict[str, TableOfKeys] = {
 }
 # fmt: on
 
-KEYS = {table: {row.name: row for row in rows} for table, (_, rows, _) in TABLES.items()}
+KEYS = {table: {row.name: row for row in rows} for table, (_, rows, *_) in TABLES.items()}
 MOMENTS, SUMMITS = ("m0", "m2", "m4"), ("sigma", "radius", "eta")  # either tells the summits of a surface
 _SURFACE = {row.name: row.kind for row in TABLES["surface"].rows if row.name not in MOMENTS}
 SURFACE_UNITS = {name: kind.unit for name, kind in _SURFACE.items() if isinstance(kind, Number)}

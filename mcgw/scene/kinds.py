@@ -209,20 +209,28 @@ class List(Kind):
 
 @dataclass(frozen=True, slots=True)
 class Table(Kind):
-    """A table in braces."""
+    """A table in braces, or the object that its keys `make`, where they make one."""
 
     rows: tuple[Key, ...]
     advice: str
+    make: type | None = None
 
-    def read(self, section: Section, name: str, value: Any) -> dict[str, Any] | None:
-        """Read its keys."""
+    def read(self, section: Section, name: str, value: Any) -> Any:
+        """Read its keys, and make the object of them."""
+        if self.make and isinstance(value, self.make):
+            return value
         if not isinstance(value, dict):
             return section.fail(name, value, self.advice)
         before = len(section.problems)
         inner = Section(section.path(name), value, section.problems, {row.name: row for row in self.rows})
         found = inner.read_all(inner.rows)
         inner.finish()
-        return found if len(section.problems) == before else None
+        if len(section.problems) > before:
+            return None
+        try:
+            return self.make(**found) if self.make else found
+        except ValueError as error:
+            return section.note(f"{section.path(name)}.{error}")
 
     def shape(self) -> dict[str, Any]:
         """An object."""

@@ -232,11 +232,18 @@ def read_law(given: ContactLaw | Mapping[str, Any]) -> ContactLaw:
     """
     if isinstance(given, ContactLaw):
         return given
-    section = Section("contact", given, [], KEYS["contact"])
+    problems: list[str] = []
+    law = law_of_keys(given, problems)
+    if problems:
+        raise SceneError(problems)
+    return law
+
+
+def law_of_keys(given: Mapping[str, Any], problems: list[str]) -> ContactLaw:
+    """The same of keys alone; mistakes are noted, and give Hertz's."""
+    section = Section("contact", {"law": None, **given}, problems, KEYS["contact"])
     law = contact_law(section)
     section.finish()
-    if section.problems:
-        raise SceneError(section.problems)
     return law
 
 

@@ -2,25 +2,21 @@
 
 import secrets
 from collections.abc import Callable, Mapping
+from dataclasses import fields, is_dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from analytic import UNLOADING, Gaussian, HeightLaw, MeasuredRadii, RandomCurvature, Surface
-from analytic.laws import ContactLaw, Film, Tangential
+from analytic.laws import ContactLaw, Film
 from mcgw.scene.arguments import as_toml
 from mcgw.scene.fields import LeftOut
-from mcgw.scene.fitted import Fitted
-from mcgw.scene.keys import KEYS
-from mcgw.scene.laws import contact_law, grading_given, grading_of, heights_given, heights_of
+from mcgw.scene.keys import KEYS, TABLES
+from mcgw.scene.laws import contact_law, grading_given, grading_of, heights_given, heights_of, law_of_keys
 from mcgw.scene.section import SceneError, Section
 from mcgw.scene.summits import Spectral, curvature_of, datum_shift, listed_of
 from mcgw.scene.surface import read_surface
-
-if TYPE_CHECKING:
-    from analytic import Interaction
-
 
 Values = dict[str, Any]
 Summits = tuple[Surface | None, HeightLaw | None, RandomCurvature | MeasuredRadii | None]
@@ -28,7 +24,7 @@ Summits = tuple[Surface | None, HeightLaw | None, RandomCurvature | MeasuredRadi
 # Where arguments of `Scene` stand in a file. Others are whole tables or several keys: objects.
 _PLACES = {key: table for table in ("", "contact", "ensemble") for key in KEYS[table]}
 _PLACES |= {"negative": "grading", "curvature": "summits"}
-_TABLES = ("interaction", "fitted")  # which may be dicts
+_OBJECTS = ("law", "curvature")  # which may be words or keys, too
 _QUANTITIES = ("load", "area", "stiffness", "contacts")
 _DRAWING = ("count", "sampler", "keep", "accuracy", "law_error", "rel_err", "max_seconds")
 
@@ -47,16 +43,22 @@ def of_arguments(**given: Any) -> Values:
         plain = as_toml(value)
         if value is None:
             continue
-        if name in _PLACES and isinstance(plain, str | bytes | bool | int | float | list | dict):
+        if name in TABLES and TABLES[name].make:
+            document[name] = _keys_of(name, value, plain)
+        elif name in _PLACES and (name not in _OBJECTS or isinstance(plain, str | dict)):
             table = document.setdefault(_PLACES[name], {}) if _PLACES[name] else document
             table[name] = value if isinstance(value, LeftOut) else plain
-        elif name in _TABLES and isinstance(plain, dict):
-            document[name] = plain
-        elif name == "interaction" and isinstance(plain, str):
-            document[name] = {"reference": plain}
         else:
             objects[name] = value
     return _read(document, objects, Path(), None)
+
+
+def _keys_of(name: str, value: Any, plain: Any) -> Any:
+    """The keys of an object that stands for a whole table; a word is its first key."""
+    if is_dataclass(value) and not isinstance(value, type):
+        held = {field.name: getattr(value, field.name) for field in fields(value)}
+        return {key: each for key, each in held.items() if each is not None}
+    return {next(iter(KEYS[name])): plain} if isinstance(plain, str) else plain
 
 
 def of_tables(
@@ -77,7 +79,12 @@ def _read(
 ) -> Values:
     problems: list[str] = []
     top = Section("", document, problems, KEYS[""])
-    of = {name: top.section(name, rows) for name, rows in KEYS.items() if name}
+    python = "surface" in objects
+    of = {
+        name: top.section(name, KEYS[name], table.advice if python else "")
+        for name, table in TABLES.items()
+        if name
+    }
     surface, heights, curvature = _surface_and_summits(top, of, objects, folder)
     if "grading" in objects:
         grading = grading_given(top, objects["grading"])
@@ -91,12 +98,11 @@ def _read(
         "heights": heights,
         "curvature": curvature,
         **_contact(of["contact"], objects, heights),
-        "interaction": _interaction(top, of["interaction"], objects),
-        "fitted": _fitted(top, of["fitted"], objects),
+        **{name: _made(top, of[name], table.make) for name, table in TABLES.items() if table.make},
         **_ensemble(of["ensemble"], surface, seed),
     }
-    if "surface" not in objects:  # a file, where more may be wrong than values
-        for section in (top, *of.values()):
+    for name, section in (("", top), *of.items()):
+        if not python or TABLES[name].make:  # a file or a dict, where more may be wrong than values
             section.finish()
     if problems:
         raise SceneError(problems)
@@ -148,7 +154,7 @@ def _contact(section: Section, objects: Values, heights: HeightLaw | None) -> Va
         given = np.linspace(given["start"], given["stop"], given["num"]).tolist()
     listed = [0.0] if given is None else given if isinstance(given, list) else [given]
     separations = tuple(h - shift + 0.0 for h in listed)  # -0.0 is 0.0
-    back, film = section.read("unload_from"), _film(section, objects)
+    back, film = section.read("unload_from"), _film(section, objects.get("film"))
     back = min(separations) if back == "loop" else back
     names = section.read("quantities") or _QUANTITIES
     names = (*names, *(["conductance_si"] if film and "conductance_si" not in names else []))
@@ -158,7 +164,7 @@ def _contact(section: Section, objects: Values, heights: HeightLaw | None) -> Va
         "law": _law(section, objects),
         "unload_from": back,
         "film": film,
-        "tangential": _tangential(section, objects),
+        "tangential": section.read("tangential"),
         "quantities": (*names, *(name for name in also if name not in names)),
     }
 
@@ -166,77 +172,34 @@ def _contact(section: Section, objects: Values, heights: HeightLaw | None) -> Va
 def _law(section: Section, objects: Values) -> ContactLaw:
     """Of a file, of Python, or by its keys in a dict of Python."""
     given = objects.get("law", section.table.get("law"))
+    if isinstance(given, ContactLaw):
+        return given
     if isinstance(given, dict):
-        inner = Section("contact", {"law": None, **given}, section.problems, section.rows)
-        law = contact_law(inner)
-        inner.finish()
-        return law
-    if given is None or isinstance(given, ContactLaw):
-        return given or contact_law(section)
+        return law_of_keys(given, section.problems)
     if "law" in objects:
         section.fail("law", given, "a law of your own is mcgw.CustomLaw(load=..., area=..., ...)")
     return contact_law(section)
 
 
-def _film(section: Section, objects: Values) -> Film | None:
+def _film(section: Section, given: Any) -> Film | None:
     """What spots conduct through; None where nobody asks for conductances."""
     names = ("resistivity", "conductivities", "film_resistance")
-    if "film" in objects:
-        if isinstance(objects["film"], Film):
-            return objects["film"]
-        advice = "give resistivity and film_resistance; in Python mcgw.Film of them"
-        return section.fail("film", objects["film"], advice)
     resistivity, conductivities, film = section.read_all(names).values()
+    if given is not None and not isinstance(given, Film):
+        return section.fail(
+            "film", given, "give resistivity and film_resistance; in Python mcgw.Film of them"
+        )
     if conductivities is not None:
         resistivity = sum(1 / k for k in conductivities)
-    return None if resistivity is None else Film(resistivity, film or 0.0)
+    return given or (None if resistivity is None else Film(resistivity, film or 0.0))
 
 
-def _tangential(section: Section, objects: Values) -> Tangential | None:
-    given = objects["tangential"] if "tangential" in objects else section.read("tangential")
-    if given is None or isinstance(given, Tangential):
-        return given
-    if not isinstance(given, dict):
-        return section.fail("tangential", given, section.rows["tangential"].kind.advice)
-    try:
-        return Tangential(**given)
-    except ValueError as error:
-        section.problems.append(f"contact.tangential.{error}")
+def _made(top: Section, section: Section, make: Callable[..., Any]) -> Any:
+    """What all keys of a table make; None where it is left out, or wrong, which is noted."""
+    if not isinstance(top.table.get(section.name), dict):
         return None
-
-
-def _interaction(top: Section, section: Section, objects: Values) -> "Interaction | None":
-    if not section.table and "interaction" not in objects and "interaction" not in top:
-        return None
-    from analytic import Interaction  # for those scenes alone
-
-    given = objects.get("interaction")
-    if isinstance(given, Interaction):
-        return given
-    if given is not None:
-        advice = 'give mcgw.Interaction("body"), or mcgw.Interaction("mean-plane")'
-        return top.fail("interaction", given, advice)
-    before, found = len(section.problems), section.read_all(section.rows)
-    if "surface" in objects:
-        section.finish()
-    return Interaction(**found) if len(section.problems) == before else None
-
-
-def _fitted(top: Section, section: Section, objects: Values) -> Fitted | None:
-    given = objects.get("fitted")
-    if "fitted" not in top and given is None:
-        return None
-    if isinstance(given, Fitted):
-        section = Section(
-            "fitted", {k: v for k, v in vars(given).items() if v is not None}, top.problems, section.rows
-        )
-    elif given is not None:
-        advice = "give what mcgw.fitted_scene gave, or the keys of [fitted] in a scene file"
-        return top.fail("fitted", given, advice)
-    before, found = len(section.problems), section.read_all(section.rows)
-    if "surface" in objects:
-        section.finish()
-    return Fitted(**found) if len(section.problems) == before else None
+    before, found = len(top.problems), section.read_all(section.rows)
+    return make(**found) if len(top.problems) == before else None
 
 
 def _ensemble(section: Section, surface: Surface | None, seed: Callable[[], int | None] | None) -> Values:

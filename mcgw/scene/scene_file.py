@@ -9,7 +9,7 @@ import tomli_w
 
 from analytic import MeasuredRadii
 from mcgw.formats.named_files import HDF5, loads, read_bytes
-from mcgw.scene.keys import KEYS, SURFACE_UNITS
+from mcgw.scene.keys import KEYS, SURFACE_UNITS, TABLES
 from mcgw.scene.kinds import Word
 from mcgw.scene.laws import contact_law_table, grading_table, heights_table
 from mcgw.scene.reading import of_tables
@@ -199,8 +199,7 @@ def scene_document(scene: Scene, *, heights_file: str | None = None, left_out: b
         "heights": {} if listed else heights_table(scene.heights, heights_file),
         "summits": summits_table(scene.curvature, scene.surface, heights_file),
         "contact": {**contact_law_table(scene.law), **_written(scene.film), **_written(scene, "contact")},
-        "interaction": _written(scene.interaction, "interaction"),
-        "fitted": _written(scene.fitted, "fitted"),
+        **{name: _written(getattr(scene, name), name) for name, table in TABLES.items() if table.make},
         "ensemble": _written(scene, "ensemble"),
     }
     ensemble = document["ensemble"]

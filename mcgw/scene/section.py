@@ -112,12 +112,12 @@ class Section:
         self.name, self.table, self.problems, self.rows = name, table, problems, rows
         self._asked: list[str] = []
 
-    def section(self, name: str, rows: Mapping[str, Key]) -> "Section":
+    def section(self, name: str, rows: Mapping[str, Key], advice: str = "") -> "Section":
         """Read a table inside this one, empty if it is not there."""
         self.known(name)
         value = self.table.get(name, {})
         if not isinstance(value, dict):
-            self.fail(name, value, f"must be a table: write [{name}] above its keys")
+            self.fail(name, value, advice or f"must be a table: write [{name}] above its keys")
             value = {}
         return Section(name, value, self.problems, rows)
 

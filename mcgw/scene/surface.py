@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from typing import Any
 
-from analytic import Body, Nayak, SpectralMoments, composite_modulus
+from analytic import Nayak, SpectralMoments, composite_modulus
 from analytic import Surface as Plain
 from mcgw.scene.arguments import as_toml
 from mcgw.scene.keys import KEYS, MOMENTS, SUMMITS, SURFACE_UNITS
@@ -155,7 +155,7 @@ def read_surface(section: Section, listed: ListedSummits | None = None) -> Plain
     if len(section.problems) > before:
         return None
     if bodies := values.pop("bodies", None):
-        values["E_star"] = composite_modulus([Body(**body) for body in bodies])
+        values["E_star"] = composite_modulus(bodies)
     try:
         if not spectral:
             return Plain(**values)

@@ -15,7 +15,7 @@ from mcgw.formats.named_files import loads
 from mcgw.machine.memory import keep_freed_memory
 from mcgw.machine.progress import steps
 from mcgw.scene.scene import Scene
-from mcgw.scene.scene_file import scene_document, scene_of
+from mcgw.scene.scene_file import scene_document, scene_of, with_changes
 from mcgw.scene.section import SceneError
 from mcgw.sweeps.axes import Axes
 from mcgw.sweeps.groups import Group, Place, groups_of
@@ -36,7 +36,7 @@ def scenes_of(document: dict[str, Any], axes: Axes) -> list[Scene]:
     found, problems = [], []
     for point in steps(list(axes.points()), "points"):
         try:
-            found.append(scene_of(_with(document, axes.at(point))))
+            found.append(scene_of(with_changes(document, axes.at(point))))
         except SceneError as error:
             problems += [f"{line} (at {axes.text(point)})" for line in error.problems]
     if len(problems) > _MOST_TOLD:
@@ -80,7 +80,7 @@ class Points(Sequence[Scene]):
         if isinstance(i, slice):
             return [self[k] for k in range(*i.indices(len(self)))]
         n, edges = self._drawn[i]
-        scene = scene_of(_with(self._document, self._axes.at(self._points[i])))
+        scene = scene_of(with_changes(self._document, self._axes.at(self._points[i])))
         if scene.n_surfaces == n and scene.rel_err is None and not edges:
             return scene
         return scene.replace(n_surfaces=n, rel_err=None, edges=edges or scene.edges)
@@ -96,19 +96,6 @@ def document_of(scene: Scene) -> dict[str, Any]:
     if scene.keep == "moments":  # which no point can be given back
         document["ensemble"]["keep"] = "sums"
     return document
-
-
-def _with(document: dict[str, Any], changes: dict[str, Any]) -> dict[str, Any]:
-    """The tables with other values; a whole table takes the place of one."""
-    changed = dict(document)
-    for key, value in changes.items():
-        section, _, name = key.partition(".")
-        if not name:
-            changed[section] = value
-            continue
-        table = changed.get(section, {})
-        changed[section] = {**table, name: value} if isinstance(table, dict) else table
-    return changed
 
 
 @dataclass(frozen=True)
