@@ -35,6 +35,7 @@ from analytic.equations import (
     area,
     area_per_load,
     area_per_load_ratio,
+    asperities_for,
     barber_conductance,
     conductance,
     contacts,
@@ -100,10 +101,10 @@ __all__ = [
     "Interaction", "JacksonGreen", "JohnsonKendallRoberts", "KogutEtsion", "MeasuredHeights",
     "MeasuredRadii", "Model", "Nayak", "PiecewiseSeries", "PowerLawGraded", "Quantity", "RandomCurvature",
     "ScipyHeights", "SpectralMoments", "Surface", "Table", "Tangential", "Weibull", "ZhaoMaiettaChang",
-    "area", "area_per_load", "area_per_load_ratio", "barber_conductance", "bends", "composite_modulus",
-    "conductance", "contacts", "covariance", "cumulants", "extent", "first_negative", "fn", "fn_between",
-    "fn_paper", "fn_scaled", "is_data", "load", "masing", "mean", "mean_modulus", "name_of",
-    "plasticity_index", "quantity_of", "ratio_at_equal_load", "resolved", "resolved_breaks",
+    "area", "area_per_load", "area_per_load_ratio", "asperities_for", "barber_conductance", "bends",
+    "composite_modulus", "conductance", "contacts", "covariance", "cumulants", "extent", "first_negative",
+    "fn", "fn_between", "fn_paper", "fn_scaled", "is_data", "load", "masing", "mean", "mean_modulus",
+    "name_of", "plasticity_index", "quantity_of", "ratio_at_equal_load", "resolved", "resolved_breaks",
     "separation_at", "stiffness", "stiffness_ratio",
 ]  # fmt: skip
 

@@ -22,7 +22,7 @@ from analytic.own_balance import OwnBalance, derivative
 from analytic.quantities import SEPARATIONS, quantity_of
 
 if TYPE_CHECKING:
-    from analytic.distribution import Along, Counted, Distribution, Mapped
+    from analytic.distribution import Law
 
 
 _SERIES = ("stiffness", "load_slope")
@@ -147,7 +147,7 @@ class InteractingModel(Model):
             return x
         return np.asarray(x - self.compliance * self.alone.mean("load", x))
 
-    def distribution(self, quantity: str, h: float) -> "Distribution | Counted | Along | Mapped":
+    def distribution(self, quantity: str, h: float) -> "Law":
         """As `Model.distribution`, also of the other separation.
 
         At nominal separations from the body of the load, P(P <= p | h) = P(S(h + c p) <= p), and of what
@@ -161,15 +161,15 @@ class InteractingModel(Model):
             self._asked(quantity, h)
         return interacting_distribution(self, quantity, float(h))
 
-    def separation_law(self, load: float, quantity: str = "load") -> "Along | Mapped":
+    def separation_law(self, load: float, quantity: str = "load") -> "Law":
         """As `Model.separation_law`: at a given load only the separation differs, by the same on all."""
-        from analytic.distribution import Mapped
-
         felt = self.alone.separation_law(load, quantity)
         if not self.interaction.nominal:
             return felt
         if quantity != "load":
             raise ValueError(f"quantity = {quantity!r}: at nominal separations give a load")
+        from analytic.distribution import Mapped
+
         shift = self.compliance * load
         return Mapped(felt, lambda x: x - shift, lambda h: h + shift)
 

@@ -24,7 +24,7 @@ from analytic.summits import Summits, summits_of
 from analytic.surface import Surface
 
 if TYPE_CHECKING:
-    from analytic.distribution import Along, Counted, Distribution, Mapped
+    from analytic.distribution import Law
 
 
 @dataclass(frozen=True, slots=True)
@@ -323,7 +323,7 @@ class Model:
         rule = means.rule(h + np.array([0.0, *farther]), [quantity])
         return rule, lambda nodes: nodes.terms([quantity], [h], self.grading, means.ways)[:, 0]
 
-    def distribution(self, quantity: str, h: float) -> "Distribution | Counted | Along | Mapped":
+    def distribution(self, quantity: str, h: float) -> "Law":
         """Exact law of a quantity over surfaces, at one separation, in the manner of `scipy.stats`.
 
         Parameters
@@ -335,9 +335,9 @@ class Model:
 
         Returns
         -------
-        Distribution or Counted
-            With cdf, sf, pdf (a number of asperities: pmf), ppf, isf, interval, rvs, mean, var, std, in the
-            unit of the quantity; the probability of nothing, `atom`; and `error`, that of the computation.
+        Law
+            With cdf, sf, pdf (of a number of asperities its probability), ppf, isf, interval, rvs, mean, var,
+            std, in the unit of the quantity; `atom`, the probability of nothing; and `error` of cdf.
 
         Examples
         --------
@@ -351,7 +351,7 @@ class Model:
 
         return distribution_of(self, quantity, float(h))
 
-    def separation_law(self, load: float, quantity: str = "load") -> "Along | Mapped":
+    def separation_law(self, load: float, quantity: str = "load") -> "Law":
         """Exact law of the separation at a given load: P(h* <= h) = P(S(h) <= load).
 
         Parameters
@@ -363,7 +363,7 @@ class Model:
 
         Returns
         -------
-        Along or Mapped
+        Law
             As `distribution`, of d/sigma.
 
         Raises

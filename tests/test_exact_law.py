@@ -238,6 +238,17 @@ def test_the_separation_at_a_load():
     assert law.var() == pytest.approx(1.5e-2, rel=0.03)
 
 
+@pytest.mark.parametrize("count", ["fixed", "poisson"])
+def test_so_many_asperities_scatter_as_wanted(count):
+    of = model(3000, count=count)
+    wanted = analytic.asperities_for(of, "load", [0.0, 2.5], 0.01)
+    for h, n in zip((0.0, 2.5), wanted.tolist(), strict=True):
+        large = model(n, count=count).distribution("load", h)
+        assert large.std() / large.mean() == pytest.approx(0.01, rel=1e-9)
+    with pytest.raises(ValueError, match="std_over_mean = 0"):
+        analytic.asperities_for(of, "load", 1.0, 0)
+
+
 def test_laws_of_contact_and_radii_keep_their_moments():
     radii = analytic.RandomCurvature(5.0)
     for more in (

@@ -18,7 +18,7 @@ import mcgw
 from mcgw.figures.catalogue import CATALOGUE, figures_of, rows_of
 from mcgw.figures.compared import Compared
 from mcgw.figures.data import FigureData, ratio_of_sums
-from mcgw.figures.finite import law_of_load, spread
+from mcgw.figures.finite import spread
 from mcgw.figures.panels import draw, save_figure_files
 from mcgw.figures.style import prefixed, short
 from mcgw.scene.scene_file import scene_from
@@ -105,19 +105,6 @@ def test_numbers_of_the_paper(figures):
     homogeneous = figures["area-and-load"].panels[1].series[1]
     assert np.all(np.diff(homogeneous.theory) > 0)
     assert homogeneous.theory[-1] < 1  # area grows slower than load, ever less so
-
-
-def test_exact_law_of_the_load_has_its_cumulants():
-    """Mean and variance to 1e-4: the step shifts the mean by so much."""
-    law = law_of_load(800, 2.5, 2e-4, 2**17)
-    x = 2e-4 * np.arange(law.size)
-    unit = analytic.QUANTITIES["load"].scale(SURFACE)
-    exact = analytic.cumulants(SURFACE, "load", 2.5, n_asperities=800)
-    assert law.sum() == pytest.approx(1, abs=1e-12)
-    assert law @ x * unit == pytest.approx(float(exact.mean), rel=1e-3)
-    variance = law @ x**2 - (law @ x) ** 2
-    assert variance * unit**2 == pytest.approx(float(exact.variance), rel=1e-3)
-    assert law[0] > (1 - analytic.fn(0, 2.5)) ** 800  # no contact at all, or hardly any
 
 
 def test_ratio_of_sums_against_repetition():

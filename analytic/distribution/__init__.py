@@ -5,16 +5,7 @@ number is a Poisson variable, with ``q(t) = E exp(i t X) - 1`` of what one adds.
 the law of S; where contacts are few another way leads there.
 """
 
-from analytic.distribution.derived import Along, Counted, Mapped
-from analytic.distribution.law import Distribution
+from analytic.distribution.derived import Law, Mapped
 from analytic.distribution.of_model import distribution_of, interacting_distribution, separation_law_of
 
-__all__ = [
-    "Along",
-    "Counted",
-    "Distribution",
-    "Mapped",
-    "distribution_of",
-    "interacting_distribution",
-    "separation_law_of",
-]
+__all__ = ["Law", "Mapped", "distribution_of", "interacting_distribution", "separation_law_of"]

@@ -21,6 +21,11 @@ class Law:
     """The law of a value over surfaces, in the manner of `scipy.stats`; arguments are of any shape."""
 
     @property
+    def error(self) -> float:
+        """How far `cdf` may be off."""
+        raise NotImplementedError
+
+    @property
     def atom(self) -> float:
         """Probability of nothing: that no asperity touches."""
         return 0.0
@@ -143,7 +148,7 @@ class Along(Law):
     start: float
     spread: float
 
-    @cached_property
+    @property
     def error(self) -> float:
         """As of the sum at the start."""
         return float(self.law(self.start).error)
@@ -186,8 +191,8 @@ class Along(Law):
 
 
 @dataclass(frozen=True)
-class Counted:
-    """The exact law of a number of asperities: that of `scipy.stats`, binomial or Poisson, and its `atom`.
+class Counted(Law):
+    """The exact law of a number of asperities, binomial or Poisson: that of `scipy.stats`.
 
     Parameters
     ----------
@@ -202,7 +207,11 @@ class Counted:
     share: float
     number: float
     poisson: bool
-    error: float = 1e-14
+
+    @property
+    def error(self) -> float:
+        """Of SciPy's functions."""
+        return 1e-14
 
     @cached_property
     def _law(self) -> Any:
@@ -215,10 +224,22 @@ class Counted:
     @property
     def atom(self) -> float:
         """Probability that there is none."""
-        return float(self._law.pmf(0))
+        return float(self.pdf(0))
 
-    def __getattr__(self, name: str) -> Any:
-        """Whatever a frozen law of `scipy.stats` has: cdf, sf, pmf, ppf, isf, interval, rvs, mean, std."""
-        if name.startswith("_"):
-            raise AttributeError(name)
-        return getattr(self._law, name)
+    def pdf(self, y: ArrayLike) -> Array:
+        """Probability of a number."""
+        return np.asarray(self._law.pmf(y))
+
+    def mean(self) -> float:
+        """Mean over surfaces."""
+        return float(self._law.mean())
+
+    def var(self) -> float:
+        """Variance over surfaces."""
+        return float(self._law.var())
+
+    def _tail(self, y: ArrayLike, *, upper: bool) -> Array:
+        return np.asarray((self._law.sf if upper else self._law.cdf)(y))
+
+    def _quantile(self, q: ArrayLike, *, upper: bool) -> Array:
+        return np.asarray((self._law.isf if upper else self._law.ppf)(q))

@@ -71,7 +71,7 @@ class Distribution(Law):
     def _tail(self, y: ArrayLike, *, upper: bool) -> Array:
         return self._at(y, "sf" if upper else "cdf")
 
-    @cached_property
+    @property
     def error(self) -> float:
         """How far `cdf` may be off, seen from a computation with other nodes, between 0.1 and 99.9 %."""
         x = self.ppf(_SHARES) / self.unit

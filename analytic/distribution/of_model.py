@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from analytic.distribution.derived import Along, Counted, Mapped
+from analytic.distribution.derived import Along, Counted, Law, Mapped
 from analytic.distribution.law import Distribution
 from analytic.distribution.one_asperity import OneAsperity
 from analytic.distribution.touching import Asperity, Touching
@@ -17,7 +17,7 @@ _FARTHER = (1.0, 3.0, 6.0, 10.0)  # heights above the separation that divide the
 _FINER = (0.5, 1.0, 2.0, 3.0, 4.5, 6.0, 8.0, 10.0)
 
 
-def distribution_of(model: Any, quantity: str, h: float) -> Distribution | Counted:
+def distribution_of(model: Any, quantity: str, h: float) -> Law:
     """As `analytic.Model.distribution`, of a model whose asperities are independent."""
     q, poisson = quantity_of(quantity), model.count == "poisson"
     if q.counts:
@@ -34,7 +34,7 @@ def distribution_of(model: Any, quantity: str, h: float) -> Distribution | Count
     return Distribution(Touching(one(rule), lambda: one(finer()[0]), itself), q.scale(model.surface))
 
 
-def separation_law_of(model: Any, load: float, quantity: str) -> Along:
+def separation_law_of(model: Any, load: float, quantity: str) -> Law:
     """As `analytic.Model.separation_law`, of a model whose asperities are independent."""
     if quantity_of(quantity).counts or quantity_of(quantity).unloading:
         raise ValueError(f"quantity = {quantity!r}: give a sum that falls with the separation, as 'load'")
@@ -44,7 +44,7 @@ def separation_law_of(model: Any, load: float, quantity: str) -> Along:
     return Along(partial(distribution_of, model, quantity), lambda _: load, start, spread)
 
 
-def interacting_distribution(model: Any, quantity: str, h: float) -> Distribution | Counted | Along | Mapped:
+def interacting_distribution(model: Any, quantity: str, h: float) -> Law:
     """As `analytic.Model.distribution`, of a model whose asperities press each other down."""
     c, alone, q = model.compliance, model.alone, quantity_of(quantity)
     if not model.interaction.nominal:

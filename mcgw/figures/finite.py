@@ -1,9 +1,7 @@
 """How finite surfaces differ from each other."""
 
 import numpy as np
-from scipy.special import ndtr
 
-from analytic import quantity_of
 from analytic.arrays import Array
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.simulation import simulate
@@ -13,7 +11,6 @@ from mcgw.figures.style import power_of_ten
 from mcgw.scene.scene import Scene
 
 _SPREADING = ("load", "area", "stiffness")
-_FINE = 2048  # steps of the exact law in a bin: rounding each contact to a step shifts the mean by 1e-4
 
 
 def fluctuations(f: Compared) -> FigureData:
@@ -67,31 +64,6 @@ def spread(x: Array, h: Array, exact: Array) -> Points | None:
     return Points(h, std / np.abs(mean), influence.std(axis=0) / np.sqrt(len(x)), exact)
 
 
-def law_of_load(n: int, h: float, step: float, bins: int) -> Array:
-    """Find the exact law of the load of a finite homogeneous surface, by Fourier transform.
-
-    Parameters
-    ----------
-    n : int
-        Asperities.
-    h : float
-        Reduced separation.
-    step : float
-        Width of a bin of load, over that of one asperity at unit approach.
-    bins : int
-        How many; the load must hardly ever exceed ``step * bins``.
-
-    Returns
-    -------
-    ndarray
-        Probability of a load within half a step of ``k step``, shape (bins,).
-    """
-    edges = (np.arange(bins) + 0.5) * step
-    below = ndtr(-(h + edges ** (2 / 3)))  # of an approach beyond the edge
-    one = -np.diff(below, prepend=1.0)
-    return np.fft.irfft(np.fft.rfft(one) ** n, bins)
-
-
 def distribution(f: Compared) -> FigureData:
     """Show the law of the load at light contact: exact, Gaussian, drawn."""
     panels = tuple(_load_panel(f, key, contacts) for key, contacts in (("a", 5.0), ("b", 50.0), ("c", 500.0)))
@@ -107,30 +79,21 @@ def _load_panel(f: Compared, key: str, contacts: float) -> Panel:
     h, m = 2.5, 100_000
     n = round(contacts / float(f.scene.heights.sf(np.array(h))))
     scene = f.scene.replace(keep="sums", separations=h, quantities=("load",), n_asperities=n, n_surfaces=m)
-    exact = scene.theory.cumulants("load", h)
-    mean, std = float(exact.mean), float(np.sqrt(exact.variance))
-    x = simulate(scene).load[:, 0] / mean
-    width = std / mean / 4
-    top = 1 + 5 * std / mean
-    edges = np.arange(max(width * round((1 - 4 * std / mean) / width), width), top, width)
-    step = width * mean / quantity_of("load").scale(scene.surface) / _FINE
-    law = law_of_load(n, h, step, 2**18)
-    cumulative = np.concatenate([[0.0], np.cumsum(law)])  # up to (k - 1/2) steps
-    at = np.interp(edges / width * _FINE + 0.5, np.arange(len(cumulative)), cumulative)
-    share, p = np.histogram(x, edges)[0] / m, np.diff(at)
+    law = scene.theory.distribution("load", h)
+    mean, std = law.mean(), law.std()
+    width, top = std / 4, mean + 5 * std
+    edges = np.arange(max(width * round((mean - 4 * std) / width), width), top, width)
+    share, p = np.histogram(simulate(scene).load[:, 0], edges)[0] / m, np.diff(law.cdf(edges))
     often = p * m >= 25  # a bin with fewer has no symmetric interval
-    share, p, centre = share[often], p[often], ((edges[1:] + edges[:-1]) / 2)[often]
-    points = Points(centre, share / width, np.sqrt(p * (1 - p) / m) / width, p / width)
-    fine = np.linspace(max(0.0, 2 - top), top, 201)
-    bell = np.exp(-(((fine - 1) * mean / std) ** 2) / 2) / np.sqrt(2 * np.pi) * mean / std
-    none = (
-        f"; no contact: {float(np.exp(n * np.log1p(-scene.heights.sf(np.array(h))))):.1%}"
-        if contacts < 10
-        else ""
-    )
+    share, p, centre = share[often], p[often], ((edges[1:] + edges[:-1]) / 2)[often] / mean
+    each = width / mean
+    points = Points(centre, share / each, np.sqrt(p * (1 - p) / m) / each, p / each)
+    fine = np.linspace(max(0.0, 2 * mean - top), top, 201)
+    bell = np.exp(-(((fine - mean) / std) ** 2) / 2) / np.sqrt(2 * np.pi) * mean / std
+    none = f"; no contact: {law.atom:.1%}" if contacts < 10 else ""
     return Panel(
         f"{key}  {contacts:g} contacts{none}",
         r"load over its mean, $P/\langle P\rangle$",
         "probability density",
-        (Series("exact", centre, p / width, points), Series("Gaussian", fine, bell)),
+        (Series("exact", centre, p / each, points), Series("Gaussian", fine / mean, bell)),
     )

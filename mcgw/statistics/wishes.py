@@ -1,7 +1,7 @@
 """What to run for what one wants: the pair of sampler and accuracy that takes the least time, and how many.
 
-A wish is kept in 95 of 100 ensembles: by the exact spread of a surface for a mean, by the order statistics of
-some surfaces for a quantile. For values of single surfaces it is kept in all of them.
+A wish is kept in 95 of 100 ensembles: by the exact spread of a surface for a mean, by the exact density at it
+for a quantile. For values of single surfaces it is kept in all of them.
 
 Pairs of a sampler and an accuracy for one scene: what values of surfaces cost, and how good they are.
 """
@@ -17,7 +17,6 @@ from scipy.special import ndtri
 
 from mcgw.ensemble.drawing import seconds_per_surface
 from mcgw.ensemble.forecast import relative_spread
-from mcgw.ensemble.simulation import simulate
 from mcgw.sampling.asperities import Listing, summits_drawn
 from mcgw.sampling.block import Sampler
 from mcgw.sampling.law_sums import asperity_sums
@@ -29,9 +28,7 @@ from mcgw.scene.section import SceneError
 
 _SHARE = 0.1  # of a wish that the accuracy of values may take
 _PROBABILITY = 0.99  # whose quantile is wished for
-_SEEN, _FEWEST = 4000, 2000  # surfaces that show a quantile's spread; with fewer there are not 20 beyond it
-_SPREAD_OF_SPREAD = 1.3  # how much wider the spread may be than order statistics show it
-_LONGEST = 5.0  # seconds that it may take to see
+_FEWEST = 2000  # surfaces that show a quantile; of fewer there are not 20 beyond it
 _MOST_SURFACES = 1e12
 # What matters most first: there may not be time for all.
 _ACCURACIES = (EXACT, 1e-6, 1e-3, 1e-2, 1e-4, 1e-5, 1e-10, 1e-8)
@@ -202,7 +199,7 @@ def advise(
     found = []
     for wish in wishes:
         if wish.of == "quantile" and seen is None:
-            seen = _Quantile.of(scene, h, ways)
+            seen = _Quantile.of(scene, h)
         needed, law_error = _needed(wish, scene, spread, seen)
         good = [way for way in ways if _serves(way, wish, law_error)]
         if good and needed <= _MOST_SURFACES:
@@ -243,19 +240,14 @@ class _Quantile:
     density: float
 
     @classmethod
-    def of(cls, scene: Scene, h: float, ways: Sequence[Way]) -> "_Quantile":
-        """From the order statistics of an ensemble at one separation."""
-        fastest = min((way for way in ways if not way.scene.law_error), key=lambda way: way.each)
-        n = int(np.clip(_LONGEST / fastest.each, _FEWEST, _SEEN))
-        one = replace(fastest.scene, separations=(h,), quantities=(scene.quantities[0],), n_surfaces=n)
-        values = np.sort(simulate(one)[scene.quantities[0]][:, 0])
-        spread = float(ndtri(0.975)) * np.sqrt(n * _PROBABILITY * (1 - _PROBABILITY))
-        low, middle, high = (int(np.clip(n * _PROBABILITY + k * spread, 0, n - 1)) for k in (-1, 0, 1))
-        if not values[middle] > 0 or values[low] == values[high]:
-            return cls(inf, 0.0)
-        half = float(values[high] - values[low]) / 2 / float(values[middle])
-        return cls(half * np.sqrt(n), (high - low) / n / (2 * half))
+    def of(cls, scene: Scene, h: float) -> "_Quantile":
+        """From the exact law at one separation: order statistics have a normal law with its density."""
+        law = scene.theory.distribution(scene.quantities[0], h)
+        value = float(law.ppf(_PROBABILITY))
+        density = value * float(law.pdf(value))
+        half = float(ndtri(0.975)) * np.sqrt(_PROBABILITY * (1 - _PROBABILITY))
+        return cls(half / density, density) if density > 0 else cls(inf, 0.0)
 
     def surfaces(self, within: float) -> float:
         """How many it takes."""
-        return max((_SPREAD_OF_SPREAD * self.half / within) ** 2, _FEWEST)
+        return max((self.half / within) ** 2, _FEWEST)
