@@ -24,7 +24,6 @@ from analytic.quantities import SEPARATIONS, quantity_of
 if TYPE_CHECKING:
     from analytic.distribution import Law
 
-
 _SERIES = ("stiffness", "load_slope")
 
 

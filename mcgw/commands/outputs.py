@@ -20,7 +20,6 @@ if TYPE_CHECKING:
     from mcgw.ensemble.ensemble import Ensemble
     from mcgw.sweeps.sweep import Sweep
 
-
 _SIGNATURE = b"\x89HDF\r\n\x1a\n"
 
 

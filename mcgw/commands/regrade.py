@@ -9,7 +9,6 @@ if TYPE_CHECKING:
     from analytic import Exponential
     from analytic.laws import ContactLaw
 
-
 HELP = "give the surfaces of a file another grading or contact law"
 EXAMPLE = "mcgw regrade demo.h5 --law kogut-etsion --hardness 1.2GPa -o metal.h5"
 _CONSTANTS = {

@@ -19,7 +19,6 @@ from mcgw.statistics.comparison import Comparison
 if TYPE_CHECKING:
     from mcgw.statistics.comparison import SweepComparison
 
-
 _MOST_COLUMNS = 3  # more are too small to read on a page
 _BIN = 0.5  # standard errors
 _CAPTION = (

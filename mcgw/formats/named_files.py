@@ -14,7 +14,6 @@ from mcgw.errors import StoreError
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-
 HDF5 = b"\x89HDF\r\n"  # how such a file begins
 _UNSOUND = (EOFError, KeyError, MemoryError, OverflowError, SyntaxError, TokenError, TypeError, ValueError)
 _MOST_PARTS = 100  # of a dotted key: the parser's time grows as their square

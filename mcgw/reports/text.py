@@ -23,7 +23,6 @@ if TYPE_CHECKING:
     from mcgw.statistics.comparison import SweepComparison
     from mcgw.sweeps.sweep import Sweep
 
-
 _MOST_ROWS = 9
 _KEPT = "statistics alone: mean, covariance, skewness, quantiles, extremes"
 _SHOWN = ("separation", "mean", "std", "stderr")

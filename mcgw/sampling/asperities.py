@@ -1,25 +1,19 @@
 """The heights themselves: the very asperities whose sums the samplers ``tail`` and ``cells`` give."""
 
-from typing import TYPE_CHECKING, Protocol, cast
-
 import numpy as np
 from numpy.typing import NDArray
 
 from analytic import MeasuredHeights
 from analytic.arrays import Array
 from mcgw.machine.memory import check_memory
-from mcgw.sampling.cells import Mesh
+from mcgw.sampling.block import Sampler
 from mcgw.sampling.counts import counts_of, generator
-from mcgw.sampling.outside import extra_heights
+from mcgw.sampling.outside import extra_heights, table_of
 from mcgw.sampling.philox import CELLS, RADII, RADII_LOW, REST, uniforms
 from mcgw.sampling.samplers import sampler_of
 from mcgw.scene.samplers import promise_of
 from mcgw.scene.scene import Scene
 from mcgw.scene.storable import storable
-
-if TYPE_CHECKING:
-    from mcgw.sampling.radius_table import RadiusTable
-
 
 Listed = tuple[Array, Array | None]  # reduced heights; radii over the surface's, where summits have their own
 
@@ -93,13 +87,7 @@ def radii(scene: Scene, surface: int) -> NDArray[np.float64]:
     return np.asarray(scene.surface.radius * (np.ones_like(s) if ratios is None else ratios))
 
 
-class Listing(Protocol):
-    """A sampler whose asperities are drawn one by one, in cells or beside them."""
-
-    mesh: Mesh
-
-
-def listing_sampler(scene: Scene) -> Listing:
+def listing_sampler(scene: Scene) -> Sampler:
     """The sampler of a scene, if it can tell the heights.
 
     Raises
@@ -110,9 +98,9 @@ def listing_sampler(scene: Scene) -> Listing:
     if isinstance(scene.heights, MeasuredHeights):
         raise ValueError("heights: measured ones have no places; those of the scene are in scene.heights")
     sampler = sampler_of(scene)
-    if not hasattr(sampler, "mesh") or not promise_of(sampler.name).one_by_one:
+    if not promise_of(sampler.name).one_by_one:
         raise ValueError(f'sampler = "{sampler.name}" keeps no heights; "cells" and "tail" do')
-    return cast(Listing, sampler)
+    return sampler
 
 
 def same_heights(one: Scene, other: Scene) -> bool:
@@ -120,8 +108,8 @@ def same_heights(one: Scene, other: Scene) -> bool:
 
     Cells are edged by the breaks of contact laws, and each cell has uniforms of its own.
     """
-    first, second = (getattr(sampler_of(scene), "mesh", None) for scene in (one, other))
-    return not (first and second) or np.array_equal(first.edges, second.edges)
+    first, second = (sampler_of(scene).mesh for scene in (one, other))
+    return np.array_equal(first.edges, second.edges)
 
 
 def touching_summits(scene: Scene, surface: int) -> Listed:
@@ -135,16 +123,16 @@ def summits(scene: Scene, surface: int) -> Listed:
     scene = storable(scene)
     touching, ratios = summits_drawn(scene, listing_sampler(scene), surface)
     rest = _below(scene, surface, len(touching))
-    s, table = np.concatenate([touching, rest]), _table(scene, -np.inf)
+    s, table = np.concatenate([touching, rest]), table_of(scene, -np.inf)
     if table is None or ratios is None:
         return s, None
     words = (2 * uniforms(scene.seed, REST, surface, stream, rest.size) - 1 for stream in (1, 2))
     return s, np.concatenate([ratios, table.root_ratios(rest, *words) ** 2])
 
 
-def summits_drawn(scene: Scene, sampler: Listing, surface: int) -> Listed:
+def summits_drawn(scene: Scene, sampler: Sampler, surface: int) -> Listed:
     """The asperities of one surface that touch, by its sampler, which takes longer to make than they do."""
-    mesh, table = sampler.mesh, _table(scene, scene.lowest)
+    mesh, table = sampler.mesh, table_of(scene, scene.lowest)
     counts = counts_of(scene, mesh, surface, 1)
     check_memory("the heights of one surface", 24 * int(counts.cells.sum()))
     outside = extra_heights(scene, mesh, surface, counts, table)
@@ -158,15 +146,6 @@ def summits_drawn(scene: Scene, sampler: Listing, surface: int) -> Listed:
             ratios.append(table.root_ratios(heights[-1], *words) ** 2)
     s = np.concatenate([*heights, outside[:, 1]])
     return s, np.concatenate([*ratios, outside[:, 3]]) if table else None
-
-
-def _table(scene: Scene, lowest: float) -> "RadiusTable | None":
-    """Of radii, where summits have their own: a sampler that counts contacts alone has none."""
-    if scene.curvature is None:
-        return None
-    from mcgw.sampling.radius_table import radius_table  # for those scenes alone
-
-    return radius_table(scene.curvature, lowest)
 
 
 def _below(scene: Scene, surface: int, touching: int) -> Array:

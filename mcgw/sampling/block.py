@@ -1,11 +1,15 @@
-"""What a sampler is, seen from outside, and what it gives."""
+"""What every sampler has, and what it gives."""
 
-from dataclasses import dataclass
-from typing import Protocol, TypeVar
+from dataclasses import dataclass, replace
+from typing import Protocol, Self, TypeVar
 
 from analytic.arrays import Array
+from mcgw.sampling.cells import Mesh
+from mcgw.scene.scene import Scene
 
 Drawn = TypeVar("Drawn", covariant=True)
+
+_WORDS = 12  # numbers in memory for an asperity drawn by itself
 
 
 @dataclass(frozen=True)
@@ -48,29 +52,68 @@ class Source(Protocol[Drawn]):
         ...
 
 
-class Sampler(Source[Block], Protocol):
-    """Draws the surfaces of a scene."""
+@dataclass(frozen=True)
+class Sampler:
+    """Draws the surfaces of a scene: in cells, and one by one beside them, unless a sampler says otherwise.
 
-    @property
-    def name(self) -> str:
-        """One of `mcgw.scene.samplers.SAMPLERS`, never "auto"."""
-        ...
+    Parameters
+    ----------
+    name : str
+        One of `mcgw.scene.samplers.SAMPLERS`, never "auto".
+    scene : Scene
+        What is asked.
+    mesh : Mesh
+        Its cells; with none, every asperity is drawn by itself.
+    """
 
-    @property
-    def cells(self) -> int:
-        """Number of its cells; 0 if it has none."""
-        ...
-
-    @property
-    def moments(self) -> int:
-        """Numbers that it keeps of a surface besides those of the asperities in each cell."""
-        ...
+    name: str
+    scene: Scene
+    mesh: Mesh
 
     @property
     def seconds_per_draw(self) -> float:
         """Very roughly."""
-        ...
+        return 2e-9
 
-    def with_seed(self, seed: int) -> "Sampler":
+    @property
+    def law_error(self) -> float:
+        """Distance of the laws of its values from the exact ones; nan if nobody knows."""
+        return 0.0
+
+    @property
+    def cells(self) -> int:
+        """Number of its cells."""
+        return self.mesh.size
+
+    @property
+    def moments(self) -> int:
+        """Numbers that it keeps of a surface besides those of the asperities in each cell."""
+        return 0
+
+    @property
+    def words(self) -> int:
+        """As of any `Source`."""
+        return self.moments + 2 * self.cells + _WORDS * int(min(self.outside, 1e12))
+
+    @property
+    def draws(self) -> float:
+        """As of any `Source`."""
+        return self.outside + self.inside
+
+    @property
+    def inside(self) -> float:
+        """Asperities of a surface that are expected in its cells."""
+        return self.scene.n_asperities * float(self.mesh.probability.sum())
+
+    @property
+    def outside(self) -> float:
+        """Asperities that are expected to be drawn by themselves."""
+        return self.scene.n_asperities * (self.mesh.low_extras + self.mesh.high_extras)
+
+    def with_seed(self, seed: int) -> Self:
         """The same cells and physics with other draws."""
-        ...
+        return replace(self, scene=replace(self.scene, seed=seed))
+
+    def block(self, first: int, n: int) -> Block:
+        """Results of surfaces `first` ... `first + n - 1`."""
+        raise NotImplementedError

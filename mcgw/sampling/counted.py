@@ -1,7 +1,7 @@
 """Samplers that count before they draw: the numbers in the cells, their moments, and the product."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -9,7 +9,7 @@ import numpy as np
 
 from analytic import quantity_of
 from analytic.arrays import Array, Ints
-from mcgw.sampling.block import Block
+from mcgw.sampling.block import Block, Sampler
 from mcgw.sampling.cells import Mesh
 from mcgw.sampling.counts import Counts, contacts_above, counts_of
 from mcgw.sampling.drawing import Drawing, OneByOne
@@ -26,21 +26,14 @@ if TYPE_CHECKING:
     from mcgw.sampling.radius_table import RadiusTable
 
 
-_WORDS = 12  # numbers in memory for an asperity drawn by itself
-
-
 @dataclass(frozen=True)
-class Counted:
+class Counted(Sampler):
     """A sampler put together of a mesh, a response, a way to count and a way to draw.
 
     Parameters
     ----------
-    name : str
-        What a scene calls it.
-    scene : Scene
-        What is asked.
-    mesh : Mesh
-        Its cells; with none, every asperity is drawn by itself.
+    name, scene, mesh
+        As of any `Sampler`.
     response : Response or Families
         Physics on this mesh.
     counting : callable, optional
@@ -51,19 +44,10 @@ class Counted:
         Of radii, where summits have their own.
     """
 
-    name: str
-    scene: Scene
-    mesh: Mesh
     response: "Response | Families"
     counting: Callable[[Scene, Mesh, int, int], Counts] = counts_of
     drawing: Drawing = OneByOne()  # noqa: RUF009 - it has no state
     table: "RadiusTable | None" = None
-    seconds_per_draw: float = 2e-9
-
-    @property
-    def cells(self) -> int:
-        """Number of its cells."""
-        return self.mesh.size
 
     @property
     def moments(self) -> int:
@@ -76,24 +60,9 @@ class Counted:
         return self.drawing.distance
 
     @property
-    def words(self) -> int:
-        """Numbers in memory for a surface, besides its results."""
-        return self.moments + 2 * self.cells + _WORDS * int(min(self._outside, 1e12))
-
-    @property
     def draws(self) -> float:
         """Numbers that are expected to be drawn for a surface."""
-        inside = self.scene.n_asperities * float(self.mesh.probability.sum())
-        return self._outside + self.drawing.draws(inside, self.response.layout)
-
-    @property
-    def _outside(self) -> float:
-        """Asperities that are expected to be drawn by themselves."""
-        return self.scene.n_asperities * (self.mesh.low_extras + self.mesh.high_extras)
-
-    def with_seed(self, seed: int) -> "Counted":
-        """The same cells and physics with other draws."""
-        return replace(self, scene=replace(self.scene, seed=seed))
+        return self.outside + self.drawing.draws(self.inside, self.response.layout)
 
     def block(self, first: int, n: int) -> Block:
         """Results of surfaces `first` ... `first + n - 1`."""

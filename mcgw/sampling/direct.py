@@ -1,11 +1,12 @@
 """All heights, by NumPy's generator, and plain loops: the witness against the other samplers."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from analytic.arrays import Array
-from mcgw.sampling.block import Block
+from mcgw.sampling.block import Block, Sampler
+from mcgw.sampling.cells import no_cells
 from mcgw.sampling.counts import generator
 from mcgw.sampling.law_sums import asperity_sums
 from mcgw.scene.scene import Scene
@@ -15,30 +16,28 @@ _PIECE = 2**20  # heights at a time
 
 
 @dataclass(frozen=True)
-class Direct:
-    """Draws every asperity of every surface.
+class Direct(Sampler):
+    """Draws every asperity of every surface."""
 
-    Parameters
-    ----------
-    scene : Scene
-        What is asked.
-    """
+    @classmethod
+    def of(cls, scene: Scene) -> "Direct":
+        """Prepare it."""
+        return cls("direct", scene, no_cells(scene))
 
-    scene: Scene
-    name: str = "direct"
-    cells: int = 0
-    moments: int = 0
-    words: int = 0
-    seconds_per_draw: float = 2e-8
+    @property
+    def seconds_per_draw(self) -> float:
+        """By plain loops."""
+        return 2e-8
+
+    @property
+    def words(self) -> int:
+        """One surface at a time."""
+        return 0
 
     @property
     def draws(self) -> float:
         """Numbers drawn for a surface."""
         return float(self.scene.n_asperities)
-
-    def with_seed(self, seed: int) -> "Direct":
-        """The same scene with other draws."""
-        return replace(self, scene=replace(self.scene, seed=seed))
 
     def block(self, first: int, n: int) -> Block:
         """Results of surfaces `first` ... `first + n - 1`."""

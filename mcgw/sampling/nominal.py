@@ -9,8 +9,8 @@ import numpy as np
 from analytic import quantity_of
 from analytic.arrays import Array
 from mcgw.sampling.balance import FAILED, POINTS, balance_surfaces, no_balance
-from mcgw.sampling.block import Block
-from mcgw.sampling.cells import NODES, TO_COEFFICIENTS, Mesh, mesh_of
+from mcgw.sampling.block import Block, Sampler
+from mcgw.sampling.cells import NODES, TO_COEFFICIENTS, mesh_of
 from mcgw.sampling.counts import counts_of
 from mcgw.sampling.layout import Layout
 from mcgw.sampling.moments import cell_moments
@@ -29,23 +29,13 @@ _PLACES = {"load": 1, "stiffness": 2, "load_slope": 2, "area": 3, "conductance":
 
 
 @dataclass(frozen=True, eq=False)
-class CellsAtNominal:
+class CellsAtNominal(Sampler):
     """Surfaces drawn in cells, whose width is a compromise (`mcgw.sampling.balance`).
 
     The narrower the cells are, the fewer asperities are near a separation, and the more cells are above it.
 
-    Parameters
-    ----------
-    scene : Scene
-        At nominal separations, with one radius and Hertz's law.
-    mesh : Mesh
-        Its cells.
+    The scene is at nominal separations, with one radius and Hertz's law.
     """
-
-    scene: Scene
-    mesh: Mesh
-    name: str = "cells"
-    seconds_per_draw: float = 2e-9
 
     @classmethod
     def of(cls, scene: Scene) -> "CellsAtNominal":
@@ -55,12 +45,7 @@ class CellsAtNominal:
         steps = max(math.ceil((scene.highest - scene.lowest) / width), 1)
         grid = scene.lowest + width * np.arange(steps)
         plain = replace(scene, interaction=None, separations=tuple(grid.tolist()))
-        return cls(scene, mesh_of(plain, split=False))
-
-    @property
-    def cells(self) -> int:
-        """Number of its cells."""
-        return self.mesh.size
+        return cls("cells", scene, mesh_of(plain, split=False))
 
     @property
     def moments(self) -> int:
@@ -70,20 +55,7 @@ class CellsAtNominal:
     @property
     def words(self) -> int:
         """Numbers in memory for a surface, besides its results."""
-        return 4 * POINTS * self.cells + 12 * int(min(self._outside, 1e12))
-
-    @property
-    def draws(self) -> float:
-        """Numbers that are expected to be drawn for a surface."""
-        return self._outside + self.scene.n_asperities * float(self.mesh.probability.sum())
-
-    @property
-    def _outside(self) -> float:
-        return self.scene.n_asperities * (self.mesh.low_extras + self.mesh.high_extras)
-
-    def with_seed(self, seed: int) -> "CellsAtNominal":
-        """The same cells with other draws."""
-        return replace(self, scene=replace(self.scene, seed=seed))
+        return 3 * self.moments + super().words
 
     def block(self, first: int, n: int) -> Block:
         """Results of surfaces `first` ... `first + n - 1`.

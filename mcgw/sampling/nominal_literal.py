@@ -5,8 +5,9 @@ Hertz's and for summits with radii of their own.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
+from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.optimize import brentq
@@ -15,11 +16,13 @@ from analytic import quantity_of
 from analytic.arrays import Array
 from analytic.laws import term_of
 from mcgw.sampling.balance import no_balance
-from mcgw.sampling.block import Block
-from mcgw.sampling.counted import Counted
+from mcgw.sampling.block import Block, Sampler
 from mcgw.sampling.counts import counts_of
 from mcgw.sampling.outside import extra_heights
 from mcgw.scene.scene import Scene
+
+if TYPE_CHECKING:
+    from mcgw.sampling.radius_table import RadiusTable
 
 _CLOSE = 4e-15
 _MOST_STEPS = 10_000
@@ -97,50 +100,31 @@ def _from_above(h: float, c: float, load: Callable[[float], float], lowest: floa
 
 
 @dataclass(frozen=True)
-class TailAtNominal:
+class TailAtNominal(Sampler):
     """Every asperity that may touch drawn by itself.
 
     Parameters
     ----------
-    scene : Scene
-        At nominal separations.
-    tail : Counted
-        What draws its surfaces: without any cell.
+    name, scene, mesh
+        As of any `Sampler`: at nominal separations, without cells.
+    table : RadiusTable or None
+        Of radii, where summits have their own.
     """
 
-    scene: Scene
-    tail: Counted
-    name: str = "tail"
-    cells: int = 0
-    moments: int = 0
-    seconds_per_draw: float = 1e-6
+    table: "RadiusTable | None"
 
     @property
-    def mesh(self) -> object:
-        """That of the sampler that draws."""
-        return self.tail.mesh
-
-    @property
-    def words(self) -> int:
-        """Numbers in memory for a surface, besides its results."""
-        return self.tail.words
-
-    @property
-    def draws(self) -> float:
-        """Numbers that are expected to be drawn for a surface."""
-        return self.tail.draws
-
-    def with_seed(self, seed: int) -> "TailAtNominal":
-        """The same with other draws."""
-        return replace(self, scene=replace(self.scene, seed=seed), tail=self.tail.with_seed(seed))
+    def seconds_per_draw(self) -> float:
+        """With all steps of the searches."""
+        return 1e-6
 
     def block(self, first: int, n: int) -> Block:
         """Results of surfaces `first` ... `first + n - 1`."""
-        mesh, table = self.tail.mesh, self.tail.table
-        rows = extra_heights(self.scene, mesh, first, counts_of(self.scene, mesh, first, n), table)
+        counts = counts_of(self.scene, self.mesh, first, n)
+        rows = extra_heights(self.scene, self.mesh, first, counts, self.table)
         found = []
         for number in range(first, first + n):
             mine = rows[rows[:, 0] == number]
-            ratios = np.ascontiguousarray(mine[:, 3]) if table else None
+            ratios = np.ascontiguousarray(mine[:, 3]) if self.table else None
             found.append(balanced_sums(self.scene, number, np.ascontiguousarray(mine[:, 1]), ratios))
         return Block({name: np.concatenate([row[name] for row in found]) for name in found[0]})

@@ -16,7 +16,6 @@ from mcgw.scene.scene import Scene
 if TYPE_CHECKING:
     from mcgw.sampling.radius_table import RadiusTable
 
-
 _HIGH, _LOW, _RADII = 0, 1, 2  # streams, and what leads from one of heights to that of their radii
 _MANY, _BYTES = 10**7, 100  # heights that are worth asking whether there is room; bytes of one
 
@@ -64,6 +63,15 @@ def extra_heights(
         low = _with_radii(low, table, scene.seed, first, _LOW, counts.low_extras)
     rows = np.concatenate([low, rows])
     return np.asarray(rows[np.argsort(rows[:, 0], kind="stable")])
+
+
+def table_of(scene: Scene, lowest: float) -> "RadiusTable | None":
+    """Radii of summits above a height, where they have their own."""
+    if scene.curvature is None:
+        return None
+    from mcgw.sampling.radius_table import radius_table  # for those scenes alone
+
+    return radius_table(scene.curvature, lowest)
 
 
 def _rows(first: int, numbers: NDArray[np.int64], heights: Array, weight: float) -> Array:

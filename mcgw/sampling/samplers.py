@@ -29,6 +29,7 @@ from mcgw.sampling.counts import Counts, counts_of, strata_of
 from mcgw.sampling.direct import Direct
 from mcgw.sampling.drawing import Crowds, InStrata, OneByOne
 from mcgw.sampling.layout import Layout
+from mcgw.sampling.outside import table_of
 from mcgw.sampling.response.nodes import Precision
 from mcgw.sampling.response.response import Response, layout_of, response_of
 from mcgw.sampling.response.walk import UnresolvedError
@@ -39,7 +40,6 @@ from mcgw.scene.storable import storable
 
 if TYPE_CHECKING:
     from mcgw.sampling.families import Families
-
 
 _GAUSSIAN, _WORTH = 300, 1.5  # asperities that a crowded cell takes as long as; times that much faster
 _CUTS = 16  # in four, of a cell on which the modulus, and the law of contact under it, are not resolved
@@ -156,7 +156,7 @@ def aggregate_of(scene: Scene, crowded: int = CROWDED, distance: float = np.nan)
 
 
 _MAKERS: dict[str, Callable[[Scene], Sampler]] = {
-    "direct": Direct,
+    "direct": Direct.of,
     "tail": tail_of,
     "cells": cells_of,
     "aggregate": aggregate_of,
@@ -167,11 +167,11 @@ _MAKERS: dict[str, Callable[[Scene], Sampler]] = {
 def _at_nominal(name: str, scene: Scene) -> Sampler:
     """The sampler of a scene whose surfaces each find their own balance: imported for those alone."""
     if name == "direct":
-        return Direct(scene)
+        return Direct.of(scene)
     if name == "tail":
         from mcgw.sampling.nominal_literal import TailAtNominal
 
-        return TailAtNominal(scene, tail_of(replace(scene, interaction=None, separations=(scene.lowest,))))
+        return TailAtNominal("tail", scene, no_cells(scene), table_of(scene, scene.lowest))
     from mcgw.sampling.nominal import CellsAtNominal
 
     return CellsAtNominal.of(scene)

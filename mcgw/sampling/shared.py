@@ -7,7 +7,7 @@ have the same law, number, seed and cells have the same surfaces, and each has t
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,47 +23,30 @@ from mcgw.scene.scene import Scene
 
 
 @dataclass(frozen=True)
-class Alone:
-    """A scene whose surfaces are shared with no other."""
-
-    sampler: Sampler
-
-    @property
-    def words(self) -> int:
-        """As of its sampler."""
-        return self.sampler.words
-
-    @property
-    def draws(self) -> float:
-        """As of its sampler."""
-        return self.sampler.draws
-
-    def block(self, first: int, n: int) -> tuple[Block, ...]:
-        """What surfaces `first` ... `first + n - 1` answer to each scene."""
-        return (self.sampler.block(first, n),)
-
-
-@dataclass(frozen=True)
 class Shared:
     """Scenes of the same surfaces on the same cells.
 
     Parameters
     ----------
-    scenes : tuple of Counted
-        Each alone.
+    scenes : tuple of Sampler
+        Each alone: a `Counted` one, but where there is no other.
     """
 
-    scenes: tuple[Counted, ...]
+    scenes: tuple[Sampler, ...]
+
+    @property
+    def _counted(self) -> tuple[Counted, ...]:
+        return cast(tuple[Counted, ...], self.scenes)
 
     @cached_property
     def layout(self) -> Layout:
         """Moments that one of them needs."""
-        return Layout.covering([one.response.layout for one in self.scenes])
+        return Layout.covering([one.response.layout for one in self._counted])
 
     @cached_property
     def _answering(self) -> tuple[Counted, ...]:
         """All of them, out of the moments of all."""
-        return tuple(replace(one, response=one.response.out_of(self.layout)) for one in self.scenes)
+        return tuple(replace(one, response=one.response.out_of(self.layout)) for one in self._counted)
 
     @property
     def words(self) -> int:
@@ -78,7 +61,9 @@ class Shared:
 
     def block(self, first: int, n: int) -> tuple[Block, ...]:
         """What surfaces `first` ... `first + n - 1` answer to each scene."""
-        drawn = self.scenes[0].drawn(first, n, self.layout)
+        if len(self.scenes) == 1:
+            return (self.scenes[0].block(first, n),)
+        drawn = self._counted[0].drawn(first, n, self.layout)
         return tuple(Block(one.sums(first, *drawn)) for one in self._answering)
 
 
@@ -124,9 +109,9 @@ def _edges(scene: Scene) -> NDArray[np.float64]:
     return (mesh_of(scene) if plain else cells_of(scene).mesh).edges
 
 
-def shared(scenes: Sequence[Scene]) -> Shared | Alone:
+def shared(scenes: Sequence[Scene]) -> Shared:
     """Scenes on common cells, ready to draw; one alone may be any."""
     if len(scenes) == 1:
-        return Alone(sampler_of(scenes[0]))
+        return Shared((sampler_of(scenes[0]),))
     make = cells_of if name_of(scenes[0]) == "cells" else tail_of
     return Shared(tuple(make(scene) for scene in scenes))

@@ -27,7 +27,6 @@ if TYPE_CHECKING:
     from analytic import Interaction
     from mcgw.scene.fitted import Fitted
 
-
 RelErr = float | Mapping[str, float | list[float]]
 
 EXACT, COARSEST = 1e-13, 1e-2  # accuracy where none is asked: the last digits; and the least there is

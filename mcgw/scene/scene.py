@@ -25,7 +25,6 @@ if TYPE_CHECKING:
     from mcgw.scene.fitted import Fitted
     from mcgw.scene.validity import Validity
 
-
 _SURFACES, _MOST_SURFACES = 1000, 10**9  # where n_surfaces is left out; where rel_err is to decide
 
 

@@ -25,7 +25,6 @@ from mcgw.sweeps.axes import label
 if TYPE_CHECKING:
     from mcgw.sweeps.sweep import Sweep
 
-
 _SEPARATIONS = 12  # of a point, at most: what theory takes grows as their square
 _LISTED = 7
 

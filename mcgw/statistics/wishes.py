@@ -10,14 +10,14 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from math import ceil, inf
 from time import perf_counter
-from typing import Any, cast
+from typing import Any
 
 import numpy as np
 from scipy.special import ndtri
 
 from mcgw.ensemble.drawing import seconds_per_surface
 from mcgw.ensemble.forecast import relative_spread
-from mcgw.sampling.asperities import Listing, summits_drawn
+from mcgw.sampling.asperities import summits_drawn
 from mcgw.sampling.block import Sampler
 from mcgw.sampling.law_sums import asperity_sums
 from mcgw.sampling.samplers import sampler_of
@@ -103,15 +103,11 @@ def _each(scene: Scene, sampler: Sampler) -> float:
 
 def _worst(scene: Scene, sampler: Sampler) -> float:
     """Largest relative error of a value of a few surfaces."""
-    if (
-        not promise_of(sampler.name).one_by_one
-        or scene.touching > _MOST_LISTED
-        or not hasattr(sampler, "mesh")
-    ):
+    if not promise_of(sampler.name).one_by_one or scene.touching > _MOST_LISTED:
         return np.nan
     worst = 0.0
     for number in range(_LISTED):
-        s, ratios = summits_drawn(scene, cast(Listing, sampler), number)
+        s, ratios = summits_drawn(scene, sampler, number)
         plain = asperity_sums(scene, np.array([s.size]), s, np.ones(s.size), ratios)
         for name, values in sampler.block(number, 1).sums.items():
             if name in plain:

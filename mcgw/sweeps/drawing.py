@@ -9,7 +9,7 @@ from mcgw.ensemble.drawing import GoOn, Reducer, always, block_size, drawn, draw
 from mcgw.ensemble.results import Tables, joined
 from mcgw.ensemble.summary import size_of
 from mcgw.machine.memory import check_memory
-from mcgw.sampling.shared import Alone, Shared, shared
+from mcgw.sampling.shared import Shared, shared
 from mcgw.sweeps.groups import Group
 from mcgw.sweeps.pooled import Pooled
 
@@ -77,7 +77,7 @@ class Pooling(Reducer):
 
 
 @lru_cache(maxsize=1)  # blocks come group after group
-def _source_of(pooling: Pooling) -> Shared | Alone:
+def _source_of(pooling: Pooling) -> Shared:
     return shared(pooling.group.computed)
 
 

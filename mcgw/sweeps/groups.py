@@ -26,7 +26,6 @@ from mcgw.scene.scene import Scene
 if TYPE_CHECKING:
     from mcgw.ensemble.bins import Bins
 
-
 _Item = TypeVar("_Item")
 _MANY = 8  # gradings: fewer are computed each by itself, with the bits that it has alone
 
