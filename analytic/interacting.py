@@ -1,9 +1,10 @@
 """The statistics of surfaces whose asperities press each other down: `analytic.Model` with an interaction.
 
-At effective separations x everything but the stiffness is that of independent asperities, exactly. What each
-surface answers by itself is not a sum over asperities any more: the stiffness in series with the half-space,
-``1/K = 1/K_asp + compliance``, and at nominal separations every quantity (`analytic.own_balance`). Means are
-then to second order in what surfaces differ by, fluctuations to leading order.
+At effective separations x everything but stiffness and conductance is that of independent asperities,
+exactly. What each surface answers by itself is not a sum over asperities any more: stiffness and conductance
+in series with the half-space, ``1/K = 1/K_asp + compliance`` and ``1/C = 1/C_spots + rho E_b compliance/2``,
+and at nominal separations every quantity (`analytic.own_balance`). Means are then to second order in what
+surfaces differ by, fluctuations to leading order.
 """
 
 from collections.abc import Sequence
@@ -23,15 +24,6 @@ from analytic.quantities import SEPARATIONS, quantity_of
 
 if TYPE_CHECKING:
     from analytic.distribution import Law
-
-_SERIES = ("stiffness", "load_slope")
-
-
-def is_stiffness(quantity: str) -> bool:
-    """Whether a quantity is a stiffness, which the half-space is in series with."""
-    q = quantity_of(quantity)
-    return q.base in _SERIES
-
 
 @dataclass(frozen=True)
 class InteractingModel(Model):
@@ -77,6 +69,11 @@ class InteractingModel(Model):
         """Of the interaction, in units of sigma: d/sigma for each newton."""
         return self.interaction.compliance(self.surface, self.number) / self.surface.sigma
 
+    def series(self, quantity: str) -> float:
+        """What the half-space adds to the inverse of a sum: `analytic.Interaction.series`."""
+        rho = 1.0 if self.film is None else self.film.resistivity
+        return self.interaction.series(quantity, self.surface, self.number, rho)
+
     def effective(self, h: ArrayLike) -> Array:
         """Separation that the asperities of the mean surface feel, at the separations of the model.
 
@@ -102,9 +99,8 @@ class InteractingModel(Model):
         self._asked(quantity, h)
         nominal = self.interaction.nominal
         mean = self._own.mean(quantity, h) if nominal else self.alone.mean(quantity, h)
-        if not is_stiffness(quantity):
+        if not (c := self.series(quantity)):
             return mean
-        c = self.compliance * self.surface.sigma
         exact = self._own.variance if nominal else lambda name, at: self.alone.cumulants(name, at).variance
         return np.asarray(in_series(mean, c)) - c * exact(quantity, h) / (1 + c * mean) ** 3
 
@@ -112,8 +108,7 @@ class InteractingModel(Model):
         """The mean to first order: that of the mean surface at its own balance."""
         h = np.asarray(h, dtype=np.float64)
         mean = self.alone.mean(quantity, self.effective(h))
-        stiff = is_stiffness(quantity)
-        return np.asarray(in_series(mean, self.compliance * self.surface.sigma)) if stiff else mean
+        return np.asarray(in_series(mean, self.series(quantity)))
 
     def cumulants(self, quantity: str, h: ArrayLike) -> Cumulants:
         """As `Model.cumulants`; skewness and kurtosis are those of the linear part."""
@@ -123,7 +118,7 @@ class InteractingModel(Model):
     def slope(self, quantity: str, h: ArrayLike) -> Array:
         """How fast the mean falls with the separation, of the mean surface."""
         h = np.asarray(h, dtype=np.float64)
-        if not self.interaction.nominal and not is_stiffness(quantity) and quantity not in SEPARATIONS:
+        if not (self.interaction.nominal or quantity in SEPARATIONS or self.series(quantity)):
             return self.alone.slope(quantity, h)
         return -derivative(lambda at: self.mean(quantity, at), h)
 
@@ -137,7 +132,7 @@ class InteractingModel(Model):
 
     def separation_at(self, quantity: str, value: ArrayLike) -> Array:
         """As `Model.separation_at`, of the mean surface: at a given load only the separation differs."""
-        if quantity in SEPARATIONS or is_stiffness(quantity):
+        if quantity in SEPARATIONS or self.series(quantity):
             raise ValueError(
                 f"quantity = {quantity!r}: give a load, an area, or another sum of the asperities"
             )
@@ -210,8 +205,8 @@ class InteractingModel(Model):
         if quantity in SEPARATIONS:
             return np.zeros_like(x), c / self._own.rate(x) if nominal else np.full_like(x, -c)
         factor, press = np.ones_like(x), self._own.press(quantity, x) if nominal else np.zeros_like(x)
-        if is_stiffness(quantity):
-            series = (1 + c * self.surface.sigma * self.alone.mean(quantity, x)) ** -2.0
+        if other := self.series(quantity):
+            series = (1 + other * self.alone.mean(quantity, x)) ** -2.0
             factor, press = factor * series, press * series
         return factor, press
 

@@ -6,8 +6,8 @@ Wear 265 (2008) 729; constants derived anew, the paper was not at hand): each as
     d_effective = d_nominal + compliance * P
 
 with the load P of this very surface. At a given load nothing but the separation differs from a surface of
-independent asperities: the same area, contacts, conductance. What the separation is measured from decides
-the sign:
+independent asperities: the same area, contacts, conductance of the spots. What the separation is measured
+from decides the sign:
 
 ``body``        the undeformed body far away. The load, spread over the nominal area, presses a bowl into
                 the half-space: ``compliance = c/(E_b sqrt(A_n))``, c the mean sinking of a square under a
@@ -22,6 +22,9 @@ import math
 from dataclasses import KW_ONLY, dataclass
 from typing import Any, Literal
 
+import numpy as np
+
+from analytic.quantities import quantity_of
 from analytic.surface import Surface
 
 Reference = Literal["body", "mean-plane"]
@@ -32,9 +35,13 @@ BOWL = (4 * math.asinh(1) - 4 / 3 * (math.sqrt(2) - 1)) / math.pi
 LATTICE = 3.900264920001956
 
 
-def in_series(stiffness: Any, compliance: float) -> Any:
-    """Stiffness of asperities, N/m, in series with a compliance, m/N; back again with the opposite one."""
-    return stiffness / (1 + compliance * stiffness)
+def in_series(value: Any, other: float) -> Any:
+    """Stiffness or conductance of the spots in series with what resists besides, over its unit.
+
+    Back again with the opposite one; nan where less than nothing would resist in all.
+    """
+    rest = 1 + other * value
+    return value / np.where(rest > 0, rest, np.nan)
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,3 +96,34 @@ class Interaction:
         if self.reference == "body":
             return BOWL / (modulus * math.sqrt(surface.nominal_area))
         return -LATTICE / (math.pi * modulus * math.sqrt(n_asperities * surface.nominal_area))
+
+    def series(self, quantity: str, surface: Surface, n_asperities: float, resistivity: float = 1.0) -> float:
+        """What the half-space adds to the inverse of a sum over spots, over its unit; 0 to most sums.
+
+        To that of a stiffness the compliance; to that of a conductance ``rho E_b/2`` of it, by which both
+        bodies constrict the flux as a whole. For a homogeneous body then ``C rho = 2 K/E*``.
+
+        Parameters
+        ----------
+        quantity : str
+            Its name.
+        surface : Surface
+            Its `E_star` is that of the half-space unless `bulk_modulus` is given.
+        n_asperities : float
+            On the surface.
+        resistivity : float, optional
+            rho of both bodies, for a conductance that is not told times it.
+
+        Notes
+        -----
+        Source: J. R. Barber, Proc. R. Soc. Lond. A 459 (2003) 53: ``C rho = 2 K/E*`` of rough bodies.
+        """
+        q = quantity_of(quantity)
+        name = q.unloading or q.of or q.name
+        compliance = self.compliance(surface, n_asperities) * (surface.nominal_area if q.of else 1.0)
+        if name in ("stiffness", "load_slope"):
+            return compliance
+        if name not in ("conductance", "conductance_si"):
+            return 0.0
+        modulus = surface.E_star if self.bulk_modulus is None else self.bulk_modulus
+        return modulus * compliance / 2 * (resistivity if name == "conductance_si" else 1.0)

@@ -64,7 +64,8 @@ class Quantity:
     @property
     def base(self) -> str:
         """What one contact adds to it, on whatever way: `analytic.laws.of_spot` has the formulas."""
-        return self.unloading or self.of or self.name
+        base = self.unloading or self.of or self.name
+        return "conductance" if base == "spot_conductance" else base
 
     def scale(self, x: Surface) -> float:
         """Dimensional factor of one asperity: ``factor E*^modulus R^radius sigma^exponent``, or per area."""
@@ -86,8 +87,7 @@ QUANTITIES = _by_name(
     Quantity("stiffness", "normal stiffness", "N/m", 0.5, 1, 0.5, 2, symbol="K"),
     Quantity("contacts", "number of contacts", "1", 0.0, 0, 0.0, 1, counts=True),
     Quantity(
-        "conductance", "contact conductance of the spots, times the resistivity rho", "m",
-        0.5, 0, 0.5, 4, symbol="Cρ",
+        "conductance", "contact conductance, times the resistivity rho", "m", 0.5, 0, 0.5, 4, symbol="Cρ",
     ),
 )  # fmt: skip
 
@@ -103,12 +103,16 @@ LAW_QUANTITIES = _by_name(
         0.5, 1, 0.5, 2, words="slope of the loads",
     ),
     Quantity(
-        "conductance_si", "contact conductance of the spots and their films", "S or W/K",
+        "conductance_si", "contact conductance, with films", "S or W/K",
         0.5, 0, 0.5, 4, words="conductance", symbol="C",
     ),
     Quantity(
         "yielded", "number of contacts that have yielded", "1",
         0.0, 0, 0.0, 1, counts=True, words="yielded contacts",
+    ),
+    Quantity(
+        "spot_conductance", "contact conductance of the spots alone, times the resistivity rho", "m",
+        0.5, 0, 0.5, 4,
     ),
 )  # fmt: skip
 

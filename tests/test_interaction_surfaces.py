@@ -35,14 +35,15 @@ HEIGHTS = {
 
 
 def check_against_literal_sums(scene, surface=1, tolerance=1e-12):
-    """Every quantity at what the asperities feel, and that x = h + c P; stiffness in series."""
+    """Every quantity at what the asperities feel, x = h + c P; stiffness and conductance in series."""
     ensemble, alone = mcgw.simulate(scene), mcgw.heights(scene, surface)
     felt = ensemble["effective_separation"][surface]
     c = scene.interaction.compliance(scene.surface, scene.n_asperities)
     for name in scene.quantities:
         expected = literal_sums(scene, alone, felt, name)
-        if name == "stiffness":
-            expected = expected / (1 + c * expected)
+        if name in ("stiffness", "conductance"):
+            other = c if name == "stiffness" else c * scene.interaction.bulk_modulus / 2
+            expected = expected / (1 + other * expected)
         np.testing.assert_allclose(ensemble[name][surface], expected, rtol=tolerance, err_msg=name)
     sunk = c / scene.surface.sigma * ensemble["load"][surface]
     np.testing.assert_allclose(felt, np.array(scene.separations) + sunk, rtol=0, atol=1e-13)
@@ -88,17 +89,19 @@ def test_stiffness_is_the_slope_of_the_load_of_one_surface(pressed, strength):
     assert (np.abs(alone * sigma / slope - 1) > 0.02).all()
 
 
-def test_effective_separations_change_the_stiffness_alone(pressed):
+def test_effective_separations_change_stiffness_and_conductance_alone(pressed):
     """All else has the bits of surfaces without interaction; compliances add."""
     for sampler in ("direct", "tail", "cells", "aggregate"):
         scene = pressed(3.0, "effective", sampler=sampler, n_asperities=400)
         with_, without = mcgw.simulate(scene), mcgw.simulate(scene.replace(interaction=None))
         c = scene.interaction.compliance(scene.surface, 400)
-        for name in set(QUANTITIES) - {"stiffness"}:
+        for name in set(QUANTITIES) - {"stiffness", "conductance"}:
             np.testing.assert_array_equal(with_[name], without[name])
         touched = without["stiffness"] > 0
         apart = 1 / without["stiffness"][touched]
         np.testing.assert_allclose(1 / with_["stiffness"][touched], apart + c, rtol=1e-12)
+        spots, both = 1 / without["conductance"][touched], c * scene.interaction.bulk_modulus / 2
+        np.testing.assert_allclose(1 / with_["conductance"][touched], spots + both, rtol=1e-12)
         sunk = c / scene.surface.sigma * without["load"]
         np.testing.assert_array_equal(with_["nominal_separation"], np.array(SEPARATIONS) - sunk)
 

@@ -137,7 +137,7 @@ class TestIdentities:
         h = model.separation_at("load", loads)
         shift = strength * loads / (1e16 * LOAD)
         np.testing.assert_allclose(h, H - shift, rtol=0, atol=1e-13)
-        for name in ("load", "area", "contacts", "conductance"):
+        for name in ("load", "area", "contacts", "spot_conductance"):
             np.testing.assert_allclose(model.mean(name, h), model.alone.mean(name, H), rtol=1e-12)
         assert (np.abs(model.mean("area", H) / model.alone.mean("area", H) - 1) > 1e-3).all()
 
@@ -215,7 +215,9 @@ def literal_means(strength, h, seed=11):
     x = hand.balances(s, e, h, c)
     sums = hand.sums_at(s, e, x)
     sums["stiffness of the contacts"] = sums["stiffness"]
-    sums["stiffness"] = sums["stiffness"] / (1 + 1.5 * c * sums["stiffness"])
+    bulk = interaction(strength, SURFACE, N).bulk_modulus / SURFACE.E_star
+    for name, modulus in (("stiffness", 1.0), ("conductance", bulk)):
+        sums[name] = sums[name] / (1 + 1.5 * c * modulus * sums[name])
     sums["effective_separation"] = x
     return {name: (v.mean(), v.std() / math.sqrt(M)) for name, v in sums.items()}
 

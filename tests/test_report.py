@@ -22,7 +22,7 @@ HEADINGS = {
     "area": "real contact area (m²)",
     "contacts": "number of contacts",
     "load": "normal load (N)",
-    "conductance": "contact conductance of the spots, times the resistivity rho (m)",
+    "conductance": "contact conductance, times the resistivity rho (m)",
     "stiffness": "normal stiffness (N/m)",
 }
 ATTRIBUTES = {

@@ -26,7 +26,7 @@ LONG = {
     "area": "real contact area (m^2)",
     "stiffness": "normal stiffness (N/m)",
     "contacts": "number of contacts",
-    "conductance": "contact conductance of the spots, times the resistivity rho (m)",
+    "conductance": "contact conductance, times the resistivity rho (m)",
 }
 TITLES = {name: LONG[name].partition(" (")[0] for name in LONG}
 

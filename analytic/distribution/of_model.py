@@ -52,8 +52,7 @@ def interacting_distribution(model: Any, quantity: str, h: float) -> Law:
             return Mapped(
                 distribution_of(alone, "load", h), lambda p: h - c * p, lambda x: (h - x) / c, falls=c > 0
             )
-        if q.base in ("stiffness", "load_slope"):
-            si = c * alone.surface.sigma
+        if si := model.series(quantity):
             of = distribution_of(alone, quantity, h)
             return Mapped(of, lambda k: k / (1 + si * k), lambda k: k / (1 - si * k))
         return distribution_of(alone, quantity, h)

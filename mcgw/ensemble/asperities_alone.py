@@ -12,21 +12,18 @@ from mcgw.scene.scene import Scene
 
 @dataclass(frozen=True)
 class _Alone(Results):
-    """Results without the half-space that stiffnesses are in series with."""
+    """Results without the half-space that stiffness and conductance are in series with."""
 
     whole: Held
-    compliance: float
-    names: tuple[str, ...]
+    scene: Scene
 
     def read(self, name: str, start: int, stop: int | None) -> Array:
         """Rows `start` to `stop` (None: to the end) of a dataset."""
-        from analytic.interacting import is_stiffness  # every comparison imports this file
-        from analytic.interaction import in_series
+        from analytic.interaction import in_series  # every comparison imports this file
 
         values = self.whole.read(name, start, stop)
-        if name in self.names and is_stiffness(name):
-            return np.asarray(in_series(values, -self.compliance))
-        return values
+        other = self.scene.series(name) if name in self.scene.quantities else 0.0
+        return np.asarray(in_series(values, -other)) if other else values
 
     def rows(self) -> int:
         """Number of surfaces there are."""
@@ -58,15 +55,13 @@ def scene_alone(scene: Scene, what: str) -> Scene:
     return replace(scene, interaction=None)
 
 
-def _without_stiffness(scene: Scene) -> Scene:
-    """Of which statistics are those of the asperities: of stiffnesses only each surface's would tell."""
-    from analytic.interacting import is_stiffness
-
-    rest = tuple(name for name in scene.quantities if not is_stiffness(name))
+def _sums_alone(scene: Scene) -> Scene:
+    """Of which statistics are those of the asperities: of what is in series each surface's would tell."""
+    rest = tuple(name for name in scene.quantities if not scene.series(name))
     if not rest:
         raise ValueError(
-            'keep = "statistics": of stiffnesses in series with the half-space theory gives no mean; ask for '
-            "another quantity besides"
+            'keep = "statistics": of stiffness and conductance in series with the half-space theory gives no '
+            "mean; ask for another quantity besides"
         )
     return replace(scene, quantities=rest)
 
@@ -74,7 +69,7 @@ def _without_stiffness(scene: Scene) -> Scene:
 def asperities_alone(ensemble: Ensemble) -> Ensemble:
     """The ensemble of the sums of the asperities, where its separations are effective ones.
 
-    Of one that keeps statistics alone those that are no stiffnesses.
+    Of one that keeps statistics alone those that are not in series with the half-space.
 
     Raises
     ------
@@ -83,6 +78,6 @@ def asperities_alone(ensemble: Ensemble) -> Ensemble:
     """
     scene = ensemble.scene
     if scene.keep == "statistics":
-        return replace(ensemble, scene=scene_alone(_without_stiffness(scene), "this"))
-    sums = _Alone(ensemble.sums, scene.compliance, scene.quantities)
+        return replace(ensemble, scene=scene_alone(_sums_alone(scene), "this"))
+    sums = _Alone(ensemble.sums, scene)
     return replace(ensemble, scene=scene_alone(scene, "this"), sums=sums)

@@ -124,7 +124,10 @@ class Ensemble(Shown):
 
     @property
     def conductance(self) -> Array:
-        """Conductance times resistivity, m, shape (surfaces, separations)."""
+        """Conductance times resistivity, m, shape (surfaces, separations).
+
+        Where asperities press each other down, in series with the half-space, as `stiffness` is.
+        """
         return self.values("conductance")
 
     @property

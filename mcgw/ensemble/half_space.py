@@ -5,13 +5,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from analytic.interacting import is_stiffness
 from analytic.interaction import in_series
 from mcgw.scene.scene import Scene
 
 
 def with_interaction(scene: Scene, sums: dict[str, NDArray[Any]]) -> dict[str, Any]:
-    """Sums of the asperities, with stiffnesses in series with the half-space, and the other separation.
+    """Sums of the asperities, stiffness and conductance with the half-space, and the other separation.
 
     At effective separations the nominal one follows from the load of each surface, without a search; at
     nominal ones the sampler has found it.
@@ -42,4 +41,5 @@ def at_loads(scene: Scene, found: dict[str, Any]) -> dict[str, Any]:
 
 def _answer(scene: Scene, name: str, value: Any) -> Any:
     """What becomes of a sum of the asperities."""
-    return in_series(value, scene.compliance) if is_stiffness(name) else value
+    other = scene.series(name)
+    return in_series(value, other) if other else value

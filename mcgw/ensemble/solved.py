@@ -150,7 +150,7 @@ def at_solutions(scene: Scene, solutions: Sequence[Solution]) -> Scene:
 
 
 def with_half_space(scene: Scene, alone: Solution) -> Solution:
-    """What holds where the asperities press each other down: all but the separation and stiffnesses alike."""
+    """What holds where the asperities press each other down: the sums of each are the same at its load."""
     from mcgw.ensemble.half_space import at_loads  # for those scenes alone
 
     theory, surfaces = (

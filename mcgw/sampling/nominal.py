@@ -88,7 +88,7 @@ class CellsAtNominal(Sampler):
         )
         self._check(first, found)
         sums = {
-            name: found[:, :, _PLACES[name]] * quantity_of(name).scale(scene.surface)
+            name: found[:, :, _PLACES[quantity_of(name).base]] * quantity_of(name).scale(scene.surface)
             for name in scene.quantities
         }
         return Block({**sums, "effective_separation": np.ascontiguousarray(found[:, :, 0])})

@@ -22,7 +22,7 @@ def cautions(scene: Scene) -> list[str]:
     unmeasured = [] if known.measured.any() else [_crowd, _half]
     found = [*unmeasured, _depth, _slope, _few_contacts, _other_number, _negative_modulus]
     lines += [line for caution in found for line in caution(scene)]
-    return [*perhaps_other_units(scene), *lines, *_of_law(scene)]
+    return [*perhaps_other_units(scene), *lines, *_of_conductance(scene), *_of_law(scene)]
 
 
 def _cause(scene: Scene) -> str:
@@ -127,6 +127,15 @@ def _negative_modulus(scene: Scene) -> Iterator[str]:
     if scene.negative != "error" and scene.negative_above(scene.lowest) is not None:
         word = "set to zero" if scene.negative == "clip" else "left negative"
         yield f"the modulus is negative at heights that touch, and {word}: a fit taken beyond its range"
+
+
+def _of_conductance(scene: Scene) -> list[str]:
+    """What a reader should know of conductances, where they are asked for."""
+    if scene.film is None and "conductance" not in scene.quantities:
+        return []
+    from mcgw.scene.conductance_cautions import conductance_cautions  # for those scenes alone
+
+    return conductance_cautions(scene)
 
 
 def _of_law(scene: Scene) -> list[str]:

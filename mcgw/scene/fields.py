@@ -131,6 +131,13 @@ class Fields:
             return 0.0
         return self.interaction.compliance(self.surface, float(self.n_asperities))
 
+    def series(self, quantity: str) -> float:
+        """What the half-space adds to the inverse of a sum over spots, over its unit."""
+        if self.interaction is None:
+            return 0.0
+        rho = 1.0 if self.film is None else self.film.resistivity
+        return self.interaction.series(quantity, self.surface, float(self.n_asperities), rho)
+
     @property
     def as_measured(self) -> bool:
         """Whether its one surface has the measured heights as they are, and nothing is drawn."""

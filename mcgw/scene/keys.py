@@ -189,7 +189,7 @@ TABLES: dict[str, TableOfKeys] = {
         List(Word((*_SUMS, *UNLOADING), f"choose one of {', '.join(_SUMS)}"), once=True,
              advice="give a list of names, each once"),
         '["load"]', "any of `load`, `area`, `stiffness`, `contacts` (these four by default), `conductance`, "
-        "`yielded`, `load_slope`"),
+        "`spot_conductance`, `yielded`, `load_slope`"),
     Key("law", Word(_contact_laws), '"kogut-etsion"', "law of one contact; left out: Hertz's", "hertz"),
     Key("hardness", Number("Pa"), '"1.2 GPa"', "of the softer body, Pa, for laws that yield"),
     Key("critical", _POSITIVE, "0.05", "instead of it: δ_c/σ, penetration at which an asperity yields"),

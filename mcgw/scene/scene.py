@@ -68,8 +68,8 @@ class Scene(Fields, Shown):
         has "tangential_load", of shape (surface, separation, displacement). Default: it is not.
     interaction : Interaction, {"body", "mean-plane"} or dict, optional
         How asperities press each other down: `mcgw.Interaction`, its reference alone, or its keys in a scene
-        file. An ensemble then has "nominal_separation" or "effective_separation" besides, and stiffnesses are
-        in series with the half-space. Default: they are independent.
+        file. An ensemble then has "nominal_separation" or "effective_separation" besides, and stiffness and
+        conductance are in series with the half-space. Default: they are independent.
     quantities : sequence of str, optional
         Which sums to compute: names of `analytic.QUANTITIES` and `analytic.LAW_QUANTITIES`. Default: load,
         area, stiffness, contacts.

@@ -264,8 +264,8 @@ def _of_ensemble(ensemble: Ensemble) -> Comparison:
 def _of_sweep(sweep: "Sweep", progress: Progress) -> SweepComparison:
     """Each point tested as an ensemble is, at twelve separations at most.
 
-    Of asperities that press each other down, stiffnesses are left out: of the surfaces only their means in
-    series with the half-space are kept.
+    Of asperities that press each other down, stiffness and conductance are left out: of the surfaces only
+    their means in series with the half-space are kept.
     """
     found = []
     with told(progress, "points") as tell:
@@ -284,8 +284,6 @@ def _tested(ensemble: Ensemble) -> Tested:
     """A point as its asperities are by themselves, where these press each other down."""
     scene = ensemble.scene
     if scene.interaction is not None and not scene.interaction.nominal:
-        from analytic.interacting import is_stiffness  # who asks for no interaction needs none of it
-
-        names = tuple(name for name in scene.quantities if not is_stiffness(name))
+        names = tuple(name for name in scene.quantities if not scene.series(name))
         scene = scene_alone(scene, "this").replace(quantities=names)
     return tested(scene, ensemble.n_surfaces, ensemble.mean, _SEPARATIONS)
