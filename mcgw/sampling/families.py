@@ -13,7 +13,7 @@ import numpy as np
 from analytic import quantity_of
 from analytic.arrays import Array
 from mcgw.sampling.layout import Layout
-from mcgw.sampling.response.response import Response
+from mcgw.sampling.response.response import Response, matrix_of
 
 POWERS = (0.5, 1.0)  # of the radius, that quantities have
 
@@ -104,12 +104,4 @@ class Families:
 
     def matrix(self) -> Array:
         """All of it as numbers, shape (quantities, separations, moments): large, slow and plain to see."""
-        parts = [response.matrix() for response in self.responses]
-        quantities, moments = len(self.places), int(self.layout.starts[-1])
-        result = np.zeros((quantities, parts[0].shape[1] if parts else 0, moments))
-        row = column = 0
-        for part in parts:
-            rows = list(self.places[row : row + len(part)])
-            result[rows, :, column : column + part.shape[2]] = part
-            row, column = row + len(part), column + part.shape[2]
-        return result
+        return matrix_of(self)

@@ -5,10 +5,41 @@ from dataclasses import dataclass
 import numpy as np
 
 from analytic.arrays import Ints
-from mcgw.sampling.response.dense import Parts
+from mcgw.sampling.cells import Mesh
+from mcgw.sampling.layout import Layout
 from mcgw.sampling.response.gathering import FOUR, Lines, in_fours
 from mcgw.sampling.response.product import Tiles
-from mcgw.sampling.response.tree import transfers
+from mcgw.sampling.response.series import Entries
+from mcgw.sampling.response.tree import Tree, transfers
+
+
+@dataclass(frozen=True)
+class Parts:
+    """What a response is made of.
+
+    Parameters
+    ----------
+    mesh, tree : Mesh, Tree
+        Cells, and the nodes over them.
+    entries : Entries
+        What each node gives to the rows.
+    answer : ndarray of int
+        Which answer each row adds to.
+    plain, rooted : ndarray of int
+        How many T_j each node has, and how many R_j each cell.
+    """
+
+    mesh: Mesh
+    tree: Tree
+    entries: Entries
+    answer: Ints
+    plain: Ints
+    rooted: Ints
+
+    @property
+    def layout(self) -> Layout:
+        """Moments of the cells."""
+        return Layout(self.plain[: self.mesh.size], self.rooted)
 
 
 def tiles_of(parts: Parts, order: Ints) -> Tiles:

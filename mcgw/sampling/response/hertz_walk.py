@@ -7,16 +7,15 @@ import numpy as np
 from analytic.arrays import Array, Ints
 from mcgw.machine.compiling import njit
 from mcgw.machine.in_threads import in_threads
-from mcgw.sampling.response.entries import Entries
-from mcgw.sampling.response.hertz_rows import raise_to
 from mcgw.sampling.response.nodes import Nodes
-from mcgw.sampling.response.rows import Powers, Rows
+from mcgw.sampling.response.rows import Powers, Rows, raise_to
 from mcgw.sampling.response.series import (
     APART,
     MOST,
     MOST_IN_CELL,
     TABLES,
     WHOLE,
+    Entries,
     length_of,
     meeting,
     raised,

@@ -11,8 +11,7 @@ from analytic import Homogeneous, quantity_of
 from analytic.arrays import Array, Ints
 from analytic.laws import Branch, term_of
 from mcgw.sampling.cells import Mesh
-from mcgw.sampling.response.rows import Rows, Start
-from mcgw.sampling.spacing import SURE
+from mcgw.sampling.response.rows import Rows, Sixteen, Start
 from mcgw.sampling.stretches import Stretches, stretches_of
 from mcgw.scene.scene import Scene
 
@@ -89,14 +88,18 @@ def law_rows(scene: Scene, quantities: tuple[str, ...], mesh: Mesh, *, lasting: 
     parts: list[tuple[NDArray[Any], ...]] = []
     stretches: dict[Branch, Stretches] = {}
     kinds: list[tuple[Branch, str, int, float]] = []
-    sixteen = None if lasting else _Sixteen.of(scene)
+    sixteen = None if lasting else Sixteen.of(scene)
     for number, name in enumerate(quantities):
         q, branch = quantity_of(name), scene.branch_of(name)
         if branch not in stretches:
             stretches[branch] = stretches_of(scene, branch, *mesh.range)
         found = stretches[branch]
         roots = np.array([branch.root_at_touch(int(piece)) for piece in found.piece], dtype=bool)
-        total = np.zeros(len(separations)) if sixteen is None else sixteen.totals(scene, name, branch)
+        scale, total = q.scale(scene.surface), np.zeros(len(separations))
+        if sixteen:
+            heights = sixteen.approach + separations[:, None]
+            terms = term_of(q.base, branch, separations[:, None], heights, sixteen.e)
+            total = sixteen.totals(scale, terms)
         parts.append(
             (
                 separations[found.separation],
@@ -111,7 +114,6 @@ def law_rows(scene: Scene, quantities: tuple[str, ...], mesh: Mesh, *, lasting: 
                 total[found.separation],
             )
         )
-        scale = q.scale(scene.surface)
         kinds += [(branch, q.base, piece, scale) for piece in range(int(found.piece.max(initial=-1)) + 1)]
     h, low, high, begins, rooted, rough, lost, kind, answer, total = (
         np.concatenate(x) for x in zip(*parts, strict=True)
@@ -119,39 +121,3 @@ def law_rows(scene: Scene, quantities: tuple[str, ...], mesh: Mesh, *, lasting: 
     graded = np.full(len(h), not isinstance(scene.modulus, Homogeneous))
     formulas = _Pieces(tuple(kinds), kind, h, low)
     return Rows(h, low, high, begins, rooted, rough, lost, graded, kind, answer, total, formulas)
-
-
-@dataclass(frozen=True)
-class _Sixteen:
-    """Quantiles of the heights in contact at each separation: for the order of magnitude of a sum.
-
-    Parameters
-    ----------
-    h, touching : ndarray
-        Separations, and the probability to reach them; shape (separations,).
-    s, e : ndarray
-        Heights, and E*(s)/E* there; shape (separations, 16).
-    """
-
-    h: Array
-    touching: Array
-    s: Array
-    e: Array
-
-    @classmethod
-    def of(cls, scene: Scene) -> "_Sixteen":
-        """Of the separations of a scene."""
-        share, h = (np.arange(16) + 0.5) / 16, np.array(scene.all_separations)
-        touching = scene.heights.sf(h)
-        rank = np.maximum(touching[:, None] * share, np.finfo(float).tiny)
-        s = np.maximum(scene.heights.isf(rank), h[:, None])
-        return cls(h, touching, s, scene.modulus(s))
-
-    def totals(self, scene: Scene, name: str, branch: Branch) -> Array:
-        """Mean sums of a quantity."""
-        q = quantity_of(name)
-        mean = np.mean(term_of(q.base, branch, self.h[:, None], self.s, self.e), axis=1)
-        contacts = scene.n_asperities * self.touching
-        with np.errstate(over="ignore"):
-            total = np.minimum(np.abs(q.scale(scene.surface) * mean) * contacts, np.finfo(float).max)
-        return np.asarray(np.where(contacts > SURE, total, 0.0))

@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 from analytic.arrays import Array, Ints
 from mcgw.machine.compiling import njit
 from mcgw.machine.in_threads import in_threads
-from mcgw.sampling.response.entries import Entries
 from mcgw.sampling.response.nodes import Nodes
 from mcgw.sampling.response.rows import Formulas, Rows
 from mcgw.sampling.response.series import (
@@ -18,6 +17,7 @@ from mcgw.sampling.response.series import (
     MOST_IN_CELL,
     TABLES,
     WHOLE,
+    Entries,
     U,
     length_of,
     meeting,

@@ -8,18 +8,17 @@ Python E*(s) is evaluated at 20 heights a node.
 """
 
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
 from analytic.arrays import Array
 from mcgw.sampling.cells import Mesh
 from mcgw.sampling.layout import Layout
-from mcgw.sampling.response.assembly import tiles_of
-from mcgw.sampling.response.dense import Parts
-from mcgw.sampling.response.hertz_rows import hertz_rows
+from mcgw.sampling.response.assembly import Parts, tiles_of
 from mcgw.sampling.response.nodes import LAST_DIGITS, Nodes, Precision
 from mcgw.sampling.response.product import Tiles
-from mcgw.sampling.response.rows import Rows
+from mcgw.sampling.response.rows import Rows, hertz_rows
 from mcgw.sampling.response.tree import tree_over
 from mcgw.sampling.response.walk import walk
 from mcgw.scene.scene import Scene
@@ -31,22 +30,17 @@ class Response:
 
     Parameters
     ----------
-    parts : Parts
-        What it is made of.
+    layout : Layout
+        The moments that each cell must have.
     tiles : Tiles
         Given the moments of the cells: those of the nodes, and of these the answers.
     shape : (int, int)
         Number of quantities and separations.
     """
 
-    parts: Parts
+    layout: Layout
     tiles: Tiles
     shape: tuple[int, int]
-
-    @property
-    def layout(self) -> Layout:
-        """The moments that each cell must have."""
-        return self.parts.layout
 
     def out_of(self, layout: Layout) -> "Response":
         """The same, bit by bit, out of moments of which each cell may have more than this needs."""
@@ -58,7 +52,13 @@ class Response:
 
     def matrix(self) -> Array:
         """All of it as numbers, shape (quantities, separations, moments): large, slow and plain to see."""
-        return self.parts.matrix(self.shape[0] * self.shape[1]).reshape(*self.shape, -1)
+        return matrix_of(self)
+
+
+def matrix_of(response: Any) -> Array:
+    """What a response answers to each moment alone, shape (quantities, separations, moments)."""
+    answers = response @ np.eye(int(response.layout.starts[-1]))
+    return np.ascontiguousarray(np.moveaxis(answers, 1, 2))
 
 
 def response_of(
@@ -103,7 +103,7 @@ def response_of(
         plain = np.concatenate([kept.plain, parts.plain[mesh.size :]])
         parts = replace(parts, plain=plain, rooted=kept.rooted)
     shape = len(quantities), len(scene.all_separations)
-    return Response(parts, tiles_of(parts, rows.order(shape[0] * shape[1])), shape)
+    return Response(parts.layout, tiles_of(parts, rows.order(shape[0] * shape[1])), shape)
 
 
 def layout_of(

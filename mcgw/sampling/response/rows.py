@@ -1,16 +1,21 @@
 """What is asked of the heights, row by row: a formula that holds from one height to another.
 
-A quantity at a separation is one row under Hertz's law, and a few where a law of contact has breaks: one for
-each piece, on the heights at which that piece holds.
+A quantity at a separation is one row under Hertz's law, ``scale (s - h)^exponent e(s)^modulus``, and a few
+where a law of contact has breaks: one for each piece, on the heights at which that piece holds.
 """
 
 from dataclasses import dataclass
-from typing import NamedTuple, Protocol
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
+from analytic import HeightLaw, Quantity, quantity_of
 from analytic.arrays import Array, Ints
+from mcgw.machine.compiling import njit
+from mcgw.machine.memory import kept
+from mcgw.sampling.spacing import SURE
+from mcgw.scene.scene import Scene
 
 
 class Start(NamedTuple):
@@ -137,3 +142,93 @@ class Rows:
             found.append((cell[inside], row[inside]))
         cell, row = (np.concatenate(part) for part in zip(*found, strict=True))
         return cell, row
+
+
+def hertz_rows(scene: Scene, quantities: tuple[str, ...], *, lasting: bool) -> Rows:
+    """Rows of some quantities at all separations of a scene, which increase.
+
+    If they are to be lasting, they are resolved as if every surface could have a single contact.
+    """
+    chosen, once = [quantity_of(name) for name in quantities], np.array(scene.all_separations)
+    h = np.tile(once, len(chosen))
+    exponent = _of_each([q.exponent for q in chosen], once)
+    graded = _of_each([bool(q.modulus) for q in chosen], once).astype(bool)
+    scale = _of_each([q.scale(scene.surface) for q in chosen], once)
+    return Rows(
+        h=h,
+        low=h,
+        high=np.full(len(h), np.inf),
+        begins=np.ones(len(h), dtype=bool),
+        rooted=exponent % 1 != 0,
+        rough=np.zeros(len(h), dtype=bool),
+        lost=np.zeros(len(h), dtype=bool),
+        graded=graded,
+        kind=np.repeat(np.arange(len(chosen)), len(once)),
+        answer=np.arange(len(h)),
+        total=np.zeros(len(h)) if lasting else _totals(scene, chosen),
+        formulas=Powers(exponent, scale),
+    )
+
+
+def _of_each(values: list[float], separations: Array) -> Array:
+    return np.repeat(np.array(values, dtype=np.float64), len(separations))
+
+
+@njit(nogil=True, cache=True)
+def raise_to(exponent: Any, x: Any, result: Any) -> None:
+    """Write ``x^exponent`` for a whole or half-integer exponent, by products and roots."""
+    half = exponent % 1 != 0
+    for i in range(x.size):
+        result[i] = np.sqrt(x[i]) if half else 1.0
+    for _ in range(int(exponent)):
+        for i in range(x.size):
+            result[i] *= x[i]
+
+
+@dataclass(frozen=True)
+class Sixteen:
+    """Quantiles of the heights in contact at each separation: for the order of magnitude of a sum.
+
+    Parameters
+    ----------
+    contacts : ndarray
+        Mean number on a surface, shape (separations,).
+    approach, e : ndarray
+        Heights above the separation, and E*(s)/E* there; shape (separations, 16).
+    """
+
+    contacts: Array
+    approach: Array
+    e: Array
+
+    @classmethod
+    def of(cls, scene: Scene) -> "Sixteen":
+        """Of the separations of a scene, each once."""
+        h = np.array(scene.all_separations)
+        touching, approach = _quantiles(scene.heights, h.tobytes())
+        return cls(scene.n_asperities * touching, approach, scene.modulus(approach + h[:, None]))
+
+    def totals(self, scale: float, terms: Array) -> Array:
+        """Mean sums of what contacts at these heights add, where so many touch that it is sure; else 0."""
+        with np.errstate(over="ignore"):
+            total = np.minimum(np.abs(scale * terms.mean(axis=1)) * self.contacts, np.finfo(float).max)
+        return np.asarray(np.where(self.contacts > SURE, total, 0.0))
+
+
+@kept(8)
+def _quantiles(law: HeightLaw, separations: bytes) -> tuple[Array, Array]:
+    """Share of heights above each separation, and 16 equally likely distances of those from it."""
+    h, share = np.frombuffer(separations), (np.arange(16) + 0.5) / 16
+    touching = law.sf(h)
+    rank = np.maximum(touching[:, None] * share, np.finfo(float).tiny)
+    return touching, np.maximum(law.isf(rank) - h[:, None], 0.0)
+
+
+def _totals(scene: Scene, chosen: list[Quantity]) -> Array:
+    """Quantity by quantity."""
+    sixteen, totals = Sixteen.of(scene), [np.empty(0)]
+    for q in chosen:
+        terms = np.empty(sixteen.approach.shape)
+        raise_to(float(q.exponent), sixteen.approach.ravel(), terms.reshape(-1))
+        totals.append(sixteen.totals(q.scale(scene.surface), terms * sixteen.e if q.modulus else terms))
+    return np.concatenate(totals)

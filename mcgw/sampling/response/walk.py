@@ -4,11 +4,11 @@ import numpy as np
 
 from analytic.arrays import Array, Ints
 from mcgw.sampling.cells import Mesh
-from mcgw.sampling.response.entries import Entries
 from mcgw.sampling.response.hertz_walk import HertzWalk
 from mcgw.sampling.response.law_walk import LawWalk
 from mcgw.sampling.response.nodes import Nodes
 from mcgw.sampling.response.rows import Powers, Rows
+from mcgw.sampling.response.series import Entries
 from mcgw.sampling.response.tree import Tree
 
 
