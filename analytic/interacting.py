@@ -25,6 +25,7 @@ from analytic.quantities import SEPARATIONS, quantity_of
 if TYPE_CHECKING:
     from analytic.distribution import Law
 
+
 @dataclass(frozen=True)
 class InteractingModel(Model):
     """A rough surface whose asperities press each other down; otherwise as `analytic.Model`.

@@ -9,8 +9,8 @@ from collections.abc import Sequence
 from importlib import import_module
 from typing import Any, NoReturn
 
+from mcgw.commands.voice import QUIET, add_amount_options, speaking
 from mcgw.errors import RunError
-from mcgw.machine.progress import watched
 from mcgw.machine.terminal import Plain, one_line, plain_output
 
 COMMANDS = (
@@ -72,7 +72,9 @@ def _main(argv: Sequence[str] | None, asked: argparse.Namespace) -> int:
         with warnings.catch_warnings():
             warnings.showwarning = _show_warning  # type: ignore[assignment]
             warnings.filterwarnings("ignore", module=r"mcgw\.scene\.plausible")  # told as notes
-            with watched():
+            if args.amount == QUIET:
+                warnings.simplefilter("ignore")
+            with speaking(args.amount):
                 return int(args.execute(args))
     except KeyboardInterrupt:
         print("mcgw: interrupted", file=sys.stderr)
@@ -109,6 +111,7 @@ def _parser() -> argparse.ArgumentParser:
         )
         sub._negative_number_matcher = _NEGATIVE
         command.arguments(sub)
+        add_amount_options(sub)
         sub.set_defaults(execute=command.execute, parser=parser, command=name)
     return parser
 

@@ -371,7 +371,7 @@ def test_comparison(comparison, kept, tmp_path):
     assert legend == ["theory", "Monte Carlo, 95 %"]
     verdict = comparison.verdict
     assert figure.get_suptitle() == (
-        f"A title\nMonte Carlo and theory of this model agree: χ² = {verdict.chi_square:.1f} for "
+        f"A title\nMonte Carlo and theory agree: χ² = {verdict.chi_square:.1f} for "
         f"{verdict.degrees} degrees of freedom, p = {verdict.p:.3g}"
     )
     assert figure.get_supxlabel() == (
@@ -406,7 +406,7 @@ def test_a_large_residual_stays_in_sight_and_the_verdict_says_so(comparison, kep
     save_comparison(wrong, tmp_path / "x.png")
     low, high = kept[0].axes[1].get_ylim()
     assert low < off.residual.min() < off.residual.max() < high
-    assert "theory of this model DISAGREE: χ² = 99.0 for 15" in kept[0].get_suptitle().replace("\n", " ")
+    assert "theory DISAGREE: χ² = 99.0 for 15" in kept[0].get_suptitle().replace("\n", " ")
 
 
 def test_lopsided_intervals_are_drawn_lopsided(comparison):

@@ -260,6 +260,6 @@ def test_notes_are_about_the_load_and_not_the_scenes_separations(make_scene, tmp
         assert main(["solve", str(tmp_path / "s.toml"), "--pressure", pressure]) == 0
         told = capsys.readouterr()
         notes = [line for line in told.err.splitlines() if line.startswith("mcgw: note: ")]
-        assert any("more than half of all summits touch" in line for line in notes) == crowded, notes
+        assert any("more than half of all asperities touch" in line for line in notes) == crowded, notes
         assert "mean gap: of the rigid plane" in told.out
         assert "mean_gap" in told.out

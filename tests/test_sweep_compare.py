@@ -125,7 +125,7 @@ def test_cautions_are_counted():
     assert len(few) == 1
     assert few[0].startswith("2 of 6 points: from d/sigma = 2 fewer")
     other = [line for line in lines if "not eta * nominal_area" in line]
-    assert other[0].startswith("4 of 6 points: a surface has 200000 asperities")
+    assert other[0].startswith("4 of 6 points: 200000 asperities")
     assert other[0].endswith("(numbers of ensemble.n_asperities = 200000, grading.gamma = 1)")
     assert [int(line.split()[0]) for line in lines] == sorted(
         (int(x.split()[0]) for x in lines), reverse=True
@@ -137,9 +137,9 @@ def test_the_command(sweep, tmp_path, monkeypatch, capsys):
     mcgw.sweep(SCENE, OVER, path="w.h5")
     assert main(["compare", "w.h5", "--csv", "w.csv"]) == 0
     said = capsys.readouterr()
-    assert re.search(r"the least likely of 9 points, p = .* \(false alarms: at most 1 in 1000\)", said.out)
+    assert re.search(r"the least likely of 9 points, p = ", said.out)
     assert "w.png: figure" in said.out
-    assert "9 of 9 points: " in said.err
+    assert re.search(r"note: \d+ cautions?: mcgw show w.h5", said.err)
     assert (tmp_path / "w.png").stat().st_size > 10_000
     table = np.genfromtxt("w.csv", delimiter=",", names=True, dtype=None, encoding="utf-8")
     assert len(table) == 9 * 4 * 3
@@ -156,7 +156,7 @@ def test_the_commands_see_what_is_wrong(sweep, tmp_path, monkeypatch, capsys):
         assert main([command, "w.h5", "-o", name]) == code
         assert "DISAGREE" in (tmp_path / name).read_text()
     assert "DISAGREE: chi-square" in capsys.readouterr().out
-    assert 'class="verdict bad">Monte Carlo and theory of this model DISAGREE' in Path("w.html").read_text()
+    assert 'class="verdict bad">Monte Carlo and theory DISAGREE' in Path("w.html").read_text()
 
 
 def test_the_page_of_a_sweep(tmp_path, capsys):
@@ -172,7 +172,7 @@ def test_the_page_of_a_sweep(tmp_path, capsys):
     assert not re.search(r"<script|https?://(?!www\.w3\.org)", page)
     text = html.unescape(re.sub(r"<[^>]*>", "\n", page))
     compared = mcgw.compare(sweep)
-    assert f"of 6 points, p = {compared.verdict.p:.3g} (false alarms: at most 1 in 1000)." in text
+    assert f"of 6 points, p = {compared.verdict.p:.3g}." in text
     table = compared.sheet_of(12).table.only("point", "quantity", "residual")
     for column in table.columns:
         assert all(cell in text for cell in column.typeset())

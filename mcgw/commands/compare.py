@@ -3,7 +3,7 @@
 import argparse
 from pathlib import Path
 
-HELP = "compare an ensemble or a sweep with theory: table, figure, verdict (exit code 1 if they disagree)"
+HELP = "compare an ensemble or a sweep with theory: verdict and figure (exit code 1 if they disagree)"
 EXAMPLE = "mcgw compare demo.h5 -o demo.png"
 
 
@@ -14,18 +14,13 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         "-o", "--output", type=Path, metavar="PNG", help="figure (.png, .pdf, .svg, ...); default: FILE.png"
     )
     parser.add_argument("--csv", type=Path, metavar="FILE", help="also write the table of all separations")
+    parser.add_argument("--table", action="store_true", help="print means beside theory, not the worst three")
 
 
 def execute(args: argparse.Namespace) -> int:
-    """Print table and verdict, save the figure."""
-    from mcgw.commands.outputs import (
-        Output,
-        check_outputs,
-        figure_format,
-        table_output,
-        tell_notes,
-        write_table,
-    )
+    """Print the verdict and the means farthest from theory, save the figure."""
+    from mcgw.commands.outputs import Output, check_outputs, figure_format, table_output, write_table
+    from mcgw.commands.voice import ALL, news, says, tell_cautions
     from mcgw.machine.progress import bar
     from mcgw.statistics.comparison import compare
     from mcgw.sweeps.opening import open_results
@@ -36,12 +31,14 @@ def execute(args: argparse.Namespace) -> int:
     from mcgw.figures.against_theory import save_comparison
     from mcgw.reports.text import comparison_summary
 
-    tell_notes(result)
     with bar("points", terminal=True) as show:
         comparison = compare(result, progress=show)
     save_comparison(comparison, path)
-    text, table, verdict = comparison_summary(comparison)
-    print(text)
+    whole = args.table or says(ALL)
+    text, table, verdict = comparison_summary(comparison, whole=whole)
+    news(*verdict, f"{path}: figure")
     write_table(args.csv, table)
-    print("", *verdict, f"{path}: figure", sep="\n")
+    news(f"next: mcgw report {args.file}")
+    tell_cautions(result, f"mcgw show {args.file}")
+    news(text)
     return 0 if comparison.verdict.agrees else 1

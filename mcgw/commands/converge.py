@@ -21,27 +21,25 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def execute(args: argparse.Namespace) -> int:
-    """Print every check and the verdict, save the figure."""
-    from mcgw.commands.outputs import Output, check_outputs, figure_format, tell_notes
+    """Print the verdict, and every check if one fails; save the figure."""
+    from mcgw.commands.outputs import Output, check_outputs, figure_format
+    from mcgw.commands.voice import ALL, news, says, tell_cautions
     from mcgw.figures.studies import save_convergence
     from mcgw.machine.progress import bar
     from mcgw.scene.scene_file import files_of, load_scene
     from mcgw.statistics.convergence import SEEDS, converge
-    from mcgw.statistics.verdict import FALSE_ALARM
 
     scene = load_scene(args.scene, changes=changes_of(args))
     folder = args.output or args.scene.parent / "out"
     path = folder / f"{args.scene.stem}-converge.png"
     check_outputs([Output(path, figure_format())], inputs=files_of(args.scene))
-    tell_notes(scene)
     with bar("ensembles", terminal=True) as show:
         found = converge(scene, progress=show)
     save_convergence(found, path)
-    print(
-        f"{SEEDS} ensembles of {found.scene.n_surfaces} surfaces of {found.scene.n_asperities:g} asperities"
-    )
-    print(found.table().text())
     word = "passed" if found.passed else "FAILED"
-    print(f"convergence {word}: p = {found.p:.3g} over all (false alarms: 1 in {1 / FALSE_ALARM:.0f})")
-    print(f"{path}: figure")
+    many = f"{SEEDS} ensembles of {found.scene.n_surfaces} surfaces"
+    news(f"convergence {word}: p = {found.p:.3g} over all checks of {many}", f"{path}: figure")
+    if says(ALL) or not found.passed:
+        news(found.table().text())
+    tell_cautions(scene, f"mcgw show --plan {args.scene}")
     return 0 if found.passed else 1

@@ -7,6 +7,8 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from mcgw.commands.voice import news
+
 if TYPE_CHECKING:
     from mcgw.jobs.engines import Engine
 
@@ -61,7 +63,7 @@ def drawing(args: argparse.Namespace) -> Iterator[dict[str, Any]]:
 def tell_share(shard: str, path: Path, left: int) -> int:
     """Say that a share is done and what is left of the whole; returns the exit code."""
     then = f"{left} surfaces are still missing" if left else f"all are there: mcgw merge {path}"
-    print(f"{path}.parts: share {shard} is done; {then}")
+    news(f"{path}.parts: share {shard} is done; {then}")
     return 0
 
 

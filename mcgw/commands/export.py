@@ -43,7 +43,8 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def execute(args: argparse.Namespace) -> int:
     """Write the files and say where they are."""
-    from mcgw.commands.outputs import CSV, Format, Output, check_outputs, tell_notes
+    from mcgw.commands.outputs import CSV, Format, Output, check_outputs
+    from mcgw.commands.voice import news, tell_cautions
     from mcgw.exports.curves import quantile_name
     from mcgw.exports.programs import PROGRAMS, check_name
     from mcgw.exports.writing import DEFAULT_QUANTILES, export, files_of_export
@@ -63,13 +64,14 @@ def execute(args: argparse.Namespace) -> int:
     form = Format(f"a table for {args.to}", PROGRAMS[args.to].endings)
     outputs = [*(Output(path, form) for path in tables), Output(all_of_them, CSV)]
     check_outputs(outputs, inputs=files_of(args.scene) if from_scene else [args.scene])
-    tell_notes(scene)
     made = export(
         what, args.output, to=args.to, table=args.table, points=args.points, pressures=pressures,
         quantiles=args.quantile, units=args.units,
     )  # fmt: skip
-    for path in made:
-        print(f"{path}: {args.table}{', mean and quantiles' if path == made[-1] else ''}")
+    mean, *quantiles, together = made
+    news(f"{mean}: {args.table}, mean over the surfaces")
+    news(*(f"{path}: the same of a quantile" for path in quantiles), f"{together}: all of them")
+    tell_cautions(scene, f"mcgw show {'--plan ' * from_scene}{args.scene}")
     return 0
 
 

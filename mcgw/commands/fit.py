@@ -71,7 +71,8 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def execute(args: argparse.Namespace) -> int:
-    """Print the estimates side by side with warnings, write the scene, and say where it is."""
+    """Write the scene with all estimates as comments, and say what it is and what speaks against it."""
+    from mcgw.commands.voice import details, news, notes
     from mcgw.formats.units import parse
     from mcgw.maps.fit import Fit
     from mcgw.maps.fitted_scene import fitted_scene, write_scene
@@ -89,16 +90,18 @@ def execute(args: argparse.Namespace) -> int:
         _of_profiles(args, asked, pixel) if of_profiles else _of_map(args, asked, pixel, across)
     )
     text = [*lines, *(f"warning: {line}" for line in fit.cautions)]
-    print("\n".join(text))
     on = {} if area is None else {"nominal_area": area}
     title = f"Fitted to {lines[0]}"
     scene = fitted_scene(fit, use=args.use, heights=args.heights, E_star=E_star, title=title, **on)
     comments = [*text, "", "units: sigma and radius in m, eta in 1/m^2, nominal_area in m^2, E_star in Pa"]
     measured = fit if isinstance(fit, Fit) and args.heights == "measured" else None
-    for path in write_scene(scene, args.output, measured, comments):
-        print(path)
+    path, *beside = write_scene(scene, args.output, measured, comments)
+    s = scene.surface
+    news(f"{path}: sigma = {s.sigma:.4g} m, radius = {s.radius:.4g} m, eta = {s.eta:.4g} 1/m^2", *beside)
     write()
-    print(f"next: mcgw run {args.output} -o {args.output.with_suffix('.h5')}")
+    details(*lines)
+    notes(*fit.cautions)
+    news(f"next: mcgw run {args.output} -o {args.output.with_suffix('.h5')}")
     return 0
 
 
@@ -128,22 +131,23 @@ def _of_map(args: argparse.Namespace, asked: "Preparation", pixel: float | None,
 
 def _write_beside(args: argparse.Namespace, fit: "Fit", ready: "Prepared", pixel: float | None) -> None:
     """Write the tables and the picture that were asked for, and say where they are."""
+    from mcgw.commands.voice import news
     from mcgw.maps.map_files import read_map
     from mcgw.maps.sub_areas import TILES
     from mcgw.maps.summits import SUMMITS
 
     if args.summits is not None:
         fit.listed.table().write(args.summits, comment=SUMMITS)
-        print(args.summits)
+        news(f"{args.summits}: every summit")
     if args.tiles is not None:
         fit.tiles.write(args.tiles, comment=TILES)
-        print(args.tiles)
+        news(f"{args.tiles}: every sub-area")
     if args.picture is not None:
         from mcgw.figures.map_fit import save_fit_picture
 
         size = None if pixel is None else (pixel, pixel)
         save_fit_picture(fit, read_map(args.map[0], pixel=size, unit=args.unit), ready, args.picture)
-        print(f"{args.picture}: figure")
+        news(f"{args.picture}: figure")
 
 
 def _of_profiles(args: argparse.Namespace, asked: "Preparation", spacing: float | None) -> "Fitted":

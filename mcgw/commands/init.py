@@ -42,6 +42,7 @@ def execute(args: argparse.Namespace) -> int:
     from importlib.resources import files
 
     from mcgw.commands.outputs import TOML, Output, check_outputs
+    from mcgw.commands.voice import news
     from mcgw.formats.files import write_whole
 
     text = (files("mcgw.scene") / "presets" / f"{args.preset}.toml").read_bytes()
@@ -56,10 +57,10 @@ def execute(args: argparse.Namespace) -> int:
         write_whole(path, [text], expected=None)
     except FileExistsError:
         raise _is_there(path) from None
-    print(f"{path}: {PRESETS[args.preset]}")
+    news(f"{path}: {PRESETS[args.preset]}")
     if args.schema:
-        print(f"{path.with_name(SCHEMA)}: by it editors complete and check {path.name}")
-    print(f"next: mcgw run {path} -o {path.with_suffix('.h5')}")
+        news(f"{path.with_name(SCHEMA)}: by it editors complete and check {path.name}")
+    news(f"next: mcgw run {path} -o {path.with_suffix('.h5')}")
     return 0
 
 

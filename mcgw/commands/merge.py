@@ -20,6 +20,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 def execute(args: argparse.Namespace) -> int:
     """Merge and say where the file is."""
     from mcgw.commands.outputs import HDF5, Output, check_outputs
+    from mcgw.commands.voice import news
     from mcgw.ensemble.ensemble import Ensemble
     from mcgw.formats.files import state_of
     from mcgw.jobs.merging import merge
@@ -34,7 +35,8 @@ def execute(args: argparse.Namespace) -> int:
     merged = merge(path)
     done = "was finished before, " if state_of(path) == before else ""
     if isinstance(merged, Ensemble):
-        print(f"{path}: {done}{merged.n_surfaces} surfaces, seed {merged.scene.seed}")
+        news(f"{path}: {done}{merged.n_surfaces} surfaces, seed {merged.scene.seed}")
     else:
-        print(f"{path}: {done}{merged.axes.size} scenes, seed {merged.scenes[0].seed}")
+        news(f"{path}: {done}{merged.axes.size} scenes, seed {merged.scenes[0].seed}")
+    news(f"next: mcgw compare {path}")
     return 0

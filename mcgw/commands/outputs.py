@@ -1,24 +1,17 @@
-"""What a command writes: files, asked of all together before anything is computed; tables; and notes."""
+"""What a command writes: files, all looked at before anything is computed, and tables."""
 
 import os
-import sys
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
 
+from mcgw.commands.voice import news, notes
 from mcgw.errors import StoreError
 from mcgw.formats.files import check_output
 from mcgw.formats.table import Table
-from mcgw.scene.cautions import cautions
-from mcgw.scene.scene import Scene
 from mcgw.store.disk import parts_of
 from mcgw.store.lock import LOCK_FILES
 from mcgw.store.trailer import TRAILER_BYTES, TRAILER_MAGIC
-
-if TYPE_CHECKING:
-    from mcgw.ensemble.ensemble import Ensemble
-    from mcgw.sweeps.sweep import Sweep
 
 _SIGNATURE = b"\x89HDF\r\n\x1a\n"
 
@@ -102,7 +95,7 @@ def check_outputs(outputs: Iterable[Output], *, inputs: Iterable[Path] = ()) -> 
         new = not folder.exists()
         check_output(output.path)
         if new:
-            print(f"mcgw: note: {folder} is a new folder", file=sys.stderr)
+            notes(f"{folder} is a new folder")
 
 
 def same_file(one: Path, other: Path) -> bool:
@@ -151,23 +144,4 @@ def write_table(path: Path | None, table: Callable[[], Table]) -> None:
     """Write it if it is asked for, and say where it is."""
     if path:
         table().write(path)
-        print(f"{path}: the table")
-
-
-def tell_notes(source: "Scene | Ensemble | Sweep", *more: str) -> None:
-    """Say where the model is strained, which units look wrong, and what else there is to say."""
-    for line in (*cautions_of(source), *more):
-        print(f"mcgw: note: {line}", file=sys.stderr)
-
-
-def cautions_of(source: "Scene | Ensemble | Sweep") -> list[str]:
-    """What a reader should know of a scene, that of an ensemble, or all points of a sweep."""
-    if isinstance(source, Scene):
-        return cautions(source)
-    from mcgw.ensemble.ensemble import Ensemble  # with results, of which many commands have none
-
-    if isinstance(source, Ensemble):
-        return cautions(source.scene)
-    from mcgw.sweeps.over_points import sweep_cautions
-
-    return sweep_cautions(source)
+        news(f"{path}: the table")

@@ -43,10 +43,11 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def execute(args: argparse.Namespace) -> int:
     """Write the new ensemble and print its ratios to the old one."""
-    from mcgw.commands.outputs import HDF5, Output, check_outputs, table_output, tell_notes, write_table
+    from mcgw.commands.outputs import HDF5, Output, check_outputs, table_output, write_table
+    from mcgw.commands.voice import ALL, news, says, tell_cautions
     from mcgw.ensemble.regrading import regrade, regraded_scene
     from mcgw.formats.table import stacked
-    from mcgw.reports.text import ratio_tables
+    from mcgw.reports.text import ends_in_words, ratio_tables
     from mcgw.scene.files_beside import read_grading
     from mcgw.store.ensembles import open_ensemble
     from mcgw.store.place import finished
@@ -61,13 +62,16 @@ def execute(args: argparse.Namespace) -> int:
     inputs = [args.file, table] if table else [args.file]
     check_outputs([Output(path, HDF5, grows=True), *table_output(args.csv)], inputs=inputs)
     asked = regraded_scene(old, grading, law)
-    tell_notes(asked)
     finished(path, asked, old.sampler)
     new = save(regrade(old, grading, law=law), path)
     ratios = ratio_tables(new, old)
-    for ratio in ratios.values():
-        print(ratio.rows(9).text())
-    print(f"{path}: {new.n_surfaces} surfaces, the same as in {args.file}")
+    news(f"{path}: {new.n_surfaces} surfaces, the same as in {args.file}")
+    if says(ALL):
+        news(*(ratio.rows(9).text() for ratio in ratios.values()))
+    else:
+        news(*(ends_in_words(name, ratio) for name, ratio in ratios.items()))
+    news(f"next: mcgw compare {path}")
+    tell_cautions(asked, f"mcgw show {path}")
     write_table(args.csv, lambda: stacked(ratios, "quantity"))
     return 0
 

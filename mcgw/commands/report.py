@@ -15,7 +15,8 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def execute(args: argparse.Namespace) -> int:
     """Write the page and say where it is."""
-    from mcgw.commands.outputs import HTML, Output, check_outputs, tell_notes
+    from mcgw.commands.outputs import HTML, Output, check_outputs
+    from mcgw.commands.voice import news, tell_cautions
     from mcgw.ensemble.ensemble import Ensemble
     from mcgw.formats.files import write_whole
     from mcgw.machine.progress import bar
@@ -25,7 +26,6 @@ def execute(args: argparse.Namespace) -> int:
     path = args.output or args.file.with_suffix(".html")
     result = open_results(args.file)
     check_outputs([Output(path, HTML)], inputs=[args.file])
-    tell_notes(result)
     attributes = read_attributes(args.file)
     if isinstance(result, Ensemble):
         from mcgw.reports.html import report_html
@@ -37,5 +37,6 @@ def execute(args: argparse.Namespace) -> int:
         with bar("points", terminal=True) as show:
             page = sweep_report_html(result, attributes, progress=show)
     write_whole(path, [page.encode()])
-    print(f"{path}: report, {len(page.encode()) / 1e6:.2f} MB; open it in a browser")
+    news(f"{path}: report, {len(page.encode()) / 1e6:.2f} MB; open it in a browser")
+    tell_cautions(result, f"mcgw show {args.file}")
     return 0

@@ -35,11 +35,11 @@ def execute(args: argparse.Namespace) -> int:
 
 
 def _execute(args: argparse.Namespace) -> int:
-    from mcgw.commands.outputs import HDF5, Output, check_outputs, tell_notes
+    from mcgw.commands.outputs import HDF5, Output, check_outputs
+    from mcgw.commands.voice import details, news, notes, tell_cautions
     from mcgw.ensemble.forecast import forecast
     from mcgw.jobs.running import run
     from mcgw.jobs.session import part_of
-    from mcgw.reports.side_notes import two_questions
     from mcgw.scene.scene_file import files_of, load_scene
     from mcgw.store.place import recorded_seed
 
@@ -52,29 +52,33 @@ def _execute(args: argparse.Namespace) -> int:
     short = [expected.shortfall] if args.shard and expected.shortfall else []
     ruled = scene.rel_err is not None or scene.max_seconds is not None
     with drawing(args) as how:
-        tell_notes(scene, *_of_threads(args.threads), *_of_time(scene), *short)
+        notes(*_of_threads(args.threads), *_of_time(scene), *short)
         if ruled and not args.shard:
             _tell_forecast(scene, expected)
         ensemble = run(scene, path, **how)
     if args.shard:
         return tell_share(args.shard, path, ensemble)
-    print(f"{path}: {ensemble.n_surfaces} surfaces of {scene.n_asperities:g} asperities, seed {scene.seed}")
+    news(f"{path}: {ensemble.n_surfaces} surfaces of {scene.n_asperities:g} asperities, seed {scene.seed}")
     if ruled:
         from mcgw.reports.side_notes import after
 
-        for line in after(ensemble, scene):
-            print(line)
-    print(*two_questions(scene.validity(), path), sep="\n")
+        news(*after(ensemble, scene))
+    known = scene.validity()
+    news(known.verdict)
+    details(*filter(None, [known.details]))
+    news(f"next: mcgw compare {path}")
+    tell_cautions(scene)
     return 0
 
 
 def _tell_forecast(scene: "Scene", expected: "Forecast") -> None:
     """Say what the rule will take."""
+    from mcgw.commands.voice import news
     from mcgw.ensemble.drawing import seconds_per_surface
     from mcgw.reports.side_notes import before
     from mcgw.sampling.samplers import sampler_of
 
-    print(f"forecast: {before(expected, seconds_per_surface(scene, sampler_of(scene)))}")
+    news(f"forecast: {before(expected, seconds_per_surface(scene, sampler_of(scene)))}")
 
 
 def _of_threads(threads: int | None) -> list[str]:

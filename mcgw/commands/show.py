@@ -31,7 +31,8 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def execute(args: argparse.Namespace) -> int:
     """Print to standard output; with --csv, write the table there."""
-    from mcgw.commands.outputs import check_outputs, table_output, tell_notes, write_table
+    from mcgw.commands.outputs import check_outputs, table_output, write_table
+    from mcgw.commands.voice import tell_cautions
     from mcgw.store.ensembles import read_attributes, unfinished_sweep, verify
     from mcgw.store.place import tidy
 
@@ -46,10 +47,10 @@ def execute(args: argparse.Namespace) -> int:
 
         scene = load_scene(args.file, changes=changes_of(args))
         with stages(2) as done:
-            tell_notes(scene)
             done()
             plan = plan_of(scene)
         print(plan_text(scene, plan))
+        tell_cautions(scene)
         return 0
     tidy(args.file)
     if (begun := unfinished_sweep(args.file)) is not None:
@@ -69,9 +70,9 @@ def execute(args: argparse.Namespace) -> int:
 
         result = open_results(args.file)
         check_outputs(table_output(args.csv), inputs=[args.file])
-        tell_notes(result)
         text, table = summary_of(result, attributes)
         print(text)
+        tell_cautions(result)
         write_table(args.csv, table)
     return 0
 

@@ -34,7 +34,8 @@ def execute(args: argparse.Namespace) -> int:
     """Print a table for each load; write it as CSV if asked to."""
     from dataclasses import replace
 
-    from mcgw.commands.outputs import check_outputs, table_output, tell_notes, write_table
+    from mcgw.commands.outputs import check_outputs, table_output, write_table
+    from mcgw.commands.voice import tell_cautions
     from mcgw.ensemble.solution import given_values, solutions
     from mcgw.ensemble.solved import at_solutions
     from mcgw.formats.units import parse
@@ -51,7 +52,7 @@ def execute(args: argparse.Namespace) -> int:
     given, values = given_values(scene, key, getattr(args, key), lambda x, unit: parse(x, unit, option))
     with bar("surfaces", terminal=True) as tell:
         found = solutions(scene, given, values, tell)
-    tell_notes(at_solutions(scene, found))
     print(solutions_text(scene, found))
+    tell_cautions(at_solutions(scene, found))
     write_table(args.csv, lambda: solutions_table(scene, found))
     return 0

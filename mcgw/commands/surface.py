@@ -76,7 +76,7 @@ def _shape(text: str) -> tuple[int, int | None]:
 
 
 def _asperities(args: argparse.Namespace) -> int:
-    from mcgw.commands.outputs import tell_notes
+    from mcgw.commands.voice import news, notes, tell_cautions
     from mcgw.figures.contact_map import save_contact_map, spots_at
     from mcgw.formats.units import parse
     from mcgw.maps.envelope import envelope
@@ -85,28 +85,30 @@ def _asperities(args: argparse.Namespace) -> int:
     from mcgw.scene.scene_file import load_scene, scene_text
 
     scene = load_scene(args.scene)
+    in_full = f"mcgw show --plan {args.scene}"
     width = None if args.width is None else parse(args.width, "m", "--width")
     _check_output(args)
     field = asperities_of(scene, args.surface, width=width)
     if args.at is not None:
         spots = spots_at(scene, field, args.at)
         save_contact_map(field, spots, args.output, colour=args.colour, periodic=args.periodic)
-        tell_notes(scene)
-        print(f"{args.output}: {spots.radius.size} contacts, {spots.load.sum():.6g} N")
+        news(f"{args.output}: {spots.radius.size} contacts, {spots.load.sum():.6g} N")
+        tell_cautions(scene, in_full)
         return 0
     columns, rows = _shape(args.shape)
     if rows is None:
         rows = max(round(columns * field.size[1] / field.size[0]), 1)
     topography = envelope(field, (rows, columns), periodic=args.periodic)
-    tell_notes(scene)
-    for path in write_map(topography, args.output, field, scene=scene_text(scene)):
-        print(path)
-    print(_account(scene, field, topography))
+    news(*write_map(topography, args.output, field, scene=scene_text(scene)))
+    said, doubts = _account(scene, field, topography)
+    news(*said)
+    notes(*doubts)
+    tell_cautions(scene, in_full)
     return 0
 
 
-def _account(scene: "Scene", field: "Asperities", topography: "Topography") -> str:
-    """How well the map shows independent asperities."""
+def _account(scene: "Scene", field: "Asperities", topography: "Topography") -> tuple[list[str], list[str]]:
+    """What is on the map, and what on it are no independent asperities."""
     from mcgw.maps.envelope import hidden_summits
     from mcgw.maps.hidden_caps import CROWDED
 
@@ -122,18 +124,18 @@ def _account(scene: "Scene", field: "Asperities", topography: "Topography") -> s
         f"({100 * hidden.mean():.3g} %), {(hidden & touching).sum()} of the {touching.sum()} that touch at "
         f"h = {scene.lowest:g}",
     ]
+    doubts = []
     if overlap > CROWDED:
-        lines.append("warning: the caps overlap; this map is not a field of independent asperities")
+        doubts.append("the caps overlap; this map is not a field of independent asperities")
     if max(topography.pixel) > 0.5 * (2 * field.radius * scene.surface.sigma) ** 0.5:
-        lines.append(
-            "warning: a pixel is wider than half the size of a cap, sqrt(2 R sigma); give a larger --shape"
-        )
-    return "\n".join(lines)
+        doubts.append("a pixel is wider than half a cap, sqrt(2 R sigma); give a larger --shape")
+    return lines, doubts
 
 
 def _spectrum(args: argparse.Namespace) -> int:
     import numpy as np
 
+    from mcgw.commands.voice import news
     from mcgw.formats.units import parse
     from mcgw.maps.map_files import write_map
     from mcgw.maps.synthetic import gaussian_map, moments_on_grid, spectrum_from
@@ -150,9 +152,8 @@ def _spectrum(args: argparse.Namespace) -> int:
     spectrum = spectrum_from(args.from_spectrum)
     _check_output(args)
     topography = gaussian_map(spectrum, shape, (pixel, pixel), np.random.default_rng(args.seed))
-    for path in write_map(topography, args.output):
-        print(path)
+    news(*write_map(topography, args.output))
     m = moments_on_grid(spectrum, shape, (pixel, pixel))
-    print(f"m0 = {m.m0:.6g} m^2, m2 = {m.m2:.6g}, m4 = {m.m4:.6g} 1/m^2, alpha = {m.alpha:.4g}")
-    print(f"summits (Nayak): eta = {m.eta:.4g} 1/m^2, R = {m.radius:.4g} m, sigma = {m.sigma:.4g} m")
+    news(f"m0 = {m.m0:.6g} m^2, m2 = {m.m2:.6g}, m4 = {m.m4:.6g} 1/m^2, alpha = {m.alpha:.4g}")
+    news(f"summits (Nayak): eta = {m.eta:.4g} 1/m^2, R = {m.radius:.4g} m, sigma = {m.sigma:.4g} m")
     return 0

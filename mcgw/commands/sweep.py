@@ -44,6 +44,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 def execute(args: argparse.Namespace) -> int:
     """Draw and say where the file is."""
     from mcgw.commands.outputs import HDF5, Output, check_outputs
+    from mcgw.commands.voice import details, news
     from mcgw.jobs.sweeping import sweep
     from mcgw.scene.scene_file import files_of, load_scene
     from mcgw.store.place import recorded_seed
@@ -60,8 +61,8 @@ def execute(args: argparse.Namespace) -> int:
         found = sweep(scene, over, zipped=args.zip, path=path, **how)
     if args.shard is not None:
         return tell_share(args.shard, path, found)
-    print(found)
-    print(f"{path}: {found.axes.size} scenes, seed {scene.seed}")
+    news(f"{path}: {found.axes.size} scenes, seed {scene.seed}", f"next: mcgw compare {path}")
+    details(found)
     return 0
 
 

@@ -20,8 +20,9 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def execute(args: argparse.Namespace) -> int:
-    """Print the table and the advice, save the record and the figure."""
-    from mcgw.commands.outputs import CSV, Output, check_outputs, figure_format, tell_notes
+    """Print the advice, save the record and the figure."""
+    from mcgw.commands.outputs import CSV, Output, check_outputs, figure_format
+    from mcgw.commands.voice import details, news, tell_cautions
     from mcgw.figures.studies import save_tradeoff
     from mcgw.formats.units import parse
     from mcgw.machine.progress import bar
@@ -33,13 +34,12 @@ def execute(args: argparse.Namespace) -> int:
     folder = args.output or args.scene.parent / "out"
     table, figure = (folder / f"{args.scene.stem}-tradeoff.{end}" for end in ("csv", "png"))
     check_outputs([Output(table, CSV), Output(figure, figure_format())], inputs=files_of(args.scene))
-    tell_notes(scene)
     with bar("s", terminal=True) as show:
         found = tradeoff(scene, seconds=seconds, progress=show)
     found.table().write(table)
     save_tradeoff(found, figure)
-    print(found.table().text(), found.ways_table().text(), sep="\n\n")
-    print(f"\n{found}")
-    print("for the mean alone: the theory, `analytic`, is exact; by samples, stratified")
-    print(f"{table}: record\n{figure}: figure\nstudy: {found.seconds:.0f} s")
+    news(found)
+    news(f"{table}: all measurements ({found.seconds:.0f} s)", f"{figure}: figure")
+    details("", found.table().text(), "", found.ways_table().text())
+    tell_cautions(scene, f"mcgw show --plan {args.scene}")
     return 0

@@ -155,10 +155,12 @@ def _root(passed: Callable[[Array], NDArray[np.bool_]], low: Array, high: Array)
 
 def interval_column(low: ArrayLike, high: ArrayLike, unit: str = "") -> Column:
     """Both ends of 95 % intervals in one column of a table, or that there is none."""
-    ends = Column("high_95", np.asarray(high), unit=unit)
+    error = (np.asarray(high) - np.asarray(low)) / 4
+    ends = Column("high_95", np.asarray(high), unit=unit, error=error)
     return Column(
-        "low_95", np.asarray(low), "95 % interval", unit, missing=TOO_FEW, beside=ends, between=" ... "
-    )
+        "low_95", np.asarray(low), "95 % interval", unit, missing=TOO_FEW, beside=ends, between=" ... ",
+        error=error,
+    )  # fmt: skip
 
 
 def interval_of(scene: Scene, sampler: str, sums: Held, name: str, level: float) -> tuple[Array, Array]:

@@ -1,7 +1,7 @@
 """Results as named arrays with axes, units and words, for files, xarray and pandas; and as tables."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -130,6 +130,7 @@ def statistics_table(ensemble: Any, name: str) -> Table:
     found = [("mean", ensemble.mean(name), ".6g"), ("std", ensemble.std(name), ".3g")]
     found.append(("stderr", ensemble.stderr(name), ".3g"))
     columns = [Column(kind, values, unit=unit, form=form) for kind, values, form in found]
+    columns[0] = replace(columns[0], error=found[2][1])
     if ensemble.scene.keep == "statistics":
         columns.append(Column("skewness", ensemble.skewness(name), form=".3g"))
         quantiles = ((f"quantile_{share:g}", ensemble.quantile(name, share)) for share in PROBABILITIES)

@@ -117,12 +117,13 @@ class Solution(Shown):
         names = list(self.surfaces)
         low, high = np.array([self.interval(name) for name in names]).T
         found = [self.surfaces[name] for name in names]
+        error = (high - low) / 4
         return Table(
             (
                 Column("quantity", names),
                 Column("unit", [_unit(name) for name in names]),
-                Column("theory", [self.theory[name] for name in names]),
-                Column("mean", [x.mean() for x in found]),
+                Column("theory", [self.theory[name] for name in names], error=error),
+                Column("mean", [x.mean() for x in found], error=error),
                 interval_column(low, high),
                 Column("std", [x.std(ddof=1) for x in found], form=".3g"),
             ),

@@ -50,7 +50,7 @@ def _data(comparison: Comparison) -> FigureData:
     panels = tuple(quantity_panel(comparison, name) for name in comparison.curves)
     word = "agree" if verdict.agrees else "DISAGREE"
     return FigureData(
-        f"{shown_title(scene, 'Ensemble')}\nMonte Carlo and theory of this model {word}: "
+        f"{shown_title(scene, 'Ensemble')}\nMonte Carlo and theory {word}: "
         f"{verdict.seen.replace('chi-square', 'χ² =')}, p = {verdict.p:.3g}",
         f"{ensemble.n_surfaces} surfaces of {scene.n_asperities:g} asperities, "
         f"{contact_label(scene)}; sampler {ensemble.sampler}, seed {scene.seed}",
@@ -105,7 +105,7 @@ def sweep_figure(comparison: "SweepComparison") -> Figure:
         _draw_worst(comparison, right)
         figure.suptitle(
             f"{shown_title(sweep.scenes[0], 'Sweep')}: {verdict.points} scenes\n"
-            f"Monte Carlo and theory of this model {word}: p = {verdict.p:.3g} for all points together",
+            f"Monte Carlo and theory {word}: p = {verdict.p:.3g} for all points together",
             fontsize=10,
         )
         figure.supxlabel(_CAPTION, fontsize=8, color=PAPER)

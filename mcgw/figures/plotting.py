@@ -89,9 +89,7 @@ def _(result: Comparison, ax: Any, *, quantity: str) -> None:
     draw_panel(ax, quantity_panel(result, quantity), keyed=True)
     word = "agree" if result.verdict.agrees else "DISAGREE"
     ax.set(ylabel=quantity_of(quantity).title)
-    ax.set_title(
-        f"Monte Carlo and theory of this model {word}: p = {result.verdict.p:.3g} over all means", loc="left"
-    )
+    ax.set_title(f"Monte Carlo and theory {word}: p = {result.verdict.p:.3g} over all means", loc="left")
 
 
 @_draw.register

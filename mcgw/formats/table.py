@@ -43,6 +43,8 @@ class Column:
         A second number in the same cell, as a standard error or the end of an interval.
     between : str, optional
         What stands between the two.
+    error : array_like, optional
+        Of each number: a reader sees it to the second digit of its error.
     """
 
     name: str
@@ -53,6 +55,7 @@ class Column:
     missing: str = "nan"
     beside: "Column | None" = None
     between: str = " +- "
+    error: Any = None
 
     @property
     def flat(self) -> "list[Column]":
@@ -66,7 +69,11 @@ class Column:
 
     def cells(self) -> list[str]:
         """What a reader sees, a text for each row."""
-        own = [x if isinstance(x, str) else self._shown(x) for x in self.values]
+        errors = np.broadcast_to(np.nan if self.error is None else self.error, len(self.values))
+        own = [
+            x if isinstance(x, str) else self._shown(x, error)
+            for x, error in zip(self.values, errors, strict=True)
+        ]
         return own if self.beside is None else self.together(own, self.beside.cells())
 
     def together(self, own: Sequence[str], others: Sequence[str]) -> list[str]:
@@ -85,8 +92,10 @@ class Column:
         """Its cells as they are printed."""
         return list(map(typeset, self.cells()))
 
-    def _shown(self, x: float) -> str:
-        return self.missing if np.isnan(x) else format(x, self.form)
+    def _shown(self, x: float, error: float) -> str:
+        if np.isnan(x):
+            return self.missing
+        return format(x, f".{digits_of(x, error)}g" if 0 < error < np.inf and x else self.form)
 
 
 @dataclass(frozen=True)
@@ -235,17 +244,26 @@ def _under(columns: Sequence[Column]) -> Column:
     values = np.concatenate([np.asarray(column.values) for column in columns])
     unit = columns[0].unit if len({column.unit for column in columns}) == 1 else ""
     besides = [column.beside for column in columns if column.beside is not None]
-    return replace(columns[0], values=values, unit=unit, beside=_under(besides) if besides else None)
+    errors = [column.error for column in columns if column.error is not None]
+    error = np.concatenate(errors) if len(errors) == len(columns) else None
+    beside = _under(besides) if besides else None
+    return replace(columns[0], values=values, unit=unit, beside=beside, error=error)
 
 
 def _part(column: Column, k: Sequence[int]) -> Column:
     beside = None if column.beside is None else _part(column.beside, k)
-    return replace(column, values=[column.values[i] for i in k], beside=beside)
+    error = None if column.error is None else np.asarray(column.error)[list(k)]
+    return replace(column, values=[column.values[i] for i in k], beside=beside, error=error)
 
 
 def _stored(column: Column) -> Iterator[str]:
     for x in column.values:
         yield str(x) if isinstance(x, str | int | np.integer) else repr(float(x))
+
+
+def digits_of(x: float, error: float) -> int:
+    """Digits of a number down to the second of its error; two at least, seven at most."""
+    return int(np.clip(np.floor(np.log10(abs(x))) - np.floor(np.log10(error)) + 2, 2, 7))
 
 
 def evenly(n: int, most: int) -> NDArray[np.int64]:

@@ -38,11 +38,11 @@ def told(progress: Progress, unit: str, beside: str = "") -> Iterator[Tell]:
 
 @contextmanager
 def bar(unit: str, beside: str = "", *, terminal: bool = False) -> Iterator[Tell]:
-    """A bar on standard error, if asked so on a terminal only; on one a line may be said `beside` it, once.
+    """A bar on standard error, with `terminal` only on one that is `watched`; a line may be said `beside` it.
 
     Its rate is that of this call: what was done before counts as given.
     """
-    if terminal and not sys.stderr.isatty():
+    if terminal and not (sys.stderr.isatty() and _WATCHED.get()):
         yield _nobody
         return
     from tqdm import tqdm

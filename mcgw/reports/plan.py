@@ -9,7 +9,7 @@ from mcgw.ensemble.forecast import forecast
 from mcgw.ensemble.simulation import reducer_of
 from mcgw.machine.progress import steps
 from mcgw.machine.terminal import one_line
-from mcgw.reports.side_notes import two_questions
+from mcgw.reports.side_notes import against_elasticity
 from mcgw.sampling.block import Sampler
 from mcgw.sampling.samplers import sampler_of
 from mcgw.sampling.shared import shared
@@ -110,7 +110,7 @@ def plan_text(scene: Scene, plan: Plan) -> str:
         f"  results       {_size(scene, plan)}",
         f"  time          about {in_words(plan.seconds)} on this machine",
         *_accuracy_lines(scene, plan),
-        *(f"  {line}" for line in two_questions(scene.validity())),
+        *(f"  {line}" for line in against_elasticity(scene.validity())),
         "not done:",
     ]
     spared = plan.asperities - plan.touching

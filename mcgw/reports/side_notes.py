@@ -15,14 +15,6 @@ if TYPE_CHECKING:
     from mcgw.ensemble.forecast import Forecast
 
 
-def two_questions(found: Validity, file: object = "FILE.h5") -> list[str]:
-    """Where nothing was compared: how to, and the verdict against elasticity."""
-    return [
-        f"Whether Monte Carlo and theory of this model agree: mcgw compare {file}",
-        *against_elasticity(found),
-    ]
-
-
 def against_elasticity(found: Validity) -> list[str]:
     """The verdict, and where it was measured, a line each."""
     return [found.verdict, *([f"  {found.details}"] if found.details else [])]

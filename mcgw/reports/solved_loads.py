@@ -7,7 +7,6 @@ import numpy as np
 from mcgw.ensemble.intervals import MANY
 from mcgw.ensemble.solved import Solution, against_elasticity, rise_of_summits
 from mcgw.formats.table import Column, Table, joined
-from mcgw.reports.side_notes import two_questions
 from mcgw.scene.in_words import contact_facts
 from mcgw.scene.scene import Scene
 
@@ -30,7 +29,7 @@ def solutions_text(scene: Scene, solutions: Sequence[Solution]) -> str:
         f"std: over {scene.n_surfaces} surfaces of {scene.n_asperities:g} asperities, each at its own d;"
         f" heights drawn one by one, seed {scene.seed}"
     )
-    return "\n".join([*lines, "", *two_questions(against_elasticity(solutions))])
+    return "\n".join([*lines, against_elasticity(solutions).verdict])
 
 
 def solutions_table(scene: Scene, solutions: Sequence[Solution]) -> Table:

@@ -13,7 +13,7 @@ from mcgw.ensemble.paired import paired_ratio
 from mcgw.formats.sheet import listed
 from mcgw.formats.table import Column, Table, stacked
 from mcgw.machine.terminal import one_line
-from mcgw.reports.side_notes import against_elasticity, two_questions
+from mcgw.reports.side_notes import against_elasticity
 from mcgw.scene.in_words import accuracy_facts, contact_facts, law_text
 from mcgw.statistics.comparison import Comparison
 from mcgw.store.run_folder import RunFolder
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 _MOST_ROWS = 9
 _KEPT = "statistics alone: mean, covariance, skewness, quantiles, extremes"
 _SHOWN = ("separation", "mean", "std", "stderr")
-_LISTED = 12  # points
+_LISTED, _WORST = 12, 3  # points of a sweep; rows that are farthest from theory
 
 
 def summary(ensemble: Ensemble, attributes: dict[str, Any]) -> str:
@@ -47,7 +47,7 @@ def summary(ensemble: Ensemble, attributes: dict[str, Any]) -> str:
         ("with", f"{attributes['versions']}; commit {attributes['commit']}"),
     ]
     lines = [one_line(scene.title) or "ensemble", *listed(facts, 12)]
-    lines += [f"  {line}" for line in two_questions(scene.validity())]
+    lines += [f"  {line}" for line in against_elasticity(scene.validity())]
     for name in scene.quantities:
         lines += ["", statistics_table(ensemble, name).only(*_SHOWN).rows(_MOST_ROWS).text()]
     return "\n".join(lines)
@@ -89,15 +89,26 @@ def ratio_tables(new: Ensemble, old: Ensemble) -> dict[str, Table]:
     return found
 
 
+def ends_in_words(quantity: str, ratios: Table) -> str:
+    """One of these tables in a line: the ratio at the lowest and at the highest separation."""
+    h, ratio = (column.values for column in ratios.only("separation", "ratio").columns)
+    low, high = int(np.argmin(h)), int(np.argmax(h))
+    return (
+        f"{quantity_of(quantity).long_name}: {ratio[low]:.4g} times the old one at d/sigma = {h[low]:g}, "
+        f"{ratio[high]:.4g} at {h[high]:g}"
+    )
+
+
 def comparison_summary(
-    comparison: "Comparison | SweepComparison",
+    comparison: "Comparison | SweepComparison", *, whole: bool
 ) -> tuple[str, Callable[[], Table], list[str]]:
-    """The table for people, what makes that for programs, and the lines of the verdict."""
+    """The table for people, whole or its worst rows; what makes that for programs; the verdict's lines."""
     lines = [comparison.verdict.line]
     if not isinstance(comparison, Comparison):
-        return comparison.sheet_of(_LISTED).text(), comparison.table, lines
-    lines += against_elasticity(comparison.ensemble.scene.validity())
-    return comparison_text(comparison), lambda: stacked(comparison.tables(), "quantity"), lines
+        return comparison.sheet_of(_LISTED if whole else _WORST).text(), comparison.table, lines
+    lines.append(comparison.ensemble.scene.validity().verdict)
+    text = comparison_text(comparison) if whole else comparison.worst(_WORST).text()
+    return text, lambda: stacked(comparison.tables(), "quantity"), lines
 
 
 def summary_of(result: "Ensemble | Sweep", attributes: dict[str, Any]) -> tuple[str, Callable[[], Table]]:

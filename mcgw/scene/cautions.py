@@ -27,17 +27,14 @@ def cautions(scene: Scene) -> list[str]:
 
 def _cause(scene: Scene) -> str:
     if scene.interaction is None:
-        return "its asperities feel nothing of each other, and do not merge"
-    return "its asperities feel the mean of all others, and do not merge"
+        return "asperities neither interact nor merge"
+    return "asperities interact by a mean field, and do not merge"
 
 
 def _direction(scene: Scene) -> str:
     if scene.interaction is not None:
         return ""
-    return (
-        ", which by itself makes the load too large where d counts from the undeformed body of a punch, and "
-        "too small where d is the mean gap of a periodic cell"
-    )
+    return " (load too large if d is that of a rigid punch, too small if it is the mean gap)"
 
 
 def _crowd(scene: Scene) -> Iterator[str]:
@@ -53,8 +50,8 @@ def _crowd(scene: Scene) -> Iterator[str]:
         low, high = (middle, high) if crowded(separations[middle]) else (low, middle)
     if low >= 0:
         yield (
-            f"up to d/sigma = {separations[low]:.3g} more than {_CROWDED:.0%} of the nominal area touches: "
-            f"asperities are not independent{_direction(scene)}; how far off this model is was not measured"
+            f"up to d/sigma = {separations[low]:.3g} more than {_CROWDED:.0%} of the nominal area touches; "
+            f"asperities interact there{_direction(scene)}; the error was not measured"
         )
 
 
@@ -63,8 +60,8 @@ def _half(scene: Scene) -> Iterator[str]:
     most = h[scene.heights.sf(h) > 0.5]
     if most.size:
         yield (
-            f"up to d/sigma = {most.max():.3g} more than half of all summits touch; the model does not merge "
-            "contacts"
+            f"up to d/sigma = {most.max():.3g} more than half of all asperities touch; contacts merge there, "
+            "which the model leaves out"
         )
 
 
@@ -77,7 +74,7 @@ def _depth(scene: Scene) -> Iterator[str]:
     if share > _DEEP or surface.sigma >= surface.radius:
         yield (
             f"surface.radius = {surface.radius:g} m: at d/sigma = {lowest:g} a share of {share:.2g} "
-            f"of the contacts is compressed by more than the radius, where {_model(scene)} does not hold"
+            f"of the contacts is compressed by more than R, where {_model(scene)} does not hold"
         )
 
 
@@ -86,8 +83,8 @@ def _slope(scene: Scene) -> Iterator[str]:
     steepest = float(np.sqrt(max(top - scene.lowest, 0.0) * scene.surface.sigma / scene.surface.radius))
     if steepest > _STEEP:
         yield (
-            f"the highest summits (s = {top:.1f}) have contacts of {steepest:.2f} times their radius at "
-            f"the lowest separation, more than the parabolic contact of {_model(scene)} bears{_metals(scene)}"
+            f"the highest asperities (s = {top:.1f}) have contacts of {steepest:.2f} R at the lowest "
+            f"separation, too steep for {_model(scene)}{_metals(scene)}"
         )
 
 
@@ -99,7 +96,7 @@ def _metals(scene: Scene) -> str:
     """That there are laws for them, where asperities stay elastic."""
     if not scene.law.elastic:
         return ""
-    return '; metals yield far earlier: contact.law = "kogut-etsion" with their hardness'
+    return '; metals yield far earlier: contact.law = "kogut-etsion"'
 
 
 def _few_contacts(scene: Scene) -> Iterator[str]:
@@ -108,8 +105,7 @@ def _few_contacts(scene: Scene) -> Iterator[str]:
     if few.size:
         yield (
             f"from d/sigma = {few.min():.3g} fewer than {_FEW:.0f} contacts are expected on a surface: "
-            "single surfaces are far from Gaussian, and intervals of few surfaces are lopsided; below ten "
-            "in the whole ensemble there are none"
+            "values of single surfaces are skewed; give more area"
         )
 
 
@@ -118,15 +114,15 @@ def _other_number(scene: Scene) -> Iterator[str]:
     share = scene.n_asperities / expected
     if abs(share - 1) > 0.01:
         yield (
-            f"a surface has {scene.n_asperities:g} asperities, not eta * nominal_area = {expected:g}: loads "
-            f"belong to {share:.3g} of the nominal area"
+            f"{scene.n_asperities:g} asperities, not eta * nominal_area = {expected:g}: loads belong to "
+            f"{share:.3g} of the nominal area"
         )
 
 
 def _negative_modulus(scene: Scene) -> Iterator[str]:
     if scene.negative != "error" and scene.negative_above(scene.lowest) is not None:
         word = "set to zero" if scene.negative == "clip" else "left negative"
-        yield f"the modulus is negative at heights that touch, and {word}: a fit taken beyond its range"
+        yield f"the modulus is negative at heights that touch, and {word}: beyond the range of the grading"
 
 
 def _of_conductance(scene: Scene) -> list[str]:

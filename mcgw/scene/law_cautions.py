@@ -35,7 +35,7 @@ def _choice(scene: Scene) -> Iterator[str]:
     ratios = ", ".join(f"{name} {ratio:.3g}" for name, ratio in others.load.items())
     yield (
         f'contact.law = "{scene.law.name}": the choice of the law is worth {high / low - 1:.0%} of the load '
-        f"at d/sigma = {others.separation:.3g}; over this one's, with the same critical penetration of "
+        f"at d/sigma = {others.separation:.3g}; over this one's at a critical penetration of "
         f"{others.critical:.3g} sigma: {ratios}"
     )
 
@@ -48,8 +48,8 @@ def _yielded(scene: Scene) -> Iterator[str]:
     share = 1 - float(scene.theory.share(0, h))
     if share > _DEEP:
         yield (
-            f"a share of {share:.3g} of the contacts has yielded at the lowest separation, d/sigma = {h:g}: "
-            "no elastic solution tells how good their loads and areas are"
+            f"a share of {share:.3g} of the contacts has yielded at d/sigma = {h:g}: "
+            "elastic solutions cannot check their loads and areas"
         )
 
 
@@ -60,8 +60,8 @@ def _jumps(scene: Scene) -> Iterator[str]:
     line = f'contact.law = "{scene.law.name}": stiffness is that of first unloading, 2 E*(s) a a contact'
     if getattr(scene.law, "bridge", "none to build") is None:
         yield (
-            f"{line}; the law's load jumps, and load_slope leaves the jumps out "
-            '(bridge = "hermite" joins them)'
+            f"{line}; the law's load jumps, which load_slope leaves out "
+            '(bridge = "hermite" joins the pieces)'
         )
     elif {"stiffness", "load_slope"} & set(scene.quantities):
         yield f"{line}; load_slope is -dP/dd of loading"
@@ -73,9 +73,8 @@ def _gain(scene: Scene) -> Iterator[str]:
         share = _share(scene, 1.0) - _share(scene, 1.25)
         if share > 0:
             yield (
-                "contact.unload_from: a contact that turns at 1 to 1.25 critical penetrations gives out up "
-                f"to 3 % more work than it took, because the fitted load jumps; a share of {share:.2g} of "
-                "the contacts does"
+                "contact.unload_from: contacts unloaded from 1 to 1.25 critical penetrations return up to "
+                f"3 % more work than they took, as the fitted load jumps; a share of {share:.2g} of them does"
             )
 
 
@@ -87,8 +86,8 @@ def _fitted(scene: Scene) -> Iterator[str]:
         share = _share(scene, most) if applies else 0.0
         if share > _DEEP:
             yield (
-                f"contact.law: a share of {share:.2g} of the contacts is deeper at the lowest separation "
-                f"than {most:g} critical penetrations, up to which its {what} was fitted"
+                f"contact.law: a share of {share:.2g} of the contacts is deeper than {most:g} critical "
+                f"penetrations, up to which its {what} was fitted"
             )
 
 
@@ -116,8 +115,8 @@ def _strain(scene: Scene) -> Iterator[str]:
     strains = law.yield_strain / e[e > 0] if law.yield_strain else np.empty(0)
     if strains.size and not (_STRAINS[0] <= strains.min() and strains.max() <= _STRAINS[1]):
         yield (
-            f"contact.yield_strength: over E*(s) it runs from {strains.min():.2g} to {strains.max():.2g} "
-            f"among the heights that touch; the law was fitted from {_STRAINS[0]:g} to {_STRAINS[1]:g}"
+            f"contact.yield_strength over E*(s) runs from {strains.min():.2g} to {strains.max():.2g}; the "
+            f"law was fitted from {_STRAINS[0]:g} to {_STRAINS[1]:g}"
         )
 
 
@@ -135,18 +134,15 @@ def _radius(scene: Scene) -> Iterator[str]:
     a = float(law.radius(piece, y, e)[0]) * np.sqrt(scene.surface.sigma / scene.surface.radius)
     if a > _WIDEST:
         yield (
-            f"contact.law: the widest thousandth of the contacts at the lowest separation reaches {a:.2g} of "
-            f"the summit radius; the law was fitted up to {_WIDEST:g}"
+            f"contact.law: the widest thousandth of the contacts reaches {a:.2g} of the summit radius; the "
+            f"law was fitted up to {_WIDEST:g}"
         )
 
 
 def _coating(scene: Scene) -> Iterator[str]:
     law = scene.law
     if isinstance(law, Coated) and not _RATIOS[0] <= law.ratio <= _RATIOS[1]:
-        yield (
-            f"contact.ratio = {law.ratio:g}: the coating is a first-order perturbation, good for ratios from "
-            "1/3 to 3"
-        )
+        yield (f"contact.ratio = {law.ratio:g}: the first-order coating law is good for ratios from 1/3 to 3")
 
 
 def _adhesion(scene: Scene) -> Iterator[str]:
@@ -159,7 +155,6 @@ def _adhesion(scene: Scene) -> Iterator[str]:
     if tabor < _STICKY if sticks else tabor > _STIFF:
         holds = f"above {_STICKY:g}" if sticks else f"below {_STIFF:g}"
         yield (
-            f'contact.law = "{law.name}" is for a Tabor number {holds}, at every separation; for forces that '
-            f"reach z0 = {_REACH * 1e9:g} nm, as atoms are apart, it is {tabor:.3g} (Maugis's: "
-            f"{_MAUGIS * tabor:.3g}), and it goes as 1/z0"
+            f'contact.law = "{law.name}" is for a Tabor number {holds}; for forces that reach '
+            f"z0 = {_REACH * 1e9:g} nm it is {tabor:.3g} (Maugis's: {_MAUGIS * tabor:.3g})"
         )

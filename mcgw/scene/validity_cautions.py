@@ -19,21 +19,18 @@ def off_elasticity(v: ModelErrors, why: str) -> Iterator[str]:
     """Errors above 10 % by their size, and loads above those that were measured."""
     biased = {name: _above(v, name) & ~_scatters(v, name) for name in _QUANTITIES}
     if (off := _any(biased)).any():
-        yield (
-            f"at d/sigma = {span(v.separations, off)} the model is off elasticity: "
-            f"{'; '.join(_told(v, biased))} ({why})"
-        )
+        yield (f"d/sigma = {span(v.separations, off)}: off elasticity, {'; '.join(_told(v, biased))}: {why}")
     loose = {name: _above(v, name) & _scatters(v, name) for name in _QUANTITIES}
     if (off := _any(loose)).any():
         yield (
-            f"at d/sigma = {span(v.separations, off)} surfaces of so few contacts scatter about elasticity: "
+            f"d/sigma = {span(v.separations, off)}: surfaces of so few contacts scatter, "
             f"{'; '.join(_told(v, loose))}"
         )
     heavier = ~v.measured & (v.separations < _first_measured(v))
     if heavier.any():
         yield (
-            f"at d/sigma = {span(v.separations, heavier)} loads are above all that were measured "
-            f"({v.axis} up to {v.loads[heavier].max():.2g}): how far from elasticity is not known"
+            f"d/sigma = {span(v.separations, heavier)}: heavier loads than any that was measured "
+            f"({v.axis} up to {v.loads[heavier].max():.2g}); the error is not known"
         )
 
 
@@ -59,9 +56,9 @@ def _told(v: ModelErrors, where: dict[str, Mask]) -> Iterator[str]:
     sizes = {name: _size(v, name, mask) for name, mask in where.items() if mask.any()}
     at_load = [sizes[name] for name in _AT_LOAD if name in sizes]
     if at_load:
-        yield f"{', '.join(at_load)} at the load there"
+        yield f"{', '.join(at_load)} at that load"
     if "load" in sizes:
-        yield f"{sizes['load']} if d is the mean gap of a periodic cell"
+        yield f"{sizes['load']} at that mean gap"
 
 
 def _size(v: ModelErrors, name: str, where: Mask) -> str:

@@ -17,20 +17,17 @@ _COLUMNS = {"area": "area", "stiffness": "stiffness", "separation": "gap/sigma",
 def verdict(v: ModelErrors) -> str:
     """One sentence: how far from elasticity, where, and where that was not measured."""
     if not v.measured.any():
-        subject = "This model" if v.unknown.startswith("outside") else "How far this model is from elasticity"
-        return f"{subject} is {v.unknown}"
+        return f"Against elasticity: {v.unknown}"
     parts, at_load, at_gap = [], v.known("area", "stiffness"), v.known("load")
     if at_load.any():
-        worst = percent(v.worst("area", "stiffness"))
-        what = "the geometry of this model" if v.graded else "this model"
-        parts.append(f"at a given load {what} is within {worst} of elasticity (95 %) {_here(v, at_load)}")
+        parts.append(f"within {percent(v.worst('area', 'stiffness'))} at a given load{_here(v, at_load)}")
     if at_gap.any():
-        where = "" if np.array_equal(at_gap, at_load) else f" {_here(v, at_gap)}"
-        parts.append(f"its load at a given mean gap is within {percent(v.worst('load'))} (95 %){where}")
+        where = "" if np.array_equal(at_gap, at_load) else _here(v, at_gap)
+        parts.append(f"load within {percent(v.worst('load'))} at a given mean gap{where}")
+    line = f"Against elasticity: {', '.join(parts)} (95 %{_homogeneous(v)})"
     if not v.measured.all():
-        parts.append(f"at d/sigma = {span(v.separations, ~v.measured)} the model is {v.unknown}")
-    line = "; ".join(parts)
-    return line[0].upper() + line[1:]
+        line += f"; at d/sigma = {span(v.separations, ~v.measured)} {v.unknown}"
+    return line
 
 
 def details(v: ModelErrors) -> str:
@@ -44,8 +41,7 @@ def details(v: ModelErrors) -> str:
     ]
     lacking = [word for word in _AT_LOAD.values() if word not in known]
     each = ", ".join(told) + (f"; {', '.join(lacking)}: not measured" if lacking else "")
-    graded = "; of the grading that says nothing" if v.graded else ""
-    return f"{each} (95 %); by {v.where}{graded}"
+    return f"{each} (95 %); by {v.where}"
 
 
 def short_verdict(v: ModelErrors) -> str:
@@ -55,7 +51,11 @@ def short_verdict(v: ModelErrors) -> str:
     errors = {"at a given load": v.worst("area", "stiffness"), "in load at a given gap": v.worst("load")}
     told = [f"{percent(error)} {of}" for of, error in errors.items() if not math.isnan(error)]
     where = "" if v.measured.all() else f"; d/sigma = {span(v.separations, v.measured)}"
-    return f"{'geometry ' if v.graded else ''}within {', '.join(told)} (95 %){where}"
+    return f"within {', '.join(told)} (95 %{_homogeneous(v)}){where}"
+
+
+def _homogeneous(v: ModelErrors) -> str:
+    return ", without the grading" if v.graded else ""
 
 
 def table_of(v: ModelErrors) -> Table:
@@ -92,7 +92,7 @@ def span(h: NDArray[np.float64], where: NDArray[np.bool_]) -> str:
 
 
 def _here(v: ModelErrors, where: NDArray[np.bool_]) -> str:
-    return "here" if where.all() else f"at d/sigma = {span(v.separations, where)}"
+    return "" if where.all() else f" for d/sigma = {span(v.separations, where)}"
 
 
 def _cell(v: ModelErrors, name: str, k: int) -> str:

@@ -99,20 +99,26 @@ class Comparison(Shown):
         word = "agree" if v.agrees else "DISAGREE"
         facts = [("all means", seen), ("elasticity", self.ensemble.scene.validity().brief)]
         table = stacked(farthest, "quantity", "farthest off")
-        return Sheet(f"Monte Carlo and theory of this model {word}", facts, table)
+        return Sheet(f"Monte Carlo and theory {word}", facts, table)
 
     def tables(self) -> dict[str, Table]:
         """By quantity: mean, 95 % interval, standard deviation, theory and residual at every separation."""
         return {name: self._table(name) for name in self.curves}
 
+    def worst(self, rows: int) -> Table:
+        """The means that are farthest from theory, whatever their quantity."""
+        table = replace(stacked(self.tables(), "quantity"), title="farthest from theory, in standard errors")
+        far = np.abs(table.only("residual").columns[0].values)
+        return table.at(np.argsort(-far, kind="stable")[:rows].tolist())
+
     def _table(self, quantity: str) -> Table:
         c, unit = self.curves[quantity], quantity_of(quantity).unit
         columns = (
             Column("separation", self.ensemble.separations, SEPARATION, form="g"),
-            Column("mean", c.mean, unit=unit),
+            Column("mean", c.mean, unit=unit, error=c.stderr),
             interval_column(c.low, c.high, unit),
             Column("std", self.ensemble.std(quantity), unit=unit, form=".3g"),
-            Column("theory", c.theory, unit=unit),
+            Column("theory", c.theory, unit=unit, error=c.stderr),
             Column("residual", c.residual, form="+.2f"),
         )
         return Table(columns, heading(quantity))

@@ -81,11 +81,7 @@ class Verdict:
     def line(self) -> str:
         """Do they agree, and how sure is that."""
         word = "agree" if self.agrees else "DISAGREE"
-        most = "at most " if self.points else ""
-        return (
-            f"Monte Carlo and theory of this model {word}: {self.seen}, p = {self.p:.3g} (false alarms: "
-            f"{most}1 in {1 / FALSE_ALARM:.0f})"
-        )
+        return f"Monte Carlo and theory {word}: {self.seen}, p = {self.p:.3g}"
 
     @property
     def _seen(self) -> str:
