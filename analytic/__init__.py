@@ -56,7 +56,7 @@ from analytic.heights import ExponentialHeights, Gaussian, HeightLaw, Weibull
 from analytic.integrals import fn, fn_between, fn_paper, fn_scaled
 from analytic.inversion import ratio_at_equal_load
 from analytic.law_rule import extent
-from analytic.laws import ContactLaw, Film, Hertz, Tangential, masing
+from analytic.laws import ContactLaw, Film, Hertz, Layer, Tangential, masing
 from analytic.measured_summits import MeasuredHeights, MeasuredRadii
 from analytic.model import Cumulants, Model
 from analytic.nayak import Nayak
@@ -98,7 +98,7 @@ __all__ = [
     "Body", "ChangEtsionBogy", "Clipped", "Coated", "ContactLaw", "Cumulants", "Custom", "CustomLaw",
     "DerjaguinMullerToporov", "Exponential", "ExponentialHeights", "Film", "Fluctuations", "Gaussian",
     "Grading", "HeightLaw", "HeightRule", "HeightTable", "Hertz", "Homogeneous", "InteractingModel",
-    "Interaction", "JacksonGreen", "JohnsonKendallRoberts", "KogutEtsion", "MeasuredHeights",
+    "Interaction", "JacksonGreen", "JohnsonKendallRoberts", "KogutEtsion", "Layer", "MeasuredHeights",
     "MeasuredRadii", "Model", "Nayak", "PiecewiseSeries", "PowerLawGraded", "Quantity", "RandomCurvature",
     "ScipyHeights", "SpectralMoments", "Surface", "Table", "Tangential", "Weibull", "ZhaoMaiettaChang",
     "area", "area_per_load", "area_per_load_ratio", "asperities_for", "barber_conductance", "bends",

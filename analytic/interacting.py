@@ -72,7 +72,7 @@ class InteractingModel(Model):
 
     def series(self, quantity: str) -> float:
         """What the half-space adds to the inverse of a sum: `analytic.Interaction.series`."""
-        rho = 1.0 if self.film is None else self.film.resistivity
+        rho = 1.0 if self.film is None else self.film.rho
         return self.interaction.series(quantity, self.surface, self.number, rho)
 
     def effective(self, h: ArrayLike) -> Array:

@@ -30,7 +30,7 @@ Laws of contact of one asperity, in place of Hertz's, and what else the contacts
 `Hertz`                  the default; `PowerLawGraded`: graded in depth; `Coated`; `CustomLaw`:
                          formulas of one's own
 `JohnsonKendallRoberts`  contacts that stick, as `DerjaguinMullerToporov`
-`Film`                   resistivity, and a film on the spots: conductance in S
+`Film`, `Layer`          what spots conduct through: bodies, a thin film, a layer: conductance in S or W/K
 `Tangential`             friction, and displacements sideways; `masing`: the way back
 `Interaction`            asperities that press each other down: nominal and effective separations
 =======================  =========================================================================
@@ -94,6 +94,7 @@ if TYPE_CHECKING:
         JacksonGreen,
         JohnsonKendallRoberts,
         KogutEtsion,
+        Layer,
         MeasuredHeights,
         MeasuredRadii,
         Nayak,
@@ -150,6 +151,7 @@ __all__ = [
     "JacksonGreen",
     "JohnsonKendallRoberts",
     "KogutEtsion",
+    "Layer",
     "MeasuredHeights",
     "MeasuredRadii",
     "Nayak",

@@ -92,7 +92,7 @@ def _of_spots(scene, radius):
     """Constriction in the two bodies and a film in series, over the unit of conductance."""
     unit = (scene.surface.radius * scene.surface.sigma) ** 0.5
     a = unit * radius
-    return 1 / (4 * unit * (scene.film.resistivity / (4 * a) + scene.film.film_resistance / (np.pi * a * a)))
+    return 1 / (4 * unit * (scene.film.rho / (4 * a) + scene.film.film_resistance / (np.pi * a * a)))
 
 
 def _back(_, law, name, piece, d, most, e):

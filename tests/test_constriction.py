@@ -54,7 +54,7 @@ class TestBarber:
         scene = scene_of(mode, film=film, quantities=("load", "conductance_si"), sampler="tail")
         e = mcgw.simulate(scene)
         felt = e["effective_separation"] if mode.nominal else np.tile(H, (3, 1))
-        between = film.resistivity * SURFACE.E_star * scene.compliance / 2
+        between = film.rho * SURFACE.E_star * scene.compliance / 2
         for i in range(3):
             s = np.maximum(mcgw.heights(scene, i)[:, None] - felt[i], 0)
             a = np.sqrt(SURFACE.radius * SURFACE.sigma * s)

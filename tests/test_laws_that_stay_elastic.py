@@ -158,7 +158,7 @@ def test_conductance_of_one_spot_between_two_bodies():
         quantities = ["conductance_si"]
     """)
     assert mcgw.simulate(scene)["conductance_si"][0, 0] == pytest.approx(1.6272240e-4, rel=1e-7)
-    assert scene.film.resistivity == pytest.approx(0.06916666666666667, rel=1e-14)
+    assert scene.film.rho == pytest.approx(0.06916666666666667, rel=1e-14)
 
 
 def test_spots_crowd_by_their_area():

@@ -269,7 +269,7 @@ def test_a_film_on_summits_of_their_own_radii_that_yield():
         u = depth / own
         area = own * np.select([u < 1, u < 6], [u, 0.93 * u**1.136], 0.94 * u**1.146)
         a = np.sqrt(area * ratios * surface.radius * surface.sigma)[depth > 0]
-        spots = 1 / (film.resistivity / (4 * a) + film.film_resistance / (np.pi * a**2))
+        spots = 1 / (film.rho / (4 * a) + film.film_resistance / (np.pi * a**2))
         return spots.sum()
 
     h = -0.9

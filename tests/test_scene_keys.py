@@ -101,6 +101,7 @@ COMPANY = {
     ("contact", "resistivity"): ("1e-7", {}),
     ("contact", "conductivities"): ("[150.0, 16.0]", {}),
     ("contact", "film_resistance"): ("1e-12", {"resistivity": "1e-7"}),
+    ("contact", "layer"): ("{thickness = 1e-5, conductivity = 1.3}", {"conductivities": "[150.0, 16.0]"}),
     ("contact", "tangential"): ("{friction = 0.3, poisson = 0.3, displacements = [1e-8]}", {}),
 }
 # With ~ what the schema lets pass: wrong by other keys or a file, or as only the program can know.
@@ -138,6 +139,7 @@ WRONG = {
     "thickness": ["0", "~'1 Pa'"], "reduced_thickness": ["0", "-1"], "resistivity": ["0", "-1", "'x'"],
     "unload_from": ["~0.5", "'back'", "~nan"], "film_resistance": ["-1", "'x'"],
     "conductivities": ["[1.0]", "[0.0, 1.0]", "1.0", "['x', 1.0]"],
+    "layer": ["1", "{thickness = 1}", "{thickness = 0, conductivity = 1}"],
     "tangential": ["1", "{}", "{friction = 0.3}", "{friction = 0, poisson = 0.3, displacements = [1e-8]}",
                    "{friction = 0.3, poisson = 0.9, displacements = [1e-8]}",
                    "{friction = 0.3, poisson = 0.3, displacements = []}",
@@ -265,6 +267,7 @@ def test_the_lists_of_keys_are_whole(monkeypatch, example):
         mcgw.scene_from(text_of(table, key, good(table, key)))
     inner = {("contact.separations", name) for name in ("start", "stop", "num")}
     inner |= {("contact.tangential", name) for name in ("friction", "poisson", "displacements")}
+    inner |= {("contact.layer", name) for name in ("thickness", "conductivity")}
     inner |= {
         (f"contact.{key}", name) for key in ("load", "area") for name in ("low", "high", "coefficients")
     }

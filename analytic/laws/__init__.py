@@ -4,7 +4,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 from analytic.laws.branch import Branch, UnloadingBranch, Ways, term_of
-from analytic.laws.film import Film, SpotConductance, crowding_factor
+from analytic.laws.film import Film, Layer, SpotConductance, crowding_factor
 from analytic.laws.law import ContactLaw, Hertz, of_spot, piece_of
 from analytic.laws.regimes import Regimes, merged_heights, regimes_of
 from analytic.laws.tangential import Tangential, masing
@@ -25,7 +25,8 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Branch", "ChangEtsionBogy", "Coated", "ContactLaw", "CustomLaw", "DerjaguinMullerToporov", "Film",
-    "Hertz", "JacksonGreen", "JohnsonKendallRoberts", "KogutEtsion", "PowerLawGraded",
+    "Hertz", "JacksonGreen", "JohnsonKendallRoberts", "KogutEtsion", "Layer",
+    "PowerLawGraded",
     "Regimes", "SpotConductance", "Tangential", "Unloading", "UnloadingBranch", "Ways",
     "ZhaoMaiettaChang", "by_name", "crowding_factor",
     "masing", "merged_heights", "of_spot", "piece_of", "regimes_of", "term_of",

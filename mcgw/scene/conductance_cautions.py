@@ -14,7 +14,7 @@ _NEIGHBOURS = 0.05  # constriction of neighbours over that of the spots
 
 def conductance_cautions(scene: Scene) -> list[str]:
     """What a reader should know of conductances, a line each."""
-    return [line for caution in (_neighbours, _no_answer) for line in caution(scene)]
+    return [line for caution in (_neighbours, _thick_film, _no_answer) for line in caution(scene)]
 
 
 def _neighbours(scene: Scene) -> Iterator[str]:
@@ -28,6 +28,20 @@ def _neighbours(scene: Scene) -> Iterator[str]:
         yield (
             f"conductance is that of the spots alone; at d/sigma = {h:.3g} neighbours change it by about "
             f"{gain:.0%} (Cooper, Mikic and Yovanovich): [interaction] reference counts them"
+        )
+
+
+def _thick_film(scene: Scene) -> Iterator[str]:
+    """A film that may not be thin beside its spots; one on a current is nanometres thick."""
+    h, theory, film = np.array(min(scene.separations)), scene.theory, scene.film
+    contacts = float(theory.mean("contacts", h))
+    if film is None or not film.thermal or not film.film_resistance or not contacts > 0:
+        return
+    radius = float(np.sqrt(theory.mean("area", h) / contacts / np.pi))
+    if (thick := film.film_resistance * 2 / film.rho) > radius / 5:
+        yield (
+            f"contact.film_resistance: as {thick:.2g} m of the bodies resist, and spots have a radius of "
+            f"{radius:.2g} m; unless the film is far thinner, give layer = {{thickness, conductivity}}"
         )
 
 

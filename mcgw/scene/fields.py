@@ -135,7 +135,7 @@ class Fields:
         """What the half-space adds to the inverse of a sum over spots, over its unit."""
         if self.interaction is None:
             return 0.0
-        rho = 1.0 if self.film is None else self.film.resistivity
+        rho = 1.0 if self.film is None else self.film.rho
         return self.interaction.series(quantity, self.surface, float(self.n_asperities), rho)
 
     @property

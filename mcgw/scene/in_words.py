@@ -5,7 +5,7 @@ from dataclasses import MISSING, fields, is_dataclass
 from typing import Any
 
 from analytic import Custom, Hertz, MeasuredHeights, MeasuredRadii, PiecewiseSeries, ScipyHeights
-from analytic.laws import ContactLaw
+from analytic.laws import ContactLaw, Film
 from mcgw.formats.sheet import Sheet
 from mcgw.scene.fields import Fields
 from mcgw.scene.keys import SURFACE_UNITS
@@ -54,6 +54,17 @@ def _short(value: Any) -> str:
     return repr(value)
 
 
+def conducting_text(film: Film) -> str:
+    """What spots conduct through, heat or current as it was given."""
+    if film.conductivities is None:
+        held, unit = f"resistivity {film.resistivity:g} ohm m", "ohm m^2"
+    else:
+        held, unit = "between {:g} and {:g} W/(m K)".format(*film.conductivities), "m^2 K/W"
+    thin = f", film {film.film_resistance:g} {unit}" if film.film_resistance else ""
+    layer = f", layer {film.layer.thickness:g} m of {film.layer.conductivity:g} W/(m K)" if film.layer else ""
+    return f"{held}{thin}{layer}"
+
+
 def contact_facts(scene: Fields) -> list[tuple[str, str]]:
     """A word and what holds, only for what is not Hertz's contact pressed once; for reports of any kind."""
     facts = []
@@ -62,8 +73,7 @@ def contact_facts(scene: Fields) -> list[tuple[str, str]]:
     if scene.unload_from is not None:
         facts.append(("way back", f"from d/sigma = {scene.unload_from:g}"))
     if scene.film is not None:
-        film = f", film {scene.film.film_resistance:g} ohm m^2" if scene.film.film_resistance else ""
-        facts.append(("film", f"resistivity {scene.film.resistivity:g} ohm m{film}"))
+        facts.append(("film", conducting_text(scene.film)))
     if scene.tangential is not None:
         pushed = scene.tangential
         facts.append(

@@ -5,7 +5,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from analytic import LAW_QUANTITIES, QUANTITIES, UNLOADING, Body
-from analytic.laws import Tangential
+from analytic.laws import Layer, Tangential
 from mcgw.scene.fields import COARSEST, EXACT
 from mcgw.scene.fitted import Fitted
 from mcgw.scene.kinds import ByName, Either, Flag, List, Number, Table, Text, Whole, Word
@@ -74,6 +74,11 @@ _SHARES = List(
 )
 _SHIFTS = Either((List(_NOT_NEGATIVE, advice="give a list of numbers >= 0, in m"), _NOT_NEGATIVE))
 _MOUNTED = (Key("friction", _POSITIVE, required=True), Key("poisson", _POISSON, required=True))
+_LAYER = Table(
+    (Key("thickness", Number("m"), required=True), Key("conductivity", _POSITIVE, required=True)),
+    'give {thickness = "10 um", conductivity = 1.3} (m, W/(m K))',
+    Layer,
+)
 _PUSHED = Table(
     (*_MOUNTED, Key("displacements", _SHIFTS, required=True)),
     "give {friction = 0.3, poisson = 0.3, displacements = [1e-8, 1e-7]} (m)",
@@ -213,13 +218,15 @@ TABLES: dict[str, TableOfKeys] = {
     Key("unload_from", Either((Word(("loop",), _BACK), _ANY), _BACK), "-0.5",
         'lowest separation reached before, d/σ, or `"loop"`: the lowest of the scene; adds quantities as '
         "`load_unloading`"),
-    Key("resistivity", _POSITIVE, "1e-7", "ρ₁ + ρ₂, Ω m; adds `conductance_si`",
+    Key("resistivity", _POSITIVE, "1e-7", "electrical: ρ₁ + ρ₂, Ω m; adds `conductance_si`",
         excludes=("conductivities",)),
     Key("conductivities",
-        List(_POSITIVE, 2, 2, "give two numbers > 0 in W/(m K) or 1/(ohm m), as [150.0, 16.0]"),
-        "[150.0, 16.0]", "instead of it: those of both bodies, W/(m K) or 1/(Ω m)"),
+        List(_POSITIVE, 2, 2, "give two numbers > 0 in W/(m K), as [150.0, 16.0]"),
+        "[150.0, 16.0]", "thermal: those of both bodies, W/(m K)"),
     Key("film_resistance", Number(zero=True, advice="give a finite number >= 0, in ohm m^2 or m^2 K/W"),
-        "1e-12", "of a film on the spots, Ω m² or m² K/W", needs=("resistivity", "conductivities")),
+        "1e-12", "of a thin film on the spots, Ω m² or m² K/W", needs=("resistivity", "conductivities")),
+    Key("layer", _LAYER, '{thickness = "10 um", conductivity = 1.3}',
+        "on the first body (k₁), of any thickness: m, W/(m K)", needs=("conductivities",)),
     Key("tangential", _PUSHED, "{friction = 0.3, poisson = 0.3, displacements = [1e-8]}",
         "pushed sideways by these displacements (m); adds `tangential_load`"),
 ), required=True),

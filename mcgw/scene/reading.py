@@ -183,15 +183,18 @@ def _law(section: Section, objects: Values) -> ContactLaw:
 
 def _film(section: Section, given: Any) -> Film | None:
     """What spots conduct through; None where nobody asks for conductances."""
-    names = ("resistivity", "conductivities", "film_resistance")
-    resistivity, conductivities, film = section.read_all(names).values()
+    keys = section.read_all(field.name for field in fields(Film))
     if given is not None and not isinstance(given, Film):
         return section.fail(
             "film", given, "give resistivity and film_resistance; in Python mcgw.Film of them"
         )
-    if conductivities is not None:
-        resistivity = sum(1 / k for k in conductivities)
-    return given or (None if resistivity is None else Film(resistivity, film or 0.0))
+    if given is not None:
+        keys = {key: layer if key == "layer" else getattr(given, key) for key, layer in keys.items()}
+        keys["layer"] = keys["layer"] or given.layer
+    found = {key: value for key, value in keys.items() if value is not None}
+    if "layer" in found and "conductivities" not in found:
+        return section.fail("layer", found["layer"], "give conductivities too, or leave it out")
+    return Film(**found) if ("resistivity" in found) != ("conductivities" in found) else None
 
 
 def _made(top: Section, section: Section, make: Callable[..., Any]) -> Any:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal
 from numpy.typing import ArrayLike
 
 from analytic import Grading, MeasuredRadii, RandomCurvature, Surface
-from analytic.laws import ContactLaw, Film, Tangential
+from analytic.laws import ContactLaw, Film, Layer, Tangential
 from mcgw.formats.sheet import Sheet, Shown
 from mcgw.scene.fields import EXACT, Fields, LeftOut
 from mcgw.scene.in_words import sheet_of
@@ -63,6 +63,8 @@ class Scene(Fields, Shown):
     film : Film, optional
         Resistivity of the bodies, and resistance of a film on the spots: `mcgw.Film`. There is then a
         quantity "conductance_si". Default: none is asked for.
+    layer : Layer, optional
+        On the first body, of any thickness: `mcgw.Layer`; a part of `film`.
     tangential : Tangential, optional
         Friction and displacements of a surface that is pushed sideways: `mcgw.Tangential`. An ensemble then
         has "tangential_load", of shape (surface, separation, displacement). Default: it is not.
@@ -146,6 +148,7 @@ class Scene(Fields, Shown):
         law: ContactLaw | dict[str, Any] | None = None,
         unload_from: float | Literal["loop"] | None = None,
         film: Film | None = None,
+        layer: Layer | None = None,
         tangential: Tangential | None = None,
         interaction: "Interaction | str | dict[str, Any] | None" = None,
         quantities: Sequence[str] | None = None,
@@ -174,6 +177,7 @@ class Scene(Fields, Shown):
             law=law,
             unload_from=unload_from,
             film=film,
+            layer=layer,
             tangential=tangential,
             interaction=interaction,
             quantities=quantities,
