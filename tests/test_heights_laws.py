@@ -30,7 +30,7 @@ from analytic import (
     Weibull,
 )
 from mcgw.sampling.asperities import heights
-from mcgw.sampling.hertz import hertz_sums
+from mcgw.sampling.law_sums import asperity_sums
 
 SAMPLE = np.random.default_rng(1).weibull(1.6, size=3000)
 LAWS = {
@@ -93,7 +93,7 @@ def test_sums_over_the_listed_heights_equal_the_row(law, make_scene):
         )
         ensemble = mcgw.simulate(scene)
         listed = heights(scene, 2)
-        sums = hertz_sums(scene, np.array([listed.size]), listed, np.ones(listed.size))
+        sums = asperity_sums(scene, np.array([listed.size]), listed, np.ones(listed.size))
         for name in scene.quantities:
             assert ensemble.values(name)[2] == pytest.approx(sums[name][0], rel=1e-12)
 

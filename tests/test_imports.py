@@ -116,7 +116,7 @@ FEATURES = {
     "mcgw.ensemble.summarising": "statistics", "mcgw.ensemble.bins": "statistics",
     "mcgw.sampling.crowding": "law_error",
     "mcgw.sampling.radius_table": None, "mcgw.sampling.families": None, "mcgw.sampling.shared": None,
-    "mcgw.sampling.weighted_sums": None, "mcgw.sampling.with_radii": None, "mcgw.sweeps.sweep": None,
+    "mcgw.sampling.weighted_sums": None, "mcgw.sweeps.sweep": None,
 }  # fmt: skip
 # Laws of contact and height, and interaction: by the last part of their names.
 LAWS = {

@@ -13,11 +13,10 @@ from mcgw.sampling.block import Block, Sampler
 from mcgw.sampling.cells import Mesh
 from mcgw.sampling.counts import Counts, contacts_above, counts_of
 from mcgw.sampling.drawing import Drawing, OneByOne
-from mcgw.sampling.law_sums import asperity_sums
+from mcgw.sampling.law_sums import asperity_sums, tangential_loads
 from mcgw.sampling.layout import Layout
 from mcgw.sampling.outside import extra_heights
 from mcgw.sampling.response.response import Response
-from mcgw.sampling.sideways import tangential_loads
 from mcgw.sampling.stretches import stretches_of
 from mcgw.scene.scene import Scene
 

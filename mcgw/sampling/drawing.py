@@ -1,10 +1,9 @@
-"""From the numbers of asperities in the cells to their moments: three ways.
+"""From the numbers of asperities in the cells to their moments.
 
-``OneByOne``   a uniform for each asperity
-``InStrata``   a uniform in each of as many equal strata of the cell, with the weight it stands for
+``OneByOne``   a uniform for each asperity, anywhere in the cell or in one of as many equal strata
 ``Crowds``     for cells with few asperities as `OneByOne`, else one Gaussian number a moment
 
-Where summits have radii of their own there is a fourth, `mcgw.sampling.with_radii`.
+Where summits have radii of their own there is a third way, `mcgw.sampling.weighted_sums`.
 """
 
 from dataclasses import dataclass
@@ -38,33 +37,26 @@ class Drawing(Protocol):
 
 @dataclass(frozen=True)
 class OneByOne:
-    """A uniform for each asperity."""
+    """A uniform for each asperity.
 
+    Parameters
+    ----------
+    strata : bool, optional
+        Draw it in one of as many equal strata of the cell, with the weight that it stands for.
+    """
+
+    strata: bool = False
     distance = 0.0
 
     def moments(self, seed: int, first: int, counts: Counts, layout: Layout) -> Array:
         """Sums over the uniforms of each cell."""
-        return cell_moments(seed, first, counts.cells, layout)
-
-    def draws(self, asperities: float, layout: Layout) -> float:
-        """All of them, unless nobody asks for a moment."""
-        return asperities if layout.sizes.any() else 0.0
-
-
-@dataclass(frozen=True)
-class InStrata:
-    """A uniform in each of as many equal strata of the cell."""
-
-    distance = 0.0
-
-    def moments(self, seed: int, first: int, counts: Counts, layout: Layout) -> Array:
-        """Sums over the uniforms of each cell, with the weight that each of them stands for."""
-        moments = cell_moments(seed, first, counts.cells, layout, stratified=True)
-        moments *= np.repeat(counts.weights[1:-1], layout.sizes)[:, None]
+        moments = cell_moments(seed, first, counts.cells, layout, stratified=self.strata)
+        if self.strata:
+            moments *= np.repeat(counts.weights[1:-1], layout.sizes)[:, None]
         return moments
 
     def draws(self, asperities: float, layout: Layout) -> float:
-        """About as many as asperities, unless nobody asks for a moment."""
+        """All of them, unless nobody asks for a moment."""
         return asperities if layout.sizes.any() else 0.0
 
 
@@ -85,8 +77,6 @@ class Crowds:
     varying: Layout
     threshold: int
     distance: float = np.nan
-
-    bits = None
 
     def moments(self, seed: int, first: int, counts: Counts, layout: Layout) -> Array:
         """Of crowded cells as Gaussian numbers, of the others asperity by asperity."""

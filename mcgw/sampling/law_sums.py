@@ -1,6 +1,7 @@
-"""Sums over given heights under any contact law, by the formula of each contact: slow, literal, trusted."""
+"""Sums over given heights, by the formula of each contact: slow, literal, trusted."""
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -8,8 +9,7 @@ from numpy.typing import NDArray
 from analytic import quantity_of
 from analytic.arrays import Array
 from analytic.laws import term_of
-from mcgw.sampling.hertz import hertz_sums
-from mcgw.sampling.sideways import tangential_loads
+from mcgw.machine.compiling import njit
 from mcgw.scene.scene import Scene
 
 
@@ -47,7 +47,7 @@ def asperity_sums(
         sums = asperity_sums(plain, numbers, heights, weights, ratios)
         return {**sums, "tangential_load": tangential_loads(scene, everywhere)}
     if scene.hertzian:
-        return hertz_sums(scene, numbers, heights, weights, ratios)
+        return _hertz_sums(scene, numbers, heights, weights, ratios)
     surface = np.repeat(np.arange(len(numbers)), numbers)
     touching = heights > scene.lowest
     surface, s, weight = surface[touching], heights[touching], weights[touching]
@@ -62,3 +62,83 @@ def asperity_sums(
             rows.append(np.bincount(surface, weight * one, len(numbers)))
         sums[name] = np.asarray(q.scale(scene.surface) * np.stack(rows, axis=1), dtype=np.float64)
     return sums
+
+
+@njit(cache=True, inline="always")
+def _power(d: float, twice: int) -> float:
+    """``d**(twice/2)`` by roots and products, which every processor rounds alike."""
+    power = np.sqrt(d) if twice % 2 else 1.0
+    for _ in range(twice // 2):
+        power *= d
+    return power
+
+
+@njit(nogil=True, cache=True)
+def _sums(starts: Any, heights: Any, factors: Any, separations: Any, twice: Any) -> Any:
+    """For each quantity, surface and separation the sum of ``factor (s - h)^(twice/2)`` over s > h."""
+    surfaces = starts.size - 1
+    result = np.zeros((twice.size, surfaces, separations.size))
+    for i in range(surfaces):
+        if starts[i] == starts[i + 1]:
+            continue
+        for q in range(twice.size):
+            exponent = twice[q]
+            for k in range(separations.size):
+                total = 0.0
+                for j in range(starts[i], starts[i + 1]):
+                    d = heights[j] - separations[k]
+                    if d > 0.0:
+                        total += factors[q, j] * _power(d, exponent)
+                result[q, i, k] = total
+    return result
+
+
+def _hertz_sums(
+    scene: Scene,
+    numbers: NDArray[np.int64],
+    heights: Array,
+    weights: Array,
+    ratios: Array | None = None,
+) -> dict[str, Array]:
+    """As `asperity_sums`, of Hertz contacts, by plain loops."""
+    asked = [quantity_of(name) for name in scene.quantities]
+    graded = weights
+    if any(q.modulus for q in asked):
+        graded = weights * scene.modulus(heights)
+    factors = np.stack([graded if q.modulus else weights for q in asked])
+    if ratios is not None:
+        of_radius = {0.0: np.ones_like(ratios), 0.5: np.sqrt(ratios), 1.0: ratios}
+        factors *= np.stack([of_radius[q.radius] for q in asked])
+    sums = _sums(
+        np.concatenate([[0], np.cumsum(numbers)]),
+        heights,
+        factors,
+        np.array(scene.separations),
+        np.array([round(2 * q.exponent) for q in asked]),
+    )
+    for q, values in zip(asked, sums, strict=True):
+        values *= q.scale(scene.surface)
+    return dict(zip(scene.quantities, sums, strict=True))
+
+
+def tangential_loads(scene: Scene, loads: Array) -> Array:
+    """Differences of normal loads.
+
+    Parameters
+    ----------
+    scene : Scene
+        Pushed sideways.
+    loads : ndarray
+        Normal loads at `scene.all_separations`, shape (surfaces, all separations).
+
+    Returns
+    -------
+    ndarray
+        N, shape (surfaces, separations, displacements).
+    """
+    assert scene.tangential is not None
+    h = np.array(scene.separations)
+    shifted = h[:, None] + scene.tangential.shifts(scene.surface)
+    once = np.array(scene.all_separations)
+    below, above = loads[:, np.searchsorted(once, h)], loads[:, np.searchsorted(once, shifted)]
+    return scene.tangential.load(below[:, :, None], above)

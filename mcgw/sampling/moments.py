@@ -14,8 +14,8 @@ from typing import Any
 
 import numpy as np
 from numba import get_num_threads
-from numpy.typing import NDArray
 
+from analytic.arrays import Array, Ints
 from mcgw.machine.compiling import njit
 from mcgw.machine.in_threads import in_threads
 from mcgw.machine.memory import aligned
@@ -91,9 +91,7 @@ def _sum_cells(
         at += stop - start
 
 
-def cell_moments(
-    seed: int, first: int, counts: NDArray[np.int64], layout: Layout, *, stratified: bool = False
-) -> NDArray[np.float64]:
+def cell_moments(seed: int, first: int, counts: Ints, layout: Layout, *, stratified: bool = False) -> Array:
     """Moments of all cells of a block of surfaces.
 
     Parameters
@@ -114,32 +112,29 @@ def cell_moments(
     ndarray
         Shape (moments, surfaces): the same bits for any number of threads and in any block.
     """
+    orders = np.column_stack([layout.plain, layout.rooted])
 
-    def sum_run(*cells: Any) -> None:
-        counts, starts, orders, bounds, moments = cells
-        _sum_cells(np.uint64(seed), first, counts, starts, orders, bounds, stratified, moments)
+    def sum_run(counts: Ints, bounds: tuple[int, int], moments: Array) -> None:
+        _sum_cells(np.uint64(seed), first, counts, layout.starts, orders, bounds, stratified, moments)
 
-    return in_runs_of_cells(counts, layout, sum_run)
+    return in_runs_of_cells(counts, orders, price(layout.plain, layout.rooted), sum_run)
 
 
-def in_runs_of_cells(
-    counts: NDArray[np.int64], layout: Layout, sum_run: Callable[..., None]
-) -> NDArray[np.float64]:
+def in_runs_of_cells(counts: Ints, orders: Ints, each: Array | float, sum_run: Callable[..., None]) -> Array:
     """Moments of all cells, of which every thread has a run: no number of threads changes a sum's order.
 
-    ``sum_run(counts, starts, orders, bounds, moments)`` writes those of the cells and surfaces within bounds.
+    Cells have as many of them as `orders` say, shape (cells, kinds); an asperity costs `each`.
+    ``sum_run(counts, bounds, moments)`` writes those of the cells and surfaces within bounds.
     """
-    counts = np.where(layout.sizes[:, None] > 0, counts, 0)  # what nobody asks for is not drawn
-    starts, orders = layout.starts, np.column_stack([layout.plain, layout.rooted])
-    moments = aligned(int(starts[-1]), counts.shape[1])
-    bounds = list(pairwise(_shares(counts, layout).tolist()))
-    in_threads(lambda some: sum_run(counts, starts, orders, some, moments), bounds)
+    counts = np.where(orders.any(axis=1, keepdims=True), counts, 0)  # what nobody asks for is not drawn
+    moments = aligned(int(orders.sum()), counts.shape[1])
+    bounds = list(pairwise(_shares(counts, each).tolist()))
+    in_threads(lambda some: sum_run(counts, some, moments), bounds)
     return moments
 
 
-def _shares(counts: NDArray[np.int64], layout: Layout) -> NDArray[np.int64]:
+def _shares(counts: Ints, each: Array | float) -> Ints:
     """Where the work of each thread begins and ends, counted through the surfaces of each cell in turn."""
-    each = price(layout.plain, layout.rooted)
     work = np.concatenate([[0.0], np.cumsum(_START * counts.shape[1] + counts.sum(axis=1) * each)])
     threads = get_num_threads() if work[-1] > _ALONE else 1
     ends = np.linspace(0, work[-1], threads + 1)

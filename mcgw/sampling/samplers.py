@@ -27,7 +27,7 @@ from mcgw.sampling.cells import Mesh, cut, mesh_of, no_cells, series_accuracy
 from mcgw.sampling.counted import Counted
 from mcgw.sampling.counts import Counts, counts_of, strata_of
 from mcgw.sampling.direct import Direct
-from mcgw.sampling.drawing import Crowds, InStrata, OneByOne
+from mcgw.sampling.drawing import Crowds, OneByOne
 from mcgw.sampling.layout import Layout
 from mcgw.sampling.outside import table_of
 from mcgw.sampling.response.nodes import Precision
@@ -123,10 +123,10 @@ def _counted(
     """A sampler on a mesh, with radii where the scene has them."""
     mesh, response = _resolved(scene, mesh)
     if not isinstance(response, Response):
-        from mcgw.sampling.with_radii import with_radii
+        from mcgw.sampling.weighted_sums import with_radii
 
         return with_radii(name, scene, mesh, response, counting, strata=strata)
-    return Counted(name, scene, mesh, response, counting, InStrata() if strata else OneByOne())
+    return Counted(name, scene, mesh, response, counting, OneByOne(strata))
 
 
 def aggregate_of(scene: Scene, crowded: int = CROWDED, distance: float = np.nan) -> Counted:

@@ -10,28 +10,30 @@ radius is drawn for each summit from the table of `mcgw.sampling.radius_table`, 
 cell's lower edge and its series of the uniform.
 """
 
-from itertools import pairwise
+from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numba import get_num_threads
-from numpy.typing import NDArray
 
+from analytic.arrays import Array, Ints
 from mcgw.machine.compiling import njit
-from mcgw.machine.in_threads import in_threads
-from mcgw.machine.memory import aligned
 from mcgw.sampling.cells import Mesh
 from mcgw.sampling.chebyshev_sums import BUFFER, add_weighted, stratify, unfold
+from mcgw.sampling.counted import Counted
+from mcgw.sampling.counts import Counts
+from mcgw.sampling.families import Families
 from mcgw.sampling.lanes import LANES, alike, fused, load, roots, store
 from mcgw.sampling.layout import Layout
-from mcgw.sampling.moments import add_compensated
+from mcgw.sampling.moments import add_compensated, in_runs_of_cells
 from mcgw.sampling.philox import CELLS, RADII, RADII_LOW, centred
-from mcgw.sampling.radius_table import RadiusTable, root_ratio
+from mcgw.sampling.radius_table import RadiusTable, radius_table, root_ratio
+from mcgw.scene.scene import Scene
 
 _MOST = 32  # sums of one kind: there are 21
 # A thread's workspace: x, sqrt(u), two uniforms of the radius, weights, factors; then sums and their carries
 _ROOT, _FINE, _COARSE, _WEIGHT, _FACTOR, _SUMS, _WORDS = (k * BUFFER for k in range(1, 8))
-_ALONE = 2e5  # summits that a thread draws before another one has begun
+_PRICE = 5.0  # of a summit with its radius, in asperities
 
 
 @njit(inline="always")
@@ -150,14 +152,14 @@ def _sum_cells(
 def weighted_moments(
     seed: int,
     first: int,
-    counts: NDArray[np.int64],
+    counts: Ints,
     layouts: list[Layout],
     squares: list[bool],
     mesh: Mesh,
     table: RadiusTable,
     *,
     stratified: bool = False,
-) -> NDArray[np.float64]:
+) -> Array:
     """Moments of all cells of a block of surfaces, one family after the other.
 
     Parameters
@@ -194,13 +196,10 @@ def weighted_moments(
         ],
         axis=1,
     )
-    counts = np.where((orders > 0).any(axis=1, keepdims=True), counts, 0)  # what nobody asks for is not drawn
-    moments = aligned(int(before[-1]), counts.shape[1])
     series = np.ascontiguousarray(mesh.stretch.T)
     held = table.coefficients, table.bottom, table.largest
 
-    def sum_share(bounds: tuple[int, int]) -> None:
-        """Every thread has a run of cells: no number of threads changes the order of a sum."""
+    def sum_run(counts: Ints, bounds: tuple[int, int], moments: Array) -> None:
         _sum_cells(
             np.uint64(seed),
             first,
@@ -216,13 +215,58 @@ def weighted_moments(
             moments,
         )
 
-    in_threads(sum_share, list(pairwise(_shares(counts).tolist())))
-    return moments
+    return in_runs_of_cells(counts, orders, _PRICE, sum_run)
 
 
-def _shares(counts: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Where the work of each thread begins and ends, counted through the surfaces of each cell in turn."""
-    work = np.cumsum(counts)
-    threads = get_num_threads() if work.size and work[-1] > _ALONE else 1
-    inner = np.searchsorted(work, np.arange(1, threads) * (work[-1] / threads)) if threads > 1 else ()
-    return np.array([0, *inner, counts.size], dtype=np.int64)
+def with_radii(
+    name: str,
+    scene: Scene,
+    mesh: Mesh,
+    response: Families,
+    counting: Callable[[Scene, Mesh, int, int], Counts],
+    *,
+    strata: bool,
+) -> Counted:
+    """A sampler on a mesh that draws a radius for each asperity."""
+    assert scene.curvature is not None
+    table = radius_table(scene.curvature, scene.lowest)
+    return Counted(name, scene, mesh, response, counting, WithRadii(mesh, table, response, strata), table)
+
+
+@dataclass(frozen=True)
+class WithRadii:
+    """A uniform and a radius for each asperity.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        The cells, whose heights the radii go with.
+    table : RadiusTable
+        The law of the radii.
+    families : Families
+        Powers of the radius that are asked for.
+    strata : bool, optional
+        Draw the uniforms in as many equal strata of the cell.
+    """
+
+    mesh: Mesh
+    table: RadiusTable
+    families: Families
+    strata: bool = False
+    distance = 0.0
+
+    def moments(self, seed: int, first: int, counts: Counts, layout: Layout) -> Array:
+        """Sums over the uniforms of each cell, each with a power of its radius."""
+        layouts = list(self.families.apart(layout))
+        squares = [power == 1.0 for power in self.families.powers]
+        moments = weighted_moments(
+            seed, first, counts.cells, layouts, squares, self.mesh, self.table, stratified=self.strata
+        )
+        if self.strata:
+            weights = np.tile(counts.weights[1:-1], len(layouts))
+            moments *= np.repeat(weights, layout.sizes)[:, None]
+        return moments
+
+    def draws(self, asperities: float, layout: Layout) -> float:
+        """A height and two words of a radius, which take about as long."""
+        return 6 * asperities if layout.sizes.any() else 0.0
