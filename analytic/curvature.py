@@ -125,23 +125,6 @@ class RandomCurvature:
         """Probability of a larger curvature, to full relative accuracy."""
         return self._broadcast(lambda a, x: CurvatureGivenHeight(self.alpha, x).sf(a), g, s)
 
-    def at(self, t: ArrayLike, s: ArrayLike) -> Array:
-        """Curvature below which the share ``1 - (1 + t^2) exp(-t^2)`` lies: smooth in t, and 0 at 0.
-
-        Parameters
-        ----------
-        t : array_like
-            Not negative: the root of a gamma variable of shape 2.
-        s : array_like
-            Reduced heights.
-
-        Returns
-        -------
-        ndarray
-            Of both shapes, broadcast.
-        """
-        return self._broadcast(lambda a, x: CurvatureGivenHeight(self.alpha, x).at(a), t, s)
-
     def rule(self, s: ArrayLike) -> tuple[Array, Array]:
         """Gauss's rule in the root of the ratio.
 
@@ -194,11 +177,6 @@ class RandomCurvature:
         """Reduced heights and radius ratios of `n` summits, drawn together (`analytic.Nayak.summits`)."""
         s, g = self.heights.summits(rng, n)
         return s, self.ratio(g)
-
-    def rvs(self, s: ArrayLike, rng: np.random.Generator) -> Array:
-        """Radius ratios of summits of given heights."""
-        s = np.asarray(s, dtype=np.float64)
-        return self.ratio(self.at(np.sqrt(rng.standard_gamma(2.0, s.shape)), s))
 
     def _over_rms(self, s: ArrayLike) -> Array:
         """Heights over sqrt(m0), no farther out than there are any."""

@@ -5,15 +5,13 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy.special import erfcx, gammainc, gammaincc, ndtr
+from scipy.special import erfcx, ndtr
 
 from analytic.arrays import Array
 from analytic.nayak import NayakTables, tables_of, upper_tail
 from analytic.quadrature import panelled
 
 _WIDE = 9.5  # standard deviations, beyond which a normal density is 1e-20 of its largest value
-_MEDIAN = 1.6783469900166605  # of the gamma law of shape 2
-_MOST_STEPS, _NEAR, _SAME = 100, 1e-8, 1e-12
 _FLATTEST = 1e-7  # curvature of which there is none flatter in 1e27 summits
 
 
@@ -113,37 +111,6 @@ class CurvatureGivenHeight:
             mass = np.vstack([mass, self.between(0 * low, low)])
             y = np.vstack([y, low**-0.5])
         return _gauss(y, mass, nodes)
-
-    def at(self, t: Array) -> Array:
-        """Curvature below which the share ``1 - (1 + t^2) exp(-t^2)`` lies, by safeguarded Newton steps."""
-        q = t * t
-        is_low = q < _MEDIAN
-        share = np.where(is_low, gammainc(2, q), gammaincc(2, q))
-        flat = (2 / self._parts(0 * t) * self._whole) ** 0.25  # the law begins as g^4, the share as t^4/2
-        found = np.minimum(flat * t, self.highest(0 * t))
-        for lower in (True, False):
-            some = np.flatnonzero((q > 0) & np.isfinite(q) & (is_low == lower))
-            found[some] = self._found(found[some], share[some], self.x[some], lower=lower)
-        return found
-
-    def _found(self, g: Array, share: Array, x: Array, *, lower: bool) -> Array:
-        """Curvatures with given shares below or above them, at heights x; `g` is a guess."""
-        low, left = np.zeros(g.size), np.arange(g.size)
-        high = 2 * CurvatureGivenHeight(self.alpha, x).highest(g) + g
-        for _ in range(_MOST_STEPS):
-            if not left.size:
-                break
-            at, law = g[left], CurvatureGivenHeight(self.alpha, x[left])
-            seen = law.between(0 * at, at) if lower else law.sf(at)
-            with np.errstate(all="ignore"):
-                excess = np.log(seen / share[left]) * (1 if lower else -1)
-                moved = at - excess * seen / law.pdf(at)
-            low, high = np.where(excess < 0, at, low), np.where(excess > 0, at, high)
-            trusted = (low < moved) & (moved < high) | (np.abs(moved - at) < _SAME * at)
-            g[left] = np.where(trusted, moved, (low + high) / 2)
-            more = np.abs(g[left] - at) > _NEAR * at  # a last step doubles the digits
-            left, low, high = left[more], low[more], high[more]
-        return g
 
 
 def _gauss(y: Array, mass: Array, nodes: int) -> tuple[Array, Array]:
