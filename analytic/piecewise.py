@@ -9,6 +9,7 @@ import numpy as np
 from numpy.polynomial import chebyshev
 
 from analytic.arrays import Array, Ints
+from analytic.elementary import halved
 
 MOST_PIECES = 4096  # as text they stay below two megabytes
 _MOST_TERMS, _MOST_NAME = 64, 200
@@ -141,18 +142,8 @@ class PiecewiseSeries:
         s = s[self(s) != 0]
         sign = np.sign(self(s))
         change = np.flatnonzero(sign[1:] != sign[:-1])
-        return tuple(self._halved(s[change], s[change + 1]).tolist())
-
-    def _halved(self, left: Array, right: Array) -> Array:
-        """Where the sign changes between two heights: the first on the far side of the zero."""
-        sign = np.sign(self(left))
-        while np.any((middle := left + (right - left) / 2) > left):
-            same = np.sign(self(middle)) == sign
-            inner = (middle > left) & (middle < right)
-            if not inner.any():
-                break
-            left, right = np.where(inner & same, middle, left), np.where(inner & ~same, middle, right)
-        return right
+        behind = halved(lambda x: np.sign(self(x)) != sign[change], s[change], s[change + 1])
+        return tuple(behind.tolist())  # the first heights on the far side
 
 
 def _floats(values: Iterable[float]) -> tuple[float, ...]:

@@ -12,7 +12,7 @@ from scipy.optimize import brentq
 
 import analytic
 import mcgw
-from analytic.laws.crossings import crossings_of
+from analytic.laws.regimes import crossings_of
 
 SURFACE = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "1 mm^2", "78.6 GPa")
 H = (0.0, 1.0, 2.5)

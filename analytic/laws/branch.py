@@ -14,10 +14,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from analytic.arrays import Array, Ints
 from analytic.gradings import Grading
-from analytic.laws.crossings import crossings_of
 from analytic.laws.film import SpotConductance
 from analytic.laws.law import ContactLaw, of_spot, piece_of
-from analytic.laws.regimes import Regimes, merged_heights, regimes_of
+from analytic.laws.regimes import Regimes, crossings_of, merged_heights, regimes_of
 from analytic.laws.unloading import Unloading
 from analytic.quantities import quantity_of
 

@@ -1,15 +1,30 @@
-"""Which piece of a contact law holds at which heights: its regimes, as elastic, elastoplastic, plastic."""
+"""Which piece of a contact law holds at which heights: its regimes, as elastic, elastoplastic, plastic.
 
+Asperities of height s are penetrated by s - h. What begins at the penetration ``bound(s)``, as yielding or
+lift-off, has begun where ``s - h >= bound(s)``: on one side of a height if the bound is the same for all, on
+several intervals if it falls faster than heights rise, as that of yielding does where the modulus falls.
+"""
+
+import math
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from analytic.arrays import Array, Ints
-from analytic.gradings import Grading
-from analytic.laws.crossings import Bound, crossings_of
+from analytic.arrays import Array, Ints, Marks
+from analytic.elementary import halved
+from analytic.gradings import Grading, Homogeneous
 from analytic.laws.law import ContactLaw, piece_of
+from analytic.resolution import marks, resolved_breaks
 
+Bound = Callable[[Array, Ints], Array]  # of heights, and of which separation
+Excess = Callable[[Array, Ints], Array]  # penetration beyond the bound, of the same
+
+_STEP, _POINTS = 0.5, np.linspace(0, 1, 33)  # heights at which a bound is looked at, between its breaks
+_GOLDEN, _SECTIONS = (math.sqrt(5) - 1) / 2, 45
+_SECANTS, _NEAR = 12, 64  # how many at most; spacings of floating-point numbers, more than rounding errors
 _SAME = 8  # spacings of floating-point numbers between heights that are not told apart
 
 
@@ -34,12 +49,6 @@ class Regimes:
     low: Array
     high: Array
     piece: Ints
-
-    @property
-    def limits(self) -> Array:
-        """All heights at which a piece begins above another one, increasing, without repetition."""
-        inner = np.flatnonzero(np.diff(self.separation) == 0) + 1
-        return np.unique(self.low[inner])
 
 
 def regimes_of(law: ContactLaw, grading: Grading, separations: ArrayLike, low: float, high: float) -> Regimes:
@@ -67,7 +76,7 @@ def regimes_of(law: ContactLaw, grading: Grading, separations: ArrayLike, low: f
     h = np.asarray(separations, dtype=np.float64)
     count = len(law.limits(np.ones(h.shape)))
     kinks = [()] * (h.size if law.each else 1)
-    found = [crossings_of(_limit(law, grading, j), grading, h, low, high, kinks) for j in range(count)]
+    found = [crossings_of(limit_of(law, grading, j), grading, h, low, high, kinks) for j in range(count)]
     empty = np.empty(0, np.int64)
     index = np.concatenate([empty, *(c.separation for c in found)])
     anchors = np.append(h, grading.breaks)
@@ -82,7 +91,7 @@ def regimes_of(law: ContactLaw, grading: Grading, separations: ArrayLike, low: f
     return _intervals(index, height, step, high)
 
 
-def _limit(law: ContactLaw, grading: Grading, j: int) -> Bound:
+def limit_of(law: ContactLaw, grading: Grading, j: int) -> Bound:
     """Penetration at which piece j + 1 begins, of the height and of which separation."""
     return lambda s, which: np.asarray(law.of_some(which).limits(grading(s))[j])
 
@@ -123,3 +132,149 @@ def merged_heights(heights: Array, separations: Array, anchors: Array) -> Array:
         anchor = anchors[candidate]
         together = np.where(np.abs(anchor - heights) <= near, anchor, together)
     return together
+
+
+@dataclass(frozen=True)
+class Crossings:
+    """Heights where ``s - h >= bound(s)`` begins or ends to hold, for several h.
+
+    Parameters
+    ----------
+    separation : ndarray
+        Which of the separations h, shape (crossings,), not decreasing.
+    height : ndarray
+        First of the heights behind the crossing, shape (crossings,), increasing for each separation.
+    begins : ndarray
+        Whether it holds from there on, or holds no longer; shape (crossings,).
+    """
+
+    separation: Ints
+    height: Array
+    begins: Marks
+
+
+def crossings_of(
+    bound: Bound,
+    grading: Grading,
+    separations: Array,
+    low: float,
+    high: float,
+    kinks: Sequence[Sequence[float]] = ((),),
+) -> Crossings:
+    """All crossings between two heights, each to the last bit; if nothing holds at `low`, the first begins.
+
+    `bound` gives the penetration at which something begins, of the heights, and of the numbers of their
+    separations in an array that broadcasts with them; infinite where it never does. Under one modulus for all
+    it must be constant, or rise by less than the height. It has its kinks and jumps where the grading has
+    them, and further `kinks`, of the one bound there is or of that of each separation. A grading that is not
+    resolved by 4096 pieces is a ValueError.
+    """
+    h = np.asarray(separations, dtype=np.float64)
+    if not low < high:
+        return Crossings(np.empty(0, np.int64), np.empty(0), np.empty(0, np.bool_))
+    starts = _stretches(bound, grading, low, high, kinks)
+    ends = np.append(np.nextafter(starts[:, 1:], -np.inf), np.full((len(starts), 1), high), axis=1)
+    ends = np.where(starts < high, ends, high)
+
+    def excess(s: Array, which: Ints) -> Array:
+        with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
+            return np.asarray(s - h[which] - bound(s, which))
+
+    every = np.arange(h.size)[:, None]
+    at_start, at_end = excess(starts, every) >= 0, excess(ends, every) >= 0
+    inner, stretch = np.nonzero(at_start != at_end)
+    starts, ends = (np.broadcast_to(x, at_start.shape) for x in (starts, ends))
+    found = _met(excess, inner, np.abs(h)[inner], starts[inner, stretch], ends[inner, stretch])
+    jump, before = np.nonzero(at_end[:, :-1] != at_start[:, 1:])
+    separation, height = np.append(inner, jump), np.append(found, starts[jump, before + 1])
+    begins = np.append(at_end[inner, stretch], at_start[jump, before + 1])
+    order = np.lexsort((height, separation))
+    return Crossings(separation[order], height[order], begins[order])
+
+
+def _stretches(
+    bound: Bound, grading: Grading, low: float, high: float, kinks: Sequence[Sequence[float]]
+) -> Array:
+    """Where stretches begin on which ``s - bound(s)`` only rises, or only falls: a row for each bound.
+
+    Rows with fewer of them than others end with `high`.
+    """
+    if isinstance(grading, Homogeneous):
+        return np.full((len(kinks), 1), low)
+    resolved = [b for b in resolved_breaks(grading, low, high) if low < b < high]
+    breaks = _rows([[*resolved, *(b for b in own if low < b < high)] for own in kinks], high)
+    regular = [low, *marks(low, high, _STEP)]
+    starts = _rows([[*row, *regular] for row in breaks.tolist()], high)
+    ends = np.append(starts[:, 1:], np.full((len(starts), 1), high), axis=1)
+    s = starts[..., None] + (ends - starts)[..., None] * _POINTS
+    s[..., -1] = np.maximum(np.nextafter(ends, -np.inf), starts)
+
+    def curve(x: Array, which: Ints) -> Array:  # the arctangent rises with it, also where it is infinite
+        with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
+            return np.arctan(x - bound(x, which))
+
+    rises = np.diff(curve(s, np.arange(len(s))[:, None, None]), axis=2) >= 0
+    row, piece, turn = np.nonzero(rises[..., :-1] != rises[..., 1:])
+    at_break = np.stack([np.isin(own, marked) for own, marked in zip(ends[:, :-1], breaks, strict=True)])
+    other, across = np.nonzero((rises[:, :-1, -1] != rises[:, 1:, 0]) & ~at_break)
+    row_of = np.append(row, other)
+    turns = _turns(
+        partial(curve, which=row_of),
+        np.append(s[row, piece, turn], s[other, across, -2]),
+        np.append(s[row, piece, turn + 2], s[other, across + 1, 1]),
+        np.append(rises[row, piece, turn], rises[other, across, -1]),
+    )
+    behind = np.nextafter(breaks, np.inf)  # at a jump the modulus may still be that below it
+    found = [[low, *b, *c] for b, c in zip(breaks.tolist(), behind.tolist(), strict=True)]
+    for k, x in zip(row_of.tolist(), turns.tolist(), strict=True):
+        found[k].append(x if low < x < high else low)
+    return _rows(found, high)
+
+
+def _rows(heights: Sequence[Sequence[float]], high: float) -> Array:
+    """Those below `high` in increasing order, each once; a row for each list, as long as the longest."""
+    rows = [np.unique([x for x in row if x < high]) for row in heights]
+    result = np.full((len(rows), max(row.size for row in rows)), high)
+    for k, row in enumerate(rows):
+        result[k, : row.size] = row
+    return result
+
+
+def _turns(curve: Callable[[Array], Array], left: Array, right: Array, peak: Marks) -> Array:
+    """Highest or lowest points, by golden section."""
+    if not left.size:
+        return left
+    sign = np.where(peak, 1.0, -1.0)
+    for _ in range(_SECTIONS):
+        a, b = right - _GOLDEN * (right - left), left + _GOLDEN * (right - left)
+        first = sign * curve(a) > sign * curve(b)
+        left, right = np.where(first, left, a), np.where(first, b, right)
+    return np.asarray((left + right) / 2)
+
+
+def _met(excess: Excess, which: Ints, unit: Array, left: Array, right: Array) -> Array:
+    """First height at which the excess has the sign that it has at `right`, next to where secants meet."""
+    behind = excess(right, which) >= 0
+    ends = _around(excess, which, unit, left, right, behind)
+    return halved(lambda s: (excess(s, which) >= 0) == behind, *ends)
+
+
+def _around(
+    excess: Excess, which: Ints, unit: Array, left: Array, right: Array, behind: Marks
+) -> tuple[Array, Array]:
+    """Two heights next to where secants meet, or the ends given where the sign does not change in between."""
+    before, x = left, right
+    of_before, of_x = excess(before, which), excess(x, which)
+    room = _NEAR * np.spacing(np.maximum(np.maximum(np.abs(left), np.abs(right)), unit))
+    for _ in range(_SECANTS):
+        with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
+            found = x - of_x * ((x - before) / (of_x - of_before))
+        stay = np.where(np.isfinite(of_x), x, (left + right) / 2)  # there already, or where nothing begins
+        before, x = x, np.clip(np.where(np.isfinite(found), found, stay), left, right)
+        if np.all(np.abs(x - before) < room):
+            break
+        of_before, of_x = of_x, excess(x, which)
+    low, high = x - room, x + room
+    sure = (left < low) & (high < right)
+    sure &= ((excess(low, which) >= 0) != behind) & ((excess(high, which) >= 0) == behind)
+    return np.where(sure, low, left), np.where(sure, high, right)

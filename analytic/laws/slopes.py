@@ -9,8 +9,8 @@ from numpy.polynomial import chebyshev
 from analytic.arrays import Array, Ints
 from analytic.gradings import Grading
 from analytic.laws.branch import Branch
-from analytic.laws.crossings import Bound, Crossings, crossings_of
 from analytic.laws.law import piece_of
+from analytic.laws.regimes import Bound, Crossings, crossings_of, limit_of
 from analytic.laws.unloading import slope_in_root
 from analytic.resolution import resolved_breaks
 
@@ -57,10 +57,7 @@ def jump_terms(
         first = branch.of_root(quantity, int(j), touch, e)
         total += np.where(piece_of(law, 0 * separations, e) == j, first, 0.0) * density(separations, every)
     for j in range(len(law.limits(e))):
-
-        def bound(s: Array, which: Ints, j: int = j) -> Array:
-            return np.asarray(law.of_some(which).limits(grading(s))[j])
-
+        bound = limit_of(law, grading, j)
         kinks = [()] * (separations.size if law.each else 1)
         found = crossings_of(bound, grading, separations, low, high, kinks)
         t, which = found.height, found.separation
