@@ -145,7 +145,7 @@ def _skewness(bends: Array) -> float:
     if z.size < 2 or not np.ptp(z) > 0:
         return 0.0
     z = (z - z.mean()) / z.std()
-    return float(np.mean(z**3))
+    return float(np.mean(z * z * z))  # a power takes ten times as long
 
 
 def _outliers(ready: Prepared) -> float:

@@ -65,7 +65,8 @@ def read_npy(path: Path, pixel: tuple[float, float] | None = None, unit: str | N
     if pixel is None:
         pixel, periodic, told = _sidecar(path)
     metre, assumed = height_unit(path, told, unit)
-    return Topography(np.array(array, dtype=np.float64) * metre, pixel, periodic, assumed)
+    heights = np.multiply(array, metre, dtype=np.float64, casting="unsafe")
+    return Topography(heights, pixel, periodic, assumed)
 
 
 def _sidecar(path: Path) -> tuple[tuple[float, float], bool, str | None]:

@@ -225,7 +225,7 @@ def coarse_sums_of(topography: Topography, *, across: int = 4, seen: Mask | None
     for j in (0, 1):
         for i in (0, 1):
             every = (slice(j, rows, 2), slice(i, columns, 2))
-            half = Topography(np.ascontiguousarray(topography.heights[every]), pixel, topography.periodic)
+            half = Topography(topography.heights[every], pixel, topography.periodic)
             found.append(summit_sums_of(half, across=across, seen=None if seen is None else seen[every]))
     return SummitSums(
         np.sum([f.sums for f in found], axis=0),
