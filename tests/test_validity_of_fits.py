@@ -94,6 +94,13 @@ def test_chance_is_left_to_maps_of_few_waves(scene):
         assert scene.replace(fitted=fitted).validity().measured.any() == known
 
 
+def test_chance_excuses_no_skewness_beyond_what_was_solved(scene):
+    """However few the waves are: the highest summits of such a map are no Gaussian ones."""
+    for skewness, known in ((0.14, True), (-0.14, True), (0.18, False), (-0.18, False)):
+        fitted = replace(scene.fitted, skewness=skewness, independent=100.0)
+        assert scene.replace(fitted=fitted).validity().measured.any() == known
+
+
 def test_alpha_is_the_maps_own(fit, scene):
     """Of counted summits eta R sigma would guess another one."""
     fitted = scene.fitted
