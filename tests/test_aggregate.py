@@ -14,9 +14,9 @@ import mcgw
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.results import MemoryResults
 from mcgw.sampling import samplers
-from mcgw.sampling.aggregate import _law_of_moments, _partly
 from mcgw.sampling.cells import mesh_of
 from mcgw.sampling.crowding import crowding
+from mcgw.sampling.drawing import _law_of_moments, _partly
 from mcgw.sampling.samplers import aggregate_of, law_error_of, sampler_of
 
 GATE = 5.0

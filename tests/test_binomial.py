@@ -7,11 +7,10 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from mcgw.sampling import binomial, binomial_ratio
+from mcgw.sampling import binomial
 from mcgw.sampling.binomial import SURFACES, TRIALS, WORDS, binomials
 from mcgw.sampling.cells import mesh_of
-from mcgw.sampling.counts import counts_of
-from mcgw.sampling.halving import halvings_of
+from mcgw.sampling.counts import counts_of, halvings_of
 
 FALSE_ALARM = 1e-6  # of each chi-square test; the seeds are fixed
 
@@ -98,17 +97,17 @@ def test_the_ratio_of_probabilities_against_mpmath():
         sd = math.sqrt(n * p * (1 - p))
         k = float(np.clip(np.floor(n * p + rng.uniform(-8, 8) * sd), 0, n))
         mode = float(math.floor((n + 1) * p))
-        ends = (max(x, binomial_ratio._ZERO) * max(n - x, binomial_ratio._ZERO) for x in (mode, k))
+        ends = (max(x, binomial._ZERO) * max(n - x, binomial._ZERO) for x in (mode, k))
         found = (
-            binomial_ratio._shortfall_anywhere(n, p, mode)
-            - binomial_ratio._shortfall_anywhere(n, p, k)
+            binomial._shortfall_anywhere(n, p, mode)
+            - binomial._shortfall_anywhere(n, p, k)
             + 0.5 * math.log(next(ends) / next(ends))
         )
         with mp.workdps(60):
             exact = float(log_probability(n, p, k) - log_probability(n, p, mode))
         rounded = 2.0**-53 * (k + mode) * (abs(k - n * p) + 1) / sd**2  # of n p: another p
         worst.append(abs(found - exact) - rounded)
-        ratio, known = binomial_ratio.ratio_over_mode(n, p, k)
+        ratio, known = binomial.ratio_over_mode(n, p, k)
         if known:
             served += 1
             worst.append(abs(ratio / math.exp(exact) - 1) - rounded)
@@ -137,11 +136,11 @@ def test_the_hat_covers_the_law_and_the_squeeze_is_below_it(mean, p):
     for u in np.linspace(-0.4999, 0.4999, 20_001):
         k, _, w = binomial._proposal(n, p, u, 0.5)  # the largest v: the hat itself
         if 0 <= k <= n:
-            assert not binomial_ratio.below_ratio(w * (1 + 1e-9), n, p, k)
+            assert not binomial.below_ratio(w * (1 + 1e-9), n, p, k)
         b = 1.15 + 2.53 * math.sqrt(n * p * (1 - p))
         k, sure, w = binomial._proposal(n, p, u, 0.42 - 4.2 / b)  # the largest v that is sure
         assert sure == (0.5 - abs(u) >= 0.07)
-        assert not sure or binomial_ratio.below_ratio(w, n, p, k)
+        assert not sure or binomial.below_ratio(w, n, p, k)
 
 
 def test_a_number_is_a_function_of_seed_surface_and_node():

@@ -122,7 +122,7 @@ FEATURES = {
 LAWS = {
     "adhesion", "custom", "elastic", "elastic_plastic", "elastic_plastic_laws", "law_rows",
     "balance", "half_space", "interacting", "interaction", "interaction_mistakes",
-    "nominal", "nominal_literal", "own_balance",
+    "nominal", "own_balance",
 }  # fmt: skip
 
 

@@ -19,7 +19,7 @@ from test_same_bits_everywhere import OLD_BLAS, OLD_C, OLD_NUMPY
 
 import analytic
 import mcgw
-from mcgw.sampling.nominal_literal import balanced_sums
+from mcgw.sampling.nominal import balanced_sums
 from mcgw.sampling.samplers import sampler_of
 from mcgw.store import ensembles
 

@@ -11,10 +11,9 @@ import mcgw
 from mcgw.machine.memory import aligned
 from mcgw.sampling.cells import mesh_of
 from mcgw.sampling.response.gathering import FOUR, Lines, in_fours
-from mcgw.sampling.response.nodes import LAST_DIGITS, Nodes, Precision
 from mcgw.sampling.response.product import Tiles
 from mcgw.sampling.response.rows import Start, hertz_rows
-from mcgw.sampling.response.tree import tree_over
+from mcgw.sampling.response.tree import LAST_DIGITS, Nodes, Precision, tree_over
 from mcgw.sampling.response.walk import walk
 
 

@@ -67,7 +67,7 @@ class Direct(Sampler):
 
     def _balanced(self, number: int, heights: Array, ratios: Array | None) -> dict[str, Array]:
         """The surface at the separations that its asperities feel."""
-        from mcgw.sampling.nominal_literal import balanced_sums  # for those scenes alone
+        from mcgw.sampling.nominal import balanced_sums  # for those scenes alone
 
         touching = heights > self.scene.lowest
         ratios = None if ratios is None else ratios[touching]

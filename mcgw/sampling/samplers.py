@@ -21,17 +21,16 @@ from numpy.typing import NDArray
 
 from analytic import QUANTITIES, UNLOADING, Exponential, Hertz, MeasuredHeights, bends, quantity_of
 from mcgw.machine.memory import keep_freed_memory
-from mcgw.sampling.aggregate import CROWDED, VARYING
 from mcgw.sampling.block import Sampler
 from mcgw.sampling.cells import Mesh, cut, mesh_of, no_cells, series_accuracy
 from mcgw.sampling.counted import Counted
 from mcgw.sampling.counts import Counts, counts_of, strata_of
 from mcgw.sampling.direct import Direct
-from mcgw.sampling.drawing import Crowds, OneByOne
+from mcgw.sampling.drawing import CROWDED, VARYING, Crowds, OneByOne
 from mcgw.sampling.layout import Layout
 from mcgw.sampling.outside import table_of
-from mcgw.sampling.response.nodes import Precision
 from mcgw.sampling.response.response import Response, layout_of, response_of
+from mcgw.sampling.response.tree import Precision
 from mcgw.sampling.response.walk import UnresolvedError
 from mcgw.sampling.stretches import begins_and_breaks
 from mcgw.scene.samplers import Promise, promise_of
@@ -169,7 +168,7 @@ def _at_nominal(name: str, scene: Scene) -> Sampler:
     if name == "direct":
         return Direct.of(scene)
     if name == "tail":
-        from mcgw.sampling.nominal_literal import TailAtNominal
+        from mcgw.sampling.nominal import TailAtNominal
 
         return TailAtNominal("tail", scene, no_cells(scene), table_of(scene, scene.lowest))
     from mcgw.sampling.nominal import CellsAtNominal

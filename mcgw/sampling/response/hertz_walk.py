@@ -7,7 +7,6 @@ import numpy as np
 from analytic.arrays import Array, Ints
 from mcgw.machine.compiling import njit
 from mcgw.machine.in_threads import in_threads
-from mcgw.sampling.response.nodes import Nodes
 from mcgw.sampling.response.rows import Powers, Rows, raise_to
 from mcgw.sampling.response.series import (
     APART,
@@ -21,7 +20,7 @@ from mcgw.sampling.response.series import (
     raised,
     series_of,
 )
-from mcgw.sampling.response.tree import Tree
+from mcgw.sampling.response.tree import Nodes, Tree
 
 _ROWS = 512  # worth another thread; what is found of them stays in memory that the process has
 _DEEPEST = 128  # nodes that wait: one a level, and a tree has no more than 64

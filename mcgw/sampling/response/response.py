@@ -15,11 +15,9 @@ import numpy as np
 from analytic.arrays import Array
 from mcgw.sampling.cells import Mesh
 from mcgw.sampling.layout import Layout
-from mcgw.sampling.response.assembly import Parts, tiles_of
-from mcgw.sampling.response.nodes import LAST_DIGITS, Nodes, Precision
-from mcgw.sampling.response.product import Tiles
+from mcgw.sampling.response.product import Parts, Tiles, tiles_of
 from mcgw.sampling.response.rows import Rows, hertz_rows
-from mcgw.sampling.response.tree import tree_over
+from mcgw.sampling.response.tree import LAST_DIGITS, Nodes, Precision, tree_over
 from mcgw.sampling.response.walk import walk
 from mcgw.scene.scene import Scene
 

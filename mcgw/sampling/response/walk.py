@@ -1,15 +1,199 @@
-"""From the root down: give each row to the coarsest nodes that resolve it."""
+"""From the root down: give each row to the coarsest nodes that resolve it.
+
+Rows of any contact law, whose formulas are Python's, are walked all of a level of the tree at once; those of
+Hertz's law one by one, in compiled loops (`mcgw.sampling.response.hertz_walk`).
+"""
+
+from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from analytic.arrays import Array, Ints
+from mcgw.machine.compiling import njit
+from mcgw.machine.in_threads import in_threads
 from mcgw.sampling.cells import Mesh
 from mcgw.sampling.response.hertz_walk import HertzWalk
-from mcgw.sampling.response.law_walk import LawWalk
-from mcgw.sampling.response.nodes import Nodes
-from mcgw.sampling.response.rows import Powers, Rows
-from mcgw.sampling.response.series import Entries
-from mcgw.sampling.response.tree import Tree
+from mcgw.sampling.response.rows import Formulas, Powers, Rows
+from mcgw.sampling.response.series import (
+    APART,
+    MOST,
+    MOST_IN_CELL,
+    TABLES,
+    WHOLE,
+    Entries,
+    U,
+    length_of,
+    meeting,
+    raised,
+    series_of,
+)
+from mcgw.sampling.response.tree import Nodes, Tree
+from mcgw.sampling.stretches import SMALLEST
+
+_PAIRS = 1024  # of a row and a node, at a time
+_MANY = 16  # times that many: worth another thread
+
+
+class LawWalk:
+    """Series of rows.
+
+    Parameters
+    ----------
+    tree, nodes : Tree, Nodes
+        Nodes over the cells.
+    rows : Rows
+        What is asked.
+    formulas : Formulas
+        Theirs.
+    """
+
+    def __init__(self, tree: Tree, nodes: Nodes, rows: Rows, formulas: Formulas) -> None:
+        self._tree, self._nodes, self._rows, self._formulas = tree, nodes, rows, formulas
+        self._limits = nodes.limits(rows)
+
+    def entries(self) -> tuple[Entries, Ints, Ints, Array, float]:
+        """As `mcgw.sampling.response.hertz_walk.HertzWalk.entries`."""
+        tree, nodes = self._tree, self._nodes
+        plain, rooted = np.zeros(tree.size, dtype=np.int64), np.zeros(tree.size, dtype=np.int64)
+        found: list[Entries] = []
+        unresolved, inside = [np.empty(0)], np.inf
+        row = np.arange(len(self._rows.h) if tree.size else 0)
+        node = np.full(len(row), tree.size - 1)
+        while len(node):
+            node, row, smooth = self._met(node, row)
+            left = np.ones(len(node), dtype=bool)
+            together = _together(np.flatnonzero(smooth))
+            resolved = in_threads(lambda few: self._resolved(node[few], row[few]), together, least=_MANY)  # noqa: B023
+            for few, (series, needed, done) in zip(together, resolved, strict=True):
+                found.append(series)
+                np.maximum.at(plain, series.node, needed)
+                left[few[done]] = False
+            cells = left & ~nodes.parent[node]
+            unresolved.append(nodes.start[node[cells & smooth]])
+            begins = cells & ~smooth
+            inside = self._inside(node[begins], row[begins]).min(initial=inside)
+            for root, which, c, needed in self._starts(node[begins], row[begins]):
+                found.append(_entries(node[begins][which], row[begins][which], c, rooted=root))
+                np.maximum.at(rooted if root else plain, node[begins][which], needed)
+            left &= nodes.parent[node]
+            node, row = node[left], row[left]
+            node, row = np.concatenate([tree.left[node], tree.right[node]]), np.concatenate([row, row])
+        return Entries.joined(found), plain, rooted, np.unique(np.concatenate(unresolved)), inside
+
+    def needed(self, node: Ints, row: Ints) -> Ints:
+        """As `mcgw.sampling.response.hertz_walk.HertzWalk.needed`."""
+        parts = [self._smooth(node[few], row[few])[1] for few in _together(np.arange(len(node)))]
+        return np.concatenate([np.empty(0, dtype=np.int64), *parts])
+
+    def _met(self, node: Ints, row: Ints) -> tuple[Ints, Ints, NDArray[np.bool_]]:
+        """Nodes and rows that have heights in common, and whether the row is one smooth function there."""
+        nodes, rows = self._nodes, self._rows
+        split, low, high = nodes.broken[node] & rows.graded[row], rows.low[row], rows.high[row]
+        parent, of_least = nodes.parent[node], nodes.precision.of_least
+        how = _meetings(
+            low, high, rows.rooted[row], split, nodes.start[node], nodes.end[node], parent, of_least
+        )
+        here = how != APART
+        return node[here], row[here], how[here] == WHOLE
+
+    def _inside(self, node: Ints, row: Ints) -> Array:
+        """Where rows begin that do so inside a cell."""
+        low = self._rows.low[row]
+        return np.asarray(low[low != self._nodes.start[node]])
+
+    def _resolved(self, node: Ints, row: Ints) -> tuple[Entries, Ints, Ints]:
+        """Series of rows that are smooth on nodes, where resolved; how many coefficients count; and which."""
+        rows, parent = self._rows, self._nodes.parent[node]
+        c, needed = self._smooth(node, row)
+        rough = rows.rough[row] & (rows.low[row] == self._nodes.start[node])
+        smallest = (rough | (self._nodes.end[node] - self._nodes.start[node] <= 2 * SMALLEST)) & ~parent
+        needed[smallest] = np.minimum(needed[smallest], MOST_IN_CELL)
+        which = np.flatnonzero(needed <= np.where(parent, MOST, MOST_IN_CELL))
+        return _entries(node[which], row[which], c[which]), needed[which], which
+
+    def _smooth(self, node: Ints, row: Ints) -> tuple[Array, Ints]:
+        """Series of rows that are smooth on nodes, and how many coefficients must count.
+
+        What no sum over many nodes can show is zero.
+        """
+        nodes, rows = self._nodes, self._rows
+        values = self._formulas.values(row, *nodes.at(node, rows.h[row]))
+        c, needed = self._series(values, node, row, np.zeros(len(row)), of_many=True)
+        begins = np.flatnonzero(rows.begins[row] & (rows.low[row] == nodes.start[node]))
+        for _, which, begun, count in self._starts(node[begins], row[begins]):
+            c[begins[which]], needed[begins[which]] = begun, count
+        return c, needed
+
+    def _starts(self, node: Ints, row: Ints) -> Iterator[tuple[bool, Ints, Array, Ints]]:
+        """Of rows that begin where a node does: rooted or not, which ones, series, and how many count."""
+        nodes = self._nodes
+        if not row.size:
+            return
+        for start in self._formulas.at_start(row, *nodes.at(node, nodes.start[node]), U):
+            which = start.rows
+            c, needed = self._series(start.values, node[which], row[which], start.power, of_many=False)
+            yield start.rooted, which, c, needed
+
+    def _series(
+        self, values: Array, node: Ints, row: Ints, power: Array, *, of_many: bool
+    ) -> tuple[Array, Ints]:
+        """Series of values (points, pairs) times powers of u, shape (pairs, order), and how many count."""
+        rough = self._nodes.rough_noise(node, row, self._rows)
+        by_pairs = np.ascontiguousarray(values.T)
+        c, count = _all_series(by_pairs, node, row, self._limits, rough, of_many, power, TABLES)
+        return c, count
+
+
+def _together(pairs: Ints) -> list[Ints]:
+    """A few at a time, whose series stay in the cache."""
+    return [pairs[first : first + _PAIRS] for first in range(0, len(pairs), _PAIRS)]
+
+
+@njit(nogil=True, cache=True)
+def _meetings(
+    low: Any, high: Any, rooted: Any, split: Any, start: Any, end: Any, parent: Any, of_least: Any
+) -> Any:
+    """`meeting` of each row and node."""
+    how = np.empty(low.size, dtype=np.int64)
+    for k in range(low.size):
+        how[k] = meeting(low[k], high[k], rooted[k], split[k], start[k], end[k], parent[k], of_least)
+    return how
+
+
+@njit(nogil=True, cache=True)
+def _all_series(
+    values: Any, node: Any, row: Any, limits: Any, rough: Any, of_many: Any, power: Any, tables: Any
+) -> Any:
+    """`series_of` each row on each node, times its power of u, and how many coefficients of each count."""
+    transform, times_u, _ = tables
+    series, count = np.empty(values.shape), np.empty(len(values), dtype=np.int64)
+    for k in range(len(values)):
+        c = series[k : k + 1]
+        count[k] = series_of(values[k : k + 1], node[k], row[k], limits, rough[k], of_many, transform, c)
+        raised(c, int(power[k]), times_u)
+        count[k] += int(power[k])
+    return series, count
+
+
+def _entries(node: Ints, row: Ints, c: Array, *, rooted: bool = False) -> Entries:
+    """Series of these nodes and rows, with coefficients of shape (series, order)."""
+    length, coefficients = _packed(c)
+    return Entries(node, row, np.full(len(node), rooted), length, coefficients)
+
+
+@njit(nogil=True, cache=True)
+def _packed(series: Any) -> Any:
+    """How many coefficients some series have, up to the last that is not zero, and all of these."""
+    length, used = np.empty(len(series), dtype=np.int64), 0
+    coefficients = np.empty(series.size)
+    for k in range(len(series)):
+        n = length_of(series[k : k + 1])
+        for i in range(n):
+            coefficients[used + i] = series[k, i]
+        length[k], used = n, used + n
+    return length, coefficients[:used]
 
 
 class UnresolvedError(ValueError):
