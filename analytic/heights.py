@@ -67,11 +67,6 @@ class HeightLaw(Protocol):
         """Height at the share `p` of the heights above one, or of all, counted from the top."""
 
 
-def normal_log_ratio(s: Any, t: Any) -> Any:
-    """``log(pdf(s + t)/pdf(s))`` of the normal law, of arrays or of numbers: it may be compiled."""
-    return -t * (s + t / 2)
-
-
 @dataclass(frozen=True)
 class Gaussian(HeightLaw):
     """The normal law of Greenwood and Williamson.
@@ -96,7 +91,7 @@ class Gaussian(HeightLaw):
 
     def log_ratio(self, s: Array, t: Array) -> Array:
         """``-t (s + t/2)``."""
-        return np.asarray(normal_log_ratio(s, t))
+        return np.asarray(-t * (s + t / 2))
 
     def cdf(self, s: Array) -> Array:
         """``Phi(s)``."""

@@ -12,8 +12,8 @@ import mcgw
 from analytic.elementary import exp
 from mcgw.machine.memory import kept
 from mcgw.sampling.cells import mesh_of
-from mcgw.sampling.exp_log import weigh_exponentials, weigh_normal_densities
-from mcgw.sampling.rules import gauss_legendre, product
+from mcgw.sampling.exp_log import weigh_exponentials
+from mcgw.sampling.rules import product
 from mcgw.sampling.samplers import sampler_of
 from mcgw.sampling.spacing import Gaps, cuts, price
 
@@ -90,18 +90,6 @@ def test_compiled_exponentials_say_where_they_are_wrong(far):
     x = np.zeros((3, 20))
     x[1, 7] = far
     assert not weigh_exponentials(x, np.ones(20), np.empty(3))
-
-
-def test_normal_densities_are_weighed_as_those_of_any_law():
-    """The same bits as from arrays of logarithms; where these are beyond the plain range it is told."""
-    rng = np.random.default_rng(6)
-    s, t, (points, weights) = rng.uniform(-4, 4, 70), rng.uniform(0, 3, (70, 20)), gauss_legendre(20)
-    logs = LAW.log_ratio(s[:, None, None], t[:, :, None] * points)
-    of_any, of_normal = np.empty(1400), np.empty((70, 20))
-    assert weigh_exponentials(logs.reshape(1400, 20), weights, of_any)
-    assert weigh_normal_densities(s, t, points, weights, of_normal)
-    np.testing.assert_array_equal(of_normal.ravel(), of_any)
-    assert not weigh_normal_densities(s, 100 + t, points, weights, of_normal)
 
 
 SHAPES = [(1, 1, 1), (2, 0, 3), (20, 20, 3), (20, 20, 16), (7, 20, 37), (20, 5, 100)]

@@ -10,9 +10,8 @@ from scipy import ndimage
 from scipy.sparse import coo_array, diags_array
 from scipy.sparse.linalg import cg
 
+from analytic.arrays import Array
 from mcgw.maps.topography import Topography
-
-Array = NDArray[np.float64]
 
 _STEPS, _CLOSE = 2000, 1e-8
 _REACH = 3  # pixels from a point to the ring around it: a spike is narrower than five

@@ -12,11 +12,10 @@ import numpy as np
 from numba import prange
 from numpy.typing import NDArray
 
+from analytic.arrays import Ints
 from mcgw.machine.compiling import njit
 from mcgw.maps.synthetic import Asperities
 from mcgw.maps.topography import Topography, checked_shape
-
-Ints = NDArray[np.int64]
 
 
 def _binned(field: Asperities) -> tuple[Ints, Any, tuple[int, int]]:

@@ -10,12 +10,12 @@ from numpy.typing import NDArray
 from scipy.special import ndtr, stdtrit
 
 from analytic import SpectralMoments
+from analytic.arrays import Array
 from mcgw.formats.table import Column, Table
 from mcgw.maps.hidden_caps import unhidden
 from mcgw.maps.summit_sums import SUMS, SummitSums
 from mcgw.maps.waves import Uncertain, Waves, uncertain
 
-Array = NDArray[np.float64]
 Pairs = list[tuple[float, float]]
 
 METHODS = {

@@ -5,14 +5,13 @@ from dataclasses import replace
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter, gaussian_filter1d
 from scipy.optimize import least_squares
 
+from analytic.arrays import Array
 from mcgw.maps.steps import Form, LinesTo
 from mcgw.maps.topography import Topography
 
-Array = NDArray[np.float64]
 ORDERS = {"none": -1, "plane": 1, "quadratic": 2, "cubic": 3, "quartic": 4, "sphere": 2, "cylinder": 2}
 
 _ALPHA = math.sqrt(math.log(2) / math.pi)  # ISO 16610-61: half the amplitude is left at the cutoff

@@ -13,12 +13,12 @@ from functools import cache, lru_cache
 
 import numpy as np
 from numpy.polynomial.legendre import leggauss
-from numpy.typing import NDArray
 from scipy.optimize import brentq
 from scipy.special import ndtr
 
+from analytic.arrays import Array
+
 CROWDED = 0.05  # eta R sigma, from which one summit in six is hidden: the asperities are no longer apart
-Array = NDArray[np.float64]
 
 _REACH, _NODES = 9.0, 200
 _MOST = 10.0

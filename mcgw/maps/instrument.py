@@ -12,14 +12,12 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import fft
 
+from analytic.arrays import Array
 from mcgw.maps.bad_points import BENT, usual_bend
 from mcgw.maps.form import gaussian_transmission
 from mcgw.maps.preparation import Prepared
-
-Array = NDArray[np.float64]
 
 _ENOUGH = 2**20  # second differences
 _NEAR = slice(1, 9)  # waves along a row that are nearly as long as those that do not change along it

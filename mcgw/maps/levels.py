@@ -3,15 +3,13 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import fft
 
+from analytic.arrays import Array
 from mcgw.maps.form import ORDERS, without_form
 from mcgw.maps.steps import Form
 from mcgw.maps.topography import Topography
 from mcgw.maps.waves import block_means
-
-Array = NDArray[np.float64]
 
 _COARSE, _BLOCKS = 192, 24
 _ISOLATED = 6.0  # times the usual difference along a line: 4 standard deviations of Gaussian ones

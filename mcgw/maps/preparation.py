@@ -17,7 +17,6 @@ from mcgw.scene.arguments import arguments
 from mcgw.scene.kinds import Whole, Word
 from mcgw.scene.section import Kind
 
-Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
 _NEIGHBOURS = 2  # pixels on each side that differences need

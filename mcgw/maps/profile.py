@@ -4,14 +4,12 @@ import math
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter1d
 
+from analytic.arrays import Array
 from mcgw.maps.form import filter_variance
 from mcgw.maps.steps import Form
 from mcgw.maps.topography import STEEPEST
-
-Array = NDArray[np.float64]
 
 _EVEN = 0.1  # of a step, which places may lie beside an even grid
 _MOST_MISSING = 0.1  # of all points

@@ -6,16 +6,14 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
+from analytic.arrays import Array
 from mcgw.formats.named_files import open_npy
 from mcgw.formats.units import METRES
 from mcgw.maps.foreign import is_foreign_line, read_foreign_line
 from mcgw.maps.profile import Profile, profile_at
 from mcgw.maps.text_file import lines_of, numbers_of, words_of
 from mcgw.maps.topography import height_unit
-
-Array = NDArray[np.float64]
 
 _MOST_HEADER = 500  # lines
 _MOST_POINTS = 2**26

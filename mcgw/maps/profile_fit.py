@@ -11,10 +11,10 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import stdtrit
 
 from analytic import SpectralMoments
+from analytic.arrays import Array
 from mcgw.formats.sheet import Sheet, Shown
 from mcgw.formats.table import Column, Table
 from mcgw.machine.terminal import plotted
@@ -23,8 +23,6 @@ from mcgw.maps.profile import PROFILE_ORDERS, Profile, smooth_profile, without_p
 from mcgw.maps.profile_waves import ProfileWaves, waves_of_profile
 from mcgw.maps.steps import Form
 from mcgw.maps.waves import Uncertain, log_derivatives, uncertain
-
-Array = NDArray[np.float64]
 
 _PIECES = 16
 _SMOOTH = 3  # waves over which power is averaged

@@ -21,14 +21,12 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import fft
 from scipy.special import dawsn
 
+from analytic.arrays import Array
 from mcgw.maps.form import filter_variance
 from mcgw.maps.profile import Profile
-
-Array = NDArray[np.float64]
 
 _SERIES = 0.02  # below, two terms of the series have 1e-9
 _REACH = 1.5  # cutoffs that the weights of distances reach: beyond, exp(-16)

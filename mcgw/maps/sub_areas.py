@@ -4,12 +4,10 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from analytic.arrays import Array
 from mcgw.formats.table import Column, Table
 from mcgw.maps.summit_sums import SUMS, SummitSums
-
-Array = NDArray[np.float64]
 
 TILES = (  # what stands above their table in a file
     "eta in 1/m^2, radius and sigma in m, by the summits of the tile; m0 in m^2, m2, m4 in 1/m^2; heights "

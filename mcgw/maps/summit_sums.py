@@ -8,10 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
+from analytic.arrays import Array
 from mcgw.machine.compiling import njit
 from mcgw.maps.topography import Topography
 
-Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
 # Rows of the sums: points, powers of height, squared slopes, squared second derivatives, the latter by plain

@@ -5,11 +5,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from analytic.arrays import Array
 from mcgw.formats.table import Column, Table
 from mcgw.maps.summit_sums import EDGE, SummitSums
 from mcgw.maps.topography import Topography
-
-Array = NDArray[np.float64]
 
 SUMMITS = (  # what stands above their table in a file
     "x, y, height and radius in m, curvature_1 and curvature_2 in 1/m; height is above the mean of the "

@@ -9,6 +9,7 @@ from scipy import fft
 from scipy.optimize import brentq
 
 from analytic import SpectralMoments
+from analytic.arrays import Array
 from mcgw.formats.units import parse
 from mcgw.maps.topography import Topography, checked_shape
 from mcgw.sampling.asperities import summits
@@ -18,7 +19,6 @@ from mcgw.scene.scene import Scene
 _HURST = 0.8
 _UNITS = {"rms": "m", "long": "m", "short": "m", "m0": "m^2", "m4": "1/m^2"}
 _NARROWEST, _WIDEST = 1 + 1e-6, 1e6  # ratio of the long to the short wavelength
-Array = NDArray[np.float64]
 
 _X, _Y = 0, 1  # streams
 

@@ -6,14 +6,12 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import fft
 from scipy.special import gammaincinv, ndtr, polygamma, spherical_jn, stdtrit
 
 from analytic import SpectralMoments
+from analytic.arrays import Array
 from mcgw.maps.topography import Topography
-
-Array = NDArray[np.float64]
 
 _ACROSS = 2048  # points that are looked at; of the waves shorter than that there are always many
 _FEWEST = 0.5  # waves: one that is cut in two

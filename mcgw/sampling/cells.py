@@ -19,12 +19,12 @@ import numpy as np
 from numpy.polynomial import chebyshev
 from numpy.typing import NDArray
 
-from analytic import Gaussian, Grading, HeightLaw, PiecewiseSeries, bends
+from analytic import Grading, HeightLaw, PiecewiseSeries, bends
 from analytic.arrays import Array
 from analytic.elementary import exp
 from mcgw.machine.in_threads import in_threads
 from mcgw.machine.memory import kept
-from mcgw.sampling.exp_log import weigh_exponentials, weigh_normal_densities
+from mcgw.sampling.exp_log import weigh_exponentials
 from mcgw.sampling.rules import chebyshev_points, chebyshev_transform, gauss_legendre, product
 from mcgw.sampling.spacing import DIGITS, Gaps, cuts
 from mcgw.sampling.stretches import SMALLEST, begins_and_breaks, losses
@@ -293,13 +293,10 @@ def _mass(law: HeightLaw, a: Array, t: Array) -> Array:
 
 def _densities(law: HeightLaw, a: Array, t: Array, points: Array, weights: Array) -> Array:
     """Weighted sums of the densities at a + points t, relative to that at a."""
-    sums, normal = np.empty(t.shape), isinstance(law, Gaussian)
-    low = a.copy()  # compiled loops are made once more for what cannot be written to
+    sums = np.empty(t.shape)
 
     def weigh(first: int) -> None:
         some = slice(first, first + _TOGETHER)
-        if normal and weigh_normal_densities(low[some], t[some], points, weights, sums[some]):
-            return
         logs = law.log_ratio(a[some, None, None], t[some, :, None] * points).reshape(-1, len(points))
         if not weigh_exponentials(logs, weights, sums[some].reshape(-1)):
             sums[some] = product(exp(logs), weights).reshape(-1, t.shape[1])

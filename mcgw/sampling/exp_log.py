@@ -10,7 +10,6 @@ from typing import Any
 import numpy as np
 
 from analytic.elementary import MIDDLE, NEAR, OUT, PLAIN, TAYLOR
-from analytic.heights import normal_log_ratio
 from mcgw.machine.compiling import njit
 from mcgw.sampling.lanes import bits, fused, number
 
@@ -19,7 +18,6 @@ _HALF = math.sqrt(0.5)
 _TAYLOR = np.array(TAYLOR)
 _LAST_DIGIT = 1.5 * 2.0**52  # added to a whole number, this leaves it in the last bits
 _MIDDLE, _NEAR, _OUT = (np.array(table) for table in (MIDDLE, NEAR, OUT))  # compiled as constants
-_normal_log_ratio = njit(inline="always")(normal_log_ratio)
 
 
 @njit(nogil=True, cache=True, error_model="numpy")
@@ -88,34 +86,6 @@ def make_normal(x: Any) -> None:
         row[:] = middle
 
 
-@njit(inline="always")
-def _write_exponentials(x: Any, e: Any) -> Any:
-    """As `analytic.elementary.exp`, and whether they are right: no number is beyond `PLAIN`.
-
-    A few hundred at a time: of twenty the processor would wait for each sum.
-    """
-    plain = True
-    for j in range(x.size):
-        plain &= abs(x[j]) < PLAIN
-        k = np.rint(x[j] * (1 / (_LOG2_HIGH + _LOG2_LOW)))
-        r = (x[j] - k * _LOG2_HIGH) - k * _LOG2_LOW
-        value = r * _TAYLOR[0] + _TAYLOR[1]
-        for c in range(2, 14):
-            value = value * r + _TAYLOR[c]
-        e[j] = value * number((bits(k + _LAST_DIGIT) + 1023) << 52)
-    return plain
-
-
-@njit(inline="always")
-def _write_sums(e: Any, weights: Any, result: Any) -> None:
-    """Weighted sums of as many numbers each, each in the order of its terms."""
-    for i in range(result.size):
-        total = 0.0
-        for j in range(weights.size):
-            total = fused(e[i * weights.size + j], weights[j], total)
-        result[i] = total
-
-
 @njit(nogil=True, cache=True, error_model="numpy")
 def weigh_exponentials(x: Any, weights: Any, result: Any) -> Any:
     """Weighted sums of exponentials, as `analytic.elementary.exp` has them.
@@ -132,36 +102,18 @@ def weigh_exponentials(x: Any, weights: Any, result: Any) -> Any:
     bool
         Whether they are right: not if a number is beyond `analytic.elementary.PLAIN`.
     """
-    e = np.empty(x.size)
-    plain = _write_exponentials(x.reshape(x.size), e)
-    _write_sums(e, weights, result)
-    return plain
-
-
-@njit(nogil=True, cache=True, error_model="numpy")
-def weigh_normal_densities(s: Any, t: Any, points: Any, weights: Any, result: Any) -> Any:
-    """Weighted sums of the normal density between `s` and ``s + t``, relative to that at `s`.
-
-    Parameters
-    ----------
-    s, t : ndarray
-        Shape (n,) and (n, k).
-    points, weights : ndarray
-        Shares of `t`, and their weights, shape (m,).
-    result : ndarray
-        Where the sums are written, shape (n, k).
-
-    Returns
-    -------
-    bool
-        As `weigh_exponentials`, which makes the same numbers of `analytic.heights.normal_log_ratio`.
-    """
-    m, plain = points.size, True
-    x, e = np.empty(t.shape[1] * m), np.empty(t.shape[1] * m)
-    for i in range(s.size):
-        for k in range(t.shape[1]):
-            for j in range(m):
-                x[k * m + j] = _normal_log_ratio(s[i], t[i, k] * points[j])
-        plain &= _write_exponentials(x, e)
-        _write_sums(e, weights, result[i])
+    x, e, plain = x.reshape(x.size), np.empty(x.size), True
+    for j in range(x.size):  # all of them at first: of twenty the processor would wait for each sum
+        plain &= abs(x[j]) < PLAIN
+        k = np.rint(x[j] * (1 / (_LOG2_HIGH + _LOG2_LOW)))
+        r = (x[j] - k * _LOG2_HIGH) - k * _LOG2_LOW
+        value = r * _TAYLOR[0] + _TAYLOR[1]
+        for c in range(2, 14):
+            value = value * r + _TAYLOR[c]
+        e[j] = value * number((bits(k + _LAST_DIGIT) + 1023) << 52)
+    for i in range(result.size):
+        total = 0.0
+        for j in range(weights.size):
+            total = fused(e[i * weights.size + j], weights[j], total)
+        result[i] = total
     return plain
