@@ -12,7 +12,7 @@ from law_means import BRIDGED, FOUR, ONE, STEEL, SURFACE, density, mean, name, q
 import analytic
 import mcgw
 from analytic.laws import ChangEtsionBogy, Hertz, JacksonGreen, KogutEtsion, ZhaoMaiettaChang, piece_of
-from mcgw.scene.other_laws import other_laws
+from mcgw.scene.law_cautions import other_laws
 
 SOFTER = JacksonGreen(yield_strength=1e9).on(replace(SURFACE, radius=1e-4))
 GRADED = analytic.Exponential(2.0)

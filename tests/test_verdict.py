@@ -1,7 +1,6 @@
 """What the verdict rests on: every quantity at every separation, and as many degrees as there are."""
 
 import dataclasses
-from functools import partial
 from itertools import pairwise
 
 import exact
@@ -12,12 +11,11 @@ from scipy.stats import chi2
 import analytic
 import mcgw
 from mcgw.ensemble.ensemble import Ensemble
-from mcgw.ensemble.results import MemoryResults
+from mcgw.ensemble.results import Held, MemoryResults
 from mcgw.figures.against_theory import save_comparison
 from mcgw.sampling.samplers import sampler_of
-from mcgw.statistics import comparison
 from mcgw.statistics.comparison import compare
-from mcgw.statistics.verdict import FALSE_ALARM, Verdict, verdict
+from mcgw.statistics.verdict import FALSE_ALARM, Verdict, tested, verdict
 
 QUANTITIES = tuple(analytic.QUANTITIES)
 H = (2.0, 0.0, 1.0)  # in no order: a verdict that sorts one of two lists would show
@@ -57,13 +55,29 @@ def test_each_quantity_alone_2_percent_off_breaks_it(ensemble, quantity):
         assert not verdict(scaled(ensemble, {(quantity, k): 1.02})).agrees
 
 
+class Exact(Held):
+    """So many surfaces of a scene that their means are those of theory."""
+
+    def __init__(self, scene):
+        self.scene = scene
+
+    def rows(self):
+        return 10**9
+
+    def mean_and_std(self, name):
+        return self.scene.theory.mean(name, self.scene.separations), None
+
+    def total_number(self, name):
+        return self.mean_and_std(name)[0] * self.rows()
+
+
 def test_what_theory_leaves_out_belongs_to_its_quantity(make_scene):
     """Of so many surfaces it leaves out too much of some means: of the same ones in any order."""
     balanced = {"interaction": mcgw.Interaction("body", at="nominal"), "separations": (0.0, 2.0)}
     found = []
     for quantities in (("load", "area", "contacts"), ("area", "load", "contacts")):
         scene = make_scene(**balanced, quantities=quantities, n_asperities=1000)
-        counts = comparison.tested(scene, 10**9, partial(scene.theory.mean, h=(0.0, 2.0)), 60).counts
+        counts = tested(Ensemble(scene, "cells", Exact(scene)), 60).counts
         found.append(dict(zip(quantities, counts.tolist(), strict=True)))
     assert found[0] == found[1]
     assert {name for name, counts in found[0].items() if counts[0]} == {"area"}

@@ -6,7 +6,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from analytic import Exponential
     from analytic.laws import ContactLaw
 
 HELP = "give the surfaces of a file another grading or contact law"
@@ -57,7 +56,11 @@ def execute(args: argparse.Namespace) -> int:
     if law is None and table is None and gamma is None:
         raise ValueError("regrade: give another grading (--gamma, --grading) or contact law (--law)")
     old = open_ensemble(args.file)
-    grading = read_grading(table, old.scene.surface) if table else _exponential(gamma)
+    grading: Any = read_grading(table, old.scene.surface) if table else None
+    if gamma is not None:
+        from analytic import Exponential
+
+        grading = Exponential(gamma)
     path = args.output or args.file.with_suffix(".regraded.h5")
     inputs = [args.file, table] if table else [args.file]
     check_outputs([Output(path, HDF5, grows=True), *table_output(args.csv)], inputs=inputs)
@@ -74,12 +77,6 @@ def execute(args: argparse.Namespace) -> int:
     tell_cautions(asked, f"mcgw show {path}")
     write_table(args.csv, lambda: stacked(ratios, "quantity"))
     return 0
-
-
-def _exponential(gamma: float | None) -> "Exponential | None":
-    from analytic import Exponential
-
-    return None if gamma is None else Exponential(gamma)
 
 
 def add_law_options(parser: argparse.ArgumentParser) -> None:

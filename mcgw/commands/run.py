@@ -9,7 +9,6 @@ from mcgw.commands.engine_options import add_engine_options, drawing, tell_share
 from mcgw.commands.set_option import add_set_option, changes_of
 
 if TYPE_CHECKING:
-    from mcgw.ensemble.forecast import Forecast
     from mcgw.scene.scene import Scene
 
 HELP = "simulate a scene: draw its surfaces and store load, area, ... in HDF5; goes on where it stopped"
@@ -54,7 +53,12 @@ def _execute(args: argparse.Namespace) -> int:
     with drawing(args) as how:
         notes(*_of_threads(args.threads), *_of_time(scene), *short)
         if ruled and not args.shard:
-            _tell_forecast(scene, expected)
+            from mcgw.commands.voice import news
+            from mcgw.ensemble.drawing import seconds_per_surface
+            from mcgw.reports.side_notes import before
+            from mcgw.sampling.samplers import sampler_of
+
+            news(f"forecast: {before(expected, seconds_per_surface(scene, sampler_of(scene)))}")
         ensemble = run(scene, path, **how)
     if args.shard:
         return tell_share(args.shard, path, ensemble)
@@ -69,16 +73,6 @@ def _execute(args: argparse.Namespace) -> int:
     news(f"next: mcgw compare {path}")
     tell_cautions(scene)
     return 0
-
-
-def _tell_forecast(scene: "Scene", expected: "Forecast") -> None:
-    """Say what the rule will take."""
-    from mcgw.commands.voice import news
-    from mcgw.ensemble.drawing import seconds_per_surface
-    from mcgw.reports.side_notes import before
-    from mcgw.sampling.samplers import sampler_of
-
-    news(f"forecast: {before(expected, seconds_per_surface(scene, sampler_of(scene)))}")
 
 
 def _of_threads(threads: int | None) -> list[str]:

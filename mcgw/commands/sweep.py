@@ -2,14 +2,10 @@
 
 import argparse
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from mcgw.commands.engine_options import add_engine_options, drawing, tell_share
 from mcgw.commands.set_option import add_set_option, changes_of
-
-if TYPE_CHECKING:
-    from mcgw.scene.scene import Scene
-    from mcgw.sweeps.axes import Axes
 
 HELP = "draw many scenes at once, over the same surfaces, and keep means and deviations; goes on too"
 EXAMPLE = "mcgw sweep runs/demo.toml --over grading.gamma=0.2:2:10 -o gamma.h5"
@@ -54,7 +50,10 @@ def execute(args: argparse.Namespace) -> int:
     over = dict(map(_axis, args.over))
     scene = load_scene(args.scene, changes=changes_of(args), seed=lambda: recorded_seed(path))
     if args.plan:
-        print(_plan(scene, axes_of(over, zipped=args.zip)))
+        from mcgw.reports.plan import sweep_plan_text
+        from mcgw.sweeps.points import Asked
+
+        print(sweep_plan_text(Asked.of(scene, axes_of(over, zipped=args.zip))))
         return 0
     check_outputs([Output(path, HDF5, grows=True)], inputs=files_of(args.scene))
     with drawing(args) as how:
@@ -64,13 +63,6 @@ def execute(args: argparse.Namespace) -> int:
     news(f"{path}: {found.axes.size} scenes, seed {scene.seed}", f"next: mcgw compare {path}")
     details(found)
     return 0
-
-
-def _plan(scene: "Scene", axes: "Axes") -> str:
-    from mcgw.reports.plan import sweep_plan_text
-    from mcgw.sweeps.points import Asked
-
-    return sweep_plan_text(Asked.of(scene, axes))
 
 
 def _axis(text: str) -> tuple[str, list[Any]]:

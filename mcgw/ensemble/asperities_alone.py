@@ -55,21 +55,10 @@ def scene_alone(scene: Scene, what: str) -> Scene:
     return replace(scene, interaction=None)
 
 
-def _sums_alone(scene: Scene) -> Scene:
-    """Of which statistics are those of the asperities: of what is in series each surface's would tell."""
-    rest = tuple(name for name in scene.quantities if not scene.series(name))
-    if not rest:
-        raise ValueError(
-            'keep = "statistics": of stiffness and conductance in series with the half-space theory gives no '
-            "mean; ask for another quantity besides"
-        )
-    return replace(scene, quantities=rest)
-
-
 def asperities_alone(ensemble: Ensemble) -> Ensemble:
     """The ensemble of the sums of the asperities, where its separations are effective ones.
 
-    Of one that keeps statistics alone those that are not in series with the half-space.
+    Of one that keeps no values those that are not in series with the half-space.
 
     Raises
     ------
@@ -77,7 +66,13 @@ def asperities_alone(ensemble: Ensemble) -> Ensemble:
         As from `scene_alone`.
     """
     scene = ensemble.scene
-    if scene.keep == "statistics":
-        return replace(ensemble, scene=scene_alone(_sums_alone(scene), "this"))
+    if not isinstance(ensemble.sums, Results):  # of what is in series only each surface's would tell
+        rest = tuple(name for name in scene.quantities if not scene.series(name))
+        if not rest:
+            raise ValueError(
+                "of stiffness and conductance in series with the half-space theory gives no mean, and no "
+                "values are kept; ask for another quantity besides"
+            )
+        return replace(ensemble, scene=scene_alone(replace(scene, quantities=rest), "this"))
     sums = _Alone(ensemble.sums, scene)
     return replace(ensemble, scene=scene_alone(scene, "this"), sums=sums)

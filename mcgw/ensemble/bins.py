@@ -11,6 +11,7 @@ import numpy as np
 
 from analytic import quantity_of
 from analytic.arrays import Array, Ints
+from mcgw.ensemble.intervals import moments
 from mcgw.scene.scene import Scene
 
 _BITS = 7  # of a distance that tell its bin: 128 bins for each doubling
@@ -18,7 +19,6 @@ _DOUBLINGS = 14  # of the distance; what lies beyond is in the last bin, and the
 _HALF = _DOUBLINGS << _BITS
 NUMBER = 2 * _HALF
 _FIRST = 1023 << _BITS  # these bits of the number 1
-_AT_A_TIME = 32  # separations that share a rule of heights, whose size is the square of their number
 _OFF_TIES = 0.3  # no mean that people ask for lies half way between two centres
 
 
@@ -83,12 +83,8 @@ def _of_independent(scene: Scene) -> dict[str, tuple[Array, Array]]:
     """Exact mean and standard deviation of all quantities at once, of asperities that are independent."""
     if scene.interaction is not None:
         return {}
-    names, (h, back) = scene.quantities, np.unique(scene.separations, return_inverse=True)
-    parts = []
-    for few in np.array_split(h, -(-h.size // _AT_A_TIME)):
-        one = scene.theory.fluctuations(names, few)
-        parts.append(np.stack([one.mean, one.moment(2)]).reshape(2, len(names), -1))
-    mean, variance = np.concatenate(parts, axis=2)[..., back] * scene.n_asperities
+    names = scene.quantities
+    mean, variance = moments(scene, names, (2,)) * scene.n_asperities
     scale = [quantity_of(name).scale(scene.surface) for name in names]
     pairs = zip(mean, np.sqrt(np.maximum(variance, 0.0)), scale, strict=True)
     return {name: (m * unit, std * unit) for name, (m, std, unit) in zip(names, pairs, strict=True)}

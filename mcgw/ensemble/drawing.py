@@ -213,14 +213,10 @@ def seconds_for(scene: Scene, sampler: Sampler, surfaces: int, *, at_least: floa
     rough = sampler.draws * sampler.seconds_per_draw + columns * _PER_SUM
     if rough * surfaces < at_least or rough > _TRIED:
         return rough * surfaces
-    return surfaces * (seconds_per_surface(scene, sampler) + _seconds_of_statistics(scene))
-
-
-def _seconds_of_statistics(scene: Scene) -> float:
-    """Rough seconds that a surface takes once it is drawn, where its numbers are counted and not kept."""
-    if scene.keep != "statistics":
-        return 0.0
-    return scene.width * _PER_COUNT + scene.width**2 / 2 * _PER_PRODUCT
+    each = seconds_per_surface(scene, sampler)
+    if scene.keep == "statistics":  # numbers are then counted, and not kept
+        each += columns * _PER_COUNT + columns**2 / 2 * _PER_PRODUCT
+    return surfaces * each
 
 
 def in_words(seconds: float) -> str:

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from analytic import PER_AREA, quantity_of
 from analytic.arrays import Array
 from mcgw.ensemble.intervals import CONFIDENCE, interval_of
-from mcgw.ensemble.labelled import Labelled, axes_of, axis, statistic, values_of
+from mcgw.ensemble.labelled import Labelled, axes_of, axis, statistics_of, values_of
 from mcgw.ensemble.results import PROBABILITIES, Held
 from mcgw.formats.sheet import Sheet, Shown
 from mcgw.formats.table import Column, Table
@@ -262,12 +262,7 @@ class Ensemble(Shown):
         """All there is, with axes, units and words: what its file, xarray and pandas are told alike."""
         if self.scene.keep != "statistics":
             return values_of(self.scene, {name: self.values(name) for name in self.scene.shapes})
-        found = {}
-        for name in self.scene.shapes:
-            for kind in STATISTICS:
-                found[f"{name}_{kind}"] = statistic(name, kind, getattr(self, kind)(name))
-            quantiles = np.stack([self.quantile(name, share) for share in PROBABILITIES])
-            found[f"{name}_quantile"] = statistic(name, "quantile", quantiles)
+        found = statistics_of(self, self.scene.shapes, STATISTICS, quantiles=True)
         return Labelled(found, {"probability": axis("probability", PROBABILITIES), **axes_of(self.scene)})
 
     def plot(self, ax: Any = None, *, quantity: str | None = None) -> Any:

@@ -9,7 +9,7 @@ contacts is binomial or Poisson, and its interval exact (Clopper and Pearson 193
 Which confidence interval a quantity of an ensemble has.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -95,20 +95,25 @@ def chebyshev(level: float = CONFIDENCE) -> float:
 
 def spread_of(scene: Scene, quantity: str) -> Spread:
     """Exact spread of a quantity over the surfaces of a scene, at its separations."""
-    h, back = np.unique(scene.separations, return_inverse=True)
-    parts = [_moments(scene, quantity, few) for few in np.array_split(h, -(-h.size // _AT_A_TIME))]
-    mean, variance, third = np.concatenate(parts, axis=1)
+    mean, variance, third = moments(scene, [quantity], (2, 3))[:, 0]
     with np.errstate(divide="ignore", invalid="ignore"):
         relative = np.sqrt(variance) / np.sqrt(scene.n_asperities) / np.abs(mean)
         skewness = np.sign(mean) * third / variance / np.sqrt(variance) / np.sqrt(scene.n_asperities)
     relative = np.where(np.abs(mean) < _NOTHING, np.inf, relative)
-    return Spread(relative[back], np.where(variance > 0, skewness, 0.0)[back])
+    return Spread(relative, np.where(variance > 0, skewness, 0.0))
 
 
-def _moments(scene: Scene, quantity: str, h: Array) -> Array:
-    """Mean, and second and third moment of the random part, of what one asperity contributes."""
-    one = scene.theory.fluctuations([quantity], h)
-    return np.array([one.mean, one.moment(2), one.moment(3)])
+def moments(scene: Scene, names: Sequence[str], orders: Sequence[int]) -> Array:
+    """Mean, and moments of the random part, of what one asperity contributes.
+
+    Shape (1 + orders, quantities, separations), over the scale of each quantity.
+    """
+    (h, back), parts = np.unique(scene.separations, return_inverse=True), []
+    for few in np.array_split(h, -(-h.size // _AT_A_TIME)):
+        one = scene.theory.fluctuations(names, few)
+        found = np.stack([one.mean, *(one.moment(order) for order in orders)])
+        parts.append(found.reshape(1 + len(orders), len(names), -1))
+    return np.asarray(np.concatenate(parts, axis=2)[..., back])
 
 
 def mean_interval(

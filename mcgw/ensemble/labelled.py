@@ -1,6 +1,6 @@
 """Results as named arrays with axes, units and words, for files, xarray and pandas; and as tables."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -116,6 +116,20 @@ def statistic(name: str, kind: str, values: NDArray[Any], lead: tuple[str, ...] 
     lead = (*lead, "probability") if kind == "quantile" else lead
     dims = (*lead, *_OF_A_SURFACE)[: values.ndim]
     return Variable(dims, values, "1" if kind == "skewness" else q.unit, _WORDS[kind].format(q.long_name))
+
+
+def statistics_of(
+    result: Any, names: Iterable[str], kinds: Sequence[str], *, quantiles: bool, lead: tuple[str, ...] = ()
+) -> dict[str, Variable]:
+    """What a result tells over its surfaces of some quantities, with axes before those of a surface."""
+    found: dict[str, Variable] = {}
+    for name in names:
+        for kind in kinds:
+            found[f"{name}_{kind}"] = statistic(name, kind, getattr(result, kind)(name), lead)
+        if quantiles:
+            values = np.stack([result.quantile(name, share) for share in PROBABILITIES], axis=len(lead))
+            found[f"{name}_quantile"] = statistic(name, "quantile", values, lead)
+    return found
 
 
 def heading(quantity: str) -> str:

@@ -104,14 +104,11 @@ def paired_ratio(numerator: Ensemble, denominator: Ensemble, quantity: str) -> P
         )
     b, a = (e.values(quantity).astype(np.float64) for e in (numerator, denominator))
     with np.errstate(divide="ignore", invalid="ignore"):  # without a contact there is no ratio
-        return _pair(quantity, numerator.separations, b, a)
-
-
-def _pair(quantity: str, separations: Array, b: Array, a: Array) -> Paired:
-    ratio = b.mean(axis=0) / np.where(a.mean(axis=0) == 0, np.nan, a.mean(axis=0))
-    residual = (b - ratio * a).var(axis=0, ddof=1)
-    apart = b.var(axis=0, ddof=1) + ratio**2 * a.var(axis=0, ddof=1)
-    return Paired(quantity, separations, ratio, np.sqrt(residual / len(a)) / a.mean(axis=0), apart / residual)
+        ratio = b.mean(axis=0) / np.where(a.mean(axis=0) == 0, np.nan, a.mean(axis=0))
+        residual = (b - ratio * a).var(axis=0, ddof=1)
+        apart = b.var(axis=0, ddof=1) + ratio**2 * a.var(axis=0, ddof=1)
+        error = np.sqrt(residual / len(a)) / a.mean(axis=0)
+        return Paired(quantity, numerator.separations, ratio, error, apart / residual)
 
 
 def _same_asperities(one: Ensemble, other: Ensemble) -> bool:

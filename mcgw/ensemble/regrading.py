@@ -99,20 +99,16 @@ def regrade(
     """
     check_object("regrade", ensemble, Ensemble)
     scene_alone(ensemble.scene, "regrade")
-    _check_kept(ensemble)
-    scene = storable(regraded_scene(ensemble, grading, law, quantities, separations, contact))
-    scene_alone(scene, "regrade")
-    cells = _fitting(ensemble, scene)
-    parts = list(_of_moments(ensemble, scene, cells) if cells else _of_heights(ensemble, scene))
-    return Ensemble(scene, ensemble.sampler, MemoryResults(joined(parts)), ensemble.surfaces_of)
-
-
-def _check_kept(ensemble: Ensemble) -> None:
     if ensemble.scene.keep == "statistics":
         raise ValueError(
             'keep = "statistics": single surfaces are not kept, to be compared with those drawn again; '
             "simulate the scene with the other grading or law, its seed gives the same surfaces"
         )
+    scene = storable(regraded_scene(ensemble, grading, law, quantities, separations, contact))
+    scene_alone(scene, "regrade")
+    cells = _fitting(ensemble, scene)
+    parts = list(_of_moments(ensemble, scene, cells) if cells else _of_heights(ensemble, scene))
+    return Ensemble(scene, ensemble.sampler, MemoryResults(joined(parts)), ensemble.surfaces_of)
 
 
 def regraded_scene(
@@ -131,7 +127,14 @@ def regraded_scene(
     law = old.law if law is None else read_law(as_toml(law))
     contact = {**_unknown_under(law), **contact}
     if quantities is None:
-        quantities = [name for name in old.quantities if _is_left(name, law, {**vars(old), **contact})]
+        left = {**vars(old), **contact}
+        quantities = [
+            q.name
+            for q in map(quantity_of, old.quantities)
+            if not (q.unloading and left["unload_from"] is None)
+            and not (q.base == "conductance_si" and left["film"] is None)
+            and not (q.base == "yielded" and law.elastic)
+        ]
     return old.replace(
         grading=old.grading if grading is None else grading,
         law=law,
@@ -150,16 +153,6 @@ def _unknown_under(law: ContactLaw) -> dict[str, None]:
     except ValueError:
         unknown["unload_from"] = None
     return unknown
-
-
-def _is_left(name: str, law: ContactLaw, contact: dict[str, Any]) -> bool:
-    """Whether surfaces still have a quantity of the ensemble."""
-    q = quantity_of(name)
-    return not (
-        (q.unloading and contact["unload_from"] is None)
-        or (q.base == "conductance_si" and contact["film"] is None)
-        or (q.base == "yielded" and law.elastic)
-    )
 
 
 def _fitting(ensemble: Ensemble, scene: Scene) -> Counted | None:
@@ -206,7 +199,12 @@ def _sums(cells: Counted, first: int, drawn: Drawn) -> dict[str, Array]:
 
 def _read(ensemble: Ensemble, drawn: Counted) -> Iterator[Drawn]:
     """Moments, counts and single asperities of some surfaces at a time, as the ensemble keeps them."""
-    _check_cells(drawn, ensemble)
+    found = tuple(ensemble.sums.read(name, 0, 1).shape[1] for name in ("cells", "moments"))
+    if found != (drawn.cells, drawn.moments):
+        raise ValueError(
+            "the moments kept are of other cells, as another version of mcgw makes them; "
+            "regrade with that version, or simulate the scene anew"
+        )
     for first in range(0, ensemble.n_surfaces, _ROWS):
         yield _held(ensemble, first, min(first + _ROWS, ensemble.n_surfaces))
 
@@ -230,16 +228,6 @@ def _again(ensemble: Ensemble) -> Iterator[Drawn]:
         check_same(ensemble, first, answered(ensemble.scene, sums))
         yield drawn
         first += len(block.moments)
-
-
-def _check_cells(drawn: Counted, ensemble: Ensemble) -> None:
-    """The moments must be of the cells that this version makes."""
-    found = tuple(ensemble.sums.read(name, 0, 1).shape[1] for name in ("cells", "moments"))
-    if found != (drawn.cells, drawn.moments):
-        raise ValueError(
-            "the moments kept are of other cells, as another version of mcgw makes them; "
-            "regrade with that version, or simulate the scene anew"
-        )
 
 
 def sums_of_heights(ensemble: Ensemble, scene: Scene) -> Iterator[dict[str, NDArray[np.float64]]]:

@@ -114,6 +114,7 @@ class Solution(Shown):
             title = f"At the load {self.value:.6g} N = pressure {share / 1e6:.6g} MPa"
         else:
             title = f"At the real area {self.value:.6g} m^2 = {share:.4%} of the nominal area"
+        units = {"mean_gap": "m", "separation": "sigma", **dict.fromkeys(SEPARATIONS, "sigma")}
         names = list(self.surfaces)
         low, high = np.array([self.interval(name) for name in names]).T
         found = [self.surfaces[name] for name in names]
@@ -121,7 +122,7 @@ class Solution(Shown):
         return Table(
             (
                 Column("quantity", names),
-                Column("unit", [_unit(name) for name in names]),
+                Column("unit", [units.get(name) or quantity_of(name).unit for name in names]),
                 Column("theory", [self.theory[name] for name in names], error=error),
                 Column("mean", [x.mean() for x in found], error=error),
                 interval_column(low, high),
@@ -129,12 +130,6 @@ class Solution(Shown):
             ),
             title,
         )
-
-
-def _unit(name: str) -> str:
-    if name == "mean_gap":
-        return "m"
-    return "sigma" if name in ("separation", *SEPARATIONS) else quantity_of(name).unit
 
 
 def against_elasticity(solutions: Sequence[Solution]) -> Validity:

@@ -103,8 +103,10 @@ def merge_once(job: Job, signals: Signals) -> bool:
             "that file away, the same command goes on"
         ) from None
     except (OSError, RuntimeError) as error:
+        said = error.strerror if isinstance(error, OSError) else None
+        why = said or next(iter(str(error).splitlines()), type(error).__name__)
         raise RunError(
-            f"{path}: cannot be merged ({_why(error)}); is the disk full? All blocks are kept in "
+            f"{path}: cannot be merged ({why}); is the disk full? All blocks are kept in "
             f"{started.folder}, the same command goes on"
         ) from None
     finally:
@@ -139,8 +141,3 @@ def _merge_in_memory(job: Job, temporary: Path, check: Callable[[], None]) -> No
 
     seconds += sum(shards[span].seconds for span in spans)
     write_whole(temporary, job.body(blocks(), seconds), expected=None)
-
-
-def _why(error: OSError | RuntimeError) -> str:
-    said = error.strerror if isinstance(error, OSError) else None
-    return said or next(iter(str(error).splitlines()), type(error).__name__)

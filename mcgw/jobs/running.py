@@ -23,7 +23,7 @@ from mcgw.store.lock import locked
 from mcgw.store.place import drop_leftovers, tidy, with_recorded_seed
 from mcgw.store.run_folder import RunFolder
 from mcgw.store.saving import write_body
-from mcgw.store.shards import Shard, Span
+from mcgw.store.shards import Span
 
 _ROUNDS = 3  # of merging, if shards turn out damaged
 
@@ -208,7 +208,12 @@ def _in_blocks(job: Job, by: By) -> None:
     for _ in range(_ROUNDS):
         shards = started.sweep()
         done = job.done()
-        _refuse_more(started, shards)
+        n, wanted = max((shard.span.stop for shard in shards), default=0), started.plan.total
+        if n > wanted:  # blocks beyond what is asked are not thrown away
+            raise StoreError(
+                f"{started.folder}: holds surfaces up to number {n} already, more than ensemble.n_surfaces = "
+                f"{wanted}; ask for as many or more, or choose another -o"
+            )
         _draw_missing(job, started, started.missing(done, shards), by)
         if merge_once(replace(job, record=started), by.signals):
             return
@@ -233,16 +238,6 @@ def _what_is_kept(job: Job) -> Iterator[None]:
             f"{error.filename or job.path}: {error.strerror or error}; finished blocks are kept in "
             f"{job.record.folder}, the same command goes on once that is mended"
         ) from None
-
-
-def _refuse_more(started: RunFolder, shards: list[Shard]) -> None:
-    """Blocks beyond what is asked are not thrown away."""
-    n, wanted = max((shard.span.stop for shard in shards), default=0), started.plan.total
-    if n > wanted:
-        raise StoreError(
-            f"{started.folder}: holds surfaces up to number {n} already, more than ensemble.n_surfaces = "
-            f"{wanted}; ask for as many or more, or choose another -o"
-        )
 
 
 def _draw_missing(job: Job, started: RunFolder, spans: list[Span], by: By, part: Part | None = None) -> None:

@@ -25,18 +25,10 @@ class Part:
     number, of : int
         ``1 <= number <= of``.
 
-    Raises
-    ------
-    ValueError
-        If it is not one of them.
     """
 
     number: int
     of: int
-
-    def __post_init__(self) -> None:
-        if not 1 <= self.number <= self.of:
-            raise ValueError(f"--shard {self.number}/{self.of}: give i/n with 1 <= i <= n")
 
     def mine(self, block: int) -> bool:
         """Whether a block, by its number, is this job's."""
@@ -52,7 +44,7 @@ def part_of(shard: str) -> Part:
         If it names none.
     """
     number, _, of = str(shard).partition("/")
-    if not (number.isdecimal() and of.isdecimal()):
+    if not (number.isdecimal() and of.isdecimal() and 1 <= int(number) <= int(of)):
         raise ValueError(f"--shard {shard}: give i/n with 1 <= i <= n")
     return Part(int(number), int(of))
 
@@ -101,29 +93,13 @@ class By:
 
 
 @contextmanager
-def chosen_engine(engine: Any, threads: int | None) -> Iterator[Engine | None]:
-    """The engine that is given, or that a word or an address names; None for threads of this process.
-
-    One that is made here is closed at the end; one that is given, a client of dask too, is left open.
-
-    Raises
-    ------
-    ValueError
-        If it is none of these.
-    """
-    draws = _engine_of(engine, threads)
-    try:
-        yield draws
-    finally:
-        if draws is not None and draws is not engine:
-            draws.close()
-
-
-@contextmanager
 def asked_of(
     engine: Any, threads: int | None, shard: str | None, progress: Progress
 ) -> Iterator[tuple[Engine | None, Part | None, Tell]]:
     """What a call says of who draws into a file: the engine, the share, and whom to tell.
+
+    An engine that is made here, of a word or an address, is closed at the end; one that is given, a client of
+    dask too, is left open. None stands for threads of this process.
 
     Raises
     ------
@@ -133,11 +109,13 @@ def asked_of(
     if shard is not None and engine is not None:
         raise ValueError(f"shard = {shard!r}: a share is drawn by threads; leave engine out")
     part = None if shard is None else part_of(shard)
-    with (
-        chosen_engine(engine, threads) as draws,
-        told(progress, "surfaces", dashboard_of(draws)) as tell,
-    ):
-        yield draws, part, tell
+    draws = _engine_of(engine, threads)
+    try:
+        with told(progress, "surfaces", dashboard_of(draws)) as tell:
+            yield draws, part, tell
+    finally:
+        if draws is not None and draws is not engine:
+            draws.close()
 
 
 def dashboard_of(engine: Engine | None) -> str:

@@ -22,10 +22,10 @@ from mcgw.reports.report_figures import (
 from mcgw.reports.side_notes import elasticity_words
 from mcgw.scene.cautions import cautions
 from mcgw.scene.in_words import contact_facts, law_text
-from mcgw.scene.other_laws import other_laws
+from mcgw.scene.law_cautions import other_laws
 from mcgw.scene.samplers import promise_of
 from mcgw.scene.scene import Scene
-from mcgw.statistics.comparison import Comparison, compare
+from mcgw.statistics.comparison import compare
 from mcgw.sweeps.over_points import sweep_cautions
 from mcgw.sweeps.sweep import Sweep
 
@@ -56,7 +56,9 @@ def report_html(ensemble: Ensemble, attributes: dict[str, Any]) -> str:
         title=one_line(scene.title) or "Ensemble of rough surfaces",
         words=opening_words(ensemble),
         agrees=comparison is None or comparison.verdict.agrees,
-        verdict=_verdict(ensemble, comparison),
+        verdict=comparison.verdict.line
+        if comparison
+        else f"These are {ensemble.sampler} surfaces: their means serve, nothing tests them against theory",
         elastic=against.verdict,
         at_pressure=at_pressure,
         several=real and ensemble.n_surfaces > 1,
@@ -100,47 +102,30 @@ def _means(ensemble: Ensemble) -> list[Table]:
     return found
 
 
-def _verdict(ensemble: Ensemble, comparison: Comparison | None) -> str:
-    if comparison is not None:
-        return comparison.verdict.line
-    return f"These are {ensemble.sampler} surfaces: their means serve, nothing tests them against theory"
-
-
 def _shorter(scene: str) -> str:
     """The scene with each list of numbers or names on one line: the same TOML."""
-    return re.sub(r"\[\n[^\]]*\]", _one_line, scene)
-
-
-def _one_line(listed: re.Match[str]) -> str:
-    return f"[{' '.join(listed.group()[1:-1].split()).rstrip(',')}]"
+    return re.sub(r"\[\n([^\]]*)\]", lambda found: f"[{' '.join(found[1].split()).rstrip(',')}]", scene)
 
 
 def sweep_report_html(sweep: Sweep, attributes: dict[str, Any], *, progress: Progress = None) -> str:
     """The page of a sweep and of the attributes of its file: scene, digest, ..."""
     comparison = compare(sweep, progress=progress)
     verdict = comparison.verdict
-    first = sweep.scenes[0]
+    first, h = sweep.scenes[0], sweep.separations
     return rendered(
         "sweep.html.j2",
         title=one_line(first.title) or "Sweep of scenes",
         agrees=verdict.agrees,
         verdict=verdict.line,
-        words=_words(sweep),
+        words=f"{sweep.axes.size} scenes at {len(h)} separations from d/σ = {h.min():g} to {h.max():g}; "
+        f"{sum(group.n for group in sweep.groups)} surfaces were drawn, in {len(sweep.groups)} groups whose "
+        "points share theirs.",
         figure=line_figure(sweep_figure(comparison), "residuals of all points, and of the worst one"),
         table=comparison.sheet_of(_LISTED).table,
         cautions=sweep_cautions(sweep),
         axes=[(key, sweep.axes.summary(key)) for key in sweep.axes.keys],
         provenance=provenance_facts({**attributes, "sampler": first.sampler}, first.seed),
         scene=plain_text(attributes["scene"]),
-    )
-
-
-def _words(sweep: Sweep) -> str:
-    h = sweep.separations
-    return (
-        f"{sweep.axes.size} scenes at {len(h)} separations from d/σ = {h.min():g} to {h.max():g}; "
-        f"{sum(group.n for group in sweep.groups)} surfaces were drawn, in {len(sweep.groups)} groups whose "
-        "points share theirs."
     )
 
 

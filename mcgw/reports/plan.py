@@ -98,6 +98,7 @@ def _at_others(scene: Scene, sampler: Sampler, surfaces: int) -> dict[float, flo
 
 def plan_text(scene: Scene, plan: Plan) -> str:
     """The plan in words, with what is not done and why."""
+    size = f"{'statistics alone, about ' * (scene.keep == 'statistics')}{plan.bytes / 1e6:.4g} MB"
     lines = [
         one_line(scene.title) or "scene",
         f"  surfaces      {plan.surfaces} of {scene.n_asperities} asperities ({scene.count})",
@@ -107,7 +108,7 @@ def plan_text(scene: Scene, plan: Plan) -> str:
         f"  cells         {plan.cells}, with {plan.moments} moments a surface",
         f"  quantities    {', '.join(scene.quantities)} at {len(scene.separations)} separations",
         *(f"  {word:13} {what}" for word, what in contact_facts(scene)),
-        f"  results       {_size(scene, plan)}",
+        f"  results       {size if scene.keep == 'statistics' else f'{size} before compression'}",
         f"  time          about {in_words(plan.seconds)} on this machine",
         *_accuracy_lines(scene, plan),
         *(f"  {line}" for line in against_elasticity(scene.validity())),
@@ -121,11 +122,6 @@ def plan_text(scene: Scene, plan: Plan) -> str:
     if left_out:
         lines.append(f"  {', '.join(left_out)}: not asked for")
     return "\n".join(lines)
-
-
-def _size(scene: Scene, plan: Plan) -> str:
-    size = f"{plan.bytes / 1e6:.4g} MB"
-    return f"{size} before compression" if scene.keep != "statistics" else f"statistics alone, about {size}"
 
 
 def _accuracy_lines(scene: Scene, plan: Plan) -> list[str]:

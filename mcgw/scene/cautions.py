@@ -18,23 +18,24 @@ _FEW = 30.0  # contacts a surface, below which single surfaces are far from Gaus
 def cautions(scene: Scene) -> list[str]:
     """What a reader should know before trusting the numbers of a scene, a line each."""
     known = scene.validity()
-    lines = [*off_elasticity(known, _cause(scene))]
+    how = (
+        "neither interact nor merge"
+        if scene.interaction is None
+        else "interact by a mean field, and do not merge"
+    )
+    lines = [*off_elasticity(known, f"asperities {how}")]
     unmeasured = [] if known.measured.any() else [_crowd, _half]
-    found = [*unmeasured, _depth, _slope, _few_contacts, _other_number, _negative_modulus]
-    lines += [line for caution in found for line in caution(scene)]
-    return [*perhaps_other_units(scene), *lines, *_of_conductance(scene), *_of_law(scene)]
+    for caution in (*unmeasured, _depth, _slope, _numbers):
+        lines += caution(scene)
+    if scene.film is not None or "conductance" in scene.quantities:
+        from mcgw.scene.conductance_cautions import conductance_cautions  # for those scenes alone
 
+        lines += conductance_cautions(scene)
+    if type(scene.law) is not Hertz:
+        from mcgw.scene.law_cautions import law_cautions  # who asks for Hertz needs no other law
 
-def _cause(scene: Scene) -> str:
-    if scene.interaction is None:
-        return "asperities neither interact nor merge"
-    return "asperities interact by a mean field, and do not merge"
-
-
-def _direction(scene: Scene) -> str:
-    if scene.interaction is not None:
-        return ""
-    return " (load too large if d is that of a rigid punch, too small if it is the mean gap)"
+        lines += law_cautions(scene)
+    return [*perhaps_other_units(scene), *lines]
 
 
 def _crowd(scene: Scene) -> Iterator[str]:
@@ -48,10 +49,11 @@ def _crowd(scene: Scene) -> Iterator[str]:
     while high - low > 1:
         middle = 0 if low < 0 else (low + high) // 2  # most scenes are sparse throughout
         low, high = (middle, high) if crowded(separations[middle]) else (low, middle)
+    apart = " (load too large if d is that of a rigid punch, too small if it is the mean gap)"
     if low >= 0:
         yield (
             f"up to d/sigma = {separations[low]:.3g} more than {_CROWDED:.0%} of the nominal area touches; "
-            f"asperities interact there{_direction(scene)}; the error was not measured"
+            f"asperities interact there{apart * (scene.interaction is None)}; the error was not measured"
         )
 
 
@@ -81,10 +83,12 @@ def _depth(scene: Scene) -> Iterator[str]:
 def _slope(scene: Scene) -> Iterator[str]:
     top = float(scene.heights.isf(np.array(1 / scene.n_asperities), -40.0))
     steepest = float(np.sqrt(max(top - scene.lowest, 0.0) * scene.surface.sigma / scene.surface.radius))
+    yields = '; metals yield far earlier: contact.law = "kogut-etsion"'
     if steepest > _STEEP:
         yield (
             f"the highest asperities (s = {top:.1f}) have contacts of {steepest:.2f} R at the lowest "
-            f"separation, too steep for {_model(scene)}{_metals(scene)}"
+            f"separation, too steep for {_model(scene)}"
+            f"{yields * scene.law.elastic}"
         )
 
 
@@ -92,14 +96,8 @@ def _model(scene: Scene) -> str:
     return "Hertz" if type(scene.law) is Hertz else f'law = "{scene.law.name}"'
 
 
-def _metals(scene: Scene) -> str:
-    """That there are laws for them, where asperities stay elastic."""
-    if not scene.law.elastic:
-        return ""
-    return '; metals yield far earlier: contact.law = "kogut-etsion"'
-
-
-def _few_contacts(scene: Scene) -> Iterator[str]:
+def _numbers(scene: Scene) -> Iterator[str]:
+    """Few contacts, another number of asperities than the surface has, and moduli that are none."""
     h = np.array(scene.separations)
     few = h[scene.n_asperities * scene.heights.sf(h) < _FEW]
     if few.size:
@@ -107,9 +105,6 @@ def _few_contacts(scene: Scene) -> Iterator[str]:
             f"from d/sigma = {few.min():.3g} fewer than {_FEW:.0f} contacts are expected on a surface: "
             "values of single surfaces are skewed; give more area"
         )
-
-
-def _other_number(scene: Scene) -> Iterator[str]:
     expected = scene.surface.n_asperities
     share = scene.n_asperities / expected
     if abs(share - 1) > 0.01:
@@ -117,27 +112,6 @@ def _other_number(scene: Scene) -> Iterator[str]:
             f"{scene.n_asperities:g} asperities, not eta * nominal_area = {expected:g}: loads belong to "
             f"{share:.3g} of the nominal area"
         )
-
-
-def _negative_modulus(scene: Scene) -> Iterator[str]:
     if scene.negative != "error" and scene.negative_above(scene.lowest) is not None:
         word = "set to zero" if scene.negative == "clip" else "left negative"
         yield f"the modulus is negative at heights that touch, and {word}: beyond the range of the grading"
-
-
-def _of_conductance(scene: Scene) -> list[str]:
-    """What a reader should know of conductances, where they are asked for."""
-    if scene.film is None and "conductance" not in scene.quantities:
-        return []
-    from mcgw.scene.conductance_cautions import conductance_cautions  # for those scenes alone
-
-    return conductance_cautions(scene)
-
-
-def _of_law(scene: Scene) -> list[str]:
-    """What a reader should know of another law than Hertz's."""
-    if type(scene.law) is Hertz:
-        return []
-    from mcgw.scene.law_cautions import law_cautions  # who asks for Hertz needs no other law
-
-    return law_cautions(scene)

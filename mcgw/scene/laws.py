@@ -1,6 +1,6 @@
 """Gradings, height laws and contact laws: made of the keys of their table, and written as these."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import MISSING, asdict, fields
 from pathlib import Path
 from typing import Any
@@ -201,25 +201,33 @@ def contact_law(section: Section) -> ContactLaw:
         section.known("law")
         return Hertz()
     law = section.read("law")
-    if law == "custom":
-        return _custom(section) or Hertz()
     if law is None:
         section.known(*section.table)  # whose constants they are is not known
         return Hertz()
-    from analytic.laws import by_name
-
-    before, known = len(section.problems), fields(by_name[law])  # type: ignore[arg-type]
-    section.known(*(field.name for field in known))
-    for field in known:
-        if field.default is MISSING and field.name not in section:
-            section.problems.append(f'contact.{field.name}: missing; law = "{law}" needs it')
-    constants = section.read_all(field.name for field in known if field.name in section)
+    names, needed, make = _constants_of(law)
+    before = len(section.problems)
+    section.known(*names)
+    for name in needed:
+        if name not in section:
+            section.problems.append(f'contact.{name}: missing; law = "{law}" needs it')
+    constants = section.read_all(name for name in names if name in section)
     if len(section.problems) == before:
         try:
-            return by_name[law](**constants)
+            return make(**constants)
         except ValueError as error:
-            section.problems.append(f"contact.{error}")
+            section.refuse(str(error), names)
     return Hertz()
+
+
+def _constants_of(law: str) -> tuple[Sequence[str], Sequence[str], Callable[..., ContactLaw]]:
+    """Names of the constants of a law, of those that it needs, and what makes it of them."""
+    if law == "custom":
+        names = ("critical", "limits", "load", "area")
+        return names, names, _custom
+    from analytic.laws import by_name
+
+    known = fields(by_name[law])  # type: ignore[arg-type]
+    return [f.name for f in known], [f.name for f in known if f.default is MISSING], by_name[law]
 
 
 def read_law(given: ContactLaw | Mapping[str, Any]) -> ContactLaw:
@@ -259,23 +267,14 @@ def contact_law_table(law: ContactLaw) -> dict[str, Any]:
     return {"law": law.name, "critical": custom.critical, "limits": list(custom.beginnings), **series}
 
 
-def _custom(section: Section) -> ContactLaw | None:
+def _custom(critical: float, limits: list[float], load: Any, area: Any) -> ContactLaw:
     """What a contact law of a Python script has become in a file."""
     from analytic.laws.custom import CustomLaw, RootSeries
 
-    def series(key: str) -> list[RootSeries]:
-        found = [RootSeries(x["low"], x["high"], tuple(x["coefficients"])) for x in given[key]]
+    def series(key: str, pieces: Any) -> list[RootSeries]:
+        found = [RootSeries(x["low"], x["high"], tuple(x["coefficients"])) for x in pieces]
         if wrong := [x for x in found if x.low != -x.high and not 0 < x.low < x.high]:
             raise ValueError(f"{key}: a piece reaches from {wrong[0].low:g} to {wrong[0].high:g}")
         return found
 
-    before, names = len(section.problems), ("critical", "limits", "load", "area")
-    given = section.read_all(names)
-    for name in (name for name in names if name not in section):
-        section.problems.append(f'contact.{name}: missing; law = "custom" needs it')
-    if len(section.problems) > before:
-        return None
-    try:
-        return CustomLaw(series("load"), series("area"), given["limits"], given["critical"])
-    except ValueError as error:
-        return section.refuse(str(error), names)
+    return CustomLaw(series("load", load), series("area", area), limits, critical)

@@ -26,7 +26,8 @@ _PLACES = {key: table for table in ("", "contact", "ensemble") for key in KEYS[t
 _PLACES |= {"negative": "grading", "curvature": "summits"}
 _OBJECTS = ("law", "curvature")  # which may be words or keys, too
 _QUANTITIES = ("load", "area", "stiffness", "contacts")
-_DRAWING = ("count", "sampler", "keep", "accuracy", "law_error", "rel_err", "max_seconds")
+# Keys of [ensemble] that are no values of a scene as they are read.
+_DERIVED = ("max_surfaces", "n_surfaces", "n_asperities", "seed", "edges", "left_out")
 
 
 def of_arguments(**given: Any) -> Values:
@@ -208,7 +209,7 @@ def _made(top: Section, section: Section, make: Callable[..., Any]) -> Any:
 def _ensemble(section: Section, surface: Surface | None, seed: Callable[[], int | None] | None) -> Values:
     """How many surfaces, and how they are drawn; numbers that nobody gave are marked."""
     most, number, n = section.read_all(("max_surfaces", "n_surfaces", "n_asperities")).values()
-    values = section.read_all(_DRAWING)
+    values = section.read_all(key for key in section.rows if key not in _DERIVED)
     values["edges"] = tuple(sorted({s + 0.0 for s in section.read("edges") or ()}))  # -0.0 is 0.0
     values["n_surfaces"] = _number(section, "n_surfaces", most if number is None else number)
     values["n_asperities"] = _number(section, "n_asperities", n)

@@ -123,9 +123,7 @@ class Section:
 
     def fail(self, name: str, value: Any, advice: str) -> _Value | None:
         """Note a mistake; gives None, which is then the value."""
-        shown = repr(value)
-        shown = shown if len(shown) <= 60 else shown[:57] + "..."
-        return self.note(f"{self.path(name)} = {shown}: {advice}")
+        return self.note(f"{self.path(name)} = {shortened(repr(value))}: {advice}")
 
     def note(self, line: str) -> _Value | None:
         """Note a mistake in these words."""
@@ -185,8 +183,13 @@ class Section:
 
     def path(self, name: str) -> str:
         """A key with its table."""
-        shown = one_line(name if len(name) <= 60 else f"{name[:57]}...")
+        shown = one_line(shortened(name))
         return f"{self.name}.{shown}" if self.name else shown
+
+
+def shortened(text: str) -> str:
+    """A text, with dots in the place of its end if it is longer than 60 characters."""
+    return text if len(text) <= 60 else f"{text[:57]}..."
 
 
 def _either(words: Iterable[str]) -> str:

@@ -9,7 +9,6 @@ import numpy as np
 
 from analytic import quantity_of
 from analytic.arrays import Array
-from mcgw.ensemble.asperities_alone import scene_alone
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.intervals import interval_column
 from mcgw.ensemble.labelled import heading
@@ -268,28 +267,15 @@ def _of_ensemble(ensemble: Ensemble) -> Comparison:
 
 
 def _of_sweep(sweep: "Sweep", progress: Progress) -> SweepComparison:
-    """Each point tested as an ensemble is, at twelve separations at most.
-
-    Of asperities that press each other down, stiffness and conductance are left out: of the surfaces only
-    their means in series with the half-space are kept.
-    """
+    """Each point tested as an ensemble is, at twelve separations at most."""
     found = []
     with told(progress, "points") as tell:
         for i, point in enumerate(sweep.axes.points()):
             tell(i, sweep.axes.size)
             one = sweep.ensemble(point)
             if promise_of(one.scene.sampler).real_surfaces:
-                found.append(replace(_tested(one), number=i))
+                found.append(replace(tested(one, _SEPARATIONS), number=i))
         tell(sweep.axes.size, sweep.axes.size)
     if not found:
         raise ValueError("stratified points hold means, not ensembles; compare takes another sampler")
     return SweepComparison(sweep, tuple(found))
-
-
-def _tested(ensemble: Ensemble) -> Tested:
-    """A point as its asperities are by themselves, where these press each other down."""
-    scene = ensemble.scene
-    if scene.interaction is not None and not scene.interaction.nominal:
-        names = tuple(name for name in scene.quantities if not scene.series(name))
-        scene = scene_alone(scene, "this").replace(quantities=names)
-    return tested(scene, ensemble.n_surfaces, ensemble.mean, _SEPARATIONS)

@@ -26,6 +26,7 @@ from mcgw.scene.samplers import promise_of
 from mcgw.scene.scene import Scene
 from mcgw.statistics.checks import (
     Check,
+    PrincipalComponents,
     Slope,
     covariances,
     coverage,
@@ -35,7 +36,6 @@ from mcgw.statistics.checks import (
     slope,
     variances,
 )
-from mcgw.statistics.principal_components import PrincipalComponents
 from mcgw.statistics.verdict import FALSE_ALARM, verdict
 
 Sums = Mapping[str, NDArray[Any]]
@@ -164,7 +164,12 @@ def converge(
             parts.append(draw(replace(scene, seed=(scene.seed + k) % 2**64)))
         tell(seeds, seeds)
     sums = joined([{name: part[name] for name in scene.quantities} for part in parts])
-    exact = _axes(scene, seeds * scene.n_surfaces)
+    exact = PrincipalComponents.of(scene, surfaces=seeds * scene.n_surfaces)
+    if not scene.exact and exact.columns and not exact.axes.size:  # the accuracy of values would be seen
+        raise ValueError(
+            f"ensemble.accuracy = {scene.accuracy:g}: means of {seeds * scene.n_surfaces} surfaces are known "
+            "better than that; converge with fewer surfaces, or a finer accuracy"
+        )
     y = exact.turn(sums)
     whole = replace(scene, n_surfaces=len(y))
     means = verdict(Ensemble(whole, "drawn", MemoryResults(sums)))
@@ -189,17 +194,6 @@ def converge(
         slopes = [*_slope_in_surfaces(exact, y, scene.n_surfaces), *_slope_in_asperities(scene, draw)]
         checks += [found.check for found in slopes]
     return Convergence(scene, tuple(checks), tuple(slopes), z)
-
-
-def _axes(scene: Scene, surfaces: int) -> PrincipalComponents:
-    """What is tested, in which the accuracy of the values cannot be seen."""
-    exact = PrincipalComponents.of(scene, surfaces=surfaces)
-    if not scene.exact and exact.columns and not exact.axes.size:
-        raise ValueError(
-            f"ensemble.accuracy = {scene.accuracy:g}: means of {surfaces} surfaces are known better than "
-            "that; converge with fewer surfaces, or a finer accuracy"
-        )
-    return exact
 
 
 def _own(scene: Scene) -> Sums:

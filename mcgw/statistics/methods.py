@@ -86,20 +86,12 @@ def methods_for(scene: Scene, chosen: tuple[int, ...]) -> tuple[Method, ...]:
         if draws < _MOST_DRAWS
     ]
     if scene.curvature is None:  # radii of their own are drawn one by one
-        found += _of_one_radius(scene, chosen, exact, surfaces)
+        drawn = partial(_by_sampler, scene, chosen, exact, "aggregate")
+        found.append(Method("aggregate", "surfaces", surfaces, -0.5, drawn))
+        strata = tuple(float(10**3 * 4**k) for k in range(10))
+        by_strata = partial(_by_strata, scene, chosen, exact)
+        found.append(Method("stratified", "strata", strata, -1.5, by_strata))
     return (*found, *_quadratures(scene, chosen, exact))
-
-
-def _of_one_radius(
-    scene: Scene, chosen: tuple[int, ...], exact: Array, surfaces: tuple[float, ...]
-) -> list[Method]:
-    """Ways that need all summits to have one radius."""
-    found = []
-    errors = partial(_by_sampler, scene, chosen, exact, "aggregate")
-    found.append(Method("aggregate", "surfaces", surfaces, -0.5, errors))
-    strata = tuple(float(10**3 * 4**k) for k in range(10))
-    found.append(Method("stratified", "strata", strata, -1.5, partial(_by_strata, scene, chosen, exact)))
-    return found
 
 
 def _checked(scene: Scene, chosen: tuple[int, ...]) -> Array:

@@ -12,7 +12,6 @@ Tests of means whose values are only as accurate as the scene asks (`Scene.accur
 Every value may be off by its share, and so may the mean, in the same direction for all surfaces.
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any, cast
 
@@ -75,24 +74,21 @@ class Verdict:
     @property
     def seen(self) -> str:
         """What p is of, in words."""
-        return self._seen + f" at the least likely of {self.points} points" * (self.points > 0)
+        where = f" at the least likely of {self.points} points" * (self.points > 0)
+        if self.means:
+            return (
+                f"the farthest of {self.means} means is {self.farthest:.1f} standard errors beyond the "
+                f"accuracy asked for{where}"
+            )
+        if not self.degrees:
+            return f"no mean is near enough to Gaussian to be tested{where}"
+        return f"chi-square {self.chi_square:.1f} for {self.degrees} degrees of freedom{where}"
 
     @property
     def line(self) -> str:
         """Do they agree, and how sure is that."""
         word = "agree" if self.agrees else "DISAGREE"
         return f"Monte Carlo and theory {word}: {self.seen}, p = {self.p:.3g}"
-
-    @property
-    def _seen(self) -> str:
-        if self.means:
-            return (
-                f"the farthest of {self.means} means is {self.farthest:.1f} standard errors beyond the "
-                "accuracy asked for"
-            )
-        if not self.degrees:
-            return "no mean is near enough to Gaussian to be tested"
-        return f"chi-square {self.chi_square:.1f} for {self.degrees} degrees of freedom"
 
 
 @dataclass(frozen=True)
@@ -150,33 +146,25 @@ def verdict(ensemble: Ensemble) -> Verdict:
     means that theory knows well enough. Of a scene that asks for less than the last digits, what is beyond
     its accuracy counts, of the means one by one and of their combinations in which it cannot be seen.
     """
-    scene = ensemble.scene
-    if scene.interaction is not None and not scene.interaction.nominal:
-        return verdict(asperities_alone(ensemble))
-    return tested(scene, ensemble.n_surfaces, ensemble.mean, _MOST_SEPARATIONS).verdict
+    return tested(ensemble, _MOST_SEPARATIONS).verdict
 
 
-def tested(scene: Scene, surfaces: int, mean: Callable[[str], Array], most: int) -> Tested:
-    """Means over so many surfaces against theory, as `verdict` does, at the given number of separations.
+def tested(ensemble: Ensemble, most: int) -> Tested:
+    """Hold the means of an ensemble to theory, as `verdict` does, at so many separations at most, evenly.
 
-    Parameters
-    ----------
-    scene : Scene
-        Whose asperities do not press each other down, or find a balance on each surface.
-    surfaces : int
-        How many there are.
-    mean : callable
-        Means of a quantity in SI units, shape (separations,), by its name.
-    most : int
-        Separations to take, evenly.
+    Of asperities that press each other down, stiffness and conductance are left out where no values are kept:
+    only their means in series with the half-space are then known.
     """
+    scene, surfaces = ensemble.scene, ensemble.n_surfaces
+    if scene.interaction is not None and not scene.interaction.nominal:
+        return tested(asperities_alone(ensemble), most)
     h = np.unique(scene.separations)
     h = h[evenly(len(h), most)]
     parts = bounded_theory(scene, surfaces).fluctuations(scene.quantities, h)
     index = [scene.separations.index(x) for x in h]
     scale = np.repeat([quantity_of(q).scale(scene.surface) for q in scene.quantities], len(h))
     exact = scene.n_asperities * parts.mean
-    means = np.concatenate([mean(q)[index] for q in scene.quantities])
+    means = np.concatenate([ensemble.mean(q)[index] for q in scene.quantities])
     difference = means / scale - exact
     asperities = float(scene.n_asperities) * surfaces
 

@@ -197,7 +197,12 @@ def advise(
         if wish.of == "quantile" and seen is None:
             seen = _Quantile.of(scene, h)
         needed, law_error = _needed(wish, scene, spread, seen)
-        good = [way for way in ways if _serves(way, wish, law_error)]
+        share = 1.0 if wish.of == "surfaces" else _SHARE
+        good = [
+            way
+            for way in ways
+            if way.scene.accuracy <= share * wish.within and way.scene.law_error <= law_error
+        ]
         if good and needed <= _MOST_SURFACES:
             way = min(good, key=lambda way: way.seconds(needed))
             asked = replace(way.scene, n_surfaces=ceil(needed))
@@ -212,12 +217,6 @@ def _needed(wish: Wish, scene: Scene, spread: float, seen: "_Quantile | None") -
     if wish.of == "quantile" and seen:
         return seen.surfaces(wish.within), _SHARE * wish.within * seen.density
     return float(scene.n_surfaces), 0.0
-
-
-def _serves(way: Way, wish: Wish, law_error: float) -> bool:
-    if wish.of == "surfaces":
-        return way.scene.accuracy <= wish.within and not way.scene.law_error
-    return way.scene.accuracy <= _SHARE * wish.within and way.scene.law_error <= law_error
 
 
 @dataclass(frozen=True)

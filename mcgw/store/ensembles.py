@@ -209,7 +209,14 @@ def verify(path: Path) -> tuple[str, str]:
         problem = str(error).removeprefix(f"{path}: ")
     try:
         attributes, scene = described(path)
-        found = _digest_now(path, attributes, scene)
+        with h5py.File(path, "r") as file:
+            if "axes" in attributes:
+                texts = str(attributes["scene"]), str(attributes["axes"])
+                found = drawn_digest(drawn_tables(file), *texts)
+            elif scene.keep == "statistics":
+                found = drawn_digest(drawn_tables(file), scene_text(scene, left_out=False))
+            else:
+                found = values_digest(file, scene)
         if found != attributes["digest"]:
             problem = problem or "digest mismatch of its data"
     except (OSError, RuntimeError, KeyError, ValueError) as error:
@@ -217,15 +224,6 @@ def verify(path: Path) -> tuple[str, str]:
             raise
         return f"{problem}; {error}", "unreadable"
     return problem, found
-
-
-def _digest_now(path: Path, attributes: dict[str, Any], scene: Scene) -> str:
-    with h5py.File(path, "r") as file:
-        if "axes" in attributes:
-            return drawn_digest(drawn_tables(file), str(attributes["scene"]), str(attributes["axes"]))
-        if scene.keep == "statistics":
-            return drawn_digest(drawn_tables(file), scene_text(scene, left_out=False))
-        return values_digest(file, scene)
 
 
 @dataclass(frozen=True)

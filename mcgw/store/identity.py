@@ -42,6 +42,7 @@ from mcgw.formats.named_files import loads
 from mcgw.scene.samplers import promise_of
 from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_from, scene_text
+from mcgw.scene.section import shortened
 
 Question = tuple[str, str, str]  # text of a scene, axes of a sweep or none, versions that draw
 KIND = ", processor "  # stands between the versions and the kind
@@ -68,10 +69,10 @@ def difference(there: Question, here: Question) -> str:
     before, now = _said(*there[:2]), _said(*here[:2])
     for key, value in now.items():
         if before.get(key) != value:
-            return f"{key} is {_short(before.get(key))} there and {_short(value)} here"
+            return f"{key} is {shortened(repr(before.get(key)))} there and {shortened(repr(value))} here"
     for key, value in before.items():
         if key not in now:
-            return f"{key} is {_short(value)} there and not given here"
+            return f"{key} is {shortened(repr(value))} there and not given here"
     made_with, this = there[2], here[2]
     if made_with.partition(KIND)[0] == this.partition(KIND)[0] and made_with != this:
         return "it was drawn on another kind of processor, which rounds exponentials and logarithms otherwise"
@@ -91,11 +92,6 @@ def _flat(table: dict[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
             yield from _flat(value, f"{prefix}{key}.")
         else:
             yield prefix + key, value
-
-
-def _short(value: Any) -> str:
-    shown = repr(value)
-    return shown if len(shown) <= 60 else shown[:57] + "..."
 
 
 def depends_on_processor(scene: Scene, sampler: str) -> bool:

@@ -69,16 +69,11 @@ def describe(file: h5py.File, scene: Scene, sampler: str, digest: str, /, **attr
         "digest": digest,
         "date": now(),
     }
-    file.attrs.update(**{**usual, **_spent(scene), **provenance(), **attributes})
+    if scene.law_error:
+        from mcgw.sampling.samplers import law_error_of  # for those scenes alone
 
-
-def _spent(scene: Scene) -> dict[str, float]:
-    """How far from the exact laws a scene went that allowed it."""
-    if not scene.law_error:
-        return {}
-    from mcgw.sampling.samplers import law_error_of  # for those scenes alone
-
-    return {"law_error_spent": law_error_of(scene)}
+        usual["law_error_spent"] = law_error_of(scene)  # how far from the exact laws it went
+    file.attrs.update(**{**usual, **provenance(), **attributes})
 
 
 def where(name: str) -> str:
@@ -118,10 +113,6 @@ def numbers(scale: Sequence[float], most: int | None = None) -> NDArray[Any]:
     """The values of a scale, or the first of them."""
     first = scale[:most]
     return np.arange(first.start, first.stop) if isinstance(first, range) else np.array(first)
-
-
-def _scales(file: h5py.File) -> list[str]:
-    return [name for name in _OF_SURFACES if name in file]
 
 
 class _Digest:
@@ -191,9 +182,9 @@ def _packed(values: NDArray[Any]) -> dict[str, Any]:
 def digest_of(file: h5py.File, scene: Scene, pieces: Iterable[Tables]) -> str:
     """Digest of a scene, of the scales in its file, and of tables that come in pieces, in order."""
     digest = _Digest(scene)
-    for name in _scales(file):
-        for start, stop in _steps(file[name]):
-            digest.add(name, file[name][start:stop])
+    for name in filter(file.__contains__, _OF_SURFACES):
+        for start in range(0, len(file[name]), _PIECE // 8):
+            digest.add(name, file[name][start : start + _PIECE // 8])
     for arrays in pieces:
         for name, values in arrays.items():
             digest.add(name, values)
@@ -233,13 +224,6 @@ def rows_of(file: h5py.File, spans: Iterable[Span]) -> Iterator[tuple[Span, Tabl
         if outside is not None:
             arrays[RAGGED] = outside[(outside[:, 0] >= span.first) & (outside[:, 0] < span.stop)]
         yield span, arrays
-
-
-def _steps(data: h5py.Dataset) -> Iterator[tuple[int, int]]:
-    width = data.dtype.itemsize * int(np.prod(data.shape[1:]))
-    step = max(_PIECE // max(width, 1), 1)
-    for start in range(0, max(data.shape[0], 1), step):
-        yield start, min(start + step, data.shape[0])
 
 
 def _lay_out(file: h5py.File, scene: Scene, like: Stored) -> None:

@@ -20,7 +20,6 @@ from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
-from typing import Any
 
 import tomli_w
 
@@ -162,16 +161,19 @@ class RunFolder:
         try:
             fd = os.open(file, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK)
             with os.fdopen(fd, "rb") as opened:
-                said = _unchanged(opened.read(_MOST_BYTES))
+                data = opened.read(_MOST_BYTES)
+            said, text = loads(data.decode()), data.rpartition(_CHECKSUM.encode())[0]
+            if said.get("sha256") != hashlib.sha256(text).hexdigest():
+                raise _ChangedError
             if said["filetype"] != _FILETYPE or said["format"][0] != _FORMAT[0]:
                 raise StoreError(f"{file}: is not a run of format {_FORMAT[0]}.x, but {said['format']}")
-            text, axes, sampler = (str(said[key]) for key in ("scene", "axes", "sampler"))
+            scene, axes, sampler = (str(said[key]) for key in ("scene", "axes", "sampler"))
             known = [str(said[key]) for key in ("identity", "versions", "date")]
             if not all(map(str.isprintable, (sampler, *known))):
                 raise ValueError
             groups = tuple((int(n), int(size)) for n, size in said["blocks"])
-            whole = bool(axes) or scene_from(text).keep == "statistics"
-            return cls(folder, text, axes, sampler, Plan(groups, whole), *known)
+            whole = bool(axes) or scene_from(scene).keep == "statistics"
+            return cls(folder, scene, axes, sampler, Plan(groups, whole), *known)
         except OSError as error:
             raise StoreError(f"{file}: {error.strerror}") from None
         except (SceneError, KeyError, TypeError, ValueError) as error:
@@ -244,12 +246,3 @@ class _DamagedError(StoreError):
 
 class _ChangedError(ValueError):
     """The checksum does not hold."""
-
-
-def _unchanged(data: bytes) -> dict[str, Any]:
-    """What a run.toml says, if its checksum holds."""
-    said = loads(data.decode())
-    text = data.rpartition(_CHECKSUM.encode())[0]
-    if said.get("sha256") != hashlib.sha256(text).hexdigest():
-        raise _ChangedError
-    return said

@@ -26,13 +26,13 @@ row for each joined block of surfaces::
 `digest` is over the scene and ``/drawn``.
 """
 
+import math
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
 import h5py
 import numpy as np
-from numpy.typing import NDArray
 
 from mcgw.ensemble.ensemble import STATISTICS, Ensemble
 from mcgw.ensemble.labelled import Labelled, Variable
@@ -57,7 +57,11 @@ def body_of_statistics(ensemble: Ensemble, **attributes: Any) -> tuple[bytes, by
     columns, about = np.arange(scene.width), ("1", "quantity and separation")
     scales = {name: Variable((name,), columns, *about) for name in _COLUMNS}
     order = ", ".join(f"{name} {'x'.join(map(str, shape))}" for name, shape in scene.shapes.items())
-    covariance = Variable(_COLUMNS, _covariance(ensemble), "product of units", f"covariance of {order}")
+    blocks = [
+        [ensemble.covariance(one, other).reshape(math.prod(shape), -1) for other in scene.shapes]
+        for one, shape in scene.shapes.items()
+    ]
+    covariance = Variable(_COLUMNS, np.block(blocks), "product of units", f"covariance of {order}")
     labelled = Labelled({**found.variables, "covariance": covariance}, {**found.coordinates, **scales})
     texts = (scene_text(scene, left_out=False),)
     return body_of_kept(labelled, tables, texts, scene, ensemble.sampler, **attributes)
@@ -93,13 +97,3 @@ def shapes_of(scene: Scene) -> dict[str, list[int]]:
         shapes |= {f"{name}_{kind}": [*shape] for kind in STATISTICS}
         shapes[f"{name}_quantile"] = [len(PROBABILITIES), *shape]
     return shapes
-
-
-def _covariance(ensemble: Ensemble) -> NDArray[np.float64]:
-    """Of all numbers of a surface with each other."""
-    shapes = ensemble.scene.shapes
-    rows = []
-    for name in shapes:
-        size = int(np.prod(shapes[name]))
-        rows.append([ensemble.covariance(name, other).reshape(size, -1) for other in shapes])
-    return np.block(rows)

@@ -141,7 +141,8 @@ def open_sweep(path: str | Path, statistics: tuple[str, ...] = STATISTICS) -> Sw
         groups = tuple(_groups(drawn))
         group, height = drawn["edges"].T
         edges = tuple(tuple(height[group == g].tolist()) for g in range(len(groups)))
-        places = tuple(_place(*row) for row in zip(drawn["points"], drawn["weights"], strict=True))
+        rows = zip(drawn["points"].tolist(), drawn["points"][:, 1:], drawn["weights"], strict=True)
+        places = tuple(Place(g, some[some >= 0], w[some >= 0]) for (g, *_), some, w in rows)
         of_points = [(groups[place.group].n, edges[place.group]) for place in places]
         return Sweep(axes, Points(document, axes, of_points), places, groups, edges, statistics)
     except (OSError, RuntimeError, KeyError, IndexError, TypeError, ValueError) as error:
@@ -149,11 +150,6 @@ def open_sweep(path: str | Path, statistics: tuple[str, ...] = STATISTICS) -> Sw
             raise
         what = error.problems[0] if isinstance(error, SceneError) else error
         raise StoreError(f"{path}: damaged, or of another version ({what})") from None
-
-
-def _place(point: NDArray[np.int64], weights: NDArray[np.float64]) -> Place:
-    some = point[1:] >= 0
-    return Place(int(point[0]), point[1:][some], weights[some])
 
 
 def _groups(drawn: Tables) -> Iterator[Pooled]:

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from analytic import Exponential, Grading, Homogeneous, quantity_of
+from analytic import Exponential, Homogeneous, quantity_of
 from analytic.arrays import Array, Ints
 from mcgw.machine.progress import steps
 from mcgw.sampling.shared import on_common_cells, to_be_shared
@@ -100,7 +100,12 @@ def _group(group: int, numbers: list[int], scenes: list[Scene]) -> Group:
     scenes = on_common_cells(scenes) if len(scenes) > 1 else scenes
     computed: list[int] = []
     places: dict[int, Place] = {}
-    for members in _alike(range(len(scenes)), lambda i: _but_grading(scenes[i])):
+    for members in _alike(
+        range(len(scenes)),
+        lambda i: [
+            getattr(scenes[i], f.name) for f in fields(scenes[i]) if f.name not in ("grading", "title")
+        ],
+    ):
         first, one = len(computed), np.ones(1)
         if (found := between_two([scenes[i] for i in members])) is None:
             computed += members
@@ -108,19 +113,11 @@ def _group(group: int, numbers: list[int], scenes: list[Scene]) -> Group:
             continue
         two, weights = found
         computed += [members[k] for k in two]
-        places |= {i: _between(group, first, pair) for i, pair in zip(members, weights, strict=True)}
+        for i, pair in zip(members, weights, strict=True):
+            some = np.flatnonzero(pair)  # without one that does not count
+            places[i] = Place(group, first + some, pair[some])
     in_order = tuple(places[i] for i in range(len(scenes)))
     return Group(tuple(numbers), tuple(scenes), tuple(scenes[i] for i in computed), in_order)
-
-
-def _between(group: int, first: int, weights: Array) -> Place:
-    """Of two scenes, without one that does not count."""
-    some = np.flatnonzero(weights)
-    return Place(group, first + some, weights[some])
-
-
-def _but_grading(scene: Scene) -> tuple[Any, ...]:
-    return tuple(getattr(scene, f.name) for f in fields(scene) if f.name not in ("grading", "title"))
 
 
 def _alike(items: Sequence[_Item], key: Callable[[_Item], Any]) -> list[list[_Item]]:
@@ -147,22 +144,17 @@ def between_two(scenes: Sequence[Scene]) -> tuple[tuple[int, int], NDArray[np.fl
         The two, and the weights of each scene on them, shape (scenes, 2). None if there are few scenes, a
         grading is no exponential one, or sums are not linear in it.
     """
-    gammas = [_gamma(scene.grading) for scene in scenes]
-    if len(set(gammas)) < _MANY or None in gammas or not _linear(scenes[0]):
+    one = scenes[0]
+    # All that is kept must follow from sums linear in a modulus that is not negative.
+    linear = one.hertzian and one.tangential is None and one.interaction is None
+    linear = linear and one.negative == "error" and one.keep != "statistics"
+    gammas = [
+        x.grading.gamma if isinstance(x.grading, Exponential) else 1.0 if x.grading == Homogeneous() else None
+        for x in scenes
+    ]
+    if len(set(gammas)) < _MANY or None in gammas or not linear:
         return None
     x = np.array(gammas, dtype=np.float64)
     low, high = int(np.argmin(x)), int(np.argmax(x))
     share = (x - x[low]) / (x[high] - x[low])
     return (low, high), np.column_stack([1 - share, share])
-
-
-def _gamma(grading: Grading) -> float | None:
-    if isinstance(grading, Homogeneous):
-        return 1.0
-    return grading.gamma if isinstance(grading, Exponential) else None
-
-
-def _linear(scene: Scene) -> bool:
-    """Whether all that is kept follows from sums linear in a modulus that is not negative."""
-    plain = scene.hertzian and scene.tangential is None and scene.interaction is None
-    return plain and scene.negative == "error" and scene.keep != "statistics"

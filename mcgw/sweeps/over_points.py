@@ -6,7 +6,7 @@ The cautions of all points of a sweep, each said once: of how many points.
 """
 
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -225,13 +225,10 @@ def sweep_cautions(sweep: OverPoints) -> list[str]:
     for i in range(len(points)):
         for line in cautions(sweep.scenes[i]):
             found.setdefault(_NUMBER.sub("#", line), []).append((i, line))
-    return list(_told(sweep, sorted(found.values(), key=len, reverse=True)))
-
-
-def _told(sweep: OverPoints, found: list[list[tuple[int, str]]]) -> Iterator[str]:
-    points = list(sweep.axes.points())
-    for some in found:
+    lines = []
+    for some in sorted(found.values(), key=len, reverse=True):
         first, line = some[0]
         alike = len({text for _, text in some}) == 1
         where = "" if alike else f" (numbers of {sweep.axes.text(points[first])})"
-        yield f"{len({i for i, _ in some})} of {len(points)} points: {line}{where}"
+        lines.append(f"{len({i for i, _ in some})} of {len(points)} points: {line}{where}")
+    return lines

@@ -6,7 +6,7 @@ What a sweep asks, checked and put into groups: before anything is drawn.
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
-from typing import Any, overload
+from typing import Any
 
 import tomli_w
 
@@ -71,11 +71,7 @@ class Points(Sequence[Scene]):
         """Number of points."""
         return len(self._points)
 
-    @overload
-    def __getitem__(self, i: int) -> Scene: ...
-    @overload
-    def __getitem__(self, i: slice) -> list[Scene]: ...
-    def __getitem__(self, i: int | slice) -> Scene | list[Scene]:
+    def __getitem__(self, i: Any) -> Any:
         """One of them, or some."""
         if isinstance(i, slice):
             return [self[k] for k in range(*i.indices(len(self)))]
@@ -118,10 +114,11 @@ class Asked:
         """A scene and what is changed of it; nothing is checked yet."""
         return cls(document_of(scene), axes)
 
-    @classmethod
-    def from_texts(cls, scene: str, axes: str) -> "Asked":
+    @staticmethod
+    @lru_cache(maxsize=1)
+    def from_texts(scene: str, axes: str) -> "Asked":
         """What `texts` gave; the same object for the same texts, for its groups may take long to find."""
-        return _from_texts(scene, axes)
+        return Asked(loads(scene), Axes.from_text(axes))
 
     def texts(self) -> tuple[str, str]:
         """The scene as TOML and the axes as JSON."""
@@ -154,11 +151,6 @@ class Asked:
             edges=tuple(group.scenes[0].edges for group in self.groups),
             statistics=statistics,
         )
-
-
-@lru_cache(maxsize=1)
-def _from_texts(scene: str, axes: str) -> Asked:
-    return Asked(loads(scene), Axes.from_text(axes))
 
 
 def _with_a_number(scene: Scene) -> Scene:

@@ -98,8 +98,11 @@ class Pooled:
             means[name] = mean + step * (other.n / n)
             between = step[:, None] * step[None] * (self.n * (other.n / n))
             products[name] = self.products[name] + other.products[name] + between
-        pairs = zip(self.blocks, other.blocks, strict=True)
-        return Pooled(n, means, products, tuple(_pushed(*pair) for pair in pairs))
+        blocks = [list(before) for before in self.blocks]
+        for before, new in zip(blocks, other.blocks, strict=True):
+            for block in new:
+                push(before, block)
+        return Pooled(n, means, products, tuple(map(tuple, blocks)))
 
     def mean(self, name: str, scenes: Ints, weights: Array) -> Array:
         """Mean of a combination of some scenes, shape (separations,)."""
@@ -114,10 +117,3 @@ class Pooled:
         pairs = list(zip(scenes, weights, strict=True))
         total = sum(v * w * products[i, j] for i, v in pairs for j, w in pairs)
         return np.asarray(total / (self.n - 1))
-
-
-def _pushed(before: tuple[Summary, ...], new: tuple[Summary, ...]) -> tuple[Summary, ...]:
-    blocks = list(before)
-    for block in new:
-        push(blocks, block)
-    return tuple(blocks)

@@ -4,17 +4,16 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analytic import quantity_of
-from mcgw.ensemble.labelled import Labelled, Variable, axes_of, axis, statistic
+from mcgw.ensemble.labelled import Labelled, Variable, axes_of, axis, statistics_of
 from mcgw.ensemble.results import PROBABILITIES
 from mcgw.formats.sheet import Sheet, Shown
 from mcgw.formats.table import SEPARATION, Column, Table, evenly
 from mcgw.machine.terminal import plotted
 from mcgw.scene.samplers import promise_of
 from mcgw.scene.scene_file import scene_text
-from mcgw.sweeps.axes import Axes, Point, label
+from mcgw.sweeps.axes import Point, label
 from mcgw.sweeps.over_points import At, OverPoints
 from mcgw.sweeps.pairs import Difference, Slopes
 
@@ -117,19 +116,19 @@ class Sweep(OverPoints, Shown):
     def labelled(self) -> Labelled:
         """What there is, with axes, units and words: what xarray and pandas are told."""
         coordinates = {
-            name: Variable(("point",) if self.axes.zipped else (name,), _labels(self.axes, key), "", key)
+            name: Variable(
+                ("point",) if self.axes.zipped else (name,),
+                np.array([label(value) for value in self.axes.values[key]]),
+                "",
+                key,
+            )
             for key, name in self.axes.names.items()
         }
-        variables = {
-            f"{name}_{kind}": statistic(name, kind, getattr(self, kind)(name), self.axes.dims)
-            for name in self.quantities
-            for kind in (*self.statistics, *(("skewness",) if self.groups[0].blocks else ()))
-        }
-        if self.groups[0].blocks:
+        whole = bool(self.groups[0].blocks)
+        kinds = (*self.statistics, *(("skewness",) if whole else ()))
+        variables = statistics_of(self, self.quantities, kinds, quantiles=whole, lead=self.axes.dims)
+        if whole:
             coordinates["probability"] = axis("probability", PROBABILITIES)
-            for name in self.quantities:
-                values = np.stack([self.quantile(name, p) for p in PROBABILITIES], axis=len(self.shape))
-                variables[f"{name}_quantile"] = statistic(name, "quantile", values, self.axes.dims)
         return Labelled(variables, {**axes_of(self.scenes[0]), **coordinates})
 
     def plot(self, ax: Any = None, *, quantity: str | None = None) -> Any:
@@ -188,7 +187,3 @@ class Sweep(OverPoints, Shown):
             )
         area = (self.scenes[k].surface.nominal_area if per_area else 1.0 for k in (a, b))
         return Difference.of(self.groups[places[0].group], places, name, (next(area), next(area)))
-
-
-def _labels(axes: Axes, key: str) -> NDArray[Any]:
-    return np.array([label(value) for value in axes.values[key]])
