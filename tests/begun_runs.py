@@ -5,7 +5,7 @@ import threading
 import pytest
 
 from mcgw.ensemble.simulation import Values
-from mcgw.ensemble.summarising import Statistics
+from mcgw.ensemble.summarised import Statistics
 from mcgw.errors import StoreError
 from mcgw.jobs.running import run
 from mcgw.store import chunks, ensembles, structure

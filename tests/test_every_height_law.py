@@ -18,7 +18,8 @@ import analytic
 import mcgw
 import mcgw.reports.html
 from analytic import QUANTITIES, Exponential, Gaussian, MeasuredHeights
-from mcgw.ensemble.forecast import forecast, relative_spread
+from mcgw.ensemble.forecast import forecast
+from mcgw.ensemble.intervals import spread_of
 from mcgw.ensemble.solution import solutions
 from mcgw.reports.html import report_html
 from mcgw.reports.plan import plan_of
@@ -235,7 +236,7 @@ def test_compare_with_another_law_disagrees(scene, ensemble):
 def test_forecast(scene):
     for name in NAMES:
         spread = exact.std(scene, name) / exact.mean(scene, name)
-        np.testing.assert_allclose(relative_spread(scene, name), spread, rtol=1e-7)
+        np.testing.assert_allclose(spread_of(scene, name).relative, spread, rtol=1e-7)
     found = forecast(dataclasses.replace(scene, rel_err=0.01, n_surfaces=10**6))
     plain = (1.959963984540054 / 0.01 * exact.std(scene, "load") / exact.mean(scene, "load")) ** 2
     needed = found.needed["load"]

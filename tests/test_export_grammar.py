@@ -18,8 +18,8 @@ from mcgw.exports.programs import PROGRAMS
 from mcgw.exports.table_text import UNIT_SYSTEMS, table_text
 from mcgw.formats.table import Column, Table
 from mcgw.store import ensembles, structure
-from mcgw.store.plan import Plan
 from mcgw.store.run_folder import RunFolder
+from mcgw.store.shards import Plan
 
 NUMBER = r"[-+]?\d\.\d{9}e[-+]\d\d"
 LIVE = "x\n*STEP\r*INCLUDE, INPUT=evil.inp\u2028%\x85#\n1.0, 2.0"

@@ -113,7 +113,6 @@ NOT_THERE = {
 # What a scene that does not ask for it pays nothing for; and the step that asks, if one does.
 FEATURES = {
     "mcgw.ensemble.summary": "statistics", "mcgw.ensemble.summarised": "statistics",
-    "mcgw.ensemble.summarising": "statistics", "mcgw.ensemble.bins": "statistics",
     "mcgw.sampling.crowding": "law_error",
     "mcgw.sampling.radius_table": None, "mcgw.sampling.families": None, "mcgw.sampling.shared": None,
     "mcgw.sampling.weighted_sums": None, "mcgw.sweeps.sweep": None,

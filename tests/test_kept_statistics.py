@@ -12,9 +12,8 @@ from conftest import SURFACE
 
 import mcgw
 from mcgw.cli import main
-from mcgw.ensemble import simulation, summarising
-from mcgw.ensemble.bins import Bins
-from mcgw.ensemble.summary import Summary, push, total
+from mcgw.ensemble import simulation, summarised
+from mcgw.ensemble.summary import Bins, Summary, push, total
 from mcgw.errors import StoreError
 from mcgw.jobs.running import run
 from mcgw.machine.memory import peak_growth
@@ -56,8 +55,8 @@ SCENES = {
 @pytest.fixture
 def small_blocks(monkeypatch):
     """Blocks of 128 surfaces, of four pieces: as many as a long run has."""
-    monkeypatch.setattr(summarising, "_ROWS", 32)
-    monkeypatch.setattr(summarising, "_MOST", 128)
+    monkeypatch.setattr(summarised, "_ROWS", 32)
+    monkeypatch.setattr(summarised, "_MOST", 128)
 
 
 @cache
@@ -343,7 +342,7 @@ def test_time_ends_between_pieces_and_the_same_number_gives_the_same_bits(monkey
 def test_a_block_takes_seconds_however_large_a_surface_is():
     for n in (10, 10**5, 10**9):
         asked = scene(n_asperities=n, keep="statistics")
-        reducer = summarising.Statistics(asked)
+        reducer = summarised.Statistics(asked)
         rows, sampler = reducer.rows, reducer.sampler
         assert 1 <= rows <= 2**20
         assert rows == 1 or rows * sampler.draws <= 1e9

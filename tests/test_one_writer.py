@@ -26,9 +26,9 @@ from mcgw.store import ensembles, lock
 from mcgw.store.disk import parts_of
 from mcgw.store.lock import LockedError, locked
 from mcgw.store.place import tidy
-from mcgw.store.plan import Plan
 from mcgw.store.run_folder import RunFolder
 from mcgw.store.saving import save
+from mcgw.store.shards import Plan
 
 HERE = Path(__file__).parent
 SIZE = 16

@@ -24,11 +24,10 @@ from mcgw.jobs import merging
 from mcgw.jobs.job import Job, commit_block
 from mcgw.jobs.merging import merge
 from mcgw.jobs.running import run
-from mcgw.jobs.session import Part
+from mcgw.jobs.session import part_of
 from mcgw.store import ensembles, layout
 from mcgw.store.disk import parts_of
-from mcgw.store.plan import Plan
-from mcgw.store.shards import Span
+from mcgw.store.shards import Plan, Span
 
 HERE = Path(__file__).parent
 
@@ -219,7 +218,7 @@ def test_jobs_that_share_a_run(scene, tmp_path, expected):
     merge(path)
     assert digest(path) == expected
     with pytest.raises(ValueError, match="--shard 4/3: give i/n"):
-        Part(4, 3)
+        part_of("4/3")
 
 
 def test_the_folder_of_a_run_vanishes(scene, tmp_path):

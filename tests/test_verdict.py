@@ -14,8 +14,9 @@ from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.results import Held, MemoryResults
 from mcgw.figures.against_theory import save_comparison
 from mcgw.sampling.samplers import sampler_of
+from mcgw.statistics import comparison
 from mcgw.statistics.comparison import compare
-from mcgw.statistics.verdict import FALSE_ALARM, Verdict, tested, verdict
+from mcgw.statistics.verdict import FALSE_ALARM, Verdict, verdict
 
 QUANTITIES = tuple(analytic.QUANTITIES)
 H = (2.0, 0.0, 1.0)  # in no order: a verdict that sorts one of two lists would show
@@ -77,7 +78,7 @@ def test_what_theory_leaves_out_belongs_to_its_quantity(make_scene):
     found = []
     for quantities in (("load", "area", "contacts"), ("area", "load", "contacts")):
         scene = make_scene(**balanced, quantities=quantities, n_asperities=1000)
-        counts = tested(Ensemble(scene, "cells", Exact(scene)), 60).counts
+        counts = comparison.tested(Ensemble(scene, "cells", Exact(scene)), 60).counts
         found.append(dict(zip(quantities, counts.tolist(), strict=True)))
     assert found[0] == found[1]
     assert {name for name, counts in found[0].items() if counts[0]} == {"area"}

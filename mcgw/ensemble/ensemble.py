@@ -91,9 +91,9 @@ class Ensemble(Shown):
         KeyError
             If the ensemble does not hold this quantity.
         """
-        name, divisor = self._held(quantity)
+        name, area = self._held(quantity)
         values = self.sums.read(name, 0, self.n_surfaces)
-        return values / divisor if divisor else values
+        return values / area if name != quantity else values
 
     def __getitem__(self, quantity: str) -> Array:
         """The same as `values`."""
@@ -142,11 +142,13 @@ class Ensemble(Shown):
 
     def mean(self, quantity: str) -> Array:
         """Mean over the surfaces, shape (separations,)."""
-        return self._moments(quantity)[0]
+        name, area = self._held(quantity)
+        return np.asarray(self.sums.mean_and_std(name)[0] / area)
 
     def std(self, quantity: str) -> Array:
         """Standard deviation over the surfaces (divisor M - 1), nan for one surface."""
-        return self._moments(quantity)[1]
+        name, area = self._held(quantity)
+        return np.asarray(self.sums.mean_and_std(name)[1] / area)
 
     def stderr(self, quantity: str) -> Array:
         """Standard error of the mean, nan for one surface."""
@@ -157,9 +159,9 @@ class Ensemble(Shown):
 
         Shape (separations, separations of the other); nan for one surface.
         """
-        (name, divisor), (second, by) = self._held(quantity), self._held(other or quantity)
+        (name, area), (second, by) = self._held(quantity), self._held(other or quantity)
         found = self.sums.covariance(name, second)
-        return np.asarray(found / (divisor or 1.0) / (by or 1.0))
+        return np.asarray(found / area / by)
 
     def skewness(self, quantity: str) -> Array:
         """Skewness over the surfaces (divisor M), shape (separations,); nan where nothing varies."""
@@ -190,9 +192,9 @@ class Ensemble(Shown):
 
     def extremes(self, quantity: str) -> tuple[Array, Array]:
         """Least and greatest value over the surfaces, each of shape (separations,)."""
-        name, divisor = self._held(quantity)
+        name, area = self._held(quantity)
         low, high, *_ = self.sums.extremes(name)
-        return np.asarray(low / (divisor or 1.0)), np.asarray(high / (divisor or 1.0))
+        return np.asarray(low / area), np.asarray(high / area)
 
     def extreme_surfaces(self, quantity: str) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
         """Numbers of the first surfaces that have the `extremes`: `mcgw.heights` gives their asperities."""
@@ -226,9 +228,9 @@ class Ensemble(Shown):
         ValueError
             If the surfaces are stratified: how far their mean is off is not known.
         """
-        name, divisor = self._held(quantity)
+        name, area = self._held(quantity)
         low, high = interval_of(self.scene, self.sampler, self.sums, name, level)
-        return low / (divisor or 1.0), high / (divisor or 1.0)
+        return low / area, high / area
 
     def to_xarray(self) -> Any:
         """All values as an `xarray.Dataset` with dimensions (surface, separation), as the file has them.
@@ -313,21 +315,15 @@ class Ensemble(Shown):
     def _quantile(self, quantity: str, share: float) -> tuple[Array, Array, Array]:
         if not 0 <= share <= 1:
             raise ValueError(f"share = {share!r}: give a share of the surfaces, 0 to 1")
-        name, divisor = self._held(quantity)
+        name, area = self._held(quantity)
         value, low, high = self.sums.quantile(name, float(share))
-        return value / (divisor or 1.0), low / (divisor or 1.0), high / (divisor or 1.0)
+        return value / area, low / area, high / area
 
     def _held(self, quantity: str) -> tuple[str, float]:
-        """The quantity that is held, and the area that this one is per, or 0."""
+        """The quantity that is held, and the area that this one is per, or 1."""
         q = PER_AREA.get(quantity)
-        name, divisor = (q.of, self.scene.surface.nominal_area) if q else (quantity, 0.0)
+        name, area = (q.of, self.scene.surface.nominal_area) if q else (quantity, 1.0)
         if name not in self.scene.shapes:
             have = ", ".join(self.scene.shapes)
             raise KeyError(f"{quantity!r} is not in this ensemble; it has {have}")
-        return name, divisor
-
-    def _moments(self, quantity: str) -> tuple[Array, Array]:
-        """Mean and standard deviation."""
-        name, divisor = self._held(quantity)
-        mean, std = self.sums.mean_and_std(name)
-        return np.asarray(mean / (divisor or 1.0)), np.asarray(std / (divisor or 1.0))
+        return name, area

@@ -52,11 +52,6 @@ class Forecast:
         )
 
 
-def relative_spread(scene: Scene, quantity: str) -> Array:
-    """Exact standard deviation over surfaces relative to the mean, shape (separations,)."""
-    return spread_of(scene, quantity).relative
-
-
 def forecast(scene: Scene) -> Forecast:
     """Number of surfaces of a scene, a function of the scene alone.
 

@@ -160,6 +160,6 @@ def reducer_of(scene: Scene) -> OfScene:
     """The one for what a scene keeps."""
     if scene.keep != "statistics":
         return Values(scene)
-    from mcgw.ensemble.summarising import Statistics  # for those scenes alone
+    from mcgw.ensemble.summarised import Statistics  # for those scenes alone
 
     return Statistics(scene)

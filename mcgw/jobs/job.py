@@ -28,10 +28,9 @@ from mcgw.scene.storable import storable
 from mcgw.store.disk import parts_of
 from mcgw.store.identity import difference, drawn_with, now
 from mcgw.store.place import held_by, recorded_scene
-from mcgw.store.plan import Plan
 from mcgw.store.run_folder import RunFolder
 from mcgw.store.saving import body_of
-from mcgw.store.shards import Span, commit_shard
+from mcgw.store.shards import Plan, Span, commit_shard
 
 if TYPE_CHECKING:
     from mcgw.sweeps.points import Asked
@@ -178,7 +177,7 @@ def _asked(record: RunFolder) -> "Asked":
 
 
 def _of_groups(asked: "Asked") -> tuple[Reducer, ...]:
-    from mcgw.sweeps.drawing import Pooling
+    from mcgw.sweeps.pooled import Pooling
 
     return tuple(map(Pooling, asked.groups))
 

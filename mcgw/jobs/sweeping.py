@@ -10,8 +10,8 @@ from mcgw.machine.progress import Progress, told
 from mcgw.scene.arguments import check_object
 from mcgw.scene.scene import Scene
 from mcgw.sweeps.axes import axes_of
-from mcgw.sweeps.drawing import draw, weighted
 from mcgw.sweeps.points import Asked
+from mcgw.sweeps.pooled import draw, weighted
 from mcgw.sweeps.sweep import STATISTICS, Sweep
 
 

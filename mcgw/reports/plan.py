@@ -17,9 +17,9 @@ from mcgw.scene.fields import COARSEST, EXACT
 from mcgw.scene.in_words import contact_facts
 from mcgw.scene.samplers import promise_of
 from mcgw.scene.scene import Scene
-from mcgw.sweeps.drawing import Pooling
 from mcgw.sweeps.groups import Group
 from mcgw.sweeps.points import Asked
+from mcgw.sweeps.pooled import Pooling
 
 
 @dataclass(frozen=True)

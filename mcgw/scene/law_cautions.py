@@ -54,7 +54,7 @@ def _choice(scene: Scene) -> Iterator[str]:
 
 def _yielded(scene: Scene) -> Iterator[str]:
     """Contacts of which elasticity says nothing."""
-    h = _deepest(scene)
+    h = scene.lowest
     if not isinstance(scene.law, ElasticPlastic) or not scene.heights.sf(np.array(h)) > 0:
         return
     share = 1 - float(scene.theory.share(0, h))
@@ -105,7 +105,7 @@ def _fitted(scene: Scene) -> Iterator[str]:
 
 def _share(scene: Scene, multiple: float) -> float:
     """Contacts at the deepest separation that are deeper than a multiple of the critical penetration."""
-    h, law = _deepest(scene), scene.contact
+    h, law = scene.lowest, scene.contact
     assert isinstance(law, ElasticPlastic)
     if not scene.heights.sf(np.array(h)) > 0:
         return 0.0
@@ -113,16 +113,12 @@ def _share(scene: Scene, multiple: float) -> float:
     return float(np.mean(s - h > multiple * law.delta_c(scene.modulus(s))))
 
 
-def _deepest(scene: Scene) -> float:
-    return scene.lowest if scene.unload_from is None else min(scene.lowest, scene.unload_from)
-
-
 def _strain(scene: Scene) -> Iterator[str]:
     """Outside of the materials of the finite elements."""
     law: Any = scene.contact
     if not isinstance(law, JacksonGreen):
         return
-    s = np.linspace(max(_deepest(scene), scene.least), scene.highest, 101)
+    s = np.linspace(max(scene.lowest, scene.least), scene.highest, 101)
     e = scene.modulus(s)
     strains = law.yield_strain / e[e > 0] if law.yield_strain else np.empty(0)
     if strains.size and not (_STRAINS[0] <= strains.min() and strains.max() <= _STRAINS[1]):
@@ -137,7 +133,7 @@ def _radius(scene: Scene) -> Iterator[str]:
     law = scene.contact
     if not isinstance(law, JacksonGreen):
         return
-    h = _deepest(scene)
+    h = scene.lowest
     if not scene.heights.sf(np.array(h)) > 0:
         return
     s = scene.heights.isf(np.array([_DEEP]), h)

@@ -132,11 +132,13 @@ class Section:
 
     def refuse(self, reason: str, names: Iterable[str]) -> _Value | None:
         """Note what is wrong with the object that keys make: of the one that it names, or of the first."""
-        key, _, advice = reason.partition(": ")
+        (key, _, advice), names = reason.partition(": "), list(names)
         given = [name for name in names if name in self]
         at = key.partition(" = ")[0].partition(",")[0]
         if at in given:
             return self.fail(at, self.table[at], advice)
+        if at in names:
+            return self.note(f"{self.name}.{reason}")
         if given:
             return self.fail(given[0], self.table[given[0]], reason)
         return self.note(f"{self.name}: {reason}")

@@ -16,7 +16,7 @@ import numpy as np
 from scipy.special import ndtri
 
 from mcgw.ensemble.drawing import seconds_per_surface
-from mcgw.ensemble.forecast import relative_spread
+from mcgw.ensemble.intervals import spread_of
 from mcgw.sampling.asperities import summits_drawn
 from mcgw.sampling.block import Sampler
 from mcgw.sampling.law_sums import asperity_sums
@@ -190,7 +190,7 @@ def advise(
     """
     if not ways:
         return ()
-    spread = float(relative_spread(replace(scene, separations=(h,)), scene.quantities[0])[0])
+    spread = float(spread_of(replace(scene, separations=(h,)), scene.quantities[0]).relative[0])
     seen: _Quantile | None = None
     found = []
     for wish in wishes:

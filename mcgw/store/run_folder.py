@@ -33,8 +33,7 @@ from mcgw.store.disk import file_of
 from mcgw.store.identity import difference, drawn_with, identity_of, now
 from mcgw.store.layout import stored_text
 from mcgw.store.lock import refuse_link
-from mcgw.store.plan import Plan
-from mcgw.store.shards import Shard, Span, open_shard
+from mcgw.store.shards import Plan, Shard, Span, open_shard
 
 _FILETYPE, _FORMAT = "mcgw-run", [2, 0]
 _CHECKSUM = 'sha256 = "'

@@ -4,13 +4,19 @@ The file is made in memory and written by plain system calls: the HDF5 library n
 while a block is committed, so that a full disk is an error like any other. The trailer carries the
 identity of the run, the numbers of the surfaces and a digest of the contents (names, types, shapes,
 values), which does not depend on how HDF5 laid out the file.
+
+Which surfaces are drawn together (`Plan`): blocks, numbered through all groups of surfaces that are asked
+for.
 """
 
 import hashlib
 import io
-from collections.abc import Callable, Iterator
+from bisect import bisect_right
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
+from functools import cached_property
+from itertools import accumulate
 from pathlib import Path
 from typing import Any
 
@@ -213,3 +219,70 @@ def _check_rows(shard: Shard, arrays: Tables) -> None:
             raise StoreError(f"{shard.path}: {name} does not have the rows of {shard.span}")
         if not np.all(np.isfinite(values)):
             raise StoreError(f"{shard.path}: {name} holds numbers that are not finite")
+
+
+@dataclass(frozen=True)
+class Plan:
+    """Surfaces of one or more groups, one group after the other, cut into blocks.
+
+    Parameters
+    ----------
+    groups : tuple of (int, int)
+        Of each group its number of surfaces, and how many of them make a block; a run has one group.
+    whole : bool
+        Whether a block is of use as a whole only, since nothing is kept of a single surface.
+    """
+
+    groups: tuple[tuple[int, int], ...]
+    whole: bool = False
+
+    @cached_property
+    def _starts(self) -> list[int]:
+        """First surfaces of the groups."""
+        return list(accumulate((n for n, _ in self.groups[:-1]), initial=0))
+
+    @property
+    def total(self) -> int:
+        """Number of surfaces of all groups."""
+        return self._starts[-1] + self.groups[-1][0]
+
+    def group(self, span: Span) -> tuple[int, int]:
+        """The group that some surfaces are of, and the number of the first one within it."""
+        g = bisect_right(self._starts, span.first) - 1
+        return g, span.first - self._starts[g]
+
+    def number(self, span: Span) -> int:
+        """The number of the block, of all, that some surfaces are of."""
+        g, first = self.group(span)
+        return sum(-(-n // size) for n, size in self.groups[:g]) + first // self.groups[g][1]
+
+    def missing(self, held: Iterable[Span]) -> list[Span]:
+        """Blocks that fill what is not held, cut where a block ends."""
+        gaps, stop, total = list[Span](), 0, self.total
+        for span in (*sorted(held), Span(total, 1)):
+            while stop < min(span.first, total):
+                end = min(span.first, self._end(stop))
+                gaps.append(Span(stop, end - stop))
+                stop = end
+            stop = max(stop, span.stop)
+        return gaps
+
+    def kept(self, done: int) -> int:
+        """Of the first surfaces, that a file holds, those that it need not be given again."""
+        if not self.whole or done >= self.total:
+            return done
+        return done - self.group(Span(done, 1))[1] % self.groups[0][1]
+
+    def takes(self, span: Span) -> bool:
+        """Whether a shard of these surfaces is of use."""
+        if not self.whole:
+            return True
+        g, first = self.group(span)
+        n, size = self.groups[g]
+        return first % size == 0 and (span.n == size or first + span.n == n)
+
+    def _end(self, surface: int) -> int:
+        """The surface after the block of one."""
+        g, first = self.group(Span(surface, 1))
+        n, size = self.groups[g]
+        return self._starts[g] + min((first // size + 1) * size, n)

@@ -21,7 +21,7 @@ row for each joined block of surfaces::
     /drawn/block_products float64 (blocks, pairs)             of products of deviations, a packed triangle
     /drawn/block_extremes float64 (blocks, 2, columns)        least and greatest value
     /drawn/block_at       int64   (blocks, 2, columns)        surfaces that have them
-    /drawn/block_counts   int64   (blocks, columns, bins)     values in each bin (`mcgw.ensemble.bins`)
+    /drawn/block_counts   int64   (blocks, columns, bins)     values in each bin (`mcgw.ensemble.summary`)
 
 `digest` is over the scene and ``/drawn``.
 """

@@ -24,7 +24,7 @@ from mcgw.sampling.shared import on_common_cells, to_be_shared
 from mcgw.scene.scene import Scene
 
 if TYPE_CHECKING:
-    from mcgw.ensemble.bins import Bins
+    from mcgw.ensemble.summary import Bins
 
 _Item = TypeVar("_Item")
 _MANY = 8  # gradings: fewer are computed each by itself, with the bits that it has alone
@@ -79,7 +79,7 @@ class Group:
     @cached_property
     def bins(self) -> "tuple[Bins, ...]":
         """In which values of the computed scenes are counted, where these keep statistics."""
-        from mcgw.ensemble.bins import Bins  # for those scenes alone
+        from mcgw.ensemble.summary import Bins  # for those scenes alone
 
         return tuple(map(Bins.of, self.computed))
 
