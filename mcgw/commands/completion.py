@@ -21,15 +21,10 @@ def execute(args: argparse.Namespace) -> int:
         import shtab  # an extra
     except ImportError:
         raise ValueError('shtab is not installed: pip install "mcgw[completion]"') from None
-    for parser in (args.parser, *_commands(args.parser).values()):
+    (commands,) = (x for x in args.parser._actions if isinstance(x, argparse._SubParsersAction))
+    for parser in (args.parser, *commands.choices.values()):
         for action in parser._actions:
             if action.type is Path:
                 action.complete = shtab.FILE
     sys.stdout.write(shtab.complete(args.parser, args.shell) + "\n")
     return 0
-
-
-def _commands(parser: argparse.ArgumentParser) -> dict[str, argparse.ArgumentParser]:
-    """Parsers of the commands."""
-    (found,) = (x for x in parser._actions if isinstance(x, argparse._SubParsersAction))
-    return dict(found.choices)

@@ -152,15 +152,12 @@ class LawSum:
         s, e = self.heights[:n], self.modulus[:n]
         if self.ratios is None:
             return term_of(self.quantity, self.branch, h, s, e)
-        return self._ways.term(self.quantity, h, s, e, self.ratios[:n])
+        ways = Ways(self.branch.law, None, self.branch.conductance)
+        return ways.term(self.quantity, h, s, e, self.ratios[:n])
 
     def _pieces(self, h: float, n: int) -> NDArray[np.int64]:
         s, e = self.heights[:n], self.modulus[:n]
         return self._branch(slice(n)).pieces(np.full(n, h), s - h, e)
-
-    @property
-    def _ways(self) -> Ways:
-        return Ways(self.branch.law, None, self.branch.conductance)
 
     def _branch(self, which: slice | NDArray[np.int64]) -> Branch:
         """That of some asperities, each by the law of its own radius."""

@@ -53,7 +53,17 @@ class Dask:
             distributed: Any = import_module("distributed")
         except ImportError:
             raise RunError('dask is not installed: pip install "mcgw[dask]"') from None
-        self._cluster = _own_cluster(distributed, workers, quiet) if scheduler is None else None
+        self._cluster: Any = None
+        if scheduler is None:
+            self._cluster = distributed.LocalCluster(
+                n_workers=workers,
+                threads_per_worker=1,
+                processes=True,
+                host="127.0.0.1",
+                dashboard_address="127.0.0.1:0" if _has_pages() else None,
+                silence_logs="CRITICAL" if quiet else "WARNING",
+                config=_WORKERS,
+            )
         self._borrowed = scheduler is not None and not isinstance(scheduler, str)
         if self._borrowed:
             self._client: Any = _fit(scheduler)
@@ -120,18 +130,6 @@ def is_client(engine: Any) -> bool:
     """Whether something is a `distributed.Client`, which is not imported to know it."""
     distributed = sys.modules.get("distributed")
     return distributed is not None and isinstance(engine, distributed.Client)
-
-
-def _own_cluster(distributed: Any, workers: int, quiet: bool) -> Any:
-    return distributed.LocalCluster(
-        n_workers=workers,
-        threads_per_worker=1,
-        processes=True,
-        host="127.0.0.1",
-        dashboard_address="127.0.0.1:0" if _has_pages() else None,
-        silence_logs="CRITICAL" if quiet else "WARNING",
-        config=_WORKERS,
-    )
 
 
 def _has_pages() -> bool:

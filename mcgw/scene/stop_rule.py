@@ -26,17 +26,12 @@ def rel_err_mistakes(scene: Fields) -> Iterator[str]:
         if isinstance(value, list) and len(value) != len(scene.separations):
             yield f"{key}: has {len(value)} values; give one for each of {len(scene.separations)} separations"
         if not name or name in scene.quantities:
-            yield from _finer_than_values(scene, key, name, [x for x in listed if x < math.inf])
-
-
-def _finer_than_values(scene: Fields, key: str, name: str, listed: list[float]) -> Iterator[str]:
-    """A mean that is asked for to more digits than its values have."""
-    off = max(_off(scene, each) for each in ([name] if name else scene.quantities))
-    if listed and min(listed) <= off:
-        yield (
-            f"{key} = {min(listed):g}: values are good to accuracy = {scene.accuracy:g} alone, and so are "
-            "their means; give a lower accuracy, or a larger rel_err"
-        )
+            least = min((x for x in listed if x < math.inf), default=math.inf)
+            if least <= max(_off(scene, each) for each in ([name] if name else scene.quantities)):
+                yield (
+                    f"{key} = {least:g}: values are good to accuracy = {scene.accuracy:g} alone, and so are "
+                    "their means; give a lower accuracy, or a larger rel_err"
+                )
 
 
 def _off(scene: Fields, name: str) -> float:

@@ -156,7 +156,15 @@ def converge(
             "there is nothing to test; give lower ones"
         )
     draw = draw or _own
-    scene = _tested(scene_alone(scene, "converge"))
+    scene, h = scene_alone(scene, "converge"), np.unique(scene.separations)
+    scene = replace(  # few separations, in their order, and a number of surfaces that a test can take
+        scene,
+        separations=tuple(h[evenly(len(h), _MOST_SEPARATIONS)].tolist()),
+        n_surfaces=min(max(scene.n_surfaces, _FEWEST), _MOST),
+        rel_err=None,
+        max_seconds=None,
+        keep="sums",
+    )
     parts = []
     with told(progress, "ensembles") as tell:
         for k in range(seeds):
@@ -205,16 +213,6 @@ def _own(scene: Scene) -> Sums:
 def _prepared(scene: Scene) -> Sampler:
     """For all seeds of a scene: to prepare a sampler takes longer than to draw with it."""
     return sampler_of(scene)
-
-
-def _tested(scene: Scene) -> Scene:
-    """The scene with few separations, in their order, and a number of surfaces that a test can take."""
-    h = np.unique(scene.separations)
-    chosen = h[evenly(len(h), _MOST_SEPARATIONS)]
-    m = min(max(scene.n_surfaces, _FEWEST), _MOST)
-    return replace(
-        scene, separations=tuple(chosen.tolist()), n_surfaces=m, rel_err=None, max_seconds=None, keep="sums"
-    )
 
 
 def _contacts(scene: Scene, sums: Sums) -> list[Check]:

@@ -121,8 +121,10 @@ def describe(path: str, *, read: bool = True) -> dict[str, Any]:
             raise RefusedError(f"{len(file.attrs)} attributes")
         attributes = {name: _plain_value(name, file.attrs) for name in file.attrs}
         if read and Path(path).stat().st_size <= _READ_ALL:
-            for name in names:
-                _read(file[name])
+            for data in map(file.__getitem__, names):
+                step = max(2**24 // (8 * math.prod(data.shape[1:]) or 8), 1)
+                for start in range(0, data.shape[0], step):
+                    data[start : start + step]
         found = {name: [file[name].dtype.str, list(file[name].shape)] for name in names}
         return {"attributes": attributes, "datasets": found, "head": head_digest(file, names)}
 
@@ -142,13 +144,6 @@ def _plain_value(name: str, attributes: Any) -> Any:
     if isinstance(value, np.ndarray | np.generic) and value.dtype.kind in "iufb":
         return value.tolist()
     raise RefusedError(f"attribute {name}: neither text nor number")
-
-
-def _read(data: h5py.Dataset) -> None:
-    width = 8 * math.prod(data.shape[1:]) or 8
-    step = max(2**24 // width, 1)
-    for start in range(0, data.shape[0], step):
-        data[start : start + step]
 
 
 def _main(path: str, memory: int) -> None:

@@ -46,21 +46,14 @@ def examine(path: Path) -> dict[str, Any]:
 @lru_cache(maxsize=32)
 def _examined(path: Path, shown: Path, state: tuple[int, int, int]) -> dict[str, Any]:
     """The same file is examined once: `state` changes when it does."""
-    if _is_as_written(path, state[1]):
+    with suppress(StoreError):
+        # Whether the trailer holds; of a large file the head alone is compared with it, when it is opened.
+        (check_trailer if state[1] <= _SMALL else read_trailer)(path)
         with suppress(Exception):  # HDF5 reports damage as any of a dozen: the child tells which it is
             from mcgw.store import structure
 
             return structure.describe(str(path), read=False)
     return _examined_by_child(path, shown, state[1])
-
-
-def _is_as_written(path: Path, size: int) -> bool:
-    """Whether the trailer holds; of a large file the head alone is compared with it, when it is opened."""
-    try:
-        (check_trailer if size <= _SMALL else read_trailer)(path)
-    except StoreError:
-        return False
-    return True
 
 
 def _examined_by_child(path: Path, shown: Path, size: int) -> dict[str, Any]:

@@ -14,13 +14,14 @@ from analytic import is_data
 from mcgw.ensemble.labelled import AXES
 from mcgw.formats.sheet import brief
 from mcgw.scene.arguments import as_toml
+from mcgw.scene.keys import TABLES
 from mcgw.scene.laws import grading_table
 from mcgw.scene.section import SceneError
 from mcgw.store.structure import GROUP
 
 Point = tuple[int, ...]
 
-_SECTIONS = ("surface", "grading", "heights", "summits", "contact", "interaction", "ensemble")
+_SECTIONS = [name for name in TABLES if name not in ("", "fitted")]
 _LISTED = 6
 _FIXED = ("contact.separations", "contact.datum", "contact.quantities", "ensemble.keep")  # of all points
 
