@@ -18,12 +18,8 @@ _FEW = 30.0  # contacts a surface, below which single surfaces are far from Gaus
 def cautions(scene: Scene) -> list[str]:
     """What a reader should know before trusting the numbers of a scene, a line each."""
     known = scene.validity()
-    how = (
-        "neither interact nor merge"
-        if scene.interaction is None
-        else "interact by a mean field, and do not merge"
-    )
-    lines = [*off_elasticity(known, f"asperities {how}")]
+    alone, together = "neither interact nor merge", "interact by a mean field, and do not merge"
+    lines = [*off_elasticity(known, f"asperities {alone if scene.interaction is None else together}")]
     unmeasured = [] if known.measured.any() else [_crowd, _half]
     for caution in (*unmeasured, _depth, _slope, _numbers):
         lines += caution(scene)
