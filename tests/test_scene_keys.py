@@ -68,6 +68,7 @@ COMPANY = {
     ("fitted", "agreement"): ("1.02", FITTED),
     ("fitted", "lay"): ("1.0", FITTED),
     ("fitted", "area"): ("'1 mm^2'", FITTED),
+    ("surface", "uncertainty"): ("{sigma = '20 %', radius = 0.15}", {}),
     ("surface", "m0"): ("1e-12", SPECTRAL),
     ("surface", "m2"): ("1e-3", SPECTRAL),
     ("surface", "m4"): ("5e6", SPECTRAL),
@@ -146,6 +147,10 @@ WRONG = {
                    "{friction = 0.3, poisson = 0.3, displacements = [-1.0]}",
                    "{friction = 0.3, poisson = 0.3, displacements = ['x']}",
                    "{friction = 0.3, poisson = 0.3, displacements = [1e-8], u = 1}"],
+    "uncertainty": ["1", "~{}", "{sigma = 3.0}", "{sigma = 0}", "{sigma = 0.1, m0 = 0.1}", "{E = 0.1}",
+                    "~{m0 = 0.1}", "~{sigma = 0.1, correlation = [[1.0, 0.0]]}",
+                    "{sigma = 0.1, correlation = 1}",
+                    "~{sigma = 0.1, eta = 0.1, correlation = [[1.0, 0.5], [0.0, 1.0]]}"],
     "limits": ["1.0", "[-1.0]", "['x']", "~[nan]"],
     "load": ["[]", "1", "~" + PIECE.replace("}, {", "}] #"), "[{low = 1.0}]", PIECE.replace("[1.0]", "[]"),
              "~" + PIECE.replace("high = 3.0", "high = 0.5")],
@@ -268,6 +273,8 @@ def test_the_lists_of_keys_are_whole(monkeypatch, example):
     inner = {("contact.separations", name) for name in ("start", "stop", "num")}
     inner |= {("contact.tangential", name) for name in ("friction", "poisson", "displacements")}
     inner |= {("contact.layer", name) for name in ("thickness", "conductivity")}
+    errors = ("sigma", "radius", "eta", "m0", "m2", "m4", "E_star", "correlation")
+    inner |= {("surface.uncertainty", name) for name in errors}
     inner |= {
         (f"contact.{key}", name) for key in ("load", "area") for name in ("low", "high", "coefficients")
     }

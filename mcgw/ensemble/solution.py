@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 
 from analytic import QUANTITIES, Hertz, MeasuredHeights, Quantity, quantity_of
-from analytic.laws.elastic_plastic import ElasticPlastic
+from mcgw.ensemble.at_load import NEGATIVE, quantities_at, theory_at, with_mean_gap
 from mcgw.ensemble.separation import Summits
-from mcgw.ensemble.solved import Solution, with_half_space, with_mean_gap
+from mcgw.ensemble.solved import Solution, with_half_space
 from mcgw.machine.progress import Progress, told
 from mcgw.sampling.asperities import summits, touching_summits
 from mcgw.scene.arguments import argument, as_toml, check_object
@@ -20,10 +20,6 @@ _MARGIN = 6.0  # standard deviations of a surface's separation that are drawn at
 _MOST_HEIGHTS = 3e9
 _LAST_DIGITS = 64 * float(np.finfo(float).eps)  # of a reduced height
 _NOTHING = 1e-16  # share of the heights below all that are drawn
-_NEGATIVE = (
-    "{} = {:g} {}: {} does not reach it without asperities of negative modulus, at s = {:.4g}; give less, "
-    'or say negative = "clip" or "allow" under [grading]'
-)
 # What may be given: its unit, the quantity that it is, and whether per nominal area.
 _GIVEN = {
     "load": ("N", "load", False),
@@ -140,7 +136,7 @@ def solutions(
             f"{q.name} = {small[0]:g} {q.unit}: less than one asperity has that is pressed by the last "
             f"digits of its height; give {2 * least:.1g} {q.unit} or more"
         )
-    theory = [_theory(scene, q, value) for value in values]
+    theory = [theory_at(scene, q, value) for value in values]
     drawn = _drawn(scene, q, [at["separation"] for at in theory])
     if drawn.touching * drawn.n_surfaces > _MOST_HEIGHTS:
         raise ValueError(
@@ -157,20 +153,6 @@ def solutions(
         Solution(scene, given, float(value), with_mean_gap(scene, at), with_mean_gap(scene, on), drawn)
         for value, at, on in zip(values, theory, surfaces, strict=True)
     ]
-
-
-def _theory(scene: Scene, q: Quantity, value: float) -> dict[str, float]:
-    """Separation and all quantities of the mean surface."""
-    h = float(scene.theory.separation_at(q.name, value))
-    if scene.negative == "error" and (where := scene.negative_above(h)) is not None:
-        raise ValueError(_NEGATIVE.format(q.name, value, q.unit, "the mean surface", where))
-    return {"separation": h, **{name: float(scene.theory.mean(name, h)) for name in _quantities(scene)}}
-
-
-def _quantities(scene: Scene) -> tuple[str, ...]:
-    """All that a surface that is loaded has."""
-    yielding = ("load_slope", "yielded") if isinstance(scene.law, ElasticPlastic) else ()
-    return (*QUANTITIES, *yielding, *(() if scene.film is None else ("conductance_si",)))
 
 
 def _drawn(scene: Scene, q: Quantity, separations: Sequence[float]) -> Scene:
@@ -219,6 +201,6 @@ def _surface(
         if h is None and not negative.size:
             raise ValueError(f"{q.name} = {value:g} {q.unit}: surface {number} does not reach it; give less")
         if h is None or (scene.negative == "error" and np.any(negative > h)):
-            raise ValueError(_NEGATIVE.format(q.name, value, q.unit, f"surface {number}", negative.max()))
-        rows.append({"separation": h, **on.sums(_quantities(scene), h)})
+            raise ValueError(NEGATIVE.format(q.name, value, q.unit, f"surface {number}", negative.max()))
+        rows.append({"separation": h, **on.sums(quantities_at(scene), h)})
     return rows

@@ -2,13 +2,14 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from scipy.special import stdtrit
 
-from analytic import SEPARATIONS, Nayak, quantity_of
+from analytic import SEPARATIONS, quantity_of
 from analytic.arrays import Array
+from mcgw.ensemble.at_load import mean_surface, on_half_space
 from mcgw.ensemble.intervals import FEWEST, MANY, interval_column
 from mcgw.formats.sheet import Sheet, Shown
 from mcgw.formats.table import Column, Table
@@ -16,6 +17,9 @@ from mcgw.machine.terminal import plotted
 from mcgw.sampling.asperities import summits, touching_summits
 from mcgw.scene.scene import Scene
 from mcgw.scene.validity import Validity, validity_of
+
+if TYPE_CHECKING:
+    from mcgw.ensemble.budget import Budget, Corrected
 
 
 @dataclass(frozen=True, repr=False)
@@ -46,6 +50,14 @@ class Solution(Shown):
     theory: dict[str, float]
     surfaces: dict[str, Array]
     drawn: Scene
+
+    @property
+    def title(self) -> str:
+        """What was given."""
+        share = self.value / self.scene.surface.nominal_area
+        if self.given == "load":
+            return f"At the load {self.value:.6g} N = pressure {share / 1e6:.6g} MPa"
+        return f"At the real area {self.value:.6g} m^2 = {share:.4%} of the nominal area"
 
     def heights(self, surface: int) -> Array:
         """Reduced heights of the asperities of a surface that touch at its own separation, in falling order.
@@ -92,6 +104,59 @@ class Solution(Shown):
         half = stdtrit(len(x) - 1, (1 + level) / 2) * x.std(ddof=1) / np.sqrt(len(x))
         return float(x.mean() - half), float(x.mean() + half)
 
+    def budget(self) -> "Budget":
+        """By how much a real specimen may differ from `theory` here, by causes.
+
+        Drawn surfaces (of the Monte Carlo mean; the theory has none), specimens (from one nominal area to
+        another), the parameters of the surface (by ``[surface] uncertainty``), and the model against
+        elasticity, where it was measured; and the root of the sum of their squares.
+
+        Returns
+        -------
+        Budget
+            Half-widths of 95 %, over the answers: `table`, and a sentence in `advice`.
+
+        Examples
+        --------
+        >>> import mcgw
+        >>> surface = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "1 cm^2", "78.6 GPa")
+        >>> scene = mcgw.Scene(surface, separations=0, n_surfaces=20, seed=1, uncertainty={"sigma": "20 %"})
+        >>> budget = mcgw.solve(scene, pressure="1 MPa").budget()
+        >>> round(budget.shares["parameters"][0], 2)
+        0.19
+        """
+        from mcgw.ensemble.budget import budget_of
+
+        return budget_of(
+            self.scene,
+            self.title,
+            self.theory,
+            self.surfaces,
+            {name: self.interval(name) for name in self.surfaces},
+            against_elasticity([self]),
+            lambda scene: mean_surface(scene, self.given, self.value),
+            self.given == "load",
+        )
+
+    def corrected(self, quantity: str) -> "Corrected":
+        """The answer of the theory, less what this model is off boundary elements at such a load.
+
+        Parameters
+        ----------
+        quantity : str
+            "area", "stiffness", "conductance" or "mean_gap".
+
+        Returns
+        -------
+        Corrected
+            With the ends between which 95 % of such surfaces lie; nan, and `why`, where nothing was measured.
+        """
+        from mcgw.ensemble.budget import Corrected, corrected
+
+        if self.given != "load":
+            return Corrected.unknown("errors of models are measured at a given load")
+        return corrected(against_elasticity([self]), self.scene, quantity, self.theory[quantity])
+
     def plot(self, ax: Any = None) -> Any:
         """Draw how the separation differs from surface to surface; returns the axes."""
         return plotted(self, ax)
@@ -104,21 +169,20 @@ class Solution(Shown):
             few = f"{contacts:.2g} contacts a surface: few for theory, which is of a large one"
             facts.append(("caution", f"{few}; give more area"))
         table = self.table()
+        if np.isnan(table.flat[-1].values).all():
+            table = replace(table, columns=table.columns[:-1])
         found = [k for k, name in enumerate(self.surfaces) if name != self.given]
         return Sheet(table.title, facts, table.at(found))
 
     def table(self) -> Table:
         """Theory beside the mean over the surfaces, a row for each quantity."""
-        share = self.value / self.scene.surface.nominal_area
-        if self.given == "load":
-            title = f"At the load {self.value:.6g} N = pressure {share / 1e6:.6g} MPa"
-        else:
-            title = f"At the real area {self.value:.6g} m^2 = {share:.4%} of the nominal area"
         units = {"mean_gap": "m", "separation": "sigma", **dict.fromkeys(SEPARATIONS, "sigma")}
         names = list(self.surfaces)
         low, high = np.array([self.interval(name) for name in names]).T
         found = [self.surfaces[name] for name in names]
         error = (high - low) / 4
+        right, below, above, _ = map(np.array, zip(*map(self.corrected, names), strict=True))
+        off = Column("corrected_95", (above - below) / 2, form=".1g")
         return Table(
             (
                 Column("quantity", names),
@@ -127,8 +191,17 @@ class Solution(Shown):
                 Column("mean", [x.mean() for x in found], error=error),
                 interval_column(low, high),
                 Column("std", [x.std(ddof=1) for x in found], form=".3g"),
+                Column(
+                    "corrected",
+                    right,
+                    "corrected (95 %)",
+                    form=".4g",
+                    missing="",
+                    beside=off,
+                    between=" ± ",
+                ),
             ),
-            title,
+            self.title,
         )
 
 
@@ -147,30 +220,5 @@ def at_solutions(scene: Scene, solutions: Sequence[Solution]) -> Scene:
 
 def with_half_space(scene: Scene, alone: Solution) -> Solution:
     """What holds where the asperities press each other down: the sums of each are the same at its load."""
-    from mcgw.ensemble.half_space import at_loads  # for those scenes alone
-
-    theory, surfaces = (
-        with_mean_gap(scene, at_loads(scene, {k: v for k, v in found.items() if k != "mean_gap"}))
-        for found in (alone.theory, alone.surfaces)
-    )
+    theory, surfaces = (on_half_space(scene, found) for found in (alone.theory, alone.surfaces))
     return replace(alone, scene=scene, theory=theory, surfaces=surfaces)
-
-
-def with_mean_gap(scene: Scene, found: dict[str, Any]) -> dict[str, Any]:
-    """The same of what holds at given loads: with "mean_gap", m, after the separations.
-
-    That is how far the rigid plane lies from the mean plane of the surface, or from that of its summits where
-    the scene does not tell the other. Where asperities press each other down it is the separation that they
-    feel, or the nominal one if that counts from the mean plane itself (`reference = "mean-plane"`).
-    """
-    nominal = scene.interaction is not None and scene.interaction.reference == "mean-plane"
-    h = found["nominal_separation" if nominal else "separation"]
-    gap = scene.surface.sigma * (h + (rise_of_summits(scene) or 0.0))
-    ahead = {name: found[name] for name in found if name in ("separation", *SEPARATIONS)}
-    return {**ahead, "mean_gap": gap, **found}
-
-
-def rise_of_summits(scene: Scene) -> float | None:
-    """Of the mean plane of the summits above that of the surface, over sigma; None if no one told."""
-    heights = scene.heights
-    return heights.mean / heights.std if isinstance(heights, Nayak) else None

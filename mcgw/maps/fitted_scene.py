@@ -11,10 +11,13 @@ from analytic import HeightTable, MeasuredHeights, MeasuredRadii, Nayak, RandomC
 from mcgw.formats.files import whole_file
 from mcgw.maps.fit import Fit
 from mcgw.maps.profile_fit import ProfileFit
+from mcgw.maps.waves import log_derivatives
 from mcgw.scene.arguments import argument
 from mcgw.scene.fitted import Fitted
+from mcgw.scene.keys import MOMENTS, SUMMITS
 from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_document
+from mcgw.scene.uncertainty import Uncertainty
 
 Heights = Literal["gaussian", "nayak", "table", "measured", "summits"]
 _FITTED = ("load", "area", "stiffness", "contacts", "conductance")  # what a fitted scene asks for
@@ -79,8 +82,34 @@ def fitted_scene(
             f'nominal_area = {changes["nominal_area"]!r}: heights = "{heights}" are the very summits of the '
             'map, on its own area; leave it out, or take heights = "table"'
         )
+    if use == "auto":
+        use = _best(fit, heights)
     scene = _as_fitted(fit, use, heights, argument("E_star", E_star, "Pa"), title)
-    return scene.replace(**{"fitted": _known(fit), **changes})
+    return scene.replace(**{"fitted": _known(fit), "uncertainty": _uncertainty(fit, use, heights), **changes})
+
+
+def _best(fit: Fit | ProfileFit, heights: Heights) -> str:
+    """The estimate that heights of a kind go with."""
+    if isinstance(fit, ProfileFit) or heights == "nayak":
+        return "moments"
+    return fit.best if heights == "gaussian" else "summits"
+
+
+def _uncertainty(fit: Fit | ProfileFit, use: str, heights: Heights) -> Uncertainty | None:
+    """Standard errors of what the scene takes of the fit; the very summits are as they are.
+
+    They go together as those of the moments do over maps, whatever the estimate.
+    """
+    if heights in ("measured", "summits"):
+        return None
+    of_moments = fit.covariance if isinstance(fit, ProfileFit) else fit.waves.covariance
+    if heights == "nayak":
+        found = [fit.numbers[x] if isinstance(fit, ProfileFit) else getattr(fit, x) for x in MOMENTS]
+        return Uncertainty.correlated(MOMENTS, [x.relative for x in found], of_moments)
+    by = log_derivatives(fit.moments)
+    rows = np.array([by[name] for name in SUMMITS])
+    errors = [getattr(fit.estimates[use], name).relative for name in SUMMITS]
+    return Uncertainty.correlated(SUMMITS, errors, rows @ of_moments @ rows.T)
 
 
 def _known(fit: Fit | ProfileFit) -> Fitted:
@@ -96,23 +125,19 @@ def _known(fit: Fit | ProfileFit) -> Fitted:
 
 def _as_fitted(fit: Fit | ProfileFit, use: str, heights: Heights, modulus: float, title: str) -> Scene:
     """The scene with nothing but what the fit tells; profiles stand for a square as long as they are."""
-    if isinstance(fit, ProfileFit):
-        if use == "caps" or heights not in ("gaussian", "nayak"):
-            raise ValueError(
-                f'use = "{use}", heights = "{heights}": profiles show no summits; they give moments, and '
-                "gaussian heights or nayak"
-            )
-        use = "moments"
+    if isinstance(fit, ProfileFit) and (use == "caps" or heights not in ("gaussian", "nayak")):
+        raise ValueError(
+            f'use = "{use}", heights = "{heights}": profiles show no summits; they give moments, and '
+            "gaussian heights or nayak"
+        )
     if heights == "nayak":
-        if use not in ("auto", "moments"):
+        if use != "moments":
             raise ValueError(f'use = "{use}": heights = "nayak" follow from the "moments"')
         law, surface = Nayak(fit.moments.alpha), fit.moments.surface(fit.area, modulus)
         flattest = (
             math.sqrt(fit.area) / surface.radius
         )  # no summit is flatter than what was looked at is long
         return _scene(surface, title, heights=law, curvature=RandomCurvature(law.alpha, flattest))
-    if use == "auto" and heights != "summits":
-        use = fit.best if isinstance(fit, Fit) and heights == "gaussian" else "summits"
     if heights != "summits" and use not in fit.estimates:
         raise ValueError(
             f"use = {use!r}: there is no such estimate of this map; {', '.join(fit.estimates)} are"

@@ -48,6 +48,8 @@ class ProfileFit(Shown):
         Of the profiles, m.
     form : {"none", "plane", "quadratic"}
         What was taken off.
+    covariance : ndarray
+        Of the logarithms of m0, m2 and m4, by their waves, shape (3, 3), to a factor.
     cautions : tuple of str, optional
         Why not to trust it.
     """
@@ -58,6 +60,7 @@ class ProfileFit(Shown):
     peaks: tuple[float, float]
     lengths: tuple[float, ...]
     form: Form
+    covariance: Array
     cautions: tuple[str, ...] = ()
 
     @property
@@ -151,6 +154,7 @@ def fit_profiles(profiles: Sequence[Profile], *, cutoff: float | None, form: For
         _peaks(filtered),
         tuple(p.length for p in profiles),
         form,
+        _covariance(values, seen, shares),
     )
 
 
@@ -188,6 +192,15 @@ def _error(derivative: Array, seen: list[ProfileWaves], shares: Array) -> float:
     )
     by_stretches = float(stretches.std(ddof=1)) / math.sqrt(stretches.size)
     return max(by_waves * _widened(freedom), by_stretches * _widened(stretches.size - 1))
+
+
+def _covariance(values: Array, seen: list[ProfileWaves], shares: Array) -> Array:
+    """Of the logarithms of the moments, by the waves alone."""
+    terms = [
+        share * np.array([_smooth(row, w.power) for row in w.weights])
+        for share, w in zip(shares, seen, strict=True)
+    ]
+    return np.asarray(sum(t @ t.T for t in terms) / np.outer(values, values))
 
 
 def _smooth(weights: Array, power: Array) -> Array:

@@ -85,10 +85,13 @@ class Waves:
         Of m0, m2, m4, alpha, eta, radius and sigma by spectral moments.
     independent : float
         How many independent heights would tell m0 as well.
+    covariance : ndarray
+        Of the logarithms of m0, m2 and m4 over such maps, shape (3, 3), to a factor.
     """
 
     spreads: dict[str, Spread]
     independent: float
+    covariance: Array
 
 
 def log_derivatives(moments: SpectralMoments) -> dict[str, Array]:
@@ -141,10 +144,11 @@ def waves_of(topography: Topography, moments: SpectralMoments, order: int = -1) 
     x = (2 * math.pi / dx * fft.rfftfreq(z.shape[1])) ** 2
     y = (2 * math.pi / dy * fft.fftfreq(z.shape[0]))[:, None] ** 2
     down, along = _legendre_shares(z.shape, order)
-    sums, taken = np.zeros((3, len(kinds))), 0.0
+    sums, taken, products = np.zeros((3, len(kinds))), 0.0, np.zeros((3, 3))
     for band in _bands(len(z)):
         features = np.array([np.ones_like(power[band]), x + y[band], x * x + y[band] ** 2])
         terms = np.tensordot(kinds, features, 1) * power[band]
+        products += (terms[:3] * waves).reshape(3, -1) @ terms[:3].reshape(3, -1).T
         squares = terms * terms
         sums += [(t @ waves).sum(axis=1) for t in (squares, squares * terms, squares * squares)]
         taken += float((power[band] * _taken(down[band], along) @ waves).sum())
@@ -157,7 +161,7 @@ def waves_of(topography: Topography, moments: SpectralMoments, order: int = -1) 
         return _spread(_number(seen), _freedom(seen, fourth), sign, float(by_moments[name][0]) * low)
 
     spreads = {name: spread(of, name) for name, of in zip(by_moments, sums.T.tolist(), strict=True)}
-    return Waves(spreads, 2 * _number(float(sums[0, 0])))
+    return Waves(spreads, 2 * _number(float(sums[0, 0])), products)
 
 
 def _bands(rows: int) -> Iterator[slice]:

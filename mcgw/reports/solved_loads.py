@@ -1,11 +1,13 @@
 """Solutions for given loads as plain text and as one table."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
+from mcgw.ensemble.at_load import rise_of_summits
 from mcgw.ensemble.intervals import MANY
-from mcgw.ensemble.solved import Solution, against_elasticity, rise_of_summits
+from mcgw.ensemble.solved import Solution, against_elasticity
 from mcgw.formats.table import Column, Table, joined
 from mcgw.scene.in_words import contact_facts
 from mcgw.scene.scene import Scene
@@ -29,7 +31,10 @@ def solutions_text(scene: Scene, solutions: Sequence[Solution]) -> str:
         f"std: over {scene.n_surfaces} surfaces of {scene.n_asperities:g} asperities, each at its own d;"
         f" heights drawn one by one, seed {scene.seed}"
     )
-    return "\n".join([*lines, against_elasticity(solutions).verdict])
+    for budget in (solution.budget() for solution in solutions):
+        lines += ["", f"Off a real specimen, {budget.title[0].lower()}{budget.title[1:]}:"]
+        lines += [replace(budget.table(), title="").text(), f"  {budget.advice}"]
+    return "\n".join([*lines, "", against_elasticity(solutions).verdict])
 
 
 def solutions_table(scene: Scene, solutions: Sequence[Solution]) -> Table:

@@ -26,6 +26,7 @@ from mcgw.machine.memory import kept
 if TYPE_CHECKING:
     from analytic import Interaction
     from mcgw.scene.fitted import Fitted
+    from mcgw.scene.uncertainty import Uncertainty
 
 RelErr = float | Mapping[str, float | list[float]]
 
@@ -70,6 +71,7 @@ class Fields:
     rel_err: RelErr | None
     max_seconds: float | None
     fitted: "Fitted | None"
+    uncertainty: "Uncertainty | None"
 
     def hold(self, values: Mapping[str, Any]) -> None:
         """Keep these: the one place where values get into a scene."""

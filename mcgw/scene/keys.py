@@ -11,6 +11,7 @@ from mcgw.scene.fitted import Fitted
 from mcgw.scene.kinds import ByName, Either, Flag, List, Number, Table, Text, Whole, Word
 from mcgw.scene.samplers import SAMPLERS
 from mcgw.scene.section import Key
+from mcgw.scene.uncertainty import Uncertainty
 
 if TYPE_CHECKING:
     from analytic import Interaction
@@ -84,6 +85,21 @@ _PUSHED = Table(
     "give {friction = 0.3, poisson = 0.3, displacements = [1e-8, 1e-7]} (m)",
     Tangential,
 )
+_KNOWN = 'give standard errors as shares of the values, as {sigma = "20 %", radius = "15 %"}'
+_ERROR = Number("1", high=2.0, advice=_KNOWN)
+_BY_MOMENTS = ("sigma", "radius", "eta")
+_ERRORS = Table(
+    (
+        *(Key(name, _ERROR) for name in _BY_MOMENTS),
+        *(Key(name, _ERROR, excludes=_BY_MOMENTS) for name in ("m0", "m2", "m4")),
+        Key("E_star", _ERROR),
+        Key(
+            "correlation", List(List(Number(low=-1.0, high=1.0)), advice="give rows of numbers from -1 to 1")
+        ),
+    ),
+    _KNOWN,
+    Uncertainty,
+)
 
 # fmt: off
 TABLES: dict[str, TableOfKeys] = {
@@ -108,6 +124,10 @@ TABLES: dict[str, TableOfKeys] = {
         required=True, needs=("m4",)),
     Key("m4", Number("1/m^2"), "5e6", "mean square of the second derivative of a profile, 1/m²",
         required=True, needs=("m0",)),
+    Key("uncertainty", _ERRORS, '{sigma = "20 %", radius = "15 %", eta = "12 %"}',
+        "standard errors of `sigma`, `radius`, `eta` (or of `m0`, `m2`, `m4`) and `E_star`, as shares of the "
+        "values, with their `correlation` in this order if they have one; `mcgw fit` writes them, and "
+        "`mcgw solve` says what they do to its answers"),
 ), required=True),
 "grading": TableOfKeys("E\\*(s)/E\\* over the reduced height s. Left out: 1 at every height.", (
     Key("law", Word(("homogeneous", "exponential", "table", "series")), '"exponential"',

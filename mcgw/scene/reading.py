@@ -8,11 +8,11 @@ from typing import Any
 
 import numpy as np
 
-from analytic import UNLOADING, Gaussian, HeightLaw, MeasuredRadii, RandomCurvature, Surface
+from analytic import UNLOADING, Gaussian, HeightLaw, MeasuredRadii, Nayak, RandomCurvature, Surface
 from analytic.laws import ContactLaw, Film
 from mcgw.scene.arguments import as_toml
 from mcgw.scene.fields import LeftOut
-from mcgw.scene.keys import KEYS, TABLES
+from mcgw.scene.keys import KEYS, MOMENTS, TABLES
 from mcgw.scene.laws import contact_law, grading_given, grading_of, heights_given, heights_of, law_of_keys
 from mcgw.scene.section import SceneError, Section
 from mcgw.scene.summits import Spectral, curvature_of, datum_shift, listed_of
@@ -23,7 +23,7 @@ Summits = tuple[Surface | None, HeightLaw | None, RandomCurvature | MeasuredRadi
 
 # Where arguments of `Scene` stand in a file. Others are whole tables or several keys: objects.
 _PLACES = {key: table for table in ("", "contact", "ensemble") for key in KEYS[table]}
-_PLACES |= {"negative": "grading", "curvature": "summits"}
+_PLACES |= {"negative": "grading", "curvature": "summits", "uncertainty": "surface"}
 _OBJECTS = ("law", "curvature")  # which may be words or keys, too
 _QUANTITIES = ("load", "area", "stiffness", "contacts")
 # Keys of [ensemble] that are no values of a scene as they are read.
@@ -100,8 +100,13 @@ def _read(
         "curvature": curvature,
         **_contact(of["contact"], objects, heights),
         **{name: _made(top, of[name], table.make) for name, table in TABLES.items() if table.make},
+        "uncertainty": of["surface"].read("uncertainty"),
         **_ensemble(of["ensemble"], surface, seed),
     }
+    uncertain = values["uncertainty"]
+    if uncertain and set(MOMENTS) & set(uncertain.names) and not isinstance(heights, Nayak | None):
+        advice = 'm0, m2 and m4 go with heights.law = "nayak"; give sigma, radius and eta'
+        of["surface"].fail("uncertainty", of["surface"].table["uncertainty"], advice)
     for name, section in (("", top), *of.items()):
         if not python or TABLES[name].make:  # a file or a dict, where more may be wrong than values
             section.finish()

@@ -23,6 +23,7 @@ from mcgw.scene.surface import changed_surface
 if TYPE_CHECKING:
     from analytic import Interaction
     from mcgw.scene.fitted import Fitted
+    from mcgw.scene.uncertainty import Uncertainty
     from mcgw.scene.validity import Validity
 
 _SURFACES, _MOST_SURFACES = 1000, 10**9  # where n_surfaces is left out; where rel_err is to decide
@@ -113,6 +114,9 @@ class Scene(Fields, Shown):
     fitted : Fitted or dict, optional
         What the fit of a map knew besides, as `mcgw.fitted_scene` writes it; or its keys in a scene file.
         It draws nothing: by it `validity` tells how far the model is from elasticity, or that nobody knows.
+    uncertainty : Uncertainty or dict, optional
+        Standard errors of the surface's parameters as shares of them, as ``{"sigma": "20 %"}``: see
+        ``[surface] uncertainty`` of scene files. It draws nothing: `Solution.budget` says what it does.
 
     Raises
     ------
@@ -164,6 +168,7 @@ class Scene(Fields, Shown):
         rel_err: float | str | Mapping[str, Any] | None = None,
         max_seconds: float | str | None = None,
         fitted: "Fitted | dict[str, Any] | None" = None,
+        uncertainty: "Uncertainty | dict[str, Any] | None" = None,
     ) -> None:
         values = of_arguments(
             surface=surface,
@@ -193,6 +198,7 @@ class Scene(Fields, Shown):
             rel_err=rel_err,
             max_seconds=max_seconds,
             fitted=fitted,
+            uncertainty=uncertainty,
         )
         self._made_of(values)
 

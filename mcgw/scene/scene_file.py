@@ -194,7 +194,8 @@ def scene_document(scene: Scene, *, heights_file: str | None = None, left_out: b
     listed = isinstance(scene.curvature, MeasuredRadii)  # whose heights stand there too
     document: dict[str, Any] = {
         "title": scene.title,
-        "surface": {key: float(getattr(scene.surface, key)) for key in SURFACE_UNITS},
+        "surface": {key: float(getattr(scene.surface, key)) for key in SURFACE_UNITS}
+        | _written(scene, "surface"),
         "grading": {**grading_table(scene.grading), "negative": scene.negative},
         "heights": {} if listed else heights_table(scene.heights, heights_file),
         "summits": summits_table(scene.curvature, scene.surface, heights_file),
@@ -224,5 +225,5 @@ def _plain(value: Any) -> Any:
     if is_dataclass(value) and not isinstance(value, type):
         return _plain(asdict(value))
     if isinstance(value, Mapping):
-        return {key: _plain(inner) for key, inner in value.items()}
+        return {key: _plain(inner) for key, inner in value.items() if inner is not None}
     return [_plain(inner) for inner in value] if isinstance(value, list | tuple) else value

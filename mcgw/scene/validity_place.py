@@ -67,11 +67,11 @@ def moments_of(surface: Surface) -> SpectralMoments | None:
     crowding = surface.eta * surface.radius * surface.sigma
     if crowding < LEAST_CROWDING:
         return None
-    return _moments(surface, SUMMIT_SPREAD + (crowding / _CROWDING) ** 2)
+    return moments_of_nayak(surface, SUMMIT_SPREAD + (crowding / _CROWDING) ** 2)
 
 
-def _moments(surface: Surface, alpha: float) -> SpectralMoments:
-    """From sigma, R and alpha."""
+def moments_of_nayak(surface: Surface, alpha: float) -> SpectralMoments:
+    """Of the Gaussian surface whose summits have sigma and R of a surface, and this alpha."""
     m0, m4 = surface.sigma**2 / (1 - SUMMIT_SPREAD / alpha), 9 * math.pi / (64 * surface.radius**2)
     return SpectralMoments(m0, math.sqrt(m0 * m4 / alpha), m4)
 
@@ -119,14 +119,14 @@ def _not_gaussian(fitted: Fitted, surface: Surface) -> str | None:
 
 def _of_alpha(scene: Fields) -> Surface:
     assert isinstance(scene.heights, Nayak)
-    return _moments(scene.surface, scene.heights.alpha).surface(1.0, 1.0)
+    return moments_of_nayak(scene.surface, scene.heights.alpha).surface(1.0, 1.0)
 
 
 def place_of(scene: Fields) -> Place:
     """Where a scene lies that is `not_on_the_map` for no reason."""
     surface, fitted = scene.surface, scene.fitted
     if isinstance(scene.heights, Nayak):
-        moments: SpectralMoments | None = _moments(surface, scene.heights.alpha)
+        moments: SpectralMoments | None = moments_of_nayak(surface, scene.heights.alpha)
         model = "nayak" if scene.curvature is None else "own radii"
     else:
         moments, model = moments_of(surface) if fitted is None else fitted.moments, "one radius"

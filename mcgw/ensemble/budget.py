@@ -1,0 +1,212 @@
+"""What an answer at a given load is off by, by its causes; and the answer corrected by what is measured.
+
+The answer is that of the exact theory; what it is held to is a real specimen of the scene's nominal area.
+"""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
+
+from analytic import Nayak, RandomCurvature, SpectralMoments
+from analytic.arrays import Array
+from mcgw.formats.sheet import Sheet, Shown
+from mcgw.formats.table import Column, Table
+from mcgw.scene.scene import Scene
+from mcgw.scene.uncertainty import Uncertainty
+from mcgw.scene.validity import Validity
+from mcgw.scene.validity_place import moments_of_nayak
+
+LINES = ("drawn surfaces", "specimens", "parameters", "model")
+Answers = dict[str, float]
+
+_SURE = 1.96  # standard deviations to both sides that hold 95 %
+_STEP = 1e-3  # of the logarithm of a parameter: a central difference is off by 1e-6 of itself
+# Whose measured error an answer has. A conductance is that of stiffness: Barber (2003), Proc. R. Soc. A 459.
+_ERROR_OF = {"area": "area", "stiffness": "stiffness", "conductance": "stiffness", "mean_gap": "separation"}
+_LOWERED = {
+    "drawn surfaces": "draw more of them",
+    "specimens": "a larger nominal area, or several specimens, would lower it; more drawn surfaces would not",
+    "parameters": "a larger map, or several, would lower it; more drawn surfaces would not",
+    "model": "take the corrected answer where there is one; more drawn surfaces would not help",
+}
+
+
+class Corrected(NamedTuple):
+    """An answer divided by what its model is off elasticity, as it was measured.
+
+    Parameters
+    ----------
+    value, low, high : float
+        SI; between the ends 95 % of surfaces like those that were measured lie. nan where nothing was.
+    why : str
+        Why there is none; empty if there is one.
+    """
+
+    value: float
+    low: float
+    high: float
+    why: str = ""
+
+    @classmethod
+    def unknown(cls, why: str) -> "Corrected":
+        """None, for a reason."""
+        return cls(math.nan, math.nan, math.nan, why)
+
+
+@dataclass(frozen=True, repr=False)
+class Budget(Shown):
+    """By how much 95 % of what is real differs from an answer at most, by its causes.
+
+    Parameters
+    ----------
+    title : str
+        Which answer.
+    shares : dict of str to ndarray
+        Half-widths over the answer: by each of `LINES`, one for each of `quantities`; nan where unknown.
+    quantities : tuple of str
+        Names of the answers.
+    lacking : dict of str to str
+        Why a line has no number, by its name.
+    parts : dict of str to float
+        Of the first quantity's line of parameters, the half-width that each parameter has alone.
+    """
+
+    title: str
+    shares: dict[str, Array]
+    quantities: tuple[str, ...]
+    lacking: dict[str, str]
+    parts: dict[str, float]
+
+    @property
+    def all(self) -> Array:
+        """Root of the sum of squares of the lines that are known."""
+        return np.asarray(np.sqrt(np.nansum(np.array([*self.shares.values()]) ** 2, axis=0)))
+
+    @property
+    def advice(self) -> str:
+        """Which line dominates the first quantity, and what would lower it."""
+        first = {line: float(share[0]) for line, share in self.shares.items() if not np.isnan(share[0])}
+        most = max(first, key=lambda line: first[line])
+        of = ""
+        if most == "parameters":
+            of = f" (above all {max(self.parts, key=lambda name: self.parts[name])})"
+        told = f"{self.quantities[0]}: mostly the {most}{of}, ±{100 * first[most]:.2g} %; {_LOWERED[most]}"
+        unknown = "; ".join(f"{line} ({why})" for line, why in self.lacking.items())
+        return f"{told}. Not in the sum: {unknown}" if unknown else told
+
+    def table(self) -> Table:
+        """A row for each line, and their sum."""
+        rows = [*self.shares.values(), self.all]
+        columns = (
+            Column(name, [row[k] for row in rows], name.replace("_", " "), form=".2%", missing="not known")
+            for k, name in enumerate(self.quantities)
+        )
+        return Table((Column("95 %", [*self.shares, "all"]), *columns), self.title)
+
+    def sheet(self) -> Sheet:
+        """The lines, and what would lower their sum."""
+        return Sheet(self.title, [("advice", self.advice)], replace(self.table(), title=""))
+
+
+def budget_of(
+    scene: Scene,
+    title: str,
+    theory: Answers,
+    surfaces: dict[str, Array],
+    intervals: dict[str, tuple[float, float]],
+    validity: Validity,
+    again: Callable[[Scene], Answers],
+    at_load: bool,
+) -> Budget:
+    """The budget of a solution: see `mcgw.ensemble.solved.Solution.budget`, whose parts these are.
+
+    Parameters
+    ----------
+    scene, title, theory, surfaces, intervals
+        Of the solution: what it is of, and of each quantity the answers and the interval of their mean.
+    validity : Validity
+        At the separation of the solution alone.
+    again : callable
+        The answers of another scene at the same load, or area.
+    at_load : bool
+        Whether a load was given: at a given area no error of a model was measured.
+    """
+    names = tuple(
+        name for name in ("load", *_ERROR_OF) if name in theory and name != ("area", "load")[at_load]
+    )
+    value = np.array([theory[name] for name in names])
+    lacking, parts = {}, {}
+    with np.errstate(divide="ignore", invalid="ignore"):
+        drawn = np.array([(high - low) / 2 for low, high in (intervals[name] for name in names)]) / value
+        scatter = _SURE * np.array([surfaces[name].std(ddof=1) for name in names]) / value
+    parameters = np.full(len(names), np.nan)
+    if scene.uncertainty is None:
+        lacking["parameters"] = "give [surface] uncertainty, as mcgw fit does"
+    else:
+        slopes = slopes_of(scene, scene.uncertainty, again, names)
+        parameters = _SURE * np.sqrt(np.einsum("ki,ij,kj->k", slopes, scene.uncertainty.covariance, slopes))
+        alone = _SURE * np.abs(slopes[0]) * np.sqrt(np.diag(scene.uncertainty.covariance))
+        parts = dict(zip(scene.uncertainty.names, alone.tolist(), strict=True))
+    model = np.array([_model_error(validity, name, scene, x) for name, x in zip(names, value, strict=True)])
+    if not at_load:
+        model[:] = np.nan
+        lacking["model"] = "its error is measured at a given load, not at a given area"
+    elif np.isnan(model[0]):
+        lacking["model"] = validity.unknown or "not measured"
+    lines = dict(zip(LINES, (np.abs(drawn), np.abs(scatter), parameters, model), strict=True))
+    return Budget(title, lines, names, lacking, parts)
+
+
+def slopes_of(
+    scene: Scene, uncertain: Uncertainty, again: Callable[[Scene], Answers], names: tuple[str, ...]
+) -> Array:
+    """Derivatives of logarithms of answers at a given load by those of parameters, shape (names, parameters).
+
+    Central differences of the exact theory.
+    """
+    ends = [[again(moved(scene, {p: side * _STEP})) for side in (1, -1)] for p in uncertain.names]
+    here = again(scene)
+    return np.array([[(up[x] - down[x]) / (2 * _STEP * here[x]) for up, down in ends] for x in names])
+
+
+def moved(scene: Scene, steps: dict[str, float]) -> Scene:
+    """The scene with other parameters of its surface, by steps of their logarithms."""
+    factors = {name: math.exp(step) for name, step in steps.items()}
+    surface, heights, curvature = scene.surface, scene.heights, scene.curvature
+    if any(name in factors for name in ("m0", "m2", "m4")):
+        assert isinstance(heights, Nayak)  # `uncertainty` of others does not know moments
+        old = moments_of_nayak(surface, heights.alpha)
+        m = SpectralMoments(*(getattr(old, name) * factors.get(name, 1.0) for name in ("m0", "m2", "m4")))
+        surface, heights = m.surface(surface.nominal_area, surface.E_star), Nayak(m.alpha)
+        if isinstance(curvature, RandomCurvature):
+            flattest = curvature.largest * scene.surface.radius / surface.radius
+            curvature = RandomCurvature(m.alpha, flattest)
+    own = {name: getattr(surface, name) * x for name, x in factors.items() if name not in ("m0", "m2", "m4")}
+    return scene.replace(surface=replace(surface, **own), heights=heights, curvature=curvature)
+
+
+def corrected(validity: Validity, scene: Scene, name: str, value: float) -> Corrected:
+    """An answer at a load without the bias of its model, with what remains."""
+    column = _ERROR_OF.get(name)
+    if column is None:
+        return Corrected.unknown(f"{name}: no error of it was measured")
+    bias, error = (float(x[column][0]) for x in (validity.bias, validity.error))
+    if math.isnan(error):
+        return Corrected.unknown(validity.unknown or f"{name}: not measured there")
+    off = error - abs(bias)
+    if column == "separation":
+        right = value - bias * scene.surface.sigma
+        return Corrected(right, right - off * scene.surface.sigma, right + off * scene.surface.sigma)
+    right, factor = value / (1 + bias), 1 + off / (1 + bias)
+    return Corrected(right, right / factor, right * factor)
+
+
+def _model_error(validity: Validity, name: str, scene: Scene, value: float) -> float:
+    """Over the answer."""
+    if name not in _ERROR_OF:
+        return math.nan
+    error = float(validity.error[_ERROR_OF[name]][0])
+    return error * scene.surface.sigma / abs(value) if name == "mean_gap" else error
