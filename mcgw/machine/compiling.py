@@ -52,8 +52,8 @@ def njit(**options: Any) -> Callable[[Any], Any]:
     kept = options.pop("cache", False)
 
     def decorate(function: Any) -> Any:
-        compiled = numba.njit(**options)(function)
-        _hand_to_loops(compiled, numba.njit(pipeline_class=_ForLoops, **options)(function))
+        compiled = numba.njit(pipeline_class=_ForPython, **options)(function)
+        _hand_to_loops(compiled, numba.njit(**options)(function))
         if kept:
             try:
                 compiled.enable_caching()
@@ -74,24 +74,29 @@ def _hand_to_loops(compiled: Any, within: Any) -> None:
 
     compiled.get_call_template, compiled.get_overload = template, within.get_overload
     for loop in (compiled, within):
-        _compile_without_looking_for_garbage(loop._compiler)
+        _compile_lightly(loop._compiler)
 
 
-def _compile_without_looking_for_garbage(compiler: Any) -> None:
-    """Numba makes a million objects for a loop and drops few, which took a seventh of its time to find."""
+def _compile_lightly(compiler: Any) -> None:
+    """Make what a loop calls, of ours and of Numba, code to go into it, and look for no garbage meanwhile.
+
+    Numba makes a million objects for a loop and drops few, which took a seventh of its time to find.
+    """
     compile_loop = compiler.compile
 
-    def undisturbed(*args: Any) -> Any:
+    def lightly(*args: Any) -> Any:
         with global_compiler_lock:  # one at a time: none takes another's pause for how it was
-            searching = gc.isenabled()
+            searching, lower = gc.isenabled(), NativeLowering.run_pass
             gc.disable()
+            NativeLowering.run_pass = _lower_for_loops  # type: ignore[method-assign, assignment, unused-ignore]
             try:
                 return compile_loop(*args)
             finally:
+                NativeLowering.run_pass = lower  # type: ignore[method-assign, unused-ignore]
                 if searching:
                     gc.enable()
 
-    compiler.compile = undisturbed
+    compiler.compile = lightly
 
 
 class _CodeForLoops(JITCodeLibrary):  # type: ignore[misc, unused-ignore]
@@ -104,30 +109,40 @@ class _CodeForLoops(JITCodeLibrary):  # type: ignore[misc, unused-ignore]
         self._finalized = True
 
 
-@register_pass(mutates_CFG=True, analysis_only=False)
-class _LoweringForLoops(NativeLowering):  # type: ignore[misc, unused-ignore]
-    """Makes such code, without what Python would need to call it."""
+_LOWER = NativeLowering.run_pass
 
-    _name = "lowering_for_loops"
+
+def _lower_for_loops(step: NativeLowering, state: Any) -> bool:
+    """Make such code, without what Python would need to call it."""
+    state.library = _CodeForLoops(state.targetctx.codegen(), state.func_id.func_qualname)
+    state.flags.no_compile = state.flags.no_cpython_wrapper = state.flags.no_cfunc_wrapper = True
+    _LOWER(step, state)
+    key: Any = {}.update  # some function of C, for that of the loop: by it others find its code
+    state["cr"] = state["cr"]._replace(cfunc=key)
+    state.targetctx.insert_user_function(key, state["cr"].fndesc, [state.library])
+    return True
+
+
+@register_pass(mutates_CFG=True, analysis_only=False)
+class _LoweringForPython(NativeLowering):  # type: ignore[misc, unused-ignore]
+    """Makes the machine code that Python calls."""
+
+    _name = "lowering_for_python"
 
     def run_pass(self, state: Any) -> bool:
         """As Numba calls it."""
-        state.library = _CodeForLoops(state.targetctx.codegen(), state.func_id.func_qualname)
-        state.flags.no_compile = state.flags.no_cpython_wrapper = True
-        super().run_pass(state)
-        key: Any = {}.update  # some function of C, for that of the loop: by it others find its code
-        state["cr"] = state["cr"]._replace(cfunc=key)
-        state.targetctx.insert_user_function(key, state["cr"].fndesc, [state.library])
-        return True
+        state.library = JITCodeLibrary(state.targetctx.codegen(), state.func_id.func_qualname)
+        state.library.enable_object_caching()
+        return bool(_LOWER(self, state))
 
 
-class _ForLoops(CompilerBase):  # type: ignore[misc, unused-ignore]
+class _ForPython(CompilerBase):  # type: ignore[misc, unused-ignore]
     """Numba's steps, with that one in place of its own."""
 
     def define_pipelines(self) -> list[Any]:
         """As Numba calls it."""
         steps = DefaultPassBuilder.define_nopython_pipeline(self.state)
-        own = {NativeLowering: _LoweringForLoops}
+        own = {NativeLowering: _LoweringForPython}
         steps.passes = [(own.get(step, step), what) for step, what in steps.passes]
         steps.finalize()
         return [steps]
