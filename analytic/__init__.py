@@ -98,9 +98,9 @@ __all__ = [
     "Body", "ChangEtsionBogy", "Clipped", "Coated", "ContactLaw", "Cumulants", "Custom", "CustomLaw",
     "DerjaguinMullerToporov", "Exponential", "ExponentialHeights", "Film", "Fluctuations", "Gaussian",
     "Grading", "HeightLaw", "HeightRule", "HeightTable", "Hertz", "Homogeneous", "InteractingModel",
-    "Interaction", "JacksonGreen", "JohnsonKendallRoberts", "KogutEtsion", "Layer", "MeasuredHeights",
-    "MeasuredRadii", "Model", "Nayak", "PiecewiseSeries", "PowerLawGraded", "Quantity", "RandomCurvature",
-    "ScipyHeights", "SpectralMoments", "Surface", "Table", "Tangential", "Weibull", "ZhaoMaiettaChang",
+    "Interaction", "JacksonGreen", "JohnsonKendallRoberts", "Joint", "KogutEtsion", "Layer",
+    "MeasuredHeights", "MeasuredRadii", "Model", "Nayak", "PiecewiseSeries", "PowerLawGraded", "Quantity",
+    "RandomCurvature", "ScipyHeights", "SpectralMoments", "Surface", "Table", "Tangential", "Weibull", "ZhaoMaiettaChang",
     "area", "area_per_load", "area_per_load_ratio", "asperities_for", "barber_conductance", "bends",
     "composite_modulus", "conductance", "contacts", "covariance", "cumulants", "extent", "first_negative",
     "fn", "fn_between", "fn_paper", "fn_scaled", "is_data", "load", "masing", "mean", "mean_modulus",
@@ -108,7 +108,7 @@ __all__ = [
     "separation_at", "stiffness", "stiffness_ratio",
 ]  # fmt: skip
 
-_LATER = {"Interaction": "interaction", "InteractingModel": "interacting"}
+_LATER = {"Interaction": "interaction", "InteractingModel": "interacting", "Joint": "joint"}
 
 
 def __getattr__(name: str) -> Any:

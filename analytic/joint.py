@@ -1,0 +1,210 @@
+"""Thermal joints: what gas in the gap conducts beside the spots.
+
+The gap conductance of two rough surfaces at the distance Y of their mean planes, over their rms height, is ::
+
+    h_g = (k_g/rms) I(Y, M),    I = (2 pi)^(-1/2) int_0^inf exp(-(Y - x)^2/2)/(x + M) dx
+
+M being the jump distance of temperature at the walls over the rms height. Source: M. M. Yovanovich,
+J. DeVaal, A. H. Hegazy, AIAA paper 82-0888 (1982); recalled, the paper was not at hand.
+"""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.polynomial import Chebyshev
+from numpy.typing import ArrayLike
+
+from analytic.arrays import Array
+from analytic.nayak import Nayak
+from analytic.quadrature import gauss_legendre
+from analytic.surface import SUMMIT_SPREAD, Surface
+
+# Of air; recalled. Sutherland's law of the U.S. Standard Atmosphere (1976); accommodation at engineering
+# surfaces, ratio of specific heats, Prandtl's number; mean free path at a temperature (K) and pressure (Pa).
+_SUTHERLAND = (2.64638e-3, 245.4, 12.0)
+_ACCOMMODATED, _HEATS, _PRANDTL = 0.87, 1.4, 0.71
+_FREE_PATH, _AT_TEMPERATURE, _AT_PRESSURE = 64e-9, 288.0, 101325.0
+_ROOM = 293.15  # K
+
+_REACH = 10.0  # standard deviations of heights that count
+_DIRECT, _PANEL, _DEGREE = 4096, 0.5, 17  # distances that are integrated one by one; or interpolated
+
+
+@dataclass(frozen=True, slots=True)
+class Gas:
+    """A gas in the gap.
+
+    Parameters
+    ----------
+    conductivity : float
+        W/(m K).
+    jump : float
+        Distance over which the temperature would fall by as much as it jumps at both walls, m.
+
+    Raises
+    ------
+    ValueError
+        If one is not a finite number > 0.
+    """
+
+    conductivity: float
+    jump: float
+
+    def __post_init__(self) -> None:
+        for key, unit in (("conductivity", "W/(m K)"), ("jump", "m")):
+            value = getattr(self, key)
+            if not (math.isfinite(value) and value > 0):
+                raise ValueError(f"gas.{key} = {value!r}: give a finite number > 0, in {unit}")
+
+
+def air(temperature: float = _ROOM, pressure: float = _AT_PRESSURE) -> Gas:
+    """Air between engineering surfaces, at a temperature (K) and pressure (Pa)."""
+    factor, constant, power = _SUTHERLAND
+    conductivity = factor * temperature**1.5 / (temperature + constant * 10 ** (-power / temperature))
+    walls = 2 * (2 - _ACCOMMODATED) / _ACCOMMODATED * 2 * _HEATS / ((_HEATS + 1) * _PRANDTL)
+    path = _FREE_PATH * temperature / _AT_TEMPERATURE * _AT_PRESSURE / pressure
+    return Gas(conductivity, walls * path)
+
+
+@dataclass(frozen=True)
+class Joint:
+    """What fills the gap of a thermal joint.
+
+    Parameters
+    ----------
+    gas : {"air", "vacuum"}, Gas or mapping
+        Or its conductivity and jump distance.
+    rms : float, optional
+        Root mean square height of the surface (not of its summits), m, where the scene does not know it.
+    temperature, gas_pressure : float, optional
+        Of air, K and Pa. Default: 293.15 K and 101325 Pa.
+
+    Raises
+    ------
+    ValueError
+        If the gas is another word, or a number is not finite and > 0.
+
+    Examples
+    --------
+    >>> import analytic
+    >>> surface = analytic.Surface(sigma=0.9e-6, radius=1e-5, eta=1e10, nominal_area=1e-4, E_star=1e11)
+    >>> gap = analytic.Joint("air", rms=1e-6).gap(surface, analytic.Gaussian())
+    >>> float(gap(2.0).round(-1))  # W/(m^2 K) at d/sigma = 2
+    9470.0
+    """
+
+    gas: Any
+    rms: float | None = None
+    temperature: float | None = None
+    gas_pressure: float | None = None
+
+    def __post_init__(self) -> None:
+        if isinstance(self.gas, Mapping):
+            object.__setattr__(self, "gas", Gas(**self.gas))
+        if not isinstance(self.gas, Gas) and self.gas not in ("air", "vacuum"):
+            raise ValueError(f'gas = {self.gas!r}: give "air", "vacuum" or {{conductivity, jump}}')
+        for key, unit in (("rms", "m"), ("temperature", "K"), ("gas_pressure", "Pa")):
+            value = getattr(self, key)
+            if value is not None and not (math.isfinite(value) and value > 0):
+                raise ValueError(f"{key} = {value!r}: give a finite number > 0, in {unit}")
+            if key != "rms" and value is not None and self.gas != "air":
+                raise ValueError(f'{key} = {value!r}: it goes with gas = "air"; leave it out')
+
+    @property
+    def held(self) -> Gas | None:
+        """The gas; None where there is none."""
+        if isinstance(self.gas, Gas):
+            return self.gas
+        return (
+            air(self.temperature or _ROOM, self.gas_pressure or _AT_PRESSURE) if self.gas == "air" else None
+        )
+
+    def gap(self, surface: Surface, heights: Any) -> "Gap":
+        """Of a surface.
+
+        Where the heights are not Nayak's, alpha follows from ``sigma^2 = (1 - .8968/alpha) rms^2``.
+
+        Raises
+        ------
+        ValueError
+            If its rms height is not known, not above that of its summits, or told twice.
+        """
+        sigma = surface.sigma
+        if self.held is None and self.rms is None and not isinstance(heights, Nayak):
+            return Gap(None, sigma, sigma, 0.0)
+        if isinstance(heights, Nayak):
+            if self.rms is not None:
+                raise ValueError(f"rms = {self.rms!r}: the heights tell it; leave it out")
+            return Gap(self.held, sigma, sigma / heights.std, heights.mean / heights.std)
+        if self.rms is None:
+            raise ValueError("rms: give the root mean square height of the surface (not of its summits), m")
+        if self.rms <= sigma:
+            raise ValueError(
+                f"rms = {self.rms!r}: give more than sigma = {sigma:g} m, that of the summits alone"
+            )
+        alpha = SUMMIT_SPREAD / (1 - (sigma / self.rms) ** 2)
+        return Gap(self.held, sigma, self.rms, 4 * self.rms / math.sqrt(math.pi * alpha) / sigma)
+
+
+@dataclass(frozen=True)
+class Gap:
+    """Gap conductance of a surface, W/(m^2 K), of the distance of the mean plane of its summits.
+
+    Parameters
+    ----------
+    gas : Gas or None
+        None conducts nothing.
+    sigma, rms : float
+        Standard deviation of the summits' heights, and root mean square height of the surface, m.
+    rise : float
+        Of the mean plane of the summits above that of the surface, over sigma.
+    """
+
+    gas: Gas | None
+    sigma: float
+    rms: float
+    rise: float
+
+    def __call__(self, h: ArrayLike) -> Array:
+        """At distances of the mean planes over sigma, where spots have deformed the surface."""
+        h = np.asarray(h, dtype=np.float64)
+        if self.gas is None:
+            return np.zeros(h.shape)
+        y = (h + self.rise) * self.sigma / self.rms
+        return self.gas.conductivity / self.rms * gap_integral(y, self.gas.jump / self.rms)
+
+
+def gap_integral(y: ArrayLike, m: float) -> Array:
+    """I(Y, M) to 1e-13, in the shape of Y."""
+    y = np.asarray(y, dtype=np.float64)
+    once, back = np.unique(y, return_inverse=True)
+    if once.size <= _DIRECT:
+        return np.reshape(_integrals(once, m)[back], y.shape)
+    edges = np.linspace(once[0], once[-1], max(math.ceil((once[-1] - once[0]) / _PANEL), 1) + 1)
+    panel = np.clip(np.searchsorted(edges, once, side="right") - 1, 0, edges.size - 2)
+    found = np.empty(once.size)
+    for k in np.unique(panel):
+        series = Chebyshev.interpolate(lambda x: _integrals(x, m), _DEGREE, edges[k : k + 2])
+        found[panel == k] = series(once[panel == k])
+    return np.reshape(found[back], y.shape)
+
+
+def _integrals(y: Array, m: float) -> Array:
+    """Each by Gauss-Legendre rules in panels: from 0, as fine as M there, or about Y if that is far."""
+    far = y > 1.2 * _REACH
+    found = np.empty(y.shape)
+    x, w = _rule([-_REACH, *np.arange(1 - _REACH, _REACH + 1)])
+    found[far] = (w * np.exp(-x * x / 2) / (y[far, None] + x + m)).sum(axis=1)
+    near = m * 4.0 ** np.arange(math.ceil(-math.log(m, 4))) if m < 1 else ()
+    x, w = _rule([0.0, *near, *np.arange(1, 2.2 * _REACH + 2)])
+    found[~far] = (w / (x + m) * np.exp(-((y[~far, None] - x) ** 2) / 2)).sum(axis=1)
+    return found / math.sqrt(2 * math.pi)
+
+
+def _rule(edges: ArrayLike) -> tuple[Array, Array]:
+    x, w = gauss_legendre(24)
+    left, width = np.asarray(edges)[:-1, None], np.diff(edges)[:, None]
+    return (left + width * x).ravel(), (width * w).ravel()
