@@ -128,7 +128,7 @@ def test_overlap_is_that_of_the_estimate_that_is_used(crowded, tmp_path, capsys)
     for use, named in (("auto", False), ("caps", True)):
         words_of = ["fit", str(tmp_path / "m.sdf"), "--cutoff", "none", "--use", use]
         assert main([*words_of, "-o", str(tmp_path / "s.toml")]) == 0
-        assert ("overlap:" in capsys.readouterr().out) == named
+        assert ("overlap:" in capsys.readouterr().err) == named
     wide = gaussian_map(Spectrum(1e-6, 200e-6, 8e-6), (256, 256), PIXEL, rng(1))
     (line,) = (x for x in mcgw.fit(wide, cutoff=None, form="none").cautions if x.startswith("overlap:"))
     assert "as broad as they are far apart" in line
@@ -313,7 +313,7 @@ def test_a_command_writes_the_scene_with_measured_heights(sparse, tmp_path, caps
     """
     field, out = sparse.field, tmp_path / "fitted.toml"
     arguments = ["--cutoff", "none", "--form", "none", "--heights", "measured", "-o", str(out)]
-    assert main(["fit", str(sparse.path), *arguments]) == 0
+    assert main(["fit", str(sparse.path), *arguments, "-v"]) == 0
     told = capsys.readouterr().out
     assert "form taken off: none; cutoff: none" in told
     assert str(out) in told

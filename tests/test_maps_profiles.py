@@ -268,7 +268,7 @@ def files(tmp_path_factory):
 def test_the_command_tells_a_profile_by_its_shape(files, tmp_path, capsys):
     paths = [str(files / f"p{k}.txt") for k in range(2)]
     out = tmp_path / "scene.toml"
-    assert main(["fit", *paths, "--cutoff", "10um", "--E-star", "70 GPa", "-o", str(out)]) == 0
+    assert main(["fit", *paths, "--cutoff", "10um", "--E-star", "70 GPa", "-o", str(out), "-v"]) == 0
     told = capsys.readouterr().out
     assert "2 profiles, 0.002 m together" in told
     assert "Pa = " in told
