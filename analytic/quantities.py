@@ -94,6 +94,16 @@ QUANTITIES = _by_name(
 PER_AREA = _by_name(
     Quantity("pressure", "normal load per nominal area", "Pa", 1.5, 1, 0.5, 4 / 3, of="load"),
     Quantity("area_fraction", "real contact area per nominal area", "1", 1.0, 0, 1.0, math.pi, of="area"),
+    Quantity(
+        "contact_conductance",
+        "contact conductance per nominal area",
+        "W/(m^2 K) or S/m^2",
+        0.5,
+        0,
+        0.5,
+        4,
+        of="conductance_si",
+    ),
 )
 
 # What only other laws of contact than Hertz's tell apart.

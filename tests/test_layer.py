@@ -131,6 +131,15 @@ class TestLaws:
                 expected = math.fsum(1 / by_integral(a) for a in radii)
                 assert e["conductance_si"][1, k] == pytest.approx(expected, rel=1e-10), sampler
 
+    def test_per_nominal_area(self, law):
+        """Also in series with the half-space, drawn and by theory."""
+        scene = scene_of(law, interaction="body", n_asperities=40)
+        e, area = mcgw.simulate(scene), SURFACE.nominal_area
+        np.testing.assert_allclose(e["contact_conductance"] * area, e["conductance_si"], rtol=1e-14)
+        for get in (scene.theory.mean, scene.theory.std):
+            found = get("contact_conductance", H) * area
+            np.testing.assert_allclose(found, get("conductance_si", H), rtol=1e-12)
+
     def test_many_have_the_mean_and_spread_of_theory(self, law):
         scene = scene_of(law, n_surfaces=3000)
         e = mcgw.simulate(scene)
