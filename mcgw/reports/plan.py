@@ -78,7 +78,7 @@ def plan_of(scene: Scene) -> Plan:
         sampler.moments,
         reducer.joined_bytes(surfaces),
         seconds_for(scene, sampler, surfaces),
-        float(getattr(sampler, "law_error", 0.0)) if scene.law_error else 0.0,
+        sampler.law_error if scene.law_error else 0.0,
         _at_others(scene, sampler, surfaces),
     )
 

@@ -12,7 +12,6 @@ cells: those few are the extras.
 """
 
 import math
-from bisect import bisect_left
 from dataclasses import dataclass
 
 import numpy as np
@@ -26,15 +25,13 @@ from mcgw.machine.in_threads import in_threads
 from mcgw.machine.memory import kept
 from mcgw.sampling.exp_log import weigh_exponentials
 from mcgw.sampling.rules import chebyshev_points, chebyshev_transform, gauss_legendre, product
-from mcgw.sampling.spacing import DIGITS, Gaps, cuts
+from mcgw.sampling.spacing import DIGITS, refined, spaced
 from mcgw.sampling.stretches import SMALLEST, begins_and_breaks, losses
 from mcgw.scene.fields import EXACT
 from mcgw.scene.scene import Scene
 
-_ROUNDING = 1e-9  # of the width of a cell
 _CONVERGED = 1e-9  # a step of Newton whose square is nothing
 _SHORT, _MOST_HALVINGS = 16, 60  # terms for a grading on a cell, and how often it is cut to get there
-_FAR, _NARROWER = 2.0, 0.75  # spans from a root of the laws of contact, and what is left of one nearer by
 _DIGITS = 4.0  # of a height that coefficients without meaning may seem to be worth
 _EVEN, _LEAST = 4.0, 1 / 16  # see `evenness`
 _ALONE = 1 / 2  # see `series_accuracy`
@@ -113,11 +110,11 @@ def mesh_of(scene: Scene, *, split: bool = True, rare: float = 0.1) -> Mesh:
     marks = np.unique([low, *begins, *breaks, *bends(scene.modulus, low, high), *law.breaks, *given, high])
     marks = marks[(low <= marks) & (marks <= high)]
     if given.size:
-        spaced = _refined(law, begins, marks)
+        edges = refined(law, begins, marks)
     else:
         asked = (part.tobytes() for part in (begins, breaks, marks))
-        spaced = _edges(law, scene.n_asperities if split else 0, scene.accuracy, *asked)
-    edges = _resolving(scene, spaced)
+        edges = _edges(law, scene.n_asperities if split else 0, scene.accuracy, *asked)
+    edges = _resolving(scene, edges)
     return _mesh(law, float(scene.lowest), edges.tobytes())
 
 
@@ -126,7 +123,7 @@ def _edges(law: HeightLaw, n: int, accuracy: float, *asked: bytes) -> Array:
     """Edges that suit the height law and the contact law, whatever the grading."""
     begins, breaks, marks = (np.frombuffer(part) for part in asked)
     digits = DIGITS - math.log10(series_accuracy(accuracy) / EXACT)
-    return _refined(law, begins, _spaced(law, n, digits, begins, breaks, marks))
+    return refined(law, begins, spaced(law, n, digits, begins, breaks, marks))
 
 
 def cut(scene: Scene, mesh: Mesh, starts: Array) -> Mesh:
@@ -198,41 +195,6 @@ def _rare_heights(law: HeightLaw, share: float) -> tuple[float, float]:
 def _power_of_two_below(distance: float) -> float:
     """Rounded down; far enough from the end that heights next to it are still told apart."""
     return 2.0 ** math.floor(math.log2(max(distance, _CLOSEST)))
-
-
-def _widest(law: HeightLaw, a: float, distance: float) -> float:
-    """How wide the law of heights lets a cell above `a` be: less, where a law of contact bends as well."""
-    width = law.span(a)
-    if distance < _FAR * width:
-        width *= _NARROWER
-    for end in law.singular:
-        width = min(width, a - end if end < a else (end - a) / 2)
-    return width
-
-
-def _spaced(law: HeightLaw, n: int, digits: float, begins: Array, breaks: Array, marks: Array) -> Array:
-    """Marks, and cells where contacts begin or change their law such that drawing costs the least."""
-    low = marks[:-1]
-    k = np.searchsorted(begins, low)
-    root = begins[np.minimum(k, len(begins) - 1)] == low
-    before = low - np.concatenate([[-np.inf], begins])[k]
-    some = root | (np.isin(low, breaks) & np.isfinite(before))
-    gaps = Gaps(low[some], marks[1:][some], before[some], root[some])
-    return np.unique(np.concatenate([marks, cuts(law, n, gaps, digits)]))
-
-
-def _refined(law: HeightLaw, begins: Array, marks: Array) -> Array:
-    """Edges from mark to mark, each cell as wide as the law and the contacts that begin below let it be."""
-    lows, edges = [-np.inf, *begins.tolist()], marks[:1].tolist()
-    for mark in marks[1:].tolist():
-        while (a := edges[-1]) < mark:
-            distance, room = a - lows[bisect_left(lows, a) - 1], mark - a
-            widest = min(distance, _widest(law, a, distance))
-            if room <= widest * (1 + _ROUNDING):
-                edges.append(mark)
-            else:
-                edges.append(a + (widest if room >= 2 * widest else room / 2))
-    return np.array(edges)
 
 
 def _resolving(scene: Scene, edges: Array) -> Array:

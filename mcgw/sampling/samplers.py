@@ -80,7 +80,7 @@ def name_of(scene: Scene) -> str:
 
 def law_error_of(scene: Scene) -> float:
     """Distance of the laws of its values from the exact ones that its sampler was chosen with."""
-    return float(getattr(sampler_of(scene), "law_error", 0.0)) if scene.law_error else 0.0
+    return sampler_of(scene).law_error if scene.law_error else 0.0
 
 
 def _perhaps_crowded(scene: Scene) -> Counted:
@@ -167,12 +167,10 @@ def _at_nominal(name: str, scene: Scene) -> Sampler:
     """The sampler of a scene whose surfaces each find their own balance: imported for those alone."""
     if name == "direct":
         return Direct.of(scene)
+    from mcgw.sampling.nominal import CellsAtNominal, TailAtNominal
+
     if name == "tail":
-        from mcgw.sampling.nominal import TailAtNominal
-
         return TailAtNominal("tail", scene, no_cells(scene), table_of(scene, scene.lowest))
-    from mcgw.sampling.nominal import CellsAtNominal
-
     return CellsAtNominal.of(scene)
 
 

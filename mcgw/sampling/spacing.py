@@ -6,6 +6,7 @@ distance to the next separation below need about fifteen, cells half as wide ten
 geometrically from a separation upwards, and how fast, and to how many, is chosen for each gap.
 """
 
+from bisect import bisect_left
 from dataclasses import dataclass
 from functools import cache
 
@@ -19,12 +20,49 @@ DIGITS = 11.4  # that moments must give for values to the last digit: of a law, 
 SURE = 400  # so many expected contacts are never fewer than half
 _GROWTHS = (2.0, 1.8, 1.6, 1.5, 1.45, 1.4, 1.3, 1.2)  # with 2 each cell is as wide as it may be
 _MORE = 8  # cells than the fewest possible
+_ROUNDING = 1e-9  # of the width of a cell
+_FAR, _NARROWER = 2.0, 0.75  # spans from a root of the laws of contact, and what is left of one nearer by
 _TIE = 1e-9  # share of a price that is no difference
 
 # Prices, in asperities that give ten moments; found when the loops took eight numbers at a time. They
 # take four now, and `runs/bench/prices.py` finds cells cheaper and many moments dearer, by up to a half.
 # Other prices would make other cells, and so other draws.
 _CELL, _TWO_MORE, _FIVE_MORE, _ROOT, _FIVE_ROOTS_MORE = 250.0, 0.1, 0.25, 0.3, 0.2
+
+
+def _widest(law: HeightLaw, a: float, distance: float) -> float:
+    """How wide the law of heights lets a cell above `a` be: less, where a law of contact bends as well."""
+    width = law.span(a)
+    if distance < _FAR * width:
+        width *= _NARROWER
+    for end in law.singular:
+        width = min(width, a - end if end < a else (end - a) / 2)
+    return width
+
+
+def spaced(law: HeightLaw, n: int, digits: float, begins: Array, breaks: Array, marks: Array) -> Array:
+    """Marks, and cells where contacts begin or change their law such that drawing costs the least."""
+    low = marks[:-1]
+    k = np.searchsorted(begins, low)
+    root = begins[np.minimum(k, len(begins) - 1)] == low
+    before = low - np.concatenate([[-np.inf], begins])[k]
+    some = root | (np.isin(low, breaks) & np.isfinite(before))
+    gaps = Gaps(low[some], marks[1:][some], before[some], root[some])
+    return np.unique(np.concatenate([marks, cuts(law, n, gaps, digits)]))
+
+
+def refined(law: HeightLaw, begins: Array, marks: Array) -> Array:
+    """Edges from mark to mark, each cell as wide as the law and the contacts that begin below let it be."""
+    lows, edges = [-np.inf, *begins.tolist()], marks[:1].tolist()
+    for mark in marks[1:].tolist():
+        while (a := edges[-1]) < mark:
+            distance, room = a - lows[bisect_left(lows, a) - 1], mark - a
+            widest = min(distance, _widest(law, a, distance))
+            if room <= widest * (1 + _ROUNDING):
+                edges.append(mark)
+            else:
+                edges.append(a + (widest if room >= 2 * widest else room / 2))
+    return np.array(edges)
 
 
 @dataclass(frozen=True)
