@@ -3,7 +3,7 @@
 import argparse
 from pathlib import Path
 
-from mcgw.commands.set_option import add_set_option, changes_of
+from mcgw.commands.options import add_set_option, changes_of
 
 HELP = (
     "test statistical convergence: slopes, coverage, variance, covariance, skewness (exit code 1 if it fails)"

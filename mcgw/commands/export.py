@@ -3,7 +3,7 @@
 import argparse
 from pathlib import Path
 
-from mcgw.commands.set_option import add_set_option, changes_of
+from mcgw.commands.options import add_set_option, changes_of
 
 HELP = "write pressure, conductance or stiffness as a table for a finite-element program"
 EXAMPLE = "mcgw export mine.toml --to calculix --units mm-N-s -o contact.inp"

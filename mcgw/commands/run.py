@@ -5,8 +5,7 @@ import warnings
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from mcgw.commands.engine_options import add_engine_options, drawing, tell_share
-from mcgw.commands.set_option import add_set_option, changes_of
+from mcgw.commands.options import add_engine_options, add_set_option, changes_of, drawing, tell_share
 
 if TYPE_CHECKING:
     from mcgw.scene.scene import Scene

@@ -4,7 +4,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from mcgw.commands.set_option import add_set_option, changes_of
+from mcgw.commands.options import add_set_option, changes_of
 
 if TYPE_CHECKING:
     from mcgw.store.run_folder import RunFolder

@@ -3,7 +3,7 @@
 import argparse
 from pathlib import Path
 
-from mcgw.commands.set_option import add_set_option, changes_of
+from mcgw.commands.options import add_set_option, changes_of
 
 HELP = "find separation, area, stiffness, contacts and conductance at given loads"
 EXAMPLE = "mcgw solve runs/demo.toml --pressure 100kPa 1MPa --csv solved.csv"

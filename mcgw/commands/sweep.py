@@ -4,8 +4,7 @@ import argparse
 from pathlib import Path
 from typing import Any
 
-from mcgw.commands.engine_options import add_engine_options, drawing, tell_share
-from mcgw.commands.set_option import add_set_option, changes_of
+from mcgw.commands.options import add_engine_options, add_set_option, changes_of, drawing, tell_share
 
 HELP = "draw many scenes at once, over the same surfaces, and keep means and deviations; goes on too"
 EXAMPLE = "mcgw sweep runs/demo.toml --over grading.gamma=0.2:2:10 -o gamma.h5"

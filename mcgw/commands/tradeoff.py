@@ -3,7 +3,7 @@
 import argparse
 from pathlib import Path
 
-from mcgw.commands.set_option import add_set_option, changes_of
+from mcgw.commands.options import add_set_option, changes_of
 
 HELP = "measure error against time of every sampler and quadrature, and say what to run"
 EXAMPLE = "mcgw tradeoff runs/demo.toml -o out"

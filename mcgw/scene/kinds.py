@@ -146,9 +146,8 @@ class Text(Kind):
 
     def read(self, section: Section, name: str, value: Any) -> str | None:
         """Read it."""
-        if isinstance(value, str) and (value or self.empty):
-            return value
-        return section.fail(name, value, self.advice)
+        fits = isinstance(value, str) and (value or self.empty)
+        return value if fits else section.fail(name, value, self.advice)
 
     def shape(self) -> dict[str, Any]:
         """A string."""
@@ -163,9 +162,7 @@ class Flag(Kind):
 
     def read(self, section: Section, name: str, value: Any) -> bool | None:
         """Read it."""
-        if value is True or value is False:
-            return value
-        return section.fail(name, value, self.advice)
+        return value if isinstance(value, bool) else section.fail(name, value, self.advice)
 
     def shape(self) -> dict[str, Any]:
         """A boolean."""
