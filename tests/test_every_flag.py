@@ -432,6 +432,9 @@ APART = {
     ("figures", "--output"): "test_figures_take_folder_scene_and_csv",
     ("figures", "--scene"): "test_figures_take_folder_scene_and_csv",
     ("figures", "--csv"): "test_figures_take_folder_scene_and_csv",
+    ("figures", "--only"): "test_figures_take_folder_scene_and_csv",
+    ("figures", "--format"): "test_figures_take_folder_scene_and_csv",
+    ("figures", "--list"): "test_figures_take_folder_scene_and_csv",
     ("surface", "--colour"): "test_colours_tell_what_was_asked",
     ("", "--version"): "test_version",
     ("converge", "--output"): "test_converge_takes_its_folder",
@@ -618,7 +621,7 @@ def test_figures_take_folder_scene_and_csv(call, tmp_path, monkeypatch):
 
     seen = []
 
-    def first_alone(compared):
+    def first_alone(compared, only):
         seen.append(compared)
         yield (
             "figure-1",
@@ -627,8 +630,9 @@ def test_figures_take_folder_scene_and_csv(call, tmp_path, monkeypatch):
         yield "figure-3", "why not"
 
     monkeypatch.setattr(catalogue, "figures_of", first_alone)
-    assert call(["figures"]).files == ["figure-1.pdf", "figure-1.png", "figure-1.svg"]
-    given = call(["figures", "-o", "there", "--scene", "@s.toml", "--csv"])
+    assert call(["figures"]).files == ["figure-1.png"]
+    words = ["figures", "-o", "there", "--scene", "@s.toml", "--csv", "--format", "png", "pdf", "svg"]
+    given = call([*words, "--only", "figure-1", "figure-3"])
     assert given.code == 0, given.err
     assert sorted(p.name for p in (given.folder / "there").iterdir()) == [
         "figure-1.csv", "figure-1.pdf", "figure-1.png", "figure-1.svg"
@@ -638,6 +642,10 @@ def test_figures_take_folder_scene_and_csv(call, tmp_path, monkeypatch):
     (tmp_path / "python.toml").write_text(mcgw.scene_text(of_python))  # holds the series of that grading
     assert call(["figures", "--scene", str(tmp_path / "python.toml")]).code == 0
     assert "figure-3: not drawn: why not" in given.out
+    assert call(["figures", "--list"]).out.split()[:2] == ["figure-1", "figure-2"]
+    wrong = call(["figures", "--only", "figure-9"])
+    assert (wrong.code, wrong.files) == (2, [])
+    assert "--only figure-9: no such figure here; give one of figure-1, figure-2, " in wrong.err
     default, *others = seen
     assert (default.swept, default.scene.n_asperities, default.scene.seed) == (True, 30_000, 20240601)
     one, other = (compared.asked for compared in others)

@@ -3,8 +3,10 @@
 import argparse
 from pathlib import Path
 
-HELP = "draw the paper's Figures 1-6 with Monte-Carlo points, and those it lacks (a minute)"
-EXAMPLE = "mcgw figures --scene mine.toml -o figures --csv"
+HELP = (
+    "draw the paper's Figures 1-6 with Monte-Carlo points, and those it lacks (a minute); or those of a scene"
+)
+EXAMPLE = "mcgw figures --scene mine.toml --only figure-2 equal-load -o figures"
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
@@ -15,30 +17,48 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--scene", type=Path, metavar="SCENE", help="of this scene instead, beside its homogeneous reference"
     )
+    parser.add_argument("--only", nargs="+", metavar="NAME", help="these alone; default: all with a meaning")
+    parser.add_argument(
+        "--format", nargs="+", default=["png"], metavar="FORMAT", help="png, pdf, svg, ...; default: png"
+    )
+    parser.add_argument("--list", action="store_true", help="print the names of all figures; draw nothing")
     parser.add_argument("--csv", action="store_true", help="also write the numbers of each figure")
 
 
 def execute(args: argparse.Namespace) -> int:
-    """Write PNG, PDF and SVG of each figure and say where they are."""
+    """Write each figure and say where it is."""
     from mcgw.commands.outputs import CSV, Output, check_outputs, figure_format
+    from mcgw.commands.voice import details, news
     from mcgw.figures.catalogue import figures_of, of_paper, rows_of
     from mcgw.figures.compared import Compared
     from mcgw.figures.panels import figure_files, save_figure_files
     from mcgw.scene.scene_file import files_of, load_scene
 
-    compared, figure = Compared(load_scene(args.scene)) if args.scene else of_paper(), figure_format()
+    compared = Compared(load_scene(args.scene)) if args.scene else of_paper()
+    names = [row.name for row in rows_of(compared)]
+    if args.list:
+        print(*names, sep="\n")
+        return 0
+    for name in args.only or ():
+        if name not in names:
+            raise ValueError(f"--only {name}: no such figure here; give one of {', '.join(names)}")
+    formats = [given.lower().removeprefix(".") for given in args.format]
+    known = figure_format()
     check_outputs(
         [
-            Output(path, CSV if path.suffix == ".csv" else figure)
-            for row in rows_of(compared)
-            for path in figure_files(args.output, row.name, csv=args.csv)
+            Output(path, CSV if path.suffix == ".csv" else known)
+            for name in args.only or names
+            for path in figure_files(args.output, name, formats, csv=args.csv)
         ],
         inputs=files_of(args.scene) if args.scene else (),
     )
-    for name, data in figures_of(compared):
+    drawn = 0
+    for name, data in figures_of(compared, args.only or ()):
         if isinstance(data, str):
-            print(f"{name}: not drawn: {data}")
+            (news if args.only else details)(f"{name}: not drawn: {data}")
             continue
-        for path in save_figure_files(data, args.output, csv=args.csv):
-            print(path)
+        drawn += 1
+        details(*save_figure_files(data, args.output, formats, csv=args.csv))
+    files = f"{args.output / '*'}.{formats[0]}" if len(formats) == 1 else args.output
+    news(f"{files}: {drawn} figure{'s' * (drawn != 1)}; mcgw figures --list names them")
     return 0

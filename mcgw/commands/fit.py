@@ -91,15 +91,19 @@ def execute(args: argparse.Namespace) -> int:
     )
     text = [*lines, *(f"warning: {line}" for line in fit.cautions)]
     on = {} if area is None else {"nominal_area": area}
-    title = f"Fitted to {lines[0]}"
+    title = f"Fitted to {args.map[0].name[:50]}"
     scene = fitted_scene(fit, use=args.use, heights=args.heights, E_star=E_star, title=title, **on)
     comments = [*text, "", "units: sigma and radius in m, eta in 1/m^2, nominal_area in m^2, E_star in Pa"]
     measured = fit if isinstance(fit, Fit) and args.heights == "measured" else None
     path, *beside = write_scene(scene, args.output, measured, comments)
     s = scene.surface
-    news(f"{path}: sigma = {s.sigma:.4g} m, radius = {s.radius:.4g} m, eta = {s.eta:.4g} 1/m^2", *beside)
+    news(
+        f"{path}: sigma = {s.sigma:.4g} m, radius = {s.radius:.4g} m, eta = {s.eta:.4g} 1/m^2",
+        lines[0],
+        *beside,
+    )
     write()
-    details(*lines)
+    details(*lines[1:])
     notes(*fit.cautions)
     news(f"next: mcgw run {args.output} -o {args.output.with_suffix('.h5')}")
     return 0

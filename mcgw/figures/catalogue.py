@@ -1,6 +1,6 @@
 """The figures of `mcgw figures`: a row each, of the paper's preset swept over gamma or of anybody's scene."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Collection, Iterator
 from dataclasses import dataclass, replace
 from importlib.resources import files
 
@@ -113,18 +113,20 @@ def rows_of(f: Compared) -> list[Row]:
     return [row for row in CATALOGUE if f.swept or not row.sweep]
 
 
-def figures_of(f: Compared) -> Iterator[tuple[str, FigureData | str]]:
+def figures_of(f: Compared, only: Collection[str] = ()) -> Iterator[tuple[str, FigureData | str]]:
     """Compute the figures of a scene or of a sweep.
 
     Parameters
     ----------
     f : Compared
         Of a scene its surface, separations, grading, contact law, height law and seed are used.
+    only : collection of str, optional
+        Names of figures; default: all.
 
     Yields
     ------
     (str, FigureData or str)
         Name of a figure, and its numbers, or why it has no meaning for this scene.
     """
-    for row in steps(rows_of(f), "figures"):
+    for row in steps([row for row in rows_of(f) if not only or row.name in only], "figures"):
         yield row.name, row.lacking(f) or replace(row.draw(f), name=row.name)

@@ -118,7 +118,7 @@ def laws_compared(f: Compared) -> FigureData:
     label = "area over Hertz's at this load"
     panels.append(Panel("c  equal load", PRESSURE, label, at_load, ("log", "linear"), level=1.0))
     return FigureData(
-        "The choice of the law: the same surfaces, the same onset of yield",
+        "Contact laws compared, with the same onset of yield",
         f"All yield at a penetration of {_CRITICAL:g} σ (Jackson's with S_y/E* = {_STRAIN:g}). Ratios on the "
         f"same surfaces have next to no noise. {f.listed_caption}",
         tuple(panels),
@@ -171,7 +171,7 @@ def way_back(f: Compared) -> FigureData:
                 title = f"{key}  {name}: {quantity}" if quantity == "load" else f"{key}  contacts"
                 panels.append(ways.panel(title, label, quantity, 1e6 * area))
         return FigureData(
-            "The way back: contacts lift off early where they yielded, late where they stick",
+            "Unloading: hysteresis of contacts that yield or adhere",
             f"Pressed to d/σ = {_TURN:g} and released: the same asperities both ways. Penetration at yield "
             f"{_CRITICAL:g} σ; stretch at break-off {_STRETCH:g} σ. {f.listed_caption}",
             tuple(panels),
@@ -186,7 +186,7 @@ def way_back(f: Compared) -> FigureData:
         ways.panel("a  load", f"pressure ({prefix}Pa)", "load", area * unit),
         ways.panel("b  contacts", labels["contacts"], "contacts", 1e6 * area),
     ]
-    return FigureData(f"Pressed to d/σ = {both.theory.unload_from:g}, and let go", f.caption, tuple(panels))
+    return FigureData(f"Pressed to d/σ = {both.theory.unload_from:g}, and unloaded", f.caption, tuple(panels))
 
 
 @dataclass(frozen=True)

@@ -2,7 +2,7 @@
 
 import math
 import textwrap
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -198,13 +198,15 @@ def draw_residual(axis: Any, reach: float) -> None:
     axis.yaxis.set_major_formatter(FuncFormatter(plain))
 
 
-def figure_files(folder: Path, name: str, *, csv: bool) -> list[Path]:
+def figure_files(folder: Path, name: str, formats: Sequence[str], *, csv: bool) -> list[Path]:
     """Files of the figure of this name."""
-    return [folder / f"{name}.{ending}" for ending in ("png", "pdf", "svg", *(["csv"] if csv else []))]
+    return [folder / f"{name}.{ending}" for ending in (*formats, *(["csv"] if csv else []))]
 
 
-def save_figure_files(data: FigureData, folder: Path, *, csv: bool = False) -> Iterator[Path]:
-    """Write a figure as PNG, PDF and SVG.
+def save_figure_files(
+    data: FigureData, folder: Path, formats: Sequence[str] = ("png",), *, csv: bool = False
+) -> Iterator[Path]:
+    """Write a figure in each of the formats.
 
     Parameters
     ----------
@@ -212,6 +214,8 @@ def save_figure_files(data: FigureData, folder: Path, *, csv: bool = False) -> I
         What to draw.
     folder : Path
         Where; made if it is not there.
+    formats : sequence of str, optional
+        Endings of names, of those that matplotlib writes.
     csv : bool, optional
         Also write its numbers.
 
@@ -222,7 +226,7 @@ def save_figure_files(data: FigureData, folder: Path, *, csv: bool = False) -> I
     """
     folder.mkdir(parents=True, exist_ok=True)
     figure = draw(data)
-    for path in figure_files(folder, data.name, csv=csv):
+    for path in figure_files(folder, data.name, formats, csv=csv):
         if path.suffix == ".csv":
             figure_table(data).write(path)
         else:

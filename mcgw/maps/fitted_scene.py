@@ -172,7 +172,9 @@ def _of_summits(fit: Fit, use: str, heights: Heights, modulus: float, title: str
 
 
 def _scene(surface: Surface, title: str, **more: Any) -> Scene:
-    return Scene(surface, separations=np.linspace(0, 3, 31), title=title, quantities=_FITTED, seed=1, **more)
+    return Scene(
+        surface, separations=np.linspace(0, 3, 31).round(1), title=title, quantities=_FITTED, seed=1, **more
+    )
 
 
 def heights_beside(path: Path) -> Path:

@@ -49,8 +49,10 @@ def _listed(given: Mapping[str, Any]) -> str:
 
 def _short(value: Any) -> str:
     """A list of many numbers by their ends: no text that is cut holds half a number."""
-    if isinstance(value, tuple) and len(value) > _MOST and all(isinstance(x, float) for x in value):
-        return f"{len(value)} from {value[0]:.4g} to {value[-1]:.4g}"
+    if isinstance(value, tuple) and all(isinstance(x, float) for x in value):
+        if len(value) > _MOST:
+            return f"{len(value)} from {value[0]:.4g} to {value[-1]:.4g}"
+        return f"({', '.join(f'{x:.6g}' for x in value)})"
     return repr(value)
 
 

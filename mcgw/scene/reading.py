@@ -157,7 +157,8 @@ def _with_listed(of: Mapping[str, Section], surface: Any, listed: Any) -> Summit
 def _contact(section: Section, objects: Values, heights: HeightLaw | None) -> Values:
     shift, given = datum_shift(section, heights), section.read("separations")
     if isinstance(given, dict):
-        given = np.linspace(given["start"], given["stop"], given["num"]).tolist()
+        even = np.linspace(given["start"], given["stop"], given["num"])
+        given = [float(f"{h:.15g}") for h in even]  # 0.3, where even steps give 0.30000000000000004
     listed = [0.0] if given is None else given if isinstance(given, list) else [given]
     separations = tuple(h - shift + 0.0 for h in listed)  # -0.0 is 0.0
     back, film = section.read("unload_from"), _film(section, objects.get("film"))
