@@ -241,6 +241,10 @@ bind_drawing(_draw)
 
 
 def __getattr__(name: str) -> Any:
+    if name == "__version__":
+        from importlib.metadata import version
+
+        return version("mcgw")
     if name not in __all__:
         raise AttributeError(f"module 'mcgw' has no attribute {name!r}")
     home = f"mcgw.{_HOME[name]}" if name in _HOME else "analytic"
