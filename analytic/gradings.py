@@ -124,7 +124,7 @@ class Custom:
         ValueError
             If a value is not finite, or the shape is another one.
         """
-        with np.errstate(all="ignore"):  # what comes of it is told below
+        with np.errstate(all="ignore"):  # what comes of it is checked below
             value = np.asarray(self.function(s), dtype=np.float64)
         if value.shape not in (s.shape, ()):
             raise ValueError(f"grading: gave shape {value.shape} for heights of shape {s.shape}")

@@ -31,7 +31,7 @@ Laws of contact of one asperity, in place of Hertz's, and what else the contacts
                          formulas of one's own
 `JohnsonKendallRoberts`  contacts that stick, as `DerjaguinMullerToporov`
 `Film`, `Layer`          what spots conduct through: bodies, a thin film, a layer: conductance in S or W/K
-`Tangential`             friction, and displacements sideways; `masing`: the way back
+`Tangential`             friction, and displacements sideways; `masing`: unloading
 `Interaction`            asperities that press each other down: nominal and effective separations
 =======================  =========================================================================
 
@@ -39,7 +39,7 @@ Draw surfaces:
 
 =======================  =========================================================================
 `simulate`               in memory
-`run`                    into a file: goes on, extends, in processes, as one of many jobs; `merge`
+`run`                    into a file: resumes, extends, in processes, as one of many jobs; `merge`
 `open_ensemble`          what is in a file; `save`: an ensemble in memory to a file
 `Ensemble`               load, area, ... of every surface; means, errors, intervals, tables
 `heights`, `radii`       the very summits of one surface

@@ -10,7 +10,7 @@ from mcgw.commands.options import add_engine_options, add_set_option, changes_of
 if TYPE_CHECKING:
     from mcgw.scene.scene import Scene
 
-HELP = "simulate a scene: draw its surfaces and store load, area, ... in HDF5; goes on where it stopped"
+HELP = "simulate a scene: draw its surfaces and store load, area, ... in HDF5; resumes where it stopped"
 EXAMPLE = "mcgw run runs/demo.toml -o demo.h5"
 _LONG = 60.0  # seconds from which on a run says beforehand how long it takes
 

@@ -6,7 +6,7 @@ from typing import Any
 
 from mcgw.commands.options import add_engine_options, add_set_option, changes_of, drawing, tell_share
 
-HELP = "draw many scenes at once, over the same surfaces, and keep means and deviations; goes on too"
+HELP = "draw many scenes at once, over the same surfaces, and keep means and deviations; resumes too"
 EXAMPLE = "mcgw sweep runs/demo.toml --over grading.gamma=0.2:2:10 -o gamma.h5"
 
 

@@ -71,7 +71,7 @@ def tell_cautions(source: "Scene | Ensemble | Sweep", instead: str = "") -> None
     """Say the cautions of a scene, of an ensemble or of all points of a sweep.
 
     Where they were said before, `instead` is the command that says them in full: then only their number is
-    told, beside values that are perhaps in other units.
+    given, beside values that are perhaps in other units.
     """
     if not says():
         return

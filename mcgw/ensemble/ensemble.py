@@ -186,7 +186,7 @@ class Ensemble(Shown):
         """Both ends of where the `quantile` of these surfaces lies: itself where values are kept.
 
         With ``keep = "statistics"`` less than 1/64 of the distance from the mean and a standard deviation
-        more apart, beyond 16000 deviations up to the extremes. It says nothing of other surfaces.
+        more apart, beyond 16000 deviations up to the extremes. It is of these surfaces alone.
         """
         return self._quantile(quantity, share)[1:]
 
@@ -261,7 +261,7 @@ class Ensemble(Shown):
         return self.labelled().to_dataframe((*over, "separation"))
 
     def labelled(self) -> Labelled:
-        """All there is, with axes, units and words: what its file, xarray and pandas are told alike."""
+        """All there is, with axes, units and words: for its file, xarray and pandas alike."""
         if self.scene.keep != "statistics":
             return values_of(self.scene, {name: self.values(name) for name in self.scene.shapes})
         found = statistics_of(self, self.scene.shapes, STATISTICS, quantiles=True)

@@ -28,11 +28,11 @@ class Program:
         By table: the line that stands above the rows; empty where there is none. Tables that it does not take
         are not there.
     overclosure : bool
-        Whether gaps are told as overclosures that begin with 0 where the pressure does.
+        Whether gaps are written as overclosures that begin with 0 where the pressure does.
     first : {"x", "y"}
         Which column stands first: argument or value.
     hints : dict of str to tuple of str
-        By table: lines that say how the program is told of the file, and what it does beyond the ends.
+        By table: lines that say how the program includes the file, and what it does beyond the ends.
     most : int, optional
         Rows that it has room for.
     least_step : float, optional
@@ -61,7 +61,7 @@ def check_name(file: str, program: Program) -> None:
     """
     if not re.fullmatch(r"[A-Za-z0-9._+-]{1,64}", file):
         raise ValueError(
-            f"path = {file!r}: {program.name} is told of it by name; give one of at most 64 letters, digits "
+            f"path = {file!r}: {program.name} includes it by name; give one of at most 64 letters, digits "
             "and . _ + -"
         )
 

@@ -224,7 +224,7 @@ class Patch:
 def patch_figures(scene: Scene) -> Patch | None:
     """Heights of the first surface, and its contacts at a moderate separation.
 
-    A surface of more than 200 000 asperities is told by a patch of another one of 20 000. None where the
+    A surface of more than 200 000 asperities is shown by a patch of another one of 20 000. None where the
     sampler has no single asperities, or nothing touches.
     """
     whole = scene.n_asperities <= _MOST

@@ -10,7 +10,7 @@ from mcgw.formats.table import Column, Table
 Estimate = tuple[Array, Array]  # means and their standard errors
 
 GAMMA, SEPARATION, PRESSURE = "grading factor γ", "separation d/σ", "pressure $P/A_n$ (MPa)"
-_ROUNDING = 1e-14  # of a ratio of sums that are the same: no residual is told in units of it
+_ROUNDING = 1e-14  # of a ratio of sums that are the same: no residual is given in units of it
 _COLUMNS = ("panel", "series", "kind", "x", "theory", "mean", "stderr")
 
 

@@ -104,7 +104,7 @@ def asked_of(
     Raises
     ------
     ValueError
-        If one of them says nothing, or a share is given to an engine.
+        If one of them is empty, or a share is given to an engine.
     """
     if shard is not None and engine is not None:
         raise ValueError(f"shard = {shard!r}: a share is drawn by threads; leave engine out")

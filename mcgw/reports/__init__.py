@@ -1,1 +1,1 @@
-"""What is told in words: tables, plans, the HTML report."""
+"""Results in words: tables, plans, the HTML report."""

@@ -5,7 +5,7 @@ J. Stat. Comput. Simul. 46 (1993) 101. Two attempts in three need a comparison, 
 probabilities. Below a mean of 28 the distribution is inverted. All this runs over the vector unit, for the
 surfaces that are still without a number; only a few far from the mean are gone through one by one.
 
-How probable a number is, against the most probable one, is told by C. Loader's "Fast and accurate computation
+How probable a number is, against the most probable one: C. Loader's "Fast and accurate computation
 of binomial probabilities" (2000): a binomial number is off its mean by so many standard deviations and no
 more, so no large logarithms are taken from each other. Near the mean there are series.
 

@@ -53,7 +53,7 @@ def _choice(scene: Scene) -> Iterator[str]:
 
 
 def _yielded(scene: Scene) -> Iterator[str]:
-    """Contacts of which elasticity says nothing."""
+    """Contacts that are beyond elasticity."""
     h = scene.lowest
     if not isinstance(scene.law, ElasticPlastic) or not scene.heights.sf(np.array(h)) > 0:
         return

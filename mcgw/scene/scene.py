@@ -53,7 +53,7 @@ class Scene(Fields, Shown):
         Of the reduced heights: of a distribution of scipy mean and scale drop out. Default: Gaussian.
     curvature : {"random", "mean"}, RandomCurvature or MeasuredRadii, optional
         Whether each summit of an isotropic Gaussian surface has a radius of its own. Needs the heights of
-        `mcgw.Nayak`. Default: "random" for a surface that is told by its spectrum, else "mean". Or the
+        `mcgw.Nayak`. Default: "random" for a surface that is given by its spectrum, else "mean". Or the
         measured radii of summits, whose heights are then those measured with them.
     law : ContactLaw or dict, optional
         Law of contact of an asperity, as `mcgw.KogutEtsion(hardness=1.2e9)`; or its keys in a scene file,

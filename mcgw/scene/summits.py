@@ -164,7 +164,7 @@ def summits_table(
 ) -> dict[str, Any]:
     """The table [summits], read again the same; empty where all summits have one radius.
 
-    Measured ones are told by the name of their file, if they have one; else radii stand there over that of
+    Measured ones are given by the name of their file, if they have one; else radii stand there over that of
     the surface, which has a last digit of its own.
     """
     if curvature is None:

@@ -22,7 +22,7 @@ _SURE = 2.1  # standard deviations that hold 95 % of maps left out: light loads 
 
 @dataclass(frozen=True, repr=False)
 class Validity(ModelErrors, Shown):
-    """Expected errors of a scene's model against elasticity; how they are told."""
+    """Expected errors of a scene's model against elasticity, in words and as a table."""
 
     @property
     def verdict(self) -> str:

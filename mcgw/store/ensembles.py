@@ -130,7 +130,7 @@ def unfinished_sweep(path: Path) -> RunFolder | None:
 
 
 def _run_of(path: Path) -> RunFolder:
-    """The run that makes a file; one that is a single block says nothing of itself."""
+    """The run that makes a file; one that is a single block leaves no record."""
     if not (parts_of(path) / "run.toml").exists():
         raise StoreError(f"{path}: no block of its run is finished yet")
     run = RunFolder.open(parts_of(path))

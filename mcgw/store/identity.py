@@ -5,7 +5,7 @@ On what the numbers of a scene depend besides the scene: versions, and for some 
 Sums, products, quotients and roots are rounded alike by every processor, and the samplers, height laws and
 gradings of this package are made of them. A distribution of scipy.stats, a function of the user, the powers
 of contact laws and the generators behind ``direct`` call exponentials and logarithms of NumPy and of the C
-library, whose last digits differ from one kind of processor to another. Then the kind is told by what these
+library, whose last digits differ from one kind of processor to another. Then the kind is known by what these
 give here.
 
 What is needed to repeat a run, besides its scene: versions, commit, processor, date.

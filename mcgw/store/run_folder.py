@@ -240,7 +240,7 @@ def remove_run(folder: Path) -> None:
 
 
 class _DamagedError(StoreError):
-    """A run.toml that says nothing."""
+    """An empty run.toml."""
 
 
 class _ChangedError(ValueError):

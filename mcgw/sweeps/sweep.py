@@ -114,7 +114,7 @@ class Sweep(OverPoints, Shown):
         return self.labelled().to_dataframe((*self.axes.dims, "separation"))
 
     def labelled(self) -> Labelled:
-        """What there is, with axes, units and words: what xarray and pandas are told."""
+        """What there is, with axes, units and words: for xarray and pandas."""
         coordinates = {
             name: Variable(
                 ("point",) if self.axes.zipped else (name,),

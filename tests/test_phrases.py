@@ -1,0 +1,30 @@
+"""No text of the project has one of these expressions: riddles, inverted order, private words."""
+
+import re
+
+import pytest
+from docs_site import ROOT
+
+PHRASES = [
+    "is told", "are told", "its surfaces are none", "no map can tell", "says nothing", "shortly",
+    "of this model agree", "goes on where it stopped", "where d counts from", "bears; metals",
+]  # fmt: skip
+PLACES = ("README.md", "CHANGELOG.md", "docs/*.md", "docs/*/*.md", "runs/*.md", "mcgw/**/*.py")
+PLACES += ("analytic/**/*.py",)
+
+
+def found(text):
+    return [phrase for phrase in PHRASES if re.search(rf"\b{re.escape(phrase)}\b", text)]
+
+
+@pytest.mark.parametrize("place", PLACES)
+def test_no_text_has_them(place):
+    paths = [p for p in ROOT.glob(place) if "copied" not in p.parts and "api" not in p.parts]
+    assert paths
+    has = {str(p.relative_to(ROOT)): found(" ".join(p.read_text(encoding="utf-8").split())) for p in paths}
+    assert not {name: phrases for name, phrases in has.items() if phrases}
+
+
+def test_they_are_seen():
+    for phrase in PHRASES:
+        assert found(f"A line that {phrase}, and ends.") == [phrase]
