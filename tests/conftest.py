@@ -11,6 +11,7 @@ import pytest
 from interacting_by_hand import QUANTITIES, SEPARATIONS, interaction
 from item_cost import Bill, Meter
 from matplotlib.figure import Figure
+from told import ANSWERS, apart
 from touched import reached
 from warm import warm
 
@@ -23,6 +24,7 @@ SURFACE = analytic.Surface(sigma=1.37e-6, radius=13e-6, eta=3.0e8, nominal_area=
 def pytest_addoption(parser):
     group = parser.getgroup("mcgw")
     group.addoption("--cost", action="store_true", help="list what items cost; fail those that are too dear")
+    group.addoption("--record", action="store_true", help="write tests/answers anew, to be read")
     group.addoption("--touched", action="store_true", help="only what imports what has changed since main")
 
 
@@ -118,3 +120,18 @@ def looked_at_here():
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(ensembles, "examine", lambda path: structure.describe(str(path)))
         yield
+
+
+@pytest.fixture
+def recorded(request):
+    """Compare lines with those of a file in `answers`; with `--record`, write them there."""
+
+    def check(name, said):
+        text, path = "\n".join(said) + "\n", ANSWERS / f"{name}.txt"
+        if request.config.getoption("--record") and (not path.exists() or apart(path.read_text(), text)):
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_text(text)
+        moved = apart(path.read_text(), text)
+        assert not moved, "\n".join(["is it meant? then --record, and read the difference", *moved])
+
+    return check

@@ -1,0 +1,137 @@
+"""What a result says, as lines of text with every number in it.
+
+Long arrays stand as their shape, ends, extremes, mean, root mean square and a mean with uneven weights: a
+number that moves, or changes its place, changes one of them.
+"""
+
+import dataclasses
+import difflib
+import inspect
+import re
+from collections.abc import Mapping
+from enum import Enum
+from pathlib import Path
+
+import numpy as np
+
+ANSWERS = Path(__file__).parent / "answers"
+SHORT = 8  # numbers that stand one by one
+_NUMBER = re.compile(r"(?<![\w.])[-+]?\d+(?:\.\d*)?(?:[eE][-+]?\d+)?")
+
+
+def number(value):
+    """A number to ten digits, without the sign of a zero."""
+    return f"{value + 0.0:.10g}" if isinstance(value, float | np.floating) else f"{value}"
+
+
+def of_array(values):
+    """An array as one line: its numbers if they are few, else what tells it from another."""
+    a = np.asarray(values)
+    if a.dtype.kind == "O":
+        a = a.astype(float)
+    if a.dtype.kind not in "fiub" or a.size <= SHORT:
+        shape = "" if a.ndim < 2 else f"{a.shape} "
+        return (
+            shape
+            + "["
+            + ", ".join(number(x) if a.dtype.kind in "fiu" else repr(x) for x in a.ravel().tolist())
+            + "]"
+        )
+    flat = a.astype(float).ravel()
+    finite = np.isfinite(flat)
+    x = np.where(finite, flat, 0.0)
+    weights = 1 + np.arange(x.size) * 0.6180339887498949 % 1
+    size = np.abs(x).max() or 1.0
+    said = (x[0], x[-1], x.min(), x.max(), x.mean(), np.sqrt(np.mean(x * x)), weights @ x / x.size)
+    rest = "" if finite.all() else f", {np.count_nonzero(~finite)} not finite"
+    return f"{a.dtype.kind}{a.shape} " + " ".join(number(round(v / size, 10) * size) for v in said) + rest
+
+
+def lines(value, name="", depth=6):
+    """A value as lines, with its parts below it."""
+    match value:
+        case None | bool() | str() | bytes() | Enum() | Path():
+            yield f"{name} = {value!r}"
+        case int() | float() | np.number():
+            yield f"{name} = {number(value)}"
+        case np.ndarray():
+            yield f"{name} = {of_array(value)}"
+        case Mapping():
+            yield f"{name}: {len(value)}"
+            for key, part in value.items():
+                yield from lines(part, f"{name}[{key!r}]", depth - 1)
+        case list() | tuple() if not hasattr(value, "_fields"):
+            if value and all(isinstance(x, int | float | np.number) for x in value):
+                yield f"{name} = {of_array(value)}"
+            else:
+                yield f"{name}: {len(value)}"
+                for i, part in enumerate(value):
+                    yield from lines(part, f"{name}[{i}]", depth - 1)
+        case _ if depth and (dataclasses.is_dataclass(value) or hasattr(value, "_fields")):
+            yield f"{name}: {type(value).__name__}"
+            fields = getattr(value, "_fields", None) or [f.name for f in dataclasses.fields(value)]
+            for field in fields:
+                if not field.startswith("_"):
+                    yield from lines(getattr(value, field), f"{name}.{field}", depth - 1)
+        case _:
+            yield f"{name}: a {type(value).__name__}"
+
+
+def answers(thing, without=(), **arguments):
+    """All that an object says of itself: fields, properties, methods whose arguments are known."""
+    yield f"{type(thing).__name__}:"
+    for word in sorted(w for w in dir(thing) if not w.startswith("_") and w not in without):
+        try:
+            part = getattr(thing, word)
+            if callable(part):
+                needs = [
+                    p.name
+                    for p in inspect.signature(part).parameters.values()
+                    if p.default is p.empty and p.kind is not p.VAR_KEYWORD
+                ]
+                if inspect.isclass(part) or not set(needs) <= set(arguments):
+                    continue
+                rows = [{}]
+                for need in needs:
+                    rows = [{**row, need: x} for row in rows for x in arguments[need]]
+                for row in rows:
+                    said = ", ".join(x if isinstance(x, str) else of_array(x) for x in row.values())
+                    yield from answer(lambda part=part, row=row: part(*row.values()), f".{word}({said})")
+            else:
+                yield from lines(part, f".{word}")
+        except (ValueError, KeyError) as error:
+            yield f".{word} ! {type(error).__name__}: {error}"
+
+
+def answer(ask, name):
+    """What a call gives, or what its refusal says."""
+    try:
+        yield from lines(ask(), name)
+    except (ValueError, KeyError) as error:
+        yield f"{name} ! {type(error).__name__}: {error}"
+    except (TypeError, RuntimeWarning):
+        return  # it wants a number where it was given an array
+
+
+def apart(old, new):
+    """Lines in which two texts differ by more than the last digit of a number."""
+    old, new = old.splitlines(), new.splitlines()
+    if len(old) != len(new):
+        return [*difflib.unified_diff(old, new, "recorded", "now", lineterm="", n=0)]
+    return [f"- {a}\n+ {b}" for a, b in zip(old, new, strict=True) if a != b and not near(a, b)]
+
+
+def near(a, b):
+    """Whether lines say the same but for the last digits of their numbers."""
+    if _NUMBER.sub("#", a) != _NUMBER.sub("#", b):
+        return False
+    return all(
+        x == y or ("." in x + y and abs(float(x) - float(y)) <= max(1.001 * step(x), 1e-7 * abs(float(x))))
+        for x, y in zip(_NUMBER.findall(a), _NUMBER.findall(b), strict=True)
+    )
+
+
+def step(written):
+    """One unit of the last digit that is written."""
+    digits, _, power = written.lower().partition("e")
+    return 10.0 ** (int(power or 0) - len(digits.partition(".")[2]))
