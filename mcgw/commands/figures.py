@@ -18,9 +18,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         "--scene", type=Path, metavar="SCENE", help="of this scene instead, beside its homogeneous reference"
     )
     parser.add_argument("--only", nargs="+", metavar="NAME", help="these alone; default: all with a meaning")
-    parser.add_argument(
-        "--format", nargs="+", default=["png"], metavar="FORMAT", help="png, pdf, svg, ...; default: png"
-    )
+    parser.add_argument("--format", nargs="+", metavar="FORMAT", help="png, pdf, svg, ...; left out: png")
     parser.add_argument("--list", action="store_true", help="print the names of all figures; draw nothing")
     parser.add_argument("--csv", action="store_true", help="also write the numbers of each figure")
 
@@ -42,7 +40,7 @@ def execute(args: argparse.Namespace) -> int:
     for name in args.only or ():
         if name not in names:
             raise ValueError(f"--only {name}: no such figure here; give one of {', '.join(names)}")
-    formats = [given.lower().removeprefix(".") for given in args.format]
+    formats = [given.lower().removeprefix(".") for given in args.format or ["png"]]
     known = figure_format()
     check_outputs(
         [
