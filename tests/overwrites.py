@@ -80,7 +80,7 @@ CASES = {
     "converge": ("table.csv", "converge scene.toml -o DIR", "scene-converge.png"),
     "tradeoff": ("table.csv", "tradeoff scene.toml -o DIR", "scene-tradeoff.csv"),
     "tradeoff, figure": ("scene.toml", "tradeoff scene.toml -o DIR", "scene-tradeoff.png"),
-    "figures": ("scene.toml", "figures --scene scene.toml -o DIR", "equal-load.svg"),
+    "figures": ("scene.toml", "figures --scene scene.toml -o DIR --format png svg", "equal-load.svg"),
     "figures --csv": ("table.csv", "figures --scene scene.toml --csv -o DIR", "figure-6.csv"),
 }  # fmt: skip
 WAYS = ("its name", "dots", "absolute", "linked folder", "symbolic link", "hard link")
