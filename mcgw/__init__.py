@@ -55,6 +55,7 @@ Ask:
 `export`                 tables for finite-element programs
 `sweep`, `open_sweep`    many scenes at once, over the same surfaces: means, differences, slopes
 `converge`, `tradeoff`   the statistical convergence test; error against time on this machine
+`elastic`                means of elastic surfaces, with their error, by few boundary-element solves
 `fit`, `fitted_scene`    the surface of a measured height map or of profiles, and a scene of it
 =======================  =========================================================================
 
@@ -108,6 +109,7 @@ if TYPE_CHECKING:
         composite_modulus,
         masing,
     )
+    from mcgw.elasticity.elastic import elastic
     from mcgw.ensemble.ensemble import Ensemble
     from mcgw.ensemble.paired import paired_ratio
     from mcgw.ensemble.regrading import regrade
@@ -171,6 +173,7 @@ __all__ = [
     "compare",
     "composite_modulus",
     "converge",
+    "elastic",
     "export",
     "fit",
     "fitted_scene",
@@ -208,6 +211,7 @@ _HOME = {
     "Surface": "scene.surface",
     "compare": "statistics.comparison",
     "converge": "statistics.convergence",
+    "elastic": "elasticity.elastic",
     "export": "exports.writing",
     "fit": "maps.fitting",
     "fitted_scene": "maps.fitted_scene",

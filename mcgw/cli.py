@@ -29,9 +29,10 @@ COMMANDS = (
     "report",
     "surface",
     "fit",
+    "elastic",
     "completion",
 )
-_PRINTED = ("", "show", "solve", "completion")  # whose product is what they print
+_PRINTED = ("", "show", "solve", "elastic", "completion")  # whose product is what they print
 _NEGATIVE = re.compile(r"-\.?\d")  # how a value begins that is no option, as -1MPa, which is then told of
 
 

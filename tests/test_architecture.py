@@ -14,7 +14,7 @@ from mcgw.scene.samplers import SAMPLERS
 # Packages are layers: each imports only from those before it. Above all is the door, `mcgw` itself.
 LAYERS = (
     "errors", "machine", "formats", "scene", "sampling", "ensemble", "store", "sweeps", "jobs", "statistics",
-    "exports", "maps", "figures", "reports", "commands", "cli",
+    "exports", "maps", "elasticity", "figures", "reports", "commands", "cli",
 )  # fmt: skip
 ROOT = Path(mcgw.__file__).parent
 

@@ -19,7 +19,7 @@ import mcgw.sweeps.file
 from mcgw.cli import COMMANDS, _parser, main
 
 LOOSE = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE
-LONG = ("figures", "tradeoff")  # a minute each; what they do has tests of its own
+LONG = ("elastic", "figures", "tradeoff")  # a minute each; what they do has tests of its own
 DOCUMENTS = ("README.md", "runs/README.md", "runs/ERRATA.md", "runs/LAWS.md", "runs/ROUGHNESS.md")
 WITH_CODE = [name for name in WRITTEN if blocks((DOCS / name).read_text())]
 

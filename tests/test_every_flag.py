@@ -3,6 +3,7 @@
 import argparse
 import dataclasses
 import re
+import shlex
 from collections import namedtuple
 from concurrent.futures import Future
 from functools import cache
@@ -429,6 +430,13 @@ APART = {
     ("merge", "--output"): "test_merge_makes_the_file_that_is_named",
     ("tradeoff", "--output"): "test_tradeoff_takes_its_folder_and_its_time",
     ("tradeoff", "--seconds"): "test_tradeoff_takes_its_folder_and_its_time",
+    ("elastic", "--pressure"): "test_elastic_takes_its_question",
+    ("elastic", "--E-star"): "test_elastic_takes_its_question",
+    ("elastic", "--rel-err"): "test_elastic_takes_its_question",
+    ("elastic", "--solves"): "test_elastic_takes_its_question",
+    ("elastic", "--seed"): "test_elastic_takes_its_question",
+    ("elastic", "--output"): "test_elastic_takes_its_question",
+    ("elastic", "--set"): "test_elastic_takes_its_question",
     ("figures", "--output"): "test_figures_take_folder_scene_and_csv",
     ("figures", "--scene"): "test_figures_take_folder_scene_and_csv",
     ("figures", "--csv"): "test_figures_take_folder_scene_and_csv",
@@ -614,6 +622,27 @@ def test_tradeoff_takes_its_folder_and_its_time(call, monkeypatch):
     assert said.code == 0, said.err
     assert sorted(p.name for p in (said.folder / "there").iterdir()) == ["s-tradeoff.csv", "s-tradeoff.png"]
     assert seen == [7.5]
+
+
+def test_elastic_takes_its_question(call, monkeypatch):
+    """Every option reaches the function, and a scene its changes; nothing is solved."""
+    from mcgw.elasticity import elastic
+
+    seen = []
+
+    def spy(source, **given):
+        seen.append((source, given))
+        raise ValueError("seen")
+
+    monkeypatch.setattr(elastic, "elastic", spy)
+    words = "@s.toml --pressure 2MPa --E-star 5e9 --rel-err 0.1 --solves 9 --seed 4 -o e.jsonl"
+    said = call(["elastic", *shlex.split(words), "--set", "surface.sigma=3e-6"])
+    assert (said.code, said.err) == (2, "mcgw: seen\n")
+    ((scene, given),) = seen
+    assert scene.surface.sigma == 3e-6
+    assert given.pop("path").name == "e.jsonl"
+    assert callable(given.pop("progress"))
+    assert given == {"pressure": "2MPa", "E_star": "5e9", "rel_err": 0.1, "solves": 9, "seed": 4}
 
 
 def test_figures_take_folder_scene_and_csv(call, tmp_path, monkeypatch):

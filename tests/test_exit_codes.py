@@ -34,9 +34,10 @@ WORDS = {
     "report": "report e.h5 -o new/r.html",
     "surface": "surface moments.toml --shape 16 -o new/m.sdf",
     "fit": "fit map.npy --cutoff none -o new/f.toml",
+    "elastic": "elastic moments.toml --pressure 1MPa -o new/e.jsonl",
     "completion": "completion bash",
 }
-PRINTED = {"show", "solve", "completion"}  # the product stands on standard output
+PRINTED = {"show", "solve", "elastic", "completion"}  # the product stands on standard output
 STATES = ("closed", "full", "broken")
 streams = pytest.mark.parametrize("state", STATES)
 both = pytest.mark.parametrize("stream", ["stdout", "stderr"])

@@ -28,6 +28,7 @@ CSV = Format("a table", (".csv", ".txt"))
 HDF5 = Format("an ensemble", (".h5", ".hdf5"))
 HTML = Format("a web page", (".html", ".htm"))
 JSON = Format("the size of a pixel", (".json",))
+JSONL = Format("solves", (".jsonl",))
 NPY = Format("heights", (".npy",))
 TOML = Format("a scene", (".toml",))
 

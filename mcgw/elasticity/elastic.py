@@ -1,0 +1,277 @@
+"""Means over elastic surfaces by levels: ``mcgw.elastic``."""
+
+import hashlib
+import json
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from analytic.arrays import Array
+from mcgw.elasticity.levels import LEVELS, QUANTITIES, Level, Pressed, Values
+from mcgw.elasticity.multilevel import FEWEST, Design, Mean, design, differences, mean_of, numbered, terms_of
+from mcgw.elasticity.sources import Maps, maps_of
+from mcgw.errors import StoreError
+from mcgw.formats.sheet import Sheet, Shown
+from mcgw.formats.table import Column, Table
+from mcgw.machine.progress import Progress, told
+from mcgw.maps.synthetic import Spectrum
+from mcgw.maps.topography import Topography
+from mcgw.scene.arguments import argument
+from mcgw.scene.scene import Scene
+
+_PILOT = 8
+_UNITS = {"area": "m^2", "stiffness": "N/m", "conductance": "m", "mean_gap": "m"}
+_DEAREST = LEVELS[-1].name
+
+
+@dataclass(frozen=True, repr=False)
+class Elastic(Shown):
+    """Means over elastic surfaces.
+
+    Parameters
+    ----------
+    quantities : tuple of str
+        Real area (m^2), stiffness (N/m), conductance C rho (m), and the mean gap between the deformed
+        surface and the plane (m).
+    found : Mean
+        Means and standard errors in their order.
+    levels : Table
+        A row for each term: maps, CPU seconds of one, mean and standard deviation of the first quantity.
+    planned : Design
+        Levels, maps and seconds as planned after the pilot.
+    seconds : float
+        CPU seconds of all solves, the pilot's too.
+    words : str
+        What the maps were.
+    """
+
+    quantities: tuple[str, ...]
+    found: Mean
+    levels: Table
+    planned: Design
+    seconds: float
+    words: str
+
+    def mean(self, quantity: str) -> float:
+        """Mean over surfaces, SI units."""
+        return float(self.found.mean[self.quantities.index(quantity)])
+
+    def interval(self, quantity: str, level: float = 0.95) -> tuple[float, float]:
+        """Confidence interval of the mean (Student's), SI units."""
+        low, high = self.found.interval(level)
+        k = self.quantities.index(quantity)
+        return float(low[k]), float(high[k])
+
+    @property
+    def saved(self) -> float:
+        """How many times longer the dearest level alone would have taken for the same error, as planned."""
+        return self.planned.plain / self.planned.seconds
+
+    def table(self) -> Table:
+        """A row for each quantity: mean and interval."""
+        low, high = self.found.interval()
+        return Table((
+            Column("quantity", list(self.quantities)),
+            Column("unit", [_UNITS[name] for name in self.quantities]),
+            Column("mean", self.found.mean, form=".5g"),
+            Column("low", low, "95 % from", form=".5g"),
+            Column("high", high, "to", form=".5g"),
+        ))  # fmt: skip
+
+    def verdict(self) -> str:
+        """What the cheaper levels did for it, in one sentence."""
+        plain = f"boundary elements alone: {self.planned.plain:.3g} s for the same error"
+        if len(self.planned.chain) == 1:
+            return f"no cheaper level helps here; {plain}"
+        return f"{self.planned.seconds:.3g} s by levels, {self.saved:.1f} times less than {plain}"
+
+    def sheet(self) -> Sheet:
+        """Means, intervals and what was saved."""
+        return Sheet(f"Elastic mean over {self.words}", [("cost", self.verdict())], self.table())
+
+
+def elastic(
+    source: "Scene | Spectrum | Topography | str | Path | Sequence[Topography | str | Path]",
+    *,
+    pressure: float | str,
+    E_star: float | str | None = None,
+    quantities: Sequence[str] = QUANTITIES,
+    rel_err: float = 0.02,
+    solves: int | None = None,
+    pilot: int = _PILOT,
+    seed: int = 1,
+    path: str | Path | None = None,
+    progress: Progress = None,
+) -> Elastic:
+    """Find the mean area, stiffness, conductance and gap of elastic surfaces under a pressure.
+
+    Most of what boundary elements say of a map is known to sums over its own summits, which take a
+    millisecond. So few solves do: of many maps the cheap level's mean, of some what a dearer level differs.
+
+    Parameters
+    ----------
+    source : Scene, Spectrum, Topography, str, Path or list of them
+        A scene that knows its spectrum (m0, m2, m4, or from a fit), or a spectrum: maps are drawn. One map:
+        Gaussian maps of its spectrum are. A list of periodic maps: their own mean.
+    pressure : float or str
+        Load per nominal area, Pa, or as "1 MPa".
+    E_star : float or str, optional
+        Composite modulus, Pa; that of the scene if there is one.
+    quantities : sequence of str, optional
+        Of ``area``, ``stiffness``, ``conductance`` (C rho) and ``mean_gap``.
+    rel_err : float, optional
+        Half the width of the 95 % interval over the mean, of the worst quantity, as the pilot plans it.
+    solves : int, optional
+        Instead: how many solves of boundary elements there may be after the pilot.
+    pilot : int, optional
+        Maps on which all levels are tried first; they tell which levels help and how many maps each takes.
+    seed : int, optional
+        Of the maps.
+    path : str or Path, optional
+        A file of what is solved, a line a solve; the same call again resumes it.
+    progress : bool or callable, optional
+        True: a bar; a function: called with (done, total) in seconds of solving as planned.
+
+    Returns
+    -------
+    Elastic
+
+    Raises
+    ------
+    ValueError
+        If an argument is wrong, or the source has no maps: see `mcgw.elasticity.sources.maps_of`.
+    RunError
+        If Tamaas is not installed (``pip install 'mcgw[bem]'``), or a solve does not converge.
+    StoreError
+        If `path` holds solves of another question.
+
+    Notes
+    -----
+    The exact theory of summits is never taken as a level's mean: maps of pixels have their own.
+
+    Examples
+    --------
+    >>> import mcgw
+    >>> scene = mcgw.load_scene("spectral.toml")  # doctest: +SKIP
+    >>> mcgw.elastic(scene, pressure="1 MPa", rel_err=0.05, path="solves.jsonl")  # doctest: +SKIP
+    """
+    maps = maps_of(source)
+    if E_star is None and not isinstance(source, Scene):
+        raise ValueError("E_star: give the composite modulus, which no map tells")
+    modulus = source.surface.E_star if E_star is None else argument("E_star", E_star, "Pa")  # type: ignore[union-attr]
+    known = [name for name in quantities if name in QUANTITIES]
+    if not known or len(known) < len(tuple(quantities)):
+        raise ValueError(f"quantities = {tuple(quantities)}: give one or more of {', '.join(QUANTITIES)}")
+    if not 0 < rel_err < 1 or pilot < FEWEST or (solves is not None and solves < FEWEST):
+        raise ValueError(
+            f"rel_err = {rel_err}, pilot = {pilot}, solves = {solves}: give 0 < rel_err < 1, and {FEWEST} or "
+            "more maps"
+        )
+    solved = _Solved(maps, argument("pressure", pressure, "Pa"), modulus, seed, known)
+    if path is not None:
+        solved.resume(Path(path))
+    with told(progress, "s") as tell:
+        return _by_levels(solved, rel_err, solves, pilot, tell)
+
+
+class _Solved:
+    """Values of levels on maps, each solved once; in a file, too, if there is one."""
+
+    def __init__(self, maps: Maps, pressure: float, E_star: float, seed: int, quantities: list[str]) -> None:
+        self.maps, self.pressure, self.E_star, self.seed = maps, pressure, E_star, seed
+        self.quantities = quantities
+        self._rows: dict[tuple[str, int], tuple[Values, float]] = {}
+        self._path: Path | None = None
+        self._last: tuple[int, Pressed] | None = None
+
+    def resume(self, path: Path) -> None:
+        """Read what is solved, and write there from now on.
+
+        Raises
+        ------
+        StoreError
+            If these are solves of other maps, another pressure or modulus.
+        """
+        asked = {"maps": self._digest(), "pressure": self.pressure, "E_star": self.E_star, "seed": self.seed}
+        if path.exists():
+            first, *lines = path.read_text(encoding="utf-8").splitlines() or [""]
+            try:
+                same = json.loads(first) == asked
+                rows = [json.loads(line) for line in lines if line.endswith("}")]  # the last may be cut
+            except ValueError:
+                same, rows = False, []
+            if not same:
+                raise StoreError(f"{path}: holds no solves of these maps at this pressure; give another path")
+            self._rows = {(r["level"], r["map"]): (r["values"], r["seconds"]) for r in rows}
+        else:
+            path.write_text(json.dumps(asked) + "\n", encoding="utf-8")
+        self._path = path
+
+    def _digest(self) -> str:
+        """Of the maps: of the first one."""
+        return hashlib.sha256(self.maps.heights(0, self.seed).tobytes()).hexdigest()[:16]
+
+    def at(self, level: Level, number: int) -> tuple[Array, float]:
+        """Quantities of a map at a level, and the seconds they took."""
+        key = (level.name, number)
+        if key not in self._rows:
+            if self._last is None or self._last[0] != number:
+                heights = self.maps.heights(number, self.seed)
+                self._last = number, Pressed(heights, self.maps.size, self.E_star, self.pressure)
+            self._rows[key] = level.timed(self._last[1])
+            if self._path is not None:
+                values, seconds = self._rows[key]
+                row = {"level": level.name, "map": number, "values": values, "seconds": seconds}
+                with open(self._path, "a", encoding="utf-8") as file:
+                    file.write(json.dumps(row) + "\n")
+        values, seconds = self._rows[key]
+        return np.array([values[name] for name in self.quantities]), seconds
+
+    @property
+    def seconds(self) -> float:
+        """CPU seconds of all."""
+        return sum(seconds for _, seconds in self._rows.values())
+
+
+def _by_levels(solved: _Solved, rel_err: float, solves: int | None, pilot: int, tell: Any) -> Elastic:
+    """Pilot, plan, terms."""
+    population = solved.maps.number
+    tried = _chosen(population, solved.seed, 0, [pilot])[0]
+    rows = [[solved.at(level, k) for level in LEVELS] for k in tried]
+    table = {i: np.array([row[i][0] for row in rows]) for i in range(len(LEVELS))}
+    costs = [float(np.mean([row[i][1] for row in rows])) for i in range(len(LEVELS))]
+    planned = design(table, costs, rel_err, solves)
+    terms = terms_of(planned.chain)
+    done, samples, lines = 0.0, [], []
+    for term, numbers in zip(terms, _chosen(population, solved.seed, pilot, planned.maps), strict=True):
+        found: dict[int, list[Array]] = {level: [] for level in term}
+        for number in numbers:
+            for level in term:
+                found[level].append(solved.at(LEVELS[level], number)[0])
+                done += costs[level]
+            tell(min(done, planned.seconds), planned.seconds)
+        samples.append(differences({level: np.array(x) for level, x in found.items()}, term))
+        lines.append((" - ".join(LEVELS[level].words for level in term), len(samples[-1])))
+    first = [x[:, 0] for x in samples]
+    levels = Table((
+        Column("term", [words for words, _ in lines]),
+        Column("maps", [many for _, many in lines], form="d"),
+        Column("seconds", [sum(costs[k] for k in term) for term in terms], "s a map", form=".2g"),
+        Column("mean", [x.mean() for x in first], f"mean {solved.quantities[0]}", form=".4g"),
+        Column("std", [x.std(ddof=1) if len(x) > 1 else 0.0 for x in first], form=".2g"),
+    ))  # fmt: skip
+    return Elastic(
+        tuple(solved.quantities), mean_of(samples, population), levels, planned, solved.seconds,
+        solved.maps.words,
+    )  # fmt: skip
+
+
+def _chosen(population: int | None, seed: int, first: int, maps: Sequence[int]) -> list[Sequence[int]]:
+    """Numbers of the maps of each term: new ones, or of a list that many, in an order of their own."""
+    if population is None:
+        return list(numbered(maps, first))
+    draws = (np.random.default_rng([seed, first, k]).permutation(population) for k in range(len(maps)))
+    return [order[:many].tolist() for order, many in zip(draws, maps, strict=True)]

@@ -1,0 +1,141 @@
+"""The mean of a dear level by few solves: means of cheaper ones and of differences (Giles 2008).
+
+    <dear> = <cheap> + <dearer - cheap on the same map> + ...
+
+Each term has maps of its own. How many is fixed by a pilot, whose maps are not used again, so that the
+estimate has no bias; its interval is Student's, with the degrees of freedom of Welch and Satterthwaite.
+M. B. Giles, Oper. Res. 56 (2008) 607.
+"""
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import combinations, pairwise
+
+import numpy as np
+from scipy.stats import t as student
+
+from analytic.arrays import Array
+
+FEWEST = 4  # maps a term: fewer tell no variance
+
+Chain = tuple[int, ...]  # levels that are used, from cheap to dear
+Table = Mapping[int, Array]  # by level, shape (maps, quantities)
+
+
+@dataclass(frozen=True)
+class Design:
+    """Which levels to use, on how many maps.
+
+    Parameters
+    ----------
+    chain : tuple of int
+        Levels, the dearest last.
+    maps : tuple of int
+        Of each term: the first level's mean, then differences.
+    seconds : float
+        What they are expected to cost together.
+    plain : float
+        What the dearest level alone would cost for the same error.
+    """
+
+    chain: Chain
+    maps: tuple[int, ...]
+    seconds: float
+    plain: float
+
+
+def terms_of(chain: Chain) -> list[Chain]:
+    """Levels of each term, of which the second is taken off the first."""
+    return [chain[:1], *((dear, cheap) for cheap, dear in pairwise(chain))]
+
+
+def differences(table: Table, term: Chain) -> Array:
+    """What a term is on each map, shape (maps, quantities)."""
+    return np.asarray(table[term[0]] - sum((table[level] for level in term[1:]), np.zeros(1)))
+
+
+def design(pilot: Table, seconds: Sequence[float], rel_err: float, solves: int | None = None) -> Design:
+    """Find the chain that costs least.
+
+    Parameters
+    ----------
+    pilot : dict of int to ndarray
+        By level, shape (maps, quantities).
+    seconds : sequence of float
+        Of one map at each level.
+    rel_err : float
+        Half the width of the 95 % interval over the mean, which no quantity is to exceed.
+    solves : int, optional
+        Instead: how many solves of the dearest level there may be.
+    """
+    top = max(pilot)
+    scale = np.abs(pilot[top].mean(axis=0)) * rel_err / student.ppf(0.975, 20)
+
+    def spread(term: Chain) -> float:
+        return float((differences(pilot, term).var(axis=0, ddof=1) / scale**2).max())
+
+    def planned(chain: Chain) -> Design:
+        terms = terms_of(chain)
+        costs = [sum(seconds[level] for level in term) for term in terms]
+        spreads = [spread(term) for term in terms]
+        total = sum(math.sqrt(v * c) for v, c in zip(spreads, costs, strict=True))
+        ideal = [math.sqrt(v / c) * total for v, c in zip(spreads, costs, strict=True)]
+        more = 1.0 if solves is None else solves / ideal[-1]
+        maps = tuple(max(math.ceil(more * n), FEWEST) for n in ideal)
+        cost = sum(n * c for n, c in zip(maps, costs, strict=True))
+        return Design(chain, maps, cost, more * spread((top,)) * seconds[top])
+
+    lower = [level for level in pilot if level != top]
+    chains = [(*some, top) for k in range(len(lower) + 1) for some in combinations(lower, k)]
+    if solves is None:
+        return min(map(planned, chains), key=lambda one: one.seconds)
+    return max(map(planned, chains), key=lambda one: one.plain / one.seconds)
+
+
+@dataclass(frozen=True)
+class Mean:
+    """Means with their uncertainty, arrays of shape (quantities,).
+
+    Parameters
+    ----------
+    mean, stderr, degrees : ndarray
+        Estimate, its standard error, and degrees of freedom of Student's distribution.
+    """
+
+    mean: Array
+    stderr: Array
+    degrees: Array
+
+    def interval(self, level: float = 0.95) -> tuple[Array, Array]:
+        """Ends of the confidence interval."""
+        half = student.ppf((1 + level) / 2, self.degrees) * self.stderr
+        return self.mean - half, self.mean + half
+
+
+def mean_of(samples: Sequence[Array], population: int | None = None) -> Mean:
+    """Sum of the terms' means.
+
+    Parameters
+    ----------
+    samples : sequence of ndarray
+        Of each term, shape (maps, quantities).
+    population : int, optional
+        How many maps there are in all, of which those of a term were chosen without replacement.
+    """
+    variances = []
+    for x in samples:
+        left = 1.0 if population is None else 1 - len(x) / population
+        variances.append(left * x.var(axis=0, ddof=1) / len(x) if len(x) > 1 else np.zeros(x.shape[1]))
+    total = np.sum(variances, axis=0)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        parts = sum(v**2 / max(len(x) - 1, 1) for v, x in zip(variances, samples, strict=True))
+        degrees = np.where(total > 0, total**2 / parts, 1.0)
+    return Mean(np.sum([x.mean(axis=0) for x in samples], axis=0), np.sqrt(total), degrees)
+
+
+def numbered(maps: Sequence[int], first: int) -> Iterator[range]:
+    """Numbers of the maps of each term, none of them twice."""
+    for many in maps:
+        yield range(first, first + many)
+        first += many

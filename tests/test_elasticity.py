@@ -1,0 +1,331 @@
+"""Summits at their places, and means by levels: against lattice sums, plain loops and exact limits."""
+
+import json
+import math
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+from scipy.optimize import brentq
+
+import mcgw
+from mcgw.elasticity import elastic as public
+from mcgw.elasticity.grid import Grid
+from mcgw.elasticity.levels import LEVELS, Level, Pressed, alone, located
+from mcgw.elasticity.located import Located
+from mcgw.elasticity.multilevel import design, differences, mean_of, terms_of
+from mcgw.elasticity.spots import HertzSpots, LawSpots, field_beyond_point
+from mcgw.maps.synthetic import Spectrum
+from mcgw.maps.topography import Topography
+
+SPECTRUM = Spectrum(rms=1e-6, long=40e-6, short=5e-6)
+LATTICE = -3.900264920001956  # 4 zeta(1/2) beta(1/2), physics of a square lattice
+
+
+@pytest.fixture
+def rng():
+    return np.random.default_rng(20261124)
+
+
+def some(n, size, rng, periodic=True, shape=(64, 64)):
+    """Summits of different heights and radii at places of their own."""
+    cells = rng.choice(shape[0] * shape[1], n, replace=False)
+    places = np.array(np.divmod(cells, shape[1]))
+    spots = HertzSpots(1e-6 * rng.standard_normal(n), 1e-5 * rng.uniform(0.5, 2, n), 1e9)
+    return Located(spots, places, Grid(shape, size, periodic))
+
+
+class TestPotential:
+    def test_of_images_is_the_lattice_constant(self):
+        for n in (48, 64, 100):
+            assert_allclose(Grid((n, n), (2.0, 2.0), True).potential[0, 0], LATTICE / 2, rtol=1e-14)
+
+    def test_is_the_sum_over_images(self):
+        """Between two points, by plain summation over 29 000 images; what is left out is 1e-5."""
+        grid, far = Grid((48, 96), (2.0, 1.0), True), 60
+        i, j = np.meshgrid(np.arange(-far, far + 1), np.arange(-2 * far, 2 * far + 1))
+
+        def plain(x, y):
+            """Less the background of all those cells, in closed form."""
+            a, b = 2 * far + 1, 2 * far + 0.5
+            sides = [(a + p * x, b + q * y) for p in (-1, 1) for q in (-1, 1)]
+            background = sum(u * math.asinh(v / u) + v * math.asinh(u / v) for u, v in sides) / 2
+            return float((1 / np.hypot(x + 2 * i, y + j)).sum()) - background
+
+        apart = grid.potential[12, 24] - grid.potential[6, 3]
+        assert_allclose(apart, plain(0.5, 0.25) - plain(0.0625, 0.125), atol=2e-5)
+        assert abs(apart) > 1
+
+    @pytest.mark.parametrize("periodic", [True, False])
+    def test_series_sum_as_the_matrix(self, periodic, rng):
+        one = some(40, (2e-4, 1e-4), rng, periodic, (48, 96))
+        loads = rng.random(40)
+        spread = np.zeros((48, 96))
+        spread[tuple(one.places)] = loads
+        series = one.grid.convolved(spread)[tuple(one.places)]
+        assert_allclose(series, one.grid.between(one.places) @ loads, rtol=1e-11)
+
+    def test_needs_points(self):
+        with pytest.raises(ValueError, match="46 or more"):
+            Grid((40, 40), (1.0, 1.0), True)
+
+
+class TestField:
+    def test_is_that_of_hertz(self):
+        """Integral of Hertz's pressure over 1/r, and far away the point load's."""
+        from scipy.integrate import dblquad
+
+        a, r = 1.0, 1.7
+        integral, _ = dblquad(
+            lambda phi, q: q * math.sqrt(1 - q * q) / math.sqrt(r * r + q * q - 2 * r * q * math.cos(phi)),
+            0, a, 0, 2 * math.pi, epsabs=1e-11,
+        )  # fmt: skip
+        more, _ = field_beyond_point(np.array([r * r]), np.array([a * a / 1.125]))
+        assert_allclose(more + 1 / r, 1.5 / math.pi * integral, rtol=1e-9)
+        far, _ = field_beyond_point(np.array([1e4]), np.array([a * a / 1.125]))
+        assert_allclose(far, 1e-6 / 10, rtol=1e-4)  # a^2/(10 r^3)
+
+    def test_has_its_derivative(self, rng):
+        r2, a2, step = rng.uniform(0.01, 4, 30), rng.uniform(0.1, 2, 30), 1e-6
+        up, down = (field_beyond_point(r2, a2 + s)[0] for s in (step, -step))
+        assert_allclose(field_beyond_point(r2, a2)[1], (up - down) / (2 * step), rtol=1e-6)
+
+    def test_two_summits_at_one_place_are_neutral(self):
+        """0.5/(E* a), by which each of two equal spots pushes the other, as much as it sinks by itself."""
+        more, _ = field_beyond_point(np.array([1e-14]), np.array([2.0]))
+        assert_allclose((more + 1e7) / math.pi, 0.5, rtol=1e-6)
+
+
+def residual(one, balance):
+    """What is left of the balance, by plain loops over pairs and images' potential; of the deepest spot."""
+    z, radii, modulus = one.spots.heights, one.spots.radii, one.spots.E_star
+    delta = np.maximum(balance.penetrations, 0)
+    a2, loads = radii * delta, 4 / 3 * modulus * np.sqrt(radii) * delta**1.5
+    rows, columns = one.places
+    alone = one.spots.squared_radius(z - balance.start)
+    reach = 16 * np.maximum(alone, alone.mean(where=alone > 0))
+    worst = 0.0
+    for i in range(z.size):
+        pushed = 0.0
+        for j in range(z.size):
+            offset = rows[i] - rows[j], columns[i] - columns[j]
+            value = one.grid.potential[offset]
+            dy, dx = (abs(o) * p for o, p in zip(offset, one.grid.pixel[::-1], strict=True))
+            if one.grid.periodic:
+                dx, dy = min(dx, one.grid.size[0] - dx), min(dy, one.grid.size[1] - dy)
+            r2, a = dx * dx + dy * dy, math.sqrt(1.125 * (a2[i] + a2[j]))
+            if i != j and a > 0 and r2 < reach[i] + reach[j] and r2 < min(one.grid.size) ** 2 / 4:
+                r = math.sqrt(r2)
+                angle = math.asin(min(a / r, 1))
+                inside = (2 * a * a - r2) * angle + a * math.sqrt(max(r2 - a * a, 0))
+                value += 0.75 * inside / a**3 - 1 / r
+            pushed += value * loads[j] / (math.pi * modulus)
+        gap = z[i] - balance.separation - pushed
+        worst = max(worst, abs(max(gap, 0) - delta[i]))
+    return worst / delta.max()
+
+
+class TestLocated:
+    @pytest.mark.parametrize("periodic", [True, False])
+    @pytest.mark.parametrize("load", [1e-4, 3e-3, 3e-2])
+    def test_is_a_balance(self, periodic, load, rng):
+        one = some(150, (3e-4, 3e-4), rng, periodic)
+        balance = one.at_load(load)
+        assert balance.merged == 0
+        assert_allclose(balance.load, load, rtol=1e-10)
+        assert residual(one, balance) < 1e-10
+
+    def test_far_spots_do_not_feel_each_other(self):
+        spots = HertzSpots(np.zeros(2), np.array([1e-5, 2e-5]), 1e9)
+        pair = Located(spots, np.array([[0, 0], [0, 99]]), Grid((100, 100), (1e3, 1e3), False))
+        assert_allclose(pair.at_separation(-1e-8).load, spots.load(np.full(2, 1e-8)).sum(), rtol=1e-9)
+
+    def test_pair_is_found_by_hand(self):
+        """Two equal spots: one unknown."""
+        spots = HertzSpots(np.zeros(2), np.full(2, 1e-5), 1e9)
+        pair = Located(spots, np.array([[0, 0], [0, 50]]), Grid((100, 100), (2e-4, 2e-4), False))
+        r = 1e-4  # far beyond the reach of point loads' correction
+
+        def left(delta):
+            return delta + 4 / 3 * math.sqrt(1e-5) * delta**1.5 / (math.pi * r) - 1e-7
+
+        delta = brentq(left, 0, 1e-7, xtol=1e-22)
+        assert_allclose(pair.at_separation(-1e-7).penetrations, delta, rtol=1e-9)
+
+    def test_lattice_rises_by_its_constant(self):
+        """Equal spots on a square lattice: the mean plane's correction, -3.9 P/(pi E* sqrt(n A))."""
+        n = 6
+        at = np.arange(n) * 16 + 8
+        places = np.array([np.repeat(at, n), np.tile(at, n)])
+        spots = HertzSpots(np.zeros(n * n), np.full(n * n, 1e-5), 1e9)
+        lattice = Located(spots, places, Grid((96, 96), (1e-2, 1e-2), True))
+        balance = lattice.at_load(1e-3)
+        rise = -LATTICE * 1e-3 / (math.pi * 1e9 * n * 1e-2)
+        assert_allclose(balance.penetrations + balance.separation, rise, rtol=1e-9)
+
+    def test_stiffness_is_the_derivative(self, rng):
+        one = some(100, (3e-4, 3e-4), rng)
+        balance, step = one.at_load(3e-3), 1e-5
+        up, down = (one.at_load(3e-3 * (1 + s)).separation for s in (step, -step))
+        assert_allclose(balance.stiffness, 2 * step * 3e-3 / (down - up), rtol=1e-6)
+        at = one.at_separation(balance.separation)
+        assert_allclose([at.load, at.area], [balance.load, balance.area], rtol=1e-9)
+
+    def test_any_law_of_a_scene(self):
+        """A law that yields carries less at a separation; Hertz's of a scene is that of the radii."""
+        surface = mcgw.Surface("1 um", "10 um", 1e9, "0.09 mm^2", "1 GPa")
+        scene = mcgw.Scene(surface, separations=0.0, n_surfaces=1, seed=1)
+        yields = scene.replace(law=mcgw.KogutEtsion(critical=0.05))
+        rng = np.random.default_rng(3)
+        z = 1e-6 * rng.standard_normal(90)
+        places = some(90, (3e-4, 3e-4), rng).places
+        grid = Grid((64, 64), (3e-4, 3e-4), True)
+        found = {
+            name: Located(spots, places, grid).at_separation(0.5e-6)
+            for name, spots in {
+                "plain": HertzSpots(z, np.full(90, 1e-5), 1e9),
+                "scene": LawSpots(scene, z, None),
+                "yields": LawSpots(yields, z, None),
+            }.items()
+        }
+        assert_allclose(found["scene"].load, found["plain"].load, rtol=1e-9)
+        assert found["yields"].load < 0.95 * found["plain"].load
+
+    def test_spots_within_each_other_are_one(self):
+        """Two summits two points apart under a load that makes one contact of them."""
+        spots = HertzSpots(np.array([0.0, -1e-9]), np.array([1e-4, 2e-4]), 1e9)
+        pair = Located(spots, np.array([[50, 50], [50, 52]]), Grid((100, 100), (1e-4, 1e-4), True))
+        balance = pair.at_load(1e-3)
+        assert balance.residual < 1e-10
+        assert balance.contacts + balance.merged <= 2
+
+
+class TestLevels:
+    def test_heights_in_any_unit_give_the_same(self, rng):
+        heights = mcgw.maps.synthetic.gaussian_map(SPECTRUM, (64, 64), (1e-6, 1e-6), rng).heights
+        one = Pressed(heights, (6.4e-5, 6.4e-5), 1e11, 5e7)
+        other = Pressed(1e3 * heights, (6.4e-2, 6.4e-2), 1e11, 5e7)
+        for level in (alone, located):
+            a, b = level(one), level(other)
+            powers = {"area": 2, "stiffness": 1, "conductance": 1, "mean_gap": 1}
+            for name, power in powers.items():
+                assert_allclose(b[name], a[name] * 1e3**power, rtol=1e-7)
+
+    def test_alone_is_hertz_over_the_summits(self, rng):
+        heights = mcgw.maps.synthetic.gaussian_map(SPECTRUM, (64, 64), (1e-6, 1e-6), rng).heights
+        one = Pressed(heights, (6.4e-5, 6.4e-5), 1e11, 5e7)
+        values, spots = alone(one), one.summits.spots
+        depth = np.maximum(spots.heights - values["mean_gap"], 0)
+        assert_allclose((4 / 3 * 1e11 * np.sqrt(spots.radii) * depth**1.5).sum(), 5e7 * 6.4e-5**2, rtol=1e-9)
+        assert_allclose(values["area"], math.pi * (spots.radii * depth).sum(), rtol=1e-12)
+
+
+def made_up(rng, maps):
+    """Three levels of two quantities: 0.9 of the variance is known to the second one."""
+    common, own = rng.standard_normal((maps, 2)), rng.standard_normal((2, maps, 2))
+    dear = 10 + common + 0.3 * own[0]
+    return {0: 7 + 0.8 * common + own[1], 1: 9 + common, 2: dear}
+
+
+class TestMultilevel:
+    def test_takes_the_chain_that_costs_least(self, rng):
+        pilot = made_up(rng, 2000)
+        assert design(pilot, (0.01, 0.1, 10.0), 0.01).chain == (1, 2)
+        assert design(pilot, (0.01, 9.0, 10.0), 0.01).chain != (1, 2)
+        useless = {0: rng.standard_normal((500, 2)), 2: pilot[2][:500]}
+        alone = design(useless, (1.0, 0.0, 1.5), 0.01)
+        assert alone.chain == (2,)
+        assert_allclose(alone.plain / alone.seconds, 1, rtol=0.05)
+
+    def test_covers_and_has_no_bias(self, rng):
+        """2000 repetitions: 95 % intervals cover within 4.5 standard errors; the mean of the means, too."""
+        true, covered, means, many = 10.0, 0, [], 2000
+        for _ in range(many):
+            samples = [
+                differences(made_up(rng, n), term) for n, term in zip((60, 12), terms_of((1, 2)), strict=True)
+            ]
+            found = mean_of(samples)
+            low, high = found.interval()
+            covered += int(low[0] <= true <= high[0])
+            means.append(found.mean[0])
+        assert abs(covered / many - 0.95) < 4.5 * math.sqrt(0.95 * 0.05 / many)
+        error = np.std(means) / math.sqrt(many)
+        assert abs(np.mean(means) - true) < 4.5 * error
+        assert abs(np.mean(means) - 9.0) > 50 * error  # the cheap level's mean alone is seen
+
+    def test_a_whole_list_has_no_error(self, rng):
+        assert mean_of([rng.random((7, 2))], population=7).stderr.max() == 0
+
+
+@pytest.fixture
+def cheap(monkeypatch):
+    """Boundary elements that are a known multiple of what located summits say."""
+
+    def solve(pressed):
+        return {name: 1.25 * value for name, value in located(pressed).items()}
+
+    levels = (*LEVELS[:2], Level("elastic", "stand-in", solve))
+    monkeypatch.setattr(public, "LEVELS", levels)
+
+
+@pytest.mark.usefixtures("cheap")
+class TestElastic:
+    def test_resumes(self, tmp_path):
+        path = tmp_path / "solves.jsonl"
+        asked = {"pressure": "50 MPa", "E_star": "100 GPa", "rel_err": 0.2, "path": path}
+        first = mcgw.elastic(SPECTRUM, **asked)
+        lines = path.read_text().splitlines()
+        path.write_text("\n".join(lines[: len(lines) // 2]) + '\n{"level": "loc')
+        again = mcgw.elastic(SPECTRUM, **asked)
+        assert again.mean("area") == pytest.approx(first.mean("area"), rel=0.3)
+        assert set(json.loads(lines[0])) == {"maps", "pressure", "E_star", "seed"}
+        with pytest.raises(mcgw.StoreError, match="another path"):
+            mcgw.elastic(SPECTRUM, **{**asked, "pressure": "60 MPa"})
+
+    def test_a_list_has_its_own_mean(self, rng):
+        maps = [
+            Topography(mcgw.maps.synthetic.gaussian_map(SPECTRUM, (64, 64), (1e-6, 1e-6), rng).heights,
+                       (1e-6, 1e-6), periodic=True)
+            for _ in range(5)
+        ]  # fmt: skip
+        found = mcgw.elastic(maps, pressure=5e7, E_star=1e11, solves=5, pilot=4)
+        truth = np.mean([
+            1.25 * located(Pressed(one.heights - one.heights.mean(), one.size, 1e11, 5e7))["area"]
+            for one in maps
+        ])  # fmt: skip
+        low, high = found.interval("area")
+        assert low <= truth <= high
+
+    def test_command(self, tmp_path, capsys):
+        scene = tmp_path / "s.toml"
+        scene.write_text(
+            '[surface]\nm0 = 1e-12\nm2 = 0.3\nm4 = 3e11\nnominal_area = "1600 um^2"\nE_star = 1e11\n'
+            "[contact]\nseparations = [1.0]\n[ensemble]\nn_surfaces = 2\n"
+        )
+        from mcgw.cli import main
+
+        out = tmp_path / "solves.jsonl"
+        code = main(["elastic", str(scene), "--pressure", "50MPa", "--rel-err", "0.3", "-o", str(out)])
+        printed = capsys.readouterr().out
+        assert code == 0
+        assert "mean_gap" in printed
+        assert str(out) in printed
+        assert out.exists()
+
+    @pytest.mark.parametrize(
+        ("changes", "words"),
+        [
+            ({"E_star": None}, "E_star: give"),
+            ({"quantities": ["load"]}, "area, stiffness"),
+            ({"rel_err": 2}, "rel_err"),
+            ({"pilot": 1}, "4 or more"),
+        ],
+    )
+    def test_refuses(self, changes, words):
+        with pytest.raises(ValueError, match=words):
+            mcgw.elastic(SPECTRUM, **{"pressure": 5e7, "E_star": 1e11, **changes})
+
+    def test_a_scene_without_a_spectrum_is_told(self):
+        scene = mcgw.Scene(mcgw.Surface(1e-6, 1e-5, 1e9, 1e-6, 1e9), separations=0.0, seed=1)
+        with pytest.raises(ValueError, match="m0, m2, m4"):
+            mcgw.elastic(scene, pressure=1e6)
