@@ -430,6 +430,7 @@ APART = {
     ("merge", "--output"): "test_merge_makes_the_file_that_is_named",
     ("tradeoff", "--output"): "test_tradeoff_takes_its_folder_and_its_time",
     ("tradeoff", "--seconds"): "test_tradeoff_takes_its_folder_and_its_time",
+    ("compare", "--laws"): "test_compare_takes_laws",
     ("elastic", "--pressure"): "test_elastic_takes_its_question",
     ("elastic", "--E-star"): "test_elastic_takes_its_question",
     ("elastic", "--rel-err"): "test_elastic_takes_its_question",
@@ -622,6 +623,18 @@ def test_tradeoff_takes_its_folder_and_its_time(call, monkeypatch):
     assert said.code == 0, said.err
     assert sorted(p.name for p in (said.folder / "there").iterdir()) == ["s-tradeoff.csv", "s-tradeoff.png"]
     assert seen == [7.5]
+
+
+def test_compare_takes_laws(call, monkeypatch):
+    """What is said then is of the values of surfaces, wherever they are the least likely."""
+    from mcgw.statistics import laws_of_values
+
+    found = laws_of_values.LawsOfValues(24, "load", 1.5, 0.25, 1e-9)
+    monkeypatch.setattr(laws_of_values, "laws_of_values", lambda ensemble: found)
+    said = call(["compare", "@e.h5", "-o", "p.png", "--laws"])
+    assert said.code == 1
+    assert "the law of load at d/sigma = 1.5 is 0.25 off, the farthest of 24" in said.out
+    assert call(["compare", "@e.h5", "-o", "p.png"]).code == 0
 
 
 def test_elastic_takes_its_question(call, monkeypatch):

@@ -111,7 +111,7 @@ class Mapped(Law):
         Whether it falls with the sum.
     """
 
-    of: Any
+    of: Law
     forward: Callable[[Any], Any]
     back: Callable[[Any], Any]
     falls: bool = False
@@ -120,6 +120,11 @@ class Mapped(Law):
     def error(self) -> float:
         """As of the sum."""
         return float(self.of.error)
+
+    @property
+    def atom(self) -> float:
+        """As of the sum."""
+        return float(self.of.atom)
 
     def _tail(self, y: ArrayLike, *, upper: bool) -> Array:
         x = self.back(np.asarray(y, dtype=np.float64))

@@ -14,13 +14,14 @@ from analytic.distribution.few_contacts import FewContacts
 from analytic.distribution.one_asperity import OneAsperity
 from analytic.distribution.panels import POWER, panels
 from analytic.height_rule import HeightRule
+from analytic.quantities import quantity_of
 from analytic.resolution import resolved_breaks
 from analytic.summits import Radii
 
 _NODES = 16
 _PANELS, _MOST = ((5, 12), (15, 16), (25, 20)), 24  # by the expected contacts
 _MARKS = 6
-_HALVINGS = 56
+_STEPS, _LAST = 40, 2.0**-48
 _LOOKED_AT = 129  # heights between two breaks at which values must rise
 _CLOSE = 1e-9  # of the largest value: breaks are not told apart
 _HIGHEST = 1e4
@@ -161,10 +162,31 @@ def _marks(pieces: list[tuple[float, float, float, float]], top: float) -> tuple
 
 
 def _heights(asperity: Asperity, x: Array, which: Ints, low: float, high: float) -> Array:
-    """Where asperities of some radii add x, between two heights."""
-    left, right = np.full(x.shape, low), np.full(x.shape, high)
-    for _ in range(_HALVINGS):
-        middle = (left + right) / 2
-        less = asperity.added(middle, which) < x
-        left, right = np.where(less, middle, left), np.where(less, right, middle)
-    return np.asarray((left + right) / 2)
+    """Where asperities of some radii add x, between two heights: secants that keep the root between them.
+
+    Of the power of the added that is nearly linear at first touch (Anderson and Bjorck, BIT 13 (1973) 253).
+    """
+    power = 1 / quantity_of(asperity.quantity).exponent
+    aim, found, left = x**power, np.full(x.shape, high), np.arange(x.size)
+
+    def excess(s: Array) -> Array:
+        return np.asarray(np.maximum(asperity.added(s, which[left]), 0.0) ** power - aim[left])
+
+    a, b = np.full(x.shape, low), found
+    at_a, at_b = excess(a), excess(b)
+    going = at_b > 0
+    for _ in range(_STEPS):
+        a, b, at_a, at_b = (each[going] for each in (a, b, at_a, at_b))
+        left = left[going]
+        if not left.size:
+            break
+        with np.errstate(divide="ignore", invalid="ignore"):
+            step = at_b * (b - a) / (at_b - at_a)
+            c = np.where((b - step - a) * step >= 0, b - step, (a + b) / 2)
+            at_c = excess(c)
+            same, less = np.sign(at_c) == np.sign(at_b), 1 - at_c / at_b
+        found[left] = c
+        going = np.abs(c - b) > _LAST * np.abs(c)
+        a, at_a = np.where(same, a, b), np.where(same, at_a * np.where(less > 0, less, 0.5), at_b)
+        b, at_b = c, at_c
+    return found

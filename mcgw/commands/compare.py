@@ -15,6 +15,9 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--csv", type=Path, metavar="FILE", help="also write the table of all separations")
     parser.add_argument("--table", action="store_true", help="print means beside theory, not the worst three")
+    parser.add_argument(
+        "--laws", action="store_true", help="also test single surfaces against the exact law of their values"
+    )
 
 
 def execute(args: argparse.Namespace) -> int:
@@ -32,7 +35,7 @@ def execute(args: argparse.Namespace) -> int:
     from mcgw.reports.text import comparison_summary
 
     with bar("points", terminal=True) as show:
-        comparison = compare(result, progress=show)
+        comparison = compare(result, laws=args.laws, progress=show)
     save_comparison(comparison, path)
     whole = args.table or says(ALL)
     text, table, verdict = comparison_summary(comparison, whole=whole)

@@ -64,7 +64,7 @@ class Comparison(Shown):
     curves : dict of str to Curve
         By quantity.
     verdict : Verdict
-        Over all quantities and separations.
+        On all means, and on the laws of the values of single surfaces.
     """
 
     ensemble: Ensemble
@@ -96,7 +96,10 @@ class Comparison(Shown):
         v = self.verdict
         seen = f"{v.seen}, p = {v.p:.3g}"
         word = "agree" if v.agrees else "DISAGREE"
-        facts = [("all means", seen), ("elasticity", self.ensemble.scene.validity().brief)]
+        facts = [
+            ("all means" if v.laws is None else "all values", seen),
+            ("elasticity", self.ensemble.scene.validity().brief),
+        ]
         table = stacked(farthest, "quantity", "farthest off")
         return Sheet(f"Monte Carlo and theory {word}", facts, table)
 
@@ -209,16 +212,21 @@ def _columns(rows: Sequence[tuple[Tested, int, int]]) -> tuple[Column, ...]:
 
 
 @overload
-def compare(result: Ensemble, *, progress: Progress = None) -> Comparison: ...
+def compare(result: Ensemble, *, laws: bool = False, progress: Progress = None) -> Comparison: ...
 @overload
-def compare(result: "Sweep", *, progress: Progress = None) -> "SweepComparison": ...
-def compare(result: "Ensemble | Sweep", *, progress: Progress = None) -> "Comparison | SweepComparison":
+def compare(result: "Sweep", *, laws: bool = False, progress: Progress = None) -> "SweepComparison": ...
+def compare(
+    result: "Ensemble | Sweep", *, laws: bool = False, progress: Progress = None
+) -> "Comparison | SweepComparison":
     """Compare the means of an ensemble, or those of every point of a sweep, with theory.
 
     Parameters
     ----------
     result : Ensemble or Sweep
         Of independent surfaces.
+    laws : bool, optional
+        Also test the values of single surfaces against their exact laws (Kolmogorov and Smirnov), half a
+        second more; the verdict is then on both. Not of a sweep.
     progress : bool or callable, optional
         Of a sweep. True: a bar; a function: called with (done, total) points.
 
@@ -230,7 +238,8 @@ def compare(result: "Ensemble | Sweep", *, progress: Progress = None) -> "Compar
     Raises
     ------
     ValueError
-        If the surfaces are stratified: their fluctuations are not those of an ensemble.
+        If the surfaces are stratified: their fluctuations are not those of an ensemble; or if laws are wanted
+        of results whose single values have none that is known (see `laws_of_values`), or are not kept.
 
     Examples
     --------
@@ -246,12 +255,14 @@ def compare(result: "Ensemble | Sweep", *, progress: Progress = None) -> "Compar
         from mcgw.sweeps.sweep import Sweep  # which loads what draws
 
         if isinstance(result, Sweep):
+            if laws:
+                raise ValueError("laws = True: a sweep keeps no single values; compare one of its scenes")
             return _of_sweep(result, progress)
     check_object("compare", result, Ensemble)
-    return _of_ensemble(result)
+    return _of_ensemble(result, laws)
 
 
-def _of_ensemble(ensemble: Ensemble) -> Comparison:
+def _of_ensemble(ensemble: Ensemble, laws: bool) -> Comparison:
     if not promise_of(ensemble.sampler).real_surfaces:
         raise ValueError("a stratified file holds means, not an ensemble; compare takes another sampler")
     scene = ensemble.scene
@@ -263,7 +274,12 @@ def _of_ensemble(ensemble: Ensemble) -> Comparison:
         curves[name] = Curve(
             ensemble.mean(name), low, high, scene.theory.mean(name, scene.separations), stderr
         )
-    return Comparison(ensemble, curves, verdict(ensemble))
+    on_means = verdict(ensemble)
+    if not laws:
+        return Comparison(ensemble, curves, on_means)
+    from mcgw.statistics.laws_of_values import laws_of_values  # and with it the exact laws
+
+    return Comparison(ensemble, curves, on_means.with_laws(laws_of_values(ensemble)))
 
 
 def _of_sweep(sweep: "Sweep", progress: Progress) -> SweepComparison:

@@ -13,7 +13,7 @@ Every value may be off by its share, and so may the mean, in the same direction 
 """
 
 from dataclasses import dataclass, replace
-from typing import Any, cast
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,6 +26,9 @@ from mcgw.ensemble.asperities_alone import asperities_alone
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.formats.table import evenly
 from mcgw.scene.scene import Scene
+
+if TYPE_CHECKING:
+    from mcgw.statistics.laws_of_values import LawsOfValues
 
 FALSE_ALARM = 1e-3
 _MOST_SEPARATIONS = 48
@@ -57,6 +60,8 @@ class Verdict:
     points : int
         Of a sweep how many are tested: then all else is of the least likely one, and p is so many times its
         own (Bonferroni), whatever points have in common. 0 for an ensemble.
+    laws : LawsOfValues, optional
+        How far single surfaces are from their exact laws, where that decided.
     """
 
     chi_square: float
@@ -65,6 +70,7 @@ class Verdict:
     means: int = 0
     farthest: float = 0.0
     points: int = 0
+    laws: "LawsOfValues | None" = None
 
     @property
     def agrees(self) -> bool:
@@ -74,6 +80,8 @@ class Verdict:
     @property
     def seen(self) -> str:
         """What p is of, in words."""
+        if self.laws is not None:
+            return self.laws.seen
         where = f" at the least likely of {self.points} points" * (self.points > 0)
         if self.means:
             return (
@@ -89,6 +97,11 @@ class Verdict:
         """Do they agree, and how sure is that."""
         word = "agree" if self.agrees else "DISAGREE"
         return f"Monte Carlo and theory {word}: {self.seen}, p = {self.p:.3g}"
+
+    def with_laws(self, laws: "LawsOfValues") -> "Verdict":
+        """On means and on values together: twice the smaller probability."""
+        decided = laws if laws.p < self.p else None
+        return replace(self, p=min(1.0, 2 * min(self.p, laws.p)), laws=decided)
 
 
 @dataclass(frozen=True)

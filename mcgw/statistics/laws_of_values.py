@@ -1,0 +1,113 @@
+"""Whether the values of single surfaces follow their exact laws, each by the test of Kolmogorov and Smirnov.
+
+A share of M surfaces is farther than D from its probability, at any value at all, with a probability of at
+most ``2 exp(-2 M D^2)``, for laws with jumps too (Massart, Annals of Probability 18 (1990) 1269): a surface
+without contact needs no random number in place of its value. Of K laws the least probability counts K-fold
+(Bonferroni), however much the laws have in common.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from analytic import MeasuredHeights, quantity_of
+from analytic.arrays import Array
+from mcgw.ensemble.ensemble import Ensemble
+from mcgw.formats.table import evenly
+from mcgw.scene.samplers import promise_of
+from mcgw.scene.scene import Scene
+
+_SEPARATIONS, _FEW = 8, 3  # of each quantity, at most; few where a law takes 60 ms, not 10
+_PLACES = 1000  # values at which shares and probabilities are compared, of more surfaces some of theirs
+_ROWS = 20_000  # surfaces that are read at a time
+
+
+@dataclass(frozen=True)
+class LawsOfValues:
+    """How far surfaces are from their exact laws.
+
+    Parameters
+    ----------
+    number : int
+        Laws that were looked at.
+    quantity, separation : str, float
+        Of the values that are farthest off.
+    distance : float
+        Largest difference there of the share of the surfaces up to a value and its probability, beyond what
+        the scene's accuracy allows.
+    p : float
+        Probability of that by chance, of all laws together, at most.
+    """
+
+    number: int
+    quantity: str
+    separation: float
+    distance: float
+    p: float
+
+    @property
+    def seen(self) -> str:
+        """What p is of, in words."""
+        at = f"{self.quantity} at d/sigma = {self.separation:g}"
+        return f"the law of {at} is {self.distance:.3g} off, the farthest of {self.number}"
+
+
+def laws_of_values(ensemble: Ensemble) -> LawsOfValues:
+    """Test all surfaces against the exact law of each quantity, at eight separations at most.
+
+    Raises
+    ------
+    ValueError
+        Where values are not kept, are those of listed summits (laws with a step for each of them) or of
+        radii of their own under a law that yields, or come from a balance of each surface or a sampler that
+        spends some of the law.
+    """
+    scene, one_radius = ensemble.scene, ensemble.scene.curvature is None
+    if (
+        scene.keep == "statistics"
+        or scene.nominal
+        or isinstance(scene.heights, MeasuredHeights)
+        or promise_of(ensemble.sampler).spends
+        or not (scene.hertzian or one_radius)
+    ):
+        raise ValueError(
+            "laws = True: takes kept values of single surfaces at effective separations, from an exact sampler; "
+            "not of listed summits, nor of summits with their own radii under another law than Hertz's"
+        )
+    h = np.unique(scene.separations)
+    chosen = h[evenly(len(h), _SEPARATIONS if scene.hertzian and one_radius else _FEW)].tolist()
+    found = []
+    for name in scene.quantities:
+        apart = _distances(ensemble, name, [scene.separations.index(x) for x in chosen])
+        found += [(d, name, x) for d, x in zip(apart, chosen, strict=True)]
+    distance, name, x = max(found)
+    p = 2 * len(found) * float(np.exp(-2 * ensemble.n_surfaces * distance**2))
+    return LawsOfValues(len(found), name, x, distance, min(p, 1.0))
+
+
+def _distances(ensemble: Ensemble, name: str, which: list[int]) -> list[float]:
+    """Of one quantity, at some separations by number."""
+    m, scene = ensemble.n_surfaces, ensemble.scene
+    first = np.sort(ensemble.sums.read(name, 0, min(m, _ROWS))[:, which], axis=0)
+    places = first[evenly(len(first), _PLACES)].astype(np.float64)
+    below, upto = np.zeros(places.shape), np.zeros(places.shape)
+    for start in range(0, m, _ROWS):
+        values = np.sort(ensemble.sums.read(name, start, min(start + _ROWS, m))[:, which], axis=0)
+        for k in range(len(which)):
+            below[:, k] += np.searchsorted(values[:, k], places[:, k], "left")
+            upto[:, k] += np.searchsorted(values[:, k], places[:, k], "right")
+    return [
+        _farthest(scene, name, scene.separations[number], places[:, k], below[:, k] / m, upto[:, k] / m)
+        for k, number in enumerate(which)
+    ]
+
+
+def _farthest(scene: Scene, name: str, h: float, x: Array, below: Array, upto: Array) -> float:
+    """Largest distance of shares from their probabilities; both as they jump at values that repeat."""
+    law = scene.theory.distribution(name, h)
+    if quantity_of(name).counts:
+        least, most = law.cdf(x - 1), law.cdf(x)
+    else:
+        off = 0.0 if scene.exact else scene.accuracy * np.abs(x)
+        least, most = law.cdf(x - off) - np.where(x == 0, law.atom, 0.0), law.cdf(x + off)
+    return float(max((upto - most).max(), (least - below).max(), 0.0))

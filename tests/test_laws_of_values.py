@@ -1,0 +1,124 @@
+"""Values of single surfaces against their exact laws: what the means cannot see."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy import stats
+
+import analytic
+import mcgw
+from mcgw.ensemble.ensemble import Ensemble
+from mcgw.ensemble.results import MemoryResults
+from mcgw.statistics.laws_of_values import laws_of_values
+from mcgw.statistics.verdict import verdict
+
+
+def holding(scene, **values):
+    """An ensemble of these values, as if they had been drawn."""
+    return Ensemble(scene, "cells", MemoryResults(values))
+
+
+def test_distances_are_those_of_scipy(make_scene):
+    """Of 900 surfaces all values are looked at, each as in `scipy.stats.kstest`."""
+    ensemble = mcgw.simulate(make_scene(separations=(1.0, 2.5), n_surfaces=900, quantities=("load", "area")))
+    found = laws_of_values(ensemble)
+    all_of_them = {
+        (name, h): stats.kstest(
+            ensemble[name][:, k], ensemble.scene.theory.distribution(name, h).cdf
+        ).statistic
+        for name in ("load", "area")
+        for k, h in enumerate((1.0, 2.5))
+    }
+    farthest = max(all_of_them, key=all_of_them.get)
+    assert (found.number, found.quantity, found.separation) == (4, *farthest)
+    assert found.distance == pytest.approx(all_of_them[farthest], rel=1e-12)
+    assert found.p == pytest.approx(min(1, 8 * np.exp(-1800 * found.distance**2)), rel=1e-9)
+
+
+def test_of_many_surfaces_some_values_tell(make_scene):
+    """At 1000 of 30 000 values the distance is less than that of all by no more than 1/1000."""
+    ensemble = mcgw.simulate(make_scene(separations=(2.5,), n_surfaces=30_000, quantities=("load",)))
+    full = stats.kstest(ensemble.load[:, 0], ensemble.scene.theory.distribution("load", 2.5).cdf).statistic
+    assert full - 1.1e-3 < laws_of_values(ensemble).distance <= full + 1e-12
+
+
+def test_the_atom_is_a_share_of_its_own(make_scene):
+    """With 0.4 contacts: two thirds of the surfaces have none, and one third of zeros would be seen."""
+    scene = make_scene(separations=(3.0,), n_asperities=300, n_surfaces=3000, quantities=("load", "contacts"))
+    drawn = mcgw.simulate(scene)
+    assert np.mean(drawn.load == 0) > 0.6
+    assert laws_of_values(drawn).p > 1e-3
+    fewer = np.where(np.arange(3000)[:, None] % 2, drawn.load, np.maximum(drawn.load, 1e-9))
+    assert laws_of_values(holding(scene, load=fewer, contacts=drawn.contacts)).p < 1e-6
+
+
+def test_a_wrong_law_of_the_right_mean_and_variance_is_seen(make_scene):
+    """Values of 19 contacts turned Gaussian: all means stay as they are, chi-square as well."""
+    scene = make_scene(separations=(2.5,), n_surfaces=4000, quantities=("load",))
+    drawn = mcgw.simulate(scene)
+    ranks = stats.rankdata(drawn.load[:, 0]) / 4001
+    gaussian = stats.norm.ppf(ranks)
+    gaussian = drawn.load.mean() + drawn.load.std() * (gaussian - gaussian.mean()) / gaussian.std()
+    wrong = holding(scene, load=gaussian[:, None])
+    assert verdict(wrong).agrees
+    assert verdict(wrong).p == pytest.approx(verdict(drawn).p)
+    found = mcgw.compare(wrong, laws=True).verdict
+    assert not found.agrees
+    assert "the law of load at d/sigma = 2.5 is" in found.line
+    assert mcgw.compare(drawn, laws=True).verdict.agrees
+
+
+def test_accuracy_is_allowed_for(make_scene):
+    """Values 1 % too high: within an accuracy of 0.01, not of 0.001."""
+    scene = make_scene(separations=(0.0,), n_surfaces=40_000, quantities=("load",))
+    high = 1.01 * mcgw.simulate(scene).load
+    found = [laws_of_values(holding(replace(scene, accuracy=a), load=high)).p for a in (0.01, 0.001)]
+    assert found[0] > 1e-3 > found[1]
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"keep": "statistics"},
+        {"sampler": "aggregate"},
+        {"interaction": analytic.Interaction("body", at="nominal")},
+    ],
+)
+def test_where_no_value_has_a_known_law_that_is_said(make_scene, changes):
+    scene = make_scene(separations=(1.0,), n_surfaces=20, quantities=("load",), **changes)
+    ensemble = mcgw.simulate(scene)
+    assert mcgw.compare(ensemble).verdict == verdict(ensemble)
+    with pytest.raises(ValueError, match="laws = True: takes kept values"):
+        mcgw.compare(ensemble, laws=True)
+
+
+def test_a_sweep_has_no_single_values(make_scene):
+    sweep = mcgw.sweep(make_scene(separations=(1.0,), n_surfaces=20), {"grading.gamma": [0.5, 2.0]})
+    with pytest.raises(ValueError, match="one of its scenes"):
+        mcgw.compare(sweep, laws=True)
+
+
+def test_pressed_down_asperities_have_stiffnesses_in_series(make_scene):
+    body = analytic.Interaction("body")
+    scene = make_scene(separations=(1.0, 3.0), n_asperities=300, n_surfaces=2000, interaction=body)
+    ensemble = mcgw.simulate(scene)
+    assert laws_of_values(ensemble).p > 1e-3
+    alone = mcgw.simulate(scene.replace(interaction=None))
+    sums = {name: ensemble[name] for name in scene.shapes} | {"stiffness": alone["stiffness"]}
+    assert laws_of_values(holding(scene, **sums)).p < 1e-3
+
+
+@pytest.mark.slow
+def test_a_right_program_is_rarely_doubted(make_scene):
+    """Of 2000 ensembles no more than the stated one in 1000, but for once in 1e4 such tests: 8 at most.
+
+    The companion: half a percent more load, which 200 surfaces of 8e3 contacts each tell.
+    """
+    asked = {"separations": (0.0, 1.5, 3.0), "n_surfaces": 200, "quantities": ("load", "area", "contacts")}
+    p = [mcgw.compare(mcgw.simulate(make_scene(**asked, seed=k)), laws=True).verdict.p for k in range(2000)]
+    assert sum(x < 1e-3 for x in p) <= 8
+    assert np.mean(np.array(p) < 0.05) < 0.05 + 4 * np.sqrt(0.05 * 0.95 / 2000)
+    other = make_scene(**asked, grading=analytic.Exponential(2.02), n_asperities=16_000)
+    wrong = replace(mcgw.simulate(other), scene=other.replace(grading=analytic.Exponential(2.0)))
+    assert not mcgw.compare(wrong, laws=True).verdict.agrees
