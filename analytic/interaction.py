@@ -6,8 +6,8 @@ Wear 265 (2008) 729; constants derived anew, the paper was not at hand): each as
     d_effective = d_nominal + compliance * P
 
 with the load P of this very surface. At a given load nothing but the separation differs from a surface of
-independent asperities: the same area, contacts, conductance of the spots. What the separation is measured
-from decides the sign:
+independent asperities: the same area, contacts, conductance of the spots. What the
+separation is measured from decides the sign:
 
 ``body``        the undeformed body far away. The load, spread over the nominal area, presses a bowl into
                 the half-space: ``compliance = c/(E_b sqrt(A_n))``, c the mean sinking of a square under a

@@ -69,7 +69,7 @@ def test_whatever_stands_in_a_heading_is_a_comment(program):
 @pytest.mark.parametrize("name", ["a\n*STEP", "a\r*STEP", "*STEP", "a,b", "a b", "a'b", "\u00e9", "a" * 70])
 def test_names_that_a_program_cannot_be_told_are_refused(make_scene, program, name, tmp_path, capsys):
     scene, path = make_scene(n_surfaces=8), tmp_path / f"{name}{ENDING[program]}"
-    with pytest.raises(ValueError, match=r"^path = .*: \w+ is told of it by name; give one of"):
+    with pytest.raises(ValueError, match=r"^path = .*: \w+ includes it by name; give one of"):
         mcgw.export(scene, path, to=program)
     assert main(["export", "none.toml", "--to", program, "-o", str(path)]) == 2
     assert len(capsys.readouterr().err.splitlines()) == 1

@@ -155,7 +155,9 @@ def test_sub_areas_alone_would_not_hold_it(without_caps, monkeypatch):
     """With the jackknife alone many of the intervals of one-wave maps miss; with the waves hardly any."""
     whole = compared(fits_of(10, 1, 160, number=12))
     nothing = Spread(1e-9, 1e-9, 1e-9)
-    monkeypatch.setattr("mcgw.maps.fit.waves_of", lambda *_: Waves(defaultdict(lambda: nothing), 1e9))
+    monkeypatch.setattr(
+        "mcgw.maps.fit.waves_of", lambda *_: Waves(defaultdict(lambda: nothing), 1e9, np.eye(3))
+    )
     alone = compared(fits_of(10, 1, 160, number=12))
     assert max(12 - rows[:, 1].sum() for rows in alone.values()) >= 4
     assert max(12 - rows[:, 1].sum() for rows in whole.values()) <= 2

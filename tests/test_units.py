@@ -159,7 +159,12 @@ def test_no_option_with_a_unit_is_read_as_a_bare_float():
         for action in parser._actions:
             if action.type is float:
                 bare |= {(name, option) for option in action.option_strings}
-    assert bare == {("export", "--quantile"), ("regrade", "--gamma"), ("surface", "--at")}
+    assert bare == {
+        ("elastic", "--rel-err"),
+        ("export", "--quantile"),
+        ("regrade", "--gamma"),
+        ("surface", "--at"),
+    }
 
 
 @pytest.mark.parametrize(("words", "kind"), OPTIONS)

@@ -36,8 +36,8 @@ class Layer:
     Spots of 2 um on 10 um of oxide on aluminium resist as if all were oxide, but for a twentieth:
 
     >>> spot = Layer(10e-6, 1.3).between(200.0, 200.0, 1.0)
-    >>> float((spot(2e-6) * 1.3).round(3))
-    0.923
+    >>> round(float(spot(2e-6)) * 1.3, 3)
+    0.92
     """
 
     thickness: float

@@ -122,8 +122,8 @@ class Solution(Shown):
         >>> surface = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "1 cm^2", "78.6 GPa")
         >>> scene = mcgw.Scene(surface, separations=0, n_surfaces=20, seed=1, uncertainty={"sigma": "20 %"})
         >>> budget = mcgw.solve(scene, pressure="1 MPa").budget()
-        >>> round(budget.shares["parameters"][0], 2)
-        0.19
+        >>> round(float(budget.shares["parameters"][0]), 2)  # of the area
+        0.17
         """
         from mcgw.ensemble.budget import budget_of
 

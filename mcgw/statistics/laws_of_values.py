@@ -71,8 +71,8 @@ def laws_of_values(ensemble: Ensemble) -> LawsOfValues:
         or not (scene.hertzian or one_radius)
     ):
         raise ValueError(
-            "laws = True: takes kept values of single surfaces at effective separations, from an exact sampler; "
-            "not of listed summits, nor of summits with their own radii under another law than Hertz's"
+            "laws = True: takes kept values of surfaces at effective separations, from an exact sampler; not "
+            "of listed summits, nor of summits with their own radii under another law than Hertz's"
         )
     h = np.unique(scene.separations)
     chosen = h[evenly(len(h), _SEPARATIONS if scene.hertzian and one_radius else _FEW)].tolist()
