@@ -325,6 +325,16 @@ class TestElastic:
         with pytest.raises(ValueError, match=words):
             mcgw.elastic(SPECTRUM, **{"pressure": 5e7, "E_star": 1e11, **changes})
 
+    def test_an_area_is_neither_too_small_nor_too_large_for_its_waves(self):
+        surface = mcgw.SpectralSurface(1e-12, 1e-3, 5e6, "1 mm^2", "78.6 GPa")
+        scene = mcgw.Scene(surface, separations=0.0, n_surfaces=2, seed=1)
+        for area, words in (
+            ("0.01 mm^2", "longer than the map.* or more"),
+            ("10 cm^2", "more than 2048; .* or less"),
+        ):
+            with pytest.raises(ValueError, match=words):
+                mcgw.elastic(scene.replace(nominal_area=area), pressure=1e6)
+
     def test_a_scene_without_a_spectrum_is_told(self):
         scene = mcgw.Scene(mcgw.Surface(1e-6, 1e-5, 1e9, 1e-6, 1e9), separations=0.0, seed=1)
         with pytest.raises(ValueError, match="m0, m2, m4"):

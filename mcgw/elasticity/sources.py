@@ -179,11 +179,16 @@ def _moments_of(scene: Scene) -> SpectralMoments:
 
 def _drawn(spectrum: Spectrum, side: float) -> Drawn:
     """Square maps of this side, with as many points as the shortest wave takes."""
+    if spectrum.long > (1 + 1e-9) * side:
+        raise ValueError(
+            f"waves of {spectrum.long:.3g} m are longer than the map of {side:.3g} m; give nominal_area = "
+            f"{1.01 * spectrum.long**2:.3g} m^2 or more"
+        )
     points = fft.next_fast_len(math.ceil(_POINTS * side / spectrum.short), real=True)
     if points > _MOST_POINTS:
         wide = _MOST_POINTS / _POINTS * spectrum.short
         raise ValueError(
             f"{points} points a side for waves of {spectrum.short:.3g} m on {side:.3g} m: more than "
-            f"{_MOST_POINTS}; give nominal_area = {wide**2:.2g} m^2 or less"
+            f"{_MOST_POINTS}; give nominal_area = {0.99 * wide**2:.3g} m^2 or less"
         )
     return Drawn(spectrum, (points, points), (side, side))
