@@ -372,7 +372,7 @@ def test_comparison(comparison, kept, tmp_path):
     verdict = comparison.verdict
     assert figure.get_suptitle() == (
         f"A title\nMonte Carlo and theory agree: χ² = {verdict.chi_square:.1f} for "
-        f"{verdict.degrees} degrees of freedom, p = {verdict.p:.3g}"
+        f"{verdict.degrees} degrees, p = {verdict.p:.3g}"
     )
     assert figure.get_supxlabel() == (
         "60 surfaces of 3000 asperities, exponential grading, γ = 2; "

@@ -49,9 +49,9 @@ def _data(comparison: Comparison) -> FigureData:
     ensemble, scene, verdict = comparison.ensemble, comparison.ensemble.scene, comparison.verdict
     panels = tuple(quantity_panel(comparison, name) for name in comparison.curves)
     word = "agree" if verdict.agrees else "DISAGREE"
+    seen = verdict.seen.replace("chi-square", "χ² =").replace(" degrees of freedom", " degrees")  # one line
     return FigureData(
-        f"{shown_title(scene, 'Ensemble')}\nMonte Carlo and theory {word}: "
-        f"{verdict.seen.replace('chi-square', 'χ² =')}, p = {verdict.p:.3g}",
+        f"{shown_title(scene, 'Ensemble')}\nMonte Carlo and theory {word}: {seen}, p = {verdict.p:.3g}",
         f"{ensemble.n_surfaces} surfaces of {scene.n_asperities:g} asperities, "
         f"{contact_label(scene)}; sampler {ensemble.sampler}, seed {scene.seed}",
         panels,
