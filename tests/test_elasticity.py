@@ -339,3 +339,25 @@ class TestElastic:
         scene = mcgw.Scene(mcgw.Surface(1e-6, 1e-5, 1e9, 1e-6, 1e9), separations=0.0, seed=1)
         with pytest.raises(ValueError, match="m0, m2, m4"):
             mcgw.elastic(scene, pressure=1e6)
+
+
+@pytest.mark.site
+def test_boundary_elements_find_hertz():
+    """A paraboloid in the middle of a wide cell: area and stiffness to what a grid and images leave, 3 %."""
+    pytest.importorskip("tamaas")
+    n, radius, side = 512, 2.0, 1.0
+    grid = (np.arange(n) + 0.5) / n - 0.5
+    heights = -(grid[:, None] ** 2 + grid**2) / (2 * radius)
+    a = 0.08  # sqrt(R delta), 41 points
+    load = 4 / 3 * a**3 / radius
+    found = LEVELS[-1].solve(Pressed(heights - heights.mean(), (side, side), 1.0, load))
+    assert found["area"] == pytest.approx(math.pi * a**2, rel=0.03)
+    # in series with the images: 1/K = 1/(2 a) + the lattice's constant/pi
+    assert 1 / found["stiffness"] == pytest.approx(
+        1 / (2 * 1.01 ** (1 / 3) * a) + LATTICE / math.pi, rel=0.03
+    )
+    assert found["conductance"] == pytest.approx(2 * found["stiffness"], rel=1e-12)
+    wide = LEVELS[-1].solve(Pressed(3 * (heights - heights.mean()), (3.0, 3.0), 2.0, 2 * load))
+    assert wide["area"] == pytest.approx(9 * found["area"], rel=1e-6)
+    assert wide["stiffness"] == pytest.approx(6 * found["stiffness"], rel=1e-6)
+    assert wide["mean_gap"] == pytest.approx(3 * found["mean_gap"], rel=1e-6)
