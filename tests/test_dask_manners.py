@@ -14,7 +14,7 @@ from begun_runs import digest
 import mcgw
 from mcgw.ensemble.simulation import Values
 from mcgw.jobs.dask_engine import Dask
-from mcgw.machine.progress import bar
+from mcgw.machine.progress import bar, watched
 
 distributed = pytest.importorskip("distributed")
 pytestmark = pytest.mark.site
@@ -129,7 +129,8 @@ def test_its_dashboard_is_on_this_machine_if_dask_can_draw_it():
 def test_a_line_beside_the_bar_is_said_once_and_to_terminals_alone(capsys, monkeypatch):
     for terminal in (False, True):
         monkeypatch.setattr(sys.stderr, "isatty", lambda seen=terminal: seen, raising=False)
-        with bar("surfaces", "dashboard: http://127.0.0.1:1/status", terminal=True) as show:
+        beside = "dashboard: http://127.0.0.1:1/status"
+        with watched(), bar("surfaces", beside, terminal=True) as show:
             show(0, 2)
             show(2, 2)
         assert capsys.readouterr().err.count("dashboard") == terminal
