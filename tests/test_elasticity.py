@@ -60,9 +60,7 @@ class TestPotential:
     def test_series_sum_as_the_matrix(self, periodic, rng):
         one = some(40, (2e-4, 1e-4), rng, periodic, (48, 96))
         loads = rng.random(40)
-        spread = np.zeros((48, 96))
-        spread[tuple(one.places)] = loads
-        series = one.grid.convolved(spread)[tuple(one.places)]
+        series = one.grid.pressed(one.places, loads, one.places)
         assert_allclose(series, one.grid.between(one.places) @ loads, rtol=1e-11)
 
     def test_needs_points(self):
@@ -278,6 +276,10 @@ class TestElastic:
         path.write_text("\n".join(lines[: len(lines) // 2]) + '\n{"level": "loc')
         again = mcgw.elastic(SPECTRUM, **asked)
         assert again.mean("area") == pytest.approx(first.mean("area"), rel=0.3)
+        whole = path.read_bytes()
+        assert whole.startswith("".join(f"{line}\n" for line in lines[: len(lines) // 2]).encode())
+        once_more = mcgw.elastic(SPECTRUM, **asked)  # all lines can be read, and nothing is solved again
+        assert (once_more.mean("area"), path.read_bytes()) == (again.mean("area"), whole)
         assert set(json.loads(lines[0])) == {"maps", "pressure", "E_star", "seed"}
         with pytest.raises(mcgw.StoreError, match="another path"):
             mcgw.elastic(SPECTRUM, **{**asked, "pressure": "60 MPa"})
@@ -295,6 +297,22 @@ class TestElastic:
         ])  # fmt: skip
         low, high = found.interval("area")
         assert low <= truth <= high
+
+    @pytest.mark.parametrize("held", [b"", b"my notes", b"my notes\n", b"\x89HDF\r\n\x1a\n", b"[1]\n"])
+    def test_a_file_in_the_way_stays(self, held, tmp_path):
+        path = tmp_path / "solves.jsonl"
+        path.write_bytes(held)
+        with pytest.raises(mcgw.StoreError, match="another path"):
+            mcgw.elastic(SPECTRUM, pressure=5e7, E_star=1e11, rel_err=0.2, path=path)
+        assert path.read_bytes() == held
+
+    def test_a_list_is_known_by_all_of_its_maps(self, tmp_path, rng):
+        draw = mcgw.maps.synthetic.gaussian_map
+        maps = [draw(SPECTRUM, (64, 64), (1e-6, 1e-6), rng) for _ in range(5)]
+        asked = {"pressure": 5e7, "E_star": 1e11, "solves": 4, "pilot": 4, "path": tmp_path / "s.jsonl"}
+        mcgw.elastic(maps[:4], **asked)
+        with pytest.raises(mcgw.StoreError, match="another path"):
+            mcgw.elastic([*maps[:3], maps[4]], **asked)
 
     def test_command(self, tmp_path, capsys):
         scene = tmp_path / "s.toml"

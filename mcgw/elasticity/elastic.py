@@ -14,6 +14,7 @@ from mcgw.elasticity.levels import LEVELS, QUANTITIES, Level, Pressed, Values
 from mcgw.elasticity.multilevel import FEWEST, Design, Mean, design, differences, mean_of, numbered, terms_of
 from mcgw.elasticity.sources import Maps, maps_of
 from mcgw.errors import StoreError
+from mcgw.formats.files import write_whole
 from mcgw.formats.sheet import Sheet, Shown
 from mcgw.formats.table import Column, Table
 from mcgw.machine.progress import Progress, told
@@ -196,23 +197,26 @@ class _Solved:
             If these are solves of other maps, another pressure or modulus.
         """
         asked = {"maps": self._digest(), "pressure": self.pressure, "E_star": self.E_star, "seed": self.seed}
-        if path.exists():
-            first, *lines = path.read_text(encoding="utf-8").splitlines() or [""]
-            try:
-                same = json.loads(first) == asked
-                rows = [json.loads(line) for line in lines if line.endswith("}")]  # the last may be cut
-            except ValueError:
-                same, rows = False, []
-            if not same:
-                raise StoreError(f"{path}: holds no solves of these maps at this pressure; give another path")
-            self._rows = {(r["level"], r["map"]): (r["values"], r["seconds"]) for r in rows}
-        else:
-            path.write_text(json.dumps(asked) + "\n", encoding="utf-8")
+        new = not path.exists()
+        text = json.dumps(asked) + "\n" if new else path.read_text(encoding="utf-8", errors="replace")
+        whole = text[: text.rfind("\n") + 1]  # a run that was killed leaves its last line cut
+        try:
+            header, *rows = map(json.loads, whole.splitlines())
+        except ValueError:
+            header, rows = None, []
+        if header != asked:
+            raise StoreError(f"{path}: holds no solves of these maps at this pressure; give another path")
+        self._rows = {(r["level"], r["map"]): (r["values"], r["seconds"]) for r in rows}
+        if new or whole != text:
+            write_whole(path, [whole.encode()])
         self._path = path
 
     def _digest(self) -> str:
-        """Of the maps: of the first one."""
-        return hashlib.sha256(self.maps.heights(0, self.seed).tobytes()).hexdigest()[:16]
+        """Of all maps that were given, or of the first one of those that are drawn."""
+        found = hashlib.sha256()
+        for number in range(self.maps.number or 1):
+            found.update(self.maps.heights(number, self.seed).tobytes())
+        return found.hexdigest()[:16]
 
     def at(self, level: Level, number: int) -> tuple[Array, float]:
         """Quantities of a map at a level, and the seconds they took."""

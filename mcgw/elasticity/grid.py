@@ -93,8 +93,9 @@ class Grid:
         apart = (rows[:, None] - rows) % tall, (columns[:, None] - columns) % wide
         return np.asarray(self.potential[apart])
 
-    def convolved(self, loads: Array) -> Array:
-        """Sum over all loads of their potential at each point, of loads at all points, in their shape."""
-        rows, columns = self.shape
+    def pressed(self, by: Ints, loads: Array, at: Ints) -> Array:
+        """Sum of the potentials of loads at some points, at others: by Fourier series, for many."""
+        spread = np.zeros(self.shape)
+        spread[tuple(by)] = loads
         shape = self.potential.shape
-        return np.asarray(fft.irfft2(fft.rfft2(loads, shape) * self._series, shape)[:rows, :columns])
+        return np.asarray(fft.irfft2(fft.rfft2(spread, shape) * self._series, shape)[tuple(at)])

@@ -139,9 +139,8 @@ class Located:
 
     def _missed(self, equations: Equations, state: State) -> Marks:
         """Summits that would touch."""
-        loads = np.zeros(self.grid.shape)
-        loads[tuple(equations.places)] = equations.spots.load(state.penetrations)
-        pressed = self.grid.convolved(loads)[tuple(self.places)] / (math.pi * self.spots.E_star)
+        loads = equations.spots.load(state.penetrations)
+        pressed = self.grid.pressed(equations.places, loads, self.places) / (math.pi * self.spots.E_star)
         return np.asarray(self.spots.heights - state.separation > pressed)
 
     def _summed(

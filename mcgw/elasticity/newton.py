@@ -105,9 +105,7 @@ class Equations:
     def _pushed(self, loads: Array, field: Array) -> Array:
         """How far loads press down each summit, m."""
         if self._matrix is None:
-            spread = np.zeros(self.grid.shape)
-            spread[tuple(self.places)] = loads
-            total = self.grid.convolved(spread)[tuple(self.places)]
+            total = self.grid.pressed(self.places, loads, self.places)
         else:
             total = self._matrix @ loads
         return np.asarray((total + self._over_pairs(field, loads)) / (math.pi * self.spots.E_star))

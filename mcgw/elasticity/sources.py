@@ -15,6 +15,7 @@ from mcgw.maps.map_files import read_map
 from mcgw.maps.synthetic import Spectrum, gaussian_map
 from mcgw.maps.topography import Topography
 from mcgw.scene.scene import Scene
+from mcgw.scene.validity_place import moments_of_nayak
 
 _POINTS = 8  # a shortest wave: twice as many change area by 2 %, and the rest by less
 _MOST_POINTS = 2048  # a side
@@ -172,9 +173,7 @@ def _moments_of(scene: Scene) -> SpectralMoments:
         return scene.fitted.moments
     if not isinstance(scene.heights, Nayak):
         raise ValueError('the scene has no spectrum: give m0, m2, m4 under [surface], or law = "nayak"')
-    m4 = (3 * math.sqrt(math.pi) / (8 * scene.surface.radius)) ** 2
-    m2 = m4 / (6 * math.sqrt(3) * math.pi * scene.surface.eta)
-    return SpectralMoments(scene.heights.alpha * m2**2 / m4, m2, m4)
+    return moments_of_nayak(scene.surface, scene.heights.alpha)
 
 
 def _drawn(spectrum: Spectrum, side: float) -> Drawn:

@@ -1,6 +1,5 @@
 """One load on one map, by Tamaas (Polonsky-Keer-Rey): E* = 1, cell of side 1."""
 
-import math
 import time
 from dataclasses import dataclass
 
@@ -12,9 +11,9 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from solve_list import STEP, TOLERANCE
 
-Array = NDArray[np.float64]
+from mcgw.elasticity.levels import rimless
 
-OVERHANG = (math.pi - 1 + math.log(2)) / 24  # of pixels at the rim (Yastrebov, Anciaux and Molinari 2017)
+Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,7 +66,7 @@ class Solver:
         stiffness = (self.step - 1) * pressure / (gap - self._gap())
         return Solution(
             area_raw=float(touching.mean()),
-            area=corrected_area(touching),
+            area=rimless(touching),
             gap=gap,
             stiffness=stiffness,
             spots=spots(touching),
@@ -86,12 +85,6 @@ class Solver:
         gap = self.model.displacement[...] - self.heights
         pressure = self.model.traction[...]
         return float(gap.mean() - (gap * pressure).sum() / pressure.sum())
-
-
-def corrected_area(touching: NDArray[np.bool_]) -> float:
-    """Share of the area, less the share of the pixels at the rim."""
-    steps = sum(np.count_nonzero(touching != np.roll(touching, 1, axis=k)) for k in (0, 1))
-    return float(touching.mean() - OVERHANG * steps / touching.size)
 
 
 def spots(touching: NDArray[np.bool_]) -> int:
