@@ -337,6 +337,7 @@ class TestElastic:
             ({"quantities": ["load"]}, "area, stiffness"),
             ({"rel_err": 2}, "rel_err"),
             ({"pilot": 1}, "4 or more"),
+            ({"seed": -1}, "seed = -1: give"),
         ],
     )
     def test_refuses(self, changes, words):

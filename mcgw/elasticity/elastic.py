@@ -171,6 +171,8 @@ def elastic(
             f"rel_err = {rel_err}, pilot = {pilot}, solves = {solves}: give 0 < rel_err < 1, and {FEWEST} or "
             "more maps"
         )
+    if seed < 0:
+        raise ValueError(f"seed = {seed}: give a whole number >= 0")
     solved = _Solved(maps, argument("pressure", pressure, "Pa"), modulus, seed, known)
     if path is not None:
         solved.resume(Path(path))
