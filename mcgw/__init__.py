@@ -78,160 +78,104 @@ from mcgw.machine.terminal import bind_drawing
 
 if TYPE_CHECKING:
     from analytic import (
-        Body,
-        ChangEtsionBogy,
-        Coated,
-        Custom,
-        CustomLaw,
-        DerjaguinMullerToporov,
-        Exponential,
-        ExponentialHeights,
-        Film,
-        Gaussian,
-        HeightTable,
-        Hertz,
-        Homogeneous,
-        Interaction,
-        JacksonGreen,
-        JohnsonKendallRoberts,
-        KogutEtsion,
-        Layer,
-        MeasuredHeights,
-        MeasuredRadii,
-        Nayak,
-        PowerLawGraded,
-        RandomCurvature,
-        ScipyHeights,
-        Table,
-        Tangential,
-        Weibull,
-        ZhaoMaiettaChang,
-        composite_modulus,
-        masing,
+        Body as Body,
+        ChangEtsionBogy as ChangEtsionBogy,
+        Coated as Coated,
+        Custom as Custom,
+        CustomLaw as CustomLaw,
+        DerjaguinMullerToporov as DerjaguinMullerToporov,
+        Exponential as Exponential,
+        ExponentialHeights as ExponentialHeights,
+        Film as Film,
+        Gaussian as Gaussian,
+        HeightTable as HeightTable,
+        Hertz as Hertz,
+        Homogeneous as Homogeneous,
+        Interaction as Interaction,
+        JacksonGreen as JacksonGreen,
+        JohnsonKendallRoberts as JohnsonKendallRoberts,
+        KogutEtsion as KogutEtsion,
+        Layer as Layer,
+        MeasuredHeights as MeasuredHeights,
+        MeasuredRadii as MeasuredRadii,
+        Nayak as Nayak,
+        PowerLawGraded as PowerLawGraded,
+        RandomCurvature as RandomCurvature,
+        ScipyHeights as ScipyHeights,
+        Table as Table,
+        Tangential as Tangential,
+        Weibull as Weibull,
+        ZhaoMaiettaChang as ZhaoMaiettaChang,
+        composite_modulus as composite_modulus,
+        masing as masing,
     )
-    from mcgw.elasticity.elastic import elastic
-    from mcgw.ensemble.ensemble import Ensemble
-    from mcgw.ensemble.paired import paired_ratio
-    from mcgw.ensemble.regrading import regrade
-    from mcgw.ensemble.simulation import simulate
-    from mcgw.ensemble.solution import solve
-    from mcgw.errors import RunError, StoreError
-    from mcgw.exports.writing import export
-    from mcgw.jobs.merging import merge
-    from mcgw.jobs.running import run
-    from mcgw.jobs.sweeping import sweep
-    from mcgw.maps.fitted_scene import fitted_scene
-    from mcgw.maps.fitting import fit
-    from mcgw.sampling.asperities import heights, radii
-    from mcgw.scene.scene import Scene
-    from mcgw.scene.scene_file import load_scene, scene_from, scene_text
-    from mcgw.scene.section import SceneError
-    from mcgw.scene.surface import SpectralSurface, Surface
-    from mcgw.statistics.comparison import compare
-    from mcgw.statistics.convergence import converge
-    from mcgw.statistics.tradeoff import tradeoff
-    from mcgw.store.ensembles import open_ensemble
-    from mcgw.store.saving import save
-    from mcgw.sweeps.file import open_sweep
-
-__all__ = [
-    "Body",
-    "ChangEtsionBogy",
-    "Coated",
-    "Custom",
-    "CustomLaw",
-    "DerjaguinMullerToporov",
-    "Ensemble",
-    "Exponential",
-    "ExponentialHeights",
-    "Film",
-    "Gaussian",
-    "HeightTable",
-    "Hertz",
-    "Homogeneous",
-    "Interaction",
-    "JacksonGreen",
-    "JohnsonKendallRoberts",
-    "KogutEtsion",
-    "Layer",
-    "MeasuredHeights",
-    "MeasuredRadii",
-    "Nayak",
-    "PowerLawGraded",
-    "RandomCurvature",
-    "RunError",
-    "Scene",
-    "SceneError",
-    "ScipyHeights",
-    "SpectralSurface",
-    "StoreError",
-    "Surface",
-    "Table",
-    "Tangential",
-    "Weibull",
-    "ZhaoMaiettaChang",
-    "compare",
-    "composite_modulus",
-    "converge",
-    "elastic",
-    "export",
-    "fit",
-    "fitted_scene",
-    "heights",
-    "load_scene",
-    "masing",
-    "merge",
-    "open_ensemble",
-    "open_sweep",
-    "paired_ratio",
-    "radii",
-    "regrade",
-    "run",
-    "save",
-    "scene_from",
-    "scene_text",
-    "simulate",
-    "solve",
-    "sweep",
-    "tradeoff",
-]
+    from mcgw.elasticity.elastic import elastic as elastic
+    from mcgw.ensemble.ensemble import Ensemble as Ensemble
+    from mcgw.ensemble.paired import paired_ratio as paired_ratio
+    from mcgw.ensemble.regrading import regrade as regrade
+    from mcgw.ensemble.simulation import simulate as simulate
+    from mcgw.ensemble.solution import solve as solve
+    from mcgw.errors import RunError as RunError, StoreError as StoreError
+    from mcgw.exports.writing import export as export
+    from mcgw.jobs.merging import merge as merge
+    from mcgw.jobs.running import run as run
+    from mcgw.jobs.sweeping import sweep as sweep
+    from mcgw.maps.fitted_scene import fitted_scene as fitted_scene
+    from mcgw.maps.fitting import fit as fit
+    from mcgw.sampling.asperities import heights as heights, radii as radii
+    from mcgw.scene.scene import Scene as Scene
+    from mcgw.scene.scene_file import (
+        load_scene as load_scene,
+        scene_from as scene_from,
+        scene_text as scene_text,
+    )
+    from mcgw.scene.section import SceneError as SceneError
+    from mcgw.scene.surface import SpectralSurface as SpectralSurface, Surface as Surface
+    from mcgw.statistics.comparison import compare as compare
+    from mcgw.statistics.convergence import converge as converge
+    from mcgw.statistics.tradeoff import tradeoff as tradeoff
+    from mcgw.store.ensembles import open_ensemble as open_ensemble
+    from mcgw.store.saving import save as save
+    from mcgw.sweeps.file import open_sweep as open_sweep
 
 # Threads that wait for others sleep. By default they spin, and a loop of microseconds takes a hundred
 # times as long on a machine that has anything else to do. Read once, when the loops are loaded.
 os.environ.setdefault("OMP_WAIT_POLICY", "passive")
 
-# Imported when asked for: compiling and file formats cost a second that `mcgw --help` need not wait.
-_HOME = {
-    "Ensemble": "ensemble.ensemble",
-    "RunError": "errors",
-    "Scene": "scene.scene",
-    "SceneError": "scene.section",
-    "SpectralSurface": "scene.surface",
-    "StoreError": "errors",
-    "Surface": "scene.surface",
-    "compare": "statistics.comparison",
-    "converge": "statistics.convergence",
-    "elastic": "elasticity.elastic",
-    "export": "exports.writing",
-    "fit": "maps.fitting",
-    "fitted_scene": "maps.fitted_scene",
-    "heights": "sampling.asperities",
-    "load_scene": "scene.scene_file",
-    "merge": "jobs.merging",
-    "open_ensemble": "store.ensembles",
-    "open_sweep": "sweeps.file",
-    "paired_ratio": "ensemble.paired",
-    "radii": "sampling.asperities",
-    "regrade": "ensemble.regrading",
-    "run": "jobs.running",
-    "save": "store.saving",
-    "scene_from": "scene.scene_file",
-    "scene_text": "scene.scene_file",
-    "simulate": "ensemble.simulation",
-    "solve": "ensemble.solution",
-    "sweep": "jobs.sweeping",
-    "tradeoff": "statistics.tradeoff",
+# Where names come from. Imported when asked for: compiling and file formats cost a second that `mcgw --help`
+# need not wait.
+_HOMES = {
+    "analytic": "Body ChangEtsionBogy Coated Custom CustomLaw DerjaguinMullerToporov Exponential "
+    "ExponentialHeights Film Gaussian HeightTable Hertz Homogeneous Interaction JacksonGreen "
+    "JohnsonKendallRoberts KogutEtsion Layer MeasuredHeights MeasuredRadii Nayak PowerLawGraded "
+    "RandomCurvature ScipyHeights Table Tangential Weibull ZhaoMaiettaChang composite_modulus masing",
+    "mcgw.elasticity.elastic": "elastic",
+    "mcgw.ensemble.ensemble": "Ensemble",
+    "mcgw.ensemble.paired": "paired_ratio",
+    "mcgw.ensemble.regrading": "regrade",
+    "mcgw.ensemble.simulation": "simulate",
+    "mcgw.ensemble.solution": "solve",
+    "mcgw.errors": "RunError StoreError",
+    "mcgw.exports.writing": "export",
+    "mcgw.jobs.merging": "merge",
+    "mcgw.jobs.running": "run",
+    "mcgw.jobs.sweeping": "sweep",
+    "mcgw.maps.fitted_scene": "fitted_scene",
+    "mcgw.maps.fitting": "fit",
+    "mcgw.sampling.asperities": "heights radii",
+    "mcgw.scene.scene": "Scene",
+    "mcgw.scene.scene_file": "load_scene scene_from scene_text",
+    "mcgw.scene.section": "SceneError",
+    "mcgw.scene.surface": "SpectralSurface Surface",
+    "mcgw.statistics.comparison": "compare",
+    "mcgw.statistics.convergence": "converge",
+    "mcgw.statistics.tradeoff": "tradeoff",
+    "mcgw.store.ensembles": "open_ensemble",
+    "mcgw.store.saving": "save",
+    "mcgw.sweeps.file": "open_sweep",
 }
+_HOME = {name: module for module, names in _HOMES.items() for name in names.split()}
+__all__ = sorted(_HOME)
 
 
 def _draw(result: Any, ax: Any, **options: Any) -> Any:
@@ -249,11 +193,10 @@ def __getattr__(name: str) -> Any:
         from importlib.metadata import version
 
         return version("mcgw")
-    if name not in __all__:
+    if name not in _HOME:
         raise AttributeError(f"module 'mcgw' has no attribute {name!r}")
-    home = f"mcgw.{_HOME[name]}" if name in _HOME else "analytic"
-    return getattr(import_module(home), name)
+    return getattr(import_module(_HOME[name]), name)
 
 
 def __dir__() -> list[str]:
-    return sorted(__all__)
+    return list(__all__)

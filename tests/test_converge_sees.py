@@ -18,8 +18,7 @@ from mcgw.cli import main
 from mcgw.figures.studies import save_convergence
 from mcgw.statistics import convergence
 from mcgw.statistics.checks import coverage, independence, skewness, variances
-from mcgw.statistics.convergence import Convergence, converge
-from mcgw.statistics.convergence import _own as own
+from mcgw.statistics.convergence import Convergence, _own as own, converge
 from mcgw.statistics.verdict import FALSE_ALARM
 
 H = (0.0, 1.0, 2.0)

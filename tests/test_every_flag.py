@@ -12,8 +12,7 @@ from typing import Any, ClassVar
 import h5py
 import numpy as np
 import pytest
-from said import call as command_here
-from said import without_notes
+from said import call as command_here, without_notes
 
 import analytic
 import mcgw

@@ -7,8 +7,7 @@ import numpy as np
 import pytest
 from conftest import SURFACE
 from scipy.special import gammaincinv
-from scipy.stats import binom, binomtest, norm, pearson3, poisson
-from scipy.stats import t as student
+from scipy.stats import binom, binomtest, norm, pearson3, poisson, t as student
 
 import mcgw
 from analytic import Exponential, ExponentialHeights, Gaussian, MeasuredHeights, Weibull

@@ -7,8 +7,7 @@ import numpy as np
 import pytest
 from fit_of_maps import fit_map
 from scipy.special import polygamma
-from scipy.stats import gamma, norm
-from scipy.stats import t as t_law
+from scipy.stats import gamma, norm, t as t_law
 
 from analytic import SpectralMoments
 from mcgw.maps.fit_cautions import _waves

@@ -10,8 +10,7 @@ import zipfile
 import h5py
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 
 from mcgw.formats.units import METRES
 from mcgw.maps.form import smooth

@@ -8,8 +8,7 @@ from fit_of_maps import fit_map
 from numpy.polynomial.legendre import leggauss
 from numpy.polynomial.polynomial import polyder, polyval2d
 from scipy.integrate import quad
-from scipy.stats import norm
-from scipy.stats import t as t_law
+from scipy.stats import norm, t as t_law
 
 import analytic
 from analytic import SpectralMoments

@@ -5,8 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from laws_by_hand import GRADINGS, SURFACE, differences, reduced
-from laws_by_hand import KogutEtsion as LoadingByHand
+from laws_by_hand import GRADINGS, SURFACE, KogutEtsion as LoadingByHand, differences, reduced
 from unloading_by_hand import TOP, carried, ends, integral
 
 import analytic

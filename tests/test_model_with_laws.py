@@ -7,8 +7,16 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from law_means import term
-from laws_by_hand import GRADINGS as PLAIN
-from laws_by_hand import SURFACE, ChangEtsionBogy, Film, HalfSpace, KogutEtsion, differences, reduced
+from laws_by_hand import (
+    GRADINGS as PLAIN,
+    SURFACE,
+    ChangEtsionBogy,
+    Film,
+    HalfSpace,
+    KogutEtsion,
+    differences,
+    reduced,
+)
 from scipy.integrate import quad
 from scipy.optimize import brentq
 

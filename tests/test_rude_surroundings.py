@@ -12,8 +12,7 @@ import h5py
 import numpy as np
 import pytest
 import scipy.stats
-from said import call as call_here
-from said import without_notes
+from said import call as call_here, without_notes
 
 import analytic
 import mcgw

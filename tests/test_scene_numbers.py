@@ -12,8 +12,7 @@ import pytest
 from scipy.integrate import quad
 from scipy.optimize import brentq
 from scipy.special import erf
-from scipy.stats import gamma as gamma_law
-from scipy.stats import norm, weibull_min
+from scipy.stats import gamma as gamma_law, norm, weibull_min
 from test_scene_keys import FILES, keys
 
 import mcgw

@@ -13,8 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mcgw.formats.files import whole_file
-from mcgw.formats.numbers import columns as typeset_columns
-from mcgw.formats.numbers import typeset
+from mcgw.formats.numbers import columns as typeset_columns, typeset
 from mcgw.machine.terminal import one_line
 
 SEPARATION = "d/sigma"  # over a column of separations

@@ -3,8 +3,7 @@
 from collections.abc import Mapping
 from typing import Any
 
-from analytic import Nayak, SpectralMoments, composite_modulus
-from analytic import Surface as Plain
+from analytic import Nayak, SpectralMoments, Surface as Plain, composite_modulus
 from mcgw.scene.arguments import as_toml
 from mcgw.scene.keys import KEYS, MOMENTS, SUMMITS, SURFACE_UNITS
 from mcgw.scene.plausible import surface_in_other_units, warn_of_units

@@ -12,8 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 from scipy.special import polygamma, psi
-from scipy.stats import binom, chi2, kstest, norm
-from scipy.stats import t as student
+from scipy.stats import binom, chi2, kstest, norm, t as student
 
 from analytic import Quantity, quantity_of
 from analytic.arrays import Array
