@@ -7,7 +7,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike
 
-from analytic.arrays import Array, Ints
+from analytic.arrays import Array, Ints, hold
 from analytic.heights import HeightLaw
 
 _GROWTH = 1.1  # ratio of the ranks of neighbouring points, counted from the nearer end
@@ -68,8 +68,7 @@ class HeightTable(HeightLaw):
         mean, std = _mean_std(x, p)
         if abs(mean) > 1e-12 or abs(std - 1) > 1e-12:  # so that a table read again stays as it is
             x = (x - mean) / std
-        object.__setattr__(self, "s", tuple(x.tolist()))
-        object.__setattr__(self, "share", tuple(p.tolist()))
+        hold(self, s=tuple(x.tolist()), share=tuple(p.tolist()))
 
     @classmethod
     def of(cls, heights: ArrayLike) -> "HeightTable":

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.polynomial import Chebyshev
 from numpy.typing import ArrayLike
 
-from analytic.arrays import Array
+from analytic.arrays import Array, hold
 from analytic.nayak import Nayak
 from analytic.quadrature import gauss_legendre
 from analytic.surface import SUMMIT_SPREAD, Surface
@@ -103,7 +103,7 @@ class Joint:
 
     def __post_init__(self) -> None:
         if isinstance(self.gas, Mapping):
-            object.__setattr__(self, "gas", Gas(**self.gas))
+            hold(self, gas=Gas(**self.gas))
         if not isinstance(self.gas, Gas) and self.gas not in ("air", "vacuum"):
             raise ValueError(f'gas = {self.gas!r}: give "air", "vacuum" or {{conductivity, jump}}')
         for key, unit in (("rms", "m"), ("temperature", "K"), ("gas_pressure", "Pa")):

@@ -6,7 +6,7 @@ from functools import cached_property
 
 import numpy as np
 
-from analytic.arrays import Array
+from analytic.arrays import Array, hold
 from analytic.height_table import checked_heights, reduced
 from analytic.heights import HeightLaw
 
@@ -41,8 +41,7 @@ class MeasuredHeights(HeightLaw):
         z = checked_heights(heights)
         if abs(z.mean()) > 1e-12 or abs(z.std() - 1) > 1e-12:
             z = reduced(z)
-        object.__setattr__(self, "heights", tuple(z.tolist()))
-        object.__setattr__(self, "resampled", resampled)
+        hold(self, heights=tuple(z.tolist()), resampled=resampled)
 
     @cached_property
     def _sorted(self) -> Array:
@@ -134,8 +133,7 @@ class MeasuredRadii:
         wrong = np.flatnonzero(~(np.isfinite(c) & (c > 0)))
         if wrong.size:
             raise ValueError(f"ratios: number {wrong[0]} is {c[wrong[0]]:g}; give finite numbers > 0")
-        object.__setattr__(self, "heights", heights)
-        object.__setattr__(self, "ratios", tuple(c.tolist()))
+        hold(self, heights=heights, ratios=tuple(c.tolist()))
 
     def summits(self, rng: np.random.Generator, n: int) -> tuple[Array, Array]:
         """Reduced heights and radius ratios of `n` summits, drawn with replacement; or of all, as they are.

@@ -8,7 +8,7 @@ from typing import ClassVar
 import numpy as np
 from numpy.polynomial import chebyshev
 
-from analytic.arrays import Array, Ints
+from analytic.arrays import Array, Ints, hold
 from analytic.elementary import halved
 
 MOST_PIECES = 4096  # as text they stay below two megabytes
@@ -66,10 +66,8 @@ class PiecewiseSeries:
         name: str = "",
         kinks: Sequence[float] = (),
     ) -> None:
-        object.__setattr__(self, "edges", _floats(edges))
-        object.__setattr__(self, "coefficients", tuple(map(_floats, coefficients)))
-        object.__setattr__(self, "name", str(name)[:_MOST_NAME])
-        object.__setattr__(self, "kinks", _floats(kinks))
+        hold(self, edges=_floats(edges), coefficients=tuple(map(_floats, coefficients)))
+        hold(self, name=str(name)[:_MOST_NAME], kinks=_floats(kinks))
         pieces = len(self.edges) - 1
         if not 1 <= pieces <= MOST_PIECES or not _rising(self.edges):
             raise ValueError(f"edges: give 2 to {MOST_PIECES + 1} finite heights that increase")

@@ -12,7 +12,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from analytic.arrays import Array
+from analytic.arrays import Array, hold
 from analytic.heights import HeightLaw
 from analytic.resolution import resolved_breaks
 
@@ -55,7 +55,7 @@ class ScipyHeights(HeightLaw):
     def __post_init__(self) -> None:
         if not hasattr(self.distribution, "pdf"):
             raise ValueError(f"{self.distribution!r}: give a frozen continuous distribution of scipy.stats")
-        object.__setattr__(self, "distribution", _without_place(self.distribution))
+        hold(self, distribution=_without_place(self.distribution))
         mean, std = self._mean_std
         if not (math.isfinite(mean) and math.isfinite(std) and std > 0):
             raise ValueError(

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from analytic.arrays import Array
+from analytic.arrays import Array, hold
 
 if TYPE_CHECKING:
     from scipy.interpolate import PchipInterpolator
@@ -43,8 +43,7 @@ class Table:
     smooth: bool = True
 
     def __init__(self, s: Sequence[float], ratio: Sequence[float]) -> None:
-        object.__setattr__(self, "s", tuple(map(float, s)))
-        object.__setattr__(self, "ratio", tuple(map(float, ratio)))
+        hold(self, s=tuple(map(float, s)), ratio=tuple(map(float, ratio)))
         if len(self.s) != len(self.ratio) or len(self.s) < 2:
             raise ValueError(
                 f"table: give two or more points, as many s as ratio, not {len(self.s)} and {len(self.ratio)}"

@@ -7,7 +7,7 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.polynomial import chebyshev
 
-from analytic.arrays import Array
+from analytic.arrays import Array, hold
 from analytic.laws.elastic_plastic import ElasticPlastic
 
 _MOST_TERMS = 256
@@ -136,10 +136,8 @@ class CustomLaw(ElasticPlastic):
     def __init__(
         self, load: Sequence[Formula], area: Sequence[Formula], limits: Sequence[float], critical: float
     ) -> None:
-        object.__setattr__(self, "load_of", tuple(load))
-        object.__setattr__(self, "area_of", tuple(area))
-        object.__setattr__(self, "beginnings", tuple(map(float, limits)))
-        object.__setattr__(self, "critical", float(critical))
+        beginnings = tuple(map(float, limits))
+        hold(self, load_of=tuple(load), area_of=tuple(area), beginnings=beginnings, critical=float(critical))
         super().__post_init__()
         rising = [0.0, *self.beginnings]
         if not (np.all(np.isfinite(rising)) and np.all(np.diff(rising) > 0)):

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from analytic.arrays import Array
+from analytic.arrays import Array, hold
 from analytic.laws.law import is_positive
 from analytic.surface import Surface
 
@@ -98,7 +98,7 @@ class Film:
         if self.conductivities is not None:
             if len(self.conductivities) != 2 or not all(map(is_positive, self.conductivities)):
                 raise ValueError(f"conductivities = {self.conductivities!r}: give two numbers > 0 in W/(m K)")
-            object.__setattr__(self, "conductivities", tuple(map(float, self.conductivities)))
+            hold(self, conductivities=tuple(map(float, self.conductivities)))
         elif self.layer is not None:
             raise ValueError("layer: it needs conductivities = (k1, k2) of the bodies")
         if not 0 <= self.film_resistance < math.inf:

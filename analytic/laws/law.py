@@ -16,7 +16,7 @@ from typing import Any, ClassVar, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from analytic.arrays import Array, Ints
+from analytic.arrays import Array, Ints, hold
 from analytic.laws.unloading import Unloading, slope_in_root
 from analytic.surface import Surface
 
@@ -160,7 +160,7 @@ class ContactLaw:
         if not self.of_radius:
             return self
         law, (name, power) = copy(self), self.of_radius
-        object.__setattr__(law, name, change(getattr(self, name), power))  # checks are for numbers
+        hold(law, **{name: change(getattr(self, name), power)})  # checks are for numbers
         return law
 
     def limits(self, e: Array) -> Array:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from analytic.arrays import Array
+from analytic.arrays import Array, hold
 from analytic.laws.law import check_poisson
 from analytic.surface import Surface
 
@@ -57,9 +57,8 @@ class Tangential:
     displacements: tuple[float, ...]
 
     def __init__(self, friction: float, poisson: float, displacements: ArrayLike) -> None:
-        object.__setattr__(self, "friction", friction)
-        object.__setattr__(self, "poisson", poisson)
-        object.__setattr__(self, "displacements", tuple(np.ravel(displacements).astype(np.float64).tolist()))
+        places = tuple(np.ravel(displacements).astype(np.float64).tolist())
+        hold(self, friction=friction, poisson=poisson, displacements=places)
         if not 0 < friction < math.inf:
             raise ValueError(f"friction = {friction!r}: give a coefficient of friction > 0")
         check_poisson(poisson)

@@ -270,11 +270,3 @@ def packed(x: Array, y: Array) -> Array:
     """The lower triangle of the products of two vectors' elements, packed."""
     row, column = np.tril_indices(len(x))
     return np.asarray(x[row] * y[column])
-
-
-def unpacked(triangle: Array, width: int) -> Array:
-    """The symmetric matrix of a packed triangle."""
-    matrix = np.empty((width, width))
-    row, column = np.tril_indices(width)
-    matrix[row, column] = matrix[column, row] = triangle
-    return matrix

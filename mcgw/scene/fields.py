@@ -73,11 +73,6 @@ class Fields:
     fitted: "Fitted | None"
     uncertainty: "Uncertainty | None"
 
-    def hold(self, values: Mapping[str, Any]) -> None:
-        """Keep these: the one place where values get into a scene."""
-        for key, value in values.items():
-            object.__setattr__(self, key, value)
-
     @property
     def left_out(self) -> tuple[str, ...]:
         """Which of the numbers that depend on something else nobody gave: n_asperities, seed."""

@@ -1,13 +1,16 @@
 """What is asked: surface, grading, contact and ensemble, checked before anything is computed."""
 
 import dataclasses
+import inspect
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal
+from functools import wraps
+from typing import TYPE_CHECKING, Any, Literal, ParamSpec
 
 from numpy.typing import ArrayLike
 
 from analytic import Grading, MeasuredRadii, RandomCurvature, Surface
+from analytic.arrays import hold
 from analytic.laws import ContactLaw, Film, Layer, Tangential
 from mcgw.formats.sheet import Sheet, Shown
 from mcgw.scene.fields import EXACT, Fields, LeftOut
@@ -26,7 +29,21 @@ if TYPE_CHECKING:
     from mcgw.scene.uncertainty import Uncertainty
     from mcgw.scene.validity import Validity
 
+_P = ParamSpec("_P")
 _SURFACES, _MOST_SURFACES = 1000, 10**9  # where n_surfaces is left out; where rel_err is to decide
+
+
+def _by_names(init: Callable[_P, None]) -> Callable[_P, None]:
+    """An ``__init__`` that is a signature alone: its arguments are read by their names, as a file by its keys."""
+    signature = inspect.signature(init)
+
+    @wraps(init)
+    def made(*given: _P.args, **named: _P.kwargs) -> None:
+        bound = signature.bind(*given, **named)
+        bound.apply_defaults()
+        bound.arguments.pop("self")._made_of(of_arguments(**bound.arguments))
+
+    return made
 
 
 @dataclass(frozen=True, repr=False)
@@ -138,6 +155,7 @@ class Scene(Fields, Shown):
       ensemble     1000 surfaces of 30000 asperities (fixed), seed 1, sampler auto
     """
 
+    @_by_names
     def __init__(
         self,
         surface: Surface | Spectral,
@@ -169,38 +187,7 @@ class Scene(Fields, Shown):
         max_seconds: float | str | None = None,
         fitted: "Fitted | dict[str, Any] | None" = None,
         uncertainty: "Uncertainty | dict[str, Any] | None" = None,
-    ) -> None:
-        values = of_arguments(
-            surface=surface,
-            separations=separations,
-            datum=datum,
-            title=title,
-            grading=grading,
-            negative=negative,
-            heights=heights,
-            curvature=curvature,
-            law=law,
-            unload_from=unload_from,
-            film=film,
-            layer=layer,
-            tangential=tangential,
-            interaction=interaction,
-            quantities=quantities,
-            n_surfaces=n_surfaces,
-            n_asperities=n_asperities,
-            count=count,
-            seed=seed,
-            sampler=sampler,
-            keep=keep,
-            accuracy=accuracy,
-            law_error=law_error,
-            edges=edges,
-            rel_err=rel_err,
-            max_seconds=max_seconds,
-            fitted=fitted,
-            uncertainty=uncertainty,
-        )
-        self._made_of(values)
+    ) -> None: ...
 
     @classmethod
     def of(cls, values: Mapping[str, Any]) -> "Scene":
@@ -211,13 +198,13 @@ class Scene(Fields, Shown):
 
     def _made_of(self, values: Mapping[str, Any]) -> None:
         """Give what was left out its value, and refuse values that do not go together."""
-        self.hold(values)
+        hold(self, **values)
         listed = self.curvature if self.as_measured and isinstance(self.curvature, MeasuredRadii) else None
         number = len(listed.ratios) if listed else round(min(self.surface.n_asperities, 2.0**62))
         most = _SURFACES if self.rel_err is None else _MOST_SURFACES
         for key, value in (("n_asperities", number), ("n_surfaces", 1 if listed else most)):
             if isinstance(getattr(self, key), LeftOut):  # now, or in the scene that this one was made of
-                self.hold({key: LeftOut(value)})
+                hold(self, **{key: LeftOut(value)})
         if problems := mistakes(self):
             raise SceneError(problems)
         warn_of_units(perhaps_other_units(self))

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from analytic.arrays import Array
+from analytic.arrays import Array, hold
 
 _PARAMETERS = ("sigma", "radius", "eta", "m0", "m2", "m4", "E_star")
 _LARGEST = 2.0  # standard error of a logarithm: a factor of 7
@@ -45,7 +45,7 @@ class Uncertainty:
             raise ValueError(f"sigma: names no parameter; give one of {', '.join(_PARAMETERS)}")
         if self.correlation is None:
             return
-        object.__setattr__(self, "correlation", tuple(map(tuple, self.correlation)))
+        hold(self, correlation=tuple(map(tuple, self.correlation)))
         if [len(row) for row in self.correlation] != [n] * n:
             raise ValueError(f"correlation: give {n} rows of {n} numbers, for {', '.join(self.names)}")
         matrix = np.array(self.correlation)
