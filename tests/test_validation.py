@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from analytic import Model, Nayak, RandomCurvature, SpectralMoments
-from mcgw.scene import validity, validity_table
+from mcgw.scene import validity_lookup, validity_table
 
 ROOT = Path(__file__).parent.parent
 FOLDER = ROOT / "runs" / "validation"
@@ -222,7 +222,7 @@ def test_95_percent_hold_of_maps_left_out(monkeypatch):
                 real = getattr(one, name)
                 at = np.array([row["p"] * (1 + real) if name == "load" else row["p"]])
                 said = grid.expected(row["x"], at)
-                (bias,), (off,) = said.bias[name], validity.farthest(said, name, np.ones(1))
+                (bias,), (off,) = said.bias[name], validity_lookup.farthest(said, name, np.ones(1))
                 if math.isnan(bias):
                     continue
                 low = bias - off if name == "separation" else (1 + bias) ** 2 / (1 + bias + off) - 1

@@ -21,7 +21,7 @@ import analytic
 import mcgw
 from mcgw.cli import main
 from mcgw.reports.html import report_html
-from mcgw.scene import validity, validity_table
+from mcgw.scene import validity_lookup, validity_table
 from mcgw.scene.validity_place import LEAST_CROWDING, moments_of, reduced_pressure
 from mcgw.scene.validity_table import COLUMNS, grid_of
 from mcgw.store.ensembles import read_attributes
@@ -294,7 +294,7 @@ def test_few_contacts_widen_and_many_do_not_hide_how_few_maps_there_were(monkeyp
     """A table of one surface, four maps: -.1 and .9 times 95 % of factors, no less than those of a mean."""
     monkeypatch.setattr(validity_table, "rows", lambda: tuple(flat_table()))
     validity_table.grid_of.cache_clear()
-    monkeypatch.setattr(validity, "grid_of", validity_table.grid_of.__wrapped__)
+    monkeypatch.setattr(validity_lookup, "grid_of", validity_table.grid_of.__wrapped__)
     scene = mcgw.Scene(surface_of(4.0), separations=[1.0], seed=1)
     # four maps tell the logarithm of a deviation too low by this
     std = 0.02 / 0.9 * math.exp((math.log(1.5) - psi(1.5)) / 2)
@@ -459,7 +459,7 @@ def test_the_sentence_names_the_worst_at_a_load_and_at_a_gap(scene):
 
 @pytest.mark.parametrize("worst", [0.1, 0.1000001, 0.0999999, 2.345])
 def test_what_is_said_is_rounded_up(worst):
-    from mcgw.scene.validity_text import percent
+    from mcgw.scene.validity import percent
 
     said = float(percent(worst).removesuffix(" %")) / 100
     assert worst - 1e-12 <= said < worst + 0.01

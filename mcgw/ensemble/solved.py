@@ -16,7 +16,8 @@ from mcgw.formats.table import Column, Table
 from mcgw.machine.terminal import plotted
 from mcgw.sampling.asperities import summits, touching_summits
 from mcgw.scene.scene import Scene
-from mcgw.scene.validity import Validity, validity_of
+from mcgw.scene.validity import Validity
+from mcgw.scene.validity_lookup import validity_of
 
 if TYPE_CHECKING:
     from mcgw.ensemble.budget import Budget, Corrected

@@ -34,7 +34,7 @@ _SURFACES, _MOST_SURFACES = 1000, 10**9  # where n_surfaces is left out; where r
 
 
 def _by_names(init: Callable[_P, None]) -> Callable[_P, None]:
-    """An ``__init__`` that is a signature alone: its arguments are read by their names, as a file by its keys."""
+    """An ``__init__`` that is its signature alone: arguments are read by their names, as files by keys."""
     signature = inspect.signature(init)
 
     @wraps(init)
@@ -272,6 +272,6 @@ class Scene(Fields, Shown):
         >>> bool(mcgw.Scene(surface, separations=[0.0, 1.0]).validity().error["area"][0] < 0.1)
         True
         """
-        from mcgw.scene.validity import validity_of  # reads a table, which not every scene needs
+        from mcgw.scene.validity_lookup import validity_of  # reads a table, which not every scene needs
 
         return validity_of(self, separations)

@@ -1,173 +1,171 @@
-"""How far the model of a scene is from elasticity, as it was measured: a number, or that there is none."""
+"""How far a model is from elasticity, at some separations: in numbers, in words and as a table."""
 
-from dataclasses import dataclass, replace
-from typing import Any
+import math
+from dataclasses import dataclass
+from itertools import groupby
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from analytic import Homogeneous
-from analytic.arrays import Array
+from analytic.arrays import Array, Marks
 from mcgw.formats.sheet import Sheet, Shown
-from mcgw.formats.table import evenly
-from mcgw.scene.fields import Fields
-from mcgw.scene.validity_errors import ModelErrors
-from mcgw.scene.validity_place import Place, not_on_the_map, place_of, reduced_pressure
-from mcgw.scene.validity_table import COLUMNS, Expected, Grid, grid_of
-from mcgw.scene.validity_text import details, short_verdict, table_of, verdict
+from mcgw.formats.table import SEPARATION, Column, Table
+from mcgw.scene.validity_table import COLUMNS
 
-_MOST_SEPARATIONS = 64
-_SURE = 2.1  # standard deviations that hold 95 % of maps left out: light loads have long tails
+_MOST_ROWS = 9
+_AT_LOAD = {"area": "area", "stiffness": "stiffness", "separation": "gap"}  # columns at a given load
+_COLUMNS = {"area": "area", "stiffness": "stiffness", "separation": "gap/sigma", "load": "load at d"}
 
 
 @dataclass(frozen=True, repr=False)
-class Validity(ModelErrors, Shown):
-    """Expected errors of a scene's model against elasticity, in words and as a table."""
+class Validity(Shown):
+    """Expected errors of a model against elasticity: periodic cells of a homogeneous half-space.
+
+    The errors of "area", "stiffness" and "separation" are those at the load that the model has at each
+    separation; that of "load" is the one at the same separation, taken for the mean gap of a periodic cell.
+
+    Parameters
+    ----------
+    separations : ndarray
+        Reduced separations d/sigma, rising.
+    loads : ndarray
+        Pressure over E* g of Gaussian surfaces, g being the rms slope, or over E* sqrt(sigma/R) of separate
+        caps: of Hertz's law without a grading at each separation; nan where the model was not measured.
+    error : dict of str to ndarray
+        How far off 95 % of surfaces are at most, over the right value, or over sigma for "separation":
+        ``|bias|`` and 2.1 standard deviations, of surfaces with so many contacts as one of the scene has,
+        and so many long waves except for areas, and of the bias itself. nan where nothing was measured.
+    bias : dict of str to ndarray
+        Mean over maps of model/elasticity - 1, or of the difference over sigma.
+    graded : bool
+        Whether the scene has a grading, of which these errors say nothing: they are the geometry's share.
+    axis : str
+        What the loads are, as "p/(E* g)".
+    where : str
+        Where it was measured, in words.
+    unknown : str
+        Why there is no number at some separation or at all; empty if there is one at each.
+    """
+
+    separations: Array
+    loads: Array
+    error: dict[str, Array]
+    bias: dict[str, Array]
+    graded: bool = False
+    axis: str = ""
+    where: str = ""
+    unknown: str = ""
+
+    @property
+    def measured(self) -> Marks:
+        """At which separations something was measured."""
+        return self.known(*COLUMNS)
+
+    def known(self, *names: str) -> Marks:
+        """At which separations one of some columns was measured."""
+        known = np.zeros(len(self.separations), dtype=np.bool_)
+        for name in names:
+            known |= np.isfinite(self.error[name])
+        return known
+
+    def worst(self, *names: str) -> float:
+        """Largest expected error of some columns over the separations; nan if none was measured."""
+        values = np.concatenate([self.error[name] for name in names])
+        return float(np.nanmax(values)) if np.isfinite(values).any() else np.nan
 
     @property
     def verdict(self) -> str:
         """One sentence: how far from elasticity, where, and where that was not measured."""
-        return verdict(self)
+        if not self.measured.any():
+            return f"Against elasticity: {self.unknown}"
+        parts, at_load, at_gap = [], self.known("area", "stiffness"), self.known("load")
+        if at_load.any():
+            most = percent(self.worst("area", "stiffness"))
+            parts.append(f"within {most} at a given load{self._here(at_load)}")
+        if at_gap.any():
+            where = "" if np.array_equal(at_gap, at_load) else self._here(at_gap)
+            parts.append(f"load within {percent(self.worst('load'))} at a given mean gap{where}")
+        line = f"Against elasticity: {', '.join(parts)} (95 %{self._homogeneous})"
+        if not self.measured.all():
+            line += f"; at d/sigma = {span(self.separations, ~self.measured)} {self.unknown}"
+        return line
 
     @property
     def details(self) -> str:
         """What has which error, and where it was measured; empty where nothing was."""
-        return details(self)
+        if not self.measured.any():
+            return ""
+        worst = {word: self.worst(name) for name, word in _AT_LOAD.items()}
+        known = {word: error for word, error in worst.items() if not math.isnan(error)}
+        told = [
+            f"{word} {rounded_up(error):g} sigma" if word == "gap" else f"{word} {percent(error)}"
+            for word, error in known.items()
+        ]
+        lacking = [word for word in _AT_LOAD.values() if word not in known]
+        each = ", ".join(told) + (f"; {', '.join(lacking)}: not measured" if lacking else "")
+        return f"{each} (95 %); by {self.where}"
 
     @property
     def brief(self) -> str:
         """The same in 88 characters."""
-        return short_verdict(self)
+        if not self.measured.any():
+            return self.unknown
+        at_load, at_gap = self.worst("area", "stiffness"), self.worst("load")
+        errors = {"at a given load": at_load, "in load at a given gap": at_gap}
+        told = [f"{percent(error)} {of}" for of, error in errors.items() if not math.isnan(error)]
+        where = "" if self.measured.all() else f"; d/sigma = {span(self.separations, self.measured)}"
+        return f"within {', '.join(told)} (95 %{self._homogeneous}){where}"
 
     def sheet(self) -> Sheet:
         """The verdict, and the errors at some separations: mean over maps, and how far 95 % are from it."""
         where = [("measured", self.where)] if self.where else []
-        return Sheet("Against elasticity", [("verdict", self.brief), *where], table_of(self))
+        return Sheet("Against elasticity", [("verdict", self.brief), *where], self.table())
 
-
-def validity_of(scene: Fields, separations: ArrayLike | None = None, *, felt: bool = False) -> Validity:
-    """Look up how far a scene's model is from elasticity.
-
-    Parameters
-    ----------
-    scene : Fields
-        Whose geometry counts: a grading, a film and friction do not.
-    separations : array_like, optional
-        Reduced separations. Default: those of the scene, or 64 of them.
-    felt : bool, optional
-        Whether they are what the asperities feel, also where those of the scene are nominal.
-
-    Returns
-    -------
-    Validity
-        At the separations, each once.
-    """
-    given = scene.separations if separations is None else separations
-    h = np.unique(np.asarray(given, dtype=np.float64))
-    h = h[evenly(len(h), _MOST_SEPARATIONS)]
-    reason = not_on_the_map(scene)
-    if reason is not None:
-        return _nothing(h, f"not measured: {reason}")
-    place = place_of(scene)
-    grid = grid_of(place.kind, place.model, place.interaction)
-    if grid is None:
-        shared = "" if place.interaction == "none" else " with an interaction"
-        return _nothing(h, f"not measured: {place.model} on maps ({_maps(place)}){shared}")
-    if not grid.holds(place.x):
-        return _nothing(
-            h, f"outside of what was measured ({_coordinate(place)} = {place.x:.4g}; {_span(grid)})"
+    def table(self) -> Table:
+        """At some separations the bias of each quantity, and how far 95 % are from it; else empty."""
+        if not self.measured.any():
+            return Table(())
+        told = (
+            Column(name, [self._cell(name, k) for k in range(len(self.separations))], words)
+            for name, words in _COLUMNS.items()
         )
-    return _looked_up(scene, place, grid, h, h if felt else _felt(scene, h))
+        separation = Column("separation", self.separations, SEPARATION, form="g")
+        return Table((separation, Column("pressure", self.loads, unit="1", form=".2g"), *told)).rows(
+            _MOST_ROWS
+        )
+
+    @property
+    def _homogeneous(self) -> str:
+        return ", without the grading" if self.graded else ""
+
+    def _here(self, where: Marks) -> str:
+        return "" if where.all() else f" for d/sigma = {span(self.separations, where)}"
+
+    def _cell(self, name: str, k: int) -> str:
+        bias, error = float(self.bias[name][k]), float(self.error[name][k])
+        if math.isnan(error):
+            return "not measured"
+        off = error - abs(bias)
+        if name == "separation":
+            return f"{bias:+.2f} ± {off:.2f}"
+        return f"{100 * bias:+.0f} ± {100 * off:.0f} %"
 
 
-def _nothing(h: Array, why: str) -> Validity:
-    none = np.full(len(h), np.nan)
-    empty = dict.fromkeys(COLUMNS, none)
-    return Validity(h, none, empty, empty, unknown=why)
+def percent(x: float) -> str:
+    """A share, rounded up: what is said holds."""
+    return f"{100 * rounded_up(x):.0f} %"
 
 
-def _looked_up(scene: Fields, place: Place, grid: Grid, h: Array, felt: Array) -> Validity:
-    p = reduced_pressure(scene, felt) / place.slope
-    found = grid.expected(place.x, p)
-    share = _share(scene, place, found, felt)
-    bias, error = {}, {}
-    for name in COLUMNS:
-        off = farthest(found, name, share[name])
-        unit = place.rms if name == "separation" else 1.0
-        unit = np.nan if place.area_only and name != "area" else unit
-        bias[name] = unit * found.bias[name]
-        error[name] = np.abs(bias[name]) + unit * off
-    loads = _loads(place, found, p)
-    graded = not isinstance(scene.modulus, Homogeneous)
-    where = _where(scene, place, grid, found.maps, loads)
-    found_at = Validity(h, p, error, bias, graded, _load_axis(place), where)
-    if found_at.measured.all():
-        return found_at
-    why = f": {loads}" if not found_at.measured.any() else ""
-    return replace(found_at, unknown=f"outside of what was measured{why}")
+def rounded_up(x: float) -> float:
+    """To two decimals."""
+    return math.ceil(100 * x - 1e-9) / 100
 
 
-def farthest(found: Expected, name: str, share: Array) -> Array:
-    """How far 95 % of surfaces are from the bias, at most: those that scatter by a share of what maps do."""
-    off = _SURE * np.hypot(found.scatter[name] * share, found.unsure[name])
-    return off if name == "separation" else (1 + found.bias[name]) * np.expm1(off)  # ratios differ by factors
-
-
-def _share(scene: Fields, place: Place, found: Expected, felt: Array) -> dict[str, Array]:
-    """Root of the contacts of a map over those of a surface; of waves, if fewer of them, for all but areas.
-
-    A gap, and what follows from it, is as sure as the long waves are many, however many contacts lie on them.
-    """
-    area = scene.n_asperities / scene.surface.eta
-    with np.errstate(divide="ignore", invalid="ignore"):
-        contacts = np.sqrt(found.contacts / (scene.n_asperities * scene.heights.sf(felt)))
-    waves = np.sqrt(found.waves * place.correlation_area / area)
-    return {name: contacts if name == "area" else np.fmax(contacts, waves) for name in COLUMNS}
-
-
-def _felt(scene: Fields, h: Array) -> Array:
-    """Separations that the asperities of the mean surface feel."""
-    if not scene.nominal:
-        return h
-    theory: Any = scene.theory  # an `InteractingModel`, loaded for those scenes alone
-    return np.asarray(theory.effective(h))
-
-
-def _coordinate(place: Place) -> str:
-    return "alpha" if place.kind == "gaussian" else "eta R sigma"
-
-
-def _load_axis(place: Place) -> str:
-    return "p/(E* g)" if place.kind == "gaussian" else "p/(E* sqrt(sigma/R))"
-
-
-def _span(grid: Grid) -> str:
-    return f"measured: {grid.x[0]:g} to {grid.x[-1]:g}"
-
-
-def _loads(place: Place, found: Expected, p: Array) -> str:
-    low, high = found.loads
-    told = f"{low:.2g} to {high:.2g}" if low <= high else "nothing in common"
-    here = " to ".join(dict.fromkeys(f"{x:.2g}" for x in (p.min(), p.max())))
-    return f"{_load_axis(place)} = {here} (measured: {told})"
-
-
-def _where(scene: Fields, place: Place, grid: Grid, maps: int, loads: str) -> str:
-    many = f"{maps} maps" if maps > 1 else "one map"
-    by = ""
-    if scene.fitted is not None:
-        by = " as the fit says"
-    elif place.kind == "gaussian" and place.model == "one radius":
-        by = f" as eta R sigma = {scene.surface.eta * scene.surface.radius * scene.surface.sigma:.3g} says"
-    return (
-        f"boundary elements on homogeneous half-spaces, {many} ({_maps(place)}) a point: "
-        f"{_coordinate(place)} = {place.x:.3g}{by} ({_span(grid)}), {loads}{_reason(place)}"
-    )
-
-
-def _reason(place: Place) -> str:
-    return f"; else nothing: {place.area_only}" if place.area_only else ""
-
-
-def _maps(place: Place) -> str:
-    return "Gaussian" if place.kind == "gaussian" else "separate caps"
+def span(h: Array, where: Marks) -> str:
+    """Separations of one kind: from where to where, perhaps twice."""
+    runs = []
+    for wanted, group in groupby(range(len(h)), key=lambda k: bool(where[k])):
+        members = list(group)
+        if wanted:
+            ends = dict.fromkeys(f"{h[k]:.3g}" for k in (members[0], members[-1]))
+            runs.append(" to ".join(ends))
+    return " and ".join(runs)

@@ -3,19 +3,16 @@
 from collections.abc import Iterator
 
 import numpy as np
-from numpy.typing import NDArray
 
-from mcgw.scene.validity_errors import ModelErrors
-from mcgw.scene.validity_text import percent, span
-
-Mask = NDArray[np.bool_]
+from analytic.arrays import Marks
+from mcgw.scene.validity import Validity, percent, span
 
 _OFF = 0.1  # error of area, stiffness or load from which on it is said
 _AT_LOAD = ("area", "stiffness")
 _QUANTITIES = (*_AT_LOAD, "load")
 
 
-def off_elasticity(v: ModelErrors, why: str) -> Iterator[str]:
+def off_elasticity(v: Validity, why: str) -> Iterator[str]:
     """Errors above 10 % by their size, and loads above those that were measured."""
     biased = {name: _above(v, name) & ~_scatters(v, name) for name in _QUANTITIES}
     if (off := _any(biased)).any():
@@ -34,24 +31,24 @@ def off_elasticity(v: ModelErrors, why: str) -> Iterator[str]:
         )
 
 
-def _above(v: ModelErrors, name: str) -> Mask:
+def _above(v: Validity, name: str) -> Marks:
     return np.asarray(v.error[name] > _OFF)
 
 
-def _first_measured(v: ModelErrors) -> float:
+def _first_measured(v: Validity) -> float:
     return float(v.separations[v.measured].min()) if v.measured.any() else -np.inf
 
 
-def _scatters(v: ModelErrors, name: str) -> Mask:
+def _scatters(v: Validity, name: str) -> Marks:
     """Where an error is rather scatter than bias."""
     return np.asarray(v.error[name] > 2 * np.abs(v.bias[name]))
 
 
-def _any(masks: dict[str, Mask]) -> Mask:
+def _any(masks: dict[str, Marks]) -> Marks:
     return np.asarray(np.any(np.array([*masks.values()]), axis=0))
 
 
-def _told(v: ModelErrors, where: dict[str, Mask]) -> Iterator[str]:
+def _told(v: Validity, where: dict[str, Marks]) -> Iterator[str]:
     """The largest error of each quantity among these separations, those at a given load first."""
     sizes = {name: _size(v, name, mask) for name, mask in where.items() if mask.any()}
     at_load = [sizes[name] for name in _AT_LOAD if name in sizes]
@@ -61,7 +58,7 @@ def _told(v: ModelErrors, where: dict[str, Mask]) -> Iterator[str]:
         yield f"{sizes['load']} at that mean gap"
 
 
-def _size(v: ModelErrors, name: str, where: Mask) -> str:
+def _size(v: Validity, name: str, where: Marks) -> str:
     k = int(np.argmax(np.where(where, v.error[name], -np.inf)))
     size = f"{name} up to {percent(float(v.error[name][k]))}"
     if _scatters(v, name)[k]:

@@ -1,0 +1,146 @@
+"""How far the model of a scene is from elasticity, as it was measured: a number, or that there is none."""
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from analytic import Homogeneous
+from analytic.arrays import Array
+from mcgw.formats.table import evenly
+from mcgw.scene.fields import Fields
+from mcgw.scene.validity import Validity
+from mcgw.scene.validity_place import Place, not_on_the_map, place_of, reduced_pressure
+from mcgw.scene.validity_table import COLUMNS, Expected, Grid, grid_of
+
+_MOST_SEPARATIONS = 64
+_SURE = 2.1  # standard deviations that hold 95 % of maps left out: light loads have long tails
+
+
+def validity_of(scene: Fields, separations: ArrayLike | None = None, *, felt: bool = False) -> Validity:
+    """Look up how far a scene's model is from elasticity.
+
+    Parameters
+    ----------
+    scene : Fields
+        Whose geometry counts: a grading, a film and friction do not.
+    separations : array_like, optional
+        Reduced separations. Default: those of the scene, or 64 of them.
+    felt : bool, optional
+        Whether they are what the asperities feel, also where those of the scene are nominal.
+
+    Returns
+    -------
+    Validity
+        At the separations, each once.
+    """
+    given = scene.separations if separations is None else separations
+    h = np.unique(np.asarray(given, dtype=np.float64))
+    h = h[evenly(len(h), _MOST_SEPARATIONS)]
+    reason = not_on_the_map(scene)
+    if reason is not None:
+        return _nothing(h, f"not measured: {reason}")
+    place = place_of(scene)
+    grid = grid_of(place.kind, place.model, place.interaction)
+    if grid is None:
+        shared = "" if place.interaction == "none" else " with an interaction"
+        return _nothing(h, f"not measured: {place.model} on maps ({_maps(place)}){shared}")
+    if not grid.holds(place.x):
+        return _nothing(
+            h, f"outside of what was measured ({_coordinate(place)} = {place.x:.4g}; {_span(grid)})"
+        )
+    return _looked_up(scene, place, grid, h, h if felt else _felt(scene, h))
+
+
+def _nothing(h: Array, why: str) -> Validity:
+    none = np.full(len(h), np.nan)
+    empty = dict.fromkeys(COLUMNS, none)
+    return Validity(h, none, empty, empty, unknown=why)
+
+
+def _looked_up(scene: Fields, place: Place, grid: Grid, h: Array, felt: Array) -> Validity:
+    p = reduced_pressure(scene, felt) / place.slope
+    found = grid.expected(place.x, p)
+    share = _share(scene, place, found, felt)
+    bias, error = {}, {}
+    for name in COLUMNS:
+        off = farthest(found, name, share[name])
+        unit = place.rms if name == "separation" else 1.0
+        unit = np.nan if place.area_only and name != "area" else unit
+        bias[name] = unit * found.bias[name]
+        error[name] = np.abs(bias[name]) + unit * off
+    loads = _loads(place, found, p)
+    graded = not isinstance(scene.modulus, Homogeneous)
+    where = _where(scene, place, grid, found.maps, loads)
+    found_at = Validity(h, p, error, bias, graded, _load_axis(place), where)
+    if found_at.measured.all():
+        return found_at
+    why = f": {loads}" if not found_at.measured.any() else ""
+    return replace(found_at, unknown=f"outside of what was measured{why}")
+
+
+def farthest(found: Expected, name: str, share: Array) -> Array:
+    """How far 95 % of surfaces are from the bias, at most: those that scatter by a share of what maps do."""
+    off = _SURE * np.hypot(found.scatter[name] * share, found.unsure[name])
+    return off if name == "separation" else (1 + found.bias[name]) * np.expm1(off)  # ratios differ by factors
+
+
+def _share(scene: Fields, place: Place, found: Expected, felt: Array) -> dict[str, Array]:
+    """Root of the contacts of a map over those of a surface; of waves, if fewer of them, for all but areas.
+
+    A gap, and what follows from it, is as sure as the long waves are many, however many contacts lie on them.
+    """
+    area = scene.n_asperities / scene.surface.eta
+    with np.errstate(divide="ignore", invalid="ignore"):
+        contacts = np.sqrt(found.contacts / (scene.n_asperities * scene.heights.sf(felt)))
+    waves = np.sqrt(found.waves * place.correlation_area / area)
+    return {name: contacts if name == "area" else np.fmax(contacts, waves) for name in COLUMNS}
+
+
+def _felt(scene: Fields, h: Array) -> Array:
+    """Separations that the asperities of the mean surface feel."""
+    if not scene.nominal:
+        return h
+    theory: Any = scene.theory  # an `InteractingModel`, loaded for those scenes alone
+    return np.asarray(theory.effective(h))
+
+
+def _coordinate(place: Place) -> str:
+    return "alpha" if place.kind == "gaussian" else "eta R sigma"
+
+
+def _load_axis(place: Place) -> str:
+    return "p/(E* g)" if place.kind == "gaussian" else "p/(E* sqrt(sigma/R))"
+
+
+def _span(grid: Grid) -> str:
+    return f"measured: {grid.x[0]:g} to {grid.x[-1]:g}"
+
+
+def _loads(place: Place, found: Expected, p: Array) -> str:
+    low, high = found.loads
+    told = f"{low:.2g} to {high:.2g}" if low <= high else "nothing in common"
+    here = " to ".join(dict.fromkeys(f"{x:.2g}" for x in (p.min(), p.max())))
+    return f"{_load_axis(place)} = {here} (measured: {told})"
+
+
+def _where(scene: Fields, place: Place, grid: Grid, maps: int, loads: str) -> str:
+    many = f"{maps} maps" if maps > 1 else "one map"
+    by = ""
+    if scene.fitted is not None:
+        by = " as the fit says"
+    elif place.kind == "gaussian" and place.model == "one radius":
+        by = f" as eta R sigma = {scene.surface.eta * scene.surface.radius * scene.surface.sigma:.3g} says"
+    return (
+        f"boundary elements on homogeneous half-spaces, {many} ({_maps(place)}) a point: "
+        f"{_coordinate(place)} = {place.x:.3g}{by} ({_span(grid)}), {loads}{_reason(place)}"
+    )
+
+
+def _reason(place: Place) -> str:
+    return f"; else nothing: {place.area_only}" if place.area_only else ""
+
+
+def _maps(place: Place) -> str:
+    return "Gaussian" if place.kind == "gaussian" else "separate caps"
