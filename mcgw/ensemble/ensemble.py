@@ -4,10 +4,9 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analytic import PER_AREA, quantity_of
-from analytic.arrays import Array
+from analytic.arrays import Array, Ints
 from mcgw.ensemble.intervals import CONFIDENCE, interval_of
 from mcgw.ensemble.labelled import Labelled, axes_of, axis, statistics_of, values_of
 from mcgw.ensemble.results import PROBABILITIES, Held
@@ -196,7 +195,7 @@ class Ensemble(Shown):
         low, high, *_ = self.sums.extremes(name)
         return np.asarray(low / area), np.asarray(high / area)
 
-    def extreme_surfaces(self, quantity: str) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    def extreme_surfaces(self, quantity: str) -> tuple[Ints, Ints]:
         """Numbers of the first surfaces that have the `extremes`: `mcgw.heights` gives their asperities."""
         *_, low, high = self.sums.extremes(self._held(quantity)[0])
         return low, high

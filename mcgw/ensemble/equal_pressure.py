@@ -3,7 +3,6 @@
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analytic.arrays import Array
 from mcgw.ensemble.ensemble import Ensemble
@@ -15,9 +14,7 @@ _DRAWS = 1e9  # numbers drawn for it: a second or two
 _FEWEST = 20
 
 
-def at_pressures(
-    ensemble: Ensemble, pressures: Array, quantities: tuple[str, ...]
-) -> dict[str, NDArray[np.float64]]:
+def at_pressures(ensemble: Ensemble, pressures: Array, quantities: tuple[str, ...]) -> dict[str, Array]:
     """Quantities of every surface at its own separation for each pressure.
 
     Between two separations of the ensemble a quantity follows a power of the pressure, of which it nearly is

@@ -13,11 +13,11 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.special import betainc, betaincc, gammainccinv, gammaincinv, ndtri
 
 from analytic import TANGENTIAL, quantity_of
-from analytic.arrays import Array
+from analytic.arrays import Array, Marks
 from mcgw.ensemble.results import Held
 from mcgw.formats.table import Column
 from mcgw.scene.samplers import promise_of
@@ -149,7 +149,7 @@ def count_interval(
     return np.where(k > 0, n * below, 0.0), np.where(k < n, n * above, n)
 
 
-def _root(passed: Callable[[Array], NDArray[np.bool_]], low: Array, high: Array) -> Array:
+def _root(passed: Callable[[Array], Marks], low: Array, high: Array) -> Array:
     """Where a condition begins to hold between two ends, by halving."""
     for _ in range(_HALVINGS):
         middle = (low + high) / 2

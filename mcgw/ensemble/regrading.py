@@ -230,7 +230,7 @@ def _again(ensemble: Ensemble) -> Iterator[Drawn]:
         first += len(block.moments)
 
 
-def sums_of_heights(ensemble: Ensemble, scene: Scene) -> Iterator[dict[str, NDArray[np.float64]]]:
+def sums_of_heights(ensemble: Ensemble, scene: Scene) -> Iterator[dict[str, Array]]:
     """Sums that a scene asks for over the asperities of an ensemble, some surfaces at a time.
 
     At the lowest separation, sums under the ensemble's own law are compared with those that it holds.
@@ -262,9 +262,7 @@ def sums_of_heights(ensemble: Ensemble, scene: Scene) -> Iterator[dict[str, NDAr
         yield asperity_sums(scene, *drawn)
 
 
-def check_same(
-    ensemble: Ensemble, first: int, sums: dict[str, NDArray[np.float64]], columns: slice = slice(None)
-) -> None:
+def check_same(ensemble: Ensemble, first: int, sums: dict[str, Array], columns: slice = slice(None)) -> None:
     """Compare sums of surfaces from `first` on, at some columns, with those that the ensemble holds.
 
     Raises

@@ -5,11 +5,10 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import brentq
 
 from analytic import Hertz, Quantity, quantity_of
-from analytic.arrays import Array
+from analytic.arrays import Array, Ints
 from analytic.laws import Branch, Ways, term_of
 from mcgw.scene.scene import Scene
 
@@ -155,17 +154,17 @@ class LawSum:
         ways = Ways(self.branch.law, None, self.branch.conductance)
         return ways.term(self.quantity, h, s, e, self.ratios[:n])
 
-    def _pieces(self, h: float, n: int) -> NDArray[np.int64]:
+    def _pieces(self, h: float, n: int) -> Ints:
         s, e = self.heights[:n], self.modulus[:n]
         return self._branch(slice(n)).pieces(np.full(n, h), s - h, e)
 
-    def _branch(self, which: slice | NDArray[np.int64]) -> Branch:
+    def _branch(self, which: slice | Ints) -> Branch:
         """That of some asperities, each by the law of its own radius."""
         if self.ratios is None:
             return self.branch
         return self.branch.with_radii(self.ratios[which])
 
-    def _weight(self, which: NDArray[np.int64]) -> Array | float:
+    def _weight(self, which: Ints) -> Array | float:
         """What a load or an area is worth by the radius."""
         return 1.0 if self.ratios is None else self.ratios[which] ** quantity_of(self.quantity).radius
 

@@ -5,9 +5,9 @@ from dataclasses import dataclass
 from importlib.metadata import PackageNotFoundError, version
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analytic import Nayak
+from analytic.arrays import Array
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.exports.curves import Curve, Kind
 from mcgw.exports.programs import Program, foot_of, rows_of
@@ -135,7 +135,7 @@ def _foot(foot: float, kind: Kind, program: Program, system: UnitSystem) -> list
     return lines
 
 
-def _check(rows: NDArray[np.float64], kind: Kind, program: Program) -> None:
+def _check(rows: Array, kind: Kind, program: Program) -> None:
     if program.most is not None and len(rows) > program.most:
         raise ValueError(
             f"points = {len(rows) - 1}: {program.name} has room for {program.most} lines; give fewer"

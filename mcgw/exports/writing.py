@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analytic.arrays import Array
 from mcgw.ensemble.ensemble import Ensemble
@@ -197,7 +196,7 @@ def checked(scene: Scene, kind: Kind) -> None:
         )
 
 
-def surfaces_for(scene: Scene, kind: Kind, pressures: NDArray[np.float64] | None, points: int) -> Ensemble:
+def surfaces_for(scene: Scene, kind: Kind, pressures: Array | None, points: int) -> Ensemble:
     """Draw the surfaces of a scene, with what a table needs and nothing else.
 
     Parameters

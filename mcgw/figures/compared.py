@@ -6,10 +6,9 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analytic import QUANTITIES, Exponential, Hertz, Homogeneous, MeasuredHeights, Model
-from analytic.arrays import Array
+from analytic.arrays import Array, Marks
 from analytic.laws import ContactLaw
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.regrading import regrade
@@ -197,7 +196,7 @@ class Compared:
         every = np.concatenate(self.listed)
         return asperity_sums(scene, np.array([len(s) for s in self.listed]), every, np.ones(len(every)))
 
-    def enough(self, scene: Scene) -> NDArray[np.bool_]:
+    def enough(self, scene: Scene) -> Marks:
         """At which of its separations the ensemble has contacts and surfaces enough for an error."""
         h = np.array(scene.separations)
         return (scene.theory.mean("contacts", h) * scene.n_surfaces >= ENOUGH) & (scene.n_surfaces > 1)

@@ -9,10 +9,9 @@ import numpy as np
 from matplotlib.collections import EllipseCollection
 from matplotlib.colors import LogNorm, Normalize
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
 from analytic import Hertz, quantity_of
-from analytic.arrays import Array
+from analytic.arrays import Array, Marks
 from analytic.laws import Ways
 from mcgw.figures.style import STYLE
 from mcgw.formats.pictures import save_figure
@@ -179,7 +178,7 @@ def contact_map_figure(
     return figure
 
 
-def _inside(spots: Spots, window: Window) -> NDArray[np.bool_]:
+def _inside(spots: Spots, window: Window) -> Marks:
     left, right, bottom, top = window
     r = spots.radius
     return np.asarray(
@@ -187,7 +186,7 @@ def _inside(spots: Spots, window: Window) -> NDArray[np.bool_]:
     )
 
 
-def _values(spots: Spots, inside: NDArray[np.bool_], colour: Colour) -> tuple[Array, Normalize, str, float]:
+def _values(spots: Spots, inside: Marks, colour: Colour) -> tuple[Array, Normalize, str, float]:
     """Numbers, scale of colours, label, factor of the unit."""
     if colour == "modulus":
         low, high = float(spots.modulus.min()), float(spots.modulus.max())

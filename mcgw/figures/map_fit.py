@@ -8,9 +8,9 @@ from typing import Any
 import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
 from analytic import Gaussian, Nayak
+from analytic.arrays import Marks
 from mcgw.figures.style import HOMOGENEOUS, MARKED, MISSING, SAMPLE, STYLE, THEORY, look, prefixed
 from mcgw.formats.pictures import save_figure
 from mcgw.maps.estimates import moments_of
@@ -63,7 +63,7 @@ def save_fit_picture(fit: Fit, raw: Topography, ready: Prepared, path: Path) -> 
         save_figure(figure, path, dpi=_DPI)
 
 
-def _draw_map(figure: Figure, axis: Any, topography: Topography, seen: NDArray[np.bool_] | None) -> None:
+def _draw_map(figure: Figure, axis: Any, topography: Topography, seen: Marks | None) -> None:
     """Heights in grey; points that do not count are orange."""
     every = tuple(slice(None, None, max(n // _POINTS, 1)) for n in topography.heights.shape)
     z = topography.heights[every]

@@ -4,7 +4,9 @@ import re
 from collections.abc import Iterable
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
+
+from analytic.arrays import Array
 
 RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _POWER, _MINUS = re.compile(r"(?<=\d)e([+-]\d+)\b"), re.compile(r"(?<![\w⁻])-(?=[\d.])")
@@ -66,7 +68,7 @@ def columns(values: Iterable[tuple[ArrayLike, int]]) -> list[list[str]]:
     return [_powers(x, digits) for x, digits in arrays]
 
 
-def _decimals(x: NDArray[np.float64], digits: int) -> int | None:
+def _decimals(x: Array, digits: int) -> int | None:
     """Decimals of numbers near each other; None for others."""
     sizes = np.abs(x[np.isfinite(x) & (x != 0)])
     if not sizes.size or sizes.max() > _PLAIN * sizes.min():
@@ -76,7 +78,7 @@ def _decimals(x: NDArray[np.float64], digits: int) -> int | None:
     return max(digits - 1 - int(np.floor(np.log10(sizes.min()))), 0)
 
 
-def _powers(x: NDArray[np.float64], digits: int) -> list[str]:
+def _powers(x: Array, digits: int) -> list[str]:
     parts = [f"{v:.{digits - 1}e}".split("e") if np.isfinite(v) and v else None for v in x.tolist()]
     powers = [str(int(part[1])).translate(RAISED) if part else "" for part in parts]
     longest = max(map(len, powers), default=0)

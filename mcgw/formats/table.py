@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from analytic.arrays import Ints
 from mcgw.formats.files import whole_file
 from mcgw.formats.numbers import columns as typeset_columns, typeset
 from mcgw.machine.terminal import one_line
@@ -265,7 +265,7 @@ def digits_of(x: float, error: float) -> int:
     return int(np.clip(np.floor(np.log10(abs(x))) - np.floor(np.log10(error)) + 2, 2, 7))
 
 
-def evenly(n: int, most: int) -> NDArray[np.int64]:
+def evenly(n: int, most: int) -> Ints:
     """Numbers of at most so many of `n` rows, rising."""
     return np.unique(np.linspace(0, n - 1, min(n, most)).round().astype(np.int64))
 

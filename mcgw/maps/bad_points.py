@@ -5,7 +5,6 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import ndimage
 from scipy.sparse import coo_array, diags_array
 from scipy.sparse.linalg import cg
@@ -156,7 +155,7 @@ def _of_seven(z: Array, extreme: Any) -> Array:
     return np.asarray(extreme(four[:, :-3], four[:, 3:]))
 
 
-def bad_edges(heights: NDArray[np.float64]) -> int:
+def bad_edges(heights: Array) -> int:
     """How many points from an edge reach the last line that differs from its neighbour unlike all others.
 
     Root mean squares of the differences between neighbouring rows, and columns, are compared with their

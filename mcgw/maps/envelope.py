@@ -10,9 +10,8 @@ from typing import Any
 
 import numpy as np
 from numba import prange
-from numpy.typing import NDArray
 
-from analytic.arrays import Ints
+from analytic.arrays import Ints, Marks
 from mcgw.machine.compiling import njit
 from mcgw.maps.synthetic import Asperities
 from mcgw.maps.topography import Topography, checked_shape
@@ -132,7 +131,7 @@ def envelope(
     return Topography(heights, pixel, periodic and window is None)
 
 
-def hidden_summits(field: Asperities, *, periodic: bool = False) -> NDArray[np.bool_]:
+def hidden_summits(field: Asperities, *, periodic: bool = False) -> Marks:
     """Which summits of a field lie below the cap of a taller neighbour, across the edges too if periodic."""
     order, caps, shape = _binned(field)
     hidden = np.empty(field.number, dtype=np.bool_)

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from typing import Self
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import ndtr, stdtrit
 
 from analytic import SpectralMoments
@@ -53,7 +52,7 @@ class Roughness:
         return f"{kind}a = {self.a:.4g} m, {kind}q = {self.q:.4g} m, {kind}sk = {self.sk:.2f}"
 
 
-def roughness_of(heights: NDArray[np.float64]) -> Roughness:
+def roughness_of(heights: Array) -> Roughness:
     """Of an array of any shape without missing points, m."""
     mean, flat, sums = heights.mean(), heights.reshape(-1), np.zeros(4)
     for first in range(0, flat.size, _BLOCK):

@@ -6,9 +6,9 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analytic import SpectralMoments
+from analytic.arrays import Array
 from mcgw.formats.sheet import Sheet, Shown
 from mcgw.formats.table import Table
 from mcgw.machine.terminal import plotted
@@ -111,17 +111,17 @@ class Fit(Shown):
     cautions: tuple[str, ...] = ()
 
     @property
-    def summits(self) -> NDArray[np.float64]:
+    def summits(self) -> Array:
         """Heights of the summits about their mean, m."""
         return self.listed.heights
 
     @property
-    def curvatures(self) -> NDArray[np.float64]:
+    def curvatures(self) -> Array:
         """Mean curvatures of the summits, in the order of their heights, 1/m."""
         return np.asarray(self.listed.curvatures.mean(axis=0))
 
     @property
-    def radii(self) -> NDArray[np.float64]:
+    def radii(self) -> Array:
         """Radii of the summits, in the order of their heights, m: ``1/sqrt(k1 k2)``."""
         return self.listed.radii
 
@@ -233,7 +233,7 @@ def fit_prepared(ready: Prepared, *, across: int = 4) -> Fit:
     )  # fmt: skip
 
 
-def _inside(ready: Prepared) -> NDArray[np.float64]:
+def _inside(ready: Prepared) -> Array:
     """Heights of the points that were seen."""
     inside = (slice(None),) if ready.used.periodic else (slice(EDGE, -EDGE), slice(EDGE, -EDGE))
     heights = ready.used.heights[inside]
@@ -261,7 +261,7 @@ def _visible(caps: Estimate, blur: float) -> Visible:
     return visible(caps.overlap, blur / math.sqrt(2 * caps.radius.value * caps.sigma.value))
 
 
-def _of_moments(counted: SummitSums) -> NDArray[np.float64]:
+def _of_moments(counted: SummitSums) -> Array:
     m = moments_of(counted)
     return np.array([m.m0, m.m2, m.m4, m.alpha])
 

@@ -14,13 +14,11 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from analytic.arrays import Array
 from mcgw.formats.named_files import open_npy
 from mcgw.machine.child_process import ChildError, limit_memory, run_child
 from mcgw.maps.topography import Topography, checked_shape, height_unit
-
-Array = NDArray[np.float64]
 
 _HEIGHTS = "heights.npy"
 _MOST_TEXT = 2**28  # bytes

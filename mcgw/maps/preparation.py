@@ -5,9 +5,9 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import ndimage
 
+from analytic.arrays import Marks
 from mcgw.maps.bad_points import Recorded, filled, recorded, small_spike_heights, spike_heights
 from mcgw.maps.form import lowpass, smooth, without_form, without_offsets
 from mcgw.maps.levels import step_of
@@ -16,8 +16,6 @@ from mcgw.maps.topography import SMALLEST, Topography
 from mcgw.scene.arguments import arguments
 from mcgw.scene.kinds import Whole, Word
 from mcgw.scene.section import Kind
-
-Mask = NDArray[np.bool_]
 
 _NEIGHBOURS = 2  # pixels on each side that differences need
 _LEAST = 0.5  # of the measured points must have all neighbours, or filled ones count too
@@ -92,7 +90,7 @@ class Prepared:
 
     levelled: Topography
     used: Topography
-    seen: Mask | None
+    seen: Marks | None
     filled: float
     recorded: Recorded
     asked: Preparation
@@ -179,7 +177,9 @@ def _terrace(topography: Topography, notes: list[str]) -> Topography:
     return replace(topography, heights=heights, periodic=False)
 
 
-def _levelled(topography: Topography, asked: Preparation, notes: list[str]) -> tuple[Topography, Mask | None]:
+def _levelled(
+    topography: Topography, asked: Preparation, notes: list[str]
+) -> tuple[Topography, Marks | None]:
     """The map without spikes, form and holes; and where its holes are."""
     kept, number, largest = topography, 0, 0.0
     for _ in range(_ROUNDS):
@@ -203,7 +203,7 @@ def _levelled(topography: Topography, asked: Preparation, notes: list[str]) -> t
     return whole, holes if holes.any() else None
 
 
-def _seen(topography: Topography, holes: Mask, asked: Preparation, notes: list[str]) -> Mask | None:
+def _seen(topography: Topography, holes: Marks, asked: Preparation, notes: list[str]) -> Marks | None:
     """Which points of the map between its cutoffs count."""
     if asked.cutoff is None:
         seen = ~holes

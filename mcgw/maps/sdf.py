@@ -18,6 +18,7 @@ from typing import BinaryIO
 import numpy as np
 from numpy.typing import NDArray
 
+from analytic.arrays import Array
 from mcgw.formats.files import whole_file
 from mcgw.maps.foreign import ForeignError
 from mcgw.maps.topography import Topography, checked_shape
@@ -161,7 +162,7 @@ def _checked(path: Path, header: tuple[int, int, float, float, float, int], comp
         raise ValueError(f"{path}: {error}") from None
 
 
-def _read_text(path: Path, file: BinaryIO) -> tuple[_Header, NDArray[np.float64]]:
+def _read_text(path: Path, file: BinaryIO) -> tuple[_Header, Array]:
     start = file.read(_TEXT_HEADER)
     end = re.search(rb"^\s*\*[ \t]*\r?$\n?", start, re.MULTILINE)
     if end is None:
@@ -196,7 +197,7 @@ def _read_text(path: Path, file: BinaryIO) -> tuple[_Header, NDArray[np.float64]
     return header, values
 
 
-def _numbers(path: Path, file: BinaryIO) -> Iterator[NDArray[np.float64]]:
+def _numbers(path: Path, file: BinaryIO) -> Iterator[Array]:
     """Numbers up to the next *, a megabyte of text at a time."""
     left = b""
     while chunk := file.read(_CHUNK):
@@ -211,7 +212,7 @@ def _numbers(path: Path, file: BinaryIO) -> Iterator[NDArray[np.float64]]:
     yield _parsed(path, left)
 
 
-def _parsed(path: Path, text: bytes) -> NDArray[np.float64]:
+def _parsed(path: Path, text: bytes) -> Array:
     words = [b"nan" if word == b"BAD" else word for word in text.replace(b",", b" ").split()]
     try:
         return np.array(words, dtype="S32").astype(np.float64)

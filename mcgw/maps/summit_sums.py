@@ -5,14 +5,11 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import ndimage
 
-from analytic.arrays import Array
+from analytic.arrays import Array, Ints, Marks
 from mcgw.machine.compiling import njit
 from mcgw.maps.topography import Topography
-
-Mask = NDArray[np.bool_]
 
 # Rows of the sums: points, powers of height, squared slopes, squared second derivatives, the latter by plain
 # differences over one pixel and over two, which tell whether the pixel resolves them, and products of slopes.
@@ -43,7 +40,7 @@ class SummitSums:
     heights: Array
     curvatures: Array
     places: Array
-    part: NDArray[np.int64]
+    part: Ints
     pixel_area: float
 
     @property
@@ -165,7 +162,7 @@ def _pass(z: Any, seen: Any, dx: Any, dy: Any, across: Any, sums: Any, summits: 
     return found
 
 
-def summit_sums_of(topography: Topography, *, across: int = 4, seen: Mask | None = None) -> SummitSums:
+def summit_sums_of(topography: Topography, *, across: int = 4, seen: Marks | None = None) -> SummitSums:
     """Go once over a map that lacks no points, with `across` sub-areas along each axis.
 
     Four points at each edge are left out, unless the map is periodic. Where a mask says what was `seen`,
@@ -204,14 +201,14 @@ def summit_sums_of(topography: Topography, *, across: int = 4, seen: Mask | None
     return SummitSums(sums, summits[0], summits[1], summits[2:], part[:found].copy(), dx * dy)
 
 
-def _with_neighbours(seen: Mask, periodic: bool) -> Mask:
+def _with_neighbours(seen: Marks, periodic: bool) -> Marks:
     """Points whose neighbours were seen too, as far as differences reach."""
     wide = np.pad(seen, _STENCIL, mode="wrap" if periodic else "edge")
     counts = ndimage.minimum_filter(wide, 2 * _STENCIL + 1)
     return np.asarray(counts[_STENCIL:-_STENCIL, _STENCIL:-_STENCIL])
 
 
-def coarse_sums_of(topography: Topography, *, across: int = 4, seen: Mask | None = None) -> SummitSums:
+def coarse_sums_of(topography: Topography, *, across: int = 4, seen: Marks | None = None) -> SummitSums:
     """Go over the four maps of every second point along each axis, and put together what they show.
 
     Raises

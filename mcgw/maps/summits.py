@@ -3,9 +3,8 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from analytic.arrays import Array
+from analytic.arrays import Array, Ints
 from mcgw.formats.table import Column, Table
 from mcgw.maps.summit_sums import EDGE, SummitSums
 from mcgw.maps.topography import Topography
@@ -42,7 +41,7 @@ class Summits:
     y: Array
     heights: Array
     curvatures: Array
-    tile: NDArray[np.int64]
+    tile: Ints
     unresolved: int
 
     @property
@@ -90,12 +89,12 @@ def summits_of(used: Topography, counted: SummitSums, origin: tuple[float, float
     )
 
 
-def _at(z: Array, j: NDArray[np.int64], i: NDArray[np.int64]) -> Array:
+def _at(z: Array, j: Ints, i: Ints) -> Array:
     """Heights at points that may lie beyond the edges of a periodic map."""
     return np.asarray(z[j % z.shape[0], i % z.shape[1]])
 
 
-def _curvatures(used: Topography, j: NDArray[np.int64], i: NDArray[np.int64]) -> tuple[Array, int]:
+def _curvatures(used: Topography, j: Ints, i: Ints) -> tuple[Array, int]:
     """Principal curvatures, and how many had to be taken from the mean curvature."""
     z, (dx, dy) = used.heights, used.pixel
     here = _at(z, j, i)  # differences from it lose no digits
@@ -118,7 +117,7 @@ def _curvatures(used: Topography, j: NDArray[np.int64], i: NDArray[np.int64]) ->
     return found, int(ridges.sum())
 
 
-def _apex(z: Array, j: NDArray[np.int64], i: NDArray[np.int64]) -> tuple[Array, Array]:
+def _apex(z: Array, j: Ints, i: Ints) -> tuple[Array, Array]:
     """Vertex, within the summit's own pixel, of the paraboloid through it and its neighbours, in pixels."""
     gx, gy = (_at(z, j, i + 1) - _at(z, j, i - 1)) / 2, (_at(z, j + 1, i) - _at(z, j - 1, i)) / 2
     xx = _at(z, j, i + 1) - 2 * _at(z, j, i) + _at(z, j, i - 1)

@@ -4,7 +4,6 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import fft
 from scipy.optimize import brentq
 
@@ -80,7 +79,7 @@ class Spectrum:
         q_long = math.sqrt(2 * moments.m2 / moments.m0 / _mean_power(2, ratio, hurst))
         return cls(math.sqrt(moments.m0), 2 * math.pi / q_long, 2 * math.pi / q_long / ratio, hurst)
 
-    def density(self, q: NDArray[np.float64]) -> NDArray[np.float64]:
+    def density(self, q: Array) -> Array:
         """Of the variance over the plane of wave vectors, up to a factor; `q` in 1/m."""
         inside = (q >= 2 * math.pi / self.long) & (q <= 2 * math.pi / self.short)
         relative = np.where(inside, q * self.short, 1.0)
@@ -96,7 +95,7 @@ def _mean_power(k: int, ratio: float, hurst: float) -> float:
     return integral(k - 2 * hurst) / integral(-2 * hurst)
 
 
-def _power(spectrum: Spectrum, shape: tuple[int, int], pixel: tuple[float, float]) -> NDArray[np.float64]:
+def _power(spectrum: Spectrum, shape: tuple[int, int], pixel: tuple[float, float]) -> Array:
     """Density at the wave vectors of ``rfft2``."""
     rows, columns = checked_shape(*shape)
     if spectrum.short < 2 * max(pixel):

@@ -6,8 +6,8 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
+from analytic.arrays import Array
 from mcgw.maps.foreign import ForeignError
 from mcgw.maps.topography import Topography, checked_shape, height_unit, metres_in, single_points
 
@@ -39,7 +39,7 @@ def read_text(path: Path, pixel: tuple[float, float] | None = None, unit: str | 
         If a row has another length than the first, a word is not a number, a comma may mean two things, or
         no pixel size is known.
     """
-    rows: list[NDArray[np.float64]] = []
+    rows: list[Array] = []
     extent: dict[str, float] = {}
     told: str | None = None
     total, open_left, open_right = 0, True, True
@@ -114,7 +114,7 @@ def words_of(path: Path, number: int, line: str) -> list[str]:
     return words
 
 
-def numbers_of(path: Path, number: int, words: list[str]) -> NDArray[np.float64]:
+def numbers_of(path: Path, number: int, words: list[str]) -> Array:
     """What `words_of` found, nan where points are missing."""
     try:
         row = np.array([float("nan" if word in _MISSING else word) for word in words])

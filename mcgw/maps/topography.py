@@ -5,11 +5,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
+from analytic.arrays import Array
 from mcgw.formats.units import METRES
-
-Array = NDArray[np.float64]
 
 MOST_PIXELS = 2**28  # 16384 x 16384: 2 GiB as float64
 SMALLEST, _LARGEST = 1e-150, 1e150  # of what is squared, m: sums of squares and a dozen times that, too

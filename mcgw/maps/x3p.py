@@ -13,8 +13,8 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
+from analytic.arrays import Array
 from mcgw.formats.files import whole_file
 from mcgw.maps.topography import Topography, checked_shape
 
@@ -166,7 +166,7 @@ class _Reader:
         self._mark_missing(heights)
         return Topography(heights.reshape(rows, columns), (pixel[0], pixel[1]))
 
-    def _heights(self, number: int, kind: str) -> NDArray[np.float64]:
+    def _heights(self, number: int, kind: str) -> Array:
         name = self._text("Record3/DataLink/PointDataLink")
         data = self._unpacked(name, number * np.dtype(_TYPES[kind]).itemsize)
         told = self._text("Record3/DataLink/MD5ChecksumPointData", "")
@@ -174,7 +174,7 @@ class _Reader:
             raise ValueError(f"{name}: damaged (checksum mismatch with {_MAIN})")
         return np.frombuffer(data, dtype=_TYPES[kind]).astype(np.float64)
 
-    def _mark_missing(self, heights: NDArray[np.float64]) -> None:
+    def _mark_missing(self, heights: Array) -> None:
         name = self._text("Record3/DataLink/ValidPointsLink", "")
         if name:
             bits = np.frombuffer(self._unpacked(name, (heights.size + 7) // 8), dtype=np.uint8)

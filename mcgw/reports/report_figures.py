@@ -9,9 +9,9 @@ from dataclasses import dataclass
 import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
 from analytic import quantity_of
+from analytic.arrays import Array
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.figures.against_theory import quantity_panel
 from mcgw.figures.contact_map import patch_figures
@@ -157,7 +157,7 @@ def _spread(comparison: Comparison) -> FigureData:
     return FigureData("", "Lines: exact. Markers: the ensemble, with standard errors.", (panel,), columns=1)
 
 
-def _relative_error(scene: Scene, name: str) -> NDArray[np.float64]:
+def _relative_error(scene: Scene, name: str) -> Array:
     """Of std over mean of one surface, to first order: half of std's, that of the mean, and both together."""
     exact = scene.theory.cumulants(name, scene.separations)
     with np.errstate(divide="ignore", invalid="ignore"):

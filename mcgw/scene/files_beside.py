@@ -7,9 +7,9 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analytic import Surface, Table
+from analytic.arrays import Array
 from mcgw.formats.named_files import open_npy, read_text
 from mcgw.formats.units import signed
 
@@ -61,7 +61,7 @@ def _cell(text: str, name: str, unit: str) -> str:
     return text.replace(",", " ")
 
 
-def read_heights(path: Path) -> NDArray[np.float64]:
+def read_heights(path: Path) -> Array:
     """Heights from ``.npy`` or text with one a line (# begins a comment), in any unit; shape (heights,).
 
     Raises

@@ -5,9 +5,9 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analytic import quantity_of
+from analytic.arrays import Array
 from mcgw.scene.fields import Fields, RelErr
 
 
@@ -39,7 +39,7 @@ def _off(scene: Fields, name: str) -> float:
     return 0.0 if scene.exact or quantity_of(name).counts else scene.accuracy
 
 
-def wanted(scene: Fields) -> dict[str, NDArray[np.float64]]:
+def wanted(scene: Fields) -> dict[str, Array]:
     """How well each mean is to be known by drawing, shape (separations,); of quantities that are waited for.
 
     What values may be off by is left out: drawing more does not help there.

@@ -16,11 +16,10 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import chdtrc, ndtr
 
 from analytic import Fluctuations, Model, RandomCurvature, quantity_of
-from analytic.arrays import Array
+from analytic.arrays import Array, Marks
 from analytic.curvature import MEAN_CURVATURE
 from mcgw.ensemble.asperities_alone import asperities_alone
 from mcgw.ensemble.ensemble import Ensemble
@@ -132,7 +131,7 @@ class Tested:
     mean: Array
     theory: Array
     residual: Array
-    counts: NDArray[np.bool_]
+    counts: Marks
     verdict: Verdict
     number: int = 0
 
@@ -242,7 +241,7 @@ def _left_out(scene: Scene, h: Array) -> Array:
     return np.concatenate(found)
 
 
-def _gaussian(parts: Fluctuations, asperities: float) -> NDArray[np.bool_]:
+def _gaussian(parts: Fluctuations, asperities: float) -> Marks:
     """Which terms (columns of unit variance) have a nearly Gaussian mean over so many asperities."""
     with np.errstate(over="ignore", invalid="ignore"):  # where nothing ever touches
         third, fourth = parts.moment(3), parts.moment(4)

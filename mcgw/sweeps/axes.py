@@ -8,9 +8,9 @@ from itertools import product
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analytic import is_data
+from analytic.arrays import Array
 from mcgw.ensemble.labelled import AXES
 from mcgw.formats.sheet import brief
 from mcgw.scene.arguments import as_toml
@@ -109,7 +109,7 @@ class Axes:
             raise ValueError(f"{key!r} is no axis of this sweep; it has {', '.join(self.keys)}")
         return 0 if self.zipped else self.keys.index(key)
 
-    def numbers(self, key: str) -> NDArray[np.float64]:
+    def numbers(self, key: str) -> Array:
         """The values of an axis whose neighbours are compared.
 
         Raises

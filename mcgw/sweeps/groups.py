@@ -15,7 +15,6 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analytic import Exponential, Homogeneous, quantity_of
 from analytic.arrays import Array, Ints
@@ -135,7 +134,7 @@ def _alike(items: Sequence[_Item], key: Callable[[_Item], Any]) -> list[list[_It
     return found
 
 
-def between_two(scenes: Sequence[Scene]) -> tuple[tuple[int, int], NDArray[np.float64]] | None:
+def between_two(scenes: Sequence[Scene]) -> tuple[tuple[int, int], Array] | None:
     """Scenes that differ in their gradings alone, as weighted means of two of them.
 
     Returns
