@@ -1,7 +1,7 @@
 """A trailer for a file that a test has changed: what a stranger could do as well."""
 
 from mcgw.store import structure
-from mcgw.store.trailer import trailer_of
+from mcgw.store.disk import trailer_of
 
 
 def trailer_again(path):

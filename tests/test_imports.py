@@ -120,7 +120,7 @@ FEATURES = {
 # Laws of contact and height, and interaction: by the last part of their names.
 LAWS = {
     "adhesion", "custom", "elastic", "elastic_plastic", "elastic_plastic_laws", "law_rows",
-    "balance", "half_space", "interacting", "interaction", "interaction_mistakes",
+    "balance", "interacting", "interaction", "interaction_mistakes",
     "nominal", "own_balance",
 }  # fmt: skip
 

@@ -19,7 +19,7 @@ from mcgw.jobs.running import run
 from mcgw.machine.child_process import ChildError, run_child
 from mcgw.scene.scene import Scene
 from mcgw.store import ensembles, structure, untrusted
-from mcgw.store.trailer import TRAILER_BYTES
+from mcgw.store.disk import TRAILER_BYTES
 
 TESTS = Path(__file__).parent
 SECRET = "key = correct horse battery staple"

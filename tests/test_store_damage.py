@@ -15,9 +15,8 @@ from mcgw.errors import RunError, StoreError
 from mcgw.jobs.merging import merge
 from mcgw.jobs.running import run
 from mcgw.store import ensembles, layout, lock, run_folder, saving, shards, structure, untrusted
-from mcgw.store.disk import SteadyFile, parts_of
+from mcgw.store.disk import TRAILER_BYTES, SteadyFile, check_trailer, parts_of, read_checked, trailer_of
 from mcgw.store.run_folder import RunFolder
-from mcgw.store.trailer import TRAILER_BYTES, check_trailer, read_checked, trailer_of
 
 
 @pytest.fixture(autouse=True)

@@ -19,8 +19,7 @@ from mcgw.jobs.merging import merge
 from mcgw.jobs.running import run
 from mcgw.store import chunks, shards
 from mcgw.store.chunks import add_rows, chunk_rows, empty_table, stored
-from mcgw.store.disk import parts_of
-from mcgw.store.trailer import read_checked, trailer_of
+from mcgw.store.disk import parts_of, read_checked, trailer_of
 
 ROWS, COLUMNS = 40, 5
 

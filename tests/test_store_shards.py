@@ -8,8 +8,8 @@ import pytest
 
 from mcgw.errors import StoreError
 from mcgw.formats.files import write_whole
+from mcgw.store.disk import TRAILER_BYTES, check_trailer, read_checked, trailer_of
 from mcgw.store.shards import Span, commit_shard, content_digest, open_shard, pack
-from mcgw.store.trailer import TRAILER_BYTES, check_trailer, read_checked, trailer_of
 
 RUN, SPAN = "a" * 64, Span(40, 5)
 FLIPS, TRUNCATIONS = 200, 100

@@ -10,8 +10,7 @@ from oracles import scores
 import analytic
 import mcgw
 from analytic import laws, quantity_of
-from mcgw.statistics.methods import methods_for
-from mcgw.statistics.reference import reference
+from mcgw.statistics.methods import methods_for, reference
 from mcgw.statistics.verdict import FALSE_ALARM
 
 FILM = laws.Film(2e-8, 1e-14)  # as much resistance as a spot of 0.15 sqrt(R sigma)

@@ -9,9 +9,8 @@ from mcgw.commands.voice import news, notes
 from mcgw.errors import StoreError
 from mcgw.formats.files import check_output
 from mcgw.formats.table import Table
-from mcgw.store.disk import parts_of
+from mcgw.store.disk import TRAILER_BYTES, TRAILER_MAGIC, parts_of
 from mcgw.store.lock import LOCK_FILES
-from mcgw.store.trailer import TRAILER_BYTES, TRAILER_MAGIC
 
 _SIGNATURE = b"\x89HDF\r\n\x1a\n"
 

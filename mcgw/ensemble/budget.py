@@ -14,8 +14,8 @@ from analytic import Nayak, RandomCurvature, SpectralMoments
 from analytic.arrays import Array
 from mcgw.formats.sheet import Sheet, Shown
 from mcgw.formats.table import Column, Table
+from mcgw.scene.measured import Uncertainty
 from mcgw.scene.scene import Scene
-from mcgw.scene.uncertainty import Uncertainty
 from mcgw.scene.validity import Validity
 from mcgw.scene.validity_place import moments_of_nayak
 

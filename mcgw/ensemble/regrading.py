@@ -10,9 +10,9 @@ from numpy.typing import ArrayLike, NDArray
 from analytic import Grading, quantity_of
 from analytic.arrays import Array
 from analytic.laws import ContactLaw
-from mcgw.ensemble.asperities_alone import scene_alone
 from mcgw.ensemble.drawing import answered, blocks, kept
 from mcgw.ensemble.ensemble import Ensemble
+from mcgw.ensemble.half_space import scene_alone
 from mcgw.ensemble.results import MemoryResults, joined
 from mcgw.sampling.asperities import listing_sampler, summits_drawn
 from mcgw.sampling.block import Block

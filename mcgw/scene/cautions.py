@@ -7,7 +7,7 @@ import numpy as np
 from analytic import Hertz
 from mcgw.scene.plausible import perhaps_other_units
 from mcgw.scene.scene import Scene
-from mcgw.scene.validity_cautions import off_elasticity
+from mcgw.scene.validity import off_elasticity
 
 _DEEP = 1e-3  # share of the contacts compressed by more than their radius
 _CROWDED = 0.05  # real over nominal area: Gaussian maps and caps are far beyond 10 % of load there

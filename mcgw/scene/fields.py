@@ -25,8 +25,7 @@ from mcgw.machine.memory import kept
 
 if TYPE_CHECKING:
     from analytic import Interaction
-    from mcgw.scene.fitted import Fitted
-    from mcgw.scene.uncertainty import Uncertainty
+    from mcgw.scene.measured import Fitted, Uncertainty
 
 RelErr = float | Mapping[str, float | list[float]]
 

@@ -7,11 +7,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from analytic import LAW_QUANTITIES, QUANTITIES, UNLOADING, Body
 from analytic.laws import Layer, Tangential
 from mcgw.scene.fields import COARSEST, EXACT
-from mcgw.scene.fitted import Fitted
 from mcgw.scene.kinds import ByName, Either, Flag, List, Number, Table, Text, Whole, Word
+from mcgw.scene.measured import Fitted, Uncertainty
 from mcgw.scene.samplers import SAMPLERS
 from mcgw.scene.section import Key
-from mcgw.scene.uncertainty import Uncertainty
 
 if TYPE_CHECKING:
     from analytic import Interaction

@@ -25,8 +25,7 @@ from mcgw.scene.surface import changed_surface
 
 if TYPE_CHECKING:
     from analytic import Interaction
-    from mcgw.scene.fitted import Fitted
-    from mcgw.scene.uncertainty import Uncertainty
+    from mcgw.scene.measured import Fitted, Uncertainty
     from mcgw.scene.validity import Validity
 
 _P = ParamSpec("_P")

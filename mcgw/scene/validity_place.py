@@ -9,8 +9,8 @@ from analytic import Gaussian, Hertz, Nayak, RandomCurvature, SpectralMoments, S
 from analytic.arrays import Array
 from analytic.surface import LEAST_ALPHA, SUMMIT_SPREAD
 from mcgw.scene.fields import Fields
-from mcgw.scene.fitted import Fitted
 from mcgw.scene.in_words import law_text
+from mcgw.scene.measured import Fitted
 
 _CROWDING = 1 / (16 * math.sqrt(3 * math.pi))  # eta R sigma over sqrt(alpha - SUMMIT_SPREAD)
 LEAST_CROWDING = _CROWDING * math.sqrt(LEAST_ALPHA - SUMMIT_SPREAD)  # 0.0158: all waves have one length

@@ -11,9 +11,9 @@ from scipy.stats import binom, poisson
 
 from analytic import quantity_of
 from analytic.arrays import Array
-from mcgw.ensemble.asperities_alone import scene_alone
 from mcgw.ensemble.drawing import blocks
 from mcgw.ensemble.ensemble import Ensemble
+from mcgw.ensemble.half_space import scene_alone
 from mcgw.ensemble.results import MemoryResults, joined
 from mcgw.formats.sheet import Sheet, Shown, brief
 from mcgw.formats.table import Column, Table, evenly

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from analytic.arrays import Array
-from mcgw.ensemble.asperities_alone import scene_alone
+from mcgw.ensemble.half_space import scene_alone
 from mcgw.formats.sheet import Sheet, Shown
 from mcgw.formats.table import Column, Table
 from mcgw.machine.memory import peak_growth

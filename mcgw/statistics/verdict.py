@@ -21,8 +21,8 @@ from scipy.special import chdtrc, ndtr
 from analytic import Fluctuations, Model, RandomCurvature, quantity_of
 from analytic.arrays import Array, Marks
 from analytic.curvature import MEAN_CURVATURE
-from mcgw.ensemble.asperities_alone import asperities_alone
 from mcgw.ensemble.ensemble import Ensemble
+from mcgw.ensemble.half_space import asperities_alone
 from mcgw.formats.table import evenly
 from mcgw.scene.scene import Scene
 

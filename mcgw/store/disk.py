@@ -1,8 +1,21 @@
-"""How the store reads and writes: regular files only, and no error of the disk shown to HDF5."""
+"""How the store reads and writes: regular files that end with a trailer, and no error of the disk for HDF5.
 
+The trailer, the last 512 bytes of a file, tells whether it is whole and unchanged. It stands at the end, so
+that an HDF5 file with one begins as any other and every HDF5 reader opens it; a file without its trailer was
+never finished. Layout: 8 bytes magic, JSON padded with spaces (472 bytes), SHA-256 of these 480 bytes (32
+bytes). The JSON holds the length and the SHA-256 of all that stands before the trailer, and what the writer
+wants known without opening the file.
+"""
+
+import hashlib
+import json
 import os
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
+
+from mcgw.errors import StoreError
+from mcgw.formats.named_files import open_regular
 
 
 def parts_of(path: Path) -> Path:
@@ -98,3 +111,128 @@ class SteadyFile:
     def close(self) -> None:
         """Close it, whatever became of it."""
         self._file.close()
+
+
+TRAILER_BYTES = 512
+TRAILER_MAGIC = b"MCGWSEAL"
+_HEAD = TRAILER_BYTES - hashlib.sha256().digest_size
+_PIECE = 2**22
+
+
+@dataclass(frozen=True)
+class Trailer:
+    """What a trailer says.
+
+    Parameters
+    ----------
+    length : int
+        Bytes before the trailer.
+    sha256 : str
+        Digest of these bytes.
+    notes : dict
+        What else its writer put in.
+    """
+
+    length: int
+    sha256: str
+    notes: dict[str, Any]
+
+    def to_bytes(self) -> bytes:
+        """The 512 bytes."""
+        text = json.dumps({"length": self.length, "sha256": self.sha256, "notes": self.notes})
+        head = (TRAILER_MAGIC + text.encode()).ljust(_HEAD)
+        if len(head) > _HEAD:
+            raise ValueError(f"trailer: {len(head)} bytes of notes, more than {_HEAD}")
+        return head + hashlib.sha256(head).digest()
+
+    @classmethod
+    def from_bytes(cls, data: bytes) -> "Trailer":
+        """Read it.
+
+        Raises
+        ------
+        StoreError
+            If it is not a trailer, or a damaged one.
+        """
+        head, digest = data[:_HEAD], data[_HEAD:]
+        if (
+            len(data) != TRAILER_BYTES
+            or not head.startswith(TRAILER_MAGIC)
+            or hashlib.sha256(head).digest() != digest
+        ):
+            raise StoreError("not a whole file of mcgw: no trailer at its end, so it was cut off or changed")
+        try:
+            said = json.loads(head[len(TRAILER_MAGIC) :])
+            return cls(int(said["length"]), str(said["sha256"]), dict(said["notes"]))
+        except (ValueError, KeyError, TypeError):
+            raise StoreError("its trailer cannot be read") from None
+
+
+def trailer_of(body: bytes, **notes: Any) -> bytes:
+    """Trailer for a body in memory."""
+    return Trailer(len(body), hashlib.sha256(body).hexdigest(), notes).to_bytes()
+
+
+def read_checked(path: Path) -> tuple[Trailer, bytes]:
+    """Trailer and body of a small file, checked bit by bit.
+
+    Raises
+    ------
+    StoreError
+        If it is not there, not whole, or damaged.
+    """
+    with os.fdopen(open_regular(path), "rb") as file:
+        data = file.read()
+    trailer = _trailer(path, data[-TRAILER_BYTES:], len(data))
+    body = data[:-TRAILER_BYTES]
+    if hashlib.sha256(body).hexdigest() != trailer.sha256:
+        raise StoreError(f"{path}: damaged (checksum mismatch)")
+    return trailer, body
+
+
+def read_trailer(path: Path) -> Trailer:
+    """Trailer of a file whose length is right; the body is not looked at.
+
+    Raises
+    ------
+    StoreError
+        If it is not there or not whole.
+    """
+    with os.fdopen(open_regular(path), "rb") as file:
+        size = file.seek(0, os.SEEK_END)
+        file.seek(max(size - TRAILER_BYTES, 0))
+        return _trailer(path, file.read(TRAILER_BYTES), size)
+
+
+def check_trailer(path: Path) -> Trailer:
+    """Trailer of a file of any size, checked bit by bit.
+
+    Raises
+    ------
+    StoreError
+        If it is not there, not whole, or damaged.
+    """
+    trailer = read_trailer(path)
+    if sha256_of(path, trailer.length) != trailer.sha256:
+        raise StoreError(f"{path}: damaged (checksum mismatch)")
+    return trailer
+
+
+def sha256_of(path: Path, length: int) -> str:
+    """SHA-256 of the first `length` bytes of a file."""
+    sha = hashlib.sha256()
+    with os.fdopen(open_regular(path), "rb") as file:
+        while length and (piece := file.read(min(_PIECE, length))):
+            sha.update(piece)
+            length -= len(piece)
+    return sha.hexdigest()
+
+
+def _trailer(path: Path, data: bytes, size: int) -> Trailer:
+    try:
+        trailer = Trailer.from_bytes(data)
+    except StoreError as error:
+        raise StoreError(f"{path}: {error}") from None
+    if trailer.length != size - TRAILER_BYTES:
+        raise StoreError(f"{path}: damaged ({size} bytes long, not {trailer.length + TRAILER_BYTES})")
+    return trailer

@@ -17,7 +17,7 @@ from mcgw.ensemble.results import Held, Results
 from mcgw.errors import StoreError
 from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_from, scene_text
-from mcgw.store.disk import parts_of
+from mcgw.store.disk import check_trailer, parts_of, read_trailer
 from mcgw.store.layout import (
     FILETYPE,
     FORMAT,
@@ -31,7 +31,6 @@ from mcgw.store.layout import (
 from mcgw.store.run_folder import RunFolder
 from mcgw.store.shards import RAGGED, Shard
 from mcgw.store.structure import MOST_SCALE
-from mcgw.store.trailer import check_trailer, read_trailer
 from mcgw.store.untrusted import examine
 
 

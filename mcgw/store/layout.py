@@ -17,10 +17,10 @@ from mcgw.errors import StoreError
 from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_text
 from mcgw.store.chunks import PACKED, add_rows, empty_table
+from mcgw.store.disk import trailer_of
 from mcgw.store.identity import now, provenance
 from mcgw.store.shards import DRAWN, RAGGED, Span, content_digest, in_memory
 from mcgw.store.structure import GROUP, MOST_TEXT, check_plain, head_digest
-from mcgw.store.trailer import trailer_of
 
 FILETYPE, FORMAT = "mcgw-results", (2, 0)
 

@@ -9,12 +9,11 @@ from mcgw.formats.files import remove_stale
 from mcgw.scene.fields import LeftOut
 from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_from, scene_text
-from mcgw.store.disk import parts_of
+from mcgw.store.disk import check_trailer, parts_of
 from mcgw.store.ensembles import described, read_attributes
 from mcgw.store.identity import difference, drawn_with, identity_of
 from mcgw.store.lock import locked
 from mcgw.store.run_folder import RunFolder, remove_run
-from mcgw.store.trailer import check_trailer
 
 if TYPE_CHECKING:
     from mcgw.ensemble.summary import Summary

@@ -23,7 +23,7 @@ from mcgw.machine.in_threads import Items, one_ahead
 from mcgw.scene.arguments import check_object
 from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_text
-from mcgw.store.disk import SteadyFile, parts_of
+from mcgw.store.disk import SteadyFile, Trailer, parts_of, sha256_of
 from mcgw.store.ensembles import open_ensemble
 from mcgw.store.identity import drawn_with, identity_of
 from mcgw.store.layout import (
@@ -40,7 +40,6 @@ from mcgw.store.lock import locked
 from mcgw.store.place import finished
 from mcgw.store.run_folder import RunFolder
 from mcgw.store.shards import DRAWN, LIBVER, Shard, Span, content_digest, tables_in
-from mcgw.store.trailer import Trailer, sha256_of
 
 _CACHE = 2**25  # of chunks that a shard fills only in part
 

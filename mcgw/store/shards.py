@@ -27,7 +27,7 @@ from mcgw.ensemble.results import Tables
 from mcgw.errors import StoreError
 from mcgw.formats.files import write_whole
 from mcgw.store.chunks import stored
-from mcgw.store.trailer import Trailer, read_checked, read_trailer, trailer_of
+from mcgw.store.disk import Trailer, read_checked, read_trailer, trailer_of
 
 RAGGED = "extras"  # the one table whose rows are not surfaces
 DRAWN = ("moments", "cells", RAGGED)  # what `keep = "moments"` adds to the quantities

@@ -17,7 +17,7 @@ from typing import Any
 from mcgw.errors import StoreError
 from mcgw.formats.named_files import open_regular
 from mcgw.machine.child_process import ChildError, memory_limit, run_child
-from mcgw.store.trailer import check_trailer, read_trailer
+from mcgw.store.disk import check_trailer, read_trailer
 
 _MEMORY = 2**31  # address space of the child; HDF5 and NumPy take a tenth of it
 _SECONDS, _BYTES_A_SECOND = 20.0, 50e6  # a busy machine takes seconds to start a process

@@ -1,11 +1,71 @@
-"""How well the parameters of a surface are known: ``uncertainty`` under [surface]."""
+"""What was measured of the surface that a scene was made of.
 
+Of the fit of a map or of profiles the table ``[fitted]``; and how well the parameters are known, by
+``uncertainty`` under ``[surface]``.
+"""
+
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
+from analytic import SpectralMoments, Surface
 from analytic.arrays import Array, hold
+
+
+@dataclass(frozen=True)
+class Fitted:
+    """What a fit knew of a surface besides its summits: by it `Scene.validity` tells whether it fits.
+
+    Parameters
+    ----------
+    m0, m2, m4 : float
+        Spectral moments, m^2, 1, 1/m^2: means over all directions.
+    skewness, kurtosis : float
+        Of all heights: 0 and 3 of Gaussian ones.
+    independent : float
+        How many independent heights would tell m0 as well: few where long waves are.
+    agreement : float or None
+        Largest ratio, at least 1, between what moments and counted summits say of eta, R or sigma; of
+        profiles between the peaks that are counted and those that follow from the moments. None: summits
+        were too few to be counted.
+    lay : float or None
+        Mean square slope across the lay over that along it, at least 1; None: nobody saw it.
+    area : float or None
+        That was looked at, m^2; None: along lines only.
+    """
+
+    m0: float
+    m2: float
+    m4: float
+    skewness: float
+    kurtosis: float
+    independent: float
+    agreement: float | None = None
+    lay: float | None = None
+    area: float | None = None
+
+    @property
+    def moments(self) -> SpectralMoments:
+        """m0, m2 and m4."""
+        return SpectralMoments(self.m0, self.m2, self.m4)
+
+    def off(self, surface: Surface) -> float:
+        """Largest ratio between eta, R and sigma of a surface and those that the moments tell, at least 1."""
+        m = self.moments
+        pairs = ((surface.eta, m.eta), (surface.radius, m.radius), (surface.sigma, m.sigma))
+        return max(max(a, b) / min(a, b) if min(a, b) > 0 else math.inf for a, b in pairs)
+
+    def lines(self) -> tuple[str, str]:
+        """What it says: of the spectrum, and of what else the map is."""
+        lay = "" if self.lay is None else f", lay {self.lay:.3g}"
+        apart = "" if self.agreement is None else f", estimates {self.agreement:.3g} times apart"
+        return (
+            f"alpha = {self.moments.alpha:.4g}, rms slope {math.sqrt(2 * self.m2):.3g}{lay}",
+            f"skewness {self.skewness:.2f}, kurtosis {self.kurtosis:.2f}{apart}",
+        )
+
 
 _PARAMETERS = ("sigma", "radius", "eta", "m0", "m2", "m4", "E_star")
 _LARGEST = 2.0  # standard error of a logarithm: a factor of 7
