@@ -4,7 +4,6 @@ What is kept of the surfaces of a scene as they are drawn: all their numbers, or
 """
 
 from collections.abc import Iterable
-from dataclasses import replace
 from functools import cached_property
 from time import monotonic
 from typing import Any
@@ -17,7 +16,6 @@ from mcgw.errors import StoreError
 from mcgw.machine.memory import check_memory
 from mcgw.machine.progress import Progress, told
 from mcgw.scene.arguments import check_object
-from mcgw.scene.fields import LeftOut
 from mcgw.scene.scene import Scene
 from mcgw.scene.storable import storable
 
@@ -65,7 +63,7 @@ def simulate(
     (20, 3)
     """
     check_object("simulate", scene, Scene)
-    scene = scene.replace(**changes) if changes else scene
+    scene = scene.replace(**changes)
     until = None if scene.max_seconds is None else monotonic() + scene.max_seconds
     scene = storable(scene)
     if scene.rel_err is not None or scene.max_seconds is not None:
@@ -86,10 +84,7 @@ def simulate(
     with use_threads(threads), told(progress, "surfaces") as tell:
         tell(0, scene.n_surfaces)
         held = drawn(reducer, go_on)
-    n = held.rows()
-    if n != scene.n_surfaces or isinstance(scene.n_surfaces, LeftOut):
-        scene = replace(scene, n_surfaces=n)
-    return Ensemble(scene, sampler, held)
+    return Ensemble(scene.with_surfaces(held.rows()), sampler, held)
 
 
 class Values(OfScene):

@@ -3,6 +3,7 @@
 import dataclasses
 import inspect
 from collections.abc import Callable, Mapping, Sequence
+from copy import copy
 from dataclasses import dataclass
 from functools import wraps
 from typing import TYPE_CHECKING, Any, Literal, ParamSpec
@@ -245,7 +246,13 @@ class Scene(Fields, Shown):
         of_surface = {key: changes.pop(key) for key in SURFACE_UNITS if key in changes}
         if of_surface:
             changes["surface"] = changed_surface(changes.get("surface", self.surface), of_surface)
-        return dataclasses.replace(self, **changes)
+        return dataclasses.replace(self, **changes) if changes else self
+
+    def with_surfaces(self, n: int) -> "Scene":
+        """The scene with another number of surfaces, on which nothing else hangs: not checked anew."""
+        scene = copy(self)
+        hold(scene, n_surfaces=n)
+        return scene
 
     def sheet(self) -> Sheet:
         """What is shown of it."""

@@ -17,7 +17,6 @@ import platform
 import subprocess
 import sys
 from collections.abc import Iterator
-from dataclasses import replace
 from datetime import UTC, datetime
 from functools import cache
 from importlib.metadata import PackageNotFoundError, version
@@ -55,7 +54,7 @@ _DRAW = ("mcgw", "numpy", "numba", "scipy")
 
 def _frozen_text(scene: Scene) -> str:
     """What of a scene must stay the same while its ensemble grows: the values, whoever gave them."""
-    return scene_text(replace(scene, n_surfaces=1), left_out=False)
+    return scene_text(scene.with_surfaces(1), left_out=False)
 
 
 def identity_of(scene: Scene, sampler: str) -> str:
