@@ -63,7 +63,8 @@ def counts_of(scene: Scene, mesh: Mesh, first: int, n: int) -> Counts:
         A pure function of the seed and the number of the surface.
     """
     halvings = halvings_of(mesh)
-    drawn = share_out(scene.seed, first, _touching(scene, halvings.touching, first, n), halvings)
+    numbers, seed = _touching(scene, halvings.touching, first, n), np.uint64(scene.seed)
+    drawn = _share_out(seed, first, numbers, halvings.shares, halvings.turned, halvings.sizes)
     weights = np.ones(mesh.size + 2)
     return Counts(np.ascontiguousarray(drawn[1:-1]), drawn[0], drawn[-1], weights)
 
@@ -193,31 +194,26 @@ def _rounded(p: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.asarray(np.ldexp(np.rint(mantissa * _BITS) / _BITS, exponent))
 
 
-def share_out(seed: int, first: int, numbers: NDArray[np.float64], halvings: Halvings) -> Ints:
+@njit(nogil=True, cache=True)
+def _share_out(seed: Any, first: Any, numbers: Any, shares: Any, turned: Any, sizes: Any) -> Any:
     """Share out numbers of contacts.
 
     Parameters
     ----------
-    seed : int
+    seed : uint64
         The scene's.
     first : int
         Number of the first surface.
     numbers : ndarray
         Of each surface, whole, at most 2^53; shape (surfaces,).
-    halvings : Halvings
-        Of the scene's mesh.
+    shares, turned, sizes : ndarray
+        Of the `Halvings` of the scene's mesh.
 
     Returns
     -------
     ndarray of int
         Shape (categories, surfaces): a pure function of the seed, the surface and its number.
     """
-    tree = halvings.shares, halvings.turned, halvings.sizes
-    return np.asarray(_share_out(np.uint64(seed), first, numbers, *tree))
-
-
-@njit(nogil=True, cache=True)
-def _share_out(seed: Any, first: Any, numbers: Any, shares: Any, turned: Any, sizes: Any) -> Any:
     result = np.empty((sizes[-1], numbers.size), dtype=np.int64)
     for start in range(0, numbers.size, SURFACES):
         stop = min(start + SURFACES, numbers.size)

@@ -3,9 +3,8 @@
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from analytic.arrays import Array
+from analytic.arrays import Array, Ints
 from mcgw.machine.compiling import njit
 from mcgw.machine.memory import check_memory
 from mcgw.sampling.cells import Mesh
@@ -49,18 +48,24 @@ def extra_heights(
     if number > _MANY:
         check_memory(f"ensemble.sampler: to list {number:.4g} heights one by one", _BYTES * number)
     edge = float(mesh.edges[-1]) if mesh.size else scene.lowest
+
+    def listed(stream: int, numbers: Ints, heights: Array, weight: float) -> Array:
+        surfaces = np.repeat(first + np.arange(len(numbers)), numbers)
+        columns = [surfaces, heights, np.full(len(heights), weight)]
+        if table:
+            pairs = _centred_pairs(np.uint64(scene.seed), first, stream + _RADII, numbers)
+            two = np.ascontiguousarray(pairs.reshape(-1, 2).T)
+            columns.append(table.root_ratios(np.ascontiguousarray(heights), *two) ** 2)
+        return np.column_stack(columns)
+
     heights = law.isf(_wide_uniforms(scene.seed, first, _HIGH, counts.high_extras), edge)
-    rows = _rows(first, counts.high_extras, heights, counts.weights[-1])
-    if table:
-        rows = _with_radii(rows, table, scene.seed, first, _HIGH, counts.high_extras)
+    rows = listed(_HIGH, counts.high_extras, heights, counts.weights[-1])
     if not counts.low_extras.any():
         return rows
     bottom = float(mesh.edges[0])
     least = float(law.cdf(np.array(scene.lowest)) / law.cdf(np.array(bottom)))
     share = least + (1 - least) * _wide_uniforms(scene.seed, first, _LOW, counts.low_extras)
-    low = _rows(first, counts.low_extras, law.ppf(share, bottom), counts.weights[0])
-    if table:
-        low = _with_radii(low, table, scene.seed, first, _LOW, counts.low_extras)
+    low = listed(_LOW, counts.low_extras, law.ppf(share, bottom), counts.weights[0])
     rows = np.concatenate([low, rows])
     return np.asarray(rows[np.argsort(rows[:, 0], kind="stable")])
 
@@ -74,21 +79,7 @@ def table_of(scene: Scene, lowest: float) -> "RadiusTable | None":
     return radius_table(scene.curvature, lowest)
 
 
-def _rows(first: int, numbers: NDArray[np.int64], heights: Array, weight: float) -> Array:
-    surfaces = np.repeat(first + np.arange(len(numbers)), numbers)
-    return np.column_stack([surfaces, heights, np.full(len(heights), weight)])
-
-
-def _with_radii(
-    rows: Array, table: "RadiusTable", seed: int, first: int, stream: int, numbers: NDArray[np.int64]
-) -> Array:
-    """The rows with the ratio of each radius in a column more."""
-    pairs = _centred_pairs(np.uint64(seed), first, stream + _RADII, numbers)
-    roots = table.root_ratios(np.ascontiguousarray(rows[:, 1]), *np.ascontiguousarray(pairs.reshape(-1, 2).T))
-    return np.column_stack([rows, roots * roots])
-
-
-def _wide_uniforms(seed: int, first: int, stream: int, numbers: NDArray[np.int64]) -> Array:
+def _wide_uniforms(seed: int, first: int, stream: int, numbers: Ints) -> Array:
     """Uniforms of 64 bits: those of 32 would cut the tail of 1e10 asperities."""
     u = (1 + _centred_pairs(np.uint64(seed), first, stream, numbers)) / 2
     return np.asarray((u[::2] - 0.5 / 2**32) + u[1::2] / 2**32)

@@ -33,7 +33,7 @@ from mcgw.sampling.response.response import Response, layout_of, response_of
 from mcgw.sampling.response.tree import Precision
 from mcgw.sampling.response.walk import UnresolvedError
 from mcgw.sampling.stretches import begins_and_breaks
-from mcgw.scene.samplers import Promise, promise_of
+from mcgw.scene.samplers import promise_of
 from mcgw.scene.scene import Scene
 from mcgw.scene.storable import storable
 
@@ -273,8 +273,8 @@ def _lasting_layout(scene: Scene, mesh: Mesh, power: float | None) -> Layout:
     layouts = [
         layout_of(x, mesh, _every_sum(x, power), lasting=True, precision=precision) for x in (scene, *others)
     ]
-    plain = np.max([layout.plain for layout in layouts], axis=0)
-    return Layout(plain + 1, np.max([layout.rooted for layout in layouts], axis=0) + 1)  # one in reserve
+    most = Layout.covering(layouts)
+    return Layout(most.plain + 1, most.rooted + 1)  # one in reserve
 
 
 def _every_sum(scene: Scene, power: float | None) -> tuple[str, ...]:
@@ -292,11 +292,8 @@ def _cheapest(scene: Scene) -> str:
     most = min(5 + len(scene.separations) / 20, 20)
     few = scene.keep != "moments" and not scene.nominal and scene.touching < most
     names = ("tail", "cells", "direct") if few else ("cells", "tail", "direct")
-    return next(name for name in names if _fits(promise_of(name), scene))
-
-
-def _fits(promise: Promise, scene: Scene) -> bool:
-    """Whether a sampler can draw a scene: where two of three meet, each summit has breaks of its own."""
+    # Where two of these meet, each summit has breaks of its own.
     breaks = (scene.curvature is not None) + (not scene.hertzian) + scene.nominal
     listed = isinstance(scene.heights, MeasuredHeights)
-    return (promise.own_laws or breaks < 2) and not (promise.needs_density and listed)
+    promises = ((name, promise_of(name)) for name in names)
+    return next(x for x, p in promises if (p.own_laws or breaks < 2) and not (p.needs_density and listed))

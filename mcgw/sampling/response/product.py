@@ -6,7 +6,7 @@ computed row needs those of a range of heights: so groups are computed in one sw
 down, and the table is small enough to stay in the cache.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -75,10 +75,6 @@ class Tiles:
             first, second, len(given), len(answers)
         )
         return cls(given[fetches], ends, fetched, tile_ends, used, values, computed, answers[order])
-
-    def taking(self, rows: Ints) -> "Tiles":
-        """The same of given rows that lie elsewhere: row i where ``rows[i]`` tells."""
-        return replace(self, fetches=np.append(rows, -1)[self.fetches])
 
     def apply(self, given: Array, shape: tuple[int, int]) -> Array:
         """Answers.
@@ -200,8 +196,22 @@ def tiles_of(parts: Parts, order: Ints) -> Tiles:
     Tiles
         To apply to moments as `Layout` has them.
     """
-    rows = _Rows.of(parts)
-    return Tiles.of(_transfers(parts, rows), _answers(parts, rows, order), rows.given, rows.answers(order))
+    rows, entries = _Rows.of(parts), parts.entries
+    parent, child, moment, coefficients = transfers(parts.mesh, parts.tree, parts.plain)
+    at = np.arange(len(parent)) * coefficients.shape[1]
+    to_parents = Lines(
+        rows.plain[parent] + moment, rows.plain[child], parts.plain[child], at, coefficients.ravel()
+    )
+    places = np.empty_like(order)
+    places[order] = np.arange(len(order))
+    node, rooted = entries.node, entries.rooted
+    start, size = rows.plain[node], parts.plain[node]
+    start[rooted], size[rooted] = rows.rooted[node[rooted]], parts.rooted[node[rooted]]
+    row, length = rows.end + places[parts.answer[entries.row]], np.minimum(entries.length, size)
+    to_answers = Lines(row, start, length, entries.start, entries.coefficients)
+    answers = np.full(rows.end - rows.given.size + in_fours(len(order)), -1)  # what each computed row is
+    answers[rows.end - rows.given.size :][: len(order)] = order
+    return Tiles.of(to_parents, to_answers, rows.given, answers.reshape(-1, FOUR))
 
 
 @dataclass(frozen=True)
@@ -227,27 +237,3 @@ class _Rows:
         given[np.repeat(of_cells - np.cumsum(sizes) + sizes, sizes) + moment] = moment
         plain = np.concatenate([of_cells[::2], of_parents])
         return cls(plain, of_cells[1::2], int(starts[-1]), given.reshape(-1, FOUR))
-
-    def answers(self, order: Ints) -> Ints:
-        """Which answer each computed row is: none, but for the last ones."""
-        answers = np.full(self.end - self.given.size + in_fours(len(order)), -1)
-        answers[self.end - self.given.size :][: len(order)] = order
-        return answers.reshape(-1, FOUR)
-
-
-def _transfers(parts: Parts, rows: _Rows) -> Lines:
-    """What makes the moments of the parents."""
-    parent, child, moment, coefficients = transfers(parts.mesh, parts.tree, parts.plain)
-    at = np.arange(len(parent)) * coefficients.shape[1]
-    return Lines(rows.plain[parent] + moment, rows.plain[child], parts.plain[child], at, coefficients.ravel())
-
-
-def _answers(parts: Parts, rows: _Rows, order: Ints) -> Lines:
-    """What makes the answers."""
-    node, rooted, entries = parts.entries.node, parts.entries.rooted, parts.entries
-    places = np.empty_like(order)
-    places[order] = np.arange(len(order))
-    start, size = rows.plain[node], parts.plain[node]
-    start[rooted], size[rooted] = rows.rooted[node[rooted]], parts.rooted[node[rooted]]
-    row, length = rows.end + places[parts.answer[entries.row]], np.minimum(entries.length, size)
-    return Lines(row, start, length, entries.start, entries.coefficients)

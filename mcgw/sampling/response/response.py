@@ -42,7 +42,8 @@ class Response:
 
     def out_of(self, layout: Layout) -> "Response":
         """The same, bit by bit, out of moments of which each cell may have more than this needs."""
-        return replace(self, tiles=self.tiles.taking(layout.rows_of(self.layout)))
+        there = np.append(layout.rows_of(self.layout), -1)
+        return replace(self, tiles=replace(self.tiles, fetches=there[self.tiles.fetches]))
 
     def __matmul__(self, moments: Array) -> Array:
         """Quantities of every surface: moments (rows, surfaces) to (quantities, surfaces, separations)."""
@@ -97,7 +98,12 @@ def response_of(
     rows = _rows(scene, mesh, quantities, lasting=kept is not None)
     parts = _parts(scene, mesh, rows, precision)
     if kept:
-        _check_kept(mesh, kept, parts.layout)
+        short = (parts.layout.plain > kept.plain) | (parts.layout.rooted > kept.rooted)
+        if short.any():
+            s = mesh.edges[np.flatnonzero(short)[0]]
+            raise ValueError(
+                f"the moments kept do not resolve this near s = {s:.4g}; simulate the scene anew with it"
+            )
         plain = np.concatenate([kept.plain, parts.plain[mesh.size :]])
         parts = replace(parts, plain=plain, rooted=kept.rooted)
     shape = len(quantities), len(scene.all_separations)
@@ -148,12 +154,3 @@ def _parts(scene: Scene, mesh: Mesh, rows: Rows, precision: Precision) -> Parts:
     nodes = Nodes.of(mesh, tree, scene.modulus, scene.n_asperities, precision)
     entries, plain, rooted = walk(mesh, tree, rows, nodes)
     return Parts(mesh, tree, entries, rows.answer, plain, rooted)
-
-
-def _check_kept(mesh: Mesh, kept: Layout, needed: Layout) -> None:
-    short = (needed.plain > kept.plain) | (needed.rooted > kept.rooted)
-    if short.any():
-        s = mesh.edges[np.flatnonzero(short)[0]]
-        raise ValueError(
-            f"the moments kept do not resolve this near s = {s:.4g}; simulate the scene anew with it"
-        )

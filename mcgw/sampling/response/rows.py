@@ -10,7 +10,7 @@ from typing import Any, NamedTuple, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from analytic import HeightLaw, Quantity, quantity_of
+from analytic import HeightLaw, quantity_of
 from analytic.arrays import Array, Ints
 from mcgw.machine.compiling import njit
 from mcgw.machine.memory import kept
@@ -151,9 +151,15 @@ def hertz_rows(scene: Scene, quantities: tuple[str, ...], *, lasting: bool) -> R
     """
     chosen, once = [quantity_of(name) for name in quantities], np.array(scene.all_separations)
     h = np.tile(once, len(chosen))
-    exponent = _of_each([q.exponent for q in chosen], once)
-    graded = _of_each([bool(q.modulus) for q in chosen], once).astype(bool)
-    scale = _of_each([q.scale(scene.surface) for q in chosen], once)
+    values = np.array([(q.exponent, q.modulus, q.scale(scene.surface)) for q in chosen]).reshape(-1, 3)
+    exponent, graded, scale = np.repeat(values, len(once), axis=0).T.copy()
+    totals = [np.zeros(len(h) if lasting else 0)]
+    if not lasting:
+        sixteen = Sixteen.of(scene)
+        for q in chosen:
+            terms = np.empty(sixteen.approach.shape)
+            raise_to(float(q.exponent), sixteen.approach.ravel(), terms.reshape(-1))
+            totals.append(sixteen.totals(q.scale(scene.surface), terms * sixteen.e if q.modulus else terms))
     return Rows(
         h=h,
         low=h,
@@ -162,16 +168,12 @@ def hertz_rows(scene: Scene, quantities: tuple[str, ...], *, lasting: bool) -> R
         rooted=exponent % 1 != 0,
         rough=np.zeros(len(h), dtype=bool),
         lost=np.zeros(len(h), dtype=bool),
-        graded=graded,
+        graded=graded.astype(bool),
         kind=np.repeat(np.arange(len(chosen)), len(once)),
         answer=np.arange(len(h)),
-        total=np.zeros(len(h)) if lasting else _totals(scene, chosen),
+        total=np.concatenate(totals),
         formulas=Powers(exponent, scale),
     )
-
-
-def _of_each(values: list[float], separations: Array) -> Array:
-    return np.repeat(np.array(values, dtype=np.float64), len(separations))
 
 
 @njit(nogil=True, cache=True)
@@ -222,13 +224,3 @@ def _quantiles(law: HeightLaw, separations: bytes) -> tuple[Array, Array]:
     touching = law.sf(h)
     rank = np.maximum(touching[:, None] * share, np.finfo(float).tiny)
     return touching, np.maximum(law.isf(rank) - h[:, None], 0.0)
-
-
-def _totals(scene: Scene, chosen: list[Quantity]) -> Array:
-    """Quantity by quantity."""
-    sixteen, totals = Sixteen.of(scene), [np.empty(0)]
-    for q in chosen:
-        terms = np.empty(sixteen.approach.shape)
-        raise_to(float(q.exponent), sixteen.approach.ravel(), terms.reshape(-1))
-        totals.append(sixteen.totals(q.scale(scene.surface), terms * sixteen.e if q.modulus else terms))
-    return np.concatenate(totals)
