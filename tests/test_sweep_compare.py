@@ -173,7 +173,7 @@ def test_the_page_of_a_sweep(tmp_path, capsys):
     text = html.unescape(re.sub(r"<[^>]*>", "\n", page))
     compared = mcgw.compare(sweep)
     assert f"of 6 points, p = {compared.verdict.p:.3g}." in text
-    table = compared.sheet_of(12).table.only("point", "quantity", "residual")
+    table = compared.sheet(12).table.only("point", "quantity", "residual")
     for column in table.columns:
         assert all(cell in text for cell in column.typeset())
     for line in sweep_cautions(sweep):

@@ -70,7 +70,7 @@ def execute(args: argparse.Namespace) -> int:
     ratios = ratio_tables(new, old)
     news(f"{path}: {new.n_surfaces} surfaces, the same as in {args.file}")
     if says(ALL):
-        news(*(ratio.rows(9).text() for ratio in ratios.values()))
+        news(*(ratio.rows().text() for ratio in ratios.values()))
     else:
         news(*(ends_in_words(name, ratio) for name, ratio in ratios.items()))
     news(f"next: mcgw compare {path}")

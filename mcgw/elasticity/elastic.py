@@ -4,6 +4,7 @@ import hashlib
 import json
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import accumulate, pairwise
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +12,7 @@ import numpy as np
 
 from analytic.arrays import Array
 from mcgw.elasticity.levels import LEVELS, QUANTITIES, Level, Pressed, Values
-from mcgw.elasticity.multilevel import FEWEST, Design, Mean, design, differences, mean_of, numbered, terms_of
+from mcgw.elasticity.multilevel import FEWEST, Design, Mean, design, differences, mean_of, terms_of
 from mcgw.elasticity.sources import Maps, maps_of
 from mcgw.errors import StoreError
 from mcgw.formats.files import write_whole
@@ -25,7 +26,6 @@ from mcgw.scene.scene import Scene
 
 _PILOT = 8
 _UNITS = {"area": "m^2", "stiffness": "N/m", "conductance": "m", "mean_gap": "m"}
-_DEAREST = LEVELS[-1].name
 
 
 @dataclass(frozen=True, repr=False)
@@ -278,6 +278,6 @@ def _by_levels(solved: _Solved, rel_err: float, solves: int | None, pilot: int, 
 def _chosen(population: int | None, seed: int, first: int, maps: Sequence[int]) -> list[Sequence[int]]:
     """Numbers of the maps of each term: new ones, or of a list that many, in an order of their own."""
     if population is None:
-        return list(numbered(maps, first))
+        return [range(*ends) for ends in pairwise(accumulate(maps, initial=first))]
     draws = (np.random.default_rng([seed, first, k]).permutation(population) for k in range(len(maps)))
     return [order[:many].tolist() for order, many in zip(draws, maps, strict=True)]

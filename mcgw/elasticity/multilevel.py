@@ -8,7 +8,7 @@ M. B. Giles, Oper. Res. 56 (2008) 607.
 """
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations, pairwise
 
@@ -132,10 +132,3 @@ def mean_of(samples: Sequence[Array], population: int | None = None) -> Mean:
         parts = sum(v**2 / max(len(x) - 1, 1) for v, x in zip(variances, samples, strict=True))
         degrees = np.where(total > 0, total**2 / parts, 1.0)
     return Mean(np.sum([x.mean(axis=0) for x in samples], axis=0), np.sqrt(total), degrees)
-
-
-def numbered(maps: Sequence[int], first: int) -> Iterator[range]:
-    """Numbers of the maps of each term, none of them twice."""
-    for many in maps:
-        yield range(first, first + many)
-        first += many

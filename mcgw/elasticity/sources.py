@@ -4,7 +4,6 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Protocol
 
 import numpy as np
 from scipy import fft
@@ -19,25 +18,6 @@ from mcgw.scene.validity_place import moments_of_nayak
 
 _POINTS = 8  # a shortest wave: twice as many change area by 2 %, and the rest by less
 _MOST_POINTS = 2048  # a side
-
-
-class Maps(Protocol):
-    """Periodic maps by number."""
-
-    @property
-    def words(self) -> str:
-        """What they are."""
-
-    @property
-    def size(self) -> tuple[float, float]:
-        """Of each, m."""
-
-    @property
-    def number(self) -> int | None:
-        """How many there are; None: as many as one likes."""
-
-    def heights(self, number: int, seed: int) -> Array:
-        """Heights of one, m, about their mean."""
 
 
 @dataclass(frozen=True)
@@ -137,6 +117,9 @@ class Listed:
         """Heights of one, m."""
         z = self.maps[number].heights
         return np.asarray(z - z.mean())
+
+
+Maps = Drawn | Surrogates | Listed  # periodic maps by number; of `number` None there are as many as one likes
 
 
 def maps_of(source: "Scene | Spectrum | Topography | str | Path | Sequence[Topography | str | Path]") -> Maps:

@@ -2,7 +2,6 @@
 
 import math
 from dataclasses import dataclass
-from typing import Protocol
 
 import numpy as np
 
@@ -14,30 +13,6 @@ from mcgw.scene.scene import Scene
 # Two summits at one place are in neutral balance, whichever of them carries how much, if their fields are
 # those of a contact whose squared radius is this times the sum of theirs.
 _NEUTRAL = 1.125
-
-
-class Spots(Protocol):
-    """Contacts at places, none of which feels another one here."""
-
-    @property
-    def heights(self) -> Array:
-        """Of the summits, m, shape (n,)."""
-
-    @property
-    def E_star(self) -> float:  # noqa: N802 - the field's own symbol
-        """Composite modulus of the half-space, Pa."""
-
-    def load(self, penetration: Array) -> Array:
-        """Load of each, N."""
-
-    def slope(self, penetration: Array) -> Array:
-        """Derivative of the load by the penetration, N/m."""
-
-    def squared_radius(self, penetration: Array) -> Array:
-        """Squared radius of each contact, m^2: its area over pi."""
-
-    def only(self, which: Marks) -> "Spots":
-        """Some of them."""
 
 
 @dataclass(frozen=True)
@@ -119,6 +94,9 @@ class LawSpots:
         q, c = quantity_of(name), np.ones_like(s) if self.ratios is None else self.ratios
         ways = self.scene.ways if self.ratios is None else self.scene.ways.with_radii(c)
         return np.asarray(q.scale(surface) * c**q.radius * term_of(name, ways.loading, h, s, e))
+
+
+Spots = HertzSpots | LawSpots  # contacts at places, none of which feels another one here
 
 
 def field_beyond_point(squared_distance: Array, squared_radii: Array) -> tuple[Array, Array]:

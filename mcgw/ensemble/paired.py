@@ -14,7 +14,6 @@ from mcgw.scene.arguments import check_object
 from mcgw.scene.storable import drawn_by
 
 _PAIRED = ("surface", "separations", "heights", "n_asperities", "count", "seed")
-_MOST_ROWS = 9
 
 
 @dataclass(frozen=True, repr=False)
@@ -46,7 +45,7 @@ class Paired(Shown):
     def sheet(self) -> Sheet:
         """Ratios at some separations."""
         title = f"Ratio of the mean {self.quantity} over the same surfaces"
-        return Sheet(title, table=self.table().rows(_MOST_ROWS))
+        return Sheet(title, table=self.table().rows())
 
     def table(self) -> Table:
         """Ratio, standard error and gain at every separation."""

@@ -10,8 +10,6 @@ from mcgw.ensemble.equal_pressure import at_pressures, common_pressures, with_va
 from mcgw.formats.table import evenly
 from mcgw.scene.samplers import promise_of
 
-Range = tuple[float, float]
-
 _MOST = 2000  # surfaces drawn again where an ensemble keeps statistics alone
 _FEWEST = 2  # points of a curve
 

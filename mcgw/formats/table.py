@@ -135,7 +135,7 @@ class Table:
         by_name = {column.name: column for column in self.columns}
         return replace(self, columns=tuple(by_name[name] for name in names))
 
-    def rows(self, most: int) -> "Table":
+    def rows(self, most: int = 9) -> "Table":
         """So many rows at most, evenly, with the first and the last."""
         return self.at(evenly(len(self), most).tolist())
 

@@ -100,11 +100,6 @@ def signed(text: str, unit: str) -> float:
         return math.inf
 
 
-def quantity(given: float | str, unit: str, name: str = "") -> float:
-    """A number as it is, a text by `parse`."""
-    return parse(given, unit, name) if isinstance(given, str) else float(given)
-
-
 def _factor(written: str, unit: str) -> Fraction | None:
     """Of a unit in any spelling: ``mm²`` is ``mm^2``, ``mm^-2`` and ``/mm^2`` are ``1/mm^2``."""
     plain = unicodedata.normalize("NFKC", written).replace("\N{MINUS SIGN}", "-")

@@ -29,7 +29,6 @@ from mcgw.statistics.comparison import compare
 from mcgw.sweeps.over_points import sweep_cautions
 from mcgw.sweeps.sweep import Sweep
 
-_MOST_ROWS = 9
 _LISTED = 12  # points
 Facts = list[tuple[str, str]]
 
@@ -64,7 +63,7 @@ def report_html(ensemble: Ensemble, attributes: dict[str, Any]) -> str:
         several=real and ensemble.n_surfaces > 1,
         patch=patch,
         figures=figures,
-        tables=[table.rows(_MOST_ROWS) for table in tables],
+        tables=[table.rows() for table in tables],
         tested=comparison is not None,
         facts=surface_facts(ensemble),
         laws=laws_table(scene),
@@ -121,7 +120,7 @@ def sweep_report_html(sweep: Sweep, attributes: dict[str, Any], *, progress: Pro
         f"{sum(group.n for group in sweep.groups)} surfaces were drawn, in {len(sweep.groups)} groups whose "
         "points share theirs.",
         figure=line_figure(sweep_figure(comparison), "residuals of all points, and of the worst one"),
-        table=comparison.sheet_of(_LISTED).table,
+        table=comparison.sheet(_LISTED).table,
         cautions=sweep_cautions(sweep),
         axes=[(key, sweep.axes.summary(key)) for key in sweep.axes.keys],
         provenance=provenance_facts({**attributes, "sampler": first.sampler}, first.seed),

@@ -23,7 +23,6 @@ if TYPE_CHECKING:
     from mcgw.statistics.comparison import SweepComparison
     from mcgw.sweeps.sweep import Sweep
 
-_MOST_ROWS = 9
 _KEPT = "statistics alone: mean, covariance, skewness, quantiles, extremes"
 _SHOWN = ("separation", "mean", "std", "stderr")
 _LISTED, _WORST = 12, 3  # points of a sweep; rows that are farthest from theory
@@ -49,7 +48,7 @@ def summary(ensemble: Ensemble, attributes: dict[str, Any]) -> str:
     lines = [one_line(scene.title) or "ensemble", *listed(facts, 12)]
     lines += [f"  {line}" for line in against_elasticity(scene.validity())]
     for name in scene.quantities:
-        lines += ["", statistics_table(ensemble, name).only(*_SHOWN).rows(_MOST_ROWS).text()]
+        lines += ["", statistics_table(ensemble, name).only(*_SHOWN).rows().text()]
     return "\n".join(lines)
 
 
@@ -69,7 +68,7 @@ def comparison_text(comparison: Comparison) -> str:
     """Monte Carlo beside theory at some separations."""
     scene = comparison.ensemble.scene
     facts = [f"{word}: {what}" for word, what in (*contact_facts(scene), *accuracy_facts(scene))]
-    return "\n".join([*facts, *(table.rows(_MOST_ROWS).text() for table in comparison.tables().values())])
+    return "\n".join([*facts, *(table.rows().text() for table in comparison.tables().values())])
 
 
 def ratio_tables(new: Ensemble, old: Ensemble) -> dict[str, Table]:
@@ -105,7 +104,7 @@ def comparison_summary(
     """The table for people, whole or its worst rows; what makes that for programs; the verdict's lines."""
     lines = [comparison.verdict.line]
     if not isinstance(comparison, Comparison):
-        return comparison.sheet_of(_LISTED if whole else _WORST).text(), comparison.table, lines
+        return comparison.sheet(_LISTED if whole else _WORST).text(), comparison.table, lines
     lines.append(comparison.ensemble.scene.validity().verdict)
     text = comparison_text(comparison) if whole else comparison.worst(_WORST).text()
     return text, lambda: stacked(comparison.tables(), "quantity"), lines

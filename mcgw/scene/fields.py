@@ -229,14 +229,12 @@ class Fields:
         bottom, end = self.heights.support
         high = min(max(self.highest, h + 1), end)
         start = max(h, self.least - 1, bottom)
-        if not start < high or _clearly_positive(self.grading, start, high):
+        if not start < high:
+            return None
+        grading = self.grading  # which rises or falls all the way, if it is exponential: two heights tell
+        if isinstance(grading, Exponential) and (grading(np.array([start, high])) > _CLEARLY).all():
             return None
         return first_negative(self.grading, start, high)
-
-
-def _clearly_positive(grading: Grading, low: float, high: float) -> bool:
-    """Whether two heights tell that a grading is positive between them: it rises or falls all the way."""
-    return isinstance(grading, Exponential) and bool((grading(np.array([low, high])) > _CLEARLY).all())
 
 
 @kept(64)  # the same for all scenes of a sweep

@@ -51,7 +51,7 @@ def of_arguments(**given: Any) -> Values:
             table[name] = value if isinstance(value, LeftOut) else plain
         else:
             objects[name] = value
-    return _read(document, objects, Path(), None)
+    return of_tables(document, objects, Path(), None)
 
 
 def _keys_of(name: str, value: Any, plain: Any) -> Any:
@@ -63,21 +63,17 @@ def _keys_of(name: str, value: Any, plain: Any) -> Any:
 
 
 def of_tables(
-    document: Mapping[str, Any], folder: Path, seed: Callable[[], int | None] | None = None
+    document: Mapping[str, Any], objects: Values, folder: Path, seed: Callable[[], int | None] | None
 ) -> Values:
-    """Read the tables of a file, those beside it in `folder`; where it gives no seed, `seed` is asked first.
+    """Read the tables of a file, those beside it in `folder`; or the `objects` that Python gives for some.
+
+    Where nothing gives a seed, `seed` is asked first.
 
     Raises
     ------
     SceneError
         With one line for each mistake.
     """
-    return _read(document, {}, folder, seed)
-
-
-def _read(
-    document: Mapping[str, Any], objects: Values, folder: Path, seed: Callable[[], int | None] | None
-) -> Values:
     problems: list[str] = []
     top = Section("", document, problems, KEYS[""])
     python = "surface" in objects

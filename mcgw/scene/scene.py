@@ -22,7 +22,7 @@ from mcgw.scene.plausible import perhaps_other_units, warn_of_units
 from mcgw.scene.reading import of_arguments
 from mcgw.scene.section import SceneError, nearest
 from mcgw.scene.summits import Spectral
-from mcgw.scene.surface import changed_surface
+from mcgw.scene.surface import Surface as GivenSurface
 
 if TYPE_CHECKING:
     from analytic import Interaction
@@ -245,7 +245,8 @@ class Scene(Fields, Shown):
                 raise TypeError(f"a scene has no {key!r}; {meant}")
         of_surface = {key: changes.pop(key) for key in SURFACE_UNITS if key in changes}
         if of_surface:
-            changes["surface"] = changed_surface(changes.get("surface", self.surface), of_surface)
+            surface = changes.get("surface", self.surface)
+            changes["surface"] = GivenSurface(**{x: getattr(surface, x) for x in SURFACE_UNITS} | of_surface)
         return dataclasses.replace(self, **changes) if changes else self
 
     def with_surfaces(self, n: int) -> "Scene":

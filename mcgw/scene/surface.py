@@ -1,7 +1,6 @@
 """A surface from numbers or from texts with units."""
 
-from collections.abc import Mapping
-from typing import Any
+from typing import Any, TypeVar
 
 from analytic import Nayak, SpectralMoments, Surface as Plain, composite_modulus
 from mcgw.scene.arguments import as_toml
@@ -9,6 +8,8 @@ from mcgw.scene.keys import KEYS, MOMENTS, SUMMITS, SURFACE_UNITS
 from mcgw.scene.plausible import surface_in_other_units, warn_of_units
 from mcgw.scene.section import SceneError, Section
 from mcgw.scene.summits import ListedSummits, Spectral
+
+_Kind = TypeVar("_Kind", Plain, Spectral)
 
 
 def Surface(  # noqa: N802 - the door to a class of this name
@@ -50,10 +51,7 @@ def Surface(  # noqa: N802 - the door to a class of this name
     >>> mcgw.Surface("1.37 um", "13 um", "300/mm^2", "1 cm^2", "78.6 GPa").nominal_area
     0.0001
     """
-    given = {"sigma": sigma, "radius": radius, "eta": eta, "nominal_area": nominal_area, "E_star": E_star}
-    surface = _read(given)
-    assert isinstance(surface, Plain)
-    return surface
+    return _read(Plain, sigma=sigma, radius=radius, eta=eta, nominal_area=nominal_area, E_star=E_star)
 
 
 def SpectralSurface(  # noqa: N802 - as above
@@ -99,26 +97,10 @@ def SpectralSurface(  # noqa: N802 - as above
     >>> mcgw.Scene(surface, separations=[0, 1, 2]).heights
     Nayak(alpha=5.0)
     """
-    given = {"m0": m0, "m2": m2, "m4": m4, "nominal_area": nominal_area, "E_star": E_star}
-    spectral = _read(given)
-    assert isinstance(spectral, Spectral)
-    return spectral
+    return _read(Spectral, m0=m0, m2=m2, m4=m4, nominal_area=nominal_area, E_star=E_star)
 
 
-def changed_surface(surface: Plain, changes: Mapping[str, Any]) -> Plain:
-    """A surface with other values of some of its five parameters, numbers or texts with units.
-
-    Raises
-    ------
-    SceneError
-        With one line for each mistake.
-    """
-    changed = _read({key: changes.get(key, getattr(surface, key)) for key in SURFACE_UNITS})
-    assert isinstance(changed, Plain)
-    return changed
-
-
-def _read(given: Mapping[str, Any]) -> Plain | Spectral:
+def _read(kind: type[_Kind], **given: Any) -> _Kind:
     """Of numbers or texts with units; values that nobody has are asked about."""
     section = Section("surface", {key: as_toml(value) for key, value in given.items()}, [], KEYS["surface"])
     surface = read_surface(section)
@@ -126,6 +108,7 @@ def _read(given: Mapping[str, Any]) -> Plain | Spectral:
         raise SceneError(section.problems)
     if isinstance(surface, Plain):
         warn_of_units(surface_in_other_units(surface))
+    assert isinstance(surface, kind)
     return surface
 
 

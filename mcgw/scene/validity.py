@@ -12,7 +12,6 @@ from mcgw.formats.sheet import Sheet, Shown
 from mcgw.formats.table import SEPARATION, Column, Table
 from mcgw.scene.validity_table import COLUMNS
 
-_MOST_ROWS = 9
 _AT_LOAD = {"area": "area", "stiffness": "stiffness", "separation": "gap"}  # columns at a given load
 _COLUMNS = {"area": "area", "stiffness": "stiffness", "separation": "gap/sigma", "load": "load at d"}
 
@@ -130,9 +129,7 @@ class Validity(Shown):
             for name, words in _COLUMNS.items()
         )
         separation = Column("separation", self.separations, SEPARATION, form="g")
-        return Table((separation, Column("pressure", self.loads, unit="1", form=".2g"), *told)).rows(
-            _MOST_ROWS
-        )
+        return Table((separation, Column("pressure", self.loads, unit="1", form=".2g"), *told)).rows()
 
     @property
     def _homogeneous(self) -> str:

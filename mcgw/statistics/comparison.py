@@ -161,12 +161,8 @@ class SweepComparison(Shown):
         """Draw how the residuals of all points are distributed; returns the axes."""
         return plotted(self, ax)
 
-    def sheet(self) -> Sheet:
+    def sheet(self, most: int = _LISTED) -> Sheet:
         """The verdict, and the points that are farthest from theory."""
-        return self.sheet_of(_LISTED)
-
-    def sheet_of(self, most: int) -> Sheet:
-        """As `sheet`, with so many points."""
         v = self.verdict
         word = "agree" if v.agrees else "DISAGREE"
         left = self.sweep.axes.size - v.points

@@ -21,11 +21,12 @@ from mcgw.store.disk import check_trailer, parts_of, read_trailer
 from mcgw.store.layout import (
     FILETYPE,
     FORMAT,
+    digest_of,
     drawn_digest,
     drawn_tables,
+    file_pieces,
     numbers,
     scales_of,
-    values_digest,
     where,
 )
 from mcgw.store.run_folder import RunFolder
@@ -71,9 +72,10 @@ def open_ensemble(path: str | Path) -> Ensemble:
         if run.scene.keep != "statistics":
             return Ensemble(run.scene, run.sampler, ShardResults(shards))
         from mcgw.ensemble.summarised import Summarised  # for those scenes alone
-        from mcgw.store.statistics_file import blocks_of
+        from mcgw.ensemble.summary import Summary
 
-        return Ensemble(run.scene, run.sampler, Summarised.of(run.scene, blocks_of(shards)))
+        blocks = (Summary.from_tables(shard.arrays()) for shard in shards)  # each read when its turn comes
+        return Ensemble(run.scene, run.sampler, Summarised.of(run.scene, blocks))
     attributes, scene = described(path)
     if "axes" in attributes:
         raise StoreError(f"{path}: holds a sweep; mcgw.open_sweep opens it")
@@ -215,7 +217,7 @@ def verify(path: Path) -> tuple[str, str]:
             elif scene.keep == "statistics":
                 found = drawn_digest(drawn_tables(file), scene_text(scene, left_out=False))
             else:
-                found = values_digest(file, scene)
+                found = digest_of(file, scene, (arrays for _, arrays in file_pieces(file)))
         if found != attributes["digest"]:
             problem = problem or "digest mismatch of its data"
     except (OSError, RuntimeError, KeyError, ValueError) as error:

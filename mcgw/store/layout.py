@@ -191,11 +191,6 @@ def digest_of(file: h5py.File, scene: Scene, pieces: Iterable[Tables]) -> str:
     return digest.hexdigest()
 
 
-def values_digest(file: h5py.File, scene: Scene) -> str:
-    """Digest of what a file holds, read piece by piece."""
-    return digest_of(file, scene, (arrays for _, arrays in file_pieces(file)))
-
-
 def drawn_tables(file: h5py.File) -> Tables:
     """Of a file that holds no surfaces, all that its statistics follow from."""
     return {name: data[()] for name, data in file[GROUP].items()}

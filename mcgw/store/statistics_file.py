@@ -27,7 +27,6 @@ row for each joined block of surfaces::
 """
 
 import math
-from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -43,7 +42,6 @@ from mcgw.errors import StoreError
 from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_text
 from mcgw.store.layout import body_of_kept, drawn_tables, scales_of
-from mcgw.store.shards import Shard
 
 _COLUMNS = ("column", "other_column")  # of the covariance
 
@@ -82,11 +80,6 @@ def read_blocks(path: Path, scene: Scene) -> Summarised:
         return Summarised(scene, tuple(Summary.from_tables(tables, i) for i in rows))
     except (OSError, RuntimeError, KeyError, IndexError, TypeError, ValueError) as error:
         raise StoreError(f"{path}: damaged, or of another version ({error})") from None
-
-
-def blocks_of(shards: Iterable[Shard]) -> Iterator[Summary]:
-    """The blocks that shards hold, each read when its turn comes."""
-    return (Summary.from_tables(shard.arrays()) for shard in shards)
 
 
 def shapes_of(scene: Scene) -> dict[str, list[int]]:

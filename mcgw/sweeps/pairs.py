@@ -12,8 +12,6 @@ from mcgw.machine.terminal import plotted
 from mcgw.sweeps.groups import Place
 from mcgw.sweeps.pooled import Pooled
 
-_SHOWN = 9
-
 
 @dataclass(frozen=True)
 class Difference:
@@ -108,4 +106,4 @@ class Slopes(Shown):
             Column("theory", flat[2], unit="1"),
         )
         title = f"Change of the mean {self.quantity} with {self.key}"
-        return Sheet(title, table=Table(columns).rows(_SHOWN))
+        return Sheet(title, table=Table(columns).rows())

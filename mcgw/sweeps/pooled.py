@@ -88,15 +88,6 @@ class Pooled:
             tables[_OF_EACH + name.removeprefix(ROW)] = np.concatenate([row[name] for row in rows])
         return tables
 
-    @classmethod
-    def from_shard(cls, tables: Mapping[str, NDArray[Any]]) -> "Pooled":
-        """What `shard` gave."""
-        return cls.from_tables({name.removeprefix(BLOCK): table[0] for name, table in tables.items()})
-
-    def shard(self) -> dict[str, NDArray[Any]]:
-        """As tables of one row for the whole block."""
-        return {BLOCK + name: table[None] for name, table in self.tables().items()}
-
     def __add__(self, other: "Pooled") -> "Pooled":
         """Of the surfaces of both."""
         n, means, products = self.n + other.n, {}, {}
@@ -171,11 +162,12 @@ class Pooling(Reducer):
             blocks_of_each = tuple((summary_of_values(*one[:2], first, one[2]),) for one in each)
             pooled = replace(pooled, blocks=blocks_of_each)
         go_on(stop)
-        return pooled.shard()
+        return {BLOCK + name: table[None] for name, table in pooled.tables().items()}  # rows of whole blocks
 
     def held(self, blocks: Iterable[Tables]) -> Pooled:
         """All of them, added up."""
-        return reduce(add, map(Pooled.from_shard, blocks))
+        plain = ({name.removeprefix(BLOCK): table[0] for name, table in block.items()} for block in blocks)
+        return reduce(add, map(Pooled.from_tables, plain))
 
     def check(self, surfaces: int | None = None) -> None:  # noqa: ARG002
         """Refuse covariances that the memory cannot hold."""
