@@ -1,6 +1,6 @@
 """Pages that are not written for the site: names and commands by their own help, documents of the repository.
 
-They are written to ``docs/copied`` when the site is built, and never by hand.
+They are written beside the other pages when the site is built, and never by hand; ``.gitignore`` names them.
 """
 
 import io
@@ -17,42 +17,43 @@ ROOT = Path(__file__).parent.parent
 
 # Documents of the repository that are pages of the site: where they lie, and what they are called here.
 DOCUMENTS = {
-    "CHANGELOG.md": "changes",
-    "CODE_OF_CONDUCT.md": "code-of-conduct",
-    "CONTRIBUTING.md": "contributing",
-    "runs/ACCURACY.md": "accuracy",
-    "runs/ERRATA.md": "errata",
-    "runs/EXTREMES.md": "extremes",
-    "runs/INTERACTION.md": "interaction",
-    "runs/LAWS.md": "contact-laws",
-    "runs/ROUGHNESS.md": "roughness",
-    "runs/reliability/README.md": "reliability",
-    "runs/validation/README.md": "validation",
+    "CHANGELOG.md": "about/changes",
+    "CODE_OF_CONDUCT.md": "about/code-of-conduct",
+    "CONTRIBUTING.md": "about/contributing",
+    "runs/ACCURACY.md": "explanation/accuracy",
+    "runs/ERRATA.md": "explanation/errata-table",
+    "runs/EXTREMES.md": "explanation/extremes",
+    "runs/INTERACTION.md": "explanation/interaction",
+    "runs/LAWS.md": "explanation/contact-laws",
+    "runs/ROUGHNESS.md": "explanation/roughness",
+    "runs/reliability/README.md": "explanation/reliability",
+    "runs/validation/README.md": "explanation/validation",
 }
 _LINK = re.compile(r"(!?)\[([^\]]+)\]\(([^)#:]+)\)")
-PARTS = ("errata", "errata-proofs")  # no pages: parts of one
+PARTS = ("explanation/errata-table", "explanation/errata-proofs")  # no pages: parts of one
 WIDTH = "100"  # columns of the help
 
 
 def pages() -> dict[str, str]:
-    """Text of each page, by its name."""
-    found = {name: _copied(path) for path, name in DOCUMENTS.items()}
-    found |= {"commands": commands_page(), "errata-proofs": proofs(), "paper": paper_page()}
-    return found | {package: names_page(package) for package in ("mcgw", "analytic")}
+    """Text of each page, by its place in the site."""
+    found = {name: _moved(path) for path, name in DOCUMENTS.items()}
+    found |= {"reference/commands": commands_page(), "about/paper": paper_page()}
+    found |= {f"reference/{package}": names_page(package) for package in ("mcgw", "analytic")}
+    found |= {"explanation/errata-proofs": proofs()}
+    return {f"{name}.{'txt' if name in PARTS else 'md'}": text for name, text in found.items()}
 
 
 def write(folder: Path) -> None:
     """Write them; a page that is as it was keeps its date, so that it is not read again."""
-    target = folder / "copied"
-    target.mkdir(exist_ok=True)
     for name, text in pages().items():
-        path = target / (f"{name}.txt" if name in PARTS else f"{name}.md")
+        path = folder / name
+        path.parent.mkdir(exist_ok=True)
         if not path.exists() or path.read_text() != text:
             path.write_text(text)
 
 
-def _copied(path: str) -> str:
-    """A document with its links as they are from the folder of the copies."""
+def _moved(path: str) -> str:
+    """A document with its links as they are from a folder of the site."""
     folder = (ROOT / path).parent
 
     def moved(match: re.Match[str]) -> str:
@@ -60,7 +61,9 @@ def _copied(path: str) -> str:
         place = (folder / target).resolve().relative_to(ROOT).as_posix()
         if picture:
             return f"![{words}](../../{place})"
-        return f"[{words}]({DOCUMENTS[place]}.md)" if place in DOCUMENTS else f"{words} (`{place}`)"
+        if place.endswith(".csv"):
+            return f"{{download}}`{words} <../../{place}>`"
+        return f"[{words}](../{DOCUMENTS[place]}.md)" if place in DOCUMENTS else f"{words} (`{place}`)"
 
     return _LINK.sub(moved, (ROOT / path).read_text())
 

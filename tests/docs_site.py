@@ -8,10 +8,15 @@ from pathlib import Path
 
 ROOT = Path(__file__).parent.parent
 DOCS = ROOT / "docs"
+MADE = [  # by the code itself, when the site is built
+    line.removeprefix("docs/")
+    for line in (ROOT / ".gitignore").read_text().splitlines()
+    if line.startswith("docs/")
+]
 WRITTEN = sorted(
-    path.relative_to(DOCS).as_posix()
-    for path in DOCS.rglob("*.md")
-    if not {"copied", "_build", "gallery", "paper"} & set(path.relative_to(DOCS).parts)
+    place
+    for place in (path.relative_to(DOCS).as_posix() for path in DOCS.rglob("*.md"))
+    if not place.startswith((*MADE, "paper/"))
 )
 _BLOCK = re.compile(r"^( *)```(python|sh|toml|text)\n(.*?)^ *```$", flags=re.DOTALL | re.MULTILINE)
 
@@ -41,8 +46,6 @@ def from_the_code():
 @cache
 def pages():
     """Text of every page by its place, those that are made too."""
-    made = {
-        f"copied/{name}.{'txt' if name in from_the_code().PARTS else 'md'}": text
-        for name, text in from_the_code().pages().items()
-    }
+    made = from_the_code().pages()
+    assert all(name.startswith(tuple(MADE)) for name in made), "git would take a page that is made"
     return {name: (DOCS / name).read_text() for name in WRITTEN} | made

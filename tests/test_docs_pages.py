@@ -89,7 +89,7 @@ def test_links_lead_somewhere():
     texts |= {ROOT / name: (ROOT / name).read_text() for name in DOCUMENTS}
     for page, text in texts.items():
         for target in targets(page, text):
-            made = target.parent in (DOCS / "copied" / "api", DOCS / "gallery")  # by Sphinx
+            made = target.parent in (DOCS / "reference" / "api", DOCS / "gallery")  # by Sphinx
             assert made or target in there or target.is_file(), f"{page}: {target}"
     for name in re.findall(r"`((?:bench/)?[\w.-]+\.(?:toml|py|md))`", texts[ROOT / "runs/README.md"]):
         assert (ROOT / "runs" / name).is_file(), name
@@ -122,7 +122,7 @@ def parsers():
 
 
 def test_every_command_and_flag_is_on_its_page(parsers):
-    page = pages()["copied/commands.md"]
+    page = pages()["reference/commands.md"]
     for name, parser in parsers.items():
         part = page.partition(f"## mcgw {name}\n")[2].partition("\n## ")[0]
         for action in parser._actions:
@@ -155,7 +155,7 @@ def test_the_example_of_a_command_is_one(parsers):
 
 def test_every_public_name_is_on_its_page():
     for package in (mcgw, analytic):
-        page = pages()[f"copied/{package.__name__}.md"]
+        page = pages()[f"reference/{package.__name__}.md"]
         listed = set(re.findall(r"^   (?:~analytic\.)?(\w+)$", page, flags=re.MULTILINE))
         assert listed == set(package.__all__)
 

@@ -197,7 +197,7 @@ TABLES: dict[str, TableOfKeys] = {
         needs=("heights", "file")),
 )),
 "contact": TableOfKeys("Where the plane stands, what is summed, and by which law of contact. "
-    "[How the laws differ](../copied/contact-laws.md).", (
+    "[How the laws differ](../explanation/contact-laws.md).", (
     Key("separations",
         Either((
             List(_SEPARATION, 1, _MOST, f"{_SEPARATIONS}, at most {_MOST} of them"),
@@ -249,8 +249,8 @@ TABLES: dict[str, TableOfKeys] = {
     Key("tangential", _PUSHED, "{friction = 0.3, poisson = 0.3, displacements = [1e-8]}",
         "pushed sideways by these displacements (m); adds `tangential_load`"),
 ), required=True),
-"interaction": TableOfKeys("[Asperities that press each other down](../copied/interaction.md). Left out: "
-    "they are independent.", (
+"interaction": TableOfKeys("[Asperities that press each other down](../explanation/interaction.md). "
+    "Left out: they are independent.", (
     Key("reference", Word(("body", "mean-plane"), f"give {_PLANES}"), '"body"',
         "nominal separations are measured from the undeformed `body`, or from the deformed `mean-plane`",
         required=True),
