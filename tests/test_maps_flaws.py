@@ -152,7 +152,7 @@ def test_a_tilt_and_a_form_that_leaves_no_summit_are_named():
 
 def test_absurd_slopes_and_pixels_are_named():
     assert "slope" in lines(1e6 * rough())
-    assert "was um or mm meant" in lines(rough(), (1.0, 1.0))["pixel"]
+    assert "was um or mm meant" in lines(rough(), (1.0, 1.0))["unit"]
 
 
 def test_edges_that_jump_are_named():

@@ -9,6 +9,7 @@ import pytest
 
 import mcgw
 from mcgw.cli import main
+from mcgw.maps.synthetic import Spectrum, gaussian_map
 from mcgw.maps.topography import Topography
 from mcgw.scene.section import SceneError
 
@@ -155,6 +156,41 @@ def test_it_goes_through_files_and_is_shown(scene, tmp_path, capsys):
     assert scene.validity().verdict in capsys.readouterr().out
     graded = mcgw.regrade(mcgw.simulate(scene.replace(keep="moments")), mcgw.Exponential(2.0))
     assert graded.scene.fitted == scene.fitted
+
+
+def test_cautions_of_a_fit_travel_the_gravest_first(fit, tmp_path, capsys):
+    """Of five that were found three are shown, wherever the scene of the fit comes to light."""
+    lines = tuple(f"{word}: told" for word in ("spikes", "lay", "skewness", "overlap", "waves"))
+    scene = mcgw.fitted_scene(replace(fit, cautions=lines), separations=[1.0], n_surfaces=3, grading=None)
+    assert mcgw.scene_from(mcgw.scene_text(scene)).fitted.cautions == lines
+    mcgw.save(mcgw.simulate(scene), tmp_path / "s.h5")
+    (tmp_path / "s.toml").write_text(mcgw.scene_text(scene))
+    for command in (
+        "show s.h5",
+        "show --plan s.toml",
+        "solve s.toml --pressure 1MPa",
+        "report s.h5 -o s.html",
+    ):
+        words = [str(tmp_path / word) if word.startswith("s.") else word for word in command.split()]
+        assert main([*words, *["-v"] * (words[0] == "report")]) == 0, command
+        out, err = capsys.readouterr()
+        for line in lines[:3]:
+            assert (out + err).count(f"fit: {line}") == 1, command
+        assert "(and 2 more under [fitted] in the scene)" in out + err
+    assert "fit: skewness: told (and 2 more" in (tmp_path / "s.html").read_text()
+
+
+def test_the_gravest_caution_comes_first():
+    """A map in a wrong unit is wrong by a million: no lay and no overlap stands before that."""
+    z = (
+        1e6
+        * gaussian_map(
+            Spectrum(1e-6, 40e-6, 16e-6), (128, 128), (1e-6, 1e-6), np.random.default_rng(1)
+        ).heights
+    )
+    found = mcgw.fit(Topography(z, (1e-6, 1e-6)), cutoff=None).cautions
+    assert len(found) > 1
+    assert found[0].startswith("slope:")
 
 
 def test_it_draws_nothing(scene):

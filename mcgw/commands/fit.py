@@ -89,11 +89,10 @@ def execute(args: argparse.Namespace) -> int:
     fit, lines, write = (
         _of_profiles(args, asked, pixel) if of_profiles else _of_map(args, asked, pixel, across)
     )
-    text = [*lines, *(f"warning: {line}" for line in fit.cautions)]
     on = {} if area is None else {"nominal_area": area}
     title = f"Fitted to {args.map[0].name[:50]}"
     scene = fitted_scene(fit, use=args.use, heights=args.heights, E_star=E_star, title=title, **on)
-    comments = [*text, "", "units: sigma and radius in m, eta in 1/m^2, nominal_area in m^2, E_star in Pa"]
+    comments = [*lines, "", "units: sigma and radius in m, eta in 1/m^2, nominal_area in m^2, E_star in Pa"]
     measured = fit if isinstance(fit, Fit) and args.heights == "measured" else None
     path, *beside = write_scene(scene, args.output, measured, comments)
     s = scene.surface
@@ -104,7 +103,7 @@ def execute(args: argparse.Namespace) -> int:
     )
     write()
     details(*lines[1:])
-    notes(*fit.cautions)
+    notes(*([] if scene.fitted is None else scene.fitted.gravest))
     news(f"next: mcgw run {args.output} -o {args.output.with_suffix('.h5')}")
     return 0
 

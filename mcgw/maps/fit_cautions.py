@@ -22,6 +22,14 @@ _FEW, _STREAKY = 100, 1.5
 _PEAKS, _UNSURE = 1.2, 0.2
 
 
+# First words of cautions, by what a fit that ignores them may be off by: from a unit to a few per cent.
+_GRAVEST = (
+    "slope", "unit", "spikes", "bends", "lines", "rounding", "step", "sub-area", "form", "edge", "range",
+    "tip", "cutoff", "pixel", "blur", "holes", "missing", "lay", "skewness", "alpha", "peaks", "overlap",
+    "summits", "waves", "x",
+)  # fmt: skip
+
+
 def flaws(fit: Fit, ready: Prepared) -> list[str]:
     """Warnings about what lies on a map, each in one line that says what to do."""
     level = ready.levelled
@@ -40,7 +48,7 @@ def _units(topography: Topography) -> Iterator[str]:
             f"slope: {topography.steepness:.3g} is usual on this map; are heights or pixel in another unit?"
         )
     if max(topography.pixel) > _WIDEST:
-        yield f"pixel: {max(topography.pixel):g} m; was um or mm meant?"
+        yield f"unit: a pixel is {max(topography.pixel):g} m; was um or mm meant?"
 
 
 def _edges(topography: Topography) -> list[str]:
@@ -110,14 +118,20 @@ def _waves(fit: Fit) -> list[str]:
 
 
 def cautions(fit: Fit, ready: Prepared, use: str = "auto") -> list[str]:
-    """Warnings about the fit of a map, and the estimate to `use`, each in one line that says what to do."""
-    return [
-        *flaws(fit, ready),
-        *faults(ready, _longer(ready)),
-        *_of_the_pixel(fit, ready),
-        *_of_the_heights(fit),
-        *_of_the_summits(fit, use if use in fit.estimates else fit.best),
-    ]
+    """Warnings about the fit of a map, and the estimate to `use`: a line each, the gravest first."""
+    return _gravest_first(
+        [
+            *flaws(fit, ready),
+            *faults(ready, _longer(ready)),
+            *_of_the_pixel(fit, ready),
+            *_of_the_heights(fit),
+            *_of_the_summits(fit, use if use in fit.estimates else fit.best),
+        ]
+    )
+
+
+def _gravest_first(lines: list[str]) -> list[str]:
+    return sorted(lines, key=lambda line: _GRAVEST.index(line.partition(":")[0]))
 
 
 def _longer(ready: Prepared) -> float:
@@ -176,8 +190,10 @@ def _of_the_summits(fit: Fit, used: str) -> Iterator[str]:
 
 
 def profile_cautions(fit: ProfileFit, profiles: Sequence[Profile], cutoff: float | None) -> list[str]:
-    """Warnings about the fit of these profiles."""
-    return [*_of_profile_points(profiles, cutoff), *_of_profile_heights(fit), *_of_profile_waves(fit)]
+    """Warnings about the fit of these profiles, the gravest first."""
+    return _gravest_first(
+        [*_of_profile_points(profiles, cutoff), *_of_profile_heights(fit), *_of_profile_waves(fit)]
+    )
 
 
 def _of_profile_points(profiles: Sequence[Profile], cutoff: float | None) -> Iterator[str]:

@@ -118,8 +118,8 @@ def _known(fit: Fit | ProfileFit) -> Fitted:
     if isinstance(fit, ProfileFit):
         counted, expected = fit.peaks
         agreement = max(counted, expected) / min(counted, expected) if counted > 0 else None
-        return Fitted(*known, 2 / fit.numbers["m0"].relative ** 2, agreement)
-    return Fitted(*known, fit.waves.independent, fit.agreement, fit.lay, fit.area)
+        return Fitted(*known, 2 / fit.numbers["m0"].relative ** 2, agreement, cautions=fit.cautions)
+    return Fitted(*known, fit.waves.independent, fit.agreement, fit.lay, fit.area, fit.cautions)
 
 
 def _as_fitted(fit: Fit | ProfileFit, use: str, heights: Heights, modulus: float, title: str) -> Scene:

@@ -31,7 +31,8 @@ def cautions(scene: Scene) -> list[str]:
         from mcgw.scene.law_cautions import law_cautions  # who asks for Hertz needs no other law
 
         lines += law_cautions(scene)
-    return [*perhaps_other_units(scene), *lines]
+    of_fit = [] if scene.fitted is None else scene.fitted.gravest
+    return [*perhaps_other_units(scene), *of_fit, *lines]
 
 
 def _crowd(scene: Scene) -> Iterator[str]:

@@ -274,6 +274,8 @@ TABLES: dict[str, TableOfKeys] = {
         "largest ratio between the fit's estimates of η, R or σ: by moments, and by counted summits"),
     Key("lay", _RATIO, "1.1", "mean square slope across the lay over that along it"),
     Key("area", Number("m^2"), "1e-6", "that was looked at, m²"),
+    Key("cautions", List(Text(), 0, advice="give a list of texts"), '["lay: mean square slopes 2 : 1"]',
+        "why not to trust the fit, the gravest first", []),
 ), make=Fitted, advice="give what mcgw.fitted_scene gave, or the keys of [fitted] in a scene file"),
 "ensemble": TableOfKeys("How many surfaces, and how they are drawn.", (
     Key("n_surfaces", Whole(1), "10", "how many, default 1000", excludes=("rel_err",)),

@@ -13,6 +13,8 @@ import numpy as np
 from analytic import SpectralMoments, Surface
 from analytic.arrays import Array, hold
 
+_SHOWN = 3  # cautions
+
 
 @dataclass(frozen=True)
 class Fitted:
@@ -34,6 +36,8 @@ class Fitted:
         Mean square slope across the lay over that along it, at least 1; None: nobody saw it.
     area : float or None
         That was looked at, m^2; None: along lines only.
+    cautions : tuple of str
+        Why not to trust the fit, the gravest first, as `mcgw.fit` found them.
     """
 
     m0: float
@@ -45,6 +49,7 @@ class Fitted:
     agreement: float | None = None
     lay: float | None = None
     area: float | None = None
+    cautions: tuple[str, ...] = ()
 
     @property
     def moments(self) -> SpectralMoments:
@@ -56,6 +61,14 @@ class Fitted:
         m = self.moments
         pairs = ((surface.eta, m.eta), (surface.radius, m.radius), (surface.sigma, m.sigma))
         return max(max(a, b) / min(a, b) if min(a, b) > 0 else math.inf for a, b in pairs)
+
+    @property
+    def gravest(self) -> list[str]:
+        """The cautions that people are shown, three at most."""
+        shown, more = [f"fit: {line}" for line in self.cautions[:_SHOWN]], len(self.cautions) - _SHOWN
+        if more > 0:
+            shown[-1] += f" (and {more} more under [fitted] in the scene)"
+        return shown
 
     def lines(self) -> tuple[str, str]:
         """What it says: of the spectrum, and of what else the map is."""

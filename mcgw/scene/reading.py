@@ -57,7 +57,7 @@ def of_arguments(**given: Any) -> Values:
 def _keys_of(name: str, value: Any, plain: Any) -> Any:
     """The keys of an object that stands for a whole table; a word is its first key."""
     if is_dataclass(value) and not isinstance(value, type):
-        held = {field.name: getattr(value, field.name) for field in fields(value)}
+        held = {field.name: as_toml(getattr(value, field.name)) for field in fields(value)}
         return {key: each for key, each in held.items() if each is not None}
     return {next(iter(KEYS[name])): plain} if isinstance(plain, str) else plain
 
@@ -205,7 +205,9 @@ def _made(top: Section, section: Section, make: Callable[..., Any]) -> Any:
     if not isinstance(top.table.get(section.name), dict):
         return None
     before, found = len(top.problems), section.read_all(section.rows)
-    return make(**found) if len(top.problems) == before else None
+    if len(top.problems) > before:
+        return None
+    return make(**{key: tuple(x) if isinstance(x, list) else x for key, x in found.items()})
 
 
 def _ensemble(section: Section, surface: Surface | None, seed: Callable[[], int | None] | None) -> Values:
