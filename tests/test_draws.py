@@ -12,9 +12,9 @@ from test_binomial import draw
 
 from mcgw.machine.compiling import njit
 from mcgw.sampling import counts
+from mcgw.sampling.block import Layout
 from mcgw.sampling.chebyshev_sums import BUFFER, PLAIN, ROOTED, WORDS, _12_6
 from mcgw.sampling.lanes import LANES
-from mcgw.sampling.layout import Layout
 from mcgw.sampling.moments import _PIECE, add_compensated, cell_moments
 from mcgw.sampling.philox import CELLS, centred, philox, uniforms
 from mcgw.sampling.samplers import sampler_of

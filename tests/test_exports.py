@@ -11,8 +11,8 @@ from scipy.optimize import brentq
 
 import mcgw
 from mcgw.cli import main
+from mcgw.ensemble.at_load import at_pressures, loaded_part
 from mcgw.ensemble.ensemble import Ensemble
-from mcgw.ensemble.equal_pressure import at_pressures, loaded_part
 from mcgw.ensemble.results import MemoryResults
 from mcgw.exports.curves import KINDS, quantile_name
 from mcgw.exports.programs import PROGRAMS

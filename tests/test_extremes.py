@@ -14,8 +14,8 @@ from test_cells_against_direct_sums import worst
 
 import analytic
 import mcgw
+from mcgw.sampling.block import Layout
 from mcgw.sampling.counts import counts_of
-from mcgw.sampling.layout import Layout
 from mcgw.sampling.moments import add_compensated, cell_moments
 from mcgw.sampling.samplers import sampler_of
 from mcgw.scene.section import SceneError

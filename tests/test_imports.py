@@ -114,7 +114,7 @@ NOT_THERE = {
 FEATURES = {
     "mcgw.ensemble.summary": "statistics", "mcgw.ensemble.summarised": "statistics",
     "mcgw.sampling.crowding": "law_error",
-    "mcgw.sampling.radius_table": None, "mcgw.sampling.families": None, "mcgw.sampling.shared": None,
+    "mcgw.sampling.own_radii": None, "mcgw.sampling.shared": None,
     "mcgw.sampling.weighted_sums": None, "mcgw.sweeps.sweep": None,
 }  # fmt: skip
 # Laws of contact and height, and interaction: by the last part of their names.

@@ -12,7 +12,7 @@ import mcgw
 from analytic.summits import rule_of_radii
 from mcgw.ensemble import solution
 from mcgw.sampling.asperities import summits, summits_drawn, touching_summits
-from mcgw.sampling.radius_table import radius_table
+from mcgw.sampling.own_radii import radius_table
 from mcgw.sampling.samplers import regraded, sampler_of
 
 ALPHAS = (1.55, 2.0, 5.0, 50.0)

@@ -18,7 +18,7 @@ from mcgw.errors import RunError, StoreError
 from mcgw.jobs import job
 from mcgw.jobs.job import commit_block
 from mcgw.jobs.running import run
-from mcgw.sampling.layout import Layout
+from mcgw.sampling.block import Layout
 from mcgw.sampling.moments import cell_moments
 from mcgw.sampling.samplers import sampler_of
 from mcgw.scene.samplers import SAMPLERS

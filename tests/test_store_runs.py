@@ -21,10 +21,10 @@ import mcgw
 from mcgw.cli import main
 from mcgw.errors import RunError, StoppedError, StoreError
 from mcgw.jobs import merging
+from mcgw.jobs.driver import part_of
 from mcgw.jobs.job import Job, commit_block
 from mcgw.jobs.merging import merge
 from mcgw.jobs.running import run
-from mcgw.jobs.session import part_of
 from mcgw.store import ensembles, layout
 from mcgw.store.disk import parts_of
 from mcgw.store.shards import Plan, Span

@@ -11,10 +11,10 @@ import numpy as np
 
 import mcgw
 from mcgw.maps.topography import Topography
+from mcgw.sampling.block import Layout
 from mcgw.sampling.cells import mesh_of
 from mcgw.sampling.counts import counts_of
 from mcgw.sampling.drawing import OneByOne
-from mcgw.sampling.layout import Layout
 from mcgw.sampling.samplers import sampler_of
 
 SURFACE = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "1 mm^2", "78.6 GPa")

@@ -52,7 +52,7 @@ def engine_asked(args: argparse.Namespace) -> Iterator["Engine | None"]:
 @contextmanager
 def drawing(args: argparse.Namespace) -> Iterator[dict[str, Any]]:
     """Who draws, as `mcgw.run` and `mcgw.sweep` take it, with a bar on the terminal."""
-    from mcgw.jobs.session import dashboard_of
+    from mcgw.jobs.driver import dashboard_of
     from mcgw.machine.progress import bar
 
     with engine_asked(args) as engine, bar("surfaces", dashboard_of(engine), terminal=True) as show:

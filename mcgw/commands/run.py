@@ -36,8 +36,8 @@ def _execute(args: argparse.Namespace) -> int:
     from mcgw.commands.outputs import HDF5, Output, check_outputs
     from mcgw.commands.voice import details, news, notes, tell_cautions
     from mcgw.ensemble.forecast import forecast
+    from mcgw.jobs.driver import part_of
     from mcgw.jobs.running import run
-    from mcgw.jobs.session import part_of
     from mcgw.scene.scene_file import files_of, load_scene
     from mcgw.store.place import recorded_seed
 

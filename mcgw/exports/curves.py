@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from analytic.arrays import Array
+from mcgw.ensemble.at_load import at_pressures, common_pressures, with_values
 from mcgw.ensemble.ensemble import Ensemble
-from mcgw.ensemble.equal_pressure import at_pressures, common_pressures, with_values
 from mcgw.formats.table import evenly
 from mcgw.scene.samplers import promise_of
 

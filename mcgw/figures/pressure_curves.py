@@ -5,8 +5,8 @@ from collections.abc import Iterator
 import numpy as np
 
 from analytic import quantity_of
+from mcgw.ensemble.at_load import at_pressures, common_pressures, with_values
 from mcgw.ensemble.ensemble import Ensemble
-from mcgw.ensemble.equal_pressure import at_pressures, common_pressures, with_values
 from mcgw.ensemble.results import MemoryResults
 from mcgw.figures.data import FigureData, Panel, Series
 from mcgw.scene.samplers import promise_of

@@ -11,10 +11,10 @@ from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.forecast import checkpoints, forecast, without_rule
 from mcgw.errors import RunError, StoreError
 from mcgw.formats.files import state_of
+from mcgw.jobs.driver import By, Part, asked_of
 from mcgw.jobs.engines import Threads
 from mcgw.jobs.job import Job, as_recorded, commit_block, draw_block
 from mcgw.jobs.merging import merge_once
-from mcgw.jobs.session import By, Part, asked_of
 from mcgw.machine.progress import Progress
 from mcgw.scene.arguments import check_object
 from mcgw.scene.scene import Scene

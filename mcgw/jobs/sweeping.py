@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any, overload
 
 from mcgw.ensemble.drawing import use_threads
-from mcgw.jobs.session import By, asked_of
+from mcgw.jobs.driver import By, asked_of
 from mcgw.machine.progress import Progress, told
 from mcgw.scene.arguments import check_object
 from mcgw.scene.scene import Scene

@@ -9,20 +9,18 @@ import numpy as np
 
 from analytic import quantity_of
 from analytic.arrays import Array, Ints
-from mcgw.sampling.block import Block, Sampler
+from mcgw.sampling.block import Block, Layout, Sampler
 from mcgw.sampling.cells import Mesh
 from mcgw.sampling.counts import Counts, contacts_above, counts_of
 from mcgw.sampling.drawing import Drawing, OneByOne
 from mcgw.sampling.law_sums import asperity_sums, tangential_loads
-from mcgw.sampling.layout import Layout
 from mcgw.sampling.outside import extra_heights
 from mcgw.sampling.response.response import Response
 from mcgw.sampling.stretches import stretches_of
 from mcgw.scene.scene import Scene
 
 if TYPE_CHECKING:
-    from mcgw.sampling.families import Families
-    from mcgw.sampling.radius_table import RadiusTable
+    from mcgw.sampling.own_radii import Families, RadiusTable
 
 
 @dataclass(frozen=True)

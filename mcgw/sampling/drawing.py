@@ -26,9 +26,9 @@ from numpy.polynomial import chebyshev
 
 from analytic.arrays import Array, Ints
 from mcgw.machine.compiling import njit
+from mcgw.sampling.block import Layout
 from mcgw.sampling.counts import Counts
 from mcgw.sampling.exp_log import make_normal
-from mcgw.sampling.layout import Layout
 from mcgw.sampling.moments import cell_moments
 from mcgw.sampling.philox import MOMENTS, centred, made_for
 from mcgw.sampling.rules import gauss_legendre, product, triangle

@@ -19,8 +19,8 @@ from analytic.arrays import Array, Ints
 from mcgw.machine.compiling import njit
 from mcgw.machine.in_threads import in_threads
 from mcgw.machine.memory import aligned
+from mcgw.sampling.block import Layout
 from mcgw.sampling.chebyshev_sums import BUFFER, PLAIN, ROOTED, WORDS, add_uniforms, stratify, unfold
-from mcgw.sampling.layout import Layout
 from mcgw.sampling.philox import CELLS, centred
 from mcgw.sampling.spacing import price
 

@@ -18,17 +18,16 @@ from analytic import quantity_of
 from analytic.arrays import Array
 from analytic.laws import term_of
 from mcgw.sampling.balance import FAILED, POINTS, balance_surfaces, no_balance
-from mcgw.sampling.block import Block, Sampler
+from mcgw.sampling.block import Block, Layout, Sampler
 from mcgw.sampling.cells import NODES, TO_COEFFICIENTS, mesh_of
 from mcgw.sampling.counts import counts_of
-from mcgw.sampling.layout import Layout
 from mcgw.sampling.moments import cell_moments
 from mcgw.sampling.outside import extra_heights
 from mcgw.sampling.rules import chebyshev_points, chebyshev_transform, product
 from mcgw.scene.scene import Scene
 
 if TYPE_CHECKING:
-    from mcgw.sampling.radius_table import RadiusTable
+    from mcgw.sampling.own_radii import RadiusTable
 
 _POINTS = chebyshev_points(POINTS)
 _TRANSFORM = chebyshev_transform(_POINTS)

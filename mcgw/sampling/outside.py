@@ -13,7 +13,7 @@ from mcgw.sampling.philox import EXTRAS, centred, made_for
 from mcgw.scene.scene import Scene
 
 if TYPE_CHECKING:
-    from mcgw.sampling.radius_table import RadiusTable
+    from mcgw.sampling.own_radii import RadiusTable
 
 _HIGH, _LOW, _RADII = 0, 1, 2  # streams, and what leads from one of heights to that of their radii
 _MANY, _BYTES = 10**7, 100  # heights that are worth asking whether there is room; bytes of one
@@ -74,7 +74,7 @@ def table_of(scene: Scene, lowest: float) -> "RadiusTable | None":
     """Radii of summits above a height, where they have their own."""
     if scene.curvature is None:
         return None
-    from mcgw.sampling.radius_table import radius_table  # for those scenes alone
+    from mcgw.sampling.own_radii import radius_table  # for those scenes alone
 
     return radius_table(scene.curvature, lowest)
 

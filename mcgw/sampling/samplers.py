@@ -21,13 +21,12 @@ from numpy.typing import NDArray
 
 from analytic import QUANTITIES, UNLOADING, Exponential, Hertz, MeasuredHeights, bends, quantity_of
 from mcgw.machine.memory import keep_freed_memory
-from mcgw.sampling.block import Sampler
+from mcgw.sampling.block import Layout, Sampler
 from mcgw.sampling.cells import Mesh, cut, mesh_of, no_cells, series_accuracy
 from mcgw.sampling.counted import Counted
 from mcgw.sampling.counts import Counts, counts_of, strata_of
 from mcgw.sampling.direct import Direct
 from mcgw.sampling.drawing import CROWDED, VARYING, Crowds, OneByOne
-from mcgw.sampling.layout import Layout
 from mcgw.sampling.outside import table_of
 from mcgw.sampling.response.response import Response, layout_of, response_of
 from mcgw.sampling.response.tree import Precision
@@ -38,7 +37,7 @@ from mcgw.scene.scene import Scene
 from mcgw.scene.storable import storable
 
 if TYPE_CHECKING:
-    from mcgw.sampling.families import Families
+    from mcgw.sampling.own_radii import Families
 
 _GAUSSIAN, _WORTH = 300, 1.5  # asperities that a crowded cell takes as long as; times that much faster
 _CUTS = 16  # in four, of a cell on which the modulus, and the law of contact under it, are not resolved
@@ -245,7 +244,7 @@ def _response(scene: Scene, mesh: Mesh, drawn: "Response | Families | None" = No
     names = _summed(scene.quantities)
     if scene.curvature is None or (not names and scene.keep != "moments"):
         return response_to(None, names)
-    from mcgw.sampling.families import Families
+    from mcgw.sampling.own_radii import Families
 
     return Families.of(names, response_to, every=bool(drawn) or scene.keep == "moments")
 

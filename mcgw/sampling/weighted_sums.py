@@ -6,7 +6,7 @@ times. Of the uniforms u of a cell, with x = 2u - 1, a surface keeps for each po
     T_j = sum w T_j(x),  j < plain        R_j = sum w sqrt(u) T_j(x),  j < rooted       w = sqrt(c) or c
 
 in the place of the sums of `mcgw.sampling.moments`; what turns them into loads and areas is the same. A
-radius is drawn for each summit from the table of `mcgw.sampling.radius_table`, at its height: that is the
+radius is drawn for each summit from the table of `mcgw.sampling.own_radii`, at its height: that is the
 cell's lower edge and its series of the uniform.
 """
 
@@ -18,16 +18,15 @@ import numpy as np
 
 from analytic.arrays import Array, Ints
 from mcgw.machine.compiling import njit
+from mcgw.sampling.block import Layout
 from mcgw.sampling.cells import Mesh
 from mcgw.sampling.chebyshev_sums import BUFFER, add_weighted, stratify, unfold
 from mcgw.sampling.counted import Counted
 from mcgw.sampling.counts import Counts
-from mcgw.sampling.families import Families
 from mcgw.sampling.lanes import LANES, alike, fused, load, roots, store
-from mcgw.sampling.layout import Layout
 from mcgw.sampling.moments import add_compensated, in_runs_of_cells
+from mcgw.sampling.own_radii import Families, RadiusTable, radius_table, root_ratio
 from mcgw.sampling.philox import CELLS, RADII, RADII_LOW, centred
-from mcgw.sampling.radius_table import RadiusTable, radius_table, root_ratio
 from mcgw.scene.scene import Scene
 
 _MOST = 32  # sums of one kind: there are 21

@@ -9,7 +9,7 @@ from timing import Job, job, parser_of, timed
 
 from mcgw.ensemble.drawing import use_threads
 from mcgw.sampling import spacing
-from mcgw.sampling.layout import Layout
+from mcgw.sampling.block import Layout
 from mcgw.sampling.moments import cell_moments
 
 SURFACES, CELLS, MANY, FEW = 64, 20, 4000, 16

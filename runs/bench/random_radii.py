@@ -12,7 +12,7 @@ from timing import Job, Times, against, parser_of, ratio, seconds, timed
 
 import mcgw
 from mcgw.sampling.asperities import summits_drawn
-from mcgw.sampling.radius_table import radius_table
+from mcgw.sampling.own_radii import radius_table
 from mcgw.sampling.samplers import cells_of
 from mcgw.scene.scene import Scene
 

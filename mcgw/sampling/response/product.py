@@ -16,9 +16,9 @@ from analytic.arrays import Array, Ints
 from mcgw.machine.compiling import njit
 from mcgw.machine.in_threads import in_threads, pieces
 from mcgw.machine.memory import aligned
+from mcgw.sampling.block import Layout
 from mcgw.sampling.cells import Mesh
 from mcgw.sampling.lanes import fused
-from mcgw.sampling.layout import Layout
 from mcgw.sampling.response.gathering import FOUR, Lines, gathered, in_fours
 from mcgw.sampling.response.series import Entries
 from mcgw.sampling.response.tree import Tree, transfers

@@ -13,8 +13,8 @@ from typing import Any
 import numpy as np
 
 from analytic.arrays import Array
+from mcgw.sampling.block import Layout
 from mcgw.sampling.cells import Mesh
-from mcgw.sampling.layout import Layout
 from mcgw.sampling.response.product import Parts, Tiles, tiles_of
 from mcgw.sampling.response.rows import Rows, hertz_rows
 from mcgw.sampling.response.tree import LAST_DIGITS, Nodes, Precision, tree_over
