@@ -18,8 +18,8 @@ from analytic.gradings import Grading
 from analytic.heights import GAUSSIAN, HeightLaw
 from analytic.law_rule import law_rule
 from analytic.laws.branch import Branch, Ways, term_of
-from analytic.laws.cuts import cuts_of
 from analytic.laws.law import ContactLaw
+from analytic.laws.pieces import cuts_of
 from analytic.quantities import quantity_of
 
 Count = Literal["fixed", "poisson"]

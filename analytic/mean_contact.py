@@ -16,7 +16,7 @@ from analytic.integrals import fn
 from analytic.inversion import LOWEST, last_separations, separations_of_powers
 from analytic.laws.branch import UnloadingBranch, Ways
 from analytic.laws.law import piece_of
-from analytic.laws.slopes import slope_term
+from analytic.laws.pieces import slope_term
 from analytic.quadrature import REACH
 from analytic.quantities import Quantity, quantity_of
 from analytic.summits import Summits

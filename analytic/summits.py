@@ -19,8 +19,7 @@ from analytic.height_rule import HeightRule
 from analytic.heights import Gaussian, HeightLaw
 from analytic.law_rule import ends_of
 from analytic.laws.branch import Branch
-from analytic.laws.cuts import cuts_of_each
-from analytic.laws.slopes import jump_terms
+from analytic.laws.pieces import cuts_of_each, jump_terms
 from analytic.measured_summits import MeasuredHeights, MeasuredRadii
 from analytic.quadrature import SPANS, WIDEST, above_neighbours, gauss_legendre, rooted
 from analytic.quantities import quantity_of

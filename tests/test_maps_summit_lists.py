@@ -11,9 +11,8 @@ from scipy.optimize import brentq
 import mcgw
 from mcgw.cli import main
 from mcgw.maps.map_files import write_map
-from mcgw.maps.sub_areas import tiles_of, variation
 from mcgw.maps.summit_sums import summit_sums_of
-from mcgw.maps.summits import summits_of
+from mcgw.maps.summits import summits_of, tiles_of, variation
 from mcgw.maps.synthetic import Spectrum, gaussian_map
 from mcgw.maps.topography import Topography
 

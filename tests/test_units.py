@@ -11,7 +11,7 @@ from said import call
 import analytic
 import mcgw
 from mcgw.cli import COMMANDS
-from mcgw.formats.units import _FACTORS, EXAMPLES, METRES, parse
+from mcgw.formats.numbers import _FACTORS, EXAMPLES, METRES, parse
 from mcgw.scene.keys import SURFACE_UNITS
 from mcgw.scene.plausible import RANGES, perhaps_other_units
 from mcgw.scene.scene import Scene

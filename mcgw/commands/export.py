@@ -79,7 +79,7 @@ def _pressures(text: str) -> list[float]:
     """LO:HI:N as pressures, Pa."""
     import numpy as np
 
-    from mcgw.formats.units import parse
+    from mcgw.formats.numbers import parse
 
     low, _, rest = text.partition(":")
     high, _, number = rest.partition(":")

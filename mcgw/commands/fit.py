@@ -73,7 +73,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 def execute(args: argparse.Namespace) -> int:
     """Write the scene with all estimates as comments, and say what it is and what speaks against it."""
     from mcgw.commands.voice import details, news, notes
-    from mcgw.formats.units import parse
+    from mcgw.formats.numbers import parse
     from mcgw.maps.fit import Fit
     from mcgw.maps.fitted_scene import fitted_scene, write_scene
     from mcgw.maps.preparation import preparation_of
@@ -136,8 +136,7 @@ def _write_beside(args: argparse.Namespace, fit: "Fit", ready: "Prepared", pixel
     """Write the tables and the picture that were asked for, and say where they are."""
     from mcgw.commands.voice import news
     from mcgw.maps.map_files import read_map
-    from mcgw.maps.sub_areas import TILES
-    from mcgw.maps.summits import SUMMITS
+    from mcgw.maps.summits import SUMMITS, TILES
 
     if args.summits is not None:
         fit.listed.table().write(args.summits, comment=SUMMITS)

@@ -22,8 +22,7 @@ from mcgw.scene.samplers import promise_of
 from mcgw.statistics.comparison import Comparison, SweepComparison
 from mcgw.statistics.convergence import Convergence
 from mcgw.statistics.tradeoff import Tradeoff
-from mcgw.sweeps.pairs import Slopes
-from mcgw.sweeps.sweep import Sweep
+from mcgw.sweeps.sweep import Slopes, Sweep
 
 _SEPARATION = "separation $d/\\sigma$"
 _MOST_LINES = 7

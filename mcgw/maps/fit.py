@@ -31,9 +31,8 @@ from mcgw.maps.hidden_caps import Visible, visible
 from mcgw.maps.levels import form_left
 from mcgw.maps.preparation import Prepared
 from mcgw.maps.steps import Form
-from mcgw.maps.sub_areas import Alone, alone_of, tiles_of
 from mcgw.maps.summit_sums import EDGE, SummitSums, coarse_sums_of, summit_sums_of
-from mcgw.maps.summits import Summits, summits_of
+from mcgw.maps.summits import Alone, Summits, alone_of, summits_of, tiles_of
 from mcgw.maps.topography import Topography
 from mcgw.maps.waves import Uncertain, Waves, uncertain, waves_of
 
@@ -81,7 +80,7 @@ class Fit(Shown):
     alone : Alone or None
         The sub-area that carries the map alone, if one does.
     tiles : Table
-        What each sub-area tells by itself: see `mcgw.maps.sub_areas.tiles_of`.
+        What each sub-area tells by itself: see `mcgw.maps.summits.tiles_of`.
     roughness : Roughness
         Of all heights of the map, without form and filtered: sigma is that of the summits alone.
     notes : tuple of str, optional

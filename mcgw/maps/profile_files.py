@@ -9,7 +9,7 @@ import numpy as np
 
 from analytic.arrays import Array
 from mcgw.formats.named_files import open_npy
-from mcgw.formats.units import METRES
+from mcgw.formats.numbers import METRES
 from mcgw.maps.foreign import is_foreign_line, read_foreign_line
 from mcgw.maps.profile import Profile, profile_at
 from mcgw.maps.text_file import lines_of, numbers_of, words_of

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from analytic.arrays import Array
-from mcgw.formats.units import METRES
+from mcgw.formats.numbers import METRES
 
 MOST_PIXELS = 2**28  # 16384 x 16384: 2 GiB as float64
 SMALLEST, _LARGEST = 1e-150, 1e150  # of what is squared, m: sums of squares and a dozen times that, too

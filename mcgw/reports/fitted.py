@@ -7,7 +7,7 @@ from mcgw.maps.fit import Fit
 from mcgw.maps.preparation import Preparation
 from mcgw.maps.profile import Profile
 from mcgw.maps.profile_fit import ProfileFit
-from mcgw.maps.sub_areas import variation
+from mcgw.maps.summits import variation
 from mcgw.maps.waves import Uncertain
 
 

@@ -5,6 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from analytic import Hertz
+from analytic.laws import crowding_factor
 from mcgw.scene.plausible import perhaps_other_units
 from mcgw.scene.scene import Scene
 from mcgw.scene.validity import off_elasticity
@@ -12,6 +13,7 @@ from mcgw.scene.validity import off_elasticity
 _DEEP = 1e-3  # share of the contacts compressed by more than their radius
 _CROWDED = 0.05  # real over nominal area: Gaussian maps and caps are far beyond 10 % of load there
 _STEEP = 0.3  # contact radius over summit radius from which a paraboloid is not a sphere and strain is large
+_NEIGHBOURS = 0.05  # constriction of neighbours over that of the spots
 _FEW = 30.0  # contacts a surface, below which single surfaces are far from Gaussian
 
 
@@ -21,12 +23,10 @@ def cautions(scene: Scene) -> list[str]:
     alone, together = "neither interact nor merge", "interact by a mean field, and do not merge"
     lines = [*off_elasticity(known, f"asperities {alone if scene.interaction is None else together}")]
     unmeasured = [] if known.measured.any() else [_crowd, _half]
-    for caution in (*unmeasured, _depth, _slope, _numbers):
+    conducts = scene.film is not None or "conductance" in scene.quantities
+    conducting = [_neighbours, _thick_film, _no_answer] if conducts else []
+    for caution in (*unmeasured, _depth, _slope, _numbers, *conducting):
         lines += caution(scene)
-    if scene.film is not None or "conductance" in scene.quantities:
-        from mcgw.scene.conductance_cautions import conductance_cautions  # for those scenes alone
-
-        lines += conductance_cautions(scene)
     if type(scene.law) is not Hertz:
         from mcgw.scene.law_cautions import law_cautions  # who asks for Hertz needs no other law
 
@@ -112,3 +112,45 @@ def _numbers(scene: Scene) -> Iterator[str]:
     if scene.negative != "error" and scene.negative_above(scene.lowest) is not None:
         word = "set to zero" if scene.negative == "clip" else "left negative"
         yield f"the modulus is negative at heights that touch, and {word}: beyond the range of the grading"
+
+
+def _neighbours(scene: Scene) -> Iterator[str]:
+    """By the factor of Cooper, Mikic and Yovanovich, where the scene asks for no interaction."""
+    h = float(min(scene.separations))
+    fraction = float(scene.theory.mean("area_fraction", h))
+    if scene.interaction is not None or not 0 < fraction < 1:
+        return
+    gain = 1 / float(crowding_factor(fraction)) - 1
+    if gain > _NEIGHBOURS:
+        yield (
+            f"conductance is that of the spots alone; at d/sigma = {h:.3g} neighbours change it by about "
+            f"{gain:.0%} (Cooper, Mikic and Yovanovich): [interaction] reference counts them"
+        )
+
+
+def _thick_film(scene: Scene) -> Iterator[str]:
+    """A film that may not be thin beside its spots; one on a current is nanometres thick."""
+    h, theory, film = np.array(min(scene.separations)), scene.theory, scene.film
+    contacts = float(theory.mean("contacts", h))
+    if film is None or not film.thermal or not film.film_resistance or not contacts > 0:
+        return
+    radius = float(np.sqrt(theory.mean("area", h) / contacts / np.pi))
+    if (thick := film.film_resistance * 2 / film.rho) > radius / 5:
+        yield (
+            f"contact.film_resistance: as {thick:.2g} m of the bodies resist, and spots have a radius of "
+            f"{radius:.2g} m; unless the film is far thinner, give layer = {{thickness, conductivity}}"
+        )
+
+
+def _no_answer(scene: Scene) -> Iterator[str]:
+    """Where the correction of the mean plane exceeds what the spots resist."""
+    name = "conductance" if scene.film is None else "conductance_si"
+    if (other := scene.series(name)) >= 0:
+        return
+    h, theory = np.unique(scene.separations), scene.theory
+    spots = theory.alone.mean(name, theory.effective(h))  # type: ignore[attr-defined]
+    if np.any(none := 1 + other * spots <= 0):
+        yield (
+            f"up to d/sigma = {h[none].max():.3g} {name} is nan: the correction of the mean plane exceeds "
+            'what the spots resist; take higher separations, or reference = "body"'
+        )
