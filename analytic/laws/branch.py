@@ -236,17 +236,18 @@ class Ways:
         own = self.loading.with_radii(ratios)
         return replace(self, law=own.law, conductance=own.conductance)
 
-    def term(self, quantity: str, h: float, s: Array, e: Array, ratios: Array) -> Array:
-        """What summits of radii of their own add at a separation, 0 without contact.
+    def term(self, quantity: str, h: float | Array, s: Array, e: Array, ratios: Array | None = None) -> Array:
+        """What summits, perhaps of radii of their own, add at a separation, 0 without contact.
 
         Parameters
         ----------
         quantity : str
             Its name, on whatever way.
-        h : float
+        h : float or ndarray
             Reduced separation.
         s, e, ratios : ndarray
-            Reduced heights, moduli E*(s)/E*, and radii over that of the surface, shape (summits,).
+            Reduced heights, moduli E*(s)/E*, and radii over that of the surface, shape (summits,); None: all
+            have that of the surface.
 
         Returns
         -------
@@ -254,6 +255,8 @@ class Ways:
             Over the quantity's scale for the radius of the surface, shape (summits,).
         """
         q = quantity_of(quantity)
+        if ratios is None:
+            return term_of(q.base, self.of(quantity), h, s, e)
         return np.asarray(ratios**q.radius * term_of(q.base, self.with_radii(ratios).of(quantity), h, s, e))
 
     def of(self, quantity: str) -> Branch:

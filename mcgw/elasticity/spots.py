@@ -7,7 +7,6 @@ import numpy as np
 
 from analytic import quantity_of
 from analytic.arrays import Array, Marks
-from analytic.laws import term_of
 from mcgw.scene.scene import Scene
 
 # Two summits at one place are in neutral balance, whichever of them carries how much, if their fields are
@@ -91,9 +90,7 @@ class LawSpots:
         surface = self.scene.surface
         s = self.heights / surface.sigma
         h, e = s - penetration / surface.sigma, self.scene.modulus(s)
-        q, c = quantity_of(name), np.ones_like(s) if self.ratios is None else self.ratios
-        ways = self.scene.ways if self.ratios is None else self.scene.ways.with_radii(c)
-        return np.asarray(q.scale(surface) * c**q.radius * term_of(name, ways.loading, h, s, e))
+        return quantity_of(name).scale(surface) * self.scene.ways.term(name, h, s, e, self.ratios)
 
 
 Spots = HertzSpots | LawSpots  # contacts at places, none of which feels another one here

@@ -239,8 +239,6 @@ class Summits:
             q = quantity_of(name)
             if self.scene.hertzian:
                 terms = touching._weights(q) * (s - h) ** q.exponent
-            elif touching.ratios is None:
-                terms = term_of(name, self.scene.ways.loading, h, s, modulus)
             else:
                 terms = self.scene.ways.term(name, h, s, modulus, touching.ratios)
             found[name] = q.scale(self.scene.surface) * float(np.sum(terms))

@@ -8,7 +8,6 @@ from numpy.typing import NDArray
 
 from analytic import quantity_of
 from analytic.arrays import Array
-from analytic.laws import term_of
 from mcgw.machine.compiling import njit
 from mcgw.scene.scene import Scene
 
@@ -51,16 +50,13 @@ def asperity_sums(
     surface = np.repeat(np.arange(len(numbers)), numbers)
     touching = heights > scene.lowest
     surface, s, weight = surface[touching], heights[touching], weights[touching]
-    e = scene.modulus(s)
+    e, ways = scene.modulus(s), scene.ways
     c = None if ratios is None else ratios[touching]
     sums = {}
     for name in scene.quantities:
-        q, branch = quantity_of(name), scene.branch_of(name)
-        rows = []
-        for h in scene.separations:
-            one = term_of(q.base, branch, h, s, e) if c is None else scene.ways.term(name, h, s, e, c)
-            rows.append(np.bincount(surface, weight * one, len(numbers)))
-        sums[name] = np.asarray(q.scale(scene.surface) * np.stack(rows, axis=1), dtype=np.float64)
+        terms = (ways.term(name, h, s, e, c) for h in scene.separations)
+        rows = np.stack([np.bincount(surface, weight * one, len(numbers)) for one in terms], axis=1)
+        sums[name] = np.asarray(quantity_of(name).scale(scene.surface) * rows, dtype=np.float64)
     return sums
 
 

@@ -16,7 +16,6 @@ from scipy.optimize import brentq
 
 from analytic import quantity_of
 from analytic.arrays import Array
-from analytic.laws import term_of
 from mcgw.sampling.balance import FAILED, POINTS, balance_surfaces, no_balance
 from mcgw.sampling.block import Block, Layout, Sampler
 from mcgw.sampling.cells import NODES, TO_COEFFICIENTS, mesh_of
@@ -188,15 +187,11 @@ def balanced_sums(scene: Scene, number: int, heights: Array, ratios: Array | Non
         If it has no balance at a separation.
     """
     c = scene.compliance / scene.surface.sigma
-    e = scene.modulus(heights)
+    e, ways = scene.modulus(heights), scene.ways
 
     def total(name: str, x: float) -> float:
-        q = quantity_of(name)
-        if ratios is None:
-            terms = term_of(q.base, scene.branch_of(name), x, heights, e)
-        else:
-            terms = scene.ways.term(name, x, heights, e, ratios)
-        return float(q.scale(scene.surface) * np.sum(terms))
+        terms = ways.term(name, x, heights, e, ratios)
+        return float(quantity_of(name).scale(scene.surface) * np.sum(terms))
 
     load = partial(total, "load")
     felt = []
