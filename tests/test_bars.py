@@ -48,7 +48,6 @@ def told(tmp_path, monkeypatch):
     [
         ("solve s.toml --pressure 1MPa", ["4 [", " surfaces/s"]),
         ("fit map.npy --cutoff none --pixel 1um -o f.toml", ["/4 [", " steps/s"]),
-        ("show --plan s.toml", ["/2 [", " steps/s", "? accuracies/s"]),
         ("sweep s.toml --over grading.gamma=0.2:1:7 -o w.h5", ["/7 [", "? points/s"]),
     ],
 )

@@ -1,9 +1,14 @@
 """``mcgw show --plan``: what would be drawn, and what not."""
 
+import os
+import subprocess
+import sys
+
 import numpy as np
 import pytest
 
 import analytic
+import mcgw
 from mcgw.reports.plan import plan_of, plan_text
 from mcgw.sampling.samplers import sampler_of
 
@@ -15,7 +20,8 @@ def test_plan_says_what_is_drawn(make_scene):
     assert plan.touching == pytest.approx(expected, rel=1e-12)
     drawn = sampler_of(scene).block(0, 64)
     assert drawn.counts.sum() / 64 == pytest.approx(expected, abs=5 * np.sqrt(expected / 64))
-    assert (plan.cells, plan.moments) == (drawn.counts.shape[1], drawn.moments.shape[1])
+    assert plan.cells == drawn.counts.shape[1]
+    assert plan.moments == pytest.approx(drawn.moments.shape[1], rel=0.2)
     assert plan.bytes == 8 * 200 * 2 * 4
     assert plan.seconds > 0
     text = plan_text(scene, plan)
@@ -29,7 +35,8 @@ def test_plan_counts_what_is_kept_and_says_who_chose(make_scene):
     scene = make_scene(sampler="cells", keep="moments", separations=(1.0, 2.0))
     plan = plan_of(scene)
     drawn = sampler_of(scene).block(0, 1)
-    assert plan.bytes == 8 * 200 * (2 * 4 + drawn.moments.shape[1] + drawn.counts.shape[1])
+    size = 8 * 200 * (2 * 4 + drawn.moments.shape[1] + drawn.counts.shape[1])
+    assert plan.bytes == pytest.approx(size, rel=0.2)
     alone = scene.replace(keep="statistics", n_surfaces=10**6)
     kept = plan_of(alone)
     assert kept.bytes < 8 * 10**6  # not even one value of each surface
@@ -57,3 +64,46 @@ def test_samplers_that_draw_all_and_hardly_any(make_scene):
     assert huge.moments <= huge.drawn < huge.moments + 0.1
     assert huge.moments < 5000
     assert plan_of(make_scene(rel_err=0.01, n_surfaces=10**6, separations=(0.0,))).surfaces < 10**6
+
+
+WISHES = {
+    "one law of two": {"law": mcgw.KogutEtsion(critical=0.1), "unload_from": 0.0},
+    "steep": {"grading": analytic.Table((0.0, 1.37, 3.0), (1.0, 2.0, 1.5))},
+    "coarse": {"accuracy": 1e-4, "n_asperities": 10**5},
+    "strata": {"sampler": "stratified"},
+    "contacts": {"quantities": ("contacts",)},
+}
+
+
+@pytest.mark.parametrize("name", WISHES)
+def test_what_is_expected_is_what_is_made(make_scene, name):
+    """To a share that no reader would miss: moments are counted before any law is resolved."""
+    scene = make_scene(separations=(0.0, 0.5, 1.0, 2.0), **{"sampler": "cells", **WISHES[name]})
+    plan, made = plan_of(scene), sampler_of(scene)
+    assert plan.sampler == made.name
+    assert plan.drawn == pytest.approx(made.draws, rel=1e-2)
+    assert plan.cells == pytest.approx(made.cells, rel=0.2)
+    assert plan.moments == pytest.approx(made.moments, rel=0.4)
+
+
+CHILD = """
+import mcgw
+from mcgw.reports.plan import plan_of
+surface = mcgw.Surface(1e-6, 1e-5, 3e8, 1e-4, 8e10)
+spectrum = mcgw.SpectralSurface(m0=1e-12, m2=1e-2, m4=4e8, nominal_area=1e-6, E_star=1e11)
+asked = {"separations": [2.0, 3.0], "n_asperities": 10**4, "n_surfaces": 100}
+for changes in ({}, {"keep": "moments"}, {"keep": "statistics"}, {"law_error": 0.01}, {"sampler": "direct"},
+                {"law": mcgw.KogutEtsion(critical=0.1)}, {"grading": lambda s: 1 + abs(s - 2.5)},
+                {"interaction": mcgw.Interaction("mean-plane", at="nominal")}, {"rel_err": 0.1}):
+    print(plan_of(mcgw.Scene(surface, **asked).replace(**changes)).seconds)
+print(plan_of(mcgw.Scene(spectrum, **asked)).seconds)
+"""
+
+
+def test_a_plan_compiles_nothing(tmp_path):
+    """Whatever the scene: a folder for compiled loops stays empty."""
+    env = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path)}
+    done = subprocess.run([sys.executable, "-c", CHILD], capture_output=True, text=True, env=env, check=False)
+    assert done.returncode == 0, done.stderr
+    assert len(done.stdout.split()) == 10
+    assert [path for path in tmp_path.rglob("*") if path.is_file()] == []

@@ -41,15 +41,11 @@ def execute(args: argparse.Namespace) -> int:
     if args.set and not args.plan:
         raise ValueError(f"--set {args.set[0]}: goes with --plan, of a scene")
     if args.plan:
-        from mcgw.machine.progress import stages
         from mcgw.reports.plan import plan_of, plan_text
         from mcgw.scene.scene_file import load_scene
 
         scene = load_scene(args.file, changes=changes_of(args))
-        with stages(2) as done:
-            done()
-            plan = plan_of(scene)
-        print(plan_text(scene, plan))
+        print(plan_text(scene, plan_of(scene)))
         tell_cautions(scene)
         return 0
     tidy(args.file)

@@ -19,6 +19,7 @@ from mcgw.ensemble.results import Tables
 from mcgw.machine.in_threads import in_threads, pieces
 from mcgw.sampling.block import Block, Sampler, Source
 from mcgw.sampling.counts import GROUP
+from mcgw.sampling.expected import Expected, expected
 from mcgw.sampling.samplers import sampler_of
 from mcgw.scene.samplers import promise_of
 from mcgw.scene.scene import Scene
@@ -28,7 +29,6 @@ GoOn = Callable[[int], bool]  # told the surface after those that are drawn, say
 _WORDS = 4_000_000  # numbers of a block that stay in the outer cache
 _MOST_WORDS = 20_000_000  # numbers a block may hold
 _DRAWS = 1.5e8  # asperities a block may draw, so that a bar moves every second
-_PER_SUM = 4e-9  # rough seconds of a result
 _PER_COUNT, _PER_PRODUCT = 4e-8, 2.5e-10  # rough seconds of a number, and of two, for statistics
 _TRIED = 0.05  # rough seconds of a surface up to which a block is drawn to see
 
@@ -185,14 +185,15 @@ def drawn(reducer: Reducer, go_on: GoOn) -> Any:
 
 @dataclass(frozen=True)
 class OfScene(Reducer):
-    """Of the surfaces of one scene, with a number of them."""
+    """Of the surfaces of one scene, with a number of them; of a sampler that is only expected, its size."""
 
     scene: Scene
+    expected: Expected | None = None
 
     @cached_property
-    def sampler(self) -> Sampler:
+    def sampler(self) -> Any:
         """The scene's."""
-        return sampler_of(self.scene)
+        return self.expected or sampler_of(self.scene)
 
     @property
     def n_surfaces(self) -> int:
@@ -209,14 +210,20 @@ def seconds_for(scene: Scene, sampler: Sampler, surfaces: int, *, at_least: floa
 
     From a block drawn on trial where a surface takes little, unless a rough guess lies below `at_least`.
     """
-    columns = scene.width
-    rough = sampler.draws * sampler.seconds_per_draw + columns * _PER_SUM
+    rough = rough_seconds(scene, 1)
     if rough * surfaces < at_least or rough > _TRIED:
         return rough * surfaces
-    each = seconds_per_surface(scene, sampler)
-    if scene.keep == "statistics":  # numbers are then counted, and not kept
-        each += columns * _PER_COUNT + columns**2 / 2 * _PER_PRODUCT
-    return surfaces * each
+    return surfaces * (seconds_per_surface(scene, sampler) + _for_statistics(scene))
+
+
+def rough_seconds(scene: Scene, surfaces: int) -> float:
+    """Expected wall time of drawing some surfaces, within a factor of two or so, by arithmetic alone, s."""
+    return surfaces * (expected(scene).seconds / numba.get_num_threads() + _for_statistics(scene))
+
+
+def _for_statistics(scene: Scene) -> float:
+    """Of a surface whose numbers are counted, and not kept."""
+    return scene.width * _PER_COUNT + scene.width**2 / 2 * _PER_PRODUCT if scene.keep == "statistics" else 0.0
 
 
 def in_words(seconds: float) -> str:

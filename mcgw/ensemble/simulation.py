@@ -15,6 +15,7 @@ from mcgw.ensemble.results import CHUNK_ROWS, MemoryResults, Tables, joined
 from mcgw.errors import StoreError
 from mcgw.machine.memory import check_memory
 from mcgw.machine.progress import Progress, told
+from mcgw.sampling.expected import Expected
 from mcgw.scene.arguments import check_object
 from mcgw.scene.scene import Scene
 from mcgw.scene.storable import storable
@@ -106,7 +107,7 @@ class Values(OfScene):
         sums = self.scene.width
         if self.scene.keep != "moments":
             return sums
-        return sums + self.sampler.moments + self.sampler.cells
+        return sums + int(self.sampler.moments + self.sampler.cells)
 
     @property
     def disk(self) -> int:  # type: ignore[override]
@@ -151,10 +152,10 @@ class Values(OfScene):
         check_memory(f"contact.separations: a block of {rows} surfaces", 3 * 8 * rows * self.columns)
 
 
-def reducer_of(scene: Scene) -> OfScene:
-    """The one for what a scene keeps."""
+def reducer_of(scene: Scene, expected: Expected | None = None) -> OfScene:
+    """The one for what a scene keeps; of a sampler that is only expected, to be asked its size."""
     if scene.keep != "statistics":
-        return Values(scene)
+        return Values(scene, expected)
     from mcgw.ensemble.summarised import Statistics  # for those scenes alone
 
-    return Statistics(scene)
+    return Statistics(scene, expected)

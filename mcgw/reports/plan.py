@@ -4,19 +4,18 @@ from dataclasses import dataclass
 from time import perf_counter
 
 from analytic import QUANTITIES
-from mcgw.ensemble.drawing import in_words, seconds_for, seconds_per_surface
+from mcgw.ensemble.drawing import in_words, rough_seconds, seconds_per_surface
 from mcgw.ensemble.forecast import forecast
 from mcgw.ensemble.simulation import reducer_of
-from mcgw.machine.progress import steps
 from mcgw.machine.terminal import one_line
 from mcgw.reports.side_notes import against_elasticity
-from mcgw.sampling.block import Sampler
-from mcgw.sampling.samplers import sampler_of
+from mcgw.sampling.expected import Expected, expected
 from mcgw.sampling.shared import shared
 from mcgw.scene.fields import COARSEST, EXACT
 from mcgw.scene.in_words import contact_facts
 from mcgw.scene.samplers import promise_of
 from mcgw.scene.scene import Scene
+from mcgw.scene.storable import storable
 from mcgw.sweeps.groups import Group
 from mcgw.sweeps.points import Asked
 from mcgw.sweeps.pooled import Pooling
@@ -39,13 +38,11 @@ class Plan:
     drawn : float
         Uniforms (or normals) expected to be drawn for a surface.
     cells, moments : int
-        Of a surface; 0 for samplers without cells.
+        Of a surface, about; 0 for samplers without cells.
     bytes : int
         Of the results of all surfaces, before compression.
     seconds : float
-        Expected for all surfaces on this machine.
-    law_error : float
-        Distance from the exact laws that was spent, of what `Scene.law_error` allows.
+        Expected for all surfaces on a machine of the last years with so many cores, within a factor of two.
     at : dict of float to float
         Seconds at other accuracies, where they would change.
     """
@@ -59,41 +56,37 @@ class Plan:
     moments: int
     bytes: int
     seconds: float
-    law_error: float
     at: dict[float, float]
 
 
 def plan_of(scene: Scene) -> Plan:
-    """Look at what a scene needs, and time a small block of it, of which nothing is kept."""
-    reducer = reducer_of(scene)
-    sampler = reducer.sampler
-    surfaces = forecast(scene).surfaces
+    """Look at what a scene needs: by arithmetic, without a draw and without any compiled loop."""
+    scene = storable(scene)
+    known, surfaces = expected(scene), forecast(scene).surfaces
     return Plan(
-        sampler.name,
+        known.name,
         surfaces,
         float(scene.n_asperities),
         scene.touching,
-        sampler.draws,
-        sampler.cells,
-        sampler.moments,
-        reducer.joined_bytes(surfaces),
-        seconds_for(scene, sampler, surfaces),
-        sampler.law_error if scene.law_error else 0.0,
-        _at_others(scene, sampler, surfaces),
+        known.draws,
+        known.cells,
+        known.moments,
+        reducer_of(scene, known).joined_bytes(surfaces),
+        rough_seconds(scene, surfaces),
+        _at_others(scene, known, surfaces),
     )
 
 
-def _at_others(scene: Scene, sampler: Sampler, surfaces: int) -> dict[float, float]:
+def _at_others(scene: Scene, known: Expected, surfaces: int) -> dict[float, float]:
     """Seconds at the next decades of accuracy; of a scene to its last digits, at two that are coarser."""
-    if not sampler.cells or promise_of(sampler.name).spends or not hasattr(sampler, "response"):
+    if not known.cells or promise_of(known.name).spends or scene.nominal:
         return {}  # to it, or to its law, accuracy means nothing
     others = (1e-6, 1e-3) if scene.exact else (scene.accuracy / 10, scene.accuracy * 10)
-    found = {}
-    for accuracy in steps(others, "accuracies"):
-        if EXACT <= accuracy <= COARSEST:
-            asked = scene.replace(accuracy=accuracy, sampler=sampler.name)
-            found[accuracy] = seconds_for(asked, sampler_of(asked), surfaces)
-    return found
+    return {
+        accuracy: rough_seconds(scene.replace(accuracy=accuracy, sampler=known.name), surfaces)
+        for accuracy in others
+        if EXACT <= accuracy <= COARSEST
+    }
 
 
 def plan_text(scene: Scene, plan: Plan) -> str:
@@ -105,11 +98,11 @@ def plan_text(scene: Scene, plan: Plan) -> str:
         f"  sampler       {plan.sampler}" + (" (chosen by auto)" if scene.sampler == "auto" else ""),
         f"  touching      {plan.touching:.4g} of a surface, at the lowest d/sigma = {scene.lowest:g}",
         f"  drawn         {plan.drawn:.4g} of a surface",
-        f"  cells         {plan.cells}, with {plan.moments} moments a surface",
+        f"  cells         about {plan.cells}, with {plan.moments} moments a surface",
         f"  quantities    {', '.join(scene.quantities)} at {len(scene.separations)} separations",
         *(f"  {word:13} {what}" for word, what in contact_facts(scene)),
         f"  results       {size if scene.keep == 'statistics' else f'{size} before compression'}",
-        f"  time          about {in_words(plan.seconds)} on this machine",
+        f"  time          about {in_words(plan.seconds)}",
         *_accuracy_lines(scene, plan),
         *(f"  {line}" for line in against_elasticity(scene.validity())),
         "not done:",
@@ -131,7 +124,7 @@ def _accuracy_lines(scene: Scene, plan: Plan) -> list[str]:
         ratios = ", ".join(f"{a:g}: {t / plan.seconds:.2g} x" for a, t in plan.at.items())
         lines.append(f"                time at others: {ratios}")
     if scene.law_error:
-        lines.append(f"  law_error     {plan.law_error:.2g} of {scene.law_error:g} spent")
+        lines.append(f"  law_error     up to {scene.law_error:g} may be spent on Gaussian moments if faster")
     return lines
 
 

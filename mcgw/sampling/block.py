@@ -118,11 +118,6 @@ class Sampler:
     mesh: Mesh
 
     @property
-    def seconds_per_draw(self) -> float:
-        """Very roughly."""
-        return 2e-9
-
-    @property
     def law_error(self) -> float:
         """Distance of the laws of its values from the exact ones; nan if nobody knows."""
         return 0.0

@@ -101,28 +101,38 @@ def mesh_of(scene: Scene, *, split: bool = True, rare: float = 0.1) -> Mesh:
     Mesh
         With every separation and every break of the grading on an edge.
     """
+    edges = edges_before_grading(scene, split=split, rare=rare)
+    if not edges.size:
+        return no_cells(scene)
+    edges = _resolving(scene, edges)
+    return _mesh(scene.heights, float(scene.lowest), edges.tobytes())
+
+
+def edges_before_grading(scene: Scene, *, split: bool = True, rare: float = 0.1) -> Array:
+    """The edges of the cells of `mesh_of`, before those that a grading with kinks takes; none: no cell."""
     law = scene.heights
     low, high = _range(law, rare / scene.n_asperities, scene.lowest)
     if not low < high:
-        return no_cells(scene)
+        return np.empty(0)
     begins, breaks = begins_and_breaks(scene, low, high)
     given = np.array(scene.edges)
     marks = np.unique([low, *begins, *breaks, *bends(scene.modulus, low, high), *law.breaks, *given, high])
     marks = marks[(low <= marks) & (marks <= high)]
     if given.size:
-        edges = refined(law, begins, marks)
-    else:
-        asked = (part.tobytes() for part in (begins, breaks, marks))
-        edges = _edges(law, scene.n_asperities if split else 0, scene.accuracy, *asked)
-    edges = _resolving(scene, edges)
-    return _mesh(law, float(scene.lowest), edges.tobytes())
+        return refined(law, begins, marks)
+    asked = (part.tobytes() for part in (begins, breaks, marks))
+    return _edges(law, scene.n_asperities if split else 0, digits_of(scene), *asked)
+
+
+def digits_of(scene: Scene) -> float:
+    """That the moments of a scene must give."""
+    return DIGITS - math.log10(series_accuracy(scene.accuracy) / EXACT)
 
 
 @kept(8)
-def _edges(law: HeightLaw, n: int, accuracy: float, *asked: bytes) -> Array:
+def _edges(law: HeightLaw, n: int, digits: float, *asked: bytes) -> Array:
     """Edges that suit the height law and the contact law, whatever the grading."""
     begins, breaks, marks = (np.frombuffer(part) for part in asked)
-    digits = DIGITS - math.log10(series_accuracy(accuracy) / EXACT)
     return refined(law, begins, spaced(law, n, digits, begins, breaks, marks))
 
 

@@ -25,11 +25,6 @@ class Direct(Sampler):
         return cls("direct", scene, no_cells(scene))
 
     @property
-    def seconds_per_draw(self) -> float:
-        """By plain loops."""
-        return 2e-8
-
-    @property
     def words(self) -> int:
         """One surface at a time."""
         return 0

@@ -40,6 +40,15 @@ _CLOSE = 4e-15
 _MOST_STEPS = 10_000
 
 
+def on_a_grid(scene: Scene) -> Scene:
+    """The scene without interaction, at separations whose cells are those of `CellsAtNominal`."""
+    width = math.sqrt(_WEIGHTED / scene.n_asperities)
+    width = min(max(2.0 ** round(math.log2(width)), _NARROWEST), _WIDEST)
+    steps = max(math.ceil((scene.highest - scene.lowest) / width), 1)
+    grid = scene.lowest + width * np.arange(steps)
+    return replace(scene, interaction=None, separations=tuple(grid.tolist()))
+
+
 @dataclass(frozen=True, eq=False)
 class CellsAtNominal(Sampler):
     """Surfaces drawn in cells, whose width is a compromise (`mcgw.sampling.balance`).
@@ -52,12 +61,7 @@ class CellsAtNominal(Sampler):
     @classmethod
     def of(cls, scene: Scene) -> "CellsAtNominal":
         """Prepare it."""
-        width = math.sqrt(_WEIGHTED / scene.n_asperities)
-        width = min(max(2.0 ** round(math.log2(width)), _NARROWEST), _WIDEST)
-        steps = max(math.ceil((scene.highest - scene.lowest) / width), 1)
-        grid = scene.lowest + width * np.arange(steps)
-        plain = replace(scene, interaction=None, separations=tuple(grid.tolist()))
-        return cls("cells", scene, mesh_of(plain, split=False))
+        return cls("cells", scene, mesh_of(on_a_grid(scene), split=False))
 
     @property
     def moments(self) -> int:
@@ -242,11 +246,6 @@ class TailAtNominal(Sampler):
     """
 
     table: "RadiusTable | None"
-
-    @property
-    def seconds_per_draw(self) -> float:
-        """With all steps of the searches."""
-        return 1e-6
 
     def block(self, first: int, n: int) -> Block:
         """Results of surfaces `first` ... `first + n - 1`."""

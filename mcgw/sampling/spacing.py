@@ -182,6 +182,14 @@ def _prices(
     law: HeightLaw, n: int, cells: _Cells, root: NDArray[np.bool_] | np.bool_, digits: float
 ) -> Array:
     """What the asperities of a surface cost in each cell; contacts begin where it starts, or not."""
+    plain, rooted = _orders(law, n, cells, root, digits)
+    return np.asarray(_CELL + n * (cells.above - cells.beyond) * price(plain, rooted))
+
+
+def _orders(
+    law: HeightLaw, n: int, cells: _Cells, root: NDArray[np.bool_] | np.bool_, digits: float
+) -> tuple[Array, Array]:
+    """How many T_j and R_j each cell should need: no whole numbers."""
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         bend = np.nan_to_num(np.abs(law.log_ratio(cells.start, cells.width)), nan=np.inf)
         # Of a surface's sum, rather than of the law, where so many touch that it is sure to be large.
@@ -190,7 +198,31 @@ def _prices(
         share = np.log10(np.where(touching > SURE, expected / touching * np.sqrt(reach), 1.0))
         plain = (digits + share) / _rate(np.minimum(1 + 2 * cells.distance / cells.width, 2 / bend))
         rooted = np.where(root, 1 + (digits + share) / _rate(2 / bend), 0.0)
-    return np.asarray(_CELL + expected * price(plain, rooted))
+    return plain, rooted
+
+
+def expected_orders(law: HeightLaw, n: int, digits: float, begins: Array, edges: Array) -> tuple[Ints, Ints]:
+    """About how many T_j and R_j each cell will need: what is known before any law is resolved on it.
+
+    Parameters
+    ----------
+    law, n, digits
+        As of `cuts`; `digits` one number or one a cell.
+    begins, edges : ndarray
+        Where contacts begin, and where cells do; increasing.
+
+    Returns
+    -------
+    (ndarray, ndarray)
+        One number a cell.
+    """
+    low, above = edges[:-1], law.sf(edges)
+    k = np.searchsorted(begins, low)
+    before = low - np.concatenate([[-np.inf], begins])[k]
+    root = np.append(begins, np.inf)[k] == low
+    cells = _Cells(low, np.diff(edges), before, above[:-1], above[1:])
+    plain, rooted = (np.maximum(np.ceil(x), 0.0) for x in _orders(law, n, cells, root, digits))
+    return np.maximum(plain, 1.0).astype(np.int64), rooted.astype(np.int64)
 
 
 def price(plain: Array | Ints, rooted: Array | Ints) -> Array:

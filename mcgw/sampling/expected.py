@@ -1,0 +1,112 @@
+"""What the sampler of a scene will have, and about how long it takes, before anything is compiled.
+
+Cells are cut where their moments cost the least (`mcgw.sampling.spacing`), so both are known before any law
+is resolved on a cell. Cells that a grading with kinks takes besides are not counted.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from analytic import QUANTITIES, quantity_of
+from analytic.arrays import Array, Ints
+from mcgw.sampling.cells import digits_of, edges_before_grading
+from mcgw.sampling.samplers import name_of
+from mcgw.sampling.spacing import expected_orders, price
+from mcgw.sampling.stretches import begins_and_breaks
+from mcgw.scene.scene import Scene
+
+# Seconds of one thread, within a factor of two on machines of the last years: of a surface, an asperity in a
+# cell, a moment under Hertz's law and under others, one by one an asperity and a value of it under both, and
+# of NumPy's generator.
+_SURFACE, _INSIDE, _MOMENT, _OF_LAW = 2e-6, 1e-9, 1.1e-8, 2.5e-8
+_ALONE, _VALUE, _VALUE_OF_LAW, _GENERATOR = 1.2e-7, 1.9e-9, 3.5e-8, 3e-4
+_RADIUS, _DRAWS_WITH_RADIUS = 10, 6  # times an asperity with the radius of all
+_BALANCE, _STEPS, _STEP = (
+    5e-6,
+    4e-4,
+    1e-7,
+)  # of a separation by cells; by single asperities, and each of these
+_RARE, _RARE_STRATA = 0.1, 1e-9
+
+
+@dataclass(frozen=True)
+class Expected:
+    """What a surface takes.
+
+    Parameters
+    ----------
+    name : str
+        Of the sampler.
+    cells, moments : int
+        About how many; 0 for samplers without cells.
+    draws : float
+        Numbers drawn.
+    seconds : float
+        Of one thread, within a factor of two or so.
+    """
+
+    name: str
+    cells: int
+    moments: int
+    draws: float
+    seconds: float
+
+
+def expected(scene: Scene) -> Expected:
+    """What the sampler of a scene is expected to have and to take."""
+    name, touching = name_of(scene), float(scene.touching)
+    if name in ("direct", "tail"):
+        draws = float(scene.n_asperities) if name == "direct" else touching
+        begin = _GENERATOR if name == "direct" else _SURFACE
+        return Expected(name, 0, 0, draws, begin + _alone(scene, touching))
+    if scene.nominal:
+        from mcgw.sampling.balance import POINTS  # for those scenes alone
+        from mcgw.sampling.nominal import on_a_grid
+
+        plain = on_a_grid(scene)
+        cells = max(len(edges_before_grading(plain, split=False)) - 1, 0)
+        seconds = _SURFACE + _BALANCE * len(scene.separations) + _INSIDE * plain.touching
+        return Expected(name, cells, POINTS * cells, float(plain.touching), seconds)
+    return _in_cells(name, scene)
+
+
+def _in_cells(name: str, scene: Scene) -> Expected:
+    rare = _RARE_STRATA if name == "stratified" else _RARE
+    edges = edges_before_grading(scene, split=name == "cells", rare=rare)
+    inside = scene.n_asperities * -np.diff(scene.heights.sf(edges)) if edges.size else np.empty(0)
+    outside = max(scene.touching - float(inside.sum()), 0.0)
+    plain, rooted = _orders(scene, edges)
+    moments, own = int(plain.sum() + rooted.sum()) * _families(scene), scene.curvature is not None
+    draws = float(inside.sum()) * (_DRAWS_WITH_RADIUS if own else 1) * (moments > 0)
+    seconds = _SURFACE + moments * (_MOMENT if scene.hertzian else _OF_LAW) + _alone(scene, outside)
+    if name == "aggregate":
+        draws = min(draws, float(moments))
+    elif moments:
+        seconds += float(inside @ price(plain, rooted)) * _INSIDE * (_RADIUS if own else 1)
+    return Expected(name, inside.size, moments, outside + draws, seconds)
+
+
+def _orders(scene: Scene, edges: Array) -> tuple[Ints, Ints]:
+    """Moments of each cell, for all quantities that have one power of the radius."""
+    if not edges.size:
+        return np.empty(0, dtype=np.int64), np.empty(0, dtype=np.int64)
+    begins, _ = begins_and_breaks(scene, float(edges[0]), float(edges[-1]))
+    lasting = scene.keep == "moments"  # then no number of contacts counts on others, and one is in reserve
+    n = 0 if lasting else scene.n_asperities
+    plain, rooted = expected_orders(scene.heights, n, digits_of(scene), begins, edges)
+    return plain + lasting, rooted + lasting
+
+
+def _families(scene: Scene) -> int:
+    """Powers of the radius by which moments are kept apart; 0 where contacts are only counted."""
+    names = QUANTITIES if scene.keep == "moments" else scene.quantities
+    powers = {quantity_of(name).radius for name in names if not quantity_of(name).counts}
+    return len(powers) if scene.curvature is not None else min(len(powers), 1)
+
+
+def _alone(scene: Scene, asperities: float) -> float:
+    """Seconds that asperities take which are drawn and added up one by one."""
+    if scene.nominal:
+        return len(scene.separations) * (_STEPS + asperities * _STEP)
+    return asperities * (_ALONE + scene.width * (_VALUE if scene.hertzian else _VALUE_OF_LAW))
