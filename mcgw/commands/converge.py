@@ -36,9 +36,8 @@ def execute(args: argparse.Namespace) -> int:
     with bar("ensembles", terminal=True) as show:
         found = converge(scene, progress=show)
     save_convergence(found, path)
-    word = "passed" if found.passed else "FAILED"
     many = f"{SEEDS} ensembles of {found.scene.n_surfaces} surfaces"
-    news(f"convergence {word}: p = {found.p:.3g} over all checks of {many}", f"{path}: figure")
+    news(f"convergence {found.word}: p = {found.p:.3g} over all checks of {many}", f"{path}: figure")
     if says(ALL) or not found.passed:
         news(found.table().text())
     tell_cautions(scene, f"mcgw show --plan {args.scene}")

@@ -77,8 +77,6 @@ def _execute(args: argparse.Namespace) -> int:
 def _of_threads(threads: int | None) -> list[str]:
     from numba import get_num_threads
 
-    if threads is not None and threads < 1:
-        raise ValueError(f"threads = {threads}: give a whole number >= 1")
     if threads is None or threads <= get_num_threads():
         return []
     return [f"--threads {threads}: this machine has {get_num_threads()}, all are used"]

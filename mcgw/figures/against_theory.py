@@ -48,10 +48,10 @@ def save_comparison(comparison: "Comparison | SweepComparison", path: str | Path
 def _data(comparison: Comparison) -> FigureData:
     ensemble, scene, verdict = comparison.ensemble, comparison.ensemble.scene, comparison.verdict
     panels = tuple(quantity_panel(comparison, name) for name in comparison.curves)
-    word = "agree" if verdict.agrees else "DISAGREE"
     seen = verdict.seen.replace("chi-square", "χ² =").replace(" degrees of freedom", " degrees")  # one line
     return FigureData(
-        f"{shown_title(scene, 'Ensemble')}\nMonte Carlo and theory {word}: {seen}, p = {verdict.p:.3g}",
+        f"{shown_title(scene, 'Ensemble')}\n"
+        f"Monte Carlo and theory {verdict.word}: {seen}, p = {verdict.p:.3g}",
         f"{ensemble.n_surfaces} surfaces of {scene.n_asperities:g} asperities, "
         f"{contact_label(scene)}; sampler {ensemble.sampler}, seed {scene.seed}",
         panels,
@@ -97,7 +97,6 @@ def sweep_figure(comparison: "SweepComparison") -> Figure:
         Two panels beside each other.
     """
     verdict, sweep = comparison.verdict, comparison.sweep
-    word = "agree" if verdict.agrees else "DISAGREE"
     with mpl.rc_context(STYLE):
         figure = Figure(figsize=(8.4, 3.9), layout="constrained")
         left, right = figure.subplots(1, 2)
@@ -105,7 +104,7 @@ def sweep_figure(comparison: "SweepComparison") -> Figure:
         _draw_worst(comparison, right)
         figure.suptitle(
             f"{shown_title(sweep.scenes[0], 'Sweep')}: {verdict.points} scenes\n"
-            f"Monte Carlo and theory {word}: p = {verdict.p:.3g} for all points together",
+            f"Monte Carlo and theory {verdict.word}: p = {verdict.p:.3g} for all points together",
             fontsize=10,
         )
         figure.supxlabel(_CAPTION, fontsize=8, color=PAPER)

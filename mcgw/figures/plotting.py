@@ -86,9 +86,10 @@ def _(result: Ensemble, ax: Any, *, quantity: str) -> None:
 @_draw.register
 def _(result: Comparison, ax: Any, *, quantity: str) -> None:
     draw_panel(ax, quantity_panel(result, quantity), keyed=True)
-    word = "agree" if result.verdict.agrees else "DISAGREE"
     ax.set(ylabel=quantity_of(quantity).title)
-    ax.set_title(f"Monte Carlo and theory {word}: p = {result.verdict.p:.3g} over all means", loc="left")
+    ax.set_title(
+        f"Monte Carlo and theory {result.verdict.word}: p = {result.verdict.p:.3g} over all means", loc="left"
+    )
 
 
 @_draw.register
@@ -147,7 +148,7 @@ def _(result: Convergence, ax: Any) -> None:
     draw_checks(ax, result)
     ax.set_yticks(ax.get_yticks(), [check.name for check in result.checks])
     ax.set_xlabel("probability by chance; grey: fails")
-    ax.set_title(f"Statistical convergence {'passed' if result.passed else 'FAILED'}: p = {result.p:.3g}")
+    ax.set_title(f"Statistical convergence {result.word}: p = {result.p:.3g}")
 
 
 @_draw.register

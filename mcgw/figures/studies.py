@@ -46,9 +46,9 @@ def save_convergence(found: Convergence, path: str | Path) -> None:
             _say(axes[name], f"slope in {name}: too few contacts")
         _draw_scores(axes["z"], found.scores)
         draw_checks(bottom.subplots(), found)
-        word = "passed" if found.passed else "FAILED"
         figure.suptitle(
-            f"{shown_title(found.scene, 'Scene')}\nStatistical convergence {word}: p = {found.p:.3g} over "
+            f"{shown_title(found.scene, 'Scene')}\n"
+            f"Statistical convergence {found.word}: p = {found.p:.3g} over "
             f"{len(found.checks)} checks (false alarms: 1 in {1 / FALSE_ALARM:.0f})",
             fontsize=10,
         )

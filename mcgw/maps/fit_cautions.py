@@ -30,18 +30,6 @@ _GRAVEST = (
 )  # fmt: skip
 
 
-def flaws(fit: Fit, ready: Prepared) -> list[str]:
-    """Warnings about what lies on a map, each in one line that says what to do."""
-    level = ready.levelled
-    return [
-        *_units(level),
-        *_edges(level),
-        *_spikes(level),
-        *_alone(fit, level),
-        *(_step(level) or _form(fit, level) or _waves(fit)),
-    ]
-
-
 def _units(topography: Topography) -> Iterator[str]:
     if topography.steepness > STEEPEST:
         yield (
@@ -51,39 +39,37 @@ def _units(topography: Topography) -> Iterator[str]:
         yield f"unit: a pixel is {max(topography.pixel):g} m; was um or mm meant?"
 
 
-def _edges(topography: Topography) -> list[str]:
-    number = bad_edges(topography.heights)
-    if not number:
-        return []
-    points = "outermost points" if number == 1 else f"outermost {number} points"
-    return [f"edge: the {points} of the map jump unlike all others; leave them off by --trim {number}"]
+def _edges(topography: Topography) -> Iterator[str]:
+    if number := bad_edges(topography.heights):
+        points = "outermost points" if number == 1 else f"outermost {number} points"
+        yield f"edge: the {points} of the map jump unlike all others; leave them off by --trim {number}"
 
 
-def _spikes(topography: Topography) -> list[str]:
+def _spikes(topography: Topography) -> Iterator[str]:
     spikes = spikes_of(topography)
     if spikes is None:
-        return []
+        return
     places = "1 place stands" if spikes.number == 1 else f"{spikes.number} places stand"
     kind = "high" if spikes.height > 0 else "deep"
-    return [
+    yield (
         f"spikes: {places} out of the map, the largest at x = {spikes.x:.4g} m, y = {spikes.y:.4g} m, "
         f"{abs(spikes.height):.3g} m {kind} and narrower than five pixels; one alone can set R, eta and "
         "sigma: take them out by --spikes remove, or crop the map"
-    ]
+    )
 
 
-def _alone(fit: Fit, topography: Topography) -> list[str]:
+def _alone(fit: Fit, topography: Topography) -> Iterator[str]:
     alone = fit.alone
     if alone is None:
-        return []
+        return
     place = (
         f"{axis} = {size * n / alone.across:.4g} to {size * (n + 1) / alone.across:.4g} m"
         for axis, size, n in zip("xy", topography.size, (alone.column, alone.row), strict=True)
     )
-    return [
+    yield (
         f"sub-area: without the one at {', '.join(place)} {alone.moment} is {alone.left:.2g} of itself; the "
         "errors stated say little where one sub-area counts alone: look there, and crop it"
-    ]
+    )
 
 
 def _step(topography: Topography) -> list[str]:
@@ -119,9 +105,14 @@ def _waves(fit: Fit) -> list[str]:
 
 def cautions(fit: Fit, ready: Prepared, use: str = "auto") -> list[str]:
     """Warnings about the fit of a map, and the estimate to `use`: a line each, the gravest first."""
+    level = ready.levelled
     return _gravest_first(
         [
-            *flaws(fit, ready),
+            *_units(level),
+            *_edges(level),
+            *_spikes(level),
+            *_alone(fit, level),
+            *(_step(level) or _form(fit, level) or _waves(fit)),
             *faults(ready, _longer(ready)),
             *_of_the_pixel(fit, ready),
             *_of_the_heights(fit),
@@ -191,9 +182,7 @@ def _of_the_summits(fit: Fit, used: str) -> Iterator[str]:
 
 def profile_cautions(fit: ProfileFit, profiles: Sequence[Profile], cutoff: float | None) -> list[str]:
     """Warnings about the fit of these profiles, the gravest first."""
-    return _gravest_first(
-        [*_of_profile_points(profiles, cutoff), *_of_profile_heights(fit), *_of_profile_waves(fit)]
-    )
+    return _gravest_first([*_of_profile_points(profiles, cutoff), *_of_profile_heights(fit)])
 
 
 def _of_profile_points(profiles: Sequence[Profile], cutoff: float | None) -> Iterator[str]:
@@ -232,13 +221,8 @@ def _of_profile_heights(fit: ProfileFit) -> Iterator[str]:
             f"alpha: {fit.moments.alpha:.3g} is below 1.5, which no isotropic Gaussian surface has; a turned "
             "or ground surface needs a map"
         )
-
-
-def _of_profile_waves(fit: ProfileFit) -> list[str]:
-    error = fit.numbers["sigma"].relative
-    if error < _UNSURE:
-        return []
-    return [
-        f"waves: sigma is known to {100 * error:.2g} % only, since the longest are few; give "
-        "longer profiles, or more of them"
-    ]
+    if (error := fit.numbers["sigma"].relative) >= _UNSURE:
+        yield (
+            f"waves: sigma is known to {100 * error:.2g} % only, since the longest are few; give "
+            "longer profiles, or more of them"
+        )

@@ -95,13 +95,12 @@ class Comparison(Shown):
         farthest = {name: table.at([k]) for (name, table), k in tables}
         v = self.verdict
         seen = f"{v.seen}, p = {v.p:.3g}"
-        word = "agree" if v.agrees else "DISAGREE"
         facts = [
             ("all means" if v.laws is None else "all values", seen),
             ("elasticity", self.ensemble.scene.validity().brief),
         ]
         table = stacked(farthest, "quantity", "farthest off")
-        return Sheet(f"Monte Carlo and theory {word}", facts, table)
+        return Sheet(f"Monte Carlo and theory {v.word}", facts, table)
 
     def tables(self) -> dict[str, Table]:
         """By quantity: mean, 95 % interval, standard deviation, theory and residual at every separation."""
@@ -164,7 +163,6 @@ class SweepComparison(Shown):
     def sheet(self, most: int = _LISTED) -> Sheet:
         """The verdict, and the points that are farthest from theory."""
         v = self.verdict
-        word = "agree" if v.agrees else "DISAGREE"
         left = self.sweep.axes.size - v.points
         smallest = self.worst[0].verdict.p
         beyond = int((np.abs(self.residuals) > 3).sum())
@@ -177,7 +175,7 @@ class SweepComparison(Shown):
         shown = [(one, *one.worst) for one in self.worst[:most]]
         at = [self.sweep.axes.values_text(where[one.number]) for one, *_ in shown]
         columns = (Column("point", at, ", ".join(self.sweep.axes.keys)), *_columns(shown))
-        title = f"Monte Carlo and theory of {v.points} scenes {word}"
+        title = f"Monte Carlo and theory of {v.points} scenes {v.word}"
         return Sheet(title, facts, Table(columns))
 
     def table(self) -> Table:

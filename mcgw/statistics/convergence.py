@@ -80,16 +80,20 @@ class Convergence(Shown):
         """False for at most one in `1/FALSE_ALARM` right samplers."""
         return self.p > FALSE_ALARM
 
+    @property
+    def word(self) -> str:
+        """Whether it passed."""
+        return "passed" if self.passed else "FAILED"
+
     def plot(self, ax: Any = None) -> Any:
         """Draw the probability of every check; returns the axes."""
         return plotted(self, ax)
 
     def sheet(self) -> Sheet:
         """The verdict and its worst checks."""
-        word = "passed" if self.passed else "FAILED"
         worst = sorted(self.checks, key=lambda check: check.p)[:_MOST_SHOWN]
         facts = [("p", f"{self.p:.3g} over all {len(self.checks)} checks")]
-        return Sheet(f"Statistical convergence {word}", facts, _table(worst, "worst"))
+        return Sheet(f"Statistical convergence {self.word}", facts, _table(worst, "worst"))
 
     def table(self) -> Table:
         """Every check."""

@@ -92,10 +92,14 @@ class Verdict:
         return f"chi-square {self.chi_square:.1f} for {self.degrees} degrees of freedom{where}"
 
     @property
+    def word(self) -> str:
+        """Whether they agree."""
+        return "agree" if self.agrees else "DISAGREE"
+
+    @property
     def line(self) -> str:
         """Do they agree, and how sure is that."""
-        word = "agree" if self.agrees else "DISAGREE"
-        return f"Monte Carlo and theory {word}: {self.seen}, p = {self.p:.3g}"
+        return f"Monte Carlo and theory {self.word}: {self.seen}, p = {self.p:.3g}"
 
     def with_laws(self, laws: "LawsOfValues") -> "Verdict":
         """On means and on values together: twice the smaller probability."""
