@@ -190,47 +190,6 @@ def separation_at(
     return _model(surface, grading, heights).separation_at(quantity, value)
 
 
-def asperities_for(model: Model, quantity: str, h: ArrayLike, std_over_mean: float) -> Array:
-    """Asperities that a surface must have for surfaces to differ by so little.
-
-    A sum over N independent asperities has a mean and a variance that grow as N.
-
-    Parameters
-    ----------
-    model : Model
-        Of independent asperities; its own number does not matter.
-    quantity : str
-        What differs from surface to surface.
-    h : array_like
-        Reduced separations, any shape.
-    std_over_mean : float
-        Standard deviation over surfaces, over the mean: 0.01 for one percent.
-
-    Returns
-    -------
-    ndarray
-        In the shape of `h`; not rounded.
-
-    Raises
-    ------
-    ValueError
-        If `std_over_mean` is not a positive finite number.
-
-    Examples
-    --------
-    >>> import analytic
-    >>> surface = analytic.Surface(sigma=1e-6, radius=1e-5, eta=1e9, nominal_area=1e-6, E_star=1e9)
-    >>> model = analytic.Model(surface, count="poisson")
-    >>> float(analytic.asperities_for(model, "contacts", 0.0, 0.1).round(6))
-    200.0
-    """
-    if not (np.isfinite(std_over_mean) and std_over_mean > 0):
-        raise ValueError(f"std_over_mean = {std_over_mean!r}: give a positive finite number, as 0.01")
-    with np.errstate(divide="ignore", invalid="ignore"):
-        relative = model.std(quantity, h) / np.abs(model.mean(quantity, h))
-    return np.asarray(model.number * (relative / std_over_mean) ** 2)
-
-
 def mean_modulus(
     h: ArrayLike,
     grading: Grading,

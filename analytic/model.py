@@ -233,6 +233,52 @@ class Model:
             2 * (len(quantities), h.size)
         )
 
+    def asperities_for(self, quantity: str, h: ArrayLike, std_over_mean: float, *, given: str = "") -> Array:
+        """Asperities that a surface must have for surfaces to differ by so little.
+
+        A sum over N independent asperities has a mean and a variance that grow as N. At a given load each
+        surface has its own separation: to first order its area A is off by ``dA - A'/P' dP`` there.
+
+        Parameters
+        ----------
+        quantity : str
+            What differs from surface to surface.
+        h : array_like
+            Reduced separations, any shape.
+        std_over_mean : float
+            Standard deviation over surfaces, over the mean: 0.01 for one percent.
+        given : str, optional
+            Another quantity that is the same on all surfaces, its mean at `h`: "load". To leading order.
+
+        Returns
+        -------
+        ndarray
+            In the shape of `h`; not rounded.
+
+        Raises
+        ------
+        ValueError
+            If `std_over_mean` is not a positive finite number.
+
+        Examples
+        --------
+        >>> import analytic
+        >>> surface = analytic.Surface(sigma=1e-6, radius=1e-5, eta=1e9, nominal_area=1e-6, E_star=1e9)
+        >>> model = analytic.Model(surface, count="poisson")
+        >>> float(model.asperities_for("contacts", 0.0, 0.1).round(6))
+        200.0
+        """
+        if not (np.isfinite(std_over_mean) and std_over_mean > 0):
+            raise ValueError(f"std_over_mean = {std_over_mean!r}: give a positive finite number, as 0.01")
+        variance, h = self.cumulants(quantity, h).variance, np.asarray(h, dtype=np.float64)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            if given:
+                rate = self.slope(quantity, h) / self.slope(given, h)
+                both = [self.covariance([quantity, given], [x])[0, 0, 1, 0] for x in h.ravel().tolist()]
+                apart = rate * self.cumulants(given, h).variance - 2 * np.reshape(both, h.shape)
+                variance = np.maximum(variance + rate * apart, 0.0)
+            return np.asarray(self.number * variance / (self.mean(quantity, h) * std_over_mean) ** 2)
+
     def tangential_load(self, h: ArrayLike, tangential: Tangential) -> Array:
         """Mean tangential load of a surface that is pressed on and then pushed sideways.
 

@@ -241,12 +241,12 @@ def test_the_separation_at_a_load():
 @pytest.mark.parametrize("count", ["fixed", "poisson"])
 def test_so_many_asperities_scatter_as_wanted(count):
     of = model(3000, count=count)
-    wanted = analytic.asperities_for(of, "load", [0.0, 2.5], 0.01)
+    wanted = of.asperities_for("load", [0.0, 2.5], 0.01)
     for h, n in zip((0.0, 2.5), wanted.tolist(), strict=True):
         large = model(n, count=count).distribution("load", h)
         assert large.std() / large.mean() == pytest.approx(0.01, rel=1e-9)
     with pytest.raises(ValueError, match="std_over_mean = 0"):
-        analytic.asperities_for(of, "load", 1.0, 0)
+        of.asperities_for("load", 1.0, 0)
 
 
 def test_laws_of_contact_and_radii_keep_their_moments():
@@ -282,6 +282,34 @@ def test_asperities_that_pull():
     np.testing.assert_allclose(law.cdf(law.ppf([0.001, 0.5, 0.999])), [0.001, 0.5, 0.999], rtol=1e-9)
     with pytest.raises(ValueError, match="adhesion"):
         of.separation_law(float(known.mean))
+
+
+def test_where_digits_end_is_said():
+    """In tails too; steps of listed summits are smoothed, which the error says where they are few."""
+    many = model(30_000).distribution("load", 2.0)
+    assert np.all(many.error_at(many.isf([1e-9, 0.5])) < 1e-10)
+    heights = np.random.default_rng(1).normal(size=400)
+    listed = analytic.MeasuredHeights(heights)
+    of = model(400, heights=listed, grading=analytic.Homogeneous())
+    for h, most in ((1.0, 1e-14), (2.5, 0.05)):
+        law, s = of.distribution("area", h), (heights - heights.mean()) / heights.std()
+        drawn = np.random.default_rng(2).choice(s, (20_000, 400))
+        areas = np.maximum(drawn - h, 0).sum(axis=1) * unit(of, "area")
+        places = law.ppf([0.2, 0.5, 0.9])
+        shares = [np.mean(areas <= x) for x in places]
+        assert 0 < law.error < most
+        np.testing.assert_allclose(shares, law.cdf(places), atol=4.5 * 0.5 / np.sqrt(20_000) + law.error)
+
+
+def test_one_contact_of_a_yielding_summit_with_its_own_radius_takes_no_minute():
+    """Drawn: heights and radii of their law; the transform falls slowly, and its end is faded out."""
+    radii = analytic.RandomCurvature(5.0)
+    of = model(30_000, curvature=radii, heights=radii.heights, law=analytic.KogutEtsion(critical=0.05))
+    law = of.distribution("load", 3.9)
+    assert law.var() == pytest.approx(float(of.cumulants("load", 3.9).variance), rel=1e-9)
+    x = law.isf([0.2, 0.05])
+    np.testing.assert_allclose(law.sf(x), [0.2, 0.05], rtol=1e-4)
+    assert law.cdf(0.0) == pytest.approx(law.atom, abs=1e-3)
 
 
 def test_nobody_pays_for_it_who_does_not_ask():

@@ -197,6 +197,9 @@ def test_regrade(file, ratios, tmp_path, capsys):
     assert f"{tmp_path / 'n.h5'}: 150 surfaces, the same as in {file}" in out
 
 
+SOLVED = ("theory", "mean", "low_95", "high_95", "specimen_05", "specimen_95")
+
+
 @pytest.mark.parametrize(
     ("words", "given", "pressure", "title"),
     [
@@ -213,9 +216,8 @@ def test_solve(scene, words, given, pressure, title, tmp_path, capsys):
     out = out_of(["solve", tmp_path / "s.toml", *words, "--csv", tmp_path / "s.csv"], capsys)
     lines = out.splitlines()
     assert lines[0] == title
-    assert lines[1].split() == ["quantity", "unit", "theory", "mean", "95", "%", "interval", "std", *(
-        ["corrected", "(95", "%)"] if given[0] == "load" else []
-    )]  # fmt: skip
+    head = "quantity unit theory mean 95 % interval 90 % of specimens"
+    assert " ".join(lines[1].split()) == head + " corrected (95 %)" * (given[0] == "load")
     rows = {row["quantity"]: row for row in rows_of(tmp_path / "s.csv")}
     assert list(rows) == ["separation", "mean_gap", *analytic.QUANTITIES]
     h = float(rows["separation"]["theory"])
@@ -235,16 +237,18 @@ def test_solve(scene, words, given, pressure, title, tmp_path, capsys):
     assert exact.mean(few, given[0], [h])[0] == pytest.approx(given[1], rel=1e-8)
     shown = {}
     for line in lines[2:]:
-        if match := re.match(r"  (\S+) +(\S+) +(\S+) +(\S+) +(\S+) \.\.\. (\S+) +(\S+)(?: +\S.*)?$", line):
+        if match := re.match(
+            r"  (\S+) +(\S+) +(\S+) +(\S+) +(\S+) \.\.\. (\S+) +(\S+) \.\.\. (\S+)(?: +\S.*)?$", line
+        ):
             assert match[2] == units[match[1]]
             shown[match[1]] = [float(x) for x in match.groups()[2:]]
     assert set(shown) == set(rows) - {given[0]}
     for name, numbers in shown.items():
-        wanted = [float(rows[name][key]) for key in ("theory", "mean", "low_95", "high_95", "std")]
+        wanted = [float(rows[name][key]) for key in SOLVED]
         seen = 0.06 * (wanted[3] - wanted[2]) / 4 + 6e-7 * abs(wanted[0])  # of its error; of seven digits
-        np.testing.assert_allclose(numbers[:-1], wanted[:-1], rtol=0, atol=seen)
-        assert numbers[-1] == pytest.approx(wanted[-1], rel=6e-3)
-    assert [line for line in lines if line.startswith("std: over 25 surfaces of 3000 asperities")]
+        np.testing.assert_allclose(numbers[:-2], wanted[:-2], rtol=0, atol=seen)
+        np.testing.assert_allclose(numbers[-2:], wanted[-2:], rtol=6e-4)
+    assert [line for line in lines if line.startswith("specimens: 25 surfaces of 3000 asperities")]
     assert ("Few contacts" in out) == (float(rows["contacts"]["theory"]) < 30)
     for name, x in mcgw.solve(few, **dict([given])).surfaces.items():
         assert float(rows[name]["mean"]) == pytest.approx(x.mean(), rel=1e-9)

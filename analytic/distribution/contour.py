@@ -23,8 +23,10 @@ from analytic.distribution.one_asperity import OneAsperity
 
 _NOTHING = 1e-17
 _DIED = 1e-16
+_NEVER = -40.0  # logarithm of a probability that is left out
 _BLOCK = 24  # points of the line that are taken at a time
-_MOST = 1 << 15
+MOST = 1 << 12
+_CUT = 36.0, 8  # the transform that has not died away is faded out by exp(-36 (t/last)^8)
 _ROOM = 12.0  # standard deviations of the tilted sum between x and its images
 _TOGETHER = 3.0  # of them, over which arguments share a line
 _STEPS = 60
@@ -51,12 +53,15 @@ class Line:
         Where the line crosses the real axis, and the standard deviation of the sum tilted by it.
     room : float
         Range of the arguments.
+    most : int, optional
+        Points, if the transform has not died away before.
     """
 
     one: OneAsperity
     theta: float
     spread: float
     room: float
+    most: int = MOST
 
     @cached_property
     def _counting(self) -> OneAsperity:
@@ -74,16 +79,26 @@ class Line:
 
     @cached_property
     def _transform(self) -> tuple[Complex, Complex]:
-        """Points of the line, and there the transform of the sum less its mean, over that on the axis."""
-        step = 2 * np.pi / self.period
+        """Points of the line, and there the transform of the sum less its mean, over that on the axis.
+
+        Without what the surfaces have that touch nowhere, and with a smooth end: a kernel, many moments of
+        which vanish, then stands in for the jumps of a law.
+        """
+        step, one = 2 * np.pi / self.period, self._counting
         parts: list[Array] = []
         found: list[Complex] = []
-        for first in range(0, _MOST, _BLOCK):
-            parts.append(np.asarray(step * (np.arange(first, first + _BLOCK) + 0.5)))
-            found.append(np.exp(self._counting.cumulants(self.theta, parts[-1]) - self._size))
+        for first in range(0, self.most, _BLOCK):
+            t = np.asarray(step * (np.arange(first, first + _BLOCK) + 0.5))
+            parts.append(t)
+            found.append(np.exp(one.cumulants(self.theta, t) - self._size))
+            if one.nothing > _NEVER:
+                found[-1] -= np.exp(one.nothing - one.mean * (self.theta + 1j * t) - self._size)
             if np.abs(found[-1][-1]) < _DIED:
                 break
-        return np.asarray(self.theta + 1j * np.concatenate(parts)), np.concatenate(found)
+        t, transform = np.concatenate(parts), np.concatenate(found)
+        if np.abs(transform[-1]) >= _DIED:
+            transform *= np.exp(-_CUT[0] * (t / t[-1]) ** _CUT[1])
+        return np.asarray(self.theta + 1j * t), transform
 
     @cached_property
     def _size(self) -> float:
@@ -97,9 +112,12 @@ class Line:
         terms = transform * np.exp(-np.multiply.outer(apart, z - self.theta))
         height = np.exp(self._size - self.theta * apart) * (2 / self.period)
         above, density = height * (terms / z).real.sum(axis=1), height * terms.real.sum(axis=1)
-        image = np.exp(-abs(self.theta) * self.period)
+        image, atom = np.exp(-abs(self.theta) * self.period), 0.0
+        if (nothing := self._counting.nothing) > _NEVER:
+            atom = float(np.exp(nothing))
         less, more = (1.0, image) if self.theta >= 0 else (image, 1.0)
-        return Values(less / (1 + image) - above, above + more / (1 + image), density)
+        less, more = ((1 - atom) * share / (1 + image) for share in (less, more))
+        return Values(less - above + atom * (x >= 0), above + more + atom * (x < 0), density)
 
 
 def saddle(one: OneAsperity, x: float) -> tuple[float, float]:
@@ -119,13 +137,13 @@ def saddle(one: OneAsperity, x: float) -> tuple[float, float]:
     return theta, spread
 
 
-def by_contour(one: OneAsperity, x: Array) -> Values:
+def by_contour(one: OneAsperity, x: Array, most: int = MOST) -> Values:
     """The law of the sum of all asperities, at increasing arguments."""
     parts, i = [], 0
     while i < x.size:
         _, spread = saddle(bounded(one, x[i])[0], x[i])
         stop = max(int(np.searchsorted(x, x[i] + _TOGETHER * spread, side="right")), i + 1)
-        parts.append(_on_one_line(one, x[i:stop]))
+        parts.append(_on_one_line(one, x[i:stop], most))
         i = stop
     return Values(*(np.concatenate([getattr(part, name) for part in parts]) for name in ("cdf", "sf", "pdf")))
 
@@ -137,8 +155,8 @@ def bounded(one: OneAsperity, x: float) -> tuple[OneAsperity, float]:
     return one.without(x)
 
 
-def _on_one_line(one: OneAsperity, x: Array) -> Values:
+def _on_one_line(one: OneAsperity, x: Array, most: int) -> Values:
     kept, none_else = bounded(one, float(x[-1]))
     theta, spread = saddle(kept, float(x[0] + x[-1]) / 2)
-    found, share = Line(kept, theta, spread, float(x[-1] - x[0]))(x), np.exp(none_else)
+    found, share = Line(kept, theta, spread, float(x[-1] - x[0]), most)(x), np.exp(none_else)
     return Values(share * found.cdf, share * found.sf - np.expm1(none_else), share * found.pdf)

@@ -15,6 +15,7 @@ _NODES, _RAREST = 48, 1e-13  # of the integrals that give moments
 _STEP = 1e-3  # of a difference, in interquartile ranges
 _DIFFERENCE = np.array([1, -8, 8, -1]) / 12.0
 _MOST = 60
+_SCIPY = 1e-14
 
 
 class Law:
@@ -23,6 +24,10 @@ class Law:
     @property
     def error(self) -> float:
         """How far `cdf` may be off."""
+        raise NotImplementedError
+
+    def error_at(self, y: ArrayLike) -> Array:
+        """How far the smaller one of cdf and sf may be off at values, over itself."""
         raise NotImplementedError
 
     @property
@@ -121,6 +126,10 @@ class Mapped(Law):
         """As of the sum."""
         return float(self.of.error)
 
+    def error_at(self, y: ArrayLike) -> Array:
+        """As `Law.error_at`."""
+        return self.of.error_at(self.back(np.asarray(y, dtype=np.float64)))
+
     @property
     def atom(self) -> float:
         """As of the sum."""
@@ -157,6 +166,10 @@ class Along(Law):
     def error(self) -> float:
         """As of the sum at the start."""
         return float(self.law(self.start).error)
+
+    def error_at(self, y: ArrayLike) -> Array:
+        """As `Law.error_at`."""
+        return self._each(lambda x: self.law(x).error_at(self.value(x)), y)
 
     def _tail(self, y: ArrayLike, *, upper: bool) -> Array:
         return self._each(partial(self._reached, upper=upper), y)
@@ -216,7 +229,11 @@ class Counted(Law):
     @property
     def error(self) -> float:
         """Of SciPy's functions."""
-        return 1e-14
+        return _SCIPY
+
+    def error_at(self, y: ArrayLike) -> Array:
+        """As `Law.error_at`."""
+        return np.full(np.shape(y), _SCIPY)[()]
 
     @cached_property
     def _law(self) -> Any:

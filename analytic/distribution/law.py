@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 from scipy.special import gammaincinv, ndtri
 
 from analytic.arrays import Array, Marks
-from analytic.distribution.contour import Line, Values, bounded, by_contour, saddle
+from analytic.distribution.contour import MOST, Line, Values, bounded, by_contour, saddle
 from analytic.distribution.derived import Law
 from analytic.distribution.few_contacts import FewContacts
 from analytic.distribution.touching import Touching
@@ -21,7 +21,8 @@ _FAR = 8.0
 _STEPS = 60
 _CLOSE = 1e-13
 _RARE = 1e-3, 1e-19  # expected number of asperities that add more
-_SHARES = np.array([0.001, 0.01, 0.05, 0.25, 0.5, 0.75, 0.95, 0.99, 0.999])
+_DIGIT = 1e-15  # that rounding leaves
+_SHARES = np.array([1e-9, 1e-6, 0.001, 0.01, 0.05, 0.25, 0.5, 0.75, 0.95, 0.99, 0.999, 1 - 1e-6, 1 - 1e-9])
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,9 +74,23 @@ class Distribution(Law):
 
     @property
     def error(self) -> float:
-        """How far `cdf` may be off, seen from a computation with other nodes, between 0.1 and 99.9 %."""
+        """How far `cdf` may be off, seen from a computation with other nodes."""
         x = self.ppf(_SHARES) / self.unit
-        return float(np.abs(self._values(x).cdf - _Evaluation(self.touching, finer=True)(x).cdf).max())
+        apart = float(np.abs(self._values(x).cdf - self._again(x).cdf).max())
+        return max(apart, self.touching.step / 2, _DIGIT)
+
+    def error_at(self, x: ArrayLike) -> Array:
+        """As `Law.error_at`."""
+        reduced = np.asarray(x, dtype=np.float64) / self.unit
+        own, other = self._values(reduced.ravel()), self._again(reduced.ravel())
+        with np.errstate(divide="ignore", invalid="ignore"):
+            apart = np.where(own.cdf < own.sf, other.cdf / own.cdf, other.sf / own.sf) - 1
+            step = self.touching.step / 2 / np.minimum(own.cdf, own.sf)
+        return np.asarray(np.fmax(np.abs(apart), step + _DIGIT).reshape(reduced.shape)[()])
+
+    @cached_property
+    def _again(self) -> Callable[[Array], Values]:
+        return _Evaluation(self.touching, finer=True)
 
     @cached_property
     def _values(self) -> Callable[[Array], Values]:
@@ -154,6 +169,7 @@ class _Evaluation:
     def __init__(self, touching: Touching, *, finer: bool = False) -> None:
         self._touching, self._finer = touching, finer
         self.one = touching.finer() if finer else touching.one
+        self._most = MOST * 2 if finer else MOST
         self._kept: dict[tuple[int, bool], FewContacts] = {}
 
     def __call__(self, x: Array) -> Values:
@@ -190,7 +206,7 @@ class _Evaluation:
         ways += [(part, self._few(float(x[part][-1]))) for part in (few & usual, few & ~usual) if part.any()]
         rest &= ~few
         middle = rest & (np.abs(x - one.mean) < _MIDDLE * one.std) & self._short
-        ways += [(middle, self._central), (rest & ~middle, lambda y: by_contour(one, y))]
+        ways += [(middle, self._central), (rest & ~middle, lambda y: by_contour(one, y, self._most))]
         return [(mask, law) for mask, law in ways if mask.any()]
 
     @cached_property
@@ -238,4 +254,4 @@ class _Evaluation:
     @cached_property
     def _central(self) -> Line:
         spread = self.one.std
-        return Line(self.one, 0.0, spread, 2 * _MIDDLE * spread)
+        return Line(self.one, 0.0, spread, 2 * _MIDDLE * spread, self._most)

@@ -1,9 +1,11 @@
 """The laws of the quantities of a model."""
 
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
 import numpy as np
+from scipy.special import gammaln, xlogy
 
 from analytic.distribution.derived import Along, Counted, Law, Mapped
 from analytic.distribution.law import Distribution
@@ -14,6 +16,7 @@ from analytic.measured_summits import MeasuredHeights
 from analytic.quantities import quantity_of
 
 _FARTHER = (1.0, 3.0, 6.0, 10.0)  # heights above the separation that divide the rule, and reach on
+_ROUNDING = 1e-9  # of a law that goes on smoothly
 _FINER = (0.5, 1.0, 2.0, 3.0, 4.5, 6.0, 8.0, 10.0)
 
 
@@ -31,7 +34,12 @@ def distribution_of(model: Any, quantity: str, h: float) -> Law:
     mixed = model.curvature is not None and model.law is not None  # breaks of every radius for itself
     itself = None if listed or mixed else Asperity(model, quantity, h, rule, added)
     finer = partial(model.asperities, quantity, h, _FINER)
-    return Distribution(Touching(one(rule), lambda: one(finer()[0]), itself), q.scale(model.surface))
+    touching = Touching(one(rule), lambda: one(finer()[0]), itself)
+    if listed:  # how often a surface has each of them, the likeliest way
+        often = model.number * touching.one.probabilities
+        k = np.floor(often)
+        touching = replace(touching, step=float(np.exp(np.sum(xlogy(k, often) - often - gammaln(k + 1)))))
+    return Distribution(touching, q.scale(model.surface))
 
 
 def separation_law_of(model: Any, load: float, quantity: str) -> Law:
@@ -83,3 +91,12 @@ def _falling(model: Any, quantity: str, h: float) -> None:
             f"quantity = {quantity!r}: some asperities have a negative one, and sums may rise with the "
             "separation; take a modulus >= 0 and a law without adhesion"
         )
+    of, e = model.ways.of(quantity), np.maximum(model.grading(rule.heights), np.finfo(float).tiny)
+    for j, limit in enumerate(of.law.limits(e)):
+        y = np.sqrt(limit)
+        before, after = (of.of_root(quantity, piece, y, e) for piece in (j, j + 1))
+        if np.any(after < before * (1 - _ROUNDING)):
+            raise ValueError(
+                f"quantity = {quantity!r}: that of an asperity falls where the law goes over to its piece "
+                f"{j + 1}, and sums may rise with the separation; give the load"
+            )

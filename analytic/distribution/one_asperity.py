@@ -145,6 +145,8 @@ class OneAsperity:
     def decay(self, x: float) -> float:
         """How fast the logarithm of the probability to add more than a value falls, on the way to x."""
         far, half = (float(self.probabilities[self.values > at].sum()) for at in (x, x / 2))
+        if half <= far:
+            return 0.0 if far > 0 else math.inf
         return math.log(half / far) / (x / 2) if far > 0 else math.inf
 
     def tilted(self, theta: float) -> tuple[float, float, float]:

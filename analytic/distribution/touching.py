@@ -83,11 +83,14 @@ class Touching:
         Gives it by one of more nodes.
     asperity : Asperity, optional
         Itself. Without it the law of few contacts is found by its transform, less accurately.
+    step : float, optional
+        Largest step of the distribution function, which the transform makes smooth.
     """
 
     one: OneAsperity
     finer: Callable[[], OneAsperity]
     asperity: Asperity | None
+    step: float = 0.0
 
     @cached_property
     def rises(self) -> bool:

@@ -26,6 +26,9 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--surfaces", type=int, metavar="M", help="how many to solve; default: those of the scene"
     )
+    parser.add_argument(
+        "--scatter", metavar="S", help="also say how many asperities make specimens differ so little: 1%%"
+    )
     parser.add_argument("--csv", type=Path, metavar="FILE", help="also write the table there; else no file")
     add_set_option(parser)
 
@@ -50,9 +53,12 @@ def execute(args: argparse.Namespace) -> int:
     key = next(name for name in _GIVEN if getattr(args, name))
     option = f"--{key.replace('_', '-')}"
     given, values = given_values(scene, key, getattr(args, key), lambda x, unit: parse(x, unit, option))
+    scatter = None if args.scatter is None else parse(args.scatter, "1", "--scatter")
+    if scatter is not None and not 0 < scatter < 1:
+        raise ValueError(f"--scatter {args.scatter}: give a share between 0 and 1, as 1%")
     with bar("surfaces", terminal=True) as tell:
         found = solutions(scene, given, values, tell)
-    print(solutions_text(scene, found))
+    print(solutions_text(scene, found, scatter))
     tell_cautions(at_solutions(scene, found))
     write_table(args.csv, lambda: solutions_table(scene, found))
     return 0

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -20,6 +21,7 @@ from mcgw.scene.validity import Validity
 from mcgw.scene.validity_lookup import validity_of
 
 if TYPE_CHECKING:
+    from analytic.distribution import Law
     from mcgw.ensemble.budget import Budget, Corrected
 
 
@@ -105,6 +107,58 @@ class Solution(Shown):
         half = stdtrit(len(x) - 1, (1 + level) / 2) * x.std(ddof=1) / np.sqrt(len(x))
         return float(x.mean() - half), float(x.mean() + half)
 
+    @cached_property
+    def separation_law(self) -> "Law | None":
+        """Exact law of the separation over surfaces, d/sigma, of what asperities feel; None if not known.
+
+        There is none where sums may rise with the separation, as those of asperities that pull.
+        """
+        try:
+            return replace(self.scene, interaction=None).theory.separation_law(self.value, self.given)
+        except ValueError:
+            return None
+
+    def specimens(self, name: str, share: float = 0.9) -> tuple[float, float]:
+        """Ends between which this share of all surfaces lies, as much of the others below as above.
+
+        Of separations they are those of the exact law where it is known; else quantiles of the surfaces
+        drawn.
+        """
+        ends, law = np.array([(1 - share) / 2, (1 + share) / 2]), None
+        nominal = name == "nominal_separation" or (name == "mean_gap" and self.scene.interaction is not None)
+        if name in ("separation", "mean_gap", *SEPARATIONS) and (self.given == "load" or not nominal):
+            law = self.separation_law  # at one load the others differ from it by the same on all surfaces
+        if law is None:
+            low, high = np.quantile(self.surfaces[name], ends)
+        else:
+            unit = self.scene.surface.sigma if name == "mean_gap" else 1.0
+            low, high = self.theory[name] + unit * (law.ppf(ends) - self.theory["separation"])
+        return float(low), float(high)
+
+    def asperities_for(self, scatter: float) -> dict[str, float]:
+        """Asperities with which specimens at this pressure, or share of area, would scatter so little.
+
+        Parameters
+        ----------
+        scatter : float
+            Standard deviation over specimens, over the answer: 0.01 for one percent.
+
+        Returns
+        -------
+        dict of str to float
+            For area, load, stiffness and conductance, to leading order in 1/N.
+        """
+        alone = replace(self.scene, interaction=None).theory
+        names = [x for x in ("load", "area", "stiffness", "conductance") if x in self.theory]
+        if self.scene.interaction is not None:
+            names = names[:2]  # the medium counts in series for the others
+        h = self.theory["separation"]
+        return {
+            name: float(alone.asperities_for(name, h, scatter, given=self.given))
+            for name in names
+            if name != self.given
+        }
+
     def budget(self) -> "Budget":
         """By how much a real specimen may differ from `theory` here, by causes.
 
@@ -170,6 +224,7 @@ class Solution(Shown):
             few = f"{contacts:.2g} contacts a surface: few for theory, which is of a large one"
             facts.append(("caution", f"{few}; give more area"))
         table = self.table()
+        table = replace(table, columns=tuple(x for x in table.columns if x.name != "std"))
         if np.isnan(table.flat[-1].values).all():
             table = replace(table, columns=table.columns[:-1])
         found = [k for k, name in enumerate(self.surfaces) if name != self.given]
@@ -181,6 +236,7 @@ class Solution(Shown):
         names = list(self.surfaces)
         low, high = np.array([self.interval(name) for name in names]).T
         found = [self.surfaces[name] for name in names]
+        least, most = np.array([self.specimens(name) for name in names]).T
         error = (high - low) / 4
         right, below, above, _ = map(np.array, zip(*map(self.corrected, names), strict=True))
         off = Column("corrected_95", (above - below) / 2, form=".1g")
@@ -192,6 +248,14 @@ class Solution(Shown):
                 Column("mean", [x.mean() for x in found], error=error),
                 interval_column(low, high),
                 Column("std", [x.std(ddof=1) for x in found], form=".3g"),
+                Column(
+                    "specimen_05",
+                    least,
+                    "90 % of specimens",
+                    form=".4g",
+                    between=" ... ",
+                    beside=Column("specimen_95", most, form=".4g"),
+                ),
                 Column(
                     "corrected",
                     right,

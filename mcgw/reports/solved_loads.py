@@ -15,8 +15,11 @@ from mcgw.scene.scene import Scene
 _SHOWN = ("contact law", "film", "interaction")  # what of the contacts counts at a given load
 
 
-def solutions_text(scene: Scene, solutions: Sequence[Solution]) -> str:
-    """Theory and Monte Carlo side by side, one block for each given value."""
+def solutions_text(scene: Scene, solutions: Sequence[Solution], scatter: float | None = None) -> str:
+    """Theory and Monte Carlo side by side, one block for each given value.
+
+    With a `scatter` that is wanted also how many asperities it takes.
+    """
     lines = [f"{solution.sheet().table}\n" for solution in solutions]
     if any(x.theory["contacts"] < MANY for x in solutions):
         lines.append(
@@ -25,16 +28,27 @@ def solutions_text(scene: Scene, solutions: Sequence[Solution]) -> str:
     lines += [f"{word}: {what}" for word, what in contact_facts(scene) if word in _SHOWN]
     plane = "summits, which lies above that of the surface" if rise_of_summits(scene) is None else "surface"
     lines.append(f"mean gap: of the rigid plane from the mean plane of the {plane}")
+    exactly = "" if solutions[0].separation_law is None else "; of the separation by its exact law"
     if scene.unload_from is not None:
         lines.append("each surface is loaded from far away; nothing of it is on the way back")
     lines.append(
-        f"std: over {scene.n_surfaces} surfaces of {scene.n_asperities:g} asperities, each at its own d;"
-        f" heights drawn one by one, seed {scene.seed}"
+        f"specimens: {scene.n_surfaces} surfaces of {scene.n_asperities:g} asperities, each at its own d;"
+        f" heights drawn one by one, seed {scene.seed}{exactly}"
     )
+    if scatter is not None:
+        lines += ["", *(_sizes(solution, scatter) for solution in solutions)]
     for budget in (solution.budget() for solution in solutions):
         lines += ["", f"Off a real specimen, {budget.title[0].lower()}{budget.title[1:]}:"]
         lines += [replace(budget.table(), title="").text(), f"  {budget.advice}"]
     return "\n".join([*lines, "", against_elasticity(solutions).verdict])
+
+
+def _sizes(solution: Solution, scatter: float) -> str:
+    """How many asperities, on which area, a scatter takes."""
+    eta = solution.scene.surface.eta
+    sizes = (f"{x} {n:.3g} ({n / eta:.3g} m^2)" for x, n in solution.asperities_for(scatter).items())
+    where = f"{solution.title[0].lower()}{solution.title[1:]}"
+    return f"Asperities (nominal area) for std = {scatter:.3g} of the mean, {where}: {', '.join(sizes)}"
 
 
 def solutions_table(scene: Scene, solutions: Sequence[Solution]) -> Table:
