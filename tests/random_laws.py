@@ -61,7 +61,7 @@ def p_values(seed, faults, surfaces=SURFACES, **more):
     except mcgw.SceneError:
         return "refused"
     names = [x for x in scene.quantities if x != "tangential_load"]
-    name, k = dice.choice(names), int(dice.integers(len(scene.separations)))
+    name, k = str(dice.choice(names)), int(dice.integers(len(scene.separations)))
     h = scene.separations[k]
     try:
         law = scene.theory.distribution(name, h)
@@ -94,6 +94,8 @@ def even(p, seed=1):
         weights = 2 * np.arange(1, n + 1) - 1
         return -n - (weights * (np.log(u) + np.log1p(-u[..., ::-1]))).mean(axis=-1)
 
+    if not len(p):
+        return 1.0
     known = statistic(np.random.default_rng(seed).random((4000, len(p))))
     return (1 + np.count_nonzero(known >= statistic(np.asarray(p)))) / 4001
 
