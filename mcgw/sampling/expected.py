@@ -83,7 +83,7 @@ def _in_cells(name: str, scene: Scene) -> Expected:
     if name == "aggregate":
         draws = min(draws, float(moments))
     elif moments:
-        seconds += float(inside @ price(plain, rooted)) * _INSIDE * (_RADIUS if own else 1)
+        seconds += float((inside * price(plain, rooted)).sum()) * _INSIDE * (_RADIUS if own else 1)
     return Expected(name, inside.size, moments, outside + draws, seconds)
 
 

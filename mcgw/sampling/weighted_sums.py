@@ -74,78 +74,38 @@ def _weigh(w: Any, n: Any, edge: Any, series: Any, table: Any) -> Any:
     return whole
 
 
-@njit(inline="always")
-def _sum_cell(
-    w: Any,
-    seed: Any,
-    surface: Any,
-    cell: Any,
-    n: Any,
-    strata: Any,
-    orders: Any,
-    squares: Any,
-    edge: Any,
-    series: Any,
-    table: Any,
-) -> None:
-    """Leave the sums over the uniforms of a cell in the workspace: 32 for each kind, and their carries."""
-    for k in range(_SUMS, _SUMS + 3 * _MOST * orders.size):
-        w[k] = 0.0
-    for first in range(0, n, BUFFER):
-        m = min(BUFFER, n - first)
-        centred(w, seed, CELLS, surface, cell, first, m)
-        centred(w[_COARSE:], seed, RADII, surface, cell, first, m)
-        centred(w[_FINE:], seed, RADII_LOW, surface, cell, first, m)
-        if strata:
-            stratify(w, m, first, n)
-        whole = _weigh(w, m, edge, series, table)
-        for kind in range(orders.size):
-            if orders[kind]:
-                sums = _SUMS + 3 * _MOST * kind
-                _factor(w, whole, squares[kind // 2], kind % 2)
-                add_weighted(w, whole, orders[kind], _FACTOR, sums)
-                add_compensated(w[sums + _MOST : sums + 3 * _MOST], w, sums, _MOST)
-
-
 @njit(nogil=True, cache=True)
 def _sum_cells(
-    seed: Any,
-    first: Any,
-    counts: Any,
-    starts: Any,
-    orders: Any,
-    squares: Any,
-    bounds: Any,
-    stratified: Any,
-    edges: Any,
-    series: Any,
-    table: Any,
-    moments: Any,
+    who: Any, counts: Any, kinds: Any, bounds: Any, stratified: Any, mesh: Any, table: Any, moments: Any
 ) -> None:
-    """Sum a run of cells, all surfaces of one after the other."""
+    """Sum a run of cells, all surfaces of one after the other: 32 sums for each kind, and their carries."""
+    (seed, first), (starts, orders, squares), (edges, series) = who, kinds, mesh
     w = np.ones(_WORDS)
     surfaces = counts.shape[1]
     for at in range(bounds[0], bounds[1]):
         cell, surface = at // surfaces, at % surfaces
-        n = counts[cell, surface]
-        _sum_cell(
-            w,
-            seed,
-            first + surface,
-            cell,
-            n,
-            stratified,
-            orders[cell],
-            squares,
-            edges[cell],
-            series[cell],
-            table,
-        )
-        for kind in range(orders.shape[1]):
-            sums, row, many = _SUMS + (3 * kind + 1) * _MOST, starts[cell, kind], orders[cell, kind]
-            for j in range(many):
+        n, many = counts[cell, surface], orders[cell]
+        for k in range(_SUMS, _SUMS + 3 * _MOST * many.size):
+            w[k] = 0.0
+        for begin in range(0, n, BUFFER):
+            m = min(BUFFER, n - begin)
+            centred(w, seed, CELLS, first + surface, cell, begin, m)
+            centred(w[_COARSE:], seed, RADII, first + surface, cell, begin, m)
+            centred(w[_FINE:], seed, RADII_LOW, first + surface, cell, begin, m)
+            if stratified:
+                stratify(w, m, begin, n)
+            whole = _weigh(w, m, edges[cell], series[cell], table)
+            for kind in range(many.size):
+                if many[kind]:
+                    sums = _SUMS + 3 * _MOST * kind
+                    _factor(w, whole, squares[kind // 2], kind % 2)
+                    add_weighted(w, whole, many[kind], _FACTOR, sums)
+                    add_compensated(w[sums + _MOST : sums + 3 * _MOST], w, sums, _MOST)
+        for kind in range(many.size):
+            sums, row = _SUMS + (3 * kind + 1) * _MOST, starts[cell, kind]
+            for j in range(many[kind]):
                 moments[row + j, surface] = w[sums + j] + w[sums + _MOST + j]
-            unfold(moments, row, many, surface, surface + 1)
+            unfold(moments, row, many[kind], surface, surface + 1)
 
 
 def weighted_moments(
@@ -195,24 +155,11 @@ def weighted_moments(
         ],
         axis=1,
     )
-    series = np.ascontiguousarray(mesh.stretch.T)
-    held = table.coefficients, table.bottom, table.largest
+    kinds, cells = (starts, orders, np.array(squares)), (mesh.edges, np.ascontiguousarray(mesh.stretch.T))
+    who, held = (np.uint64(seed), first), (table.coefficients, table.bottom, table.largest)
 
     def sum_run(counts: Ints, bounds: tuple[int, int], moments: Array) -> None:
-        _sum_cells(
-            np.uint64(seed),
-            first,
-            counts,
-            starts,
-            orders,
-            np.array(squares),
-            bounds,
-            stratified,
-            mesh.edges,
-            series,
-            held,
-            moments,
-        )
+        _sum_cells(who, counts, kinds, bounds, stratified, cells, held, moments)
 
     return in_runs_of_cells(counts, orders, _PRICE, sum_run)
 
