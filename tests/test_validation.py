@@ -20,8 +20,8 @@ CONDENSED = ROOT / "mcgw" / "scene" / "validity.csv"
 sys.path.insert(0, str(FOLDER))
 
 import charted  # noqa: E402
+import conductance  # noqa: E402
 import deviations  # noqa: E402
-import model_tables  # noqa: E402
 import models  # noqa: E402
 import rough_maps  # noqa: E402
 import solve_table  # noqa: E402
@@ -29,7 +29,6 @@ import solve_table  # noqa: E402
 sys.path.remove(str(FOLDER))
 
 ROWS = solve_table.read()
-README = (FOLDER / "README.md").read_text(encoding="utf-8")
 MOMENTS = {alpha: (1e-4 * alpha, 0.5, 2500.0) for alpha in (2.1, 5.0, 40.0)}  # m0 m4/m2^2 = alpha
 
 
@@ -64,12 +63,19 @@ def test_the_table_is_made_of_the_solves(kind, x, p):
     assert set(text) <= set(CONDENSED.read_text().splitlines())
 
 
-@pytest.mark.site
-def test_the_readme_shows_the_same():
-    found = deviations.condensed(rows_of("gaussian", 5.0))
-    for quantity in deviations.QUANTITIES:
-        for line in model_tables.by_load(found, quantity, "α").splitlines():
-            assert line in README.splitlines()
+@pytest.mark.parametrize(("x", "p"), [(5.0, 0.1), (20.0, 1e-3)])
+def test_conductance_is_as_far_off_as_stiffness(x, p):
+    """Barber's relation, by sums over a grid of heights; at alpha = 5 the neighbours are half of all."""
+    row = next(row for row in rows_of("gaussian", x) if row["p"] == p)
+    alone, beside = conductance.errors(row)
+    stiffness = {
+        one.interaction: one.stiffness for one in deviations.deviations(row) if one.model == "own radii"
+    }
+    assert alone == pytest.approx(stiffness["none"], abs=1e-3)
+    assert beside == pytest.approx(stiffness["summits"], abs=2e-3)
+    if p == 0.1:
+        assert alone < -0.45
+        assert abs(beside) < 0.06
 
 
 @pytest.mark.parametrize("name", models.MODELS)

@@ -1,13 +1,32 @@
-"""Numbers and tables as Markdown."""
+"""Numbers and tables as text: Markdown where they are short, CSV where they are long."""
 
+import csv
 import math
 from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
 
 
-def table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
-    """A table, first row and lines below."""
-    lines = [head, ["---"] * len(head), *rows]
-    return "\n".join(f"| {' | '.join(line)} |" for line in lines) + "\n"
+@dataclass(frozen=True)
+class Sheet:
+    """A table of texts; as a string it is Markdown."""
+
+    head: Sequence[str]
+    rows: Sequence[Sequence[str]]
+
+    def __str__(self) -> str:
+        lines = [self.head, ["---"] * len(self.head), *self.rows]
+        return "\n".join(f"| {' | '.join(line)} |" for line in lines) + "\n"
+
+    def write(self, path: Path) -> None:
+        """Write it as CSV."""
+        with path.open("w", newline="", encoding="utf-8") as file:
+            csv.writer(file, lineterminator="\n").writerows([self.head, *self.rows])
+
+
+def table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> Sheet:
+    """A table of a head and rows."""
+    return Sheet(head, list(rows))
 
 
 def percent(value: float, error: float = math.nan) -> str:

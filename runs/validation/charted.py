@@ -5,9 +5,9 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from as_markdown import load, percent, table
+from as_markdown import Sheet, load, percent, table
 from deviations import Condensed, condensed
-from model_tables import SHOWN
+from models import SHOWN
 from solve_table import Row
 
 Value = Callable[[Condensed], float]
@@ -119,7 +119,7 @@ def _against(lines: list[Condensed], one: Condensed, quantity: str, hurst: float
     )
 
 
-def fresh_table(found: list[Fresh]) -> str:
+def fresh_table(found: list[Fresh]) -> Sheet:
     """Charted and measured errors."""
     points = sorted({(one.alpha, one.hurst, one.p, one.maps) for one in found})
     cells = {(one.alpha, one.hurst, one.p, one.model, one.interaction, one.quantity): one for one in found}

@@ -26,6 +26,7 @@ Interaction = Literal["none", "summits", "contacts"]
 
 MODELS = ("one radius", "nayak", "own radii")
 INTERACTIONS: tuple[Interaction, ...] = ("none", "summits", "contacts")
+SHOWN = {"none": "", "summits": " + interaction (summits)", "contacts": " + interaction (contacts)"}
 SQUARE_LATTICE = LATTICE / math.pi
 LOWEST, HIGHEST, HEIGHTS = -6.0, 8.0, 7000  # heights over their deviation; how many
 _STEPS = 100  # in which the first root is looked for

@@ -1,48 +1,50 @@
-"""The README of this folder: what was solved, and how far each model is from it."""
+"""The README of this folder, in two screens, and its long tables as CSV."""
 
-import importlib
-import importlib.util
-from collections.abc import Iterable
 from pathlib import Path
-from typing import Any
 
-from charted import CLAIMED, VALID, Fresh, fresh, fresh_table
-from density import density_table, verdict
+import from_print
+from as_markdown import Sheet
+from charted import VALID, Fresh, fresh, fresh_table
+from conductance import conductance_table
+from density import density_table
 from deviations import Condensed
-from model_tables import SHOWN, by_load, maps_table
 from resolution import mesh_table, size_table, tolerance_table
 from rough_maps import DRAWN_PIXELS
 from solve_list import jobs
 from solve_table import Row
 from within import within_table
 
-TEMPLATE = Path(__file__).with_name("README.template.md")
+FOLDER = Path(__file__).parent
+SHOWN_ALPHAS = ("2", "5", "10", "50")
+TEMPLATE = FOLDER / "README.template.md"
 
 
 def page(lines: list[Condensed], rows: list[Row]) -> str:
-    """All of it."""
+    """The README; the tables that it links to are written beside it."""
     gaussian = [line for line in lines if line.map == "gaussian"]
-    caps = [line for line in lines if line.map == "caps"]
     found = fresh(lines, rows)
-    parts: dict[str, Any] = {
-        q: by_load(gaussian, q, "α") for q in ("area", "stiffness", "separation", "load")
+    long = {
+        "fresh": fresh_table(found),
+        "density": density_table(gaussian),
+        "conductance": conductance_table(rows),
+        "tolerance": tolerance_table(rows),
+        "mesh": mesh_table(rows),
+        "cells": size_table(rows),
+        "printed": from_print.sheet(),
+        "claims": from_print.claims_sheet(),
     }
-    parts |= {f"caps_{q}": by_load(caps, q, "ηRσ") for q in ("area", "stiffness", "separation", "load")}
-    text = TEMPLATE.read_text().format(
+    for name, sheet in long.items():
+        sheet.write(FOLDER / f"table_{name}.csv")
+    return TEMPLATE.read_text().format(
         amount=amount(rows),
         pixels=DRAWN_PIXELS,
         within=within_table(gaussian),
-        maps=maps_table(lines),
-        density=density_table(gaussian),
-        verdict=verdict(gaussian),
-        mesh=mesh_table(rows),
-        size=size_table(rows),
-        tolerance=tolerance_table(rows),
-        fresh=fresh_table(found),
-        claim="\n".join(claims(found)),
-        **parts,
+        conductance=Sheet(
+            long["conductance"].head, [x for x in long["conductance"].rows if x[0] in SHOWN_ALPHAS]
+        ),
+        claim=claim(found),
+        printed=from_print.section(long["printed"], long["claims"]),
     )
-    return text + from_print()
 
 
 def amount(rows: list[Row]) -> str:
@@ -59,25 +61,9 @@ def amount(rows: list[Row]) -> str:
     return text
 
 
-def claims(found: list[Fresh]) -> Iterable[str]:
-    """Of each model, where the chart is sure that it is within 10 %, whether fresh maps agree."""
-    for model, interaction, quantity in CLAIMED:
-        own = [x for x in found if (x.model, x.interaction, x.quantity) == (model, interaction, quantity)]
-        valid = [x for x in own if x.claimed]
-        beyond = [abs(x.measured) for x in valid if abs(x.measured) > VALID]
-        said = f"beyond it at {len(beyond)}, the most {max(beyond):.1%}" if beyond else "nowhere beyond it"
-        off = sum(abs(x.z) > 2 for x in own)
-        yield (
-            f"- {quantity}, {model}{SHOWN[interaction]}: sure to be within {VALID:.0%} at {len(valid)} of "
-            f"{len(own)} points; there fresh maps are {said}; beyond it by more than twice the standard "
-            f"error at {sum(not x.holds for x in valid)}. Of all points {off} differ from what was "
-            f"expected by more than twice the standard error of both."
-        )
-
-
-def from_print() -> str:
-    """The section of printed numbers, where it is there."""
-    if importlib.util.find_spec("from_print") is None:
-        return ""
-    module = importlib.import_module("from_print")
-    return f"\n{module.section()}"
+def claim(found: list[Fresh]) -> str:
+    """Whether fresh maps agree where the chart is sure that a model is within 10 %."""
+    valid = [x for x in found if x.claimed]
+    beyond = [abs(x.measured) for x in valid if abs(x.measured) > VALID]
+    most = f", the most {max(beyond):.1%}" if beyond else ""
+    return f"at {len(valid)} of {len(found)} points; of these fresh maps are beyond it at {len(beyond)}{most}"

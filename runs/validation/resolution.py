@@ -4,7 +4,7 @@ import math
 from collections.abc import Callable
 
 import numpy as np
-from as_markdown import load, percent, table
+from as_markdown import Sheet, load, percent, table
 from deviations import deviations, number
 from solve_list import HALF_STEP, TOLERANCE
 from solve_table import Row
@@ -22,7 +22,7 @@ def same_map(rows: list[Row], purpose: str, p_factor: float = 1.0) -> Pairs:
     return [(row, other) for row, other in found if other is not None]
 
 
-def mesh_table(rows: list[Row]) -> str:
+def mesh_table(rows: list[Row]) -> Sheet:
     """More points a wave, or fewer: change of what is compared, mean over maps."""
     groups: dict[tuple[float, float, float], Pairs] = {}
     for tried, usual in same_map(rows, "mesh"):
@@ -41,7 +41,7 @@ def mean_change(pairs: Pairs, quantity: str) -> float:
     return float(np.mean([number(a, quantity) / number(b, quantity) - 1 for a, b in pairs]))
 
 
-def size_table(rows: list[Row]) -> str:
+def size_table(rows: list[Row]) -> Sheet:
     """Cells of twice the side: other maps, so errors of the same model are compared."""
     groups: dict[tuple[float, float], dict[str, list[Row]]] = {}
     for row in rows:
@@ -75,7 +75,7 @@ def model_error(rows: list[Row], quantity: str) -> str:
     return percent(float(np.mean(values)), float(np.std(values, ddof=1)) / math.sqrt(len(values)))
 
 
-def tolerance_table(rows: list[Row]) -> str:
+def tolerance_table(rows: list[Row]) -> Sheet:
     """Largest change by a tolerance a thousand times smaller, and by half the step of the stiffness."""
     tight = same_map(rows, "tolerance")
     half = same_map(rows, "step", HALF_STEP[0])

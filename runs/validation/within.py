@@ -2,13 +2,13 @@
 
 from itertools import groupby
 
-from as_markdown import load, table
+from as_markdown import Sheet, load, table
 from charted import CLAIMED, VALID
 from deviations import Condensed
-from model_tables import SHOWN
+from models import SHOWN
 
 
-def within_table(lines: list[Condensed]) -> str:
+def within_table(lines: list[Condensed]) -> Sheet:
     """Ranges of load in which the mean error of a quantity is within 10 %."""
     rows = []
     for x in sorted({line.x for line in lines}):
