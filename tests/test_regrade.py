@@ -91,8 +91,24 @@ def test_what_cannot_be_regraded(base, make_scene):
         regrade(base, analytic.Table([-1.0, 0.123, 1.0], [1.0, 2.0, 3.0]))
     with pytest.raises(ValueError, match="not resolve"):
         regrade(base, analytic.Custom(lambda s: 2 + np.sin(20 * s)))
-    with pytest.raises(ValueError, match='sampler = "tail" has none; take "cells"'):
-        regrade(mcgw.simulate(make_scene(sampler="tail", n_surfaces=5)), analytic.Homogeneous())
+    with pytest.raises(ValueError, match='sampler = "stratified" keeps no heights; "cells", "tail" and'):
+        regrade(mcgw.simulate(make_scene(sampler="stratified", n_surfaces=5)), analytic.Homogeneous())
+
+
+@pytest.mark.parametrize("sampler", ["tail", "direct"])
+def test_samplers_without_moments_are_regraded_by_their_heights(make_scene, sampler):
+    old = mcgw.simulate(make_scene(sampler=sampler, n_surfaces=5))
+    s, d = mcgw.heights(old.scene, 3), old.separations[1]
+    np.testing.assert_allclose(old.area[3, 1], quantity_sum(old.scene, "area", s, d), rtol=1e-12)
+    new = regrade(old, analytic.Exponential(2.0))
+    np.testing.assert_allclose(new.load, mcgw.simulate(new.scene).load, rtol=1e-12)
+    np.testing.assert_array_equal(new.contacts, old.contacts)
+
+
+def quantity_sum(scene, name, s, h):
+    """Over a list of heights, by hand; of a quantity without a modulus."""
+    q = analytic.quantity_of(name)
+    return q.scale(scene.surface) * sum((x - h) ** q.exponent for x in s.tolist() if x > h)
 
 
 OTHERS = {

@@ -170,7 +170,9 @@ def test_surfaces_that_cannot_be_had(base):
     with pytest.raises(TypeError, match=r"^regrade: 'seed' cannot be changed; unload_from, film, tangential"):
         mcgw.regrade(base, law=KE, seed=3)
     crowd = mcgw.simulate(base.scene, sampler="aggregate")
-    with pytest.raises(ValueError, match=r'^sampler = "aggregate" keeps no heights; "cells" and "tail" do'):
+    with pytest.raises(
+        ValueError, match=r'^sampler = "aggregate" keeps no heights; "cells", "tail" and "direct" do'
+    ):
         mcgw.regrade(crowd, law=KE)
     wrong = dataclasses.replace(base, scene=base.scene.replace(seed=5))
     with pytest.raises(ValueError, match="cannot be drawn again: their load differs"):

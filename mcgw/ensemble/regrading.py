@@ -21,6 +21,7 @@ from mcgw.sampling.law_sums import asperity_sums
 from mcgw.sampling.samplers import regraded, sampler_of
 from mcgw.scene.arguments import as_toml, check_object
 from mcgw.scene.laws import read_law
+from mcgw.scene.samplers import promise_of
 from mcgw.scene.scene import Scene
 from mcgw.scene.storable import drawn_by, storable
 
@@ -53,7 +54,8 @@ def regrade(
     Parameters
     ----------
     ensemble : Ensemble
-        Of the sampler ``cells`` or ``aggregate``; for another contact law of ``cells`` or ``tail``.
+        Of any sampler that draws real surfaces; for another contact law of one that draws asperities one by
+        one.
     grading : Grading or callable, optional
         The new E*(s)/E*, as `mcgw.Scene` takes it; from kept moments it must be smooth inside the cells of
         the ensemble. A function is resolved. Default: that of the ensemble.
@@ -158,7 +160,7 @@ def _unknown_under(law: ContactLaw) -> dict[str, None]:
 def _fitting(ensemble: Ensemble, scene: Scene) -> Counted | None:
     """Cells whose moments serve the scene; None if the heights must, where a law is not Hertz's."""
     hertzian = all(x.hertzian for x in (scene, ensemble.scene, ensemble.surfaces_of))
-    if not hertzian and ensemble.scene.keep != "moments":
+    if not (hertzian or ensemble.scene.keep == "moments") or not promise_of(ensemble.sampler).keeps_moments:
         return None
     try:
         return regraded(scene, _with_moments(ensemble))

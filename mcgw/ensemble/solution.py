@@ -6,7 +6,14 @@ from typing import Any
 
 import numpy as np
 
-from analytic import QUANTITIES, Hertz, MeasuredHeights, Quantity, quantity_of
+from analytic import (
+    QUANTITIES,
+    Hertz,
+    MeasuredHeights,
+    MeasuredRadii,
+    Quantity,
+    quantity_of,
+)
 from mcgw.ensemble.at_load import NEGATIVE, quantities_at, theory_at, with_mean_gap
 from mcgw.ensemble.separation import Summits
 from mcgw.ensemble.solved import Solution, with_half_space
@@ -17,6 +24,7 @@ from mcgw.scene.scene import Scene
 from mcgw.scene.section import nearest
 
 _MARGIN = 6.0  # standard deviations of a surface's separation that are drawn at once
+_RESAMPLED = 200  # specimens in the place of one measured surface
 _MOST_HEIGHTS = 3e9
 _LAST_DIGITS = 64 * float(np.finfo(float).eps)  # of a reduced height
 _NOTHING = 1e-16  # share of the heights below all that are drawn
@@ -108,6 +116,9 @@ def solutions(
     serves any separation, and the mean differs from theory by what the finite number of asperities
     does to it, of order 1/N.
 
+    Of summits as they were measured the answer is that of the very list; specimens stand beside it that have
+    as many summits, drawn from the list one by one: as if neighbours knew nothing of each other.
+
     Surfaces are loaded from far away: of several separations the largest one counts. Under a law that
     jumps the load of a surface does so at each asperity that yields, and may pass a value without having
     it; the solution is then the separation of the jump, with the load behind it.
@@ -122,12 +133,8 @@ def solutions(
     if scene.interaction is not None:
         alone = solutions(replace(scene, interaction=None), given, values, tell)
         return [with_half_space(scene, found) for found in alone]
-    if isinstance(scene.heights, MeasuredHeights):
-        raise ValueError(
-            "heights: surfaces of measured ones are not solved one by one; their mean is, in Python, by "
-            f"scene.theory.separation_at({given!r}, {values[0]:g})"
-        )
-    if scene.n_surfaces < 2:
+    specimens = _resampled(scene) if scene.as_measured else scene
+    if specimens.n_surfaces < 2:
         raise ValueError(f"n_surfaces = {scene.n_surfaces}: an interval takes at least 2 surfaces")
     q = quantity_of(given)
     least = q.scale(scene.surface) * _LAST_DIGITS**q.exponent
@@ -137,7 +144,7 @@ def solutions(
             f"digits of its height; give {2 * least:.1g} {q.unit} or more"
         )
     theory = [theory_at(scene, q, value) for value in values]
-    drawn = _drawn(scene, q, [at["separation"] for at in theory])
+    drawn = _drawn(specimens, q, [at["separation"] for at in theory])
     if drawn.touching * drawn.n_surfaces > _MOST_HEIGHTS:
         raise ValueError(
             f"{drawn.n_surfaces} surfaces with {drawn.touching:.3g} contacts each are too many to solve "
@@ -155,6 +162,16 @@ def solutions(
     ]
 
 
+def _resampled(scene: Scene) -> Scene:
+    """Specimens of the one surface whose summits were measured: each has as many, drawn from these."""
+    heights = scene.heights
+    assert isinstance(heights, MeasuredHeights)
+    again = MeasuredHeights(heights.heights, resampled=True)
+    own = scene.curvature
+    ratios = own.ratios if isinstance(own, MeasuredRadii) else np.ones(len(heights.heights))
+    return replace(scene, heights=again, curvature=MeasuredRadii(again, ratios), n_surfaces=_RESAMPLED)
+
+
 def _drawn(scene: Scene, q: Quantity, separations: Sequence[float]) -> Scene:
     """The scene whose contacts are drawn: those that nearly every surface has at its own solution.
 
@@ -168,7 +185,7 @@ def _drawn(scene: Scene, q: Quantity, separations: Sequence[float]) -> Scene:
         starts.append(max(h - _MARGIN * spread, min(h, bottom)))
     return replace(
         scene,
-        sampler="tail",
+        sampler="direct" if isinstance(scene.heights, MeasuredHeights) else "tail",
         keep="sums",
         separations=(min(starts),),
         quantities=tuple(QUANTITIES),

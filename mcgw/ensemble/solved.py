@@ -219,6 +219,7 @@ class Solution(Shown):
     def sheet(self) -> Sheet:
         """Theory and Monte Carlo side by side."""
         many = f"{len(self.surfaces['separation'])} surfaces of {self.scene.n_asperities} asperities"
+        many += ", drawn from the measured ones" if self.scene.as_measured else ""
         facts = [("over", many), ("elasticity", against_elasticity([self]).brief)]
         if (contacts := self.theory["contacts"]) < MANY:
             few = f"{contacts:.2g} contacts a surface: few for theory, which is of a large one"

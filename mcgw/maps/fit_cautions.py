@@ -17,7 +17,7 @@ _FEW_WAVES = 50  # sigma known to a tenth
 _PIXELS = 10.0  # a cutoff wavelength should have
 _RESOLVED = 0.05  # that two ways to m4 may differ by: at about ten pixels a wavelength
 _LOST = 0.1  # of the summits
-_SKEW, _ALPHA = 0.3, 1.5
+_SKEW, _ALPHA, _APART = 0.3, 1.5, 1.2
 _FEW, _STREAKY = 100, 1.5
 _PEAKS, _UNSURE = 1.2, 0.2
 
@@ -25,8 +25,8 @@ _PEAKS, _UNSURE = 1.2, 0.2
 # First words of cautions, by what a fit that ignores them may be off by: from a unit to a few per cent.
 _GRAVEST = (
     "slope", "unit", "spikes", "bends", "lines", "rounding", "step", "sub-area", "form", "edge", "range",
-    "tip", "cutoff", "pixel", "blur", "holes", "missing", "lay", "skewness", "alpha", "peaks", "overlap",
-    "summits", "waves", "x",
+    "tip", "cutoff", "pixel", "blur", "holes", "missing", "estimates", "lay", "skewness", "alpha", "peaks",
+    "overlap", "summits", "waves", "x",
 )  # fmt: skip
 
 
@@ -151,7 +151,7 @@ def _of_the_heights(fit: Fit) -> Iterator[str]:
     if abs(skewness) > max(_SKEW, 3 * error):
         yield (
             f"skewness: {skewness:.2f} of the heights; spectral moments tell of summits for Gaussian heights "
-            "only; count them, and keep their heights (--heights table)"
+            "only; take them as they are (--heights summits)"
         )
     if fit.alpha.value < _ALPHA:
         yield f"alpha: {fit.alpha.value:.3g} is below 1.5, which no isotropic Gaussian surface has"
@@ -162,6 +162,11 @@ def _of_the_heights(fit: Fit) -> Iterator[str]:
 
 
 def _of_the_summits(fit: Fit, used: str) -> Iterator[str]:
+    if fit.agreement is not None and fit.agreement > _APART:
+        yield (
+            f"estimates: moments and counted summits are {fit.agreement:.3g} times apart, as no isotropic "
+            "Gaussian map's; take the summits as they are (--heights summits)"
+        )
     if fit.summits.size < _FEW:
         yield f"summits: only {fit.summits.size} were found; give a larger map or a shorter cutoff"
     overlap = fit.estimates[used].overlap

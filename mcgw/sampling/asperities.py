@@ -3,11 +3,11 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from analytic import MeasuredHeights
 from analytic.arrays import Array
 from mcgw.machine.memory import check_memory
 from mcgw.sampling.block import Sampler
 from mcgw.sampling.counts import counts_of, generator
+from mcgw.sampling.direct import Direct
 from mcgw.sampling.outside import extra_heights, table_of
 from mcgw.sampling.philox import CELLS, RADII, RADII_LOW, REST, uniforms
 from mcgw.sampling.samplers import sampler_of
@@ -24,7 +24,7 @@ def heights(scene: Scene, surface: int, *, untouched: bool = False) -> NDArray[n
     Parameters
     ----------
     scene : Scene
-        With sampler ``cells``, ``tail`` or ``auto``.
+        With a sampler that draws asperities one by one: ``cells``, ``tail``, ``direct`` or ``auto``.
     surface : int
         Its number, from 0.
     untouched : bool, optional
@@ -61,7 +61,7 @@ def radii(scene: Scene, surface: int) -> NDArray[np.float64]:
     Parameters
     ----------
     scene : Scene
-        With sampler ``cells``, ``tail`` or ``auto``.
+        With a sampler that draws asperities one by one: ``cells``, ``tail``, ``direct`` or ``auto``.
     surface : int
         Its number, from 0.
 
@@ -95,11 +95,9 @@ def listing_sampler(scene: Scene) -> Sampler:
     ValueError
         If it does not draw asperities one by one.
     """
-    if isinstance(scene.heights, MeasuredHeights):
-        raise ValueError("heights: measured ones have no places; those of the scene are in scene.heights")
     sampler = sampler_of(scene)
     if not promise_of(sampler.name).one_by_one:
-        raise ValueError(f'sampler = "{sampler.name}" keeps no heights; "cells" and "tail" do')
+        raise ValueError(f'sampler = "{sampler.name}" keeps no heights; "cells", "tail" and "direct" do')
     return sampler
 
 
@@ -121,7 +119,10 @@ def touching_summits(scene: Scene, surface: int) -> Listed:
 def summits(scene: Scene, surface: int) -> Listed:
     """All asperities of one surface, those that touch first."""
     scene = storable(scene)
-    touching, ratios = summits_drawn(scene, listing_sampler(scene), surface)
+    sampler = listing_sampler(scene)
+    if isinstance(sampler, Direct):
+        return _listed(sampler, surface, -np.inf)
+    touching, ratios = summits_drawn(scene, sampler, surface)
     rest = _below(scene, surface, len(touching))
     s, table = np.concatenate([touching, rest]), table_of(scene, -np.inf)
     if table is None or ratios is None:
@@ -132,6 +133,8 @@ def summits(scene: Scene, surface: int) -> Listed:
 
 def summits_drawn(scene: Scene, sampler: Sampler, surface: int) -> Listed:
     """The asperities of one surface that touch, by its sampler, which takes longer to make than they do."""
+    if isinstance(sampler, Direct):
+        return _listed(sampler, surface, scene.lowest)
     mesh, table = sampler.mesh, table_of(scene, scene.lowest)
     counts = counts_of(scene, mesh, surface, 1)
     check_memory("the heights of one surface", 24 * int(counts.cells.sum()))
@@ -146,6 +149,16 @@ def summits_drawn(scene: Scene, sampler: Sampler, surface: int) -> Listed:
             ratios.append(table.root_ratios(heights[-1], *words) ** 2)
     s = np.concatenate([*heights, outside[:, 1]])
     return s, np.concatenate([*ratios, outside[:, 3]]) if table else None
+
+
+def _listed(sampler: Direct, surface: int, above: float) -> Listed:
+    """The asperities above a separation, of all that are drawn; those that touch first."""
+    check_memory("the heights of one surface", 24 * sampler.scene.n_asperities)
+    pieces = list(sampler.asperities(surface))
+    s = np.concatenate([np.empty(0), *(heights for heights, _ in pieces)])
+    order = np.argsort(s <= sampler.scene.lowest, kind="stable")[: np.count_nonzero(s > above)]
+    own = [ratios for _, ratios in pieces if ratios is not None]
+    return s[order], np.concatenate(own)[order] if own else None
 
 
 def _below(scene: Scene, surface: int, touching: int) -> Array:

@@ -1,5 +1,6 @@
 """All heights, by NumPy's generator, and plain loops: the witness against the other samplers."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -39,18 +40,25 @@ class Direct(Sampler):
         rows = [self._surface(number) for number in range(first, first + n)]
         return Block({name: np.concatenate([row[name] for row in rows]) for name in rows[0]})
 
-    def _surface(self, number: int) -> dict[str, Array]:
+    def asperities(self, number: int) -> Iterator[tuple[Array, Array | None]]:
+        """Heights of all asperities of a surface, and ratios of their radii, some at a time."""
         scene = self.scene
         rng = generator(scene.seed, _PURPOSE, number)
         left = scene.n_asperities if scene.count == "fixed" else int(rng.poisson(scene.n_asperities))
-        if scene.nominal:
-            return self._balanced(number, *self._summits(rng, left))
-        total = asperity_sums(scene, np.array([0]), np.empty(0), np.empty(0))
+        most = left if scene.nominal or scene.as_measured else _PIECE
         while left:
-            now = left if scene.as_measured else min(left, _PIECE)
-            heights, ratios = self._summits(rng, now)
+            now = min(left, most)
             left -= now
-            for name, value in asperity_sums(scene, np.array([now]), heights, np.ones(now), ratios).items():
+            yield self._summits(rng, now)
+
+    def _surface(self, number: int) -> dict[str, Array]:
+        scene = self.scene
+        if scene.nominal:
+            return self._balanced(number, *next(self.asperities(number), (np.empty(0), None)))
+        total = asperity_sums(scene, np.array([0]), np.empty(0), np.empty(0))
+        for s, ratios in self.asperities(number):
+            sums = asperity_sums(scene, np.array([s.size]), s, np.ones(s.size), ratios)
+            for name, value in sums.items():
                 total[name] += value
         return total
 

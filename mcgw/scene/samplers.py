@@ -48,7 +48,7 @@ _UNTOUCHED = "{spared:.4g} asperities of a surface lie below every separation an
 _CROWDED = "asperities of crowded cells are not drawn: their moments are, as Gaussian numbers"
 
 _PROMISES = {
-    "direct": Promise(same_on_all_processors=False, one_by_one=False, keeps_moments=False, own_laws=True),
+    "direct": Promise(same_on_all_processors=False, keeps_moments=False, own_laws=True),
     "tail": Promise(keeps_moments=False, own_laws=True, needs_density=True, not_done=(_UNTOUCHED,)),
     "cells": Promise(needs_density=True, not_done=(_UNTOUCHED,)),
     "aggregate": Promise(
