@@ -12,7 +12,7 @@ from textwrap import wrap
 from typing import Any
 
 from mcgw.scene.keys import TABLES
-from mcgw.scene.kinds import table_shape
+from mcgw.scene.section import table_shape
 
 PAGE = Path(__file__).parent / "reference" / "scene.md"
 SCHEMA = Path(__file__).parent.parent / "mcgw" / "scene" / "scene.schema.json"

@@ -1,8 +1,7 @@
 """Every key of a scene, a row each: reader, writer, checks, schema, page and ``--set`` come from here."""
 
 import math
-from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 from analytic import LAW_QUANTITIES, QUANTITIES, UNLOADING, Body
 from analytic.laws import Layer, Tangential
@@ -10,26 +9,13 @@ from mcgw.scene.fields import COARSEST, EXACT
 from mcgw.scene.kinds import ByName, Either, Flag, List, Number, Table, Text, Whole, Word
 from mcgw.scene.measured import Fitted, Uncertainty
 from mcgw.scene.samplers import SAMPLERS
-from mcgw.scene.section import Key
+from mcgw.scene.section import Key, TableOfKeys
 
 if TYPE_CHECKING:
     from analytic import Interaction
 
+MOMENTS, SUMMITS = ("m0", "m2", "m4"), ("sigma", "radius", "eta")  # either tells the summits of a surface
 _MOST = 100_000
-
-
-class TableOfKeys(NamedTuple):
-    """A table of a scene file: what it says, as Markdown, and its rows.
-
-    Where all its keys `make` an object, the scene holds that in a field of its name, and Python gives it; or
-    else hears the `advice`.
-    """
-
-    words: str
-    rows: tuple[Key, ...]
-    required: bool = False
-    make: Callable[..., Any] | None = None
-    advice: str = ""
 
 
 def _contact_laws() -> tuple[str, ...]:
@@ -86,15 +72,13 @@ _PUSHED = Table(
 )
 _KNOWN = 'give standard errors as shares of the values, as {sigma = "20 %", radius = "15 %"}'
 _ERROR = Number("1", high=2.0, advice=_KNOWN)
-_BY_MOMENTS = ("sigma", "radius", "eta")
+_ROWS = List(List(Number(low=-1.0, high=1.0)), advice="give rows of numbers from -1 to 1")
 _ERRORS = Table(
     (
-        *(Key(name, _ERROR) for name in _BY_MOMENTS),
-        *(Key(name, _ERROR, excludes=_BY_MOMENTS) for name in ("m0", "m2", "m4")),
+        *(Key(name, _ERROR) for name in SUMMITS),
+        *(Key(name, _ERROR, excludes=SUMMITS) for name in MOMENTS),
         Key("E_star", _ERROR),
-        Key(
-            "correlation", List(List(Number(low=-1.0, high=1.0)), advice="give rows of numbers from -1 to 1")
-        ),
+        Key("correlation", _ROWS),
     ),
     _KNOWN,
     Uncertainty,
@@ -118,7 +102,7 @@ TABLES: dict[str, TableOfKeys] = {
         "instead of `E_star`: Young's modulus (Pa) and Poisson's ratio (0.3 if left out) of the two bodies",
         excludes=("E_star",)),
     Key("m0", Number("m^2"), "1e-12", "mean square of the heights of an isotropic Gaussian surface, m²",
-        required=True, needs=("m2",), excludes=("sigma", "radius", "eta")),
+        required=True, needs=("m2",), excludes=SUMMITS),
     Key("m2", Number("1"), "1e-3", "mean square of the slope of a profile of it",
         required=True, needs=("m4",)),
     Key("m4", Number("1/m^2"), "5e6", "mean square of the second derivative of a profile, 1/m²",
@@ -188,10 +172,8 @@ TABLES: dict[str, TableOfKeys] = {
         excludes=("heights", "radii", "ratios", "curvature", "largest_radius")),
     Key("heights", _LISTED, "[0.0, 1e-6, 3e-6]", "the same in the scene itself: heights, m",
         needs=("radii", "ratios"), excludes=("curvature", "largest_radius")),
-    Key("radii", _RADII, "[1e-5, 2e-5, 3e-5]", "and radii, m",
-        needs=("heights",), excludes=("ratios",)),
-    Key("ratios", _RADII, "[1.0, 2.0, 3.0]",
-        "or radii over the mean one", needs=("heights",)),
+    Key("radii", _RADII, "[1e-5, 2e-5, 3e-5]", "and radii, m", needs=("heights",), excludes=("ratios",)),
+    Key("ratios", _RADII, "[1.0, 2.0, 3.0]", "or radii over the mean one", needs=("heights",)),
     Key("resample", Flag(), "true",
         "`true`: summits drawn in pairs from the list; `false`: one surface, the summits as they are", False,
         needs=("heights", "file")),
@@ -314,6 +296,5 @@ TABLES: dict[str, TableOfKeys] = {
 # fmt: on
 
 KEYS = {table: {row.name: row for row in rows} for table, (_, rows, *_) in TABLES.items()}
-MOMENTS, SUMMITS = ("m0", "m2", "m4"), ("sigma", "radius", "eta")  # either tells the summits of a surface
 _SURFACE = {row.name: row.kind for row in TABLES["surface"].rows if row.name not in MOMENTS}
 SURFACE_UNITS = {name: kind.unit for name, kind in _SURFACE.items() if isinstance(kind, Number)}

@@ -7,7 +7,7 @@ from typing import Any
 
 from mcgw.formats.numbers import EXAMPLES, parse
 from mcgw.formats.sheet import brief
-from mcgw.scene.section import Key, Kind, Section, nearest
+from mcgw.scene.section import Key, Kind, Section, nearest, table_shape
 
 _MOST_WHOLE = 10**30  # so that no message has hundreds of digits
 # Which unit does is checked by `parse`, which knows more spellings than a pattern should.
@@ -284,25 +284,3 @@ _LOOKS: dict[type[Kind], Any] = {
     Word: str,
     Number: int | float | str,
 }
-
-
-def table_shape(rows: tuple[Key, ...]) -> dict[str, Any]:
-    """An object with these keys and no others, and which of them go together."""
-    shape: dict[str, Any] = {
-        "type": "object",
-        "properties": {
-            row.name: ({"description": row.words} if row.words else {}) | row.kind.shape() for row in rows
-        },
-        "additionalProperties": False,
-    }
-    replaced = {other for row in rows for other in row.excludes}
-    always = [row for row in rows if row.required and not (row.laws or row.needs or row.excludes)]
-    if required := [row.name for row in always if row.name not in replaced]:
-        shape["required"] = required
-    apart: list[dict[str, Any]] = []
-    for row in rows:
-        if row.needs:
-            any_of = [{"required": [other]} for other in row.needs]
-            shape.setdefault("dependentSchemas", {})[row.name] = {"anyOf": any_of}
-        apart += [{"not": {"required": [row.name, other]}} for other in row.excludes]
-    return shape | ({"allOf": apart} if apart else {})

@@ -1,9 +1,9 @@
 """One table of a scene, read key by key; what is wrong is collected, not raised."""
 
 import difflib
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
-from typing import Any, TypeVar
+from typing import Any, NamedTuple, TypeVar
 
 from mcgw.machine.terminal import one_line
 
@@ -89,6 +89,42 @@ class Key:
     laws: tuple[str, ...] = ()
     needs: tuple[str, ...] = ()
     excludes: tuple[str, ...] = ()
+
+
+class TableOfKeys(NamedTuple):
+    """A table of a scene file: what it says, as Markdown, and its rows.
+
+    Where all its keys `make` an object, the scene holds that in a field of its name, and Python gives it; or
+    else hears the `advice`.
+    """
+
+    words: str
+    rows: tuple[Key, ...]
+    required: bool = False
+    make: Callable[..., Any] | None = None
+    advice: str = ""
+
+
+def table_shape(rows: tuple[Key, ...]) -> dict[str, Any]:
+    """An object with these keys and no others, and which of them go together."""
+    shape: dict[str, Any] = {
+        "type": "object",
+        "properties": {
+            row.name: ({"description": row.words} if row.words else {}) | row.kind.shape() for row in rows
+        },
+        "additionalProperties": False,
+    }
+    replaced = {other for row in rows for other in row.excludes}
+    always = [row for row in rows if row.required and not (row.laws or row.needs or row.excludes)]
+    if required := [row.name for row in always if row.name not in replaced]:
+        shape["required"] = required
+    apart: list[dict[str, Any]] = []
+    for row in rows:
+        if row.needs:
+            any_of = [{"required": [other]} for other in row.needs]
+            shape.setdefault("dependentSchemas", {})[row.name] = {"anyOf": any_of}
+        apart += [{"not": {"required": [row.name, other]}} for other in row.excludes]
+    return shape | ({"allOf": apart} if apart else {})
 
 
 class Section:

@@ -127,7 +127,20 @@ class Tradeoff(Shown):
         """What to run for each wish."""
         quantity, h = self.scene.quantities[0], f"{self.separations[-1]:g}"
         facts = [("mean, quantile", f"of the {quantity} at d/sigma = {h}, in 95 of 100 ensembles")]
-        return Sheet("What to run", facts, self._to_run())
+        a = self.advice
+        asked = [x.scene.sampler for x in a]
+        columns = (
+            Column("wish", [x.wish.text for x in a], "wish, relative error"),
+            Column(
+                "sampler",
+                [s if s == x.sampler else f"{s}: {x.sampler}" for s, x in zip(asked, a, strict=True)],
+            ),
+            Column("accuracy", [x.scene.accuracy for x in a], form="g"),
+            Column("law_error", [x.scene.law_error for x in a], form="g"),
+            Column("n_surfaces", [x.scene.n_surfaces for x in a], form="d"),
+            Column("seconds", [x.seconds for x in a], form=".2g"),
+        )
+        return Sheet("What to run", facts, Table(columns))
 
     def table(self) -> Table:
         """Errors and time of every method at every size."""
@@ -163,22 +176,6 @@ class Tradeoff(Shown):
         )
         title = "values of single surfaces (largest relative error of a few surfaces, seconds by the clock)"
         return Table(columns, title)
-
-    def _to_run(self) -> Table:
-        a = self.advice
-        samplers = [
-            x.scene.sampler if x.scene.sampler == x.sampler else f"{x.scene.sampler}: {x.sampler}" for x in a
-        ]
-        return Table(
-            (
-                Column("wish", [x.wish.text for x in a], "wish, relative error"),
-                Column("sampler", samplers),
-                Column("accuracy", [x.scene.accuracy for x in a], form="g"),
-                Column("law_error", [x.scene.law_error for x in a], form="g"),
-                Column("n_surfaces", [x.scene.n_surfaces for x in a], form="d"),
-                Column("seconds", [x.seconds for x in a], form=".2g"),
-            )
-        )
 
 
 class _Task:
