@@ -62,9 +62,11 @@ from analytic.nayak import Nayak
 from analytic.piecewise import PiecewiseSeries
 from analytic.quantities import (
     ALL_QUANTITIES,
+    JOINT,
     LAW_QUANTITIES,
     PER_AREA,
     QUANTITIES,
+    RESISTANCES,
     SEPARATIONS,
     TANGENTIAL,
     UNLOADING,
@@ -93,7 +95,8 @@ if TYPE_CHECKING:
     )
 
 __all__ = [
-    "ALL_QUANTITIES", "LAW_QUANTITIES", "PER_AREA", "QUANTITIES", "SEPARATIONS", "TANGENTIAL", "UNLOADING",
+    "ALL_QUANTITIES", "JOINT", "LAW_QUANTITIES", "PER_AREA", "QUANTITIES", "RESISTANCES", "SEPARATIONS",
+    "TANGENTIAL", "UNLOADING",
     "Body", "ChangEtsionBogy", "Clipped", "Coated", "ContactLaw", "Cumulants", "Custom", "CustomLaw",
     "DerjaguinMullerToporov", "Exponential", "ExponentialHeights", "Film", "Fluctuations", "Gaussian",
     "Grading", "HeightLaw", "HeightRule", "HeightTable", "Hertz", "Homogeneous", "InteractingModel",

@@ -14,13 +14,13 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.polynomial import Chebyshev
+from numpy.polynomial import Chebyshev, HermiteE
 from numpy.typing import ArrayLike
 
 from analytic.arrays import Array, hold
 from analytic.nayak import Nayak
 from analytic.quadrature import gauss_legendre
-from analytic.surface import SUMMIT_SPREAD, Surface
+from analytic.surface import SUMMIT_SPREAD, SpectralMoments, Surface
 
 # Of air; recalled. Sutherland's law of the U.S. Standard Atmosphere (1976); accommodation at engineering
 # surfaces, ratio of specific heats, Prandtl's number; mean free path at a temperature (K) and pressure (Pa).
@@ -122,25 +122,30 @@ class Joint:
             air(self.temperature or _ROOM, self.gas_pressure or _AT_PRESSURE) if self.gas == "air" else None
         )
 
-    def gap(self, surface: Surface, heights: Any) -> "Gap":
+    def gap(self, surface: Surface, heights: Any, moments: SpectralMoments | None = None) -> "Gap":
         """Of a surface.
 
-        Where the heights are not Nayak's, alpha follows from ``sigma^2 = (1 - .8968/alpha) rms^2``.
+        Its rms height and the rise of its summits are those of Nayak's heights, or of the joint's `rms` with
+        alpha from ``sigma^2 = (1 - .8968/alpha) rms^2``, or of spectral `moments`, in this order.
 
         Raises
         ------
         ValueError
-            If its rms height is not known, not above that of its summits, or told twice.
+            If its rms height is not known, not above that of its summits, or given twice.
         """
         sigma = surface.sigma
-        if self.held is None and self.rms is None and not isinstance(heights, Nayak):
+        if self.held is None:
             return Gap(None, sigma, sigma, 0.0)
         if isinstance(heights, Nayak):
             if self.rms is not None:
                 raise ValueError(f"rms = {self.rms!r}: the heights tell it; leave it out")
             return Gap(self.held, sigma, sigma / heights.std, heights.mean / heights.std)
         if self.rms is None:
-            raise ValueError("rms: give the root mean square height of the surface (not of its summits), m")
+            if moments is None:
+                raise ValueError(
+                    "rms: give the root mean square height of the surface (not of its summits), m"
+                )
+            return Gap(self.held, sigma, math.sqrt(moments.m0), moments.mean_height / sigma)
         if self.rms <= sigma:
             raise ValueError(
                 f"rms = {self.rms!r}: give more than sigma = {sigma:g} m, that of the summits alone"
@@ -168,39 +173,41 @@ class Gap:
     rms: float
     rise: float
 
-    def __call__(self, h: ArrayLike) -> Array:
-        """At distances of the mean planes over sigma, where spots have deformed the surface."""
+    def __call__(self, h: ArrayLike, order: int = 0) -> Array:
+        """At distances of the mean planes over sigma, between deformed surfaces; or a derivative."""
         h = np.asarray(h, dtype=np.float64)
         if self.gas is None:
             return np.zeros(h.shape)
-        y = (h + self.rise) * self.sigma / self.rms
-        return self.gas.conductivity / self.rms * gap_integral(y, self.gas.jump / self.rms)
+        shrunk = self.sigma / self.rms
+        found = gap_integral((h + self.rise) * shrunk, self.gas.jump / self.rms, order)
+        return self.gas.conductivity / self.rms * shrunk**order * found
 
 
-def gap_integral(y: ArrayLike, m: float) -> Array:
-    """I(Y, M) to 1e-13, in the shape of Y."""
+def gap_integral(y: ArrayLike, m: float, order: int = 0) -> Array:
+    """I(Y, M) to 1e-13, or a derivative of it by Y, in the shape of Y."""
     y = np.asarray(y, dtype=np.float64)
     once, back = np.unique(y, return_inverse=True)
     if once.size <= _DIRECT:
-        return np.reshape(_integrals(once, m)[back], y.shape)
+        return np.reshape(_integrals(once, m, order)[back], y.shape)
     edges = np.linspace(once[0], once[-1], max(math.ceil((once[-1] - once[0]) / _PANEL), 1) + 1)
     panel = np.clip(np.searchsorted(edges, once, side="right") - 1, 0, edges.size - 2)
     found = np.empty(once.size)
     for k in np.unique(panel):
-        series = Chebyshev.interpolate(lambda x: _integrals(x, m), _DEGREE, edges[k : k + 2])
+        series = Chebyshev.interpolate(lambda x: _integrals(x, m, order), _DEGREE, edges[k : k + 2])
         found[panel == k] = series(once[panel == k])
     return np.reshape(found[back], y.shape)
 
 
-def _integrals(y: Array, m: float) -> Array:
+def _integrals(y: Array, m: float, order: int) -> Array:
     """Each by Gauss-Legendre rules in panels: from 0, as fine as M there, or about Y if that is far."""
-    far = y > 1.2 * _REACH
+    far, turned = y > 1.2 * _REACH, HermiteE.basis(order)  # the derivatives of the Gaussian
     found = np.empty(y.shape)
     x, w = _rule([-_REACH, *np.arange(1 - _REACH, _REACH + 1)])
-    found[far] = (w * np.exp(-x * x / 2) / (y[far, None] + x + m)).sum(axis=1)
+    found[far] = (w * np.exp(-x * x / 2) * turned(x) / (y[far, None] + x + m)).sum(axis=1)
     near = m * 4.0 ** np.arange(math.ceil(-math.log(m, 4))) if m < 1 else ()
     x, w = _rule([0.0, *near, *np.arange(1, 2.2 * _REACH + 2)])
-    found[~far] = (w / (x + m) * np.exp(-((y[~far, None] - x) ** 2) / 2)).sum(axis=1)
+    z = x - y[~far, None]
+    found[~far] = (w / (x + m) * np.exp(-z * z / 2) * turned(z)).sum(axis=1)
     return found / math.sqrt(2 * math.pi)
 
 

@@ -19,7 +19,7 @@ from analytic.laws.law import ContactLaw
 from analytic.laws.tangential import Tangential
 from analytic.mean_contact import MeanContact, MeanPowers
 from analytic.measured_summits import MeasuredRadii
-from analytic.quantities import LAW_QUANTITIES, Quantity, quantity_of
+from analytic.quantities import LAW_QUANTITIES, NOT_SUMS, Quantity, quantity_of
 from analytic.summits import Summits, summits_of
 from analytic.surface import Surface
 
@@ -443,6 +443,8 @@ class Model:
     def _asked(self, quantity: str, h: ArrayLike = np.inf) -> Quantity:
         """A quantity that is known at these separations."""
         q = quantity_of(quantity)
+        if quantity in NOT_SUMS:
+            raise KeyError(f"{quantity!r}: the model knows no gas; ask `theory` of a scene with a joint")
         self.ways.of(quantity)
         if q.unloading and self.unload_from is not None and np.any(np.less(h, self.unload_from)):
             raise ValueError(

@@ -21,7 +21,7 @@ class Quantity:
     Parameters
     ----------
     name, long_name, unit : str
-        Name in code, name for people, SI unit.
+        Name in code, name for people, SI unit; "S or W/K" where current or heat is conducted.
     exponent : float
         Power n of the approach (s - h).
     modulus : int
@@ -97,7 +97,7 @@ PER_AREA = _by_name(
     Quantity(
         "contact_conductance",
         "contact conductance per nominal area",
-        "W/(m^2 K) or S/m^2",
+        "S/m^2 or W/(m^2 K)",
         0.5,
         0,
         0.5,
@@ -146,12 +146,43 @@ SEPARATIONS = {
     for way in ways
 }
 
+# Of a joint with gas in its gap, per nominal area: what the gas conducts, and spots and gas together.
+JOINT = {
+    f"{name}{way}": Quantity(
+        f"{name}{way}", f"{long_name}{way and ', unloading'}", "W/(m^2 K)", 0.5, 0, 0.5, 4,
+        of=f"conductance_si{way}", unloading=way and name, words=name.replace("_", " "), symbol=symbol,
+    )
+    for name, long_name, symbol in (
+        ("gap_conductance", "conductance of the gas in the gap, per nominal area", "h_g"),
+        ("joint_conductance", "conductance of spots and gas, per nominal area", "h_j"),
+    )
+    for way in ("", "_unloading")
+}  # fmt: skip
+
+# What follows of conductances at a given load.
+RESISTANCES = _by_name(
+    Quantity("thermal_resistance", "thermal resistance of the joint", "K/W", -0.5, 0, -0.5, 0.25),
+    Quantity("contact_resistance", "contact resistance", "ohm", -0.5, 0, -0.5, 0.25),
+    Quantity(
+        "specific_contact_resistance", "contact resistance of a unit area", "ohm m^2 or K m^2/W",
+        -0.5, 0, -0.5, 0.25,
+    ),
+)  # fmt: skip
+
 TANGENTIAL = Quantity("tangential_load", "tangential load", "N", 1.5, 1, 0.5, 4 / 3)
 
 # All that an ensemble can hold.
-ALL_QUANTITIES = {**QUANTITIES, **LAW_QUANTITIES, **UNLOADING, TANGENTIAL.name: TANGENTIAL, **SEPARATIONS}
+ALL_QUANTITIES = {
+    **QUANTITIES,
+    **LAW_QUANTITIES,
+    **UNLOADING,
+    TANGENTIAL.name: TANGENTIAL,
+    **SEPARATIONS,
+    **JOINT,
+}
 
-_KNOWN = {**ALL_QUANTITIES, **PER_AREA}
+NOT_SUMS = (*JOINT, *RESISTANCES)  # over asperities
+_KNOWN = {**ALL_QUANTITIES, **PER_AREA, **RESISTANCES}
 
 
 def quantity_of(name: str) -> Quantity:

@@ -94,6 +94,7 @@ if TYPE_CHECKING:
         Interaction as Interaction,
         JacksonGreen as JacksonGreen,
         JohnsonKendallRoberts as JohnsonKendallRoberts,
+        Joint as Joint,
         KogutEtsion as KogutEtsion,
         Layer as Layer,
         MeasuredHeights as MeasuredHeights,
@@ -147,7 +148,7 @@ os.environ.setdefault("OMP_WAIT_POLICY", "passive")
 _HOMES = {
     "analytic": "Body ChangEtsionBogy Coated Custom CustomLaw DerjaguinMullerToporov Exponential "
     "ExponentialHeights Film Gaussian HeightTable Hertz Homogeneous Interaction JacksonGreen "
-    "JohnsonKendallRoberts KogutEtsion Layer MeasuredHeights MeasuredRadii Nayak PowerLawGraded "
+    "JohnsonKendallRoberts Joint KogutEtsion Layer MeasuredHeights MeasuredRadii Nayak PowerLawGraded "
     "RandomCurvature ScipyHeights Table Tangential Weibull ZhaoMaiettaChang composite_modulus masing",
     "mcgw.elasticity.elastic": "elastic",
     "mcgw.ensemble.ensemble": "Ensemble",

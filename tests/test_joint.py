@@ -5,8 +5,10 @@ import math
 import numpy as np
 import pytest
 from scipy.integrate import quad
+from test_layer import LAWS
 
 import analytic
+import mcgw
 from analytic.joint import Gas, Joint, air, gap_integral
 
 SURFACE = analytic.Surface(sigma=0.9e-6, radius=1e-5, eta=1e10, nominal_area=1e-4, E_star=1e11)
@@ -54,3 +56,175 @@ def test_the_rms_is_that_of_the_surface():
 def test_mistakes(joint, line):
     with pytest.raises(ValueError, match=line):
         joint()
+
+
+# --- in scenes ---
+
+FILM = analytic.Film(conductivities=(200.0, 16.0))
+ROUGH = analytic.Surface(sigma=1.37e-6, radius=13e-6, eta=3.0e8, nominal_area=1e-6, E_star=78.6e9)
+AIR = {"gas": "air", "rms": "2 um"}
+H = (1.5, 2.0)
+OWN = {  # modes of interaction, and the separation that differs from surface to surface and tells the gap
+    "alone": (None, None),
+    "body": ("body", None),
+    "plane": ("mean-plane", "nominal_separation"),
+    "body, nominal": ({"reference": "body", "at": "nominal"}, "effective_separation"),
+    "plane, nominal": ({"reference": "mean-plane", "at": "nominal"}, None),
+}
+
+
+def scene_of(**changes):
+    asked = {"separations": H, "film": FILM, "joint": AIR, "seed": 3, "n_surfaces": 40}
+    return mcgw.Scene(ROUGH, **asked | changes)
+
+
+def by_hand(h):
+    """Gap conductance at a distance over sigma, by the integral as it is written."""
+    rms, gas, sigma = 2e-6, air(), ROUGH.sigma
+    alpha = 0.8968 / (1 - (sigma / rms) ** 2)
+    y, m = (h * sigma + 4 * rms / math.sqrt(math.pi * alpha)) / rms, gas.jump / rms
+    integral = quad(lambda x: math.exp(-((y - x) ** 2) / 2) / (x + m), 0, y + 12, points=(m, y))[0]
+    return gas.conductivity / rms * integral / math.sqrt(2 * math.pi)
+
+
+@pytest.mark.parametrize("mode", OWN)
+def test_each_surface_at_its_own_distance(mode):
+    """The joint is its spots and its gas; vacuum is the spots alone, no contact the gas alone."""
+    interaction, own = OWN[mode]
+    e = mcgw.simulate(scene_of(interaction=interaction))
+    h = np.tile(H, (40, 1)) if own is None else e[own]
+    for i in (0, 7):
+        np.testing.assert_allclose(e["gap_conductance"][i], [by_hand(x) for x in h[i]], rtol=2e-4)
+    np.testing.assert_allclose(
+        e["joint_conductance"], e["contact_conductance"] + e["gap_conductance"], rtol=1e-14
+    )
+    assert (np.ptp(e["gap_conductance"], axis=0) > 0).all() == (own is not None)
+    vacuum = mcgw.simulate(scene_of(interaction=interaction, joint="vacuum"))
+    np.testing.assert_array_equal(vacuum["joint_conductance"], vacuum["contact_conductance"])
+    far = mcgw.simulate(scene_of(separations=9.0))
+    np.testing.assert_array_equal(far["joint_conductance"], far["gap_conductance"])
+
+
+@pytest.mark.parametrize("mode", OWN)
+def test_many_have_the_mean_and_spread_of_theory(mode):
+    """|z| < 5: false alarms 6e-7 a number. The gap at the wrong plane fails."""
+    interaction, own = OWN[mode]
+    n = 500 if "nominal" in mode else 4000
+    scene = scene_of(interaction=interaction, n_surfaces=n)
+    e, theory = mcgw.simulate(scene), scene.theory
+    for name in scene.of_joint:
+        mean, std = theory.mean(name, H), theory.std(name, H)
+        if own is None and name == "gap_conductance":
+            np.testing.assert_array_equal(e.mean(name), mean)
+            assert (std == 0).all()
+            continue
+        assert np.abs((e.mean(name) - mean) / std * math.sqrt(n)).max() < 5
+        assert e.std(name) == pytest.approx(std, rel=0.18)
+    if own is not None:
+        std = theory.std("gap_conductance", H)
+        wrong = scene.filled(H) - e.mean("gap_conductance")
+        assert (np.abs(wrong) / std * math.sqrt(n) > 10).any()
+    covariance = theory.covariance(["joint_conductance", "load"], H)
+    found = e.covariance("joint_conductance", "load")
+    np.testing.assert_allclose(np.diag(found), np.diag(covariance[0, :, 1]), rtol=0.25)
+    assert mcgw.compare(e).verdict.agrees
+
+
+@pytest.mark.parametrize("name", LAWS)
+def test_every_law(name):
+    scene = scene_of(law=LAWS[name], negative="clip", n_surfaces=1500, n_asperities=300)
+    e = mcgw.simulate(scene)
+    mean, std = (get("joint_conductance", H) for get in (scene.theory.mean, scene.theory.std))
+    assert np.abs((e.mean("joint_conductance") - mean) / std * math.sqrt(1500)).max() < 5
+    np.testing.assert_allclose(
+        mean - scene.theory.mean("contact_conductance", H), [by_hand(h) for h in H], rtol=2e-4
+    )
+
+
+def test_way_back_and_laws():
+    scene = scene_of(law=LAWS["kogut"], unload_from=1.0, interaction="mean-plane", n_surfaces=2000)
+    e, name = mcgw.simulate(scene), "joint_conductance_unloading"
+    gas = e["gap_conductance_unloading"]
+    np.testing.assert_allclose(e[name], e["conductance_si_unloading"] / ROUGH.nominal_area + gas, rtol=1e-14)
+    np.testing.assert_allclose(gas, scene.filled(e["nominal_separation_unloading"]), rtol=1e-14)
+    mean, std = (get(name, H) for get in (scene.theory.mean, scene.theory.std))
+    assert np.abs((e.mean(name) - mean) / std * math.sqrt(2000)).max() < 5
+    law = scene_of().theory.distribution("joint_conductance", 2.0)
+    assert law.mean() == pytest.approx(float(scene_of().theory.mean("joint_conductance", 2.0)), rel=1e-6)
+    values = mcgw.simulate(scene_of(n_surfaces=2000))["joint_conductance"][:, 1]
+    for share in (0.1, 0.5, 0.9):  # Hoeffding: false alarms 1e-6
+        assert abs(np.mean(values <= law.ppf(share)) - share) < math.sqrt(math.log(2e6) / 2 / 2000)
+
+
+def test_derivatives_of_the_gap():
+    gap = scene_of().filled
+    for order in (1, 2):
+        step = 1e-3
+        slope = (gap(2.0 + step, order - 1) - gap(2.0 - step, order - 1)) / (2 * step)
+        assert float(gap(2.0, order)) == pytest.approx(float(slope), rel=1e-6)
+
+
+def test_where_it_goes(tmp_path):
+    """Text, files, statistics, sweeps, another law, tables: units are those of heat."""
+    scene = scene_of()
+    assert mcgw.scene_from(mcgw.scene_text(scene)) == scene
+    assert (
+        scene.replace(joint=analytic.Joint({"conductivity": 0.15, "jump": 1e-6}, rms=2e-6)).joint.held.jump
+        == 1e-6
+    )
+    e = mcgw.simulate(scene)
+    mcgw.save(e, tmp_path / "joint.h5")
+    held = mcgw.open_ensemble(tmp_path / "joint.h5")
+    np.testing.assert_array_equal(held["joint_conductance"], e["joint_conductance"])
+    kept = mcgw.simulate(scene.replace(keep="statistics"))
+    np.testing.assert_allclose(kept.mean("joint_conductance"), e.mean("joint_conductance"), rtol=1e-12)
+    np.testing.assert_allclose(kept.quantile("gap_conductance", 0.5), scene.filled(H), rtol=1e-12)
+    swept = mcgw.sweep(scene, {"joint.gas_pressure": [1e4, 1e5]})
+    gas = swept.mean("gap_conductance")
+    assert (gas[0] < gas[1]).all()
+    np.testing.assert_allclose(swept.theory("joint_conductance"), swept.mean("joint_conductance"), rtol=0.1)
+    alone = mcgw.regrade(e, joint=None)
+    assert "joint_conductance" not in alone.scene.shapes
+    assert "joint_conductance" in mcgw.regrade(e, analytic.Exponential(2.0)).scene.shapes
+    for shown in (
+        repr(e),
+        str(mcgw.compare(e).tables()["conductance_si"]),
+        mcgw.compare(e).tables()["joint_conductance"].text(),
+    ):
+        assert " or " not in shown
+        assert "W/" in shown
+    assert e.labelled().variables["conductance_si"].about["units"] == "W/K"
+
+
+@pytest.mark.parametrize(("changes", "line"), [
+    ({"film": None}, r"joint: gas conducts heat; give contact\.conductivities"),
+    ({"film": analytic.Film(1e-7)}, r"joint: gas conducts heat; give contact\.conductivities"),
+    ({"joint": "air"}, r"joint\.rms: give the root mean square height"),
+    ({"joint": {"gas": "air", "rms": "1 um"}}, r"joint\.rms = 1e-06: give more than sigma"),
+    ({"joint": "steam"}, r"joint\.gas = 'steam': give \"air\""),
+    ({"joint": {"gas": {"jump": 1e-6}}}, r"joint\.gas\.conductivity: missing"),
+    ({"joint": {"gas": "vacuum", "temperature": 300.0}}, r"joint\.temperature = 300\.0: it goes with"),
+    ({"joint": {"rms": 1e-6}}, r"joint\.gas: missing"),
+    ({"joint": 3}, r"joint = 3: give mcgw\.Joint"),
+    ({"heights": analytic.Nayak(5.0)}, r"joint\.rms = 2e-06: the heights tell it"),
+])  # fmt: skip
+def test_mistakes_of_scenes(changes, line):
+    with pytest.raises(mcgw.SceneError, match=line) as raised:
+        scene_of(**changes)
+    assert len(raised.value.problems) == 1
+
+
+def test_a_fit_tells_the_surface():
+    """[fitted] knows rms and alpha; what is given as rms goes before."""
+    fitted = {"m0": 4e-12, "m2": 1e-3, "m4": 5e6, "skewness": 0.0, "kurtosis": 3.0, "independent": 900.0}
+    gap = scene_of(joint="air", fitted=fitted).filled
+    assert (gap.rms, gap.rise) == (2e-6, pytest.approx(4 * 2e-6 / math.sqrt(math.pi * 20) / ROUGH.sigma))
+    assert scene_of(fitted=fitted, joint={"gas": "air", "rms": 3e-6}).filled.rms == 3e-6
+
+
+def test_models_without_gas_say_so():
+    scene = scene_of(joint=None)
+    for name in ("gap_conductance", "thermal_resistance"):
+        with pytest.raises(KeyError, match="the model knows no gas"):
+            scene.theory.mean(name, H)
+    assert not scene.of_joint

@@ -41,6 +41,7 @@ LISTED |= {"resample": "true"}
 HEIGHTS, RADII = {"heights": "[0.0, 1e-6, 3e-6]"}, {"radii": "[1e-5, 2e-5, 3e-5]"}
 FITTED = {"m0": "1e-12", "m2": "1e-3", "m4": "5e6"}
 FITTED |= {"skewness": "-0.1", "kurtosis": "3.1", "independent": "900.0"}
+JOINED = {"gas": "'air'", "rms": "'2 um'", ("contact", "conductivities"): "[150.0, 16.0]"}
 # Keys that need other company: its good value, and what is put in place of which other lines.
 COMPANY = {
     ("surface", "bodies"): ("[{E = 7e10, nu = 0.3}, {E = inf}]", {"E_star": None}),
@@ -64,6 +65,10 @@ COMPANY = {
     ("interaction", "reference"): ("'body'", {}),
     ("interaction", "at"): ("'nominal'", {"reference": "'body'"}),
     ("interaction", "bulk_modulus"): ("1e11", {"reference": "'body'"}),
+    ("joint", "gas"): ("{conductivity = 0.15, jump = '1 um'}", JOINED),
+    ("joint", "rms"): ("'2 um'", JOINED),
+    ("joint", "temperature"): ("300.0", JOINED),
+    ("joint", "gas_pressure"): ("'1 bar'", JOINED),
     **{("fitted", key): (value, FITTED | {key: value}) for key, value in FITTED.items()},
     ("fitted", "agreement"): ("1.02", FITTED),
     ("fitted", "lay"): ("1.0", FITTED),
@@ -161,6 +166,9 @@ WRONG = {
     "skewness": ["~nan", "'x'"], "kurtosis": ["0", "-1", "~inf"], "independent": ["0", "'many'", "~nan"],
     "agreement": ["0.9", "~nan", "'x'"], "lay": ["0.5", "-1", "~inf"],
     "cautions": ["'x'", "[1]", "['']"],
+    "gas": ["'steam'", "1", "{jump = 1e-6}", "{conductivity = -1, jump = 1e-6}"],
+    "rms": ["0", "-1", "~'1 Pa'", "~1e-9"], "temperature": ["0", "-1", "~nan"],
+    "gas_pressure": ["0", "~'1 m'"],
     "m0": ["0", "-1", "~'1 m'"], "m2": ["0", "~nan", "~'1 m'"], "m4": ["0", "-1", "~'1 m'"],
     "largest_radius": ["0", "-1", "~'1 Pa'"], "datum": ["'top'", "1"],
     "radii": ["~[1e-5]", "1", "[1e-5, -1e-5, 1e-5]", "~[1e-5, nan, 1e-5]", "['x', 1, 1]"],
@@ -274,6 +282,7 @@ def test_the_lists_of_keys_are_whole(monkeypatch, example):
         mcgw.scene_from(text_of(table, key, good(table, key)))
     inner = {("contact.separations", name) for name in ("start", "stop", "num")}
     inner |= {("contact.tangential", name) for name in ("friction", "poisson", "displacements")}
+    inner |= {("joint.gas", name) for name in ("conductivity", "jump")}
     inner |= {("contact.layer", name) for name in ("thickness", "conductivity")}
     errors = ("sigma", "radius", "eta", "m0", "m2", "m4", "E_star", "correlation")
     inner |= {("surface.uncertainty", name) for name in errors}

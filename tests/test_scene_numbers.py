@@ -15,6 +15,7 @@ from scipy.special import erf
 from scipy.stats import gamma as gamma_law, norm, weibull_min
 from test_scene_keys import FILES, keys
 
+import analytic.joint
 import mcgw
 from mcgw.sampling.samplers import sampler_of
 
@@ -27,6 +28,7 @@ BASE = {
     "summits": {},
     "contact": {"separations": [TOP - 0.5]},
     "interaction": {},
+    "joint": {},
     "ensemble": {"n_asperities": 3, "n_surfaces": 1, "seed": 1, "sampler": "'direct'"},
     "fitted": {},
 }
@@ -152,6 +154,8 @@ def sunk(bulk, area, factor):
 CHANCE = 2 * sqrt(6 / 4000)
 FITTED = {"m0": 1e-12, "m2": 1e-2, "m4": 1e9, "skewness": 0.0, "kurtosis": 3.0, "independent": 1e4,
           "agreement": 1.05, "lay": 1.1, "area": 1e-6}  # fmt: skip
+
+JOINED = {"contact": {"conductivities": [150.0, 16.0]}, "joint": {"gas": "'air'", "rms": 2e-6}}
 
 
 def not_measured(words):
@@ -281,6 +285,12 @@ ROWS = [
     ("interaction.bulk_modulus", 1e9, {"interaction": {"reference": "'body'", "at": "'nominal'"}},
      simulated(),
      sunk(1e9, 1e-6, 0.9464020088186771)),
+    ("joint.gas", "{conductivity = 0.15, jump = 1e-6}", JOINED, lambda s: s.joint.held.conductivity, 0.15),
+    ("joint.rms", "'3 um'", JOINED, lambda s: s.filled.rms, 3e-6),
+    ("joint.temperature", 600.0, JOINED,
+     lambda s: s.joint.held.conductivity, 2.64638e-3 * 600**1.5 / (600 + 245.4 * 10 ** (-12 / 600))),
+    ("joint.gas_pressure", "'0.5 bar'", JOINED,
+     lambda s: s.joint.held.jump / analytic.joint.air().jump, 101325 / 5e4),
     ("fitted.m0", 2e-12, {"fitted": FITTED}, lambda s: s.fitted.moments.alpha, 20),
     ("fitted.m2", 2e-2, {"fitted": FITTED}, lambda s: s.fitted.moments.alpha, 2.5),
     ("fitted.m4", 4e9, {"fitted": FITTED}, lambda s: s.fitted.moments.alpha, 40),

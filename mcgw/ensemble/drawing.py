@@ -72,11 +72,16 @@ def kept(scene: Scene, block: Block) -> dict[str, Any]:
 
 def answered(scene: Scene, sums: dict[str, Any]) -> dict[str, Any]:
     """What surfaces answer with these sums of their asperities."""
-    if scene.interaction is None:
-        return dict(sums)
-    from mcgw.ensemble.half_space import with_interaction  # for those scenes alone
+    found = dict(sums)
+    if scene.interaction is not None:
+        from mcgw.ensemble.half_space import with_interaction  # for those scenes alone
 
-    return with_interaction(scene, sums)
+        found = with_interaction(scene, sums)
+    if scene.joint is not None:
+        from mcgw.ensemble.in_joints import with_joint  # for those scenes alone
+
+        found |= with_joint(scene, found, scene.of_joint)
+    return found
 
 
 def block_size(scene: Scene, sampler: Source[Any]) -> int:

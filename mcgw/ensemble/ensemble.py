@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from analytic import PER_AREA, quantity_of
+from analytic import PER_AREA
 from analytic.arrays import Array, Ints
 from mcgw.ensemble.intervals import CONFIDENCE, interval_of
 from mcgw.ensemble.labelled import Labelled, axes_of, axis, statistics_of, values_of
@@ -301,8 +301,8 @@ class Ensemble(Shown):
         if m * len(scene.separations) * len(scene.quantities) > _MOST_SHOWN:
             held = f"{', '.join(scene.quantities)} at {len(scene.separations)} separations"
             return Sheet(head, [*facts, ("holds", held)])
-        names = scene.quantities
-        columns = [Column("quantity", [f"{q} ({quantity_of(q).unit})" for q in names], _AT)]
+        names = scene.answers
+        columns = [Column("quantity", [f"{q} ({scene.quantity(q).unit})" for q in names], _AT)]
         mean, error = (np.array([get(q)[shown] for q in names]) for get in (self.mean, self.stderr))
         error *= 1 if promise_of(self.sampler).real_surfaces else np.nan
         for i, h in enumerate(self.separations[shown]):

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from analytic import quantity_of
+from analytic import Quantity
 from mcgw.ensemble.results import PROBABILITIES
 from mcgw.formats.table import SEPARATION, Column, Table, optional
 from mcgw.scene.scene import Scene
@@ -105,14 +105,13 @@ def values_of(scene: Scene, tables: Mapping[str, NDArray[Any]]) -> Labelled:
     rows = len(next(iter(tables.values())))
     found = {}
     for name, values in tables.items():
-        q, dims = quantity_of(name), ("surface", *_OF_A_SURFACE)
+        q, dims = scene.quantity(name), ("surface", *_OF_A_SURFACE)
         found[name] = Variable(dims[: values.ndim], values, q.unit, q.long_name)
     return Labelled(found, {"surface": axis("surface", np.arange(rows)), **axes_of(scene)})
 
 
-def statistic(name: str, kind: str, values: NDArray[Any], lead: tuple[str, ...] = ()) -> Variable:
+def statistic(q: Quantity, kind: str, values: NDArray[Any], lead: tuple[str, ...] = ()) -> Variable:
     """A statistic over the surfaces of a quantity, that may have axes before those of a surface."""
-    q = quantity_of(name)
     lead = (*lead, "probability") if kind == "quantile" else lead
     dims = (*lead, *_OF_A_SURFACE)[: values.ndim]
     return Variable(dims, values, "1" if kind == "skewness" else q.unit, _WORDS[kind].format(q.long_name))
@@ -123,24 +122,26 @@ def statistics_of(
 ) -> dict[str, Variable]:
     """What a result tells over its surfaces of some quantities, with axes before those of a surface."""
     found: dict[str, Variable] = {}
+    scene = result.scenes[0] if lead else result.scene
     for name in names:
+        q = scene.quantity(name)
         for kind in kinds:
-            found[f"{name}_{kind}"] = statistic(name, kind, getattr(result, kind)(name), lead)
+            found[f"{name}_{kind}"] = statistic(q, kind, getattr(result, kind)(name), lead)
         if quantiles:
             values = np.stack([result.quantile(name, share) for share in PROBABILITIES], axis=len(lead))
-            found[f"{name}_quantile"] = statistic(name, "quantile", values, lead)
+            found[f"{name}_quantile"] = statistic(q, "quantile", values, lead)
     return found
 
 
-def heading(quantity: str) -> str:
+def heading(q: Quantity) -> str:
     """Long name and unit of a quantity, over its table."""
-    q = quantity_of(quantity)
     return q.long_name if q.unit == "1" else f"{q.long_name} ({q.unit})"
 
 
 def statistics_table(ensemble: Any, name: str) -> Table:
     """Of a quantity at every separation: mean, std, stderr; and where values are not kept, what else is."""
-    unit = quantity_of(name).unit
+    q = ensemble.scene.quantity(name)
+    unit = q.unit
     found = [("mean", ensemble.mean(name), ".6g"), ("std", ensemble.std(name), ".3g")]
     found.append(("stderr", ensemble.stderr(name), ".3g"))
     columns = [Column(kind, values, unit=unit, form=form) for kind, values, form in found]
@@ -150,4 +151,4 @@ def statistics_table(ensemble: Any, name: str) -> Table:
         quantiles = ((f"quantile_{share:g}", ensemble.quantile(name, share)) for share in PROBABILITIES)
         columns += [Column(kind, values, unit=unit) for kind, values in quantiles]
     separation = Column("separation", ensemble.separations, SEPARATION, form="g")
-    return Table((separation, *columns), heading(name))
+    return Table((separation, *columns), heading(q))

@@ -29,7 +29,7 @@ Drawn = tuple[Array, Array, Array]  # moments, counts and single asperities of s
 Tables = dict[str, NDArray[Any]]
 
 _ROWS = 1024  # surfaces at a time
-_CONTACT = ("unload_from", "film", "tangential", "interaction")
+_CONTACT = ("unload_from", "film", "tangential", "interaction", "joint")
 _HEIGHTS = 2**18  # at a time, or one surface
 _SAME = 1e-9  # relative difference of sums that are only rounded differently
 
@@ -68,8 +68,8 @@ def regrade(
         From kept moments edges of the cells, such as the ensemble's own separations; else any that is not
         lower than these. Default: these.
     **contact
-        ``unload_from``, ``film``, ``tangential`` or ``interaction``, where they are to change; None leaves
-        them out. By default they stay, where the law has them.
+        ``unload_from``, ``film``, ``tangential``, ``interaction`` or ``joint``, where they are to change;
+        None leaves them out. By default they stay, where the law has them.
 
     Returns
     -------

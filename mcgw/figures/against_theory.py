@@ -8,7 +8,6 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
 
-from analytic import quantity_of
 from mcgw.figures.data import SEPARATION, FigureData, Panel, Points, Series
 from mcgw.figures.panels import draw, draw_residual
 from mcgw.figures.style import PAPER, SAMPLE, STYLE, THEORY, contact_label, look, power_of_ten, shown_title
@@ -80,7 +79,7 @@ def quantity_panel(comparison: Comparison, name: str) -> Panel:
     series = Series("theory", h[order], curve.theory[order], points)
     pulls = bool(np.any(curve.theory < 0) or np.any(curve.mean < 0))  # no place for it on a log axis
     scales, level = (("linear", "linear"), 0.0) if pulls else (("linear", "log"), None)
-    return Panel(quantity_of(name).title, SEPARATION, "", (series,), scales, level)
+    return Panel(comparison.ensemble.scene.quantity(name).title, SEPARATION, "", (series,), scales, level)
 
 
 def sweep_figure(comparison: "SweepComparison") -> Figure:

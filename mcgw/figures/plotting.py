@@ -62,7 +62,7 @@ def _draw(result: Any, _: Any) -> None:
 @_draw.register
 def _(result: Ensemble, ax: Any, *, quantity: str) -> None:
     """Mean and interval; the band holds two thirds of the surfaces, about."""
-    h, q = result.separations, quantity_of(quantity)
+    h, q = result.separations, result.scene.quantity(quantity)
     order = np.argsort(h, kind="stable")
     mean, std = result.mean(quantity), result.std(quantity)
     if result.n_surfaces > 1:
@@ -86,7 +86,7 @@ def _(result: Ensemble, ax: Any, *, quantity: str) -> None:
 @_draw.register
 def _(result: Comparison, ax: Any, *, quantity: str) -> None:
     draw_panel(ax, quantity_panel(result, quantity), keyed=True)
-    ax.set(ylabel=quantity_of(quantity).title)
+    ax.set(ylabel=result.ensemble.scene.quantity(quantity).title)
     ax.set_title(
         f"Monte Carlo and theory {result.verdict.word}: p = {result.verdict.p:.3g} over all means", loc="left"
     )
@@ -112,7 +112,8 @@ def _(result: Sweep, ax: Any, *, quantity: str) -> None:
         ax.errorbar(*columns, marker="o", ms=3, **step(result.axes.values_text(points[i]), place, len(shown)))
     if np.any(means > 0):
         ax.set_yscale("log")
-    ax.set(xlabel=_SEPARATION, ylabel=f"mean {quantity.replace('_', ' ')} ({quantity_of(quantity).unit})")
+    unit = result.scenes[0].quantity(quantity).unit
+    ax.set(xlabel=_SEPARATION, ylabel=f"mean {quantity.replace('_', ' ')} ({unit})")
     among = f"{len(shown)} of {len(points)} points" if len(shown) < len(points) else f"{len(points)} points"
     ax.set_title(f"{', '.join(result.axes.keys)}: {among}, 95 %")
     ax.legend(fontsize=7)

@@ -3,7 +3,7 @@
 import re
 from typing import Any
 
-from analytic import Hertz, quantity_of
+from analytic import Hertz
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.labelled import statistics_table
 from mcgw.figures.against_theory import sweep_figure
@@ -94,8 +94,8 @@ def rendered(template: str, **values: Any) -> str:
 def _means(ensemble: Ensemble) -> list[Table]:
     """Means and theory of surfaces whose fluctuations are no real ones."""
     found, h = [], ensemble.separations
-    for name in ensemble.scene.quantities:
-        table, unit = statistics_table(ensemble, name), quantity_of(name).unit
+    for name in ensemble.scene.answers:
+        table, unit = statistics_table(ensemble, name), ensemble.scene.quantity(name).unit
         theory = Column("theory", ensemble.scene.theory.mean(name, h), unit=unit)
         found.append(Table((*table.only("separation", "mean").columns, theory), table.title))
     return found

@@ -52,7 +52,7 @@ class PageFigure:
 def comparison_figures(comparison: Comparison) -> list[PageFigure]:
     """Each quantity with its theory, and how far surfaces spread."""
     found = []
-    for name in comparison.ensemble.scene.quantities:
+    for name in comparison.ensemble.scene.answers:
         figure = draw(FigureData("", "", (quantity_panel(comparison, name),)))
         found.append(line_figure(figure, quantity_of(name).long_name))
     if comparison.ensemble.n_surfaces > 1:
@@ -63,16 +63,15 @@ def comparison_figures(comparison: Comparison) -> list[PageFigure]:
 def means_figures(ensemble: Ensemble) -> list[PageFigure]:
     """Each quantity of surfaces that have means only, with its theory."""
     found = []
-    for name in ensemble.scene.quantities:
+    for name in ensemble.scene.answers:
+        q = ensemble.scene.quantity(name)
         order = np.argsort(ensemble.separations, kind="stable")
         h, mean = ensemble.separations[order], ensemble.mean(name)[order]
         exact = ensemble.scene.theory.mean(name, h)
         series = Series("theory, and means", h, exact, Points(h, mean, np.zeros(len(h)), exact))
-        panel = Panel(
-            quantity_of(name).title, "separation d/σ", quantity_of(name).unit, (series,), ("linear", "log")
-        )
+        panel = Panel(q.title, "separation d/σ", q.unit, (series,), ("linear", "log"))
         figure = draw(FigureData("", "Line: exact. Markers: means.", (panel,), columns=1))
-        found.append(line_figure(figure, quantity_of(name).long_name))
+        found.append(line_figure(figure, q.long_name))
     return found
 
 

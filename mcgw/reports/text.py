@@ -47,7 +47,7 @@ def summary(ensemble: Ensemble, attributes: dict[str, Any]) -> str:
     ]
     lines = [one_line(scene.title) or "ensemble", *listed(facts, 12)]
     lines += [f"  {line}" for line in against_elasticity(scene.validity())]
-    for name in scene.quantities:
+    for name in scene.answers:
         lines += ["", statistics_table(ensemble, name).only(*_SHOWN).rows().text()]
     return "\n".join(lines)
 
@@ -113,7 +113,7 @@ def comparison_summary(
 def summary_of(result: "Ensemble | Sweep", attributes: dict[str, Any]) -> tuple[str, Callable[[], Table]]:
     """The summary for people, and what makes the table for programs."""
     if isinstance(result, Ensemble):
-        names = result.scene.quantities
+        names = result.scene.answers
         return summary(result, attributes), lambda: stacked(
             {name: statistics_table(result, name) for name in names}, "quantity"
         )

@@ -2,13 +2,14 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
 from analytic import (
+    JOINT,
     Clipped,
     Exponential,
     Grading,
@@ -16,15 +17,18 @@ from analytic import (
     MeasuredHeights,
     MeasuredRadii,
     Model,
+    Quantity,
     RandomCurvature,
     Surface,
     first_negative,
+    quantity_of,
 )
 from analytic.laws import Branch, ContactLaw, Film, Hertz, Tangential, Ways
 from mcgw.machine.memory import kept
 
 if TYPE_CHECKING:
-    from analytic import Interaction
+    from analytic import Interaction, Joint
+    from analytic.joint import Gap
     from mcgw.scene.measured import Fitted, Uncertainty
 
 RelErr = float | Mapping[str, float | list[float]]
@@ -57,6 +61,7 @@ class Fields:
     film: Film | None
     tangential: Tangential | None
     interaction: "Interaction | None"
+    joint: "Joint | None"
     quantities: tuple[str, ...]
     n_surfaces: int
     n_asperities: int
@@ -90,6 +95,8 @@ class Fields:
     @property
     def theory(self) -> Model:
         """The exact model of this very scene: its modulus, height law, contact law, history, asperities."""
+        if self.joint is not None:
+            return self._joined
         return self._alone if self.interaction is None else self._interacting
 
     @cached_property
@@ -114,6 +121,28 @@ class Fields:
 
         assert self.interaction is not None
         return InteractingModel.of(self._alone, self.interaction)
+
+    @cached_property
+    def _joined(self) -> Model:
+        """Kept, for it keeps what it has computed."""
+        from analytic.joint_model import with_gap  # for those scenes alone
+
+        assert self.filled is not None
+        return with_gap(self._alone if self.interaction is None else self._interacting, self.filled)
+
+    @cached_property
+    def filled(self) -> "Gap | None":
+        """What gas in the gap of the joint conducts; None without one."""
+        if self.joint is None:
+            return None
+        moments = None if self.fitted is None else self.fitted.moments
+        filled: Gap = self.joint.gap(self.surface, self.heights, moments)
+        return filled
+
+    def quantity(self, name: str) -> Quantity:
+        """A quantity with the unit it has here, where heat or current is conducted."""
+        q, thermal = quantity_of(name), self.film is not None and self.film.thermal
+        return replace(q, unit=q.unit.split(" or ")[-1 if thermal else 0])
 
     @property
     def nominal(self) -> bool:
@@ -180,7 +209,21 @@ class Fields:
             shapes["tangential_load"] = (len(self.separations), len(self.tangential.displacements))
         for name in self.other_separations:
             shapes[name] = (len(self.separations),)
+        if self.joint is not None:
+            shapes |= dict.fromkeys(self.of_joint, (len(self.separations),))
         return shapes
+
+    @property
+    def of_joint(self) -> tuple[str, ...]:
+        """The conductances of a joint besides those of its spots."""
+        if self.joint is None:
+            return ()
+        return tuple(name for name, q in JOINT.items() if self.unload_from is not None or not q.unloading)
+
+    @property
+    def answers(self) -> tuple[str, ...]:
+        """What it is asked for, sums and conductances of the joint."""
+        return (*self.quantities, *self.of_joint)
 
     @property
     def other_separations(self) -> tuple[str, ...]:

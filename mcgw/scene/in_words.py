@@ -88,7 +88,20 @@ def contact_facts(scene: Fields) -> list[tuple[str, str]]:
     if scene.interaction is not None:
         felt = "as nominal ones" if scene.interaction.nominal else "as asperities feel them"
         facts.append(("interaction", f"from the {_PLANES[scene.interaction.reference]}, separations {felt}"))
+    if scene.joint is not None:
+        facts.append(("joint", joint_text(scene)))
     return facts
+
+
+def joint_text(scene: Fields) -> str:
+    """What fills the gap; nobody gave it: spots only, as in vacuum."""
+    if scene.joint is None or scene.filled is None or (gas := scene.filled.gas) is None:
+        return "spots only (vacuum)"
+    name = scene.joint.gas if isinstance(scene.joint.gas, str) else "gas"
+    return (
+        f"{name} of {gas.conductivity:.4g} W/(m K), jump {gas.jump:.3g} m, "
+        f"between surfaces of {scene.filled.rms:.4g} m rms"
+    )
 
 
 def accuracy_facts(scene: Fields) -> list[tuple[str, str]]:

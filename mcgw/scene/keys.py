@@ -12,7 +12,7 @@ from mcgw.scene.samplers import SAMPLERS
 from mcgw.scene.section import Key, TableOfKeys
 
 if TYPE_CHECKING:
-    from analytic import Interaction
+    from analytic import Interaction, Joint
 
 MOMENTS, SUMMITS = ("m0", "m2", "m4"), ("sigma", "radius", "eta")  # either tells the summits of a surface
 _MOST = 100_000
@@ -28,6 +28,12 @@ def _interaction(**keys: Any) -> "Interaction":
     from analytic import Interaction  # for those scenes alone
 
     return Interaction(**keys)
+
+
+def _joint(**keys: Any) -> "Joint":
+    from analytic import Joint  # for those scenes alone
+
+    return Joint(**keys)
 
 
 _ANY, _POSITIVE, _NOT_NEGATIVE = Number(low=-math.inf), Number(), Number(zero=True)
@@ -64,6 +70,14 @@ _LAYER = Table(
     (Key("thickness", Number("m"), required=True), Key("conductivity", _POSITIVE, required=True)),
     'give {thickness = "10 um", conductivity = 1.3} (m, W/(m K))',
     Layer,
+)
+_GAS = 'give "air", "vacuum", or {conductivity = 0.15, jump = "1 um"} (W/(m K), m)'
+_GASES = Either(
+    (
+        Table((Key("conductivity", _POSITIVE, required=True), Key("jump", Number("m"), required=True)), _GAS),
+        Word(("air", "vacuum"), _GAS),
+    ),
+    _GAS,
 )
 _PUSHED = Table(
     (*_MOUNTED, Key("displacements", _SHIFTS, required=True)),
@@ -241,6 +255,16 @@ TABLES: dict[str, TableOfKeys] = {
         "effective"),
     Key("bulk_modulus", Number("Pa"), "1e11", "composite modulus of the half-space, Pa; default: `E_star`"),
 ), make=_interaction, advice='give mcgw.Interaction("body"), or mcgw.Interaction("mean-plane")'),
+"joint": TableOfKeys("[A thermal joint](../how-to/conductance-of-a-joint.md): gas conducts beside the spots; "
+    "adds `gap_conductance` and `joint_conductance`, W/(m² K), and needs `conductivities`. Left out: spots "
+    "only (vacuum).", (
+    Key("gas", _GASES, '"air"', "in the gap: `air`, `vacuum`, or its conductivity, W/(m K), and the distance "
+        "over which the temperature would fall by as much as it jumps at both walls, m", required=True),
+    Key("rms", Number("m"), '"2 um"', "root mean square height of the surface (both together, not of the "
+        "summits), m, where neither Nayak's heights nor `[fitted]` tell it"),
+    Key("temperature", Number(advice="give a finite number > 0, in K"), "293.15", "of air, K"),
+    Key("gas_pressure", Number("Pa"), "101325.0", "of air, Pa"),
+), make=_joint, advice='give mcgw.Joint("air", rms="1 um"), or the keys of [joint] in a scene file'),
 "fitted": TableOfKeys("What the fit of a map knew besides: `mcgw fit` writes it, nothing is drawn by it. By "
     "it a scene says [how far its model is from elasticity](../explanation/validity.md), or that nobody "
     "measured it on such a map. Left out: the surface is taken for a Gaussian one.", (

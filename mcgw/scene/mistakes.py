@@ -33,7 +33,7 @@ def mistakes(scene: Fields) -> list[str]:
     for checks in (
         (_values, _history, _measured, _radii),
         (_scales,),
-        (_law, _interaction),
+        (_law, _together),
         (_function,),
         (_range,),
         (_modulus,),
@@ -118,13 +118,21 @@ def _law(scene: Fields) -> Iterator[str]:
         )
 
 
-def _interaction(scene: Fields) -> Iterator[str]:
-    """Asperities that press each other down where that is not known, or finds no balance."""
-    if scene.interaction is None:
-        return
-    from mcgw.scene.interaction_mistakes import interaction_mistakes  # for those scenes alone
+def _together(scene: Fields) -> Iterator[str]:
+    """Asperities that press each other down where that finds no balance; gas that nobody knows the gap of."""
+    if scene.interaction is not None:
+        from mcgw.scene.interaction_mistakes import interaction_mistakes  # for those scenes alone
 
-    yield from interaction_mistakes(scene)
+        yield from interaction_mistakes(scene)
+    if scene.joint is None:
+        return
+    if scene.film is None or not scene.film.thermal:
+        yield "joint: gas conducts heat; give contact.conductivities = [k1, k2] in W/(m K), or leave it out"
+        return
+    try:
+        assert scene.filled is not None
+    except ValueError as error:
+        yield f"joint.{error}"
 
 
 def _scales(scene: Fields) -> Iterator[str]:

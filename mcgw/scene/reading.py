@@ -2,7 +2,7 @@
 
 import secrets
 from collections.abc import Callable, Mapping
-from dataclasses import fields, is_dataclass
+from dataclasses import asdict, fields, is_dataclass
 from pathlib import Path
 from typing import Any
 
@@ -57,8 +57,7 @@ def of_arguments(**given: Any) -> Values:
 def _keys_of(name: str, value: Any, plain: Any) -> Any:
     """The keys of an object that stands for a whole table; a word is its first key."""
     if is_dataclass(value) and not isinstance(value, type):
-        held = {field.name: as_toml(getattr(value, field.name)) for field in fields(value)}
-        return {key: each for key, each in held.items() if each is not None}
+        return {key: as_toml(each) for key, each in asdict(value).items() if each is not None}
     return {next(iter(KEYS[name])): plain} if isinstance(plain, str) else plain
 
 
@@ -207,7 +206,10 @@ def _made(top: Section, section: Section, make: Callable[..., Any]) -> Any:
     before, found = len(top.problems), section.read_all(section.rows)
     if len(top.problems) > before:
         return None
-    return make(**{key: tuple(x) if isinstance(x, list) else x for key, x in found.items()})
+    try:
+        return make(**{key: tuple(x) if isinstance(x, list) else x for key, x in found.items()})
+    except ValueError as error:
+        return section.note(f"{section.name}.{error}")
 
 
 def _ensemble(section: Section, surface: Surface | None, seed: Callable[[], int | None] | None) -> Values:

@@ -25,7 +25,7 @@ from mcgw.scene.summits import Spectral
 from mcgw.scene.surface import Surface as GivenSurface
 
 if TYPE_CHECKING:
-    from analytic import Interaction
+    from analytic import Interaction, Joint
     from mcgw.scene.measured import Fitted, Uncertainty
     from mcgw.scene.validity import Validity
 
@@ -90,6 +90,10 @@ class Scene(Fields, Shown):
         How asperities press each other down: `mcgw.Interaction`, its reference alone, or its keys in a scene
         file. An ensemble then has "nominal_separation" or "effective_separation" besides, and stiffness and
         conductance are in series with the half-space. Default: they are independent.
+    joint : Joint, {"air", "vacuum"} or dict, optional
+        Gas in the gap of a thermal joint: `mcgw.Joint`, its gas alone, or its keys in a scene file; needs the
+        conductivities of a `film`. An ensemble then has "gap_conductance" and "joint_conductance" besides,
+        W/(m^2 K). Default: conductances are those of the spots, as in vacuum.
     quantities : sequence of str, optional
         Which sums to compute: names of `analytic.QUANTITIES` and `analytic.LAW_QUANTITIES`. Default: load,
         area, stiffness, contacts.
@@ -173,6 +177,7 @@ class Scene(Fields, Shown):
         layer: Layer | None = None,
         tangential: Tangential | None = None,
         interaction: "Interaction | str | dict[str, Any] | None" = None,
+        joint: "Joint | str | dict[str, Any] | None" = None,
         quantities: Sequence[str] | None = None,
         n_surfaces: int | None = None,
         n_asperities: int | None = None,

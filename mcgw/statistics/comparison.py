@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 
-from analytic import quantity_of
 from analytic.arrays import Array
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.intervals import interval_column
@@ -18,6 +17,7 @@ from mcgw.machine.progress import Progress, told
 from mcgw.machine.terminal import plotted
 from mcgw.scene.arguments import check_object
 from mcgw.scene.samplers import promise_of
+from mcgw.scene.scene import Scene
 from mcgw.statistics.verdict import Tested, Verdict, tested, verdict
 from mcgw.sweeps.axes import label
 
@@ -113,7 +113,8 @@ class Comparison(Shown):
         return table.at(np.argsort(-far, kind="stable")[:rows].tolist())
 
     def _table(self, quantity: str) -> Table:
-        c, unit = self.curves[quantity], quantity_of(quantity).unit
+        c, q = self.curves[quantity], self.ensemble.scene.quantity(quantity)
+        unit = q.unit
         columns = (
             Column("separation", self.ensemble.separations, SEPARATION, form="g"),
             Column("mean", c.mean, unit=unit, error=c.stderr),
@@ -122,7 +123,7 @@ class Comparison(Shown):
             Column("theory", c.theory, unit=unit, error=c.stderr),
             Column("residual", c.residual, form="+.2f"),
         )
-        return Table(columns, heading(quantity))
+        return Table(columns, heading(q))
 
 
 @dataclass(frozen=True, repr=False)
@@ -174,7 +175,10 @@ class SweepComparison(Shown):
         where = list(self.sweep.axes.points())
         shown = [(one, *one.worst) for one in self.worst[:most]]
         at = [self.sweep.axes.values_text(where[one.number]) for one, *_ in shown]
-        columns = (Column("point", at, ", ".join(self.sweep.axes.keys)), *_columns(shown))
+        columns = (
+            Column("point", at, ", ".join(self.sweep.axes.keys)),
+            *_columns(shown, self.sweep.scenes[0]),
+        )
         title = f"Monte Carlo and theory of {v.points} scenes {v.word}"
         return Sheet(title, facts, Table(columns))
 
@@ -188,15 +192,15 @@ class SweepComparison(Shown):
         ]
         at = [axes.at(where[one.number]) for one, *_ in rows]
         keys = (Column(key, [label(values[key]) for values in at]) for key in axes.keys)
-        return Table((*keys, *_columns(rows)))
+        return Table((*keys, *_columns(rows, self.sweep.scenes[0])))
 
 
-def _columns(rows: Sequence[tuple[Tested, int, int]]) -> tuple[Column, ...]:
+def _columns(rows: Sequence[tuple[Tested, int, int]], scene: Scene) -> tuple[Column, ...]:
     """Of points, each at a quantity and a separation, by number."""
     names = [t.quantities[q] for t, q, _ in rows]
     return (
         Column("quantity", names),
-        Column("unit", [quantity_of(name).unit for name in names]),
+        Column("unit", [scene.quantity(name).unit for name in names]),
         Column("separation", [t.separations[k] for t, _, k in rows], SEPARATION, form="g"),
         Column("mean", [t.mean[q, k] for t, q, k in rows]),
         Column("theory", [t.theory[q, k] for t, q, k in rows]),
@@ -261,7 +265,7 @@ def _of_ensemble(ensemble: Ensemble, laws: bool) -> Comparison:
         raise ValueError("a stratified file holds means, not an ensemble; compare takes another sampler")
     scene = ensemble.scene
     curves = {}
-    for name in scene.quantities:
+    for name in scene.answers:
         variance = scene.theory.cumulants(name, scene.separations).variance
         low, high = ensemble.interval(name)
         stderr = np.sqrt(variance / ensemble.n_surfaces)

@@ -226,7 +226,7 @@ def _lay_out(file: h5py.File, scene: Scene, like: Stored) -> None:
     for name, scale in scales_of(scene).items():
         _scale(file, name, numbers(scale), *AXES[name])
     for name in sorted(like):
-        q = ALL_QUANTITIES.get(name)
+        q = scene.quantity(name) if name in ALL_QUANTITIES else None
         data = empty_table(file, where(name), None if name == RAGGED else scene.n_surfaces, like[name])
         data.attrs.update(units=q.unit if q else "1", long_name=q.long_name if q else _LONG_NAMES[name])
         for axis, name_of_scale in enumerate(_OF_SURFACES[: data.ndim] if q else ()):

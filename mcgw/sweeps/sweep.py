@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 
-from analytic import quantity_of
 from analytic.arrays import Array
 from mcgw.ensemble.labelled import Labelled, Variable, axes_of, axis, statistics_of
 from mcgw.ensemble.results import PROBABILITIES
@@ -272,8 +271,9 @@ class Sweep(OverPoints, Shown):
         columns.append(Column("separation", np.tile(h, size), SEPARATION, form="g"))
         for name, shape in self.scenes[0].shapes.items():
             if len(shape) == 1:
+                unit = self.scenes[0].quantity(name).unit
                 columns += [
-                    Column(f"{name}_{kind}", getattr(self, kind)(name).ravel(), unit=quantity_of(name).unit)
+                    Column(f"{name}_{kind}", getattr(self, kind)(name).ravel(), unit=unit)
                     for kind in self.statistics
                 ]
         return Table(tuple(columns))

@@ -1,0 +1,38 @@
+"""What gas in the gap adds to the spots of surfaces, each at its own distance of mean planes."""
+
+from collections.abc import Iterable
+from typing import Any
+
+import numpy as np
+
+from mcgw.scene.scene import Scene
+
+
+def with_joint(scene: Scene, found: dict[str, Any], names: Iterable[str]) -> dict[str, Any]:
+    """Conductances of the joint, W/(m^2 K), of what surfaces have besides.
+
+    The distance of the mean planes is the separation that the asperities feel, or the nominal one if that
+    counts from the mean plane itself (`reference = "mean-plane"`).
+
+    Parameters
+    ----------
+    scene : Scene
+        With a joint.
+    found : dict of str to ndarray
+        SI: "conductance_si", and separations where surfaces have their own, of the same shape.
+    names : iterable of str
+        Of `analytic.JOINT`.
+    """
+    plane = "nominal_separation" if _from_mean_plane(scene) else "effective_separation"
+    assert scene.filled is not None
+    answers = {}
+    for name in names:
+        way = "_unloading" * name.endswith("_unloading")
+        spots = found[f"conductance_si{way}"]
+        gas = scene.filled(found.get(f"{plane}{way}", np.array(scene.separations)))
+        answers[name] = gas + (spots / scene.surface.nominal_area if name.startswith("joint") else 0 * spots)
+    return answers
+
+
+def _from_mean_plane(scene: Scene) -> bool:
+    return scene.interaction is not None and scene.interaction.reference == "mean-plane"
