@@ -13,8 +13,7 @@ from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.results import MemoryResults
 from mcgw.figures.contact_map import patch_figures
 from mcgw.figures.panels import draw
-from mcgw.figures.pressure_curves import pressure_curves
-from mcgw.reports.report_figures import _relative_error, _spread, line_figure
+from mcgw.reports.report_figures import _relative_error, _spread, line_figure, pressure_curves
 from mcgw.statistics.comparison import compare
 
 SURFACE = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "10 mm^2", "78.6 GPa")

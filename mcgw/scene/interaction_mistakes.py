@@ -11,30 +11,23 @@ from mcgw.scene.samplers import promise_of
 
 def interaction_mistakes(scene: Fields) -> Iterator[str]:
     """A line for each."""
+    yield from list(_independent(scene)) or _balance(scene)
+
+
+def _independent(scene: Fields) -> Iterator[str]:
+    """What does not hang on where the balance is."""
     assert scene.interaction is not None
-    promise, found = promise_of(scene.sampler), False
-    for line in _together(scene):
-        found = True
-        yield line
-    if not promise.real_surfaces:
-        found = True
+    if "load" not in scene.quantities:
+        yield 'interaction: separations differ by the load; add "load" to contact.quantities'
+    if scene.tangential is not None:
+        yield "contact.tangential: loads sideways press no asperity down here; leave out it or [interaction]"
+    if not promise_of(scene.sampler).real_surfaces:
         yield (
             f'ensemble.sampler = "{scene.sampler}": it draws means, and each surface sinks by its own load; '
             'take "cells"'
         )
     if scene.interaction.nominal:
-        for line in _nominal(scene):
-            found = True
-            yield line
-    if not found:
-        yield from _balance(scene)
-
-
-def _together(scene: Fields) -> Iterator[str]:
-    if "load" not in scene.quantities:
-        yield 'interaction: separations differ by the load; add "load" to contact.quantities'
-    if scene.tangential is not None:
-        yield "contact.tangential: loads sideways press no asperity down here; leave out it or [interaction]"
+        yield from _nominal(scene)
 
 
 def _nominal(scene: Fields) -> Iterator[str]:
