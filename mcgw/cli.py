@@ -30,6 +30,7 @@ COMMANDS = (
     "surface",
     "fit",
     "elastic",
+    "warm",
     "completion",
 )
 _PRINTED = ("", "show", "solve", "elastic", "completion")  # whose product is what they print

@@ -13,9 +13,9 @@ from item_cost import Bill, Meter
 from matplotlib.figure import Figure
 from told import ANSWERS, apart
 from touched import reached
-from warm import warm
 
 import analytic
+from mcgw.commands.warm import warm
 from mcgw.scene.scene import Scene
 
 SURFACE = analytic.Surface(sigma=1.37e-6, radius=13e-6, eta=3.0e8, nominal_area=1e-4, E_star=78.6e9)

@@ -3,15 +3,24 @@
 import gc
 import importlib
 import importlib.util
+import io
+import os
+import pty
+import re
+import subprocess
 import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
 from numba.core.errors import TypingError
 
+import mcgw
+from mcgw.commands.voice import NEWS, QUIET, speaking
 from mcgw.machine import compiling
 from mcgw.machine.compiling import njit
 from mcgw.sampling.lanes import load, total
+from mcgw.store.ensembles import read_attributes
 
 LOOPS = """
 def make(njit, n):
@@ -110,11 +119,53 @@ def test_a_loop_whose_callee_has_changed_is_compiled_anew(tmp_path, monkeypatch)
     )
     monkeypatch.syspath_prepend(tmp_path)
     monkeypatch.setattr(sys, "dont_write_bytecode", True)
-    for factor in ("3.0", "6.0"):
+    found, own = [], tmp_path / "compiling.py"
+    monkeypatch.setattr(compiling, "__file__", str(own))
+    for factor, how in (("3.0", "one"), ("6.0", "one"), ("6.0", "one"), ("6.0", "other")):
+        own.write_text(how)
         (layer / "callee.py").write_text(f"{head}@njit(cache=True)\ndef times(x):\n    return {factor} * x\n")
         for name in [name for name in sys.modules if name.partition(".")[0] == "house"]:
             monkeypatch.delitem(sys.modules, name)
         importlib.invalidate_caches()
         compiling._stamp_of_package.cache_clear()  # as in another process
-        last = importlib.import_module("house.layer.caller").call(1.0)
-    assert last == 6.0
+        call = importlib.import_module("house.layer.caller").call
+        found.append((call(1.0), call.stats.cache_hits.total()))
+    assert found == [(3.0, 0), (6.0, 0), (6.0, 1), (6.0, 0)]  # the last: by other steps of the compiler
+
+
+def test_a_line_says_so_on_a_terminal_alone(loops, monkeypatch):
+    """And is gone when the loop is there; -q is silent."""
+    for terminal, quiet in ((True, False), (True, True), (False, False)):
+        stream = io.StringIO()
+        stream.isatty = lambda terminal=terminal: terminal
+        monkeypatch.setattr(sys, "stderr", stream)
+        with speaking(QUIET if quiet else NEWS):
+            assert loops.make(njit, 2.0 + terminal + 2 * quiet)(1.0) > 0
+        text = stream.getvalue()
+        line = re.fullmatch(r"\r *\r(compiling the loops, once for this machine: \d+( of 13)?)\r( +)\r", text)
+        assert bool(text) == bool(line) == (terminal and not quiet)
+        assert not line or len(line[3]) == len(line[1])
+
+
+SCENE = Path(mcgw.__file__).parents[1] / "runs" / "quick.toml"
+
+
+@pytest.mark.slow
+def test_whatever_is_kept_gives_the_same_digest(tmp_path):
+    """Nothing yet, on a terminal that counts the loops; all of it; a folder that nobody can write to."""
+    digests, terminal = set(), pty.openpty()
+    (tmp_path / "file").touch()
+    for number, (cache, errors) in enumerate((("loops", terminal[1]), ("loops", None), ("file", None))):
+        file = tmp_path / f"{number}.h5"
+        env = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path / cache)}
+        call = [sys.executable, "-m", "mcgw", "run", str(SCENE), "-o", str(file)]
+        done = subprocess.run(
+            call, env=env, stdout=subprocess.PIPE, stderr=errors or subprocess.PIPE, check=True
+        )
+        assert b"compiling the loops" not in (done.stderr or b"")
+        digests.add(read_attributes(file)["digest"])
+    said = os.read(terminal[0], 10**5).decode()
+    assert "machine: 1 of 13\r" in said
+    assert "machine: 13 of 13\r" in said
+    assert "machine: 14" not in said
+    assert len(digests) == 1

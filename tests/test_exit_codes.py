@@ -35,6 +35,7 @@ WORDS = {
     "surface": "surface moments.toml --shape 16 -o new/m.sdf",
     "fit": "fit map.npy --cutoff none -o new/f.toml",
     "elastic": "elastic moments.toml --pressure 1MPa -o new/e.jsonl",
+    "warm": "warm",
     "completion": "completion bash",
 }
 PRINTED = {"show", "solve", "elastic", "completion"}  # the product stands on standard output

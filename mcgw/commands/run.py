@@ -17,6 +17,10 @@ _LONG = 60.0  # seconds from which on a run says beforehand how long it takes
 
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of this command."""
+    parser.description = (
+        f"{parser.description or ''} The first run on a machine compiles the loops that it needs, some 10 s "
+        "of one core, which later ones load; mcgw warm compiles all of them beforehand."
+    )
     parser.add_argument("scene", type=Path, metavar="SCENE", help="TOML file, SI units")
     parser.add_argument(
         "-o", "--output", type=Path, metavar="FILE.h5", help="default: out/NAME.h5 beside the scene"

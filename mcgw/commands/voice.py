@@ -8,6 +8,7 @@ from contextvars import ContextVar
 from typing import TYPE_CHECKING
 
 from mcgw.machine.progress import watched
+from mcgw.machine.terminal import without_passing
 
 if TYPE_CHECKING:
     from mcgw.ensemble.ensemble import Ensemble
@@ -36,7 +37,8 @@ def speaking(amount: int) -> Iterator[None]:
     before = _AMOUNT.set(amount)
     try:
         if amount == QUIET:
-            yield
+            with without_passing():
+                yield
         else:
             with watched():
                 yield

@@ -18,6 +18,7 @@ import sys
 import warnings
 from collections.abc import Callable
 from functools import lru_cache
+from itertools import count
 from pathlib import Path
 from typing import Any
 
@@ -31,6 +32,7 @@ from numba.core.runtime.nrt import rtsys
 from numba.core.typed_passes import NativeLowering
 
 from mcgw.errors import RunError
+from mcgw.machine.terminal import pass_by
 
 if numba.config.DISABLE_JIT:  # type: ignore[attr-defined, unused-ignore]
     raise RunError(
@@ -159,11 +161,14 @@ def _keep(loops: Any, module: str) -> None:
 
 @lru_cache
 def _stamp_of_package(layer: str) -> bytes:
-    """Of all files of the layer that a loop belongs to: Numba looks at none but the own file of the loop."""
+    """Of all files of the layer that a loop belongs to, and of this one, by which all are compiled.
+
+    Numba looks at none but the own file of the loop.
+    """
     folders = getattr(sys.modules[layer], "__path__", ())
     files = sorted(path for folder in folders for path in Path(folder).rglob("*.py"))
     stamp = hashlib.sha256()
-    for path in files:
+    for path in [*files, Path(__file__)]:
         stamp.update(path.read_bytes())
     return stamp.digest() if files else b""
 
@@ -188,6 +193,7 @@ def _go_on_when_full(kept: Any) -> None:
     save = kept.save_overload
 
     def try_to_save(signature: Any, data: Any) -> None:
+        pass_by("")
         try:
             save(signature, data)
         except OSError as error:
@@ -209,17 +215,26 @@ def _load_without_compiler(kept: Any) -> None:
         with kept._guard_against_spurious_io_errors():
             found = kept._load_overload(signature, context)
         if found is None:
-            _say_once_on_a_terminal()
+            _count(Path(kept.cache_path))
         return found
 
     kept.load_overload = load
 
 
-@lru_cache(maxsize=1)
-def _say_once_on_a_terminal() -> None:
-    """Why nothing is seen for a while; in a pipe, or a log, nobody waits."""
-    if sys.stderr and sys.stderr.isatty():
-        sys.stderr.write("compiling the loops, once for this machine: some 10 s\n")
+_COMPILED = count(1)
+_OF_HERTZ = 13  # loops that a scene takes under Hertz's law (`tests/test_compiled_loops.py`)
+
+
+def _count(folder: Path) -> None:
+    """Say which loop is compiled now; of how many is known where there was none."""
+    number = next(_COMPILED)
+    if number == 1:
+        _say_of.append(not any(folder.glob("*.nbi")))
+    of = f" of {_OF_HERTZ}" if _say_of[0] and number <= _OF_HERTZ else ""
+    pass_by(f"compiling the loops, once for this machine: {number}{of}")
+
+
+_say_of: list[bool] = []
 
 
 _SAID: set[str] = set()

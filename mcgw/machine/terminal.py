@@ -11,6 +11,7 @@ from contextlib import contextmanager, suppress
 from typing import Any
 
 _bound: dict[str, Callable[..., Any]] = {}
+_passing = {"width": 0, "silent": False}
 _SHORT = {"\n": "\\n", "\r": "\\r", "\t": "\\t"}
 
 
@@ -103,6 +104,26 @@ def _open_closed() -> None:
             os.open(os.devnull, os.O_RDWR)  # takes the lowest number that is free
         if getattr(sys, name) is None:
             setattr(sys, name, open(number, mode, closefd=False))  # noqa: SIM115 - for as long as the process
+
+
+def pass_by(text: str) -> None:
+    """Write a line on a terminal that the next one takes the place of; an empty one takes it away."""
+    if _passing["silent"] or not (sys.stderr and sys.stderr.isatty()):
+        return
+    with suppress(OSError, ValueError):
+        sys.stderr.write(f"\r{' ' * _passing['width']}\r{text}")
+        sys.stderr.flush()
+    _passing["width"] = len(text)
+
+
+@contextmanager
+def without_passing() -> Iterator[None]:
+    """Let no such line be written, by any thread."""
+    before, _passing["silent"] = _passing["silent"], True
+    try:
+        yield
+    finally:
+        _passing["silent"] = before
 
 
 def bind_drawing(draw: Callable[..., Any]) -> None:

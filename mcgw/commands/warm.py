@@ -1,0 +1,133 @@
+"""``mcgw warm``: compile the loops before they are needed.
+
+A run compiles what it needs by itself. Here small scenes need all there is: every sampler, laws that add
+loops of their own, radii, interaction, statistics, maps.
+"""
+
+import argparse
+import os
+import sys
+from concurrent.futures import ThreadPoolExecutor
+from typing import Any
+
+HELP = "compile all loops now, once for this machine: later runs load them; as two processes side by side"
+EXAMPLE = "mcgw warm"
+
+
+def arguments(parser: argparse.ArgumentParser) -> None:
+    """Add no argument."""
+
+
+def execute(_args: argparse.Namespace) -> int:
+    """Compile, and say where the loops are kept."""
+    from mcgw.commands.voice import news
+    from mcgw.errors import RunError
+    from mcgw.machine.child_process import ChildError
+    from mcgw.sampling.rules import multiply
+
+    try:
+        warm()
+    except ChildError as error:
+        raise RunError(f"the loops could not all be compiled: {error}") from None
+    folder = os.environ.get("NUMBA_CACHE_DIR") or multiply._cache.cache_path
+    news(f"all loops are compiled; they are kept in {folder}")
+    return 0
+
+
+def warm() -> None:
+    """Compile what is not there yet: both halves at once, in processes that end with this one.
+
+    Raises
+    ------
+    ChildError
+        If a process ended badly.
+    """
+    from mcgw.machine.child_process import run_child
+    from mcgw.machine.progress import steps
+
+    halves = range(min(len(_HALVES), os.cpu_count() or 1))
+    with ThreadPoolExecutor(len(halves)) as pool:
+        waiting = [pool.submit(run_child, __name__, str(half), str(len(halves))) for half in halves]
+        for one in steps(waiting, "halves"):
+            one.result()
+
+
+def _scene(**changes: Any) -> Any:
+    """A small scene with some changes."""
+    from mcgw.scene.scene import Scene
+    from mcgw.scene.surface import Surface
+
+    surface = Surface("1.37 um", "13 um", "300/mm^2", "1 mm^2", "78.6 GPa")
+    asked = {"separations": [0.0, 0.5, 2.0], "n_asperities": 3000, "n_surfaces": 20, "seed": 1}
+    return Scene(**{"surface": surface, **asked, **changes})
+
+
+def _simulate(*changes: dict[str, Any]) -> None:
+    """Draw it with each of these."""
+    from mcgw.ensemble.simulation import simulate
+
+    for change in changes:
+        simulate(_scene(**change))
+
+
+def _laws() -> None:
+    from analytic import KogutEtsion
+
+    yielding = {"law": KogutEtsion(critical=0.1)}
+    _simulate(yielding, {**yielding, "unload_from": 0.0}, {**yielding, "sampler": "tail"})
+
+
+def _maps() -> None:
+    import numpy as np
+
+    from mcgw.maps.fitting import fit
+    from mcgw.maps.topography import Topography
+
+    heights = np.random.default_rng(1).normal(size=(64, 64)) * 1e-6
+    fit(Topography(heights, (1e-6, 1e-6)), cutoff="8 um")
+
+
+def _nominal() -> None:
+    from analytic import Interaction
+
+    _simulate({"interaction": Interaction("mean-plane", at="nominal"), "n_asperities": 300})
+
+
+def _hertz() -> None:
+    _simulate({"keep": "moments"}, {"sampler": "stratified"}, {"sampler": "direct"}, {"count": "poisson"})
+
+
+def _draws() -> None:
+    """Moments of every length, without any physics."""
+    import numpy as np
+
+    from mcgw.sampling.block import Layout
+    from mcgw.sampling.cells import mesh_of
+    from mcgw.sampling.counts import counts_of
+    from mcgw.sampling.drawing import OneByOne
+
+    scene = _scene()
+    mesh = mesh_of(scene)
+    lengths = (np.resize(kinds, mesh.size) for kinds in ([10, 12, 16], [0, 0, 0, 4, 6, 11]))
+    OneByOne().moments(1, 0, counts_of(scene, mesh, 0, 20), Layout(*lengths))
+
+
+def _crowds() -> None:
+    coarse = {"accuracy": 1e-3, "n_asperities": 10**5}
+    _simulate(coarse, {"sampler": "aggregate", "n_asperities": 10**6}, {"keep": "statistics"})
+
+
+def _radii() -> None:
+    from mcgw.scene.surface import SpectralSurface
+
+    spectrum = SpectralSurface(m0=1e-12, m2=1e-2, m4=4e8, nominal_area=1e-6, E_star=1e11)
+    _simulate(*({"surface": spectrum, "sampler": sampler} for sampler in ("cells", "tail", "stratified")))
+
+
+# The first of the one are not in the other: what both need last is there by then.
+_HALVES = ((_laws, _maps, _nominal, _hertz), (_draws, _crowds, _radii))
+
+if __name__ == "__main__":
+    half, of = map(int, sys.argv[1:])
+    for part in (part for parts in _HALVES[half::of] for part in parts):
+        part()
