@@ -233,11 +233,23 @@ def test_caps_stand_below_where_no_gaussian_surface_is():
     found = scene.validity()
     assert found.measured.any()
     assert found.axis == "p/(E* sqrt(sigma/R))"
+    near = [row for row in ROWS if tuple(row[key] for key in HEAD[:3]) == ("caps", "one radius", "none")]
+    lightest = crowding * max(
+        min(row["p"] for row in near if row["x"] == x) / x for x in sorted({row["x"] for row in near})[:2]
+    )
     for k, h in enumerate(found.separations):
         p = reduced_by_quadrature(scene, h) / math.sqrt(0.1)
         assert found.loads[k] == pytest.approx(p, rel=1e-7)
         wanted = interpolated(("caps", "one radius", "none"), "area", crowding, p)
-        np.testing.assert_allclose(found.bias["area"][k], wanted, rtol=1e-5, atol=1e-9)
+        if p < lightest:  # Hertz's contacts, off by no more than where they were last seen
+            assert found.bias["area"][k] == 0
+            assert found.error["area"][k] > abs(
+                interpolated(("caps", "one radius", "none"), "area", crowding, lightest)
+            )
+        else:
+            np.testing.assert_allclose(found.bias["area"][k], wanted, rtol=1e-5, atol=1e-9)
+    assert (found.loads < lightest).any()
+    assert found.known("area", "stiffness").all()
 
 
 OFF_THE_MAP = {

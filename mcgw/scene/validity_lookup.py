@@ -15,6 +15,7 @@ from mcgw.scene.validity_place import Place, not_on_the_map, place_of, reduced_p
 from mcgw.scene.validity_table import COLUMNS, Expected, Grid, grid_of
 
 _MOST_SEPARATIONS = 64
+_NONE = 1e-3  # contacts a surface, of which nothing is said
 _SURE = 2.1  # standard deviations that hold 95 % of maps left out: light loads have long tails
 
 
@@ -93,7 +94,8 @@ def _share(scene: Fields, place: Place, found: Expected, felt: Array) -> dict[st
     """
     area = scene.n_asperities / scene.surface.eta
     with np.errstate(divide="ignore", invalid="ignore"):
-        contacts = np.sqrt(found.contacts / (scene.n_asperities * scene.heights.sf(felt)))
+        own = scene.n_asperities * scene.heights.sf(felt)
+        contacts = np.sqrt(found.contacts / np.where(own < _NONE, np.nan, own))
     waves = np.sqrt(found.waves * place.correlation_area / area)
     return {name: contacts if name == "area" else np.fmax(contacts, waves) for name in COLUMNS}
 
@@ -122,7 +124,8 @@ def _loads(place: Place, found: Expected, p: Array) -> str:
     low, high = found.loads
     told = f"{low:.2g} to {high:.2g}" if low <= high else "nothing in common"
     here = " to ".join(dict.fromkeys(f"{x:.2g}" for x in (p.min(), p.max())))
-    return f"{_load_axis(place)} = {here} (measured: {told})"
+    lighter = "; lighter ones tend to Hertz's contacts" if place.kind == "caps" and p.min() < low else ""
+    return f"{_load_axis(place)} = {here} (measured: {told}{lighter})"
 
 
 def _where(scene: Fields, place: Place, grid: Grid, maps: int, loads: str) -> str:

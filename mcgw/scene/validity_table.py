@@ -68,9 +68,10 @@ class _Surface:
     at: dict[str, Array]
     numbers: dict[str, Array]  # bias, logarithms of contacts, waves and steepness: shape (4, rows)
     maps: int
+    lighter: bool  # whether the first row stands for lighter loads too
 
     @classmethod
-    def of(cls, found: Iterable[Mapping[str, str]], unit: float) -> "_Surface":
+    def of(cls, found: Iterable[Mapping[str, str]], unit: float, *, lighter: bool) -> "_Surface":
         ordered = sorted(found, key=lambda row: float(row["p"]))
         p, contacts, waves = (_numbers(ordered, key) for key in ("p", "contacts", "waves"))
         at, numbers = {}, {}
@@ -82,7 +83,7 @@ class _Surface:
             at[name] = np.log(own[known] / unit)
             steep = np.log(_steepness(ordered)) if name == "load" else np.zeros_like(p)
             numbers[name] = np.array([bias, np.log(contacts), np.log(waves), steep])[:, known]
-        return cls(at, numbers, min(int(row["maps"]) for row in ordered))
+        return cls(at, numbers, min(int(row["maps"]) for row in ordered), lighter)
 
     def __call__(self, name: str, at: Array) -> Array:
         """Bias, and logarithms of contacts, waves and steepness, shape (4, loads)."""
@@ -91,7 +92,9 @@ class _Surface:
             return np.full((4, *at.shape), np.nan)
         nearest = points[np.argmin(np.abs(points - at[:, None]), axis=1)]
         at = np.where(np.abs(nearest - at) <= _ROUNDING, nearest, at)
-        return np.array([np.interp(at, points, y, np.nan, np.nan) for y in self.numbers[name]])
+        return np.array(
+            [np.interp(at, points, y, y[0] if self.lighter else np.nan, np.nan) for y in self.numbers[name]]
+        )
 
 
 def _numbers(found: Iterable[Mapping[str, str]], key: str) -> Array:
@@ -143,7 +146,8 @@ class Grid:
     """What was measured of one model on one kind of maps.
 
     Between rows everything is linear in the logarithms of x and p; of caps in those of x and p/x, which
-    goes with the separation alone. Outside nothing is said.
+    goes with the separation alone. Outside nothing is said, but of caps under lighter loads than
+    were measured: they become Hertz's single contacts there, which the model has, off by no more than before.
 
     Parameters
     ----------
@@ -169,7 +173,10 @@ class Grid:
         for row in found:
             by_x[float(row["x"])].append(row)
         x = sorted(by_x)
-        surfaces = tuple(_Surface.of(by_x[value], value if along_separation else 1.0) for value in x)
+        surfaces = tuple(
+            _Surface.of(by_x[value], value if along_separation else 1.0, lighter=along_separation)
+            for value in x
+        )
         scatter = {name: Scatter.of(found, name) for name in COLUMNS if name != "load"}
         return cls(np.array(x), surfaces, scatter, along_separation)
 
@@ -195,6 +202,12 @@ class Grid:
             # So few maps tell a mean; and alpha does not tell all of a spectrum.
             other = _SPECTRA * np.log(x / self.x[0]) if name in _OF_GAP and not self.along_separation else 0.0
             unsure[name] = np.hypot(scatter[name] / np.sqrt(maps), other * np.exp(steep))
+        if self.along_separation:
+            for name, values in bias.items():
+                known = [s.at[name][0] for _, s in near if s.at[name].size]
+                lighter = at < max(known, default=-np.inf) - _ROUNDING
+                unsure[name] = np.where(lighter, np.hypot(unsure[name], values), unsure[name])
+                bias[name] = np.where(lighter, 0.0, values)
         return Expected(
             bias,
             scatter,
