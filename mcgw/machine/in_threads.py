@@ -30,22 +30,18 @@ def in_threads(call: Callable[[_Item], _Result], items: Sequence[_Item], *, leas
     calls within a call run alone. Fewer than `least` items are not worth waking a thread.
     """
 
-    def run(places: Iterable[int]) -> list[_Result]:
-        return [call(items[i]) for i in places]
-
     def run_alone(places: Iterable[int]) -> list[_Result]:
         before = get_num_threads()
         set_num_threads(1)  # of this thread: what is called finds the others busy
         try:
-            return run(places)
+            return [call(items[i]) for i in places]
         finally:
             set_num_threads(before)
 
-    if len(items) < least:
+    threads = min(get_num_threads(), len(items)) if len(items) >= least else 1
+    if threads <= 1:
         return [call(item) for item in items]
-    own, *others = np.array_split(np.arange(len(items)), min(get_num_threads(), max(len(items), 1)))
-    if not others:
-        return run(own)
+    own, *others = np.array_split(np.arange(len(items)), threads)
     with ThreadPoolExecutor(len(others)) as pool:
         theirs = [pool.submit(run_alone, places) for places in others]
         return list(chain(run_alone(own), *(one.result() for one in theirs)))

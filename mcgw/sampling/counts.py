@@ -125,16 +125,17 @@ def generator(seed: int, purpose: int, number: int) -> np.random.Generator:
 def _touching(scene: Scene, p: float, first: int, n: int) -> Array:
     """Numbers in contact of surfaces `first` ... `first + n - 1`, by NumPy's generator."""
     groups = range(first // GROUP, -(-(first + n) // GROUP))
-    drawn = [_group(scene, p, generator(scene.seed, 0, group)) for group in groups]
+    asperities, drawn = scene.n_asperities, []
+    for group in groups:
+        rng = generator(scene.seed, 0, group)
+        if scene.count == "poisson":
+            drawn.append(rng.poisson(asperities * p, GROUP))
+        elif p >= _RARE:
+            drawn.append(rng.binomial(asperities, p, GROUP))
+        else:
+            drawn.append(np.minimum(rng.poisson(asperities * p, GROUP), asperities))
     skip = first - groups[0] * GROUP
     return np.concatenate(drawn).astype(np.float64)[skip : skip + n]
-
-
-def _group(scene: Scene, p: float, rng: np.random.Generator) -> Ints:
-    n = scene.n_asperities
-    if scene.count == "poisson":
-        return rng.poisson(n * p, GROUP)
-    return rng.binomial(n, p, GROUP) if p >= _RARE else np.minimum(rng.poisson(n * p, GROUP), n)
 
 
 @dataclass(frozen=True)

@@ -20,6 +20,7 @@ from mcgw.sampling.block import Layout
 from mcgw.sampling.cells import Mesh
 from mcgw.sampling.lanes import fused
 from mcgw.sampling.response.gathering import FOUR, Lines, gathered, in_fours
+from mcgw.sampling.response.rows import Rows
 from mcgw.sampling.response.series import Entries
 from mcgw.sampling.response.tree import Tree, transfers
 
@@ -160,18 +161,18 @@ class Parts:
     ----------
     mesh, tree : Mesh, Tree
         Cells, and the nodes over them.
+    rows : Rows
+        What is asked.
     entries : Entries
         What each node gives to the rows.
-    answer : ndarray of int
-        Which answer each row adds to.
     plain, rooted : ndarray of int
         How many T_j each node has, and how many R_j each cell.
     """
 
     mesh: Mesh
     tree: Tree
+    rows: Rows
     entries: Entries
-    answer: Ints
     plain: Ints
     rooted: Ints
 
@@ -207,7 +208,7 @@ def tiles_of(parts: Parts, order: Ints) -> Tiles:
     node, rooted = entries.node, entries.rooted
     start, size = rows.plain[node], parts.plain[node]
     start[rooted], size[rooted] = rows.rooted[node[rooted]], parts.rooted[node[rooted]]
-    row, length = rows.end + places[parts.answer[entries.row]], np.minimum(entries.length, size)
+    row, length = rows.end + places[parts.rows.answer[entries.row]], np.minimum(entries.length, size)
     to_answers = Lines(row, start, length, entries.start, entries.coefficients)
     answers = np.full(rows.end - rows.given.size + in_fours(len(order)), -1)  # what each computed row is
     answers[rows.end - rows.given.size :][: len(order)] = order

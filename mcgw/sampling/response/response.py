@@ -16,7 +16,7 @@ from analytic.arrays import Array
 from mcgw.sampling.block import Layout
 from mcgw.sampling.cells import Mesh
 from mcgw.sampling.response.product import Parts, Tiles, tiles_of
-from mcgw.sampling.response.rows import Rows, hertz_rows
+from mcgw.sampling.response.rows import hertz_rows
 from mcgw.sampling.response.tree import LAST_DIGITS, Nodes, Precision, tree_over
 from mcgw.sampling.response.walk import walk
 from mcgw.scene.scene import Scene
@@ -95,8 +95,7 @@ def response_of(
     ValueError
         If the grading is not resolved on a cell, or not by the moments there are.
     """
-    rows = _rows(scene, mesh, quantities, lasting=kept is not None)
-    parts = _parts(scene, mesh, rows, precision)
+    parts = _parts(scene, mesh, quantities, precision, lasting=kept is not None)
     if kept:
         short = (parts.layout.plain > kept.plain) | (parts.layout.rooted > kept.rooted)
         if short.any():
@@ -107,7 +106,7 @@ def response_of(
         plain = np.concatenate([kept.plain, parts.plain[mesh.size :]])
         parts = replace(parts, plain=plain, rooted=kept.rooted)
     shape = len(quantities), len(scene.all_separations)
-    return Response(parts.layout, tiles_of(parts, rows.order(shape[0] * shape[1])), shape)
+    return Response(parts.layout, tiles_of(parts, parts.rows.order(shape[0] * shape[1])), shape)
 
 
 def layout_of(
@@ -137,20 +136,20 @@ def layout_of(
     ValueError
         If the grading is not resolved on a cell.
     """
-    return _parts(scene, mesh, _rows(scene, mesh, quantities, lasting=lasting), precision).layout
+    return _parts(scene, mesh, quantities, precision, lasting=lasting).layout
 
 
-def _rows(scene: Scene, mesh: Mesh, quantities: tuple[str, ...], *, lasting: bool) -> Rows:
-    """What is asked, each separation once, in increasing order."""
+def _parts(
+    scene: Scene, mesh: Mesh, quantities: tuple[str, ...], precision: Precision, *, lasting: bool
+) -> Parts:
+    """Series of what is asked, each separation once, in increasing order."""
     if scene.hertzian or not quantities:  # without rows every law is the same
-        return hertz_rows(scene, quantities, lasting=lasting)
-    from mcgw.sampling.response.law_rows import law_rows
+        rows = hertz_rows(scene, quantities, lasting=lasting)
+    else:
+        from mcgw.sampling.response.law_rows import law_rows
 
-    return law_rows(scene, quantities, mesh, lasting=lasting)
-
-
-def _parts(scene: Scene, mesh: Mesh, rows: Rows, precision: Precision) -> Parts:
+        rows = law_rows(scene, quantities, mesh, lasting=lasting)
     tree = tree_over(mesh)
     nodes = Nodes.of(mesh, tree, scene.modulus, scene.n_asperities, precision)
     entries, plain, rooted = walk(mesh, tree, rows, nodes)
-    return Parts(mesh, tree, entries, rows.answer, plain, rooted)
+    return Parts(mesh, tree, rows, entries, plain, rooted)
