@@ -183,3 +183,14 @@ def test_what_is_not_resolved_is_refused(formulas):
     inside = rows.h + 1e-3
     with pytest.raises(ValueError, match=r"at s = 0.001 is not an edge"):
         walk(mesh, tree, replace(rows, h=inside, low=inside, formulas=formulas(rows)), nodes)
+
+
+def test_a_row_of_very_many_groups_in_falling_order():
+    """Put in order in time that grows as their number: one by one it takes minutes."""
+    n = 200_000
+    start, at = FOUR * np.arange(n)[::-1].copy(), np.arange(n)
+    first = Lines(np.full(n, FOUR * n), start, np.ones(n, dtype=np.int64), at, 1.0 + at)
+    given = np.arange(FOUR * n).reshape(-1, FOUR)
+    tiles = Tiles.of(first, NONE, given, np.array([[0, -1, -1, -1]]))
+    np.testing.assert_array_equal(tiles.fetches, given)
+    np.testing.assert_array_equal(tiles.values[:, 0, 0], n - at)

@@ -91,9 +91,10 @@ def _sorted_by(keys: Any, kinds: Any) -> Any:
 
 @njit()
 def _sources(group: Any, start: Any, filled: Any, given: Any, computed: Any) -> Any:
-    """Groups that each computed group needs, increasing; and its lines."""
-    firsts, lines = _sorted_by(group, computed)
-    most = 0
+    """Groups that each computed group needs, increasing; and its lines, so too."""
+    along = _sorted_by(start // FOUR, given + computed)[1]  # then each source is put near the last one
+    firsts, order = _sorted_by(group[along], computed)
+    lines, most = along[order], 0
     for bits in filled:
         while bits:
             most += bits & np.uint32(1)
