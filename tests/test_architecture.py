@@ -213,3 +213,16 @@ def test_no_loop_of_the_sampler_has_threads_of_its_own():
     """It is called from several threads, which not every kind of numba's own threads allows."""
     for path in (ROOT / "sampling").rglob("*.py"):
         assert "prange" not in path.read_text(), path.name
+
+
+def test_every_dataclass_is_frozen():
+    """Scenes, laws and results are keys of what is kept: none may change after."""
+    thawed = [
+        f"{name}.{node.name}"
+        for name, tree in known().items()
+        for node in tree.nodes
+        if isinstance(node, ast.ClassDef)
+        for mark in map(ast.unparse, node.decorator_list)
+        if mark.startswith("dataclass") and "frozen=True" not in mark
+    ]
+    assert not thawed

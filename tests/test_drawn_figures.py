@@ -16,7 +16,7 @@ import mcgw
 from mcgw.figures.against_theory import quantity_panel, save_comparison
 from mcgw.figures.data import FigureData, Panel, Points, Series
 from mcgw.figures.panels import draw
-from mcgw.figures.studies import save_convergence, save_tradeoff
+from mcgw.figures.studies import draw_methods, save_convergence, save_tradeoff
 from mcgw.figures.style import THEORY, plain, power_of_ten
 from mcgw.statistics.checks import Check, Slope
 from mcgw.statistics.comparison import Comparison, Curve, compare
@@ -237,6 +237,9 @@ def test_tradeoff(make_scene, kept, tmp_path):
         np.testing.assert_array_equal(line.get_ydata(), [max(p.rms[1], 1e-16) for p in own])
     star = next(line for line in right.get_lines() if line.get_marker() == "*")
     np.testing.assert_allclose(star.get_xydata(), [(0.5, 0.02 / 1.96)])  # values of surfaces are on the left
+    left.clear()
+    draw_methods(left, found, 0)  # the advice is for the last separation
+    assert not [line for line in left.get_lines() if line.get_marker() == "*"]
     bars = bars_of(right)
     np.testing.assert_allclose(bars[:2, 2], [p.rms[1] * (1 + p.rms_stderr) for p in points[:2]])
 

@@ -65,7 +65,8 @@ class TestPotential:
 
     def test_needs_points(self):
         with pytest.raises(ValueError, match="46 or more"):
-            Grid((40, 40), (1.0, 1.0), True)
+            Grid((45, 45), (1.0, 1.0), True)
+        assert Grid((46, 46), (1.0, 1.0), True).pixel == pytest.approx((1 / 46, 1 / 46))
 
 
 class TestField:

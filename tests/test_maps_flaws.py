@@ -6,7 +6,7 @@ from fit_of_maps import fit_map
 
 import mcgw
 from mcgw.cli import main
-from mcgw.maps.bad_points import bad_edges, spikes_of
+from mcgw.maps.bad_points import bad_edges, small_spike_heights, spikes_of
 from mcgw.maps.levels import form_left, step_of
 from mcgw.maps.synthetic import Spectrum, gaussian_map
 from mcgw.maps.topography import Topography
@@ -177,3 +177,12 @@ def test_less_than_no_points_cannot_be_trimmed(tmp_path, capsys):
     given = ["--pixel", "1um", "--cutoff", "none", "--E-star", "1GPa", "-o", str(tmp_path / "s.toml")]
     assert main(["fit", str(tmp_path / "z.npy"), *given, "--trim=-1"]) == 2
     assert "trim = -1: give a whole number >= 0" in capsys.readouterr().err
+
+
+def test_a_small_spike_is_as_high_as_it_stands_above_its_neighbours():
+    z, spike = rough(), 1e-6
+    z[100, 70] += spike
+    found = small_spike_heights(topography(z))
+    assert np.argwhere(found).tolist() == [[100, 70]]
+    beside = np.mean([z[99, 70], z[101, 70], z[100, 69], z[100, 71]])
+    np.testing.assert_allclose(found[100, 70], z[100, 70] - beside, rtol=1e-9)

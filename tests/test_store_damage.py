@@ -15,7 +15,15 @@ from mcgw.errors import RunError, StoreError
 from mcgw.jobs.merging import merge
 from mcgw.jobs.running import run
 from mcgw.store import ensembles, layout, lock, run_folder, saving, shards, structure, untrusted
-from mcgw.store.disk import TRAILER_BYTES, SteadyFile, check_trailer, parts_of, read_checked, trailer_of
+from mcgw.store.disk import (
+    TRAILER_BYTES,
+    SteadyFile,
+    Trailer,
+    check_trailer,
+    parts_of,
+    read_checked,
+    trailer_of,
+)
 from mcgw.store.run_folder import RunFolder
 
 
@@ -379,3 +387,11 @@ def test_the_checksum_of_a_run_is_of_its_text(half):
     *lines, last = text.splitlines(keepends=True)
     expected = run_folder.hashlib.sha256(b"".join(lines)).hexdigest()
     assert last == f'sha256 = "{expected}"\n'.encode()
+
+
+def test_a_trailer_has_room_for_so_much_and_no_more():
+    assert Trailer.from_bytes(Trailer(1, "0" * 64, {"note": "x" * 300}).to_bytes()).notes == {
+        "note": "x" * 300
+    }
+    with pytest.raises(ValueError, match="bytes of notes, more than 480"):
+        Trailer(1, "0" * 64, {"note": "x" * 480}).to_bytes()

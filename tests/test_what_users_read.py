@@ -1,0 +1,169 @@
+"""All that users read, held to recorded text: what each command says, writes and draws, its help, its errors.
+
+As `test_answers` holds results: `--record` writes `tests/answers/read.*.txt` anew, and its reader reads the
+difference. What a clock, a disk or a version decides stands there as a #.
+"""
+
+import re
+from collections import defaultdict
+from html import unescape
+from io import BytesIO
+
+import numpy as np
+import pytest
+from matplotlib.figure import Figure
+from overwrites import prepare
+from said import call
+from test_scene_keys import keys, text_of
+from told import ANSWERS, of_array
+
+import mcgw
+from mcgw.cli import COMMANDS
+
+pytestmark = pytest.mark.usefixtures("looked_at_here")
+
+# Command lines in the order in which they find their inputs; y.toml is a scene that yields, there and back.
+LINES = {
+    "init": ["init demo -o new/i.toml", "init --help"],
+    "run": ["run moments.toml -o new/r.h5", "run y.toml -o y.h5", "run y.toml -o y.h5 -v"],
+    "sweep": ["sweep moments.toml --over grading.gamma=1.1,1.2 -v -o s.h5", "compare s.h5 -o s.png"],
+    "show": ["show e.h5 --verify", "show y.h5", "show y.toml --plan", "show scene.toml --plan -v"],
+    "compare": ["compare e.h5 -o c.png --csv new/c.csv -v", "compare y.h5 -o y.png --table"],
+    "converge": ["converge moments.toml -o new"],
+    "regrade": ["regrade e.h5 --gamma 1.1 -o new/g.h5 --csv new/g.csv"],
+    "merge": ["merge e.h5"],
+    "solve": ["solve moments.toml --load 1N --csv new/v.csv", "solve y.toml --pressure 2MPa -v"],
+    "export": [f"export scene.toml --to {to} -o new/x{to}{end}" for to, end in
+               (("abaqus", ".inp"), ("calculix", ".inp"), ("comsol", ".txt"), ("moose", ".csv"))],
+    "figures": ["figures --scene moments.toml --only equal-load -o new", "figures --list"],
+    "report": ["report e.h5 -o new/r.html"],
+    "surface": ["surface scene.toml --shape 16 -o new/m.sdf", "surface scene.toml --at 0 -o new/m.png"],
+    "fit": ["fit map.npy --cutoff none -o new/f.toml -v --picture new/f.png --summits new/s.csv"],
+}  # fmt: skip
+CLOCK = re.compile(
+    r"\d[\d.,e+-]*(?: ?(?:ms|s|min|h|[kMG]i?B|bytes)\b| surfaces (?:a|per) second| times as fast)"
+)
+OTHER = re.compile(
+    r"(?<![.\d])[0-9a-f]{12,64}\b|(?<=^  (?:with|made) ).*|(?<=time at others: ).*|(?<=mcgw )\d+\.\d[\w.+]*"
+    r"|\d{4}-\d\d-\d\d[T ][\d:.+Z-]*"
+)
+LONG = 40  # lines of a file that stand one by one
+TEXT = {".toml", ".csv", ".inp", ".txt"}
+
+
+def steady(text):
+    """Lines without what another machine or day says in another way."""
+    for line in text.splitlines():
+        if line.strip():
+            yield OTHER.sub("#", CLOCK.sub("#", line)).rstrip()
+
+
+def drawn(figure):
+    """What stands in a figure, with the data of every line and every collection of points."""
+    yield f"figure: {figure.get_suptitle()!r} {figure.get_supxlabel()!r}"
+    for axis in figure.axes:
+        words = axis.get_title(loc="left"), axis.get_title(), axis.get_xlabel(), axis.get_ylabel()
+        yield f" axes: {' | '.join(words)}, {axis.get_xscale()}, {axis.get_yscale()}"
+        legend = axis.get_legend()
+        yield f"  legend: {[t.get_text() for t in legend.get_texts()] if legend else None}"
+        yield from (f"  says {t.get_text()!r}" for t in axis.texts)
+        for line in axis.get_lines():
+            x, y = (np.asarray(v, dtype=float) for v in line.get_data())
+            yield f"  line {line.get_label()!r} {line.get_marker()}: {of_array(x)}; {of_array(y)}"
+        yield from (f"  image: {of_array(np.ma.filled(one.get_array(), np.nan))}" for one in axis.images)
+        corners = [p.get_patch_transform().transform(p.get_path().vertices) for p in axis.patches]
+        if corners:
+            yield f"  {len(corners)} patches: {of_array(np.concatenate(corners))}"
+        for one in axis.collections:
+            paths = [p.vertices for p in one.get_paths()]
+            held = np.concatenate([np.asarray(one.get_offsets(), dtype=float).reshape(-1, 2), *paths])
+            yield f"  collection: {of_array(held)}"
+
+
+def written(path):
+    """What a file says, or for a long one its size and first lines."""
+    if path.suffix == ".html":
+        text = re.sub(r"<(style|svg|script).*?</\1>", "", path.read_text(), flags=re.DOTALL)
+        told = list(steady(unescape(re.sub(r"\s*<[^>]*>\s*", "\n", text))))
+    else:
+        told = list(steady(path.read_text()))
+    yield from (f"  {line}" for line in shortened(told))
+
+
+def shortened(told):
+    """The first lines of many, and all numbers in the others as one line."""
+    if len(told) <= LONG:
+        return told
+    rest = [float(x) for x in re.findall(r"-?\d+\.?\d*(?:e[-+]\d+)?", "\n".join(told[LONG:]))]
+    return [*told[:LONG], f"... {len(told) - LONG} lines: {of_array(rest)}"]
+
+
+@pytest.fixture(scope="module")
+def material(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("read")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.chdir(folder)
+        prepare(folder)
+    (folder / "new").mkdir()
+    (folder / "y.toml").write_text((ANSWERS / "scenes" / "yields.toml").read_text())
+    call("run", "y.toml", "-o", "y.h5", "-q", cwd=folder)
+    call("sweep", "moments.toml", "--over", "grading.gamma=1.1,1.2", "-q", "-o", "s.h5", cwd=folder)
+    return folder
+
+
+def kept_in(figures):
+    def keep(self, target, **_):
+        figures.extend(drawn(self))
+        if hasattr(target, "touch"):
+            target.touch()
+        else:
+            target.write(b"" if isinstance(target, BytesIO) else "<svg></svg>")
+
+    return keep
+
+
+@pytest.mark.parametrize("command", LINES)
+def test_commands(command, material, recorded, monkeypatch):
+    figures, told = [], []
+    monkeypatch.setattr(Figure, "savefig", kept_in(figures))
+    monkeypatch.setattr("matplotlib.layout_engine.ConstrainedLayoutEngine.execute", lambda *_: None)
+    for words in LINES[command]:
+        before = {path: path.stat().st_mtime_ns for path in material.rglob("*")}
+        done = call(*words.split(), cwd=material)
+        told += [f"$ mcgw {words}", f"code {done.returncode}", *shortened(list(steady(done.stdout)))]
+        told += [f"! {line}" for line in steady(done.stderr)] + figures
+        figures.clear()
+        for path in sorted(material.rglob("*")):
+            if path.is_file() and before.get(path) != path.stat().st_mtime_ns:
+                told.append(f"> {path.relative_to(material)}")
+                told += written(path) if path.suffix in {*TEXT, ".html"} else []
+    recorded(f"read.{command}", told)
+
+
+def test_helps(recorded, monkeypatch):
+    monkeypatch.setenv("COLUMNS", "110")
+    helps = ((name, call(name, "--help").stdout) for name in COMMANDS)
+    recorded("read.helps", (line for name, text in helps for line in (f"== {name}", *text.splitlines())))
+
+
+VALUES = ["'a word'", "''", "-1", "0", "2.5", "nan", "true", "[]", "[1, 'x']", "{}"]
+
+
+def refusals():
+    """Of each key, in the company that it goes with, the values that a line refuses, and those taken."""
+    for table, key in keys():
+        by_line = defaultdict(list)
+        for written in VALUES:
+            try:
+                mcgw.scene_from(text_of(table, key, written))
+                problems = ["taken"]
+            except mcgw.SceneError as error:
+                problems = error.problems
+            for line in problems:
+                by_line[re.sub(rf"{key} = .*?: ", f"{key} = ...: ", line, count=1)].append(written)
+        yield from (f"{table}.{key} = {' '.join(values)} ! {line}" for line, values in by_line.items())
+
+
+def test_errors_of_scenes(recorded):
+    """Of each key, with values of every kind in turn: the lines of the refusal."""
+    recorded("read.errors", refusals())
