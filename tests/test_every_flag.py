@@ -433,6 +433,8 @@ APART = {
     ("compare", "--laws"): "test_compare_takes_laws",
     ("elastic", "--pressure"): "test_elastic_takes_its_question",
     ("elastic", "--E-star"): "test_elastic_takes_its_question",
+    ("elastic", "--pixel"): "test_elastic_takes_its_question",
+    ("elastic", "--unit"): "test_elastic_takes_its_question",
     ("elastic", "--rel-err"): "test_elastic_takes_its_question",
     ("elastic", "--solves"): "test_elastic_takes_its_question",
     ("elastic", "--seed"): "test_elastic_takes_its_question",
@@ -637,7 +639,7 @@ def test_compare_takes_laws(call, monkeypatch):
     assert call(["compare", "@e.h5", "-o", "p.png"]).code == 0
 
 
-def test_elastic_takes_its_question(call, monkeypatch):
+def test_elastic_takes_its_question(call, material, monkeypatch):
     """Every option reaches the function, and a scene its changes; nothing is solved."""
     from mcgw.elasticity import elastic
 
@@ -656,6 +658,11 @@ def test_elastic_takes_its_question(call, monkeypatch):
     assert given.pop("path").name == "e.jsonl"
     assert callable(given.pop("progress"))
     assert given == {"pressure": "2MPa", "E_star": "5e9", "rel_err": 0.1, "solves": 9, "seed": 4}
+    said = call(["elastic", *shlex.split("@s.toml --pressure 2MPa --pixel 2um")])
+    assert (said.code, said.err.partition(": goes")[0]) == (2, "mcgw: --pixel 2um")
+    call(["elastic", *shlex.split("@bare.npy --pressure 2MPa --pixel 2um --unit mm")])
+    assert seen[1][0].pixel == (2e-6, 2e-6)
+    assert seen[1][0].heights.std() == pytest.approx(1e-3 * np.load(material / "bare.npy").std())
 
 
 def test_figures_take_folder_scene_and_csv(call, tmp_path, monkeypatch):

@@ -2,8 +2,13 @@
 
 import argparse
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from mcgw.commands.options import add_set_option, changes_of
+
+if TYPE_CHECKING:
+    from mcgw.maps.topography import Topography
+    from mcgw.scene.scene import Scene
 
 HELP = "find mean area, stiffness, conductance and gap of elastic surfaces by few boundary-element solves"
 EXAMPLE = "mcgw elastic spectral.toml --pressure 1MPa --rel-err 0.05 -o solves.jsonl"
@@ -17,6 +22,10 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     )  # fmt: skip
     parser.add_argument("--pressure", required=True, metavar="P", help="load per nominal area: kPa, MPa, GPa")
     parser.add_argument("--E-star", metavar="E", help="composite modulus of a map: MPa, GPa")
+    parser.add_argument("--pixel", metavar="LENGTH", help="size of a pixel, where the file does not tell it")
+    parser.add_argument(
+        "--unit", metavar="UNIT", help="of the heights, as um, where the file does not tell it"
+    )
     parser.add_argument(
         "--rel-err", type=float, default=0.02, metavar="X",
         help="half the 95 %% interval over the mean, of the worst quantity; default: 0.02",
@@ -38,12 +47,20 @@ def execute(args: argparse.Namespace) -> int:
     from mcgw.commands.outputs import JSONL, Output, check_outputs
     from mcgw.commands.voice import details, news
     from mcgw.elasticity.elastic import elastic
+    from mcgw.formats.numbers import parse
     from mcgw.machine.progress import bar
+    from mcgw.maps.map_files import read_map
     from mcgw.scene.scene_file import load_scene
 
-    source = (
-        load_scene(args.source, changes=changes_of(args)) if args.source.suffix == ".toml" else args.source
-    )
+    source: Scene | Topography
+    if args.source.suffix == ".toml":
+        for option, given in (("--pixel", args.pixel), ("--unit", args.unit)):
+            if given is not None:
+                raise ValueError(f"{option} {given}: goes with a map; {args.source} is a scene, leave it out")
+        source = load_scene(args.source, changes=changes_of(args))
+    else:
+        pixel = None if args.pixel is None else parse(args.pixel, "m", "--pixel")
+        source = read_map(args.source, pixel=None if pixel is None else (pixel, pixel), unit=args.unit)
     check_outputs([Output(args.output, JSONL)] if args.output else [], inputs=[args.source])
     with bar("s", terminal=True) as tell:
         found = elastic(
