@@ -108,62 +108,6 @@ def _sum_cells(
             unfold(moments, row, many[kind], surface, surface + 1)
 
 
-def weighted_moments(
-    seed: int,
-    first: int,
-    counts: Ints,
-    layouts: list[Layout],
-    squares: list[bool],
-    mesh: Mesh,
-    table: RadiusTable,
-    *,
-    stratified: bool = False,
-) -> Array:
-    """Moments of all cells of a block of surfaces, one family after the other.
-
-    Parameters
-    ----------
-    seed : int
-        The key.
-    first : int
-        Number of the block's first surface.
-    counts : ndarray of int
-        Asperities to draw in each cell, shape (cells, surfaces).
-    layouts : list of Layout
-        Moments of each cell, for each family.
-    squares : list of bool
-        Whether a family counts with c in the place of sqrt(c).
-    mesh : Mesh
-        The cells.
-    table : RadiusTable
-        Radii by height.
-    stratified : bool, optional
-        Jitter the uniforms of a cell over as many equal strata.
-
-    Returns
-    -------
-    ndarray
-        Shape (moments, surfaces): the same bits for any number of threads and in any block.
-    """
-    orders = np.stack([part for layout in layouts for part in (layout.plain, layout.rooted)], axis=1)
-    before = np.cumsum([0, *(layout.starts[-1] for layout in layouts)])
-    starts = np.stack(
-        [
-            start + layout.starts[:-1] + rooted * layout.plain
-            for layout, start in zip(layouts, before, strict=False)
-            for rooted in (0, 1)
-        ],
-        axis=1,
-    )
-    kinds, cells = (starts, orders, np.array(squares)), (mesh.edges, np.ascontiguousarray(mesh.stretch.T))
-    who, held = (np.uint64(seed), first), (table.coefficients, table.bottom, table.largest)
-
-    def sum_run(counts: Ints, bounds: tuple[int, int], moments: Array) -> None:
-        _sum_cells(who, counts, kinds, bounds, stratified, cells, held, moments)
-
-    return in_runs_of_cells(counts, orders, _PRICE, sum_run)
-
-
 def with_radii(
     name: str,
     scene: Scene,
@@ -202,12 +146,29 @@ class WithRadii:
     distance = 0.0
 
     def moments(self, seed: int, first: int, counts: Counts, layout: Layout) -> Array:
-        """Sums over the uniforms of each cell, each with a power of its radius."""
+        """Sums over the uniforms of each cell, each with a power of its radius, one family after the other.
+
+        The same bits for any number of threads and in any block.
+        """
         layouts = list(self.families.apart(layout))
-        squares = [power == 1.0 for power in self.families.powers]
-        moments = weighted_moments(
-            seed, first, counts.cells, layouts, squares, self.mesh, self.table, stratified=self.strata
+        orders = np.stack([part for each in layouts for part in (each.plain, each.rooted)], axis=1)
+        before = np.cumsum([0, *(each.starts[-1] for each in layouts)])
+        starts = np.stack(
+            [
+                start + each.starts[:-1] + rooted * each.plain
+                for each, start in zip(layouts, before, strict=False)
+                for rooted in (0, 1)
+            ],
+            axis=1,
         )
+        kinds = starts, orders, np.array([power == 1.0 for power in self.families.powers])
+        mesh = self.mesh.edges, np.ascontiguousarray(self.mesh.stretch.T)
+        who, held = (np.uint64(seed), first), (self.table.coefficients, self.table.bottom, self.table.largest)
+
+        def sum_run(counts: Ints, bounds: tuple[int, int], moments: Array) -> None:
+            _sum_cells(who, counts, kinds, bounds, self.strata, mesh, held, moments)
+
+        moments = in_runs_of_cells(counts.cells, orders, _PRICE, sum_run)
         if self.strata:
             weights = np.tile(counts.weights[1:-1], len(layouts))
             moments *= np.repeat(weights, layout.sizes)[:, None]
