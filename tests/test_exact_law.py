@@ -8,6 +8,7 @@ import pytest
 from scipy import stats
 from scipy.integrate import quad
 from scipy.optimize import brentq
+from scipy.special import binom, gammaln
 
 import analytic
 from analytic.curvature import MEAN_CURVATURE
@@ -310,6 +311,16 @@ def test_one_contact_of_a_yielding_summit_with_its_own_radius_takes_no_minute():
     x = law.isf([0.2, 0.05])
     np.testing.assert_allclose(law.sf(x), [0.2, 0.05], rtol=1e-4)
     assert law.cdf(0.0) == pytest.approx(law.atom, abs=1e-3)
+
+
+def test_all_asperities_touch_and_none_has_less():
+    """Uniform heights from -sqrt(3) on: the law of Irwin and Hall, shifted by the least area there is."""
+    of = model(40, heights=analytic.ScipyHeights(stats.uniform()), grading=analytic.Homogeneous())
+    law, least = of.distribution("area", -3.0), 40 * (3 - np.sqrt(3)) * unit(of, "area")
+    np.testing.assert_array_equal(law.cdf(least * np.array([0.0, 0.5, 1 - 1e-9])), 0)
+    k, span = np.arange(8), 2 * np.sqrt(3) * unit(of, "area")
+    hall = float(np.sum((-1.0) ** k * binom(40, k) * np.exp(40 * np.log(7.5 - k) - gammaln(41))))
+    np.testing.assert_allclose(law.cdf(least + np.array([7.5, 20]) * span), [hall, 0.5], rtol=1e-8)
 
 
 def test_nobody_pays_for_it_who_does_not_ask():

@@ -163,3 +163,13 @@ def test_contacts_of_the_picture_are_those_of_the_file(scene):
     assert many.contacts == pytest.approx(0.31 * 20_000, rel=0.05)
     assert patch_figures(scene.replace(sampler="aggregate")) is None
     assert patch_figures(scene.replace(separations=[8.0, 9.0])) is None
+
+
+def test_the_band_of_separations_is_that_of_the_exact_law(scene):
+    """A probability of 0.05 and 0.95 at its ends, to what a straight line between separations misses."""
+    asked = scene.replace(separations=np.linspace(1.0, 2.5, 31), n_surfaces=200)
+    (series,) = pressure_curves(mcgw.simulate(asked))[0].panels[0].series
+    for k in (5, 30, 55):
+        law = asked.theory.separation_law(1e6 * series.x[k] * asked.surface.nominal_area)
+        ends = [float(side[k]) for side in series.band]
+        np.testing.assert_allclose(law.cdf(ends), [0.05, 0.95], atol=3e-3)

@@ -191,7 +191,8 @@ class _Evaluation:
     def _ways(self, x: Array) -> list[tuple[Marks, Callable[[Array], Values]]]:
         one = self.one
         positive = one.least == 0
-        nothing = x < 0 if positive else np.zeros(x.shape, dtype=bool)
+        all_touch = one.number * one.values.min(initial=np.inf) if one.nothing == -np.inf else 0.0
+        nothing = x < all_touch if positive else np.zeros(x.shape, dtype=bool)
         at_zero = (x == 0) & positive if one.values.size else ~nothing
         rest = ~(nothing | at_zero)
         atom = np.exp(one.nothing)

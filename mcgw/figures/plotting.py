@@ -13,6 +13,7 @@ from mcgw.ensemble.paired import Paired
 from mcgw.ensemble.solved import Solution
 from mcgw.figures.against_theory import draw_residuals, quantity_panel
 from mcgw.figures.panels import draw_panel
+from mcgw.figures.specimens import exact_ends
 from mcgw.figures.studies import draw_checks, draw_methods
 from mcgw.figures.style import MONTE_CARLO, SAMPLE, SEEN, STYLE, THEORY, shown_title, step
 from mcgw.formats.table import evenly
@@ -61,15 +62,16 @@ def _draw(result: Any, _: Any) -> None:
 
 @_draw.register
 def _(result: Ensemble, ax: Any, *, quantity: str) -> None:
-    """Mean and interval; the band holds two thirds of the surfaces, about."""
+    """Mean and interval; the band holds 90 % of all surfaces; two thirds where no law is known."""
     h, q = result.separations, result.scene.quantity(quantity)
     order = np.argsort(h, kind="stable")
     mean, std = result.mean(quantity), result.std(quantity)
     if result.n_surfaces > 1:
-        low = np.maximum(mean - std, mean / 20)[order]  # an axis of logarithms has no place for 0
-        ax.fill_between(
-            h[order], low, (mean + std)[order], color=MONTE_CARLO, alpha=0.18, lw=0, label="std over surfaces"
-        )
+        exact = exact_ends(result.scene, quantity, 0.9)
+        low, high = (mean - std, mean + std) if exact is None else exact
+        low = np.maximum(low, mean / 20)  # an axis of logarithms has no place for 0
+        words = "std over surfaces" if exact is None else "90 % of the surfaces"
+        ax.fill_between(h[order], low[order], high[order], color=MONTE_CARLO, alpha=0.18, lw=0, label=words)
     if not promise_of(result.sampler).real_surfaces:
         ax.plot(h[order], mean[order], "o-", **SEEN, label="mean")
     else:

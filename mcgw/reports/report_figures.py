@@ -19,6 +19,7 @@ from mcgw.figures.against_theory import quantity_panel
 from mcgw.figures.contact_map import patch_figures
 from mcgw.figures.data import FigureData, Panel, Points, Series
 from mcgw.figures.panels import draw
+from mcgw.figures.specimens import exact_ends
 from mcgw.figures.style import STYLE
 from mcgw.formats.pictures import write_figure
 from mcgw.scene.samplers import promise_of
@@ -181,7 +182,7 @@ def pressure_curves(ensemble: Ensemble) -> list[FigureData]:
     """Of what an ensemble holds, each surface read off at the pressure; empty without a common one.
 
     Mean over the surfaces, in the unit of the label, over rising pressures in MPa; the band holds 90 % of the
-    surfaces, if there are several.
+    surfaces, if there are several: of the separation by its exact law, where it is known.
     """
     if "load" not in ensemble.scene.quantities:
         return []
@@ -199,13 +200,24 @@ def pressure_curves(ensemble: Ensemble) -> list[FigureData]:
         values = factor * found[name]
         if np.isnan(values).any():
             continue
-        low, high = np.quantile(values, _BAND, axis=0)
+        exact = _exact(first, pressure) if banded and name == "separation" else None
+        low, high = np.quantile(values, _BAND, axis=0) if exact is None else exact
         band = (low, high) if banded else None
         series = Series("mean", pressure / 1e6, values.mean(axis=0), band=band)
         scales = ("log", "linear" if name == "separation" else "log")
         panel = Panel(title, "nominal pressure P/Aₙ (MPa)", label, (series,), scales)
         curves.append(FigureData("", f"Line: mean.{_OF_BAND * banded}", (panel,)))
     return curves
+
+
+def _exact(ensemble: Ensemble, pressure: Array) -> Array | None:
+    """Ends of the band of separations: the separation rises above one where the load there falls short."""
+    ends = exact_ends(ensemble.scene, "load", _BAND[1] - _BAND[0])
+    if ends is None:
+        return None
+    two = Ensemble(ensemble.scene, ensemble.sampler, MemoryResults({"load": ends}))
+    found = at_pressures(two, pressure, ("separation",))["separation"]
+    return None if np.isnan(found).any() else found
 
 
 def _first(ensemble: Ensemble) -> Ensemble:
