@@ -157,14 +157,15 @@ class OneAsperity:
         n = self.number
         if self.poisson:
             return n * more, n * first, n * second
-        if 1 + more < _SMALL:  # all asperities touch, and more has lost its digits
+        if 1 + more < _SMALL and self.share == 1:  # nothing stands beside what has become small
             growth = theta * self.values
-            none = 1 - self.share
-            most = max(float(growth.max()), 0.0 if none else -math.inf)
+            most = float(growth.max())
             weights = self.probabilities * np.exp(growth - most)
-            total = float(weights.sum()) + (none * math.exp(-most) if none else 0.0)
-            first, second = (float(weights @ self.values**k) / total for k in (1, 2))
-            return n * (math.log(total) + most), n * first, n * (second - first * first)
+            first, second = (float(weights @ self.values**k / weights.sum()) for k in (1, 2))
+            size = float(np.log(weights.sum())) + most
+            return n * size, n * first, n * (second - first * first)
+        if 1 + more <= 0:
+            return math.nan, math.nan, math.nan
         first, second = first / (1 + more), second / (1 + more)
         return n * float(np.log1p(more)), n * first, n * (second - first * first)
 

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from analytic import Hertz
 from analytic.arrays import Array
 from mcgw.scene.scene import Scene
 
@@ -12,7 +13,7 @@ def exact_ends(scene: Scene, name: str, share: float) -> Array | None:
     None where no law is known, or where laws take a while: under others than Hertz's, with listed summits or
     with radii of their own.
     """
-    if not scene.hertzian or scene.curvature is not None or scene.as_measured:
+    if not isinstance(scene.law, Hertz) or scene.curvature is not None or scene.as_measured:
         return None
     try:
         laws = [scene.theory.distribution(name, h) for h in scene.separations]
