@@ -8,7 +8,8 @@ from typing import Any
 ROOT = Path(__file__).parent.parent
 sys.path[:0] = [str(ROOT), str(Path(__file__).parent)]
 
-import from_the_code  # noqa: E402 - it lies beside this file
+import from_the_code  # noqa: E402 - these lie beside this file
+import names_elsewhere  # noqa: E402
 
 project = "mcgw"
 author = "The mcgw developers"
@@ -17,9 +18,11 @@ release = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["versi
 extensions = [
     "sphinx.ext.autodoc",
     "sphinx.ext.autosummary",
-    "sphinx.ext.mathjax",
+    "sphinx.ext.intersphinx",
+    "plain_math",
     "numpydoc",
     "myst_parser",
+    "sphinx_copybutton",
     "sphinx_design",
     "sphinx_gallery.gen_gallery",
 ]
@@ -27,7 +30,7 @@ myst_enable_extensions = ["dollarmath", "amsmath", "colon_fence"]
 myst_heading_anchors = 3
 templates_path = ["_templates"]
 default_role = "py:obj"
-exclude_patterns = ["_build", "paper/**", "gallery/**/*.ipynb", "gallery/*.py"]
+exclude_patterns = ["_build", "paper/**", "gallery/**/*.ipynb", "gallery/**/*.py"]
 suppress_warnings = ["config.cache"]  # functions in the configuration of the gallery cannot be stored
 
 autosummary_generate = True
@@ -35,6 +38,14 @@ autosummary_imported_members = False
 autodoc_typehints = "none"  # numpydoc says the types in words
 numpydoc_show_class_members = False
 
+numpydoc_xref_param_type = True
+numpydoc_xref_ignore = "all"
+numpydoc_xref_aliases = names_elsewhere.ALIASES
+intersphinx_mapping = names_elsewhere.mapping(Path(__file__).parent / "_build" / "inventories")
+copybutton_prompt_text = r">>> |\.\.\. |\$ "
+copybutton_prompt_is_regexp = True
+
+html_math_renderer = "mathml"
 html_theme = "pydata_sphinx_theme"
 html_title = "mcgw"
 html_theme_options = {
@@ -65,6 +76,11 @@ sphinx_gallery_conf = {
     "examples_dirs": str(ROOT / "runs" / "gallery"),
     "gallery_dirs": "gallery",
     "filename_pattern": r"\.py$",
+    "subsection_order": [
+        f"../runs/gallery/{name}" for name in ("surfaces", "joints", "specimens", "materials")
+    ],
+    "backreferences_dir": "gallery/backreferences",
+    "doc_module": ("mcgw", "analytic"),
     "reset_modules": ("matplotlib", one_style),
     "image_scrapers": ("matplotlib",),
     "matplotlib_animations": False,

@@ -13,7 +13,7 @@ from docs_site import ROOT
 
 import analytic
 
-SCRIPTS = sorted((ROOT / "runs" / "gallery").glob("*.py"))
+SCRIPTS = sorted((ROOT / "runs" / "gallery").glob("*/*.py"))
 NOTEBOOKS = sorted((ROOT / "runs" / "notebooks").glob("*.py"))
 PUBLIC = {"mcgw", "mcgw.figures.style", "matplotlib.pyplot", "numpy", "scipy.stats", "tempfile"}
 
@@ -81,7 +81,8 @@ SURFACE = analytic.Surface(sigma=1.37e-6, radius=13e-6, eta=3e8, nominal_area=1e
 
 
 def says(script, words):
-    return words in " ".join((ROOT / "runs" / "gallery" / f"{script}.py").read_text().split())
+    (path,) = [path for path in SCRIPTS if path.stem == script]
+    return words in " ".join(path.read_text().split())
 
 
 def test_size_of_a_specimen():

@@ -117,7 +117,7 @@ def test_every_figure_has_one_colour_for_a_label():
 ROOT = Path(mcgw.__file__).parent.parent
 DRAWS = [
     *(path for path in sorted((ROOT / "mcgw").rglob("*.py")) if path.name != "style.py"),
-    *sorted((ROOT / "runs" / "gallery").glob("*.py")),
+    *sorted((ROOT / "runs" / "gallery").glob("*/*.py")),
     *sorted((ROOT / "runs" / "notebooks").glob("*.py")),
     *(ROOT / "runs" / name for name in ("pictures.py", "bem_check.py", "validation/validity_figures.py")),
 ]
