@@ -52,7 +52,7 @@ Ask:
 ``scene.validity()``     how far the model is from elasticity, as it was measured
 `regrade`                another grading or contact law, same surfaces; `paired_ratio` of the two
 `solve`                  the separation at a load, pressure or area
-`export`                 tables for finite-element programs
+`export`                 tables for finite-element programs; `ContactTable`: one as a law
 `sweep`, `open_sweep`    many scenes at once, over the same surfaces: means, differences, slopes
 `converge`, `tradeoff`   the statistical convergence test; error against time on this machine
 `elastic`                means of elastic surfaces, with their error, by few boundary-element solves
@@ -117,6 +117,7 @@ if TYPE_CHECKING:
     from mcgw.ensemble.simulation import simulate as simulate
     from mcgw.ensemble.solution import solve as solve
     from mcgw.errors import RunError as RunError, StoreError as StoreError
+    from mcgw.exports.contact_table import ContactTable as ContactTable
     from mcgw.exports.writing import export as export
     from mcgw.jobs.merging import merge as merge
     from mcgw.jobs.running import run as run
@@ -157,6 +158,7 @@ _HOMES = {
     "mcgw.ensemble.simulation": "simulate",
     "mcgw.ensemble.solution": "solve",
     "mcgw.errors": "RunError StoreError",
+    "mcgw.exports.contact_table": "ContactTable",
     "mcgw.exports.writing": "export",
     "mcgw.jobs.merging": "merge",
     "mcgw.jobs.running": "run",

@@ -16,7 +16,10 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         help="TOML file, whose surfaces are drawn as the table needs them; or an ensemble file (HDF5)",
     )  # fmt: skip
     parser.add_argument(
-        "--to", required=True, choices=("calculix", "abaqus", "moose", "comsol"), help="the program"
+        "--to",
+        required=True,
+        choices=("calculix", "abaqus", "moose", "comsol", "json"),
+        help="the program; json: one file with all columns against the gap, in SI, and what it was made of",
     )
     parser.add_argument(
         "--table", default="pressure-gap",
@@ -36,7 +39,8 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--units", default="SI", choices=("SI", "mm-N-s"), help="of the files; default: SI")
     parser.add_argument(
         "-o", "--output", type=Path, required=True, metavar="FILE",
-        help="of the mean: .inp, for moose .csv, for comsol .txt; quantiles, and all together, go beside it",
+        help="of the mean: .inp, for moose .csv, for comsol .txt, for json .json; "
+        "quantiles, and all together, go beside it",
     )  # fmt: skip
     add_set_option(parser)
 
@@ -51,26 +55,31 @@ def execute(args: argparse.Namespace) -> int:
     from mcgw.scene.scene_file import files_of, load_scene
     from mcgw.store.ensembles import open_ensemble
 
-    check_name(args.output.name, PROGRAMS[args.to])
+    whole = args.to == "json"
+    if not whole:
+        check_name(args.output.name, PROGRAMS[args.to])
     pressures = None if args.pressures is None else _pressures(args.pressures)
     from_scene = args.scene.suffix.lower() == ".toml"
     if args.set and not from_scene:
         raise ValueError(f"--set {args.set[0]}: {args.scene} holds results; give a scene")
     what = load_scene(args.scene, changes=changes_of(args)) if from_scene else args.scene
     scene = what if from_scene else open_ensemble(args.scene).scene
-    *tables, all_of_them = files_of_export(
-        args.output, ["mean", *(quantile_name(q) for q in args.quantile or DEFAULT_QUANTILES)]
-    )
-    form = Format(f"a table for {args.to}", PROGRAMS[args.to].endings)
-    outputs = [*(Output(path, form) for path in tables), Output(all_of_them, CSV)]
+    form = Format(f"a table for {args.to}", (".json",) if whole else PROGRAMS[args.to].endings)
+    names = ["mean", *(quantile_name(q) for q in args.quantile or DEFAULT_QUANTILES)]
+    *tables, all_of_them = files_of_export(args.output, names)
+    outputs = [Output(path, form) for path in ([args.output] if whole else tables)]
+    outputs += [] if whole else [Output(all_of_them, CSV)]
     check_outputs(outputs, inputs=files_of(args.scene) if from_scene else [args.scene])
     made = export(
         what, args.output, to=args.to, table=args.table, points=args.points, pressures=pressures,
         quantiles=args.quantile, units=args.units,
     )  # fmt: skip
-    mean, *quantiles, together = made
-    news(f"{mean}: {args.table}, mean over the surfaces")
-    news(*(f"{path}: the same of a quantile" for path in quantiles), f"{together}: all of them")
+    if whole:
+        news(f"{made[0]}: pressure, area and conductance against the gap")
+    else:
+        mean, *quantiles, together = made
+        news(f"{mean}: {args.table}, mean over the surfaces")
+        news(*(f"{path}: the same of a quantile" for path in quantiles), f"{together}: all of them")
     tell_cautions(scene, f"mcgw show {'--plan ' * from_scene}{args.scene}")
     return 0
 

@@ -22,8 +22,8 @@ class Kind:
     ----------
     name : str
         As it is asked for: what is tabulated, against what.
-    quantity : {"pressure", "conductance", "stiffness"}
-        What is tabulated.
+    quantity : {"pressure", "conductance", "stiffness", "contact", "conducting"}
+        What is tabulated; the last two are all columns of a `ContactTable`.
     against : {"gap", "pressure"}
         Its argument.
     """
@@ -35,7 +35,8 @@ class Kind:
     @property
     def needs(self) -> tuple[str, ...]:
         """Quantities of an ensemble that it is made of."""
-        return ("load",) if self.quantity == "pressure" else ("load", self.dataset)
+        known = {"pressure": (), "contact": ("area",), "conducting": ("area", "conductance_si")}
+        return ("load", *known.get(self.quantity, (self.dataset,)))
 
     @property
     def dataset(self) -> str:
@@ -45,6 +46,7 @@ class Kind:
 
 _ALL = (("pressure", "gap"), ("conductance", "pressure"), ("conductance", "gap"), ("stiffness", "pressure"))
 KINDS = {f"{what}-{against}": Kind(f"{what}-{against}", what, against) for what, against in _ALL}
+CONTACT, CONDUCTING = (Kind("contact table", what, "gap") for what in ("contact", "conducting"))
 
 
 @dataclass(frozen=True)

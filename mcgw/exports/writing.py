@@ -11,7 +11,8 @@ import numpy as np
 from analytic.arrays import Array
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.simulation import simulate
-from mcgw.exports.curves import KINDS, Kind, curves_of
+from mcgw.exports.contact_table import ContactTable
+from mcgw.exports.curves import CONDUCTING, CONTACT, KINDS, Kind, curves_of
 from mcgw.exports.programs import PROGRAMS, Program, check_name
 from mcgw.exports.table_text import UNIT_SYSTEMS, UnitSystem, all_curves, heading, in_units, table_text
 from mcgw.formats.files import write_whole
@@ -52,8 +53,8 @@ def export(
     path : str or Path
         Of the table of means; those of quantiles lie beside it, as ``NAME.q05.inp``, and all together as
         ``NAME.all.csv``.
-    to : {"calculix", "abaqus", "moose", "comsol"}
-        The program.
+    to : {"calculix", "abaqus", "moose", "comsol", "json"}
+        The program; "json": one file with all of it in SI, which `mcgw.ContactTable.read` makes a law of.
     table : {"pressure-gap", "conductance-pressure", "conductance-gap", "stiffness-pressure"}
         What is tabulated, against what. Stiffness and conductance are per nominal area.
     points : int, optional
@@ -90,6 +91,10 @@ def export(
     >>> [file.name for file in files]
     ['soft.inp', 'soft.q05.inp', 'soft.q95.inp', 'soft.all.csv']
     """
+    if to == "json":
+        if (table, quantiles, units) != ("pressure-gap", None, "SI"):
+            raise ValueError('to = "json": all columns are written, in SI; leave out table, quantiles, units')
+        return [_contact_table(what, Path(path), _pressures(pressures), points)]
     program, kind, system = _asked(to, table, units)
     check_name(Path(path).name, program)
     wanted = _pressures(pressures)
@@ -112,6 +117,19 @@ def export(
         write_whole(file, [text.encode("ascii", "replace")])
     all_curves(scaled, kind, system).write(files[-1], comment=f"{kind.name}; SHA-256 of the {digest}")
     return files
+
+
+def _contact_table(
+    what: Scene | Ensemble | str | Path, path: Path, pressures: Array | None, points: int
+) -> Path:
+    """All columns against the gap, with their provenance."""
+    _check_points(points)
+    source, digest = _source(what)
+    scene = source if isinstance(source, Scene) else source.scene
+    conducts = scene.film is not None and (scene is source or "conductance_si" in scene.quantities)
+    ensemble = _drawn(source, CONDUCTING if conducts else CONTACT, pressures, points)
+    ContactTable.of(ensemble, digest).write(path)
+    return path
 
 
 def _drawn(source: Scene | Ensemble, kind: Kind, pressures: Array | None, points: int) -> Ensemble:

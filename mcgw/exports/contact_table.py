@@ -1,0 +1,174 @@
+"""A table of contact that any program reads: JSON with what it was made of, and the law that it is."""
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any, Self
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from analytic.arrays import Array
+from mcgw.ensemble.ensemble import Ensemble
+from mcgw.errors import StoreError
+from mcgw.formats.files import write_whole
+from mcgw.scene.scene_file import scene_text
+
+FORMAT = "mcgw-contact-table-1"
+SCHEMA = Path(__file__).with_name("contact-table.schema.json")
+COLUMNS = {"gap": "m", "pressure": "Pa", "area": "1", "conductance": "per nominal area"}
+
+
+@dataclass(frozen=True)
+class ContactTable:
+    """Pressure, area and conductance of a joint against its gap, as one law.
+
+    Parameters
+    ----------
+    gap : ndarray
+        Of the rigid plane from the mean plane of the summits, rising, m.
+    pressure : ndarray
+        Mean over surfaces, falling, Pa.
+    area : ndarray
+        Real over nominal area.
+    conductance : ndarray, optional
+        Per nominal area, W/(m^2 K) or S/m^2; None where the scene conducts nothing.
+    covariance : ndarray, optional
+        Of the pressures of surfaces of the nominal area, Pa^2; shape (rows, rows). None of one surface.
+    provenance : mapping
+        Program, digest, scene, number of surfaces, seed, nominal area.
+    validity : str
+        How far the model is from elasticity, in words.
+
+    Examples
+    --------
+    >>> import mcgw, tempfile
+    >>> surface = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "1 mm^2", "78.6 GPa")
+    >>> scene = mcgw.Scene(surface, separations=[0, 3], n_surfaces=50, seed=1)
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     (file,) = mcgw.export(scene, f"{folder}/pad.json", to="json")
+    ...     law = mcgw.ContactTable.read(file)
+    >>> float(law("pressure", law.gap_at(1e6)).round(3))
+    1000000.0
+    """
+
+    gap: Array
+    pressure: Array
+    area: Array
+    conductance: Array | None = None
+    covariance: Array | None = None
+    provenance: Mapping[str, Any] = field(default_factory=dict)
+    validity: str = ""
+
+    @classmethod
+    def of(cls, ensemble: Ensemble, digest: str) -> Self:
+        """Means over the surfaces of an ensemble, where any of them carries a load."""
+        scene = ensemble.scene
+        order = np.argsort(ensemble.separations)
+        order = order[ensemble.mean("pressure")[order] > 0]
+        area = scene.surface.nominal_area
+        conducts = "conductance_si" in scene.quantities
+        several = ensemble.n_surfaces > 1
+        return cls(
+            gap=ensemble.separations[order] * scene.surface.sigma,
+            pressure=ensemble.mean("pressure")[order],
+            area=ensemble.mean("area_fraction")[order],
+            conductance=ensemble.mean("conductance_si")[order] / area if conducts else None,
+            covariance=ensemble.covariance("pressure")[np.ix_(order, order)] if several else None,
+            provenance={
+                "program": f"mcgw {version('mcgw')}", "digest": digest, "scene": scene_text(scene),
+                "surfaces": ensemble.n_surfaces, "seed": scene.seed, "nominal_area": area,
+            },
+            validity=scene.validity().verdict,
+        )  # fmt: skip
+
+    def __call__(self, name: str, gap: ArrayLike) -> Array:
+        """A column at other gaps, interpolated without overshoot in its logarithm.
+
+        Raises
+        ------
+        ValueError
+            If there is no such column, or a gap is outside of the table.
+        """
+        from scipy.interpolate import PchipInterpolator
+
+        column = getattr(self, name) if name in COLUMNS else None
+        if column is None:
+            raise ValueError(f"{name!r}: the table has no such column")
+        x = np.asarray(gap, dtype=np.float64)
+        slack = 1e-12 * self.gap[-1]
+        if np.any((x < self.gap[0] - slack) | (x > self.gap[-1] + slack)):
+            raise ValueError(f"gap = {gap!r}: the table has {self.gap[0]:.4g} to {self.gap[-1]:.4g} m")
+        return np.asarray(np.exp(PchipInterpolator(self.gap, np.log(column))(x)))
+
+    def gap_at(self, pressure: float) -> float:
+        """The gap at a pressure, m.
+
+        Raises
+        ------
+        ValueError
+            If the pressure is outside of the table.
+        """
+        from scipy.optimize import brentq
+
+        low, high = self.pressure[-1], self.pressure[0]
+        if not low <= pressure <= high:
+            raise ValueError(f"pressure = {pressure!r}: the table has {low:.4g} to {high:.4g} Pa")
+        ends = self.gap[0], self.gap[-1]
+        return float(brentq(lambda x: float(self("pressure", x)) / pressure - 1, *ends, xtol=1e-18))
+
+    def write(self, path: str | Path) -> None:
+        """Write it as JSON, all of it or nothing."""
+        columns = {name: getattr(self, name) for name in (*COLUMNS, "covariance")}
+        rows = {name: None if x is None else x.tolist() for name, x in columns.items()}
+        whole = {
+            "format": FORMAT, "units": COLUMNS, **rows,
+            "provenance": dict(self.provenance), "validity": self.validity,
+        }  # fmt: skip
+        write_whole(Path(path), [json.dumps(whole, indent=1, allow_nan=False).encode()])
+
+    @classmethod
+    def read(cls, path: str | Path) -> Self:
+        """A table from its file.
+
+        Raises
+        ------
+        StoreError
+            If the file is no such table: what is wrong with it.
+        """
+        try:
+            whole = json.loads(Path(path).read_bytes())
+            if whole["format"] != FORMAT:
+                raise ValueError(f"format {whole['format']!r} is not {FORMAT!r}")
+            gap, pressure, area = (_numbers(whole[name]) for name in ("gap", "pressure", "area"))
+            conductance, covariance = (
+                None if whole[name] is None else _numbers(whole[name])
+                for name in ("conductance", "covariance")
+            )
+            about = whole["provenance"], whole["validity"]
+            found = cls(gap, pressure, area, conductance, covariance, *about)
+            found._check()
+        except (OSError, ValueError, KeyError, TypeError) as error:
+            said = f"it has no {error}" if isinstance(error, KeyError) else error
+            raise StoreError(f"{path}: no table of contact: {said}") from error
+        return found
+
+    def _check(self) -> None:
+        for name in COLUMNS:
+            column = getattr(self, name)
+            if name == "conductance" and column is None:
+                continue
+            if column.shape != self.gap.shape or column.ndim != 1 or len(column) < 2:
+                raise ValueError(f"{name}: give two numbers or more, as many as gaps")
+            if not np.all(np.isfinite(column)) or (name != "gap" and np.any(column <= 0)):
+                raise ValueError(f"{name}: give finite numbers > 0")
+        if np.any(np.diff(self.gap) <= 0) or np.any(np.diff(self.pressure) >= 0):
+            raise ValueError("give gaps that rise, with pressures that fall")
+        if self.covariance is not None and self.covariance.shape != 2 * self.gap.shape:
+            raise ValueError("covariance: give a square of as many rows as gaps")
+
+
+def _numbers(given: Any) -> Array:
+    return np.array(given, dtype=np.float64)
