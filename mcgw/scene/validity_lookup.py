@@ -15,7 +15,7 @@ from mcgw.scene.validity_place import Place, not_on_the_map, place_of, reduced_p
 from mcgw.scene.validity_table import COLUMNS, Expected, Grid, grid_of
 
 _MOST_SEPARATIONS = 64
-_NONE = 1e-3  # contacts a surface, of which nothing is said
+_NONE = 1.0  # contacts a surface: of fewer nothing is said
 _SURE = 2.1  # standard deviations that hold 95 % of maps left out: light loads have long tails
 
 
