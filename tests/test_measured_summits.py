@@ -11,6 +11,7 @@ from summits_by_hand import summit_contact
 import analytic
 import mcgw
 from mcgw.maps.summits import SUMMITS, Summits
+from mcgw.reports.solved_loads import solutions_text
 from mcgw.store import layout
 
 K = 200
@@ -258,6 +259,8 @@ def test_a_load_on_the_very_summits(own):
     assert abs(apart) < 4.5 * np.std(by_hand) * np.sqrt(2 / 200)
     assert np.log(found.surfaces["separation"].std() / np.std(by_hand)) == pytest.approx(0, abs=0.3)
     assert "200 surfaces of 200 asperities, drawn from the measured ones" in str(found)
+    told = solutions_text(x, [found])
+    assert "200 surfaces of 200 asperities, each at its own d; drawn from the measured ones" in told
 
 
 def test_radii_of_other_heights_are_refused():
