@@ -32,9 +32,10 @@ def solutions_text(scene: Scene, solutions: Sequence[Solution], scatter: float |
     if scene.unload_from is not None:
         lines.append("each surface is loaded from far away; nothing of it is on the way back")
     ways = "drawn from the measured ones" if scene.as_measured else "heights drawn one by one"
+    number = solutions[0].drawn.n_surfaces
     lines.append(
-        f"specimens: {solutions[0].drawn.n_surfaces} surfaces of {scene.n_asperities:g} asperities, each at its "
-        f"own d; {ways}, seed {scene.seed}{exactly}"
+        f"specimens: {number} surfaces of {scene.n_asperities:g} asperities, each at its own d; {ways}, "
+        f"seed {scene.seed}{exactly}"
     )
     if scatter is not None:
         lines += ["", *(_sizes(solution, scatter) for solution in solutions)]
