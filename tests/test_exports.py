@@ -228,7 +228,7 @@ FACTORS = {
 }  # fmt: skip
 TOLD = {
     "pressure": ("pressure in Pa", "pressure in MPa"), "gap": ("gap in m", "gap in mm"),
-    "conductance": tuple(f"conductance per nominal area in {x}" for x in ("W/(m^2 K)", "mW/(mm^2 K)")),
+    "conductance": tuple(f"conductance per nominal area in {x}" for x in ("S/m^2", "mA/(mm^2 V)")),
     "stiffness": tuple(f"stiffness per nominal area in {x}" for x in ("Pa/m", "MPa/mm")),
 }  # fmt: skip
 

@@ -1,6 +1,7 @@
 """Gap conductance of a gas: check values of Yovanovich's integral, limits, and whose heights count."""
 
 import math
+import re
 
 import numpy as np
 import pytest
@@ -10,6 +11,7 @@ from test_layer import LAWS
 import analytic
 import mcgw
 from analytic.joint import Gas, Joint, air, gap_integral
+from mcgw.cli import main
 
 SURFACE = analytic.Surface(sigma=0.9e-6, radius=1e-5, eta=1e10, nominal_area=1e-4, E_star=1e11)
 
@@ -228,3 +230,80 @@ def test_models_without_gas_say_so():
         with pytest.raises(KeyError, match="the model knows no gas"):
             scene.theory.mean(name, H)
     assert not scene.of_joint
+
+
+# --- at a given load, and in tables ---
+
+
+@pytest.mark.parametrize("mode", OWN)
+def test_at_a_pressure(mode):
+    """Gas at each surface's own distance, the joint beside it, resistances the inverse."""
+    interaction, own = OWN[mode]
+    scene, area = scene_of(interaction=interaction, n_surfaces=8), ROUGH.nominal_area
+    found = mcgw.solve(scene, pressure="1 MPa")
+    plane = "nominal_separation" if own == "nominal_separation" or mode == "plane, nominal" else "separation"
+    for at in (found.theory, found.surfaces):
+        gas = np.asarray(at["gap_conductance"])
+        np.testing.assert_allclose(gas, scene.filled(at[plane]), rtol=1e-14)
+        joint = at["conductance_si"] / area + gas
+        np.testing.assert_allclose(at["joint_conductance"], joint, rtol=1e-14)
+        np.testing.assert_allclose(1 / at["thermal_resistance"], joint * area, rtol=1e-14)
+        np.testing.assert_allclose(at["specific_contact_resistance"], area / at["conductance_si"], rtol=1e-14)
+    assert float(gas[0]) == pytest.approx(by_hand(found.surfaces[plane][0]), rel=2e-4)
+    h = found.theory["separation"]
+    if interaction is None:
+        mean = float(scene.theory.mean("joint_conductance", h))
+        assert found.theory["joint_conductance"] == pytest.approx(mean, rel=1e-12)
+
+
+def test_table_by_pressure(capsys, tmp_path):
+    """Spots, constriction of the bodies in series, gas beside; nothing given is vacuum."""
+    path = tmp_path / "joint.toml"
+    path.write_text(mcgw.scene_text(scene_of(interaction="body", n_surfaces=5)))
+    ask = ["solve", str(path), "--pressure", "1MPa", "5MPa"]
+    assert main([*ask, "--csv", str(tmp_path / "o.csv")]) == 0
+    text = capsys.readouterr().out
+    table = text[text.index("Conductance by pressure, W/(m^2 K), theory; air of") :].splitlines()
+    for row, pressure in zip(table[2:4], (1.0, 5.0), strict=True):
+        at, _, _, _, spots, constriction, gas, joint, resistance = map(float, row.split())
+        assert at == pressure
+        assert joint == pytest.approx(1 / (1 / spots + 1 / constriction) + gas, rel=2e-3)
+        assert resistance == pytest.approx(1 / (joint * ROUGH.nominal_area), rel=2e-3)
+    assert "joint_conductance,W/(m^2 K)" in (tmp_path / "o.csv").read_text()
+    for given, words in (("vacuum", "spots only (vacuum)"), ("air", "air of")):
+        assert main([*ask, "--set", f"joint={{gas = '{given}', rms = '2 um'}}"]) == 0
+        assert words in capsys.readouterr().out
+    path.write_text(mcgw.scene_text(scene_of(joint=None, n_surfaces=5)))
+    assert main(ask) == 0
+    assert capsys.readouterr().out.count("spots only (vacuum)") == 2
+    path.write_text(mcgw.scene_text(scene_of(joint=None, film=analytic.Film(1e-7), n_surfaces=5)))
+    assert main(ask) == 0
+    text = capsys.readouterr().out
+    assert "vacuum" not in text
+    assert "contact_resistance           ohm " in text
+    assert "ohm m^2" in text
+
+
+@pytest.mark.parametrize(
+    ("to", "ending"), [("calculix", "inp"), ("abaqus", "inp"), ("moose", "csv"), ("comsol", "txt")]
+)
+def test_exports_of_a_joint(to, ending, tmp_path):
+    """Rows are spots and gas together, and stay where nothing is carried."""
+    scene = scene_of(separations=[0.0, 2.0]).replace(nominal_area="1 cm^2")
+    area, name = [1e6, 2e6, 5e6], f"j.{ending}"
+    mcgw.export(scene, tmp_path / name, to=to, table="conductance-pressure", pressures=area)
+    text = (tmp_path / name).read_text()
+    lines = [line for line in text.splitlines() if line[0].isdigit()]
+    rows = np.array([[float(x) for x in re.split("[, ]+", line)] for line in lines])
+    x, y = rows.T if to in ("moose", "comsol") else rows.T[::-1]
+    np.testing.assert_allclose(x, [0, *area])
+    assert y[0] == y[1]
+    spots = scene.theory.mean("contact_conductance", h := scene.theory.separation_at("pressure", area))
+    np.testing.assert_allclose(y[1:], spots + scene.filled(h), rtol=0.02)
+    assert (y[1:] > 2 * spots).all(), "spots alone are something else"
+    assert "joint: air" in text
+    if to != "calculix":
+        mcgw.export(scene, tmp_path / name, to=to, table="conductance-gap", points=3)
+        gap = (tmp_path / name).read_text()
+        assert "gas would conduct beyond the last line" in gap
+        assert "nothing is carried" not in gap

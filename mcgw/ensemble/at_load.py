@@ -25,9 +25,13 @@ NEGATIVE = (
 
 def mean_surface(scene: Scene, given: str, value: float) -> dict[str, float]:
     """What `Solution.theory` holds, without a surface."""
-    alone = replace(scene, interaction=None)
-    found = with_mean_gap(alone, theory_at(alone, quantity_of(given), value))
-    return found if scene.interaction is None else on_half_space(scene, found)
+    return answers_at(scene, theory_at(asperities_of(scene), quantity_of(given), value))
+
+
+def asperities_of(scene: Scene) -> Scene:
+    """The scene without what its asperities do together: at a given load they do it as if alone."""
+    together = scene.interaction is not None or scene.joint is not None
+    return replace(scene, interaction=None, joint=None) if together else scene
 
 
 def theory_at(scene: Scene, q: Quantity, value: float) -> dict[str, float]:
@@ -44,25 +48,41 @@ def quantities_at(scene: Scene) -> tuple[str, ...]:
     return (*QUANTITIES, *yielding, *(() if scene.film is None else ("conductance_si",)))
 
 
-def on_half_space(scene: Scene, found: dict[str, Any]) -> dict[str, Any]:
-    """The same of what holds at given loads."""
-    from mcgw.ensemble.half_space import at_loads  # for those scenes alone
+def answers_at(scene: Scene, found: dict[str, Any]) -> dict[str, Any]:
+    """What a surface of the scene answers where its asperities, at a given load, have these sums.
 
-    return with_mean_gap(scene, at_loads(scene, {k: v for k, v in found.items() if k != "mean_gap"}))
-
-
-def with_mean_gap(scene: Scene, found: dict[str, Any]) -> dict[str, Any]:
-    """The same of what holds at given loads: with "mean_gap", m, after the separations.
-
-    That is how far the rigid plane lies from the mean plane of the surface, or from that of its summits where
-    the scene does not tell the other. Where asperities press each other down it is the separation that they
-    feel, or the nominal one if that counts from the mean plane itself (`reference = "mean-plane"`).
+    Besides them "mean_gap", m: how far the rigid plane lies from the mean plane of the surface, or from that
+    of its summits where the scene does not tell the other. Where asperities press each other down it is the
+    separation that they feel, or the nominal one if that counts from the mean plane itself
+    (`reference = "mean-plane"`). And where something is conducted, conductances per area and resistances.
     """
+    if scene.interaction is not None:
+        from mcgw.ensemble.half_space import at_loads  # for those scenes alone
+
+        found = at_loads(scene, found)
     nominal = scene.interaction is not None and scene.interaction.reference == "mean-plane"
     h = found["nominal_separation" if nominal else "separation"]
     gap = scene.surface.sigma * (h + (rise_of_summits(scene) or 0.0))
     ahead = {name: found[name] for name in found if name in ("separation", *SEPARATIONS)}
-    return {**ahead, "mean_gap": gap, **found}
+    return {**ahead, "mean_gap": gap, **found, **_conducted(scene, found)}
+
+
+def _conducted(scene: Scene, found: dict[str, Any]) -> dict[str, Any]:
+    """Conductances per nominal area, and resistances of spots and joint."""
+    if scene.film is None:
+        return {}
+    area, spots = scene.surface.nominal_area, found["conductance_si"]
+    answers = {"contact_conductance": spots / area}
+    if scene.joint is not None:
+        from mcgw.ensemble.in_joints import with_joint  # for those scenes alone
+
+        answers |= with_joint(scene, found, ("gap_conductance", "joint_conductance"), found["separation"])
+    whole = answers.get("joint_conductance", answers["contact_conductance"])
+    with np.errstate(divide="ignore"):
+        name = "thermal_resistance" if scene.film.thermal else "contact_resistance"
+        answers[name] = np.divide(1.0, whole * area)
+        answers["specific_contact_resistance"] = np.divide(1.0, answers["contact_conductance"])
+    return answers
 
 
 def rise_of_summits(scene: Scene) -> float | None:

@@ -80,7 +80,7 @@ def answered(scene: Scene, sums: dict[str, Any]) -> dict[str, Any]:
     if scene.joint is not None:
         from mcgw.ensemble.in_joints import with_joint  # for those scenes alone
 
-        found |= with_joint(scene, found, scene.of_joint)
+        found |= with_joint(scene, found, scene.of_joint, np.array(scene.separations))
     return found
 
 

@@ -14,9 +14,9 @@ from analytic import (
     Quantity,
     quantity_of,
 )
-from mcgw.ensemble.at_load import NEGATIVE, quantities_at, theory_at, with_mean_gap
+from mcgw.ensemble.at_load import NEGATIVE, answers_at, asperities_of, quantities_at, theory_at
 from mcgw.ensemble.separation import Summits
-from mcgw.ensemble.solved import Solution, with_half_space
+from mcgw.ensemble.solved import Solution
 from mcgw.machine.progress import Progress, told
 from mcgw.sampling.asperities import summits, touching_summits
 from mcgw.scene.arguments import argument, as_toml, check_object
@@ -130,9 +130,7 @@ def solutions(
         modulus where the scene does not allow them, if there are too many asperities to draw, or if a
         surface has none.
     """
-    if scene.interaction is not None:
-        alone = solutions(replace(scene, interaction=None), given, values, tell)
-        return [with_half_space(scene, found) for found in alone]
+    whole, scene = scene, asperities_of(scene)
     specimens = _resampled(scene) if scene.as_measured else scene
     if specimens.n_surfaces < 2:
         raise ValueError(f"n_surfaces = {scene.n_surfaces}: an interval takes at least 2 surfaces")
@@ -157,7 +155,7 @@ def solutions(
             tell(number + 1, drawn.n_surfaces)
     surfaces = [{x: np.array([row[k][x] for row in rows]) for x in at} for k, at in enumerate(theory)]
     return [
-        Solution(scene, given, float(value), with_mean_gap(scene, at), with_mean_gap(scene, on), drawn)
+        Solution(whole, given, float(value), answers_at(whole, at), answers_at(whole, on), drawn)
         for value, at, on in zip(values, theory, surfaces, strict=True)
     ]
 

@@ -10,7 +10,7 @@ from scipy.special import stdtrit
 
 from analytic import SEPARATIONS, quantity_of
 from analytic.arrays import Array
-from mcgw.ensemble.at_load import mean_surface, on_half_space
+from mcgw.ensemble.at_load import mean_surface
 from mcgw.ensemble.intervals import FEWEST, MANY, interval_column
 from mcgw.formats.sheet import Sheet, Shown
 from mcgw.formats.table import Column, Table
@@ -40,7 +40,7 @@ class Solution(Shown):
     theory : dict of str to float
         "separation" (d/sigma) and every quantity (SI) of the mean surface, on loading. Where asperities press
         each other down the separation is what they feel, and "nominal_separation" there besides. "mean_gap"
-        is the distance of the mean planes, m: see `with_mean_gap`.
+        is the distance of the mean planes, m: see `answers_at`.
     surfaces : dict of str to ndarray
         The same on every surface at its own separation, shape (surfaces,).
     drawn : Scene
@@ -244,7 +244,7 @@ class Solution(Shown):
         return Table(
             (
                 Column("quantity", names),
-                Column("unit", [units.get(name) or quantity_of(name).unit for name in names]),
+                Column("unit", [units.get(name) or self.scene.quantity(name).unit for name in names]),
                 Column("theory", [self.theory[name] for name in names], error=error),
                 Column("mean", [x.mean() for x in found], error=error),
                 interval_column(low, high),
@@ -282,9 +282,3 @@ def at_solutions(scene: Scene, solutions: Sequence[Solution]) -> Scene:
     h = sorted({each.theory[name] for each in solutions})
     loading = [q for q in scene.quantities if not quantity_of(q).unloading] or ["load"]
     return scene.replace(separations=h, unload_from=None, quantities=loading)
-
-
-def with_half_space(scene: Scene, alone: Solution) -> Solution:
-    """What holds where the asperities press each other down: the sums of each are the same at its load."""
-    theory, surfaces = (on_half_space(scene, found) for found in (alone.theory, alone.surfaces))
-    return replace(alone, scene=scene, theory=theory, surfaces=surfaces)

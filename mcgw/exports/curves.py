@@ -9,6 +9,7 @@ from mcgw.ensemble.at_load import at_pressures, common_pressures, with_values
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.formats.table import evenly
 from mcgw.scene.samplers import promise_of
+from mcgw.scene.scene import Scene
 
 _MOST = 2000  # surfaces drawn again where an ensemble keeps statistics alone
 _FEWEST = 2  # points of a curve
@@ -40,8 +41,18 @@ class Kind:
 
     @property
     def dataset(self) -> str:
-        """The name of its quantity in an ensemble."""
+        """The name of its quantity in an ensemble, a sum over asperities."""
         return {"conductance": "conductance_si"}.get(self.quantity, self.quantity)
+
+    def answer(self, scene: Scene) -> str:
+        """What of a scene is tabulated: conductance is that of the joint, where there is one."""
+        if self.quantity != "conductance":
+            return self.quantity
+        return "contact_conductance" if scene.joint is None else "joint_conductance"
+
+    def stays(self, scene: Scene) -> bool:
+        """Whether gas conducts on where nothing is carried."""
+        return self.quantity == "conductance" and scene.filled is not None and scene.filled.gas is not None
 
 
 _ALL = (("pressure", "gap"), ("conductance", "pressure"), ("conductance", "gap"), ("stiffness", "pressure"))
@@ -99,7 +110,7 @@ def curves_of(
     else:
         x, y = _at_pressures(with_values(ensemble, _MOST), kind, pressures, points)
         mean, some = y.mean(axis=0), [np.quantile(y, q, axis=0) for q in quantiles]
-    area = 1.0 if kind.quantity == "pressure" else ensemble.scene.surface.nominal_area
+    area = ensemble.scene.surface.nominal_area if kind.quantity == "stiffness" else 1.0
     found = [Curve("mean", x, mean / area)]
     found += [Curve(quantile_name(q), x, y / area) for q, y in zip(quantiles, some, strict=True)]
     return [_one_way(curve, kind) for curve in found]
@@ -129,7 +140,7 @@ def _at_gaps(
     order = order[evenly(len(order), points)] if len(order) else order
     h, first = np.unique(ensemble.separations[order], return_index=True)
     order = order[first]
-    name = "pressure" if kind.quantity == "pressure" else kind.dataset
+    name = kind.answer(ensemble.scene)
     x = h * ensemble.scene.surface.sigma
     return x, ensemble.mean(name)[order], [ensemble.quantile(name, q)[order] for q in quantiles]
 
@@ -138,7 +149,8 @@ def _at_pressures(
     ensemble: Ensemble, kind: Kind, pressures: Array | None, points: int
 ) -> tuple[Array, Array]:
     wanted = _pressures_within(ensemble, points) if pressures is None else pressures
-    y = at_pressures(ensemble, wanted, (kind.dataset,))[kind.dataset]
+    name = kind.answer(ensemble.scene)
+    y = at_pressures(ensemble, wanted, (name,))[name]
     if np.any(missing := np.isnan(y)):
         surface, at = (int(k[0]) for k in np.nonzero(missing))
         reach = common_pressures(ensemble)

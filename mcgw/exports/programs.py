@@ -72,14 +72,15 @@ def foot_of(curve: Curve) -> float:
     return float(x2 + y2 * (x2 - x1) / (y1 - y2))
 
 
-def rows_of(curve: Curve, kind: Kind, program: Program, foot: float) -> Array:
+def rows_of(curve: Curve, kind: Kind, program: Program, foot: float, stays: bool = False) -> Array:
     """Rows as a program reads them, in its order and from SI, shape (rows, 2).
 
-    Nothing is carried at the first point, of pressure 0 or of the gap `foot`.
+    Nothing is carried at the first point, of pressure 0 or of the gap `foot`; unless it `stays` as it is.
     """
+    x, y = curve.x, curve.y
     if kind.against == "pressure":
-        x, y = np.concatenate([[0.0], curve.x]), np.concatenate([[0.0], curve.y])
-    else:
+        x, y = np.concatenate([[0.0], x]), np.concatenate([y[:1] if stays else [0.0], y])
+    elif not stays:
         x, y = np.concatenate([curve.x, [foot]]), np.concatenate([curve.y, [0.0]])
         if program.overclosure and kind.quantity == "pressure":
             x, y = (foot - x)[::-1], y[::-1]

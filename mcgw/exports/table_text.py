@@ -14,6 +14,7 @@ from mcgw.exports.programs import Program, foot_of, rows_of
 from mcgw.formats.sheet import brief
 from mcgw.formats.table import Column, Table
 from mcgw.machine.terminal import one_line
+from mcgw.scene.in_words import joint_text
 from mcgw.scene.scene import Scene
 
 
@@ -45,18 +46,34 @@ def heading(ensemble: Ensemble, kind: Kind, curve: Curve, system: UnitSystem, di
     """Lines of plain ASCII text, without the mark of a comment."""
     scene = ensemble.scene
     over = f"{ensemble.n_surfaces} surfaces of {scene.n_asperities:g} asperities, seed {scene.seed}"
-    value, argument = (
-        getattr(system, kind.quantity),
-        system.length if kind.against == "gap" else system.pressure,
-    )
+    argument = system.length if kind.against == "gap" else system.pressure
     what = kind.quantity if kind.quantity == "pressure" else f"{kind.quantity} per nominal area"
     return [
         f"{kind.name}, {_curve(curve.name)} over {over}, at equal {kind.against}",
         f"scene: {brief(scene.title) or 'without a title'}",
         f"mcgw {_version()}; SHA-256 of the {digest}",
-        f"units: {what} in {value[1]}; {kind.against} in {argument[1]}",
+        f"units: {what} in {unit_of(kind, system, scene)}; {kind.against} in {argument[1]}",
+        *_filled(kind, scene),
         *(_zero(scene, system) if kind.against == "gap" else ()),
     ]
+
+
+def unit_of(kind: Kind, system: UnitSystem, scene: Scene) -> str:
+    """Of what is tabulated, of heat or of current."""
+    name: str = getattr(system, kind.quantity)[1]
+    heat, _, current = name.partition(", or ")
+    return current if current and scene.film is not None and not scene.film.thermal else heat
+
+
+def _filled(kind: Kind, scene: Scene) -> list[str]:
+    """What of a joint conducts."""
+    if kind.quantity != "conductance" or scene.film is None or not scene.film.thermal:
+        return []
+    stays = {
+        "pressure": "at pressure 0 it stays as at the lowest one",
+        "gap": "gas would conduct beyond the last line: give separations up to where the bodies part",
+    }
+    return [f"joint: {joint_text(scene)}", *([stays[kind.against]] if kind.stays(scene) else [])]
 
 
 def _curve(name: str) -> str:
@@ -94,7 +111,14 @@ def in_units(curve: Curve, kind: Kind, system: UnitSystem) -> Curve:
 
 
 def table_text(
-    curve: Curve, kind: Kind, program: Program, system: UnitSystem, head: Sequence[str], file: str
+    curve: Curve,
+    kind: Kind,
+    program: Program,
+    system: UnitSystem,
+    head: Sequence[str],
+    file: str,
+    *,
+    stays: bool = False,
 ) -> str:
     """Comments, keyword and rows.
 
@@ -108,14 +132,16 @@ def table_text(
         What its comments begin with.
     file : str
         Its name, which some comments tell.
+    stays : bool, optional
+        Whether what is tabulated does not end where nothing is carried.
 
     Raises
     ------
     ValueError
         If the program has no room for it.
     """
-    foot = foot_of(curve) if kind.against == "gap" else 0.0
-    rows = rows_of(curve, kind, program, foot)
+    foot = foot_of(curve) if kind.against == "gap" and not stays else 0.0
+    rows = rows_of(curve, kind, program, foot, stays)
     _check(rows, kind, program)
     comments = [*head, *(_foot(foot, kind, program, system) if foot else ()), *program.hints(kind, file)]
     lines = [f"{program.comment} {one_line(line)}" for line in comments]
@@ -147,11 +173,11 @@ def _check(rows: Array, kind: Kind, program: Program) -> None:
         )
 
 
-def all_curves(curves: Sequence[Curve], kind: Kind, system: UnitSystem) -> Table:
+def all_curves(curves: Sequence[Curve], kind: Kind, system: UnitSystem, scene: Scene) -> Table:
     """All curves beside each other, in the units of the files; empty where one of them carries nothing."""
     x = np.unique(np.concatenate([curve.x for curve in curves])).tolist()
     unit = (system.length if kind.against == "gap" else system.pressure)[1]
-    value = getattr(system, kind.quantity)[1].partition(",")[0]
+    value = unit_of(kind, system, scene)
     columns = [Column(f"{kind.against} ({unit})", x)]
     for curve in curves:
         held = dict(zip(curve.x.tolist(), curve.y.tolist(), strict=True))

@@ -56,7 +56,8 @@ def export(
     to : {"calculix", "abaqus", "moose", "comsol", "json"}
         The program; "json": one file with all of it in SI, which `mcgw.ContactTable.read` makes a law of.
     table : {"pressure-gap", "conductance-pressure", "conductance-gap", "stiffness-pressure"}
-        What is tabulated, against what. Stiffness and conductance are per nominal area.
+        What is tabulated, against what. Stiffness and conductance are per nominal area;
+        conductance is that of the joint, where the scene has one.
     points : int, optional
         Rows, besides the one where nothing is carried. Default: 40.
     pressures : array_like or sequence of str, optional
@@ -110,12 +111,20 @@ def export(
     files = files_of_export(path, [curve.name for curve in curves])
     scaled = [in_units(curve, kind, system) for curve in curves]
     texts = [
-        table_text(curve, kind, program, system, heading(ensemble, kind, curve, system, digest), file.name)
+        table_text(
+            curve,
+            kind,
+            program,
+            system,
+            heading(ensemble, kind, curve, system, digest),
+            file.name,
+            stays=kind.stays(scene),
+        )
         for file, curve in zip(files, scaled, strict=False)
     ]
     for file, text in zip(files, texts, strict=False):
         write_whole(file, [text.encode("ascii", "replace")])
-    all_curves(scaled, kind, system).write(files[-1], comment=f"{kind.name}; SHA-256 of the {digest}")
+    all_curves(scaled, kind, system, scene).write(files[-1], comment=f"{kind.name}; SHA-256 of the {digest}")
     return files
 
 

@@ -8,11 +8,11 @@ import numpy as np
 from mcgw.ensemble.at_load import rise_of_summits
 from mcgw.ensemble.intervals import MANY
 from mcgw.ensemble.solved import Solution, against_elasticity
-from mcgw.formats.table import Column, Table, joined
-from mcgw.scene.in_words import contact_facts
+from mcgw.formats.table import SEPARATION, Column, Table, joined
+from mcgw.scene.in_words import contact_facts, joint_text
 from mcgw.scene.scene import Scene
 
-_SHOWN = ("contact law", "film", "interaction")  # what of the contacts counts at a given load
+_SHOWN = ("contact law", "film", "interaction", "joint")  # what of the contacts counts at a given load
 
 
 def solutions_text(scene: Scene, solutions: Sequence[Solution], scatter: float | None = None) -> str:
@@ -21,6 +21,8 @@ def solutions_text(scene: Scene, solutions: Sequence[Solution], scatter: float |
     With a `scatter` that is wanted also how many asperities it takes.
     """
     lines = [f"{solution.sheet().table}\n" for solution in solutions]
+    if scene.film is not None:
+        lines.append(f"{conductances(scene, solutions)}\n")
     if any(x.theory["contacts"] < MANY for x in solutions):
         lines.append(
             "Few contacts: finite surfaces differ from theory, whose surface is infinite, by more than noise."
@@ -43,6 +45,31 @@ def solutions_text(scene: Scene, solutions: Sequence[Solution], scatter: float |
         lines += ["", f"Off a real specimen, {budget.title[0].lower()}{budget.title[1:]}:"]
         lines += [replace(budget.table(), title="").text(), f"  {budget.advice}"]
     return "\n".join([*lines, "", against_elasticity(solutions).verdict])
+
+
+def conductances(scene: Scene, solutions: Sequence[Solution]) -> Table:
+    """What the joint conducts by theory, a row for each load: spots, bodies in series, gas beside."""
+    area, other = scene.surface.nominal_area, scene.series("conductance_si")
+    at = {name: np.array([x.theory[name] for x in solutions]) for name in solutions[0].theory}
+    contact = at["contact_conductance"]
+    found = {"spots": contact / (1 - other * area * contact)}
+    if other:
+        found["constriction"] = np.full(len(contact), 1 / (other * area))
+    if scene.joint is not None:
+        found["gas"] = at["gap_conductance"]
+    found["joint"] = at.get("joint_conductance", contact)
+    q = scene.quantity("thermal_resistance" if "thermal_resistance" in at else "contact_resistance")
+    columns = (
+        Column("pressure", at["load"] / area / 1e6, unit="MPa", form=".4g"),
+        Column("separation", at["separation"], SEPARATION, form=".3f"),
+        Column("area_fraction", at["area"] / area, "A/A_n", form=".3g"),
+        Column("stiffness", at["stiffness"] / area, unit="Pa/m", form=".4g"),
+        *(Column(name, values, form=".4g") for name, values in found.items()),
+        Column(q.name, at[q.name], "resistance", unit=q.unit, form=".4g"),
+    )
+    gas = f"; {joint_text(scene)}" if q.unit == "K/W" else ""
+    unit = scene.quantity("contact_conductance").unit
+    return Table(columns, f"Conductance by pressure, {unit}, theory{gas}")
 
 
 def _sizes(solution: Solution, scatter: float) -> str:
