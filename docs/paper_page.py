@@ -38,7 +38,8 @@ def cited(keys: str, entries: dict[str, Entry]) -> str:
 def reference(entry: Entry) -> str:
     """A line of the list."""
     place = ", ".join(entry[key] for key in ("journal", "booktitle", "volume", "pages") if key in entry)
-    return f"{', '.join(_authors(entry))}: {_plain(entry['title'])}. {_plain(place)} ({entry['year']})."
+    said = f"{', '.join(_authors(entry))}: {_plain(entry['title'])}. {_plain(place)} ({entry['year']})."
+    return f"{said} *Checked: {entry['checked']}.*"
 
 
 def _in_order(entries: dict[str, Entry]) -> list[Entry]:

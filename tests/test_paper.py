@@ -21,8 +21,8 @@ pytestmark = pytest.mark.site
 PAPER = (FOLDER / "paper.md").read_text(encoding="utf-8")
 SOURCE = (FOLDER / "paper.md.in").read_text(encoding="utf-8")
 SECTIONS = (
-    "Summary", "Statement of need", "State of the field", "Method", "Validation", "Reproducibility",
-    "Limits", "Acknowledgements", "References",
+    "Summary", "Statement of need", "State of the field", "Software design", "Validation",
+    "Research impact statement", "AI usage disclosure", "Acknowledgements", "References",
 )  # fmt: skip
 
 
@@ -83,7 +83,7 @@ def test_every_reference_is_cited_and_whole():
     assert set(re.findall(r"@(\w+)", "".join(re.findall(r"\[@[^\]]+\]", PAPER)))) == set(entries)
     assert len(entries) == (FOLDER / "paper.bib").read_text().count("\n@")
     for key, entry in entries.items():
-        assert {"author", "title", "year"} <= set(entry), key
+        assert {"author", "title", "year", "checked"} <= set(entry), key
         assert ("journal" in entry) != ("booktitle" in entry), key
         family = unicodedata.normalize("NFKD", paper_page._short(entry)).encode("ascii", "ignore").decode()
         assert key == family.split()[0].rstrip(",").lower() + entry["year"]
