@@ -103,7 +103,7 @@ class Custom:
     function : callable
         Takes an array of reduced heights, returns E*(s)/E* in the same shape.
     breaks : tuple of float, optional
-        Heights where it jumps or has a kink: told, they cost nothing; untold, they are searched for.
+        Heights where it jumps or has a kink: declared, they cost nothing; otherwise they are searched for.
 
     Examples
     --------

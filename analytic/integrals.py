@@ -163,7 +163,7 @@ def fn(
     log : bool, optional
         Return the natural logarithm, which does not underflow; nan where the integral is negative.
     heights : HeightLaw, optional
-        Law of the heights, with its density in the place of phi. Another than the Gaussian is integrated
+        Law of the heights, with its density in place of phi. Another than the Gaussian is integrated
         to 1e-12 as far as its density reaches in double precision.
 
     Returns

@@ -112,7 +112,7 @@ class Interaction:
         n_asperities : float
             On the surface.
         resistivity : float, optional
-            rho of both bodies, for a conductance that is not told times it.
+            rho of both bodies, for a conductance that is not given times it.
 
         Notes
         -----

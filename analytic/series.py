@@ -53,8 +53,8 @@ def resolved(grading: Grading, low: float, high: float) -> PiecewiseSeries:
 
     The error is at most 1e-13 of the largest value that the grading has within 1/64 of a height, or what
     the last digit of a height makes of its slope: also where it spans many decades. Only what is below
-    2e-16, or so noisy, may be off by that much. Kinks and jumps are found if they are not told; features
-    narrower than 1/80 that come back to where they were can go unseen and are better told.
+    2e-16, or so noisy, may be off by that much. Kinks and jumps are found if they are not declared; features
+    narrower than 1/80 that come back to where they were can go unseen and are better declared.
 
     Parameters
     ----------

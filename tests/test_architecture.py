@@ -201,7 +201,7 @@ def test_compiled_functions_call_those_of_their_own_layer():
 
 
 def test_no_compiled_function_is_made_several_times():
-    """Of two with one name, one is called in the place of the other (`mcgw.machine.compiling`)."""
+    """Of two with one name, one is called in place of the other (`mcgw.machine.compiling`)."""
     for name, tree in inside():
         outer = {id(node) for node in tree.body}
         for node in tree.nodes:

@@ -40,12 +40,12 @@ def test_a_sweep_half_done_says_how_far_it_is(tmp_path, capsys):
     said = out_of(capsys, "show", path)
     assert said == (
         f"{path}: a sweep of 4 points over grading.gamma, ensemble.count, not finished: 100 of 200 surfaces "
-        "are drawn; the same mcgw sweep goes on\n"
+        "are drawn; the same mcgw sweep resumes\n"
     )
     assert mcgw.scene_from(out_of(capsys, "show", "--scene", path)).surface == SURFACE
     for option in ("--verify", "--digest"):
         assert main(["show", str(path), option]) == 2
-        assert "is a sweep in the making; mcgw sweep goes on" in capsys.readouterr().err
+        assert "is a sweep in the making; mcgw sweep resumes" in capsys.readouterr().err
     with pytest.raises(mcgw.StoreError, match="is a sweep in the making; mcgw show tells how far"):
         mcgw.open_ensemble(path)
     assert mcgw.sweep(scene, OVER, path=path).shape == (2, 2)  # nothing of it was removed

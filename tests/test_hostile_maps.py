@@ -1,4 +1,4 @@
-"""Maps that no instrument gives: heights that overflow, bombs, and words in the place of numbers."""
+"""Maps that no instrument gives: heights that overflow, bombs, and words in place of numbers."""
 
 import json
 import struct

@@ -82,7 +82,7 @@ def attribute(name, value):
     return change
 
 
-# What stands in the place of the dataset of loads (which is taken away first), and what is said of it.
+# What stands in place of the dataset of loads (which is taken away first), and what is said of it.
 ONES = np.ones((20, 2))
 HOSTILE = {
     "external link": (load(lambda folder: h5py.ExternalLink(str(folder / "other.h5"), "/load")),

@@ -8,6 +8,8 @@ from docs_site import MADE, ROOT
 PHRASES = [
     "is told", "are told", "its surfaces are none", "no map can tell", "says nothing", "shortly",
     "of this model agree", "goes on where it stopped", "where d counts from", "bears; metals",
+    "in the place of", "command goes on", "sweep goes on", "seed goes on", "nobody told", "no one told",
+    "belongs into", "speaks against", "none is asked for",
 ]  # fmt: skip
 PLACES = ("README.md", "CHANGELOG.md", "docs/*.md", "docs/*/*.md", "runs/*.md", "mcgw/**/*.py")
 PLACES += ("analytic/**/*.py",)

@@ -318,7 +318,7 @@ def test_signals_stop_a_run_that_then_goes_on(
     said = capsys.readouterr()
     assert said.out == ""
     if number == signal.SIGINT:
-        assert "the same command goes on" in without_notes(said.err).splitlines()[-1]
+        assert "the same command resumes" in without_notes(said.err).splitlines()[-1]
     assert not path.exists()
     assert 3 <= len(drawn) < 7
     run(scene, path)

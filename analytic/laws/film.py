@@ -66,7 +66,7 @@ class Film:
     film_resistance : float, optional
         Of a unit area of a film much thinner than spots are wide: ohm m^2, or m^2 K/W; 0 without one.
     conductivities : (float, float), optional
-        In the place of `resistivity`: thermal ones of both bodies, W/(m K).
+        In place of `resistivity`: thermal ones of both bodies, W/(m K).
     layer : Layer, optional
         On the first body, of any thickness; needs `conductivities`.
 

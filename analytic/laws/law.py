@@ -156,7 +156,7 @@ class ContactLaw:
         return self._with(lambda constant, _: constant[which]) if self.each else self
 
     def _with(self, change: Callable[[Any, float], Any]) -> Self:
-        """The law with another constant in the place of the one that follows the radius."""
+        """The law with another constant in place of the one that follows the radius."""
         if not self.of_radius:
             return self
         law, (name, power) = copy(self), self.of_radius

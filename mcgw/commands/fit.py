@@ -71,7 +71,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def execute(args: argparse.Namespace) -> int:
-    """Write the scene with all estimates as comments, and say what it is and what speaks against it."""
+    """Write the scene with all estimates as comments, and say what it is and what casts doubt on it."""
     from mcgw.commands.voice import details, news, notes
     from mcgw.formats.numbers import parse
     from mcgw.maps.fit import Fit

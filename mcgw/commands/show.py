@@ -85,6 +85,6 @@ def _show_unfinished(args: argparse.Namespace, begun: "RunFolder") -> int:
     from mcgw.reports.text import progress_of
 
     if args.verify or args.digest or args.csv:
-        raise StoreError(f"{args.file}: is a sweep in the making; mcgw sweep goes on, then ask again")
+        raise StoreError(f"{args.file}: is a sweep in the making; mcgw sweep resumes, then ask again")
     print(*([begun.text] if args.scene else [progress_of(begun, args.file), "\n"]), sep="", end="")
     return 0

@@ -105,7 +105,7 @@ def field_beyond_point(squared_distance: Array, squared_radii: Array) -> tuple[A
         u pi E*/P = 3/4 [(2 a^2 - r^2) asin(min(a/r, 1)) + a sqrt(r^2 - a^2)_+ ] / a^3,
 
     of which 1/r is taken off. Between two spots a is that of both, so that the potential is mutual:
-    ``a^2 = 1.125 (a_i^2 + a_j^2)``; averaged over both contacts, 1 in the place of 1.125 is exact to the
+    ``a^2 = 1.125 (a_i^2 + a_j^2)``; averaged over both contacts, 1 in place of 1.125 is exact to the
     second order in a/r.
 
     Parameters

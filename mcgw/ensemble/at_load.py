@@ -86,7 +86,7 @@ def _conducted(scene: Scene, found: dict[str, Any]) -> dict[str, Any]:
 
 
 def rise_of_summits(scene: Scene) -> float | None:
-    """Of the mean plane of the summits above that of the surface, over sigma; None if no one told."""
+    """Of the mean plane of the summits above that of the surface, over sigma; None if unknown."""
     heights = scene.heights
     return heights.mean / heights.std if isinstance(heights, Nayak) else None
 

@@ -18,7 +18,7 @@ from mcgw.scene.scene import Scene
 from mcgw.scene.stop_rule import wanted
 
 _STEP = 16  # numbers of surfaces lie 1/16 apart
-_ANY = 0.1  # in the place of a share that is not asked for
+_ANY = 0.1  # in place of a share that is not asked for
 _ROUNDS = 8  # each leaves a share of the skewness over the square root of the contacts, at most 0.1
 
 

@@ -33,7 +33,7 @@ def simulate(
     Parameters
     ----------
     scene : Scene
-        What is asked.
+        What to simulate.
     threads : int, optional
         Default: all there are. The result is the same, bit by bit, for any number.
     progress : bool or callable, optional

@@ -24,7 +24,7 @@ from mcgw.scene.scene import Scene
 from mcgw.scene.section import nearest
 
 _MARGIN = 6.0  # standard deviations of a surface's separation that are drawn at once
-_RESAMPLED = 200  # specimens in the place of one measured surface
+_RESAMPLED = 200  # specimens in place of one measured surface
 _MOST_HEIGHTS = 3e9
 _LAST_DIGITS = 64 * float(np.finfo(float).eps)  # of a reduced height
 _NOTHING = 1e-16  # share of the heights below all that are drawn

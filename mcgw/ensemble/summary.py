@@ -1,4 +1,4 @@
-"""What `keep = "statistics"` keeps of some surfaces in the place of their values, and how two are joined.
+"""What `keep = "statistics"` keeps of some surfaces in place of their values, and how two are joined.
 
 Mean, products and cubes of deviations are joined by the formulas of Chan, Golub and LeVeque (1979) and Pebay
 (2008) [mem]. Rounding depends on what is joined with what, and that is fixed: blocks of a size that the scene

@@ -12,7 +12,7 @@ _LONGEST = 88  # characters of one fact
 
 
 def brief(text: str) -> str:
-    """A text on one line, with dots in the place of its end if it is longer than 88 characters."""
+    """A text on one line, with dots in place of its end if it is longer than 88 characters."""
     plain = one_line(text)
     return plain if len(plain) <= _LONGEST else f"{plain[: _LONGEST - 3]}..."
 

@@ -100,14 +100,14 @@ def merge_once(job: Job, signals: Signals) -> bool:
     except FileExistsError as error:
         raise RunError(
             f"{path}: {error.strerror}; it is left as it is. All blocks are kept in {started.folder}: move "
-            "that file away, the same command goes on"
+            "that file away, the same command resumes"
         ) from None
     except (OSError, RuntimeError) as error:
         said = error.strerror if isinstance(error, OSError) else None
         why = said or next(iter(str(error).splitlines()), type(error).__name__)
         raise RunError(
             f"{path}: cannot be merged ({why}); is the disk full? All blocks are kept in "
-            f"{started.folder}, the same command goes on"
+            f"{started.folder}, the same command resumes"
         ) from None
     finally:
         with suppress(OSError):

@@ -61,13 +61,13 @@ def run(
 ) -> Ensemble | int:
     """Draw the ensemble of a scene into a file, going on where an earlier run stopped.
 
-    The same call again goes on, or extends the file if the scene now has more surfaces; where nobody gave a
+    The same call again resumes, or extends the file if the scene now has more surfaces; where nobody gave a
     seed it takes that of the file.
 
     Parameters
     ----------
     scene : Scene
-        What is asked; `n_surfaces` is the total, or with `rel_err` or `max_seconds` the most.
+        What to simulate; `n_surfaces` is the total, or with `rel_err` or `max_seconds` the most.
     path : str or Path
         The file; it appears when it is complete. Until then, blocks lie in ``FILE.parts/``.
     threads : int, optional
@@ -236,7 +236,7 @@ def _what_is_kept(job: Job) -> Iterator[None]:
     except OSError as error:
         raise RunError(
             f"{error.filename or job.path}: {error.strerror or error}; finished blocks are kept in "
-            f"{job.record.folder}, the same command goes on once that is mended"
+            f"{job.record.folder}, the same command resumes once that is mended"
         ) from None
 
 
@@ -257,5 +257,5 @@ def _draw_missing(job: Job, started: RunFolder, spans: list[Span], by: By, part:
     task = draw_block if isinstance(by.engine, Threads) else commit_block
     by.drive(spans, task, lambda span: (folder, span.first, span.n, by.threads), note)
     by.signals.check(
-        f"{plan.total - left} of {plan.total} surfaces are kept in {started.folder}; the same command goes on"
+        f"{plan.total - left} of {plan.total} surfaces are kept in {started.folder}; the same command resumes"
     )

@@ -96,7 +96,7 @@ def plain_output() -> Iterator[Plain]:
 
 
 def _open_closed() -> None:
-    """Put the empty device in the place of closed descriptors, before a file of ours gets their numbers."""
+    """Put the empty device in place of closed descriptors, before a file of ours gets their numbers."""
     for number, name, mode in ((0, "stdin", "r"), (1, "stdout", "w"), (2, "stderr", "w")):
         try:
             os.fstat(number)

@@ -117,7 +117,7 @@ def fit_map(
     unit: str | None = None,
     use: str = "auto",
 ) -> tuple[Fit, Prepared]:
-    """Fit a map, with what speaks against the estimate to `use`; and the map as it was looked at."""
+    """Fit a map, with what casts doubt on the estimate to `use`; and the map as it was looked at."""
     size = None if pixel is None else (pixel, pixel)
     with stages(4) as done:
         read = [source if isinstance(source, Topography) else read_map(source, pixel=size, unit=unit)]
@@ -134,7 +134,7 @@ def fit_map(
 def fit_lines(
     sources: Sequence[str | Path | Profile], asked: Preparation, *, spacing: float | None, unit: str | None
 ) -> tuple[ProfileFit, list[Profile]]:
-    """Fit profiles, read from files or in memory, with what speaks against it; and the profiles.
+    """Fit profiles, read from files or in memory, with what casts doubt on it; and the profiles.
 
     Raises
     ------

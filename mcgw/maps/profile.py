@@ -29,7 +29,7 @@ class Profile:
     spacing : float
         Between two points, m.
     assumed_unit : str, optional
-        What lengths were taken to be in where nobody told it; empty: they are known.
+        What lengths were taken to be in where the file does not say; empty: they are known.
     filled : int, optional
         How many heights were missing and lie on straight lines now.
     resampled : bool, optional

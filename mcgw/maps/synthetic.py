@@ -115,7 +115,7 @@ def moments_on_grid(
 ) -> SpectralMoments:
     """Expected moments of `gaussian_map` with the same arguments, averages over profiles along x and y.
 
-    Sums stand in the place of integrals over the spectrum.
+    Sums stand in place of integrals over the spectrum.
     """
     power = _power(spectrum, shape, pixel)
     power[:, 1 : (shape[1] + 1) // 2] *= 2  # rfft2 leaves out their conjugates

@@ -32,7 +32,7 @@ class Topography:
     periodic : bool, optional
         Whether opposite edges fit together.
     assumed_unit : str, optional
-        What heights were taken to be in where nobody told it; empty: it is known.
+        What heights were taken to be in where the file does not say; empty: it is known.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""What a map or profiles told, as lines of text."""
+"""What a map or profiles gave, as lines of text."""
 
 from collections.abc import Sequence
 
@@ -12,7 +12,7 @@ from mcgw.maps.waves import Uncertain
 
 
 def map_line(name: str, asked: Preparation, assumed_unit: str) -> str:
-    """Which map it was, its form and cutoff, and the unit that was taken where none was told."""
+    """Which map it was, its form and cutoff, and the unit that was taken where none was given."""
     filtered = "none" if asked.cutoff is None else f"{asked.cutoff:g} m (Gaussian, ISO 16610-61)"
     line = f"{name}: form taken off: {asked.form}; cutoff: {filtered}"
     if assumed_unit:
@@ -49,7 +49,7 @@ def fit_lines(fit: Fit) -> list[str]:
 
 
 def profile_line(names: Sequence[str], asked: Preparation, profiles: Sequence[Profile]) -> str:
-    """Which profiles they were, their form and cutoff, and the unit that was taken where none was told."""
+    """Which profiles they were, their form and cutoff, and the unit that was taken where none was given."""
     filtered = "none" if asked.cutoff is None else f"{asked.cutoff:g} m (Gaussian)"
     taken = {"none": "mean", "plane": "line", "quadratic": "parabola"}[asked.form]
     line = f"{', '.join(names)}: profile; taken off: {taken}; cutoff: {filtered}"

@@ -132,5 +132,5 @@ def progress_of(run: RunFolder, path: Path) -> str:
     missing = sum(span.n for span in run.missing(0, run.shards()))
     return (
         f"{path}: a sweep of {axes.size} points over {', '.join(axes.keys)}, not finished: "
-        f"{total - missing} of {total} surfaces are drawn; the same mcgw sweep goes on"
+        f"{total - missing} of {total} surfaces are drawn; the same mcgw sweep resumes"
     )

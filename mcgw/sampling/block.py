@@ -108,7 +108,7 @@ class Sampler:
     name : str
         One of `mcgw.scene.samplers.SAMPLERS`, never "auto".
     scene : Scene
-        What is asked.
+        What to simulate.
     mesh : Mesh
         Its cells; with none, every asperity is drawn by itself.
     """

@@ -230,7 +230,7 @@ def _share_out(seed: Any, first: Any, numbers: Any, shares: Any, turned: Any, si
 
 @njit()
 def _halve(node: Any, first: Any, seed: Any, shares: Any, turned: Any, sizes: Any) -> None:
-    """Write children in the place of their parents, from the last one on: none is lost."""
+    """Write children in place of their parents, from the last one on: none is lost."""
     surfaces = node.shape[1]
     work, parents = np.empty(WORDS), 0
     for size in sizes:

@@ -56,7 +56,7 @@ def crowding(scene: Scene, mesh: Mesh) -> Crowding | None:
     Parameters
     ----------
     scene : Scene
-        What is asked.
+        What to simulate.
     mesh : Mesh
         Its cells.
 

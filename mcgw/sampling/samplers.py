@@ -133,7 +133,7 @@ def aggregate_of(scene: Scene, crowded: int = CROWDED, distance: float = np.nan)
     Parameters
     ----------
     scene : Scene
-        What is asked.
+        What to simulate.
     crowded : int, optional
         Asperities in a cell, from which its moments count as Gaussian.
     distance : float, optional

@@ -5,7 +5,7 @@ times. Of the uniforms u of a cell, with x = 2u - 1, a surface keeps for each po
 
     T_j = sum w T_j(x),  j < plain        R_j = sum w sqrt(u) T_j(x),  j < rooted       w = sqrt(c) or c
 
-in the place of the sums of `mcgw.sampling.moments`; what turns them into loads and areas is the same. A
+in place of the sums of `mcgw.sampling.moments`; what turns them into loads and areas is the same. A
 radius is drawn for each summit from the table of `mcgw.sampling.own_radii`, at its height: that is the
 cell's lower edge and its series of the uniform.
 """

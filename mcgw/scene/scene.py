@@ -63,7 +63,7 @@ class Scene(Fields, Shown):
         For people.
     grading : Grading or callable, optional
         E*(s)/E*, or any function of an array of heights s, as ``lambda s: 1 + 0.3*np.tanh(s)``; its kinks
-        and jumps are searched for, or told by `mcgw.Custom`. Default: homogeneous.
+        and jumps are searched for, or declared by `mcgw.Custom`. Default: homogeneous.
     negative : {"error", "clip", "allow"}, optional
         What to do where the grading makes the modulus of a contacting asperity negative.
     heights : HeightLaw or frozen distribution of scipy.stats, optional
@@ -80,7 +80,7 @@ class Scene(Fields, Shown):
         has a second one, as ``load_unloading``, on the way back from there.
     film : Film, optional
         Resistivity of the bodies, and resistance of a film on the spots: `mcgw.Film`. There is then a
-        quantity "conductance_si". Default: none is asked for.
+        quantity "conductance_si". Default: none.
     layer : Layer, optional
         On the first body, of any thickness: `mcgw.Layer`; a part of `film`.
     tangential : Tangential, optional
@@ -109,7 +109,7 @@ class Scene(Fields, Shown):
     sampler : {"auto", "direct", "tail", "cells", "aggregate", "stratified"}, optional
         How surfaces are drawn; "auto" takes the cheapest exact way.
     keep : {"sums", "moments", "statistics"}, optional
-        "moments": the file keeps these too, from which `mcgw.regrade` starts. "statistics": in the place of
+        "moments": the file keeps these too, from which `mcgw.regrade` starts. "statistics": in place of
         the values of surfaces only their mean, covariance, skewness, quantiles and extremes, of any number
         of surfaces in the same memory.
     accuracy : float, optional

@@ -36,7 +36,7 @@ def load_scene(
     seed : callable, optional
         Asked for a seed if the scene gives none; where it has none either, one is drawn.
     changes : mapping, optional
-        Values in the place of those of the file, by their keys, as ``{"grading.gamma": 2.0}``.
+        Values in place of those of the file, by their keys, as ``{"grading.gamma": 2.0}``.
 
     Returns
     -------

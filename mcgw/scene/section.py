@@ -226,7 +226,7 @@ class Section:
 
 
 def shortened(text: str) -> str:
-    """A text, with dots in the place of its end if it is longer than 60 characters."""
+    """A text, with dots in place of its end if it is longer than 60 characters."""
     return text if len(text) <= 60 else f"{text[:57]}..."
 
 

@@ -1,4 +1,4 @@
-"""A scene with nothing left open: numbers in the place of functions, and the sampler that drew it."""
+"""A scene with nothing left open: numbers in place of functions, and the sampler that drew it."""
 
 from dataclasses import replace
 from typing import Any, TypeVar

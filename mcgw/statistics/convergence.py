@@ -118,7 +118,7 @@ def converge(
     Parameters
     ----------
     scene : Scene
-        What is asked; 64 to 1000 surfaces a seed and at most 12 of its separations are taken.
+        What to simulate; 64 to 1000 surfaces a seed and at most 12 of its separations are taken.
     draw : callable, optional
         Takes a scene (whose seed, number of surfaces and of asperities vary) and returns each quantity in
         SI units, shape (surfaces, separations); default: this simulator.

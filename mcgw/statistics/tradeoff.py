@@ -215,7 +215,7 @@ def tradeoff(
     Parameters
     ----------
     scene : Scene
-        What is asked.
+        What to simulate.
     seconds : float or str, optional
         Bound of the whole study, s or as "5 min", default: 60; it is kept to within the last run.
     progress : bool or callable, optional

@@ -175,7 +175,7 @@ def advise(
     Parameters
     ----------
     scene : Scene
-        What is asked.
+        What to simulate.
     h : float
         Separation at which means and quantiles of its first quantity are wished for.
     ways : sequence of Way

@@ -136,7 +136,7 @@ def _run_of(path: Path) -> RunFolder:
         raise StoreError(f"{path}: no block of its run is finished yet")
     run = RunFolder.open(parts_of(path))
     if run.axes:
-        raise StoreError(f"{path}: is a sweep in the making; mcgw show tells how far, mcgw sweep goes on")
+        raise StoreError(f"{path}: is a sweep in the making; mcgw show tells how far, mcgw sweep resumes")
     return run
 
 

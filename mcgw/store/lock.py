@@ -121,7 +121,7 @@ def _holder(folder: Path) -> str:
 
 
 def refuse_link(folder: Path) -> None:
-    """Refuse what stands in the place of a folder.
+    """Refuse what stands in place of a folder.
 
     Raises
     ------

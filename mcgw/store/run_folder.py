@@ -6,7 +6,7 @@
                 surfaces and the size of a block of each group; last, the SHA-256 of all that stands before
     lock.db     held by whoever writes the file, freed by the system when it dies (`lock`)
     holder      who that is
-    lock.*      in the place of both where the disk keeps no locks (`lock_by_name`)
+    lock.*      in place of both where the disk keeps no locks (`lock_by_name`)
     shards/     block-0000000000042.h5: the surfaces from number 42 on
 
 The set of valid shards is the only record of progress.
@@ -181,7 +181,7 @@ class RunFolder:
             what = "checksum mismatch" if isinstance(error, _ChangedError) else "it cannot be read"
             raise _DamagedError(
                 f"{file}: damaged ({what}); the blocks beside it are kept, and mcgw run with their scene and "
-                f"seed goes on, or mcgw sweep; or remove {folder}"
+                f"seed resumes, or mcgw sweep; or remove {folder}"
             ) from None
 
     def shards(self, *, bodies: bool = True) -> list[Shard]:

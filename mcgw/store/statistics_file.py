@@ -1,4 +1,4 @@
-"""Files that hold statistics over surfaces in the place of the surfaces.
+"""Files that hold statistics over surfaces in place of the surfaces.
 
 The schema (of a scene with ``keep = "statistics"``)::
 

@@ -154,7 +154,7 @@ class Asked:
 
 
 def _with_a_number(scene: Scene) -> Scene:
-    """With a number of surfaces in the place of a rule."""
+    """With a number of surfaces in place of a rule."""
     if scene.max_seconds is not None:
         raise SceneError(["ensemble.max_seconds: a sweep draws the same again; give n_surfaces or rel_err"])
     return scene if scene.rel_err is None else without_rule(scene)

@@ -34,7 +34,7 @@ class HertzWalk:
     tree, nodes : Tree, Nodes
         Nodes over the cells.
     rows : Rows
-        What is asked.
+        What to simulate.
     formulas : Powers
         Theirs.
     """

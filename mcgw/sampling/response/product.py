@@ -162,7 +162,7 @@ class Parts:
     mesh, tree : Mesh, Tree
         Cells, and the nodes over them.
     rows : Rows
-        What is asked.
+        What to simulate.
     entries : Entries
         What each node gives to the rows.
     plain, rooted : ndarray of int

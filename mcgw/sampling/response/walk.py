@@ -44,7 +44,7 @@ class LawWalk:
     tree, nodes : Tree, Nodes
         Nodes over the cells.
     rows : Rows
-        What is asked.
+        What to simulate.
     formulas : Formulas
         Theirs.
     """
@@ -215,7 +215,7 @@ def walk(mesh: Mesh, tree: Tree, rows: Rows, nodes: Nodes) -> tuple[Entries, Int
     mesh, tree, nodes : Mesh, Tree, Nodes
         Cells, and the nodes over them.
     rows : Rows
-        What is asked.
+        What to simulate.
 
     Returns
     -------
