@@ -184,7 +184,7 @@ def heights_beside(path: Path) -> Path:
 def write_scene(scene: Scene, path: Path, measured: Fit | None, comments: list[str]) -> list[Path]:
     """Write a scene from `fitted_scene` with comments above it; returns the files that were written.
 
-    The summit heights of a fit that is `measured` go to a file beside the scene, which names it in the place
+    The summit heights of a fit that is `measured` go to a file beside the scene, which names it in place
     of a list. Numbers that nobody gave are left out: N follows when somebody writes another area.
     """
     text = "".join(f"# {line}\n" for line in comments) + "\n"

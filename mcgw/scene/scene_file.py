@@ -161,7 +161,7 @@ def scene_text(scene: Scene, *, heights_file: str | None = None, left_out: bool 
     scene : Scene
         With any grading; a Python function becomes its series.
     heights_file : str, optional
-        Name beside the scene of a file that holds its measured heights, or heights and radii, in the place
+        Name beside the scene of a file that holds its measured heights, or heights and radii, in place
         of lists.
     left_out : bool, optional
         Whether `left_out` under ``[ensemble]`` lists the numbers that nobody gave, so that
