@@ -31,6 +31,7 @@ Laws of contact of one asperity, in place of Hertz's, and what else the contacts
                          formulas of one's own
 `JohnsonKendallRoberts`  contacts that stick, as `DerjaguinMullerToporov`
 `Film`, `Layer`          what spots conduct through: bodies, a thin film, a layer: conductance in S or W/K
+`Joint`                  gas in the gap, which conducts beside the spots
 `Tangential`             friction, and displacements sideways; `masing`: unloading
 `Interaction`            asperities that press each other down: nominal and effective separations
 =======================  =========================================================================
