@@ -18,6 +18,7 @@ from mcgw.reports.report_figures import (
     means_figures,
     patch_pictures,
     pressure_pictures,
+    pressure_table,
 )
 from mcgw.reports.side_notes import elasticity_words
 from mcgw.scene.cautions import cautions
@@ -60,6 +61,7 @@ def report_html(ensemble: Ensemble, attributes: dict[str, Any]) -> str:
         else f"These are {ensemble.sampler} surfaces: their means serve, nothing tests them against theory",
         elastic=against.verdict,
         at_pressure=at_pressure,
+        by_pressure=pressure_table(at_pressure, scene),
         several=real and ensemble.n_surfaces > 1,
         patch=patch,
         figures=figures,

@@ -3,8 +3,8 @@
 import io
 import re
 from base64 import b64encode
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 
 import matplotlib as mpl
 import numpy as np
@@ -22,6 +22,8 @@ from mcgw.figures.panels import draw
 from mcgw.figures.specimens import exact_ends
 from mcgw.figures.style import STYLE
 from mcgw.formats.pictures import write_figure
+from mcgw.formats.table import Column, Table, evenly
+from mcgw.scene.in_words import joint_text
 from mcgw.scene.samplers import promise_of
 from mcgw.scene.scene import Scene
 from mcgw.statistics.comparison import Comparison
@@ -44,12 +46,15 @@ class PageFigure:
         The data of a picture as the address of an image.
     caption : str
         Below it.
+    panel : Panel, optional
+        What is drawn, where a table has it too.
     """
 
     label: str
     svg: str = ""
     uri: str = ""
     caption: str = ""
+    panel: Panel | None = None
 
 
 def comparison_figures(comparison: Comparison) -> list[PageFigure]:
@@ -84,7 +89,20 @@ def pressure_pictures(ensemble: Ensemble) -> Iterator[PageFigure]:
         (panel,) = data.panels
         low, high = panel.series[0].x[[0, -1]]
         label = f"{panel.title} against nominal pressure from {low:.3g} to {high:.3g} MPa"
-        yield line_figure(draw(data), label)
+        yield replace(line_figure(draw(data), label), panel=panel)
+
+
+def pressure_table(figures: Sequence[PageFigure], scene: Scene) -> Table | None:
+    """Their means at some pressures; None where there are none."""
+    panels = [figure.panel for figure in figures if figure.panel is not None]
+    if not panels:
+        return None
+    x = panels[0].series[0].x
+    rows = evenly(len(x), _ROWS)
+    columns = [Column("nominal pressure (MPa)", x[rows], form=".3g")]
+    columns += [Column(panel.ylabel, panel.series[0].theory[rows], form=".4g") for panel in panels]
+    thermal = scene.film is not None and scene.film.thermal
+    return Table(tuple(columns), f"Means; conductances: {joint_text(scene)}" if thermal else "Means")
 
 
 def patch_pictures(ensemble: Ensemble) -> list[PageFigure]:
@@ -173,9 +191,11 @@ _BAND, _OF_BAND = (0.05, 0.95), " Band: 5 to 95 % of the surfaces."
 _PER_AREA = (  # name, factor from SI, title, unit
     ("area", 100, "Real contact area", "%"),
     ("stiffness", 1e-12, "Normal stiffness", "MPa/µm"),
-    ("conductance_si", 1, "Contact conductance", "W/(m² K), or S/m²"),
+    ("conductance_si", 1, "Contact conductance", ""),
     ("conductance", 1, "Contact conductance times ρ", "1/m"),
 )
+_OF_JOINT = {"gap_conductance": "Gap conductance", "joint_conductance": "Joint conductance"}
+_ROWS = 6  # of the table of all of them
 
 
 def pressure_curves(ensemble: Ensemble) -> list[FigureData]:
@@ -231,7 +251,10 @@ def _asked(ensemble: Ensemble) -> Iterator[tuple[str, float, str, str]]:
     """Name, factor from SI, title and label of what there is."""
     scene = ensemble.scene
     per_area, held = 1 / scene.surface.nominal_area, scene.quantities
+    conducted = scene.quantity("contact_conductance").unit.replace("^2", "²")
     yield "separation", 1.0, "Load: pressure at a separation", "separation d/σ"
     for name, factor, title, unit in _PER_AREA:
         if name in held and not (name == "conductance" and "conductance_si" in held):
-            yield name, factor * per_area, title, f"{quantity_of(name).symbol}/Aₙ ({unit})"
+            yield name, factor * per_area, title, f"{quantity_of(name).symbol}/Aₙ ({unit or conducted})"
+    for name in filter(_OF_JOINT.__contains__, scene.of_joint):
+        yield name, 1.0, _OF_JOINT[name], f"{quantity_of(name).symbol} ({conducted})"
