@@ -117,11 +117,11 @@ FEATURES = {
     "mcgw.sampling.own_radii": None, "mcgw.sampling.shared": None,
     "mcgw.sampling.weighted_sums": None, "mcgw.sweeps.sweep": None,
 }  # fmt: skip
-# Laws of contact and height, and interaction: by the last part of their names.
+# Laws of contact and height, interaction and joints: by the last part of their names.
 LAWS = {
     "adhesion", "custom", "elastic", "elastic_plastic", "elastic_plastic_laws", "law_rows",
     "balance", "interacting", "interaction", "interaction_mistakes",
-    "nominal", "own_balance",
+    "nominal", "own_balance", "joint", "joint_model", "in_joints",
 }  # fmt: skip
 
 

@@ -185,6 +185,9 @@ def test_where_it_goes(tmp_path):
     gas = swept.mean("gap_conductance")
     assert (gas[0] < gas[1]).all()
     np.testing.assert_allclose(swept.theory("joint_conductance"), swept.mean("joint_conductance"), rtol=0.1)
+    without = mcgw.simulate(scene.replace(joint=None))
+    for name in without.scene.quantities:
+        np.testing.assert_array_equal(without[name], e[name])
     alone = mcgw.regrade(e, joint=None)
     assert "joint_conductance" not in alone.scene.shapes
     assert "joint_conductance" in mcgw.regrade(e, analytic.Exponential(2.0)).scene.shapes
@@ -302,6 +305,9 @@ def test_exports_of_a_joint(to, ending, tmp_path):
     np.testing.assert_allclose(y[1:], spots + scene.filled(h), rtol=0.02)
     assert (y[1:] > 2 * spots).all(), "spots alone are something else"
     assert "joint: air" in text
+    mcgw.export(mcgw.simulate(scene), tmp_path / "j.json", to="json")
+    law = mcgw.ContactTable.read(tmp_path / "j.json")
+    np.testing.assert_allclose(law.conductance, mcgw.simulate(scene).mean("joint_conductance"), rtol=1e-12)
     if to != "calculix":
         mcgw.export(scene, tmp_path / name, to=to, table="conductance-gap", points=3)
         gap = (tmp_path / name).read_text()

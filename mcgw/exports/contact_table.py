@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 from analytic.arrays import Array
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.errors import StoreError
+from mcgw.exports.curves import KINDS
 from mcgw.formats.files import write_whole
 from mcgw.scene.scene_file import scene_text
 
@@ -75,7 +76,7 @@ class ContactTable:
             gap=ensemble.separations[order] * scene.surface.sigma,
             pressure=ensemble.mean("pressure")[order],
             area=ensemble.mean("area_fraction")[order],
-            conductance=ensemble.mean("conductance_si")[order] / area if conducts else None,
+            conductance=ensemble.mean(KINDS["conductance-gap"].answer(scene))[order] if conducts else None,
             covariance=ensemble.covariance("pressure")[np.ix_(order, order)] if several else None,
             provenance={
                 "program": f"mcgw {version('mcgw')}", "digest": digest, "scene": scene_text(scene),
