@@ -24,7 +24,7 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.polynomial import chebyshev
 
-from analytic.arrays import Array, Ints
+from analytic.arrays import Array
 from mcgw.machine.compiling import njit
 from mcgw.sampling.block import Layout
 from mcgw.sampling.counts import Counts
@@ -99,9 +99,24 @@ class Crowds:
 
     def moments(self, seed: int, first: int, counts: Counts, layout: Layout) -> Array:
         """Of crowded cells as Gaussian numbers, of the others asperity by asperity."""
-        crowded = np.where(counts.cells >= self.threshold, counts.cells, 0)
-        moments = cell_moments(seed, first, counts.cells - crowded, layout)
-        add_gaussian_moments(seed, first, crowded, layout, self.varying, moments)
+        many = np.where(counts.cells >= self.threshold, counts.cells, 0)
+        moments = cell_moments(seed, first, counts.cells - many, layout)
+        crowded = np.flatnonzero(many.any(axis=1) & (layout.sizes > 0))
+        if not crowded.size:
+            return moments
+        varying = self.varying
+        orders = np.stack([layout.plain, layout.rooted, varying.plain, varying.rooted], axis=1)[crowded]
+        laws = [_partly(*cell) for cell in orders.tolist()]
+        widths = np.array([root.shape for _, root in laws])
+        starts = np.concatenate([[[0, 0]], np.cumsum(widths, axis=0)])
+        roots = np.zeros((starts[-1, 0], widths[:, 1].max()))
+        for (_, root), (start, _) in zip(laws, starts, strict=False):
+            roots[start : start + root.shape[0], : root.shape[1]] = root
+        words = np.repeat(varying.starts[crowded] - starts[:-1, 1], widths[:, 1]) + np.arange(starts[-1, 1])
+        z = _words(np.uint64(seed), first, words, many.shape[1])
+        make_normal(z)
+        means = np.concatenate([mean for mean, _ in laws])
+        _mix(moments, many[crowded], layout.starts[crowded], starts, means, roots, z)
         return moments
 
     def draws(self, asperities: float, layout: Layout) -> float:
@@ -184,38 +199,3 @@ def _mix(moments: Any, counts: Any, rows: Any, starts: Any, means: Any, roots: A
             for i in range(surfaces):
                 if n[i] > 0:
                     moments[rows[c] + j, i] = counts[c, i] * means[law + j] + n[i] * total[i]
-
-
-def add_gaussian_moments(
-    seed: int, first: int, counts: Ints, layout: Layout, varying: Layout, moments: Array
-) -> None:
-    """Fill in the moments of crowded cells.
-
-    Parameters
-    ----------
-    seed : int
-        The scene's.
-    first : int
-        Number of the first surface.
-    counts : ndarray of int
-        Asperities of each crowded cell, else 0; shape (cells, surfaces).
-    layout, varying : Layout
-        Which moments each cell has, and how many of them are not always at their mean.
-    moments : ndarray
-        Shape (moments, surfaces); written where `counts` is positive.
-    """
-    crowded = np.flatnonzero(counts.any(axis=1) & (layout.sizes > 0))
-    if not crowded.size:
-        return
-    orders = np.stack([layout.plain, layout.rooted, varying.plain, varying.rooted], axis=1)[crowded]
-    laws = [_partly(*cell) for cell in orders.tolist()]
-    widths = np.array([root.shape for _, root in laws])
-    starts = np.concatenate([[[0, 0]], np.cumsum(widths, axis=0)])
-    roots = np.zeros((starts[-1, 0], widths[:, 1].max()))
-    for (_, root), (start, _) in zip(laws, starts, strict=False):
-        roots[start : start + root.shape[0], : root.shape[1]] = root
-    words = np.repeat(varying.starts[crowded] - starts[:-1, 1], widths[:, 1]) + np.arange(starts[-1, 1])
-    z = _words(np.uint64(seed), first, words, counts.shape[1])
-    make_normal(z)
-    means = np.concatenate([mean for mean, _ in laws])
-    _mix(moments, counts[crowded], layout.starts[crowded], starts, means, roots, z)
