@@ -323,6 +323,17 @@ def test_all_asperities_touch_and_none_has_less():
     np.testing.assert_allclose(law.cdf(least + np.array([7.5, 20]) * span), [hall, 0.5], rtol=1e-8)
 
 
+@pytest.mark.slow
+def test_heavy_tails_both_ways_leave_a_probability():
+    """Summits that pull, with radii that have no bound: no line can be shifted."""
+    heights = analytic.Nayak(14.475)
+    of = model(200, heights=heights, curvature=analytic.RandomCurvature(14.475), count="poisson",
+               grading=analytic.Homogeneous(), law=analytic.JohnsonKendallRoberts(pull_off=2e-3))  # fmt: skip
+    cdf = of.distribution("load", 1.9).cdf(unit(of, "load") * np.array([-5.0, 0.0, 1.0, 3.0, 30.0]))
+    assert np.all((cdf > -1e-4) & (cdf < 1 + 1e-4) & (np.diff(cdf, append=2) > -1e-4))
+    assert cdf[-1] == pytest.approx(1, abs=1e-3)
+
+
 def test_nobody_pays_for_it_who_does_not_ask():
     code = "import analytic, mcgw.scene.scene, sys; sys.exit('analytic.distribution' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0

@@ -21,6 +21,7 @@ _FAR = 8.0
 _STEPS = 60
 _CLOSE = 1e-13
 _RARE = 1e-3, 1e-19  # expected number of asperities that add more
+_LOST = 0.5 + 1e-6  # a probability farther from a half is none
 _DIGIT = 1e-15  # that rounding leaves
 _SHARES = np.array([1e-9, 1e-6, 0.001, 0.01, 0.05, 0.25, 0.5, 0.75, 0.95, 0.99, 0.999, 1 - 1e-6, 1 - 1e-9])
 
@@ -207,8 +208,20 @@ class _Evaluation:
         ways += [(part, self._few(float(x[part][-1]))) for part in (few & usual, few & ~usual) if part.any()]
         rest &= ~few
         middle = rest & (np.abs(x - one.mean) < _MIDDLE * one.std) & self._short
-        ways += [(middle, self._central), (rest & ~middle, lambda y: by_contour(one, y, self._most))]
+        ways += [(middle, self._central), (rest & ~middle, self._far)]
         return [(mask, law) for mask, law in ways if mask.any()]
+
+    def _far(self, x: Array) -> Values:
+        """By lines through saddle points; by one not shifted where heavy tails both ways leave none."""
+        found, one = by_contour(self.one, x, self._most), self.one
+        lost = ~(np.abs(found.cdf - 0.5) < _LOST)
+        if not lost.any():
+            return found
+        room = 2 * max(_MIDDLE * one.std, float(np.abs(x[lost] - one.mean).max()))
+        flat = Line(one, 0.0, one.std, room, self._most)(x[lost])
+        for name in ("cdf", "sf", "pdf"):
+            getattr(found, name)[lost] = getattr(flat, name)
+        return found
 
     @cached_property
     def _few_up_to(self) -> float:
