@@ -226,7 +226,7 @@ def size_of(width: int) -> int:
     return 8 * (width * (width + 1) // 2 + width * (NUMBER + 6) + 1)
 
 
-@njit(nogil=True, cache=True, fastmath={"reassoc", "contract"})
+@njit(cache=True, fastmath={"reassoc", "contract"})
 def _sum_products(columns: Any, first: int, stop: int, out: Any) -> None:  # pragma: no cover - compiled
     """Add the products of columns `first` ... `stop - 1` with all up to themselves."""
     rows = columns.shape[1]

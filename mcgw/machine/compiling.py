@@ -45,12 +45,15 @@ if numba.config.DISABLE_JIT:  # type: ignore[attr-defined, unused-ignore]
 def njit(**options: Any) -> Callable[[Any], Any]:
     """As `numba.njit`; where a compiled loop cannot be kept for the next time, it is only said.
 
+    All let go of Python's lock and divide as NumPy does: what loops with the same options call of Numba's own
+    is compiled once for all of them.
+
     Parameters
     ----------
     **options
         Those of `numba.njit`.
     """
-    options = {"no_cfunc_wrapper": True, **options}
+    options = {"no_cfunc_wrapper": True, "nogil": True, "error_model": "numpy", **options}
     kept = options.pop("cache", False)
 
     def decorate(function: Any) -> Any:
@@ -222,7 +225,7 @@ def _load_without_compiler(kept: Any) -> None:
 
 
 _COMPILED = count(1)
-_OF_HERTZ = 13  # loops that a scene takes under Hertz's law (`tests/test_compiled_loops.py`)
+_OF_HERTZ = 12  # loops that a scene takes under Hertz's law (`tests/test_compiled_loops.py`)
 
 
 def _count(folder: Path) -> None:

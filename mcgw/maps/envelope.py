@@ -33,7 +33,7 @@ def _binned(field: Asperities) -> tuple[Ints, Any, tuple[int, int]]:
     return order, (x, y, z, 0.5 / radii, starts), (rows, columns)
 
 
-@njit(nogil=True, cache=True)
+@njit(cache=True)
 def _highest(
     px: Any, py: Any, best: Any, caps: Any, top: Any, flattest: Any, shape: Any, size: Any, periodic: Any
 ) -> Any:

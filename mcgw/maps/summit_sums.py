@@ -72,7 +72,7 @@ class SummitSums:
         return float(self.sums[0].sum()) * self.pixel_area
 
 
-@njit(nogil=True, cache=True)
+@njit(cache=True)
 def _is_summit(z: Any, j: Any, i: Any) -> Any:
     """Whether a point is higher than its eight neighbours; of equal ones the last counts.
 
@@ -94,7 +94,7 @@ def _most_summits(rows: int, columns: int) -> int:
     return ((rows + 1) // 2) * ((columns + 1) // 2)
 
 
-@njit(nogil=True, cache=True)
+@njit(cache=True)
 def _rise(g: Any, c: Any) -> Any:
     """Highest value of ``g t + c t^2/2`` for t from -1/2 to 1/2."""
     if c < 0 and abs(g) < -c / 2:
@@ -102,7 +102,7 @@ def _rise(g: Any, c: Any) -> Any:
     return abs(g) / 2 + c / 8
 
 
-@njit(nogil=True, cache=True)
+@njit(cache=True)
 def _apex(z: Any, j: Any, i: Any) -> Any:
     """Highest point, within the summit's own pixel, of the paraboloid through it and its neighbours."""
     gx, gy = (z[j, i + 1] - z[j, i - 1]) / 2, (z[j + 1, i] - z[j - 1, i]) / 2
@@ -120,7 +120,7 @@ def _apex(z: Any, j: Any, i: Any) -> Any:
     return z[j, i] + best
 
 
-@njit(nogil=True, cache=True)
+@njit(cache=True)
 def _pass(z: Any, seen: Any, dx: Any, dy: Any, across: Any, sums: Any, summits: Any, part_of: Any) -> Any:
     """Fill `sums`; write height, curvature, place and sub-area of each summit; give their number.
 

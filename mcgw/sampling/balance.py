@@ -35,7 +35,7 @@ def no_balance(surface: int, h: float) -> ValueError:
     )
 
 
-@njit(nogil=True, cache=True)
+@njit(cache=True)
 def _add_weighted(s: Any, graded: Any, weight: Any, first: Any, stop: Any, x: Any, sums: Any) -> None:
     """Add the sums over weighted heights, all above x; their number is a multiple of LANES."""
     forces = slopes = areas = widths = alike(0.0)
@@ -60,7 +60,7 @@ def _padded(n: Any) -> Any:
     return (n + LANES - 1) // LANES * LANES
 
 
-@njit(nogil=True, cache=True)
+@njit(cache=True)
 def _add_single(s: Any, modulus: Any, first: Any, stop: Any, x: Any, room: Any, sums: Any) -> None:
     """Add the sums over single asperities, those above x."""
     n = stop - first
@@ -88,7 +88,7 @@ def _add_single(s: Any, modulus: Any, first: Any, stop: Any, x: Any, room: Any, 
     sums[4] += contacts
 
 
-@njit(nogil=True, cache=True)
+@njit(cache=True)
 def _series(coefficients: Any, cell: Any, x: Any, n: Any, value: Any, last: Any) -> None:
     """Chebyshev series of a cell at the points x, by Clenshaw's recurrence, into `value`."""
     order = coefficients.shape[0]
@@ -106,7 +106,7 @@ def _series(coefficients: Any, cell: Any, x: Any, n: Any, value: Any, last: Any)
         value[i] = fused(x[i], value[i], c - last[i])
 
 
-@njit(nogil=True, cache=True)
+@njit(cache=True)
 def _draw(
     seed: Any, surface: Any, cell: Any, n: Any, mesh: Any, s: Any, modulus: Any, at: Any, room: Any
 ) -> None:
@@ -125,7 +125,7 @@ def _draw(
         modulus[at + i] = 0.0
 
 
-@njit(nogil=True, cache=True)
+@njit(cache=True)
 def _cell_of(edges: Any, x: Any) -> Any:
     """The cell that x lies in; the first below all, the number of cells above all."""
     low, high = 0, edges.size
@@ -138,14 +138,14 @@ def _cell_of(edges: Any, x: Any) -> Any:
     return max(low - 1, 0)
 
 
-@njit(nogil=True, cache=True)
+@njit(cache=True)
 def _copy(given: Any, first: Any, stop: Any, to: Any) -> None:
     """Numbers `first` to `stop` of an array to the beginning of another."""
     for i in range(first, stop):
         to[i - first] = given[i]
 
 
-@njit(nogil=True, cache=True)
+@njit(cache=True)
 def _grown(s: Any, modulus: Any, needed: Any) -> Any:
     """The arrays, or larger ones that begin alike."""
     if needed <= s.size:
@@ -156,7 +156,7 @@ def _grown(s: Any, modulus: Any, needed: Any) -> Any:
     return more_s, more_modulus
 
 
-@njit(nogil=True, cache=True)
+@njit(cache=True)
 def _singles(who: Any, mesh: Any, counts: Any, few: Any, own: Any, first: Any, stop: Any, room: Any) -> Any:
     """Heights and moduli of the asperities that are always taken one by one, and how many with padding.
 
@@ -179,7 +179,7 @@ def _singles(who: Any, mesh: Any, counts: Any, few: Any, own: Any, first: Any, s
     return s, modulus, at
 
 
-@njit(nogil=True, cache=True)
+@njit(cache=True)
 def _balance(
     who: Any, mesh: Any, nodes: Any, counts: Any, few: Any, singles: Any, asked: Any, room: Any, result: Any
 ) -> None:
@@ -230,7 +230,7 @@ def _balance(
             result[k, 1 + j] = sums[j]
 
 
-@njit(nogil=True, cache=True)
+@njit(cache=True)
 def balance_surfaces(
     seed: Any, first: Any, mesh: Any, nodes: Any, counts: Any, few: Any, own: Any, asked: Any
 ) -> Any:

@@ -51,7 +51,7 @@ _NEAR, _LOWEST = 1 / 3, 16.0  # where series serve: for the deviance, and for St
 _FAR = 40.0  # exponent from which on no uniform can show a probability
 
 
-@njit(inline="always", error_model="numpy")
+@njit(inline="always")
 def _stirling(k: Any) -> Any:
     """Logarithm of ``k! / (sqrt(2 pi k) (k/e)^k)`` for k >= 16."""
     r = 1.0 / k
@@ -59,7 +59,7 @@ def _stirling(k: Any) -> Any:
     return (1 / 12 - (1 / 360 - (1 / 1260 - (1 / 1680 - x * (1 / 1188)) * x) * x) * x) * r
 
 
-@njit(inline="always", error_model="numpy")
+@njit(inline="always")
 def _deviance(k: Any, d: Any) -> Any:
     """``k log(k/m) + m - k`` with m = k - d, and whether m is near enough for the series."""
     v = d / (k + (k - d))
@@ -70,7 +70,7 @@ def _deviance(k: Any, d: Any) -> Any:
     return d * v + 2.0 * k * v * x * series, abs(v) <= _NEAR
 
 
-@njit(inline="always", error_model="numpy")
+@njit(inline="always")
 def _shortfall(n: Any, p: Any, k: Any) -> Any:
     """Logarithm of ``sqrt(n / (2 pi k (n - k)))`` over the probability of k, and whether the series serve."""
     d = k - n * p
@@ -78,7 +78,7 @@ def _shortfall(n: Any, p: Any, k: Any) -> Any:
     return _stirling(k) + _stirling(n - k) + hit + miss, near & near_too & (k >= _LOWEST) & (n - k >= _LOWEST)
 
 
-@njit(inline="always", error_model="numpy")
+@njit(inline="always")
 def _power(y: Any) -> Any:
     """``exp(-y)`` for y up to 40, without a branch."""
     x = y * (1 / 512)
@@ -91,7 +91,7 @@ def _power(y: Any) -> Any:
     return e
 
 
-@njit(inline="always", error_model="numpy")
+@njit(inline="always")
 def ratio_over_mode(n: Any, p: Any, k: Any) -> Any:
     """Probability of k over that of the most probable number, and whether the series serve."""
     mode = np.floor((n + 1.0) * p)
@@ -100,7 +100,7 @@ def ratio_over_mode(n: Any, p: Any, k: Any) -> Any:
     return ratio, known & known_too
 
 
-@njit(error_model="numpy")
+@njit()
 def _shortfall_anywhere(n: Any, p: Any, k: Any) -> Any:
     """As `_shortfall`, with 1/(2 pi) in place of a number of zero."""
     total = 0.0
@@ -111,7 +111,7 @@ def _shortfall_anywhere(n: Any, p: Any, k: Any) -> Any:
     return total
 
 
-@njit(error_model="numpy")
+@njit()
 def below_ratio(w: Any, n: Any, p: Any, k: Any) -> Any:
     """Whether w is no more than the probability of k over that of the most probable number, for any k."""
     if not 0 <= k <= n:
@@ -121,7 +121,7 @@ def below_ratio(w: Any, n: Any, p: Any, k: Any) -> Any:
     return 0.5 * log(w * w * root) <= _shortfall_anywhere(n, p, mode) - _shortfall_anywhere(n, p, k)
 
 
-@njit(inline="always", error_model="numpy")
+@njit(inline="always")
 def _proposal(n: Any, p: Any, u: Any, v: Any) -> Any:
     """Proposed number, whether it is sure, and what is to be no more than its probability over the mode's."""
     mean = n * p
@@ -134,7 +134,7 @@ def _proposal(n: Any, p: Any, u: Any, v: Any) -> Any:
     return k, sure, (v + 0.5) * (2.83 + 5.1 / b) * sd / (a / (end * end) + b)
 
 
-@njit(error_model="numpy")
+@njit()
 def _propose(work: Any, m: Any, p: Any, seed: Any, first: Any, node: Any, attempt: Any) -> None:
     """Propose numbers; leave what is to be compared with their probability, -1 if they are sure."""
     for i in range(m):
@@ -144,7 +144,7 @@ def _propose(work: Any, m: Any, p: Any, seed: Any, first: Any, node: Any, attemp
         work[_WEIGHT + i] = -1.0 if sure else w
 
 
-@njit(error_model="numpy")
+@njit()
 def _judge(work: Any, m: Any, p: Any) -> None:
     """Turn weights to -1 where the proposed number is accepted, else to infinity."""
     for i in range(m):
@@ -194,7 +194,7 @@ def _reject(work: Any, left: Any, p: Any, seed: Any, first: Any, node: Any) -> N
         attempt += uint64(1)
 
 
-@njit(error_model="numpy")
+@njit()
 def _invert(work: Any, surfaces: Any, p: Any) -> None:
     """Smallest number with a distribution function of `_LEFT` at least, or beyond which nothing counts."""
     log_q, odds = log_one_minus(p), p / (1.0 - p)
@@ -215,7 +215,7 @@ def _invert(work: Any, surfaces: Any, p: Any) -> None:
             going |= more
 
 
-@njit(nogil=True, cache=True, error_model="numpy")
+@njit(cache=True)
 def binomials(work: Any, surfaces: Any, p: Any, seed: Any, first: Any, node: Any) -> None:
     """Draw a binomial number for each of some surfaces.
 

@@ -195,7 +195,7 @@ def _rounded(p: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.asarray(np.ldexp(np.rint(mantissa * _BITS) / _BITS, exponent))
 
 
-@njit(nogil=True, cache=True)
+@njit(cache=True)
 def _share_out(seed: Any, first: Any, numbers: Any, shares: Any, turned: Any, sizes: Any) -> Any:
     """Share out numbers of contacts.
 

@@ -163,7 +163,7 @@ def _partly(plain: int, rooted: int, plain_varying: int, rooted_varying: int) ->
     return mean, root
 
 
-@njit(nogil=True, cache=True)
+@njit(cache=True)
 def _words(seed: Any, first_surface: Any, words: Any, surfaces: Any) -> Any:
     """Some centred uniforms of each surface, by their numbers: shape (words, surfaces)."""
     result = np.empty((words.size, surfaces))
@@ -179,7 +179,7 @@ def _words(seed: Any, first_surface: Any, words: Any, surfaces: Any) -> Any:
     return result
 
 
-@njit(nogil=True, cache=True)
+@njit(cache=True)
 def _mix(moments: Any, counts: Any, rows: Any, starts: Any, means: Any, roots: Any, z: Any) -> None:
     """Write ``n mean + sqrt(n) root z`` where n > 0, in one order of summation.
 

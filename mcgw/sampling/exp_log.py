@@ -20,7 +20,7 @@ _LAST_DIGIT = 1.5 * 2.0**52  # added to a whole number, this leaves it in the la
 _MIDDLE, _NEAR, _OUT = (np.array(table) for table in (MIDDLE, NEAR, OUT))  # compiled as constants
 
 
-@njit(nogil=True, cache=True, error_model="numpy")
+@njit(cache=True)
 def exp_minus(y: Any) -> Any:
     """``exp(-y)`` for y from 0 to 700."""
     k = np.floor(y * (1 / (_LOG2_HIGH + _LOG2_LOW)) + 0.5)
@@ -31,7 +31,7 @@ def exp_minus(y: Any) -> Any:
     return math.ldexp(e, -int(k))
 
 
-@njit(nogil=True, cache=True, error_model="numpy")
+@njit(cache=True)
 def log(x: Any) -> Any:
     """Natural logarithm of a positive number."""
     m, k = math.frexp(x)
@@ -46,7 +46,7 @@ def log(x: Any) -> Any:
     return k * _LOG2_HIGH + (f - (s * (f - series) - k * _LOG2_LOW))
 
 
-@njit(nogil=True, cache=True, error_model="numpy")
+@njit(cache=True)
 def log_one_minus(p: Any) -> Any:
     """``log(1 - p)`` for p < 1, accurate for small `p`: the error of ``1 - p`` drops out (W. Kahan)."""
     q = 1.0 - p
@@ -63,7 +63,7 @@ def _ratio(table: Any, x: Any) -> Any:
     return above / below
 
 
-@njit(nogil=True, cache=True, error_model="numpy")
+@njit(cache=True)
 def make_normal(x: Any) -> None:
     """Turn uniforms between -1 and 1 into standard normal numbers, in place: `analytic.elementary.ndtri`.
 
@@ -86,7 +86,7 @@ def make_normal(x: Any) -> None:
         row[:] = middle
 
 
-@njit(nogil=True, cache=True, error_model="numpy")
+@njit(cache=True)
 def weigh_exponentials(x: Any, weights: Any, result: Any) -> Any:
     """Weighted sums of exponentials, as `analytic.elementary.exp` has them.
 

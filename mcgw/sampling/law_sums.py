@@ -69,7 +69,7 @@ def _power(d: float, twice: int) -> float:
     return power
 
 
-@njit(nogil=True, cache=True)
+@njit(cache=True)
 def _sums(starts: Any, heights: Any, factors: Any, separations: Any, twice: Any) -> Any:
     """For each quantity, surface and separation the sum of ``factor (s - h)^(twice/2)`` over s > h."""
     surfaces = starts.size - 1

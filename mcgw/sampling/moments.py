@@ -62,12 +62,14 @@ def _sum_cell(
     w[PLAIN] = n
 
 
-@njit(nogil=True, cache=True)
+@njit(cache=True)
 def _sum_cells(
     seed: Any, first: Any, counts: Any, starts: Any, orders: Any, bounds: Any, stratified: Any, moments: Any
 ) -> None:
     """Sum a run of cells, all surfaces of one after the other."""
-    w, carries = np.ones(WORDS), np.empty(2 * (WORDS - PLAIN))
+    w, carries = np.empty(WORDS), np.empty(2 * (WORDS - PLAIN))
+    for k in range(WORDS):
+        w[k] = 1.0
     surfaces = counts.shape[1]
     at, end = bounds
     while at < end:

@@ -85,7 +85,7 @@ def _wide_uniforms(seed: int, first: int, stream: int, numbers: Ints) -> Array:
     return np.asarray((u[::2] - 0.5 / 2**32) + u[1::2] / 2**32)
 
 
-@njit(nogil=True, cache=True)
+@njit(cache=True)
 def _centred_pairs(seed: Any, first: Any, stream: Any, numbers: Any) -> Any:
     """Two for each number wanted, surface by surface."""
     total = most = at = 0

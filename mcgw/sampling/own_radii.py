@@ -180,7 +180,7 @@ def root_ratio(coefficients: Any, bottom: Any, largest: Any, s: Any, centred: An
     return min(value, largest)
 
 
-@njit(nogil=True, cache=True)
+@njit(cache=True)
 def _root_ratios(coefficients: Any, bottom: Any, largest: Any, s: Any, centred: Any, fine: Any) -> Any:
     result = np.empty(s.size)
     for i in range(s.size):

@@ -41,7 +41,7 @@ _BASE = 2.0**20
 _WORD_OF_BASE = uint64(np.float64(_BASE).view(np.uint64))
 
 
-@njit(nogil=True, cache=True, inline="always")
+@njit(cache=True, inline="always")
 def philox(c0: Any, c1: Any, c2: Any, c3: Any, k0: Any, k1: Any) -> Any:
     """Ten rounds: counter and key to four words, all 32-bit values in uint64.
 
@@ -54,7 +54,7 @@ def philox(c0: Any, c1: Any, c2: Any, c3: Any, k0: Any, k1: Any) -> Any:
     return c0 & _LOW, c1 & _LOW, c2 & _LOW, c3 & _LOW
 
 
-@njit(nogil=True, cache=True, inline="always")
+@njit(cache=True, inline="always")
 def _to_centred(word: Any) -> Any:
     """Give x = 2u - 1 for u at the centre of interval `word` of 2^32; exact.
 
@@ -63,13 +63,13 @@ def _to_centred(word: Any) -> Any:
     return number(int64(word + word | _WORD_OF_BASE | uint64(1))) - (_BASE + 1.0)
 
 
-@njit(nogil=True, cache=True, inline="always")
+@njit(cache=True, inline="always")
 def stream_of(seed: Any, purpose: Any, surface: Any) -> Any:
     """Counter words c2, c3 and key of a stream."""
     return surface & _LOW, (surface >> _32) | (uint64(purpose) << uint64(16)), seed & _LOW, seed >> _32
 
 
-@njit(nogil=True, cache=True, inline="always")
+@njit(cache=True, inline="always")
 def two_wide(seed: Any, purpose: Any, surface: Any, cell: Any, block: Any) -> Any:
     """Two uniforms of 64 bits from a block of a stream, less a half; all arguments but the purpose uint64."""
     c2, c3, k0, k1 = stream_of(seed, purpose, surface)
@@ -81,13 +81,13 @@ def two_wide(seed: Any, purpose: Any, surface: Any, cell: Any, block: Any) -> An
     )
 
 
-@njit(nogil=True, cache=True, inline="always")
+@njit(cache=True, inline="always")
 def made_for(n: Any) -> Any:
     """How many words are written where `n` are asked for: whole groups."""
     return (n + AT_ONCE - 1) // AT_ONCE * AT_ONCE
 
 
-@njit(nogil=True, cache=True)
+@njit(cache=True)
 def centred(out: Any, seed: Any, purpose: Any, surface: Any, cell: Any, first: Any, n: Any) -> None:
     """Uniforms `first` ... of a stream as x = 2u - 1 into ``out``, `first` a multiple of AT_ONCE.
 

@@ -84,7 +84,7 @@ def product(a: Array, b: Array) -> Array:
     return result.reshape(a.shape[:-1] + b.shape[1:])
 
 
-@njit(nogil=True, cache=True)
+@njit(cache=True)
 def multiply(a: Any, b: Any, result: Any) -> None:
     """As `product`, in compiled loops: sixteen columns at a time, whose sums stay in registers."""
     columns = b.shape[1]

@@ -74,7 +74,7 @@ def _weigh(w: Any, n: Any, edge: Any, series: Any, table: Any) -> Any:
     return whole
 
 
-@njit(nogil=True, cache=True)
+@njit(cache=True)
 def _sum_cells(
     who: Any, counts: Any, kinds: Any, bounds: Any, stratified: Any, mesh: Any, table: Any, moments: Any
 ) -> None:

@@ -155,7 +155,7 @@ def _fill(tiles: Any, tile_of: Any, source: Any, row: Any, values: Any, at: Any,
         source += 1
 
 
-@njit(nogil=True, cache=True)
+@njit(cache=True)
 def _needed(all_lines: Any, given: Any, computed: Any) -> Any:
     """What is not zero in each line, then as `_sources`."""
     row, start, length, at, n_first, (first, second) = all_lines
@@ -166,7 +166,7 @@ def _needed(all_lines: Any, given: Any, computed: Any) -> Any:
     return filled, firsts, lines, ends, sources
 
 
-@njit(nogil=True, cache=True)
+@njit(cache=True)
 def _gather(all_lines: Any, needed: Any, given: Any, computed: Any, tiles: Any) -> Any:
     row, start, length, at, n_first, (first, second) = all_lines
     filled, firsts, lines, ends, sources = needed

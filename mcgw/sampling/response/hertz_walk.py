@@ -23,6 +23,7 @@ from mcgw.sampling.response.series import (
 from mcgw.sampling.response.tree import Nodes, Tree
 
 _ROWS = 512  # worth another thread; what is found of them stays in memory that the process has
+_NONE = np.empty(0, dtype=np.int64)
 _DEEPEST = 128  # nodes that wait: one a level, and a tree has no more than 64
 
 
@@ -52,13 +53,11 @@ class HertzWalk:
         separation that is not an edge; infinite if there is none.
         """
         rows = len(self._rows[0]) if self._links[0].size else 0
-
-        def share(first: int) -> tuple[Any, ...]:
-            ends = first, min(first + _ROWS, rows)
-            return tuple(_walk(ends, self._rows, self._links, self._nodes, self._limits, TABLES))
-
-        parts = in_threads(share, range(0, max(rows, 1), _ROWS))
-        found, coefficients, plain, rooted, unresolved, inside = zip(*parts, strict=True)
+        parts = in_threads(
+            lambda first: self._walked((first, min(first + _ROWS, rows)), _NONE, _NONE),
+            range(0, max(rows, 1), _ROWS),
+        )
+        found, coefficients, plain, rooted, unresolved, inside, _ = zip(*parts, strict=True)
         node, row, root, length = np.concatenate(found).reshape(-1, 4).T.copy()
         entries = Entries(node, row, root.astype(bool), length, np.concatenate(coefficients))
         lost = np.unique(unresolved)
@@ -67,7 +66,10 @@ class HertzWalk:
 
     def needed(self, node: Ints, row: Ints) -> Ints:
         """Moments that each of these nodes needs for a row that is smooth on it."""
-        return np.asarray(_needed(node, row, self._rows, self._nodes, self._limits, TABLES))
+        return np.asarray(self._walked((0, 0), node, row)[-1])
+
+    def _walked(self, ends: tuple[int, int], node: Ints, row: Ints) -> tuple[Any, ...]:
+        return tuple(_walk(ends, node, row, self._rows, self._links, self._nodes, self._limits, TABLES))
 
 
 @njit()
@@ -97,15 +99,23 @@ def _series(row: Any, node: Any, rows: Any, nodes: Any, limits: Any, tables: Any
     return count
 
 
-@njit(nogil=True, cache=True)
-def _walk(ends: Any, rows: Any, links: Any, nodes: Any, limits: Any, tables: Any) -> Any:
-    """Node, row, root and length of each series, their coefficients, and the end of `HertzWalk.entries`."""
+@njit(cache=True)
+def _walk(
+    ends: Any, some: Any, of_rows: Any, rows: Any, links: Any, nodes: Any, limits: Any, tables: Any
+) -> Any:
+    """Node, row, root and length of each series, their coefficients, and the end of `HertzWalk.entries`.
+
+    Then what some nodes need of some rows, pair by pair: one loop for both is compiled once.
+    """
     h, with_root, graded = rows[:3]
     left, right, broken, node_ends = links
     starts, order = nodes[0], nodes[1].shape[1]
     plain, rooted = np.zeros(left.size, dtype=np.int64), np.zeros(left.size, dtype=np.int64)
     c = np.empty((1, order))
     work = np.empty(order), np.empty((1, order)), c
+    needed_by = np.empty(some.size, dtype=np.int64)
+    for k in range(some.size):
+        needed_by[k] = _series(of_rows[k], some[k], rows, nodes, limits, tables, work)
     unresolved = inside = np.inf
     found, coefficients, n, used = np.empty(4096, dtype=np.int64), np.empty(16384), 0, 0
     waiting = np.empty(_DEEPEST, dtype=np.int64)
@@ -139,7 +149,7 @@ def _walk(ends: Any, rows: Any, links: Any, nodes: Any, limits: Any, tables: Any
                     continue
             waiting[many], waiting[many + 1] = right[node], left[node]
             many += 2
-    return found[:n], coefficients[:used], plain, rooted, unresolved, inside
+    return found[:n], coefficients[:used], plain, rooted, unresolved, inside, needed_by
 
 
 @njit()
@@ -151,14 +161,3 @@ def _with_room(numbers: Any, used: Any, more: Any) -> Any:
     for k in range(used):
         longer[k] = numbers[k]
     return longer
-
-
-@njit(nogil=True, cache=True)
-def _needed(node: Any, row: Any, rows: Any, nodes: Any, limits: Any, tables: Any) -> Any:
-    """As `HertzWalk.needed`."""
-    order = nodes[1].shape[1]
-    work = np.empty(order), np.empty((1, order)), np.empty((1, order))
-    needed = np.empty(node.size, dtype=np.int64)
-    for k in range(node.size):
-        needed[k] = _series(row[k], node[k], rows, nodes, limits, tables, work)
-    return needed

@@ -106,7 +106,7 @@ class Tiles:
         return result
 
 
-@njit(nogil=True, cache=True)
+@njit(cache=True)
 def _sweep(program: Any, table: Any, sums: Any, given: Any, first: Any, n: Any, result: Any) -> None:
     """Take all steps for `n` surfaces from `first` on; the sum over a row has one order, in any block.
 

@@ -176,7 +176,7 @@ def hertz_rows(scene: Scene, quantities: tuple[str, ...], *, lasting: bool) -> R
     )
 
 
-@njit(nogil=True, cache=True)
+@njit(cache=True)
 def raise_to(exponent: Any, x: Any, result: Any) -> None:
     """Write ``x^exponent`` for a whole or half-integer exponent, by products and roots."""
     half = exponent % 1 != 0

@@ -110,7 +110,7 @@ def transfers(mesh: Mesh, tree: Tree, moments: Ints) -> tuple[Ints, Ints, Ints, 
     return parent[pair], child[pair], moment, coefficients
 
 
-@njit(nogil=True, cache=True)
+@njit(cache=True)
 def _transfer(x: Any, moments: Any, of_parent: Any, to_coefficients: Any, coefficients: Any) -> None:
     """Series in the variable of each child of T_j(x), x the variable of its parent at the child's points."""
     order, most = x.shape[1], 2

@@ -151,7 +151,7 @@ def _together(pairs: Ints) -> list[Ints]:
     return [pairs[first : first + _PAIRS] for first in range(0, len(pairs), _PAIRS)]
 
 
-@njit(nogil=True, cache=True)
+@njit(cache=True)
 def _meetings(
     low: Any, high: Any, rooted: Any, split: Any, start: Any, end: Any, parent: Any, of_least: Any
 ) -> Any:
@@ -162,7 +162,7 @@ def _meetings(
     return how
 
 
-@njit(nogil=True, cache=True)
+@njit(cache=True)
 def _all_series(
     values: Any, node: Any, row: Any, limits: Any, rough: Any, of_many: Any, power: Any, tables: Any
 ) -> Any:
@@ -183,7 +183,7 @@ def _entries(node: Ints, row: Ints, c: Array, *, rooted: bool = False) -> Entrie
     return Entries(node, row, np.full(len(node), rooted), length, coefficients)
 
 
-@njit(nogil=True, cache=True)
+@njit(cache=True)
 def _packed(series: Any) -> Any:
     """How many coefficients some series have, up to the last that is not zero, and all of these."""
     length, used = np.empty(len(series), dtype=np.int64), 0
