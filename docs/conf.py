@@ -84,6 +84,8 @@ sphinx_gallery_conf = {
     "reset_modules": ("matplotlib", one_style),
     "image_scrapers": ("matplotlib",),
     "matplotlib_animations": False,
+    "capture_repr": (),
+    "write_computation_times": False,
     "abort_on_example_error": True,
     "download_all_examples": False,
     "show_memory": False,

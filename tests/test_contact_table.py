@@ -13,7 +13,7 @@ from mcgw.exports.contact_table import SCHEMA
 SURFACE = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "1 mm^2", "78.6 GPa")
 SURFACES = 400
 SCENE = mcgw.Scene(
-    SURFACE, separations=[0.0, 1.5], n_surfaces=SURFACES, seed=4, film=mcgw.Film(1 / 150 + 1 / 16)
+    SURFACE, separations=[0.0, 1.5], n_surfaces=SURFACES, seed=4, film=mcgw.Film(conductivities=(150.0, 16.0))
 )
 
 
@@ -46,6 +46,16 @@ def test_its_law_is_that_of_theory(path):
             assert np.abs(table(name, gap) / wanted - 1).max() < within, name
     assert within < 0.1
     assert table("pressure", table.gap_at(2e7)) == pytest.approx(2e7, rel=1e-9)
+
+
+def test_gas_in_the_gap_conducts_too(path, tmp_path):
+    """What it adds is Yovanovich's integral at each row's own gap."""
+    gas = {"conductivity": 0.026, "jump": 3e-7}
+    scene = SCENE.replace(joint=mcgw.Joint(gas, rms=1.5e-6))
+    (file,) = mcgw.export(scene, tmp_path / "a.json", to="json", points=11)
+    joint, spots = mcgw.ContactTable.read(file), mcgw.ContactTable.read(path)
+    added = scene.joint.gap(SURFACE, scene.heights)(joint.gap / SURFACE.sigma)
+    np.testing.assert_allclose(joint.conductance - spots.conductance, added, rtol=1e-9)
 
 
 def test_its_covariance_is_that_of_theory(path):

@@ -12,9 +12,10 @@ pytestmark = pytest.mark.site
 
 INDEX = Path(os.environ.get("MCGW_SITE", DOCS / "_build")) / "searchindex.js"
 WANTED = {
-    "thermal contact conductance": "reference/glossary", "TCC": "reference/glossary",
+    "thermal contact conductance": "how-to/conductance-of-a-joint", "TCC": "reference/glossary",
     "contact resistance": "reference/glossary", "gap conductance": "reference/glossary",
-    "vacuum": "reference/glossary", "TIM": "reference/glossary", "hysteresis": "explanation/contact-laws",
+    "vacuum": "how-to/conductance-of-a-joint", "TIM": "reference/glossary",
+    "hysteresis": "explanation/contact-laws",
     "asperity": "reference/glossary", "unloading": "explanation/contact-laws",
     "roughness": "explanation/roughness", "Ra": "how-to/profiles-and-ra", "Rq": "reference/glossary",
     "Greenwood Williamson": "how-to/coming-from", "tamaas": "how-to/coming-from",

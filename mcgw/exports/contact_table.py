@@ -35,7 +35,7 @@ class ContactTable:
     area : ndarray
         Real over nominal area.
     conductance : ndarray, optional
-        Per nominal area, W/(m^2 K) or S/m^2; None where the scene conducts nothing.
+        Per nominal area, W/(m^2 K) or S/m^2, of the joint where there is one; None where nothing conducts.
     covariance : ndarray, optional
         Of the pressures of surfaces of the nominal area, Pa^2; shape (rows, rows). None of one surface.
     provenance : mapping
