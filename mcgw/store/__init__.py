@@ -25,6 +25,7 @@ Of a scene::
     /contacts             int64   (surfaces, separations) 1   (float64 expectation if stratified)
     /conductance          float64 (surfaces, separations) m   (times 1/rho)
     /nominal_separation   float64 (surfaces, separations) 1   (or effective_separation: interaction)
+    /joint_conductance    float64 (surfaces, separations) W/(m^2 K)   (and gap_conductance: joint)
 
 and, if the scene says ``keep = "moments"``, what `mcgw.ensemble.regrading` starts from::
 
