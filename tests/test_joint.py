@@ -109,7 +109,7 @@ def test_each_surface_at_its_own_distance(mode):
 
 @pytest.mark.parametrize("mode", OWN)
 def test_many_have_the_mean_and_spread_of_theory(mode):
-    """|z| < 5: false alarms 6e-7 a number. The gap at the wrong plane fails."""
+    """|z| < 5 of means, 7 of spreads: false alarms 6e-7 a number. The gap at the wrong plane fails."""
     interaction, own = OWN[mode]
     n = 500 if "nominal" in mode else 4000
     scene = scene_of(interaction=interaction, n_surfaces=n)
@@ -121,14 +121,14 @@ def test_many_have_the_mean_and_spread_of_theory(mode):
             assert (std == 0).all()
             continue
         assert np.abs((e.mean(name) - mean) / std * math.sqrt(n)).max() < 5
-        assert e.std(name) == pytest.approx(std, rel=0.18)
+        assert e.std(name) == pytest.approx(std, rel=5 / math.sqrt(n))
     if own is not None:
         std = theory.std("gap_conductance", H)
         wrong = scene.filled(H) - e.mean("gap_conductance")
         assert (np.abs(wrong) / std * math.sqrt(n) > 10).any()
     covariance = theory.covariance(["joint_conductance", "load"], H)
     found = e.covariance("joint_conductance", "load")
-    np.testing.assert_allclose(np.diag(found), np.diag(covariance[0, :, 1]), rtol=0.25)
+    np.testing.assert_allclose(np.diag(found), np.diag(covariance[0, :, 1]), rtol=6.3 / math.sqrt(n))
     assert mcgw.compare(e).verdict.agrees
 
 

@@ -123,8 +123,8 @@ def _neighbours(scene: Scene) -> Iterator[str]:
     gain = 1 / float(crowding_factor(fraction)) - 1
     if gain > _NEIGHBOURS:
         yield (
-            f"conductance is that of the spots alone; at d/sigma = {h:.3g} neighbours change it by about "
-            f"{gain:.0%} (Cooper, Mikic and Yovanovich): [interaction] reference counts them"
+            f"conductance: spots conduct as if each were alone; at d/sigma = {h:.3g} neighbours change it by "
+            f"about {gain:.0%} (Cooper, Mikic and Yovanovich): [interaction] reference counts them"
         )
 
 
