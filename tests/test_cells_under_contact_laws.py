@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from accurately import exact_sums
+from accurately import exact_sums, worst_share
 from conftest import SURFACE
 from test_cells_against_direct_sums import CLOSE_KINKS
 
@@ -151,3 +151,13 @@ def test_contacts_are_counted_where_nothing_else_is_asked(name, way):
     scene = mcgw.Scene(SURFACE, separations=[0.0, 1.0], sampler="cells", **given, **way)
     counted = [[np.sum(mcgw.heights(scene, i) > h) for h in scene.separations] for i in range(2)]
     assert np.array_equal(mcgw.simulate(scene).contacts, counted)
+
+
+def test_contacts_that_dwindle_towards_asperities_which_soften(make_scene):
+    """On the way back a row from farther below is the rougher one on a cell next to where it is lost."""
+    scene = make_scene(
+        separations=(-2.34, -1.45, -0.65), grading=lambda s: 1 + 0.8 * np.sin(13.2 * s + 0.56),
+        law=laws.KogutEtsion(critical=0.0446), heights=analytic.ExponentialHeights(), unload_from=-6.6,
+        n_asperities=30, n_surfaces=60, quantities=("stiffness",), sampler="cells", accuracy=1e-12,
+    )  # fmt: skip
+    assert worst_share(scene, 60) < 100

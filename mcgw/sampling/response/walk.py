@@ -245,7 +245,11 @@ def walk(mesh: Mesh, tree: Tree, rows: Rows, nodes: Nodes) -> tuple[Entries, Int
     np.maximum.at(nearest, cell, series.needed(cell, row))
     # In the cell's uniform the height bends, so that even the first moments of a parent take many of its. But
     # what parents stand in for are rows from farther below, smoother on this cell than the nearest ones: no
-    # more of its moments count than those would need. One of them counts the asperities.
+    # more of its moments count than those would need. One of them counts the asperities. Below where rows
+    # dwindle to nothing the farther ones are the rougher: of these cells' moments none is left out.
+    low, high = np.searchsorted(nodes.start[: mesh.size], [rows.low[rows.lost], rows.high[rows.lost]])
+    begun, ended = (np.bincount(at, minlength=mesh.size)[: mesh.size] for at in (low, high))
+    nearest[np.cumsum(begun - ended) > 0] = MOST_IN_CELL
     of_parents = np.where(inherited > 1, nearest, inherited)
     plain[: mesh.size] = np.maximum(plain[: mesh.size], of_parents)
     return entries, plain, rooted[: mesh.size]
