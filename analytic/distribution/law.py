@@ -214,7 +214,7 @@ class _Evaluation:
     def _far(self, x: Array) -> Values:
         """By lines through saddle points; by one not shifted where heavy tails both ways leave none."""
         found, one = by_contour(self.one, x, self._most), self.one
-        lost = ~(np.abs(found.cdf - 0.5) < _LOST)
+        lost = ~(np.abs(found.cdf - 0.5) < _LOST) | (one.least < 0 and not self._short)
         if not lost.any():
             return found
         room = 2 * max(_MIDDLE * one.std, float(np.abs(x[lost] - one.mean).max()))
