@@ -38,7 +38,7 @@ def test_without_combinations_the_farthest_mean_is_told(accuracy, wrong):
     assert verdict.agrees == (wrong == 1)
     assert (verdict.means, verdict.farthest) == (12, pytest.approx(z.max(), abs=1e-6))
     assert verdict.p == pytest.approx(min(1, 4 * 12 * ndtr(-z.max())), rel=1e-4)
-    said = f"the farthest of 12 means is {z.max():.1f} standard errors beyond the wanted accuracy, p = "
+    said = f"the farthest of 12 means is {z.max():.1f} standard errors beyond the accuracy asked for, p = "
     assert said in comparison.sheet().text()
     line = verdict.line
     assert f"{'agree' if wrong == 1 else 'DISAGREE'}: {said}" in line
