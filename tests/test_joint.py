@@ -273,12 +273,11 @@ def test_table_by_pressure(capsys, tmp_path):
         assert joint == pytest.approx(1 / (1 / spots + 1 / constriction) + gas, rel=2e-3)
         assert resistance == pytest.approx(1 / (joint * ROUGH.nominal_area), rel=2e-3)
     assert "joint_conductance,W/(m^2 K)" in (tmp_path / "o.csv").read_text()
-    for given, words in (("vacuum", "spots only (vacuum)"), ("air", "air of")):
-        assert main([*ask, "--set", f"joint={{gas = '{given}', rms = '2 um'}}"]) == 0
-        assert words in capsys.readouterr().out
+    ask = ask[:-1]
     path.write_text(mcgw.scene_text(scene_of(joint=None, n_surfaces=5)))
-    assert main(ask) == 0
-    assert capsys.readouterr().out.count("spots only (vacuum)") == 2
+    for more in ([], ["--set", "joint={gas = 'vacuum', rms = '2 um'}"]):
+        assert main([*ask, *more]) == 0
+        assert capsys.readouterr().out.count("spots only (vacuum)") == 2
     path.write_text(mcgw.scene_text(scene_of(joint=None, film=analytic.Film(1e-7), n_surfaces=5)))
     assert main(ask) == 0
     text = capsys.readouterr().out

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from scipy.special import stdtrit
 
-from analytic import SEPARATIONS, quantity_of
+from analytic import SEPARATIONS, Hertz, quantity_of
 from analytic.arrays import Array
 from mcgw.ensemble.at_load import mean_surface
 from mcgw.ensemble.intervals import FEWEST, MANY, interval_column
@@ -118,22 +118,39 @@ class Solution(Shown):
         except ValueError:
             return None
 
+    @property
+    def told_exactly(self) -> bool:
+        """Whether `specimens` tells separations by their exact law: where that takes milliseconds.
+
+        Laws other than Hertz's, radii of their own and lists of summits take seconds.
+        """
+        scene = self.scene
+        quick = type(scene.law) is Hertz and scene.curvature is None and not scene.as_measured
+        return quick and self.separation_law is not None
+
     def specimens(self, name: str, share: float = 0.9) -> tuple[float, float]:
         """Ends between which this share of all surfaces lies, as much of the others below as above.
 
-        Of separations they are those of the exact law where it is known; else quantiles of the surfaces
+        Of separations they are those of the exact law (see `told_exactly`); else quantiles of the surfaces
         drawn.
         """
-        ends, law = np.array([(1 - share) / 2, (1 + share) / 2]), None
+        ends, exactly = np.array([(1 - share) / 2, (1 + share) / 2]), False
         nominal = name == "nominal_separation" or (name == "mean_gap" and self.scene.interaction is not None)
         if name in ("separation", "mean_gap", *SEPARATIONS) and (self.given == "load" or not nominal):
-            law = self.separation_law  # at one load the others differ from it by the same on all surfaces
-        if law is None:
-            low, high = np.quantile(self.surfaces[name], ends)
-        else:
+            exactly = self.told_exactly  # others differ by the same on all surfaces
+        if exactly and (law := self.separation_law) is not None:
             unit = self.scene.surface.sigma if name == "mean_gap" else 1.0
-            low, high = self.theory[name] + unit * (law.ppf(ends) - self.theory["separation"])
+            if share not in self._ends:
+                self._ends[share] = law.ppf(ends)
+            low, high = self.theory[name] + unit * (self._ends[share] - self.theory["separation"])
+        else:
+            low, high = np.quantile(self.surfaces[name], ends)
         return float(low), float(high)
+
+    @cached_property
+    def _ends(self) -> dict[float, Array]:
+        """Ends of the law of the separation, by share: each takes a search."""
+        return {}
 
     def asperities_for(self, scatter: float) -> dict[str, float]:
         """Asperities with which specimens at this pressure, or share of area, would scatter so little.

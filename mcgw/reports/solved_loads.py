@@ -30,7 +30,7 @@ def solutions_text(scene: Scene, solutions: Sequence[Solution], scatter: float |
     lines += [f"{word}: {what}" for word, what in contact_facts(scene) if word in _SHOWN]
     plane = "summits, which lies above that of the surface" if rise_of_summits(scene) is None else "surface"
     lines.append(f"mean gap: of the rigid plane from the mean plane of the {plane}")
-    exactly = "" if solutions[0].separation_law is None else "; of the separation by its exact law"
+    exactly = "; of the separation by its exact law" if solutions[0].told_exactly else ""
     if scene.unload_from is not None:
         lines.append("each surface is loaded from far away; nothing of it is on the way back")
     ways = "drawn from the measured ones" if scene.as_measured else "heights drawn one by one"
