@@ -188,7 +188,7 @@ def test_a_full_folder_of_kernels_is_named_once_and_the_loops_run(tmp_path):
 def test_a_command_with_a_full_folder_of_kernels(tmp_path):
     """Everything is compiled anew, which takes most of a minute."""
     put(tmp_path)
-    code = "from mcgw.cli import main\nsys.exit(main(['show', '--plan', 's.toml']))"
+    code = "from mcgw.cli import main\nsys.exit(main(['run', 's.toml', '-o', 'e.h5']))"
     done = with_full_kernels(tmp_path, code)
     assert done.returncode == 0, done.stderr
     (line,) = without_notes(done.stderr).splitlines()
