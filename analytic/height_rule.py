@@ -13,7 +13,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from analytic.arrays import Array
+from analytic.arrays import Array, Ints
 from analytic.gradings import Grading
 from analytic.heights import GAUSSIAN, HeightLaw
 from analytic.law_rule import law_rule
@@ -152,6 +152,21 @@ class Fluctuations:
         powers = reduce(np.multiply, [self.at_heights] * k)  # ten times as fast as **
         found = np.asarray(rule.probabilities @ powers + rule.below * self.below**k)
         return found if self.radius is None else np.where(k * self.radius < _DIVERGES, found, np.inf)
+
+    def combined(self, mean: Array, own: Ints, factor: Array, other: Ints, press: Array) -> "Fluctuations":
+        """Of columns `own` times `factor` and columns `other` times `press`, to first order."""
+        radius = self.radius
+        if radius is not None:
+            radius = np.maximum(
+                *(np.where(by != 0, radius[k], 0.0) for k, by in ((own, factor), (other, press)))
+            )
+        return Fluctuations(
+            self.rule,
+            mean,
+            self.at_heights[:, own] * factor + self.at_heights[:, other] * press,
+            self.below[own] * factor + self.below[other] * press,
+            radius,
+        )
 
     def products(self) -> Array:
         """Mean products of all columns, shape (columns, columns)."""

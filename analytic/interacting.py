@@ -185,19 +185,9 @@ class InteractingModel(Model):
             scale = quantity_of(_load_of(name)).scale(self.surface) / q.scale(self.surface)
             pressing.append((factor, press * scale))
             means.append(self.mean(name, h) / self._unit(q))
-        mine, with_load = np.concatenate(own), np.concatenate(loads_at)
         factor, press = (np.concatenate(part) for part in zip(*pressing, strict=True))
-        radius = None
-        if one.radius is not None:
-            radius = np.where(
-                press != 0, np.maximum(one.radius[mine], one.radius[with_load]), one.radius[mine]
-            )
-        return Fluctuations(
-            one.rule,
-            np.concatenate(means),
-            one.at_heights[:, mine] * factor + one.at_heights[:, with_load] * press,
-            one.below[mine] * factor + one.below[with_load] * press,
-            radius,
+        return one.combined(
+            np.concatenate(means), np.concatenate(own), factor, np.concatenate(loads_at), press
         )
 
     def _linear(self, quantity: str, x: Array) -> tuple[Array, Array]:

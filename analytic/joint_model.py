@@ -114,18 +114,8 @@ class JointModel(Model):
                 unit = quantity_of(name).scale(self.surface)
                 press = self.filled(super().mean(planes[name], h), 1) / unit
             by_plane.append(press)
-        i, k, a, b = (np.concatenate(part) for part in (own, other, factor, by_plane))
         means = [self.mean(name, h) / self._unit(quantity_of(name)) for name in quantities]
-        radius = None
-        if one.radius is not None:
-            radius = np.maximum(np.where(a != 0, one.radius[i], 0.0), np.where(b != 0, one.radius[k], 0.0))
-        return Fluctuations(
-            one.rule,
-            np.concatenate(means),
-            one.at_heights[:, i] * a + one.at_heights[:, k] * b,
-            one.below[i] * a + one.below[k] * b,
-            radius,
-        )
+        return one.combined(*(np.concatenate(part) for part in (means, own, factor, other, by_plane)))
 
     def _asked(self, quantity: str, h: ArrayLike = np.inf) -> Quantity:
         return JOINT[quantity] if quantity in JOINT else super()._asked(quantity, h)
