@@ -4,6 +4,7 @@
 """
 
 import os
+from contextlib import chdir
 from pathlib import Path
 
 import numpy as np
@@ -104,8 +105,9 @@ def prepare(folder):
         "run moments.toml -o e.h5",
         "surface --from-spectrum rms=1um,long=50um,short=5um --pixel 1um --shape 64 -o map.npy",
     ]
-    for line in words:
-        assert main(line.split()) == 0
+    with chdir(folder):
+        for line in words:
+            assert main(line.split()) == 0
 
 
 def attempt(case, way):

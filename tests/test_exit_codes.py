@@ -174,9 +174,7 @@ def test_a_run_makes_its_file(stream, state, tmp_path):
 @pytest.fixture(scope="module")
 def inputs(tmp_path_factory):
     folder = tmp_path_factory.mktemp("inputs")
-    with pytest.MonkeyPatch.context() as patch:
-        patch.chdir(folder)
-        prepare(folder)
+    prepare(folder)
     return folder
 
 

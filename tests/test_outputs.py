@@ -4,7 +4,6 @@ import os
 import shutil
 import subprocess
 import sys
-from contextlib import chdir
 
 import pytest
 from overwrites import CASES, attempt, contents, prepare, ways
@@ -24,8 +23,7 @@ pytestmark = pytest.mark.usefixtures("looked_at_here")
 @pytest.fixture(scope="module")
 def inputs(tmp_path_factory, looked_at_here):
     folder = tmp_path_factory.mktemp("inputs")
-    with chdir(folder):
-        prepare(folder)
+    prepare(folder)
     return folder
 
 

@@ -101,9 +101,7 @@ def shortened(told):
 @pytest.fixture(scope="module")
 def material(tmp_path_factory):
     folder = tmp_path_factory.mktemp("read")
-    with pytest.MonkeyPatch.context() as patch:
-        patch.chdir(folder)
-        prepare(folder)
+    prepare(folder)
     (folder / "new").mkdir()
     (folder / "y.toml").write_text((ANSWERS / "scenes" / "yields.toml").read_text())
     call("run", "y.toml", "-o", "y.h5", "-q", cwd=folder)

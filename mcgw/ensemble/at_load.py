@@ -60,8 +60,7 @@ def answers_at(scene: Scene, found: dict[str, Any]) -> dict[str, Any]:
         from mcgw.ensemble.half_space import at_loads  # for those scenes alone
 
         found = at_loads(scene, found)
-    nominal = scene.interaction is not None and scene.interaction.reference == "mean-plane"
-    h = found["nominal_separation" if nominal else "separation"]
+    h = found["nominal_separation" if scene.from_mean_plane else "separation"]
     gap = scene.surface.sigma * (h + (rise_of_summits(scene) or 0.0))
     ahead = {name: found[name] for name in found if name in ("separation", *SEPARATIONS)}
     return {**ahead, "mean_gap": gap, **found, **_conducted(scene, found)}
@@ -79,7 +78,7 @@ def _conducted(scene: Scene, found: dict[str, Any]) -> dict[str, Any]:
         answers |= with_joint(scene, found, ("gap_conductance", "joint_conductance"), found["separation"])
     whole = answers.get("joint_conductance", answers["contact_conductance"])
     with np.errstate(divide="ignore"):
-        name = "thermal_resistance" if scene.film.thermal else "contact_resistance"
+        name = "thermal_resistance" if scene.thermal else "contact_resistance"
         answers[name] = np.divide(1.0, whole * area)
         answers["specific_contact_resistance"] = np.divide(1.0, answers["contact_conductance"])
     return answers

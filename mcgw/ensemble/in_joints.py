@@ -23,7 +23,7 @@ def with_joint(scene: Scene, found: dict[str, Any], names: Iterable[str], h: Any
     h : array_like
         Separations where surfaces have none of their own.
     """
-    plane = "nominal_separation" if _from_mean_plane(scene) else "effective_separation"
+    plane = "nominal_separation" if scene.from_mean_plane else "effective_separation"
     assert scene.filled is not None
     answers = {}
     for name in names:
@@ -32,7 +32,3 @@ def with_joint(scene: Scene, found: dict[str, Any], names: Iterable[str], h: Any
         gas = scene.filled(found.get(f"{plane}{way}", h))
         answers[name] = gas + (spots / scene.surface.nominal_area if name.startswith("joint") else 0 * spots)
     return answers
-
-
-def _from_mean_plane(scene: Scene) -> bool:
-    return scene.interaction is not None and scene.interaction.reference == "mean-plane"

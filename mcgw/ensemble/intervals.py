@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.special import betainc, betaincc, gammainccinv, gammaincinv, ndtri
 
-from analytic import TANGENTIAL, quantity_of
+from analytic import TANGENTIAL, Hertz, quantity_of
 from analytic.arrays import Array, Marks
 from mcgw.ensemble.results import Held
 from mcgw.formats.table import Column
@@ -206,3 +206,11 @@ def _of_separation(scene: Scene, sampler: str, sums: Held, name: str, level: flo
         sunk = (here - separations) / mean  # d/sigma for a newton; nan where nothing touches
     ends = separations + sunk * low, separations + sunk * high
     return np.fmin(*ends), np.fmax(*ends)
+
+
+def laws_are_quick(scene: Scene) -> bool:
+    """Whether a quantile of an exact law of the scene's surfaces takes milliseconds.
+
+    Under laws other than Hertz's, with radii of their own and of lists of summits it takes seconds.
+    """
+    return type(scene.law) is Hertz and scene.curvature is None and not scene.as_measured

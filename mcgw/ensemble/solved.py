@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from scipy.special import stdtrit
 
-from analytic import SEPARATIONS, Hertz, quantity_of
+from analytic import SEPARATIONS, quantity_of
 from analytic.arrays import Array
-from mcgw.ensemble.at_load import mean_surface
-from mcgw.ensemble.intervals import FEWEST, MANY, interval_column
+from mcgw.ensemble.at_load import asperities_of, mean_surface
+from mcgw.ensemble.intervals import FEWEST, MANY, interval_column, laws_are_quick
 from mcgw.formats.sheet import Sheet, Shown
 from mcgw.formats.table import Column, Table
 from mcgw.machine.terminal import plotted
@@ -114,31 +114,26 @@ class Solution(Shown):
         There is none where sums may rise with the separation, as those of asperities that pull.
         """
         try:
-            return replace(self.scene, interaction=None).theory.separation_law(self.value, self.given)
+            return asperities_of(self.scene).theory.separation_law(self.value, self.given)
         except ValueError:
             return None
 
     @property
-    def told_exactly(self) -> bool:
-        """Whether `specimens` tells separations by their exact law: where that takes milliseconds.
-
-        Laws other than Hertz's, radii of their own and lists of summits take seconds.
-        """
-        scene = self.scene
-        quick = type(scene.law) is Hertz and scene.curvature is None and not scene.as_measured
-        return quick and self.separation_law is not None
+    def told_by(self) -> "Law | None":
+        """The law by which `specimens` tells separations: the exact one, where it takes milliseconds."""
+        return self.separation_law if laws_are_quick(self.scene) else None
 
     def specimens(self, name: str, share: float = 0.9) -> tuple[float, float]:
         """Ends between which this share of all surfaces lies, as much of the others below as above.
 
-        Of separations they are those of the exact law (see `told_exactly`); else quantiles of the surfaces
+        Of separations they are those of the exact law (see `told_by`); else quantiles of the surfaces
         drawn.
         """
-        ends, exactly = np.array([(1 - share) / 2, (1 + share) / 2]), False
+        ends = np.array([(1 - share) / 2, (1 + share) / 2])
         nominal = name == "nominal_separation" or (name == "mean_gap" and self.scene.interaction is not None)
-        if name in ("separation", "mean_gap", *SEPARATIONS) and (self.given == "load" or not nominal):
-            exactly = self.told_exactly  # others differ by the same on all surfaces
-        if exactly and (law := self.separation_law) is not None:
+        moved = self.given == "load" or not nominal  # from the separation, by the same on all surfaces
+        exact = name in ("separation", "mean_gap", *SEPARATIONS) and moved
+        if exact and (law := self.told_by) is not None:
             unit = self.scene.surface.sigma if name == "mean_gap" else 1.0
             if share not in self._ends:
                 self._ends[share] = law.ppf(ends)
@@ -165,7 +160,7 @@ class Solution(Shown):
         dict of str to float
             For area, load, stiffness and conductance, to leading order in 1/N.
         """
-        alone = replace(self.scene, interaction=None).theory
+        alone = asperities_of(self.scene).theory
         names = [x for x in ("load", "area", "stiffness", "conductance") if x in self.theory]
         if self.scene.interaction is not None:
             names = names[:2]  # the medium counts in series for the others

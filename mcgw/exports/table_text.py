@@ -67,7 +67,7 @@ def unit_of(kind: Kind, system: UnitSystem, scene: Scene) -> str:
 
 def _filled(kind: Kind, scene: Scene) -> list[str]:
     """What of a joint conducts."""
-    if kind.quantity != "conductance" or scene.film is None or not scene.film.thermal:
+    if kind.quantity != "conductance" or not scene.thermal:
         return []
     stays = {
         "pressure": "at pressure 0 it stays as at the lowest one",

@@ -2,18 +2,17 @@
 
 import numpy as np
 
-from analytic import Hertz
 from analytic.arrays import Array
+from mcgw.ensemble.intervals import laws_are_quick
 from mcgw.scene.scene import Scene
 
 
 def exact_ends(scene: Scene, name: str, share: float) -> Array | None:
     """Ends between which this share of all surfaces lies at each separation, shape (2, separations).
 
-    None where no law is known, or where laws take a while: under others than Hertz's, with listed summits or
-    with radii of their own.
+    None where no law is known, or where laws take a while.
     """
-    if not isinstance(scene.law, Hertz) or scene.curvature is not None or scene.as_measured:
+    if not laws_are_quick(scene):
         return None
     try:
         laws = [scene.theory.distribution(name, h) for h in scene.separations]

@@ -18,7 +18,6 @@ import sys
 import warnings
 from collections.abc import Callable
 from functools import lru_cache
-from itertools import count
 from pathlib import Path
 from typing import Any
 
@@ -224,20 +223,16 @@ def _load_without_compiler(kept: Any) -> None:
     kept.load_overload = load
 
 
-_COMPILED = count(1)
+_WAS_EMPTY: list[bool] = []  # for each loop that was compiled, whether its folder had none before
 _OF_HERTZ = 12  # loops that a scene takes under Hertz's law (`tests/test_compiled_loops.py`)
 
 
 def _count(folder: Path) -> None:
     """Say which loop is compiled now; of how many is known where there was none."""
-    number = next(_COMPILED)
-    if number == 1:
-        _say_of.append(not any(folder.glob("*.nbi")))
-    of = f" of {_OF_HERTZ}" if _say_of[0] and number <= _OF_HERTZ else ""
+    _WAS_EMPTY.append(not any(folder.glob("*.nbi")))
+    number = len(_WAS_EMPTY)
+    of = f" of {_OF_HERTZ}" if _WAS_EMPTY[0] and number <= _OF_HERTZ else ""
     pass_by(f"compiling the loops, once for this machine: {number}{of}")
-
-
-_say_of: list[bool] = []
 
 
 _SAID: set[str] = set()

@@ -101,8 +101,7 @@ def pressure_table(figures: Sequence[PageFigure], scene: Scene) -> Table | None:
     rows = evenly(len(x), _ROWS)
     columns = [Column("nominal pressure (MPa)", x[rows], form=".3g")]
     columns += [Column(panel.ylabel, panel.series[0].theory[rows], form=".4g") for panel in panels]
-    thermal = scene.film is not None and scene.film.thermal
-    return Table(tuple(columns), f"Means; conductances: {joint_text(scene)}" if thermal else "Means")
+    return Table(tuple(columns), f"Means; conductances: {joint_text(scene)}" if scene.thermal else "Means")
 
 
 def patch_pictures(ensemble: Ensemble) -> list[PageFigure]:

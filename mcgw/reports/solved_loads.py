@@ -30,7 +30,7 @@ def solutions_text(scene: Scene, solutions: Sequence[Solution], scatter: float |
     lines += [f"{word}: {what}" for word, what in contact_facts(scene) if word in _SHOWN]
     plane = "summits, which lies above that of the surface" if rise_of_summits(scene) is None else "surface"
     lines.append(f"mean gap: of the rigid plane from the mean plane of the {plane}")
-    exactly = "; of the separation by its exact law" if solutions[0].told_exactly else ""
+    exactly = "; of the separation by its exact law" if solutions[0].told_by is not None else ""
     if scene.unload_from is not None:
         lines.append("each surface is loaded from far away; nothing of it is on the way back")
     ways = "drawn from the measured ones" if scene.as_measured else "heights drawn one by one"
@@ -58,7 +58,7 @@ def conductances(scene: Scene, solutions: Sequence[Solution]) -> Table:
     if scene.joint is not None:
         found["gas"] = at["gap_conductance"]
     found["joint"] = at.get("joint_conductance", contact)
-    q = scene.quantity("thermal_resistance" if "thermal_resistance" in at else "contact_resistance")
+    q = scene.quantity("thermal_resistance" if scene.thermal else "contact_resistance")
     columns = (
         Column("pressure", at["load"] / area / 1e6, unit="MPa", form=".4g"),
         Column("separation", at["separation"], SEPARATION, form=".3f"),
@@ -67,7 +67,7 @@ def conductances(scene: Scene, solutions: Sequence[Solution]) -> Table:
         *(Column(name, values, form=".4g") for name, values in found.items()),
         Column(q.name, at[q.name], "resistance", unit=q.unit, form=".4g"),
     )
-    gas = f"; {joint_text(scene)}" if q.unit == "K/W" else ""
+    gas = f"; {joint_text(scene)}" if scene.thermal else ""
     unit = scene.quantity("contact_conductance").unit
     return Table(columns, f"Conductance by pressure, {unit}, theory{gas}")
 

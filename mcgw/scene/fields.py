@@ -141,8 +141,17 @@ class Fields:
 
     def quantity(self, name: str) -> Quantity:
         """A quantity with the unit it has here, where heat or current is conducted."""
-        q, thermal = quantity_of(name), self.film is not None and self.film.thermal
-        return replace(q, unit=q.unit.split(" or ")[-1 if thermal else 0])
+        return replace(q := quantity_of(name), unit=q.unit.split(" or ")[-1 if self.thermal else 0])
+
+    @property
+    def thermal(self) -> bool:
+        """Whether it is heat that is conducted."""
+        return self.film is not None and self.film.thermal
+
+    @property
+    def from_mean_plane(self) -> bool:
+        """Whether nominal separations count from the mean of the deformed plane, as gaps do."""
+        return self.interaction is not None and self.interaction.reference == "mean-plane"
 
     @property
     def nominal(self) -> bool:

@@ -88,7 +88,7 @@ def contact_facts(scene: Fields) -> list[tuple[str, str]]:
     if scene.interaction is not None:
         felt = "as nominal ones" if scene.interaction.nominal else "as asperities feel them"
         facts.append(("interaction", f"from the {_PLANES[scene.interaction.reference]}, separations {felt}"))
-    if scene.film is not None and scene.film.thermal:
+    if scene.thermal:
         facts.append(("joint", joint_text(scene)))
     return facts
 

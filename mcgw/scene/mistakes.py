@@ -126,7 +126,7 @@ def _together(scene: Fields) -> Iterator[str]:
         yield from interaction_mistakes(scene)
     if scene.joint is None:
         return
-    if scene.film is None or not scene.film.thermal:
+    if not scene.thermal:
         yield "joint: gas conducts heat; give contact.conductivities = [k1, k2] in W/(m K), or leave it out"
         return
     try:

@@ -68,10 +68,9 @@ class _Surface:
     at: dict[str, Array]
     numbers: dict[str, Array]  # bias, logarithms of contacts, waves and steepness: shape (4, rows)
     maps: int
-    lighter: bool  # whether the first row stands for lighter loads too
 
     @classmethod
-    def of(cls, found: Iterable[Mapping[str, str]], unit: float, *, lighter: bool) -> "_Surface":
+    def of(cls, found: Iterable[Mapping[str, str]], unit: float) -> "_Surface":
         ordered = sorted(found, key=lambda row: float(row["p"]))
         p, contacts, waves = (_numbers(ordered, key) for key in ("p", "contacts", "waves"))
         at, numbers = {}, {}
@@ -83,17 +82,20 @@ class _Surface:
             at[name] = np.log(own[known] / unit)
             steep = np.log(_steepness(ordered)) if name == "load" else np.zeros_like(p)
             numbers[name] = np.array([bias, np.log(contacts), np.log(waves), steep])[:, known]
-        return cls(at, numbers, min(int(row["maps"]) for row in ordered), lighter)
+        return cls(at, numbers, min(int(row["maps"]) for row in ordered))
 
-    def __call__(self, name: str, at: Array) -> Array:
-        """Bias, and logarithms of contacts, waves and steepness, shape (4, loads)."""
+    def __call__(self, name: str, at: Array, *, lighter: bool) -> Array:
+        """Bias, and logarithms of contacts, waves and steepness, shape (4, loads).
+
+        Under `lighter` loads than the first row has they are those of that row, or nan.
+        """
         points = self.at[name]
         if not points.size:
             return np.full((4, *at.shape), np.nan)
         nearest = points[np.argmin(np.abs(points - at[:, None]), axis=1)]
         at = np.where(np.abs(nearest - at) <= _ROUNDING, nearest, at)
         return np.array(
-            [np.interp(at, points, y, y[0] if self.lighter else np.nan, np.nan) for y in self.numbers[name]]
+            [np.interp(at, points, y, y[0] if lighter else np.nan, np.nan) for y in self.numbers[name]]
         )
 
 
@@ -173,10 +175,7 @@ class Grid:
         for row in found:
             by_x[float(row["x"])].append(row)
         x = sorted(by_x)
-        surfaces = tuple(
-            _Surface.of(by_x[value], value if along_separation else 1.0, lighter=along_separation)
-            for value in x
-        )
+        surfaces = tuple(_Surface.of(by_x[value], value if along_separation else 1.0) for value in x)
         scatter = {name: Scatter.of(found, name) for name in COLUMNS if name != "load"}
         return cls(np.array(x), surfaces, scatter, along_separation)
 
@@ -190,7 +189,10 @@ class Grid:
         unit = x if self.along_separation else 1.0
         with np.errstate(divide="ignore"):
             at = np.log(p / unit)
-        found = {name: np.sum([share * s(name, at) for share, s in near], axis=0) for name in COLUMNS}
+        found = {
+            name: np.sum([share * s(name, at, lighter=self.along_separation) for share, s in near], axis=0)
+            for name in COLUMNS
+        }
         ends = [s.at["area"][[0, -1]] for _, s in near if s.at["area"].size]
         low, high = (max(e[0] for e in ends), min(e[1] for e in ends)) if len(ends) == len(near) else (1, 0)
         bias = {name: values[0] for name, values in found.items()}
