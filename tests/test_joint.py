@@ -12,6 +12,7 @@ import analytic
 import mcgw
 from analytic.joint import Gas, Joint, air, gap_integral
 from mcgw.cli import main
+from mcgw.figures.compared import Compared
 
 SURFACE = analytic.Surface(sigma=0.9e-6, radius=1e-5, eta=1e10, nominal_area=1e-4, E_star=1e11)
 
@@ -191,6 +192,9 @@ def test_where_it_goes(tmp_path):
     alone = mcgw.regrade(e, joint=None)
     assert "joint_conductance" not in alone.scene.shapes
     assert "joint_conductance" in mcgw.regrade(e, analytic.Exponential(2.0)).scene.shapes
+    moments = mcgw.regrade(mcgw.simulate(scene.replace(keep="moments")), analytic.Exponential(2.0))
+    anew = mcgw.simulate(scene.replace(grading=analytic.Exponential(2.0)))
+    np.testing.assert_allclose(moments["joint_conductance"], anew["joint_conductance"], rtol=1e-12)
     for shown in (
         repr(e),
         str(mcgw.compare(e).tables()["conductance_si"]),
@@ -312,3 +316,9 @@ def test_exports_of_a_joint(to, ending, tmp_path):
         gap = (tmp_path / name).read_text()
         assert "gas would conduct beyond the last line" in gap
         assert "nothing is carried" not in gap
+
+
+def test_figures_compare_its_surfaces_without_it():
+    """They are of load, area and stiffness under gradings: those of the scene without a joint."""
+    compared, plain = (Compared(scene_of(joint=joint)).scene for joint in (AIR, None))
+    assert compared == plain

@@ -105,6 +105,14 @@ def test_samplers_without_moments_are_regraded_by_their_heights(make_scene, samp
     np.testing.assert_array_equal(new.contacts, old.contacts)
 
 
+def test_of_one_surface_there_is_a_ratio_without_an_error(make_scene):
+    one = mcgw.simulate(make_scene(separations=(0.0, 1.0), n_surfaces=1))
+    pair = paired_ratio(regrade(one, analytic.Exponential(2.0)), one, "load")
+    new = mcgw.simulate(one.scene.replace(grading=analytic.Exponential(2.0)))
+    np.testing.assert_allclose(pair.ratio, new.load[0] / one.load[0], rtol=1e-12)
+    assert np.isnan([pair.stderr, pair.gain]).all()
+
+
 def quantity_sum(scene, name, s, h):
     """Over a list of heights, by hand; of a quantity without a modulus."""
     q = analytic.quantity_of(name)

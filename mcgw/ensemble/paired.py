@@ -104,10 +104,15 @@ def paired_ratio(numerator: Ensemble, denominator: Ensemble, quantity: str) -> P
     b, a = (e.values(quantity).astype(np.float64) for e in (numerator, denominator))
     with np.errstate(divide="ignore", invalid="ignore"):  # without a contact there is no ratio
         ratio = b.mean(axis=0) / np.where(a.mean(axis=0) == 0, np.nan, a.mean(axis=0))
-        residual = (b - ratio * a).var(axis=0, ddof=1)
-        apart = b.var(axis=0, ddof=1) + ratio**2 * a.var(axis=0, ddof=1)
+        residual = _variance(b - ratio * a)
+        apart = _variance(b) + ratio**2 * _variance(a)
         error = np.sqrt(residual / len(a)) / a.mean(axis=0)
         return Paired(quantity, numerator.separations, ratio, error, apart / residual)
+
+
+def _variance(x: Array) -> Array:
+    """Over the surfaces; nan of one alone."""
+    return np.asarray(x.var(axis=0, ddof=1)) if len(x) > 1 else np.full(x.shape[1:], np.nan)
 
 
 def _same_asperities(one: Ensemble, other: Ensemble) -> bool:

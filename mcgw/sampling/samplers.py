@@ -263,6 +263,7 @@ def _lasting_layout(scene: Scene, mesh: Mesh, power: float | None) -> Layout:
         law=Hertz(),
         unload_from=None,
         film=None,
+        joint=None,
         tangential=None,
         quantities=tuple(QUANTITIES),
         negative="allow",
