@@ -21,6 +21,8 @@ NEGATIVE = (
     "{} = {:g} {}: {} does not reach it without asperities of negative modulus, at s = {:.4g}; give less, "
     'or say negative = "clip" or "allow" under [grading]'
 )
+_DRAWS = 1e9  # numbers drawn to have single surfaces again: a second or two
+_FEWEST = 20
 
 
 def mean_surface(scene: Scene, given: str, value: float) -> dict[str, float]:
@@ -88,10 +90,6 @@ def rise_of_summits(scene: Scene) -> float | None:
     """Of the mean plane of the summits above that of the surface, over sigma; None if unknown."""
     heights = scene.heights
     return heights.mean / heights.std if isinstance(heights, Nayak) else None
-
-
-_DRAWS = 1e9  # numbers drawn for it: a second or two
-_FEWEST = 20
 
 
 def at_pressures(ensemble: Ensemble, pressures: Array, quantities: tuple[str, ...]) -> dict[str, Array]:

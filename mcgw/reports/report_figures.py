@@ -30,6 +30,17 @@ from mcgw.statistics.comparison import Comparison
 
 _DPI = 150
 _FITTED = "Fitted to "  # how titles of scenes that mcgw fit writes begin, before the name of the map
+MOST_SURFACES = 2000  # that mean and band are of: more would move them by less than a line is wide
+_POINTS = 60
+_BAND, _OF_BAND = (0.05, 0.95), " Band: 5 to 95 % of the surfaces."
+_PER_AREA = (  # name, factor from SI, title, unit
+    ("area", 100, "Real contact area", "%"),
+    ("stiffness", 1e-12, "Normal stiffness", "MPa/µm"),
+    ("conductance_si", 1, "Contact conductance", ""),
+    ("conductance", 1, "Contact conductance times ρ", "1/m"),
+)
+_OF_JOINT = {"gap_conductance": "Gap conductance", "joint_conductance": "Joint conductance"}
+_ROWS = 6  # of the table of all of them
 
 
 @dataclass(frozen=True)
@@ -182,19 +193,6 @@ def _relative_error(scene: Scene, name: str) -> Array:
     with np.errstate(divide="ignore", invalid="ignore"):
         spread = np.sqrt(exact.variance) / np.abs(exact.mean)
         return np.asarray(np.sqrt((exact.excess_kurtosis + 2) / 4 + spread**2 - exact.skewness * spread))
-
-
-MOST_SURFACES = 2000  # that mean and band are of: more would move them by less than a line is wide
-_POINTS = 60
-_BAND, _OF_BAND = (0.05, 0.95), " Band: 5 to 95 % of the surfaces."
-_PER_AREA = (  # name, factor from SI, title, unit
-    ("area", 100, "Real contact area", "%"),
-    ("stiffness", 1e-12, "Normal stiffness", "MPa/µm"),
-    ("conductance_si", 1, "Contact conductance", ""),
-    ("conductance", 1, "Contact conductance times ρ", "1/m"),
-)
-_OF_JOINT = {"gap_conductance": "Gap conductance", "joint_conductance": "Joint conductance"}
-_ROWS = 6  # of the table of all of them
 
 
 def pressure_curves(ensemble: Ensemble) -> list[FigureData]:
