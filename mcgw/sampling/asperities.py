@@ -1,4 +1,4 @@
-"""The heights themselves: the very asperities whose sums the samplers ``tail`` and ``cells`` give."""
+"""The heights themselves: the very asperities whose sums the samplers give that draw them one by one."""
 
 import numpy as np
 from numpy.typing import NDArray
