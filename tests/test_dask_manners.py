@@ -2,9 +2,10 @@
 
 import copy
 import logging
+import socket
 import sys
 import warnings
-from contextlib import closing, contextmanager
+from contextlib import ExitStack, closing, contextmanager, suppress
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -19,12 +20,21 @@ from mcgw.machine.progress import bar, watched
 distributed = pytest.importorskip("distributed")
 pytestmark = pytest.mark.site
 SIZE = 8
+NO_PAGES = {"dashboard_address": "127.0.0.1:0", "scheduler_kwargs": {"dashboard": False}}  # 8787 may be busy
 
 
 @pytest.fixture(autouse=True)
 def _small_blocks(monkeypatch):
     monkeypatch.setattr(Values, "rows", SIZE)
     monkeypatch.setenv("PYTHONPATH", str(Path(__file__).parents[1]))
+
+
+@pytest.fixture(autouse=True, scope="module")
+def _its_usual_port_is_taken():
+    with ExitStack() as held:
+        with suppress(OSError):  # somebody else has it: as good
+            held.enter_context(socket.create_server(("", 8787)))
+        yield
 
 
 @pytest.fixture
@@ -57,7 +67,7 @@ def shared_state():
 @pytest.fixture
 def untouched():
     """All of it is after a test as it was before; loggers that are new are dask's own affair."""
-    with distributed.LocalCluster(n_workers=0, processes=False, dashboard_address=None):
+    with distributed.LocalCluster(n_workers=0, processes=False, **NO_PAGES):
         pass  # whatever dask imports late
     before = shared_state()
     yield
@@ -68,9 +78,9 @@ def untouched():
 
 
 @contextmanager
-def a_client(n, dashboard_address=None):
+def a_client(n):
     """Of a cluster of so many workers, each with as many threads, in this process."""
-    options = {"n_workers": n, "threads_per_worker": n, "dashboard_address": dashboard_address}
+    options = {"n_workers": n, "threads_per_worker": n, **NO_PAGES}
     with (
         distributed.LocalCluster(**options, processes=False) as cluster,
         distributed.Client(cluster, set_as_default=False) as client,
@@ -79,7 +89,7 @@ def a_client(n, dashboard_address=None):
 
 
 def test_a_client_is_taken_and_left_open(scene, tmp_path):
-    with a_client(2, dashboard_address="127.0.0.1:0") as client:
+    with a_client(2) as client:
         within, link = shared_state(), client.dashboard_link
         mcgw.run(scene, tmp_path / "client.h5", engine=client)
         found = shared_state()

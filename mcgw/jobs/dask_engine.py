@@ -60,7 +60,8 @@ class Dask:
                 threads_per_worker=1,
                 processes=True,
                 host="127.0.0.1",
-                dashboard_address="127.0.0.1:0" if _has_pages() else None,
+                dashboard_address="127.0.0.1:0",  # by default 8787, where another may be
+                scheduler_kwargs={"dashboard": _has_pages()},
                 silence_logs="CRITICAL" if quiet else "WARNING",
                 config=_WORKERS,
             )
