@@ -16,7 +16,9 @@ Which of its loops a cell takes depends on how many sums it needs; each stands f
     ================  ========================================================
     plain T_j         rooted R_j for which there is a loop
     ================  ========================================================
-    10                0, 4, 6, 11
+    6                 4
+    9                 0
+    10                0, 6, 11
     12                0, 6, 11
     16                0, 6, 11
     beyond            the loop of 16, and five more T_j or R_j a pass
@@ -114,7 +116,8 @@ def _rooted(plain: int, rooted: int) -> Any:
     return _adder(range(1, plain), range(rooted), roots=True)
 
 
-_10_0, _10_4, _10_6, _10_11 = (_rooted(10, n) for n in (0, 4, 6, 11))
+_6_4, _9_0 = _rooted(6, 4), _rooted(9, 0)
+_10_0, _10_6, _10_11 = (_rooted(10, n) for n in (0, 6, 11))
 _12_0, _12_6, _12_11 = (_rooted(12, n) for n in (0, 6, 11))
 _16_0, _16_6, _16_11 = (_rooted(16, n) for n in (0, 6, 11))
 _plain_more = _adder(range(16, 21))
@@ -131,10 +134,12 @@ def add_uniforms(w: Any, count: Any, plain: Any, rooted: Any) -> None:
     for i in range(count, n):
         w[i] = 1.0
     if plain <= 10:
-        if rooted == 0:
+        if rooted == 0 and plain <= 9:
+            _9_0(w, n, filled, _ROOT, ROOTED)
+        elif rooted == 0:
             _10_0(w, n, filled, _ROOT, ROOTED)
-        elif rooted <= 4:
-            _10_4(w, n, filled, _ROOT, ROOTED)
+        elif rooted <= 4 and plain <= 6:
+            _6_4(w, n, filled, _ROOT, ROOTED)
         elif rooted <= 6:
             _10_6(w, n, filled, _ROOT, ROOTED)
         else:
