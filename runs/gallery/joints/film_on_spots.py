@@ -1,9 +1,8 @@
 """
-What does an oxide film cost?
-=============================
+How much does an oxide film reduce conductance?
+===============================================
 
-Each spot has the resistance ρ/4a of the constriction and that of the film on it, r/πa². Spots hardly grow
-with the load, there are only more of them: so the loss is about the same at every pressure.
+By about the same share at every pressure: more load makes more spots, but hardly larger ones.
 """
 
 import matplotlib.pyplot as plt

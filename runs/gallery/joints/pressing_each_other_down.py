@@ -1,10 +1,8 @@
 """
-Do summits press each other down?
+Does asperity interaction matter?
 =================================
 
-The load of all others sinks the ground of each. At a separation from the body far away there is less load
-than on independent summits, at one from the mean plane there is more. The real area at a given load does
-not change.
+It changes the load at a given separation, but not the real area at a given load.
 """
 
 import matplotlib.pyplot as plt

@@ -1,8 +1,8 @@
 """
-At which separation does it carry 1 MPa?
-========================================
+At which separation does a joint carry 1 MPa?
+=============================================
 
-Softer bodies come closer. Dots mark where each carries 1 MPa.
+Softer bodies come closer. Dots mark a pressure of 1 MPa.
 """
 
 import matplotlib.pyplot as plt

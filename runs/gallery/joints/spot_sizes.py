@@ -2,8 +2,7 @@
 How large are the spots?
 ========================
 
-A hundred times the pressure makes fifty times as many spots, not much larger ones. The heights are those of
-one simulated surface; radii follow from Hertz, a² = R σ (s − h).
+A hundred times the pressure makes fifty times as many spots, but not much larger ones.
 """
 
 import matplotlib.pyplot as plt

@@ -2,8 +2,7 @@
 Do stiffer tips conduct better?
 ===============================
 
-At equal separation the spots are as large as before, whatever the modulus: no difference. At equal *load*
-stiffer tips (γ > 1) hold the plane farther off, and conduct less.
+Not at equal separation, where spots are the same. At equal *load* stiffer tips (γ > 1) conduct less.
 """
 
 import matplotlib.pyplot as plt

@@ -2,8 +2,7 @@
 How far can I push before it slips?
 ===================================
 
-Spots begin to slip one after the other, small ones first. The tangential load rises to μP within some
-tenths of a micrometre; bands are where 95 % of the specimens of 1 mm² lie.
+Small spots slip first; the tangential load reaches μP within tenths of a micrometre (bands: 95 %).
 """
 
 import matplotlib.pyplot as plt

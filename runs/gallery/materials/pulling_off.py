@@ -1,9 +1,8 @@
 """
-Does it stick?
-==============
+Does a rough surface stick?
+===========================
 
-Soft summits that stick pull on the way back: below zero the plane has to be pulled off. The rougher the
-surface, the less it sticks, because its highest summits push while the others pull.
+A soft, smooth one does: below zero the plane has to be pulled off. Roughness reduces adhesion.
 """
 
 import matplotlib.pyplot as plt

@@ -1,9 +1,8 @@
 """
-Does it come back the way it went?
-==================================
+Is there hysteresis on unloading?
+=================================
 
-Not where summits yielded: they stay flattened, and the plane loses contact sooner. The lines are means of
-100 surfaces pressed to d = 0.5 σ and let go.
+Yes, if summits yielded: they stay flattened, and the plane loses contact sooner.
 """
 
 import matplotlib.pyplot as plt

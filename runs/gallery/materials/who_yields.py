@@ -1,9 +1,8 @@
 """
-Who yields?
-===========
+How many contacts yield?
+========================
 
-The share of the contacts that have yielded depends on the hardness far more than on the pressure: as the
-plane comes down, new spots that are still elastic keep joining. Bars are 95 % intervals of simulated means.
+That depends on the hardness, and hardly on the pressure, because new elastic spots keep forming.
 """
 
 import matplotlib.pyplot as plt

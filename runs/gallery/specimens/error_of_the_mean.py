@@ -2,9 +2,7 @@
 How many surfaces do I need?
 ============================
 
-The error of a mean falls as one over the root of their number; how large it is at first, theory says
-beforehand. High separations are dear. Dots: how far the simulated mean is off, as root mean square over 30
-ensembles.
+The theory predicts the error of a mean (lines; dots are simulated): large separations need more surfaces.
 """
 
 import matplotlib.pyplot as plt

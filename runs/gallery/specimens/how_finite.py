@@ -2,8 +2,7 @@
 How finite is your surface?
 ===========================
 
-The law of a specimen's load, exactly: no surface is drawn for the lines, and they go on where no histogram
-reaches (a). The more summits touch, the closer it is to a Gaussian law, the tails last (b).
+The exact distribution of the load of a specimen (a) becomes Gaussian as more summits touch (b).
 """
 
 import matplotlib.pyplot as plt

@@ -1,9 +1,8 @@
 """
-Are loads of specimens Gaussian?
-================================
+Is the load of specimens Gaussian?
+==================================
 
-With many contacts, yes. With few they are lopsided: most specimens carry less than the mean, a few much
-more, so "mean ± 2 standard deviations" misleads.
+With many contacts, yes. With few, most specimens carry less than the mean, and a few carry much more.
 """
 
 import matplotlib.pyplot as plt

@@ -2,8 +2,7 @@
 How large must a specimen be?
 =============================
 
-Loads of specimens differ the less the more summits touch. Points are simulated, lines are the exact
-standard deviation: at 1 MPa this surface needs about 50 mm² for a scatter of 10 %.
+Scatter decreases with the number of contacts: at 1 MPa this surface needs about 50 mm² for a scatter of 10 %.
 """
 
 import matplotlib.pyplot as plt

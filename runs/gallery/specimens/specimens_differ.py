@@ -2,8 +2,7 @@
 How much do two specimens differ?
 =================================
 
-Theory gives the mean of all surfaces; you have one. Each grey line is one specimen of 1 mm² with 300
-summits, the band is where 95 % of them lie.
+Each grey line is one specimen of 1 mm² with 300 summits; the band contains 95 % of them.
 """
 
 import matplotlib.pyplot as plt

@@ -1,10 +1,8 @@
 """
-How far is the model from elasticity?
-=====================================
+How accurate is the model?
+==========================
 
-Mean errors against boundary elements, over the pressures where they were measured. Under heavy loads
-stiffness goes wrong first, which interaction of the summits mends; the real area falls short, whether they
-interact or not.
+Errors against boundary elements: interaction corrects the stiffness at heavy loads, but not the real area.
 """
 
 import matplotlib.pyplot as plt

@@ -1,9 +1,8 @@
 """
-Which cutoff do I take for my map?
-==================================
+Which cutoff should I use for my map?
+=====================================
 
-There is no answer without one: R and η of a self-affine surface depend on the shortest wave that counts,
-while σ hardly does.
+R and η of a self-affine surface depend on the shortest wave that you include; σ hardly does.
 """
 
 import tempfile

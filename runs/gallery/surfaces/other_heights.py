@@ -2,8 +2,7 @@
 What if the heights are not Gaussian?
 =====================================
 
-Worn surfaces have lost their highest summits, cast ones may have more of them. All laws here have the same
-σ; at a given separation the loads differ by orders of magnitude, since only the upper tail touches.
+With the same σ, loads at a given separation differ by orders of magnitude, since only the upper tail touches.
 """
 
 import matplotlib.pyplot as plt

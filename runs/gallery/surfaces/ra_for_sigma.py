@@ -1,9 +1,8 @@
 """
-What if I take Ra for σ?
-========================
+What if I use Ra as σ?
+======================
 
-Ra is of all heights, σ of the summits alone. Taken for each other they give a load that is too large for
-narrow spectra and too small for broad ones, six times at most of those here.
+The load is then too large for narrow spectra and too small for broad ones, here by up to six times.
 """
 
 import matplotlib.pyplot as plt

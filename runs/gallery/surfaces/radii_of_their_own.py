@@ -1,10 +1,8 @@
 """
-Does it matter that summits have different radii?
-=================================================
+Do different summit radii matter?
+=================================
 
-On a Gaussian surface high summits are sharper than low ones. The classical model gives all of them one
-radius, the inverse of the mean curvature: too blunt for the high ones, and the more so the narrower the
-spectrum (α).
+Yes: high summits of a Gaussian surface are sharper than the one radius of the classical model.
 """
 
 import matplotlib.pyplot as plt
