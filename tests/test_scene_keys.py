@@ -1,5 +1,6 @@
 """Every key of every table, in one walk: page, schema, right values, wrong ones and a misspelt key."""
 
+import inspect
 import json
 import re
 import sys
@@ -474,3 +475,15 @@ def test_init_puts_it_beside_the_scene(tmp_path, capsys):
     assert "scene.schema.json: is already there, and not that of this version" in capsys.readouterr().err
     assert not (tmp_path / "third.toml").exists()
     assert (tmp_path / "scene.schema.json").read_text() == "{}"
+
+
+def test_what_is_asked_of_surfaces_is_an_argument_by_its_row():
+    arguments, said = inspect.signature(mcgw.Scene).parameters, mcgw.Scene.__doc__
+    rows = set(KEYS["ensemble"]) - {"max_surfaces", "left_out"} | {"uncertainty"}
+    assert len(rows) == 12
+    assert rows <= set(arguments)
+    assert all(f"    {name} : " in said for name in arguments)
+    assert all(
+        arguments[name].default == (KEYS["ensemble"][name].default or None) for name in ("keep", "seed")
+    )
+    assert not {"datum", "layer"} & set(dir(mcgw.Scene))

@@ -13,10 +13,10 @@ from mcgw.maps.fit import Fit
 from mcgw.maps.profile_fit import ProfileFit
 from mcgw.maps.waves import log_derivatives
 from mcgw.scene.arguments import argument
-from mcgw.scene.keys import MOMENTS, SUMMITS
 from mcgw.scene.measured import Fitted, Uncertainty
 from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_document
+from mcgw.scene.values import MOMENTS, SUMMITS
 
 Heights = Literal["gaussian", "nayak", "table", "measured", "summits"]
 _FITTED = ("load", "area", "stiffness", "contacts", "conductance")  # what a fitted scene asks for

@@ -27,8 +27,8 @@ from mcgw.sampling.exp_log import weigh_exponentials
 from mcgw.sampling.rules import chebyshev_points, chebyshev_transform, gauss_legendre, product
 from mcgw.sampling.spacing import DIGITS, refined, spaced
 from mcgw.sampling.stretches import SMALLEST, begins_and_breaks, losses
-from mcgw.scene.fields import EXACT
 from mcgw.scene.scene import Scene
+from mcgw.scene.values import EXACT
 
 _CONVERGED = 1e-9  # a step of Newton whose square is nothing
 _SHORT, _MOST_HALVINGS = 16, 60  # terms for a grading on a cell, and how often it is cut to get there

@@ -1,10 +1,9 @@
-"""The values of a scene, and the heights that matter to it."""
+"""What follows of the values of a scene, and the heights that matter to it."""
 
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -15,25 +14,17 @@ from analytic import (
     Grading,
     HeightLaw,
     MeasuredHeights,
-    MeasuredRadii,
     Model,
     Quantity,
-    RandomCurvature,
-    Surface,
     first_negative,
     quantity_of,
 )
-from analytic.laws import Branch, ContactLaw, Film, Hertz, Tangential, Ways
+from analytic.laws import Branch, ContactLaw, Hertz, Ways
 from mcgw.machine.memory import kept
+from mcgw.scene.values import EXACT, Values, values_of_scene
 
 if TYPE_CHECKING:
-    from analytic import Interaction, Joint
     from analytic.joint import Gap
-    from mcgw.scene.measured import Fitted, Uncertainty
-
-RelErr = float | Mapping[str, float | list[float]]
-
-EXACT, COARSEST = 1e-13, 1e-2  # accuracy where none is asked: the last digits; and the least there is
 
 _CLEARLY = 1e-6  # no rounding makes such a modulus negative
 _BEYOND = 1e-16  # share of the heights that lie above what is checked for negative moduli
@@ -45,37 +36,9 @@ class LeftOut(int):
     """A whole number that nobody gave: it equals any other, but is found anew when the scene changes."""
 
 
-@dataclass(frozen=True, repr=False)
-class Fields:
-    """What `mcgw.Scene` holds; checked there."""
-
-    surface: Surface
-    separations: tuple[float, ...]
-    title: str
-    grading: Grading
-    negative: Literal["error", "clip", "allow"]
-    heights: HeightLaw
-    curvature: RandomCurvature | MeasuredRadii | None
-    law: ContactLaw
-    unload_from: float | None
-    film: Film | None
-    tangential: Tangential | None
-    interaction: "Interaction | None"
-    joint: "Joint | None"
-    quantities: tuple[str, ...]
-    n_surfaces: int
-    n_asperities: int
-    count: Literal["fixed", "poisson"]
-    seed: int
-    sampler: str
-    keep: Literal["sums", "moments", "statistics"]
-    accuracy: float
-    law_error: float
-    edges: tuple[float, ...]
-    rel_err: RelErr | None
-    max_seconds: float | None
-    fitted: "Fitted | None"
-    uncertainty: "Uncertainty | None"
+@values_of_scene
+class Fields(Values):
+    """The same with what follows of them."""
 
     @property
     def left_out(self) -> tuple[str, ...]:

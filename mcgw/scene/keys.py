@@ -3,18 +3,16 @@
 import math
 from typing import TYPE_CHECKING, Any
 
-from analytic import LAW_QUANTITIES, QUANTITIES, UNLOADING, Body
+from analytic import UNLOADING, Body
 from analytic.laws import Layer, Tangential
-from mcgw.scene.fields import COARSEST, EXACT
 from mcgw.scene.kinds import ByName, Either, Flag, List, Number, Table, Text, Whole, Word
-from mcgw.scene.measured import Fitted, Uncertainty
-from mcgw.scene.samplers import SAMPLERS
+from mcgw.scene.measured import Fitted
 from mcgw.scene.section import Key, TableOfKeys
+from mcgw.scene.values import SUMMITS, SUMS, rows_of
 
 if TYPE_CHECKING:
     from analytic import Interaction, Joint
 
-MOMENTS, SUMMITS = ("m0", "m2", "m4"), ("sigma", "radius", "eta")  # either tells the summits of a surface
 _MOST = 100_000
 
 
@@ -41,7 +39,6 @@ _POISSON, _FILE = Number(low=-1.0, high=0.5), Text()
 _RATIO = Number(low=1, advice="give the larger over the smaller, a number >= 1")
 _RADII = List(_POSITIVE, advice="give a list of finite numbers > 0")
 _LISTED = List(_ANY)
-_SUMS = tuple({**QUANTITIES, **LAW_QUANTITIES})
 _SEPARATION = Number(low=-1e6, high=1e6)
 _SEPARATIONS = "give a list of finite numbers d/sigma, or {start = 0.0, stop = 4.0, num = 41}"
 _NUM = Whole(1, _MOST, f"give a whole number >= 1, at most {_MOST}")
@@ -55,14 +52,6 @@ _PIECES_EXAMPLE = (
 )
 _BODY = Table(
     (Key("E", Number("Pa", infinite=True), required=True), Key("nu", _POISSON, default=0.3)), "", Body
-)
-_KNOWN_TO = (
-    "give a number > 0 and at most 0.1, beyond which so few contacts would do that an interval means nothing"
-)
-_SHARE = Number("1", high=0.1, advice=_KNOWN_TO)
-_SHARES = List(
-    Number("1", high=0.1, infinite=True),
-    advice=f"{_KNOWN_TO}, for each separation; or inf, where nothing is asked",
 )
 _SHIFTS = Either((List(_NOT_NEGATIVE, advice="give a list of numbers >= 0, in m"), _NOT_NEGATIVE))
 _MOUNTED = (Key("friction", _POSITIVE, required=True), Key("poisson", _POISSON, required=True))
@@ -83,19 +72,6 @@ _PUSHED = Table(
     (*_MOUNTED, Key("displacements", _SHIFTS, required=True)),
     "give {friction = 0.3, poisson = 0.3, displacements = [1e-8, 1e-7]} (m)",
     Tangential,
-)
-_KNOWN = 'give standard errors as shares of the values, as {sigma = "20 %", radius = "15 %"}'
-_ERROR = Number("1", high=2.0, advice=_KNOWN)
-_ROWS = List(List(Number(low=-1.0, high=1.0)), advice="give rows of numbers from -1 to 1")
-_ERRORS = Table(
-    (
-        *(Key(name, _ERROR) for name in SUMMITS),
-        *(Key(name, _ERROR, excludes=SUMMITS) for name in MOMENTS),
-        Key("E_star", _ERROR),
-        Key("correlation", _ROWS),
-    ),
-    _KNOWN,
-    Uncertainty,
 )
 
 # fmt: off
@@ -121,10 +97,7 @@ TABLES: dict[str, TableOfKeys] = {
         required=True, needs=("m4",)),
     Key("m4", Number("1/m^2"), "5e6", "mean square of the second derivative of a profile, 1/m²",
         required=True, needs=("m0",)),
-    Key("uncertainty", _ERRORS, '{sigma = "20 %", radius = "15 %", eta = "12 %"}',
-        "standard errors of `sigma`, `radius`, `eta` (or of `m0`, `m2`, `m4`) and `E_star`, as shares of the "
-        "values, with their `correlation` in this order if they have one; `mcgw fit` writes them, and "
-        "`mcgw solve` says what they do to its answers"),
+    *rows_of("surface"),
 ), required=True),
 "grading": TableOfKeys("E\\*(s)/E\\* over the reduced height s. Left out: 1 at every height.", (
     Key("law", Word(("homogeneous", "exponential", "table", "series")), '"exponential"',
@@ -206,7 +179,7 @@ TABLES: dict[str, TableOfKeys] = {
         "separations count from the mean plane of the `summits` (default) or of the `surface` (Nayak's "
         "heights)", "summits"),
     Key("quantities",
-        List(Word((*_SUMS, *UNLOADING), f"choose one of {', '.join(_SUMS)}"), once=True,
+        List(Word((*SUMS, *UNLOADING), f"choose one of {', '.join(SUMS)}"), once=True,
              advice="give a list of names, each once"),
         '["load"]', "any of `load`, `area`, `stiffness`, `contacts` (these four by default), `conductance`, "
         "`spot_conductance`, `yielded`, `load_slope`"),
@@ -284,34 +257,8 @@ TABLES: dict[str, TableOfKeys] = {
         "why not to trust the fit, the gravest first", []),
 ), make=Fitted, advice="give what mcgw.fitted_scene gave, or the keys of [fitted] in a scene file"),
 "ensemble": TableOfKeys("How many surfaces, and how they are drawn.", (
-    Key("n_surfaces", Whole(1), "10", "how many, default 1000", excludes=("rel_err",)),
-    Key("n_asperities", Whole(1), "100", "asperities on each; default: η A_n, rounded"),
-    Key("count", Word(("fixed", "poisson")), '"poisson"',
-        "`fixed` number on each surface (default), or `poisson`: a window on an unbounded surface", "fixed"),
-    Key("seed", Whole(0, 2**64 - 1, "give a whole number from 0 to 2^64 - 1"), "1",
-        "left out: drawn, and always recorded"),
-    Key("sampler", Word(SAMPLERS), '"cells"',
-        "`auto` (default), `cells`, `tail`, `direct`, `aggregate` or `stratified`: "
-        "[which one](../how-to/choose-a-sampler.md)", "auto"),
-    Key("keep", Word(("sums", "moments", "statistics")), '"moments"',
-        "`sums` (default); `moments`: also what [another grading](../how-to/keep-moments.md) starts from; "
-        "`statistics`: [no surface](../how-to/keep-statistics.md), only mean, covariance, quantiles", "sums"),
-    Key("rel_err", Either((ByName(Either((_SHARES, _SHARE), _KNOWN_TO), "", (*_SUMS, *UNLOADING)), _SHARE),
-                          _KNOWN_TO), "0.01",
-        "instead of `n_surfaces`: draw until every mean is known that well, as a share of it; or a table by "
-        "quantity, as `{load = 1e-3, contacts = [1e-2, 1e-2, inf]}`, with one number or one for each "
-        "separation"),
+    *rows_of("ensemble"),
     Key("max_surfaces", Whole(1), "50", "with `rel_err`: the most", needs=("rel_err",)),
-    Key("max_seconds", Number("s"), "1.0", "stop after the block that is being drawn then, s"),
-    Key("accuracy", Number("1", EXACT, COARSEST,
-                           advice=f"give a number from {EXACT:g}, the last digits, to {COARSEST:g}"), "1e-13",
-        "how near each value comes to the exact sum over its heights, 1e-13 (default) to 0.01", EXACT),
-    Key("law_error", Number("1", high=0.1, zero=True,
-                            advice="give a number from 0, exact samplers only, to 0.1"), "0.0",
-        "how far from the exact law of each value `auto` may go, 0 (default) to 0.1", 0.0),
-    Key("edges", List(_ANY, 0, advice="give a list of finite heights s = z/sigma, or leave it out"),
-        "[0.5, 1.5]",
-        "heights where cells are cut besides those that the scene needs: what `mcgw.sweep` shares", []),
     Key("left_out",
         List(Word(("n_asperities", "seed")), 0, advice="give a list of n_asperities, seed, or leave it out"),
         '["seed"]', "written by the program: which of `seed`, `n_asperities` nobody gave", []),
@@ -320,5 +267,4 @@ TABLES: dict[str, TableOfKeys] = {
 # fmt: on
 
 KEYS = {table: {row.name: row for row in rows} for table, (_, rows, *_) in TABLES.items()}
-_SURFACE = {row.name: row.kind for row in TABLES["surface"].rows if row.name not in MOMENTS}
-SURFACE_UNITS = {name: kind.unit for name, kind in _SURFACE.items() if isinstance(kind, Number)}
+SURFACE_UNITS = {name: KEYS["surface"][name].kind.unit for name in (*SUMMITS, "nominal_area", "E_star")}

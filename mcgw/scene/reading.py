@@ -12,18 +12,24 @@ from analytic import UNLOADING, Gaussian, HeightLaw, MeasuredRadii, Nayak, Rando
 from analytic.laws import ContactLaw, Film
 from mcgw.scene.arguments import as_toml
 from mcgw.scene.fields import LeftOut
-from mcgw.scene.keys import KEYS, MOMENTS, TABLES
+from mcgw.scene.keys import KEYS, TABLES
 from mcgw.scene.laws import contact_law, grading_given, grading_of, heights_given, heights_of, law_of_keys
 from mcgw.scene.section import SceneError, Section
 from mcgw.scene.summits import Spectral, curvature_of, datum_shift, listed_of
 from mcgw.scene.surface import read_surface
+from mcgw.scene.values import MOMENTS, rows_of
 
 Values = dict[str, Any]
 Summits = tuple[Surface | None, HeightLaw | None, RandomCurvature | MeasuredRadii | None]
 
+_OF_SURFACE = tuple(row.name for row in rows_of("surface"))
 # Where arguments of `Scene` stand in a file. Others are whole tables or several keys: objects.
 _PLACES = {key: table for table in ("", "contact", "ensemble") for key in KEYS[table]}
-_PLACES |= {"negative": "grading", "curvature": "summits", "uncertainty": "surface"}
+_PLACES |= {
+    "negative": "grading",
+    "curvature": "summits",
+    **dict.fromkeys(_OF_SURFACE, "surface"),
+}
 _OBJECTS = ("law", "curvature")  # which may be words or keys, too
 _QUANTITIES = ("load", "area", "stiffness", "contacts")
 # Keys of [ensemble] that are no values of a scene as they are read.
@@ -95,7 +101,7 @@ def of_tables(
         "curvature": curvature,
         **_contact(of["contact"], objects, heights),
         **{name: _made(top, of[name], table.make) for name, table in TABLES.items() if table.make},
-        "uncertainty": of["surface"].read("uncertainty"),
+        **of["surface"].read_all(_OF_SURFACE),
         **_ensemble(of["ensemble"], surface, seed),
     }
     uncertain = values["uncertainty"]

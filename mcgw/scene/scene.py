@@ -1,52 +1,34 @@
 """What is asked: surface, grading, contact and ensemble, checked before anything is computed."""
 
 import dataclasses
-import inspect
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping
 from copy import copy
-from dataclasses import dataclass
-from functools import wraps
-from typing import TYPE_CHECKING, Any, Literal, ParamSpec
+from typing import TYPE_CHECKING, Any
 
 from numpy.typing import ArrayLike
 
-from analytic import Grading, MeasuredRadii, RandomCurvature, Surface
+from analytic import MeasuredRadii
 from analytic.arrays import hold
-from analytic.laws import ContactLaw, Film, Layer, Tangential
+from analytic.laws import Layer
 from mcgw.formats.sheet import Sheet, Shown
-from mcgw.scene.fields import EXACT, Fields, LeftOut
+from mcgw.scene.fields import Fields, LeftOut
 from mcgw.scene.in_words import sheet_of
 from mcgw.scene.keys import SURFACE_UNITS
 from mcgw.scene.mistakes import mistakes
 from mcgw.scene.plausible import perhaps_other_units, warn_of_units
 from mcgw.scene.reading import of_arguments
 from mcgw.scene.section import SceneError, nearest
-from mcgw.scene.summits import Spectral
 from mcgw.scene.surface import Surface as GivenSurface
+from mcgw.scene.values import documented, values_of_scene
 
 if TYPE_CHECKING:
-    from analytic import Interaction, Joint
-    from mcgw.scene.measured import Fitted, Uncertainty
     from mcgw.scene.validity import Validity
 
-_P = ParamSpec("_P")
 _SURFACES, _MOST_SURFACES = 1000, 10**9  # where n_surfaces is left out; where rel_err is to decide
 
 
-def _by_names(init: Callable[_P, None]) -> Callable[_P, None]:
-    """An ``__init__`` that is its signature alone: arguments are read by their names, as files by keys."""
-    signature = inspect.signature(init)
-
-    @wraps(init)
-    def made(*given: _P.args, **named: _P.kwargs) -> None:
-        bound = signature.bind(*given, **named)
-        bound.apply_defaults()
-        bound.arguments.pop("self")._made_of(of_arguments(**bound.arguments))
-
-    return made
-
-
-@dataclass(frozen=True, repr=False)
+@documented
+@values_of_scene
 class Scene(Fields, Shown):
     """Everything that determines an ensemble.
 
@@ -97,47 +79,9 @@ class Scene(Fields, Shown):
     quantities : sequence of str, optional
         Which sums to compute: names of `analytic.QUANTITIES` and `analytic.LAW_QUANTITIES`. Default: load,
         area, stiffness, contacts.
-    n_surfaces : int, optional
-        Number of surfaces M, default: 1000; with `rel_err` the most that may be drawn, default: 1e9.
-    n_asperities : int, optional
-        Asperities on each (their mean number if `count` is "poisson"). Default: eta A_n, rounded, of
-        whatever surface the scene has, so that N follows if the surface is replaced.
-    count : {"fixed", "poisson"}, optional
-        Law of their number.
-    seed : int, optional
-        0 to 2^64 - 1. Default: drawn, and recorded.
-    sampler : {"auto", "direct", "tail", "cells", "aggregate", "stratified"}, optional
-        How surfaces are drawn; "auto" takes the cheapest exact way.
-    keep : {"sums", "moments", "statistics"}, optional
-        "moments": the file keeps these too, from which `mcgw.regrade` starts. "statistics": in place of
-        the values of surfaces only their mean, covariance, skewness, quantiles and extremes, of any number
-        of surfaces in the same memory.
-    accuracy : float, optional
-        How near every value of every surface comes to the exact sum over its heights, relative to that sum:
-        1e-13 to 0.01. Less than the default takes fewer moments and coarser cells. Where values change their
-        sign (adhesion), relative to the largest near by; steep gradings and layered laws reach 1e-11.
-        One seed at two accuracies gives surfaces that are neither the same nor independent. Default: 1e-13.
-    law_error : float, optional
-        How far from the exact law of each value, by the largest difference of distribution functions, the
-        sampler "auto" may go, 0 to 0.1: it may then take "aggregate" for crowded cells. Default: 0, exact
-        samplers only.
-    edges : array_like, optional
-        Heights where cells are cut besides those where the scene needs it; nothing is then cut for speed
-        alone. Scenes with the same cells and seed have the same surfaces: `mcgw.sweep` says which edges its
-        points share. Default: none.
-    rel_err : float, str or dict, optional
-        Draw so many surfaces that the 95 % interval of every mean reaches no farther than this share of
-        it, 0 to 0.1 or as "1 %": as many as the exact theory of a finite surface says. Or of some quantities
-        alone, as ``{"load": 1e-3, "contacts": 1e-2}``, each with one number for all separations or a list
-        with one for each, `inf` where nothing is asked.
-    max_seconds : float or str, optional
-        Stop after the block that is being drawn then; s, or as "2 h".
     fitted : Fitted or dict, optional
         What the fit of a map knew besides, as `mcgw.fitted_scene` writes it; or its keys in a scene file.
         It draws nothing: by it `validity` tells how far the model is from elasticity, or that nobody knows.
-    uncertainty : Uncertainty or dict, optional
-        Standard errors of the surface's parameters as shares of them, as ``{"sigma": "20 %"}``: see
-        ``[surface] uncertainty`` of scene files. It draws nothing: `Solution.budget` says what it does.
 
     Raises
     ------
@@ -159,40 +103,9 @@ class Scene(Fields, Shown):
       ensemble     1000 surfaces of 30000 asperities (fixed), seed 1, sampler auto
     """
 
-    @_by_names
-    def __init__(
-        self,
-        surface: Surface | Spectral,
-        *,
-        separations: ArrayLike,
-        datum: Literal["summits", "surface"] = "summits",
-        title: str = "",
-        grading: Grading | Callable[[Any], Any] | None = None,
-        negative: Literal["error", "clip", "allow"] = "error",
-        heights: Any = None,
-        curvature: RandomCurvature | MeasuredRadii | Literal["random", "mean"] | None = None,
-        law: ContactLaw | dict[str, Any] | None = None,
-        unload_from: float | Literal["loop"] | None = None,
-        film: Film | None = None,
-        layer: Layer | None = None,
-        tangential: Tangential | None = None,
-        interaction: "Interaction | str | dict[str, Any] | None" = None,
-        joint: "Joint | str | dict[str, Any] | None" = None,
-        quantities: Sequence[str] | None = None,
-        n_surfaces: int | None = None,
-        n_asperities: int | None = None,
-        count: Literal["fixed", "poisson"] = "fixed",
-        seed: int | None = None,
-        sampler: str = "auto",
-        keep: Literal["sums", "moments", "statistics"] = "sums",
-        accuracy: float = EXACT,
-        law_error: float = 0.0,
-        edges: ArrayLike | None = None,
-        rel_err: float | str | Mapping[str, Any] | None = None,
-        max_seconds: float | str | None = None,
-        fitted: "Fitted | dict[str, Any] | None" = None,
-        uncertainty: "Uncertainty | dict[str, Any] | None" = None,
-    ) -> None: ...
+    def __post_init__(self, datum: str | None, layer: Layer | None) -> None:
+        """Arguments are read by their names, as files by keys."""
+        self._made_of(of_arguments(**vars(self), datum=datum, layer=layer))
 
     @classmethod
     def of(cls, values: Mapping[str, Any]) -> "Scene":

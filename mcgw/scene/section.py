@@ -38,9 +38,12 @@ class Kind:
     ----------
     advice : str
         What would do, where something else stands or nothing.
+    unit : str
+        Of a number.
     """
 
     advice: str = ""
+    unit: str = ""
 
     @property
     def missing(self) -> str:

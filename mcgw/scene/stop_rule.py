@@ -8,7 +8,7 @@ import numpy as np
 
 from analytic import quantity_of
 from analytic.arrays import Array
-from mcgw.scene.fields import Fields, RelErr
+from mcgw.scene.fields import Fields
 
 
 def rel_err_mistakes(scene: Fields) -> Iterator[str]:
@@ -54,7 +54,7 @@ def wanted(scene: Fields) -> dict[str, Array]:
     }
 
 
-def rel_err_text(rel_err: RelErr) -> str:
+def rel_err_text(rel_err: float | Mapping[str, float | list[float]]) -> str:
     """For people."""
     if not isinstance(rel_err, Mapping):
         return f"{rel_err:g}"

@@ -21,10 +21,10 @@ from mcgw.sampling.asperities import summits_drawn
 from mcgw.sampling.block import Sampler
 from mcgw.sampling.law_sums import asperity_sums
 from mcgw.sampling.samplers import sampler_of
-from mcgw.scene.fields import EXACT
 from mcgw.scene.samplers import promise_of
 from mcgw.scene.scene import Scene
 from mcgw.scene.section import SceneError
+from mcgw.scene.values import EXACT
 
 _SHARE = 0.1  # of a wish that the accuracy of values may take
 _PROBABILITY = 0.99  # whose quantile is wished for

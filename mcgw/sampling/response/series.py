@@ -13,7 +13,7 @@ from analytic.arrays import Array, Ints
 from mcgw.machine.compiling import njit
 from mcgw.sampling.cells import CHANGING, NODES, TO_COEFFICIENTS
 from mcgw.sampling.rules import multiply
-from mcgw.scene.fields import EXACT
+from mcgw.scene.values import EXACT
 
 MOST, MOST_IN_CELL = 12, 19  # moments: what is not resolved by so many is left to the children, or refused
 APART, _PARTLY, WHOLE = 0, 1, 2

@@ -20,7 +20,7 @@ from mcgw.machine.compiling import njit
 from mcgw.sampling.cells import NODES, TO_COEFFICIENTS, Mesh, evenness, height_noise
 from mcgw.sampling.response.rows import Rows
 from mcgw.sampling.rules import multiply
-from mcgw.scene.fields import EXACT
+from mcgw.scene.values import EXACT
 
 _SCATTER = 8  # asperities more than expected
 _DIGITS = 8.0  # last digits of a height that a formula may lose

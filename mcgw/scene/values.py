@@ -1,0 +1,209 @@
+"""The values of a scene: what Python gives for each, and what a scene holds of it.
+
+Those that no other place makes, as all of ``[ensemble]``, stand here with their rows as keys: signature,
+docstring, reader, checks, writer, schema, page and ``--set`` follow.
+"""
+
+import math
+import re
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import InitVar, dataclass, field, fields
+from inspect import formatannotation
+from textwrap import fill, indent
+from typing import TYPE_CHECKING, Any, Generic, Literal, TypeVar, dataclass_transform
+
+from numpy.typing import ArrayLike
+
+from analytic import (
+    LAW_QUANTITIES,
+    QUANTITIES,
+    UNLOADING,
+    Grading,
+    HeightLaw,
+    MeasuredRadii,
+    RandomCurvature,
+    Surface,
+)
+from analytic.laws import ContactLaw, Film, Layer, Tangential
+from mcgw.scene.kinds import ByName, Either, List, Number, Table, Whole, Word
+from mcgw.scene.measured import Fitted, Uncertainty
+from mcgw.scene.samplers import SAMPLERS
+from mcgw.scene.section import Key, Kind
+
+if TYPE_CHECKING:
+    from analytic import Interaction, Joint
+    from mcgw.scene.summits import Spectral
+
+    _Given = TypeVar("_Given", contravariant=True)
+    _Held = TypeVar("_Held", covariant=True)
+
+    class As(Generic[_Given, _Held]):
+        """A value that Python may give in another form than a scene holds it."""
+
+        def __get__(self, scene: object, kind: Any) -> _Held: ...
+        def __set__(self, scene: object, value: _Given) -> None: ...
+
+else:
+
+    class As:
+        """At run time what may be given, which is what a signature shows."""
+
+        def __class_getitem__(cls, types):
+            return types[0]
+
+
+EXACT, COARSEST = 1e-13, 1e-2  # accuracy where none is asked: the last digits; and the least there is
+MOMENTS, SUMMITS = ("m0", "m2", "m4"), ("sigma", "radius", "eta")  # either tells the summits of a surface
+SUMS = tuple({**QUANTITIES, **LAW_QUANTITIES})
+
+_ANY = Number(low=-math.inf)
+_KNOWN_TO = (
+    "give a number > 0 and at most 0.1, beyond which so few contacts would do that an interval means nothing"
+)
+_SHARE = Number("1", high=0.1, advice=_KNOWN_TO)
+_SHARES = List(
+    Number("1", high=0.1, infinite=True),
+    advice=f"{_KNOWN_TO}, for each separation; or inf, where nothing is asked",
+)
+_KNOWN = 'give standard errors as shares of the values, as {sigma = "20 %", radius = "15 %"}'
+_ERROR = Number("1", high=2.0, advice=_KNOWN)
+_ROWS = List(List(Number(low=-1.0, high=1.0)), advice="give rows of numbers from -1 to 1")
+_ERRORS = Table(
+    (
+        *(Key(name, _ERROR) for name in SUMMITS),
+        *(Key(name, _ERROR, excludes=SUMMITS) for name in MOMENTS),
+        Key("E_star", _ERROR),
+        Key("correlation", _ROWS),
+    ),
+    _KNOWN,
+    Uncertainty,
+)
+_Class = TypeVar("_Class")
+
+
+def key(
+    table: str,
+    kind: Kind,
+    example: str,
+    words: str,
+    default: Any = None,
+    python: str = "",
+    **others: Any,
+) -> Any:
+    """A value with its row in a table of keys; `python` are its words in a docstring, where others do."""
+    row = {"kind": kind, "example": example, "words": words, "default": default, **others}
+    given = None if isinstance(default, list) else default
+    return field(default=given, metadata={"table": table, "row": row, "python": python or words})
+
+
+def object_or(default: Any = None) -> Any:
+    """A value that is made elsewhere, of several keys or of an object."""
+    return field(default=default)
+
+
+@dataclass_transform(kw_only_default=True, field_specifiers=(key, object_or, field))
+def values_of_scene(kind: type[_Class]) -> type[_Class]:
+    """The dataclass of a scene: frozen, its arguments but the surface by name."""
+    return dataclass(frozen=True, repr=False, kw_only=True)(kind)
+
+
+@values_of_scene
+class Values:
+    """What `mcgw.Scene` takes and holds; checked there."""
+
+    surface: As["Surface | Spectral", Surface] = field(kw_only=False)
+    separations: As["ArrayLike", tuple[float, ...]]
+    datum: InitVar[Literal["summits", "surface"] | None] = None
+    title: str = ""
+    grading: As[Grading | Callable[[Any], Any] | None, Grading] = object_or()
+    negative: Literal["error", "clip", "allow"] = "error"
+    heights: As[Any, HeightLaw] = object_or()
+    curvature: As[
+        RandomCurvature | MeasuredRadii | Literal["random", "mean"] | None,
+        RandomCurvature | MeasuredRadii | None,
+    ] = object_or()
+    law: As[ContactLaw | dict[str, Any] | None, ContactLaw] = object_or()
+    unload_from: As[float | Literal["loop"] | None, float | None] = object_or()
+    film: Film | None = None
+    layer: InitVar[Layer | None] = None
+    tangential: Tangential | None = None
+    interaction: As["Interaction | str | dict[str, Any] | None", "Interaction | None"] = object_or()
+    joint: As["Joint | str | dict[str, Any] | None", "Joint | None"] = object_or()
+    quantities: As[Sequence[str] | None, tuple[str, ...]] = object_or()
+    fitted: As[Fitted | dict[str, Any] | None, Fitted | None] = object_or()
+    # fmt: off
+    n_surfaces: As[int | None, int] = key("ensemble", Whole(1), "10", "how many, default 1000",
+        python="Number of surfaces M, default: 1000; with `rel_err` the most that may be drawn, default: "
+        "1e9", excludes=("rel_err",))
+    n_asperities: As[int | None, int] = key("ensemble", Whole(1), "100",
+        "asperities on each, their mean number if `count` is `poisson`; default: η A_n, rounded, of whatever "
+        "surface the scene has")
+    count: Literal["fixed", "poisson"] = key("ensemble", Word(("fixed", "poisson")), '"poisson"',
+        "`fixed` number on each surface (default), or `poisson`: a window on an unbounded surface", "fixed")
+    seed: As[int | None, int] = key("ensemble",
+        Whole(0, 2**64 - 1, "give a whole number from 0 to 2^64 - 1"), "1",
+        "0 to 2^64 - 1; left out: drawn, and always recorded")
+    sampler: str = key("ensemble", Word(SAMPLERS), '"cells"',
+        "how surfaces are drawn: `auto` (default) takes the cheapest exact way; `cells`, `tail`, `direct`, "
+        "`aggregate` or `stratified`: [which one](../how-to/choose-a-sampler.md)", "auto")
+    keep: Literal["sums", "moments", "statistics"] = key("ensemble",
+        Word(("sums", "moments", "statistics")), '"moments"',
+        "`sums` (default); `moments`: also what [another grading](../how-to/keep-moments.md) starts from; "
+        "`statistics`: [no surface](../how-to/keep-statistics.md), only mean, covariance, skewness, "
+        "quantiles and extremes, of any number of surfaces in the same memory", "sums")
+    rel_err: As[float | str | Mapping[str, Any] | None, float | Mapping[str, float | list[float]] | None
+    ] = key("ensemble",
+        Either((ByName(Either((_SHARES, _SHARE), _KNOWN_TO), "", (*SUMS, *UNLOADING)), _SHARE), _KNOWN_TO),
+        "0.01",
+        "instead of `n_surfaces`: draw until the 95 % interval of every mean reaches no farther than this "
+        "share of it; or a table by quantity, as `{load = 1e-3, contacts = [1e-2, 1e-2, inf]}`, with one "
+        "number or one for each separation")
+    max_seconds: As[float | str | None, float | None] = key("ensemble", Number("s"), "1.0",
+        "stop after the block that is being drawn then, s")
+    accuracy: float = key("ensemble",
+        Number("1", EXACT, COARSEST,
+               advice=f"give a number from {EXACT:g}, the last digits, to {COARSEST:g}"), "1e-13",
+        "how near each value comes to the exact sum over its heights, relative to it (where values change "
+        "their sign, to the largest near by): 1e-13 (default) to 0.01. A larger one takes fewer moments and "
+        "coarser cells, and gives other surfaces of one seed. Steep gradings and layered laws reach 1e-11",
+        EXACT)
+    law_error: float = key("ensemble",
+        Number("1", high=0.1, zero=True, advice="give a number from 0, exact samplers only, to 0.1"), "0.0",
+        "how far from the exact law of each value, by the largest difference of distribution functions, "
+        "`auto` may go, 0 (default) to 0.1: it may then take `aggregate` for crowded cells", 0.0)
+    edges: As["ArrayLike | None", tuple[float, ...]] = key("ensemble",
+        List(_ANY, 0, advice="give a list of finite heights s = z/sigma, or leave it out"), "[0.5, 1.5]",
+        "heights where cells are cut besides those that the scene needs, and none for speed alone: what "
+        "`mcgw.sweep` shares. Scenes with the same cells and seed have the same surfaces", [])
+    uncertainty: As[Uncertainty | dict[str, Any] | None, Uncertainty | None] = key("surface", _ERRORS,
+        '{sigma = "20 %", radius = "15 %", eta = "12 %"}',
+        "standard errors of `sigma`, `radius`, `eta` (or of `m0`, `m2`, `m4`) and `E_star`, as shares of the "
+        "values, with their `correlation` in this order if they have one; `mcgw fit` writes them, and "
+        "`mcgw solve` says what they do to its answers")
+    # fmt: on
+
+
+def rows_of(table: str) -> tuple[Key, ...]:
+    """The keys of a table that are values as they stand."""
+    known = fields(Values)
+    return tuple(Key(x.name, **x.metadata["row"]) for x in known if x.metadata.get("table") == table)
+
+
+def documented(kind: type[_Class]) -> type[_Class]:
+    """A class of values that is whole: its docstring tells of those with a row, too."""
+    said, known = [""], vars(kind)["__dataclass_fields__"]
+    for name, one in list(known.items()):
+        given = one.type if isinstance(one.type, str) else formatannotation(one.type)
+        if isinstance(one.type, InitVar):  # of which a scene has no value
+            del known[name]
+            delattr(Values, name)
+        elif "row" in one.metadata:
+            of, words = one.metadata["row"]["kind"], one.metadata["python"]
+            given = "{" + ", ".join(map(repr, of.known)) + "}" if isinstance(of, Word) else given
+            words = re.sub(r"\[([^]]+)\]\([^)]+\)", r"\1", f"{words[0].upper()}{words[1:]}.")  # no links
+            said += [
+                f"    {name} : {given.replace(' | None', '').replace(' | ', ' or ')}, optional",
+                indent(fill(words, 102), " " * 8),
+            ]
+    kind.__doc__ = (kind.__doc__ or "").replace("\n\n    Raises", "\n".join(said) + "\n\n    Raises", 1)
+    return kind
