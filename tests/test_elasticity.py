@@ -218,6 +218,18 @@ class TestLevels:
         assert_allclose((4 / 3 * 1e11 * np.sqrt(spots.radii) * depth**1.5).sum(), 5e7 * 6.4e-5**2, rtol=1e-9)
         assert_allclose(values["area"], math.pi * (spots.radii * depth).sum(), rtol=1e-12)
 
+    def test_at_the_gap_of_a_pressure_holds_what_holds_under_it(self, rng):
+        heights = mcgw.maps.synthetic.gaussian_map(SPECTRUM, (64, 64), (1e-6, 1e-6), rng).heights
+        size, p = (6.4e-5, 6.4e-5), 2e6  # so light that near pairs are told alike both ways
+        for level in (alone, located):
+            under = level(Pressed(heights, size, 1e11, p))
+            at = level(Pressed(heights, size, 1e11, separation=under["mean_gap"]))
+            assert_allclose(at.pop("pressure"), p, rtol=1e-9)
+            for name, value in at.items():
+                assert_allclose(value, under[name], rtol=1e-9)
+            clear = level(Pressed(heights, size, 1e11, separation=2 * float(np.ptp(heights))))
+            assert clear == dict.fromkeys(("area", "stiffness", "conductance", "pressure"), 0)
+
 
 def made_up(rng, maps):
     """Three levels of two quantities: 0.9 of the variance is known to the second one."""
@@ -299,6 +311,27 @@ class TestElastic:
         low, high = found.interval("area")
         assert low <= truth <= high
 
+    def test_takes_a_separation(self, tmp_path, rng):
+        """The mean of a list, all of whose maps are solved, is theirs; one of five is clear of the plane."""
+        draw, path = mcgw.maps.synthetic.gaussian_map, tmp_path / "s.jsonl"
+        maps = [draw(SPECTRUM, (64, 64), (1e-6, 1e-6), rng) for _ in range(4)]
+        maps.append(Topography(0.01 * maps[0].heights, (1e-6, 1e-6), periodic=True))
+        asked = {"E_star": 1e11, "solves": 5, "pilot": 5, "path": path}
+        found = mcgw.elastic(maps, separation="1 um", **asked)
+        pressures = [
+            1.25 * located(Pressed(x.heights - x.heights.mean(), x.size, 1e11, separation=1e-6))["pressure"]
+            for x in maps
+        ]
+        assert pressures[-1] == 0
+        assert found.quantities == ("area", "stiffness", "conductance", "pressure")
+        assert found.mean("pressure") == pytest.approx(np.mean(pressures), rel=1e-12)
+        assert "Pa" in str(found)
+        for other in ({"separation": "2 um"}, {"pressure": 1e-6}):
+            with pytest.raises(mcgw.StoreError, match="another path"):
+                mcgw.elastic(maps, **other, **asked)
+        with pytest.raises(mcgw.RunError, match="smaller separation"):
+            mcgw.elastic(maps, separation="1 mm", E_star=1e11)
+
     @pytest.mark.parametrize("held", [b"", b"my notes", b"my notes\n", b"\x89HDF\r\n\x1a\n", b"[1]\n"])
     def test_a_file_in_the_way_stays(self, held, tmp_path):
         path = tmp_path / "solves.jsonl"
@@ -336,6 +369,12 @@ class TestElastic:
         [
             ({"E_star": None}, "E_star: give"),
             ({"quantities": ["load"]}, "area, stiffness"),
+            ({"quantities": []}, "area, stiffness"),
+            ({"quantities": ["pressure"]}, "mean_gap"),
+            ({"pressure": None, "separation": 1e-6, "quantities": ["mean_gap"]}, "pressure"),
+            ({"pressure": None}, "one of the two"),
+            ({"separation": 1e-6}, "one of the two"),
+            ({"pressure": None, "separation": -1e-6}, "separation = -1e-06"),
             ({"rel_err": 2}, "rel_err"),
             ({"pilot": 1}, "4 or more"),
             ({"seed": -1}, "seed = -1: give"),
@@ -381,3 +420,20 @@ def test_boundary_elements_find_hertz():
     assert wide["area"] == pytest.approx(9 * found["area"], rel=1e-6)
     assert wide["stiffness"] == pytest.approx(6 * found["stiffness"], rel=1e-6)
     assert wide["mean_gap"] == pytest.approx(3 * found["mean_gap"], rel=1e-6)
+
+
+@pytest.mark.site
+def test_boundary_elements_hold_a_gap(rng):
+    """The gap of a pressure, given, finds that pressure again: two of Tamaas's problems."""
+    pytest.importorskip("tamaas")
+    heights = mcgw.maps.synthetic.gaussian_map(SPECTRUM, (64, 64), (1e-6, 1e-6), rng).heights
+    for p in (2e7, 1e9):
+        under = LEVELS[-1].solve(Pressed(heights, (6.4e-5, 6.4e-5), 1e11, p))
+        at = LEVELS[-1].solve(Pressed(heights, (6.4e-5, 6.4e-5), 1e11, separation=under["mean_gap"]))
+        assert at["pressure"] == pytest.approx(p, rel=2e-5)
+        assert at["area"] == pytest.approx(under["area"], rel=1e-3)
+        assert at["stiffness"] == pytest.approx(under["stiffness"], rel=2e-4)
+    clear = LEVELS[-1].solve(Pressed(heights, (6.4e-5, 6.4e-5), 1e11, separation=float(heights.max())))
+    assert set(clear.values()) == {0.0}
+    with pytest.raises(mcgw.RunError, match="higher pressure"):
+        LEVELS[-1].solve(Pressed(heights, (6.4e-5, 6.4e-5), 1e11, 1e2))

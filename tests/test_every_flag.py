@@ -432,6 +432,7 @@ APART = {
     ("tradeoff", "--seconds"): "test_tradeoff_takes_its_folder_and_its_time",
     ("compare", "--laws"): "test_compare_takes_laws",
     ("elastic", "--pressure"): "test_elastic_takes_its_question",
+    ("elastic", "--separation"): "test_elastic_takes_its_question",
     ("elastic", "--E-star"): "test_elastic_takes_its_question",
     ("elastic", "--pixel"): "test_elastic_takes_its_question",
     ("elastic", "--unit"): "test_elastic_takes_its_question",
@@ -657,12 +658,15 @@ def test_elastic_takes_its_question(call, material, monkeypatch):
     assert scene.surface.sigma == 3e-6
     assert given.pop("path").name == "e.jsonl"
     assert callable(given.pop("progress"))
-    assert given == {"pressure": "2MPa", "E_star": "5e9", "rel_err": 0.1, "solves": 9, "seed": 4}
+    asked = {"E_star": "5e9", "rel_err": 0.1, "solves": 9, "seed": 4}
+    assert given == {"pressure": "2MPa", "separation": None, **asked}
+    call(["elastic", "@s.toml", "--separation", "2um"])
+    assert (seen[1][1]["pressure"], seen[1][1]["separation"]) == (None, "2um")
     said = call(["elastic", *shlex.split("@s.toml --pressure 2MPa --pixel 2um")])
     assert (said.code, said.err.partition(": goes")[0]) == (2, "mcgw: --pixel 2um")
     call(["elastic", *shlex.split("@bare.npy --pressure 2MPa --pixel 2um --unit mm")])
-    assert seen[1][0].pixel == (2e-6, 2e-6)
-    assert seen[1][0].heights.std() == pytest.approx(1e-3 * np.load(material / "bare.npy").std())
+    assert seen[2][0].pixel == (2e-6, 2e-6)
+    assert seen[2][0].heights.std() == pytest.approx(1e-3 * np.load(material / "bare.npy").std())
 
 
 def test_figures_take_folder_scene_and_csv(call, tmp_path, monkeypatch):

@@ -20,7 +20,9 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         "source", type=Path, metavar="SCENE|MAP",
         help="a scene with m0, m2, m4 or from a fit (.toml); or a height map, whose spectrum is taken",
     )  # fmt: skip
-    parser.add_argument("--pressure", required=True, metavar="P", help="load per nominal area: kPa, MPa, GPa")
+    held = parser.add_mutually_exclusive_group(required=True)
+    held.add_argument("--pressure", metavar="P", help="load per nominal area: kPa, MPa, GPa")
+    held.add_argument("--separation", metavar="D", help="mean gap of the deformed surface: nm, um")
     parser.add_argument("--E-star", metavar="E", help="composite modulus of a map: MPa, GPa")
     parser.add_argument("--pixel", metavar="LENGTH", help="size of a pixel, where the file does not tell it")
     parser.add_argument(
@@ -64,8 +66,8 @@ def execute(args: argparse.Namespace) -> int:
     check_outputs([Output(args.output, JSONL)] if args.output else [], inputs=[args.source])
     with bar("s", terminal=True) as tell:
         found = elastic(
-            source, pressure=args.pressure, E_star=args.E_star, rel_err=args.rel_err, solves=args.solves,
-            seed=args.seed, path=args.output, progress=tell,
+            source, pressure=args.pressure, separation=args.separation, E_star=args.E_star,
+            rel_err=args.rel_err, solves=args.solves, seed=args.seed, path=args.output, progress=tell,
         )  # fmt: skip
     print(found)
     details(found.levels)

@@ -14,7 +14,7 @@ from analytic.arrays import Array
 from mcgw.elasticity.levels import LEVELS, QUANTITIES, Level, Pressed, Values
 from mcgw.elasticity.multilevel import FEWEST, Design, Mean, design, differences, mean_of, terms_of
 from mcgw.elasticity.sources import Maps, maps_of
-from mcgw.errors import StoreError
+from mcgw.errors import RunError, StoreError
 from mcgw.formats.files import write_whole
 from mcgw.formats.sheet import Sheet, Shown
 from mcgw.formats.table import Column, Table
@@ -25,7 +25,7 @@ from mcgw.scene.arguments import argument
 from mcgw.scene.scene import Scene
 
 _PILOT = 8
-_UNITS = {"area": "m^2", "stiffness": "N/m", "conductance": "m", "mean_gap": "m"}
+_UNITS = {"area": "m^2", "stiffness": "N/m", "conductance": "m", "mean_gap": "m", "pressure": "Pa"}
 
 
 @dataclass(frozen=True, repr=False)
@@ -35,8 +35,8 @@ class Elastic(Shown):
     Parameters
     ----------
     quantities : tuple of str
-        Real area (m^2), stiffness (N/m), conductance C rho (m), and the mean gap between the deformed
-        surface and the plane (m).
+        Real area (m^2), stiffness (N/m), conductance C rho (m), and under a pressure the mean gap between
+        the deformed surface and the plane (m), at a separation the pressure (Pa).
     found : Mean
         Means and standard errors in their order.
     levels : Table
@@ -97,9 +97,10 @@ class Elastic(Shown):
 def elastic(
     source: "Scene | Spectrum | Topography | str | Path | Sequence[Topography | str | Path]",
     *,
-    pressure: float | str,
+    pressure: float | str | None = None,
+    separation: float | str | None = None,
     E_star: float | str | None = None,
-    quantities: Sequence[str] = QUANTITIES,
+    quantities: Sequence[str] | None = None,
     rel_err: float = 0.02,
     solves: int | None = None,
     pilot: int = _PILOT,
@@ -107,7 +108,7 @@ def elastic(
     path: str | Path | None = None,
     progress: Progress = None,
 ) -> Elastic:
-    """Find the mean area, stiffness, conductance and gap of elastic surfaces under a pressure.
+    """Find mean area, stiffness and conductance of elastic surfaces under a pressure, or at a separation.
 
     Most of what boundary elements say of a map is known to sums over its own summits, which take a
     millisecond. So few solves do: of many maps the cheap level's mean, of some what a dearer level differs.
@@ -117,12 +118,16 @@ def elastic(
     source : Scene, Spectrum, Topography, str, Path or list of them
         A scene that knows its spectrum (m0, m2, m4, or from a fit), or a spectrum: maps are drawn. One map:
         Gaussian maps of its spectrum are. A list of periodic maps: their own mean.
-    pressure : float or str
+    pressure : float or str, optional
         Load per nominal area, Pa, or as "1 MPa".
+    separation : float or str, optional
+        Instead: mean gap between the deformed surface and the plane, m, or as "2 um". What does not touch
+        there counts with zeros; a solve takes some three times as long.
     E_star : float or str, optional
         Composite modulus, Pa; that of the scene if there is one.
     quantities : sequence of str, optional
-        Of ``area``, ``stiffness``, ``conductance`` (C rho) and ``mean_gap``.
+        Of ``area``, ``stiffness``, ``conductance`` (C rho) and ``mean_gap``, or of ``pressure`` at a
+        separation; all if left out.
     rel_err : float, optional
         Half the width of the 95 % interval over the mean, of the worst quantity, as the pilot plans it.
     solves : int, optional
@@ -145,7 +150,8 @@ def elastic(
     ValueError
         If an argument is wrong, or the source has no maps: see `mcgw.elasticity.sources.maps_of`.
     RunError
-        If Tamaas is not installed (``pip install 'mcgw[bem]'``), or a solve does not converge.
+        If Tamaas is not installed (``pip install 'mcgw[bem]'``), a solve does not converge, or no map of
+        the pilot touches.
     StoreError
         If `path` holds solves of another question.
 
@@ -163,9 +169,15 @@ def elastic(
     if E_star is None and not isinstance(source, Scene):
         raise ValueError("E_star: give the composite modulus, which no map tells")
     modulus = source.surface.E_star if E_star is None else argument("E_star", E_star, "Pa")  # type: ignore[union-attr]
-    known = [name for name in quantities if name in QUANTITIES]
-    if not known or len(known) < len(tuple(quantities)):
-        raise ValueError(f"quantities = {tuple(quantities)}: give one or more of {', '.join(QUANTITIES)}")
+    asked = {"pressure": (pressure, "Pa"), "separation": (separation, "m")}
+    held = {name: argument(name, value, unit) for name, (value, unit) in asked.items() if value is not None}
+    if len(held) != 1:
+        raise ValueError("pressure, separation: give one of the two")
+    names = QUANTITIES[next(iter(held))]
+    wanted = names if quantities is None else tuple(quantities)
+    known = [name for name in wanted if name in names]
+    if not known or len(known) < len(wanted):
+        raise ValueError(f"quantities = {wanted}: give one or more of {', '.join(names)}")
     if not 0 < rel_err < 1 or pilot < FEWEST or (solves is not None and solves < FEWEST):
         raise ValueError(
             f"rel_err = {rel_err}, pilot = {pilot}, solves = {solves}: give 0 < rel_err < 1, and {FEWEST} or "
@@ -173,7 +185,7 @@ def elastic(
         )
     if seed < 0:
         raise ValueError(f"seed = {seed}: give a whole number >= 0")
-    solved = _Solved(maps, argument("pressure", pressure, "Pa"), modulus, seed, known)
+    solved = _Solved(maps, held, modulus, seed, known)
     if path is not None:
         solved.resume(Path(path))
     with told(progress, "s") as tell:
@@ -183,8 +195,10 @@ def elastic(
 class _Solved:
     """Values of levels on maps, each solved once; in a file, too, if there is one."""
 
-    def __init__(self, maps: Maps, pressure: float, E_star: float, seed: int, quantities: list[str]) -> None:
-        self.maps, self.pressure, self.E_star, self.seed = maps, pressure, E_star, seed
+    def __init__(
+        self, maps: Maps, held: dict[str, float], E_star: float, seed: int, quantities: list[str]
+    ) -> None:
+        self.maps, self.held, self.E_star, self.seed = maps, held, E_star, seed
         self.quantities = quantities
         self._rows: dict[tuple[str, int], tuple[Values, float]] = {}
         self._path: Path | None = None
@@ -196,9 +210,9 @@ class _Solved:
         Raises
         ------
         StoreError
-            If these are solves of other maps, another pressure or modulus.
+            If these are solves of other maps, another pressure, separation or modulus.
         """
-        asked = {"maps": self._digest(), "pressure": self.pressure, "E_star": self.E_star, "seed": self.seed}
+        asked = {"maps": self._digest(), **self.held, "E_star": self.E_star, "seed": self.seed}
         new = not path.exists()
         text = json.dumps(asked) + "\n" if new else path.read_text(encoding="utf-8", errors="replace")
         whole = text[: text.rfind("\n") + 1]  # a run that was killed leaves its last line cut
@@ -207,7 +221,8 @@ class _Solved:
         except ValueError:
             header, rows = None, []
         if header != asked:
-            raise StoreError(f"{path}: holds no solves of these maps at this pressure; give another path")
+            what = next(iter(self.held))
+            raise StoreError(f"{path}: holds no solves of these maps at this {what}; give another path")
         self._rows = {(r["level"], r["map"]): (r["values"], r["seconds"]) for r in rows}
         if new or whole != text:
             write_whole(path, [whole.encode()])
@@ -226,7 +241,7 @@ class _Solved:
         if key not in self._rows:
             if self._last is None or self._last[0] != number:
                 heights = self.maps.heights(number, self.seed)
-                self._last = number, Pressed(heights, self.maps.size, self.E_star, self.pressure)
+                self._last = number, Pressed(heights, self.maps.size, self.E_star, **self.held)
             self._rows[key] = level.timed(self._last[1])
             if self._path is not None:
                 values, seconds = self._rows[key]
@@ -249,6 +264,8 @@ def _by_levels(solved: _Solved, rel_err: float, solves: int | None, pilot: int, 
     rows = [[solved.at(level, k) for level in LEVELS] for k in tried]
     table = {i: np.array([row[i][0] for row in rows]) for i in range(len(LEVELS))}
     costs = [float(np.mean([row[i][1] for row in rows])) for i in range(len(LEVELS))]
+    if not table[len(LEVELS) - 1].any(axis=0).all():
+        raise RunError(f"none of {len(tried)} maps touches; give a smaller separation")
     planned = design(table, costs, rel_err, solves)
     terms = terms_of(planned.chain)
     done, samples, lines = 0.0, [], []

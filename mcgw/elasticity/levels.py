@@ -1,4 +1,4 @@
-"""What models say of one periodic map under a pressure: summits alone, located, boundary elements."""
+"""What models say of one periodic map, pressed or brought near: summits alone, located, boundary elements."""
 
 import math
 import time
@@ -17,7 +17,8 @@ from mcgw.maps.summit_sums import summit_sums_of
 from mcgw.maps.summits import summits_of
 from mcgw.maps.topography import Topography
 
-QUANTITIES = ("area", "stiffness", "conductance", "mean_gap")
+_EITHER = ("area", "stiffness", "conductance")
+QUANTITIES = {"pressure": (*_EITHER, "mean_gap"), "separation": (*_EITHER, "pressure")}  # by what is given
 
 Values = dict[str, float]
 
@@ -31,7 +32,7 @@ _sized_grid = lru_cache(maxsize=2)(Grid)  # their potential takes as long as a b
 
 @dataclass(frozen=True)
 class Pressed:
-    """A periodic map and the pressure on it.
+    """A periodic map, and the pressure on it or the plane's distance from it.
 
     Parameters
     ----------
@@ -41,14 +42,17 @@ class Pressed:
         Extent along x and y, m.
     E_star : float
         Composite modulus, Pa.
-    pressure : float
+    pressure : float, optional
         Load per nominal area, Pa.
+    separation : float, optional
+        Instead: of the plane from the mean plane of the deformed surface, which is the mean gap, m.
     """
 
     heights: Array
     size: tuple[float, float]
     E_star: float
-    pressure: float
+    pressure: float = math.nan
+    separation: float | None = None
 
     @property
     def load(self) -> float:
@@ -70,25 +74,38 @@ class Pressed:
         spots = HertzSpots(counted.heights, summits_of(used, counted, (0.0, 0.0)).radii, self.E_star)
         return Located(spots, np.array([rows, columns]), grid)
 
-    def values(self, area: float, stiffness: float, mean_gap: float) -> Values:
+    def clear(self, highest: float) -> bool:
+        """Whether the plane is above all there is."""
+        return self.separation is not None and self.separation >= highest
+
+    def values(self, area: float, stiffness: float, pressure: float, mean_gap: float) -> Values:
         """By name, SI; the conductance is C rho in m, which follows from the stiffness (Barber 2003)."""
         conductance = 2 * stiffness / self.E_star
-        return {"area": area, "stiffness": stiffness, "conductance": conductance, "mean_gap": mean_gap}
+        found = {"area": area, "stiffness": stiffness, "conductance": conductance}
+        return found | ({"mean_gap": mean_gap} if self.separation is None else {"pressure": pressure})
 
 
 def alone(pressed: Pressed) -> Values:
     """Hertz's sums over the map's own summits, none of which feels another one."""
-    located = pressed.summits
-    separation = located.alone_at(pressed.load)
-    depth = located.spots.heights - separation
-    area = math.pi * float(located.spots.squared_radius(depth).sum())
-    return pressed.values(area, float(located.spots.slope(depth).sum()), separation)
+    located, separation = pressed.summits, pressed.separation
+    spots = located.spots
+    if separation is None:
+        separation = located.alone_at(pressed.load)
+    depth = spots.heights - separation
+    area, stiffness, load = (
+        float(x.sum()) for x in (math.pi * spots.squared_radius(depth), spots.slope(depth), spots.load(depth))
+    )
+    return pressed.values(area, stiffness, load / located.grid.area, separation)
 
 
 def located(pressed: Pressed) -> Values:
     """The same summits, each pressed down by all others."""
-    balance = pressed.summits.at_load(pressed.load)
-    return pressed.values(balance.area, balance.stiffness, balance.separation)
+    summits, separation = pressed.summits, pressed.separation
+    if pressed.clear(float(summits.spots.heights.max())):
+        return alone(pressed)
+    balance = summits.at_load(pressed.load) if separation is None else summits.at_separation(separation)
+    pressure = balance.load / summits.grid.area
+    return pressed.values(balance.area, balance.stiffness, pressure, balance.separation)
 
 
 def boundary_elements(pressed: Pressed) -> Values:
@@ -104,24 +121,40 @@ def boundary_elements(pressed: Pressed) -> Values:
     except ImportError:
         raise RunError("boundary elements need Tamaas: pip install 'mcgw[bem]'") from None
     tamaas.set_log_level(tamaas.LogLevel.error)
+    if pressed.clear(float(pressed.heights.max())):
+        return pressed.values(0.0, 0.0, 0.0, 0.0)
     side = pressed.size[1]
     heights = np.ascontiguousarray(pressed.heights / side)
     model = tamaas.Model(tamaas.model_type.basic_2d, [1.0, pressed.size[0] / side], list(heights.shape))
     model.E, model.nu = 1.0, 0.0
-    solver = tamaas.PolonskyKeerRey(model, heights, _TOLERANCE)
-    solver.max_iter = _MOST_STEPS
+
+    def solve(target: float, what: "tamaas.PolonskyKeerRey.type") -> None:
+        solver = tamaas.PolonskyKeerRey(model, heights, _TOLERANCE, what, what)
+        solver.max_iter = _MOST_STEPS
+        try:
+            error = float(solver.solve(target))
+        except FloatingPointError:
+            more = "a higher pressure" if pressed.separation is None else "a smaller separation"
+            raise RunError(f"boundary elements: of a map a single point touches; give {more}") from None
+        if not error <= _TOLERANCE:
+            less = "a lower pressure" if pressed.separation is None else "a larger separation"
+            raise RunError(f"boundary elements stopped at an error of {error:g}; give {less}")
 
     def gap_at(pressure: float) -> float:
-        if not (error := float(solver.solve(pressure))) <= _TOLERANCE:
-            raise RunError(f"boundary elements stopped at an error of {error:g}; give a lower pressure")
+        solve(pressure, tamaas.PolonskyKeerRey.pressure)
         gap, traction = model.displacement[...] - heights, model.traction[...]
         return float(gap.mean() - (gap * traction).sum() / traction.sum())
 
-    p = pressed.pressure / pressed.E_star
+    if pressed.separation is None:
+        p = pressed.pressure / pressed.E_star
+    else:  # of its tractions, which do not vanish outside of contact, the mean alone is of use
+        solve(pressed.separation / side, tamaas.PolonskyKeerRey.gap)
+        p = float(model.traction[...].mean())
+        model.traction[...] = 0
     gap, touching = gap_at(p), model.traction[...] > 0
     stiffness = (_STEP - 1) * p / (gap - gap_at(_STEP * p)) * pressed.E_star * pressed.size[0]
     area = rimless(touching) * pressed.size[0] * pressed.size[1]
-    return pressed.values(area, stiffness, gap * side)
+    return pressed.values(area, stiffness, p * pressed.E_star, gap * side)
 
 
 def rimless(touching: Marks) -> float:
