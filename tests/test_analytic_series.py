@@ -115,6 +115,16 @@ def test_zeros_are_found_where_the_sign_changes():
     assert PiecewiseSeries([0, 1, 2], [[0.0], [1.0, 1.0]]).zeros == ()
 
 
+def test_a_zero_is_no_reason_for_narrow_pieces():
+    """Digits are those of the largest value within 1/64: a curve through zero or a decade needs few pieces."""
+    for function in (lambda s: s - 1.3, lambda s: np.sin(3 * s), lambda s: np.exp(200 * (s - 3))):
+        series = resolved(Custom(function), 0.0, 3.0)
+        assert np.diff(series.edges).min() >= 1 / 128
+        s = np.linspace(0, 3, 4001)
+        near = np.max([np.abs(function(np.clip(s + d, 0, 3))) for d in (-1 / 64, 0, 1 / 64)], axis=0)
+        assert np.all(np.abs(series(s) - function(s)) <= 2e-16 + (1e-13 + 800 * np.spacing(s)) * near)
+
+
 @pytest.mark.parametrize("function", [
     lambda s: (s - 1) ** 2, lambda s: np.maximum(s - 1, 0), lambda s: np.abs(s - 1.3),
     lambda s: 1 - np.tanh(s), lambda s: np.exp(-50 * (s - 1) ** 2), lambda s: np.where(s > 0.3, 1.0, 0.0),

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 from scipy.optimize import brentq
+from scipy.signal import get_window
 
 import mcgw
 from mcgw.elasticity import elastic as public
@@ -14,6 +15,7 @@ from mcgw.elasticity.grid import Grid
 from mcgw.elasticity.levels import LEVELS, Level, Pressed, alone, located
 from mcgw.elasticity.located import Located
 from mcgw.elasticity.multilevel import design, differences, mean_of, terms_of
+from mcgw.elasticity.sources import maps_of
 from mcgw.elasticity.spots import HertzSpots, LawSpots, field_beyond_point
 from mcgw.maps.synthetic import Spectrum
 from mcgw.maps.topography import Topography
@@ -277,6 +279,50 @@ def cheap(monkeypatch):
 
     levels = (*LEVELS[:2], Level("elastic", "stand-in", solve))
     monkeypatch.setattr(public, "LEVELS", levels)
+
+
+class TestSources:
+    """What maps are taken of a source, and what is said of them."""
+
+    @pytest.mark.parametrize("periodic", [True, False])
+    def test_surrogates_have_the_spectrum_of_the_map(self, periodic, rng):
+        """Each wave's mean square over 2000 of them, within five standard errors; one that is off is seen."""
+        z = rng.standard_normal((8, 12)) + 3.0
+        window = np.ones(z.shape)
+        if not periodic:
+            window = np.sqrt(np.outer(*(get_window("hann", n) for n in z.shape)))
+            window /= np.sqrt((window**2).mean())
+        power = np.abs(np.fft.rfft2((z - z.mean()) * window)) ** 2
+        maps = maps_of(Topography(z, (1e-6, 2e-6), periodic))
+        drawn = np.array([maps.heights(i, 5) for i in range(2000)])
+        seen = np.abs(np.fft.rfft2(drawn)) ** 2
+        error = seen.std(axis=0) / math.sqrt(len(seen))
+        assert maps.number is None
+        assert maps.size == pytest.approx((12e-6, 16e-6))
+        assert_allclose(drawn.mean(axis=(1, 2)), 0, atol=1e-14)
+        off = np.abs(seen - power).mean(axis=(1, 2))  # not the map itself
+        assert off.min() > 0.1 * power.mean()
+        z_scores = ((seen.mean(axis=0) - power) / np.where(error > 0, error, 1)).ravel()[1:]
+        assert np.abs(z_scores).max() < 5
+        assert np.abs((seen.mean(axis=0) - 1.2 * power) / np.where(error > 0, error, 1)).max() > 5
+
+    def test_an_answer_says_of_which_maps_it_is(self, rng, cheap):
+        draw = mcgw.maps.synthetic.gaussian_map
+        maps = [draw(SPECTRUM, (48, 48), (1e-6, 1e-6), rng) for _ in range(4)]
+        asked = {"pressure": 5e7, "E_star": 1e11, "solves": 4, "pilot": 4}
+        for source, said in (
+            (SPECTRUM, "Gaussian maps of 64 x 64 points, 4e-05 m wide"),
+            (maps[0], "Gaussian maps of the measured map's spectrum"),
+            (maps, "the 4 maps that were given"),
+        ):
+            assert f"Elastic mean over {said}" in repr(mcgw.elastic(source, **asked))
+
+    @pytest.mark.parametrize(("size", "periodic"), [(1e-6, False), (2e-6, True), (None, True)])
+    def test_maps_of_a_list_are_alike_and_periodic(self, size, periodic):
+        flat = Topography(np.arange(12.0).reshape(3, 4), (1e-6, 1e-6), True)
+        with pytest.raises(ValueError, match="a list of maps: give periodic ones, one or more, all of one"):
+            maps_of([flat, Topography(flat.heights, (size, size), periodic)] if size else [])
+        assert_allclose(maps_of([flat, flat]).heights(1, 0).ravel(), np.arange(12) - 5.5)
 
 
 @pytest.mark.usefixtures("cheap")
