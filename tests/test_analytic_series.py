@@ -116,7 +116,7 @@ def test_zeros_are_found_where_the_sign_changes():
 
 
 def test_a_zero_is_no_reason_for_narrow_pieces():
-    """Digits are those of the largest value within 1/64: a curve through zero or a decade needs few pieces."""
+    """Digits are those of the largest value within 1/64: zeros and decades need few pieces."""
     for function in (lambda s: s - 1.3, lambda s: np.sin(3 * s), lambda s: np.exp(200 * (s - 3))):
         series = resolved(Custom(function), 0.0, 3.0)
         assert np.diff(series.edges).min() >= 1 / 128

@@ -306,7 +306,8 @@ class TestSources:
         assert np.abs(z_scores).max() < 5
         assert np.abs((seen.mean(axis=0) - 1.2 * power) / np.where(error > 0, error, 1)).max() > 5
 
-    def test_an_answer_says_of_which_maps_it_is(self, rng, cheap):
+    @pytest.mark.usefixtures("cheap")
+    def test_an_answer_says_of_which_maps_it_is(self, rng):
         draw = mcgw.maps.synthetic.gaussian_map
         maps = [draw(SPECTRUM, (48, 48), (1e-6, 1e-6), rng) for _ in range(4)]
         asked = {"pressure": 5e7, "E_star": 1e11, "solves": 4, "pilot": 4}
