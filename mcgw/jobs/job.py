@@ -62,12 +62,7 @@ class Job:
         """
         check_output(path)
         one = reducer_of(scene)
-        record = RunFolder.of(parts_of(path), scene, one.sampler.name, _plan((one,)))
-        if record.scene != scene:
-            raise StoreError(
-                f"{path}: this scene would be read otherwise than it is; give the values it shows"
-            )
-        return cls(record, (one,))
+        return cls(RunFolder.of(parts_of(path), scene, one.sampler.name, _plan((one,))), (one,))
 
     @classmethod
     def of_sweep(cls, asked: "Asked", path: Path) -> "Job":

@@ -18,7 +18,7 @@ from mcgw.jobs.merging import merge_once
 from mcgw.machine.progress import Progress
 from mcgw.scene.arguments import check_object
 from mcgw.scene.scene import Scene
-from mcgw.store.ensembles import open_ensemble
+from mcgw.store.ensembles import ensemble_in, open_ensemble
 from mcgw.store.lock import locked
 from mcgw.store.place import drop_leftovers, tidy, with_recorded_seed
 from mcgw.store.run_folder import RunFolder
@@ -126,10 +126,11 @@ def run(
             return make(Job.of(without_rule(scene) if scene.rel_err is not None else scene, path), by, part)
         started = monotonic()
         for stage in _stages(scene, path):
-            make(Job.of(stage, path), by)
+            job = Job.of(stage, path)
+            make(job, by)
             if scene.max_seconds is not None and monotonic() - started > scene.max_seconds:
                 break
-    return open_ensemble(path)
+    return ensemble_in(path, job.record.scene, job.record.sampler)
 
 
 def _stages(scene: Scene, path: Path) -> Iterator[Scene]:

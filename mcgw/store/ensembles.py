@@ -79,12 +79,17 @@ def open_ensemble(path: str | Path) -> Ensemble:
     attributes, scene = described(path)
     if "axes" in attributes:
         raise StoreError(f"{path}: holds a sweep; mcgw.open_sweep opens it")
+    return ensemble_in(path, scene, str(attributes["sampler"]), _drawn_for(path, attributes))
+
+
+def ensemble_in(path: Path, scene: Scene, sampler: str, drawn_for: Scene | None = None) -> Ensemble:
+    """The ensemble of a file that is known to hold it."""
     results: Held = FileResults(path)
     if scene.keep == "statistics":
         from mcgw.store.statistics_file import read_blocks
 
         results = read_blocks(path, scene)
-    return Ensemble(scene, str(attributes["sampler"]), results, _drawn_for(path, attributes))
+    return Ensemble(scene, sampler, results, drawn_for)
 
 
 def _drawn_for(path: Path, attributes: dict[str, Any]) -> Scene | None:

@@ -23,6 +23,7 @@ from pathlib import Path
 
 import tomli_w
 
+from analytic.arrays import hold
 from mcgw.errors import RunError, StoreError
 from mcgw.formats.files import Expected, sync, write_whole
 from mcgw.formats.named_files import loads
@@ -77,7 +78,9 @@ class RunFolder:
     def of(cls, folder: Path, scene: Scene, sampler: str, plan: Plan) -> "RunFolder":
         """That of one scene; nothing is written yet."""
         draws, identity = drawn_with(scene, sampler), identity_of(scene, sampler)
-        return cls(folder, stored_text(scene), "", sampler, plan, identity, draws, now())
+        run = cls(folder, stored_text(scene), "", sampler, plan, identity, draws, now())
+        hold(run, scene=scene)  # which a file gives back (`scene_text`)
+        return run
 
     @cached_property
     def scene(self) -> Scene:
