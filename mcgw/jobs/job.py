@@ -26,8 +26,9 @@ from mcgw.sampling.samplers import name_of
 from mcgw.scene.scene import Scene
 from mcgw.scene.storable import storable
 from mcgw.store.disk import parts_of
+from mcgw.store.ensembles import described
 from mcgw.store.identity import difference, drawn_with, now
-from mcgw.store.place import held_by, recorded_scene
+from mcgw.store.place import finished, recorded_scene
 from mcgw.store.run_folder import RunFolder
 from mcgw.store.saving import body_of
 from mcgw.store.shards import Plan, Span, commit_shard
@@ -105,43 +106,44 @@ class Job:
         self.done()
         for one in self.reducers:
             one.check()
-        there = [self.path, *self.record.folder.glob("shards/block-*.h5")]
+        path = self.record.path
+        there = [path, *self.record.folder.glob("shards/block-*.h5")]
         held = sum(file.stat().st_size for file in there if file.is_file())
-        needed, free = sum(one.disk for one in self.reducers) - held, shutil.disk_usage(self.path.parent).free
+        needed, free = (
+            sum(one.disk for one in self.reducers) - held,
+            shutil.disk_usage(path.parent).free,
+        )
         if needed > free:
             raise StoreError(
-                f"{self.path}: needs up to {gibibytes(needed)} more on the disk while made and "
+                f"{path}: needs up to {gibibytes(needed)} more on the disk while made and "
                 f"{gibibytes(free)} are free; make room, choose another -o, or ask for fewer surfaces or "
                 "separations"
             )
 
-    @property
-    def path(self) -> Path:
-        """The file to be."""
-        return self.record.path
-
-    @property
-    def plan(self) -> Plan:
-        """Blocks of all surfaces that are asked for."""
-        return self.record.plan
-
     def done(self) -> int:
-        """Surfaces that its file holds.
+        """Surfaces that its file holds; of a sweep all or none.
 
         Raises
         ------
         StoreError
             If the file is another's, damaged, or holds more than is asked.
         """
-        return held_by(self.path, self.record)
+        run = self.record
+        if not run.axes or not run.path.exists():
+            return finished(run.path, run.scene, run.sampler)
+        if described(run.path)[0].get("run") != run.identity:
+            raise StoreError(
+                f"{run.path}: holds something else than this sweep; choose another -o, or remove it"
+            )
+        return run.plan.total
 
     def work(self, span: Span) -> float:
         """What some surfaces of one group take, in any unit."""
-        return span.n * self.reducers[self.plan.group(span)[0]].work
+        return span.n * self.reducers[self.record.plan.group(span)[0]].work
 
     def draw(self, span: Span, threads: int | None) -> Tables:
         """What is kept of some surfaces of one group; it does not depend on `threads`."""
-        g, first = self.plan.group(span)
+        g, first = self.record.plan.group(span)
         with use_threads(threads):
             return self.reducers[g].tables(first, first + span.n)
 

@@ -79,7 +79,7 @@ def merge(path: str | Path) -> "Ensemble | Sweep":
 
 def merge_once(job: Job, signals: Signals) -> bool:
     """Make the file and remove the shards; False if a shard turned out damaged. Only with the lock."""
-    started, path = job.record, job.path
+    started, path = job.record, job.record.path
     temporary, before = temporary_beside(started.folder / path.name), state_of(path)
     job.done()
 
@@ -127,7 +127,7 @@ def _merge_in_memory(job: Job, temporary: Path, check: Callable[[], None]) -> No
         If the disk does not take it.
     """
     run = job.record
-    before, seconds = whole_blocks(job.path, run)
+    before, seconds = whole_blocks(job.record.path, run)
     shards = {shard.span: shard for shard in run.shards(bodies=False)}
     spans = run.missing(sum(block.n for block in before), [])
     if lost := [span for span in spans if span not in shards]:

@@ -168,13 +168,13 @@ def make(job: Job, by: By, part: Part | None = None) -> int:
         If it could not be finished; what is done is kept.
     """
     job.check()
-    total, blocks, folder = job.plan.total, job.plan.missing([]), job.record.folder
+    total, blocks, folder = job.record.plan.total, job.record.plan.missing([]), job.record.folder
     if job.done() < total:
         if part:
-            tidy(job.path)
+            tidy(job.record.path)
         with by.at_work() as at_work, locked(folder, shared=part is not None):
             if not part:
-                drop_leftovers(job.path)
+                drop_leftovers(job.record.path)
             if job.done() < total:  # no other process was quicker
                 with _what_is_kept(job):
                     if part:
@@ -184,7 +184,7 @@ def make(job: Job, by: By, part: Part | None = None) -> int:
                     else:
                         _in_blocks(job, at_work)
                 return 0
-    tidy(job.path)
+    tidy(job.record.path)
     by.progress(sum(map(job.work, blocks)))
     return 0
 
@@ -192,13 +192,13 @@ def make(job: Job, by: By, part: Part | None = None) -> int:
 def _at_once(job: Job, by: By) -> None:
     """All surfaces as one block, and their file in one step. Only with the lock."""
     answers: list[Any] = []
-    started, (span,) = perf_counter(), job.plan.missing([])
+    started, (span,) = perf_counter(), job.record.plan.missing([])
     by.progress(0)
     by.drive([span], job.draw, lambda span: (span, by.threads), lambda _, tables: answers.append(tables))
     by.signals.check("nothing was kept, the run is one block; the same command starts it again")
-    before = state_of(job.path)
+    before = state_of(job.record.path)
     job.done()  # or what is there now is another's
-    write_body(job.path, job.body([(0, answers[0])], perf_counter() - started), before)
+    write_body(job.record.path, job.body([(0, answers[0])], perf_counter() - started), before)
     by.progress(job.work(span))
 
 
@@ -236,7 +236,7 @@ def _what_is_kept(job: Job) -> Iterator[None]:
         yield
     except OSError as error:
         raise RunError(
-            f"{error.filename or job.path}: {error.strerror or error}; finished blocks are kept in "
+            f"{error.filename or job.record.path}: {error.strerror or error}; finished blocks are kept in "
             f"{job.record.folder}, the same command resumes once that is mended"
         ) from None
 

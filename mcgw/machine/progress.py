@@ -31,7 +31,7 @@ def told(progress: Progress, unit: str, beside: str = "") -> Iterator[Tell]:
     elif callable(progress):
         yield progress
     elif progress in (None, False):
-        yield _nobody
+        yield lambda *_: None
     else:
         raise ValueError(f"progress = {progress!r}: give True, or a function of (done, total)")
 
@@ -43,7 +43,7 @@ def bar(unit: str, beside: str = "", *, terminal: bool = False) -> Iterator[Tell
     Its rate is that of this call: what was done before counts as given.
     """
     if terminal and not (sys.stderr.isatty() and _WATCHED.get()):
-        yield _nobody
+        yield lambda *_: None
         return
     from tqdm import tqdm
 
@@ -92,7 +92,3 @@ def stages(number: int, unit: str = "steps") -> Iterator[Callable[[], Any]]:
         tell(0, number)
         finished = count(1)
         yield lambda: tell(next(finished), number)
-
-
-def _nobody(done: float, total: float) -> None:
-    """Tell nobody."""

@@ -135,7 +135,7 @@ class Sampler:
     @property
     def words(self) -> int:
         """As of any `Source`."""
-        return self.moments + 2 * self.cells + _WORDS * int(min(self.outside, 1e12))
+        return self.moments + 2 * self.mesh.size + _WORDS * int(min(self.outside, 1e12))
 
     @property
     def draws(self) -> float:

@@ -28,7 +28,7 @@ from mcgw.sampling.counts import Counts, counts_of, strata_of
 from mcgw.sampling.direct import Direct
 from mcgw.sampling.drawing import CROWDED, VARYING, Crowds, OneByOne
 from mcgw.sampling.outside import table_of
-from mcgw.sampling.response.response import Response, layout_of, response_of
+from mcgw.sampling.response.response import Response, parts_of, response_of
 from mcgw.sampling.response.tree import Precision
 from mcgw.sampling.response.walk import UnresolvedError
 from mcgw.sampling.stretches import begins_and_breaks
@@ -148,8 +148,8 @@ def aggregate_of(scene: Scene, crowded: int = CROWDED, distance: float = np.nan)
     varying = response.layout
     if scene.keep != "moments":
         with suppress(UnresolvedError):  # all of them vary where cells are too wide to tell
-            needed = layout_of(scene, mesh, _summed(scene.quantities), precision=Precision(VARYING))
-            varying = needed.at_most(response.layout)
+            needed = parts_of(scene, mesh, _summed(scene.quantities), Precision(VARYING))
+            varying = needed.layout.at_most(response.layout)
     return Counted("aggregate", scene, mesh, response, drawing=Crowds(varying, crowded, distance))
 
 
@@ -270,10 +270,8 @@ def _lasting_layout(scene: Scene, mesh: Mesh, power: float | None) -> Layout:
     )
     others = [replace(plainly, grading=Exponential(gamma)) for gamma in (2.0, 0.5, 0.0)]
     precision = Precision(series_accuracy(scene.accuracy), not scene.exact)
-    layouts = [
-        layout_of(x, mesh, _every_sum(x, power), lasting=True, precision=precision) for x in (scene, *others)
-    ]
-    most = Layout.covering(layouts)
+    needed = (parts_of(x, mesh, _every_sum(x, power), precision, lasting=True) for x in (scene, *others))
+    most = Layout.covering([parts.layout for parts in needed])
     return Layout(most.plain + 1, most.rooted + 1)  # one in reserve
 
 

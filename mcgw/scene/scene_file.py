@@ -198,7 +198,7 @@ def scene_document(scene: Scene, *, heights_file: str | None = None, left_out: b
         | _written(scene, "surface"),
         "grading": {**grading_table(scene.grading), "negative": scene.negative},
         "heights": {} if listed else heights_table(scene.heights, heights_file),
-        "summits": summits_table(scene.curvature, scene.surface, heights_file),
+        "summits": scene.curvature and summits_table(scene.curvature, scene.surface, heights_file),
         "contact": {**contact_law_table(scene.law), **_written(scene.film), **_written(scene, "contact")},
         **{name: _written(getattr(scene, name), name) for name, table in TABLES.items() if table.make},
         "ensemble": _written(scene, "ensemble"),

@@ -28,8 +28,9 @@ def storable(scene: AnyScene) -> AnyScene:
     SceneError
         If the grading cannot be resolved, as one that is noisy.
     """
-    changes = in_numbers(scene)
-    return replace(scene, **changes) if changes else scene
+    if scene.law.is_data and is_data(scene.grading):
+        return scene
+    return replace(scene, **in_numbers(scene))
 
 
 def in_numbers(scene: Fields) -> dict[str, Any]:

@@ -160,15 +160,13 @@ def _checked(heights: Any, radii: Any) -> tuple[Array, Array]:
 
 
 def summits_table(
-    curvature: RandomCurvature | MeasuredRadii | None, surface: Surface, file: str | None = None
+    curvature: RandomCurvature | MeasuredRadii, surface: Surface, file: str | None = None
 ) -> dict[str, Any]:
-    """The table [summits], read again the same; empty where all summits have one radius.
+    """The table [summits], read again the same, of summits that have radii of their own.
 
     Measured ones are given by the name of their file, if they have one; else radii stand there over that of
     the surface, which has a last digit of its own.
     """
-    if curvature is None:
-        return {}
     if isinstance(curvature, MeasuredRadii):
         lists = {"heights": list(curvature.heights.heights), "ratios": list(curvature.ratios)}
         return {**(lists if file is None else {"file": file}), "resample": curvature.heights.resampled}

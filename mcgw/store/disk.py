@@ -23,11 +23,6 @@ def parts_of(path: Path) -> Path:
     return path.with_name(f"{path.name}.parts")
 
 
-def file_of(folder: Path) -> Path:
-    """File that a run in this folder makes."""
-    return folder.with_name(folder.name.removesuffix(".parts"))
-
-
 class SteadyFile:
     """A new file for the HDF5 library that never shows it an error, for it may crash on one.
 

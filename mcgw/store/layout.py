@@ -1,9 +1,9 @@
 """How an ensemble lies in its HDF5 file; the schema is written out in `mcgw.store`."""
 
 import hashlib
-import io
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from itertools import chain
 from typing import Any
 
 import h5py
@@ -20,7 +20,7 @@ from mcgw.store.chunks import PACKED, add_rows, empty_table
 from mcgw.store.disk import trailer_of
 from mcgw.store.identity import now, provenance
 from mcgw.store.shards import DRAWN, RAGGED, Span, content_digest, in_memory
-from mcgw.store.structure import GROUP, MOST_TEXT, check_plain, head_digest
+from mcgw.store.structure import GROUP, MOST_TEXT, head_digest
 
 FILETYPE, FORMAT = "mcgw-results", (2, 0)
 
@@ -50,7 +50,12 @@ def fill(file: h5py.File, scene: Scene, pieces: Iterable[tuple[Span, Stored]]) -
             raise StoreError(f"surfaces {stop} ... {span.first - 1} are missing")
         if not stop:
             _lay_out(file, scene, tables)
-        _put(file, span, tables)
+        for name, table in tables.items():
+            data, first = file[where(name)], span.first
+            if name == RAGGED:
+                first = len(data)
+                data.resize(first + len(table), axis=0)
+            add_rows(data, first, table)
         stop = span.stop
     if stop != scene.n_surfaces:
         raise StoreError(f"{stop} surfaces, not {scene.n_surfaces}")
@@ -115,38 +120,16 @@ def numbers(scale: Sequence[float], most: int | None = None) -> NDArray[Any]:
     return np.arange(first.start, first.stop) if isinstance(first, range) else np.array(first)
 
 
-class _Digest:
-    """SHA-256 over a scene and named tables that come in pieces: not over the bytes of a container."""
-
-    def __init__(self, scene: Scene) -> None:
-        self._scene = scene_text(scene, left_out=False)
-        self._tables: dict[str, Any] = {}
-
-    def add(self, name: str, values: NDArray[Any]) -> None:
-        """More rows of a table."""
-        plain = np.ascontiguousarray(values, dtype=values.dtype.newbyteorder("<"))
-        if name not in self._tables:
-            self._tables[name] = [hashlib.sha256(f"{plain.dtype.str} {plain.shape[1:]}".encode()), 0]
-        table = self._tables[name]
-        table[0].update(plain.reshape(-1))
-        table[1] += len(plain)
-
-    def hexdigest(self) -> str:
-        """Of the scene, and of the names, numbers of rows, types and values of the tables."""
-        lines = [f"{name} {rows} {sha.hexdigest()}" for name, (sha, rows) in sorted(self._tables.items())]
-        return hashlib.sha256("\n".join([self._scene, *lines]).encode()).hexdigest()
-
-
-def trailer_notes(file: h5py.File) -> dict[str, str]:
-    """What the trailer of a file says besides its length and digest."""
-    return {"head": head_digest(file, check_plain(file))}
-
-
 def sealed(make: Callable[[h5py.File], Any]) -> tuple[bytes, bytes]:
     """A small file that is made in memory, and its trailer."""
-    body = in_memory(make)
-    with h5py.File(io.BytesIO(body), "r") as file:
-        return body, trailer_of(body, **trailer_notes(file))
+    notes = {}
+
+    def whole(file: h5py.File) -> None:
+        make(file)
+        notes["head"] = head_digest(file)
+
+    body = in_memory(whole)
+    return body, trailer_of(body, **notes)
 
 
 def body_of_kept(
@@ -180,15 +163,25 @@ def _packed(values: NDArray[Any]) -> dict[str, Any]:
 
 
 def digest_of(file: h5py.File, scene: Scene, pieces: Iterable[Tables]) -> str:
-    """Digest of a scene, of the scales in its file, and of tables that come in pieces, in order."""
-    digest = _Digest(scene)
-    for name in filter(file.__contains__, _OF_SURFACES):
-        for start in range(0, len(file[name]), _PIECE // 8):
-            digest.add(name, file[name][start : start + _PIECE // 8])
-    for arrays in pieces:
+    """SHA-256 of a scene, of the scales in its file, and of tables that come in pieces, in order.
+
+    Over names, types, numbers of rows and values: not over the bytes of a container.
+    """
+    scales = (
+        {name: file[name][start : start + _PIECE // 8]}
+        for name in filter(file.__contains__, _OF_SURFACES)
+        for start in range(0, len(file[name]), _PIECE // 8)
+    )
+    tables: dict[str, Any] = {}
+    for arrays in chain(scales, pieces):
         for name, values in arrays.items():
-            digest.add(name, values)
-    return digest.hexdigest()
+            plain = np.ascontiguousarray(values, dtype=values.dtype.newbyteorder("<"))
+            if name not in tables:
+                tables[name] = [hashlib.sha256(f"{plain.dtype.str} {plain.shape[1:]}".encode()), 0]
+            tables[name][0].update(plain.reshape(-1))
+            tables[name][1] += len(plain)
+    lines = [f"{name} {rows} {sha.hexdigest()}" for name, (sha, rows) in sorted(tables.items())]
+    return hashlib.sha256("\n".join([scene_text(scene, left_out=False), *lines]).encode()).hexdigest()
 
 
 def drawn_tables(file: h5py.File) -> Tables:
@@ -238,12 +231,3 @@ def _scale(file: h5py.File, name: str, values: NDArray[Any], unit: str, long_nam
     scale = file.create_dataset(name, data=values, chunks=chunks, **PACKED)
     scale.attrs.update(units=unit, long_name=long_name)
     scale.make_scale(name)
-
-
-def _put(file: h5py.File, span: Span, tables: Stored) -> None:
-    for name, table in tables.items():
-        data, first = file[where(name)], span.first
-        if name == RAGGED:
-            first = len(data)
-            data.resize(first + len(table), axis=0)
-        add_rows(data, first, table)

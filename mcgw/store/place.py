@@ -38,21 +38,6 @@ def recorded_seed(path: Path) -> int | None:
     return there.seed if there else None
 
 
-def held_by(path: Path, run: RunFolder) -> int:
-    """Number of surfaces that a file holds of a run; of a sweep all or none.
-
-    Raises
-    ------
-    StoreError
-        As `finished`.
-    """
-    if not run.axes or not path.exists():
-        return finished(path, run.scene, run.sampler)
-    if described(path)[0].get("run") != run.identity:
-        raise StoreError(f"{path}: holds something else than this sweep; choose another -o, or remove it")
-    return run.plan.total
-
-
 def whole_blocks(path: Path, run: RunFolder) -> tuple[list["Summary"], float]:
     """Of a file that keeps statistics, the joined blocks that more may follow; and the seconds all took."""
     if run.axes or not path.exists():

@@ -30,7 +30,6 @@ from mcgw.formats.named_files import loads
 from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_from
 from mcgw.scene.section import SceneError
-from mcgw.store.disk import file_of
 from mcgw.store.identity import difference, drawn_with, identity_of, now
 from mcgw.store.layout import stored_text
 from mcgw.store.lock import refuse_link
@@ -90,7 +89,7 @@ class RunFolder:
     @property
     def path(self) -> Path:
         """The file that it makes."""
-        return file_of(self.folder)
+        return self.folder.with_name(self.folder.name.removesuffix(".parts"))  # of `parts_of`
 
     @property
     def shards_folder(self) -> Path:

@@ -34,12 +34,12 @@ from mcgw.store.layout import (
     rows_of,
     sealed,
     stored_tables,
-    trailer_notes,
 )
 from mcgw.store.lock import locked
 from mcgw.store.place import finished
 from mcgw.store.run_folder import RunFolder
 from mcgw.store.shards import DRAWN, LIBVER, Shard, Span, content_digest, tables_in
+from mcgw.store.structure import head_digest
 
 _CACHE = 2**25  # of chunks that a shard fills only in part
 
@@ -128,7 +128,7 @@ def body_of(ensemble: Ensemble, **about: Any) -> tuple[bytes, bytes]:
     arrays = {name: ensemble.sums.read(name, 0, None) for name in names}
 
     def make(file: h5py.File) -> None:
-        fill(file, scene, [(Span(0, ensemble.n_surfaces), arrays)])
+        fill(file, scene, [(Span(0, ensemble.sums.rows()), arrays)])
         describe(file, scene, ensemble.sampler, digest_of(file, scene, [arrays]), **about)
 
     return sealed(make)
@@ -186,7 +186,7 @@ def _write(
     with h5py.File(path, "r") as file:
         if file.attrs["digest"] != digest:
             raise OSError(f"{path}: reads otherwise than written")
-        notes = trailer_notes(file)
+        notes = {"head": head_digest(file)}
     length = path.stat().st_size
     raw.trailer(Trailer(length, sha256_of(path, length), notes).to_bytes())
 

@@ -19,7 +19,7 @@ import hashlib
 import json
 import math
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -126,7 +126,7 @@ def describe(path: str, *, read: bool = True) -> dict[str, Any]:
                 for start in range(0, data.shape[0], step):
                     data[start : start + step]
         found = {name: [file[name].dtype.str, list(file[name].shape)] for name in names}
-        return {"attributes": attributes, "datasets": found, "head": head_digest(file, names)}
+        return {"attributes": attributes, "datasets": found, "head": head_digest(file)}
 
 
 def _plain_value(name: str, attributes: Any) -> Any:
@@ -161,10 +161,11 @@ def _main(path: str, memory: int) -> None:
     sys.stdout.write(json.dumps(answer) + "\n")
 
 
-def head_digest(file: h5py.File, names: Sequence[str]) -> str:
-    """SHA-256 of the head, with tables of these paths; it does not depend on how HDF5 laid out the file."""
+def head_digest(file: h5py.File) -> str:
+    """SHA-256 of the head of a plain file; it does not depend on how HDF5 laid it out."""
     lines = [*_attributes("/", file.attrs)]
-    for name in sorted(names):
+    names = {*file, *(f"{GROUP}/{name}" for name in file.get(GROUP, ()))}
+    for name in sorted(names - {GROUP}):
         lines += _table(name, file[name])
     return hashlib.sha256("\n".join(lines).encode()).hexdigest()
 

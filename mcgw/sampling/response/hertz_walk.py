@@ -41,10 +41,14 @@ class HertzWalk:
     """
 
     def __init__(self, tree: Tree, nodes: Nodes, rows: Rows, formulas: Powers) -> None:
-        self._links = tree.left, tree.right, nodes.broken, nodes.end
-        self._nodes = nodes.start, nodes.above, nodes.moduli
-        self._rows = rows.h, rows.rooted, rows.graded, formulas.exponent, formulas.scale
-        self._limits = nodes.limits(rows)
+        self._rows = len(rows.h) if tree.left.size else 0
+        self._of = (
+            (rows.h, rows.rooted, rows.graded, formulas.exponent, formulas.scale),
+            (tree.left, tree.right, nodes.broken, nodes.end),
+            (nodes.start, nodes.above, nodes.moduli),
+            nodes.limits(rows),
+            TABLES,
+        )
 
     def entries(self) -> tuple[Entries, Ints, Ints, Array, float]:
         """What each node gives; how many T_j and R_j it must have; where that fails.
@@ -52,10 +56,9 @@ class HertzWalk:
         The last two are starts of cells on which a row is not resolved, the lowest among them, and the lowest
         separation that is not an edge; infinite if there is none.
         """
-        rows = len(self._rows[0]) if self._links[0].size else 0
-        parts = in_threads(
-            lambda first: self._walked((first, min(first + _ROWS, rows)), _NONE, _NONE),
-            range(0, max(rows, 1), _ROWS),
+        parts: list[Any] = in_threads(
+            lambda first: _walk((first, min(first + _ROWS, self._rows)), _NONE, _NONE, *self._of),
+            range(0, max(self._rows, 1), _ROWS),
         )
         found, coefficients, plain, rooted, unresolved, inside, _ = zip(*parts, strict=True)
         node, row, root, length = np.concatenate(found).reshape(-1, 4).T.copy()
@@ -66,10 +69,7 @@ class HertzWalk:
 
     def needed(self, node: Ints, row: Ints) -> Ints:
         """Moments that each of these nodes needs for a row that is smooth on it."""
-        return np.asarray(self._walked((0, 0), node, row)[-1])
-
-    def _walked(self, ends: tuple[int, int], node: Ints, row: Ints) -> tuple[Any, ...]:
-        return tuple(_walk(ends, node, row, self._rows, self._links, self._nodes, self._limits, TABLES))
+        return np.asarray(_walk((0, 0), node, row, *self._of)[-1])
 
 
 @njit()

@@ -54,29 +54,6 @@ class Tiles:
     computed: Ints
     answers: Ints
 
-    @classmethod
-    def of(cls, first: Lines, second: Lines, given: Ints, answers: Ints) -> "Tiles":
-        """Gather the lines of rows, each of which needs given rows and rows of earlier groups.
-
-        Parameters
-        ----------
-        first, second : Lines
-            Their rows and columns count the rows of `given`, then those of `answers`.
-        given : ndarray of int
-            The given row that each one is, -1 for zeros; shape (groups, 4).
-        answers : ndarray of int
-            Which answer each computed row is, -1 for none; shape (groups, 4).
-
-        Returns
-        -------
-        Tiles
-            In the order of the sweep.
-        """
-        order, fetches, ends, fetched, tile_ends, used, values, computed = gathered(
-            first, second, len(given), len(answers)
-        )
-        return cls(given[fetches], ends, fetched, tile_ends, used, values, computed, answers[order])
-
     def apply(self, given: Array, shape: tuple[int, int]) -> Array:
         """Answers.
 
@@ -212,7 +189,10 @@ def tiles_of(parts: Parts, order: Ints) -> Tiles:
     to_answers = Lines(row, start, length, entries.start, entries.coefficients)
     answers = np.full(rows.end - rows.given.size + in_fours(len(order)), -1)  # what each computed row is
     answers[rows.end - rows.given.size :][: len(order)] = order
-    return Tiles.of(to_parents, to_answers, rows.given, answers.reshape(-1, FOUR))
+    given, computed = rows.given, answers.reshape(-1, FOUR)
+    found = gathered(to_parents, to_answers, len(given), len(computed))
+    step, fetches, ends, fetched, tile_ends, used, values, at = found
+    return Tiles(given[fetches], ends, fetched, tile_ends, used, values, at, computed[step])
 
 
 @dataclass(frozen=True)

@@ -95,7 +95,7 @@ def response_of(
     ValueError
         If the grading is not resolved on a cell, or not by the moments there are.
     """
-    parts = _parts(scene, mesh, quantities, precision, lasting=kept is not None)
+    parts = parts_of(scene, mesh, quantities, precision, lasting=kept is not None)
     if kept:
         short = (parts.layout.plain > kept.plain) | (parts.layout.rooted > kept.rooted)
         if short.any():
@@ -109,40 +109,18 @@ def response_of(
     return Response(parts.layout, tiles_of(parts, parts.rows.order(shape[0] * shape[1])), shape)
 
 
-def layout_of(
-    scene: Scene,
-    mesh: Mesh,
-    quantities: tuple[str, ...],
-    *,
-    lasting: bool = False,
-    precision: Precision = LAST_DIGITS,
-) -> Layout:
-    """Moments that a response would need, without making it.
+def parts_of(
+    scene: Scene, mesh: Mesh, quantities: tuple[str, ...], precision: Precision, *, lasting: bool = False
+) -> Parts:
+    """Series of what is asked, each separation once, in increasing order, and the moments that they need.
 
-    Parameters
-    ----------
-    scene, mesh, quantities, precision
-        As for a response.
-    lasting : bool, optional
-        Resolve the laws for surfaces of any number of contacts.
-
-    Returns
-    -------
-    Layout
-        Of the cells of the mesh.
+    With `lasting` the laws are resolved for surfaces of any number of contacts.
 
     Raises
     ------
     ValueError
         If the grading is not resolved on a cell.
     """
-    return _parts(scene, mesh, quantities, precision, lasting=lasting).layout
-
-
-def _parts(
-    scene: Scene, mesh: Mesh, quantities: tuple[str, ...], precision: Precision, *, lasting: bool
-) -> Parts:
-    """Series of what is asked, each separation once, in increasing order."""
     if scene.hertzian or not quantities:  # without rows every law is the same
         rows = hertz_rows(scene, quantities, lasting=lasting)
     else:
