@@ -129,7 +129,7 @@ def test_steep_contacts(make_scene):
 
 
 @pytest.mark.parametrize("heights", [analytic.Gaussian(), analytic.ExponentialHeights()])
-@pytest.mark.parametrize("lowest", [0.0, 1.0])
+@pytest.mark.parametrize("lowest", [0.0, 1.0, 8.0])
 def test_a_note_where_contacts_are_deeper_than_the_radius(make_scene, heights, lowest):
     """Given from a share of 1e-3 of the contacts on, which it names; at R <= sigma always."""
     for depth in (1.0, 2.0, 2.5, 3.0, 4.0, 8.0, 9.0):

@@ -91,6 +91,18 @@ def test_a_sealed_file_that_is_no_shard_is_refused(tmp_path):
         open_shard(path, RUN).arrays()
 
 
+@pytest.mark.parametrize(("key", "value"), [("first", -1), ("n", 0), ("n", "many"), ("run", None)])
+def test_a_trailer_that_tells_of_no_block_is_refused(key, value, tmp_path):
+    path, body = tmp_path / SPAN.file_name, pack(arrays())
+    notes = {"run": RUN, "first": 40, "n": 5, "content": content_digest(arrays()), "seconds": 0.0}
+    path.write_bytes(body + trailer_of(body, **notes))
+    assert open_shard(path, RUN).span == SPAN
+    wrong = {k: v for k, v in (notes | {key: value}).items() if v is not None}
+    path.write_bytes(body + trailer_of(body, **wrong))
+    with pytest.raises(StoreError, match="is not a shard$"):
+        open_shard(path, RUN)
+
+
 def test_the_digest_is_of_contents_alone():
     assert content_digest(arrays()) == content_digest(dict(reversed(arrays().items())))
     changed = arrays()

@@ -178,3 +178,30 @@ def test_what_is_advised_keeps_what_was_wished(monkeypatch):
     assert np.mean([one.kept for one in kept]) >= 0.9
     assert min(one.kept for one in kept) >= 0.7
     assert np.mean([one.kept for one in fewer if one.advice.scene.n_surfaces > 300]) < 0.7
+
+
+def test_ways_take_half_of_the_time_and_methods_the_rest(scene, monkeypatch):
+    """By a clock that stands still but for what is measured: 10 s a way, 1 s an error, 100 s in all."""
+    clock, told = [1000.0], []
+
+    def ways(asked):
+        for k in range(20):
+            clock[0] += 10
+            yield Way(asked, f"{k:02}", 0.0, 0.0, 1.0)
+
+    def errors(size, seed):
+        clock[0] += 1
+        return np.zeros(3)
+
+    for name, fake in (
+        ("monotonic", lambda: clock[0]), ("ways_for", ways), ("advise", lambda *_: ()),
+        ("methods_for", lambda *_: (study.Method("made up", "", (1.0, 2.0), None, errors),)),
+        ("perf_counter", lambda: clock[0]), ("peak_growth", lambda call: call() is None),
+    ):  # fmt: skip
+        monkeypatch.setattr(study, name, fake)
+    found = tradeoff(scene, seconds=100, progress=lambda *at: told.append(at))
+    assert [way.sampler for way in found.ways] == ["00", "01", "02", "03", "04", "05"]  # beyond 50 s at once
+    assert told[:6] == [(10.0 * k, 100.0) for k in range(1, 7)]
+    # Each of two sizes once to warm up and once for its memory; then in turn, 18 rounds of 2 s.
+    assert [point.seeds for point in found.points] == [18, 18]
+    assert found.seconds == 100
