@@ -99,7 +99,7 @@ def test_a_trailer_that_tells_of_no_block_is_refused(key, value, tmp_path):
     assert open_shard(path, RUN).span == SPAN
     wrong = {k: v for k, v in (notes | {key: value}).items() if v is not None}
     path.write_bytes(body + trailer_of(body, **wrong))
-    with pytest.raises(StoreError, match="is not a shard$"):
+    with pytest.raises(StoreError, match=r"is not a shard$"):
         open_shard(path, RUN)
 
 
