@@ -100,7 +100,7 @@ def test_the_pass_writes_nothing_beyond_the_room_it_is_given():
     z[::2, ::2] = 1.0
     lists, part = np.full(800, -7.0), np.full(200, -7)
     none, sums = np.empty((0, 0), dtype=np.bool_), np.zeros((9, 4))
-    assert summit_sums._pass(z, none, 1.0, 1.0, 2, sums, lists[:400].reshape(4, 100), part[:100]) == 100
+    assert summit_sums._pass(z, 0.0, none, 1.0, 1.0, 2, sums, lists[:400].reshape(4, 100), part[:100]) == 100
     assert np.all(lists[400:] == -7)
     assert np.all(part[100:] == -7)
 

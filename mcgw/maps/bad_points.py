@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -16,6 +17,7 @@ _STEPS, _CLOSE = 2000, 1e-8
 _REACH = 3  # pixels from a point to the ring around it: a spike is narrower than five
 BENT = 7.0  # usual bends: once in 4e11 points of a Gaussian map
 _OF_MEDIAN = 0.6745  # of a Gaussian deviation
+_ENOUGH = 2**20  # rings tell their median to a thousandth
 _BAND = 64  # rows that are looked at together: what is made of them stays in the cache
 _OUT = 3.0  # ranges of the ring: 12 deviations of white noise beyond it; ridges, pits and peaks stay below
 _MOST = 8  # points from an edge that are looked at
@@ -105,19 +107,20 @@ def spike_heights(topography: Topography) -> Array:
     above = np.zeros(heights.shape)
     if min(heights.shape) <= 2 * _REACH:
         return above
-    ranges, places, found = np.empty(heights.shape), [], []
+    ranges, places, found = [], [], []
     rows = np.pad(np.arange(len(heights)), _REACH, mode="reflect")
     for first in range(0, len(heights), _BAND):
         around = heights[rows[first : first + _BAND + 2 * _REACH]]
         padded = np.pad(around, ((0, 0), (_REACH, _REACH)), mode="reflect")
         low, high = _ring(padded, np.minimum), _ring(padded, np.maximum)
-        here = slice(first, first + _BAND)
-        ranges[here] = high - low
-        out = np.maximum(heights[here] - high, 0.0) + np.minimum(heights[here] - low, 0.0)
-        at = np.flatnonzero(np.abs(out) > _OUT * ranges[here])
+        here, between = heights[first : first + _BAND], high - low
+        ranges.append(between[:: max(heights.size // _ENOUGH, 1)].copy())
+        out = np.maximum(here - high, 0.0) + np.minimum(here - low, 0.0)
+        at = np.flatnonzero(np.abs(out) > _OUT * between)
         places.append(at + first * heights.shape[1])
         found.append(out.ravel()[at])
-    usual = float(np.median(ranges, overwrite_input=True)) or float(ranges.mean())  # 0: most of it is flat
+    some = np.concatenate(ranges)
+    usual = float(np.median(some)) or float(some.mean())  # 0: most of it is flat
     at, out = np.concatenate(places), np.concatenate(found)
     most = np.abs(out) > _OUT * usual
     above.flat[at[most]] = out[most]
@@ -162,16 +165,23 @@ def bad_edges(heights: Array) -> int:
     median over the map. No point may be missing.
     """
     worst = 0
-    for z in (heights, heights.T):
-        if len(z) < _LINES:
+    for jumps in _jumps(heights):
+        if jumps.size + 1 < _LINES:
             continue
-        jumps = np.array([np.sqrt(np.mean((z[k + 1] - z[k]) ** 2)) for k in range(len(z) - 1)])
         wild = jumps > _JUMP * np.median(jumps)
         if wild[_MOST:-_MOST].any():
             continue  # such lines lie everywhere
         for side in (wild, wild[::-1]):
             worst = max(worst, int(np.flatnonzero(np.append(False, side[:_MOST])).max(initial=0)))
     return worst
+
+
+def _jumps(heights: Array) -> tuple[Array, Array]:
+    """Root mean squares of the differences between neighbouring rows, and columns."""
+    rows, columns = heights.shape
+    between_rows = [np.mean(np.square(below - above)) for above, below in pairwise(heights)]
+    between_columns = sum((np.square(np.diff(row)) for row in heights), np.zeros(columns - 1)) / rows
+    return np.sqrt(between_rows), np.sqrt(between_columns)
 
 
 @dataclass(frozen=True, slots=True)

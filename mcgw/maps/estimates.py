@@ -25,7 +25,7 @@ METHODS = {
 _UNSURE = 0.25  # of a correction, measured for hidden caps and for summits between pixels
 _ORDER = 3  # what is lost goes as the square of the pixel: of two pixels less one, a third is lost by one
 _FLAT = 0.5  # of the median curvature
-_BLOCK = 2**13  # heights at once: the cache holds them, and BLAS wakes no threads for so few
+_BLOCK = 2**13  # heights at once: the cache holds them
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,12 +54,12 @@ class Roughness:
 
 def roughness_of(heights: Array) -> Roughness:
     """Of an array of any shape without missing points, m."""
-    mean, flat, sums = heights.mean(), heights.reshape(-1), np.zeros(4)
-    for first in range(0, flat.size, _BLOCK):
-        z = flat[first : first + _BLOCK] - mean
+    mean, sums = heights.mean(), np.zeros(4)
+    for some in np.array_split(heights, heights.size // _BLOCK + 1):
+        z = some - mean
         square = z * z
-        sums += [np.abs(z).sum(), square.sum(), square @ z, square @ square]
-    a, variance, third, fourth = (sums / flat.size).tolist()
+        sums += [t.sum() for t in (np.abs(z), square, square * z, square * square)]
+    a, variance, third, fourth = (sums / heights.size).tolist()
     q = math.sqrt(variance)
     sk, ku = (third / q**3, fourth / q**4) if q > 0 else (0.0, 0.0)
     return Roughness(a, q, sk, ku)

@@ -16,6 +16,8 @@ ORDERS = {"none": -1, "plane": 1, "quadratic": 2, "cubic": 3, "quartic": 4, "sph
 
 _ALPHA = math.sqrt(math.log(2) / math.pi)  # ISO 16610-61: half the amplitude is left at the cutoff
 _REACH = 1.0  # of the filter's window, in cutoffs: beyond lies a share of 5e-7
+_WINDOWS = 32  # half windows of rows that are filtered together
+_BAND = 16  # rows that are looked at together: BLAS wakes no threads for so few
 _POINTS = 96  # along each axis that are looked at: a form is smooth
 _AXES = 4  # directions that are tried first
 
@@ -33,13 +35,14 @@ def without_form(topography: Topography, form: Form) -> Topography:
             return topography
         case "sphere" | "cylinder":
             shape = round_form(topography, axis=form == "cylinder")
+            left = np.subtract(topography.heights, shape, out=shape)
         case _:
-            shape = _polynomial(topography.heights, ORDERS[form])
-    return replace(topography, heights=np.subtract(topography.heights, shape, out=shape), periodic=False)
+            left = _without_polynomial(topography.heights, ORDERS[form])
+    return replace(topography, heights=left, periodic=False)
 
 
-def _polynomial(z: Array, order: int) -> Array:
-    """Of least squares over the points that are there."""
+def _without_polynomial(z: Array, order: int) -> Array:
+    """What that of least squares over the points that are there leaves."""
     y, x = (_powers(n, order) for n in z.shape)
     terms = [(a, b) for a in range(order + 1) for b in range(order + 1 - a)]
     there = np.isfinite(z)
@@ -53,7 +56,11 @@ def _polynomial(z: Array, order: int) -> Array:
     weights = np.zeros_like(projected)
     for (a, b), value in zip(terms, found, strict=True):
         weights[a, b] = value
-    return np.asarray((y @ weights) @ x.T)
+    left, down = np.empty(z.shape), y @ weights
+    for first in range(0, len(z), _BAND):
+        band = slice(first, first + _BAND)
+        np.subtract(z[band], down[band] @ x.T, out=left[band])
+    return left
 
 
 def _powers(n: int, order: int) -> Array:
@@ -92,10 +99,14 @@ def smooth(topography: Topography, cutoff: float) -> Topography:
             f"cutoff = {cutoff:g} m: leaves nothing of a map of {columns * dx:g} x {rows * dy:g} m "
             "without its margin of one cutoff"
         )
-    smoothed = lowpass(topography, cutoff)
-    if not topography.periodic:
-        smoothed = smoothed[radius[0] : rows - radius[0], radius[1] : columns - radius[1]]
-    return replace(topography, heights=np.ascontiguousarray(smoothed))
+    if topography.periodic:
+        return replace(topography, heights=np.ascontiguousarray(lowpass(topography, cutoff)))
+    smoothed, most = np.empty((rows - 2 * radius[0], columns - 2 * radius[1])), _WINDOWS * radius[0]
+    for first in range(0, len(smoothed), most):
+        band = replace(topography, heights=topography.heights[first : first + most + 2 * radius[0]])
+        inside = lowpass(band, cutoff)[radius[0] : -radius[0], radius[1] : -radius[1]]
+        smoothed[first : first + most] = inside
+    return replace(topography, heights=smoothed)
 
 
 def lowpass(topography: Topography, cutoff: float) -> Array:
@@ -106,10 +117,12 @@ def lowpass(topography: Topography, cutoff: float) -> Array:
     width = _ALPHA / math.sqrt(2 * math.pi) * cutoff  # standard deviation of the window
     dx, dy = topography.pixel
     mode: Literal["wrap", "reflect"] = "wrap" if topography.periodic else "reflect"
-    widths = (width / dy, width / dx)
-    return np.asarray(
-        gaussian_filter(topography.heights, widths, mode=mode, radius=_window(topography, cutoff))
-    )
+    rows, columns = topography.heights.shape
+    # along x first, into rows of an odd length: down columns a power of two apart the cache holds nothing
+    result = np.empty((rows, columns | 1))[:, :columns]
+    widths, radius = (width / dx, width / dy), _window(topography, cutoff)[::-1]
+    gaussian_filter(topography.heights, widths, mode=mode, radius=radius, axes=(1, 0), output=result)
+    return result
 
 
 def _window(topography: Topography, cutoff: float) -> tuple[int, int]:

@@ -9,9 +9,10 @@ from analytic.arrays import Array
 from mcgw.maps.form import ORDERS, without_form
 from mcgw.maps.steps import Form
 from mcgw.maps.topography import Topography
-from mcgw.maps.waves import block_means
+from mcgw.maps.waves import block_means, coarser
 
 _COARSE, _BLOCKS = 192, 24
+_ENOUGH = 1024  # points along each axis tell a form
 _ISOLATED = 6.0  # times the usual difference along a line: 4 standard deviations of Gaussian ones
 _LINES = 0.5  # of all lines across a step
 _FIRST = 0.05  # of all lines may see it elsewhere
@@ -100,15 +101,15 @@ def form_left(topography: Topography, form: Form) -> FormLeft | None:
     sphere or a cylinder is named where it takes off as much. No point may be missing.
     """
     more: Form = "quadratic" if ORDERS[form] < ORDERS["quadratic"] else "quartic"
-    rest = without_form(topography, more).heights
-    longest, of_rest = _longest(rest), _variance(rest)
-    left = np.subtract(topography.heights, rest, out=rest)
-    variance = _variance(left)
+    coarse = coarser(topography, _ENOUGH)
+    rest = without_form(coarse, more).heights
+    longest, of_rest, left = _longest(rest), rest.var(), coarse.heights - rest
+    variance = float(left.var())
     share = variance / _variance(topography.heights)
     if share < _COUNTS or variance < _STRONGER * longest:
         return None
     enough = of_rest + _AS_MUCH * variance
-    simple = (f for f in _ROUND if more == "quadratic" and without_form(topography, f).heights.var() < enough)
+    simple = (f for f in _ROUND if more == "quadratic" and without_form(coarse, f).heights.var() < enough)
     return FormLeft(share, float(np.ptp(left)), next(simple, more))
 
 
@@ -121,6 +122,6 @@ def _longest(z: Array) -> float:
 
 
 def _variance(z: Array) -> float:
-    """By two passes that make no third map of two: `z` is about its own mean, or near it."""
+    """By two passes that make no second map: `z` is about its own mean, or near it."""
     flat = z.ravel()
     return float(flat @ flat) / flat.size - float(flat.mean()) ** 2

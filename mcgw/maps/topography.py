@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 
 import numpy as np
@@ -66,7 +67,7 @@ class Topography:
         rows, columns = self.heights.shape
         return columns * self.pixel[0], rows * self.pixel[1]
 
-    @property
+    @cached_property
     def highest(self) -> float:
         """Largest distance from zero, m; nan where all points are missing."""
         return max(abs(float(end.reduce(self.heights, axis=None))) for end in (np.fmax, np.fmin))

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -13,7 +13,7 @@ from analytic import SpectralMoments
 from analytic.arrays import Array
 from mcgw.maps.topography import Topography
 
-_ACROSS = 2048  # points that are looked at; of the waves shorter than that there are always many
+_ACROSS = 1536  # points that are looked at; of the waves shorter than that there are always many
 _FEWEST = 0.5  # waves: one that is cut in two
 _LEAST_FREEDOM = 2.0
 _BAND = 16  # rows that are looked at together: what is made of them stays in the cache
@@ -115,6 +115,13 @@ def block_means(heights: Array, most: int, of: Callable[..., Any] = np.mean) -> 
     return np.asarray(of(blocks, axis=(1, 3)))
 
 
+def coarser(topography: Topography, most: int) -> Topography:
+    """The map of such means."""
+    z = block_means(topography.heights, most)
+    along, down = (n // m for n, m in zip(topography.heights.shape[::-1], z.shape[::-1], strict=True))
+    return replace(topography, heights=z, pixel=(topography.pixel[0] * along, topography.pixel[1] * down))
+
+
 def waves_of(topography: Topography, moments: SpectralMoments, order: int = -1) -> Waves:
     """Errors that follow from the power of every wave on a map that lacks no points.
 
@@ -133,9 +140,8 @@ def waves_of(topography: Topography, moments: SpectralMoments, order: int = -1) 
     order : int, optional
         Of the polynomial that was taken off; -1: none.
     """
-    z = block_means(topography.heights, _ACROSS)
-    rows, columns = topography.heights.shape
-    dx, dy = topography.pixel[0] * (columns // z.shape[1]), topography.pixel[1] * (rows // z.shape[0])
+    coarse = coarser(topography, _ACROSS)
+    z, (dx, dy) = coarse.heights, coarse.pixel
     power, waves = _power(z)
     total = float((power @ waves).sum())
     # edges leave a little power to the very short waves, which would stand for most of m4
