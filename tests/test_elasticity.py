@@ -2,6 +2,7 @@
 
 import json
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -10,10 +11,10 @@ from scipy.optimize import brentq
 from scipy.signal import get_window
 
 import mcgw
-from mcgw.elasticity import elastic as public
+from mcgw.elasticity import elastic as public, newton
 from mcgw.elasticity.grid import Grid
 from mcgw.elasticity.levels import LEVELS, Level, Pressed, alone, located
-from mcgw.elasticity.located import Located
+from mcgw.elasticity.located import BalanceError, Located
 from mcgw.elasticity.multilevel import design, differences, mean_of, terms_of
 from mcgw.elasticity.sources import maps_of
 from mcgw.elasticity.spots import HertzSpots, LawSpots, field_beyond_point
@@ -136,6 +137,16 @@ class TestLocated:
         assert_allclose(balance.load, load, rtol=1e-10)
         assert residual(one, balance) < 1e-10
 
+    @pytest.mark.parametrize("periodic", [True, False])
+    def test_by_series_where_there_are_too_many_for_a_matrix(self, periodic, rng, monkeypatch):
+        one = some(60, (3e-4, 3e-4), rng, periodic)
+        by_matrix = one.at_load(3e-3)
+        monkeypatch.setattr(newton, "_DENSE", 0)
+        by_series = one.at_load(3e-3)
+        assert residual(one, by_series) < 1e-10
+        assert_allclose(by_series.stiffness, by_matrix.stiffness, rtol=1e-8)
+        assert_allclose(by_series.separation, by_matrix.separation, rtol=1e-9)
+
     def test_far_spots_do_not_feel_each_other(self):
         spots = HertzSpots(np.zeros(2), np.array([1e-5, 2e-5]), 1e9)
         pair = Located(spots, np.array([[0, 0], [0, 99]]), Grid((100, 100), (1e3, 1e3), False))
@@ -199,6 +210,26 @@ class TestLocated:
         balance = pair.at_load(1e-3)
         assert balance.residual < 1e-10
         assert balance.contacts + balance.merged <= 2
+
+    def test_a_summit_inside_a_higher_contact_is_left_out(self):
+        """The others are in balance by plain loops; a load that merges many has no balance."""
+        rng = np.random.default_rng(4)
+        cells = rng.choice(24 * 24, 40, replace=False)
+        spots = HertzSpots(1e-6 * rng.standard_normal(40), 1e-5 * rng.uniform(0.5, 20, 40), 1e9)
+        places = np.array(np.divmod(cells, 24)) + 20
+        one = Located(spots, places, Grid((64, 64), (1e-4, 1e-4), True))
+        balance = one.at_load(0.1)
+        kept = np.isfinite(balance.penetrations)
+        lost = int(np.argmax(np.where(kept, -np.inf, spots.heights)))
+        assert balance.merged == 1
+        apart = np.hypot(*(places - places[:, [lost]])) * one.grid.pixel[0]
+        over = np.sqrt(spots.squared_radius(balance.penetrations)) > apart
+        assert np.any(over & (spots.heights > spots.heights[lost]))
+        rest = Located(spots.only(kept), places[:, kept], one.grid)
+        assert residual(rest, replace(balance, penetrations=balance.penetrations[kept])) < 1e-10
+        assert_allclose(balance.load, 0.1, rtol=1e-10)
+        with pytest.raises(BalanceError, match=r"no balance of 38 summits: .* is left; give a lower load"):
+            one.at_load(1.0)
 
 
 class TestLevels:

@@ -229,3 +229,14 @@ def test_a_distribution_is_its_shapes(make, given):
     np.testing.assert_array_equal(mcgw.simulate(scene).load, mcgw.simulate(plain).load)
     assert mcgw.scene_from(mcgw.scene_text(scene)) == storable(scene)
     assert 'law = "scipy"\nname = "lognorm"' in mcgw.scene_text(scene)
+
+
+@pytest.mark.usefixtures("looked_at_here")
+def test_a_file_under_another_law_is_not_taken_up(make_scene, tmp_path):
+    """Beside a function, which may differ by last digits from that of the file, a law may not."""
+    scene = make_scene(grading=bent, law=mcgw.KogutEtsion(critical=0.05), n_surfaces=3, separations=(1.0,))
+    held = run(scene, tmp_path / "e.h5")
+    assert run(scene, tmp_path / "e.h5").scene == held.scene
+    for other in (mcgw.KogutEtsion(critical=0.06), analytic.Hertz()):
+        with pytest.raises(StoreError, match="holds a different ensemble: contact"):
+            run(scene.replace(law=other), tmp_path / "e.h5")
