@@ -10,7 +10,7 @@ from conftest import SURFACE
 
 import analytic
 import mcgw
-from mcgw.reports.side_notes import before
+from mcgw.ensemble.forecast import before
 from mcgw.scene.cautions import cautions
 
 SHALLOW = dataclasses.replace(SURFACE, radius=1e-3, sigma=1e-6)  # summits so blunt that nothing is steep

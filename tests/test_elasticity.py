@@ -12,12 +12,11 @@ from scipy.signal import get_window
 
 import mcgw
 from mcgw.elasticity import elastic as public, newton
-from mcgw.elasticity.grid import Grid
 from mcgw.elasticity.levels import LEVELS, Level, Pressed, alone, located
 from mcgw.elasticity.located import BalanceError, Located
 from mcgw.elasticity.multilevel import design, differences, mean_of, terms_of
 from mcgw.elasticity.sources import maps_of
-from mcgw.elasticity.spots import HertzSpots, LawSpots, field_beyond_point
+from mcgw.elasticity.spots import Grid, HertzSpots, LawSpots, field_beyond_point
 from mcgw.maps.synthetic import Spectrum
 from mcgw.maps.topography import Topography
 

@@ -12,7 +12,7 @@ from scipy.special import binom, gammaln
 
 import analytic
 from analytic.curvature import MEAN_CURVATURE
-from analytic.distribution.contour import by_contour
+from analytic.distribution.independent_sums import by_contour
 
 GRADED = analytic.Exponential(2.0)
 

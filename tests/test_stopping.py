@@ -9,13 +9,12 @@ import pytest
 import analytic
 import mcgw
 from mcgw.cli import main
-from mcgw.ensemble.forecast import checkpoints, forecast
+from mcgw.ensemble.forecast import after, before, checkpoints, forecast, upper_contacts
 from mcgw.ensemble.intervals import mean_interval, spread_of
 from mcgw.ensemble.simulation import simulate
 from mcgw.errors import StoreError
 from mcgw.jobs.merging import merge
 from mcgw.jobs.running import run
-from mcgw.reports.side_notes import after, before, upper_contacts
 from mcgw.scene.section import SceneError
 from mcgw.store.ensembles import read_attributes
 

@@ -152,7 +152,7 @@ def test_the_commands_see_what_is_wrong(sweep, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     mcgw.sweep(SCENE, OVER, path="w.h5")
     for command, code, name in (("compare", 1, "w.svg"), ("report", 0, "w.html")):
-        monkeypatch.setattr("mcgw.sweeps.opening.open_results", lambda path: off(sweep, 1.03))
+        monkeypatch.setattr("mcgw.sweeps.open_results", lambda path: off(sweep, 1.03))
         assert main([command, "w.h5", "-o", name]) == code
         assert "DISAGREE" in (tmp_path / name).read_text()
     assert "DISAGREE: chi-square" in capsys.readouterr().out

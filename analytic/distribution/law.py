@@ -9,9 +9,16 @@ from numpy.typing import ArrayLike
 from scipy.special import gammaincinv, ndtri
 
 from analytic.arrays import Array, Marks
-from analytic.distribution.contour import MOST, Line, Values, bounded, by_contour, saddle
 from analytic.distribution.derived import Law
-from analytic.distribution.few_contacts import FewContacts
+from analytic.distribution.independent_sums import (
+    MOST,
+    FewContacts,
+    Line,
+    Values,
+    bounded,
+    by_contour,
+    saddle,
+)
 from analytic.distribution.touching import Touching
 
 _MANY = -40.0  # logarithm of the probability of no contact, below which the transform has died away

@@ -10,7 +10,7 @@ import numpy as np
 
 from analytic.arrays import Array, Ints
 from analytic.curvature import RandomCurvature
-from analytic.distribution.few_contacts import FewContacts
+from analytic.distribution.independent_sums import FewContacts
 from analytic.distribution.one_asperity import OneAsperity
 from analytic.distribution.panels import POWER, panels
 from analytic.height_rule import HeightRule

@@ -26,7 +26,7 @@ def execute(args: argparse.Namespace) -> int:
     from mcgw.commands.voice import ALL, news, says, tell_cautions
     from mcgw.machine.progress import bar
     from mcgw.statistics.comparison import compare
-    from mcgw.sweeps.opening import open_results
+    from mcgw.sweeps import open_results
 
     path = args.output or args.file.with_suffix(".png")
     result = open_results(args.file)

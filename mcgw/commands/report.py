@@ -21,7 +21,7 @@ def execute(args: argparse.Namespace) -> int:
     from mcgw.formats.files import write_whole
     from mcgw.machine.progress import bar
     from mcgw.store.ensembles import read_attributes
-    from mcgw.sweeps.opening import open_results
+    from mcgw.sweeps import open_results
 
     path = args.output or args.file.with_suffix(".html")
     result = open_results(args.file)

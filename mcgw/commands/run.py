@@ -58,7 +58,7 @@ def _execute(args: argparse.Namespace) -> int:
         if ruled and not args.shard:
             from mcgw.commands.voice import news
             from mcgw.ensemble.drawing import seconds_per_surface
-            from mcgw.reports.side_notes import before
+            from mcgw.ensemble.forecast import before
             from mcgw.sampling.samplers import sampler_of
 
             news(f"forecast: {before(expected, seconds_per_surface(scene, sampler_of(scene)))}")
@@ -67,7 +67,7 @@ def _execute(args: argparse.Namespace) -> int:
         return tell_share(args.shard, path, ensemble)
     news(f"{path}: {ensemble.n_surfaces} surfaces of {scene.n_asperities:g} asperities, seed {scene.seed}")
     if ruled:
-        from mcgw.reports.side_notes import after
+        from mcgw.ensemble.forecast import after
 
         news(*after(ensemble, scene))
     known = scene.validity()

@@ -62,7 +62,7 @@ def execute(args: argparse.Namespace) -> int:
         print(attributes["digest"])
     else:
         from mcgw.reports.text import summary_of
-        from mcgw.sweeps.opening import open_results
+        from mcgw.sweeps import open_results
 
         result = open_results(args.file)
         check_outputs(table_output(args.csv), inputs=[args.file])

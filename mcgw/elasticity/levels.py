@@ -9,9 +9,8 @@ from functools import cached_property, lru_cache
 import numpy as np
 
 from analytic.arrays import Array, Marks
-from mcgw.elasticity.grid import Grid
 from mcgw.elasticity.located import Located
-from mcgw.elasticity.spots import HertzSpots
+from mcgw.elasticity.spots import Grid, HertzSpots
 from mcgw.errors import RunError
 from mcgw.maps.summit_sums import summit_sums_of
 from mcgw.maps.summits import summits_of

@@ -7,9 +7,8 @@ import numpy as np
 from scipy.optimize import brentq
 
 from analytic.arrays import Array, Ints, Marks
-from mcgw.elasticity.grid import Grid
 from mcgw.elasticity.newton import Equations, State
-from mcgw.elasticity.spots import Spots
+from mcgw.elasticity.spots import Grid, Spots
 from mcgw.errors import RunError
 
 _REACH = 4.0  # contact radii of spots that feel no other one: beyond, a spot is a point load

@@ -13,8 +13,7 @@ from scipy.sparse.linalg import LinearOperator, gmres
 from scipy.spatial import cKDTree
 
 from analytic.arrays import Array, Ints
-from mcgw.elasticity.grid import Grid
-from mcgw.elasticity.spots import Spots, field_beyond_point
+from mcgw.elasticity.spots import Grid, Spots, field_beyond_point
 
 _CLOSE = 1e-11  # of the deepest penetration, and of the load
 _STEPS, _SHORTEST, _MEMORY = 60, 2**-7, 4  # a step may leave more over than the last, not than the last four

@@ -75,7 +75,7 @@ def _conducted(scene: Scene, found: dict[str, Any]) -> dict[str, Any]:
     area, spots = scene.surface.nominal_area, found["conductance_si"]
     answers = {"contact_conductance": spots / area}
     if scene.joint is not None:
-        from mcgw.ensemble.in_joints import with_joint  # for those scenes alone
+        from mcgw.ensemble.half_space import with_joint  # for those scenes alone
 
         answers |= with_joint(scene, found, ("gap_conductance", "joint_conductance"), found["separation"])
     whole = answers.get("joint_conductance", answers["contact_conductance"])

@@ -78,7 +78,7 @@ def answered(scene: Scene, sums: dict[str, Any]) -> dict[str, Any]:
 
         found = with_interaction(scene, sums)
     if scene.joint is not None:
-        from mcgw.ensemble.in_joints import with_joint  # for those scenes alone
+        from mcgw.ensemble.half_space import with_joint  # for those scenes alone
 
         found |= with_joint(scene, found, scene.of_joint, np.array(scene.separations))
     return found

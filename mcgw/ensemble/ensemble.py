@@ -8,20 +8,14 @@ import numpy as np
 from analytic import PER_AREA
 from analytic.arrays import Array, Ints
 from mcgw.ensemble.intervals import CONFIDENCE, interval_of
-from mcgw.ensemble.labelled import Labelled, axes_of, axis, statistics_of, values_of
+from mcgw.ensemble.labelled import Labelled, axes_of, axis, sheet_of, statistics_of, values_of
 from mcgw.ensemble.results import PROBABILITIES, Held
 from mcgw.formats.sheet import Sheet, Shown
-from mcgw.formats.table import Column, Table
 from mcgw.machine.terminal import plotted
-from mcgw.scene.in_words import accuracy_facts, contact_facts, law_text
-from mcgw.scene.samplers import promise_of
 from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_text
 
 STATISTICS = ("mean", "std", "skewness")  # that are kept where values are not, besides quantiles
-
-_AT = "mean +- stderr, d/sigma ="
-_MOST_SHOWN = 20_000_000  # numbers that are read for a short look; of more, only how many there are
 
 
 @dataclass(frozen=True, repr=False)
@@ -285,31 +279,7 @@ class Ensemble(Shown):
 
     def sheet(self) -> Sheet:
         """How it was drawn, and means at the lowest, a middle and the highest separation."""
-        scene, m = self.scene, self.n_surfaces
-        title = f": {scene.title}" if scene.title else ""
-        order = np.argsort(scene.separations, kind="stable")
-        shown = order[np.unique([0, len(order) // 2, len(order) - 1])]
-        facts = [
-            ("grading", law_text(scene.grading)),
-            ("heights", law_text(scene.heights)),
-            *contact_facts(scene),
-            ("drawn", f"by {self.sampler}, seed {scene.seed}"),
-            *accuracy_facts(scene),
-            ("elasticity", scene.validity().brief),
-        ]
-        head = f"Ensemble of {m} surfaces of {scene.n_asperities} asperities{title}"
-        if m * len(scene.separations) * len(scene.quantities) > _MOST_SHOWN:
-            held = f"{', '.join(scene.quantities)} at {len(scene.separations)} separations"
-            return Sheet(head, [*facts, ("holds", held)])
-        names = scene.answers
-        columns = [Column("quantity", [f"{q} ({scene.quantity(q).unit})" for q in names], _AT)]
-        mean, error = (np.array([get(q)[shown] for q in names]) for get in (self.mean, self.stderr))
-        error *= 1 if promise_of(self.sampler).real_surfaces else np.nan
-        for i, h in enumerate(self.separations[shown]):
-            columns.append(
-                Column(f"{h:g}", mean[:, i], form=".5g", beside=Column("stderr", error[:, i], form=".1g"))
-            )
-        return Sheet(head, facts, Table(tuple(columns)))
+        return sheet_of(self)
 
     def _quantile(self, quantity: str, share: float) -> tuple[Array, Array, Array]:
         if not 0 <= share <= 1:

@@ -8,14 +8,19 @@ chance before rare, stiff summits have come: the number of surfaces is a functio
 import warnings
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from analytic.arrays import Array
-from mcgw.ensemble.intervals import MANY, Spread, chebyshev, spread_of
+from mcgw.ensemble.intervals import CONFIDENCE, MANY, TOO_FEW, Spread, chebyshev, spread_of
 from mcgw.sampling.counts import GROUP
+from mcgw.scene.samplers import promise_of
 from mcgw.scene.scene import Scene
 from mcgw.scene.stop_rule import wanted
+
+if TYPE_CHECKING:
+    from mcgw.ensemble.ensemble import Ensemble
 
 _STEP = 16  # numbers of surfaces lie 1/16 apart
 _ANY = 0.1  # in place of a share that is not asked for
@@ -117,3 +122,40 @@ def without_rule(scene: Scene) -> Scene:
     if expected.shortfall:
         warnings.warn(expected.shortfall, stacklevel=3)
     return replace(scene, n_surfaces=expected.surfaces, rel_err=None, max_seconds=None)
+
+
+def before(forecast: Forecast, seconds_each: float) -> str:
+    """One line: how many surfaces, how long, and what that will not reach."""
+    line = f"about {forecast.surfaces:.2g} surfaces, {forecast.surfaces * seconds_each:.2g} s"
+    return f"{line}; {forecast.shortfall}" if forecast.shortfall else line
+
+
+def after(ensemble: "Ensemble", scene: Scene) -> list[str]:
+    """One line for each separation without a contact and each mean known less well than the scene asked."""
+    m, n = ensemble.n_surfaces, ensemble.scene.n_asperities
+    silent = np.all([ensemble.mean(name) == 0 for name in ensemble.scene.quantities], axis=0)
+    limit = upper_contacts(m)
+    lines = [
+        f"d/sigma = {h:g}: no contact in {m} surfaces, mean below {limit:.3g} contacts a surface, "
+        f"{limit / n:.3g} an asperity ({CONFIDENCE:.0%} confidence)"
+        for h in np.unique(ensemble.separations[silent])
+    ]
+    if not promise_of(ensemble.sampler).real_surfaces:
+        return lines
+    asked = wanted(scene) or dict.fromkeys(scene.quantities, np.ones(len(scene.separations)))
+    for name, most in asked.items():
+        reach = spread_of(ensemble.scene, name).reach(m)
+        for h, w, rel_err in zip(ensemble.separations[~silent], reach[~silent], most[~silent], strict=True):
+            if rel_err < np.inf and not w <= rel_err * (1 + 1e-9):
+                known = TOO_FEW if np.isnan(w) else f"is known to {w:.2g} of itself, not to {rel_err:g}"
+                lines.append(f"{name} at d/sigma = {h:g}{': ' if np.isnan(w) else ' '}{known}")
+    return lines
+
+
+def upper_contacts(n: int) -> float:
+    """Upper limit (95 %) of the mean number of contacts a surface, if `n` surfaces had none: 3.0/n.
+
+    Exact for a Poisson number of contacts, ``exp(-n limit) = 0.05``; for a fixed number of asperities it
+    is the safe side by a share 1.5/(n N).
+    """
+    return float(-np.log(1 - CONFIDENCE) / n)

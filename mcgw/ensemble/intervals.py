@@ -214,3 +214,17 @@ def laws_are_quick(scene: Scene) -> bool:
     Under laws other than Hertz's, with radii of their own and of lists of summits it takes seconds.
     """
     return type(scene.law) is Hertz and scene.curvature is None and not scene.as_measured
+
+
+def exact_ends(scene: Scene, name: str, share: float) -> Array | None:
+    """Ends between which this share of all surfaces lies at each separation, shape (2, separations).
+
+    None where no law is known, or where laws take a while.
+    """
+    if not laws_are_quick(scene):
+        return None
+    try:
+        laws = [scene.theory.distribution(name, h) for h in scene.separations]
+        return np.array([law.interval(share) for law in laws]).T
+    except (KeyError, ValueError):
+        return None

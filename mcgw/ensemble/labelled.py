@@ -1,4 +1,4 @@
-"""Results as named arrays with axes, units and words, for files, xarray and pandas; and as tables."""
+"""Results as named arrays with axes, units and words, for files, xarray and pandas, and as tables."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -9,7 +9,10 @@ from numpy.typing import NDArray
 
 from analytic import Quantity
 from mcgw.ensemble.results import PROBABILITIES
+from mcgw.formats.sheet import Sheet
 from mcgw.formats.table import SEPARATION, Column, Table, optional
+from mcgw.scene.in_words import accuracy_facts, contact_facts, law_text
+from mcgw.scene.samplers import promise_of
 from mcgw.scene.scene import Scene
 
 AXES = {  # of tables, in their order: unit and long name
@@ -19,6 +22,8 @@ AXES = {  # of tables, in their order: unit and long name
     "separation": ("1", "mean-plane separation d/sigma"),
     "displacement": ("m", "tangential displacement"),
 }
+_AT = "mean +- stderr, d/sigma ="
+_MOST_SHOWN = 20_000_000  # numbers that are read for a short look; of more, only how many there are
 _OF_A_SURFACE = ("separation", "displacement")
 _WORDS = {
     "mean": "mean of the {}",
@@ -152,3 +157,32 @@ def statistics_table(ensemble: Any, name: str) -> Table:
         columns += [Column(kind, values, unit=unit) for kind, values in quantiles]
     separation = Column("separation", ensemble.separations, SEPARATION, form="g")
     return Table((separation, *columns), heading(q))
+
+
+def sheet_of(ensemble: Any) -> Sheet:
+    """How it was drawn, and means at the lowest, a middle and the highest separation."""
+    scene, m = ensemble.scene, ensemble.n_surfaces
+    title = f": {scene.title}" if scene.title else ""
+    order = np.argsort(scene.separations, kind="stable")
+    shown = order[np.unique([0, len(order) // 2, len(order) - 1])]
+    facts = [
+        ("grading", law_text(scene.grading)),
+        ("heights", law_text(scene.heights)),
+        *contact_facts(scene),
+        ("drawn", f"by {ensemble.sampler}, seed {scene.seed}"),
+        *accuracy_facts(scene),
+        ("elasticity", scene.validity().brief),
+    ]
+    head = f"Ensemble of {m} surfaces of {scene.n_asperities} asperities{title}"
+    if m * len(scene.separations) * len(scene.quantities) > _MOST_SHOWN:
+        held = f"{', '.join(scene.quantities)} at {len(scene.separations)} separations"
+        return Sheet(head, [*facts, ("holds", held)])
+    names = scene.answers
+    columns = [Column("quantity", [f"{q} ({scene.quantity(q).unit})" for q in names], _AT)]
+    mean, error = (np.array([get(q)[shown] for q in names]) for get in (ensemble.mean, ensemble.stderr))
+    error *= 1 if promise_of(ensemble.sampler).real_surfaces else np.nan
+    for i, h in enumerate(ensemble.separations[shown]):
+        columns.append(
+            Column(f"{h:g}", mean[:, i], form=".5g", beside=Column("stderr", error[:, i], form=".1g"))
+        )
+    return Sheet(head, facts, Table(tuple(columns)))

@@ -9,11 +9,11 @@ from scipy.stats import norm
 
 from analytic import quantity_of
 from mcgw.ensemble.ensemble import Ensemble
+from mcgw.ensemble.intervals import exact_ends
 from mcgw.ensemble.paired import Paired
 from mcgw.ensemble.solved import Solution
 from mcgw.figures.against_theory import draw_residuals, quantity_panel
 from mcgw.figures.panels import draw_panel
-from mcgw.figures.specimens import exact_ends
 from mcgw.figures.studies import draw_checks, draw_methods
 from mcgw.figures.style import MONTE_CARLO, SAMPLE, SEEN, STYLE, THEORY, shown_title, step
 from mcgw.formats.table import evenly

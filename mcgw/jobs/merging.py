@@ -55,7 +55,7 @@ def merge(path: str | Path) -> "Ensemble | Sweep":
     (0, 20)
     ([20, 0], (2,))
     """
-    from mcgw.sweeps.opening import open_results  # which a run that merges its own blocks needs not
+    from mcgw.sweeps import open_results  # which a run that merges its own blocks needs not
 
     path = Path(path)
     tidy(path)

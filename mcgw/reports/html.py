@@ -20,12 +20,12 @@ from mcgw.reports.report_figures import (
     pressure_pictures,
     pressure_table,
 )
-from mcgw.reports.side_notes import elasticity_words
 from mcgw.scene.cautions import cautions
 from mcgw.scene.in_words import contact_facts, law_text
 from mcgw.scene.law_cautions import other_laws
 from mcgw.scene.samplers import promise_of
 from mcgw.scene.scene import Scene
+from mcgw.scene.validity import Validity
 from mcgw.statistics.comparison import compare
 from mcgw.sweeps.over_points import sweep_cautions
 from mcgw.sweeps.sweep import Sweep
@@ -69,7 +69,7 @@ def report_html(ensemble: Ensemble, attributes: dict[str, Any]) -> str:
         tested=comparison is not None,
         facts=surface_facts(ensemble),
         laws=laws_table(scene),
-        elasticity=elasticity_words(against),
+        elasticity=_elasticity_words(against),
         errors=against.sheet().table,
         cautions=cautions(scene),
         elastic_law=scene.law.elastic,
@@ -194,3 +194,17 @@ def contacts_sentence(scene: Scene) -> str:
     if scene.unload_from is not None:
         words += f"; quantities on the way back start from d/σ = {scene.unload_from:g}"
     return f"{words}."
+
+
+def _elasticity_words(found: Validity) -> list[str]:
+    """How far it is from elasticity, in paragraphs; the second one tells of a table over the separations."""
+    if not found.measured.any():
+        return [f"{found.verdict}."]
+    details = f"{found.details}."
+    return [
+        f"{details[0].upper()}{details[1:]}",
+        "Model over elasticity, less 1: mean over the maps ± what holds 95 % of surfaces with so many "
+        "contacts and long waves. Area, stiffness and gap are those at the load of that separation; the load "
+        "is that at the separation itself, taken for the mean gap of a periodic cell. Pressure: "
+        f"{found.axis}.",
+    ]

@@ -8,7 +8,6 @@ from mcgw.ensemble.drawing import in_words, rough_seconds, seconds_per_surface
 from mcgw.ensemble.forecast import forecast
 from mcgw.ensemble.simulation import reducer_of
 from mcgw.machine.terminal import one_line
-from mcgw.reports.side_notes import against_elasticity
 from mcgw.sampling.expected import Expected, expected
 from mcgw.sampling.shared import shared
 from mcgw.scene.in_words import contact_facts
@@ -104,7 +103,7 @@ def plan_text(scene: Scene, plan: Plan) -> str:
         f"  results       {size if scene.keep == 'statistics' else f'{size} before compression'}",
         f"  time          about {in_words(plan.seconds)}",
         *_accuracy_lines(scene, plan),
-        *(f"  {line}" for line in against_elasticity(scene.validity())),
+        *(f"  {line}" for line in scene.validity().lines),
         "not done:",
     ]
     spared = plan.asperities - plan.touching

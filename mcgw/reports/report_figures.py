@@ -14,12 +14,12 @@ from analytic import quantity_of
 from analytic.arrays import Array
 from mcgw.ensemble.at_load import at_pressures, common_pressures, with_values
 from mcgw.ensemble.ensemble import Ensemble
+from mcgw.ensemble.intervals import exact_ends
 from mcgw.ensemble.results import MemoryResults
 from mcgw.figures.against_theory import quantity_panel
 from mcgw.figures.contact_map import patch_figures
 from mcgw.figures.data import FigureData, Panel, Points, Series
 from mcgw.figures.panels import draw
-from mcgw.figures.specimens import exact_ends
 from mcgw.figures.style import STYLE
 from mcgw.formats.pictures import write_figure
 from mcgw.formats.table import Column, Table, evenly

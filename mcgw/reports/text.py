@@ -13,7 +13,6 @@ from mcgw.ensemble.paired import paired_ratio
 from mcgw.formats.sheet import listed
 from mcgw.formats.table import Column, Table, stacked
 from mcgw.machine.terminal import one_line
-from mcgw.reports.side_notes import against_elasticity
 from mcgw.scene.in_words import accuracy_facts, contact_facts, law_text
 from mcgw.statistics.comparison import Comparison
 from mcgw.store.run_folder import RunFolder
@@ -46,7 +45,7 @@ def summary(ensemble: Ensemble, attributes: dict[str, Any]) -> str:
         ("with", f"{attributes['versions']}; commit {attributes['commit']}"),
     ]
     lines = [one_line(scene.title) or "ensemble", *listed(facts, 12)]
-    lines += [f"  {line}" for line in against_elasticity(scene.validity())]
+    lines += [f"  {line}" for line in scene.validity().lines]
     for name in scene.answers:
         lines += ["", statistics_table(ensemble, name).only(*_SHOWN).rows().text()]
     return "\n".join(lines)

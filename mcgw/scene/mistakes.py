@@ -30,16 +30,8 @@ _SAFELY = 1e4  # factor by which the sum over all asperities stays below the lar
 
 def mistakes(scene: Fields) -> list[str]:
     """All that is wrong, later checks only where the earlier ones find nothing."""
-    for checks in (
-        (_values, _history, _measured, _radii),
-        (_scales,),
-        (_law, _together),
-        (_function,),
-        (_range,),
-        (_modulus,),
-        (_sums,),
-        (_resolved,),
-    ):
+    one_by_one = (_function,), (_range,), (_modulus,), (_sums,), (_resolved,)
+    for checks in ((_values, _history, _measured, _radii), (_scales,), (_law, _together), *one_by_one):
         if found := [line for check in checks for line in check(scene)]:
             return found
     return []

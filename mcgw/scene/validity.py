@@ -105,6 +105,11 @@ class Validity(Shown):
         return f"{each} (95 %); by {self.where}"
 
     @property
+    def lines(self) -> list[str]:
+        """The verdict, and what has which error."""
+        return [*filter(None, (self.verdict, self.details))]
+
+    @property
     def brief(self) -> str:
         """The same in 88 characters."""
         if not self.measured.any():
