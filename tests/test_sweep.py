@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from scipy.integrate import quad
+from scipy.stats import skew
 
 import mcgw
 from mcgw.sweeps import pooled
@@ -405,3 +406,32 @@ def test_points_that_keep_statistics_have_the_quantiles_of_single_runs(tmp_path,
         )
     with pytest.raises(mcgw.SceneError, match=r"ensemble\.keep: all points have the same"):
         mcgw.sweep(SCENE, {"ensemble.keep": ["sums", "statistics"]})
+
+
+@pytest.mark.parametrize("n", [1, 300])
+def test_points_that_keep_statistics_join_their_blocks(n, monkeypatch):
+    """Blocks of 128, the last one short, against the surfaces themselves; one surface has no spread."""
+    monkeypatch.setattr(pooled, "_ROWS", 128)
+    kept = SCENE.replace(keep="statistics", separations=[0.0, 1.5], quantities=["load", "contacts"])
+    sweep = mcgw.sweep(kept.replace(n_surfaces=n), {GAMMA: [0.5, 2.0]})
+    for i, gamma in enumerate((0.5, 2.0)):
+        full = mcgw.simulate(
+            SCENE.replace(grading=mcgw.Exponential(gamma), n_surfaces=n, separations=[0.0, 1.5])
+        )
+        point = sweep.ensemble(i)
+        for name in kept.quantities:
+            x = full[name].astype(float)
+            np.testing.assert_allclose(sweep.mean(name)[i], x.mean(axis=0), rtol=1e-13)
+            if n == 1:
+                assert np.isnan(sweep.std(name)[i]).all()
+                assert np.isnan(point.covariance(name)).all()
+                continue
+            np.testing.assert_allclose(sweep.std(name)[i], x.std(axis=0, ddof=1), rtol=1e-12)
+            np.testing.assert_allclose(point.covariance(name), np.cov(x.T), rtol=1e-11)
+            np.testing.assert_allclose(sweep.skewness(name)[i], skew(x), rtol=1e-9)
+            assert np.array_equal(point.extreme_surfaces(name), [x.argmin(axis=0), x.argmax(axis=0)])
+            ends = [sweep.quantile(name, share)[i] for share in (0.0, 1.0)]
+            np.testing.assert_allclose(ends, [x.min(axis=0), x.max(axis=0)], rtol=1e-12)
+            spread = np.abs(sweep.quantile(name, 0.3)[i] - np.quantile(x, 0.3, axis=0)) / x.std(axis=0)
+            assert spread.max() < 0.02
+    assert n == 1 or full.load[:, 0].argmax() >= 128  # so that a number within its block would show
