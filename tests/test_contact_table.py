@@ -100,6 +100,18 @@ def test_another_file_is_refused(path, tmp_path, key, value, said):
         mcgw.ContactTable.read(wrong)
 
 
+@pytest.mark.parametrize("name", ["gap", "pressure", "area", "conductance"])
+def test_every_number_is_finite_and_but_for_gaps_positive(path, tmp_path, name):
+    whole = json.loads(path.read_text())
+    for wrong in (np.nan, np.inf, -np.inf, *([0.0] if name != "gap" else [])):
+        for row in (0, -1):
+            values = [*whole[name]]
+            values[row] = wrong
+            (tmp_path / "wrong.json").write_text(json.dumps(whole | {name: values}))
+            with pytest.raises(mcgw.StoreError, match=f"{name}: give finite numbers > 0"):
+                mcgw.ContactTable.read(tmp_path / "wrong.json")
+
+
 def test_on_the_command_line_from_a_file(tmp_path, capsys):
     mcgw.run(SCENE.replace(n_surfaces=5, separations=[0.0, 1.0, 2.0]), tmp_path / "e.h5")
     words = ["export", str(tmp_path / "e.h5"), "--to", "json", "-o", str(tmp_path / "e.json")]

@@ -11,6 +11,8 @@ from mcgw.ensemble.paired import paired_ratio
 from mcgw.ensemble.regrading import regrade
 from mcgw.jobs.running import run
 from mcgw.sampling import cells, spacing
+from mcgw.sampling.block import Layout
+from mcgw.sampling.response.response import LAST_DIGITS, parts_of, response_of
 from mcgw.store.saving import save
 
 H = tuple(np.linspace(0, 4, 21))
@@ -27,6 +29,25 @@ def assert_same(a, b):
     for name in b.scene.quantities:
         x, y = a.values(name)[: b.n_surfaces], b.values(name)
         np.testing.assert_allclose(x, y, rtol=1e-12, atol=1e-14 * y.mean())
+
+
+def test_moments_that_just_suffice_do_and_one_less_does_not():
+    """As many as the series take answer as more do; one less, of each kind, names where the cell starts."""
+    surface = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "1 mm^2", "78.6 GPa")
+    scene = mcgw.Scene(surface, separations=[0.0, 1.0], n_surfaces=2, seed=1)
+    mesh, names = cells.mesh_of(scene), ("load", "stiffness")
+    needed = parts_of(scene, mesh, names, LAST_DIGITS, lasting=True).layout
+    more = Layout(needed.plain + 1, needed.rooted + 1)
+    just, with_more = (response_of(scene, mesh, names, kept=kept).matrix() for kept in (needed, more))
+    np.testing.assert_array_equal(with_more[..., more.rows_of(needed)], just)
+    for kind in ("plain", "rooted"):
+        for k in np.flatnonzero(getattr(needed, kind))[[0, -1]]:
+            less = {name: getattr(needed, name).copy() for name in ("plain", "rooted")}
+            less[kind][k] -= 1
+            with pytest.raises(
+                ValueError, match=f"do not resolve this near s = {mesh.edges[k]:.4g}; simulate"
+            ):
+                response_of(scene, mesh, names, kept=Layout(**less))
 
 
 @pytest.mark.parametrize("gamma", [0.0, 0.2, 2.0, 3.0])
