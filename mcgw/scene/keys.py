@@ -3,7 +3,20 @@
 import math
 from typing import TYPE_CHECKING, Any
 
-from analytic import UNLOADING, Body
+from analytic import (
+    UNLOADING,
+    Body,
+    Exponential,
+    ExponentialHeights,
+    Gaussian,
+    HeightTable,
+    Homogeneous,
+    Nayak,
+    PiecewiseSeries,
+    ScipyHeights,
+    Table as TableGrading,
+    Weibull,
+)
 from analytic.laws import Layer, Tangential
 from mcgw.scene.kinds import ByName, Either, Flag, List, Number, Table, Text, Whole, Word
 from mcgw.scene.measured import Fitted
@@ -13,6 +26,20 @@ from mcgw.scene.values import SUMMITS, SUMS, rows_of
 if TYPE_CHECKING:
     from analytic import Interaction, Joint
 
+GRADINGS: dict[str, Any] = {  # laws by their words in a scene
+    "homogeneous": Homogeneous,
+    "exponential": Exponential,
+    "table": TableGrading,
+    "series": PiecewiseSeries,
+}
+HEIGHTS: dict[str, Any] = {
+    "gaussian": Gaussian,
+    "exponential": ExponentialHeights,
+    "weibull": Weibull,
+    "nayak": Nayak,
+    "table": HeightTable,
+    "scipy": ScipyHeights,
+}
 _MOST = 100_000
 
 
@@ -100,7 +127,7 @@ TABLES: dict[str, TableOfKeys] = {
     *rows_of("surface"),
 ), required=True),
 "grading": TableOfKeys("E\\*(s)/E\\* over the reduced height s. Left out: 1 at every height.", (
-    Key("law", Word(("homogeneous", "exponential", "table", "series")), '"exponential"',
+    Key("law", Word((*GRADINGS,)), '"exponential"',
         "`homogeneous`, `exponential` (Eq. 4), `table` or `series`; left out: `exponential` if there is a "
         "`gamma`, else `homogeneous`", "homogeneous"),
     Key("gamma", _ANY, "0.5", "γ of E\\*(s)/E\\* = γ − (γ − 1) exp(−s)", required=True,
@@ -126,7 +153,7 @@ TABLES: dict[str, TableOfKeys] = {
 )),
 "heights": TableOfKeys("Law of the summit heights, reduced to mean 0 and standard deviation 1. Left out: "
     "Gaussian.", (
-    Key("law", Word(("gaussian", "exponential", "weibull", "nayak", "table", "scipy")), '"weibull"',
+    Key("law", Word((*HEIGHTS,)), '"weibull"',
         "`gaussian`, `exponential`, `weibull`, `nayak`, `table` or `scipy`", "gaussian"),
     Key("shape", Number(low=1, high=100, advice="give a number from 1 to 100 (3.6 has no skewness)"), "2.0",
         "of the Weibull law, 1 to 100; 3.6 has no skewness", required=True, laws=("weibull",)),

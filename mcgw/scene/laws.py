@@ -7,40 +7,21 @@ from typing import Any
 
 from analytic import (
     Custom,
-    Exponential,
-    ExponentialHeights,
     Gaussian,
     Grading,
     HeightLaw,
     HeightTable,
     Homogeneous,
     MeasuredHeights,
-    Nayak,
-    PiecewiseSeries,
     ScipyHeights,
     Surface,
     Table,
-    Weibull,
 )
 from analytic.laws import ContactLaw, Hertz
 from mcgw.scene.files_beside import read_grading, read_heights
-from mcgw.scene.keys import KEYS
+from mcgw.scene.keys import GRADINGS, HEIGHTS, KEYS
 from mcgw.scene.section import SceneError, Section
 
-_GRADINGS = {
-    "homogeneous": Homogeneous,
-    "exponential": Exponential,
-    "table": Table,
-    "series": PiecewiseSeries,
-}
-_HEIGHTS: dict[str, Any] = {
-    "gaussian": Gaussian,
-    "exponential": ExponentialHeights,
-    "weibull": Weibull,
-    "nayak": Nayak,
-    "table": HeightTable,
-    "scipy": ScipyHeights,
-}
 _LAW_OF_HEIGHTS = ("support", "breaks", "span", "log_ratio", "pdf")
 
 
@@ -87,7 +68,7 @@ def grading_of(section: Section, surface: Surface | None, folder: Path) -> Gradi
             raise ValueError(advice if file is None else f"file: {advice}") from None
 
     law = section.read("law", "exponential" if "gamma" in section else "homogeneous")
-    return _made(section, law, table if law == "table" else _GRADINGS.get(law)) or Homogeneous()
+    return _made(section, law, table if law == "table" else GRADINGS.get(law)) or Homogeneous()
 
 
 def grading_given(section: Section, given: Any) -> Grading:
@@ -103,7 +84,7 @@ def grading_given(section: Section, given: Any) -> Grading:
 
 def grading_table(grading: Grading) -> dict[str, Any]:
     """The table [grading] of one that is data, read again the same."""
-    (law,) = [name for name, kind in _GRADINGS.items() if isinstance(grading, kind)]
+    (law,) = [name for name, kind in GRADINGS.items() if isinstance(grading, kind)]
     return _table("grading", law, grading)
 
 
@@ -127,7 +108,7 @@ def heights_of(section: Section, folder: Path) -> HeightLaw | None:
             raise ValueError(f"{key}: {advice}; {error}") from None
 
     law = section.read("law")
-    made: HeightLaw | None = _made(section, law, (_HEIGHTS | {"table": table, "scipy": _of_scipy}).get(law))
+    made: HeightLaw | None = _made(section, law, (HEIGHTS | {"table": table, "scipy": _of_scipy}).get(law))
     return made
 
 
@@ -181,8 +162,8 @@ def heights_table(heights: HeightLaw, file: str | None = None) -> dict[str, Any]
         name = getattr(own, "name", None)
         if name and type(own) is type(getattr(scipy.stats, name, None)):
             return {"law": "scipy", "name": name, "shapes": heights.shapes}
-    elif type(heights) in _HEIGHTS.values():  # a class made of one may do more
-        (law,) = [name for name, kind in _HEIGHTS.items() if type(heights) is kind]
+    elif type(heights) in HEIGHTS.values():  # a class made of one may do more
+        (law,) = [name for name, kind in HEIGHTS.items() if type(heights) is kind]
         return _table("heights", law, heights)
     raise SceneError(
         [
