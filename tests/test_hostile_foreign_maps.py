@@ -67,6 +67,15 @@ def test_what_a_file_cannot_hold_is_never_read(foreign, tmp_path):
     assert not (tmp_path / "read").exists()
 
 
+@pytest.mark.parametrize("word", ["0x10", "[nan]", "1.2e-\x00"])
+def test_a_matrix_with_a_damaged_number_is_shown_to_no_other_program(word, foreign, tmp_path):
+    """One may take it for something else; this one reads five heights, a height and a map of 3 x 2."""
+    path = foreign(f"3 2 1 1 1\n1 2 {word} 3 3").rename(tmp_path / "map.txt")
+    with pytest.raises(ValueError, match=r"map\.txt: line 2: could not convert string to float"):
+        read_map(path)
+    assert not (tmp_path / "read").exists()
+
+
 @pytest.mark.parametrize(
     ("what", "told"),
     [("greedy", "may take 1024 MiB of memory, and it asks for more"), ("crash", "crashed with SIGABRT")],

@@ -9,7 +9,7 @@ import numpy as np
 
 from analytic.arrays import Array
 from mcgw.maps.foreign import ForeignError
-from mcgw.maps.topography import Topography, checked_shape, height_unit, metres_in, single_points
+from mcgw.maps.topography import XYZ, Topography, checked_shape, height_unit, metres_in, single_points
 
 _MOST_LINE = 2**24
 _LENGTH = re.compile(r"#\s*(Width|Height|Breite|Höhe)\s*:\s*([-+.,\deE]+)\s*(\S+)\s*$")
@@ -53,7 +53,12 @@ def read_text(path: Path, pixel: tuple[float, float] | None = None, unit: str | 
             continue
         words = words_of(path, number, line)
         open_left, open_right = open_left and not words[0], open_right and not words[-1]
-        rows.append(numbers_of(path, number, words))
+        try:
+            rows.append(numbers_of(path, number, words))
+        except ForeignError as error:
+            if rows and rows[0].size > XYZ:  # a matrix, which a wrong word makes no file of another program
+                raise ValueError(str(error)) from None
+            raise
         if rows[-1].size != rows[0].size:
             raise ForeignError(
                 f"{path}: line {number} has {rows[-1].size} numbers, the first row {rows[0].size}"

@@ -15,7 +15,7 @@ SMALLEST, _LARGEST = 1e-150, 1e150  # of what is squared, m: sums of squares and
 _FINEST = 1e-30  # m, of a pixel, whose eighth power still counts
 _SMALL, _PACKED = 2**22, 20  # points that any file may declare, and that each of its bytes may hold
 _ENOUGH = 2**20  # differences between neighbours tell their median to a thousandth
-_XYZ = 3
+XYZ = 3
 STEEPEST = 10.0  # 84 degrees: no instrument that gives a height map sees such slopes all over it
 
 
@@ -113,7 +113,7 @@ def checked_shape(rows: int, columns: int, *, held: int | None = None) -> tuple[
 
 def single_points(rows: int, columns: int) -> str:
     """Why an array that came without a word is no map: as x, y and z, since none is three pixels wide."""
-    if not columns == _XYZ < rows:
+    if not columns == XYZ < rows:
         return ""
     return (
         f"three numbers a line, {rows} lines: x, y and z of single points are no map; give rows of heights "

@@ -1,9 +1,10 @@
 """Fuzzing in children with limited memory: ``python fuzz.py scenes|files|maps COUNT SEED``.
 
 Prints one JSON line: how many inputs, how many were accepted, and a list of failures: an exception that
-is not ours, a crash, more than 5 s, more than the memory. A crash of the child that looks at a file is no
-failure, that is what it is for, and is counted; one of the reader that follows is. Maps are read and fitted
-in 1 GiB beyond what the program takes; run them under NUMBA_BOUNDSCHECK=1, with a NUMBA_CACHE_DIR of its own.
+is not ours, a crash, more than 4 s of CPU, more than the memory. A crash of the child that looks at a file
+is no failure, that is what it is for, and is counted; one of the reader that follows is. Maps are read and
+fitted in 1 GiB beyond what the program takes; run them under NUMBA_BOUNDSCHECK=1, with a NUMBA_CACHE_DIR of
+its own.
 """
 
 import json
@@ -64,7 +65,7 @@ def limited(action, memory=MEMORY):
         code = 99
         try:
             resource.setrlimit(resource.RLIMIT_AS, (memory, memory))
-            signal.alarm(SECONDS)
+            signal.setitimer(signal.ITIMER_PROF, SECONDS)
             os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
             code = action()
         finally:
@@ -109,7 +110,7 @@ def scenes(count, seed):
             dice, good = random.Random(seed * 1_000_003 + start), 0
             for _ in range(min(batch, count - start)):
                 text = mutated_scene(dice)
-                signal.alarm(SECONDS)
+                signal.setitimer(signal.ITIMER_PROF, SECONDS)
                 try:
                     scene = mcgw.scene_from(text)
                     assert mcgw.scene_from(mcgw.scene_text(scene)) == scene
