@@ -71,7 +71,7 @@ class RandomCurvature:
     alpha : float
         Nayak's bandwidth, of the height law too.
     largest : float, optional
-        Largest ratio: flatter summits count as having this one (a map has none as flat as it is long).
+        Largest ratio: flatter summits count as having this one.
 
     Raises
     ------

@@ -1,6 +1,5 @@
 """The scene of a fit: it runs as it is."""
 
-import math
 from pathlib import Path
 from typing import Any, Literal
 
@@ -133,10 +132,7 @@ def _as_fitted(fit: Fit | ProfileFit, use: str, heights: Heights, modulus: float
         if use != "moments":
             raise ValueError(f'use = "{use}": heights = "nayak" follow from the "moments"')
         law, surface = Nayak(fit.moments.alpha), fit.moments.surface(fit.area, modulus)
-        flattest = (
-            math.sqrt(fit.area) / surface.radius
-        )  # no summit is flatter than what was looked at is long
-        return _scene(surface, title, heights=law, curvature=RandomCurvature(law.alpha, flattest))
+        return _scene(surface, title, heights=law, curvature=RandomCurvature(law.alpha))
     if heights != "summits" and use not in fit.estimates:
         raise ValueError(
             f"use = {use!r}: there is no such estimate of this map; {', '.join(fit.estimates)} are"

@@ -203,7 +203,7 @@ def pressure_curves(ensemble: Ensemble) -> list[FigureData]:
     """
     if "load" not in ensemble.scene.quantities:
         return []
-    first = _first(with_values(ensemble, MOST_SURFACES))
+    first = first_surfaces(ensemble)
     reach = common_pressures(first)
     if reach is None:
         return []
@@ -237,8 +237,9 @@ def _exact(ensemble: Ensemble, pressure: Array) -> Array | None:
     return None if np.isnan(found).any() else found
 
 
-def _first(ensemble: Ensemble) -> Ensemble:
-    """The first surfaces, in memory."""
+def first_surfaces(ensemble: Ensemble) -> Ensemble:
+    """The first surfaces, in memory, with the quantities shown over pressure."""
+    ensemble = with_values(ensemble, MOST_SURFACES)
     names = {name for name, *_ in _asked(ensemble)} - {"separation"} | {"load"}
     rows = {name: ensemble.sums.read(name, 0, min(MOST_SURFACES, ensemble.n_surfaces)) for name in names}
     return Ensemble(ensemble.scene, ensemble.sampler, MemoryResults(rows))
