@@ -166,11 +166,15 @@ def test_corrected_is_divided_by_its_bias(solved):
         found = solved.corrected(name)
         bias = v.bias[column][0]
         assert found.value * (1 + bias) == pytest.approx(solved.theory[name])
-        most = (v.error[column][0] - abs(bias)) / (1 + bias)
+        most = (v.error[column][0] - abs(bias)) / (1 + bias)  # of the very summits of a surface
+        most = np.hypot(most, 1.96 * solved.surfaces[name].std(ddof=1) / solved.theory[name])
         assert found.high / found.value == pytest.approx(1 + most)
         assert found.low * found.high == pytest.approx(found.value**2)
     gap, sigma = solved.corrected("mean_gap"), solved.scene.surface.sigma
     assert gap.value == pytest.approx(solved.theory["mean_gap"] - sigma * v.bias["separation"][0])
+    off = sigma * (v.error["separation"][0] - abs(v.bias["separation"][0]))
+    off = np.hypot(off, 1.96 * solved.surfaces["mean_gap"].std(ddof=1))
+    assert gap.high - gap.value == pytest.approx(off)
     assert "contacts: no error" in solved.corrected("contacts").why
     named = {column.name: column for column in solved.table().flat}
     row = list(named["quantity"].values).index("area")

@@ -13,7 +13,7 @@ import analytic
 import mcgw
 from mcgw.cli import main
 from mcgw.formats.numbers import columns, number
-from mcgw.reports.html import report_html
+from mcgw.reports.html import report_html, solution_of
 from mcgw.statistics.comparison import compare
 
 LOWERED = str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789")
@@ -313,3 +313,32 @@ def test_the_contact_law_and_its_rivals_are_in_the_report(make_scene, page):
     for shown in (ensemble, scene):
         assert "contact law  KogutEtsion(critical=0.05, poisson=0.3)" in repr(shown)
         assert "resistivity 1e-07 ohm m, film 1e-14 ohm m^2" in repr(shown)
+
+
+def test_the_budget_at_a_pressure_and_the_corrected_answer(small):
+    """Of Gaussian summits whose parameters are known to so much; the numbers are those of a search."""
+    wanted = ("load", "area", "stiffness")
+    scene = small.replace(
+        heights=analytic.Gaussian(), grading=analytic.Homogeneous(), quantities=wanted, n_surfaces=40,
+        uncertainty={"sigma": "20 %"}, separations=(0.8, 1.0, 1.2),
+    )  # fmt: skip
+    ensemble = mcgw.simulate(scene)
+    found = solution_of(ensemble)
+    searched = mcgw.solve(scene, load=found.value)
+    assert found.theory == searched.theory
+    for name in ("area", "stiffness", "mean_gap"):
+        few = searched.surfaces[name].std() / np.sqrt(40)
+        assert found.surfaces[name].mean() == pytest.approx(searched.surfaces[name].mean(), abs=6 * few)
+        assert found.corrected(name).value == searched.corrected(name).value > 0
+    budget = found.budget()
+    assert budget.quantities == ("area", "stiffness", "mean_gap")
+    by_hand = 1.96 * found.surfaces["area"].std(ddof=1) / found.theory["area"]
+    assert budget.shares["specimens"][0] == pytest.approx(by_hand)
+    assert budget.shares["parameters"][0] == pytest.approx(searched.budget().shares["parameters"][0])
+    text = " ".join(html.unescape(re.sub("<[^>]+>", " ", report_html(ensemble, ATTRIBUTES))).split())
+    assert f"{budget.advice}." in text
+    assert "corrected (95 %)" in text
+    for line, share in budget.shares.items():
+        assert f"{line} {share[0]:.2%}" in text
+    assert solution_of(mcgw.simulate(scene, n_surfaces=1)) is None
+    assert "by causes" not in page_of(scene, n_surfaces=1)

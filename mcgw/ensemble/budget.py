@@ -135,7 +135,7 @@ def budget_of(
         Whether a load was given: at a given area no error of a model was measured.
     """
     names = tuple(
-        name for name in ("load", *_ERROR_OF) if name in theory and name != ("area", "load")[at_load]
+        name for name in ("load", *_ERROR_OF) if name in surfaces and name != ("area", "load")[at_load]
     )
     value = np.array([theory[name] for name in names])
     lacking, parts = {}, {}
@@ -188,19 +188,20 @@ def moved(scene: Scene, steps: dict[str, float]) -> Scene:
     return scene.replace(surface=replace(surface, **own), heights=heights, curvature=curvature)
 
 
-def corrected(validity: Validity, scene: Scene, name: str, value: float) -> Corrected:
-    """An answer at a load without the bias of its model, with what remains."""
+def corrected(validity: Validity, scene: Scene, name: str, value: float, std: float) -> Corrected:
+    """An answer at a load without the bias of its model, with what remains; `std` is that of specimens."""
     column = _ERROR_OF.get(name)
     if column is None:
         return Corrected.unknown(f"{name}: no error of it was measured")
     bias, error = (float(x[column][0]) for x in (validity.bias, validity.error))
     if math.isnan(error):
         return Corrected.unknown(validity.unknown or f"{name}: not measured there")
-    off = error - abs(bias)
+    besides = _SURE * std * validity.listed
     if column == "separation":
-        right = value - bias * scene.surface.sigma
-        return Corrected(right, right - off * scene.surface.sigma, right + off * scene.surface.sigma)
-    right, factor = value / (1 + bias), 1 + off / (1 + bias)
+        right, off = value - bias * scene.surface.sigma, (error - abs(bias)) * scene.surface.sigma
+        off = math.hypot(off, besides)
+        return Corrected(right, right - off, right + off)
+    right, factor = value / (1 + bias), 1 + math.hypot((error - abs(bias)) / (1 + bias), besides / value)
     return Corrected(right, right / factor, right * factor)
 
 

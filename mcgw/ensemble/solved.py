@@ -222,7 +222,8 @@ class Solution(Shown):
 
         if self.given != "load":
             return Corrected.unknown("errors of models are measured at a given load")
-        return corrected(against_elasticity([self]), self.scene, quantity, self.theory[quantity])
+        std = float(self.surfaces[quantity].std(ddof=1))
+        return corrected(against_elasticity([self]), self.scene, quantity, self.theory[quantity], std)
 
     def plot(self, ax: Any = None) -> Any:
         """Draw how the separation differs from surface to surface; returns the axes."""
@@ -230,7 +231,7 @@ class Solution(Shown):
 
     def sheet(self) -> Sheet:
         """Theory and Monte Carlo side by side."""
-        many = f"{len(self.surfaces['separation'])} surfaces of {self.scene.n_asperities} asperities"
+        many = f"{len(next(iter(self.surfaces.values())))} surfaces of {self.scene.n_asperities} asperities"
         many += ", drawn from the measured ones" if self.scene.as_measured else ""
         facts = [("over", many), ("elasticity", against_elasticity([self]).brief)]
         if (contacts := self.theory["contacts"]) < MANY:

@@ -1,11 +1,16 @@
 """Reports of an ensemble and of a sweep: one HTML page each, that needs no network and no script."""
 
+import math
 import re
 from typing import Any
 
+import numpy as np
+
 from analytic import Hertz
+from mcgw.ensemble.at_load import at_pressures, common_pressures, mean_surface, rise_of_summits
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.labelled import statistics_table
+from mcgw.ensemble.solved import Solution
 from mcgw.figures.against_theory import sweep_figure
 from mcgw.figures.style import grading_label
 from mcgw.formats.numbers import number, typeset
@@ -14,6 +19,7 @@ from mcgw.machine.progress import Progress, stages
 from mcgw.machine.terminal import one_line, plain_text
 from mcgw.reports.report_figures import (
     comparison_figures,
+    first_surfaces,
     line_figure,
     means_figures,
     patch_pictures,
@@ -45,6 +51,7 @@ def report_html(ensemble: Ensemble, attributes: dict[str, Any]) -> str:
         comparison = compare(ensemble) if real else None
         done()
         at_pressure = list(pressure_pictures(ensemble))
+        solved = solution_of(ensemble) if real and at_pressure else None
         done()
         patch = patch_pictures(ensemble)
         done()
@@ -62,6 +69,8 @@ def report_html(ensemble: Ensemble, attributes: dict[str, Any]) -> str:
         elastic=against.verdict,
         at_pressure=at_pressure,
         by_pressure=pressure_table(at_pressure, scene),
+        solved=solved and solved.sheet().table,
+        budget=solved and solved.budget(),
         several=real and ensemble.n_surfaces > 1,
         patch=patch,
         figures=figures,
@@ -76,6 +85,29 @@ def report_html(ensemble: Ensemble, attributes: dict[str, Any]) -> str:
         provenance=provenance_facts(attributes, scene.seed),
         scene=plain_text(_shorter(attributes["scene"])),
     )
+
+
+def solution_of(ensemble: Ensemble) -> Solution | None:
+    """Surfaces of an ensemble amid the pressures that all of them reach, each read off its own curve."""
+    scene = ensemble.scene
+    names = [name for name in ("area", "stiffness", "conductance") if name in scene.quantities]
+    if "load" not in scene.quantities or not names or ensemble.n_surfaces < 2:
+        return None
+    first = first_surfaces(ensemble)
+    if (reach := common_pressures(first)) is None:
+        return None
+    pressure = math.sqrt(reach[0] * reach[1])
+    found = at_pressures(first, np.array([pressure]), ("separation", *names))
+    surfaces = {name: values[:, 0] for name, values in found.items()}
+    if any(np.isnan(values).any() for values in surfaces.values()):
+        return None
+    if scene.interaction is None:
+        gap = scene.surface.sigma * (surfaces["separation"] + (rise_of_summits(scene) or 0.0))
+        surfaces = {"mean_gap": gap, **surfaces}
+    elif scene.nominal:
+        surfaces["nominal_separation"] = surfaces.pop("separation")
+    load = pressure * scene.surface.nominal_area
+    return Solution(scene, "load", load, mean_surface(scene, "load", load), surfaces, scene)
 
 
 def rendered(template: str, **values: Any) -> str:

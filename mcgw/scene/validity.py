@@ -44,6 +44,8 @@ class Validity(Shown):
         Where it was measured, in words.
     unknown : str
         Why there is no number at some separation or at all; empty if there is one at each.
+    listed : bool
+        Whether the model had the very summits of each map: specimens scatter besides.
     """
 
     separations: Array
@@ -54,6 +56,7 @@ class Validity(Shown):
     axis: str = ""
     where: str = ""
     unknown: str = ""
+    listed: bool = False
 
     @property
     def measured(self) -> Marks:

@@ -74,11 +74,14 @@ def _looked_up(scene: Fields, place: Place, grid: Grid, h: Array, felt: Array) -
     loads = _loads(place, found, p)
     graded = not isinstance(scene.modulus, Homogeneous)
     where = _where(scene, place, grid, found.maps, loads)
-    found_at = Validity(h, p, error, bias, graded, _load_axis(place), where)
+    found_at = Validity(h, p, error, bias, graded, _load_axis(place), where, listed=place.kind == "caps")
     if found_at.measured.all():
         return found_at
-    why = f": {loads}" if not found_at.measured.any() else ""
-    return replace(found_at, unknown=f"outside of what was measured{why}")
+    none = scene.n_asperities * scene.heights.sf(felt) < _NONE
+    why = ["outside of what was measured"] * bool(np.any(~none & ~found_at.measured))
+    why += ["fewer than one contact on a surface"] * bool(none.any())
+    told = f": {loads}" if not found_at.measured.any() else ""
+    return replace(found_at, unknown=f"{' or '.join(why)}{told}")
 
 
 def farthest(found: Expected, name: str, share: Array) -> Array:
@@ -124,7 +127,10 @@ def _loads(place: Place, found: Expected, p: Array) -> str:
     low, high = found.loads
     told = f"{low:.2g} to {high:.2g}" if low <= high else "nothing in common"
     here = " to ".join(dict.fromkeys(f"{x:.2g}" for x in (p.min(), p.max())))
-    lighter = "; lighter ones tend to Hertz's contacts" if place.kind == "caps" and p.min() < low else ""
+    lighter = ""
+    if p.min() < low and found.lightest < low:
+        limit = "Hertz's contacts" if place.kind == "caps" else "the limit of Bush, Gibson and Thomas"
+        lighter = f"; lighter ones tend to {limit}"
     return f"{_load_axis(place)} = {here} (measured: {told}{lighter})"
 
 

@@ -50,6 +50,8 @@ class Expected:
         Fewest maps behind a number.
     loads : (float, float)
         Between which the area was measured here; nan if nowhere.
+    lightest : float
+        From which load on there is a number of the area, by theory below the first of `loads`.
     """
 
     bias: dict[str, Array]
@@ -59,6 +61,7 @@ class Expected:
     waves: Array
     maps: int
     loads: tuple[float, float]
+    lightest: float
 
 
 @dataclass(frozen=True)
@@ -66,37 +69,35 @@ class _Surface:
     """Rows of surfaces of one x: logarithms of loads, and the numbers there, by column."""
 
     at: dict[str, Array]
-    numbers: dict[str, Array]  # bias, logarithms of contacts, waves and steepness: shape (4, rows)
+    numbers: dict[str, Array]  # bias, logarithms of contacts, waves and steepness, unsure: shape (5, rows)
     maps: int
+    solved: tuple[float, float]  # logarithms of loads between which the area was measured
 
     @classmethod
     def of(cls, found: Iterable[Mapping[str, str]], unit: float) -> "_Surface":
         ordered = sorted(found, key=lambda row: float(row["p"]))
         p, contacts, waves = (_numbers(ordered, key) for key in ("p", "contacts", "waves"))
-        at, numbers = {}, {}
+        maps, at, numbers = _numbers(ordered, "maps"), {}, {}
         for name in COLUMNS:
-            bias = _numbers(ordered, name)
+            bias, off = _numbers(ordered, name), _numbers(ordered, f"{name}_std")
             # The table's load is the right one; at a given gap the model is known by its own.
             own = p * (1 + bias) if name == "load" else p
             known = np.isfinite(own)
             at[name] = np.log(own[known] / unit)
             steep = np.log(_steepness(ordered)) if name == "load" else np.zeros_like(p)
-            numbers[name] = np.array([bias, np.log(contacts), np.log(waves), steep])[:, known]
-        return cls(at, numbers, min(int(row["maps"]) for row in ordered))
+            unsure = np.where(maps > 0, 0.0, off if name == "separation" else off / (1 + bias))
+            numbers[name] = np.array([bias, np.log(contacts), np.log(waves), steep, unsure])[:, known]
+        solved = np.log(p[maps > 0][[0, -1]] / unit)
+        return cls(at, numbers, int(maps[maps > 0].min()), (float(solved[0]), float(solved[1])))
 
-    def __call__(self, name: str, at: Array, *, lighter: bool) -> Array:
-        """Bias, and logarithms of contacts, waves and steepness, shape (4, loads).
-
-        Under `lighter` loads than the first row has they are those of that row, or nan.
-        """
+    def __call__(self, name: str, at: Array) -> Array:
+        """Bias, logarithms of contacts, waves and steepness, and what is unsure, shape (5, loads)."""
         points = self.at[name]
         if not points.size:
-            return np.full((4, *at.shape), np.nan)
+            return np.full((5, *at.shape), np.nan)
         nearest = points[np.argmin(np.abs(points - at[:, None]), axis=1)]
         at = np.where(np.abs(nearest - at) <= _ROUNDING, nearest, at)
-        return np.array(
-            [np.interp(at, points, y, y[0] if lighter else np.nan, np.nan) for y in self.numbers[name]]
-        )
+        return np.array([np.interp(at, points, y, np.nan, np.nan) for y in self.numbers[name]])
 
 
 def _numbers(found: Iterable[Mapping[str, str]], key: str) -> Array:
@@ -129,7 +130,7 @@ class Scatter:
         """By least squares of the logarithms over rows of the table, weighted by what each knows."""
         bias, std, maps = (_numbers(found, key) for key in (name, f"{name}_std", "maps"))
         share = std if name == "separation" else std / (1 + bias)
-        known = np.isfinite(share) & (share > 0)
+        known = np.isfinite(share) & (share > 0) & (maps > 0)
         nu = maps[known] - 1
         x, contacts = (np.log(_numbers(found, key)[known]) for key in ("x", "contacts"))
         # The mean logarithm of a variance of nu degrees of freedom lies below that of its mean.
@@ -148,8 +149,8 @@ class Grid:
     """What was measured of one model on one kind of maps.
 
     Between rows everything is linear in the logarithms of x and p; of caps in those of x and p/x, which
-    goes with the separation alone. Outside nothing is said, but of caps under lighter loads than
-    were measured: they become Hertz's single contacts there, which the model has, off by no more than before.
+    goes with the separation alone. Outside nothing is said. Rows without a map are of lighter loads than were
+    measured, where theory tells what contact tends to (`runs/validation/limits.py`).
 
     Parameters
     ----------
@@ -189,27 +190,19 @@ class Grid:
         unit = x if self.along_separation else 1.0
         with np.errstate(divide="ignore"):
             at = np.log(p / unit)
-        found = {
-            name: np.sum([share * s(name, at, lighter=self.along_separation) for share, s in near], axis=0)
-            for name in COLUMNS
-        }
-        ends = [s.at["area"][[0, -1]] for _, s in near if s.at["area"].size]
-        low, high = (max(e[0] for e in ends), min(e[1] for e in ends)) if len(ends) == len(near) else (1, 0)
+        found = {name: np.sum([share * s(name, at) for share, s in near], axis=0) for name in COLUMNS}
+        low, high = max(s.solved[0] for _, s in near), min(s.solved[1] for _, s in near)
+        lightest = max(s.at["area"][0] for _, s in near)
         bias = {name: values[0] for name, values in found.items()}
         scatter, unsure = {}, {}
         maps = min(s.maps for _, s in near)
-        for name, (_, contacts, _, steep) in found.items():
+        for name, (_, contacts, _, steep, theory) in found.items():
             law = self.scatter["separation" if name == "load" else name]
             scatter[name] = law(x, np.exp(contacts)) * np.exp(steep)
             # So few maps tell a mean; and alpha does not tell all of a spectrum.
             other = _SPECTRA * np.log(x / self.x[0]) if name in _OF_GAP and not self.along_separation else 0.0
-            unsure[name] = np.hypot(scatter[name] / np.sqrt(maps), other * np.exp(steep))
-        if self.along_separation:
-            for name, values in bias.items():
-                known = [s.at[name][0] for _, s in near if s.at[name].size]
-                lighter = at < max(known, default=-np.inf) - _ROUNDING
-                unsure[name] = np.where(lighter, np.hypot(unsure[name], values), unsure[name])
-                bias[name] = np.where(lighter, 0.0, values)
+            of_maps = np.hypot(scatter[name] / np.sqrt(maps), other * np.exp(steep))
+            unsure[name] = np.hypot(of_maps, theory)
         return Expected(
             bias,
             scatter,
@@ -218,6 +211,7 @@ class Grid:
             np.exp(found["area"][2]),
             maps,
             (float(unit * np.exp(low)), float(unit * np.exp(high))) if low <= high else (np.nan, np.nan),
+            float(unit * np.exp(lightest)),
         )
 
     def _near(self, x: float) -> list[tuple[float, _Surface]]:

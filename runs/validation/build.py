@@ -10,6 +10,7 @@ from pathlib import Path
 
 import solve_table
 from deviations import Condensed, condensed, write_table
+from limits import limits
 from page import page
 from solve_table import Row
 from validity_figures import chart, one_map
@@ -38,7 +39,7 @@ def main() -> None:
     rows = solve_table.read()
     charted = charted_rows(rows)
     lines = condensed(charted)
-    write_table(lines, solve_table.PATH, len(charted), CONDENSED)
+    write_table([*lines, *limits(lines)], solve_table.PATH, len(charted), CONDENSED)
     pictures(lines, rows)
     (HERE / "README.md").write_text(page(lines, rows))
 

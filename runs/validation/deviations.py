@@ -157,12 +157,13 @@ def table_text(lines: list[Condensed], source: bytes, solves: int) -> str:
         "# separation: (model - BEM) at p, over the rms height of the map (gaussian), sigma (caps)\n"
         "# *_std: deviation between maps, not of their mean; nan: the model has no such state\n"
         "# contacts, waves: of a map, loaded spots and independent heights\n"
+        "# maps = 0: lighter loads than were solved, by theory; *_std: how unsure that is (limits.py)\n"
     )
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(COLUMNS)
     for line in lines:
         pairs = [f"{value:.4f}" for q in QUANTITIES for value in (line.mean[q], line.std[q])]
-        first = (line.map, line.model, line.interaction, f"{line.x:g}", f"{line.p:g}")
+        first = (line.map, line.model, line.interaction, f"{line.x:g}", f"{line.p:.4g}")
         writer.writerow((*first, *pairs, line.maps, f"{line.contacts:.4g}", f"{line.waves:.4g}"))
     return text.getvalue()
 
