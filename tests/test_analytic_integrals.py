@@ -150,3 +150,22 @@ def test_measured_heights_are_summed():
     s = np.array(heights.heights)
     truth = np.sum(np.where(s > 0.05, np.abs(s - 0.05) ** 1.7, 0.0)) / 4
     assert float(analytic.fn(1.7, 0.05, heights=heights)) == pytest.approx(truth, rel=1e-14)
+
+
+def over_a_kink(x, kink):
+    """F*_1.5 relative to the density at x, for 1 + |s - kink|, by mpmath between the kink and the mean."""
+
+    def integrand(s):
+        return (s - x) ** mp.mpf(1.5) * (1 + abs(s - kink)) * mp.exp((mp.mpf(max(x, 0.0)) ** 2 - s * s) / 2)
+
+    ends = sorted({x, *(k for k in (kink, 0.0) if k > x), x + 1, x + 4, max(x, 0.0) + 14})
+    with mp.workdps(25):
+        return float(mp.quad(integrand, ends) / (1 if x >= 0 else mp.sqrt(2 * mp.pi)))
+
+
+@pytest.mark.parametrize("kink", [24.5, -6.5, 0.3])
+def test_kinks_that_only_one_of_several_separations_reaches(kink):
+    """The lowest reaches up to 13, the highest from 24 on."""
+    h = [-7.0, 0.0, 12.0, 24.0]
+    found = analytic.fn_scaled(1.5, h, Custom(lambda s: 1 + np.abs(s - kink), (kink,)))
+    np.testing.assert_allclose(found, [over_a_kink(x, kink) for x in h], rtol=1e-12)
