@@ -16,10 +16,9 @@ import numpy as np
 
 import mcgw
 from analytic import SpectralMoments
-from mcgw.elasticity.grid import Grid
 from mcgw.elasticity.levels import Pressed
 from mcgw.elasticity.located import Located
-from mcgw.elasticity.spots import LawSpots
+from mcgw.elasticity.spots import Grid, LawSpots
 from mcgw.errors import RunError
 from mcgw.maps.synthetic import Spectrum, gaussian_map
 
