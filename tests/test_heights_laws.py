@@ -29,7 +29,7 @@ from analytic import (
     Weibull,
 )
 from mcgw.sampling.asperities import heights
-from mcgw.sampling.law_sums import asperity_sums
+from mcgw.sampling.direct import asperity_sums
 
 SAMPLE = np.random.default_rng(1).weibull(1.6, size=3000)
 LAWS = {

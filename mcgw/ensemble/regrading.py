@@ -17,7 +17,7 @@ from mcgw.ensemble.results import MemoryResults, joined
 from mcgw.sampling.asperities import listing_sampler, summits_drawn
 from mcgw.sampling.block import Block
 from mcgw.sampling.counted import Counted
-from mcgw.sampling.law_sums import asperity_sums
+from mcgw.sampling.direct import asperity_sums
 from mcgw.sampling.samplers import regraded, sampler_of
 from mcgw.scene.arguments import as_toml, check_object
 from mcgw.scene.laws import read_law

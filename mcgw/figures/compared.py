@@ -17,7 +17,7 @@ from mcgw.figures.data import Estimate, Points
 from mcgw.figures.style import contact_label, short
 from mcgw.formats.table import evenly
 from mcgw.sampling.asperities import heights
-from mcgw.sampling.law_sums import asperity_sums
+from mcgw.sampling.direct import asperity_sums
 from mcgw.scene.in_words import law_text
 from mcgw.scene.samplers import promise_of
 from mcgw.scene.scene import Scene

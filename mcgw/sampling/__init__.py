@@ -6,9 +6,9 @@
                (`drawing`): all that a surface keeps, as many of each cell as its `layout` says
 ``response``   physics as a sparse matrix: `series` on the cells and on a `tree` over them, put together to
                rows that follow from each other (`product`)
-``counted``    a block of surfaces = response @ moments, and the few asperities outside the cells (`outside`,
-               `law_sums`); `drawing` has the ways to draw moments, `samplers` the names of what they make
-``direct``     all heights, in plain loops: the witness
+``counted``    a block of surfaces = response @ moments, and the few asperities outside the cells (`outside`);
+               `drawing` has the ways to draw moments, `samplers` the names of what they make
+``direct``     all heights, or those that are given, in plain loops: the witness
 ``lanes``      four numbers at a time; with `rules` and `exp_log` it makes the same bits on every processor
 ``asperities`` the very heights that were summed, if anybody asks
 

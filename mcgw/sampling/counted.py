@@ -12,8 +12,8 @@ from analytic.arrays import Array, Ints
 from mcgw.sampling.block import Block, Layout, Sampler
 from mcgw.sampling.cells import Mesh
 from mcgw.sampling.counts import Counts, contacts_above, counts_of
+from mcgw.sampling.direct import asperity_sums, tangential_loads
 from mcgw.sampling.drawing import Drawing, OneByOne
-from mcgw.sampling.law_sums import asperity_sums, tangential_loads
 from mcgw.sampling.outside import extra_heights
 from mcgw.sampling.response.response import Response
 from mcgw.sampling.stretches import stretches_of

@@ -1,15 +1,21 @@
-"""All heights, by NumPy's generator, and plain loops: the witness against the other samplers."""
+"""All heights, by NumPy's generator, and plain loops: the witness against the other samplers.
+
+Sums over given heights, by the formula of each contact: slow, literal, trusted.
+"""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
+from analytic import quantity_of
 from analytic.arrays import Array
+from mcgw.machine.compiling import njit
 from mcgw.sampling.block import Block, Sampler
 from mcgw.sampling.cells import no_cells
 from mcgw.sampling.counts import generator
-from mcgw.sampling.law_sums import asperity_sums
 from mcgw.scene.scene import Scene
 
 _PURPOSE = 1  # of NumPy's generator; the counts have 0
@@ -75,3 +81,131 @@ class Direct(Sampler):
         touching = heights > self.scene.lowest
         ratios = None if ratios is None else ratios[touching]
         return balanced_sums(self.scene, number, heights[touching], ratios)
+
+
+def asperity_sums(
+    scene: Scene,
+    numbers: NDArray[np.int64],
+    heights: Array,
+    weights: Array,
+    ratios: Array | None = None,
+) -> dict[str, Array]:
+    """Load, area, ... of surfaces whose heights are given.
+
+    Parameters
+    ----------
+    scene : Scene
+        Its surface, grading, contact law, separations and quantities are used.
+    numbers : ndarray of int
+        How many of the heights belong to each surface, shape (surfaces,).
+    heights : ndarray
+        The reduced heights of all surfaces, one after the other.
+    weights : ndarray
+        For how many asperities each height stands: 1 in an ensemble.
+    ratios : ndarray, optional
+        The radius of each over that of the surface, where summits have their own.
+
+    Returns
+    -------
+    dict of str to ndarray
+        Each quantity in SI units, shape (surfaces, separations).
+    """
+    if scene.tangential:
+        plain = replace(scene, tangential=None)
+        loads = replace(plain, separations=scene.all_separations, quantities=("load",))
+        everywhere = asperity_sums(loads, numbers, heights, weights, ratios)["load"]
+        sums = asperity_sums(plain, numbers, heights, weights, ratios)
+        return {**sums, "tangential_load": tangential_loads(scene, everywhere)}
+    if scene.hertzian:
+        return _hertz_sums(scene, numbers, heights, weights, ratios)
+    surface = np.repeat(np.arange(len(numbers)), numbers)
+    touching = heights > scene.lowest
+    surface, s, weight = surface[touching], heights[touching], weights[touching]
+    e, ways = scene.modulus(s), scene.ways
+    c = None if ratios is None else ratios[touching]
+    sums = {}
+    for name in scene.quantities:
+        terms = (ways.term(name, h, s, e, c) for h in scene.separations)
+        rows = np.stack([np.bincount(surface, weight * one, len(numbers)) for one in terms], axis=1)
+        sums[name] = np.asarray(quantity_of(name).scale(scene.surface) * rows, dtype=np.float64)
+    return sums
+
+
+@njit(cache=True, inline="always")
+def _power(d: float, twice: int) -> float:
+    """``d**(twice/2)`` by roots and products, which every processor rounds alike."""
+    power = np.sqrt(d) if twice % 2 else 1.0
+    for _ in range(twice // 2):
+        power *= d
+    return power
+
+
+@njit(cache=True)
+def _sums(starts: Any, heights: Any, factors: Any, separations: Any, twice: Any) -> Any:
+    """For each quantity, surface and separation the sum of ``factor (s - h)^(twice/2)`` over s > h."""
+    surfaces = starts.size - 1
+    result = np.zeros((twice.size, surfaces, separations.size))
+    for i in range(surfaces):
+        if starts[i] == starts[i + 1]:
+            continue
+        for q in range(twice.size):
+            exponent = twice[q]
+            for k in range(separations.size):
+                total = 0.0
+                for j in range(starts[i], starts[i + 1]):
+                    d = heights[j] - separations[k]
+                    if d > 0.0:
+                        total += factors[q, j] * _power(d, exponent)
+                result[q, i, k] = total
+    return result
+
+
+def _hertz_sums(
+    scene: Scene,
+    numbers: NDArray[np.int64],
+    heights: Array,
+    weights: Array,
+    ratios: Array | None = None,
+) -> dict[str, Array]:
+    """As `asperity_sums`, of Hertz contacts, by plain loops."""
+    asked = [quantity_of(name) for name in scene.quantities]
+    graded = weights
+    if any(q.modulus for q in asked):
+        graded = weights * scene.modulus(heights)
+    factors = np.stack([graded if q.modulus else weights for q in asked])
+    if ratios is not None:
+        of_radius = {0.0: np.ones_like(ratios), 0.5: np.sqrt(ratios), 1.0: ratios}
+        factors *= np.stack([of_radius[q.radius] for q in asked])
+    sums = _sums(
+        np.concatenate([[0], np.cumsum(numbers)]),
+        heights,
+        factors,
+        np.array(scene.separations),
+        np.array([round(2 * q.exponent) for q in asked]),
+    )
+    for q, values in zip(asked, sums, strict=True):
+        values *= q.scale(scene.surface)
+    return dict(zip(scene.quantities, sums, strict=True))
+
+
+def tangential_loads(scene: Scene, loads: Array) -> Array:
+    """Differences of normal loads.
+
+    Parameters
+    ----------
+    scene : Scene
+        Pushed sideways.
+    loads : ndarray
+        Normal loads at `scene.all_separations`, shape (surfaces, all separations).
+
+    Returns
+    -------
+    ndarray
+        N, shape (surfaces, separations, displacements).
+    """
+    assert scene.tangential is not None
+    h = np.array(scene.separations)
+    shifted = h[:, None] + scene.tangential.shifts(scene.surface)
+    once = np.array(scene.all_separations)
+    below, above = loads[:, np.searchsorted(once, h)], loads[:, np.searchsorted(once, shifted)]
+    return scene.tangential.load(below[:, :, None], above)

@@ -19,7 +19,7 @@ from mcgw.ensemble.drawing import seconds_per_surface
 from mcgw.ensemble.intervals import spread_of
 from mcgw.sampling.asperities import summits_drawn
 from mcgw.sampling.block import Sampler
-from mcgw.sampling.law_sums import asperity_sums
+from mcgw.sampling.direct import asperity_sums
 from mcgw.sampling.samplers import sampler_of
 from mcgw.scene.samplers import promise_of
 from mcgw.scene.scene import Scene

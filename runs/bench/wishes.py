@@ -14,7 +14,7 @@ import numpy as np
 from scenes import SURFACE
 
 import mcgw
-from mcgw.sampling.law_sums import asperity_sums
+from mcgw.sampling.direct import asperity_sums
 from mcgw.scene.scene import Scene
 from mcgw.statistics.wishes import Advice, Wish, advise, ways_for
 
