@@ -38,13 +38,10 @@ from analytic.equations import (
     barber_conductance,
     conductance,
     contacts,
-    covariance,
-    cumulants,
     load,
     mean,
     mean_modulus,
     plasticity_index,
-    separation_at,
     stiffness,
     stiffness_ratio,
 )
@@ -105,10 +102,10 @@ __all__ = [
     "RandomCurvature", "ScipyHeights", "SpectralMoments", "Surface", "Table", "Tangential", "Weibull",
     "ZhaoMaiettaChang",
     "area", "area_per_load", "area_per_load_ratio", "barber_conductance", "bends",
-    "composite_modulus", "conductance", "contacts", "covariance", "cumulants", "extent", "first_negative",
+    "composite_modulus", "conductance", "contacts", "extent", "first_negative",
     "fn", "fn_between", "fn_paper", "fn_scaled", "is_data", "load", "masing", "mean", "mean_modulus",
     "name_of", "plasticity_index", "quantity_of", "ratio_at_equal_load", "resolved", "resolved_breaks",
-    "separation_at", "stiffness", "stiffness_ratio",
+    "stiffness", "stiffness_ratio",
 ]  # fmt: skip
 
 _LATER = {"Interaction": "interaction", "InteractingModel": "interacting", "Joint": "joint"}

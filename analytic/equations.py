@@ -1,10 +1,9 @@
-"""The theory as functions of a surface: short names for `analytic.Model`, and the ratios of the paper.
+"""The theory as functions of a surface: its means by short names, and the ratios of the paper.
 
 All take ``grading`` (E*(s)/E*, default: homogeneous) and ``heights`` (default: Gaussian); separations h
 are reduced, d/sigma from the mean of the summit heights, any shape.
 """
 
-from collections.abc import Sequence
 from typing import Literal
 
 import numpy as np
@@ -12,27 +11,10 @@ from numpy.typing import ArrayLike
 
 from analytic.arrays import Array
 from analytic.gradings import Grading, Homogeneous, Squared
-from analytic.height_rule import Count
 from analytic.heights import GAUSSIAN, HeightLaw
 from analytic.integrals import quotient
-from analytic.model import Cumulants, Model
+from analytic.model import Model
 from analytic.surface import Surface
-
-
-def _model(
-    surface: Surface,
-    grading: Grading | None,
-    heights: HeightLaw,
-    n_asperities: float | None = None,
-    count: Count = "fixed",
-) -> Model:
-    return Model(
-        surface,
-        grading=Homogeneous() if grading is None else grading,
-        heights=heights,
-        n_asperities=n_asperities,
-        count=count,
-    )
 
 
 def mean(
@@ -44,7 +26,9 @@ def mean(
     heights: HeightLaw = GAUSSIAN,
 ) -> Array:
     """Mean of a quantity over all surfaces: `Model.mean`, in the shape of `h`."""
-    return _model(surface, grading, heights).mean(quantity, h)
+    return Model(surface, grading=Homogeneous() if grading is None else grading, heights=heights).mean(
+        quantity, h
+    )
 
 
 def load(
@@ -148,46 +132,6 @@ def stiffness_ratio(h: ArrayLike, grading: Grading, *, heights: HeightLaw = GAUS
     ``F*_{1/2}(h)/F_{1/2}(h)``, in the shape of `h`.
     """
     return quotient(h, (0.5, grading), (0.5, None), heights)
-
-
-def cumulants(
-    surface: Surface,
-    quantity: str,
-    h: ArrayLike,
-    grading: Grading | None = None,
-    *,
-    n_asperities: float | None = None,
-    count: Count = "fixed",
-    heights: HeightLaw = GAUSSIAN,
-) -> Cumulants:
-    """Mean, variance, skewness and excess kurtosis of one finite surface: `Model.cumulants`."""
-    return _model(surface, grading, heights, n_asperities, count).cumulants(quantity, h)
-
-
-def covariance(
-    surface: Surface,
-    quantities: Sequence[str],
-    separations: ArrayLike,
-    grading: Grading | None = None,
-    *,
-    n_asperities: float | None = None,
-    count: Count = "fixed",
-    heights: HeightLaw = GAUSSIAN,
-) -> Array:
-    """Covariance over surfaces between all quantities at all separations: `Model.covariance`."""
-    return _model(surface, grading, heights, n_asperities, count).covariance(quantities, separations)
-
-
-def separation_at(
-    surface: Surface,
-    quantity: str,
-    value: ArrayLike,
-    grading: Grading | None = None,
-    *,
-    heights: HeightLaw = GAUSSIAN,
-) -> Array:
-    """Separation at which a mean has a given value: `Model.separation_at`."""
-    return _model(surface, grading, heights).separation_at(quantity, value)
 
 
 def mean_modulus(

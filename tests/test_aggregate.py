@@ -28,8 +28,8 @@ def scores(ensemble, quantity="load"):
     Their errors are estimated from 50 batches of surfaces.
     """
     scene = ensemble.scene
-    exact = analytic.cumulants(
-        scene.surface, quantity, scene.separations, scene.grading, n_asperities=scene.n_asperities
+    exact = analytic.Model(scene.surface, grading=scene.grading, n_asperities=scene.n_asperities).cumulants(
+        quantity, scene.separations
     )
     values = (ensemble.values(quantity) - exact.mean) / np.sqrt(exact.variance)
     batches = values.reshape(50, -1, values.shape[1])
@@ -154,8 +154,8 @@ def test_moments_that_stay_at_their_means_hide_a_millionth_of_the_variance(
     some, every = (samplers.sampler_of(dataclasses.replace(scene, keep=keep)) for keep in ("sums", "moments"))
     assert some.drawing.varying.sizes.sum() < 0.6 * every.drawing.varying.sizes.sum()
     for q, name in enumerate(x for x in scene.quantities if x != "contacts"):
-        exact = analytic.cumulants(
-            scene.surface, name, separations, grading, n_asperities=n, count="poisson"
+        exact = analytic.Model(scene.surface, grading=grading, n_asperities=n, count="poisson").cumulants(
+            name, separations
         ).variance - extras(every, name)
         assert np.abs(variance(every)[q] / exact - 1).max() < 1e-11
         assert np.abs(variance(some)[q] / exact - 1).max() < 1e-6

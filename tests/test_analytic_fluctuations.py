@@ -28,7 +28,7 @@ def raw_moments(q, h, gamma):
 def test_cumulants(name):
     q = QUANTITIES[name]
     fixed, free = (
-        analytic.cumulants(SURFACE, name, H, Exponential(2.0), n_asperities=N, count=count)
+        analytic.Model(SURFACE, grading=Exponential(2.0), n_asperities=N, count=count).cumulants(name, H)
         for count in ("fixed", "poisson")
     )
     scale = mp.mpf(q.scale(SURFACE))
@@ -74,9 +74,9 @@ def test_all_surfaces_of_few_asperities_one_by_one(count):
 
 
 def test_default_number_and_scaling():
-    own = analytic.cumulants(SURFACE, "load", [[0.0], [1.0]])
-    given = analytic.cumulants(SURFACE, "load", [[0.0], [1.0]], n_asperities=SURFACE.n_asperities)
-    four = analytic.cumulants(replace(SURFACE, nominal_area=4e-6), "load", [[0.0], [1.0]])
+    own = analytic.Model(SURFACE).cumulants("load", [[0.0], [1.0]])
+    given = analytic.Model(SURFACE, n_asperities=SURFACE.n_asperities).cumulants("load", [[0.0], [1.0]])
+    four = analytic.Model(replace(SURFACE, nominal_area=4e-6)).cumulants("load", [[0.0], [1.0]])
     assert own.mean.shape == (2, 1)
     np.testing.assert_array_equal(own.variance, given.variance)
     np.testing.assert_allclose(four.variance, 4 * own.variance, rtol=1e-14)
@@ -85,7 +85,7 @@ def test_default_number_and_scaling():
 
 
 def test_underflow_is_quiet_and_says_nan():
-    c = analytic.cumulants(UNIT, "load", 60.0)
+    c = analytic.Model(UNIT).cumulants("load", 60.0)
     assert c.mean == 0 == c.variance
     assert math.isnan(float(c.skewness))
     assert math.isnan(float(c.excess_kurtosis))
@@ -95,7 +95,7 @@ def test_cumulants_of_a_step_that_was_not_declared():
     c = 0.7123
     grading = Custom(lambda s: np.where(s > c, 3.0, 1.0))
     first = lambda k: F(1.5 * k, c) * (3**k - 1)  # noqa: E731
-    load = analytic.cumulants(UNIT, "load", c - 1e-13, grading, n_asperities=1, count="poisson")
+    load = analytic.Model(UNIT, grading=grading, n_asperities=1, count="poisson").cumulants("load", c - 1e-13)
     # All the contacts but a layer 1e-13 thick are above the step.
     assert error(load.variance, (mp.mpf(4) / 3) ** 2 * (first(2) + F(3, c))) < 1e-11
 
@@ -115,7 +115,9 @@ PAIRS = [  # separations and quantities at either of them
 @pytest.mark.parametrize(("h", "gap", "lower", "higher"), PAIRS)
 def test_covariance_at_two_separations(h, gap, lower, higher):
     names, upper, law = list(QUANTITIES), h + gap, exponential(1.5)
-    values = analytic.covariance(UNIT, names, [h, upper], Exponential(1.5), n_asperities=7, count="poisson")
+    values = analytic.Model(UNIT, grading=Exponential(1.5), n_asperities=7, count="poisson").covariance(
+        names, [h, upper]
+    )
     p, q = QUANTITIES[lower], QUANTITIES[higher]
     one = cross(p.exponent, h, q.exponent, upper, lambda s: law(s) ** (p.modulus + q.modulus))
     i, j = names.index(lower), names.index(higher)
@@ -126,9 +128,9 @@ def test_covariance_at_two_separations(h, gap, lower, higher):
 @pytest.mark.parametrize("count", ["fixed", "poisson"])
 def test_covariance_diagonal_is_the_variance(count):
     h, names, same = [-20.0, -15.0, -9.0, 0.0, 2.5], ["load", "contacts"], {"n_asperities": N, "count": count}
-    matrix = analytic.covariance(SURFACE, names, h, Exponential(2.0), **same)
+    matrix = analytic.Model(SURFACE, grading=Exponential(2.0), **same).covariance(names, h)
     for i, name in enumerate(names):
-        variance = analytic.cumulants(SURFACE, name, h, Exponential(2.0), **same).variance
+        variance = analytic.Model(SURFACE, grading=Exponential(2.0), **same).cumulants(name, h).variance
         np.testing.assert_allclose(np.diag(matrix[i, :, i, :]), variance, rtol=1e-12)
 
 
@@ -136,7 +138,7 @@ def test_covariance_diagonal_is_the_variance(count):
 def test_contacts_far_below_the_mean_height(count):
     """Almost all touch: the number that do not is Poisson, 1e-19 of a thousand."""
     h = [-9.0, -8.0]
-    values = analytic.covariance(UNIT, ["contacts"], h, n_asperities=N, count=count)[0, :, 0, :]
+    values = analytic.Model(UNIT, n_asperities=N, count=count).covariance(["contacts"], h)[0, :, 0, :]
     for (i, a), (j, b) in product(enumerate(h), repeat=2):
         with mp.workdps(60):
             truth = N * (F(0, max(a, b)) - (F(0, a) * F(0, b) if count == "fixed" else 0))
@@ -145,7 +147,11 @@ def test_contacts_far_below_the_mean_height(count):
 
 def test_covariance_is_positive_definite_for_crowded_separations():
     h = np.linspace(0, 4, 9)
-    matrix = analytic.covariance(UNIT, ["load", "area", "contacts"], h, Exponential(2.0)).reshape(27, 27)
+    matrix = (
+        analytic.Model(UNIT, grading=Exponential(2.0))
+        .covariance(["load", "area", "contacts"], h)
+        .reshape(27, 27)
+    )
     np.testing.assert_allclose(matrix, matrix.T, rtol=1e-14)
     scale = np.sqrt(np.diag(matrix))
     assert np.linalg.eigvalsh(matrix / np.outer(scale, scale)).min() > 0

@@ -30,7 +30,7 @@ H = np.array([-30.0, -8.0, -1.0, 0.0, 0.1, 2.0, 9.9, 10.2, 25.0, 36.0])
 def test_separation_at_inverts_the_mean(quantity, grading, above):
     h = H[above < H]
     means = analytic.mean(SURFACE, quantity, h, grading)
-    found = analytic.separation_at(SURFACE, quantity, means.reshape(1, -1), grading)[0]
+    found = analytic.Model(SURFACE, grading=grading).separation_at(quantity, means.reshape(1, -1))[0]
     # The mean has 1e-14 of error; h^2/2 turns it into less where h is large, d ln F/dh ~ 1e-2 into more.
     np.testing.assert_allclose(found, h, rtol=1e-12, atol=2e-13)
 
@@ -40,7 +40,7 @@ def test_largest_of_several_separations():
     grading = Exponential(5.0)
     peak = -2.637  # theory.md: where the stiffness changes sign
     value = float(analytic.load(SURFACE, -4.0, grading))
-    found = float(analytic.separation_at(SURFACE, "load", value, grading))
+    found = float(analytic.Model(SURFACE, grading=grading).separation_at("load", value))
     assert found > peak
     assert float(analytic.load(SURFACE, found, grading)) == pytest.approx(value, rel=1e-12)
 
@@ -48,18 +48,18 @@ def test_largest_of_several_separations():
 def test_values_that_no_separation_has():
     for value in (0.0, -1.0, math.nan, math.inf, [1.0, -1.0]):
         with pytest.raises(ValueError, match=r"load = .*finite values > 0 N"):
-            analytic.separation_at(SURFACE, "load", value)
+            analytic.Model(SURFACE).separation_at("load", value)
     with pytest.raises(ValueError, match="contacts: not reached between h = -40 and 1000"):
-        analytic.separation_at(SURFACE, "contacts", 2 * SURFACE.n_asperities)
+        analytic.Model(SURFACE).separation_at("contacts", 2 * SURFACE.n_asperities)
     with pytest.raises(ValueError, match="load: not reached"):
-        analytic.separation_at(SURFACE, "load", 1.0, Custom(lambda s: -np.ones_like(s)))
+        analytic.Model(SURFACE, grading=Custom(lambda s: -np.ones_like(s))).separation_at("load", 1.0)
 
 
 def test_target_right_before_the_load_turns_negative():
     """gamma = -0.2: positive up to h = 0.81086, so the larger of two separations is next to it."""
     grading = Exponential(-0.2)
     tiny = 1e-6 * float(analytic.load(SURFACE, 0.0, grading))
-    found = float(analytic.separation_at(SURFACE, "load", tiny, grading))
+    found = float(analytic.Model(SURFACE, grading=grading).separation_at("load", tiny))
     assert 0.8108 < found < 0.81087
     assert float(analytic.load(SURFACE, found, grading)) == pytest.approx(tiny, rel=1e-8)  # 1e-14/1e-6
 

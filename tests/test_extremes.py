@@ -27,9 +27,9 @@ def agree(ensemble):
     """Means within 5 exact standard errors of theory, wherever anything fluctuates."""
     scene = ensemble.scene
     for name in scene.quantities:
-        exact = analytic.cumulants(
-            scene.surface, name, scene.separations, scene.modulus, n_asperities=scene.n_asperities
-        )
+        exact = analytic.Model(
+            scene.surface, grading=scene.modulus, n_asperities=scene.n_asperities
+        ).cumulants(name, scene.separations)
         difference = np.abs(ensemble.mean(name) - exact.mean)
         assert (difference <= 5 * np.sqrt(exact.variance / ensemble.n_surfaces) + 1e-12 * exact.mean).all()
 

@@ -53,12 +53,14 @@ def scores(ensemble, *, gamma=None):
     surface, h, n = scene.surface, scene.separations, scene.n_asperities
     mean, variance, kurtosis = [], [], []
     for name in scene.quantities:
-        exact = analytic.cumulants(surface, name, h, grading, n_asperities=n, count=scene.count)
+        exact = analytic.Model(surface, grading=grading, n_asperities=n, count=scene.count).cumulants(name, h)
         mean.append(exact.mean)
         variance.append(exact.variance)
         kurtosis.append(exact.excess_kurtosis)
     mean, variance, kurtosis = (np.concatenate(part) for part in (mean, variance, kurtosis))
-    exact = analytic.covariance(surface, scene.quantities, h, grading, n_asperities=n, count=scene.count)
+    exact = analytic.Model(surface, grading=grading, n_asperities=n, count=scene.count).covariance(
+        scene.quantities, h
+    )
     exact = exact.reshape(mean.size, mean.size) / np.sqrt(np.outer(variance, variance))
 
     values = np.concatenate([ensemble.values(name).astype(float) for name in scene.quantities], axis=1)
@@ -143,7 +145,9 @@ def test_the_check_of_independence_sees_every_lag(lag):
 
 def test_skewness(ensembles):
     scene = ensembles["cells", "fixed"].scene
-    exact = analytic.cumulants(scene.surface, "load", scene.separations, scene.grading, n_asperities=600)
+    exact = analytic.Model(scene.surface, grading=scene.grading, n_asperities=600).cumulants(
+        "load", scene.separations
+    )
     for sampler in EXACT:
         load = ensembles[sampler, "fixed"].load
         standard = (load - exact.mean) / np.sqrt(exact.variance)
