@@ -144,14 +144,14 @@ class Values:
         Whole(0, 2**64 - 1, "give a whole number from 0 to 2^64 - 1"), "1",
         "0 to 2^64 - 1; left out: drawn, and always recorded")
     sampler: str = key("ensemble", Word(SAMPLERS), '"cells"',
-        "how surfaces are drawn: `auto` (default) takes the cheapest exact way; `cells`, `tail`, `direct`, "
-        "`aggregate` or `stratified`: [which one](../how-to/choose-a-sampler.md)", "auto")
+        "how surfaces are drawn: `auto` (default) takes the cheapest exact way of `cells`, `tail`, `direct`; "
+        "or `aggregate`, `stratified` ([how they differ](../how-to/choose-a-sampler.md))", "auto")
     keep: Literal["sums", "moments", "statistics"] = key("ensemble",
         Word(("sums", "moments", "statistics")), '"moments"',
         "`sums` (default); `moments`: also what [another grading](../how-to/keep-moments.md) starts from; "
         "`statistics`: [no surface](../how-to/keep-statistics.md), only mean, covariance, skewness, "
         "quantiles and extremes, of any number of surfaces in the same memory", "sums")
-    rel_err: As[float | str | Mapping[str, Any] | None, float | Mapping[str, float | list[float]] | None
+    rel_err: As["float | str | Mapping[str, Any] | None", float | Mapping[str, float | list[float]] | None
     ] = key("ensemble",
         Either((ByName(Either((_SHARES, _SHARE), _KNOWN_TO), "", (*SUMS, *UNLOADING)), _SHARE), _KNOWN_TO),
         "0.01",
@@ -175,7 +175,7 @@ class Values:
         List(_ANY, 0, advice="give a list of finite heights s = z/sigma, or leave it out"), "[0.5, 1.5]",
         "heights where cells are cut besides those that the scene needs, and none for speed alone: what "
         "`mcgw.sweep` shares. Scenes with the same cells and seed have the same surfaces", [])
-    uncertainty: As[Uncertainty | dict[str, Any] | None, Uncertainty | None] = key("surface", _ERRORS,
+    uncertainty: As["Uncertainty | dict[str, Any] | None", Uncertainty | None] = key("surface", _ERRORS,
         '{sigma = "20 %", radius = "15 %", eta = "12 %"}',
         "standard errors of `sigma`, `radius`, `eta` (or of `m0`, `m2`, `m4`) and `E_star`, as shares of the "
         "values, with their `correlation` in this order if they have one; `mcgw fit` writes them, and "
@@ -199,10 +199,12 @@ def documented(kind: type[_Class]) -> type[_Class]:
             delattr(Values, name)
         elif "row" in one.metadata:
             of, words = one.metadata["row"]["kind"], one.metadata["python"]
-            given = "{" + ", ".join(map(repr, of.known)) + "}" if isinstance(of, Word) else given
+            given = given.replace(" | None", "").replace(" | ", " or ").replace("ArrayLike", "array_like")
+            given = "{" + ", ".join(f'"{word}"' for word in of.known) + "}" if isinstance(of, Word) else given
             words = re.sub(r"\[([^]]+)\]\([^)]+\)", r"\1", f"{words[0].upper()}{words[1:]}.")  # no links
+            words = words.replace("`", "``")
             said += [
-                f"    {name} : {given.replace(' | None', '').replace(' | ', ' or ')}, optional",
+                f"    {name} : {given}, optional",
                 indent(fill(words, 102), " " * 8),
             ]
     kind.__doc__ = (kind.__doc__ or "").replace("\n\n    Raises", "\n".join(said) + "\n\n    Raises", 1)
