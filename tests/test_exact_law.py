@@ -2,6 +2,8 @@
 
 import subprocess
 import sys
+from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -12,6 +14,7 @@ from scipy.special import binom, gammaln
 
 import analytic
 from analytic.curvature import MEAN_CURVATURE
+from analytic.distribution import touching
 from analytic.distribution.independent_sums import by_contour
 
 GRADED = analytic.Exponential(2.0)
@@ -141,6 +144,14 @@ def test_a_law_of_very_many_is_gaussian_and_no_more(n):
     skewness = of.touching.one.skewness
     known = stats.norm.cdf(z) - skewness / 6 * (z**2 - 1) * stats.norm.pdf(z)
     np.testing.assert_allclose(of.cdf(of.mean() + z * of.std()), known, atol=1e-8)
+
+
+@pytest.mark.parametrize("quantity", ["load", "area"])
+def test_far_below_the_mean_all_is_above(quantity):
+    """Few contacts there, which another way counts than those of most surfaces."""
+    law = model(30_000).distribution(quantity, 3.0)
+    x = law.ppf([1e-9, 1e-6, 1e-4])
+    np.testing.assert_allclose(law.sf(x), 1 - law.cdf(x), rtol=1e-12)
 
 
 def test_a_heavy_tail_is_one_big_jump():
@@ -283,6 +294,80 @@ def test_asperities_that_pull():
     np.testing.assert_allclose(law.cdf(law.ppf([0.001, 0.5, 0.999])), [0.001, 0.5, 0.999], rtol=1e-9)
     with pytest.raises(ValueError, match="adhesion"):
         of.separation_law(float(known.mean))
+
+
+def test_between_loads_of_both_signs_no_load_has_a_probability():
+    law = model(30_000, law=analytic.DerjaguinMullerToporov(pull_off=0.01), grading=analytic.Homogeneous())
+    law = law.distribution("load", 4.0)
+    below, upto = float(law.cdf(-1e-9 * law.std())), float(law.cdf(0.0))
+    assert upto - below == pytest.approx(law.atom, abs=1e-4)
+    np.testing.assert_array_equal(law.ppf([(below + upto) / 2, upto - 1e-6]), 0)
+    np.testing.assert_array_equal(law.isf([1 - (below + upto) / 2, 1 - upto + 1e-6]), 0)
+
+
+@pytest.mark.parametrize("quantity", ["area", "conductance"])
+def test_what_snaps_into_contact_adds_no_little(quantity):
+    """Of one asperity: by its height; of two: an integral over the first."""
+    h, more = 1.0, {"law": analytic.JohnsonKendallRoberts(pull_off=0.3), "grading": analytic.Homogeneous()}
+    rule, added = model(1, **more).asperities(quantity, h)
+
+    def one(s):
+        return float(added(replace(rule, heights=np.array([s]), probabilities=np.zeros(1)))[0])
+
+    def least(x):
+        return brentq(lambda s: one(s) - x, h + 1e-13, 30, xtol=1e-14) if x > one(h + 1e-13) else h
+
+    for x in (0.5 * one(h + 1e-13), one(2.5)):
+        law = model(1, **more).distribution(quantity, h)
+        assert law.sf(x * law.unit) == pytest.approx(stats.norm.sf(least(x)), rel=1e-9)
+        ends = sorted({h, min(least(x), 12.0), 12.0})
+        second = sum(
+            quad(
+                lambda s, x=x: (
+                    stats.norm.pdf(s) * stats.norm.sf(least(max(x - one(s), 0)))
+                    if one(s) < x
+                    else stats.norm.pdf(s)
+                ),
+                a,
+                b,
+                epsabs=1e-12,
+                limit=200,
+            )[0]
+            for a, b in pairwise(ends)
+        )
+        known = second + stats.norm.cdf(h) * stats.norm.sf(least(x))
+        law = model(2, **more).distribution(quantity, h)
+        assert law.sf(x * law.unit) == pytest.approx(known, rel=1e-7)
+
+
+@pytest.mark.parametrize(
+    ("quantity", "law"), [("load", analytic.ZhaoMaiettaChang), ("area", analytic.ChangEtsionBogy)]
+)
+def test_the_error_of_a_law_that_jumps_is_as_large_as_said(monkeypatch, quantity, law):
+    """Against more panels, on which kinks of sums of three are resolved."""
+    of = model(30_000, law=law(critical=0.05))
+    rough = of.distribution(quantity, 4.0)
+    x = rough.isf([0.2, 0.05, 0.01, 1e-4])
+    said, seen = rough.error_at(x), rough.sf(x)
+    monkeypatch.setattr(touching, "_PANELS", ())
+    monkeypatch.setattr(touching, "_MOST", 40)
+    off = np.abs(seen / of.distribution(quantity, 4.0).sf(x) - 1)
+    assert np.all(off < np.fmax(said, 1e-13))
+    assert rough.error < 1e-4
+    assert off.max() > 1e-13  # the finer one is another
+
+
+def test_what_many_asperities_have_alike_is_no_density():
+    """Slopes of summits that flow: a value that all of them may have, over which the law is smoothed."""
+    heights = analytic.Nayak(7.35)
+    yields = analytic.KogutEtsion(critical=6e-4)
+    of = model(16, heights=heights, law=yields, grading=analytic.Exponential(1.09))
+    law = of.distribution("load_slope", -2.3)
+    x = law.mean() + law.std() * np.linspace(-4, 2, 30)
+    cdf = law.cdf(x)
+    assert np.all((cdf > -0.02) & (cdf < 1.02))
+    assert np.all(np.diff(cdf) > -0.02)
+    assert law.error_at(x).max() > 0.01
 
 
 def test_where_digits_end_is_said():

@@ -94,40 +94,48 @@ class Line:
         return self.widest + _ROOM * self.spread + self.room
 
     @cached_property
-    def _transform(self) -> tuple[Complex, Complex]:
-        """Points of the line, and there the transform of the sum less its mean, over that on the axis.
+    def _offsets(self) -> Array:
+        """Points of a block, from its first."""
+        return np.asarray(2 * np.pi / self.period * np.arange(_BLOCK))
 
-        Without what the surfaces have that touch nowhere, and with a smooth end: a kernel, many moments of
-        which vanish, then stands in for the jumps of a law.
+    @cached_property
+    def _transform(self) -> tuple[Array, Complex]:
+        """First points of the blocks of t, and at all points the transform of the sum less its mean.
+
+        Over that on the axis, shape (blocks, points of one). Without what the surfaces have that touch
+        nowhere, and with a smooth end: a kernel, many moments of which vanish, then stands in for the jumps
+        of a law.
         """
-        step, one = 2 * np.pi / self.period, self._counting
-        parts: list[Array] = []
-        found: list[Complex] = []
-        for first in range(0, self.most, _BLOCK):
-            t = np.asarray(step * (np.arange(first, first + _BLOCK) + 0.5))
-            parts.append(t)
-            found.append(np.exp(one.cumulants(self.theta, t) - self._size))
+        one, found = self._counting, np.empty((0, _BLOCK), dtype=np.complex128)
+        starts: Array = np.asarray(2 * np.pi / self.period * np.arange(0.5, self.most, _BLOCK))
+        while len(found) < starts.size:
+            few = starts[len(found) : 2 * len(found) + 1]
+            t = few[:, None] + self._offsets
+            more = np.exp(one.cumulants(self.theta, few, self._offsets) - self._size)
             if one.nothing > _NEVER:
-                found[-1] -= np.exp(one.nothing - one.mean * (self.theta + 1j * t) - self._size)
-            if np.abs(found[-1][-1]) < _DIED:
-                break
-        t, transform = np.concatenate(parts), np.concatenate(found)
-        if np.abs(transform[-1]) >= _DIED:
-            transform *= np.exp(-_CUT[0] * (t / t[-1]) ** _CUT[1])
-        return np.asarray(self.theta + 1j * t), transform
+                more -= np.exp(one.nothing - one.mean * (self.theta + 1j * t) - self._size)
+            found, died = np.concatenate([found, more]), np.abs(more[:, -1]) < _DIED
+            if died.any():
+                found = found[: len(found) - more.shape[0] + int(np.argmax(died)) + 1]
+                return np.asarray(starts[: len(found)]), np.asarray(found)
+        t = starts[:, None] + self._offsets
+        return starts, np.asarray(found * np.exp(-_CUT[0] * (t / t[-1, -1]) ** _CUT[1]))
 
     @cached_property
     def _size(self) -> float:
         """Logarithm of the transform on the axis."""
-        return float(self._counting.cumulants(self.theta, np.zeros(1))[0].real)
+        return float(self._counting.cumulants(self.theta, np.zeros(1), np.zeros(1)).item().real)
 
     def __call__(self, x: Array) -> Values:
         """The law at arguments within the room."""
-        z, transform = self._transform
+        starts, transform = self._transform
         apart = x - self._counting.mean
-        terms = transform * np.exp(-np.multiply.outer(apart, z - self.theta))
+        turned, within = (np.exp(-1j * np.multiply.outer(apart, t)) for t in (starts, self._offsets))
         height = np.exp(self._size - self.theta * apart) * (2 / self.period)
-        above, density = height * (terms / z).real.sum(axis=1), height * terms.real.sum(axis=1)
+        above, density = (
+            height * ((turned @ terms) * within).real.sum(axis=1)
+            for terms in (transform / (self.theta + 1j * (starts[:, None] + self._offsets)), transform)
+        )
         image, atom = np.exp(-abs(self.theta) * self.period), 0.0
         if (nothing := self._counting.nothing) > _NEVER:
             atom = float(np.exp(nothing))
@@ -245,10 +253,18 @@ class FewContacts:
             of = further @ of if k < n else of
         return total.reshape(self.one.shape)
 
+    @cached_property
+    def _masses(self) -> Array:
+        return self.panels.integrals(self.density * self._damping(self.panels.w))
+
+    @property
+    def missing(self) -> float:
+        """How far all probabilities up to the top are from 1."""
+        return float(np.abs(self.nothing + self._masses.sum() - 1))
+
     def __call__(self, x: Array) -> Values:
         """The law at arguments between 0 and the top."""
-        w, panels, g = (x / self.top) ** (1 / POWER), self.panels, self.density
-        masses = panels.integrals(g * self._damping(panels.w))
+        w, panels, g, masses = (x / self.top) ** (1 / POWER), self.panels, self.density, self._masses
         below, above = np.append(0.0, np.cumsum(masses)), np.append(np.cumsum(masses[::-1])[::-1], 0.0)
         which = np.clip(np.searchsorted(panels.edges, w, side="right") - 1, 0, masses.size - 1)
         cdf = self.nothing + below[which] + panels.integral_within(g, self._damping, w, up=False)

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -24,8 +24,11 @@ from analytic.distribution.touching import Touching
 _MANY = -40.0  # logarithm of the probability of no contact, below which the transform has died away
 _MIDDLE = 4.0  # standard deviations around the mean that one line serves
 _LONG = 60.0  # of them, in which the largest asperity must stay for that
+_SAFE = 3.0  # times what two computations differ by: their errors may have one sign
+_TAIL = 1e-4  # a share of the surfaces
 _FAR = 8.0
 _STEPS = 60
+_REACH = 8.0  # of a step, over the value or the standard deviation: a law is flat between two jumps
 _CLOSE = 1e-13
 _RARE = 1e-3, 1e-19  # expected number of asperities that add more
 _LOST = 0.5 + 1e-6  # a probability farther from a half is none
@@ -84,8 +87,9 @@ class Distribution(Law):
     def error(self) -> float:
         """How far `cdf` may be off, seen from a computation with other nodes."""
         x = self.ppf(_SHARES) / self.unit
-        apart = float(np.abs(self._values(x).cdf - self._again(x).cdf).max())
-        return max(apart, self.touching.step / 2, _DIGIT)
+        own = self._values(x)
+        apart = np.abs(own.cdf - self._again(x).cdf) + np.abs(own.cdf + own.sf - 1)
+        return max(_SAFE * float(apart.max()), self.touching.step / 2, _DIGIT)
 
     def error_at(self, x: ArrayLike) -> Array:
         """As `Law.error_at`."""
@@ -94,7 +98,8 @@ class Distribution(Law):
         with np.errstate(divide="ignore", invalid="ignore"):
             apart = np.where(own.cdf < own.sf, other.cdf / own.cdf, other.sf / own.sf) - 1
             step = self.touching.step / 2 / np.minimum(own.cdf, own.sf)
-        return np.asarray(np.fmax(np.abs(apart), step + _DIGIT).reshape(reduced.shape)[()])
+        apart = np.abs(apart) + np.abs(own.cdf + own.sf - 1)  # all of few contacts grow by one share
+        return np.asarray(np.fmax(_SAFE * apart, step + _DIGIT).reshape(reduced.shape)[()])
 
     @cached_property
     def _again(self) -> Callable[[Array], Values]:
@@ -122,13 +127,21 @@ class Distribution(Law):
         inside = (flat > 0) & (flat < 1)
         least = self.touching.one.least
         found[share == 0], found[share == 1] = least, np.inf
-        none = inside & (flat >= -np.expm1(self.touching.one.nothing) if upper else flat <= self.atom)
-        none &= least == 0
+        beyond = self._beyond_zero[int(upper)]
+        none = inside & (flat >= beyond - self.atom * (not upper)) & (flat <= beyond + self.atom * upper)
         found[none] = 0.0
         asked = inside & ~none
         if asked.any():
             found[asked] = self._solve(flat[asked], upper=upper)
         return (found * self.unit).reshape(q.shape)[()]
+
+    @cached_property
+    def _beyond_zero(self) -> tuple[float, float]:
+        """P(S <= 0) and P(S > 0); nan where 0 has no probability of its own."""
+        if self.touching.one.least == 0:
+            return self.atom, float(-np.expm1(self.touching.one.nothing))
+        at = self._values(np.zeros(1))
+        return (float(at.cdf[0]), float(at.sf[0])) if self.atom > 0 else (np.nan, np.nan)
 
     def _solve(self, q: Array, *, upper: bool) -> Array:
         """By Newton on the logarithm of the smaller tail, kept between ends."""
@@ -148,7 +161,7 @@ class Distribution(Law):
                 new, far = x[left] + step, np.maximum(np.abs(x[left]), one.std)
                 middle = np.where(np.isfinite(high[left]), (low[left] + high[left]) / 2, x[left] + far)
                 middle = np.where(np.isfinite(middle), middle, x[left] - far)
-            good = (new >= low[left]) & (new <= high[left])
+            good = (new >= low[left]) & (new <= high[left]) & (np.abs(step) <= _REACH * far)
             new = np.where(good, new, middle)
             size = np.minimum(np.abs(new), one.std + np.abs(new - one.mean))
             done = np.abs(new - x[left]) <= np.maximum(_CLOSE * size, 2 * np.spacing(np.abs(new)))
@@ -212,11 +225,23 @@ class _Evaluation:
         if rest.any() and (one.nothing > _MANY or x[rest][0] < one.mean - _MIDDLE * one.std):
             few = rest & (x <= self._few_up_to) & self._touching.rises
         usual = x < one.mean + _MIDDLE * one.std
-        ways += [(part, self._few(float(x[part][-1]))) for part in (few & usual, few & ~usual) if part.any()]
+        ways += [
+            (part, partial(self._by_few, self._few(float(x[part][-1]))))
+            for part in (few & usual, few & ~usual)
+            if part.any()
+        ]
         rest &= ~few
         middle = rest & (np.abs(x - one.mean) < _MIDDLE * one.std) & self._short
-        ways += [(middle, self._central), (rest & ~middle, self._far)]
+        ways += [(middle, self._middle), (rest & ~middle, self._far)]
         return [(mask, law) for mask, law in ways if mask.any()]
+
+    def _middle(self, x: Array) -> Values:
+        """By one line for all; by others where so little lies beyond that its digits would be lost."""
+        found = self._central(x)
+        rare = (np.minimum(found.cdf, found.sf) < _TAIL) & (self.one.nothing <= _MANY)
+        if rare.any():
+            _replace(found, rare, self._far(x[rare]))
+        return found
 
     def _far(self, x: Array) -> Values:
         """By lines through saddle points; by one not shifted where heavy tails both ways leave none."""
@@ -225,9 +250,7 @@ class _Evaluation:
         if not lost.any():
             return found
         room = 2 * max(_MIDDLE * one.std, float(np.abs(x[lost] - one.mean).max()))
-        flat = Line(one, 0.0, one.std, room, self._most)(x[lost])
-        for name in ("cdf", "sf", "pdf"):
-            getattr(found, name)[lost] = getattr(flat, name)
+        _replace(found, lost, Line(one, 0.0, one.std, room, self._most)(x[lost]))
         return found
 
     @cached_property
@@ -244,6 +267,11 @@ class _Evaluation:
             theta *= 1.3
         return mean
 
+    def _by_few(self, law: FewContacts, x: Array) -> Values:
+        """Where it does not reach on to the largest sums, what lies above is what is left of 1."""
+        found = law(x)
+        return replace(found, sf=1 - found.cdf) if np.isfinite(self._few_up_to) else found
+
     def _few(self, x: float) -> FewContacts:
         """Up to x at least, and where the transform takes over no farther."""
         if np.isfinite(self._few_up_to):
@@ -255,7 +283,10 @@ class _Evaluation:
         rare = x > self.one.mean + _MIDDLE * self.one.std
         if (doublings, rare) not in self._kept:
             tilt = min(saddle(bounded(self.one, far)[0], far)[0], self.one.decay(far)) if rare else 0.0
-            self._kept[doublings, rare] = self._touching.few(usual, doublings, tilt, coarse=self._finer)
+            law = self._touching.few(usual, doublings, tilt, coarse=self._finer)
+            if tilt and not np.isfinite(self._few_up_to) and not law.missing < _TAIL:
+                law = replace(law, tilt=0.0)  # panels do not follow what is tilted so much
+            self._kept[doublings, rare] = law
         return self._kept[doublings, rare]
 
     @cached_property
@@ -276,3 +307,8 @@ class _Evaluation:
     def _central(self) -> Line:
         spread = self.one.std
         return Line(self.one, 0.0, spread, 2 * _MIDDLE * spread, self._most)
+
+
+def _replace(found: Values, where: Marks, by: Values) -> None:
+    for name in ("cdf", "sf", "pdf"):
+        getattr(found, name)[where] = getattr(by, name)

@@ -13,7 +13,9 @@ from analytic.arrays import Array, Complex
 _SMALL = 0.5  # exponents below it take a series
 _NEAR = 0.1
 _TERMS = 18
-_MOST = 2000  # nodes, beyond which values are gathered
+_CONTACTS = 1e3  # beyond, the last digits of one of them are worth more than the last of the sum
+_MOST, _AT_MOST = 2000, 8000  # nodes of many and of few contacts, beyond which values are gathered
+_MANY = 40.0  # contacts, of which the transform has died before it tells values in a bin apart
 _BIN, _IN_BIN = 0.25, 10  # range of the logarithms of values in a bin, and points of one
 _HALF_WIDTH = 12.0  # of the smooth cut, in its own widths: erfc(6) is no more than 1e-17
 
@@ -44,7 +46,8 @@ class OneAsperity:
         """Of those nodes that add something."""
         counts = (values != 0) & (probabilities > 0)
         found = cls(values[counts], probabilities[counts], number, poisson)
-        return found._fewer() if found.values.size > _MOST and found.least == 0 else found
+        most = _MOST if found.contacts > _MANY else _AT_MOST
+        return found._fewer() if found.values.size > most and found.least == 0 else found
 
     def _fewer(self) -> "OneAsperity":
         """The same moments at Chebyshev's points of narrow bins of the values that hold more nodes."""
@@ -169,13 +172,32 @@ class OneAsperity:
         first, second = first / (1 + more), second / (1 + more)
         return n * float(np.log1p(more)), n * first, n * (second - first * first)
 
-    def cumulants(self, theta: float, t: Array) -> Complex:
-        """Logarithm of the mean of exp(z (S - mean)), z = theta + i t, accurate for any number."""
-        rest = self._beyond_linear(theta, t)
+    def cumulants(self, theta: float, starts: Array, offsets: Array) -> Complex:
+        """Logarithm of the mean of exp(z (S - mean)), accurate for any number.
+
+        At z = theta + i t, where t are the sums of starts and offsets: shape (starts, offsets).
+        """
+        t, x = np.add.outer(starts, offsets), self.values
+        contacts = self.number * float(self.probabilities @ np.exp(theta * x))
+        if not self.poisson:
+            contacts /= 1 + float(self.probabilities @ np.expm1(theta * x))
+        if contacts < _CONTACTS and np.abs(x).max(initial=0.0) * starts[0] > _SMALL:
+            rest = self._by_products(theta, starts, offsets)
+        else:
+            rest = np.stack([self._beyond_linear(theta, row) for row in t])
         if self.poisson:
             return np.asarray(self.number * rest)
         linear = (theta + 1j * t) * (self.mean / self.number)
         return np.asarray(self.number * (rest + _log_beyond_linear(rest + linear)))
+
+    def _by_products(self, theta: float, starts: Array, offsets: Array) -> Complex:
+        """As `_beyond_linear`, from fewer exponentials: the last digits of 1 are lost."""
+        x, growth = self.values, theta * self.values
+        first, further = (np.exp(1j * np.multiply.outer(t, x)) for t in (starts, offsets))
+        tilted = self.probabilities * np.exp(growth)
+        linear = tilted.sum() - self.probabilities @ (np.expm1(growth) - growth)
+        t = np.add.outer(starts, offsets)
+        return np.asarray((first * tilted) @ further.T - linear - 1j * t * (self.probabilities @ x))
 
     def _beyond_linear(self, theta: float, t: Array) -> Complex:
         """Mean of ``exp(z X) - 1 - z X``, without a loss where all z X are small."""

@@ -111,13 +111,15 @@ class Panels:
 
     def _between(self, t: Array) -> Array:
         """Weights of the values in a panel, at places from 0 to 1 in it: shape (places, nodes)."""
-        apart = t[:, None] - gauss_legendre(self.nodes)[0]
-        exact = apart == 0
-        apart[exact] = 1.0
-        rows = self._barycentric / apart
-        hit = exact.any(axis=1)
-        rows[hit] = exact[hit]
-        return np.asarray(rows / rows.sum(axis=1, keepdims=True))
+        rows = t[:, None] - gauss_legendre(self.nodes)[0]
+        with np.errstate(divide="ignore", invalid="ignore"):
+            np.divide(self._barycentric, rows, out=rows)
+            total = rows.sum(axis=1)
+            rows /= total[:, None]
+        hit = ~np.isfinite(total)  # a node itself
+        if hit.any():
+            rows[hit] = t[hit, None] == gauss_legendre(self.nodes)[0]
+        return np.asarray(rows)
 
     def _rows(self, w: Array) -> tuple[Ints, Array]:
         """Which panels places lie in, and the weights of the values there."""
@@ -166,12 +168,15 @@ class Panels:
 
         Of shape (points, points), lower triangular by panels; `f` is given at the points.
         """
+        from scipy.sparse import csr_array  # few contacts are seldom asked for
+
         result, (y, u, share, weights) = self._points[0], self._pairs
-        size = f.size
-        matrix = np.zeros(size * size)
+        matrix = np.zeros((f.size, self.starts.size, self.nodes))
         for own, other, part in ((u, y, share), (y, u, 1 - share)):
             known = np.einsum("ij,ij->i", other[1], f[other[0]])
             factor = known * weights * (of_share * part + constant)
-            at = (result * size + own[0] * self.nodes)[:, None] + np.arange(self.nodes)
-            matrix += np.bincount(at.ravel(), (factor[:, None] * own[1]).ravel(), size * size)
-        return matrix.reshape(size, size)
+            first = np.flatnonzero(np.diff(result * self.starts.size + own[0], prepend=-1))  # in its panel
+            ends, shape = np.append(first, result.size), (first.size, result.size)
+            together = csr_array((factor, np.arange(result.size), ends), shape=shape)
+            matrix[result[first], own[0][first]] += together @ own[1]
+        return matrix.reshape(f.size, f.size)

@@ -19,12 +19,13 @@ from analytic.resolution import resolved_breaks
 from analytic.summits import Radii
 
 _NODES = 16
-_PANELS, _MOST = ((5, 12), (15, 16), (25, 20)), 24  # by the expected contacts
+_PANELS, _MOST = ((15, 16), (25, 20)), 24  # by the expected contacts
 _MARKS = 6
 _STEPS, _LAST = 40, 2.0**-48
 _LOOKED_AT = 129  # heights between two breaks at which values must rise
 _CLOSE = 1e-9  # of the largest value: breaks are not told apart
 _HIGHEST = 1e4
+_TILT = 600.0  # exponent that does not overflow
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,9 +95,8 @@ class Touching:
 
     @cached_property
     def rises(self) -> bool:
-        """Whether what is added begins at 0 and rises with the height, piece by piece."""
-        pieces = self._pieces(float(self.one.values.max(initial=0.0)))
-        return bool(pieces) and pieces[0][2] <= _CLOSE * pieces[-1][3]
+        """Whether what is added is positive and rises with the height, piece by piece."""
+        return bool(self._pieces(float(self.one.values.max(initial=0.0))))
 
     def _pieces(self, top: float) -> list[tuple[float, float, float, float]]:
         """Heights between breaks, and what asperities of the first radius add at both ends; up to a value."""
@@ -105,12 +105,12 @@ class Touching:
             return found
         for low, high in pairwise(self._ends(self.asperity, top)):
             s = low + (high - low) * np.linspace(0, 1, _LOOKED_AT) ** 2
-            s[-1] = np.nextafter(high, low)
+            s[0], s[-1] = np.nextafter(low, high), np.nextafter(high, low)  # jumps are between pieces
             added = self.asperity.added(s, np.zeros(s.size, dtype=np.int64))
             if np.any(np.diff(added) < 0) or added[0] < 0:
                 return []
             if added[-1] > added[0]:
-                found.append((low, float(s[-1]), float(added[0]), float(added[-1])))
+                found.append((float(s[0]), float(s[-1]), float(added[0]), float(added[-1])))
         return found
 
     @staticmethod
@@ -131,8 +131,10 @@ class Touching:
         assert asperity is not None
         pieces = self._pieces(top)
         number = next((panels for most, panels in _PANELS if one.contacts < most), _MOST)
-        number, nodes = (number - 2, _NODES - 2) if coarse else (number, _NODES)
-        on = panels(number, doublings, nodes, _marks(pieces, top))
+        marks, nodes = _marks(pieces, top), _NODES
+        if coarse:  # sums of three have kinks at which no panel ends
+            number, nodes = (3 * number // 4 if marks else number - 2), nodes - 2
+        on = panels(number, doublings, nodes, marks)
         x, density = on.x * top, np.zeros(on.x.shape)
         which = np.arange(asperity.radii)
         for low, high, least, most in pieces:
@@ -145,7 +147,7 @@ class Touching:
             shape = (which.size, -1, on.nodes)
             slopes = on.derivative(s.reshape(shape), inside)
             density[inside] += (asperity.density(s, of).reshape(shape) * slopes).sum(axis=0)
-        return FewContacts(density, one.share, one.number, one.poisson, top, on, tilt)
+        return FewContacts(density, one.share, one.number, one.poisson, top, on, min(tilt, _TILT / top))
 
 
 def _marks(pieces: list[tuple[float, float, float, float]], top: float) -> tuple[float, ...]:
