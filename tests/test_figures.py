@@ -17,7 +17,7 @@ import analytic
 import mcgw
 from mcgw.figures.catalogue import CATALOGUE, figures_of, rows_of
 from mcgw.figures.compared import Compared
-from mcgw.figures.data import FigureData, ratio_of_sums
+from mcgw.figures.data import GAMMA, FigureData, ratio_of_sums
 from mcgw.figures.finite import spread
 from mcgw.figures.panels import draw, save_figure_files
 from mcgw.figures.style import prefixed, short
@@ -105,6 +105,16 @@ def test_numbers_of_the_paper(figures):
     homogeneous = figures["area-and-load"].panels[1].series[1]
     assert np.all(np.diff(homogeneous.theory) > 0)
     assert homogeneous.theory[-1] < 1  # area grows slower than load, ever less so
+
+
+def test_ratios_have_a_line_of_their_own_at_one(figures):
+    """What is 1 for every curve where nothing is graded, and nothing else over gamma."""
+    panels = [p for data in figures.values() for p in data.panels if p.xlabel == GAMMA]
+    ones = [
+        all(np.interp(1.0, s.x, s.theory) == pytest.approx(1.0, abs=1e-6) for s in p.series) for p in panels
+    ]
+    assert len(panels) > 8
+    assert [p.level for p in panels] == [1.0 if one else None for one in ones]
 
 
 def test_ratio_of_sums_against_repetition():
