@@ -176,10 +176,9 @@ def tiles_of(parts: Parts, order: Ints) -> Tiles:
     """
     rows, entries = _Rows.of(parts), parts.entries
     parent, child, moment, coefficients = transfers(parts.mesh, parts.tree, parts.plain)
-    at = np.arange(len(parent)) * coefficients.shape[1]
-    to_parents = Lines(
-        rows.plain[parent] + moment, rows.plain[child], parts.plain[child], at, coefficients.ravel()
-    )
+    order_of_series = coefficients.shape[1]
+    at, length = np.arange(len(parent)) * order_of_series, np.minimum(parts.plain[child], order_of_series)
+    to_parents = Lines(rows.plain[parent] + moment, rows.plain[child], length, at, coefficients.ravel())
     places = np.empty_like(order)
     places[order] = np.arange(len(order))
     node, rooted = entries.node, entries.rooted

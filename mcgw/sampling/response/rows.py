@@ -118,7 +118,7 @@ class Rows:
         return np.lexsort((h, ~rooted))
 
     def nearest(self, starts: Array) -> tuple[Ints, Ints]:
-        """Of each kind the smooth row that begins last on or before each cell: the hardest to resolve.
+        """Of each kind the row of the highest separation that is smooth on each cell: the hardest to resolve.
 
         Parameters
         ----------
@@ -133,13 +133,19 @@ class Rows:
         found = [(np.empty(0, dtype=np.int64), np.empty(0, dtype=np.int64))]
         for kind in np.unique(self.kind):
             rows = np.flatnonzero(self.kind == kind)
-            rows = rows[np.argsort(self.low[rows], kind="stable")]
-            low, rooted = self.low[rows], bool(self.rooted[rows].any())
-            last = np.searchsorted(low, starts, "left" if rooted else "right") - 1
-            cell = np.flatnonzero(last >= 0)
-            row = rows[last[cell]]
-            inside = self.high[row] > starts[cell]
-            found.append((cell[inside], row[inside]))
+            rows = rows[np.argsort(self.h[rows], kind="stable")]
+            rooted = bool(self.rooted[rows].any())
+            first = np.searchsorted(starts, self.low[rows], "right" if rooted else "left")
+            end = np.searchsorted(starts, self.high[rows])
+            endless = np.flatnonzero(end == starts.size)
+            highest = np.full(starts.size + 1, -1)
+            np.maximum.at(highest, first[endless], endless)
+            highest = np.maximum.accumulate(highest[:-1])
+            for k in np.flatnonzero(end < starts.size).tolist():
+                here = highest[first[k] : end[k]]
+                np.maximum(here, k, out=here)
+            cell = np.flatnonzero(highest >= 0)
+            found.append((cell, rows[highest[cell]]))
         cell, row = (np.concatenate(part) for part in zip(*found, strict=True))
         return cell, row
 
