@@ -238,7 +238,7 @@ def test_of_the_figures_of_all_fresh_maps_one_in_twenty_is_false_at_most():
         for one in fitted_maps.stated(each.name, each.heights(), SOLVES[each.name])
     ]
     assert {one.map.partition(",")[0] for one in found} == {"isotropic"}
-    assert len(found) >= 72
+    assert len(found) >= 144
     assert sum(one.false for one in found) <= 0.05 * len(found)
     halved = [replace(one, said=one.said / 2) for one in found]  # as one standard deviation was
     assert sum(one.false for one in halved) > 0.05 * len(found)
