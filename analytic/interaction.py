@@ -16,6 +16,8 @@ separation is measured from decides the sign:
                 sinking only that counts by which it differs from its mean: a summit lies outside the dent of
                 every other one, so ``compliance = -M/(E_b sqrt(N A_n))``, M that of a square lattice of
                 point loads. The asperities feel more than the nominal approach.
+``located``     the same plane, without a mean field: summits have places, uniform at random in a periodic
+                cell, and each is pressed down by every other one by as much as it does there. No theory.
 """
 
 import math
@@ -27,12 +29,16 @@ import numpy as np
 from analytic.quantities import quantity_of
 from analytic.surface import Surface
 
-Reference = Literal["body", "mean-plane"]
+Reference = Literal["body", "mean-plane", "located"]
 
 # Mean sinking of a square of side L under the pressure p, over p L/E*: (4 asinh 1 - 4/3 (sqrt 2 - 1))/pi.
 BOWL = (4 * math.asinh(1) - 4 / 3 * (math.sqrt(2) - 1)) / math.pi
 # Potential at a point of a square lattice in a neutral background, over charge/side: -4 zeta(1/2) beta(1/2).
 LATTICE = 3.900264920001956
+NO_THEORY = (
+    'interaction.reference = "located": no theory is known of summits at their places; take "mean-plane", '
+    "which has their mean field"
+)
 
 
 def in_series(value: Any, other: float) -> Any:
@@ -50,8 +56,9 @@ class Interaction:
 
     Parameters
     ----------
-    reference : {"body", "mean-plane"}
-        What the nominal separation is measured from: the undeformed body, or the mean deformed plane.
+    reference : {"body", "mean-plane", "located"}
+        What the nominal separation is measured from: the undeformed body, or the mean deformed plane; from
+        that with summits at their places, too, which takes ``at="nominal"`` and `E_star`.
     at : {"effective", "nominal"}, optional
         Which separations a scene or a model is given: those that its asperities feel, at which the nominal
         one follows without a solver; or nominal ones, at which each surface finds its own balance.
@@ -78,9 +85,14 @@ class Interaction:
     bulk_modulus: float | None = None
 
     def __post_init__(self) -> None:
-        for key, words in (("reference", ("body", "mean-plane")), ("at", ("effective", "nominal"))):
-            if getattr(self, key) not in words:
-                raise ValueError(f'{key} = {getattr(self, key)!r}: give "{words[0]}" or "{words[1]}"')
+        words = {"reference": '"body", "mean-plane" or "located"', "at": '"effective" or "nominal"'}
+        for key, known in words.items():
+            if f'"{getattr(self, key)}"' not in known:
+                raise ValueError(f"{key} = {getattr(self, key)!r}: give {known}")
+        if self.located and not self.nominal:
+            raise ValueError('at = "effective": located summits feel no one separation; give at = "nominal"')
+        if self.located and self.bulk_modulus is not None:
+            raise ValueError("bulk_modulus: located summits lie on a half-space of E_star; leave it out")
         modulus = self.bulk_modulus
         if modulus is not None and not (math.isfinite(modulus) and modulus > 0):
             raise ValueError(f"bulk_modulus = {modulus!r}: give a finite number > 0, in Pa")
@@ -90,8 +102,21 @@ class Interaction:
         """Whether separations are given as nominal ones."""
         return self.at == "nominal"
 
+    @property
+    def located(self) -> bool:
+        """Whether summits have places, and no mean field stands for the others."""
+        return self.reference == "located"
+
     def compliance(self, surface: Surface, n_asperities: float) -> float:
-        """How much farther down asperities feel the plane for each newton on the surface, m/N."""
+        """How much farther down asperities feel the plane for each newton on the surface, m/N.
+
+        Raises
+        ------
+        ValueError
+            If summits are located: nothing that all of them feel alike.
+        """
+        if self.located:
+            raise ValueError(NO_THEORY)
         modulus = surface.E_star if self.bulk_modulus is None else self.bulk_modulus
         if self.reference == "body":
             return BOWL / (modulus * math.sqrt(surface.nominal_area))
@@ -118,6 +143,8 @@ class Interaction:
         -----
         Source: J. R. Barber, Proc. R. Soc. Lond. A 459 (2003) 53: ``C rho = 2 K/E*`` of rough bodies.
         """
+        if self.located:
+            return 0.0  # its stiffness is that of the whole
         q = quantity_of(quantity)
         name = q.unloading or q.of or q.name
         compliance = self.compliance(surface, n_asperities) * (surface.nominal_area if q.of else 1.0)

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from mcgw.elasticity.spots import HertzSpots
+from mcgw.sampling.located.spots import HertzSpots
 
 
 def residual(one, balance):

@@ -12,14 +12,15 @@ from scipy.optimize import brentq
 from scipy.signal import get_window
 
 import mcgw
-from mcgw.elasticity import elastic as public, newton
+from mcgw.elasticity import elastic as public
 from mcgw.elasticity.levels import LEVELS, Level, Pressed, alone, located
-from mcgw.elasticity.located import BalanceError, Located
 from mcgw.elasticity.multilevel import design, differences, mean_of, terms_of
 from mcgw.elasticity.sources import maps_of
-from mcgw.elasticity.spots import Grid, HertzSpots, LawSpots, field_beyond_point
 from mcgw.maps.synthetic import Spectrum
 from mcgw.maps.topography import Topography
+from mcgw.sampling.located import newton
+from mcgw.sampling.located.balance import BalanceError, Located
+from mcgw.sampling.located.spots import Grid, HertzSpots, LawSpots, field_beyond_point
 
 SPECTRUM = Spectrum(rms=1e-6, long=40e-6, short=5e-6)
 LATTICE = -3.900264920001956  # 4 zeta(1/2) beta(1/2), physics of a square lattice

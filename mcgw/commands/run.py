@@ -73,7 +73,7 @@ def _execute(args: argparse.Namespace) -> int:
     known = scene.validity()
     news(known.verdict)
     details(*filter(None, [known.details]))
-    news(f"next: mcgw compare {path}")
+    news(f"next: mcgw {'show' if scene.located else 'compare'} {path}")
     tell_cautions(scene)
     return 0
 

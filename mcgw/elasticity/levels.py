@@ -9,12 +9,12 @@ from functools import cached_property, lru_cache
 import numpy as np
 
 from analytic.arrays import Array, Marks
-from mcgw.elasticity.located import Located
-from mcgw.elasticity.spots import Grid, HertzSpots
 from mcgw.errors import RunError
 from mcgw.maps.summit_sums import summit_sums_of
 from mcgw.maps.summits import summits_of
 from mcgw.maps.topography import Topography
+from mcgw.sampling.located.balance import Located
+from mcgw.sampling.located.spots import Grid, HertzSpots
 
 _EITHER = ("area", "stiffness", "conductance")
 QUANTITIES = {"pressure": (*_EITHER, "mean_gap"), "separation": (*_EITHER, "pressure")}  # by what is given

@@ -32,6 +32,10 @@ def mean_surface(scene: Scene, given: str, value: float) -> dict[str, float]:
 
 def asperities_of(scene: Scene) -> Scene:
     """The scene without what its asperities do together: at a given load they do it as if alone."""
+    if scene.located:
+        from analytic.interaction import NO_THEORY  # for those scenes alone
+
+        raise ValueError(NO_THEORY)
     together = scene.interaction is not None or scene.joint is not None
     return replace(scene, interaction=None, joint=None) if together else scene
 

@@ -30,6 +30,8 @@ def with_interaction(scene: Scene, sums: dict[str, NDArray[Any]]) -> dict[str, A
     sums : dict of str to ndarray
         Of the asperities, SI, shape (surfaces, separations).
     """
+    if scene.located:
+        return dict(sums)
     found = {name: _answer(scene, name, values) for name, values in sums.items()}
     h, sunk = np.array(scene.separations), scene.compliance / scene.surface.sigma
     for name in scene.other_separations:
@@ -92,6 +94,10 @@ def scene_alone(scene: Scene, what: str) -> Scene:
     """
     if scene.interaction is None:
         return scene
+    if scene.located:
+        from analytic.interaction import NO_THEORY  # as above
+
+        raise ValueError(NO_THEORY)
     if scene.interaction.nominal:
         raise ValueError(
             f'interaction.at = "nominal": {what} takes sums of independent asperities, and here each surface '

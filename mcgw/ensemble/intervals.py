@@ -14,7 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.special import betainc, betaincc, gammainccinv, gammaincinv, ndtri
+from scipy.special import betainc, betaincc, gammainccinv, gammaincinv, ndtri, stdtrit
 
 from analytic import TANGENTIAL, Hertz, quantity_of
 from analytic.arrays import Array, Marks
@@ -181,6 +181,10 @@ def interval_of(scene: Scene, sampler: str, sums: Held, name: str, level: float)
         raise ValueError("stratified surfaces have no interval: their fluctuations are not those of any")
     if scene.as_measured:
         return mean, mean
+    if scene.located:  # no theory tells how much surfaces differ: they do
+        std, few = sums.mean_and_std(name)[1], max(m - 1, 1)
+        half = stdtrit(few, (1 + level) / 2) * (std if m > 1 else np.nan * std) / np.sqrt(m)
+        return mean - half, mean + half
     if name in scene.other_separations:
         return _of_separation(scene, sampler, sums, name, level)
     balanced = scene.nominal

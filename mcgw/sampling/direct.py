@@ -75,7 +75,11 @@ class Direct(Sampler):
         return self.scene.heights.rvs(n, rng), None
 
     def _balanced(self, number: int, heights: Array, ratios: Array | None) -> dict[str, Array]:
-        """The surface at the separations that its asperities feel."""
+        """The surface at the separations that its asperities feel, or with their places."""
+        if self.scene.located:
+            from mcgw.sampling.located.drawn import located_sums  # as below
+
+            return located_sums(self.scene, number, heights, ratios)
         from mcgw.sampling.nominal import balanced_sums  # for those scenes alone
 
         touching = heights > self.scene.lowest

@@ -287,6 +287,8 @@ def _every_sum(scene: Scene, power: float | None) -> tuple[str, ...]:
 
 def _cheapest(scene: Scene) -> str:
     """The first that fits: cells, unless most of them would be empty (`runs/bench/auto.py`)."""
+    if scene.nominal and scene.located:
+        return "direct"
     most = min(5 + len(scene.separations) / 20, 20)
     few = scene.keep != "moments" and not scene.nominal and scene.touching < most
     names = ("tail", "cells", "direct") if few else ("cells", "tail", "direct")

@@ -21,13 +21,15 @@ def cautions(scene: Scene) -> list[str]:
     """What a reader should know before trusting the numbers of a scene, a line each."""
     known = scene.validity()
     alone, together = "neither interact nor merge", "interact by a mean field, and do not merge"
+    together = "do not merge" if scene.located else together
     lines = [*off_elasticity(known, f"asperities {alone if scene.interaction is None else together}")]
     unmeasured = [] if known.measured.any() else [_crowd, _half]
     conducts = scene.film is not None or "conductance" in scene.quantities
     conducting = [_neighbours, _thick_film, _no_answer] if conducts else []
-    for caution in (*unmeasured, _depth, _slope, _numbers, *conducting):
+    asked = [*unmeasured, _depth, _slope, _numbers, *conducting]
+    for caution in [_half, _numbers] if scene.located else asked:  # others ask what the mean surface feels
         lines += caution(scene)
-    if type(scene.law) is not Hertz:
+    if type(scene.law) is not Hertz and not scene.located:
         from mcgw.scene.law_cautions import law_cautions  # who asks for Hertz needs no other law
 
         lines += law_cautions(scene)

@@ -81,7 +81,10 @@ class Fields(Values):
     def _interacting(self) -> Model:
         """Kept, for it keeps what it has computed."""
         from analytic import InteractingModel  # for those scenes alone
+        from analytic.interaction import NO_THEORY
 
+        if self.located:
+            raise ValueError(NO_THEORY)
         assert self.interaction is not None
         return InteractingModel.of(self._alone, self.interaction)
 
@@ -120,6 +123,11 @@ class Fields(Values):
     def nominal(self) -> bool:
         """Whether its separations are nominal ones, at which each surface finds its own balance."""
         return self.interaction is not None and self.interaction.nominal
+
+    @property
+    def located(self) -> bool:
+        """Whether its summits have places, at which they press each other down."""
+        return self.interaction is not None and self.interaction.located
 
     @property
     def compliance(self) -> float:
@@ -200,7 +208,7 @@ class Fields(Values):
     @property
     def other_separations(self) -> tuple[str, ...]:
         """What an ensemble says of separations where asperities press each other down."""
-        if self.interaction is None:
+        if self.interaction is None or self.interaction.located:
             return ()
         if self.interaction.nominal:
             return ("effective_separation",)
@@ -224,6 +232,8 @@ class Fields(Values):
         asked = min(self.separations)
         if self.interaction is None or self.interaction.reference == "body":
             return asked
+        if self.interaction.located:
+            return self.least
         theory: Any = self.theory
         margin = _MARGIN * float(theory.std("effective_separation", np.array(asked)))
         return math.floor(_ROUNDED * (float(theory.effective(np.array(asked))) - margin)) / _ROUNDED

@@ -12,6 +12,7 @@ from mcgw.scene.keys import SURFACE_UNITS
 from mcgw.scene.stop_rule import rel_err_text
 
 _PLANES = {"body": "undeformed body", "mean-plane": "mean deformed plane"}
+_PLANES["located"] = "mean deformed plane, summits at their places"
 _MOST = 4  # numbers of a list that are all said
 
 

@@ -8,10 +8,46 @@ import numpy as np
 from mcgw.scene.fields import Fields
 from mcgw.scene.samplers import promise_of
 
+LOCATED = ("load", "area", "stiffness", "contacts", "conductance")
+_MOST_LOCATED = 20_000
+
 
 def interaction_mistakes(scene: Fields) -> Iterator[str]:
     """A line for each."""
+    if scene.located:
+        yield from _located(scene)
+        return
     yield from list(_independent(scene)) or _balance(scene)
+
+
+def _located(scene: Fields) -> Iterator[str]:
+    """What summits at their places do not know."""
+    key = 'interaction.reference = "located"'
+    if not promise_of(scene.sampler).places:
+        yield f'ensemble.sampler = "{scene.sampler}": {key} takes all asperities of a surface; take "direct"'
+    if unknown := [name for name in scene.quantities if name not in LOCATED]:
+        yield f"contact.quantities: {key} has {', '.join(LOCATED)}; leave out {', '.join(unknown)}"
+    if scene.n_asperities > _MOST_LOCATED:
+        yield f"{key}: {scene.n_asperities:g} asperities a surface; give {_MOST_LOCATED} or fewer"
+    if scene.keep != "sums":
+        yield f'ensemble.keep = "{scene.keep}": {key} keeps sums; take "sums"'
+    if scene.rel_err is not None:
+        yield f"ensemble.rel_err: no theory tells how {key} scatters; give n_surfaces"
+    others = {
+        "contact.unload_from": scene.unload_from, "contact.tangential": scene.tangential,
+        "contact: resistivity or conductivities": scene.film, "joint": scene.joint,
+    }  # fmt: skip
+    for other in (name for name, value in others.items() if value is not None):
+        yield f"{other}: {key} does not go with it; leave out one of the two"
+    if scene.negative == "allow":
+        yield f'grading.negative = "allow": {key} needs loads that fall with the separation; say "clip"'
+    if _adheres(scene):
+        yield f'contact.law = "{scene.law.name}": {key} needs loads that fall with the separation'
+
+
+def _adheres(scene: Fields) -> bool:
+    """Whether there is a pull at first touch."""
+    return float(np.min(scene.contact.load(0, np.zeros(1), np.ones(1)))) < 0
 
 
 def _independent(scene: Fields) -> Iterator[str]:
@@ -49,7 +85,7 @@ def _nominal(scene: Fields) -> Iterator[str]:
         yield f'contact.unload_from: {key} has no way back; leave it out, or take at = "effective"'
     if scene.negative == "allow":
         yield f'grading.negative = "allow": {key} needs loads that fall with the separation; say "clip"'
-    if float(np.min(scene.contact.load(0, np.zeros(1), np.ones(1)))) < 0:  # at first touch
+    if _adheres(scene):
         yield (
             f'contact.law = "{scene.law.name}": its load does not fall with the separation alone, and {key} '
             'would have several balances; take at = "effective"'

@@ -70,7 +70,9 @@ _SEPARATION = Number(low=-1e6, high=1e6)
 _SEPARATIONS = "give a list of finite numbers d/sigma, or {start = 0.0, stop = 4.0, num = 41}"
 _NUM = Whole(1, _MOST, f"give a whole number >= 1, at most {_MOST}")
 _BACK = 'give a number d/sigma, or "loop"'
-_PLANES = '"body", the undeformed body far away, or "mean-plane", the mean of the deformed plane'
+_PLANES = (
+    '"body", the undeformed body, "mean-plane", that of the deformed one, or "located": summits at places'
+)
 _FORMULA = "give a list of {low, high, coefficients}, one for each piece, as mcgw writes them"
 _ENDS = (Key("low", _ANY, required=True), Key("high", _POSITIVE, required=True))
 _PIECES = List(Table((*_ENDS, Key("coefficients", _LISTED, required=True)), _FORMULA), advice=_FORMULA)
@@ -247,8 +249,9 @@ TABLES: dict[str, TableOfKeys] = {
 ), required=True),
 "interaction": TableOfKeys("[Asperities that press each other down](../explanation/interaction.md). "
     "Left out: they are independent.", (
-    Key("reference", Word(("body", "mean-plane"), f"give {_PLANES}"), '"body"',
-        "nominal separations are measured from the undeformed `body`, or from the deformed `mean-plane`",
+    Key("reference", Word(("body", "mean-plane", "located"), f"give {_PLANES}"), '"body"',
+        "nominal separations are measured from the undeformed `body`, or from the deformed `mean-plane`; "
+        "`located`: from that, with summits at random places instead of a mean field (`at = \"nominal\"`)",
         required=True),
     Key("at", Word(("effective", "nominal")), '"nominal"',
         "the scene's separations are `effective` (default): those that asperities feel; or `nominal`",

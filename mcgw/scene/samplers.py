@@ -24,6 +24,8 @@ class Promise:
         It adds up summit by summit, so that each can have breaks of its own in the law of contact.
     finds_balance : bool, optional
         It has the asperities of each surface, which finds its own balance where they press each other down.
+    places : bool, optional
+        It has all asperities of a surface at once, those that do not touch too, and can place them.
     needs_density : bool, optional
         It draws from the density of the heights, which a list of measured ones has not.
     spends : bool, optional
@@ -39,6 +41,7 @@ class Promise:
     own_radii: bool = True
     own_laws: bool = False
     finds_balance: bool = True
+    places: bool = False
     needs_density: bool = False
     spends: bool = False
     not_done: tuple[str, ...] = ()
@@ -48,7 +51,7 @@ _UNTOUCHED = "{spared:.4g} asperities of a surface lie below every separation an
 _CROWDED = "asperities of crowded cells are not drawn: their moments are, as Gaussian numbers"
 
 _PROMISES = {
-    "direct": Promise(same_on_all_processors=False, keeps_moments=False, own_laws=True),
+    "direct": Promise(same_on_all_processors=False, keeps_moments=False, own_laws=True, places=True),
     "tail": Promise(keeps_moments=False, own_laws=True, needs_density=True, not_done=(_UNTOUCHED,)),
     "cells": Promise(needs_density=True, not_done=(_UNTOUCHED,)),
     "aggregate": Promise(
@@ -73,4 +76,4 @@ SAMPLERS = ("auto", *_PROMISES)
 
 def promise_of(sampler: str) -> Promise:
     """What a sampler promises; ``auto`` takes one that promises all."""
-    return _PROMISES.get(sampler, Promise(own_laws=True))
+    return _PROMISES.get(sampler, Promise(own_laws=True, places=True))

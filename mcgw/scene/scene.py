@@ -71,7 +71,8 @@ class Scene(Fields, Shown):
     interaction : Interaction, {"body", "mean-plane"} or dict, optional
         How asperities press each other down: `mcgw.Interaction`, its reference alone, or its keys in a scene
         file. An ensemble then has "nominal_separation" or "effective_separation" besides, and stiffness and
-        conductance are in series with the half-space. Default: they are independent.
+        conductance are in series with the half-space. With ``{"reference": "located", "at": "nominal"}``
+        each surface is solved with its summits at random places. Default: they are independent.
     joint : Joint, {"air", "vacuum"} or dict, optional
         Gas in the gap of a thermal joint: `mcgw.Joint`, its gas alone, or its keys in a scene file; needs the
         conductivities of a `film`. An ensemble then has "gap_conductance" and "joint_conductance" besides,

@@ -17,10 +17,10 @@ import numpy as np
 import mcgw
 from analytic import SpectralMoments
 from mcgw.elasticity.levels import Pressed
-from mcgw.elasticity.located import Located
-from mcgw.elasticity.spots import Grid, LawSpots
 from mcgw.errors import RunError
 from mcgw.maps.synthetic import Spectrum, gaussian_map
+from mcgw.sampling.located.balance import Located
+from mcgw.sampling.located.spots import Grid, LawSpots
 
 SEED, M2, MODULUS = 20261124, 0.01, 1e11
 LAWS = ("hertz", "kogut-etsion", "zhao", "jackson-green", "coated", "graded")

@@ -13,7 +13,7 @@ from scipy.sparse.linalg import LinearOperator, gmres
 from scipy.spatial import cKDTree
 
 from analytic.arrays import Array, Ints
-from mcgw.elasticity.spots import Grid, Spots, field_beyond_point
+from mcgw.sampling.located.spots import Grid, Spots, field_beyond_point
 
 _CLOSE = 1e-11  # of the deepest penetration, and of the load
 _STEPS, _SHORTEST, _MEMORY = 60, 2**-7, 4  # a step may leave more over than the last, not than the last four
@@ -35,7 +35,7 @@ class State:
     short : float
         Load that is missing, of the load that is wanted.
     field, by_radii : ndarray
-        Of each pair: see `mcgw.elasticity.spots.field_beyond_point`.
+        Of each pair: see `mcgw.sampling.located.spots.field_beyond_point`.
     """
 
     separation: float

@@ -7,9 +7,9 @@ import numpy as np
 from scipy.optimize import brentq
 
 from analytic.arrays import Array, Ints, Marks
-from mcgw.elasticity.newton import Equations, State
-from mcgw.elasticity.spots import Grid, Spots
 from mcgw.errors import RunError
+from mcgw.sampling.located.newton import Equations, State
+from mcgw.sampling.located.spots import Grid, Spots
 
 _REACH = 4.0  # contact radii of spots that feel no other one: beyond, a spot is a point load
 _BELOW = 0.4  # of the deepest penetration: how far below the plane summits are looked at first
@@ -76,7 +76,7 @@ class Located:
 
     Examples
     --------
-    >>> from mcgw.elasticity.spots import HertzSpots
+    >>> from mcgw.sampling.located.spots import HertzSpots
     >>> spots = HertzSpots(np.array([0.0, 0.0]), np.array([1e-5, 1e-5]), 1e9)
     >>> pair = Located(spots, np.array([[0, 0], [0, 50]]), Grid((100, 100), (1e-3, 1e-3), periodic=False))
     >>> bool(pair.at_separation(-1e-7).load < spots.load(np.array([1e-7, 1e-7])).sum())
@@ -128,7 +128,7 @@ class Located:
                 if merged.sum() > max(_MOST_MERGED * np.count_nonzero(state.penetrations > 0), 1):
                     raise BalanceError(
                         f"no balance of {near.sum()} summits: {state.residual:.1e} of the deepest "
-                        "penetration is left; give a lower load"
+                        "penetration is left; give a lower load or a larger separation"
                     )
                 continue
             missed = self._missed(equations, state) & ~near & ~merged

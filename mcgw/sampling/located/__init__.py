@@ -1,0 +1,1 @@
+"""Summits at their places, each pressed down by all others."""
