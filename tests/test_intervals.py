@@ -75,6 +75,16 @@ def test_intervals_cover(expected, surfaces, law, gamma, count):
     assert min(coverage(cut(expected, surfaces, LAWS[law], count, gamma), surfaces).values()) >= 0.93
 
 
+@pytest.mark.parametrize(("count", "contacts"), [("poisson", 4.5), ("fixed", 12.0)])
+def test_few_contacts_have_the_interval_of_their_exact_law(count, contacts):
+    """It covers 95 of 100, no more; a false alarm in 1e5. Too few are those of which 2.5 % have none."""
+    found = coverage(cut(contacts, 2, LAWS["gaussian"], count, 2.0), 2)
+    for name in ("load", "area", "stiffness"):
+        assert abs(found[name] - 0.95) < 4.6 * np.sqrt(0.95 * 0.05 / SEEDS)
+    _, (low, high) = intervals(cut(3.0, 2, LAWS["gaussian"], count, 2.0), 2)["load"]
+    assert np.isnan([low, high]).all()
+
+
 FEW = [(m, gamma) for m in (2, 10) for gamma in (0.2, 1.0, 2.0)]
 
 

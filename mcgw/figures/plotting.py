@@ -70,7 +70,7 @@ def _(result: Ensemble, ax: Any, *, quantity: str) -> None:
         exact = exact_ends(result.scene, quantity, 0.9)
         low, high = (mean - std, mean + std) if exact is None else exact
         low = np.maximum(low, mean / 20)  # an axis of logarithms has no place for 0
-        words = "std over surfaces" if exact is None else "90 % of the surfaces"
+        words = "std over surfaces (no quick law)" if exact is None else "90 % of the surfaces"
         ax.fill_between(h[order], low[order], high[order], color=MONTE_CARLO, alpha=0.18, lw=0, label=words)
     if not promise_of(result.sampler).real_surfaces:
         ax.plot(h[order], mean[order], "o-", **SEEN, label="mean")
