@@ -115,6 +115,30 @@ def test_sums_that_are_no_numbers_are_told(factor, size):
         summit_sums_of(Topography(z, (1e-6, 1e-6)))
 
 
+ONCE = 1e-6 * np.random.default_rng(1).normal(size=(64, 66))
+NO_SURFACE = (
+    r"m2 = .* no surface has these; give the right unit, or take bad points .* out by --spikes remove or"
+)
+
+
+@pytest.mark.parametrize(
+    ("factor", "place", "height", "told"),
+    [
+        (1.0, (3, 30), -0.016, NO_SURFACE),
+        (1e-90, (0, 0), 0.0, NO_SURFACE),
+        (1.0, (30, 30), 1e80, "squares of their derivatives overflow"),
+    ],
+    ids=["bad point on the margin", "too small", "one far too high"],
+)
+def test_moments_that_no_surface_has_are_refused_in_one_line(factor, place, height, told):
+    """Slopes on the margin count and heights do not; squares of sums overflow or vanish, sums do not."""
+    assert mcgw.fit(Topography(ONCE, (1e-6, 1e-6)), cutoff=None).alpha.value > 1
+    z = factor * ONCE
+    z[place] = height
+    with pytest.raises(ValueError, match=told):
+        mcgw.fit(Topography(z, (1e-6, 1e-6)), cutoff=None)
+
+
 def test_an_hdf5_map_of_a_kilobyte_is_no_map_of_gigabytes(tmp_path):
     """Its chunks were never written: HDF5 would make them up, 2 GiB of zeros."""
     write_map(Topography(UNITS, (1e-6, 1e-6)), tmp_path / "m.h5")

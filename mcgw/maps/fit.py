@@ -33,7 +33,7 @@ from mcgw.maps.preparation import Prepared
 from mcgw.maps.steps import Form
 from mcgw.maps.summit_sums import EDGE, SummitSums, coarse_sums_of, summit_sums_of
 from mcgw.maps.summits import Alone, Summits, alone_of, summits_of, tiles_of
-from mcgw.maps.topography import Topography
+from mcgw.maps.topography import SMALLEST, Topography
 from mcgw.maps.waves import Uncertain, Waves, uncertain, waves_of
 
 # Of caps placed at random 12 and 20 pixels apart, so many were lost as if a summit had to be 0.7 to 1.2
@@ -203,7 +203,13 @@ def fit_prepared(ready: Prepared, *, across: int = 4) -> Fit:
         fewer = min(across, max(math.isqrt(number // _A_LITTLE), _FEW_ACROSS))
         counted = summit_sums_of(used, across=fewer, seen=ready.seen)
     counted = _without_summit_form(counted, form)
-    waves = waves_of(used, moments_of(counted), ORDERS[form])
+    moments = moments_of(counted)
+    if not (moments.m2 > SMALLEST and moments.sigma > 0):  # alpha takes its square
+        raise ValueError(
+            f"m0 = {moments.m0:.3g} m^2, m2 = {moments.m2:.3g}, m4 = {moments.m4:.3g} 1/m^2: no surface has "
+            "these; give the right unit, or take bad points near the edge out by --spikes remove or --trim"
+        )
+    waves = waves_of(used, moments, ORDERS[form])
     estimates = {"moments": Estimate.of(by_moments(counted), waves)}
     blur = math.hypot(max(used.pixel), _BLUR * (ready.asked.cutoff or 0.0))
     peak_to_valley = float(np.ptp(used.heights if ready.seen is None else used.heights[ready.seen]))
@@ -221,7 +227,7 @@ def fit_prepared(ready: Prepared, *, across: int = 4) -> Fit:
         for pair, name in zip(of_moments, ("m0", "m2", "m4", "alpha"), strict=True)
     )
     return Fit(
-        estimates, moments_of(counted), m0, m2, m4, alpha,
+        estimates, moments, m0, m2, m4, alpha,
         jackknife(lambda t: np.array([skewness_of(t)]), counted)[0],
         summits_of(used, counted, _origin(ready.levelled, used)),
         float(counted.heights.mean()) - mean_squares(counted)["z"],

@@ -9,7 +9,7 @@ from scipy import ndimage
 
 from analytic.arrays import Array, Ints, Marks
 from mcgw.machine.compiling import njit
-from mcgw.maps.topography import Topography
+from mcgw.maps.topography import LARGEST, Topography
 
 # Rows of the sums: points, powers of height, squared slopes, squared second derivatives, the latter by plain
 # differences over one pixel and over two, which tell whether the pixel resolves them, and products of slopes.
@@ -196,7 +196,7 @@ def summit_sums_of(topography: Topography, *, across: int = 4, seen: Marks | Non
     found = _pass(z, mean, counts, *topography.pixel, across, sums, summits, part)
     if not sums[0].any():
         raise ValueError("too many points are missing: none has all its neighbours; give --missing fill")
-    if not np.isfinite(sums).all():
+    if not (np.abs(sums) < LARGEST).all():  # alpha takes their squares
         raise ValueError(
             f"heights between {z.min() - mean:.3g} and {z.max() - mean:.3g} m about their mean, on pixels of "
             f"{topography.pixel[0]:.3g} m: squares of their derivatives overflow, or points are missing; "

@@ -11,7 +11,7 @@ from analytic.arrays import Array
 from mcgw.formats.numbers import METRES
 
 MOST_PIXELS = 2**28  # 16384 x 16384: 2 GiB as float64
-SMALLEST, _LARGEST = 1e-150, 1e150  # of what is squared, m: sums of squares and a dozen times that, too
+SMALLEST, LARGEST = 1e-150, 1e150  # of what is squared, m: sums of squares and a dozen times that, too
 _FINEST = 1e-30  # m, of a pixel, whose eighth power still counts
 _SMALL, _PACKED = 2**22, 20  # points that any file may declare, and that each of its bytes may hold
 _ENOUGH = 2**20  # differences between neighbours tell their median to a thousandth
@@ -55,7 +55,7 @@ class Topography:
             raise ValueError(
                 f"pixel = {self.pixel}: give its size in m, two numbers > 0, {_FINEST:g} to {1 / _FINEST:g}"
             )
-        if self.highest > _LARGEST:
+        if self.highest > LARGEST:
             raise ValueError(
                 f"a height is {self.highest:.3g} m, too large to be squared; give the right unit or scale, "
                 "and nan where points are missing"
