@@ -27,6 +27,7 @@ _BALANCE, _STEPS, _STEP = (
     4e-4,
     1e-7,
 )  # of a separation by cells; by single asperities, and each of these
+_BALANCE_OF_PLACES, _GROWS = 5e-7, 1.6  # of located summits: seconds, by a power of their number
 _RARE, _RARE_STRATA = 0.1, 1e-9
 
 
@@ -107,6 +108,8 @@ def _families(scene: Scene) -> int:
 
 def _alone(scene: Scene, asperities: float) -> float:
     """Seconds that asperities take which are drawn and added up one by one."""
+    if scene.nominal and scene.located:
+        return float(len(scene.separations) * _BALANCE_OF_PLACES * asperities**_GROWS)
     if scene.nominal:
         return len(scene.separations) * (_STEPS + asperities * _STEP)
     return asperities * (_ALONE + scene.width * (_VALUE if scene.hertzian else _VALUE_OF_LAW))

@@ -4,7 +4,8 @@
 
 For each spectrum and load: rms over maps of the error of own summits alone and located, correlations over
 maps with boundary elements, and how many CPU seconds plain boundary elements take for 2 % of each mean, over
-what levels take. Nothing of the model was fitted to these solves.
+what levels take. Last, how far the surface falls from its summits to the rims of their spots, over what
+paraboloids do. Nothing of the model was fitted to these solves.
 """
 
 import argparse
@@ -16,6 +17,7 @@ from pathlib import Path
 
 import numpy as np
 from rough_maps import GaussianMap
+from scipy.ndimage import map_coordinates
 
 from mcgw.elasticity.levels import LEVELS, Pressed
 from mcgw.elasticity.multilevel import design, mean_of
@@ -39,6 +41,23 @@ def solves():
     return found
 
 
+def flatter(pressed):
+    """How far the surface falls to the rims of its located spots, over what paraboloids do; by load."""
+    summits = pressed.summits
+    delta = np.maximum(summits.at_load(pressed.load).penetrations, 0)
+    on = delta > 0
+    radii, load = summits.spots.radii[on], summits.spots.load(delta)[on]
+    angle, rim = np.arange(16) * math.pi / 8, np.sqrt(radii * delta[on]) * len(pressed.heights)
+    ring = [
+        x[:, None] + rim[:, None] * f(angle)
+        for x, f in zip(summits.places[:, on], (np.sin, np.cos), strict=True)
+    ]
+    fall = summits.spots.heights[on] - map_coordinates(pressed.heights, ring, order=3, mode="grid-wrap").mean(
+        axis=1
+    )
+    return float((fall * load).sum() / (delta[on] / 2 * load).sum())
+
+
 def covered(values, rng):
     """Share of 95 % intervals by levels, from few maps of these, that hold the mean of all of them."""
     n, hits = len(values[2]), 0
@@ -58,12 +77,13 @@ def main():
     tried = failed = 0
     print(
         "alpha  H  p/(E* g)  maps | alone: area stiffness gap/rms | located | correlation | saved | covered"
+        " | falls"
     )
     for (alpha, hurst), all_solves in sorted(solves().items()):
         loads = sorted({p for _, p in all_solves})
         kept = {}
         for p in loads:
-            rows, costs = [], []
+            rows, costs, falls = [], [], []
             for (surface, load), bem in all_solves.items():
                 if load != p or time.process_time() - begun > most:
                     continue
@@ -79,6 +99,7 @@ def main():
                 rms = math.sqrt(bem[4])
                 rows.append([[a[k] for k in NAMES], [b[k] for k in NAMES], bem[:3], [rms] * 3])
                 costs.append((one, two, bem[3]))
+                falls.append(flatter(pressed))
             if len(rows) < 3:
                 continue
             x = np.array(rows).transpose(1, 0, 2)
@@ -94,6 +115,7 @@ def main():
             texts = [" ".join(f"{v:+.3f}" for v in part) for part in (*errors, together)]
             texts.append(" ".join(f"{v:.1f}" for v in saved))
             texts.append(" ".join(f"{v:.2f}" for v in covered(x[:3], rng)) if len(rows) > FEW else "")
+            texts.append(f"{np.mean(falls):.2f}")
             print(
                 f"{alpha:g}  {hurst:g}  {p:g}  {len(rows)} | {' | '.join(texts)} | {seconds.round(2)}",
                 flush=True,
