@@ -34,7 +34,7 @@ def _check(s: Array, modulus: Array, contact: ContactLaw) -> None:
         k = negative[-1]
         raise ValueError(
             f"grading: E*(s)/E* = {modulus[k]:.4g} at s = {s[k]:.4g}, and law = {contact.name!r} needs a "
-            "modulus >= 0; clip it (clip = true), or take higher separations"
+            "modulus >= 0; clip it (clip = true), or use larger separations"
         )
 
 

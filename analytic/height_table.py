@@ -26,7 +26,7 @@ def checked_heights(heights: ArrayLike) -> Array:
     if z.size < 2 or not np.all(np.isfinite(z)):
         raise ValueError("heights: give two or more finite numbers")
     if not z.std() > 1e-12 * np.abs(z).max():
-        raise ValueError("heights: they are all alike; give the heights of a rough surface")
+        raise ValueError("heights: they are all equal; give the heights of a rough surface")
     return z
 
 

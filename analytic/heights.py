@@ -130,7 +130,8 @@ def narrowest(law: Any, s: float) -> float:
         width = float(widths[-1]) / 2
     if np.isnan(change).all():  # there would be no end of ever smaller cells
         raise ValueError(
-            f"heights: their density is 0 at s = {s:.6g}, inside the support; fill the gap, say by wider bins"
+            f"heights: their density is 0 at s = {s:.6g}, inside the support; fill the gap, for example "
+            f"with wider bins"
         )
     return width
 

@@ -203,7 +203,7 @@ class InteractingModel(Model):
 
     def _check_separation(self, name: str) -> None:
         if name.startswith("nominal") == self.interaction.nominal:
-            raise KeyError(f"{name!r}: the separations of the model are those; it has the other ones")
+            raise KeyError(f"{name!r}: the model is given at these separations; it finds only the other ones")
 
 
 def _values(model: Model) -> dict[str, Any]:

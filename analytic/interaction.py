@@ -52,7 +52,7 @@ def in_series(value: Any, other: float) -> Any:
 
 @dataclass(frozen=True, slots=True)
 class Interaction:
-    """Asperities that feel the load of all others.
+    """Interaction of asperities through the half-space, by a mean field.
 
     Parameters
     ----------

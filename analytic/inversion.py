@@ -49,9 +49,7 @@ def last_separations(
                 return float(brentq(excess, left, right, xtol=1e-15, rtol=_LAST_DIGITS))
             if not farther:  # right at an end of the bracket a target may lie beyond it by a last digit
                 return float(left if excess(left) <= 0 else right)
-        raise ValueError(
-            f"{name}: not reached between h = {grid[0]:g} and {grid[-1]:.4g}; give another value"
-        )
+        raise ValueError(f"{name}: not reached for h from {grid[0]:g} to {grid[-1]:.4g}; give another value")
 
     roots = [found(target) for target in log_targets.ravel().tolist()]
     return np.array(roots, dtype=np.float64).reshape(log_targets.shape)

@@ -71,7 +71,7 @@ def air(temperature: float = _ROOM, pressure: float = _AT_PRESSURE) -> Gas:
 
 @dataclass(frozen=True)
 class Joint:
-    """What fills the gap of a thermal joint.
+    """Gas in the gap of a thermal joint.
 
     Parameters
     ----------
@@ -111,7 +111,7 @@ class Joint:
             if value is not None and not (math.isfinite(value) and value > 0):
                 raise ValueError(f"{key} = {value!r}: give a finite number > 0, in {unit}")
             if key != "rms" and value is not None and self.gas != "air":
-                raise ValueError(f'{key} = {value!r}: it goes with gas = "air"; leave it out')
+                raise ValueError(f'{key} = {value!r}: it is only for gas = "air"; leave it out')
 
     @property
     def held(self) -> Gas | None:
@@ -138,7 +138,7 @@ class Joint:
             return Gap(None, sigma, sigma, 0.0)
         if isinstance(heights, Nayak):
             if self.rms is not None:
-                raise ValueError(f"rms = {self.rms!r}: the heights tell it; leave it out")
+                raise ValueError(f"rms = {self.rms!r}: it follows from the heights; leave it out")
             return Gap(self.held, sigma, sigma / heights.std, heights.mean / heights.std)
         if self.rms is None:
             if moments is None:
@@ -148,7 +148,7 @@ class Joint:
             return Gap(self.held, sigma, math.sqrt(moments.m0), moments.mean_height / sigma)
         if self.rms <= sigma:
             raise ValueError(
-                f"rms = {self.rms!r}: give more than sigma = {sigma:g} m, that of the summits alone"
+                f"rms = {self.rms!r}: give more than sigma = {sigma:g} m, which is that of the summits alone"
             )
         alpha = SUMMIT_SPREAD / (1 - (sigma / self.rms) ** 2)
         return Gap(self.held, sigma, self.rms, 4 * self.rms / math.sqrt(math.pi * alpha) / sigma)

@@ -87,8 +87,8 @@ class JointModel(Model):
         spots = _spots(quantity)
         if spots is None or self._own_plane(quantity):
             raise ValueError(
-                f"quantity = {quantity!r}: that of 'joint_conductance' is known, where surfaces have "
-                "one distance of mean planes"
+                f"quantity = {quantity!r}: only 'joint_conductance' is known, for surfaces with one distance "
+                "of mean planes"
             )
         from analytic.distribution import Mapped
 

@@ -45,7 +45,7 @@ class MeanModel:
             raise ValueError(f'count = {self.count!r}: give "fixed" or "poisson"')
         if self.curvature is not None and self.heights != self.curvature.heights:
             raise ValueError(
-                f"heights = {self.heights!r:.60}: summits with radii of their own have heights of their own; "
+                f"heights = {self.heights!r:.60}: summits with individual radii come with their own heights; "
                 f"give heights = {self.curvature.heights!r:.60}"
             )
         law = self.ways.law  # one that lacks a constant says so now
@@ -111,7 +111,7 @@ class MeanModel:
         """
         q = self._asked(quantity, h)
         if q.base == "load_slope":
-            raise ValueError(f"quantity = {quantity!r}: its own slope is not known; give another quantity")
+            raise ValueError(f"quantity = {quantity!r}: its slope is not known; give another quantity")
         return self._unit(q) * self._means(q).slope(quantity, h)
 
     def share(self, piece: int, h: ArrayLike) -> Array:
@@ -153,7 +153,7 @@ class MeanModel:
         """
         if not self.ways.law.half_space:
             raise ValueError(
-                f"law = {self.ways.law.name!r}: tangential loads need elastic half-spaces; take 'hertz' or "
+                f"law = {self.ways.law.name!r}: tangential loads need elastic half-spaces; use 'hertz' or "
                 "'power-law-graded'"
             )
         h, shifts = np.asarray(h, dtype=np.float64)[..., None], tangential.shifts(self.surface)
@@ -218,12 +218,12 @@ class MeanModel:
         """A quantity that is known at these separations."""
         q = quantity_of(quantity)
         if quantity in NOT_SUMS:
-            raise KeyError(f"{quantity!r}: the model knows no gas; ask `theory` of a scene with a joint")
+            raise KeyError(f"{quantity!r}: this model has no gas; use `theory` of a scene with a joint")
         self.ways.of(quantity)
         if q.unloading and self.unload_from is not None and np.any(np.less(h, self.unload_from)):
             raise ValueError(
-                f"quantity = {quantity!r}: h = {np.min(h):g} is lower than unload_from = "
-                f"{self.unload_from:g}, from where the surface goes back; give higher separations"
+                f"quantity = {quantity!r}: h = {np.min(h):g} is smaller than unload_from = "
+                f"{self.unload_from:g}, where unloading begins; give larger separations"
             )
         return q
 

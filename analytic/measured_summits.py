@@ -60,7 +60,9 @@ class MeasuredHeights(HeightLaw):
         ValueError
             Always.
         """
-        raise ValueError(f"measured heights have no density at s = {s:g}; make a HeightTable, or add them up")
+        raise ValueError(
+            f"measured heights have no density at s = {s:g}; make a HeightTable, or sum them directly"
+        )
 
     def rvs(self, n: int, rng: np.random.Generator) -> Array:
         """The heights themselves, in their own order; or `n` of them, drawn with replacement.
@@ -73,7 +75,7 @@ class MeasuredHeights(HeightLaw):
         if self.resampled:
             return np.array(self.heights)[rng.integers(0, len(self.heights), n)]
         if n != len(self.heights):
-            raise ValueError(f"n = {n}: there are {len(self.heights)} measured heights")
+            raise ValueError(f"n = {n}: give {len(self.heights)}, the number of measured heights")
         return np.array(self.heights)
 
     def pdf(self, s: Array) -> Array:

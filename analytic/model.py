@@ -154,7 +154,9 @@ class Model(MeanModel):
         200.0
         """
         if not (np.isfinite(std_over_mean) and std_over_mean > 0):
-            raise ValueError(f"std_over_mean = {std_over_mean!r}: give a positive finite number, as 0.01")
+            raise ValueError(
+                f"std_over_mean = {std_over_mean!r}: give a positive finite number, such as 0.01"
+            )
         variance, h = self.cumulants(quantity, h).variance, np.asarray(h, dtype=np.float64)
         with np.errstate(divide="ignore", invalid="ignore"):
             if given:

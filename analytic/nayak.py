@@ -193,7 +193,7 @@ class Nayak(HeightLaw):
         if not _LEAST <= self.alpha <= _MOST:
             raise ValueError(
                 f"alpha = {self.alpha!r}: give a number from {_LEAST:g} to {_MOST:g} (isotropic surfaces "
-                "have more than 1.5; the limit of large ones is the Gaussian law)"
+                "have more than 1.5; the law becomes Gaussian for large alpha)"
             )
 
     @property

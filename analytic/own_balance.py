@@ -116,8 +116,8 @@ class OwnBalance:
             if np.any(rate <= 0):
                 where = float(np.max(h[rate <= 0]))
                 raise ValueError(
-                    f"interaction: no balance at d/sigma = {where:g} from the mean plane: the plane sinks "
-                    "faster than it is pressed; give higher separations"
+                    f"interaction: no equilibrium at d/sigma = {where:g} from the mean plane, because the "
+                    "plane sinks faster than it is pressed; give larger separations"
                 )
             step = (h - x + c * self.alone.mean("load", x)) / rate
             x = x + step

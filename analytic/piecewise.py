@@ -79,7 +79,7 @@ class PiecewiseSeries:
         if not all(1 <= len(c) <= _MOST_TERMS and np.all(np.isfinite(c)) for c in self.coefficients):
             raise ValueError(f"coefficients: each list must have 1 to {_MOST_TERMS} finite numbers")
         if not (_rising(self.kinks) and set(self.kinks) <= set(self.breaks)):
-            raise ValueError("kinks: they must increase, and each be one of the inner edges")
+            raise ValueError("kinks: they must increase, and each must be an inner edge")
 
     def __repr__(self) -> str:
         """Name and extent; the coefficients are too many to be read."""

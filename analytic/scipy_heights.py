@@ -69,7 +69,7 @@ class ScipyHeights(HeightLaw):
         return str(getattr(getattr(self.distribution, "dist", None), "name", self.distribution))
 
     def _in_time(self, seconds: float, call: Callable[[], T], what: str) -> T:
-        problem = f"{self._name}: {what} take scipy longer than {seconds:g} s; give another law, or a table"
+        problem = f"{self._name}: {what} take SciPy longer than {seconds:g} s; give another law, or a table"
         return in_time(seconds, call, problem)
 
     @property

@@ -67,8 +67,9 @@ class Weight:
             found = start + _STEP * (found - start)
             found = min(found, limit) if start < limit else max(found, limit)
         raise ValueError(
-            f"grading: up to s = {found:.4g} E*(s)/E* rises too steeply, or the heights become rare too "
-            "slowly, for a mean and a variance in double precision; let the grading level off"
+            f"grading: up to s = {found:.4g} E*(s)/E* increases too steeply, or the tail of the heights is "
+            f"too "
+            "heavy, for a mean and a variance in double precision; let the grading level off"
         )
 
     def _along(self, start: float, end: float) -> tuple[Array, Array]:

@@ -214,7 +214,7 @@ class _RandomRadii(Summits):
 
 @dataclass(frozen=True)
 class _ListedSummits(Summits):
-    """The very summits of a list, each as probable as another; a separation seldom meets one that jumps."""
+    """The summits of a list, each as probable as another; a separation seldom meets one that jumps."""
 
     radii: MeasuredRadii | None = None
 

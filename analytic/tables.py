@@ -116,10 +116,12 @@ class Table:
         units = {"s": 1.0, "z": sigma, "ratio": 1.0, "E_star": E_star}
         names = [name.strip() for name in header]
         if len(names) != 2 or names[0] not in ("s", "z") or names[1] not in ("ratio", "E_star"):
-            raise ValueError("the first line must be s or z, a comma, then ratio or E_star (in m and Pa)")
+            raise ValueError("the first line must be s or z, a comma, and ratio or E_star (in m and Pa)")
         try:
             data = np.array([[float(a), float(b)] for a, b in rows]).reshape(-1, 2)
         except ValueError:
-            raise ValueError("every line below the header must be two numbers, parted by a comma") from None
+            raise ValueError(
+                "every line below the header must be two numbers, separated by a comma"
+            ) from None
         data = data[np.argsort(data[:, 0], kind="stable")] / [units[names[0]], units[names[1]]]
         return cls(data[:, 0].tolist(), data[:, 1].tolist())

@@ -71,7 +71,7 @@ def _moved(path: str) -> str:
 def names_page(package: str) -> str:
     """What a package says of itself, and every public name, with its own page or that of the theory."""
     module = import_module(package)
-    names = sorted(module.__all__, key=str.casefold)
+    names = sorted(getattr(module, "__all__", dir(module)), key=str.casefold)
     shared = [x for x in names if package == "mcgw" and getattr(module, x).__module__.startswith("analytic.")]
     own = [name for name in names if name not in shared]
     page = f"# `{package}`, name by name\n\n{_rst(f'.. automodule:: {package}', '   :no-members:')}"

@@ -57,7 +57,7 @@ def tables() -> Iterator[str]:
     """Its lines."""
     for name, table in TABLES.items():
         yield f"## `[{name}]`"
-        yield from ("", *wrap(table.words, 120)) if table.words else ()
+        yield from ("", *wrap(table.words, 120, break_on_hyphens=False)) if table.words else ()
         yield from ("", "| key | example | meaning |", "|---|---|---|")
         yield from (f"| `{row.name}` | `{row.example}` | {row.words} |" for row in table.rows)
         yield ""

@@ -1,12 +1,12 @@
 """Monte-Carlo simulator of rough contacts: Greenwood-Williamson surfaces with graded elasticity.
 
-Describe a surface and what is asked of it:
+Describe a surface and a simulation:
 
 =======================  =========================================================================
 `Surface`                sigma, R, eta, A_n, E*, as numbers (SI) or texts with units
-`SpectralSurface`        instead: the moments m0, m2, m4 of an isotropic Gaussian surface
-`Body`                   one of two bodies; `composite_modulus` of both is E*
-`Scene`                  a surface, separations d/sigma, grading, heights, how many surfaces, seed
+`SpectralSurface`        the same by the moments m0, m2, m4 of an isotropic Gaussian surface
+`Body`                   one of two bodies; `composite_modulus`: E* of both
+`Scene`                  a surface, separations d/sigma, grading, heights, number of surfaces, seed
 `load_scene`             a scene from its TOML file; `scene_from`, `scene_text`: from and to text
 =======================  =========================================================================
 
@@ -14,54 +14,54 @@ Gradings E*(s)/E*, and height laws, of s = z/sigma:
 
 =======================  =========================================================================
 `Homogeneous`            the same modulus at every height; `Exponential`: Eq. (4) of the paper
-`Table`                  measured moduli; `Custom`: any function of s, as a plain lambda is too
+`Table`                  measured moduli; `Custom`: any function of s (a plain lambda will do too)
 `Gaussian`               the default; `ExponentialHeights`, `Weibull`, `Nayak`
-`HeightTable`            measured heights, resampled; `MeasuredHeights`: just as they are, with a
-                         `MeasuredRadii` each summit's own radius too
-`ScipyHeights`           any distribution of scipy.stats, as a plain frozen one is too
+`HeightTable`            measured heights, resampled; `MeasuredHeights`: as they are;
+                         `MeasuredRadii`: with the radius of each summit
+`ScipyHeights`           any distribution of scipy.stats (a plain frozen one will do too)
 `Nayak`                  summits of a Gaussian surface; `RandomCurvature`: each with its own radius
 =======================  =========================================================================
 
-Laws of contact of one asperity, in place of Hertz's, and what else the contacts do:
+Contact laws of an asperity, and other properties of contacts:
 
 =======================  =========================================================================
-`KogutEtsion`            asperities that yield, from hardness or critical penetration; as
+`KogutEtsion`            asperities that yield, from hardness or critical penetration; also
                          `ChangEtsionBogy`, `ZhaoMaiettaChang` and `JacksonGreen` (yield strength)
 `Hertz`                  the default; `PowerLawGraded`: graded in depth; `Coated`; `CustomLaw`:
-                         formulas of one's own
-`JohnsonKendallRoberts`  contacts that stick, as `DerjaguinMullerToporov`
-`Film`, `Layer`          what spots conduct through: bodies, a thin film, a layer: conductance in S or W/K
-`Joint`                  gas in the gap, which conducts beside the spots
-`Tangential`             friction, and displacements sideways; `masing`: unloading
-`Interaction`            asperities that press each other down: nominal and effective separations
+                         your own formulas
+`JohnsonKendallRoberts`  contacts that stick; also `DerjaguinMullerToporov`
+`Film`, `Layer`          resistivity of the bodies, a thin film, a layer: conductance in S or W/K
+`Joint`                  gas in the gap, which conducts in parallel with the spots
+`Tangential`             friction and tangential displacements; `masing`: unloading
+`Interaction`            asperity interaction: nominal and effective separations
 =======================  =========================================================================
 
 Draw surfaces:
 
 =======================  =========================================================================
 `simulate`               in memory
-`run`                    into a file: resumes, extends, in processes, as one of many jobs; `merge`
-`open_ensemble`          what is in a file; `save`: an ensemble in memory to a file
+`run`                    into a file, which it resumes or extends; by processes or jobs; `merge`
+`open_ensemble`          from a file; `save`: an ensemble in memory to a file
 `Ensemble`               load, area, ... of every surface; means, errors, intervals, tables
-`heights`, `radii`       the very summits of one surface
+`heights`, `radii`       the summits of one surface
 =======================  =========================================================================
 
-Ask:
+Use the results:
 
 =======================  =========================================================================
 `compare`                an ensemble or a sweep against theory; the theory itself: ``scene.theory``
-``scene.validity()``     how far the model is from elasticity, as it was measured
-`regrade`                another grading or contact law, same surfaces; `paired_ratio` of the two
+``scene.validity()``     measured error of the model against elasticity
+`regrade`                another grading or contact law on the same surfaces; `paired_ratio` of both
 `solve`                  the separation at a load, pressure or area
 `export`                 tables for finite-element programs; `ContactTable`: one as a law
-`sweep`, `open_sweep`    many scenes at once, over the same surfaces: means, differences, slopes
+`sweep`, `open_sweep`    many scenes on the same surfaces: means, differences, slopes
 `converge`, `tradeoff`   the statistical convergence test; error against time on this machine
-`elastic`                means of elastic surfaces, with their error, by few boundary-element solves
-`fit`, `fitted_scene`    the surface of a measured height map or of profiles, and a scene of it
+`elastic`                means of elastic surfaces, with errors, from few boundary-element solves
+`fit`, `fitted_scene`    a surface from a measured height map or profiles, and its scene
 =======================  =========================================================================
 
-What goes wrong is a `SceneError` (a wrong argument or scene: one line for each mistake), a `StoreError`
-(a file) or a `RunError` (a run that could not be finished).
+Errors are a `SceneError` (a wrong argument or scene: one line for each mistake), a `StoreError`
+(a file) or a `RunError` (a run that could not finish).
 
 >>> import mcgw
 >>> surface = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "1 cm^2", "78.6 GPa")
@@ -179,7 +179,6 @@ _HOMES = {
     "mcgw.sweeps.file": "open_sweep",
 }
 _HOME = {name: module for module, names in _HOMES.items() for name in names.split()}
-__all__ = sorted(_HOME)
 
 
 def _draw(result: Any, ax: Any, **options: Any) -> Any:
@@ -203,4 +202,4 @@ def __getattr__(name: str) -> Any:
 
 
 def __dir__() -> list[str]:
-    return list(__all__)
+    return sorted(_HOME)  # and no __all__, by which help(mcgw) would print the help of every name

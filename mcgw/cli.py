@@ -85,7 +85,7 @@ def _main(argv: Sequence[str] | None, asked: argparse.Namespace) -> int:
         print(f"mcgw: {error}", file=sys.stderr)
         return error.code
     except MemoryError as error:
-        print(f"mcgw: the memory does not suffice ({one_line(str(error))}); ask for less", file=sys.stderr)
+        print(f"mcgw: not enough memory ({one_line(str(error))}); reduce the scene", file=sys.stderr)
         return 1
     except (ValueError, OSError) as error:
         for line in str(error).splitlines():

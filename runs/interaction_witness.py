@@ -4,10 +4,10 @@
 
 The witness (Yeo, Katta and Polycarpou; Vakis): every asperity sinks by what the point load of every other one
 presses the half-space down at its place, ``s_i - d_i = h + kappa/pi sum_j p_j/r_ij``, p = d^1.5, with
-kappa = 4/3 sqrt(R sigma)/L. Lying in a square of their own they are a punch, whose separation counts from the
+kappa = 4/3 sqrt(R sigma)/L. In a square of their own they are a punch, whose separation is from the
 undeformed body. Lying in a periodic cell, where 1/r is replaced by its sum over all images in a neutral
 background (Ewald), they count from the mean plane. The mean field is that of `mcgw.Interaction` on a scene
-that has the very heights of each surface. Places are random, no two closer than half the lattice's distance;
+that has the same heights as each surface. Places are random, no two closer than half the lattice's distance;
 eta R sigma = 0.05. Per surface: error of the load, rms over surfaces, of independent asperities and of the
 mean field; and the area at the load of the witness, over that of independent asperities at the same load.
 """

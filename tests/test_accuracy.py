@@ -1,7 +1,7 @@
 """Values of single surfaces against exact sums over their heights: no error above what the scene asks.
 
 At all separations, from hardly a contact to many, for gradings, laws of heights and of contact, films, ways
-back and summits with radii of their own. Nothing here is statistical: bounds hold.
+back and individual summit radii. Nothing here is statistical: bounds hold.
 """
 
 from dataclasses import replace
@@ -294,7 +294,7 @@ def test_converge_passes(make_scene, wish):
 def test_converge_says_where_values_are_coarser_than_means(make_scene):
     scene = make_scene(accuracy=1e-2, n_asperities=10**6, separations=(0.0,))
     with pytest.raises(
-        ValueError, match=r"ensemble\.accuracy = 0\.01: means of .* surfaces are known better"
+        ValueError, match=r"ensemble\.accuracy = 0\.01: means of .* surfaces are more accurate"
     ):
         converge(scene, n_surfaces=100, seeds=4)
 

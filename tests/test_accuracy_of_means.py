@@ -23,7 +23,7 @@ def test_an_interval_holds_all_that_values_may_be_off_by():
 
 @pytest.mark.parametrize("rel_err", [1e-2, 5e-3, {"load": 1e-2}, {"load": [2e-2, 9e-3]}])
 def test_no_mean_is_asked_for_closer_than_its_values_are_known(rel_err):
-    with pytest.raises(mcgw.SceneError, match=r"rel_err.*: values are good to accuracy = 0.01 alone"):
+    with pytest.raises(mcgw.SceneError, match=r"rel_err.*: values and their means only have accuracy = 0.01"):
         mcgw.Scene(SURFACE, accuracy=1e-2, rel_err=rel_err, **ASKED)
 
 

@@ -260,7 +260,7 @@ def test_every_header(tmp_path, text):
 
 
 @pytest.mark.parametrize(("text", "message"), [
-    ("height,ratio\n0,1\n", "the first line must be s or z, a comma, then ratio or E_star"),
+    ("height,ratio\n0,1\n", "the first line must be s or z, a comma, and ratio or E_star"),
     ("ratio,s\n0,1\n", "the first line must be"),
     ("s\n0\n", "the first line must be"),
     ("s,ratio,note\n0,1,2\n", "the first line must be"),

@@ -49,7 +49,7 @@ def test_values_that_no_separation_has():
     for value in (0.0, -1.0, math.nan, math.inf, [1.0, -1.0]):
         with pytest.raises(ValueError, match=r"load = .*finite values > 0 N"):
             analytic.Model(SURFACE).separation_at("load", value)
-    with pytest.raises(ValueError, match="contacts: not reached between h = -40 and 1000"):
+    with pytest.raises(ValueError, match="contacts: not reached for h from -40 to 1000"):
         analytic.Model(SURFACE).separation_at("contacts", 2 * SURFACE.n_asperities)
     with pytest.raises(ValueError, match="load: not reached"):
         analytic.Model(SURFACE, grading=Custom(lambda s: -np.ones_like(s))).separation_at("load", 1.0)

@@ -138,14 +138,14 @@ def test_what_dominates_is_said_with_what_would_lower_it(solved):
     assert "a larger map" in solved.budget().advice
     bare = replace(solved, scene=solved.scene.replace(uncertainty=None)).budget()
     assert "mostly the model" in bare.advice
-    assert "Not in the sum: parameters (give [surface] uncertainty" in bare.advice
+    assert "Not included: parameters (give [surface] uncertainty" in bare.advice
     assert np.isnan(bare.shares["parameters"]).all()
     small = scene_of(uncertainty=None).replace(nominal_area="0.2 mm^2")
     few = mcgw.solve(small, pressure="50 MPa").budget()
     assert "mostly the specimens" in few.advice
     assert "larger nominal area" in few.advice
     for each in (bare, few, solved.budget()):
-        assert "draw more of them" not in each.advice
+        assert "draw more surfaces" not in each.advice
 
 
 def test_at_a_given_area_no_model_was_measured():
@@ -153,7 +153,7 @@ def test_at_a_given_area_no_model_was_measured():
     budget = solved.budget()
     assert budget.quantities[0] == "load"
     assert np.isnan(budget.shares["model"]).all()
-    assert "model (its error is measured at a given load" in budget.advice
+    assert "model (its error was measured at a given load" in budget.advice
     assert np.isnan(solved.corrected("load").value)
     assert "at a given load" in solved.corrected("load").why
     assert np.isnan(solved.table().only("corrected").columns[0].values).all()
@@ -175,7 +175,7 @@ def test_corrected_is_divided_by_its_bias(solved):
     off = sigma * (v.error["separation"][0] - abs(v.bias["separation"][0]))
     off = np.hypot(off, 1.96 * solved.surfaces["mean_gap"].std(ddof=1))
     assert gap.high - gap.value == pytest.approx(off)
-    assert "contacts: no error" in solved.corrected("contacts").why
+    assert "contacts: its error was not measured" in solved.corrected("contacts").why
     named = {column.name: column for column in solved.table().flat}
     row = list(named["quantity"].values).index("area")
     assert named["corrected"].values[row] == solved.corrected("area").value
@@ -183,7 +183,7 @@ def test_corrected_is_divided_by_its_bias(solved):
 
 def test_where_nothing_was_measured_the_answer_stays_alone():
     solved = mcgw.solve(scene_of(law={"law": "kogut-etsion", "hardness": "8 GPa"}), pressure="50 MPa")
-    assert solved.corrected("area").why.startswith("not measured: it was for Hertz's contacts")
+    assert solved.corrected("area").why.startswith("not measured: only for Hertz's law")
     assert solved.budget().lacking["model"].startswith("not measured")
     assert np.isnan(solved.table().only("corrected").columns[0].values).all()
     assert "corrected" not in repr(solved)
@@ -212,15 +212,15 @@ def test_corrected_answers_are_those_of_boundary_elements():
 
 
 WRONG = {
-    "sigma": ({"sigma": "20"}, "give standard errors as shares"),
+    "sigma": ({"sigma": "20"}, "give relative standard errors"),
     "both": ({"sigma": 0.1, "m0": 0.2}, "give it or sigma, not both"),
-    "gaussian": ({"m0": 0.1}, 'go with heights.law = "nayak"'),
-    "none": ({}, "names no parameter"),
+    "gaussian": ({"m0": 0.1}, 'need heights.law = "nayak"'),
+    "none": ({}, "does not name a parameter"),
     "rows": ({"sigma": 0.1, "correlation": [[1, 0], [0, 1]]}, "give 1 rows of 1 numbers"),
     "symmetry": ({"sigma": 0.1, "eta": 0.1, "correlation": [[1, 0.5], [0, 1]]}, "must be symmetric"),
     "sign": (
         {"sigma": 0.1, "eta": 0.1, "radius": 0.1, "correlation": [[1, 1, -1], [1, 1, 1], [-1, 1, 1]]},
-        "no numbers are correlated so",
+        "impossible, because an eigenvalue",
     ),
 }
 
@@ -258,5 +258,5 @@ def test_a_fit_writes_what_it_knows(tmp_path, capsys):
     (tmp_path / "s.toml").write_text(mcgw.scene_text(scene))
     assert main(["solve", str(tmp_path / "s.toml"), "--pressure", "10MPa", "1MPa"]) == 0
     out = capsys.readouterr().out
-    assert out.count("Off a real specimen, at the load") == 2
+    assert out.count("Sources of error, at the load") == 2
     assert out.count("parameters ") >= 2

@@ -83,8 +83,8 @@ def test_one_surface_without_a_film_has_neither_covariance_nor_conductance(tmp_p
 @pytest.mark.parametrize(
     ("key", "value", "said"),
     [
-        ("format", "other", "format 'other'"), ("gap", [1.0], "two numbers"), ("gap", None, "no table"),
-        ("pressure", [1.0] * 11, "pressures that fall"), ("area", [-1.0] * 11, "> 0"),
+        ("format", "other", "format 'other'"), ("gap", [1.0], "two numbers"), ("gap", None, "not a contact"),
+        ("pressure", [1.0] * 11, "decreasing pressures"), ("area", [-1.0] * 11, "> 0"),
         ("covariance", [[1.0]], "square"), ("validity", ..., "it has no 'validity'"),
     ],
 )  # fmt: skip

@@ -359,5 +359,5 @@ def test_other_numbers_of_asperities_and_separations_in_disorder(make_scene):
 
 
 def test_stratified_is_refused(make_scene):
-    with pytest.raises(ValueError, match="takes another one"):
+    with pytest.raises(ValueError, match="use another sampler"):
         converge(make_scene(sampler="stratified"))

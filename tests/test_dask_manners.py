@@ -104,7 +104,7 @@ def test_a_client_is_taken_and_left_open(scene, tmp_path):
 def test_a_client_that_is_of_no_use(scene, tmp_path):
     with a_client(1) as client:
         client.close()
-        with pytest.raises(ValueError, match=r"^engine: this client is closed; give one that is connected$"):
+        with pytest.raises(ValueError, match=r"^engine: this client is closed; give a connected client$"):
             mcgw.run(scene, tmp_path / "e.h5", engine=client)
     assert not list(tmp_path.iterdir())
 

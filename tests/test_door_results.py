@@ -240,7 +240,7 @@ def test_what_is_drawn_is_what_there_is(results, ensemble):
         study.plot(separation=9.0)
     with pytest.raises(KeyError, match="torque"):
         ensemble.plot(quantity="torque")
-    with pytest.raises(TypeError, match=r"^int: no figure draws it"):
+    with pytest.raises(TypeError, match=r"^int: there is no figure of it"):
         draw(3)
 
 

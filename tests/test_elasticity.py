@@ -200,7 +200,7 @@ class TestLocated:
         rest = Located(spots.only(kept), places[:, kept], one.grid)
         assert residual(rest, replace(balance, penetrations=balance.penetrations[kept])) < 1e-10
         assert_allclose(balance.load, 0.1, rtol=1e-10)
-        with pytest.raises(BalanceError, match=r"no balance of 38 summits: .* is left; give a lower load"):
+        with pytest.raises(BalanceError, match=r"no equilibrium of 38 summits .*; give a lower load"):
             one.at_load(1.0)
 
 
@@ -324,7 +324,7 @@ class TestSources:
     @pytest.mark.parametrize(("size", "periodic"), [(1e-6, False), (2e-6, True), (None, True)])
     def test_maps_of_a_list_are_alike_and_periodic(self, size, periodic):
         flat = Topography(np.arange(12.0).reshape(3, 4), (1e-6, 1e-6), True)
-        with pytest.raises(ValueError, match="a list of maps: give periodic ones, one or more, all of one"):
+        with pytest.raises(ValueError, match="maps: give one or more periodic maps, all of one"):
             maps_of([flat, Topography(flat.heights, (size, size), periodic)] if size else [])
         assert_allclose(maps_of([flat, flat]).heights(1, 0).ravel(), np.arange(12) - 5.5)
 

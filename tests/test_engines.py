@@ -231,10 +231,10 @@ def test_addresses_that_are_fit():
 @pytest.mark.parametrize(
     ("address", "message"),
     [
-        ("tcp://10.1.2.3:8786", "not on this machine and not encrypted; use tls://"),
+        ("tcp://10.1.2.3:8786", "a remote address without encryption; use tls://"),
         ("tcp://node7:8786", "--insecure"),
-        ("tcp://0.0.0.0:8786", "not on this machine"),
-        ("tcp://127.0.0.1.example.org:8786", "not on this machine"),
+        ("tcp://0.0.0.0:8786", "a remote address"),
+        ("tcp://127.0.0.1.example.org:8786", "a remote address"),
         ("http://127.0.0.1:8786", "give tcp://HOST:PORT or tls://HOST:PORT"),
         ("127.0.0.1:8786", "give tcp://"),
         ("tcp://127.0.0.1", "give tcp://"),

@@ -298,7 +298,7 @@ ROWS = [
     ("show", "--set", "@s.toml --plan", "+ --set contact.law=kogut-etsion --set contact.critical=0.05",
      says("KogutEtsion")),
     ("solve", "--set", "@s.toml --load 1N", "+ --set ensemble.n_surfaces=9", says("specimens: 9 surfaces")),
-    ("show", "--set", E, "+ --set grading.gamma=2", refuses("goes with --plan")),
+    ("show", "--set", E, "+ --set grading.gamma=2", refuses("works only with --plan")),
     ("export", "--set", INP, "@e.h5 --to abaqus -o a.inp --set grading.gamma=2", refuses("give a scene")),
     ("run", "--output", RUN, "@s.toml -o b.h5", writes("b.h5", instead=["a.h5"])),
     ("run", "--threads", RUN, "+ --threads 99", same_draws),
@@ -338,7 +338,7 @@ ROWS = [
      csv_columns("x.csv", "ratio", "stderr", "theory", "variance_gain")),
     ("regrade", "--law", HERTZ, KE, contact_by(mcgw.KogutEtsion(critical=0.05))),
     ("regrade", "--gamma", AS_IS, "@e.h5 -o a.h5", refuses("give another grading (--gamma, --grading) or")),
-    ("regrade", "--critical", AS_IS, "@e.h5 -o a.h5 --critical 0.1", refuses("--critical: is a constant of")),
+    ("regrade", "--critical", AS_IS, "@e.h5 -o a.h5 --critical 0.1", refuses("--critical: belongs to")),
     ("regrade", "--critical", KE, "+ --critical 0.1", contact_by(mcgw.KogutEtsion(critical=0.1))),
     ("regrade", "--hardness", KE, "@e.h5 -o a.h5 --law kogut-etsion --hardness 2GPa",
      contact_by(mcgw.KogutEtsion(hardness=2e9))),
@@ -636,7 +636,7 @@ def test_compare_takes_laws(call, monkeypatch):
     monkeypatch.setattr(laws_of_values, "laws_of_values", lambda ensemble: found)
     said = call(["compare", "@e.h5", "-o", "p.png", "--laws"])
     assert said.code == 1
-    assert "the law of load at d/sigma = 1.5 is 0.25 off, the farthest of 24" in said.out
+    assert "the distribution of load at d/sigma = 1.5 differs by 0.25, the most of 24" in said.out
     assert call(["compare", "@e.h5", "-o", "p.png"]).code == 0
 
 
@@ -663,7 +663,7 @@ def test_elastic_takes_its_question(call, material, monkeypatch):
     call(["elastic", "@s.toml", "--separation", "2um"])
     assert (seen[1][1]["pressure"], seen[1][1]["separation"]) == (None, "2um")
     said = call(["elastic", *shlex.split("@s.toml --pressure 2MPa --pixel 2um")])
-    assert (said.code, said.err.partition(": goes")[0]) == (2, "mcgw: --pixel 2um")
+    assert (said.code, said.err.partition(": is for")[0]) == (2, "mcgw: --pixel 2um")
     call(["elastic", *shlex.split("@bare.npy --pressure 2MPa --pixel 2um --unit mm")])
     assert seen[2][0].pixel == (2e-6, 2e-6)
     assert seen[2][0].heights.std() == pytest.approx(1e-3 * np.load(material / "bare.npy").std())
@@ -698,7 +698,7 @@ def test_figures_take_folder_scene_and_csv(call, tmp_path, monkeypatch):
     assert call(["figures", "--list"]).out.split()[:2] == ["figure-1", "figure-2"]
     wrong = call(["figures", "--only", "figure-9"])
     assert (wrong.code, wrong.files) == (2, [])
-    assert "--only figure-9: no such figure here; give one of figure-1, figure-2, " in wrong.err
+    assert "--only figure-9: no such figure; give one of figure-1, figure-2, " in wrong.err
     default, *others = seen
     assert (default.swept, default.scene.n_asperities, default.scene.seed) == (True, 30_000, 20240601)
     one, other = (compared.asked for compared in others)

@@ -94,7 +94,7 @@ def test_what_is_printed_is_the_theory_of_that_law(name, ensemble_of, no_figures
     expected = np.concatenate([exact[q] for q in scene.quantities])
     assert np.all(np.abs(printed - expected) <= 0.06 * error)  # its second digit
     page = report_html(e, ATTRIBUTES)
-    contacts = re.search(r"contacts expected at the lowest separation</td><td>([\d.]+)<", page)
+    contacts = re.search(r"contacts expected at the smallest separation</td><td>([\d.]+)<", page)
     assert float(contacts[1]) == pytest.approx(exact["contacts"][0], rel=2e-3)
     assert f"of {scene.n_asperities} asperities" in summary(e, ATTRIBUTES)
     assert comparison.verdict.agrees
@@ -188,7 +188,7 @@ def test_a_stop_rule_does_not_wait_for_what_never_touches(name, make_scene):
     with pytest.warns(UserWarning, match="more surfaces than max_surfaces allows"):
         ensemble = mcgw.simulate(scene)
     assert np.all(ensemble.load[:, 3:] == 0)
-    with pytest.raises(ValueError, match=r"no height reaches d/sigma = .*: nothing touches"):
+    with pytest.raises(ValueError, match=r"no height reaches d/sigma = .*, so there is nothing to test"):
         converge(replace(scene, separations=h[3:], rel_err=None), seeds=2)
 
 
@@ -270,7 +270,7 @@ def test_report(scene, ensemble, monkeypatch):
         monkeypatch.setattr(mcgw.reports.html, name, lambda _: [])
     page = report_html(ensemble, ATTRIBUTES)
     assert "Monte Carlo and theory agree" in page
-    (said,) = re.findall(r"contacts expected at the lowest separation</td><td>([^<]*)<", page)
+    (said,) = re.findall(r"contacts expected at the smallest separation</td><td>([^<]*)<", page)
     assert float(said) == pytest.approx(3000 * exact.share_above(scene, 0.0), rel=5e-4)
     tables = page[page.index("<h2>Tables") : page.index("<h2>The surface")]
     theory = re.findall(r"<td>([\d.]+)(?:×10([⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+))?\s*</td><td>[−+][\d.]+</td></tr>", tables)
@@ -302,4 +302,4 @@ def test_notes_of_deep_contacts(scene):
     told = [line for line in cautions(asked) if "compressed by more" in line]
     assert bool(told) == (share > 1e-3)
     if told:
-        assert f"a share of {share:.2g} " in told[0]
+        assert f"{100 * share:.2g} % of the contacts are" in told[0]

@@ -137,11 +137,11 @@ def test_any_number_of_moments_gives_the_same_values(scene_of, more):
         ),
         (
             {"law": mcgw.ZhaoMaiettaChang(critical=0.01), "unload_from": "loop", "quantities": ["load"]},
-            "contact.unload_from = 0: .* unloading is not known; take 'kogut-etsion'",
+            "contact.unload_from = 0: .* no unloading is known for it; use 'kogut-etsion'",
         ),
         (
             {**CLIPPED, "law": mcgw.JohnsonKendallRoberts(pull_off=0.1)},
-            'grading.negative = "clip": from s = .* pulls them in without bound; raise the separations',
+            'grading.negative = "clip": from s = .* pulls them in without limit; increase the separations',
         ),
         (
             {
@@ -150,7 +150,7 @@ def test_any_number_of_moments_gives_the_same_values(scene_of, more):
                 "keep": "statistics",
                 "separations": [-5.5, 1.0],
             },
-            'ensemble.keep = "statistics": grading: .* let the grading level off; or say "sums"',
+            'ensemble.keep = "statistics": grading: .* let the grading level off; or use "sums"',
         ),
         (
             {
@@ -173,7 +173,7 @@ def test_what_no_cell_resolves_is_drawn_one_by_one(scene_of, monkeypatch, wish):
     """Cells alone say what to do instead."""
     monkeypatch.setattr("mcgw.sampling.samplers._CUTS", 0)
     assert sampler_of(scene_of(**SCENES["powers"], **wish)).name == "tail"
-    with pytest.raises(UnresolvedError, match=r'not resolved near s = .*; take sampler = "tail"'):
+    with pytest.raises(UnresolvedError, match=r'not resolved near s = .*; use sampler = "tail"'):
         sampler_of(scene_of(**SCENES["powers"], sampler="cells"))
 
 

@@ -400,7 +400,7 @@ def test_yielding_and_the_way_back():
         assert way_out.theory[0] == pytest.approx(way_in.theory[0], rel=1e-9)
         assert not np.allclose(way_out.theory[1:10], way_in.theory[1:10], rtol=1e-3)
     assert (
-        "does not carry the load of its reference"
+        "does not reach the load of its reference"
         in dict(figures_of(Compared(scene_of(**YIELDS))))["equal-load"]
     )
 

@@ -72,7 +72,7 @@ def test_profiles_have_an_area_too():
 def test_summits_as_they_were_measured_stay_on_their_own_area(capsys, law):
     fit("--heights", law, "--nominal-area", "1cm^2", code=2)
     (line,) = capsys.readouterr().err.splitlines()
-    assert line.startswith(f'mcgw: nominal_area = 0.0001: heights = "{law}" are the very summits of the map')
+    assert line.startswith(f'mcgw: nominal_area = 0.0001: heights = "{law}" uses the measured summits')
     fit("--heights", law)
     assert mcgw.load_scene("f.toml").n_asperities < 10000
 
@@ -89,4 +89,6 @@ def test_points_in_space_are_taken_for_no_image(capsys, separator, header):
     for more in ([], ["--pixel", "1um"]):
         assert main(["fit", "points.txt", "--cutoff", "none", "-o", "f.toml", *more]) == 2
         (line,) = capsys.readouterr().err.splitlines()
-        assert "points.txt: three numbers a line, 64 lines: x, y and z of single points are no map" in line
+        assert (
+            "points.txt: three numbers a line, 64 lines: single points with x, y and z are not a map" in line
+        )

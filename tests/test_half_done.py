@@ -26,7 +26,7 @@ def test_a_run_half_done_tells_surfaces_from_asperities(tmp_path, capsys, monkey
     left = mcgw.run(SCENE, path, shard="1/2")
     done = 100 - left
     assert 0 < done < 100
-    assert f"  surfaces      {done} so far, not yet 100, of 30 asperities each (fixed)" in out_of(
+    assert f"  surfaces      {done} so far, of 100, of 30 asperities each (fixed)" in out_of(
         capsys, "show", path
     )
     mcgw.run(SCENE, path)
@@ -40,13 +40,13 @@ def test_a_sweep_half_done_says_how_far_it_is(tmp_path, capsys):
     said = out_of(capsys, "show", path)
     assert said == (
         f"{path}: a sweep of 4 points over grading.gamma, ensemble.count, not finished: 100 of 200 surfaces "
-        "are drawn; the same mcgw sweep resumes\n"
+        "are drawn; run mcgw sweep again to resume\n"
     )
     assert mcgw.scene_from(out_of(capsys, "show", "--scene", path)).surface == SURFACE
     for option in ("--verify", "--digest"):
         assert main(["show", str(path), option]) == 2
-        assert "is a sweep in the making; mcgw sweep resumes" in capsys.readouterr().err
-    with pytest.raises(mcgw.StoreError, match="is a sweep in the making; mcgw show tells how far"):
+        assert "is an unfinished sweep; finish it with mcgw sweep" in capsys.readouterr().err
+    with pytest.raises(mcgw.StoreError, match="is an unfinished sweep; mcgw show prints its progress"):
         mcgw.open_ensemble(path)
     assert mcgw.sweep(scene, OVER, path=path).shape == (2, 2)  # nothing of it was removed
 

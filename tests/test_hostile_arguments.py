@@ -20,7 +20,7 @@ FLAT = Topography(1e-6 * np.arange(12.0).reshape(3, 4), (1e-6, 2e-6))
 def test_loads_down_to_the_smallest_number_are_found_or_refused(make_scene, given, value):
     scene = make_scene(separations=(2.0,), n_surfaces=3)
     if value < 1e-20:
-        with pytest.raises(ValueError, match=r"pressed by the last digits of its height; give .* or more"):
+        with pytest.raises(ValueError, match=r"double precision of the heights; give .* or more"):
             mcgw.solve(scene, **{given: value})
         return
     found = mcgw.solve(scene, **{given: value})
@@ -34,7 +34,7 @@ def test_solve_says_so_in_one_line(number, tmp_path, capsys):
     capsys.readouterr()
     assert main(["solve", str(tmp_path / "s.toml"), "--surfaces", "2", f"--load={number}"]) == 2
     (line,) = [x for x in capsys.readouterr().err.splitlines() if "note:" not in x]
-    assert line.startswith(f"mcgw: load = {float(number):g} N: less than one asperity has")
+    assert line.startswith(f"mcgw: load = {float(number):g} N: too small for")
 
 
 @pytest.mark.parametrize("option", ["--load", "--pressure", "--area-fraction"])

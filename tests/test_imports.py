@@ -121,7 +121,7 @@ FEATURES = {
 LAWS = {
     "adhesion", "custom", "elastic", "elastic_plastic", "elastic_plastic_laws", "law_rows",
     "balance", "interacting", "interaction", "interaction_mistakes",
-    "nominal", "own_balance", "joint", "joint_model", "in_joints",
+    "nominal", "own_balance", "joint", "joint_model",
 }  # fmt: skip
 
 

@@ -88,8 +88,8 @@ HOSTILE = {
     "external link": (load(lambda folder: h5py.ExternalLink(str(folder / "other.h5"), "/load")),
      "load: a link to another place"),
     "soft loop": (load(h5py.SoftLink("/load")), "load: a link to another place"),
-    "raw external": (raw_external, "load: its data lie elsewhere"),
-    "virtual": (virtual, "load: its data lie elsewhere"),
+    "raw external": (raw_external, "load: its data are in another file"),
+    "virtual": (virtual, "load: its data are in another file"),
     "huge": (made((10**9, 10**9), "<f8", chunks=(1024, 1024)), "load: .* chunks declared, 0 stored"),
     # Zeros that shrink a thousandfold, with a shape that the scene does not declare.
     "bomb": (made(data=np.zeros((2 * 10**5, 8)), chunks=(10**4, 8), compression="gzip"),
@@ -152,7 +152,7 @@ def test_other_formats_are_named(path, numbers):
         data.attrs["format"] = numbers
     with pytest.raises(
         StoreError,
-        match=rf"results \[{numbers[0]}, {numbers[1]}\] is a format that this version does not read",
+        match=rf"results \[{numbers[0]}, {numbers[1]}\] is not read by this version",
     ):
         mcgw.open_ensemble(path)
 

@@ -294,11 +294,11 @@ REFUSED = {
         {"quantities": ["area", "load"]},  # with its way back
     ),
     "sideways": (
-        {"interaction": "body", "tangential": SIDEWAYS}, r"leave out it or \[interaction\]",
+        {"interaction": "body", "tangential": SIDEWAYS}, r"leave out tangential or \[interaction\]",
         {"tangential": None},
     ),
     "means alone": (
-        {"interaction": "body", "sampler": "stratified"}, "each surface sinks by its own load",
+        {"interaction": "body", "sampler": "stratified"}, "interaction needs the load of each surface",
         {"sampler": "cells"},
     ),
     "no asperities": (
@@ -306,23 +306,23 @@ REFUSED = {
         {"interaction": "body"},
     ),
     "cells of another law": (
-        {"interaction": NOMINAL, "sampler": "cells", "law": KOGUT}, 'found asperity by asperity; take "tail"',
+        {"interaction": NOMINAL, "sampler": "cells", "law": KOGUT}, 'needs single asperities; use "tail"',
         {"sampler": "tail"},
     ),
     "moments": (
-        {"interaction": NOMINAL, "keep": "moments", "sampler": "cells"}, 'keeps none; take "sums"',
+        {"interaction": NOMINAL, "keep": "moments", "sampler": "cells"}, 'has none; use "sums"',
         {"interaction": "body"},
     ),
     "the way back": (
         {"interaction": NOMINAL, "unload_from": "loop", "quantities": ["load", "load_unloading"]},
-        "has no way back", {"interaction": "body"},
+        "has no unloading", {"interaction": "body"},
     ),
     "negative moduli": (
         {"interaction": NOMINAL, "negative": "allow", **NEGATIVE},
-        'needs loads that fall with the separation; say "clip"', {"negative": "clip"},
+        'needs loads that decrease with the separation; use "clip"', {"negative": "clip"},
     ),
     "adhesion": (
-        {"interaction": NOMINAL, "law": JKR, "quantities": ["load"]}, "would have several balances",
+        {"interaction": NOMINAL, "law": JKR, "quantities": ["load"]}, "would have several equilibria",
         {"interaction": "body"},
     ),
 }  # fmt: skip
@@ -342,7 +342,7 @@ def test_separations_below_the_fold(make_scene, at):
     """Strength 1: loads pull the mean plane down faster than it is pressed, somewhere above 0."""
     scene = make_scene(separations=(-1.0, 2.0), grading=None, n_asperities=3000)
     pulled = interaction(-1.0, scene.surface, 3000, at)
-    with pytest.raises(mcgw.SceneError, match="give higher separations") as caught:
+    with pytest.raises(mcgw.SceneError, match="give larger separations") as caught:
         scene.replace(interaction=pulled)
     assert len(caught.value.problems) == 1
     assert scene.replace(interaction=pulled, separations=(1.5, 2.0)).separations == (1.5, 2.0)
@@ -353,7 +353,9 @@ def test_a_surface_without_balance_says_so(make_scene):
     scene = make_scene(separations=(0.0,), grading=None, n_asperities=30, n_surfaces=3000)
     pulled = interaction(-0.62, scene.surface, 30)
     for sampler in ("cells", "tail"):
-        with pytest.raises(ValueError, match=r"interaction: surface .* no balance at d/sigma = 0 ") as one:
+        with pytest.raises(
+            ValueError, match=r"interaction: surface .* no equilibrium at d/sigma = 0 "
+        ) as one:
             mcgw.simulate(scene.replace(interaction=pulled, sampler=sampler))
         assert "\n" not in str(one.value)
 
@@ -367,7 +369,7 @@ def test_literal_search_gives_up_alike(make_scene):
     heights = np.full(5, 4.0)
     found = balanced_sums(weak, 7, heights, None)["effective_separation"][0, 0]
     assert found == pytest.approx(3.0 - 0.02 * (4.0 - found) ** 1.5, abs=1e-14)
-    with pytest.raises(ValueError, match="surface 7 has no balance"):
+    with pytest.raises(ValueError, match="surface 7 has no equilibrium"):
         balanced_sums(strong, 7, heights, None)
 
 
@@ -404,4 +406,4 @@ def test_errors_were_measured_for_one_modulus_of_the_bulk(factor):
     known = factor in (None, 1.0)
     assert np.isfinite(found.error["stiffness"]).all() == known
     assert np.isfinite(found.bias["separation"]).all() == known
-    assert ("the bulk had the modulus of the asperities there" in found.details) != known
+    assert ("only for a bulk with the modulus of the asperities" in found.details) != known

@@ -197,7 +197,7 @@ def test_the_mean_plane_has_no_balance_below_its_fold(crowding, fold):
     assert x == pytest.approx(fold, abs=0.1)
     h = x + strength * f(1.5, x)
     assert x < float(model.effective(h + 1e-4)) < x + 0.05
-    with pytest.raises(ValueError, match=r"no balance at d/sigma = .* give higher separations"):
+    with pytest.raises(ValueError, match=r"no equilibrium at d/sigma = .* give larger separations"):
         model.effective(h - 1e-4)
 
 

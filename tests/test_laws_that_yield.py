@@ -173,7 +173,7 @@ def test_slopes_are_those_of_a_difference(law):
     (lambda: KogutEtsion(critical=0.1, bridge="linear"), "bridge = 'linear': give 'hermite'"),
     (lambda: JacksonGreen(), "yield_strength = None, yield_strain = None"),
     (lambda: JacksonGreen(yield_strain=0.004), "critical = None: give a yield strength"),
-    (lambda: JacksonGreen(yield_strength=1e9, yield_strain=0.01, critical=1.0), "or both of the others"),
+    (lambda: JacksonGreen(yield_strength=1e9, yield_strain=0.01, critical=1.0), "or both of the other two"),
     (lambda: JacksonGreen(yield_strength=np.nan), "yield_strength = nan: give"),
     (lambda: KogutEtsion(hardness=1e9).limits(ONE), "hardness=1000000000.0.*law.on"),
     (lambda: JacksonGreen(yield_strength=1e9).limits(ONE), "strength=1000000000.0.*law.on"),

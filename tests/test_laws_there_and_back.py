@@ -99,7 +99,7 @@ def test_without_stiffness_nothing_is_left_and_nothing_warns():
     "law", [ChangEtsionBogy(critical=0.1), ZhaoMaiettaChang(critical=0.1), JacksonGreen(yield_strength=1e9)]
 )
 def test_laws_whose_unloading_is_not_known_refuse(law):
-    words = f"law = '{law.name}': its unloading is not known; take 'kogut-etsion'"
+    words = f"law = '{law.name}': no unloading is known; take 'kogut-etsion'"
     with pytest.raises(ValueError, match=words) as caught:
         law.unloading()
     assert "\n" not in str(caught.value)

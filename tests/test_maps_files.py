@@ -316,7 +316,7 @@ def test_what_a_file_tells_is_not_told_again(name, topography, tmp_path):
     ("1 2\n3 x\n", "line 2: could not convert"),
     ("1 inf\n", "infinite"),
     ("# nothing\n", "holds no numbers"),
-    ("# Width: 1 furlong\n", "not a unit of length"),
+    ("# Width: 1 furlong\n", "not a known unit of length"),
     ("1" * 2**24, r"map\.txt: line 1 has 16777216 characters or more; is it a map\?"),
 ], ids=["short row", "word", "infinite", "nothing", "unit", "one line"])  # fmt: skip
 def test_damaged_text_is_refused(content, told, tmp_path):
@@ -390,7 +390,7 @@ def test_what_makes_no_map_is_refused(tmp_path):
 
 def test_arrays_of_objects_are_never_unpickled(tmp_path):
     np.save(tmp_path / "map.npy", np.array([[object()]]), allow_pickle=True)
-    with pytest.raises(ValueError, match="not a sound"):
+    with pytest.raises(ValueError, match="not a valid"):
         read_map(tmp_path / "map.npy", pixel=(1.0, 1.0))
 
 

@@ -132,7 +132,7 @@ def test_overlap_is_that_of_the_estimate_that_is_used(crowded, tmp_path, capsys)
     wide = gaussian_map(Spectrum(1e-6, 200e-6, 8e-6), (256, 256), PIXEL, rng(1))
     (line,) = (x for x in mcgw.fit(wide, cutoff=None, form="none").cautions if x.startswith("overlap:"))
     assert "as broad as they are far apart" in line
-    assert "hide under others" in next(x for x in crowded.fit.cautions if x.startswith("overlap:"))
+    assert "are hidden under others" in next(x for x in crowded.fit.cautions if x.startswith("overlap:"))
 
 
 @pytest.mark.parametrize("cutoff", [None, "none"])
@@ -237,9 +237,9 @@ def test_skewed_heights_and_alpha_below_its_bound_are_doubted(without_caps):
 
 
 @pytest.mark.parametrize(("heights", "cutoff", "told"), [
-    (np.full((90, 90), np.nan), None, "lacks all of its 8100 points"),
+    (np.full((90, 90), np.nan), None, "all 8100 points of the map are missing"),
     (np.ones((90, 90)), None, "flat"),
-    (np.arange(8100.0).reshape(90, 90), None, "flat without its form"),
+    (np.arange(8100.0).reshape(90, 90), None, "flat after removing its form"),
     (rng(1).normal(size=(90, 90)), 1e-3, "leaves nothing"),
     (rng(1).normal(size=(12, 12)), None, "too few for 4 x 4"),
 ])  # fmt: skip
@@ -262,7 +262,9 @@ def test_summits_of_one_height_are_no_field_of_caps(bits):
 def test_an_array_of_points_is_taken_for_no_map(more, tmp_path):
     np.save(tmp_path / "points.npy", rng().normal(size=(64, 3)) * 1e-6)
     (tmp_path / "points.json").write_text('{"pixel": [1e-6, 1e-6]}')
-    with pytest.raises(ValueError, match=r"points.npy: three numbers a line, 64 lines: x, y and z"):
+    with pytest.raises(
+        ValueError, match=r"points.npy: three numbers a line, 64 lines: single points with x, y and z"
+    ):
         mcgw.fit(tmp_path / "points.npy", cutoff=None, **more)
     np.save(tmp_path / "points.npy", rng().normal(size=(3, 64)) * 1e-6)
     with pytest.raises(ValueError, match="are left: too few"):
@@ -275,7 +277,7 @@ def test_a_map_of_few_summits_has_moments_alone(without_caps):
     assert fit.best == "moments"
     assert list(fit.estimates) == ["moments"]
     assert "summits" in words(fit)
-    with pytest.raises(ValueError, match="there is no such estimate of this map; moments are"):
+    with pytest.raises(ValueError, match="this map has no such estimate; moments are"):
         mcgw.fitted_scene(fit, use="caps")
 
 
@@ -315,7 +317,7 @@ def test_a_command_writes_the_scene_with_measured_heights(sparse, tmp_path, caps
     arguments = ["--cutoff", "none", "--form", "none", "--heights", "measured", "-o", str(out)]
     assert main(["fit", str(sparse.path), *arguments, "-v"]) == 0
     told = capsys.readouterr().out
-    assert "form taken off: none; cutoff: none" in told
+    assert "form removed: none; cutoff: none" in told
     assert str(out) in told
     found = np.load(out.with_name("fitted.heights.npy"))
     found += field.z.max() - found.max()

@@ -117,9 +117,9 @@ def test_a_masked_hole_counts_as_if_the_map_ended_there():
 def test_points_missing_everywhere_are_filled_where_a_mask_leaves_nothing():
     z = rough(3, n=100)
     z[np.random.default_rng(1).random(z.shape) < 0.2] = np.nan
-    assert "counted like others: only" in fitted(z).notes[0]
+    assert "used like the others: only" in fitted(z).notes[0]
     z[::3, ::3] = np.nan
-    with pytest.raises(ValueError, match="give --missing fill"):
+    with pytest.raises(ValueError, match="use --missing fill"):
         fitted(z, missing="mask")
 
 
@@ -182,7 +182,7 @@ def test_spikes_are_taken_out():
     assert clean.moments.m4 == pytest.approx(plain.moments.m4, rel=0.03)
     for fit, named in ((kept, True), (clean, False)):
         assert any(line.startswith("spikes:") for line in fit.cautions) == named
-    assert clean.notes[0].startswith("spikes: 10 places taken out, up to 4.")
+    assert clean.notes[0].startswith("spikes: 10 places removed, up to 4.")
 
 
 @pytest.mark.parametrize("axis", [0, 1])
@@ -194,7 +194,7 @@ def test_the_larger_terrace_is_kept(axis):
     assert 0.5 < found.used.heights.shape[1 - axis] / N < 0.65
     assert found.used.heights.std() < 1.1 * z.std()
     assert "step" in found.notes[0]
-    assert ready(z, step="crop").notes == ("step: none was found, nothing cropped",)
+    assert ready(z, step="crop").notes == ("step: none found, nothing cropped",)
 
 
 @pytest.mark.parametrize("key", ["missing", "spikes", "step", "form"])

@@ -227,13 +227,13 @@ def test_form_of_a_profile_is_taken_off(form):
     (np.ones(900), 10 * UM, "flat"),
     (np.random.default_rng(1).normal(size=900) * UM, 800 * UM, "leaves nothing"),
     (np.random.default_rng(1).normal(size=40) * UM, None, "too few for 16 stretches"),
-    (np.sin(np.arange(9000) / 10) * UM, 37 * UM, "no isotropic surface has"),
+    (np.sin(np.arange(9000) / 10) * UM, 37 * UM, "impossible for an isotropic surface"),
     (np.random.default_rng(3).normal(size=100) * UM, 40 * UM, "too short"),
 ])  # fmt: skip
 def test_profiles_that_cannot_be_fitted_are_refused(heights, cutoff, told):
     with pytest.raises(ValueError, match=told):
         fit_profiles([Profile(heights, UM)], cutoff=cutoff)
-    with pytest.raises(ValueError, match="no profile"):
+    with pytest.raises(ValueError, match="at least one profile"):
         fit_profiles([], cutoff=cutoff)
 
 
@@ -296,8 +296,8 @@ def test_the_command_tells_a_profile_by_its_shape(files, tmp_path, capsys):
         ("long-cutoff", "1mm"), ("missing", "fill"), ("spikes", "remove"), ("step", "crop"),
         ("lines", "rows"), ("trim", "3"),
     )),
-    (["--heights", "table"], "profiles show no summits"),
-    (["--pixel", "1um"], "tells x in mm itself; leave --pixel out"),
+    (["--heights", "table"], "profiles do not show summits"),
+    (["--pixel", "1um"], "gives x in mm; leave --pixel out"),
     (["--unit", "nm"], "heights are in .m as the file says, not in nm"),
 ])  # fmt: skip
 def test_what_a_profile_cannot_be_asked(words, told, files, tmp_path, capsys, monkeypatch):
@@ -310,7 +310,7 @@ def test_what_a_profile_cannot_be_asked(words, told, files, tmp_path, capsys, mo
 
 @pytest.mark.parametrize("step", [{"missing": "fill"}, {"long_cutoff": "1 mm"}, {"trim": 3}])
 def test_python_refuses_what_the_command_does(step, files):
-    with pytest.raises(ValueError, match="is for maps; prepare a profile before"):
+    with pytest.raises(ValueError, match="is for maps only; prepare the profile before"):
         mcgw.fit(files / "p0.txt", cutoff="10 um", **step)
 
 
@@ -389,20 +389,20 @@ def test_text_of_every_kind(name, encoding, tmp_path):
 
 
 @pytest.mark.parametrize(("text", "given", "told"), [
-    ("1\n2\n3\n", {}, "has one column, of heights; give --pixel"),
-    ("x (um);z (um)\n0;1\n1;2\n", {"spacing": 1e-6}, "tells x in um itself; leave --pixel out"),
+    ("1\n2\n3\n", {}, "has only a column of heights; give --pixel"),
+    ("x (um);z (um)\n0;1\n1;2\n", {"spacing": 1e-6}, "gives x in um; leave --pixel out"),
     ("x (um);z (um)\n0;1\n1;2\n", {"unit": "nm"}, "heights are in um as the file says, not in nm"),
     ("0 1\n1 2\n2 1\n3 1\n1 2\n4 2\n5 2\n6 1\n7 1\n", {}, "x = 3 m is followed by 1 m"),
     ("\n".join(f"{i} {i % 2 * 1e-6}" for i in range(20)), {}, "the points are 1 m apart; give --unit"),
     ("\n".join(f"{i * 1.0004e-3} {i % 9 * 1e-4}" for i in range(1250)), {}, "it is 1.25 m long; give --unit"),
-    ("\n".join(f"{i * 1e-6} {i % 2}" for i in range(20)), {}, "the usual slope is 1e\\+06; give --unit"),
+    ("\n".join(f"{i * 1e-6} {i % 2}" for i in range(20)), {}, "the typical slope is 1e\\+06; give --unit"),
     ("0 1\n1 2\n", {}, "2 points: a profile has 8 or more"),
     ("0 1\n1 2 3\n2 2\n", {}, "line 2 has 3 numbers, the first 2"),
     ("0 1\n1 2\nend\n", {}, "line 3: could not convert"),
     ("0 1 2\n1 2 3\n", {}, "3 numbers a line; a profile has z, or x and z"),
     ("x z\n", {}, "holds no numbers"),
-    ("word\n" * 501 + "0 1\n1 2\n", {}, "the first 500 lines are no numbers; is it a profile"),
-    ("\n".join(f"{i} {'nan' if i % 3 else 1}" for i in range(30)), {}, "lacks 18 of its 28 heights"),
+    ("word\n" * 501 + "0 1\n1 2\n", {}, "the first 500 lines are not numbers; is it a profile"),
+    ("\n".join(f"{i} {'nan' if i % 3 else 1}" for i in range(30)), {}, "18 of the 28 heights are missing"),
 ])  # fmt: skip
 def test_what_is_no_profile_is_refused_in_one_line(text, given, told, tmp_path):
     path = tmp_path / "p.txt"
@@ -438,7 +438,7 @@ def test_maps_are_no_profiles(tmp_path, monkeypatch):
         read_profile(tmp_path / "short.npy", spacing=UM)
     monkeypatch.setitem(sys.modules, "SurfaceTopography", None)  # as where it is not installed
     (tmp_path / "p.xyz").write_text("0 1\n" * 9)
-    with pytest.raises(ValueError, match=r"p\.xyz: \.xyz is not read here; install SurfaceTopography"):
+    with pytest.raises(ValueError, match=r"p\.xyz: \.xyz is not a known format; install SurfaceTopography"):
         read_profile(tmp_path / "p.xyz")
 
 
@@ -464,7 +464,7 @@ def test_gaps_are_filled_and_uneven_places_resampled():
 @pytest.mark.parametrize(("heights", "spacing", "told"), [
     (np.zeros((3, 9)), 1.0, "not 2 dimensions"),
     (np.zeros(7), 1.0, "8 or more"),
-    (np.full(9, np.nan), 1.0, "lacks points"),
+    (np.full(9, np.nan), 1.0, "are missing"),
     (np.zeros(9), 0.0, "give a length > 0 m"),
 ])  # fmt: skip
 def test_no_such_profile(heights, spacing, told):
@@ -482,7 +482,7 @@ def test_profiles_that_surface_topography_reads(tmp_path):
     found = read_profile(tmp_path / "even.nc")
     np.testing.assert_allclose(found.heights, z * MM, rtol=1e-12)
     assert found.spacing == pytest.approx(0.5 * UM, rel=1e-9)
-    with pytest.raises(ValueError, match="distance of its points itself"):
+    with pytest.raises(ValueError, match="distance between its points"):
         read_profile(tmp_path / "even.nc", spacing=UM)
     fit = mcgw.fit(tmp_path / "even.nc", cutoff="10 um")
     assert fit.lengths == (pytest.approx(1.5 * MM),)

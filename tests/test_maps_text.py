@@ -59,9 +59,9 @@ def test_marks_of_the_encoding_are_no_numbers(encoding, tmp_path):
 
 
 @pytest.mark.parametrize(("content", "told"), [
-    ("1,2, 3,4\n", "inside numbers and between them"),
+    ("1,2, 3,4\n", "inside and between numbers"),
     ("1,2,3;4,5,6\n", "by commas and by something else"),
-    ("1.234,5;6,5\n", "inside numbers and between them|something else"),
+    ("1.234,5;6,5\n", "inside and between numbers|something else"),
     ("0,0012,0,0013\n", "begins with 0"),
     ('"1,5","2,5"\n', "line 1: could not convert"),
     ("x in nm, y in nm\n1, 2\n", "line 1: could not convert"),
@@ -116,11 +116,11 @@ def test_a_command_takes_a_unit_and_tells_one_that_was_assumed(rough, tmp_path, 
     assert main([*words, "--unit", "um"]) == 0
     told = capsys.readouterr()
     assert "slope" not in told.out + told.err
-    assert "heights taken in" not in told.out
+    assert "heights assumed in" not in told.out
     without_unit(path, rough.heights)
     assert main(words) == 0
     for text in (capsys.readouterr().out, out.read_text()):
-        assert "heights taken in m" in text
+        assert "heights assumed in m" in text
 
 
 @pytest.mark.parametrize(("unit", "metre"), [
@@ -139,7 +139,7 @@ def test_units_that_are_wrong_are_refused(tmp_path):
         read_map(tmp_path / "map.txt", pixel=(1.0, 1.0), unit="um")
     with pytest.raises(ValueError, match="give --pixel"):
         read_map(tmp_path / "map.txt")
-    with pytest.raises(ValueError, match="'furlong' is not a unit"):
+    with pytest.raises(ValueError, match="'furlong' is not a known unit"):
         read_map(tmp_path / "map.txt", pixel=(1.0, 1.0), unit="furlong")
 
 

@@ -177,25 +177,25 @@ PAIR = "heights = [1e-6, 2e-6, 4e-6]\nradii = [1e-5, 2e-5, 1e-5]\n"
     (HEAD, "heights = [1e-6, nan]\nradii = [1e-5, 1e-5]", "", "finite numbers; value 2 is nan"),
     (HEAD, "heights = [1e-6, 2e-6]\nradii = [1e-5, -1e-5]", "", "finite numbers > 0; value 2 is -1e-05"),
     (HEAD, "heights = [1e-6, 2e-6]\nradii = [1e-5, inf]", "", "finite numbers > 0; value 2 is inf"),
-    (HEAD, "heights = [1e-6, 1e-6]\nradii = [1e-5, 1e-5]", "", "all alike"),
+    (HEAD, "heights = [1e-6, 1e-6]\nradii = [1e-5, 1e-5]", "", "all equal"),
     (HEAD, "heights = ['a', 1e-6]\nradii = [1e-5, 1e-5]", "", "summits.heights"),
     (HEAD, "heights = [1e-6, 2e-6]", "", "give radii or ratios too"),
     (HEAD, "resample = true", "", "give heights or file too"),
     (HEAD, PAIR + "ratios = [1, 2, 1]", "", "give it or ratios, not both"),
     (HEAD, PAIR + "file = 'a.csv'", "", "not both"),
     (HEAD, "file = 'no.csv'", "", "No such file"),
-    (HEAD, PAIR + "resample = 1.5", "", "say true or false"),
+    (HEAD, PAIR + "resample = 1.5", "", "give true or false"),
     (HEAD, PAIR + "curvature = 'random'", "", "give it or curvature, not both"),
     (HEAD, PAIR + "largest_radius = 1", "", "give it or largest_radius, not both"),
     (HEAD, PAIR + "tiles = 4", "", "unknown key"),
     (HEAD, PAIR + "[heights]\nlaw = 'nayak'\nalpha = 5.0", "", "leave [heights] out"),
     (HEAD + "m0 = 1e-12\nm2 = 1e-3\nm4 = 5e6\n", PAIR, "", "surface.m0"),
     (HEAD.replace("nominal_area", "area"), PAIR, "", "surface.nominal_area: missing"),
-    (HEAD, PAIR, "sampler = 'cells'", 'take "direct"'),
-    (HEAD, PAIR, "keep = 'moments'", 'take "sums"'),
+    (HEAD, PAIR, "sampler = 'cells'", 'use "direct"'),
+    (HEAD, PAIR, "keep = 'moments'", 'use "sums"'),
     (HEAD, PAIR, "n_surfaces = 5", "resample = true under [summits]"),
     (HEAD, PAIR, "n_asperities = 5", "summits.resample = true"),
-    (HEAD, PAIR + "resample = true", "sampler = 'aggregate'", 'take "direct"'),
+    (HEAD, PAIR + "resample = true", "sampler = 'aggregate'", 'use "direct"'),
 ])  # fmt: skip
 def test_bad_input_gets_one_line(head, summits, ensemble, says, tmp_path):
     text = head + f"[summits]\n{summits}\n[contact]\nseparations = [0.0]\n[ensemble]\n{ensemble}\n"
@@ -258,16 +258,16 @@ def test_a_load_on_the_very_summits(own):
     apart = found.surfaces["separation"].mean() - np.mean(by_hand)
     assert abs(apart) < 4.5 * np.std(by_hand) * np.sqrt(2 / 200)
     assert np.log(found.surfaces["separation"].std() / np.std(by_hand)) == pytest.approx(0, abs=0.3)
-    assert "200 surfaces of 200 asperities, drawn from the measured ones" in str(found)
+    assert "200 surfaces of 200 asperities, drawn from the measured summits" in str(found)
     told = solutions_text(x, [found])
-    assert "200 surfaces of 200 asperities, each at its own d; drawn from the measured ones" in told
+    assert "200 surfaces of 200 asperities, drawn from the measured ones" in told
 
 
 def test_radii_of_other_heights_are_refused():
     radii = mcgw.MeasuredRadii(mcgw.MeasuredHeights(Z), RADII)
-    with pytest.raises(mcgw.SceneError, match="not those of the summits"):
+    with pytest.raises(mcgw.SceneError, match="differ from those of the measured summits"):
         scene().replace(heights=mcgw.MeasuredHeights(-Z))
-    with pytest.raises(ValueError, match="heights of their own"):
+    with pytest.raises(ValueError, match="their own heights"):
         analytic.Model(scene().surface, curvature=radii)
     with pytest.raises(mcgw.SceneError, match="HeightTable"):
         scene().replace(heights=mcgw.MeasuredHeights(Z, resampled=True), curvature=None)

@@ -66,7 +66,7 @@ except StoreError as error:
 
 def test_too_little_memory_is_not_blamed_on_the_file(file):
     (line,) = limited(TIGHT, "-c", LOOK, file).stdout.splitlines()
-    assert line.startswith(f"{file}: cannot be looked at with the memory this process may have")
+    assert line.startswith(f"{file}: cannot be checked within the memory limit of this process")
     assert f"(ulimit -v {TIGHT * 1024})" in line
     assert limited(1024, "-c", LOOK, file).stdout == ""
 

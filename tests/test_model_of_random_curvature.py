@@ -1,4 +1,4 @@
-"""`Model` of summits with radii of their own, against a literal double sum over their heights and curvatures.
+"""`Model` of individual summit radii, against a literal double sum over their heights and curvatures.
 
 The density of the curvature at a height is typed in here (`analytic.curvature` says where it comes from), the
 formulas of Hertz and of Kogut and Etsion as well. `test_summit_curvature` has drawn summits.

@@ -293,7 +293,7 @@ def test_pressures_and_values_beyond_reach():
     pressure = float(model.mean("pressure", 0.4))
     assert float(model.mean("load", 0.4)) == pytest.approx(pressure * SURFACE.nominal_area, rel=1e-14)
     assert float(model.separation_at("pressure", pressure)) == pytest.approx(0.4, abs=1e-12)
-    with pytest.raises(ValueError, match="contacts: not reached between h = -40 and 3"):
+    with pytest.raises(ValueError, match="contacts: not reached for h from -40 to 3"):
         replace(model, grading=Homogeneous()).separation_at("contacts", 1001.0)
     with pytest.raises(ValueError, match="give finite values > 0"):
         model.separation_at("load", -1.0)
@@ -361,5 +361,5 @@ def test_questions_without_an_answer_are_refused():
     with pytest.raises(KeyError, match="load_slope, conductance_si, yielded"):
         model.mean("force", 0.0)
     for question in (model.mean, model.slope, model.std, model.separation_at):
-        with pytest.raises(ValueError, match="law = 'by hand: kogut-etsion': its unloading is not known"):
+        with pytest.raises(ValueError, match="law = 'by hand: kogut-etsion': no unloading is known"):
             question("load_unloading", 0.5)

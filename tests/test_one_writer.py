@@ -84,7 +84,7 @@ def others(scene):
     blocks = replace(scene, n_surfaces=3 * SIZE)
     return {
         "the same run": lambda path: run(scene, path),
-        "another seed": lambda path: run(replace(scene, seed=2), path),
+        "its own seed": lambda path: run(replace(scene, seed=2), path),
         "in blocks": lambda path: run(blocks, path),
         "a share": lambda path: run(blocks, path, shard="1/2"),
         "merge": merge,
@@ -92,7 +92,7 @@ def others(scene):
     }
 
 
-@pytest.mark.parametrize("other", ["the same run", "another seed", "in blocks", "a share", "merge", "save"])
+@pytest.mark.parametrize("other", ["the same run", "its own seed", "in blocks", "a share", "merge", "save"])
 def test_nothing_else_is_written_beside_a_run_of_one_block(other, scene, path, drawing):
     drawing.start(scene, path)
     with pytest.raises(LockedError, match=f"locked by pid {os.getpid()} on"):
@@ -104,7 +104,7 @@ def test_nothing_else_is_written_beside_a_run_of_one_block(other, scene, path, d
     assert [p.name for p in path.parent.iterdir()] == ["e.h5"]
 
 
-@pytest.mark.parametrize("other", ["another seed", "save"])
+@pytest.mark.parametrize("other", ["its own seed", "save"])
 def test_who_comes_too_late_finds_another_ensemble(other, scene, path):
     run(scene, path)
     before = path.read_bytes()
@@ -171,7 +171,7 @@ def test_a_file_that_changes_while_it_is_extended_is_left_alone(scene, path, mon
         path.write_bytes(b"precious")
 
     monkeypatch.setattr(merging, "merge_into", replaced)
-    with pytest.raises(RunError, match="another file has taken this name meanwhile"):
+    with pytest.raises(RunError, match="another file now has this name"):
         run(replace(scene, n_surfaces=3 * SIZE), path)
     assert path.read_bytes() == b"precious"
     assert len(list(parts_of(path).glob("shards/*.h5"))) == 2
@@ -228,7 +228,7 @@ def test_what_is_not_there_is_said_in_one_line(path, capsys):
     assert capsys.readouterr().err == f"mcgw: {path}: no block of its run is finished yet\n"
     tidy(path)
     assert main(["merge", str(path)]) == 2
-    assert capsys.readouterr().err.startswith(f"mcgw: {path}: neither this file nor blocks of it")
+    assert capsys.readouterr().err.startswith(f"mcgw: {path}: neither this file nor its blocks")
 
 
 CHILD = """

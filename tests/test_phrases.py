@@ -7,12 +7,18 @@ from docs_site import MADE, ROOT
 
 PHRASES = [
     "is told", "are told", "its surfaces are none", "no map can tell", "says nothing", "shortly",
-    "of this model agree", "goes on where it stopped", "where d counts from", "bears; metals",
+    "of this model agree", "goes on where it stopped", "bears; metals",
     "in the place of", "command goes on", "sweep goes on", "seed goes on", "nobody told", "no one told",
-    "belongs into", "speaks against", "none is asked for",
+    "belongs into", "speaks against", "none is asked for", "act one by one", "can be had", "gone on with",
+    "going on where", "knows its way back", "in the making", "sinks the ground", "the very summits",
+    "the very heights", "very same", "off elasticity", "outside of what was measured", "parted by",
+    "shared out", "the gravest", "of one's own", "what would do", "the other way round", "turns round",
+    "made anew", "take higher separations", "leaves double precision", "lacks all of", "counts from",
+    "how far from elasticity", "shows itself", "show themselves", "says all", "what stands behind",
+    "a law of your own", "noise of its own", "bears nothing", "come back the way it went",
 ]  # fmt: skip
-PLACES = ("README.md", "CHANGELOG.md", "docs/*.md", "docs/*/*.md", "runs/*.md", "mcgw/**/*.py")
-PLACES += ("analytic/**/*.py",)
+PLACES = ("*.md", "docs/*.md", "docs/*/*.md", "runs/*.md", "runs/*/*.md", "runs/gallery/**/*.py")
+PLACES += ("runs/notebooks/*.py", "mcgw/**/*.py", "analytic/**/*.py")
 
 
 def found(text):

@@ -26,7 +26,7 @@ def test_plan_says_what_is_drawn(make_scene):
     assert plan.seconds > 0
     text = plan_text(scene, plan)
     assert "lie below every separation and are not drawn" in text
-    assert "conductance: not asked for" in text
+    assert "conductance: not requested" in text
     assert "time          about" in text
 
 
@@ -45,9 +45,9 @@ def test_plan_counts_what_is_kept_and_says_who_chose(make_scene):
     assert "sampler       cells" in plan_text(scene, plan)
     assert "chosen by auto" in plan_text(make_scene(sampler="auto"), plan)
     text = plan_text(scene, plan)
-    assert f"touching      {plan.touching:.4g} of a surface, at the lowest d/sigma = 1" in text
+    assert f"touching      {plan.touching:.4g} per surface, at the smallest d/sigma = 1" in text
     assert f"results       {plan.bytes / 1e6:.4g} MB" in text
-    assert f"  {3000 - plan.touching:.4g} asperities of a surface lie below" in text
+    assert f"  {3000 - plan.touching:.4g} asperities per surface lie below" in text
 
 
 def test_contacts_alone_draw_no_height(make_scene):
@@ -55,7 +55,7 @@ def test_contacts_alone_draw_no_height(make_scene):
     plan = plan_of(scene)
     assert plan.moments == 0
     assert plan.drawn < 0.1  # what lies beyond the last cell is drawn one by one
-    assert "no height is drawn" in plan_text(scene, plan)
+    assert "no heights are drawn" in plan_text(scene, plan)
 
 
 def test_samplers_that_draw_all_and_hardly_any(make_scene):

@@ -45,7 +45,7 @@ def test_never_over_another_file(tmp_path, capsys):
     path = tmp_path / "mine.toml"
     path.write_text("mine")
     assert main(["init", "-o", str(path)]) == 2
-    assert "already there" in capsys.readouterr().err
+    assert "already exists" in capsys.readouterr().err
     assert path.read_text() == "mine"
 
 

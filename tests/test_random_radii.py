@@ -310,7 +310,7 @@ def test_a_wrong_area_is_seen_though_its_kurtosis_is_infinite(monkeypatch):
     ids=lambda law: law.name,
 )
 def test_solved_on_each_surface(law, monkeypatch):
-    """At the separation of each surface its very summits carry the load; also where they yield."""
+    """At the separation of each surface measured summits carry the load; also where they yield."""
     summits_of = []
 
     def listed(*asked):

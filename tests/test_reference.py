@@ -78,7 +78,7 @@ def test_theory_that_is_off_is_not_measured_against(monkeypatch):
 
 
 def test_what_cannot_be_traded_off_is_refused():
-    with pytest.raises(ValueError, match="measured ones are added up exactly"):
+    with pytest.raises(ValueError, match="measured heights are summed exactly"):
         methods_for(scene_of(LAWS["measured"]), (0,))
     with pytest.raises(ValueError, match=r"mean load at d/sigma = 3 is 0"):
         methods_for(scene_of(LAWS["uniform"], separations=(3.0,)), (0,))

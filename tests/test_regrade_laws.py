@@ -156,7 +156,7 @@ def test_what_was_regraded_is_regraded_again(surface):
 @pytest.mark.parametrize(
     ("change", "told"),
     [
-        ({"law": KE, "separations": [-0.1]}, r"^separation -0\.1 is lower than 0, down to which"),
+        ({"law": KE, "separations": [-0.1]}, r"^separation -0\.1 is smaller than 0, down to which"),
         ({"law": {"law": "kogut-etsion"}}, r"^contact\.hardness = None"),
         ({"law": LAWS[3], "unload_from": "loop"}, r"^contact\.unload_from = 0: law = 'jackson-green'"),
     ],
@@ -171,7 +171,7 @@ def test_surfaces_that_cannot_be_had(base):
         mcgw.regrade(base, law=KE, seed=3)
     crowd = mcgw.simulate(base.scene, sampler="aggregate")
     with pytest.raises(
-        ValueError, match=r'^sampler = "aggregate" keeps no heights; "cells", "tail" and "direct" do'
+        ValueError, match=r'^sampler = "aggregate" keeps no heights; use "cells", "tail" or "direct"'
     ):
         mcgw.regrade(crowd, law=KE)
     wrong = dataclasses.replace(base, scene=base.scene.replace(seed=5))

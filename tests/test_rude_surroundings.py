@@ -98,7 +98,7 @@ def test_a_child_answers_as_this_process_does(tmp_path):
 @pytest.mark.parametrize(
     ("words", "message"),
     [("run absent.toml", "absent.toml: No such file"), ("show absent.h5", "absent.h5: No such file"),
-     ("compare s.toml", "is no file of results")],
+     ("compare s.toml", "is not a file of results")],
 )  # fmt: skip
 def test_bad_input_is_one_line_and_exit_code_2(words, message, tmp_path):
     put(tmp_path)
@@ -179,9 +179,9 @@ def test_a_full_folder_of_kernels_is_named_once_and_the_loops_run(tmp_path):
     assert done.stdout == "8 1.0\n", done.stderr
     said = [line for line in done.stderr.splitlines() if "UserWarning" in line]
     assert len(said) == 1
-    assert f"cannot be kept in {tmp_path / 'kernels'}" in said[0]
+    assert f"cannot be cached in {tmp_path / 'kernels'}" in said[0]
     assert "(No space left on device)" in said[0]
-    assert "make room there" in said[0]
+    assert "free some space" in said[0]
 
 
 @pytest.mark.slow
@@ -192,7 +192,7 @@ def test_a_command_with_a_full_folder_of_kernels(tmp_path):
     done = with_full_kernels(tmp_path, code)
     assert done.returncode == 0, done.stderr
     (line,) = without_notes(done.stderr).splitlines()
-    assert line.startswith(f"mcgw: warning: compiled loops cannot be kept in {tmp_path / 'kernels'}")
+    assert line.startswith(f"mcgw: warning: compiled loops cannot be cached in {tmp_path / 'kernels'}")
 
 
 def test_tail_with_more_asperities_than_memory_is_refused_before_drawing(tmp_path):
@@ -325,7 +325,7 @@ def test_a_table_of_regrade_is_read_as_carefully(tmp_path):
     made, pipe, done = calls(["run s.toml -o e.h5", f"{words} pipe.csv", f"{words} p.csv"], tmp_path)
     assert made.returncode == 0
     refused(pipe, "pipe.csv: is not a regular file")
-    refused(done, "p.csv: the first line must be s or z, a comma, then ratio or E_star")
+    refused(done, "p.csv: the first line must be s or z, a comma, and ratio or E_star")
     assert "secret" not in done.stderr
 
 
@@ -378,7 +378,7 @@ def test_slow_laws_are_given_up_after_their_time(law, monkeypatch):
     monkeypatch.setattr("analytic.scipy_heights._SECONDS", 0.1)
     profile = sys.getprofile()
     with pytest.raises(
-        ValueError, match=r"^\w+: mean and deviation take scipy longer than 0\.1 s; give another"
+        ValueError, match=r"^\w+: mean and deviation take SciPy longer than 0\.1 s; give another"
     ):
         analytic.ScipyHeights(law)
     assert sys.getprofile() is profile

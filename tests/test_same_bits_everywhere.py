@@ -144,7 +144,7 @@ def test_what_depends_on_the_processor(make_scene, change, depends):
     assert (identity.kind_of_processor() in identity.drawn_with(scene, sampler)) == depends
 
 
-WHY = "another kind of processor, which rounds exponentials and logarithms otherwise"
+WHY = "another kind of processor, which rounds exponentials differently"
 
 
 @pytest.mark.parametrize("heights", [analytic.Weibull(3.6), analytic.Gaussian()], ids=["foreign", "own"])

@@ -472,7 +472,7 @@ def test_init_puts_it_beside_the_scene(tmp_path, capsys):
     assert main(["init", "-o", str(tmp_path / "other.toml"), "--schema"]) == 0  # it is there, and the same
     (tmp_path / "scene.schema.json").write_text("{}")
     assert main(["init", "-o", str(tmp_path / "third.toml"), "--schema"]) == 2
-    assert "scene.schema.json: is already there, and not that of this version" in capsys.readouterr().err
+    assert "scene.schema.json: already exists, from another version" in capsys.readouterr().err
     assert not (tmp_path / "third.toml").exists()
     assert (tmp_path / "scene.schema.json").read_text() == "{}"
 

@@ -303,7 +303,7 @@ ROWS = [
      not_measured("skewness"), True),
     ("fitted.independent", 90.0, {**GAUSS, "fitted": FITTED | {"skewness": 0.151}},
      not_measured("skewness"), True),
-    ("fitted.agreement", 1.5, {**GAUSS, "fitted": FITTED}, not_measured("1.5 times apart"), True),
+    ("fitted.agreement", 1.5, {**GAUSS, "fitted": FITTED}, not_measured("differ by a factor of 1.5"), True),
     ("fitted.lay", 3.0, {**GAUSS, "fitted": FITTED}, not_measured("slopes 3 : 1"), True),
     ("fitted.area", "'4 mm^2'", {"fitted": FITTED}, lambda s: s.fitted.area, 4e-6),
     ("fitted.cautions", "['lay: 2 : 1']", {"fitted": FITTED}, lambda s: s.fitted.cautions, ("lay: 2 : 1",)),

@@ -35,7 +35,7 @@ ADDED = [
      '"conductance_si" needs resistivity, or conductivities = [k1, k2]; give one'),
     ("contact", ', quantities = ["load", "yielded"]', 'no contact yields with law = "hertz"; leave it out'),
     ("contact", f', quantities = ["area"], tangential = {PUSHED}',
-     'it is a difference of normal loads; add "load" to contact.quantities'),
+     'it needs normal loads; add "load" to contact.quantities'),
 ]  # fmt: skip
 
 
@@ -67,11 +67,11 @@ CALLS = [
     (lambda scene: mcgw.run(scene, "e.h5", threads=0), "threads = 0: give a whole number >= 1"),
     (lambda scene: mcgw.sweep(scene, {"grading.gamma": [1, 2]}, path="s.h5", threads=-1),
      "threads = -1: give a whole number >= 1"),
-    (listed(n_surfaces=2), "ensemble.n_surfaces = 2: measured heights as they are need 1; or say resample"),
+    (listed(n_surfaces=2), "ensemble.n_surfaces = 2: measured heights as they are need 1; or set resample"),
     (listed(count="poisson"), "ensemble.count = 'poisson': measured heights as they are need 'fixed'; or"),
-    (listed(n_asperities=4), "ensemble.n_asperities = 4: 3 heights are measured; give that number, or"),
-    (with_radii(heights=analytic.Gaussian()), 'it goes with heights.law = "nayak", alpha = 5;'),
-    (with_radii(heights=analytic.Nayak(4.0)), 'it goes with heights.law = "nayak", alpha = 5;'),
+    (listed(n_asperities=4), "ensemble.n_asperities = 4: there are 3 measured heights; give that number, or"),
+    (with_radii(heights=analytic.Gaussian()), 'it needs heights.law = "nayak", alpha = 5;'),
+    (with_radii(heights=analytic.Nayak(4.0)), 'it needs heights.law = "nayak", alpha = 5;'),
     (lambda scene: mcgw.sweep(scene, over={"ensemble.seed": [1, 2]}).slopes("load", "grading.gamma"),
      "'grading.gamma' is no axis of this sweep; it has ensemble.seed"),
 ]  # fmt: skip
@@ -100,9 +100,9 @@ FACTS = [
     ({"film": mcgw.Film(1e-7)}, ("film", "resistivity 1e-07 ohm m")),
     ({"film": mcgw.Film(1e-7, 2e-12)}, ("film", "resistivity 1e-07 ohm m, film 2e-12 ohm m^2")),
     ({"interaction": analytic.Interaction("body")},
-     ("interaction", "from the undeformed body, separations as asperities feel them")),
+     ("interaction", "from the undeformed body, separations effective")),
     ({"interaction": analytic.Interaction("mean-plane", at="nominal")},
-     ("interaction", "from the mean deformed plane, separations as nominal ones")),
+     ("interaction", "from the mean deformed plane, separations nominal")),
     ({"law": mcgw.KogutEtsion(critical=0.05)}, ("contact law", "KogutEtsion(critical=0.05, poisson=0.3)")),
     ({"accuracy": 1e-5}, ("accuracy", "1e-05 of every value of a surface")),
     ({"law_error": 1e-3, "sampler": "auto"}, ("law_error", "up to 0.001 from the exact laws")),
@@ -121,7 +121,7 @@ def test_a_scene_says_what_it_has_and_nothing_else(changes, fact, make_scene):
 def test_laws_are_told_by_name_and_numbers():
     for law, told in (
         (analytic.MeasuredHeights([0.0, 1.0, 3.0]), "3 measured ones, as they are"),
-        (analytic.MeasuredHeights([0.0, 1.0, 3.0], resampled=True), "3 measured ones, drawn again"),
+        (analytic.MeasuredHeights([0.0, 1.0, 3.0], resampled=True), "3 measured ones, resampled"),
         (stats.norm, repr(stats.norm)),
     ):
         assert law_text(law) == told

@@ -78,7 +78,7 @@ def test_a_cycle_closes_and_takes_work():
 
 @pytest.mark.parametrize(("changes", "said"), [
     ({"law": KogutEtsion(critical=0.05)}, "contact.tangential: the theorem needs elastic half-spaces"),
-    ({"quantities": ["area"]}, 'contact.tangential: it is a difference of normal loads; add "load"'),
+    ({"quantities": ["area"]}, 'contact.tangential: it needs normal loads; add "load"'),
 ])  # fmt: skip
 def test_what_the_theorem_does_not_cover_is_refused(changes, said):
     with pytest.raises(mcgw.SceneError) as caught:

@@ -173,7 +173,7 @@ def test_a_digest_that_is_written_wrong_is_seen(scene, tmp_path, monkeypatch):
         file.attrs["digest"] = "0" * 64
 
     monkeypatch.setattr(saving, "describe", forged)
-    with pytest.raises(OSError, match="reads otherwise than written"):
+    with pytest.raises(OSError, match="was not written correctly"):
         saving.merge_into(RunFolder.open(parts_of(path)), path, tmp_path / "x.tmp", nobody)
 
 
@@ -224,7 +224,7 @@ def test_nobody_works_on_a_folder_that_was_just_removed(scene, tmp_path, way, mo
         "merge": lambda: merge(path),
     }[way]
     with pytest.raises(
-        StoreError, match=r"its run has just ended; repeat the command|neither this file nor blocks"
+        StoreError, match=r"its run has just ended; repeat the command|neither this file nor its blocks"
     ):
         work()
     assert not path.exists()
@@ -277,7 +277,7 @@ def test_files_of_other_formats_are_refused_in_one_line(scene, file, filetype, v
     monkeypatch.setattr(layout, "FILETYPE", filetype)
     monkeypatch.setattr(layout, "FORMAT", version)
     run(scene, file)  # as a version writes it that calls its files so
-    with pytest.raises(StoreError, match=r"is a format that this version does not read") as caught:
+    with pytest.raises(StoreError, match=r"is not read by this version") as caught:
         mcgw.open_ensemble(file)
     assert len(str(caught.value).splitlines()) == 1
 

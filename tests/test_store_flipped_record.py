@@ -32,7 +32,7 @@ def begun(make_scene, tmp_path, monkeypatch):
 def test_a_run_goes_on_from_its_blocks(begun, bit, monkeypatch):
     scene, path = begun
     flip(parts_of(path) / "run.toml", bit)
-    with pytest.raises(StoreError, match=r"damaged .* mcgw run with their scene and seed resumes"):
+    with pytest.raises(StoreError, match=r"damaged .* resume with mcgw run or mcgw sweep"):
         RunFolder.open(parts_of(path))
     drawn, draw = [], Job.draw
     monkeypatch.setattr(

@@ -75,7 +75,7 @@ def test_alone_or_shared(tmp_path, ask):
     with locked(tmp_path):
         assert not ask(tmp_path, shared=False)
         assert not ask(tmp_path, shared=True)
-        with pytest.raises(StoreError, match=f"locked by pid {os.getpid()} on .*, which works on this run"):
+        with pytest.raises(StoreError, match=f"locked by pid {os.getpid()} on .*, which is working on"):
             locked(tmp_path).__enter__()
     with locked(tmp_path, shared=True):
         assert ask(tmp_path, shared=True)

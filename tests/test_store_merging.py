@@ -283,7 +283,7 @@ def test_numbers_that_go_to_another_place_are_seen(scene, tmp_path, monkeypatch)
                 target.id.write_direct_chunk((row, 0), part)
 
     monkeypatch.setattr(chunks, "_add_chunks", swapped)
-    with pytest.raises(RunError, match="reads otherwise than written"):
+    with pytest.raises(RunError, match="was not written correctly"):
         merge(path)
     assert not path.exists()
 

@@ -73,7 +73,7 @@ class OwnScipy(type(scipy.stats.expon)):
 def test_a_height_law_that_no_file_can_hold_is_refused(make_scene, tmp_path, heights, name):
     scene = make_scene(heights=heights, n_surfaces=2)
     with pytest.raises(
-        ValueError, match=f"^heights: {name} is a Python class that no file can hold; give a "
+        ValueError, match=f"^heights: {name} is a Python class that a file cannot store; give a "
     ):
         run(scene, tmp_path / "a.h5")
     assert not list(tmp_path.iterdir())

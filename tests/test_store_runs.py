@@ -161,7 +161,7 @@ def test_another_version_is_refused(scene, tmp_path, monkeypatch):
     path = tmp_path / "e.h5"
     halted(scene, path, 40)
     monkeypatch.setattr("mcgw.store.identity.versions", lambda **_: "mcgw 99")
-    with pytest.raises(StoreError, match=r"drawn with .*, this is mcgw 99"):
+    with pytest.raises(StoreError, match=r"drawn with .*, but this is mcgw 99"):
         run(scene, path)
 
 
@@ -260,7 +260,7 @@ def test_room_is_asked_for_what_is_not_there_yet(scene, tmp_path, monkeypatch):
     half = 8 * SURFACES * len(scene.separations) * len(scene.quantities)
     free = shutil.disk_usage(tmp_path)._replace(free=2 * half - 1)
     monkeypatch.setattr("mcgw.jobs.job.shutil.disk_usage", lambda folder: free)
-    with pytest.raises(StoreError, match="make room"):
+    with pytest.raises(StoreError, match="free some space"):
         run(scene, tmp_path / "other.h5")
     run(scene, path)
 

@@ -52,7 +52,7 @@ def test_one_alone_or_several_that_share(no_locks, tmp_path):
     with locked(folder):
         assert not free(folder, shared=False)
         assert not free(folder, shared=True)
-        with pytest.raises(LockedError, match=f"locked by pid {os.getpid()} on .*, which works on this run"):
+        with pytest.raises(LockedError, match=f"locked by pid {os.getpid()} on .*, which is working on"):
             locked(folder).__enter__()
     assert not folder.exists()
     with ExitStack() as first, ExitStack() as second:
@@ -87,7 +87,7 @@ def test_what_the_dead_of_this_host_left_goes(no_locks, name, tmp_path):
 def test_who_may_live_on_another_host_is_told_and_how_to_go_on(no_locks, tmp_path):
     (tmp_path / "lock.alone").write_text("pid 7 on node12\n")
     with pytest.raises(
-        LockedError, match=r"locked by pid 7 on node12 \(this disk keeps no locks: remove .*alone"
+        LockedError, match=r"locked by pid 7 on node12 \(this disk has no locks: remove .*alone"
     ):
         locked(tmp_path).__enter__()
     (tmp_path / "lock.alone").unlink()

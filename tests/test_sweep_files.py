@@ -270,7 +270,7 @@ def test_by_processes_of_which_some_are_killed(tmp_path, expected):
 @pytest.mark.parametrize("order", [(1, 2, 3), (3, 1, 2)])
 def test_in_shares_in_any_order(tmp_path, expected, order):
     path, left = tmp_path / "a.h5", []
-    with pytest.raises(mcgw.StoreError, match="neither this file nor blocks of it"):
+    with pytest.raises(mcgw.StoreError, match="neither this file nor its blocks"):
         mcgw.merge(path)
     for i in order:
         left.append(mcgw.sweep(SCENE, OVER, path=path, shard=f"{i}/3"))
@@ -385,9 +385,9 @@ def test_a_worker_draws_for_nobody_who_asked_something_else(tmp_path):
 
 def test_engines_draw_into_a_file():
     for how in ({"engine": "processes"}, {"shard": "1/2"}):
-        with pytest.raises(ValueError, match=r"^engine, shard: others draw into a file; give path"):
+        with pytest.raises(ValueError, match=r"^engine, shard: they need a file; give path"):
             mcgw.sweep(SCENE, OVER, **how)
-    with pytest.raises(ValueError, match="a share is drawn by threads"):
+    with pytest.raises(ValueError, match="a share uses threads"):
         mcgw.sweep(SCENE, OVER, path="a.h5", engine="processes", shard="1/2")
 
 

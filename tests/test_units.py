@@ -184,9 +184,9 @@ SURFACE = analytic.Surface(1e-6, 1e-5, 1e9, 1e-6, 1e11)
 DOUBTED = {
     "E_star": (50.0, "50 Pa is softer than any gel; did you mean 50 GPa = 5e+10?"),
     "sigma": (0.8, "0.8 m is higher than the summits of any ground surface; did you mean 0.8"),
-    "eta": (300.0, "300 1/m^2 is less than a summit a square centimetre; did you mean 300/"),
-    "radius": (13.0, "13 m is not a radius of a summit; did you mean 13 um = 1.3e-05?"),
-    "nominal_area": (100.0, "100 m^2 is larger than two bodies in contact; did you"),
+    "eta": (300.0, "300 1/m^2 is less than one summit per square centimetre; did you mean 300/"),
+    "radius": (13.0, "13 m is too large for the radius of a summit; did you mean 13 um = 1.3e-05?"),
+    "nominal_area": (100.0, "100 m^2 is larger than any contact of two bodies; did you"),
 }
 
 

@@ -296,7 +296,7 @@ OFF_THE_MAP = {
         "99 measured ones",
     ),
     "another density": ({"heights": analytic.Nayak(5.0)}, "alpha = 5"),
-    "too broad a spectrum": ({"surface": surface_of(1e4)}, "outside of what was measured"),
+    "too broad a spectrum": ({"surface": surface_of(1e4)}, "outside the measured range"),
 }
 
 
@@ -307,7 +307,7 @@ def test_nothing_is_said_of_what_was_not_measured(make_scene, name):
     assert not found.measured.any()
     assert all(np.isnan(values).all() for values in found.error.values())
     assert word in found.verdict
-    assert "not measured" in found.verdict or "outside of what was measured" in found.verdict
+    assert "not measured" in found.verdict or "outside the measured range" in found.verdict
     assert "%" not in found.verdict + found.brief
 
 
@@ -323,10 +323,10 @@ def test_far_away_and_far_down_are_outside():
     scene = mcgw.Scene(surface_of(4.0), separations=[-30.0, 0.5, 8.0], seed=1)
     found = scene.validity()
     np.testing.assert_array_equal(found.measured, [False, True, False])
-    none = "outside of what was measured or fewer than one contact on a surface"
+    none = "outside the measured range or fewer than one contact per surface"
     assert f"at d/sigma = -30 and 8 {none}" in found.verdict
     lone = scene.validity(8.0)
-    assert lone.verdict.startswith("Against elasticity: fewer than one contact on a surface: p/(E* g) = ")
+    assert lone.verdict.startswith("Model error: fewer than one contact per surface: p/(E* g) = ")
 
 
 def test_a_grading_leaves_the_share_of_the_geometry():
@@ -452,9 +452,7 @@ def test_a_command_says_both_sentences(scene, paths, name, capsys, monkeypatch, 
     known = scene.validity()
     assert f"{known.verdict}\n" in out
     assert (f"  {known.details}\n" in out) == (name in ("show", "plan"))
-    assert re.match(
-        r"Against elasticity: within \d+ % at a given load( for d/sigma = 0.4 to 1.2)?, ", known.verdict
-    )
+    assert re.match(r"Model error: within \d+ % at a given load( for d/sigma = 0.4 to 1.2)?, ", known.verdict)
 
 
 def test_the_report_has_the_sentences_and_a_table(paths, without_pictures):

@@ -74,7 +74,7 @@ def test_nothing_is_stated_on_maps_of_another_kind(name, heights):
     scene = mcgw.fitted_scene(fit, heights=heights, E_star="1 GPa")
     found = scene.validity()
     assert not found.measured.any()
-    assert found.unknown.startswith(f"not measured: the map is no isotropic Gaussian one ({word}")
+    assert found.unknown.startswith(f"not measured: the map is not isotropic and Gaussian ({word}")
     assert "%" not in found.verdict + found.brief
     assert len(found.brief) <= 100
     if heights == "gaussian" and not name.startswith("lay"):  # radii that end early were not measured either
@@ -83,7 +83,7 @@ def test_nothing_is_stated_on_maps_of_another_kind(name, heights):
 
 def test_estimates_that_differ_are_reason_enough(scene):
     apart = replace(scene.fitted, agreement=1.4)
-    assert "moments and counts 1.4 times apart" in scene.replace(fitted=apart).validity().verdict
+    assert "moments and counts differ by a factor of 1.4" in scene.replace(fitted=apart).validity().verdict
     few = replace(scene.fitted, agreement=None)
     assert "too few summits" in scene.replace(fitted=few).validity().verdict
 
@@ -109,7 +109,7 @@ def test_alpha_is_the_maps_own(fit, scene):
     assert fitted.agreement == fit.agreement
     assert 1.0 < fitted.agreement < 1.1
     where, guessed = (s.validity().where for s in (scene, scene.replace(fitted=None)))
-    assert f"alpha = {fit.alpha.value:.3g} as the fit says" in where
+    assert f"alpha = {fit.alpha.value:.3g} from the fit" in where
     assert "as eta R sigma" in guessed
     assert f"alpha = {fit.alpha.value:.3g} " not in guessed
 
@@ -139,7 +139,7 @@ def test_a_surface_that_is_not_the_maps_has_no_figures(scene):
     assert scene.replace(E_star="7 GPa", nominal_area="1 cm^2").validity().measured.any()
     found = scene.replace(sigma=1.3 * scene.surface.sigma).validity()
     assert not found.measured.any()
-    assert "eta, R or sigma is not that of the map" in found.verdict
+    assert "eta, R or sigma differs from that of the map" in found.verdict
 
 
 def test_it_goes_through_files_and_is_shown(scene, tmp_path, capsys):
@@ -204,7 +204,7 @@ def test_python_takes_the_keys_of_the_file(scene):
     assert scene.replace(fitted=table).fitted == scene.fitted
     with pytest.raises(SceneError, match=r"fitted\.m4: missing"):
         scene.replace(fitted={key: value for key, value in table.items() if key != "m4"})
-    with pytest.raises(SceneError, match="fitted = 3: give what"):
+    with pytest.raises(SceneError, match="fitted = 3: give the `fitted`"):
         scene.replace(fitted=3)
 
 

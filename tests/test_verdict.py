@@ -260,5 +260,5 @@ def test_one_surface(make_scene):
 
 
 def test_stratified_is_no_ensemble(make_scene):
-    with pytest.raises(ValueError, match="takes another sampler"):
+    with pytest.raises(ValueError, match="use another sampler"):
         compare(mcgw.simulate(make_scene(sampler="stratified")))

@@ -38,7 +38,7 @@ def test_without_combinations_the_farthest_mean_is_told(accuracy, wrong):
     assert verdict.agrees == (wrong == 1)
     assert (verdict.means, verdict.farthest) == (12, pytest.approx(z.max(), abs=1e-6))
     assert verdict.p == pytest.approx(min(1, 4 * 12 * ndtr(-z.max())), rel=1e-4)
-    said = f"the farthest of 12 means is {z.max():.1f} standard errors beyond the accuracy asked for, p = "
+    said = f"the farthest of 12 means is {z.max():.1f} standard errors beyond the requested accuracy, p = "
     assert said in comparison.sheet().text()
     line = verdict.line
     assert f"{'agree' if wrong == 1 else 'DISAGREE'}: {said}" in line
@@ -60,4 +60,4 @@ def test_at_the_last_digits_chi_square_is(wrong):
 def test_nothing_that_can_be_tested_is_said(accuracy):
     verdict = compared(accuracy, separations=[12.0]).verdict
     assert verdict == Verdict(0.0, 0, 1.0)
-    assert "agree: no mean is near enough to Gaussian to be tested, p = 1" in verdict.line
+    assert "agree: no mean is close enough to Gaussian for a test, p = 1" in verdict.line

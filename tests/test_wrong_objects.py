@@ -69,8 +69,8 @@ def files(tmp_path, monkeypatch):
     mcgw.save(ENSEMBLE, tmp_path / "mine.h5")
 
 
-RESULTS = "mine.h5: holds results, not a scene; mcgw show --scene mine.h5 prints theirs"
-NO_RESULTS = "scene.toml: is no file of results; mcgw run scene.toml makes one of a scene"
+RESULTS = "mine.h5: holds results, not a scene; print their scene with mcgw show --scene mine.h5"
+NO_RESULTS = "scene.toml: is not a file of results; make one from a scene with mcgw run scene.toml"
 
 
 @pytest.mark.parametrize(
@@ -80,7 +80,7 @@ NO_RESULTS = "scene.toml: is no file of results; mcgw run scene.toml makes one o
         ("show --plan mine.h5", RESULTS),
         ("solve mine.h5 --load 1N", RESULTS),
         ("sweep mine.h5 --over grading.gamma=1,2 -o s.h5", RESULTS),
-        ("run latin.toml", "not a TOML scene: no text in UTF-8 (byte 11)"),
+        ("run latin.toml", "not a TOML scene: not text in UTF-8 (byte 11)"),
         ("compare scene.toml", NO_RESULTS),
         ("show scene.toml", NO_RESULTS),
         ("report scene.toml", NO_RESULTS),

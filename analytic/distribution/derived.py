@@ -21,6 +21,10 @@ _SCIPY = 1e-14
 class Law:
     """The law of a value over surfaces, in the manner of `scipy.stats`; arguments are of any shape."""
 
+    def __repr__(self) -> str:
+        """One line: all that it holds would fill pages."""
+        return f"{type(self).__name__}(mean={self.mean():.4g}, std={self.std():.4g})"
+
     @property
     def error(self) -> float:
         """How far `cdf` may be off."""
@@ -102,7 +106,7 @@ class Law:
         return np.tensordot(_DIFFERENCE, [self.cdf(y + k * step) for k in (-2, -1, 1, 2)], 1) / step
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Mapped(Law):
     """The law of what rises, or falls, with a sum.
 
@@ -143,7 +147,7 @@ class Mapped(Law):
         return np.asarray(self.forward(self.of.isf(q) if self.falls ^ upper else self.of.ppf(q)))
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Along(Law):
     """The law of where surfaces, whose sum falls with y, meet a value: P(Y <= y) = P(S(y) <= x(y)).
 
@@ -208,7 +212,7 @@ class Along(Law):
         return np.nan
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Counted(Law):
     """The exact law of a number of asperities, binomial or Poisson: that of `scipy.stats`.
 

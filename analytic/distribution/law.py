@@ -36,7 +36,7 @@ _DIGIT = 1e-15  # that rounding leaves
 _SHARES = np.array([1e-9, 1e-6, 0.001, 0.01, 0.05, 0.25, 0.5, 0.75, 0.95, 0.99, 0.999, 1 - 1e-6, 1 - 1e-9])
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Distribution(Law):
     """The exact law of one quantity of a surface over all surfaces, in the manner of `scipy.stats`.
 

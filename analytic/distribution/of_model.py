@@ -45,7 +45,9 @@ def distribution_of(model: Any, quantity: str, h: float) -> Law:
 def separation_law_of(model: Any, load: float, quantity: str) -> Law:
     """As `analytic.Model.separation_law`, of a model whose asperities are independent."""
     if quantity_of(quantity).counts or quantity_of(quantity).unloading:
-        raise ValueError(f"quantity = {quantity!r}: give a sum that falls with the separation, as 'load'")
+        raise ValueError(
+            f"quantity = {quantity!r}: give a sum that decreases with the separation, such as 'load'"
+        )
     start = float(model.separation_at(quantity, load))
     _falling(model, quantity, start)
     spread = float(model.std(quantity, start) / model.slope(quantity, start))
@@ -66,14 +68,14 @@ def interacting_distribution(model: Any, quantity: str, h: float) -> Law:
         return distribution_of(alone, quantity, h)
     if c < 0:
         raise ValueError(
-            f"quantity = {quantity!r}: at nominal separations from the mean plane its law is not closed: "
-            "loads pull the plane down, and a surface may have several balances; take effective separations"
+            f"quantity = {quantity!r}: its exact distribution at nominal separations from the mean plane is "
+            "not known, because a surface may have several equilibria; use effective separations"
         )
     if q.base != "load" or q.unloading:
         if quantity != "effective_separation":
             raise ValueError(
-                f"quantity = {quantity!r}: at nominal separations the laws of 'load', 'pressure' and "
-                "'effective_separation' are known; take effective separations for others"
+                f"quantity = {quantity!r}: at nominal separations only the distributions of 'load', "
+                "'pressure' and 'effective_separation' are known; use effective separations for others"
             )
         return Mapped(interacting_distribution(model, "load", h), lambda p: h + c * p, lambda x: (x - h) / c)
     each = c * alone.surface.nominal_area if q.of else c  # of d/sigma for each unit of the quantity
@@ -88,8 +90,8 @@ def _falling(model: Any, quantity: str, h: float) -> None:
     rule, added = model.asperities(quantity, h)
     if np.any(added(rule) < 0):
         raise ValueError(
-            f"quantity = {quantity!r}: some asperities have a negative one, and sums may rise with the "
-            "separation; take a modulus >= 0 and a law without adhesion"
+            f"quantity = {quantity!r}: it is negative for some asperities, and sums may increase with the "
+            "separation; use a modulus >= 0 and a law without adhesion"
         )
     of, e = model.ways.of(quantity), np.maximum(model.grading(rule.heights), np.finfo(float).tiny)
     for j, limit in enumerate(of.law.limits(e)):
@@ -97,6 +99,6 @@ def _falling(model: Any, quantity: str, h: float) -> None:
         before, after = (of.of_root(quantity, piece, y, e) for piece in (j, j + 1))
         if np.any(after < before * (1 - _ROUNDING)):
             raise ValueError(
-                f"quantity = {quantity!r}: that of an asperity falls where the law goes over to its piece "
-                f"{j + 1}, and sums may rise with the separation; give the load"
+                f"quantity = {quantity!r}: it decreases where the law changes to its piece {j + 1}, and sums "
+                f"may increase with the separation; use the load"
             )

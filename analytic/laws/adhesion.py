@@ -77,7 +77,7 @@ class DerjaguinMullerToporov(_Adhesive):
     name: ClassVar[str] = "derjaguin-muller-toporov"
 
     def load(self, piece: int, y: Any, e: Array) -> Any:
-        """Hertz's load less a constant: the pull knows no modulus."""
+        """Hertz's load less a constant: the pull does not depend on the modulus."""
         return super().load(piece, y, e) - 12 * (self.reduced / 3) ** 1.5
 
 

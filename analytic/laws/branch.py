@@ -99,7 +99,7 @@ class Branch:
 
 @dataclass(frozen=True)
 class UnloadingBranch(Branch):
-    """The surface goes back from the lowest separation it has reached.
+    """The surface is unloaded from the lowest separation it has reached.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""A law of contact of one's own: formulas of its pieces, and series that stand for them in a file."""
+"""Your own contact law: formulas of its pieces, and the series by which a file stores them."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -80,9 +80,9 @@ def resolved_in_root(formula: Callable[[Any], Any], low: float, high: float) -> 
         over = (found(between) - formula(between)) / between**2
         if np.all(np.abs(over) <= _ALLOWED * np.abs(c).max()):
             return found
-    first = "; where it begins, write u**3 for (u*u)**1.5, as it is asked at -u too" if low < 0 else ""
+    first = "; where it begins, write u**3 for (u*u)**1.5: it is also evaluated at -u" if low < 0 else ""
     raise ValueError(
-        f"{_MOST_TERMS} terms of a series are not enough for it between x = {low * abs(low):g} and "
+        f"a series of {_MOST_TERMS} terms is not accurate enough between x = {low * abs(low):g} and "
         f"{high * high:g}: give the penetration of each jump and kink in limits{first}"
     )
 
@@ -93,8 +93,8 @@ class CustomLaw(ElasticPlastic):
 
     In u a contact is analytic where it begins: Hertz's load is u^3, his area u^2. Formulas take arrays,
     real and complex, so they must not take absolute values, or compare; those of the first piece also
-    take -u, and next to u = 0 they are power series that begin with u^2 or higher. How contacts unload
-    is not known: it is refused.
+    take -u, and next to u = 0 they are power series that begin with u^2 or higher. Unloading is not
+    known, and is refused with an error.
 
     Parameters
     ----------

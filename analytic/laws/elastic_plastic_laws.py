@@ -260,7 +260,7 @@ class JacksonGreen(Bridgeable):
         if reduced[0] != reduced[1] or reduced[0] == (self.yield_strength is not None):
             raise ValueError(
                 f"yield_strength = {self.yield_strength!r}, yield_strain = {self.yield_strain!r}, "
-                f"critical = {self.critical!r}: give a yield strength in Pa, or both of the others"
+                f"critical = {self.critical!r}: give a yield strength in Pa, or both of the other two"
             )
 
     @property

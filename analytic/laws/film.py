@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Layer:
-    """A layer on one body, as an oxide, a paint or a plating.
+    """A layer on one body, such as an oxide, a paint or a plating.
 
     Parameters
     ----------
@@ -57,7 +57,7 @@ class Layer:
 
 @dataclass(frozen=True)
 class Film:
-    """What spots conduct through: both bodies, by resistivity or thermal conductivities, and what is on them.
+    """Resistivity or thermal conductivities of both bodies, and a film or layer on them.
 
     Parameters
     ----------

@@ -193,8 +193,7 @@ class ContactLaw:
         """
         if not self.elastic:
             raise ValueError(
-                f"law = {self.name!r}: its unloading is not known; "
-                "take 'kogut-etsion', which has one, or an elastic law"
+                f"law = {self.name!r}: no unloading is known for it; use 'kogut-etsion' or an elastic law"
             )
         return Unloading(self)
 

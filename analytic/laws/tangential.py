@@ -13,7 +13,7 @@ from analytic.surface import Surface
 
 @dataclass(frozen=True)
 class Tangential:
-    """A surface that is pressed on and then pushed sideways.
+    """Tangential displacement of a surface that is pressed first.
 
     Each contact slips from its rim inwards (Cattaneo, Mindlin), and under elastic half-spaces of one
     Poisson's ratio its tangential load is friction times the difference of two normal loads, at its own
@@ -37,7 +37,7 @@ class Tangential:
     Raises
     ------
     ValueError
-        If a value is out of range, or there is no displacement.
+        If a value is out of range, or no displacement is given.
 
     Notes
     -----
@@ -66,7 +66,7 @@ class Tangential:
             raise ValueError("displacements = []: give at least one, in m")
         wrong = [u for u in self.displacements if not 0 <= u < math.inf]
         if wrong:
-            raise ValueError(f"displacements: {wrong[0]!r} is no displacement; give numbers >= 0, in m")
+            raise ValueError(f"displacements: {wrong[0]!r} is not a displacement; give numbers >= 0, in m")
 
     @property
     def ratio(self) -> float:

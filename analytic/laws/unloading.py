@@ -24,7 +24,7 @@ def slope_in_root(formula: Callable[[Any], Any], y: Array) -> Array:
 
 
 class Unloading:
-    """Unloading of an elastic asperity: it goes back as it came.
+    """Unloading of an elastic asperity: it unloads along the loading curve.
 
     The contact holds down to the penetration `residual`. Its formulas take
     ``y = sqrt(penetration - residual)``, so that next to lift-off no digit is lost; `piece` is the piece

@@ -9,14 +9,18 @@ EXAMPLE = "mcgw compare demo.h5 -o demo.png"
 
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of this command."""
-    parser.add_argument("file", type=Path, metavar="FILE", help="ensemble file, or that of a sweep (HDF5)")
+    parser.add_argument("file", type=Path, metavar="FILE", help="file of an ensemble or of a sweep (HDF5)")
     parser.add_argument(
         "-o", "--output", type=Path, metavar="PNG", help="figure (.png, .pdf, .svg, ...); default: FILE.png"
     )
     parser.add_argument("--csv", type=Path, metavar="FILE", help="also write the table of all separations")
-    parser.add_argument("--table", action="store_true", help="print means beside theory, not the worst three")
     parser.add_argument(
-        "--laws", action="store_true", help="also test single surfaces against the exact law of their values"
+        "--table", action="store_true", help="print all means beside theory, not only the worst three"
+    )
+    parser.add_argument(
+        "--laws",
+        action="store_true",
+        help="also test the values of single surfaces against their exact distribution",
     )
 
 

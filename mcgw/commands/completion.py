@@ -4,7 +4,7 @@ import argparse
 import sys
 from pathlib import Path
 
-HELP = "print a script by which a shell completes commands, options and files"
+HELP = "print a shell script that completes commands, options and files"
 EXAMPLE = "mcgw completion bash"
 
 _SHELLS = ("bash", "zsh", "fish")

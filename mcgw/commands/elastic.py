@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     from mcgw.maps.topography import Topography
     from mcgw.scene.scene import Scene
 
-HELP = "find mean area, stiffness, conductance and gap of elastic surfaces by few boundary-element solves"
+HELP = "find mean area, stiffness, conductance and gap of elastic surfaces from few boundary-element solves"
 EXAMPLE = "mcgw elastic spectral.toml --pressure 1MPa --rel-err 0.05 -o solves.jsonl"
 
 
@@ -18,28 +18,33 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of this command."""
     parser.add_argument(
         "source", type=Path, metavar="SCENE|MAP",
-        help="a scene with m0, m2, m4 or from a fit (.toml); or a height map, whose spectrum is taken",
+        help="a scene with m0, m2, m4 or from a fit (.toml); or a height map, for its spectrum",
     )  # fmt: skip
     held = parser.add_mutually_exclusive_group(required=True)
     held.add_argument("--pressure", metavar="P", help="load per nominal area: kPa, MPa, GPa")
     held.add_argument("--separation", metavar="D", help="mean gap of the deformed surface: nm, um")
     parser.add_argument("--E-star", metavar="E", help="composite modulus of a map: MPa, GPa")
-    parser.add_argument("--pixel", metavar="LENGTH", help="size of a pixel, where the file does not tell it")
+    parser.add_argument("--pixel", metavar="LENGTH", help="size of a pixel, if the file does not give it")
     parser.add_argument(
-        "--unit", metavar="UNIT", help="of the heights, as um, where the file does not tell it"
+        "--unit", metavar="UNIT", help="unit of the heights, such as um, if the file does not give it"
     )
     parser.add_argument(
         "--rel-err", type=float, default=0.02, metavar="X",
-        help="half the 95 %% interval over the mean, of the worst quantity; default: 0.02",
+        help="relative half width of the 95 %% interval, for the worst quantity; default: 0.02",
     )  # fmt: skip
-    parser.add_argument("--solves", type=int, metavar="N", help="instead: boundary-element solves at most")
-    parser.add_argument("--seed", type=int, default=1, metavar="K", help="of the maps; default: 1")
+    parser.add_argument(
+        "--solves",
+        type=int,
+        metavar="N",
+        help="instead of --rel-err: maximum number of boundary-element solves",
+    )
+    parser.add_argument("--seed", type=int, default=1, metavar="K", help="seed of the maps; default: 1")
     parser.add_argument(
         "-o",
         "--output",
         type=Path,
         metavar="FILE",
-        help="solves, a line each (.jsonl), to resume from; default: none",
+        help="write each solve as a line (.jsonl), to resume from; default: no file",
     )
     add_set_option(parser)
 
@@ -58,7 +63,9 @@ def execute(args: argparse.Namespace) -> int:
     if args.source.suffix == ".toml":
         for option, given in (("--pixel", args.pixel), ("--unit", args.unit)):
             if given is not None:
-                raise ValueError(f"{option} {given}: goes with a map; {args.source} is a scene, leave it out")
+                raise ValueError(
+                    f"{option} {given}: is for a map, but {args.source} is a scene; leave it out"
+                )
         source = load_scene(args.source, changes=changes_of(args))
     else:
         pixel = None if args.pixel is None else parse(args.pixel, "m", "--pixel")
@@ -71,5 +78,5 @@ def execute(args: argparse.Namespace) -> int:
         )  # fmt: skip
     print(found)
     details(found.levels)
-    news(*([f"{args.output}: the solves; the same command resumes from them"] if args.output else []))
+    news(*([f"{args.output}: solves; the same command resumes from them"] if args.output else []))
     return 0

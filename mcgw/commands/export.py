@@ -13,34 +13,36 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of this command."""
     parser.add_argument(
         "scene", type=Path, metavar="SCENE_OR_FILE",
-        help="TOML file, whose surfaces are drawn as the table needs them; or an ensemble file (HDF5)",
+        help="scene (TOML), whose surfaces are drawn as needed; or an ensemble file (HDF5)",
     )  # fmt: skip
     parser.add_argument(
         "--to",
         required=True,
         choices=("calculix", "abaqus", "moose", "comsol", "json"),
-        help="the program; json: one file with all columns against the gap, in SI, and what it was made of",
+        help="the program; json: one file with all columns against the gap in SI units, and their origin",
     )
     parser.add_argument(
         "--table", default="pressure-gap",
         choices=("pressure-gap", "conductance-pressure", "conductance-gap", "stiffness-pressure"),
-        help="what is tabulated, against what; default: pressure-gap",
+        help="the quantity and its argument; default: pressure-gap",
     )  # fmt: skip
-    parser.add_argument("--points", type=int, default=40, metavar="N", help="rows; default: 40")
+    parser.add_argument("--points", type=int, default=40, metavar="N", help="number of rows; default: 40")
     parser.add_argument(
         "--pressures", metavar="LO:HI:N",
-        help="nominal pressures, N of them a constant ratio apart, as 10kPa:20MPa:30; left out: all that the "
+        help="N nominal pressures at a constant ratio, such as 10kPa:20MPa:30; default: all that the "
         "surfaces reach",
     )  # fmt: skip
     parser.add_argument(
         "--quantile", type=float, nargs="+", metavar="Q",
-        help="over the surfaces, beside the mean; left out: 0.05 and 0.95",
+        help="quantiles over the surfaces, besides the mean; default: 0.05 and 0.95",
     )  # fmt: skip
-    parser.add_argument("--units", default="SI", choices=("SI", "mm-N-s"), help="of the files; default: SI")
+    parser.add_argument(
+        "--units", default="SI", choices=("SI", "mm-N-s"), help="units of the files; default: SI"
+    )
     parser.add_argument(
         "-o", "--output", type=Path, required=True, metavar="FILE",
-        help="of the mean: .inp, for moose .csv, for comsol .txt, for json .json; "
-        "quantiles, and all together, go beside it",
+        help="file of the mean: .inp, for moose .csv, for comsol .txt, for json .json; quantiles and a joint "
+        "table go beside it",
     )  # fmt: skip
     add_set_option(parser)
 
@@ -79,7 +81,7 @@ def execute(args: argparse.Namespace) -> int:
     else:
         mean, *quantiles, together = made
         news(f"{mean}: {args.table}, mean over the surfaces")
-        news(*(f"{path}: the same of a quantile" for path in quantiles), f"{together}: all of them")
+        news(*(f"{path}: the same for a quantile" for path in quantiles), f"{together}: all curves")
     tell_cautions(scene, f"mcgw show {'--plan ' * from_scene}{args.scene}")
     return 0
 
@@ -93,7 +95,7 @@ def _pressures(text: str) -> list[float]:
     low, _, rest = text.partition(":")
     high, _, number = rest.partition(":")
     if not number.isdigit() or int(number) < 2:
-        raise ValueError(f"--pressures {text}: give LO:HI:N, as 10kPa:20MPa:30, with N of 2 or more")
+        raise ValueError(f"--pressures {text}: give LO:HI:N, such as 10kPa:20MPa:30, with N of 2 or more")
     ends = parse(low, "Pa", "--pressures"), parse(high, "Pa", "--pressures")
     if not ends[0] < ends[1]:
         raise ValueError(f"--pressures {text}: give the lower one first")

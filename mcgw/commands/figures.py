@@ -4,7 +4,8 @@ import argparse
 from pathlib import Path
 
 HELP = (
-    "draw the paper's Figures 1-6 with Monte-Carlo points, and those it lacks (a minute); or those of a scene"
+    "draw Figures 1-6 of the paper with Monte-Carlo points, and some more (takes a minute); or the figures "
+    "of a scene"
 )
 EXAMPLE = "mcgw figures --scene mine.toml --only figure-2 equal-load -o figures"
 
@@ -15,11 +16,13 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         "-o", "--output", type=Path, metavar="DIR", default=Path("figures"), help="default: figures here"
     )
     parser.add_argument(
-        "--scene", type=Path, metavar="SCENE", help="of this scene instead, beside its homogeneous reference"
+        "--scene", type=Path, metavar="SCENE", help="draw this scene beside its homogeneous reference instead"
     )
-    parser.add_argument("--only", nargs="+", metavar="NAME", help="these alone; default: all with a meaning")
-    parser.add_argument("--format", nargs="+", metavar="FORMAT", help="png, pdf, svg, ...; left out: png")
-    parser.add_argument("--list", action="store_true", help="print the names of all figures; draw nothing")
+    parser.add_argument(
+        "--only", nargs="+", metavar="NAME", help="only these figures; default: all that apply"
+    )
+    parser.add_argument("--format", nargs="+", metavar="FORMAT", help="png, pdf, svg, ...; default: png")
+    parser.add_argument("--list", action="store_true", help="print the names of all figures without drawing")
     parser.add_argument("--csv", action="store_true", help="also write the numbers of each figure")
 
 
@@ -39,7 +42,7 @@ def execute(args: argparse.Namespace) -> int:
         return 0
     for name in args.only or ():
         if name not in names:
-            raise ValueError(f"--only {name}: no such figure here; give one of {', '.join(names)}")
+            raise ValueError(f"--only {name}: no such figure; give one of {', '.join(names)}")
     formats = [given.lower().removeprefix(".") for given in args.format or ["png"]]
     known = figure_format()
     check_outputs(
@@ -58,5 +61,5 @@ def execute(args: argparse.Namespace) -> int:
         drawn += 1
         details(*save_figure_files(data, args.output, formats, csv=args.csv))
     files = f"{args.output / '*'}.{formats[0]}" if len(formats) == 1 else args.output
-    news(f"{files}: {drawn} figure{'s' * (drawn != 1)}; mcgw figures --list names them")
+    news(f"{files}: {drawn} figure{'s' * (drawn != 1)}; mcgw figures --list for their names")
     return 0

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 
 HELP = "fit summit density, radius and spread to a measured height map, and write a scene"
 EXAMPLE = "mcgw fit map.sdf --cutoff 5um -o fitted.toml"
+E_STAR = "100 GPa"  # where none is given
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
@@ -23,9 +24,10 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
     parser.add_argument(
         "map", type=Path, nargs="+", metavar="MAP",
-        help="SDF, X3P, .npy, .h5 or text; or profiles of one surface (x, z text), told by their shape",
+        help="SDF, X3P, .npy, .h5 or text; or profiles of one surface (text with x and z), recognised by "
+            "their shape",
     )  # fmt: skip
-    parser.add_argument("--profile", action="store_true", help="read each file as a profile in any case")
+    parser.add_argument("--profile", action="store_true", help="read each file as a profile")
     for step in STEPS:
         told = f"; default: {step.kinds[0]}" if step.kinds else ""
         parser.add_argument(
@@ -34,38 +36,48 @@ def arguments(parser: argparse.ArgumentParser) -> None:
             metavar=None if step.kinds else "LENGTH",
         )  # fmt: skip
     parser.add_argument(
-        "--trim", type=int, default=0, metavar="N", help="points left off along each edge; default: 0"
+        "--trim",
+        type=int,
+        default=0,
+        metavar="N",
+        help="number of points to remove along each edge; default: 0",
     )
-    parser.add_argument("--pixel", metavar="LENGTH", help="size of a pixel, where the file does not tell it")
+    parser.add_argument("--pixel", metavar="LENGTH", help="size of a pixel, if the file does not give it")
     parser.add_argument(
-        "--unit", metavar="UNIT", help="of the heights, as um, where the file does not tell it; default: m"
+        "--unit",
+        metavar="UNIT",
+        help="unit of the heights, such as um, if the file does not give it; default: m",
     )
     parser.add_argument(
         "--use", choices=("auto", "moments", "summits", "caps"), default="auto",
-        help="which estimate goes into the scene; auto: caps if all summits have one radius, else summits; "
+        help="estimate used in the scene; auto: caps if all summits have one radius, otherwise summits; "
         "default: auto",
     )  # fmt: skip
     parser.add_argument(
         "--heights", choices=("gaussian", "nayak", "table", "measured", "summits"), default="gaussian",
-        help="gaussian; nayak: from the moments, each summit with its own radius; the summits' own heights, "
-        "resampled (table) or just as they are (measured), with their own radii (summits); default: gaussian",
+        help="gaussian; nayak: from the moments, each summit with its own radius; or the measured heights, "
+        "resampled (table), as they are (measured), or with their radii (summits); default: gaussian",
     )  # fmt: skip
+    parser.add_argument("--E-star", default=E_STAR, metavar="E", help=f"composite modulus; default: {E_STAR}")
     parser.add_argument(
-        "--E-star", default="100 GPa", metavar="E", help="composite modulus; default: 100 GPa"
+        "--nominal-area",
+        metavar="AREA",
+        help="nominal area of the scene, such as 1cm^2; default: that of the map",
     )
     parser.add_argument(
-        "--nominal-area", metavar="AREA", help="of the scene, as 1cm^2; default: that of the map"
+        "--parts",
+        type=int,
+        default=4,
+        help="number of sub-areas along each axis, to estimate errors; default: 4",
     )
     parser.add_argument(
-        "--parts", type=int, default=4, help="sub-areas along each axis, for errors; default: 4"
+        "--summits", type=Path, metavar="CSV", help="write every summit: position, height, radius, curvatures"
     )
-    parser.add_argument(
-        "--summits", type=Path, metavar="CSV", help="write every summit: place, height, radius, curvatures"
-    )
-    parser.add_argument("--tiles", type=Path, metavar="CSV", help="write what each sub-area tells by itself")
+    parser.add_argument("--tiles", type=Path, metavar="CSV", help="write the estimates of each sub-area")
     parser.add_argument(
         "--picture", type=Path, metavar="PNG",
-        help="also draw the map before and after, its summits, their laws, and moments against cutoff",
+        help="also draw the map before and after, its summits, their distributions, and moments against "
+            "cutoff",
     )  # fmt: skip
     parser.add_argument("-o", "--output", type=Path, required=True, metavar="SCENE", help="TOML file")
 
@@ -97,14 +109,18 @@ def execute(args: argparse.Namespace) -> int:
     path, *beside = write_scene(scene, args.output, measured, comments)
     s = scene.surface
     news(
-        f"{path}: sigma = {s.sigma:.4g} m, radius = {s.radius:.4g} m, eta = {s.eta:.4g} 1/m^2",
+        f"{path}: sigma = {s.sigma:.4g} m, radius = {s.radius:.4g} m, eta = {s.eta:.4g} 1/m^2, "
+        f"E_star = {E_star:.4g} Pa{' (assumed; give --E-star)' * (args.E_star == E_STAR)}",
         lines[0],
         *beside,
     )
     write()
     details(*lines[1:])
     notes(*([] if scene.fitted is None else scene.fitted.gravest))
-    news(f"next: mcgw run {args.output} -o {args.output.with_suffix('.h5')}")
+    news(
+        f"next: mcgw run {args.output} -o {args.output.with_suffix('.h5')}, "
+        f"or at a load: mcgw solve {args.output} --pressure 1MPa"
+    )
     return 0
 
 

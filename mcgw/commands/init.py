@@ -12,8 +12,8 @@ SCHEMA = "scene.schema.json"
 PRESETS = {
     "demo": "bead-blasted aluminium with stiffened tips",
     "aluminium": "bead-blasted aluminium of Greenwood and Williamson, homogeneous",
-    "metal": "the same where asperities yield, with its way back",
-    "spectral": "a Gaussian surface by its spectrum, each summit with its own radius",
+    "metal": "the same with asperities that yield, loading and unloading",
+    "spectral": "a Gaussian surface given by its spectrum, each summit with its own radius",
     "coating": "a graded hard coating",
     "degradation": "tips softened by chemical attack",
     "nanoindentation": "a table of measured moduli",
@@ -31,9 +31,11 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         metavar="PRESET",
         help=f"{listed} default: demo",
     )
-    parser.add_argument("-o", "--output", type=Path, metavar="SCENE", help="default: PRESET.toml here")
     parser.add_argument(
-        "--schema", action="store_true", help=f"write {SCHEMA} beside it, by which editors complete its keys"
+        "-o", "--output", type=Path, metavar="SCENE", help="default: PRESET.toml in the current folder"
+    )
+    parser.add_argument(
+        "--schema", action="store_true", help=f"also write {SCHEMA}, with which editors complete keys"
     )
 
 
@@ -59,13 +61,13 @@ def execute(args: argparse.Namespace) -> int:
         raise _is_there(path) from None
     news(f"{path}: {PRESETS[args.preset]}")
     if args.schema:
-        news(f"{path.with_name(SCHEMA)}: by it editors complete and check {path.name}")
+        news(f"{path.with_name(SCHEMA)}: with it editors complete and check {path.name}")
     news(f"next: mcgw run {path} -o {path.with_suffix('.h5')}")
     return 0
 
 
 def _is_there(path: Path) -> ValueError:
-    return ValueError(f"{path}: is already there; give another name with -o")
+    return ValueError(f"{path}: already exists; give another name with -o")
 
 
 def _write_schema(path: Path) -> None:
@@ -85,4 +87,4 @@ def _write_schema(path: Path) -> None:
         write_whole(path, [schema], expected=None)
     except FileExistsError:
         if path.read_bytes() != schema:
-            raise ValueError(f"{path}: is already there, and not that of this version; remove it") from None
+            raise ValueError(f"{path}: already exists, from another version; remove it") from None

@@ -3,18 +3,16 @@
 import argparse
 from pathlib import Path
 
-HELP = "make the file of a run or sweep whose blocks were drawn by several jobs (--shard i/n)"
+HELP = "merge the blocks of a run or sweep that several jobs drew (--shard i/n) into one file"
 EXAMPLE = "mcgw merge demo.h5"
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of this command."""
     parser.add_argument(
-        "file", nargs="?", type=Path, metavar="FILE", help="the file to be made, as given to run -o"
+        "file", nargs="?", type=Path, metavar="FILE", help="the file to make, as given to run -o"
     )
-    parser.add_argument(
-        "-o", "--output", type=Path, metavar="FILE", help="the file to be made; default: FILE"
-    )
+    parser.add_argument("-o", "--output", type=Path, metavar="FILE", help="the file to make; default: FILE")
 
 
 def execute(args: argparse.Namespace) -> int:
@@ -27,9 +25,9 @@ def execute(args: argparse.Namespace) -> int:
 
     path = args.file or args.output
     if path is None:
-        raise ValueError("give the file to be made: mcgw merge FILE")
+        raise ValueError("give the file to make: mcgw merge FILE")
     if args.output not in (None, path):
-        raise ValueError(f"-o {args.output}: the blocks of {path} make that file; leave out one of the two")
+        raise ValueError(f"-o {args.output}: the blocks belong to {path}; leave out one of the two names")
     check_outputs([Output(path, HDF5, grows=True)])
     before = state_of(path)
     merged = merge(path)

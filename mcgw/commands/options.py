@@ -15,19 +15,22 @@ if TYPE_CHECKING:
 
 def add_engine_options(parser: argparse.ArgumentParser) -> None:
     """Add --threads, --processes, --workers, --scheduler, --shard and --insecure."""
-    parser.add_argument("--threads", type=int, metavar="N", help="default: all cores; never changes a bit")
+    parser.add_argument(
+        "--threads",
+        type=int,
+        metavar="N",
+        help="number of threads; default: all cores; does not change results",
+    )
     engine = parser.add_mutually_exclusive_group()
-    engine.add_argument("--processes", type=int, metavar="N", help="draw in N processes instead")
-    engine.add_argument("--workers", type=int, metavar="N", help="draw in N dask workers on this machine")
+    engine.add_argument("--processes", type=int, metavar="N", help="use N processes instead")
+    engine.add_argument("--workers", type=int, metavar="N", help="use N dask workers on this machine")
     engine.add_argument(
-        "--scheduler", metavar="ADDRESS", help="draw with the workers of a dask scheduler, tcp:// or tls://"
+        "--scheduler", metavar="ADDRESS", help="use the workers of a dask scheduler, tcp:// or tls://"
     )
     engine.add_argument(
         "--shard", metavar="I/N", help="draw the I-th of N shares, as one job of an array; then mcgw merge"
     )
-    parser.add_argument(
-        "--insecure", action="store_true", help="allow a scheduler elsewhere without encryption"
-    )
+    parser.add_argument("--insecure", action="store_true", help="allow a remote scheduler without encryption")
 
 
 @contextmanager
@@ -62,7 +65,7 @@ def drawing(args: argparse.Namespace) -> Iterator[dict[str, Any]]:
 
 def tell_share(shard: str, path: Path, left: int) -> int:
     """Say that a share is done and what is left of the whole; returns the exit code."""
-    then = f"{left} surfaces are still missing" if left else f"all are there: mcgw merge {path}"
+    then = f"{left} surfaces are still missing" if left else f"all are done: mcgw merge {path}"
     news(f"{path}.parts: share {shard} is done; {then}")
     return 0
 
@@ -86,7 +89,7 @@ def add_set_option(parser: argparse.ArgumentParser) -> None:
         "--set",
         action="append",
         metavar="KEY=VALUE",
-        help="another value of a key of the scene, as grading.gamma=2 or contact.law=hertz; again for more",
+        help="change a key of the scene, such as grading.gamma=2 or contact.law=hertz; repeat for more keys",
     )
 
 
@@ -104,7 +107,7 @@ def changes_of(args: argparse.Namespace) -> dict[str, Any]:
     for text in args.set or ():
         key, equals, value = (part.strip() for part in text.partition("="))
         if not (equals and key and value):
-            raise ValueError(f"--set {text}: give KEY=VALUE, as grading.gamma=2")
+            raise ValueError(f"--set {text}: give KEY=VALUE, such as grading.gamma=2")
         try:
             changes[key] = loads(f"value = {value}")["value"]
         except ValueError:

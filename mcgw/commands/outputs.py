@@ -85,7 +85,7 @@ def check_outputs(outputs: Iterable[Output], *, inputs: Iterable[Path] = ()) -> 
         _refuse_run(output, inputs)
         for other in outputs[:i]:
             if same_file(output.path, other.path):
-                raise output.refuse(f"is what {other.option} writes too")
+                raise output.refuse(f"is also the output of {other.option}")
         if not output.path.name.lower().endswith(output.format.endings):
             known = ", ".join(output.format.endings)
             raise output.refuse(f"{output.format.what} is written there, whose name ends in {known}")

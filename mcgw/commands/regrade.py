@@ -12,22 +12,22 @@ HELP = "give the surfaces of a file another grading or contact law"
 EXAMPLE = "mcgw regrade demo.h5 --law kogut-etsion --hardness 1.2GPa -o metal.h5"
 _CONSTANTS = {
     "critical": ("X", "penetration over sigma at which asperities yield"),
-    "hardness": ("H", "of the softer body, as 1.2GPa"),
-    "yield-strength": ("SY", "of the softer body, as 400MPa (jackson-green)"),
+    "hardness": ("H", "hardness of the softer body, such as 1.2GPa"),
+    "yield-strength": ("SY", "yield strength of the softer body, such as 400MPa (jackson-green)"),
     "poisson": ("NU", "Poisson's ratio"),
-    "bridge": ("hermite", "join fits that jump"),
+    "bridge": ("hermite", "smooth the jumps of a fit"),
     "k": ("K", "exponent of the depth (power-law-graded)"),
-    "c0": ("DEPTH", "depth of the modulus E*, as 1um (power-law-graded)"),
-    "thickness": ("T", "of the coating, as 0.5um (coated)"),
+    "c0": ("DEPTH", "depth at which the modulus is E*, such as 1um (power-law-graded)"),
+    "thickness": ("T", "thickness of the coating, such as 0.5um (coated)"),
     "ratio": ("R", "modulus of the coating over that of the substrate (coated)"),
-    "work": ("W", "of adhesion, J/m^2 (the laws that stick)"),
-    "pull-off": ("D", "stretch over sigma at which contacts break off (the laws that stick)"),
+    "work": ("W", "work of adhesion, J/m^2 (laws that stick)"),
+    "pull-off": ("D", "stretch over sigma at which contacts break off (laws that stick)"),
 }
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of this command."""
-    parser.add_argument("file", type=Path, metavar="FILE", help="ensemble file; quickest with its moments")
+    parser.add_argument("file", type=Path, metavar="FILE", help="ensemble file; fastest with kept moments")
     grading = parser.add_mutually_exclusive_group()
     grading.add_argument(
         "--gamma", type=float, metavar="G", help="exponential grading, Eq. (4); 1 is homogeneous"
@@ -35,7 +35,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     grading.add_argument("--grading", type=Path, metavar="TABLE.csv", help="columns s or z, ratio or E_star")
     parser.add_argument("-o", "--output", type=Path, metavar="FILE.h5", help="default: FILE.regraded.h5")
     parser.add_argument(
-        "--csv", type=Path, metavar="CSV", help="also write the ratios at all separations there"
+        "--csv", type=Path, metavar="CSV", help="also write the ratios at all separations to this file"
     )
     add_law_options(parser)
 
@@ -82,7 +82,7 @@ def execute(args: argparse.Namespace) -> int:
 def add_law_options(parser: argparse.ArgumentParser) -> None:
     """A group of options; the values are checked as those of a scene file."""
     group = parser.add_argument_group("another contact law, and its constants as in a scene file")
-    group.add_argument("--law", metavar="LAW", help="its name, as kogut-etsion; a wrong one gets the list")
+    group.add_argument("--law", metavar="LAW", help="its name, such as kogut-etsion")
     for name, (metavar, what) in _CONSTANTS.items():
         group.add_argument(f"--{name}", metavar=metavar, help=what)
 
@@ -104,7 +104,7 @@ def law_of(args: argparse.Namespace) -> "ContactLaw | None":
     if args.law is None:
         if constants:
             key = next(iter(constants)).replace("_", "-")
-            raise ValueError(f"--{key}: is a constant of a contact law; give --law too")
+            raise ValueError(f"--{key}: belongs to a contact law; give --law too")
         return None
     return read_law({"law": args.law, **constants})
 

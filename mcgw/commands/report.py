@@ -9,7 +9,7 @@ EXAMPLE = "mcgw report demo.h5 -o demo.html"
 
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of this command."""
-    parser.add_argument("file", type=Path, metavar="FILE", help="ensemble file, or that of a sweep (HDF5)")
+    parser.add_argument("file", type=Path, metavar="FILE", help="file of an ensemble or of a sweep (HDF5)")
     parser.add_argument("-o", "--output", type=Path, metavar="HTML", help="default: FILE.html")
 
 

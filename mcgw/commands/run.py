@@ -18,8 +18,8 @@ _LONG = 60.0  # seconds from which on a run says beforehand how long it takes
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of this command."""
     parser.description = (
-        f"{parser.description or ''} The first run on a machine compiles the loops that it needs, some 10 s "
-        "of one core, which later ones load; mcgw warm compiles all of them beforehand."
+        f"{parser.description or ''} The first run on a machine compiles the loops that it needs, which "
+        "takes about 10 s; mcgw warm compiles all of them in advance."
     )
     parser.add_argument("scene", type=Path, metavar="SCENE", help="TOML file, SI units")
     parser.add_argument(
@@ -83,7 +83,7 @@ def _of_threads(threads: int | None) -> list[str]:
 
     if threads is None or threads <= get_num_threads():
         return []
-    return [f"--threads {threads}: this machine has {get_num_threads()}, all are used"]
+    return [f"--threads {threads}: this machine has {get_num_threads()}; using all of them"]
 
 
 def _of_time(scene: "Scene") -> list[str]:
@@ -100,5 +100,5 @@ def _of_time(scene: "Scene") -> list[str]:
     drawn = sampler.draws * m
     return [
         f"{m:g} surfaces of {scene.n_asperities:g} asperities: about {in_words(seconds)} on this machine "
-        f"({drawn:.2g} draws); Ctrl-C keeps what is done, mcgw show --plan tells more"
+        f"({drawn:.2g} draws); Ctrl-C keeps finished work; details: mcgw show --plan"
     ]

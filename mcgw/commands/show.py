@@ -9,23 +9,25 @@ from mcgw.commands.options import add_set_option, changes_of
 if TYPE_CHECKING:
     from mcgw.store.run_folder import RunFolder
 
-HELP = "show what an ensemble file holds, or how far its run has come"
+HELP = "show the contents of an ensemble file, or the progress of its run"
 EXAMPLE = "mcgw show demo.h5"
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of this command."""
-    parser.add_argument("file", type=Path, metavar="FILE", help="ensemble file, or that of a sweep (HDF5)")
+    parser.add_argument("file", type=Path, metavar="FILE", help="file of an ensemble or of a sweep (HDF5)")
     what = parser.add_mutually_exclusive_group()
-    what.add_argument("--scene", action="store_true", help="print the scene as TOML: it runs again")
+    what.add_argument("--scene", action="store_true", help="print the scene as TOML, ready to run again")
     what.add_argument("--digest", action="store_true", help="print the digest of scene and data")
     what.add_argument(
-        "--plan", action="store_true", help="FILE is a scene (TOML): print what would be drawn, and what not"
+        "--plan",
+        action="store_true",
+        help="FILE is a scene (TOML): print what would be drawn and how long it takes",
     )
     parser.add_argument(
-        "--csv", type=Path, metavar="CSV", help="also write the table of all separations there"
+        "--csv", type=Path, metavar="CSV", help="also write the table of all separations to this file"
     )
-    what.add_argument("--verify", action="store_true", help="check every bit by trailer and digest")
+    what.add_argument("--verify", action="store_true", help="verify every bit by trailer and digest")
     add_set_option(parser)
 
 
@@ -37,9 +39,9 @@ def execute(args: argparse.Namespace) -> int:
     from mcgw.store.place import tidy
 
     if args.csv and (args.scene or args.digest or args.plan or args.verify):
-        raise ValueError(f"--csv {args.csv}: writes the table of the summary; leave out the other option")
+        raise ValueError(f"--csv {args.csv}: belongs to the summary; leave out the other option")
     if args.set and not args.plan:
-        raise ValueError(f"--set {args.set[0]}: goes with --plan, of a scene")
+        raise ValueError(f"--set {args.set[0]}: works only with --plan, for a scene")
     if args.plan:
         from mcgw.reports.plan import plan_of, plan_text
         from mcgw.scene.scene_file import load_scene
@@ -85,6 +87,6 @@ def _show_unfinished(args: argparse.Namespace, begun: "RunFolder") -> int:
     from mcgw.reports.text import progress_of
 
     if args.verify or args.digest or args.csv:
-        raise StoreError(f"{args.file}: is a sweep in the making; mcgw sweep resumes, then ask again")
+        raise StoreError(f"{args.file}: is an unfinished sweep; finish it with mcgw sweep")
     print(*([begun.text] if args.scene else [progress_of(begun, args.file), "\n"]), sep="", end="")
     return 0

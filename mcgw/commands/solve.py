@@ -24,12 +24,14 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     for name, (letter, words) in _GIVEN.items():
         given.add_argument(f"--{name.replace('_', '-')}", nargs="+", metavar=letter, help=words)
     parser.add_argument(
-        "--surfaces", type=int, metavar="M", help="how many to solve; default: those of the scene"
+        "--surfaces", type=int, metavar="M", help="number of surfaces to solve; default: that of the scene"
     )
     parser.add_argument(
-        "--scatter", metavar="S", help="also say how many asperities make specimens differ so little: 1%%"
+        "--scatter", metavar="S", help="also find the number of asperities for this scatter of specimens: 1%%"
     )
-    parser.add_argument("--csv", type=Path, metavar="FILE", help="also write the table there; else no file")
+    parser.add_argument(
+        "--csv", type=Path, metavar="FILE", help="also write the table to this file; default: no file"
+    )
     add_set_option(parser)
 
 
@@ -38,7 +40,7 @@ def execute(args: argparse.Namespace) -> int:
     from dataclasses import replace
 
     from mcgw.commands.outputs import check_outputs, table_output, write_table
-    from mcgw.commands.voice import tell_cautions
+    from mcgw.commands.voice import ALL, says, tell_cautions
     from mcgw.ensemble.solution import given_values, solutions
     from mcgw.ensemble.solved import at_solutions
     from mcgw.formats.numbers import parse
@@ -55,10 +57,10 @@ def execute(args: argparse.Namespace) -> int:
     given, values = given_values(scene, key, getattr(args, key), lambda x, unit: parse(x, unit, option))
     scatter = None if args.scatter is None else parse(args.scatter, "1", "--scatter")
     if scatter is not None and not 0 < scatter < 1:
-        raise ValueError(f"--scatter {args.scatter}: give a share between 0 and 1, as 1%")
+        raise ValueError(f"--scatter {args.scatter}: give a number between 0 and 1, such as 1%")
     with bar("surfaces", terminal=True) as tell:
         found = solutions(scene, given, values, tell)
-    print(solutions_text(scene, found, scatter))
+    print(solutions_text(scene, found, scatter, full=says(ALL)))
     tell_cautions(at_solutions(scene, found))
     write_table(args.csv, lambda: solutions_table(scene, found))
     return 0

@@ -23,24 +23,27 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--shape", default="1024", metavar="N", help="columns of the map, or COLUMNSxROWS; default: 1024"
     )
-    parser.add_argument("--width", metavar="LENGTH", help="extent along x, as 5mm; default: a square")
+    parser.add_argument("--width", metavar="LENGTH", help="extent along x, such as 5mm; default: a square")
     parser.add_argument("--periodic", action="store_true", help="let caps reach across the edges")
     parser.add_argument(
-        "--at", type=float, metavar="H", help="draw the contacts at this d/sigma: -o FILE.png"
+        "--at", type=float, metavar="H", help="draw the contacts at this d/sigma, with -o FILE.png"
     )
     parser.add_argument(
-        "--colour", choices=("load", "modulus"), default="load", help="what their colour tells; default: load"
+        "--colour",
+        choices=("load", "modulus"),
+        default="load",
+        help="quantity shown by their colour; default: load",
     )
     parser.add_argument(
         "--from-spectrum",
         metavar="LIST",
         help="a Gaussian map instead: rms=1um,long=100um,short=5um[,hurst=0.8], or m0=..,m2=..,m4=.. (SI)",
     )
-    parser.add_argument("--pixel", metavar="LENGTH", help="of a Gaussian map, as 0.5um")
-    parser.add_argument("--seed", type=int, default=0, help="of a Gaussian map; default: 0")
+    parser.add_argument("--pixel", metavar="LENGTH", help="pixel of a Gaussian map, such as 0.5um")
+    parser.add_argument("--seed", type=int, default=0, help="seed of a Gaussian map; default: 0")
     parser.add_argument(
         "-o", "--output", type=Path, required=True, metavar="FILE",
-        help="ends in .sdf, .ascii.sdf, .x3p, .npy or .h5; with --at in .png, .svg or .pdf",
+        help="file ending in .sdf, .ascii.sdf, .x3p, .npy or .h5; with --at in .png, .svg or .pdf",
     )  # fmt: skip
 
 
@@ -71,7 +74,9 @@ def _shape(text: str) -> tuple[int, int | None]:
     """Columns, and rows if they are given."""
     found = re.fullmatch(r"(\d{1,9})(?:x(\d{1,9}))?", text)
     if found is None:
-        raise ValueError(f"--shape {text!r}: give columns, as 1024, or columns and rows, as 1024x512")
+        raise ValueError(
+            f"--shape {text!r}: give columns, such as 1024, or columns and rows, such as 1024x512"
+        )
     return int(found[1]), int(found[2]) if found[2] else None
 
 
@@ -126,7 +131,7 @@ def _account(scene: "Scene", field: "Asperities", topography: "Topography") -> t
     ]
     doubts = []
     if overlap > CROWDED:
-        doubts.append("the caps overlap; this map is not a field of independent asperities")
+        doubts.append("the caps overlap, so this map is not a field of independent asperities")
     if max(topography.pixel) > 0.5 * (2 * field.radius * scene.surface.sigma) ** 0.5:
         doubts.append("a pixel is wider than half a cap, sqrt(2 R sigma); give a larger --shape")
     return lines, doubts

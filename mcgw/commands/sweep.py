@@ -6,32 +6,34 @@ from typing import Any
 
 from mcgw.commands.options import add_engine_options, add_set_option, changes_of, drawing, tell_share
 
-HELP = "draw many scenes at once, over the same surfaces, and keep means and deviations; resumes too"
+HELP = "draw many scenes at once on the same surfaces, keeping means and deviations; resumes where it stopped"
 EXAMPLE = "mcgw sweep runs/demo.toml --over grading.gamma=0.2:2:10 -o gamma.h5"
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of this command."""
-    parser.add_argument("scene", type=Path, metavar="SCENE", help="TOML file: what all points have in common")
+    parser.add_argument(
+        "scene", type=Path, metavar="SCENE", help="TOML file with what all points have in common"
+    )
     parser.add_argument(
         "--over",
         action="append",
         required=True,
         metavar="KEY=VALUES",
-        help="a key of the scene and its values, as grading.gamma=0.2:2:10 (start:stop:number) or "
-        "ensemble.n_asperities=1e4,1e5; each further one is another axis",
+        help="a key of the scene and its values, such as grading.gamma=0.2:2:10 (start:stop:number) or "
+        "ensemble.n_asperities=1e4,1e5; repeat for more axes",
     )
     parser.add_argument(
         "--zip",
         action="store_true",
-        help="the first values of all keys make one point, and so on",
+        help="combine the first values of all keys into one point, and so on",
     )
     parser.add_argument(
         "-o", "--output", type=Path, metavar="FILE.h5", help="default: out/NAME.sweep.h5 beside the scene"
     )
     add_engine_options(parser)
     parser.add_argument(
-        "--plan", action="store_true", help="print what would be drawn and how long it takes; write nothing"
+        "--plan", action="store_true", help="print what would be drawn and how long it takes, without drawing"
     )
     add_set_option(parser)
 
@@ -74,7 +76,7 @@ def _axis(text: str) -> tuple[str, list[Any]]:
     """
     key, equals, values = text.partition("=")
     if not (key and equals and values):
-        raise ValueError(f"--over {text}: give KEY=VALUES, as grading.gamma=0.2:2:10 or =0.5,1,2")
+        raise ValueError(f"--over {text}: give KEY=VALUES, such as grading.gamma=0.2:2:10 or =0.5,1,2")
     parts = values.split(":")
     if len(parts) == 3 and all(_number(part) is not None for part in parts):
         return key, _evenly(text, *map(float, parts))

@@ -5,7 +5,7 @@ from pathlib import Path
 
 from mcgw.commands.options import add_set_option, changes_of
 
-HELP = "measure error against time of every sampler and quadrature, and say what to run"
+HELP = "measure error against time of every sampler and quadrature, and recommend one"
 EXAMPLE = "mcgw tradeoff runs/demo.toml -o out"
 
 
@@ -13,9 +13,15 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of this command."""
     parser.add_argument("scene", type=Path, metavar="SCENE", help="TOML file, SI units")
     parser.add_argument(
-        "-o", "--output", type=Path, metavar="DIR", help="folder of table and figure; default: out beside it"
+        "-o",
+        "--output",
+        type=Path,
+        metavar="DIR",
+        help="folder of table and figure; default: out beside the scene",
     )
-    parser.add_argument("--seconds", default="60", metavar="TIME", help="bound, as 5 min; default: 60 (s)")
+    parser.add_argument(
+        "--seconds", default="60", metavar="TIME", help="time limit, such as 5 min; default: 60 (s)"
+    )
     add_set_option(parser)
 
 

@@ -23,8 +23,8 @@ def add_amount_options(parser: argparse.ArgumentParser) -> None:
     """Add -q and -v."""
     amount = parser.add_mutually_exclusive_group()
     for letter, name, value, words in (
-        ("-q", "--quiet", QUIET, "say nothing but errors, and what was asked to be printed"),
-        ("-v", "--verbose", ALL, "say all: tables, cautions in full, where things were measured"),
+        ("-q", "--quiet", QUIET, "print only errors and requested output"),
+        ("-v", "--verbose", ALL, "print everything: tables, cautions in full, sources"),
     ):
         amount.add_argument(
             letter, name, dest="amount", action="store_const", const=value, default=NEWS, help=words

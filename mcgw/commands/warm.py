@@ -10,7 +10,7 @@ import sys
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
-HELP = "compile all loops now, once for this machine: later runs load them; as two processes side by side"
+HELP = "compile all loops now, once for this machine, so that later runs only load them; uses two processes"
 EXAMPLE = "mcgw warm"
 
 
@@ -30,7 +30,7 @@ def execute(_args: argparse.Namespace) -> int:
     except ChildError as error:
         raise RunError(f"the loops could not all be compiled: {error}") from None
     folder = os.environ.get("NUMBA_CACHE_DIR") or multiply._cache.cache_path
-    news(f"all loops are compiled; they are kept in {folder}")
+    news(f"all loops are compiled; cached in {folder}")
     return 0
 
 

@@ -86,7 +86,7 @@ class Elastic(Shown):
         """What the cheaper levels did for it, in one sentence."""
         plain = f"boundary elements alone: {self.planned.plain:.3g} s for the same error"
         if len(self.planned.chain) == 1:
-            return f"no cheaper level helps here; {plain}"
+            return f"no cheaper level helps; {plain}"
         return f"{self.planned.seconds:.3g} s by levels, {self.saved:.1f} times less than {plain}"
 
     def sheet(self) -> Sheet:
@@ -110,8 +110,9 @@ def elastic(
 ) -> Elastic:
     """Find mean area, stiffness and conductance of elastic surfaces under a pressure, or at a separation.
 
-    Most of what boundary elements say of a map is known to sums over its own summits, which take a
-    millisecond. So few solves do: of many maps the cheap level's mean, of some what a dearer level differs.
+    Sums over the summits of a map take a millisecond and predict most of the result of boundary elements.
+    So few solves suffice: the mean of the cheap level comes from many maps, and the differences to a more
+    expensive level from a few.
 
     Parameters
     ----------
@@ -119,10 +120,10 @@ def elastic(
         A scene that knows its spectrum (m0, m2, m4, or from a fit), or a spectrum: maps are drawn. One map:
         Gaussian maps of its spectrum are. A list of periodic maps: their own mean.
     pressure : float or str, optional
-        Load per nominal area, Pa, or as "1 MPa".
+        Load per nominal area, Pa, or text such as "1 MPa".
     separation : float or str, optional
-        Instead: mean gap between the deformed surface and the plane, m, or as "2 um". What does not touch
-        there counts with zeros; a solve takes some three times as long.
+        Instead: mean gap between the deformed surface and the plane, m, or text such as "2 um". What does
+        not touch there counts with zeros; a solve takes some three times as long.
     E_star : float or str, optional
         Composite modulus, Pa; that of the scene if there is one.
     quantities : sequence of str, optional
@@ -133,7 +134,7 @@ def elastic(
     solves : int, optional
         Instead: how many solves of boundary elements there may be after the pilot.
     pilot : int, optional
-        Maps on which all levels are tried first; they tell which levels help and how many maps each takes.
+        Maps on which all levels are tried first; they show which levels help and how many maps each needs.
     seed : int, optional
         Of the maps.
     path : str or Path, optional
@@ -167,7 +168,7 @@ def elastic(
     """
     maps = maps_of(source)
     if E_star is None and not isinstance(source, Scene):
-        raise ValueError("E_star: give the composite modulus, which no map tells")
+        raise ValueError("E_star: give the composite modulus, which does not follow from a map")
     modulus = source.surface.E_star if E_star is None else argument("E_star", E_star, "Pa")  # type: ignore[union-attr]
     asked = {"pressure": (pressure, "Pa"), "separation": (separation, "m")}
     held = {name: argument(name, value, unit) for name, (value, unit) in asked.items() if value is not None}

@@ -177,7 +177,7 @@ class Level:
 
 
 LEVELS = (
-    Level("summits", "own summits, alone", alone),
-    Level("located", "own summits, located", located),
+    Level("summits", "summits, independent", alone),
+    Level("located", "summits, located", located),
     Level("elastic", "boundary elements", boundary_elements),
 )

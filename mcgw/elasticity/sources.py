@@ -101,7 +101,7 @@ class Listed:
     @property
     def words(self) -> str:
         """What they are."""
-        return f"the {len(self.maps)} maps that were given"
+        return f"the {len(self.maps)} given maps"
 
     @property
     def number(self) -> int:
@@ -140,7 +140,7 @@ def maps_of(source: "Scene | Spectrum | Topography | str | Path | Sequence[Topog
         return Surrogates.of(_whole(source))
     maps = tuple(_whole(one) for one in source)
     if not maps or len({one.size for one in maps}) > 1 or not all(one.periodic for one in maps):
-        raise ValueError("a list of maps: give periodic ones, one or more, all of one size")
+        raise ValueError("maps: give one or more periodic maps, all of one size")
     return Listed(maps)
 
 
@@ -170,7 +170,7 @@ def _drawn(spectrum: Spectrum, side: float) -> Drawn:
     if points > _MOST_POINTS:
         wide = _MOST_POINTS / _POINTS * spectrum.short
         raise ValueError(
-            f"{points} points a side for waves of {spectrum.short:.3g} m on {side:.3g} m: more than "
+            f"{points} points per side for waves of {spectrum.short:.3g} m on {side:.3g} m: more than "
             f"{_MOST_POINTS}; give nominal_area = {0.99 * wide**2:.3g} m^2 or less"
         )
     return Drawn(spectrum, (points, points), (side, side))

@@ -18,8 +18,8 @@ from mcgw.scene.scene import Scene
 from mcgw.scene.storable import drawn_by
 
 NEGATIVE = (
-    "{} = {:g} {}: {} does not reach it without asperities of negative modulus, at s = {:.4g}; give less, "
-    'or say negative = "clip" or "allow" under [grading]'
+    "{} = {:g} {}: {} reaches it only with asperities of negative modulus, at s = {:.4g}; give less, "
+    'or set negative = "clip" or "allow" under [grading]'
 )
 _DRAWS = 1e9  # numbers drawn to have single surfaces again: a second or two
 _FEWEST = 20
@@ -59,7 +59,7 @@ def answers_at(scene: Scene, found: dict[str, Any]) -> dict[str, Any]:
 
     Besides them "mean_gap", m: how far the rigid plane lies from the mean plane of the surface, or from that
     of its summits where the scene does not tell the other. Where asperities press each other down it is the
-    separation that they feel, or the nominal one if that counts from the mean plane itself
+    separation that they feel, or the nominal one if that is measured from the mean plane itself
     (`reference = "mean-plane"`). And where something is conducted, conductances per area and resistances.
     """
     if scene.interaction is not None:

@@ -16,7 +16,7 @@ from mcgw.formats.sheet import Sheet, Shown
 from mcgw.formats.table import Column, Table
 from mcgw.scene.measured import Uncertainty
 from mcgw.scene.scene import Scene
-from mcgw.scene.validity import Validity
+from mcgw.scene.validity import Validity, percent
 from mcgw.scene.validity_place import moments_of_nayak
 
 LINES = ("drawn surfaces", "specimens", "parameters", "model")
@@ -27,15 +27,15 @@ _STEP = 1e-3  # of the logarithm of a parameter: a central difference is off by 
 # Whose measured error an answer has. A conductance is that of stiffness: Barber (2003), Proc. R. Soc. A 459.
 _ERROR_OF = {"area": "area", "stiffness": "stiffness", "conductance": "stiffness", "mean_gap": "separation"}
 _LOWERED = {
-    "drawn surfaces": "draw more of them",
-    "specimens": "a larger nominal area, or several specimens, would lower it; more drawn surfaces would not",
-    "parameters": "a larger map, or several, would lower it; more drawn surfaces would not",
-    "model": "take the corrected answer where there is one; more drawn surfaces would not help",
+    "drawn surfaces": "draw more surfaces",
+    "specimens": "use a larger nominal area or several specimens",
+    "parameters": "measure a larger map or several",
+    "model": "use the corrected value if there is one",
 }
 
 
 class Corrected(NamedTuple):
-    """An answer divided by what its model is off elasticity, as it was measured.
+    """An answer corrected for the measured error of its model.
 
     Parameters
     ----------
@@ -93,9 +93,9 @@ class Budget(Shown):
         of = ""
         if most == "parameters":
             of = f" (above all {max(self.parts, key=lambda name: self.parts[name])})"
-        told = f"{self.quantities[0]}: mostly the {most}{of}, ±{100 * first[most]:.2g} %; {_LOWERED[most]}"
+        told = f"{self.quantities[0]}: mostly the {most}{of}, ±{percent(first[most])}: {_LOWERED[most]}"
         unknown = "; ".join(f"{line} ({why})" for line, why in self.lacking.items())
-        return f"{told}. Not in the sum: {unknown}" if unknown else told
+        return f"{told}. Not included: {unknown}" if unknown else told
 
     def table(self) -> Table:
         """A row for each line, and their sum."""
@@ -144,7 +144,7 @@ def budget_of(
         scatter = _SURE * np.array([surfaces[name].std(ddof=1) for name in names]) / value
     parameters = np.full(len(names), np.nan)
     if scene.uncertainty is None:
-        lacking["parameters"] = "give [surface] uncertainty, as mcgw fit does"
+        lacking["parameters"] = "give [surface] uncertainty, which mcgw fit writes"
     else:
         slopes = slopes_of(scene, scene.uncertainty, again, names)
         parameters = _SURE * np.sqrt(np.einsum("ki,ij,kj->k", slopes, scene.uncertainty.covariance, slopes))
@@ -153,7 +153,7 @@ def budget_of(
     model = np.array([_model_error(validity, name, scene, x) for name, x in zip(names, value, strict=True)])
     if not at_load:
         model[:] = np.nan
-        lacking["model"] = "its error is measured at a given load, not at a given area"
+        lacking["model"] = "its error was measured at a given load, not at a given area"
     elif np.isnan(model[0]):
         lacking["model"] = validity.unknown or "not measured"
     lines = dict(zip(LINES, (np.abs(drawn), np.abs(scatter), parameters, model), strict=True))
@@ -192,7 +192,7 @@ def corrected(validity: Validity, scene: Scene, name: str, value: float, std: fl
     """An answer at a load without the bias of its model, with what remains; `std` is that of specimens."""
     column = _ERROR_OF.get(name)
     if column is None:
-        return Corrected.unknown(f"{name}: no error of it was measured")
+        return Corrected.unknown(f"{name}: its error was not measured")
     bias, error = (float(x[column][0]) for x in (validity.bias, validity.error))
     if math.isnan(error):
         return Corrected.unknown(validity.unknown or f"{name}: not measured there")

@@ -28,9 +28,9 @@ class Ensemble(Shown):
     Parameters
     ----------
     scene : Scene
-        What was asked.
+        The scene that was simulated.
     sampler : str
-        What drew it.
+        The sampler that drew it.
     sums : Held
         Its numbers.
     drawn_for : Scene, optional
@@ -283,7 +283,7 @@ class Ensemble(Shown):
 
     def _quantile(self, quantity: str, share: float) -> tuple[Array, Array, Array]:
         if not 0 <= share <= 1:
-            raise ValueError(f"share = {share!r}: give a share of the surfaces, 0 to 1")
+            raise ValueError(f"share = {share!r}: give a fraction of the surfaces, 0 to 1")
         name, area = self._held(quantity)
         value, low, high = self.sums.quantile(name, float(share))
         return value / area, low / area, high / area

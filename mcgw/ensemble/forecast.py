@@ -52,8 +52,8 @@ class Forecast:
             return ""
         name, h = self.out_of_reach[-1]
         return (
-            f"{len(self.out_of_reach)} means need more surfaces than max_surfaces allows, "
-            f"such as {name} at d/sigma = {h:g}: {max(self.needed[name]):.2g}"
+            f"{len(self.out_of_reach)} means need more surfaces than max_surfaces allows; {name} at d/sigma "
+            f"= {h:g} needs {max(self.needed[name]):.2g}"
         )
 
 
@@ -136,8 +136,8 @@ def after(ensemble: "Ensemble", scene: Scene) -> list[str]:
     silent = np.all([ensemble.mean(name) == 0 for name in ensemble.scene.quantities], axis=0)
     limit = upper_contacts(m)
     lines = [
-        f"d/sigma = {h:g}: no contact in {m} surfaces, mean below {limit:.3g} contacts a surface, "
-        f"{limit / n:.3g} an asperity ({CONFIDENCE:.0%} confidence)"
+        f"d/sigma = {h:g}: no contact in {m} surfaces, mean below {limit:.3g} contacts per surface, "
+        f"{limit / n:.3g} per asperity ({CONFIDENCE:.0%} confidence)"
         for h in np.unique(ensemble.separations[silent])
     ]
     if not promise_of(ensemble.sampler).real_surfaces:
@@ -147,7 +147,7 @@ def after(ensemble: "Ensemble", scene: Scene) -> list[str]:
         reach = spread_of(ensemble.scene, name).reach(m)
         for h, w, rel_err in zip(ensemble.separations[~silent], reach[~silent], most[~silent], strict=True):
             if rel_err < np.inf and not w <= rel_err * (1 + 1e-9):
-                known = TOO_FEW if np.isnan(w) else f"is known to {w:.2g} of itself, not to {rel_err:g}"
+                known = TOO_FEW if np.isnan(w) else f"has a relative error of {w:.2g}, not {rel_err:g}"
                 lines.append(f"{name} at d/sigma = {h:g}{': ' if np.isnan(w) else ' '}{known}")
     return lines
 

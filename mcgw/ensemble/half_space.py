@@ -100,8 +100,8 @@ def scene_alone(scene: Scene, what: str) -> Scene:
         raise ValueError(NO_THEORY)
     if scene.interaction.nominal:
         raise ValueError(
-            f'interaction.at = "nominal": {what} takes sums of independent asperities, and here each surface '
-            'has a separation of its own; take at = "effective"'
+            f'interaction.at = "nominal": {what} needs sums of independent asperities, but here each '
+            'surface has its own separation; use at = "effective"'
         )
     return replace(scene, interaction=None)
 
@@ -121,8 +121,8 @@ def asperities_alone(ensemble: Ensemble) -> Ensemble:
         rest = tuple(name for name in scene.quantities if not scene.series(name))
         if not rest:
             raise ValueError(
-                "of stiffness and conductance in series with the half-space theory gives no mean, and no "
-                "values are kept; ask for another quantity besides"
+                "theory gives no mean of stiffness and conductance in series with the half-space, and no "
+                "values are kept; add another quantity"
             )
         return replace(ensemble, scene=scene_alone(replace(scene, quantities=rest), "this"))
     sums = _Alone(ensemble.sums, scene)
@@ -133,7 +133,7 @@ def with_joint(scene: Scene, found: dict[str, Any], names: Iterable[str], h: Any
     """Conductances of the joint, W/(m^2 K), of what surfaces have besides.
 
     The distance of the mean planes is the separation that the asperities feel, or the nominal one if that
-    counts from the mean plane itself (`reference = "mean-plane"`).
+    is measured from the mean plane itself (`reference = "mean-plane"`).
 
     Parameters
     ----------

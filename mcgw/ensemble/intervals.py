@@ -180,7 +180,9 @@ def interval_of(scene: Scene, sampler: str, sums: Held, name: str, level: float)
     """
     mean, m = sums.mean_and_std(name)[0], sums.rows()
     if not promise_of(sampler).real_surfaces:
-        raise ValueError("stratified surfaces have no interval: their fluctuations are not those of any")
+        raise ValueError(
+            "stratified surfaces have no interval, because they do not fluctuate like real surfaces"
+        )
     if scene.as_measured:
         return mean, mean
     if scene.located:  # no theory tells how much surfaces differ: they do
@@ -195,7 +197,9 @@ def interval_of(scene: Scene, sampler: str, sums: Held, name: str, level: float)
         ends = count_interval(contacts, asperities, poisson=scene.count == "poisson", level=level)
         return ends[0] / m, ends[1] / m
     if name == TANGENTIAL.name:
-        raise ValueError(f"{name} has no interval, as a difference of normal loads; ask for its stderr")
+        raise ValueError(
+            f"{name} has no interval, because it is a difference of normal loads; use its stderr"
+        )
     spread = spread_of(scene, name)
     low, high = mean_interval(mean, spread, m, level)
     if laws_are_quick(scene) and scene.interaction is None and name not in scene.of_joint:

@@ -96,10 +96,10 @@ def paired_ratio(numerator: Ensemble, denominator: Ensemble, quantity: str) -> P
         name for name in ("n_surfaces", "sampler") if getattr(numerator, name) != getattr(denominator, name)
     ]
     if not differ and not _same_asperities(numerator, denominator):
-        differ = ["law, so that asperities do (mcgw.regrade gives the same surfaces another law)"]
+        differ = ["law, and hence in asperities (mcgw.regrade gives the same surfaces another law)"]
     if differ:
         raise ValueError(
-            f"a paired ratio takes two ensembles of the same surfaces; these differ in {', '.join(differ)}"
+            f"a paired ratio needs two ensembles of the same surfaces; these differ in {', '.join(differ)}"
         )
     b, a = (e.values(quantity).astype(np.float64) for e in (numerator, denominator))
     with np.errstate(divide="ignore", invalid="ignore"):  # without a contact there is no ratio

@@ -45,10 +45,10 @@ def regrade(
 ) -> Ensemble:
     """Give the surfaces of an ensemble another grading, or another contact law.
 
-    Nothing is drawn again if the ensemble keeps its moments (``keep = "moments"``) and its cells have edges
-    wherever a piece of the contact law begins, as always under Hertz's. Otherwise the very same surfaces are
-    drawn once more from their seed, and checked against what the ensemble holds. Under Hertz's law that
-    takes as long as simulating them. With another law, before or after, it takes much longer: each contact is
+    Nothing is drawn again if the ensemble keeps its moments (``keep = "moments"``) and its cells have
+    edges wherever a piece of the contact law begins, as always under Hertz's. Otherwise the same surfaces
+    are drawn once more from their seed, and checked against the ensemble. Under Hertz's law that takes as
+    long as simulating them. With another law, before or after, it takes much longer: each contact is
     summed by its formula at each separation, some 1e-7 s for one contact, separation and quantity.
 
     Parameters
@@ -80,10 +80,10 @@ def regrade(
     Raises
     ------
     ValueError
-        If each surface finds its own balance (``interaction.at = "nominal"``), the ensemble has no cells, a
-        separation or break is not an edge of them, the moments kept do not resolve what is asked, or the
-        surfaces that are drawn again are not those of the ensemble (of another version, or of a run that is
-        not finished), or only statistics are kept.
+        If each surface finds its own equilibrium (``interaction.at = "nominal"``), the ensemble has no
+        cells, a separation or break is not an edge of them, the moments kept do not resolve what is
+        asked, or the surfaces that are drawn again are not those of the ensemble (of another version, or
+        of a run that is not finished), or only statistics are kept.
     SceneError, TypeError
         As from `mcgw.Scene.replace`.
 
@@ -103,8 +103,8 @@ def regrade(
     scene_alone(ensemble.scene, "regrade")
     if ensemble.scene.keep == "statistics":
         raise ValueError(
-            'keep = "statistics": single surfaces are not kept, to be compared with those drawn again; '
-            "simulate the scene with the other grading or law, its seed gives the same surfaces"
+            'keep = "statistics": single surfaces are not kept; simulate the scene with the other '
+            "grading or law and the same seed, which gives the same surfaces"
         )
     scene = storable(regraded_scene(ensemble, grading, law, quantities, separations, contact))
     scene_alone(scene, "regrade")
@@ -204,8 +204,8 @@ def _read(ensemble: Ensemble, drawn: Counted) -> Iterator[Drawn]:
     found = tuple(ensemble.sums.read(name, 0, 1).shape[1] for name in ("cells", "moments"))
     if found != (drawn.cells, drawn.moments):
         raise ValueError(
-            "the moments kept are of other cells, as another version of mcgw makes them; "
-            "regrade with that version, or simulate the scene anew"
+            "the kept moments belong to other cells, from another version of mcgw; regrade with that "
+            "version, or simulate the scene again"
         )
     for first in range(0, ensemble.n_surfaces, _ROWS):
         yield _held(ensemble, first, min(first + _ROWS, ensemble.n_surfaces))
@@ -247,8 +247,8 @@ def sums_of_heights(ensemble: Ensemble, scene: Scene) -> Iterator[dict[str, Arra
     sampler, old = listing_sampler(origin), ensemble.scene
     if scene.lowest < origin.lowest:
         raise ValueError(
-            f"separation {scene.lowest:g} is lower than {origin.lowest:g}, down to which the asperities of "
-            "these surfaces were drawn; give higher ones, or simulate the scene anew"
+            f"separation {scene.lowest:g} is smaller than {origin.lowest:g}, down to which the asperities of "
+            "these surfaces were drawn; give larger ones, or simulate the scene again"
         )
     lowest = replace(old, separations=(old.lowest,), tangential=None)
     where = old.separations.index(old.lowest)

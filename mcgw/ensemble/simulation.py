@@ -35,18 +35,18 @@ def simulate(
     scene : Scene
         What to simulate.
     threads : int, optional
-        Default: all there are. The result is the same, bit by bit, for any number.
+        Default: all. The result is the same, bit by bit, for any number.
     progress : bool or callable, optional
         True: a bar; a function: called with (done, total) surfaces after each block.
     **changes
-        Fields of the scene that have other values: see `mcgw.Scene.replace`.
+        Fields of the scene to change: see `mcgw.Scene.replace`.
 
     Returns
     -------
     Ensemble
-        With arrays of shape (surfaces, separations). Where `rel_err` or `max_seconds` decided how many
-        surfaces, its scene says their number instead: run again, it gives the same. A grading that is a
-        Python function is there as its series.
+        With arrays of shape (surfaces, separations). If `rel_err` or `max_seconds` determined the number
+        of surfaces, its scene states this number instead, and reproduces them. A Python function as
+        grading becomes a series.
 
     Raises
     ------
@@ -145,9 +145,7 @@ class Values(OfScene):
             ("bytes of the file", self.disk // 2),
         ):
             if value > _MOST:
-                raise StoreError(
-                    f"ensemble: {what} = {value:.4g} is more than 2^63 - 1 can count; ask for less"
-                )
+                raise StoreError(f"ensemble: {what} = {value:.4g} is more than 2^63 - 1; reduce the scene")
         rows = min(self.rows, n)
         check_memory(f"contact.separations: a block of {rows} surfaces", 3 * 8 * rows * self.columns)
 

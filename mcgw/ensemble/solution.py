@@ -58,7 +58,7 @@ def solve(
     progress : bool or callable, optional
         True: a bar; a function: called with (done, total) surfaces.
     **changes
-        Fields of the scene that have other values: see `mcgw.Scene.replace`.
+        Fields of the scene to change: see `mcgw.Scene.replace`.
 
     Returns
     -------
@@ -133,13 +133,13 @@ def solutions(
     whole, scene = scene, asperities_of(scene)
     specimens = _resampled(scene) if scene.as_measured else scene
     if specimens.n_surfaces < 2:
-        raise ValueError(f"n_surfaces = {scene.n_surfaces}: an interval takes at least 2 surfaces")
+        raise ValueError(f"n_surfaces = {scene.n_surfaces}: an interval needs at least 2 surfaces")
     q = quantity_of(given)
     least = q.scale(scene.surface) * _LAST_DIGITS**q.exponent
     if small := [value for value in values if 0 <= value < least]:
         raise ValueError(
-            f"{q.name} = {small[0]:g} {q.unit}: less than one asperity has that is pressed by the last "
-            f"digits of its height; give {2 * least:.1g} {q.unit} or more"
+            f"{q.name} = {small[0]:g} {q.unit}: too small for double precision of the heights; "
+            f"give {2 * least:.1g} {q.unit} or more"
         )
     theory = [theory_at(scene, q, value) for value in values]
     drawn = _drawn(specimens, q, [at["separation"] for at in theory])
@@ -210,7 +210,7 @@ def _surface(
             whole = Summits.of(scene, *summits(drawn, number)) if whole is None else whole
             on = whole
             if not on.s.size:
-                raise ValueError(f"surface {number} has not one asperity; give more n_asperities")
+                raise ValueError(f"surface {number} has no asperity; increase n_asperities")
             h = on.separation_anywhere(q, target, drawn.lowest)
         negative = on.s[scene.modulus(on.s) < 0]
         if h is None and not negative.size:

@@ -232,11 +232,11 @@ class Solution(Shown):
     def sheet(self) -> Sheet:
         """Theory and Monte Carlo side by side."""
         many = f"{len(next(iter(self.surfaces.values())))} surfaces of {self.scene.n_asperities} asperities"
-        many += ", drawn from the measured ones" if self.scene.as_measured else ""
+        many += ", drawn from the measured summits" if self.scene.as_measured else ""
         facts = [("over", many), ("elasticity", against_elasticity([self]).brief)]
         if (contacts := self.theory["contacts"]) < MANY:
-            few = f"{contacts:.2g} contacts a surface: few for theory, which is of a large one"
-            facts.append(("caution", f"{few}; give more area"))
+            few = f"{contacts:.2g} contacts per surface: few for theory, which is of a large surface"
+            facts.append(("caution", f"{few}; use a larger area"))
         table = self.table()
         table = replace(table, columns=tuple(x for x in table.columns if x.name != "std"))
         if np.isnan(table.flat[-1].values).all():

@@ -36,8 +36,8 @@ class Summarised(Held):
     blocks: tuple[Summary, ...]
 
     no_more = (
-        'single surfaces are not kept with keep = "statistics"; ask for mean, std, covariance, skewness, '
-        'quantile or extremes, or draw some of them again with keep = "sums"'
+        'single surfaces are not kept with keep = "statistics"; use mean, std, covariance, skewness, '
+        'quantile or extremes, or simulate with keep = "sums"'
     )
 
     @classmethod

@@ -153,7 +153,7 @@ class ContactTable:
             found._check()
         except (OSError, ValueError, KeyError, TypeError) as error:
             said = f"it has no {error}" if isinstance(error, KeyError) else error
-            raise StoreError(f"{path}: no table of contact: {said}") from error
+            raise StoreError(f"{path}: not a contact table: {said}") from error
         return found
 
     def _check(self) -> None:
@@ -166,9 +166,9 @@ class ContactTable:
             if not np.all(np.isfinite(column)) or (name != "gap" and np.any(column <= 0)):
                 raise ValueError(f"{name}: give finite numbers > 0")
         if np.any(np.diff(self.gap) <= 0) or np.any(np.diff(self.pressure) >= 0):
-            raise ValueError("give gaps that rise, with pressures that fall")
+            raise ValueError("give increasing gaps with decreasing pressures")
         if self.covariance is not None and self.covariance.shape != 2 * self.gap.shape:
-            raise ValueError("covariance: give a square of as many rows as gaps")
+            raise ValueError("covariance: give a square matrix with as many rows as gaps")
 
 
 def _numbers(given: Any) -> Array:

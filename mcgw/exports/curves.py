@@ -104,7 +104,7 @@ def curves_of(
         If there are surfaces that do not reach a pressure, too few points, or something that is no function.
     """
     if quantiles and not promise_of(ensemble.sampler).real_surfaces:
-        raise ValueError(f"quantiles: {ensemble.sampler} surfaces have means only; leave it out")
+        raise ValueError(f"quantiles: {ensemble.sampler} surfaces only have means; leave it out")
     if kind.against == "gap":
         x, mean, some = _at_gaps(ensemble, kind, pressures, points, quantiles)
     else:
@@ -131,8 +131,8 @@ def _at_gaps(
     if np.any(mean < 0):
         worst = ensemble.separations[order][int(np.argmin(mean))]
         raise ValueError(
-            f"contact.law: surfaces pull each other (mean pressure {mean.min():.3g} Pa at d/sigma = "
-            f"{worst:g}), and a table of contact has no negative pressures; give a law without adhesion"
+            f"contact.law: surfaces attract each other (mean pressure {mean.min():.3g} Pa at d/sigma = "
+            f"{worst:g}), and a contact table has no negative pressures; give a law without adhesion"
         )
     if pressures is not None:
         inside = (mean >= pressures[0] * (1 - 1e-9)) & (mean <= pressures[-1] * (1 + 1e-9))
@@ -173,7 +173,7 @@ def _pressures_within(ensemble: Ensemble, points: int) -> Array:
     reach = common_pressures(ensemble)
     if reach is None:
         raise ValueError(
-            "contact.separations: there is no pressure that all surfaces reach; give more, or lower ones"
+            "contact.separations: no pressure is reached by all surfaces; give more or smaller separations"
         )
     return np.geomspace(*reach, points)
 
@@ -184,14 +184,14 @@ def _one_way(curve: Curve, kind: Kind) -> Curve:
     x, y = curve.x[carries], curve.y[carries]
     if x.size < _FEWEST:
         raise ValueError(
-            f"{kind.name}, {curve.name}: {x.size} point(s) at which anything is carried; give more or "
-            "lower separations, or a wider range of pressures"
+            f"{kind.name}, {curve.name}: {x.size} point(s) with load; give more or smaller separations, or a "
+            "wider range of pressures"
         )
     steps = np.diff(y) * (-1 if kind.against == "gap" else 1)
     if np.any(steps <= 0):
         at = x[int(np.argmin(steps))]
         raise ValueError(
-            f"{kind.name}, {curve.name}: does not go one way at {kind.against} = {at:.4g}, as programs "
-            "want it; give fewer points, or a contact law without jumps"
+            f"{kind.name}, {curve.name}: is not monotone at {kind.against} = {at:.4g}, as programs require; "
+            "give fewer points, or a contact law without jumps"
         )
     return Curve(curve.name, x, y)

@@ -61,7 +61,7 @@ def check_name(file: str, program: Program) -> None:
     """
     if not re.fullmatch(r"[A-Za-z0-9._+-]{1,64}", file):
         raise ValueError(
-            f"path = {file!r}: {program.name} includes it by name; give one of at most 64 letters, digits "
+            f"path = {file!r}: {program.name} includes it by name; give a name of at most 64 letters, digits "
             "and . _ + -"
         )
 
@@ -92,13 +92,13 @@ def _calculix(kind: Kind, file: str) -> list[str]:
     if kind.quantity == "pressure":
         lines += [
             "use *CONTACT PAIR, TYPE=NODE TO SURFACE: with SURFACE TO SURFACE CalculiX misreads tables",
-            "beyond the last line the pressure stays as it is",
+            "beyond the last line the pressure is constant",
             "in a thermomechanical step give *GAP CONDUCTANCE too",
         ]
     else:
         lines += [
-            "below *SURFACE BEHAVIOR; beyond the last line the conductance stays as it is",
-            "third entry: temperature, on which nothing here depends",
+            "below *SURFACE BEHAVIOR; beyond the last line the conductance is constant",
+            "third entry: temperature, which has no effect here",
         ]
     return lines
 
@@ -106,8 +106,8 @@ def _calculix(kind: Kind, file: str) -> list[str]:
 def _abaqus(kind: Kind, file: str) -> list[str]:
     lines = [f"under *SURFACE INTERACTION: *INCLUDE, INPUT={file}"]
     beyond = {
-        "pressure-gap": "beyond the last line the slope goes on",
-        "conductance-pressure": "beyond the last line the conductance stays as it is",
+        "pressure-gap": "beyond the last line the pressure continues with the last slope",
+        "conductance-pressure": "beyond the last line the conductance is constant",
         "conductance-gap": "beyond the last line nothing is conducted",
     }
     return [*lines, beyond[kind.name]]
@@ -116,7 +116,7 @@ def _abaqus(kind: Kind, file: str) -> list[str]:
 def _moose(kind: Kind, file: str) -> list[str]:
     return [
         f"[Functions] [{kind.quantity}] type = PiecewiseLinear data_file = {file} format = columns [] []",
-        f"x: {kind.against}, y: {kind.quantity}; beyond the ends y stays as it is, unless extrap = true",
+        f"x: {kind.against}, y: {kind.quantity}; beyond the ends y is constant, unless extrap = true",
     ]
 
 

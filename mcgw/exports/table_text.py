@@ -70,8 +70,8 @@ def _filled(kind: Kind, scene: Scene) -> list[str]:
     if kind.quantity != "conductance" or not scene.thermal:
         return []
     stays = {
-        "pressure": "at pressure 0 it stays as at the lowest one",
-        "gap": "gas would conduct beyond the last line: give separations up to where the bodies part",
+        "pressure": "at pressure 0 it has the value of the lowest pressure",
+        "gap": "gas also conducts beyond the last line: add separations up to where the bodies part",
     }
     return [f"joint: {joint_text(scene)}", *([stays[kind.against]] if kind.stays(scene) else [])]
 
@@ -90,7 +90,7 @@ def _version() -> str:
 def _zero(scene: Scene, system: UnitSystem) -> list[str]:
     """From which plane gaps d count."""
     factor, unit = system.length
-    lines = ["gap d: of the rigid plane from the mean plane of the summits"]
+    lines = ["gap d: from the rigid plane to the mean plane of the summits"]
     if isinstance(scene.heights, Nayak):
         rise = factor * scene.surface.sigma * scene.heights.mean / scene.heights.std
         lines.append(f"(from the mean plane of the surface it is larger by {rise:.9e} {unit})")
@@ -98,9 +98,9 @@ def _zero(scene: Scene, system: UnitSystem) -> list[str]:
         felt = (
             "nominal"
             if scene.interaction.nominal
-            else "what the asperities feel, without what the bulk gives"
+            else "the separation that asperities feel, without the displacement of the bulk"
         )
-        lines.append(f"asperities press each other down; d is {felt}")
+        lines.append(f"with asperity interaction; d is {felt}")
     return lines
 
 
@@ -153,23 +153,23 @@ def table_text(
 def _foot(foot: float, kind: Kind, program: Program, system: UnitSystem) -> list[str]:
     """Where the curve ends, and what zero is."""
     lines = [
-        f"nothing is carried from the gap d0 = {foot:.9e} {system.length[1]} on",
-        "(there the line through the last two points comes down to 0)",
+        f"there is no load beyond the gap d0 = {foot:.9e} {system.length[1]}",
+        "(where the line through the last two points reaches 0)",
     ]
     if program.overclosure and kind.quantity == "pressure":
-        lines.append("overclosure = d0 - d: lay the two surfaces so that they meet where the gap is d0")
+        lines.append("overclosure = d0 - d: place the two surfaces so that they meet where the gap is d0")
     return lines
 
 
 def _check(rows: Array, kind: Kind, program: Program) -> None:
     if program.most is not None and len(rows) > program.most:
         raise ValueError(
-            f"points = {len(rows) - 1}: {program.name} has room for {program.most} lines; give fewer"
+            f"points = {len(rows) - 1}: {program.name} reads at most {program.most} lines; give fewer"
         )
     if program.least_step and kind.quantity == "pressure" and np.diff(rows[:, 1]).min() < program.least_step:
         raise ValueError(
-            f"points: overclosures lie nearer than {program.least_step:g}, which {program.name} moves apart; "
-            'give fewer points or units = "mm-N-s"'
+            f"points: overclosures are closer than {program.least_step:g}, and {program.name} would separate "
+            'them; give fewer points or units = "mm-N-s"'
         )
 
 

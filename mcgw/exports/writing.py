@@ -40,7 +40,7 @@ def export(
     quantiles: Sequence[float] | None = None,
     units: str = "SI",
 ) -> list[Path]:
-    """Write a table of contact in the form that a finite-element program reads.
+    """Write a contact table in the format of a finite-element program.
 
     Means and quantiles are those over the surfaces, at equal gap in tables against the gap, at equal pressure
     in tables against the pressure.
@@ -51,18 +51,20 @@ def export(
         A scene, whose surfaces are drawn at separations that suit the table; or an ensemble or its file, with
         its own separations.
     path : str or Path
-        Of the table of means; those of quantiles lie beside it, as ``NAME.q05.inp``, and all together as
-        ``NAME.all.csv``.
+        Of the table of means; those of quantiles lie beside it, such as ``NAME.q05.inp``, and all
+        together as ``NAME.all.csv``.
     to : {"calculix", "abaqus", "moose", "comsol", "json"}
-        The program; "json": one file with all of it in SI, which `mcgw.ContactTable.read` makes a law of.
+        The program; "json": one file with everything in SI units, which `mcgw.ContactTable.read` turns
+        into a law.
     table : {"pressure-gap", "conductance-pressure", "conductance-gap", "stiffness-pressure"}
         What is tabulated, against what. Stiffness and conductance are per nominal area;
         conductance is that of the joint, where the scene has one.
     points : int, optional
         Rows, besides the one where nothing is carried. Default: 40.
     pressures : array_like or sequence of str, optional
-        Nominal pressures of the rows, rising, Pa or as "1 MPa"; against the gap those of the mean surface, or
-        bounds, where there is an ensemble. Default: all that the surfaces reach at the scene's separations.
+        Nominal pressures of the rows, rising, Pa or text such as "1 MPa"; against the gap those of the
+        mean surface, or bounds, where there is an ensemble. Default: all that the surfaces reach at the
+        scene's separations.
     quantiles : sequence of float, optional
         Default: 0.05 and 0.95, or none where there are not several surfaces.
     units : {"SI", "mm-N-s"}
@@ -94,7 +96,9 @@ def export(
     """
     if to == "json":
         if (table, quantiles, units) != ("pressure-gap", None, "SI"):
-            raise ValueError('to = "json": all columns are written, in SI; leave out table, quantiles, units')
+            raise ValueError(
+                'to = "json": it has all columns, in SI units; leave out table, quantiles, units'
+            )
         return [_contact_table(what, Path(path), _pressures(pressures), points)]
     program, kind, system = _asked(to, table, units)
     check_name(Path(path).name, program)
@@ -166,7 +170,7 @@ def _asked(to: str, table: str, units: str) -> tuple[Program, Kind, UnitSystem]:
     program = PROGRAMS[to]
     if table not in program.keywords:
         raise ValueError(
-            f"table = {table!r}: {to} has no keyword for it; choose one of {', '.join(program.keywords)}"
+            f"table = {table!r}: {to} does not support it; choose one of {', '.join(program.keywords)}"
         )
     return program, KINDS[table], UNIT_SYSTEMS[units]
 
@@ -183,7 +187,7 @@ def _pressures(given: Any) -> Array | None:
     listed = plain if isinstance(plain, list) else [plain]
     found = np.array([argument("pressures", x, "Pa") for x in listed])
     if found.size < 2 or np.any(np.diff(found) <= 0):
-        raise ValueError(f"pressures = {listed!r}: give two or more, each above the one before")
+        raise ValueError(f"pressures = {listed!r}: give two or more increasing numbers")
     return found
 
 
@@ -194,7 +198,9 @@ def _quantiles(given: Sequence[float] | None, ensemble: Ensemble) -> tuple[float
     found = tuple(float(q) for q in given)
     wrong = [q for q in found if not 0 < q < 1]
     if wrong or len(set(found)) < len(found):
-        raise ValueError(f"quantiles = {list(found)!r}: give numbers between 0 and 1, each once, as 0.05")
+        raise ValueError(
+            f"quantiles = {list(found)!r}: give numbers between 0 and 1, each once, such as 0.05"
+        )
     return found
 
 
@@ -218,7 +224,7 @@ def checked(scene: Scene, kind: Kind) -> None:
     """
     if kind.quantity == "conductance" and scene.film is None:
         raise ValueError(
-            "contact.conductivities: a table of conductance needs them; give conductivities = [k1, k2] in "
+            "contact.conductivities: missing for a table of conductance; give conductivities = [k1, k2] in "
             "W/(m K), or resistivity, in the scene"
         )
 

@@ -21,8 +21,8 @@ if TYPE_CHECKING:
 _MOST_COLUMNS = 3  # more are too small to read on a page
 _BIN = 0.5  # standard errors
 _CAPTION = (
-    "Residuals of points that share their surfaces move together, as those of neighbouring separations do; "
-    "the verdict allows for both."
+    "Residuals of points with the same surfaces, and of neighbouring separations, are correlated; the "
+    "verdict allows for this."
 )
 
 

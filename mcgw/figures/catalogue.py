@@ -54,7 +54,7 @@ def _reference(f: Compared) -> str:
 def _pressing(f: Compared) -> str:
     """There is no ratio to a pull, nor a logarithm of it."""
     pulls = any(np.any(f.theory(label, "load", f.line) <= 0) for label in f.all)
-    return "the mean load is not positive at every separation: there is no ratio to it" if pulls else ""
+    return "the mean load is not positive at every separation" if pulls else ""
 
 
 def _same_load(f: Compared) -> str:
@@ -62,12 +62,12 @@ def _same_load(f: Compared) -> str:
         for label in f.others:
             f.at_load_of_reference(label, f.line)
     except ValueError:
-        return "the scene does not carry the load of its reference at every separation"
+        return "the scene does not reach the load of its reference at every separation"
     return ""
 
 
 def _several(f: Compared) -> str:
-    return "" if f.scene.n_surfaces > 1 else "there is one surface: nothing differs"
+    return "" if f.scene.n_surfaces > 1 else "there is only one surface"
 
 
 def _yielding(f: Compared) -> str:
@@ -78,7 +78,7 @@ def _yielding(f: Compared) -> str:
 
 def _released(f: Compared) -> str:
     released = f.swept or f.asked.unload_from is not None
-    return "" if released else "the scene is not released: contact.unload_from is left out"
+    return "" if released else "the scene is not unloaded: contact.unload_from is not set"
 
 
 CATALOGUE = (

@@ -94,9 +94,9 @@ def _states(f: Compared) -> FigureData:
         title, label = f"{key}  {name}", "share of the contacts"
         panels.append(Panel(title, PRESSURE, label, tuple(series), ("log", "linear")))
     return FigureData(
-        "Who yields: the plasticity index as a count of contacts",
-        f"Kogut and Etsion's law; an asperity of modulus E* yields at a penetration of {_CRITICAL:g} σ, a "
-        f"stiffer one sooner. {f.listed_caption}",
+        "Contacts that yield, elastic, elastic-plastic and plastic",
+        f"Kogut and Etsion's law; an asperity of modulus E* yields at a penetration of {_CRITICAL:g} σ, "
+        f"stiffer ones sooner. {f.listed_caption}",
         tuple(panels),
     )
 
@@ -119,8 +119,8 @@ def laws_compared(f: Compared) -> FigureData:
     panels.append(Panel("c  equal load", PRESSURE, label, at_load, ("log", "linear"), level=1.0))
     return FigureData(
         "Contact laws compared, with the same onset of yield",
-        f"All yield at a penetration of {_CRITICAL:g} σ (Jackson's with S_y/E* = {_STRAIN:g}). Ratios on the "
-        f"same surfaces have next to no noise. {f.listed_caption}",
+        f"All yield at a penetration of {_CRITICAL:g} σ (Jackson's with S_y/E* = {_STRAIN:g}). Ratios are "
+        f"for the same surfaces. {f.listed_caption}",
         tuple(panels),
     )
 
@@ -172,7 +172,7 @@ def way_back(f: Compared) -> FigureData:
                 panels.append(ways.panel(title, label, quantity, 1e6 * area))
         return FigureData(
             "Unloading: hysteresis of contacts that yield or adhere",
-            f"Pressed to d/σ = {_TURN:g} and released: the same asperities both ways. Penetration at yield "
+            f"Pressed to d/σ = {_TURN:g} and unloaded, with the same asperities. Penetration at yield "
             f"{_CRITICAL:g} σ; stretch at break-off {_STRETCH:g} σ. {f.listed_caption}",
             tuple(panels),
         )
@@ -227,8 +227,8 @@ def sliding(f: Compared) -> FigureData:
         around = np.concatenate([x, down, -down]), np.concatenate([virgin, back, -back])
         cycles.append(Series(f"up to {reach:g}", *around))
     return FigureData(
-        "Pushed sideways: from the first slip to gross sliding",
-        f"Ciavarella's and Jaeger's theorem, surface by surface; friction {_FRICTION:g}, Poisson's ratio "
+        "Tangential load: from partial slip to gross sliding",
+        f"Theorem of Ciavarella and Jaeger for each surface; friction {_FRICTION:g}, Poisson's ratio "
         f"{_POISSON:g}. Cycles at d/σ = 1 by Masing's rule. {f.listed_caption}",
         (
             Panel("a  first push", _PUSHED, _SLIPS, tuple(curves), level=1.0),
@@ -261,7 +261,7 @@ def films(f: Compared) -> FigureData:
         series.append(Series("no film" if b == 0 else f"b = {b:g}", shown, resistance, points))
     return FigureData(
         "A film on the spots",
-        f"b is the radius of a spot over √(Rσ) whose film and constriction resist alike; "
+        f"b is the radius, over √(Rσ), of a spot whose film and constriction have equal resistance; "
         f"ρ = {_RESISTIVITY:g} Ω m. {f.listed_caption}",
         (Panel("", PRESSURE, "resistance of 1 mm² (mΩ)", tuple(series), ("log", "log")),),
     )

@@ -156,7 +156,7 @@ def contact_map_figure(
 ) -> Figure:
     """The same as a figure, of so many inches, the median spot of a radius of so many pixels or more."""
     if not spots.radius.size:
-        raise ValueError(f"separation = {spots.separation:g}: nothing touches; give a smaller one")
+        raise ValueError(f"separation = {spots.separation:g}: there is no contact; give a smaller one")
     window = _window(spots, field.size, inches * _DPI / visible)
     topography = envelope(field, (_POINTS, _POINTS), periodic=periodic, window=window)
     figure = Figure(figsize=(inches + 2.2, inches + 0.6), layout="constrained")

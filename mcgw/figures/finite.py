@@ -19,7 +19,7 @@ def fluctuations(f: Compared) -> FigureData:
         series = tuple(_spreads(name, f.scene, name, f.line, f.drawn(SCENE), ENOUGH) for name in _SPREADING)
         panel = Panel("", SEPARATION, "std / mean", series, ("linear", "log"), level=1.0)
         size = f"{f.scene.surface.nominal_area * 1e6:g} mm²"
-        return FigureData(f"How far surfaces of {size} differ from each other", f.caption, (panel,))
+        return FigureData(f"Scatter of surfaces of {size}", f.caption, (panel,))
     scene = f.scene.replace(keep="sums", separations=np.linspace(0, 4, 9), quantities=_SPREADING)
     sizes = {n: min(2000, 400_000_000 // n) for n in (100, 10_000, 1_000_000)}
     drawn = {n: simulate(scene.replace(n_asperities=n, n_surfaces=m)) for n, m in sizes.items()}
@@ -32,9 +32,9 @@ def fluctuations(f: Compared) -> FigureData:
         room = float(series[-1].theory.min()) / 2, 50 * float(series[0].theory.max())  # for the legend
         panels.append(Panel(f"{key}  {name}", SEPARATION, "std / mean", series, ("linear", "log"), 1.0, room))
     return FigureData(
-        "How far finite surfaces differ from each other",
-        f"N asperities a surface; 2000 surfaces (400 of N = 10⁶), seed {scene.seed}. Markers, with "
-        "95 % intervals, where the ensemble has 400 contacts or more.",
+        "Scatter of finite surfaces",
+        f"N asperities per surface; 2000 surfaces (400 for N = 10⁶), seed {scene.seed}. Markers with 95 % "
+        "intervals, for 400 contacts or more.",
         tuple(panels),
     )
 

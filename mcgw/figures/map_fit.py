@@ -98,7 +98,7 @@ def _draw_summits(axis: Any, fit: Fit, ready: Prepared) -> None:
     marks = max(0.4, min(3.0, 90 / np.sqrt(x.size)))
     axis.plot(x, y, "o", ms=marks, color=MARKED, mew=0)
     shown = "" if x.size == fit.summits.size else f", {x.size} shown"
-    axis.set_title(f"b  looked at: {fit.summits.size} summits{shown}", loc="left")
+    axis.set_title(f"b  as analysed: {fit.summits.size} summits{shown}", loc="left")
 
 
 def _draw_moments(axis: Any, ready: Prepared) -> None:
@@ -175,7 +175,7 @@ def _write(axis: Any, fit: Fit) -> None:
         lines += textwrap.wrap(text, _WIDTH, subsequent_indent="  ")
     shown = lines if len(lines) <= _LINES else [*lines[: _LINES - 1], "..."]
     axis.axis("off")
-    axis.set_title("f  what it tells", loc="left")
+    axis.set_title("f  estimates", loc="left")
     axis.text(0, 1, "\n".join(shown), va="top", family="monospace", fontsize=6.6, transform=axis.transAxes)
 
 

@@ -43,7 +43,7 @@ def mean_moduli(f: Compared) -> FigureData:
 
 def _over_gamma(f: Compared) -> tuple[Panel, ...]:
     just = tuple(Series(f"d/σ = {h:g}", _LINE, _LINE - (_LINE - 1) * np.exp(-h)) for h in _AT)
-    panels = [Panel("a  the paper's: just touching, s = d/σ", GAMMA, _PSI, just, level=1.0)]
+    panels = [Panel("a  as in the paper: just touching, s = d/σ", GAMMA, _PSI, just, level=1.0)]
     for weight, title in _TITLES.items():
 
         def exact(gamma: str | float, h: Array, weight: str = weight) -> Array:
@@ -131,7 +131,7 @@ def negative_modulus(_: Compared) -> FigureData:
     )
     return FigureData(
         "Where the modulus turns negative (shaded)",
-        "Exponential grading. A scene whose contacts reach the shaded heights is refused, unless it says "
+        "Exponential grading. A scene whose contacts reach the shaded heights needs "
         'negative = "clip" or "allow". γ from 0 to 1 is safe at every height; γ > 1 from d/σ = 0 up. Theory.',
         (Panel("", GAMMA, "summit height s = z/σ", series, ylim=(-end, end)),),
     )

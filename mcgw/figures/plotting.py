@@ -57,7 +57,7 @@ def draw(result: Any, ax: Any = None, **options: Any) -> Any:
 
 @singledispatch
 def _draw(result: Any, _: Any) -> None:
-    raise TypeError(f"{type(result).__name__}: no figure draws it")
+    raise TypeError(f"{type(result).__name__}: there is no figure of it")
 
 
 @_draw.register

@@ -183,7 +183,7 @@ def area_and_load(f: Compared) -> FigureData:
         replace(panels[0], title="a  real area"),
         Panel("b  local exponent", SEPARATION, r"$d\,\ln A/d\,\ln P$", tuple(exponents), level=1.0),
     ]
-    return FigureData("Real area against load, and how far it is from proportional", f.caption, tuple(panels))
+    return FigureData("Real area against load, and its local exponent", f.caption, tuple(panels))
 
 
 def _exponent(f: Compared, label: str) -> Series:
@@ -252,7 +252,7 @@ def _over_gamma(f: Compared) -> FigureData:
         ylabel = _over(name, "hom")
         panels.append(Panel(f"{'bcd'[k]}  equal load: {name}", GAMMA, ylabel, series, level=1.0))
     return FigureData(
-        "At equal load the trend turns round: stiffer tips conduct less",
+        "At equal load the trend reverses: stiffer tips conduct less",
         f"d/σ is that of the homogeneous surface and sets the load. {f.listed_caption} "
         f"(a: {f.scene.n_surfaces} surfaces.)",
         tuple(panels),

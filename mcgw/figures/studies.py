@@ -173,7 +173,7 @@ def draw_methods(axis: Any, found: Tradeoff, k: int) -> None:
     if k == len(found.separations) - 1 and advised:
         axis.plot(
             [a.seconds for a in advised], [a.wish.within / _TWO for a in advised], "*", ms=11, mfc="none",
-            color="k", label="advised for the next decades",
+            color="k", label="recommended for the next decades",
         )  # fmt: skip
     axis.set_xlabel("time (s)")
     axis.set_ylabel(f"rms relative error of the mean {found.scene.quantities[0]}")

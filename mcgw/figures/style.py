@@ -45,7 +45,7 @@ FAMILIES: tuple[tuple[str, ...], ...] = (  # what one figure may show together, 
     ("load", "area", "stiffness", "contacts", "conductance", "yielded"),
     ("Chang", "Zhao", "Kogut", "Jackson"),
     ("cells", "tail", "aggregate", "direct", "stratified"),
-    ("own radii", "one radius", "nayak", "its very summits"),
+    ("own radii", "one radius", "nayak", "measured summits"),
     ("$m_0$", "$m_2$", "$m_4$"),
 )
 PAIRS: tuple[tuple[str, ...], ...] = (

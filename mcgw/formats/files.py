@@ -111,7 +111,7 @@ def rename_over(temporary: Path, path: Path, expected: Expected) -> None:
 
 def _refuse_another(path: Path, expected: State | None) -> None:
     if state_of(path) != expected:
-        raise FileExistsError(errno.EEXIST, "another file has taken this name meanwhile", str(path))
+        raise FileExistsError(errno.EEXIST, "another file now has this name", str(path))
 
 
 def write_whole(path: Path, pieces: Iterable[bytes], *, expected: Expected = "anything") -> None:
@@ -148,7 +148,7 @@ def check_output(path: Path) -> None:
     name = path.name
     try:
         if name in ("", ".", "..") or len(os.fsencode(name)) > 200 or not name.isprintable():
-            raise StoreError(f"{str(path)!r}: is not a name for a file; choose another -o")
+            raise StoreError(f"{str(path)!r}: is not a valid file name; choose another -o")
         if path.is_symlink() or (path.exists() and not path.is_file()):
             raise StoreError(f"{path}: is not a regular file; choose another -o")
         path.parent.mkdir(parents=True, exist_ok=True)

@@ -96,14 +96,14 @@ def open_npy(path: Path) -> "NDArray[Any]":
             version = np.lib.format.read_magic(file)
             shape, by_columns, dtype = headers[version](file)
             if dtype.kind not in "fiu":
-                raise ValueError("its numbers are not real")
+                raise ValueError("its values are not real numbers")
             order: Literal["F", "C"] = "F" if by_columns else "C"
             return np.memmap(file, dtype, "r", file.tell(), shape, order)
     except StoreError:
         raise
     except _UNSOUND as error:
         reason = (str(error).splitlines() or ["damaged"])[0]
-        raise ValueError(f"{path}: is not a sound .npy file: {reason}") from None
+        raise ValueError(f"{path}: is not a valid .npy file: {reason}") from None
 
 
 def loads(text: str) -> dict[str, Any]:

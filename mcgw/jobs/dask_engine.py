@@ -75,8 +75,7 @@ class Dask:
                 )
             except OSError:
                 raise RunError(
-                    f"{scheduler}: no scheduler answers there; start it (dask scheduler), then repeat the "
-                    "command"
+                    f"{scheduler}: no scheduler answers; start it (dask scheduler), then repeat the command"
                 ) from None
         self._pending: set[Any] = set()
         self._asked, self._threads = -_ASK_AGAIN, 1
@@ -141,9 +140,9 @@ def _has_pages() -> bool:
 def _fit(client: Any) -> Any:
     """A client that answers now."""
     if client.asynchronous:
-        raise ValueError("engine: this client is asynchronous; give one made without asynchronous=True")
+        raise ValueError("engine: this client is asynchronous; give a client made without asynchronous=True")
     if client.status != "running":
-        raise ValueError(f"engine: this client is {client.status}; give one that is connected")
+        raise ValueError(f"engine: this client is {client.status}; give a connected client")
     return client
 
 
@@ -168,6 +167,6 @@ def check_address(address: str, *, insecure: bool = False) -> None:
         here = host == "localhost"
     if not (here or insecure or parts.scheme == "tls"):
         raise ValueError(
-            f"--scheduler {address}: is not on this machine and not encrypted; use tls:// "
-            "(certificates in dask's configuration), or say --insecure on a network you trust"
+            f"--scheduler {address}: is a remote address without encryption; use tls:// (certificates in "
+            "dask's configuration), or --insecure on a network that you trust"
         )

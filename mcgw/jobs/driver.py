@@ -238,7 +238,7 @@ def asked_of(
         If one of them is empty, or a share is given to an engine.
     """
     if shard is not None and engine is not None:
-        raise ValueError(f"shard = {shard!r}: a share is drawn by threads; leave engine out")
+        raise ValueError(f"shard = {shard!r}: a share uses threads; leave engine out")
     part = None if shard is None else part_of(shard)
     draws = _engine_of(engine, threads)
     try:

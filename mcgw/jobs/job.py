@@ -39,7 +39,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Job:
-    """A file in the making: of one scene, or of groups of scenes that share their surfaces.
+    """A file being made: of one scene, or of groups of scenes that share their surfaces.
 
     Parameters
     ----------
@@ -116,7 +116,7 @@ class Job:
         if needed > free:
             raise StoreError(
                 f"{path}: needs up to {gibibytes(needed)} more on the disk while made and "
-                f"{gibibytes(free)} are free; make room, choose another -o, or ask for fewer surfaces or "
+                f"{gibibytes(free)} are free; free some space, choose another -o, or reduce surfaces or "
                 "separations"
             )
 

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 def merge(path: str | Path) -> "Ensemble | Sweep":
-    """Make the file of a run or of a sweep whose blocks are all there.
+    """Merge the blocks of a finished run or sweep into its file.
 
     Parameters
     ----------
@@ -62,7 +62,7 @@ def merge(path: str | Path) -> "Ensemble | Sweep":
     if not parts_of(path).exists():
         if path.exists():
             return open_results(path)
-        raise StoreError(f"{path}: neither this file nor blocks of it ({parts_of(path)}) are there")
+        raise StoreError(f"{path}: neither this file nor its blocks ({parts_of(path)}) exist")
     with heed_signals() as signals, locked(parts_of(path)):
         job = Job.begun(RunFolder.open(parts_of(path)))
         started = job.record
@@ -73,7 +73,7 @@ def merge(path: str | Path) -> "Ensemble | Sweep":
                 f"from {gaps[0].first} on; run the jobs that make them again"
             )
         if not merge_once(job, signals):
-            raise RunError(f"{started.folder}: a shard is damaged; run the jobs again, which draw it anew")
+            raise RunError(f"{started.folder}: a shard is damaged; run the jobs again to redraw it")
     return open_results(path)
 
 
@@ -106,8 +106,8 @@ def merge_once(job: Job, signals: Signals) -> bool:
         said = error.strerror if isinstance(error, OSError) else None
         why = said or next(iter(str(error).splitlines()), type(error).__name__)
         raise RunError(
-            f"{path}: cannot be merged ({why}); is the disk full? All blocks are kept in "
-            f"{started.folder}, the same command resumes"
+            f"{path}: cannot be merged ({why}); is the disk full? All blocks are kept in {started.folder}; "
+            f"the same command resumes"
         ) from None
     finally:
         with suppress(OSError):

@@ -59,10 +59,10 @@ def run(
     progress: Progress = None,
     **changes: Any,
 ) -> Ensemble | int:
-    """Draw the ensemble of a scene into a file, going on where an earlier run stopped.
+    """Draw the ensemble of a scene into a file, or resume an earlier run.
 
-    The same call again resumes, or extends the file if the scene now has more surfaces; where nobody gave a
-    seed it takes that of the file.
+    The same call again resumes, or extends the file if the scene now has more surfaces; if the scene has
+    no seed, it uses that of the file.
 
     Parameters
     ----------
@@ -71,22 +71,22 @@ def run(
     path : str or Path
         The file; it appears when it is complete. Until then, blocks lie in ``FILE.parts/``.
     threads : int, optional
-        Cores: threads, or processes or workers of the engine. Default: all there are. The data are the
+        Cores: threads, or processes or workers of the engine. Default: all. The data are the
         same for any number.
     engine : {"threads", "processes", "dask"}, address, distributed.Client or Engine, optional
-        Who draws; an address, as ``"tcp://host:8786"``, is that of a dask scheduler. A client is left open,
-        and dask's configuration and logging as they are.
+        What draws the blocks; an address such as ``"tcp://host:8786"`` is that of a dask scheduler. A
+        client stays open, and dask's configuration and logging do not change.
     shard : str, optional
         "2/8": draw only the second of eight shares, as one of eight jobs; then `mcgw.merge`.
     progress : bool or callable, optional
         True: a bar; a function: called with (done, total) surfaces.
     **changes
-        Fields of the scene that have other values: see `mcgw.Scene.replace`.
+        Fields of the scene to change: see `mcgw.Scene.replace`.
 
     Returns
     -------
     Ensemble
-        That reads from the file; its scene says how many surfaces `rel_err` or `max_seconds` made. With
+        Reads from the file; its scene states how many surfaces `rel_err` or `max_seconds` made. With
         `shard`: the number of surfaces of the whole that are still missing.
 
     Raises
@@ -115,9 +115,7 @@ def run(
     path = Path(path)
     scene = with_recorded_seed(scene.replace(**changes), path)
     if shard is not None and scene.max_seconds is not None:
-        raise ValueError(
-            "ensemble.max_seconds: jobs that share a run end at different times; give n_surfaces"
-        )
+        raise ValueError("ensemble.max_seconds: the jobs of a run end at different times; give n_surfaces")
     total = forecast(scene).surfaces if progress else 0
     with asked_of(engine, threads, shard, progress) as (draws, part, tell):
         by = By(draws, threads, lambda done: tell(done, total))
@@ -195,7 +193,7 @@ def _at_once(job: Job, by: By) -> None:
     started, (span,) = perf_counter(), job.record.plan.missing([])
     by.progress(0)
     by.drive([span], job.draw, lambda span: (span, by.threads), lambda _, tables: answers.append(tables))
-    by.signals.check("nothing was kept, the run is one block; the same command starts it again")
+    by.signals.check("nothing was saved, because the run is one block; the same command starts it again")
     before = state_of(job.record.path)
     job.done()  # or what is there now is another's
     write_body(job.record.path, job.body([(0, answers[0])], perf_counter() - started), before)
@@ -218,7 +216,7 @@ def _in_blocks(job: Job, by: By) -> None:
         _draw_missing(job, started, started.missing(done, shards), by)
         if merge_once(replace(job, record=started), by.signals):
             return
-    raise RunError(f"{job.record.folder}: shards are damaged again and again; is the disk failing?")
+    raise RunError(f"{job.record.folder}: shards are repeatedly damaged; is the disk failing?")
 
 
 def _share(job: Job, by: By, part: Part) -> int:
@@ -237,7 +235,7 @@ def _what_is_kept(job: Job) -> Iterator[None]:
     except OSError as error:
         raise RunError(
             f"{error.filename or job.record.path}: {error.strerror or error}; finished blocks are kept in "
-            f"{job.record.folder}, the same command resumes once that is mended"
+            f"{job.record.folder}; once this is fixed, the same command resumes"
         ) from None
 
 

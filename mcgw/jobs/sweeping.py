@@ -51,14 +51,14 @@ def sweep(
     shard: str | None = None,
     progress: Progress = None,
 ) -> Sweep | int:
-    """Means and standard deviations of many scenes, whose surfaces are the same wherever they can be.
+    """Means and standard deviations of many scenes, which share their surfaces where possible.
 
     Points whose heights have the same law, number and seed share their surfaces, whatever their surfaces'
-    parameters, gradings and contact laws are: these are drawn once, and differences between such points have
-    no noise of their own. A point that needs other cells gets the edges of all (`Scene.edges`); drawn alone
-    it has the same surfaces, and each the same bits. Of eight exponential
-    gradings or more under Hertz's law only the softest and the stiffest are computed, for sums are linear in
-    gamma: the others have the means and deviations of single runs to 1e-12.
+    parameters, gradings and contact laws are: these are drawn once, and differences between such points
+    have no sampling noise. A point that needs other cells gets the edges of all (`Scene.edges`); drawn
+    alone it has the same surfaces, and each the same bits. Of eight exponential gradings or more under
+    Hertz's law only the softest and the stiffest are computed, for sums are linear in gamma: the others
+    have the means and deviations of single runs to 1e-12.
 
     Parameters
     ----------
@@ -74,12 +74,12 @@ def sweep(
         goes with every value of all others.
     path : str or Path, optional
         A file for it, which appears when all is drawn (`mcgw.open_sweep`). The same call again draws nothing,
-        or goes on where it was interrupted; where nobody gave a seed it takes that of the file.
+        or resumes where it was interrupted; if the scene has no seed, it uses that of the file.
     threads : int, optional
-        Cores: threads, or processes or workers of the engine. Default: all there are. The result is the
+        Cores: threads, or processes or workers of the engine. Default: all. The result is the
         same, bit by bit, for any number.
     engine : {"threads", "processes", "dask"}, address, distributed.Client or Engine, optional
-        Who draws into the file of `path`, as in `mcgw.run`.
+        What draws into the file of `path`, as in `mcgw.run`.
     shard : str, optional
         "2/8": draw only the second of eight shares into the folder beside `path`, as one of eight jobs; then
         `mcgw.merge`.
@@ -123,7 +123,7 @@ def sweep(
     if not statistics or not set(statistics) <= set(STATISTICS):
         raise ValueError(f"statistics = {statistics!r}: give one or both of {', '.join(STATISTICS)}")
     if path is None and (engine not in (None, "threads") or shard is not None):
-        raise ValueError("engine, shard: others draw into a file; give path, or leave them out")
+        raise ValueError("engine, shard: they need a file; give path, or leave them out")
     axes, chosen = axes_of(over, zipped=zipped), tuple(statistics)
     if path is None:
         with use_threads(threads), told(progress, "surfaces") as tell:

@@ -35,8 +35,8 @@ from mcgw.machine.terminal import pass_by
 
 if numba.config.DISABLE_JIT:  # type: ignore[attr-defined, unused-ignore]
     raise RunError(
-        "NUMBA_DISABLE_JIT is set, but the loops of mcgw count in unsigned words that only compiled code "
-        "keeps; unset it",
+        "NUMBA_DISABLE_JIT is set, but the loops of mcgw need unsigned integers, which only compiled code "
+        "has; unset it",
         code=2,
     )
 
@@ -244,8 +244,9 @@ def _say(folder: str, reason: str) -> None:
         return
     _SAID.add(reason)
     where = os.environ.get("NUMBA_CACHE_DIR")
-    advice = "make room there" if where else "make room there, or set NUMBA_CACHE_DIR to another folder"
+    advice = "free some space" if where else "free some space, or set NUMBA_CACHE_DIR to another folder"
     warnings.warn(
-        f"compiled loops cannot be kept in {folder} ({reason}) and take 10 s in every process; {advice}",
+        f"compiled loops cannot be cached in {folder} ({reason}), so every process takes 10 s to compile "
+        f"them; {advice}",
         stacklevel=2,
     )

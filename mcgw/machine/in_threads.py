@@ -26,7 +26,7 @@ Items = Generator[_Item, None, None]
 def in_threads(call: Callable[[_Item], _Result], items: Sequence[_Item], *, least: int = 2) -> list[_Result]:
     """Call for every item, on as many threads as numba has been told to use; results in their order.
 
-    Items are shared out in runs of equal length. What is called lets go of Python's lock while it computes;
+    Items are distributed in runs of equal length. What is called lets go of Python's lock while it computes;
     calls within a call run alone. Fewer than `least` items are not worth waking a thread.
     """
 

@@ -36,8 +36,8 @@ def check_memory(what: str, size: int) -> None:
     memory = memory_available()
     if size > memory:
         raise StoreError(
-            f"{what} needs {gibibytes(size)} of memory and {gibibytes(memory)} are available; "
-            "ask for less at a time"
+            f"{what} needs {gibibytes(size)} of memory but only {gibibytes(memory)} is available; reduce the "
+            "request"
         )
 
 

@@ -20,7 +20,7 @@ Pairs = list[tuple[float, float]]
 METHODS = {
     "moments": "spectral moments (Nayak, McCool)",
     "summits": "summits counted",
-    "caps": "summits counted, hidden ones added",
+    "caps": "counted summits, corrected for hidden ones",
 }
 _UNSURE = 0.25  # of a correction, measured for hidden caps and for summits between pixels
 _ORDER = 3  # what is lost goes as the square of the pixel: of two pixels less one, a third is lost by one
@@ -176,7 +176,7 @@ def _also(pair: tuple[float, float], correction: float) -> tuple[float, float]:
 def by_caps(counted: SummitSums, blur: float) -> Pairs | None:
     """Independent caps of one radius, those under taller ones added; None if they would not look like this.
 
-    All caps have one radius, so the median tells it: a few summits next to a valley do not.
+    All caps have one radius, which is the median: a few summits next to a valley do not.
 
     Parameters
     ----------

@@ -277,7 +277,7 @@ def _check_sigma(estimates: dict[str, Estimate], peak_to_valley: float) -> None:
         if not estimate.sigma.value <= peak_to_valley:
             raise ValueError(
                 f"sigma of {METHODS[name]} is {estimate.sigma.value:.4g} m, more than the peak to valley of "
-                f"the map, {peak_to_valley:.4g} m; look at the map, and crop what does not belong to it"
+                f"the map, {peak_to_valley:.4g} m; look at the map, and crop artefacts"
             )
 
 

@@ -33,7 +33,7 @@ _GRAVEST = (
 def _units(topography: Topography) -> Iterator[str]:
     if topography.steepness > STEEPEST:
         yield (
-            f"slope: {topography.steepness:.3g} is usual on this map; are heights or pixel in another unit?"
+            f"slope: {topography.steepness:.3g} is typical of this map; are heights or pixel in another unit?"
         )
     if max(topography.pixel) > _WIDEST:
         yield f"unit: a pixel is {max(topography.pixel):g} m; was um or mm meant?"
@@ -42,7 +42,7 @@ def _units(topography: Topography) -> Iterator[str]:
 def _edges(topography: Topography) -> Iterator[str]:
     if number := bad_edges(topography.heights):
         points = "outermost points" if number == 1 else f"outermost {number} points"
-        yield f"edge: the {points} of the map jump unlike all others; leave them off by --trim {number}"
+        yield f"edge: the {points} of the map jump more than all others; remove them with --trim {number}"
 
 
 def _spikes(topography: Topography) -> Iterator[str]:
@@ -53,8 +53,8 @@ def _spikes(topography: Topography) -> Iterator[str]:
     kind = "high" if spikes.height > 0 else "deep"
     yield (
         f"spikes: {places} out of the map, the largest at x = {spikes.x:.4g} m, y = {spikes.y:.4g} m, "
-        f"{abs(spikes.height):.3g} m {kind} and narrower than five pixels; one alone can set R, eta and "
-        "sigma: take them out by --spikes remove, or crop the map"
+        f"{abs(spikes.height):.3g} m {kind} and narrower than five pixels; a single one can dominate R, eta "
+        "and sigma: use --spikes remove, or crop the map"
     )
 
 
@@ -67,8 +67,8 @@ def _alone(fit: Fit, topography: Topography) -> Iterator[str]:
         for axis, size, n in zip("xy", topography.size, (alone.column, alone.row), strict=True)
     )
     yield (
-        f"sub-area: without the one at {', '.join(place)} {alone.moment} is {alone.left:.2g} of itself; the "
-        "errors stated say little where one sub-area counts alone: look there, and crop it"
+        f"sub-area: without the one at {', '.join(place)} {alone.moment} is {alone.left:.2g} times as large; "
+        "the stated errors are unreliable if one sub-area dominates: check it, and crop it"
     )
 
 
@@ -78,7 +78,7 @@ def _step(topography: Topography) -> list[str]:
         return []
     return [
         f"step: two levels {step.height:.3g} m apart meet near {step.axis} = {step.place:.3g} m; keep the "
-        "larger terrace by --step crop"
+        "larger terrace with --step crop"
     ]
 
 
@@ -88,8 +88,8 @@ def _form(fit: Fit, topography: Topography) -> list[str]:
         return []
     kind = "a tilt or a curved form" if fit.form == "none" else "a curved form"
     return [
-        f"form: {kind} of {left.height:.3g} m from peak to valley was left and holds "
-        f"{100 * left.share:.0f} % of the variance; give --form {left.form}"
+        f"form: {kind} of {left.height:.3g} m from peak to valley remains, {100 * left.share:.0f} % of the "
+        f"variance; give --form {left.form}"
     ]
 
 
@@ -98,13 +98,14 @@ def _waves(fit: Fit) -> list[str]:
     if number >= _FEW_WAVES:
         return []
     return [
-        f"waves: the longest are so few that m0 is known as from {number:.2g} heights: sigma may be another "
-        f"one elsewhere, by {100 * fit.waves.spreads['sigma'].error:.2g} % or more; give a longer map"
+        f"waves: the map has few of the longest waves, equivalent to {number:.2g} independent heights: sigma "
+        f"may differ elsewhere by {100 * fit.waves.spreads['sigma'].error:.2g} % or more; measure a longer "
+        f"map"
     ]
 
 
 def cautions(fit: Fit, ready: Prepared, use: str = "auto") -> list[str]:
-    """Warnings about the fit of a map, and the estimate to `use`: a line each, the gravest first."""
+    """Warnings about the fit of a map, and the estimate to `use`: a line each, the most serious first."""
     level = ready.levelled
     return _gravest_first(
         [
@@ -134,14 +135,14 @@ def _of_the_pixel(fit: Fit, ready: Prepared) -> list[str]:
     pixel, cutoff = max(ready.used.pixel), ready.asked.cutoff
     if cutoff is not None and cutoff < _PIXELS * pixel:
         return [
-            f"cutoff: {cutoff / pixel:.3g} pixels a wavelength; below {_PIXELS:g} the pixel sets eta and R, "
-            "not the specimen; give a longer cutoff or finer pixels"
+            f"cutoff: {cutoff / pixel:.3g} pixels per wavelength; below {_PIXELS:g} the pixel determines eta "
+            "and R, not the specimen; use a longer cutoff or finer pixels"
         ]
     more = fit.mean_squares["bend"] / fit.mean_squares["bend_1"] - 1
     if more > _RESOLVED:
         return [
-            f"pixel: m4 by differences of fourth order is {100 * more:.2g} % above that by plain ones; it "
-            f"has a say in m4, R and eta; give a cutoff of {_longer(ready):.3g} pixels or more"
+            f"pixel: m4 by differences of fourth order is {100 * more:.2g} % above that by plain ones, so "
+            f"the pixel affects m4, R and eta; use a cutoff of {_longer(ready):.3g} pixels or more"
         ]
     return []
 
@@ -150,43 +151,44 @@ def _of_the_heights(fit: Fit) -> Iterator[str]:
     skewness, error = fit.skewness
     if abs(skewness) > max(_SKEW, 3 * error):
         yield (
-            f"skewness: {skewness:.2f} of the heights; spectral moments tell of summits for Gaussian heights "
-            "only; take them as they are (--heights summits)"
+            f"skewness: {skewness:.2f} of the heights; spectral moments give the summits of Gaussian heights "
+            "only; use the measured summits (--heights summits)"
         )
     if fit.alpha.value < _ALPHA:
         yield f"alpha: {fit.alpha.value:.3g} is below 1.5, which no isotropic Gaussian surface has"
     if fit.lay > _STREAKY:
         yield (
-            f"lay: mean square slopes across and along it have the ratio {fit.lay:.3g}; it is not isotropic"
+            f"lay: mean square slopes across and along it have the ratio {fit.lay:.3g}; the map is not "
+            f"isotropic"
         )
 
 
 def _of_the_summits(fit: Fit, used: str) -> Iterator[str]:
     if fit.agreement is not None and fit.agreement > _APART:
         yield (
-            f"estimates: moments and counted summits are {fit.agreement:.3g} times apart, as no isotropic "
-            "Gaussian map's; take the summits as they are (--heights summits)"
+            f"estimates: moments and counted summits differ by a factor of {fit.agreement:.3g}, unlike on an "
+            "isotropic Gaussian map; use the measured summits (--heights summits)"
         )
     if fit.summits.size < _FEW:
-        yield f"summits: only {fit.summits.size} were found; give a larger map or a shorter cutoff"
+        yield f"summits: only {fit.summits.size} found; use a larger map or a shorter cutoff"
     overlap = fit.estimates[used].overlap
     if used == "caps" and fit.visible is not None:
         sharp = visible(overlap).share
         lost = sharp - fit.visible.share
         if lost > _LOST:
             yield (
-                f"blur: {100 * lost:.0f} % of caps like these are lost where a valley is nearer than a pixel "
-                "or a third of a cutoff; give finer pixels, and a shorter cutoff"
+                f"blur: {100 * lost:.0f} % of such caps are lost, where a valley is nearer than a pixel or a "
+                "third of a cutoff; use finer pixels and a shorter cutoff"
             )
-        hidden = f" of caps like these {100 * (1 - sharp):.0f} % hide under others,"
+        hidden = f" {100 * (1 - sharp):.0f} % of such caps are hidden under others,"
     else:
         hidden = " summits are as broad as they are far apart,"
     if overlap > CROWDED:
-        yield f"overlap: eta R sigma = {overlap:.2g};{hidden} so asperities do not act one by one"
+        yield f"overlap: eta R sigma = {overlap:.2g};{hidden} so asperities are not independent"
 
 
 def profile_cautions(fit: ProfileFit, profiles: Sequence[Profile], cutoff: float | None) -> list[str]:
-    """Warnings about the fit of these profiles, the gravest first."""
+    """Warnings about the fit of these profiles, the most serious first."""
     return _gravest_first([*_of_profile_points(profiles, cutoff), *_of_profile_heights(fit)])
 
 
@@ -196,30 +198,30 @@ def _of_profile_points(profiles: Sequence[Profile], cutoff: float | None) -> Ite
         yield f"missing: {filled} of {points} heights lie on straight lines between their neighbours"
     spacing = max(p.spacing for p in profiles)
     if any(p.resampled for p in profiles):
-        yield "x: the points were not evenly spaced; heights between them were interpolated"
+        yield "x: the points were not evenly spaced; heights were interpolated"
     if cutoff is None:
         yield (
-            "cutoff: none, so that noise and the tip set m4, R and eta; give ten points "
-            f"({10 * spacing:.2g} m) or more, and no less than the radius of the tip"
+            "cutoff: none, so noise and the tip determine m4, R and eta; give ten points "
+            f"({10 * spacing:.2g} m) or more, and at least the radius of the tip"
         )
     elif cutoff < _PIXELS * spacing:
         yield (
-            f"cutoff: {cutoff / spacing:.3g} points a wavelength; below {_PIXELS:g} the spacing sets eta and "
-            "R, not the specimen; give a longer cutoff"
+            f"cutoff: {cutoff / spacing:.3g} points per wavelength; below {_PIXELS:g} the spacing determines "
+            "eta and R, not the specimen; use a longer cutoff"
         )
 
 
 def _of_profile_heights(fit: ProfileFit) -> Iterator[str]:
     if abs(fit.roughness.sk) > max(_SKEW, 6 * fit.numbers["m0"].relative):
         yield (
-            f"skewness: {fit.roughness.sk:.2f} of the heights; moments tell of summits for Gaussian heights "
-            "only; measure a map, and count them"
+            f"skewness: {fit.roughness.sk:.2f} of the heights; moments give the summits of Gaussian heights "
+            "only; measure a map and count its summits"
         )
     counted, expected = fit.peaks
     if not 1 / _PEAKS < counted / expected < _PEAKS:
         yield (
-            f"peaks: {counted:.3g} a metre are counted, and {expected:.3g} follow from the profile's own "
-            "moments; it is not Gaussian, or noise makes peaks: measure a map"
+            f"peaks: {counted:.3g} per metre counted, but {expected:.3g} expected from the moments of the "
+            "profile; it is not Gaussian, or noise makes peaks: measure a map"
         )
     if fit.moments.alpha < _ALPHA:
         yield (
@@ -228,6 +230,6 @@ def _of_profile_heights(fit: ProfileFit) -> Iterator[str]:
         )
     if (error := fit.numbers["sigma"].relative) >= _UNSURE:
         yield (
-            f"waves: sigma is known to {100 * error:.2g} % only, since the longest are few; give "
-            "longer profiles, or more of them"
+            f"waves: sigma is known to {100 * error:.2g} % only, because there are few of the longest waves; "
+            "give longer profiles, or more of them"
         )

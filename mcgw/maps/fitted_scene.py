@@ -35,7 +35,7 @@ def fitted_scene(
     Parameters
     ----------
     fit : Fit or ProfileFit
-        With the estimate that is asked for; profiles have one alone.
+        With the requested estimate; profiles have only one.
     use : {"auto", "moments", "summits", "caps"}
         Which estimate; ``auto`` is `Fit.best`, and with heights of their own the counted summits. With
         measured heights sigma is that of the heights.
@@ -44,17 +44,17 @@ def fitted_scene(
         summits have radii of their own; ``measured`` makes an ensemble of the one surface there is, and so
         does ``summits``, each with its own height and radius.
     E_star : float or str
-        Composite modulus, which no map tells, Pa or as "78.6 GPa".
+        Composite modulus, which does not follow from a map, Pa or text such as "78.6 GPa".
     title : str
         For people.
     **changes
-        What else the scene is to have, as a grading, a film, or a larger nominal_area with more of the same
+        Other arguments of the scene, such as a grading, a film, or a larger nominal_area with more
         summits: see `mcgw.Scene.replace`.
 
     Returns
     -------
     Scene
-        On the area that was looked at, if no other is given.
+        On the area of the map, if no other is given.
 
     Raises
     ------
@@ -77,8 +77,8 @@ def fitted_scene(
     """
     if heights in ("measured", "summits") and changes.get("nominal_area") is not None:
         raise ValueError(
-            f'nominal_area = {changes["nominal_area"]!r}: heights = "{heights}" are the very summits of the '
-            'map, on its own area; leave it out, or take heights = "table"'
+            f'nominal_area = {changes["nominal_area"]!r}: heights = "{heights}" uses the measured '
+            'summits on the area of the map; leave it out, or use heights = "table"'
         )
     if use == "auto":
         use = _best(fit, heights)
@@ -94,7 +94,7 @@ def _best(fit: Fit | ProfileFit, heights: Heights) -> str:
 
 
 def _uncertainty(fit: Fit | ProfileFit, use: str, heights: Heights) -> Uncertainty | None:
-    """Standard errors of what the scene takes of the fit; the very summits are as they are.
+    """Standard errors of what the scene takes of the fit; measured summits are as they are.
 
     They go together as those of the moments do over maps, whatever the estimate.
     """
@@ -125,8 +125,8 @@ def _as_fitted(fit: Fit | ProfileFit, use: str, heights: Heights, modulus: float
     """The scene with nothing but what the fit tells; profiles stand for a square as long as they are."""
     if isinstance(fit, ProfileFit) and (use == "caps" or heights not in ("gaussian", "nayak")):
         raise ValueError(
-            f'use = "{use}", heights = "{heights}": profiles show no summits; they give moments, and '
-            "gaussian heights or nayak"
+            f'use = "{use}", heights = "{heights}": profiles do not show summits, only '
+            'moments; use heights = "gaussian" or "nayak"'
         )
     if heights == "nayak":
         if use != "moments":
@@ -135,7 +135,7 @@ def _as_fitted(fit: Fit | ProfileFit, use: str, heights: Heights, modulus: float
         return _scene(surface, title, heights=law, curvature=RandomCurvature(law.alpha))
     if heights != "summits" and use not in fit.estimates:
         raise ValueError(
-            f"use = {use!r}: there is no such estimate of this map; {', '.join(fit.estimates)} are"
+            f"use = {use!r}: this map has no such estimate; give one of {', '.join(fit.estimates)}"
         )
     if isinstance(fit, Fit) and heights != "gaussian":
         return _of_summits(fit, use, heights, modulus, title)
@@ -158,7 +158,7 @@ def _of_summits(fit: Fit, use: str, heights: Heights, modulus: float, title: str
     elif use == "summits":
         radius = fit.estimates[use].radius.value
     else:
-        raise ValueError(f'use = "{use}": measured heights as they are need "summits", their own number')
+        raise ValueError(f'use = "{use}": measured heights as they are need use = "summits"')
     surface = Surface(
         sigma, radius, z.size / fit.area, fit.area, modulus
     )  # those between pixels have no heights

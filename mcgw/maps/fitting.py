@@ -41,29 +41,29 @@ def fit(
         A file (SDF, X3P, .npy, .h5, text, or whatever SurfaceTopography reads), or a map in memory; or
         profiles, one or a list: text of x and z, or any file that holds heights along a line.
     cutoff : float, str or None
-        Shortest wavelength that counts (Gaussian filter, ISO 16610-61), m or as "5 um"; None or "none": as
-        measured.
+        Shortest wavelength of the roughness (Gaussian filter, ISO 16610-61), m or text such as "5 um";
+        None or "none": as measured.
     form : {"plane", "none", "quadratic", "cubic", "quartic", "sphere", "cylinder"}, optional
-        What is taken off first.
+        Form to remove first.
     missing : {"auto", "mask", "fill"}, optional
-        Missing points are filled from the edges of their holes. With ``mask`` neither they nor points whose
-        neighbours are missing count; with ``fill`` all do; ``auto`` masks them while half of the measured
-        points is left. ``notes`` of the fit say what was done.
+        Missing points are filled from the edges of their holes. ``mask`` ignores them and points next to
+        them; ``fill`` uses them; ``auto`` masks them if half of the measured points remain. ``notes`` of
+        the fit state what was done.
     spikes : {"keep", "remove"}, optional
-        Whether points that stand out of the map, or bend unlike all others, become missing ones.
+        Whether to remove points that stand out of the map, or have extreme curvature.
     step : {"keep", "crop"}, optional
-        Whether of two terraces only the larger one is kept.
+        Whether to keep only the larger of two terraces.
     trim : int, optional
-        Points that are left off along each edge.
+        Number of points to remove along each edge.
     long_cutoff : float, str or None, optional
-        Longest wavelength that counts, m or as "80 um"; None: as measured.
+        Longest wavelength of the roughness, m or text such as "80 um"; None: as measured.
     lines : {"keep", "rows", "columns"}, optional
-        Whether offsets between rows, or columns, are taken off, as of a scan line by line.
+        Whether to remove offsets between rows or columns, as from a line scan.
     parts : int, optional
-        Sub-areas along each axis, whose differences tell the errors; at least 2, and fewer where summits
-        are few.
+        Number of sub-areas along each axis, to estimate errors; at least 2, and fewer if there are few
+        summits.
     pixel : float or str, optional
-        Size of a pixel, m or as "1 um", where the file does not tell it.
+        Size of a pixel, m or text such as "1 um", where the file does not tell it.
     unit : str, optional
         Of the heights, as "um", where the file does not tell it.
     profile : bool, optional
@@ -72,15 +72,14 @@ def fit(
     Returns
     -------
     Fit or ProfileFit
-        Estimates by all methods (of profiles there is one), and the reasons not to trust them;
-        `mcgw.fitted_scene` makes a scene of it.
+        Estimates by all methods (one for profiles) with cautions; `mcgw.fitted_scene` makes a scene from it.
 
     Raises
     ------
     SceneError
         If an argument is wrong.
     ValueError
-        If the file cannot be read, or the map tells nothing.
+        If the file cannot be read, or the map is not usable.
 
     Examples
     --------
@@ -144,7 +143,9 @@ def fit_lines(
     plain = Preparation(asked.cutoff, asked.form)
     for field in fields(asked):
         if getattr(asked, field.name) != getattr(plain, field.name):
-            raise ValueError(f"--{field.name.replace('_', '-')}: is for maps; prepare a profile before")
+            raise ValueError(
+                f"--{field.name.replace('_', '-')}: is for maps only; prepare the profile before"
+            )
     profiles = [
         p if isinstance(p, Profile) else read_profile(Path(p), spacing=spacing, unit=unit) for p in sources
     ]

@@ -59,9 +59,9 @@ def read_foreign(path: Path, pixel: tuple[float, float] | None = None, unit: str
         metre, assumed = height_unit(path, found["unit"], unit)  # of lengths along x and y too
         told = found["pixel"]
         if told and pixel is not None:
-            raise ValueError(f"{path}: tells the size of a pixel itself; leave --pixel out")
+            raise ValueError(f"{path}: gives the size of a pixel; leave --pixel out")
         if not told and pixel is None:
-            raise ValueError(f"{path}: does not tell the size of a pixel; give --pixel")
+            raise ValueError(f"{path}: does not give the size of a pixel; give --pixel")
         dx, dy = pixel or (p * metre for p in told)
         z = np.array(open_npy(Path(folder) / _HEIGHTS), dtype=np.float64, order="C")
     z *= metre
@@ -95,8 +95,8 @@ def _read(path: Path, folder: Path, what: str = "all") -> dict[str, Any]:
     """Facts about a file, whose heights are written to a folder, if not its kind alone is asked for."""
     if find_spec("SurfaceTopography") is None:
         raise UnreadableError(
-            f"{path}: {path.suffix or 'no ending'} is not read here; install SurfaceTopography "
-            "(the extra mcgw[maps]), or save it as SDF, X3P, .npy or text"
+            f"{path}: {path.suffix or 'no ending'} is not a known format; install SurfaceTopography (the "
+            "extra mcgw[maps]), or save it as SDF, X3P, .npy or text"
         )
     try:
         return _from_child(path, folder, what)

@@ -96,8 +96,8 @@ def smooth(topography: Topography, cutoff: float) -> Topography:
         raise ValueError(f"cutoff = {cutoff:g} m: longer than the map of {columns * dx:g} x {rows * dy:g} m")
     if not topography.periodic and (2 * radius[0] + 8 > rows or 2 * radius[1] + 8 > columns):
         raise ValueError(
-            f"cutoff = {cutoff:g} m: leaves nothing of a map of {columns * dx:g} x {rows * dy:g} m "
-            "without its margin of one cutoff"
+            f"cutoff = {cutoff:g} m: leaves nothing of a map of {columns * dx:g} x {rows * dy:g} m after "
+            "removing a margin of one cutoff"
         )
     if topography.periodic:
         return replace(topography, heights=np.ascontiguousarray(lowpass(topography, cutoff)))

@@ -160,37 +160,37 @@ def _filled(ready: Prepared) -> float:
 CHECKS = (
     Check(
         "range", _at_end, 1e-3,
-        "{share:.2g} % of the points have one height, the greatest or the least of all, as where the range "
-        "of an instrument ends: summits are cut off; give a larger range, or --use moments, which lose less",
+        "{share:.2g} % of the points have the same extreme height, as if the range of the instrument cut off "
+        "summits; measure with a larger range, or use --use moments, which is affected less",
     ),
     Check(
         "rounding", _rounding, 0.05,
-        "heights are whole steps of {step:.3g} m, whose rounding makes {share:.2g} % of m4, and summits that "
-        "are none; give --cutoff of {pixels:.3g} pixels or more",
+        "heights are multiples of {step:.3g} m; this rounding makes {share:.2g} % of m4, and false summits; "
+        "use --cutoff of {pixels:.3g} pixels or more",
     ),
     Check(
         "lines", _lines(0), 0.05,
-        "offsets between rows, as of a scan line by line, hold {share:.2g} % of the bends across them; level "
-        "them by --lines rows",
+        "offsets between rows, as in a line scan, make {share:.2g} % of the curvature across them; level "
+        "them with --lines rows",
     ),
     Check(
         "lines", _lines(1), 0.05,
-        "offsets between columns, as of a scan line by line, hold {share:.2g} % of the bends across them; "
-        "level them by --lines columns",
+        "offsets between columns, as in a line scan, make {share:.2g} % of the curvature across them; level "
+        "them with --lines columns",
     ),
     Check(
         "tip", _tip, 0.05,
-        "valleys are sharper than summits (curvatures have the skewness {value:.2g} at least), as under a "
-        "blunt tip, or between caps; unless these are caps, give --cutoff of five times the tip's width",
+        "valleys are sharper than summits (curvatures have the skewness {value:.2g} at least), as from a "
+        "blunt tip, or between caps; unless these are caps, use --cutoff of five times the width of the tip",
     ),
     Check(
         "holes", _filled, 0.01,
-        "{share:.2g} % of the points were missing, and what filled them counts: a film has blunter summits; "
-        "give --missing mask, or a longer --cutoff",
+        "{share:.2g} % of the points were missing and filled smoothly, which makes summits blunter; use "
+        "--missing mask, or a longer --cutoff",
     ),
     Check(
         "bends", _outliers, 0.05,
-        "{share:.2g} % of m4 lies in points that bend more than seven deviations, as small spikes do; take "
-        "them out by --spikes remove, or give --cutoff of {pixels:.3g} pixels or more",
+        "{share:.2g} % of m4 comes from points whose curvature exceeds seven deviations, as in small spikes; "
+        "use --spikes remove, or --cutoff of {pixels:.3g} pixels or more",
     ),
 )  # fmt: skip

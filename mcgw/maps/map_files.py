@@ -73,9 +73,9 @@ def _sidecar(path: Path) -> tuple[tuple[float, float], bool, str | None]:
     """Pixel, whether the map is periodic, and the unit of heights."""
     beside = sidecar_of(path)
     if not beside.is_file():
-        raise ValueError(f"{path}: no {beside.name} beside it tells the size of a pixel; give --pixel")
+        raise ValueError(f"{path}: there is no {beside.name} with the size of a pixel; give --pixel")
     if beside.stat().st_size > _MOST_JSON:
-        raise ValueError(f"{beside}: longer than {_MOST_JSON} bytes, which no sidecar is")
+        raise ValueError(f"{beside}: longer than {_MOST_JSON} bytes, too long for a sidecar")
     try:
         facts: Any = json.loads(beside.read_text(encoding="utf-8"))
         pixel, periodic, unit = facts["pixel"], facts.get("periodic", False), facts.get("unit")
@@ -135,7 +135,7 @@ def read_h5(path: Path, unit: str | None = None) -> Topography:
         If it is not one, or damaged.
     """
     if not h5py.is_hdf5(path):
-        raise ForeignError(f"{path}: is not a sound HDF5 file")
+        raise ForeignError(f"{path}: is not a valid HDF5 file")
     try:
         with h5py.File(path, "r") as file:
             if file.attrs.get("filetype") != _FILETYPE:
@@ -178,7 +178,7 @@ def write_map(
         case ".h5":
             write_h5(topography, path, field, scene=scene)
         case _:
-            raise ValueError(f"{path}: the ending chooses the format; give one of {', '.join(WRITTEN)}")
+            raise ValueError(f"{path}: the ending determines the format; give one of {', '.join(WRITTEN)}")
     return files_of_map(path)
 
 
@@ -214,8 +214,8 @@ def read_map(path: Path, *, pixel: tuple[float, float] | None = None, unit: str 
         topography = _read(path, pixel, unit)
     if topography.assumed_unit and topography.steepness > STEEPEST:
         raise ValueError(
-            f"{path}: tells no unit of its heights, and in {topography.assumed_unit} their usual slope is "
-            f"{topography.steepness:.3g}; give --unit (um, nm, ...), or another --pixel"
+            f"{path}: gives no unit of its heights, and in {topography.assumed_unit} their typical slope "
+            f"would be {topography.steepness:.3g}; give --unit (um, nm, ...), or another --pixel"
         )
     return topography
 
@@ -257,5 +257,5 @@ def _otherwise(
 def _told(path: Path, pixel: tuple[float, float] | None, found: Topography) -> Topography:
     """A map whose file told the size of a pixel."""
     if pixel is not None:
-        raise ValueError(f"{path}: tells the size of a pixel itself; leave --pixel out")
+        raise ValueError(f"{path}: gives the size of a pixel; leave --pixel out")
     return found

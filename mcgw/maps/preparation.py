@@ -1,4 +1,4 @@
-"""What is done to a measured map before it is looked at, step by step, each with a line that tells it."""
+"""What is done to a measured map before it is looked at, step by step, each with a line about it."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
@@ -111,18 +111,18 @@ def prepared(topography: Topography, asked: Preparation) -> Prepared:
     if asked.step == "crop":
         kept = _terrace(kept, notes)
     if not np.nanmax(kept.heights) - np.nanmin(kept.heights) > SMALLEST:
-        raise ValueError("the map is flat: there is no roughness to fit")
+        raise ValueError("the map is flat, without roughness")
     seen_by = recorded(kept.heights)
     if asked.lines != "keep":
         kept, offsets = without_offsets(kept, asked.lines)
-        notes.append(f"lines: offsets of {asked.lines} taken off, {offsets:.3g} m rms")
+        notes.append(f"lines: offsets of {asked.lines} removed, {offsets:.3g} m rms")
     level, holes = _levelled(kept, asked, notes)
     del kept
     used = level
     if asked.long_cutoff is not None:
         used = replace(used, heights=used.heights - lowpass(used, asked.long_cutoff))
         notes.append(
-            f"long cutoff: waves longer than {asked.long_cutoff:g} m taken off (Gaussian, ISO 16610-61)"
+            f"long cutoff: waves longer than {asked.long_cutoff:g} m removed (Gaussian, ISO 16610-61)"
         )
     if asked.cutoff is not None:
         used = smooth(used, asked.cutoff)
@@ -137,7 +137,7 @@ def _trimmed(topography: Topography, trim: int, notes: list[str]) -> Topography:
     rows, columns = topography.heights.shape
     if 2 * trim >= min(rows, columns):
         raise ValueError(f"trim = {trim}: leaves nothing of {columns} x {rows} points")
-    notes.append(f"trim: {trim} points left off along each edge")
+    notes.append(f"trim: {trim} points removed along each edge")
     return replace(topography, heights=topography.heights[trim:-trim, trim:-trim], periodic=False)
 
 
@@ -147,11 +147,11 @@ def _within(topography: Topography, notes: list[str]) -> Topography:
     if there.all():
         return topography
     if not there.any():
-        raise ValueError(f"the map lacks all of its {there.size} points")
+        raise ValueError(f"all {there.size} points of the map are missing")
     (j0, j1), (i0, i1) = (np.flatnonzero(there.any(axis=axis))[[0, -1]] for axis in (1, 0))
     box = topography.heights[j0 : j1 + 1, i0 : i1 + 1]
     if box.size < there.size:
-        notes.append(f"edges: {box.shape[1]} x {box.shape[0]} points kept, beyond which all are missing")
+        notes.append(f"edges: {box.shape[1]} x {box.shape[0]} points kept; all points outside are missing")
         return replace(topography, heights=box, periodic=False)
     return topography
 
@@ -161,7 +161,7 @@ def _terrace(topography: Topography, notes: list[str]) -> Topography:
     whole = replace(topography, heights=filled(without_form(topography, "plane").heights))
     step = step_of(whole)
     if step is None:
-        notes.append("step: none was found, nothing cropped")
+        notes.append("step: none found, nothing cropped")
         return topography
     along = "xy".index(step.axis)
     size, pixel, n = topography.size[along], topography.pixel[along], topography.heights.shape[1 - along]
@@ -169,7 +169,7 @@ def _terrace(topography: Topography, notes: list[str]) -> Topography:
     part = slice(0, round(step.begin / pixel)) if first else slice(round(step.end / pixel), n)
     heights = topography.heights[:, part] if along == 0 else topography.heights[part]
     if min(heights.shape) < 1:
-        raise ValueError("step: no side of it is large enough to be kept; crop the map by hand")
+        raise ValueError("step: neither side is large enough; crop the map by hand")
     end = f"up to {step.begin:.4g}" if first else f"from {step.end:.4g}"
     notes.append(
         f"step: {step.height:.3g} m near {step.axis} = {step.place:.4g} m; only the map {end} m kept"
@@ -185,7 +185,7 @@ def _levelled(
     for _ in range(_ROUNDS):
         plain = without_form(kept, asked.form)
         if plain.highest < _ROUNDING * kept.highest:
-            raise ValueError(f"the map is flat without its form ({asked.form}): there is no roughness to fit")
+            raise ValueError(f"the map is flat after removing its form ({asked.form})")
         whole = replace(plain, heights=filled(plain.heights))
         if asked.spikes == "keep":
             break
@@ -198,7 +198,7 @@ def _levelled(
         around = ndimage.binary_dilation(above != 0, np.ones((3, 3), dtype=np.bool_))
         kept = replace(kept, heights=np.where(around, np.nan, kept.heights))
     if asked.spikes == "remove":
-        notes.append(f"spikes: {number} places taken out" + (f", up to {largest:.3g} m" if number else ""))
+        notes.append(f"spikes: {number} places removed" + (f", up to {largest:.3g} m" if number else ""))
     holes = ~np.isfinite(kept.heights)
     return whole, holes if holes.any() else None
 
@@ -218,9 +218,9 @@ def _seen(topography: Topography, holes: Marks, asked: Preparation, notes: list[
         why = (
             "" if asked.missing == "fill" else f": only {100 * left:.2g} % of the others have all neighbours"
         )
-        notes.append(f"{told}, and counted like others{why}")
+        notes.append(f"{told}, and used like the others{why}")
         return None
     notes.append(
-        f"{told}; neither they nor their neighbours count: {100 * whole.mean():.3g} % of the map does"
+        f"{told}; they and their neighbours are ignored, which leaves {100 * whole.mean():.3g} % of the map"
     )
     return seen

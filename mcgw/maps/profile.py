@@ -53,7 +53,7 @@ class Profile:
         if self.heights.size < _LEAST:
             raise ValueError(f"{self.heights.size} points: a profile has {_LEAST} or more")
         if not np.all(np.isfinite(self.heights)):
-            raise ValueError("the profile lacks points (nan): fill them in first")
+            raise ValueError("points of the profile are missing (nan); fill them first")
         if not (math.isfinite(self.spacing) and self.spacing > 0):
             raise ValueError(f"spacing = {self.spacing!r}: give a length > 0 m")
 
@@ -73,7 +73,7 @@ class Profile:
         if not self.assumed_unit:
             return ""
         if self.steepness > STEEPEST:
-            return f"the usual slope is {self.steepness:.3g}"
+            return f"the typical slope is {self.steepness:.3g}"
         if self.spacing > _WIDEST:
             return f"the points are {self.spacing:g} m apart"
         return f"it is {self.length:.3g} m long" if self.length > _LONGEST else ""
@@ -104,7 +104,7 @@ def profile_at(places: Array, heights: Array, assumed_unit: str = "") -> Profile
     places, heights, known = places[first:last], heights[first:last], known[first:last]
     missing = int(np.count_nonzero(~known))
     if missing > _MOST_MISSING * known.size:
-        raise ValueError(f"the profile lacks {missing} of its {known.size} heights: measure it again")
+        raise ValueError(f"{missing} of the {known.size} heights are missing; measure the profile again")
     if places.size > 1 and places[-1] < places[0]:
         places, heights, known = places[::-1], heights[::-1], known[::-1]
     if places.size < _LEAST:
@@ -113,7 +113,8 @@ def profile_at(places: Array, heights: Array, assumed_unit: str = "") -> Profile
     if not np.all(steps > 0):
         k = int(np.argmin(steps))
         raise ValueError(
-            f"x = {places[k]:g} m is followed by {places[k + 1]:g} m; give x that rises or falls"
+            f"x = {places[k]:g} m is followed by {places[k + 1]:g} m; give x in increasing or decreasing "
+            f"order"
         )
     even = np.linspace(places[0], places[-1], places.size)
     spacing = float(even[1] - even[0])
@@ -142,8 +143,8 @@ def smooth_profile(profile: Profile, cutoff: float) -> Profile:
     radius = math.ceil(cutoff / profile.spacing)
     if 2 * radius + _LEAST > profile.heights.size:
         raise ValueError(
-            f"cutoff = {cutoff:g} m: leaves nothing of a profile of {profile.length:g} m without its margins "
-            "of one cutoff"
+            f"cutoff = {cutoff:g} m: leaves nothing of a profile of {profile.length:g} m after removing "
+            "margins of one cutoff"
         )
     width = math.sqrt(filter_variance(cutoff)) / profile.spacing
     smoothed = gaussian_filter1d(profile.heights, width, radius=radius)

@@ -93,9 +93,9 @@ def read_profile_text(path: Path, spacing: float | None = None, unit: str | None
     told = _units(table.header, values.shape[1])
     metre, assumed = height_unit(path, told[-1], unit)
     if values.shape[1] == 1 and spacing is None:
-        raise ValueError(f"{path}: has one column, of heights; give --pixel, the distance of two points")
+        raise ValueError(f"{path}: has only a column of heights; give --pixel, the distance between points")
     if values.shape[1] > 1 and spacing is not None and told[0] is not None:
-        raise ValueError(f"{path}: tells x in {told[0]} itself; leave --pixel out")
+        raise ValueError(f"{path}: gives x in {told[0]}; leave --pixel out")
     if spacing is not None:
         places = spacing * np.arange(len(values), dtype=np.float64)
     else:
@@ -118,7 +118,7 @@ def _table(path: Path) -> _Table:
         else:
             header.append(line)
             if len(header) > _MOST_HEADER:
-                raise ValueError(f"{path}: the first {_MOST_HEADER} lines are no numbers; is it a profile?")
+                raise ValueError(f"{path}: the first {_MOST_HEADER} lines are not numbers; is it a profile?")
     if not lines:
         raise ValueError(f"{path}: holds no numbers")
     return _Table(header, lines)
@@ -225,8 +225,8 @@ def read_profile(path: Path, *, spacing: float | None = None, unit: str | None =
     profile = _read(path, spacing, unit)
     if profile.doubtful:
         raise ValueError(
-            f"{path}: tells not all of its units, and in {profile.assumed_unit} {profile.doubtful}; give "
-            "--unit (um, nm, ...) of the heights, and --pixel, the distance of two points"
+            f"{path}: does not give all units, and in {profile.assumed_unit} {profile.doubtful}; give --unit "
+            "(um, nm, ...) of the heights, and --pixel, the distance between points"
         )
     return profile
 
@@ -238,7 +238,7 @@ def _read(path: Path, spacing: float | None, unit: str | None) -> Profile:
     if ending == ".npy":
         return _array(path, spacing, unit)
     if spacing is not None:
-        raise ValueError(f"{path}: tells the distance of its points itself; leave --pixel out")
+        raise ValueError(f"{path}: gives the distance between its points; leave --pixel out")
     return _profile(path, *read_foreign_line(path, unit))
 
 
@@ -247,7 +247,7 @@ def _array(path: Path, spacing: float | None, unit: str | None) -> Profile:
     if z.ndim != 1:
         raise ValueError(f"{path}: holds {z.ndim} dimensions; a profile has one")
     if spacing is None:
-        raise ValueError(f"{path}: does not tell the distance of its points; give --pixel")
+        raise ValueError(f"{path}: does not give the distance between its points; give --pixel")
     metre, assumed = height_unit(path, None, unit)
     return _profile(path, spacing * np.arange(z.size, dtype=np.float64), z * metre, assumed)
 

@@ -128,12 +128,12 @@ def fit_profiles(profiles: Sequence[Profile], *, cutoff: float | None, form: For
     if form not in PROFILE_ORDERS:
         raise ValueError(f"form = {form!r}: a profile has plane (a line), quadratic (a parabola) or none")
     if not profiles:
-        raise ValueError("no profile was given")
+        raise ValueError("give at least one profile")
     plain = [without_profile_form(p, form) for p in profiles]
     if not any(
         np.ptp(p.heights) > 1e-12 * np.abs(q.heights).max() for p, q in zip(plain, profiles, strict=True)
     ):
-        raise ValueError("the profile is flat: there is no roughness to fit")
+        raise ValueError("the profile is flat, without roughness")
     filtered = plain if cutoff is None else [smooth_profile(p, cutoff) for p in plain]
     pieces = math.ceil(_PIECES / len(profiles))
     shortest = min(p.heights.size for p in profiles)
@@ -162,14 +162,14 @@ def _checked(values: Array) -> SpectralMoments:
     """Moments that a surface can have."""
     if not np.all(values > 0):
         raise ValueError(
-            f"m0, m2, m4 = {', '.join(f'{v:.3g}' for v in values)}: not all are > 0, so that the profile is "
-            "too short for this cutoff, or of no isotropic surface; give a longer one"
+            f"m0, m2, m4 = {', '.join(f'{v:.3g}' for v in values)}: not all are > 0; the profile is too "
+            "short for this cutoff, or the surface is not isotropic; give a longer one"
         )
     moments = SpectralMoments(*values.tolist())
     if moments.alpha < _LEAST_ALPHA:
         raise ValueError(
-            f"m0 m4/m2^2 = {moments.alpha:.3g}, which no isotropic surface has (1.5 or more): it is turned "
-            "or ground in one direction, or the profile is too short"
+            f"m0 m4/m2^2 = {moments.alpha:.3g}, impossible for an isotropic surface (1.5 or more): the "
+            "surface has a lay, or the profile is too short"
         )
     return moments
 

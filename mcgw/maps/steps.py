@@ -30,16 +30,18 @@ class Step:
 
 
 STEPS = (
-    Step("cutoff", "shortest wavelength that counts, as 5um (Gaussian filter, ISO 16610-61); or none"),
-    Step("long_cutoff", "longest wavelength that counts, as 80um; default: all do"),
-    Step("form", "what is taken off", get_args(Form)),
+    Step(
+        "cutoff", "shortest wavelength of the roughness, such as 5um (Gaussian filter, ISO 16610-61); or none"
+    ),
+    Step("long_cutoff", "longest wavelength of the roughness, such as 80um; default: no limit"),
+    Step("form", "form to remove", get_args(Form)),
     Step(
         "missing",
-        "missing points are filled from the edges of their holes; mask: they and their neighbours do not "
-        "count, fill: they do; auto: mask, while half of the others are left",
+        "missing points are filled from the edges of their holes; mask: ignore them and their neighbours; "
+        "fill: use them; auto: mask if half of the other points remain",
         get_args(Missing),
     ),
-    Step("spikes", "whether points that stand out become missing", get_args(SpikesTo)),
-    Step("step", "whether of two terraces only the larger is kept", get_args(StepTo)),
-    Step("lines", "take off offsets between rows or columns, as of a scan line by line", get_args(LinesTo)),
+    Step("spikes", "remove points that stand out", get_args(SpikesTo)),
+    Step("step", "of two terraces, keep only the larger", get_args(StepTo)),
+    Step("lines", "remove offsets between rows or columns, as from a line scan", get_args(LinesTo)),
 )

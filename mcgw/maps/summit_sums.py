@@ -195,7 +195,7 @@ def summit_sums_of(topography: Topography, *, across: int = 4, seen: Marks | Non
     summits, part = np.empty((4, most)), np.empty(most, dtype=np.int64)
     found = _pass(z, mean, counts, *topography.pixel, across, sums, summits, part)
     if not sums[0].any():
-        raise ValueError("too many points are missing: none has all its neighbours; give --missing fill")
+        raise ValueError("too many points are missing, so none has all its neighbours; use --missing fill")
     if not (np.abs(sums) < LARGEST).all():  # alpha takes their squares
         raise ValueError(
             f"heights between {z.min() - mean:.3g} and {z.max() - mean:.3g} m about their mean, on pixels of "

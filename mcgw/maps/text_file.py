@@ -25,7 +25,7 @@ _MISSING = ("", "BAD", "---")
 
 
 def read_text(path: Path, pixel: tuple[float, float] | None = None, unit: str | None = None) -> Topography:
-    """Read a matrix of numbers, one row a line, parted by spaces, tabs, semicolons or commas; heights in m.
+    """Read a matrix of numbers, a row a line, separated by spaces, tabs, semicolons or commas; heights in m.
 
     Where something else parts the numbers of a line, a comma inside one is its decimal mark. Lines that
     begin with # are comments; of those that Gwyddion writes, ``Width``, ``Height`` and ``Value units``
@@ -75,7 +75,7 @@ def read_text(path: Path, pixel: tuple[float, float] | None = None, unit: str | 
     heights = np.ascontiguousarray(heights[:, int(open_left) : heights.shape[1] - int(open_right)])
     if pixel is None:
         if set(extent) != {"Width", "Height"}:
-            raise ForeignError(f"{path}: does not tell the size of a pixel; give --pixel")
+            raise ForeignError(f"{path}: does not give the size of a pixel; give --pixel")
         checked_shape(*heights.shape)
         pixel = extent["Width"] / heights.shape[1], extent["Height"] / heights.shape[0]
     return Topography(heights, pixel, assumed_unit=assumed)
@@ -103,17 +103,17 @@ def words_of(path: Path, number: int, line: str) -> list[str]:
         if all(_DECIMAL_COMMA.fullmatch(word) for word in words if "," in word):
             return [word.replace(",", ".") for word in words]
         raise ValueError(
-            f"{path}: line {number}: commas stand inside numbers and between them; part the numbers "
-            "by semicolons or tabs"
+            f"{path}: line {number}: commas are both inside and between numbers; separate the numbers by "
+            "semicolons or tabs"
         )
     if len(words) > 1 and any(_MORE_COMMAS.fullmatch(word) for word in words):
         raise ValueError(
-            f"{path}: line {number}: numbers are parted by commas and by something else; give one of them"
+            f"{path}: line {number}: numbers are separated by commas and by something else; use one separator"
         )
     words = _COMMA_TOO.split(line)
     if any(re.fullmatch(r"[-+]?0\d+", word) for word in words):
         raise ValueError(
-            f"{path}: line {number}: a number begins with 0; if commas are decimal marks, part the "
+            f"{path}: line {number}: a number begins with 0; if commas are decimal marks, separate the "
             "numbers by semicolons or tabs"
         )
     return words

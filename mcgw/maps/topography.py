@@ -104,7 +104,7 @@ def checked_shape(rows: int, columns: int, *, held: int | None = None) -> tuple[
         raise ValueError(f"{columns} x {rows} points: a map has one or more along each axis")
     if rows * columns > MOST_PIXELS:
         raise ValueError(
-            f"{columns} x {rows} points: more than the {MOST_PIXELS} that are read; crop it first"
+            f"{columns} x {rows} points: more than the maximum of {MOST_PIXELS}; crop the map first"
         )
     if held is not None and rows * columns > max(_SMALL, _PACKED * held):
         raise ValueError(f"{columns} x {rows} points: more than {held} bytes hold of a map")
@@ -116,8 +116,8 @@ def single_points(rows: int, columns: int) -> str:
     if not columns == XYZ < rows:
         return ""
     return (
-        f"three numbers a line, {rows} lines: x, y and z of single points are no map; give rows of heights "
-        "on a grid"
+        f"three numbers a line, {rows} lines: single points with x, y and z are not a map; give rows of "
+        "heights on a grid"
     )
 
 
@@ -144,5 +144,5 @@ def metres_in(path: Path, unit: str) -> float:
         If it is unknown.
     """
     if unit not in METRES:
-        raise ValueError(f"{path}: {unit!r} is not a unit of length known here: {', '.join(METRES)}")
+        raise ValueError(f"{path}: {unit!r} is not a known unit of length: {', '.join(METRES)}")
     return METRES[unit]

@@ -75,7 +75,7 @@ def read_x3p(path: Path) -> Topography:
         with zipfile.ZipFile(path) as archive:
             return _Reader(archive).topography()
     except (zipfile.BadZipFile, zlib.error, NotImplementedError, RuntimeError, EOFError) as error:
-        raise ValueError(f"{path}: is not a sound zip archive, as X3P files are: {error}") from None
+        raise ValueError(f"{path}: is not a valid zip archive, as X3P files are: {error}") from None
     except (ElementTree.ParseError, KeyError, ValueError) as error:
         reason = error.args[0] if isinstance(error, KeyError) else error
         raise ValueError(f"{path}: {reason}") from None
@@ -96,7 +96,7 @@ class _Reader:
         try:
             info = self.archive.getinfo(name)
         except KeyError:
-            raise ValueError(f"{name}: is missing in the archive") from None
+            raise ValueError(f"{name}: is missing from the archive") from None
         if info.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
             raise ValueError(f"{name}: is packed by method {info.compress_type}; only deflate is read")
         if wanted is None and info.file_size > _MOST_XML:

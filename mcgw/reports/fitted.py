@@ -14,9 +14,9 @@ from mcgw.maps.waves import Uncertain
 def map_line(name: str, asked: Preparation, assumed_unit: str) -> str:
     """Which map it was, its form and cutoff, and the unit that was taken where none was given."""
     filtered = "none" if asked.cutoff is None else f"{asked.cutoff:g} m (Gaussian, ISO 16610-61)"
-    line = f"{name}: form taken off: {asked.form}; cutoff: {filtered}"
+    line = f"{name}: form removed: {asked.form}; cutoff: {filtered}"
     if assumed_unit:
-        line += f"; heights taken in {assumed_unit}, since the file tells no unit"
+        line += f"; heights assumed in {assumed_unit}, since the file gives no unit"
     return line
 
 
@@ -28,21 +28,21 @@ def fit_lines(fit: Fit) -> list[str]:
         f"skewness {fit.skewness[0]:.2f} +- {fit.skewness[1]:.1g}",
         f"{fit.summits.size} summits on {fit.area:.4g} m^2, "
         f"on average {fit.mean_summit:.3g} m above the mean plane",
-        f"of all heights (sigma below is of the summits): {fit.roughness.text('S')}",
+        f"of all heights (below, sigma is that of the summits): {fit.roughness.text('S')}",
         *estimates_table(fit.estimates).text().splitlines(),
     ]
     across = round(len(fit.tiles) ** 0.5)
     varies = fit.tiles.only("eta", "radius", "sigma").columns
     lines.append(
-        f"from one of {across} x {across} sub-areas to another, counted summits vary (standard deviation): "
+        f"scatter of counted summits between {across} x {across} sub-areas (standard deviation): "
         + ", ".join(f"{c.words or c.name} by {100 * variation(c.values):.2g} %" for c in varies)
     )
-    why = f"the summits' curvatures spread by {fit.spread_of_curvatures:.2g}, of Gaussian surfaces by 0.35"
+    why = f"spread of the curvatures of summits: {fit.spread_of_curvatures:.2g} (Gaussian surfaces: 0.35)"
     lines.append(f"best here: {METHODS[fit.best]}; {why}")
     if fit.visible is not None and fit.best == "caps":
         lines.append(
-            f"of independent caps like these the map shows {100 * fit.visible.share:.3g} %: what is counted "
-            f"is off by {100 * (fit.visible.share - 1):+.2g} % in eta and "
+            f"of such independent caps the map shows {100 * fit.visible.share:.3g} %, so counts are off "
+            f"by {100 * (fit.visible.share - 1):+.2g} % in eta and "
             f"{100 * (fit.visible.std - 1):+.2g} % in sigma"
         )
     return lines
@@ -52,9 +52,9 @@ def profile_line(names: Sequence[str], asked: Preparation, profiles: Sequence[Pr
     """Which profiles they were, their form and cutoff, and the unit that was taken where none was given."""
     filtered = "none" if asked.cutoff is None else f"{asked.cutoff:g} m (Gaussian)"
     taken = {"none": "mean", "plane": "line", "quadratic": "parabola"}[asked.form]
-    line = f"{', '.join(names)}: profile; taken off: {taken}; cutoff: {filtered}"
+    line = f"{', '.join(names)}: profile; removed: {taken}; cutoff: {filtered}"
     if unit := next((p.assumed_unit for p in profiles if p.assumed_unit), ""):
-        line += f"; lengths taken in {unit} where the file tells no unit"
+        line += f"; lengths assumed in {unit} where the file gives no unit"
     return line
 
 
@@ -64,14 +64,13 @@ def profile_lines(fit: ProfileFit) -> list[str]:
     number = len(fit.lengths)
     return [
         f"{number} profile{'s' if number > 1 else ''}, {sum(fit.lengths):.4g} m together; filtered along the "
-        f"line: {fit.roughness.text('P')} (primary profile; they are Ra, Rq, Rsk if waves beyond a cutoff "
-        "lambda_c were taken off before)",
-        f"{counted:.4g} peaks a metre of profile; its own moments let expect {expected:.4g}",
-        "of a surface alike in all directions, with Gaussian heights (Nayak, McCool), after the areal "
-        "filter:",
+        f"line: {fit.roughness.text('P')} (primary profile; called Ra, Rq, Rsk if waves beyond a cutoff "
+        "lambda_c were removed before)",
+        f"{counted:.4g} peaks per metre of profile; {expected:.4g} expected from its moments",
+        "for an isotropic surface with Gaussian heights (Nayak, McCool), after the areal filter:",
         *fit.table().text().splitlines(),
-        f"summits lie {fit.moments.mean_height:.3g} m above the mean plane on average; sigma is theirs, "
-        "about that mean",
+        f"summits lie {fit.moments.mean_height:.3g} m above the mean plane on average; sigma is their "
+        "deviation from that mean",
     ]
 
 

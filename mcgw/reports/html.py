@@ -65,7 +65,8 @@ def report_html(ensemble: Ensemble, attributes: dict[str, Any]) -> str:
         agrees=comparison is None or comparison.verdict.agrees,
         verdict=comparison.verdict.line
         if comparison
-        else f"These are {ensemble.sampler} surfaces: their means serve, nothing tests them against theory",
+        else f"These are {ensemble.sampler} surfaces: only their means are meaningful, and they are not "
+        f"tested against theory",
         elastic=against.verdict,
         at_pressure=at_pressure,
         by_pressure=pressure_table(at_pressure, scene),
@@ -151,8 +152,8 @@ def sweep_report_html(sweep: Sweep, attributes: dict[str, Any], *, progress: Pro
         agrees=verdict.agrees,
         verdict=verdict.line,
         words=f"{sweep.axes.size} scenes at {len(h)} separations from d/σ = {h.min():g} to {h.max():g}; "
-        f"{sum(group.n for group in sweep.groups)} surfaces were drawn, in {len(sweep.groups)} groups whose "
-        "points share theirs.",
+        f"{sum(group.n for group in sweep.groups)} surfaces were drawn, in {len(sweep.groups)} groups of "
+        "points that share surfaces.",
         figure=line_figure(sweep_figure(comparison), "residuals of all points, and of the worst one"),
         table=comparison.sheet(_LISTED).table,
         cautions=sweep_cautions(sweep),
@@ -189,7 +190,7 @@ def surface_facts(ensemble: Ensemble) -> Facts:
         ("composite modulus E*", f"{number(x.E_star)} Pa"),
         ("grading E*(s)/E*", grading_label(scene.grading)),
         *contact_facts(scene),
-        ("contacts expected at the lowest separation", number(contacts)),
+        ("contacts expected at the smallest separation", number(contacts)),
     ]
 
 
@@ -209,8 +210,8 @@ def laws_table(scene: Scene) -> Table | None:
     names = [f"{scene.law.name} (this one)", *others.load]
     words = (
         f"Means at d/σ = {others.separation:g} by theory, over those of this report, for the same critical "
-        f"penetration of {others.critical:.4g} σ. Among the laws of asperities that yield the choice is "
-        f"worth {high / low - 1:.0%} of the load."
+        f"penetration of {others.critical:.4g} σ. The choice between elastic-plastic laws changes the load "
+        f"by up to {high / low - 1:.0%}."
     )
     load, area = ([1.0, *(each[name] for name in others.load)] for each in (others.load, others.area))
     numbers = (Column(name, x, unit="1", form=".4g") for name, x in (("load", load), ("area", area)))
@@ -220,11 +221,11 @@ def laws_table(scene: Scene) -> Table | None:
 def contacts_sentence(scene: Scene) -> str:
     """What law holds, and what else is done with the surfaces."""
     if type(scene.law) is Hertz:
-        words = "Every asperity is a Hertz contact"
+        words = "Every asperity is a Hertzian contact"
     else:
         words = f"Every asperity is a contact by {law_text(scene.law)}"
     if scene.unload_from is not None:
-        words += f"; quantities on the way back start from d/σ = {scene.unload_from:g}"
+        words += f"; unloading starts from d/σ = {scene.unload_from:g}"
     return f"{words}."
 
 
@@ -235,8 +236,8 @@ def _elasticity_words(found: Validity) -> list[str]:
     details = f"{found.details}."
     return [
         f"{details[0].upper()}{details[1:]}",
-        "Model over elasticity, less 1: mean over the maps ± what holds 95 % of surfaces with so many "
-        "contacts and long waves. Area, stiffness and gap are those at the load of that separation; the load "
-        "is that at the separation itself, taken for the mean gap of a periodic cell. Pressure: "
+        "Relative error of the model: mean over the maps ± the range that contains 95 % of such surfaces. "
+        "Area, stiffness and gap are at the load of that separation; the load is at that separation, as the "
+        "mean gap of a periodic cell. Pressure: "
         f"{found.axis}.",
     ]

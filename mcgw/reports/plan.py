@@ -95,9 +95,9 @@ def plan_text(scene: Scene, plan: Plan) -> str:
         one_line(scene.title) or "scene",
         f"  surfaces      {plan.surfaces} of {scene.n_asperities} asperities ({scene.count})",
         f"  sampler       {plan.sampler}" + (" (chosen by auto)" if scene.sampler == "auto" else ""),
-        f"  touching      {plan.touching:.4g} of a surface, at the lowest d/sigma = {scene.lowest:g}",
-        f"  drawn         {plan.drawn:.4g} of a surface",
-        f"  cells         about {plan.cells}, with {plan.moments} moments a surface",
+        f"  touching      {plan.touching:.4g} per surface, at the smallest d/sigma = {scene.lowest:g}",
+        f"  drawn         {plan.drawn:.4g} per surface",
+        f"  cells         about {plan.cells}, with {plan.moments} moments per surface",
         f"  quantities    {', '.join(scene.quantities)} at {len(scene.separations)} separations",
         *(f"  {word:13} {what}" for word, what in contact_facts(scene)),
         f"  results       {size if scene.keep == 'statistics' else f'{size} before compression'}",
@@ -109,10 +109,10 @@ def plan_text(scene: Scene, plan: Plan) -> str:
     spared = plan.asperities - plan.touching
     lines += [f"  {line.format(spared=spared)}" for line in promise_of(plan.sampler).not_done]
     if plan.cells and not plan.moments:
-        lines.append("  no height is drawn: contacts follow from the numbers in the cells")
+        lines.append("  no heights are drawn: contacts follow from the numbers in the cells")
     left_out = [name for name in QUANTITIES if name not in scene.quantities]
     if left_out:
-        lines.append(f"  {', '.join(left_out)}: not asked for")
+        lines.append(f"  {', '.join(left_out)}: not requested")
     return "\n".join(lines)
 
 
@@ -123,7 +123,7 @@ def _accuracy_lines(scene: Scene, plan: Plan) -> list[str]:
         ratios = ", ".join(f"{a:g}: {t / plan.seconds:.2g} x" for a, t in plan.at.items())
         lines.append(f"                time at others: {ratios}")
     if scene.law_error:
-        lines.append(f"  law_error     up to {scene.law_error:g} may be spent on Gaussian moments if faster")
+        lines.append(f"  law_error     up to {scene.law_error:g} allowed for Gaussian moments, if faster")
     return lines
 
 
@@ -138,7 +138,7 @@ def sweep_plan_text(asked: Asked) -> str:
         *(f"  {key}  {asked.axes.summary(key)}" for key in asked.axes.keys),
         f"  groups      {len(groups)} that share their surfaces",
         f"  surfaces    {sum(group.n_surfaces for group in groups)}, with {drawn:.4g} asperities that touch",
-        f"  computed    {computed} scenes; the others are weighted means of these",
+        f"  computed    {computed} scenes; the others are weighted means of them",
         f"  edges       {sum(len(group.scenes[0].edges) for group in groups)} given to points by others",
         f"  time        about {in_words(_seconds(groups))} on this machine",
     ]

@@ -120,10 +120,10 @@ def patch_pictures(ensemble: Ensemble) -> list[PageFigure]:
     found = patch_figures(ensemble.surfaces_of)
     if found is None:
         return []
-    which = "surface 0 of the ensemble" if found.whole else "a patch like its surfaces, of 20 000 asperities"
+    which = "surface 0 of the ensemble" if found.whole else "a similar patch of 20 000 asperities"
     title = ensemble.scene.title
     twin = (
-        f" A synthetic twin of {title[len(_FITTED) :].partition(':')[0]}."
+        f" A synthetic surface like {title[len(_FITTED) :].partition(':')[0]}."
         if title.startswith(_FITTED)
         else ""
     )
@@ -131,13 +131,12 @@ def patch_pictures(ensemble: Ensemble) -> list[PageFigure]:
         _dots(
             found.heights,
             f"height map of {which}",
-            f"Part of {which}, as mcgw surface writes it: caps on summits at random places; the scale ends "
-            f"6 σ below their mean.{twin}",
+            f"Part of {which}, as written by mcgw surface; the scale ends 6 σ below the mean summit.{twin}",
         ),
         _dots(
             found.spots,
             f"{found.contacts} contact spots at d/σ = {found.separation:g}",
-            f"Its contacts at d/σ = {found.separation:g}, to scale, coloured by what they carry.",
+            f"Its contacts at d/σ = {found.separation:g}, to scale, coloured by load.",
         ),
     ]
 

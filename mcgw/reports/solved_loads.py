@@ -11,40 +11,70 @@ from mcgw.ensemble.solved import Solution, against_elasticity
 from mcgw.formats.table import SEPARATION, Column, Table, joined
 from mcgw.scene.in_words import contact_facts, joint_text
 from mcgw.scene.scene import Scene
+from mcgw.scene.validity import percent
 
 _SHOWN = ("contact law", "film", "interaction", "joint")  # what of the contacts counts at a given load
+_LINES = 2  # loads that the news names one by one
 
 
-def solutions_text(scene: Scene, solutions: Sequence[Solution], scatter: float | None = None) -> str:
-    """Theory and Monte Carlo side by side, one block for each given value.
+def solutions_text(
+    scene: Scene, solutions: Sequence[Solution], scatter: float | None = None, full: bool = False
+) -> str:
+    """The answers in a line for each given value, at most two; then tables of them and of their errors.
 
-    With a `scatter` that is wanted also how many asperities it takes.
+    With a `scatter` that is wanted also how many asperities it takes; `full` adds what is usual.
     """
-    lines = [f"{solution.sheet().table}\n" for solution in solutions]
-    if scene.film is not None:
-        lines.append(f"{conductances(scene, solutions)}\n")
+    lines = [_brief(x) for x in (solutions if len(solutions) <= _LINES else (solutions[0], solutions[-1]))]
+    ways = ", drawn from the measured ones" if scene.as_measured else ""
+    many = f"{solutions[0].drawn.n_surfaces} surfaces of {scene.n_asperities:g} asperities{ways}"
+    plane = "summits" if rise_of_summits(scene) is None else "surface"
+    lines.append(f"specimens: {many}, seed {scene.seed}; mean gap from the mean plane of the {plane}")
+    lines.append(against_elasticity(solutions).verdict)
     if any(x.theory["contacts"] < MANY for x in solutions):
-        lines.append(
-            "Few contacts: finite surfaces differ from theory, whose surface is infinite, by more than noise."
-        )
-    lines += [f"{word}: {what}" for word, what in contact_facts(scene) if word in _SHOWN]
-    plane = "summits, which lies above that of the surface" if rise_of_summits(scene) is None else "surface"
-    lines.append(f"mean gap: of the rigid plane from the mean plane of the {plane}")
-    exactly = "; of the separation by its exact law" if solutions[0].told_by is not None else ""
+        lines.append("few contacts: finite surfaces differ from the theory of an infinite one beyond noise")
     if scene.unload_from is not None:
-        lines.append("each surface is loaded from far away; nothing of it is on the way back")
-    ways = "drawn from the measured ones" if scene.as_measured else "heights drawn one by one"
-    number = solutions[0].drawn.n_surfaces
-    lines.append(
-        f"specimens: {number} surfaces of {scene.n_asperities:g} asperities, each at its own d; {ways}, "
-        f"seed {scene.seed}{exactly}"
-    )
+        lines.append("each surface is loaded from first contact; unloading is not included")
+    if full and (said := _background(scene, solutions)):
+        lines += ["", *said]
+    one = len(solutions) == 1
+    for solution in solutions:
+        table = solution.sheet().table
+        assert table is not None
+        lines += ["", (replace(table, title="") if one else table).text()]
+    if scene.film is not None:
+        lines += ["", conductances(scene, solutions).text()]
     if scatter is not None:
         lines += ["", *(_sizes(solution, scatter) for solution in solutions)]
     for budget in (solution.budget() for solution in solutions):
-        lines += ["", f"Off a real specimen, {budget.title[0].lower()}{budget.title[1:]}:"]
-        lines += [replace(budget.table(), title="").text(), f"  {budget.advice}"]
-    return "\n".join([*lines, "", against_elasticity(solutions).verdict])
+        title = "Sources of error" if one else f"Sources of error, {_lowered(budget.title)}"
+        lines += ["", replace(budget.table(), title=title).text(), f"  {budget.advice}"]
+    return "\n".join(lines)
+
+
+def _brief(solution: Solution) -> str:
+    """The answer in one line: separation, area or load with its error, contacts, conductance."""
+    budget, theory, scene = solution.budget(), solution.theory, solution.scene
+    name = budget.quantities[0]
+    told = f"d/sigma = {theory['separation']:.4g}, "
+    told += f"{name} = {theory[name]:.4g} {scene.quantity(name).unit} ± {percent(budget.all[0])}"
+    conducted = next((x for x in ("joint_conductance", "contact_conductance") if x in theory), None)
+    if conducted is not None and scene.film is not None:
+        q = scene.quantity(conducted)
+        told += f", {q.name.replace('_', ' ')} = {theory[conducted]:.4g} {q.unit}"
+    return f"{solution.title}: {told}"
+
+
+def _background(scene: Scene, solutions: Sequence[Solution]) -> list[str]:
+    """What is meant by the numbers."""
+    lines = [f"{word}: {what}" for word, what in contact_facts(scene) if word in _SHOWN]
+    if solutions[0].told_by is not None:
+        lines.append("90 % of specimens: for the separation from its exact distribution")
+    return lines
+
+
+def _lowered(title: str) -> str:
+    """A title inside a line."""
+    return f"{title[0].lower()}{title[1:]}"
 
 
 def conductances(scene: Scene, solutions: Sequence[Solution]) -> Table:
@@ -76,7 +106,7 @@ def _sizes(solution: Solution, scatter: float) -> str:
     """How many asperities, on which area, a scatter takes."""
     eta = solution.scene.surface.eta
     sizes = (f"{x} {n:.3g} ({n / eta:.3g} m^2)" for x, n in solution.asperities_for(scatter).items())
-    where = f"{solution.title[0].lower()}{solution.title[1:]}"
+    where = _lowered(solution.title)
     return f"Asperities (nominal area) for std = {scatter:.3g} of the mean, {where}: {', '.join(sizes)}"
 
 

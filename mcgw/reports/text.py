@@ -54,7 +54,7 @@ def summary(ensemble: Ensemble, attributes: dict[str, Any]) -> str:
 def _so_far(ensemble: Ensemble) -> str:
     """How many surfaces there are, and of how many while the run goes on."""
     n, total = ensemble.n_surfaces, ensemble.scene.n_surfaces
-    return f"{n}" if n == total else f"{n} so far, not yet {total},"
+    return f"{n}" if n == total else f"{n} so far, of {total},"
 
 
 def _spent(word: str, attributes: dict[str, Any]) -> str:
@@ -130,6 +130,6 @@ def progress_of(run: RunFolder, path: Path) -> str:
     axes, total = Axes.from_text(run.axes), run.plan.total
     missing = sum(span.n for span in run.missing(0, run.shards()))
     return (
-        f"{path}: a sweep of {axes.size} points over {', '.join(axes.keys)}, not finished: "
-        f"{total - missing} of {total} surfaces are drawn; the same mcgw sweep resumes"
+        f"{path}: a sweep of {axes.size} points over {', '.join(axes.keys)}, not finished: {total - missing} "
+        f"of {total} surfaces are drawn; run mcgw sweep again to resume"
     )

@@ -10,7 +10,7 @@
                `drawing` has the ways to draw moments, `samplers` the names of what they make
 ``direct``     all heights, or those that are given, in plain loops: the witness
 ``lanes``      four numbers at a time; with `rules` and `exp_log` it makes the same bits on every processor
-``asperities`` the very heights that were summed, if anybody asks
+``asperities`` the heights that were summed
 
 The whole idea in a dozen lines. The load of each surface is its row of moments times a matrix that was made
 without any surface; it is that of its very asperities, added up one by one:

@@ -97,7 +97,7 @@ def listing_sampler(scene: Scene) -> Sampler:
     """
     sampler = sampler_of(scene)
     if not promise_of(sampler.name).one_by_one:
-        raise ValueError(f'sampler = "{sampler.name}" keeps no heights; "cells", "tail" and "direct" do')
+        raise ValueError(f'sampler = "{sampler.name}" keeps no heights; use "cells", "tail" or "direct"')
     return sampler
 
 

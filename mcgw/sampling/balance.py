@@ -30,8 +30,8 @@ _MOST_STEPS = 100
 def no_balance(surface: int, h: float) -> ValueError:
     """The error of a surface without a balance at a nominal separation, to be raised."""
     return ValueError(
-        f"interaction: surface {surface} has no balance at d/sigma = {h:g} from the mean plane; give higher "
-        "separations"
+        f"interaction: surface {surface} has no equilibrium at d/sigma = {h:g} from the mean plane; give "
+        "larger separations"
     )
 
 

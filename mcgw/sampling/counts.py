@@ -1,6 +1,6 @@
 """How many asperities fall into each cell: drawn exactly.
 
-The number in contact is binomial (fixed N) or Poisson, by NumPy's generator. It is shared out among the
+The number in contact is binomial (fixed N) or Poisson, by NumPy's generator. It is distributed among the
 cells by halving: given the number in a node of a binary tree, that in its left child is binomial with the
 child's share. So the cells are multinomial, or independent Poisson, and every probability is a ratio of sums
 of positive terms: accurate however far into the tail.
@@ -140,7 +140,7 @@ def _touching(scene: Scene, p: float, first: int, n: int) -> Array:
 
 @dataclass(frozen=True)
 class Halvings:
-    """How numbers are shared out, level by level from the root.
+    """How numbers are distributed, level by level from the root.
 
     Parameters
     ----------

@@ -128,7 +128,7 @@ def _counted(
 
 
 def aggregate_of(scene: Scene, crowded: int = CROWDED, distance: float = np.nan) -> Counted:
-    """Prepare ``aggregate``, perhaps with a threshold of one's own.
+    """Prepare ``aggregate``, perhaps with another threshold.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""What Python gives as arguments: numbers with units, arrays, and objects, each told what would do."""
+"""What Python gives as arguments: numbers with units, arrays, and objects, each with what to give instead."""
 
 from collections.abc import Iterable, Mapping
 from pathlib import Path

@@ -51,8 +51,9 @@ def _crowd(scene: Scene) -> Iterator[str]:
     apart = " (load too large if d is that of a rigid punch, too small if it is the mean gap)"
     if low >= 0:
         yield (
-            f"up to d/sigma = {separations[low]:.3g} more than {_CROWDED:.0%} of the nominal area touches; "
-            f"asperities interact there{apart * (scene.interaction is None)}; the error was not measured"
+            f"up to d/sigma = {separations[low]:.3g} more than {_CROWDED:.0%} of the nominal area is in "
+            f"contact; asperities interact "
+            f"there{apart * (scene.interaction is None)}; the error was not measured"
         )
 
 
@@ -62,7 +63,7 @@ def _half(scene: Scene) -> Iterator[str]:
     if most.size:
         yield (
             f"up to d/sigma = {most.max():.3g} more than half of all asperities touch; contacts merge there, "
-            "which the model leaves out"
+            "which the model ignores"
         )
 
 
@@ -74,19 +75,20 @@ def _depth(scene: Scene) -> Iterator[str]:
     share = deep / touching if touching > 0 else 0.0
     if share > _DEEP or surface.sigma >= surface.radius:
         yield (
-            f"surface.radius = {surface.radius:g} m: at d/sigma = {lowest:g} a share of {share:.2g} "
-            f"of the contacts is compressed by more than R, where {_model(scene)} does not hold"
+            f"surface.radius = {surface.radius:g} m: at d/sigma = {lowest:g}, {100 * share:.2g} % of the "
+            f"contacts are "
+            f"compressed by more than R, where {_model(scene)} does not hold"
         )
 
 
 def _slope(scene: Scene) -> Iterator[str]:
     top = float(scene.heights.isf(np.array(1 / scene.n_asperities), -40.0))
     steepest = float(np.sqrt(max(top - scene.lowest, 0.0) * scene.surface.sigma / scene.surface.radius))
-    yields = '; metals yield far earlier: contact.law = "kogut-etsion"'
+    yields = '; metals yield much earlier: use contact.law = "kogut-etsion"'
     if steepest > _STEEP:
         yield (
-            f"the highest asperities (s = {top:.1f}) have contacts of {steepest:.2f} R at the lowest "
-            f"separation, too steep for {_model(scene)}"
+            f"the highest asperities (s = {top:.1f}) have contact radii of {steepest:.2f} R at the smallest "
+            f"separation, too large for {_model(scene)}"
             f"{yields * scene.law.elastic}"
         )
 
@@ -101,19 +103,19 @@ def _numbers(scene: Scene) -> Iterator[str]:
     few = h[scene.n_asperities * scene.heights.sf(h) < _FEW]
     if few.size:
         yield (
-            f"from d/sigma = {few.min():.3g} fewer than {_FEW:.0f} contacts are expected on a surface: "
-            "values of single surfaces are skewed; give more area"
+            f"from d/sigma = {few.min():.3g} fewer than {_FEW:.0f} contacts are expected per surface, so "
+            "values of single surfaces are skewed; use a larger area"
         )
     expected = scene.surface.n_asperities
     share = scene.n_asperities / expected
     if abs(share - 1) > 0.01:
         yield (
-            f"{scene.n_asperities:g} asperities, not eta * nominal_area = {expected:g}: loads belong to "
+            f"{scene.n_asperities:g} asperities, not eta * nominal_area = {expected:g}: loads are for "
             f"{share:.3g} of the nominal area"
         )
     if scene.negative != "error" and scene.negative_above(scene.lowest) is not None:
         word = "set to zero" if scene.negative == "clip" else "left negative"
-        yield f"the modulus is negative at heights that touch, and {word}: beyond the range of the grading"
+        yield f"the modulus is negative at heights that touch ({word}), beyond the range of the grading"
 
 
 def _neighbours(scene: Scene) -> Iterator[str]:
@@ -125,8 +127,8 @@ def _neighbours(scene: Scene) -> Iterator[str]:
     gain = 1 / float(crowding_factor(fraction)) - 1
     if gain > _NEIGHBOURS:
         yield (
-            f"conductance: spots conduct as if each were alone; at d/sigma = {h:.3g} neighbours change it by "
-            f"about {gain:.0%} (Cooper, Mikic and Yovanovich): [interaction] reference counts them"
+            f"conductance: spots are treated as independent; at d/sigma = {h:.3g} neighbours change it by "
+            f"about {gain:.0%} (Cooper, Mikic and Yovanovich); include them with [interaction] reference"
         )
 
 
@@ -139,8 +141,8 @@ def _thick_film(scene: Scene) -> Iterator[str]:
     radius = float(np.sqrt(theory.mean("area", h) / contacts / np.pi))
     if (thick := film.film_resistance * 2 / film.rho) > radius / 5:
         yield (
-            f"contact.film_resistance: as {thick:.2g} m of the bodies resist, and spots have a radius of "
-            f"{radius:.2g} m; unless the film is far thinner, give layer = {{thickness, conductivity}}"
+            f"contact.film_resistance: equals that of {thick:.2g} m of the bodies, and spots have a radius "
+            f"of {radius:.2g} m; unless the film is much thinner, use layer = {{thickness, conductivity}}"
         )
 
 
@@ -153,6 +155,6 @@ def _no_answer(scene: Scene) -> Iterator[str]:
     spots = theory.alone.mean(name, theory.effective(h))  # type: ignore[attr-defined]
     if np.any(none := 1 + other * spots <= 0):
         yield (
-            f"up to d/sigma = {h[none].max():.3g} {name} is nan: the correction of the mean plane exceeds "
-            'what the spots resist; take higher separations, or reference = "body"'
+            f"up to d/sigma = {h[none].max():.3g} {name} is nan: the correction for the mean plane exceeds "
+            'the resistance of the spots; use larger separations, or reference = "body"'
         )

@@ -45,7 +45,7 @@ def _in_si(lines: list[str]) -> Iterator[str]:
     known = [name in _COLUMNS and not math.isnan(signed(f"1{unit}", _COLUMNS[name])) for name, unit in named]
     if not all(known):
         raise ValueError(
-            "the first line must be s or z, a comma, then ratio or E_star, as z (um),E_star (GPa)"
+            "the first line must be s or z, a comma, and ratio or E_star, such as z (um),E_star (GPa)"
         )
     yield ",".join(name for name, _ in named)
     for row in rows:
@@ -73,14 +73,14 @@ def read_heights(path: Path) -> Array:
     if path.suffix == ".npy":
         array = open_npy(path)
         if array.nbytes > _MOST_BYTES:
-            raise ValueError(f"{path}: longer than {_MOST_BYTES} bytes; give a part of these heights")
+            raise ValueError(f"{path}: longer than {_MOST_BYTES} bytes; give fewer heights")
         return np.asarray(array, dtype=np.float64).ravel()
     lines = read_text(path, _MOST_BYTES).splitlines()
     try:
         return np.loadtxt(lines, dtype=np.float64, delimiter=",", ndmin=1).ravel()
     except ValueError:
         raise ValueError(
-            f"{path}: give one height a line, or equally many on each, parted by commas"
+            f"{path}: give one height per line, or the same number on each line, separated by commas"
         ) from None
 
 

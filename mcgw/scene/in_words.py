@@ -33,7 +33,7 @@ def law_text(law: Any) -> str:
         case Custom():
             return f"Custom({getattr(law.function, '__name__', type(law.function).__name__)})"
         case MeasuredHeights():
-            return f"{len(law.heights)} measured ones, {'drawn again' if law.resampled else 'as they are'}"
+            return f"{len(law.heights)} measured ones, {'resampled' if law.resampled else 'as they are'}"
         case MeasuredRadii():
             return f"{len(law.ratios)} measured ones, each with its height"
         case ContactLaw():
@@ -87,7 +87,7 @@ def contact_facts(scene: Fields) -> list[tuple[str, str]]:
             )
         )
     if scene.interaction is not None:
-        felt = "as nominal ones" if scene.interaction.nominal else "as asperities feel them"
+        felt = "nominal" if scene.interaction.nominal else "effective"
         facts.append(("interaction", f"from the {_PLANES[scene.interaction.reference]}, separations {felt}"))
     if scene.thermal:
         facts.append(("joint", joint_text(scene)))

@@ -40,7 +40,7 @@ def _located(scene: Fields) -> Iterator[str]:
     for other in (name for name, value in others.items() if value is not None):
         yield f"{other}: {key} does not go with it; leave out one of the two"
     if scene.negative == "allow":
-        yield f'grading.negative = "allow": {key} needs loads that fall with the separation; say "clip"'
+        yield f'grading.negative = "allow": {key} needs loads that decrease with the separation; use "clip"'
     if _adheres(scene):
         yield f'contact.law = "{scene.law.name}": {key} needs loads that fall with the separation'
 
@@ -54,13 +54,13 @@ def _independent(scene: Fields) -> Iterator[str]:
     """What does not hang on where the balance is."""
     assert scene.interaction is not None
     if "load" not in scene.quantities:
-        yield 'interaction: separations differ by the load; add "load" to contact.quantities'
+        yield 'interaction: separations depend on the load; add "load" to contact.quantities'
     if scene.tangential is not None:
-        yield "contact.tangential: loads sideways press no asperity down here; leave out it or [interaction]"
+        yield "contact.tangential: tangential loads do not interact; leave out tangential or [interaction]"
     if not promise_of(scene.sampler).real_surfaces:
         yield (
-            f'ensemble.sampler = "{scene.sampler}": it draws means, and each surface sinks by its own load; '
-            'take "cells"'
+            f'ensemble.sampler = "{scene.sampler}": it draws means only, but interaction needs the load of '
+            'each surface; use "cells"'
         )
     if scene.interaction.nominal:
         yield from _nominal(scene)
@@ -72,23 +72,23 @@ def _nominal(scene: Fields) -> Iterator[str]:
     promise = promise_of(scene.sampler)
     if not promise.finds_balance:
         yield (
-            f'ensemble.sampler = "{scene.sampler}": it draws no asperities, and {key} needs them; take '
+            f'ensemble.sampler = "{scene.sampler}": it draws no asperities, which {key} needs; use '
             '"cells", or at = "effective"'
         )
     if scene.sampler == "cells" and (scene.curvature is not None or not scene.hertzian):
         what = "a film" if scene.film is not None else f'contact.law = "{scene.law.name}"'
-        what = what if scene.curvature is None else "summits with radii of their own"
-        yield f'ensemble.sampler = "cells": with {what} {key} is found asperity by asperity; take "tail"'
+        what = what if scene.curvature is None else "individual summit radii"
+        yield f'ensemble.sampler = "cells": with {what}, {key} needs single asperities; use "tail"'
     if scene.keep == "moments":
-        yield f'ensemble.keep = "moments": {key} keeps none; take "sums", or at = "effective"'
+        yield f'ensemble.keep = "moments": {key} has none; use "sums", or at = "effective"'
     if scene.unload_from is not None:
-        yield f'contact.unload_from: {key} has no way back; leave it out, or take at = "effective"'
+        yield f'contact.unload_from: {key} has no unloading; leave it out, or use at = "effective"'
     if scene.negative == "allow":
-        yield f'grading.negative = "allow": {key} needs loads that fall with the separation; say "clip"'
+        yield f'grading.negative = "allow": {key} needs loads that decrease with the separation; use "clip"'
     if _adheres(scene):
         yield (
-            f'contact.law = "{scene.law.name}": its load does not fall with the separation alone, and {key} '
-            'would have several balances; take at = "effective"'
+            f'contact.law = "{scene.law.name}": its load does not decrease monotonically, and {key} '
+            'would have several equilibria; use at = "effective"'
         )
 
 
@@ -104,5 +104,5 @@ def _balance(scene: Fields) -> Iterator[str]:
     if np.any(rate <= 0):
         yield (
             f"interaction: at d/sigma = {h[rate <= 0].max():g} the mean plane sinks faster than it is "
-            "pressed, and no nominal separation belongs to it alone; give higher separations"
+            "pressed, so the nominal separation is not unique; give larger separations"
         )

@@ -106,7 +106,7 @@ _PUSHED = Table(
 # fmt: off
 TABLES: dict[str, TableOfKeys] = {
 "": TableOfKeys("", (
-    Key("title", Text(empty=True), '"My surface"', "for people; stands in figures and reports", ""),
+    Key("title", Text(empty=True), '"My surface"', "title of figures and reports", ""),
 )),
 "surface": TableOfKeys("Either `sigma`, `radius`, `eta`, or the spectrum by `m0`, `m2`, `m4`; either "
     "`E_star` or `bodies`.", (
@@ -116,26 +116,27 @@ TABLES: dict[str, TableOfKeys] = {
     Key("eta", Number("1/m^2"), "3.0e8", "η, summits per nominal area, 1/m²", required=True),
     Key("nominal_area", Number("m^2"), "1e-4", "A_n, nominal area of contact, m²", required=True),
     Key("E_star", Number("Pa"), "78.6e9", "composite modulus E\\*, Pa", required=True),
-    Key("bodies", List(_BODY, 2, 2, "give two, as [{E = 70e9, nu = 0.33}, {E = inf}], each with its E in Pa"),
+    Key("bodies", List(_BODY, 2, 2,
+        "give two, such as [{E = 70e9, nu = 0.33}, {E = inf}], each with its E in Pa"),
         "[{E = 70e9, nu = 0.33}, {E = inf}]",
-        "instead of `E_star`: Young's modulus (Pa) and Poisson's ratio (0.3 if left out) of the two bodies",
+        "instead of `E_star`: Young's modulus (Pa) and Poisson's ratio (default: 0.3) of the two bodies",
         excludes=("E_star",)),
     Key("m0", Number("m^2"), "1e-12", "mean square of the heights of an isotropic Gaussian surface, m²",
         required=True, needs=("m2",), excludes=SUMMITS),
-    Key("m2", Number("1"), "1e-3", "mean square of the slope of a profile of it",
+    Key("m2", Number("1"), "1e-3", "mean square of the slope of a profile",
         required=True, needs=("m4",)),
     Key("m4", Number("1/m^2"), "5e6", "mean square of the second derivative of a profile, 1/m²",
         required=True, needs=("m0",)),
     *rows_of("surface"),
 ), required=True),
-"grading": TableOfKeys("E\\*(s)/E\\* over the reduced height s. Left out: 1 at every height.", (
+"grading": TableOfKeys("E\\*(s)/E\\* over the reduced height s. Default: 1 at every height.", (
     Key("law", Word((*GRADINGS,)), '"exponential"',
-        "`homogeneous`, `exponential` (Eq. 4), `table` or `series`; left out: `exponential` if there is a "
-        "`gamma`, else `homogeneous`", "homogeneous"),
+        "`homogeneous`, `exponential` (Eq. 4), `table` or `series`; default: `exponential` if there is a "
+        "`gamma`, otherwise `homogeneous`", "homogeneous"),
     Key("gamma", _ANY, "0.5", "γ of E\\*(s)/E\\* = γ − (γ − 1) exp(−s)", required=True,
         laws=("exponential",)),
     Key("negative", Word(("error", "clip", "allow")), '"clip"',
-        "where the modulus of a contacting asperity is negative: `error` (default), `clip` to zero, or "
+        "if the modulus of a contacting asperity is negative: `error` (default), `clip` to zero, or "
         "`allow`", "error"),
     Key("s", _LISTED, "[0.0, 1.0]", "heights of a table, increasing", laws=("table",), needs=("ratio",),
         excludes=("file",)),
@@ -143,59 +144,62 @@ TABLES: dict[str, TableOfKeys] = {
         "E\\*(s)/E\\* at these heights; monotone between them, constant outside", laws=("table",),
         needs=("s",)),
     Key("file", _FILE, '"moduli.csv"',
-        "a table as CSV beside the scene: columns `s` or `z` (m), and `ratio` or `E_star` (Pa); other units "
-        "in the header, as `z (um)`, or behind a number, as `61.2 GPa`", laws=("table",)),
+        "a CSV table beside the scene: columns `s` or `z` (m), and `ratio` or `E_star` (Pa); other units in "
+        "the header, `z (um)`, or after a number, `61.2 GPa`", laws=("table",)),
     Key("edges", _LISTED, "[0.0, 5.0, 20.0]",
-        "of the pieces of a `series`: what a Python function of s becomes in a file", required=True,
+        "of the pieces of a `series`, by which a file stores a Python function of s", required=True,
         laws=("series",)),
     Key("coefficients", List(_LISTED, advice="give a list of lists of finite numbers"), "[[1.0, 0.5], [1.5]]",
         "Chebyshev coefficients of each piece", required=True, laws=("series",)),
-    Key("kinks", List(_ANY, 0), "[5.0]", "edges at which it bends or jumps", laws=("series",)),
-    Key("name", Text(empty=True), '"ramp"', "name of that function, for people", laws=("series",)),
+    Key("kinks", List(_ANY, 0), "[5.0]", "edges at which the function has a kink or a jump",
+        laws=("series",)),
+    Key("name", Text(empty=True), '"ramp"', "name of the function, for display", laws=("series",)),
 )),
-"heights": TableOfKeys("Law of the summit heights, reduced to mean 0 and standard deviation 1. Left out: "
-    "Gaussian.", (
+"heights": TableOfKeys("Distribution of the summit heights, scaled to mean 0 and standard deviation 1. "
+    "Default: Gaussian.", (
     Key("law", Word((*HEIGHTS,)), '"weibull"',
         "`gaussian`, `exponential`, `weibull`, `nayak`, `table` or `scipy`", "gaussian"),
     Key("shape", Number(low=1, high=100, advice="give a number from 1 to 100 (3.6 has no skewness)"), "2.0",
-        "of the Weibull law, 1 to 100; 3.6 has no skewness", required=True, laws=("weibull",)),
+        "shape of the Weibull law, 1 to 100; 3.6 has no skewness", required=True, laws=("weibull",)),
     Key("alpha", Number(low=1.501, high=1e12,
                         advice="give a number from 1.501 to 1e12, m0 m4/m2^2 of the surface"), "5.0",
-        "of Nayak's law, m0 m4/m2² of the surface, above 1.5", required=True, laws=("nayak",)),
+        "α = m0 m4/m2² of the surface for Nayak's law, above 1.5", required=True, laws=("nayak",)),
     Key("heights", _LISTED, "[0.0, 1.0, 3.0]", "measured heights of a `table`, in any unit", laws=("table",),
         excludes=("file", "s")),
-    Key("file", _FILE, '"heights.csv"', "these from a file beside the scene: `.npy`, or text with one a line",
+    Key("file", _FILE, '"heights.csv"',
+        "the same from a file beside the scene: `.npy`, or text with one per line",
         laws=("table",), excludes=("s",)),
     Key("resample", Flag(), "true",
-        "`true` (default): drawn from the measured law; `false`: one surface, the heights as they are",
+        "`true` (default): drawn from the measured distribution; `false`: one surface, the heights as they "
+        "are",
         laws=("table",), needs=("heights", "file")),
     Key("s", _LISTED, "[0.0, 1.0]", "instead of heights: points of the distribution function",
         laws=("table",), needs=("share",)),
-    Key("share", _LISTED, "[0.0, 1.0]", "share of the heights below each of these points", laws=("table",),
+    Key("share", _LISTED, "[0.0, 1.0]", "fraction of the heights below each of these points", laws=("table",),
         needs=("s",)),
-    Key("name", Text(), '"gamma"', 'of a continuous distribution of `scipy.stats`, for `law = "scipy"`',
+    Key("name", Text(), '"gamma"', 'name of a continuous distribution of `scipy.stats`, for `law = "scipy"`',
         "norm", laws=("scipy",)),
-    Key("shapes", ByName(_ANY, "give its shapes, as {a = 4.0}"), "{a = 4.0}", "its shape parameters",
+    Key("shapes", ByName(_ANY, "give its shapes, such as {a = 4.0}"), "{a = 4.0}", "its shape parameters",
         laws=("scipy",)),
 )),
-"summits": TableOfKeys("Radii of the summits, where they are not all one.", (
+"summits": TableOfKeys("Radii of the summits, if they differ.", (
     Key("curvature", Word(("random", "mean")), '"random"',
-        "`random`: each summit has a radius by the exact joint law with its height (default with `m0`, `m2`, "
-        "`m4`); `mean`: one radius"),
-    Key("largest_radius", Number("m"), '"1 mm"', "no summit is flatter, m"),
+        "`random`: the radius of each summit follows the exact joint distribution with its height (default "
+        "with `m0`, `m2`, `m4`); `mean`: one radius"),
+    Key("largest_radius", Number("m"), '"1 mm"', "upper limit of the radii, m"),
     Key("file", _FILE, '"summits.csv"',
-        "measured summits: columns `height` and `radius`, m, as `mcgw fit --summits` writes",
+        "measured summits, written by `mcgw fit --summits`: columns `height` and `radius`, m",
         excludes=("heights", "radii", "ratios", "curvature", "largest_radius")),
     Key("heights", _LISTED, "[0.0, 1e-6, 3e-6]", "the same in the scene itself: heights, m",
         needs=("radii", "ratios"), excludes=("curvature", "largest_radius")),
     Key("radii", _RADII, "[1e-5, 2e-5, 3e-5]", "and radii, m", needs=("heights",), excludes=("ratios",)),
-    Key("ratios", _RADII, "[1.0, 2.0, 3.0]", "or radii over the mean one", needs=("heights",)),
+    Key("ratios", _RADII, "[1.0, 2.0, 3.0]", "or radii over their mean", needs=("heights",)),
     Key("resample", Flag(), "true",
         "`true`: summits drawn in pairs from the list; `false`: one surface, the summits as they are", False,
         needs=("heights", "file")),
 )),
-"contact": TableOfKeys("Where the plane stands, what is summed, and by which law of contact. "
-    "[How the laws differ](../explanation/contact-laws.md).", (
+"contact": TableOfKeys("Separations, quantities and contact law. [How the laws "
+    "differ](../explanation/contact-laws.md).", (
     Key("separations",
         Either((
             List(_SEPARATION, 1, _MOST, f"{_SEPARATIONS}, at most {_MOST} of them"),
@@ -203,74 +207,79 @@ TABLES: dict[str, TableOfKeys] = {
                    Key("num", _NUM, required=True)), _SEPARATIONS),
             Number(low=-1e6, high=1e6, advice=_SEPARATIONS),
         ), _SEPARATIONS),
-        "{start = 0.0, stop = 1.0, num = 3}", "d/σ: such a range, a list, or one number", required=True),
+        "{start = 0.0, stop = 1.0, num = 3}", "d/σ: a range, a list, or one number", required=True),
     Key("datum", Word(("summits", "surface")), '"surface"',
-        "separations count from the mean plane of the `summits` (default) or of the `surface` (Nayak's "
-        "heights)", "summits"),
+        "separations are measured from the mean plane of the `summits` (default) or of the `surface` "
+        "(Nayak's heights)", "summits"),
     Key("quantities",
         List(Word((*SUMS, *UNLOADING), f"choose one of {', '.join(SUMS)}"), once=True,
              advice="give a list of names, each once"),
         '["load"]', "any of `load`, `area`, `stiffness`, `contacts` (these four by default), `conductance`, "
         "`spot_conductance`, `yielded`, `load_slope`"),
-    Key("law", Word(_contact_laws), '"kogut-etsion"', "law of one contact; left out: Hertz's", "hertz"),
-    Key("hardness", Number("Pa"), '"1.2 GPa"', "of the softer body, Pa, for laws that yield"),
-    Key("critical", _POSITIVE, "0.05", "instead of it: δ_c/σ, penetration at which an asperity yields"),
-    Key("yield_strength", Number("Pa"), '"400 MPa"', "of the softer body, Pa (`jackson-green`)"),
+    Key("law", Word(_contact_laws), '"kogut-etsion"', "contact law of an asperity; default: Hertz's",
+        "hertz"),
+    Key("hardness", Number("Pa"), '"1.2 GPa"', "hardness of the softer body, Pa, for elastic-plastic laws"),
+    Key("critical", _POSITIVE, "0.05",
+        "instead of `hardness`: δ_c/σ, penetration at which an asperity yields"),
+    Key("yield_strength", Number("Pa"), '"400 MPa"',
+        "yield strength of the softer body, Pa (`jackson-green`)"),
     Key("yield_strain", _POSITIVE, "0.004",
-        "yield strength over E\\*, with `critical` (`jackson-green`; as files hold it)"),
+        "yield strength over E\\*, with `critical` (`jackson-green`; form used in files)"),
     Key("poisson", _POISSON, "0.3", "Poisson's ratio of the body that yields or coats"),
-    Key("bridge", Word(("hermite",)), '"hermite"', "joins fits that jump"),
+    Key("bridge", Word(("hermite",)), '"hermite"', "smooths the jumps of a fit"),
     Key("k", _POSITIVE, "0.5", "exponent of the depth (`power-law-graded`)"),
     Key("c0", Number("m"), '"10 um"', "depth at which the modulus is E\\*, m (`power-law-graded`)"),
-    Key("reduced_c0", _POSITIVE, "1.0", "the same over √(Rσ), as files hold it"),
-    Key("thickness", Number("m"), '"1 um"', "of a coating, m (`coated`)"),
-    Key("reduced_thickness", _POSITIVE, "0.5", "the same over √(Rσ), as files hold it"),
+    Key("reduced_c0", _POSITIVE, "1.0", "the same over √(Rσ), the form used in files"),
+    Key("thickness", Number("m"), '"1 um"', "thickness of a coating, m (`coated`)"),
+    Key("reduced_thickness", _POSITIVE, "0.5", "the same over √(Rσ), the form used in files"),
     Key("ratio", _POSITIVE, "3.0", "modulus of the coating over that of the substrate"),
     Key("work", Number("J/m^2"), '"0.05 J/m^2"', "work of adhesion, J/m² (laws that stick)"),
-    Key("pull_off", _POSITIVE, "0.1", "instead of it: stretch over σ at which contacts break off"),
+    Key("pull_off", _POSITIVE, "0.1", "instead of `work`: stretch over σ at which contacts break off"),
     Key("limits", List(_POSITIVE, 0, advice="give a list of numbers > 0 that increase"), "[1.0]",
-        "δ/δ_c at which pieces begin, of a law that is made of formulas (`custom`)", laws=("custom",)),
+        "δ/δ_c at which the pieces of your own law begin (`custom`)", laws=("custom",)),
     Key("load", _PIECES, _PIECES_EXAMPLE, "series of its load", laws=("custom",)),
     Key("area", _PIECES, _PIECES_EXAMPLE, "series of its area", laws=("custom",)),
     Key("unload_from", Either((Word(("loop",), _BACK), _ANY), _BACK), "-0.5",
-        'lowest separation reached before, d/σ, or `"loop"`: the lowest of the scene; adds quantities as '
-        "`load_unloading`"),
+        'smallest separation reached before unloading, d/σ, or `"loop"`: the smallest of the scene; adds '
+        "`load_unloading` and so on"),
     Key("resistivity", _POSITIVE, "1e-7", "electrical: ρ₁ + ρ₂, Ω m; adds `conductance_si`",
         excludes=("conductivities",)),
     Key("conductivities",
-        List(_POSITIVE, 2, 2, "give two numbers > 0 in W/(m K), as [150.0, 16.0]"),
-        "[150.0, 16.0]", "thermal: those of both bodies, W/(m K)"),
+        List(_POSITIVE, 2, 2, "give two numbers > 0 in W/(m K), such as [150.0, 16.0]"),
+        "[150.0, 16.0]", "thermal: k₁ and k₂ of the bodies, W/(m K)"),
     Key("film_resistance", Number(zero=True, advice="give a finite number >= 0, in ohm m^2 or m^2 K/W"),
-        "1e-12", "of a thin film on the spots, Ω m² or m² K/W", needs=("resistivity", "conductivities")),
+        "1e-12", "resistance of a thin film on the spots, Ω m² or m² K/W", needs=("resistivity",
+        "conductivities")),
     Key("layer", _LAYER, '{thickness = "10 um", conductivity = 1.3}',
-        "on the first body (k₁), of any thickness: m, W/(m K)", needs=("conductivities",)),
+        "layer of any thickness on the first body (k₁): m, W/(m K)", needs=("conductivities",)),
     Key("tangential", _PUSHED, "{friction = 0.3, poisson = 0.3, displacements = [1e-8]}",
-        "pushed sideways by these displacements (m); adds `tangential_load`"),
+        "tangential displacements (m) with friction; adds `tangential_load`"),
 ), required=True),
-"interaction": TableOfKeys("[Asperities that press each other down](../explanation/interaction.md). "
-    "Left out: they are independent.", (
+"interaction": TableOfKeys("[Asperity interaction](../explanation/interaction.md). Default: asperities are "
+    "independent.", (
     Key("reference", Word(("body", "mean-plane", "located"), f"give {_PLANES}"), '"body"',
         "nominal separations are measured from the undeformed `body`, or from the deformed `mean-plane`; "
         "`located`: from that, with summits at random places instead of a mean field (`at = \"nominal\"`)",
         required=True),
     Key("at", Word(("effective", "nominal")), '"nominal"',
-        "the scene's separations are `effective` (default): those that asperities feel; or `nominal`",
+        "the separations of the scene are `effective` (default), those that asperities feel, or `nominal`",
         "effective"),
     Key("bulk_modulus", Number("Pa"), "1e11", "composite modulus of the half-space, Pa; default: `E_star`"),
 ), make=_interaction, advice='give mcgw.Interaction("body"), or mcgw.Interaction("mean-plane")'),
-"joint": TableOfKeys("[A thermal joint](../how-to/conductance-of-a-joint.md): gas conducts beside the spots; "
-    "adds `gap_conductance` and `joint_conductance`, W/(m² K), and needs `conductivities`. Left out: spots "
-    "only (vacuum).", (
-    Key("gas", _GASES, '"air"', "in the gap: `air`, `vacuum`, or its conductivity, W/(m K), and the distance "
-        "over which the temperature would fall by as much as it jumps at both walls, m", required=True),
-    Key("rms", Number("m"), '"2 um"', "root mean square height of the surface (both together, not of the "
-        "summits), m, where neither Nayak's heights nor `[fitted]` tell it"),
+"joint": TableOfKeys("[A thermal joint](../how-to/conductance-of-a-joint.md): gas conducts in parallel with "
+    "the spots. Adds `gap_conductance` and `joint_conductance`, W/(m² K); needs `conductivities`. Default: "
+    "spots only (vacuum).", (
+    Key("gas", _GASES, '"air"', "gas in the gap: `air`, `vacuum`, or its conductivity, W/(m K), and jump, m: "
+        "the thickness of gas across which the temperature drops by as much as it jumps at both "
+        "walls", required=True),
+    Key("rms", Number("m"), '"2 um"', "root mean square height of the surface (both combined, not of the "
+        "summits), m; not needed with Nayak's heights or `[fitted]`"),
     Key("temperature", Number(advice="give a finite number > 0, in K"), "293.15", "of air, K"),
     Key("gas_pressure", Number("Pa"), "101325.0", "of air, Pa"),
 ), make=_joint, advice='give mcgw.Joint("air", rms="1 um"), or the keys of [joint] in a scene file'),
-"fitted": TableOfKeys("What the fit of a map knew besides: `mcgw fit` writes it, nothing is drawn by it. By "
-    "it a scene says [how far its model is from elasticity](../explanation/validity.md), or that nobody "
-    "measured it on such a map. Left out: the surface is taken for a Gaussian one.", (
+"fitted": TableOfKeys("More about the fitted map, written by `mcgw fit`. It does not affect the results, but "
+    "the stated [error of the model](../explanation/validity.md). Default: the surface is assumed to be "
+    "Gaussian.", (
     Key("m0", Number("m^2"), "1e-12", "mean square of all heights, m²", required=True),
     Key("m2", Number("1"), "1e-3", "mean square of the slope of a profile, over all directions",
         required=True),
@@ -278,20 +287,22 @@ TABLES: dict[str, TableOfKeys] = {
     Key("skewness", _ANY, "-0.1", "of all heights", required=True),
     Key("kurtosis", _POSITIVE, "3.0", "of all heights: 3 of Gaussian ones", required=True),
     Key("independent", _POSITIVE, "800.0",
-        "how many independent heights would tell m0 as well; few where the waves are long", required=True),
+        "number of independent heights that would give m0 as accurately; few if the waves are long",
+        required=True),
     Key("agreement", _RATIO, "1.02",
-        "largest ratio between the fit's estimates of η, R or σ: by moments, and by counted summits"),
+        "largest ratio between the estimates of η, R or σ from moments and from counted summits"),
     Key("lay", _RATIO, "1.1", "mean square slope across the lay over that along it"),
-    Key("area", Number("m^2"), "1e-6", "that was looked at, m²"),
+    Key("area", Number("m^2"), "1e-6", "area of the map, m²"),
     Key("cautions", List(Text(), 0, advice="give a list of texts"), '["lay: mean square slopes 2 : 1"]',
-        "why not to trust the fit, the gravest first", []),
-), make=Fitted, advice="give what mcgw.fitted_scene gave, or the keys of [fitted] in a scene file"),
-"ensemble": TableOfKeys("How many surfaces, and how they are drawn.", (
+        "warnings of the fit, the most serious first", []),
+), make=Fitted, advice="give the `fitted` of a scene from mcgw.fitted_scene, or the keys of [fitted] in a "
+    "scene file"),
+"ensemble": TableOfKeys("Number of surfaces, and sampling.", (
     *rows_of("ensemble"),
-    Key("max_surfaces", Whole(1), "50", "with `rel_err`: the most", needs=("rel_err",)),
+    Key("max_surfaces", Whole(1), "50", "with `rel_err`: maximum number of surfaces", needs=("rel_err",)),
     Key("left_out",
         List(Word(("n_asperities", "seed")), 0, advice="give a list of n_asperities, seed, or leave it out"),
-        '["seed"]', "written by the program: which of `seed`, `n_asperities` nobody gave", []),
+        '["seed"]', "written by the program: which of `seed`, `n_asperities` the scene did not give", []),
 )),
 }
 # fmt: on

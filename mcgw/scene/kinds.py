@@ -158,7 +158,7 @@ class Text(Kind):
 class Flag(Kind):
     """Yes or no."""
 
-    advice: str = "say true or false"
+    advice: str = "give true or false"
 
     def read(self, section: Section, name: str, value: Any) -> bool | None:
         """Read it."""

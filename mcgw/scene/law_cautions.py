@@ -46,8 +46,8 @@ def _choice(scene: Scene) -> Iterator[str]:
     low, high = others.spread
     ratios = ", ".join(f"{name} {ratio:.3g}" for name, ratio in others.load.items())
     yield (
-        f'contact.law = "{scene.law.name}": the choice of the law is worth {high / low - 1:.0%} of the load '
-        f"at d/sigma = {others.separation:.3g}; over this one's at a critical penetration of "
+        f'contact.law = "{scene.law.name}": laws differ by {high / low - 1:.0%} in load at d/sigma = '
+        f"{others.separation:.3g}; ratios to this one at a critical penetration of "
         f"{others.critical:.3g} sigma: {ratios}"
     )
 
@@ -60,8 +60,9 @@ def _yielded(scene: Scene) -> Iterator[str]:
     share = 1 - float(scene.theory.share(0, h))
     if share > _DEEP:
         yield (
-            f"a share of {share:.3g} of the contacts has yielded at d/sigma = {h:g}: "
-            "elastic solutions cannot check their loads and areas"
+            f"{100 * share:.3g} % of the contacts have yielded at d/sigma = {h:g}; elastic solutions "
+            f"cannot check "
+            "their loads and areas"
         )
 
 
@@ -69,12 +70,9 @@ def _jumps(scene: Scene) -> Iterator[str]:
     """Stiffness is not the slope of the load."""
     if not isinstance(scene.law, ElasticPlastic):
         return
-    line = f'contact.law = "{scene.law.name}": stiffness is that of first unloading, 2 E*(s) a a contact'
+    line = f'contact.law = "{scene.law.name}": stiffness is that of initial unloading, 2 E*(s) a per contact'
     if getattr(scene.law, "bridge", "none to build") is None:
-        yield (
-            f"{line}; the law's load jumps, which load_slope leaves out "
-            '(bridge = "hermite" joins the pieces)'
-        )
+        yield f'{line}; load_slope ignores the jumps of the load (bridge = "hermite" smooths them)'
     elif {"stiffness", "load_slope"} & set(scene.quantities):
         yield f"{line}; load_slope is -dP/dd of loading"
 
@@ -85,8 +83,9 @@ def _gain(scene: Scene) -> Iterator[str]:
         share = _share(scene, 1.0) - _share(scene, 1.25)
         if share > 0:
             yield (
-                "contact.unload_from: contacts unloaded from 1 to 1.25 critical penetrations return up to "
-                f"3 % more work than they took, as the fitted load jumps; a share of {share:.2g} of them does"
+                "contact.unload_from: contacts unloaded from 1 to 1.25 critical penetrations return up to 3 "
+                f"% more work than they took, because the fitted load jumps; this affects "
+                f"{100 * share:.2g} % of the contacts"
             )
 
 
@@ -98,8 +97,9 @@ def _fitted(scene: Scene) -> Iterator[str]:
         share = _share(scene, most) if applies else 0.0
         if share > _DEEP:
             yield (
-                f"contact.law: a share of {share:.2g} of the contacts is deeper than {most:g} critical "
-                f"penetrations, up to which its {what} was fitted"
+                f"contact.law: {100 * share:.2g} % of the contacts are deeper than {most:g} critical "
+                f"penetrations, "
+                f"up to which its {what} was fitted"
             )
 
 
@@ -123,8 +123,8 @@ def _strain(scene: Scene) -> Iterator[str]:
     strains = law.yield_strain / e[e > 0] if law.yield_strain else np.empty(0)
     if strains.size and not (_STRAINS[0] <= strains.min() and strains.max() <= _STRAINS[1]):
         yield (
-            f"contact.yield_strength over E*(s) runs from {strains.min():.2g} to {strains.max():.2g}; the "
-            f"law was fitted from {_STRAINS[0]:g} to {_STRAINS[1]:g}"
+            f"contact.yield_strength over E*(s) is {strains.min():.2g} to {strains.max():.2g}; the law was "
+            f"fitted from {_STRAINS[0]:g} to {_STRAINS[1]:g}"
         )
 
 
@@ -142,15 +142,17 @@ def _radius(scene: Scene) -> Iterator[str]:
     a = float(law.radius(piece, y, e)[0]) * np.sqrt(scene.surface.sigma / scene.surface.radius)
     if a > _WIDEST:
         yield (
-            f"contact.law: the widest thousandth of the contacts reaches {a:.2g} of the summit radius; the "
-            f"law was fitted up to {_WIDEST:g}"
+            f"contact.law: the largest 0.1 % of the contacts reach {a:.2g} of the summit radius; the law was "
+            f"fitted up to {_WIDEST:g}"
         )
 
 
 def _coating(scene: Scene) -> Iterator[str]:
     law = scene.law
     if isinstance(law, Coated) and not _RATIOS[0] <= law.ratio <= _RATIOS[1]:
-        yield (f"contact.ratio = {law.ratio:g}: the first-order coating law is good for ratios from 1/3 to 3")
+        yield (
+            f"contact.ratio = {law.ratio:g}: the first-order coating law is valid for ratios from 1/3 to 3"
+        )
 
 
 def _adhesion(scene: Scene) -> Iterator[str]:

@@ -117,12 +117,12 @@ def _of_scipy(name: str = "norm", shapes: Mapping[str, float] | None = None) -> 
 
     distribution = getattr(scipy.stats, name, None)
     if not isinstance(distribution, scipy.stats.rv_continuous):
-        raise ValueError('name: give a continuous distribution of scipy.stats, as "gamma"')
+        raise ValueError('name: give a continuous distribution of scipy.stats, such as "gamma"')
     try:
         return ScipyHeights(distribution(**(shapes or {})))
     except (TypeError, ValueError) as error:
         wanted = distribution.shapes or "none"
-        raise ValueError(f"shapes: give its shapes ({wanted}), as {{a = 4.0}}; {error}") from None
+        raise ValueError(f"shapes: give its shapes ({wanted}), such as {{a = 4.0}}; {error}") from None
 
 
 def heights_given(section: Section, given: Any) -> HeightLaw:
@@ -137,7 +137,7 @@ def heights_given(section: Section, given: Any) -> HeightLaw:
         return given  # type: ignore[no-any-return]
     advice = (
         "give mcgw.Weibull(shape), mcgw.Nayak(alpha), mcgw.HeightTable.of(heights), or a frozen distribution "
-        "of scipy.stats, as scipy.stats.lognorm(0.3)"
+        "of scipy.stats, such as scipy.stats.lognorm(0.3)"
     )
     section.fail("heights", given, advice)
     return Gaussian()
@@ -167,8 +167,8 @@ def heights_table(heights: HeightLaw, file: str | None = None) -> dict[str, Any]
         return _table("heights", law, heights)
     raise SceneError(
         [
-            f"heights: {type(own).__name__} is a Python class that no file can hold; give a distribution of "
-            "scipy.stats, or points of it as a HeightTable"
+            f"heights: {type(own).__name__} is a Python class that a file cannot store; give a distribution "
+            "of scipy.stats, or its points as a HeightTable"
         ]
     )
 

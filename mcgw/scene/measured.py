@@ -37,7 +37,7 @@ class Fitted:
     area : float or None
         That was looked at, m^2; None: along lines only.
     cautions : tuple of str
-        Why not to trust the fit, the gravest first, as `mcgw.fit` found them.
+        Warnings of `mcgw.fit`, the most serious first.
     """
 
     m0: float
@@ -73,7 +73,7 @@ class Fitted:
     def lines(self) -> tuple[str, str]:
         """What it says: of the spectrum, and of what else the map is."""
         lay = "" if self.lay is None else f", lay {self.lay:.3g}"
-        apart = "" if self.agreement is None else f", estimates {self.agreement:.3g} times apart"
+        apart = "" if self.agreement is None else f", estimates differ by a factor of {self.agreement:.3g}"
         return (
             f"alpha = {self.moments.alpha:.4g}, rms slope {math.sqrt(2 * self.m2):.3g}{lay}",
             f"skewness {self.skewness:.2f}, kurtosis {self.kurtosis:.2f}{apart}",
@@ -115,7 +115,7 @@ class Uncertainty:
     def __post_init__(self) -> None:
         n = len(self.names)
         if not n:
-            raise ValueError(f"sigma: names no parameter; give one of {', '.join(_PARAMETERS)}")
+            raise ValueError(f"sigma: does not name a parameter; give one of {', '.join(_PARAMETERS)}")
         if self.correlation is None:
             return
         hold(self, correlation=tuple(map(tuple, self.correlation)))
@@ -125,7 +125,7 @@ class Uncertainty:
         if not (np.allclose(matrix, matrix.T, atol=1e-6) and np.allclose(np.diag(matrix), 1, atol=1e-6)):
             raise ValueError("correlation: must be symmetric, with ones on its diagonal")
         if np.linalg.eigvalsh(matrix)[0] < _NEGATIVE:
-            raise ValueError("correlation: no numbers are correlated so, an eigenvalue is negative")
+            raise ValueError("correlation: impossible, because an eigenvalue is negative")
 
     @classmethod
     def correlated(cls, names: Sequence[str], errors: Sequence[float], covariance: Array) -> "Uncertainty":

@@ -1,4 +1,4 @@
-"""What is wrong with the values of a scene: a line for each mistake, with its key and what would do."""
+"""What is wrong with the values of a scene: a line for each mistake, with its key and what to give."""
 
 import math
 from collections.abc import Iterator
@@ -45,7 +45,7 @@ def _values(scene: Fields) -> Iterator[str]:
         yield f"contact.separations: {tiny[0]:g} is too close to 0; give 0, or at least {_LEAST:g}"
     for name in scene.quantities:
         if name not in known and scene.unload_from is None:
-            yield f"contact.quantities: {name!r} is that of the way back; give unload_from too"
+            yield f"contact.quantities: {name!r} needs unloading; give unload_from too"
     if not 1 <= scene.n_asperities <= _MOST_ASPERITIES:
         yield (
             f"ensemble.n_asperities = {scene.n_asperities}: must lie between 1 and 2^53; "
@@ -53,12 +53,12 @@ def _values(scene: Fields) -> Iterator[str]:
         )
     yield from rel_err_mistakes(scene)
     if scene.rel_err is not None and not promise_of(sampler).real_surfaces:
-        yield f'ensemble.rel_err: sampler = "{sampler}" has no variance to stop by; take another'
+        yield f'ensemble.rel_err: sampler = "{sampler}" has no variance to stop by; use another'
     if scene.keep == "statistics" and not promise_of(sampler).real_surfaces:
-        yield f'ensemble.keep = "statistics": sampler = "{sampler}" has none; take another, or "sums"'
+        yield f'ensemble.keep = "statistics": sampler = "{sampler}" has none; use another sampler, or "sums"'
     listed = isinstance(scene.heights, MeasuredHeights)  # of which no sampler has moments
     if scene.keep == "moments" and not promise_of(sampler).keeps_moments and not listed:
-        yield f'ensemble.keep = "moments": sampler = "{sampler}" has none; take "cells"'
+        yield f'ensemble.keep = "moments": sampler = "{sampler}" has none; use "cells"'
 
 
 def _history(scene: Fields) -> Iterator[str]:
@@ -67,15 +67,15 @@ def _history(scene: Fields) -> Iterator[str]:
         return
     if scene.unload_from > min(scene.separations, default=math.inf):
         yield (
-            f"contact.unload_from = {scene.unload_from:g}: the separation {scene.lowest:g} is lower; "
-            'give the lowest that was reached, or "loop"'
+            f"contact.unload_from = {scene.unload_from:g}: the separation {scene.lowest:g} is smaller; "
+            'give the smallest that was reached, or "loop"'
         )
     try:
         way = scene.contact.unloading()
         stiff = [name for name in ("stiffness", "load_slope") if name in scene.quantities]
         if stiff and not way.stiff:
             yield (
-                f"contact.quantities: {stiff[0]!r} of contacts that break off has no variance (law = "
+                f"contact.quantities: {stiff[0]!r} has no variance if contacts break off (law = "
                 f'"{scene.law.name}"); leave it out, or unload_from'
             )
     except ValueError as error:
@@ -86,11 +86,11 @@ def _law(scene: Fields) -> Iterator[str]:
     """A law that means nothing for this surface."""
     if scene.tangential and not scene.law.half_space:
         yield (
-            f'contact.tangential: the theorem needs elastic half-spaces, not law = "{scene.law.name}"; take '
+            f'contact.tangential: the theorem needs elastic half-spaces, not law = "{scene.law.name}"; use '
             '"hertz" or "power-law-graded"'
         )
     if scene.tangential and "load" not in scene.quantities:
-        yield 'contact.tangential: it is a difference of normal loads; add "load" to contact.quantities'
+        yield 'contact.tangential: it needs normal loads; add "load" to contact.quantities'
     if scene.law.elastic and "yielded" in scene.quantities:
         yield f'contact.quantities: "yielded": no contact yields with law = "{scene.law.name}"; leave it out'
     if scene.hertzian:
@@ -105,8 +105,7 @@ def _law(scene: Fields) -> Iterator[str]:
         yield f'contact.law = "{scene.law.name}": yields at {limits.flat[0]:.3g} sigma; check its constants'
     if scene.negative == "allow":
         yield (
-            f'grading.negative = "allow": contact.law = "{scene.law.name}" knows no negative modulus; say '
-            '"clip"'
+            f'grading.negative = "allow": contact.law = "{scene.law.name}" needs a modulus >= 0; use "clip"'
         )
 
 
@@ -150,26 +149,26 @@ def _measured(scene: Fields) -> Iterator[str]:
     table = "heights" if scene.curvature is None else "summits"
     if promise_of(scene.sampler).needs_density:
         yield (
-            f'ensemble.sampler = "{scene.sampler}": it draws from a density, and measured heights have none; '
-            'take "direct"'
+            f'ensemble.sampler = "{scene.sampler}": it draws from a density, which measured heights do '
+            'not have; use "direct"'
         )
     if scene.keep == "moments":
-        yield 'ensemble.keep = "moments": sums of measured heights have none; take "sums"'
+        yield 'ensemble.keep = "moments": sums of measured heights have none; use "sums"'
     if not scene.as_measured:
         if scene.curvature is None:
-            yield "heights: those that are resampled without radii have a smooth law; make a mcgw.HeightTable"
+            yield "heights: heights that are resampled without radii have a smooth law; use mcgw.HeightTable"
         return
     number = len(scene.heights.heights)
     if scene.n_asperities != number:
         yield (
-            f"ensemble.n_asperities = {scene.n_asperities}: {number} heights are measured; give that "
+            f"ensemble.n_asperities = {scene.n_asperities}: there are {number} measured heights; give that "
             f"number, or {table}.resample = true"
         )
     for key, wanted in (("n_surfaces", 1), ("count", "fixed")):
         if getattr(scene, key) != wanted:
             yield (
                 f"ensemble.{key} = {getattr(scene, key)!r}: measured heights as they are need {wanted!r}; "
-                f"or say resample = true under [{table}]"
+                f"or set resample = true under [{table}]"
             )
 
 
@@ -179,24 +178,24 @@ def _radii(scene: Fields) -> Iterator[str]:
         return
     if isinstance(scene.curvature, MeasuredRadii):
         if scene.heights != scene.curvature.heights:
-            yield "heights: they are not those of the summits whose radii were measured; leave them out"
+            yield "heights: they differ from those of the measured summits; leave them out"
         return
     if not isinstance(scene.heights, Nayak) or scene.heights.alpha != scene.curvature.alpha:
         yield (
-            'summits.curvature = "random": it goes with heights.law = "nayak", alpha = '
-            f'{scene.curvature.alpha:g}; take these heights, or curvature = "mean"'
+            'summits.curvature = "random": it needs heights.law = "nayak", alpha = '
+            f'{scene.curvature.alpha:g}; use these heights, or curvature = "mean"'
         )
     promise = promise_of(scene.sampler)
     if not promise.own_radii:
         yield (
-            f'ensemble.sampler = "{scene.sampler}": sums of summits with radii of their own are far from '
-            'Gaussian; take "cells", or summits.curvature = "mean"'
+            f'ensemble.sampler = "{scene.sampler}": sums over summits with individual radii are far '
+            'from Gaussian; use "cells", or summits.curvature = "mean"'
         )
     if not scene.hertzian and (not promise.own_laws or scene.keep == "moments"):
         key, value = ("keep", "moments") if scene.keep == "moments" else ("sampler", scene.sampler)
         yield (
-            f'ensemble.{key} = "{value}": each summit with a radius of its own has its own breaks of '
-            f'contact.law = "{scene.law.name}"; take sampler = "tail", or summits.curvature = "mean"'
+            f'ensemble.{key} = "{value}": summits with individual radii have different breaks of '
+            f'contact.law = "{scene.law.name}"; use sampler = "tail", or summits.curvature = "mean"'
         )
 
 
@@ -223,8 +222,8 @@ def _range(scene: Fields) -> Iterator[str]:
     first, last = scene.grading.edges[0], scene.grading.edges[-1]
     if not (first <= low and high <= last):
         yield (
-            f"grading.edges: the series reach from s = {first:.6g} to {last:.6g}, but heights from "
-            f"{low:.6g} to {high:.6g} count; give the grading itself, or other separations"
+            f"grading.edges: the series reach from s = {first:.6g} to {last:.6g}, but heights from {low:.6g} "
+            f"to {high:.6g} are needed; give the grading itself, or other separations"
         )
 
 
@@ -245,12 +244,13 @@ def _modulus(scene: Fields) -> Iterator[str]:
     if scene.negative == "clip":
         yield (
             f'grading.negative = "clip": from s = {where:.4g} asperities have no modulus, and contact.law = '
-            f'"{scene.law.name}" pulls them in without bound; raise the separations, or take another grading'
+            f'"{scene.law.name}" pulls them in without limit; increase the separations, or use another '
+            "grading"
         )
         return
     yield (
         f"{_key(scene)}: E*(s) is negative from s = {where:.4g}, which touches at h = {scene.lowest:g}; "
-        'raise the separations, or say negative = "clip" or "allow" under [grading]'
+        'increase the separations, or set negative = "clip" or "allow" under [grading]'
     )
 
 
@@ -265,10 +265,7 @@ def _sums(scene: Fields) -> Iterator[str]:
             return  # `_modulus` says why, unless negative moduli are allowed
         sums = [q.scale(scene.surface) * steepest * float(scene.n_asperities) * _SAFELY for q in stiff]
     if not all(value < np.finfo(float).max for value in sums):
-        yield (
-            f"{_key(scene)}: E*(s)/E* reaches {steepest:.3g}, and sums leave double precision; give a modest "
-            "one"
-        )
+        yield (f"{_key(scene)}: E*(s)/E* reaches {steepest:.3g}, so sums overflow; give a smaller one")
 
 
 def _resolved(scene: Fields) -> Iterator[str]:
@@ -277,7 +274,7 @@ def _resolved(scene: Fields) -> Iterator[str]:
         try:
             scene._alone.fluctuations(scene.quantities, np.array([scene.lowest]))
         except ValueError as error:
-            yield f'ensemble.keep = "statistics": {error}; or say "sums"'
+            yield f'ensemble.keep = "statistics": {error}; or use "sums"'
     if scene.law.is_data and is_data(scene.grading):
         return
     from mcgw.scene.storable import in_numbers  # for those scenes alone

@@ -32,13 +32,15 @@ RANGES = {
         1e-10, 1e-3, "is less than an atom", "is higher than the summits of any ground surface", "m",
         ("um", "nm"),
     ),
-    "radius": Range(1e-10, 0.1, "is less than an atom", "is not a radius of a summit", "m", ("um", "mm")),
+    "radius": Range(1e-10, 0.1, "is less than an atom", "is too large for the radius of a "
+    "summit", "m", ("um", "mm")),
     "eta": Range(
-        1e4, 1e19, "is less than a summit a square centimetre", "is more than a summit an atom", "1/m^2",
+        1e4, 1e19, "is less than one summit per square centimetre", "is more than one summit per "
+            "atom", "1/m^2",
         ("/mm^2",),
     ),
     "nominal_area": Range(
-        1e-17, 10.0, "is less than a hundred atoms", "is larger than two bodies in contact", "m^2",
+        1e-17, 10.0, "is less than a hundred atoms", "is larger than any contact of two bodies", "m^2",
         ("mm^2", "um^2"),
     ),
     "E_star": Range(1e3, 2e12, "is softer than any gel", "is stiffer than diamond", "Pa", ("GPa", "MPa")),
@@ -61,7 +63,7 @@ def perhaps_other_units(scene: "Fields") -> list[str]:
     farthest = max(scene.separations, key=abs)
     if 0 < abs(farthest) < _HARDLY_APART:
         found.append(
-            f"contact.separations: {farthest:g} sigma is hardly apart from 0; did you mean {farthest:g} m = "
+            f"contact.separations: {farthest:g} sigma is almost 0; did you mean {farthest:g} m = "
             f"{farthest / scene.surface.sigma:.4g} sigma? Separations are d/sigma"
         )
     if isinstance(scene.grading, Table):
@@ -98,14 +100,14 @@ def _of_table(table: Table, scene: "Fields") -> Iterator[str]:
     farthest = max(table.s, key=abs)
     if abs(farthest) > _FARTHEST:
         yield (
-            f"grading: a point lies at s = {farthest:.3g} sigma, where no summit is; s is z/sigma, and z is "
-            "in m unless the header of the file says z (um)"
+            f"grading: a point lies at s = {farthest:.3g} sigma, where there are no summits; s is z/sigma, "
+            "and z is in m unless the header of the file says z (um)"
         )
     ratios = [abs(ratio) for ratio in table.ratio if ratio != 0]
     if odd := [ratio for ratio in ratios if not _RATIOS[0] <= ratio <= _RATIOS[1]]:
         yield (
-            f"grading: E*(s)/E* = {odd[0]:.3g} of surface.E_star = {scene.surface.E_star:g} Pa; a ratio is a "
-            "number near 1, and E_star in Pa unless the header of the file says E_star (GPa)"
+            f"grading: E*(s)/E* = {odd[0]:.3g} of surface.E_star = {scene.surface.E_star:g} Pa; a ratio "
+            "should be near 1, and E_star is in Pa unless the header of the file says E_star (GPa)"
         )
     low, high = min(scene.separations), max(scene.separations)
     touch, from_first, over_last = scene.heights.sf(np.maximum(low, (low, table.s[0], table.s[-1])))
@@ -114,5 +116,5 @@ def _of_table(table: Table, scene: "Fields") -> Iterator[str]:
         where, share = (high, 1.0) if high > table.s[-1] else (low, share)
         yield (
             f"grading: the table reaches from s = {table.s[0]:.3g} to {table.s[-1]:.3g}, and {share:.0%} of "
-            f"the contacts at d/sigma = {where:g} lie beyond; they have the modulus of its end"
+            f"the contacts at d/sigma = {where:g} lie beyond; they get the modulus at its end"
         )

@@ -106,7 +106,7 @@ def of_tables(
     }
     uncertain = values["uncertainty"]
     if uncertain and set(MOMENTS) & set(uncertain.names) and not isinstance(heights, Nayak | None):
-        advice = 'm0, m2 and m4 go with heights.law = "nayak"; give sigma, radius and eta'
+        advice = 'm0, m2 and m4 need heights.law = "nayak"; otherwise give sigma, radius and eta'
         of["surface"].fail("uncertainty", of["surface"].table["uncertainty"], advice)
     for name, section in (("", top), *of.items()):
         if not python or TABLES[name].make:  # a file or a dict, where more may be wrong than values
@@ -148,7 +148,7 @@ def _with_listed(of: Mapping[str, Section], surface: Any, listed: Any) -> Summit
     heights = of["heights"]
     heights.known(*heights.table)
     if heights.table:
-        heights.problems.append("heights: [summits] lists the heights of its summits; leave [heights] out")
+        heights.problems.append("heights: [summits] already gives the heights; leave [heights] out")
     if surface is None:
         of["surface"].known(*KEYS["surface"])  # what it lacks, nobody can say
         return None, Gaussian(), None
@@ -185,7 +185,7 @@ def _law(section: Section, objects: Values) -> ContactLaw:
     if isinstance(given, dict):
         return law_of_keys(given, section.problems)
     if "law" in objects:
-        section.fail("law", given, "a law of your own is mcgw.CustomLaw(load=..., area=..., ...)")
+        section.fail("law", given, "your own law is mcgw.CustomLaw(load=..., area=..., ...)")
     return contact_law(section)
 
 
@@ -248,8 +248,8 @@ def _left_out(section: Section, surface: Surface | None, n_asperities: int | Non
     given = section.read("left_out") or []
     if "n_asperities" in given and surface and n_asperities not in (None, round(surface.n_asperities)):
         advice = (
-            f"left_out says that nobody gave it, but eta * nominal_area is {surface.n_asperities:.10g}; "
-            "take it out of left_out, or leave n_asperities out"
+            f"left_out lists it, but eta * nominal_area is {surface.n_asperities:.10g}; remove it from "
+            "left_out, or leave n_asperities out"
         )
         section.fail("n_asperities", n_asperities, advice)
         return []

@@ -47,8 +47,8 @@ class Promise:
     not_done: tuple[str, ...] = ()
 
 
-_UNTOUCHED = "{spared:.4g} asperities of a surface lie below every separation and are not drawn"
-_CROWDED = "asperities of crowded cells are not drawn: their moments are, as Gaussian numbers"
+_UNTOUCHED = "{spared:.4g} asperities per surface lie below every separation and are not drawn"
+_CROWDED = "in crowded cells, Gaussian moments are drawn instead of asperities"
 
 _PROMISES = {
     "direct": Promise(same_on_all_processors=False, keeps_moments=False, own_laws=True, places=True),

@@ -35,54 +35,54 @@ class Scene(Fields, Shown):
     Parameters
     ----------
     surface : Surface or Spectral
-        Parameters in SI units: `mcgw.Surface`; or its spectrum, of which the heights of the summits follow
-        too: `mcgw.SpectralSurface`.
+        A `mcgw.Surface`, or a `mcgw.SpectralSurface`, which also determines the heights of the summits.
     separations : array_like
         Reduced separations d/sigma, in any order, repeated or not: an array, a list, or one number.
     datum : {"summits", "surface"}, optional
-        Mean plane that `separations` count from; the scene holds them from that of the summits.
+        Mean plane from which `separations` are measured; the scene converts them to that of the summits.
     title : str, optional
-        For people.
+        Title of figures and reports.
     grading : Grading or callable, optional
-        E*(s)/E*, or any function of an array of heights s, as ``lambda s: 1 + 0.3*np.tanh(s)``; its kinks
-        and jumps are searched for, or declared by `mcgw.Custom`. Default: homogeneous.
+        E*(s)/E*, or any function of an array of heights s, such as ``lambda s: 1 + 0.3*np.tanh(s)``; the
+        program finds its kinks and jumps, or `mcgw.Custom` declares them. Default: homogeneous.
     negative : {"error", "clip", "allow"}, optional
-        What to do where the grading makes the modulus of a contacting asperity negative.
+        What to do if the grading makes the modulus of a contacting asperity negative.
     heights : HeightLaw or frozen distribution of scipy.stats, optional
-        Of the reduced heights: of a distribution of scipy mean and scale drop out. Default: Gaussian.
+        Distribution of the reduced heights; mean and scale of a SciPy distribution have no effect.
+        Default: Gaussian.
     curvature : {"random", "mean"}, RandomCurvature or MeasuredRadii, optional
-        Whether each summit of an isotropic Gaussian surface has a radius of its own. Needs the heights of
-        `mcgw.Nayak`. Default: "random" for a surface that is given by its spectrum, else "mean". Or the
-        measured radii of summits, whose heights are then those measured with them.
+        Whether each summit of an isotropic Gaussian surface has its own radius, which needs the heights
+        of `mcgw.Nayak`. Default: "random" for a surface given by its spectrum, otherwise "mean". Or
+        measured radii, which come with their measured heights.
     law : ContactLaw or dict, optional
-        Law of contact of an asperity, as `mcgw.KogutEtsion(hardness=1.2e9)`; or its keys in a scene file,
-        as ``{"law": "kogut-etsion", "hardness": "1.2 GPa"}``. Default: Hertz's.
+        Contact law of an asperity, such as `mcgw.KogutEtsion(hardness=1.2e9)`; or its keys in a scene
+        file, ``{"law": "kogut-etsion", "hardness": "1.2 GPa"}``. Default: Hertz's.
     unload_from : float or "loop", optional
-        Lowest separation reached before, d/sigma; "loop": the lowest of `separations`. Every quantity then
-        has a second one, as ``load_unloading``, on the way back from there.
+        Smallest separation reached before unloading, d/sigma; "loop": the smallest of `separations`.
+        Every quantity then also has an unloading branch, such as ``load_unloading``.
     film : Film, optional
-        Resistivity of the bodies, and resistance of a film on the spots: `mcgw.Film`. There is then a
-        quantity "conductance_si". Default: none.
+        Resistivity of the bodies, and resistance of a film on the spots: `mcgw.Film`. Adds the quantity
+        "conductance_si". Default: none.
     layer : Layer, optional
-        On the first body, of any thickness: `mcgw.Layer`; a part of `film`.
+        Layer of any thickness on the first body: `mcgw.Layer`; becomes a part of `film`.
     tangential : Tangential, optional
-        Friction and displacements of a surface that is pushed sideways: `mcgw.Tangential`. An ensemble then
-        has "tangential_load", of shape (surface, separation, displacement). Default: it is not.
+        Friction and tangential displacements: `mcgw.Tangential`. Adds "tangential_load", of shape
+        (surface, separation, displacement). Default: none.
     interaction : Interaction, {"body", "mean-plane"} or dict, optional
-        How asperities press each other down: `mcgw.Interaction`, its reference alone, or its keys in a scene
-        file. An ensemble then has "nominal_separation" or "effective_separation" besides, and stiffness and
-        conductance are in series with the half-space. With ``{"reference": "located", "at": "nominal"}``
-        each surface is solved with its summits at random places. Default: they are independent.
+        Asperity interaction: `mcgw.Interaction`, its reference alone, or its keys in a scene file. Adds
+        "nominal_separation" or "effective_separation", and puts stiffness and conductance in series with
+        the half-space. With ``{"reference": "located", "at": "nominal"}`` each surface is solved with its
+        summits at random places. Default: asperities are independent.
     joint : Joint, {"air", "vacuum"} or dict, optional
-        Gas in the gap of a thermal joint: `mcgw.Joint`, its gas alone, or its keys in a scene file; needs the
-        conductivities of a `film`. An ensemble then has "gap_conductance" and "joint_conductance" besides,
-        W/(m^2 K). Default: conductances are those of the spots, as in vacuum.
+        Gas in the gap of a thermal joint: `mcgw.Joint`, its gas alone, or its keys in a scene file; needs
+        the conductivities of a `film`. Adds "gap_conductance" and "joint_conductance", W/(m^2 K).
+        Default: spots only, as in vacuum.
     quantities : sequence of str, optional
-        Which sums to compute: names of `analytic.QUANTITIES` and `analytic.LAW_QUANTITIES`. Default: load,
+        Quantities to compute: names of `analytic.QUANTITIES` and `analytic.LAW_QUANTITIES`. Default: load,
         area, stiffness, contacts.
     fitted : Fitted or dict, optional
-        What the fit of a map knew besides, as `mcgw.fitted_scene` writes it; or its keys in a scene file.
-        It draws nothing: by it `validity` tells how far the model is from elasticity, or that nobody knows.
+        Properties of the fitted map, from `mcgw.fitted_scene`; or its keys in a scene file.
+        It does not affect results: `validity` uses it to state the error of the model.
 
     Raises
     ------

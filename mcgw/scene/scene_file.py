@@ -46,7 +46,7 @@ def load_scene(
     Raises
     ------
     SceneError
-        With one line for each mistake: the key, the value, and what would do.
+        With one line for each mistake: the key, the value, and what to give instead.
 
     Examples
     --------
@@ -65,7 +65,9 @@ def load_scene(
     except ValueError as error:
         raise SceneError([str(error)]) from None
     if text.startswith(HDF5):
-        raise SceneError([f"{path}: holds results, not a scene; mcgw show --scene {path} prints theirs"])
+        raise SceneError(
+            [f"{path}: holds results, not a scene; print their scene with mcgw show --scene {path}"]
+        )
     return scene_of(with_changes(_document(text), changes or {}), folder=path.parent, seed=seed)
 
 
@@ -125,7 +127,7 @@ def _document(text: str | bytes) -> dict[str, Any]:
     try:
         return loads(text if isinstance(text, str) else text.decode("utf-8"))
     except UnicodeDecodeError as error:
-        raise SceneError([f"not a TOML scene: no text in UTF-8 (byte {error.start})"]) from None
+        raise SceneError([f"not a TOML scene: not text in UTF-8 (byte {error.start})"]) from None
     except (ValueError, RecursionError) as error:
         reason = str(error).splitlines()[0] if str(error) else "nested too deeply"
         raise SceneError([f"not a TOML scene: {reason}"]) from None

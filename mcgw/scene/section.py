@@ -208,9 +208,9 @@ class Section:
         """Note every key that was not read, and those that do not go together."""
         unknown = [key for key in self.table if key not in self._asked]
         for key in unknown[:_MOST_NAMED]:
-            meant = nearest(key[:99], self._asked) or f"known here: {', '.join(self._asked)}"
+            meant = nearest(key[:99], self._asked) or f"known keys: {', '.join(self._asked)}"
             if key in self.rows and self.rows[key].laws:
-                meant = f"it goes with law = {_either(map(repr, self.rows[key].laws))}; leave it out"
+                meant = f"it is for law = {_either(map(repr, self.rows[key].laws))} only; leave it out"
             self.problems.append(f"{self.path(key)}: unknown key; {meant.removesuffix(' ')}")
         if len(unknown) > _MOST_NAMED:
             self.problems.append(f"[{self.name}]: {len(unknown) - _MOST_NAMED} more unknown keys")

@@ -21,7 +21,7 @@ def rel_err_mistakes(scene: Fields) -> Iterator[str]:
     for name, value in given.items():
         key = f"ensemble.rel_err.{name}" if name else "ensemble.rel_err"
         if name and name not in scene.quantities:
-            yield f"{key}: is not among contact.quantities; name one of {', '.join(scene.quantities)}"
+            yield f"{key}: is not one of contact.quantities; give one of {', '.join(scene.quantities)}"
         listed = value if isinstance(value, list) else [value]
         if isinstance(value, list) and len(value) != len(scene.separations):
             yield f"{key}: has {len(value)} values; give one for each of {len(scene.separations)} separations"
@@ -29,8 +29,8 @@ def rel_err_mistakes(scene: Fields) -> Iterator[str]:
             least = min((x for x in listed if x < math.inf), default=math.inf)
             if least <= max(_off(scene, each) for each in ([name] if name else scene.quantities)):
                 yield (
-                    f"{key} = {least:g}: values are good to accuracy = {scene.accuracy:g} alone, and so are "
-                    "their means; give a lower accuracy, or a larger rel_err"
+                    f"{key} = {least:g}: values and their means only have accuracy = {scene.accuracy:g}; "
+                    "give a smaller accuracy, or a larger rel_err"
                 )
 
 

@@ -20,7 +20,7 @@ _MARGIN = 1 / 16  # the lowest that is felt is a multiple of this, and may chang
 def storable(scene: AnyScene) -> AnyScene:
     """The scene with its grading and contact law resolved, unless a file holds them as they are.
 
-    All samplers draw with this one, so that in memory, in a file, and gone on with from there, a scene has
+    All samplers draw with this one, so that in memory, in a file, and resumed from there, a scene has
     the same bits. A Python function becomes an `analytic.PiecewiseSeries` over all heights that count.
 
     Raises

@@ -113,7 +113,7 @@ def datum_shift(section: Section, heights: HeightLaw | None) -> float:
     if section.read("datum") != "surface" or heights is None:
         return 0.0
     if not isinstance(heights, Nayak):
-        advice = 'needs heights.law = "nayak", which knows the mean plane of the surface'
+        advice = 'needs heights.law = "nayak", which defines the mean plane of the surface'
         section.fail("datum", "surface", advice)
         return 0.0
     return heights.mean / heights.std

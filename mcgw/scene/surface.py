@@ -27,13 +27,13 @@ def Surface(  # noqa: N802 - the door to a class of this name
     sigma : float or str
         Standard deviation of the summit heights (not of the surface), m; or a text, as "1.37 um".
     radius : float or str
-        Radius R of the summits, m; or as "13 um".
+        Radius R of the summits, m; or text such as "13 um".
     eta : float or str
-        Summits per unit nominal area, 1/m^2; or as "300/mm^2".
+        Summits per unit nominal area, 1/m^2; or text such as "300/mm^2".
     nominal_area : float or str
-        Nominal contact area A_n, m^2; or as "1 cm^2".
+        Nominal contact area A_n, m^2; or text such as "1 cm^2".
     E_star : float or str
-        Composite modulus E* of the homogeneous surface, Pa; or as "78.6 GPa".
+        Composite modulus E* of the homogeneous surface, Pa; or text such as "78.6 GPa".
 
     Returns
     -------
@@ -62,7 +62,7 @@ def SpectralSurface(  # noqa: N802 - as above
     nominal_area: float | str,
     E_star: float | str,
 ) -> Spectral:
-    """An isotropic Gaussian surface, told by the moments of its spectrum, pressed on a rigid plane.
+    """An isotropic Gaussian surface, given by the moments of its spectrum, pressed on a rigid plane.
 
     Parameters
     ----------
@@ -73,15 +73,14 @@ def SpectralSurface(  # noqa: N802 - as above
     m4 : float or str
         Mean square of the second derivative of a profile, 1/m^2.
     nominal_area : float or str
-        Nominal contact area A_n, m^2; or as "1 cm^2".
+        Nominal contact area A_n, m^2; or text such as "1 cm^2".
     E_star : float or str
-        Composite modulus E*, Pa; or as "78.6 GPa".
+        Composite modulus E*, Pa; or text such as "78.6 GPa".
 
     Returns
     -------
     Spectral
-        To be the surface of a `mcgw.Scene`, whose heights are then Nayak's, and whose summits have radii of
-        their own.
+        The surface of a `mcgw.Scene` with Nayak's heights and individual summit radii.
 
     Raises
     ------
@@ -133,7 +132,7 @@ def read_surface(section: Section, listed: ListedSummits | None = None) -> Plain
         told |= {key: value for key, value in known.items() if key not in section}
     if spectral and listed:
         key = next(key for key in MOMENTS if key in section)
-        section.fail(key, section.table[key], "[summits] lists the summits themselves; leave it out")
+        section.fail(key, section.table[key], "[summits] already lists the summits; leave it out")
     values = told | section.read_all(name for name in names if name not in told)
     if len(section.problems) > before:
         return None

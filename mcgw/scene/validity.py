@@ -45,7 +45,7 @@ class Validity(Shown):
     unknown : str
         Why there is no number at some separation or at all; empty if there is one at each.
     listed : bool
-        Whether the model had the very summits of each map: specimens scatter besides.
+        Whether the model had the summits of each map; specimens scatter in addition.
     """
 
     separations: Array
@@ -77,9 +77,9 @@ class Validity(Shown):
 
     @property
     def verdict(self) -> str:
-        """One sentence: how far from elasticity, where, and where that was not measured."""
+        """One sentence: the error of the model, where, and where it was not measured."""
         if not self.measured.any():
-            return f"Against elasticity: {self.unknown}"
+            return f"Model error: {self.unknown}"
         parts, at_load, at_gap = [], self.known("area", "stiffness"), self.known("load")
         if at_load.any():
             most = percent(self.worst("area", "stiffness"))
@@ -87,7 +87,7 @@ class Validity(Shown):
         if at_gap.any():
             where = "" if np.array_equal(at_gap, at_load) else self._here(at_gap)
             parts.append(f"load within {percent(self.worst('load'))} at a given mean gap{where}")
-        line = f"Against elasticity: {', '.join(parts)} (95 %{self._homogeneous})"
+        line = f"Model error: {', '.join(parts)} (95 %{self._homogeneous})"
         if not self.measured.all():
             line += f"; at d/sigma = {span(self.separations, ~self.measured)} {self.unknown}"
         return line
@@ -185,18 +185,17 @@ def off_elasticity(v: Validity, why: str) -> Iterator[str]:
     """Errors above 10 % by their size, and loads above those that were measured."""
     biased = {name: _above(v, name) & ~_scatters(v, name) for name in _QUANTITIES}
     if (off := _any(biased)).any():
-        yield (f"d/sigma = {span(v.separations, off)}: off elasticity, {'; '.join(_told(v, biased))}: {why}")
+        yield (f"d/sigma = {span(v.separations, off)}: model error: {'; '.join(_told(v, biased))}: {why}")
     loose = {name: _above(v, name) & _scatters(v, name) for name in _QUANTITIES}
     if (off := _any(loose)).any():
         yield (
-            f"d/sigma = {span(v.separations, off)}: surfaces of so few contacts scatter, "
-            f"{'; '.join(_told(v, loose))}"
+            f"d/sigma = {span(v.separations, off)}: scatter between surfaces: {'; '.join(_told(v, loose))}"
         )
     heavier = ~v.measured & (v.separations < _first_measured(v))
     if heavier.any():
         yield (
-            f"d/sigma = {span(v.separations, heavier)}: heavier loads than any that was measured "
-            f"({v.axis} up to {v.loads[heavier].max():.2g}); the error is not known"
+            f"d/sigma = {span(v.separations, heavier)}: loads heavier than measured ({v.axis} up to "
+            f"{v.loads[heavier].max():.2g}); the error is not known"
         )
 
 

@@ -49,7 +49,7 @@ def validity_of(scene: Fields, separations: ArrayLike | None = None, *, felt: bo
         return _nothing(h, f"not measured: {place.model} on maps ({_maps(place)}){shared}")
     if not grid.holds(place.x):
         return _nothing(
-            h, f"outside of what was measured ({_coordinate(place)} = {place.x:.4g}; {_span(grid)})"
+            h, f"outside the measured range ({_coordinate(place)} = {place.x:.4g}; {_span(grid)})"
         )
     return _looked_up(scene, place, grid, h, h if felt else _felt(scene, h))
 
@@ -78,8 +78,8 @@ def _looked_up(scene: Fields, place: Place, grid: Grid, h: Array, felt: Array) -
     if found_at.measured.all():
         return found_at
     none = scene.n_asperities * scene.heights.sf(felt) < _NONE
-    why = ["outside of what was measured"] * bool(np.any(~none & ~found_at.measured))
-    why += ["fewer than one contact on a surface"] * bool(none.any())
+    why = ["outside the measured range"] * bool(np.any(~none & ~found_at.measured))
+    why += ["fewer than one contact per surface"] * bool(none.any())
     told = f": {loads}" if not found_at.measured.any() else ""
     return replace(found_at, unknown=f"{' or '.join(why)}{told}")
 
@@ -129,8 +129,8 @@ def _loads(place: Place, found: Expected, p: Array) -> str:
     here = " to ".join(dict.fromkeys(f"{x:.2g}" for x in (p.min(), p.max())))
     lighter = ""
     if p.min() < low and found.lightest < low:
-        limit = "Hertz's contacts" if place.kind == "caps" else "the limit of Bush, Gibson and Thomas"
-        lighter = f"; lighter ones tend to {limit}"
+        limit = "Hertz's law" if place.kind == "caps" else "the limit of Bush, Gibson and Thomas"
+        lighter = f"; lighter ones approach {limit}"
     return f"{_load_axis(place)} = {here} (measured: {told}{lighter})"
 
 
@@ -138,7 +138,7 @@ def _where(scene: Fields, place: Place, grid: Grid, maps: int, loads: str) -> st
     many = f"{maps} maps" if maps > 1 else "one map"
     by = ""
     if scene.fitted is not None:
-        by = " as the fit says"
+        by = " from the fit"
     elif place.kind == "gaussian" and place.model == "one radius":
         by = f" as eta R sigma = {scene.surface.eta * scene.surface.radius * scene.surface.sigma:.3g} says"
     return (
@@ -148,7 +148,7 @@ def _where(scene: Fields, place: Place, grid: Grid, maps: int, loads: str) -> st
 
 
 def _reason(place: Place) -> str:
-    return f"; else nothing: {place.area_only}" if place.area_only else ""
+    return f"; nothing else: {place.area_only}" if place.area_only else ""
 
 
 def _maps(place: Place) -> str:

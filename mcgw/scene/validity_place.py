@@ -81,20 +81,20 @@ def not_on_the_map(scene: Fields) -> str | None:
     if scene.located:
         return "it was for a mean field, not for summits at random places"
     if type(scene.law) is not Hertz:
-        return f'it was for Hertz\'s contacts, not for contact.law = "{scene.law.name}"'
+        return f'only for Hertz\'s law, not for contact.law = "{scene.law.name}"'
     if type(scene.heights) not in (Gaussian, Nayak):
-        return f"it was for Gaussian heights and Nayak's, not for {law_text(scene.heights)}"
+        return f"only for Gaussian and Nayak's heights, not for {law_text(scene.heights)}"
     if scene.fitted is not None and (reason := _not_gaussian(scene.fitted, scene.surface)) is not None:
         return reason
     if isinstance(scene.heights, Nayak):
         found, told = (s.eta * s.radius * s.sigma for s in (_of_alpha(scene), scene.surface))
         if abs(told / found - 1) > _SAME:
             return (
-                f"Gaussian surfaces of alpha = {scene.heights.alpha:.4g} have eta R sigma = {found:.3g}, and "
-                f"this one {told:.3g}"
+                f"Gaussian surfaces of alpha = {scene.heights.alpha:.4g} have eta R sigma = {found:.3g}, but "
+                f"this one has {told:.3g}"
             )
     if isinstance(scene.curvature, RandomCurvature) and scene.curvature.largest < _ROUND:
-        return f"radii were unbounded there, here they end at {scene.curvature.largest:.3g} R"
+        return f"only for unlimited radii; here they are limited to {scene.curvature.largest:.3g} R"
     return None
 
 
@@ -109,14 +109,14 @@ def _not_gaussian(fitted: Fitted, surface: Surface) -> str | None:
     elif abs(fitted.kurtosis - 3) > max(_BULGED, _BY_CHANCE * math.sqrt(24 / fitted.independent)):
         why = f"kurtosis {fitted.kurtosis:.2f}"
     elif fitted.agreement is None:
-        why = "too few summits to tell"
+        why = "too few summits"
     elif fitted.agreement > _APART:
-        why = f"moments and counts {fitted.agreement:.3g} times apart"
+        why = f"moments and counts differ by a factor of {fitted.agreement:.3g}"
     elif (off := fitted.off(surface)) > _APART:
-        return f"eta, R or sigma is not that of the map, but {off:.3g} times off it"
+        return f"eta, R or sigma differs from that of the map by a factor of {off:.3g}"
     else:
         return None
-    return f"the map is no isotropic Gaussian one ({why})"
+    return f"the map is not isotropic and Gaussian ({why})"
 
 
 def _of_alpha(scene: Fields) -> Surface:
@@ -149,11 +149,11 @@ def _apart(scene: Fields) -> str:
     if found is None:
         return ""
     if found.reference == "body":
-        return "periodic cells know no distance of an undeformed body"
+        return "periodic cells have no undeformed body"
     if found.bulk_modulus not in (None, surface.E_star):
-        return "the bulk had the modulus of the asperities there"
+        return "only for a bulk with the modulus of the asperities"
     if abs(scene.n_asperities / surface.n_asperities - 1) > _SAME:
-        return "a cell had eta nominal_area asperities there"
+        return "only for eta nominal_area asperities"
     return ""
 
 

@@ -37,7 +37,7 @@ def grid_of(kind: str, model: str, interaction: str) -> "Grid | None":
 
 @dataclass(frozen=True)
 class Expected:
-    """Errors at some loads, each array in their shape; nan outside of what was measured.
+    """Errors at some loads, each array in their shape; nan outside the measured range.
 
     Parameters
     ----------

@@ -57,15 +57,13 @@ MOMENTS, SUMMITS = ("m0", "m2", "m4"), ("sigma", "radius", "eta")  # either tell
 SUMS = tuple({**QUANTITIES, **LAW_QUANTITIES})
 
 _ANY = Number(low=-math.inf)
-_KNOWN_TO = (
-    "give a number > 0 and at most 0.1, beyond which so few contacts would do that an interval means nothing"
-)
+_KNOWN_TO = "give a number > 0 and at most 0.1; beyond that there are too few contacts for an interval"
 _SHARE = Number("1", high=0.1, advice=_KNOWN_TO)
 _SHARES = List(
     Number("1", high=0.1, infinite=True),
-    advice=f"{_KNOWN_TO}, for each separation; or inf, where nothing is asked",
+    advice=f"{_KNOWN_TO}, for each separation; or inf, for no requirement",
 )
-_KNOWN = 'give standard errors as shares of the values, as {sigma = "20 %", radius = "15 %"}'
+_KNOWN = 'give relative standard errors, such as {sigma = "20 %", radius = "15 %"}'
 _ERROR = Number("1", high=2.0, advice=_KNOWN)
 _ROWS = List(List(Number(low=-1.0, high=1.0)), advice="give rows of numbers from -1 to 1")
 _ERRORS = Table(
@@ -132,54 +130,55 @@ class Values:
     quantities: As[Sequence[str] | None, tuple[str, ...]] = object_or()
     fitted: As[Fitted | dict[str, Any] | None, Fitted | None] = object_or()
     # fmt: off
-    n_surfaces: As[int | None, int] = key("ensemble", Whole(1), "10", "how many, default 1000",
-        python="Number of surfaces M, default: 1000; with `rel_err` the most that may be drawn, default: "
+    n_surfaces: As[int | None, int] = key("ensemble", Whole(1), "10", "number of surfaces, default 1000",
+        python="Number of surfaces M, default: 1000; with `rel_err` the maximum number, default: "
         "1e9", excludes=("rel_err",))
     n_asperities: As[int | None, int] = key("ensemble", Whole(1), "100",
-        "asperities on each, their mean number if `count` is `poisson`; default: η A_n, rounded, of whatever "
-        "surface the scene has")
+        "asperities per surface, or their mean number if `count` is `poisson`; default: η A_n, rounded")
     count: Literal["fixed", "poisson"] = key("ensemble", Word(("fixed", "poisson")), '"poisson"',
         "`fixed` number on each surface (default), or `poisson`: a window on an unbounded surface", "fixed")
     seed: As[int | None, int] = key("ensemble",
         Whole(0, 2**64 - 1, "give a whole number from 0 to 2^64 - 1"), "1",
-        "0 to 2^64 - 1; left out: drawn, and always recorded")
+        "seed of the random numbers, 0 to 2^64 - 1; default: a random one, which is recorded")
     sampler: str = key("ensemble", Word(SAMPLERS), '"cells"',
-        "how surfaces are drawn: `auto` (default) takes the cheapest exact way of `cells`, `tail`, `direct`; "
+        "how surfaces are drawn: `auto` (default) uses the fastest exact one of `cells`, `tail`, `direct`; "
         "or `aggregate`, `stratified` ([how they differ](../how-to/choose-a-sampler.md))", "auto")
     keep: Literal["sums", "moments", "statistics"] = key("ensemble",
         Word(("sums", "moments", "statistics")), '"moments"',
-        "`sums` (default); `moments`: also what [another grading](../how-to/keep-moments.md) starts from; "
-        "`statistics`: [no surface](../how-to/keep-statistics.md), only mean, covariance, skewness, "
+        "`sums` (default); `moments`: also the moments, for [another grading](../how-to/keep-moments.md); "
+        "`statistics`: [no surfaces](../how-to/keep-statistics.md), only mean, covariance, skewness, "
         "quantiles and extremes, of any number of surfaces in the same memory", "sums")
     rel_err: As["float | str | Mapping[str, Any] | None", float | Mapping[str, float | list[float]] | None
     ] = key("ensemble",
         Either((ByName(Either((_SHARES, _SHARE), _KNOWN_TO), "", (*SUMS, *UNLOADING)), _SHARE), _KNOWN_TO),
         "0.01",
-        "instead of `n_surfaces`: draw until the 95 % interval of every mean reaches no farther than this "
-        "share of it; or a table by quantity, as `{load = 1e-3, contacts = [1e-2, 1e-2, inf]}`, with one "
+        "instead of `n_surfaces`: draw until the half width of the 95 % interval of every mean, relative to "
+        "it, is at most this; or a table by quantity, "
+        "`{load = 1e-3, contacts = [1e-2, 1e-2, inf]}`, with one "
         "number or one for each separation")
     max_seconds: As[float | str | None, float | None] = key("ensemble", Number("s"), "1.0",
-        "stop after the block that is being drawn then, s")
+        "time limit, s; the block being drawn is completed")
     accuracy: float = key("ensemble",
         Number("1", EXACT, COARSEST,
                advice=f"give a number from {EXACT:g}, the last digits, to {COARSEST:g}"), "1e-13",
-        "how near each value comes to the exact sum over its heights, relative to it (where values change "
-        "their sign, to the largest near by): 1e-13 (default) to 0.01. A larger one takes fewer moments and "
-        "coarser cells, and gives other surfaces of one seed. Steep gradings and layered laws reach 1e-11",
+        "error of each value against the exact sum over its heights, relative to it (or to the largest value "
+        "near by, where the sign changes): 1e-13 (default) to 0.01. A larger one uses fewer moments and "
+        "coarser cells, and the same seed then gives other surfaces. Steep gradings and layered laws reach "
+        "1e-11",
         EXACT)
     law_error: float = key("ensemble",
         Number("1", high=0.1, zero=True, advice="give a number from 0, exact samplers only, to 0.1"), "0.0",
-        "how far from the exact law of each value, by the largest difference of distribution functions, "
-        "`auto` may go, 0 (default) to 0.1: it may then take `aggregate` for crowded cells", 0.0)
+        "error that `auto` may allow in the distribution of each value, as the largest difference of "
+        "distribution functions, 0 (default) to 0.1: it may then use `aggregate` for crowded cells", 0.0)
     edges: As["ArrayLike | None", tuple[float, ...]] = key("ensemble",
         List(_ANY, 0, advice="give a list of finite heights s = z/sigma, or leave it out"), "[0.5, 1.5]",
-        "heights where cells are cut besides those that the scene needs, and none for speed alone: what "
-        "`mcgw.sweep` shares. Scenes with the same cells and seed have the same surfaces", [])
+        "additional edges of cells, which `mcgw.sweep` shares between scenes. Scenes with the same cells and "
+        "seed have the same surfaces", [])
     uncertainty: As["Uncertainty | dict[str, Any] | None", Uncertainty | None] = key("surface", _ERRORS,
         '{sigma = "20 %", radius = "15 %", eta = "12 %"}',
-        "standard errors of `sigma`, `radius`, `eta` (or of `m0`, `m2`, `m4`) and `E_star`, as shares of the "
-        "values, with their `correlation` in this order if they have one; `mcgw fit` writes them, and "
-        "`mcgw solve` says what they do to its answers")
+        "standard errors of `sigma`, `radius`, `eta` (or of `m0`, `m2`, `m4`) and `E_star`, relative to the "
+        "values, with their `correlation` in this order, if any; `mcgw fit` writes them, and `mcgw solve` "
+        "includes them in its error")
     # fmt: on
 
 

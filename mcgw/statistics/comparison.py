@@ -170,7 +170,7 @@ class SweepComparison(Shown):
         facts = [
             ("all points", f"p = {v.p:.3g}: {v.points} times the smallest p of a point, {smallest:.3g}"),
             ("residuals", f"{beyond} of {len(self.residuals)} beyond 3 standard errors"),
-            *([("left out", f"{left} stratified points, whose surfaces are no real ones")] if left else []),
+            *([("left out", f"{left} stratified points, which are not real surfaces")] if left else []),
         ]
         where = list(self.sweep.axes.points())
         shown = [(one, *one.worst) for one in self.worst[:most]]
@@ -236,8 +236,9 @@ def compare(
     Raises
     ------
     ValueError
-        If the surfaces are stratified: their fluctuations are not those of an ensemble; or if laws are wanted
-        of results whose single values have none that is known (see `laws_of_values`), or are not kept.
+        If the surfaces are stratified: their fluctuations are not those of an ensemble; or if `laws` is
+        set but the distribution of single values is not known (see `laws_of_values`), or they are not
+        kept.
 
     Examples
     --------
@@ -254,7 +255,9 @@ def compare(
 
         if isinstance(result, Sweep):
             if laws:
-                raise ValueError("laws = True: a sweep keeps no single values; compare one of its scenes")
+                raise ValueError(
+                    "laws = True: a sweep does not keep single values; compare one of its scenes"
+                )
             return _of_sweep(result, progress)
     check_object("compare", result, Ensemble)
     return _of_ensemble(result, laws)
@@ -262,7 +265,7 @@ def compare(
 
 def _of_ensemble(ensemble: Ensemble, laws: bool) -> Comparison:
     if not promise_of(ensemble.sampler).real_surfaces:
-        raise ValueError("a stratified file holds means, not an ensemble; compare takes another sampler")
+        raise ValueError("a stratified file holds means, not an ensemble; use another sampler")
     scene = ensemble.scene
     curves = {}
     for name in scene.answers:
@@ -291,5 +294,5 @@ def _of_sweep(sweep: "Sweep", progress: Progress) -> SweepComparison:
                 found.append(replace(tested(one, _SEPARATIONS), number=i))
         tell(sweep.axes.size, sweep.axes.size)
     if not found:
-        raise ValueError("stratified points hold means, not ensembles; compare takes another sampler")
+        raise ValueError("stratified points hold means, not ensembles; use another sampler")
     return SweepComparison(sweep, tuple(found))

@@ -113,7 +113,7 @@ def _table(checks: Sequence[Check], words: str) -> Table:
 def converge(
     scene: Scene, draw: Draw | None = None, *, seeds: int = SEEDS, progress: Progress = None, **changes: Any
 ) -> Convergence:
-    """Hold a sampler to the exact theory of a scene.
+    """Test a sampler against the exact theory of a scene.
 
     Parameters
     ----------
@@ -127,7 +127,7 @@ def converge(
     progress : bool or callable, optional
         True: a bar; a function: called with (done, total) ensembles.
     **changes
-        Fields of the scene that have other values: see `mcgw.Scene.replace`.
+        Fields of the scene to change: see `mcgw.Scene.replace`.
 
     Returns
     -------
@@ -153,11 +153,11 @@ def converge(
     check_object("converge", scene, Scene)
     scene = scene.replace(**changes)
     if not promise_of(scene.sampler).real_surfaces:
-        raise ValueError('sampler = "stratified" draws means, not an ensemble; converge takes another one')
+        raise ValueError('sampler = "stratified" draws means, not an ensemble; use another sampler')
     if not scene.touching:
         raise ValueError(
-            f"contact.separations: no height reaches d/sigma = {scene.lowest:g}: nothing touches, and "
-            "there is nothing to test; give lower ones"
+            f"contact.separations: no height reaches d/sigma = {scene.lowest:g}, so there is nothing to "
+            "test; give smaller ones"
         )
     draw = draw or _own
     scene, h = scene_alone(scene, "converge"), np.unique(scene.separations)
@@ -179,8 +179,8 @@ def converge(
     exact = PrincipalComponents.of(scene, surfaces=seeds * scene.n_surfaces)
     if not scene.exact and exact.columns and not exact.axes.size:  # the accuracy of values would be seen
         raise ValueError(
-            f"ensemble.accuracy = {scene.accuracy:g}: means of {seeds * scene.n_surfaces} surfaces are known "
-            "better than that; converge with fewer surfaces, or a finer accuracy"
+            f"ensemble.accuracy = {scene.accuracy:g}: means of {seeds * scene.n_surfaces} surfaces are more "
+            "accurate than that; use fewer surfaces, or a smaller accuracy"
         )
     y = exact.turn(sums)
     whole = replace(scene, n_surfaces=len(y))

@@ -49,7 +49,7 @@ class LawsOfValues:
     def seen(self) -> str:
         """What p is of, in words."""
         at = f"{self.quantity} at d/sigma = {self.separation:g}"
-        return f"the law of {at} is {self.distance:.3g} off, the farthest of {self.number}"
+        return f"the distribution of {at} differs by {self.distance:.3g}, the most of {self.number}"
 
 
 def laws_of_values(ensemble: Ensemble) -> LawsOfValues:
@@ -71,8 +71,8 @@ def laws_of_values(ensemble: Ensemble) -> LawsOfValues:
         or not (scene.hertzian or one_radius)
     ):
         raise ValueError(
-            "laws = True: takes kept values of surfaces at effective separations, from an exact sampler; not "
-            "of listed summits, nor of summits with their own radii under another law than Hertz's"
+            "laws = True: needs kept values of surfaces at effective separations, from an exact sampler; not "
+            "for listed summits, nor for individual radii with a law other than Hertz's"
         )
     h = np.unique(scene.separations)
     chosen = h[evenly(len(h), _SEPARATIONS if scene.hertzian and one_radius else _FEW)].tolist()

@@ -94,7 +94,7 @@ def added(scene: Scene, q: Quantity, h: float, s: Array) -> Array:
     if scene.curvature:
         raise ValueError(
             f'contact.law = "{scene.law.name}" with summits.curvature = "random": means are integrals over '
-            'heights and radii, which no other rule here checks; take curvature = "mean"'
+            'heights and radii, which no other rule can check; use curvature = "mean"'
         )
     return term_of(q.base, scene.branch_of(q.name), h, s, scene.modulus(s))
 
@@ -185,9 +185,11 @@ def methods_for(scene: Scene, chosen: tuple[int, ...]) -> tuple[Method, ...]:
         If theory and its reference, an integral by another rule, differ by more than 1e-10.
     """
     if isinstance(scene.curvature, analytic.MeasuredRadii):
-        raise ValueError("summits: those of a list are added up or drawn, by no other method")
+        raise ValueError("summits: listed summits are summed or drawn, and have no other method")
     if isinstance(scene.heights, analytic.MeasuredHeights):
-        raise ValueError("heights: measured ones are added up exactly; say resample = true to trade off")
+        raise ValueError(
+            "heights: measured heights are summed exactly; set resample = true to compare samplers"
+        )
     exact = _checked(scene, chosen)
     surfaces = tuple(4.0**k for k in range(12))
     n = float(scene.n_asperities)
@@ -217,7 +219,7 @@ def _checked(scene: Scene, chosen: tuple[int, ...]) -> Array:
         if not abs(ours / other - 1) <= _AGREE:
             raise RunError(
                 f"{where}: theory gives {ours:.15g} and its reference {other:.15g}, which differ by more "
-                f"than {_AGREE:g}; no error is measured against either"
+                f"than {_AGREE:g}; no error can be measured"
             )
     return exact
 

@@ -130,7 +130,7 @@ class Tradeoff(Shown):
         a = self.advice
         asked = [x.scene.sampler for x in a]
         columns = (
-            Column("wish", [x.wish.text for x in a], "wish, relative error"),
+            Column("wish", [x.wish.text for x in a], "wanted, relative error"),
             Column(
                 "sampler",
                 [s if s == x.sampler else f"{s}: {x.sampler}" for s, x in zip(asked, a, strict=True)],
@@ -140,7 +140,7 @@ class Tradeoff(Shown):
             Column("n_surfaces", [x.scene.n_surfaces for x in a], form="d"),
             Column("seconds", [x.seconds for x in a], form=".2g"),
         )
-        return Sheet("What to run", facts, Table(columns))
+        return Sheet("Recommended", facts, Table(columns))
 
     def table(self) -> Table:
         """Errors and time of every method at every size."""
@@ -217,11 +217,11 @@ def tradeoff(
     scene : Scene
         What to simulate.
     seconds : float or str, optional
-        Bound of the whole study, s or as "5 min", default: 60; it is kept to within the last run.
+        Bound of the whole study, s or text such as "5 min", default: 60; it is kept to within the last run.
     progress : bool or callable, optional
         True: a bar; a function: called with (done, total) seconds.
     **changes
-        Fields of the scene that have other values: see `mcgw.Scene.replace`.
+        Fields of the scene to change: see `mcgw.Scene.replace`.
 
     Returns
     -------

@@ -85,10 +85,10 @@ class Verdict:
         if self.means:
             return (
                 f"the farthest of {self.means} means is {self.farthest:.1f} standard errors beyond the "
-                f"accuracy asked for{where}"
+                f"requested accuracy{where}"
             )
         if not self.degrees:
-            return f"no mean is near enough to Gaussian to be tested{where}"
+            return f"no mean is close enough to Gaussian for a test{where}"
         return f"chi-square {self.chi_square:.1f} for {self.degrees} degrees of freedom{where}"
 
     @property

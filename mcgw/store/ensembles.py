@@ -36,7 +36,7 @@ from mcgw.store.untrusted import examine
 
 
 def open_ensemble(path: str | Path) -> Ensemble:
-    """Open an ensemble file, or what there is of it while its run goes on.
+    """Open an ensemble file, or the finished part of one whose run continues.
 
     Parameters
     ----------
@@ -46,7 +46,7 @@ def open_ensemble(path: str | Path) -> Ensemble:
     Returns
     -------
     Ensemble
-        Its arrays are read when they are asked for.
+        Its arrays are read when needed.
 
     Raises
     ------
@@ -122,7 +122,7 @@ def read_attributes(path: Path) -> dict[str, Any]:
         "scene": scene_text(run.scene),
         "sampler": run.sampler,
         "complete": False,
-        "digest": "none before it is complete",
+        "digest": "none until it is complete",
         "date": run.date,
     }
 
@@ -141,7 +141,9 @@ def _run_of(path: Path) -> RunFolder:
         raise StoreError(f"{path}: no block of its run is finished yet")
     run = RunFolder.open(parts_of(path))
     if run.axes:
-        raise StoreError(f"{path}: is a sweep in the making; mcgw show tells how far, mcgw sweep resumes")
+        raise StoreError(
+            f"{path}: is an unfinished sweep; mcgw show prints its progress, mcgw sweep resumes it"
+        )
     return run
 
 
@@ -158,7 +160,7 @@ def described(path: Path) -> tuple[dict[str, Any], Scene]:
             attributes[key]
         float(attributes["wall_seconds"])
         if not re.fullmatch("[0-9a-f]{64}", str(attributes["digest"])):
-            raise StoreError(f"{path}: its digest is not one")
+            raise StoreError(f"{path}: its digest is invalid")
     except (KeyError, TypeError) as error:
         raise StoreError(f"{path}: an attribute is missing or of another type ({error})") from None
     except ValueError as error:
@@ -175,8 +177,8 @@ def _check_format(path: Path, attributes: dict[str, Any]) -> None:
     filetype, known = str(attributes.get("filetype", "")), attributes.get("format")
     if filetype.startswith("mcgw-") and (filetype != FILETYPE or known != list(FORMAT)):
         raise StoreError(
-            f"{path}: {filetype} {known} is a format that this version does not read, which reads {FILETYPE} "
-            f"{list(FORMAT)}; its attribute scene is the scene to run again"
+            f"{path}: {filetype} {known} is not read by this version, which reads {FILETYPE} {list(FORMAT)}; "
+            f"run the scene in its attribute scene again"
         )
     if filetype != FILETYPE:
         raise StoreError(f"{path}: holds no results of mcgw (its filetype is not {FILETYPE!r})")
@@ -277,5 +279,5 @@ class ShardResults(Results):
     @staticmethod
     def _arrays(shard: Shard) -> dict[str, NDArray[Any]]:
         if not shard.path.exists():
-            raise StoreError(f"{shard.path}: is gone; its run has ended, open the file again")
+            raise StoreError(f"{shard.path}: no longer exists; its run has ended, open the file again")
         return shard.arrays()

@@ -74,8 +74,8 @@ def difference(there: Question, here: Question) -> str:
             return f"{key} is {shortened(repr(value))} there and not given here"
     made_with, this = there[2], here[2]
     if made_with.partition(KIND)[0] == this.partition(KIND)[0] and made_with != this:
-        return "it was drawn on another kind of processor, which rounds exponentials and logarithms otherwise"
-    return f"it was drawn with {made_with}, this is {this}"
+        return "it was drawn on another kind of processor, which rounds exponentials differently"
+    return f"it was drawn with {made_with}, but this is {this}"
 
 
 def _said(scene: str, axes: str) -> dict[str, Any]:

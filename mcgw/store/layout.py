@@ -102,7 +102,7 @@ def stored_text(scene: Scene) -> str:
     text = scene_text(scene)
     if len(text.encode()) > MOST_TEXT:
         raise StoreError(
-            f"scene: its lists take {len(text)} characters, and a file of results holds {MOST_TEXT}; "
+            f"scene: its lists need {len(text)} characters, but a file of results holds at most {MOST_TEXT}; "
             "list fewer summits, or simulate in memory"
         )
     return text

@@ -1,4 +1,4 @@
-"""The lock of a file in the making: one process writes it, or several that each make a share of its blocks.
+"""The lock of a file being made: one process writes it, or several that each make a share of its blocks.
 
 It lies in the folder of the run (`mcgw.store.disk.parts_of`) and goes together with the folder when nothing
 else is left there. The system frees it when its holder dies, however that happens. It is the lock of an
@@ -91,7 +91,7 @@ def _try(folder: Path, shared: bool, held: ExitStack) -> str | None:
                     _remove_if_empty(folder)
                 raise StoreError(f"{folder}: cannot be locked ({error}); choose another -o") from None
             holder = hold_by_name(folder, shared, held) if by_name else _holder(folder)
-            return holder and f"locked by {holder}, which works on this run"
+            return holder and f"locked by {holder}, which is working on this run"
     except OSError as error:
         if error.errno is None or isinstance(error, FileNotFoundError):
             return "its run has just ended; repeat the command"  # the folder went between two steps
@@ -188,7 +188,7 @@ def _holder_by_name(name: Path) -> str | None:
         return "another process"
     here = re.fullmatch(rf"pid (\d+) on {re.escape(socket.gethostname())}", text)
     if here is None:
-        return f"{text or 'another process'} (this disk keeps no locks: remove {name} if that one is dead)"
+        return f"{text or 'another process'} (this disk has no locks: remove {name} if that one has ended)"
     if alive(int(here[1])):
         return text
     with suppress(OSError):

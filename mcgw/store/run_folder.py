@@ -182,8 +182,8 @@ class RunFolder:
                 raise
             what = "checksum mismatch" if isinstance(error, _ChangedError) else "it cannot be read"
             raise _DamagedError(
-                f"{file}: damaged ({what}); the blocks beside it are kept, and mcgw run with their scene and "
-                f"seed resumes, or mcgw sweep; or remove {folder}"
+                f"{file}: damaged ({what}); the blocks beside it are kept: resume with mcgw run or mcgw "
+                f"sweep, with their scene and seed, or remove {folder}"
             ) from None
 
     def shards(self, *, bodies: bool = True) -> list[Shard]:
@@ -204,7 +204,7 @@ class RunFolder:
 
     def _looked_at(self, *, bodies: bool = True) -> Iterator[tuple[Shard | None, Path]]:
         if not self.shards_folder.is_dir():
-            raise RunError(f"{self.folder}: is gone, or not complete; run the command again")
+            raise RunError(f"{self.folder}: is missing or incomplete; run the command again")
         for path in sorted(self.shards_folder.glob("block-*.h5")):
             try:
                 shard = None if path.is_symlink() else open_shard(path, self.identity, body=bodies)

@@ -45,7 +45,7 @@ _CACHE = 2**25  # of chunks that a shard fills only in part
 
 
 def save(ensemble: Ensemble, path: str | Path, *, wall_seconds: float = 0.0) -> Ensemble:
-    """Write an ensemble that lies in memory, in one atomic step; never over another one.
+    """Write an ensemble in memory to a file, in one atomic step; never over another one.
 
     Parameters
     ----------
@@ -108,10 +108,10 @@ def write_body(path: Path, body: tuple[bytes, bytes], before: State | None) -> N
     try:
         write_whole(path, body, expected=before)
     except FileExistsError as error:
-        raise StoreError(f"{path}: {error.strerror}; it is left as it is, choose another -o") from None
+        raise StoreError(f"{path}: {error.strerror}; it was not changed; choose another -o") from None
     except OSError as error:
         raise RunError(
-            f"{path}: cannot be written ({error.strerror or error}); make room and repeat"
+            f"{path}: cannot be written ({error.strerror or error}); free some space and repeat"
         ) from None
 
 
@@ -185,7 +185,7 @@ def _write(
     raw.check()
     with h5py.File(path, "r") as file:
         if file.attrs["digest"] != digest:
-            raise OSError(f"{path}: reads otherwise than written")
+            raise OSError(f"{path}: was not written correctly")
         notes = {"head": head_digest(file)}
     length = path.stat().st_size
     raw.trailer(Trailer(length, sha256_of(path, length), notes).to_bytes())
@@ -234,7 +234,7 @@ def _read_back(
             with closing(one_ahead(read())) as pieces:
                 for digest, arrays in pieces:
                     if content_digest(arrays) != digest:
-                        raise OSError(f"{path}: reads otherwise than written")
+                        raise OSError(f"{path}: was not written correctly")
                     yield arrays
 
         with closing(one_ahead(compared())) as pieces:

@@ -159,7 +159,7 @@ def open_shard(path: Path, run: str, *, body: bool = True) -> Shard:
     if identity != run:
         raise StoreError(f"{path}: belongs to another run")
     if path.name != shard.span.file_name:
-        raise StoreError(f"{path}: holds {shard.span}, which its name does not say")
+        raise StoreError(f"{path}: holds {shard.span}, unlike its name")
     return shard
 
 

@@ -79,7 +79,7 @@ def _check_dataset(name: str, item: Any) -> None:
     if item.get_space().get_simple_extent_type() != h5py.h5s.SIMPLE or not 1 <= len(shape) <= 4:
         raise RefusedError(f"{name}: not a table of one to four axes")
     if plist.get_external_count() or plist.get_layout() not in (h5py.h5d.CONTIGUOUS, h5py.h5d.CHUNKED):
-        raise RefusedError(f"{name}: its data lie elsewhere")
+        raise RefusedError(f"{name}: its data are in another file")
     filters = {plist.get_filter(i)[0] for i in range(plist.get_nfilters())}
     if not filters <= _FILTERS:
         raise RefusedError(f"{name}: unknown filter {sorted(filters - _FILTERS)}")

@@ -39,7 +39,7 @@ def examine(path: Path) -> dict[str, Any]:
     finally:
         os.close(fd)
     if path.suffix == ".toml" and b"\0" not in head:
-        raise StoreError(f"{path}: is no file of results; mcgw run {path} makes one of a scene")
+        raise StoreError(f"{path}: is not a file of results; make one from a scene with mcgw run {path}")
     return _examined(path.resolve(), path, (status.st_ino, status.st_size, status.st_mtime_ns))
 
 
@@ -83,6 +83,6 @@ def _blame_memory(path: Path, shown: Path) -> None:
     except StoreError:
         return
     raise StoreError(
-        f"{shown}: cannot be looked at with the memory this process may have (ulimit -v {limit // 1024}); "
-        f"allow more, {_MEMORY // 1024} is always enough"
+        f"{shown}: cannot be checked within the memory limit of this process (ulimit -v {limit // 1024}); "
+        f"{_MEMORY // 1024} is always enough"
     )

@@ -121,7 +121,7 @@ class Axes:
         values = self.values[key]
         numbers = all(isinstance(x, int | float) for x in values)
         if len(values) < 2 or not numbers or not np.diff(values).all():
-            raise ValueError(f"{key}: slopes need numbers, two at least and no neighbours alike")
+            raise ValueError(f"{key}: slopes need at least two numbers, with no equal neighbours")
         return np.array(values, dtype=np.float64)
 
     def summary(self, key: str) -> str:
@@ -151,7 +151,7 @@ class Axes:
         if len(point) != len(self.shape) or not all(
             -n <= i < n for i, n in zip(point, self.shape, strict=True)
         ):
-            raise ValueError(f"no point lies at {point}; the sweep has the shape {self.shape}")
+            raise ValueError(f"there is no point {point}; the sweep has the shape {self.shape}")
         return tuple(i % n for i, n in zip(point, self.shape, strict=True))
 
 
@@ -168,16 +168,16 @@ def axes_of(over: Mapping[str, Any], *, zipped: bool) -> Axes:
     for key, given in over.items():
         section, _, name = key.partition(".")
         if section not in _SECTIONS or (not name and section in ("contact", "ensemble")):
-            problems.append(f'sweep: {key!r}: give "section.key" of a scene file, as "grading.gamma"')
+            problems.append(f'sweep: {key!r}: give "section.key" of a scene file, such as "grading.gamma"')
         if key in _FIXED:
-            problems.append(f"sweep: {key}: all points have the same; give it in the scene")
+            problems.append(f"sweep: {key}: must be the same for all points; give it in the scene")
         listed = list(given) if hasattr(given, "__iter__") and not isinstance(given, str | Mapping) else []
         if not listed:
             problems.append(f"sweep: {key} = {given!r}: give a list of at least one value")
         values[key] = tuple(_value(key, value) for value in listed)
     if zipped and len({len(each) for each in values.values()}) > 1:
         lengths = ", ".join(f"{key} {len(each)}" for key, each in values.items())
-        problems.append(f"sweep: zipped axes have as many values each; these have {lengths}")
+        problems.append(f"sweep: zipped axes need the same number of values; these have {lengths}")
     if problems:
         raise SceneError(problems)
     return Axes(values, zipped)
@@ -188,7 +188,7 @@ def _value(key: str, value: Any) -> Any:
     if key == "grading" and callable(value):
         if not is_data(value):
             raise SceneError(
-                ["sweep: grading: give tables, or gradings that are data, as mcgw.Exponential or mcgw.Table"]
+                ["sweep: grading: give tables, or gradings such as mcgw.Exponential or mcgw.Table"]
             )
         return grading_table(value)
     return as_toml(value)

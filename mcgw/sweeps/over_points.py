@@ -197,8 +197,8 @@ class PointResults(Held):
     place: Place
 
     no_more = (
-        'a sweep keeps mean and standard deviation; sweep a scene with keep = "statistics" for quantiles, '
-        "skewness and extremes, or simulate the scene of the point"
+        "a sweep only keeps mean and standard deviation; for quantiles, skewness and extremes set keep = "
+        '"statistics" in its scene, or simulate the scene of the point'
     )
 
     def rows(self) -> int:

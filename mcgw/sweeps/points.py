@@ -44,7 +44,7 @@ def scenes_of(document: dict[str, Any], axes: Axes) -> list[Scene]:
     if problems:
         raise SceneError(problems)
     if len({(one.separations, tuple(one.shapes)) for one in found}) > 1:
-        raise SceneError(["sweep: the points have other separations or quantities; sweep them apart"])
+        raise SceneError(["sweep: the points differ in separations or quantities; sweep them separately"])
     return found
 
 
@@ -156,5 +156,5 @@ class Asked:
 def _with_a_number(scene: Scene) -> Scene:
     """With a number of surfaces in place of a rule."""
     if scene.max_seconds is not None:
-        raise SceneError(["ensemble.max_seconds: a sweep draws the same again; give n_surfaces or rel_err"])
+        raise SceneError(["ensemble.max_seconds: a sweep must be reproducible; give n_surfaces or rel_err"])
     return scene if scene.rel_err is None else without_rule(scene)

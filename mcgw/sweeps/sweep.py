@@ -248,7 +248,7 @@ class Sweep(OverPoints, Shown):
         """The axes, and means of some points at the lowest separation."""
         facts = [(key, self.axes.summary(key)) for key in self.axes.keys]
         surfaces = sum(group.n for group in self.groups)
-        facts.append(("surfaces", f"{surfaces} drawn, in {len(self.groups)} groups that share theirs"))
+        facts.append(("surfaces", f"{surfaces} drawn, in {len(self.groups)} groups that share surfaces"))
         k = int(np.argmin(self.separations))
         names = [name for name in self.quantities if self.mean(name).ndim == len(self.shape) + 1]
         means = {name: self.mean(name).reshape(self.axes.size, -1)[:, k] for name in names}
@@ -284,8 +284,8 @@ class Sweep(OverPoints, Shown):
         places = self.places[a], self.places[b]
         if places[0].group != places[1].group:
             raise ValueError(
-                f"sweep: {self.axes.text(one)} and {self.axes.text(other)} have other surfaces; there are no "
-                "pairs, and the same seed makes them alike: give the ensemble of each another seed"
+                f"sweep: {self.axes.text(one)} and {self.axes.text(other)} have different surfaces, so there "
+                "are no pairs, but the same seed correlates them: give the ensemble of each its own seed"
             )
         area = (self.scenes[k].surface.nominal_area if per_area else 1.0 for k in (a, b))
         return Difference.of(self.groups[places[0].group], places, name, (next(area), next(area)))

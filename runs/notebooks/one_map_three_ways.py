@@ -11,7 +11,7 @@
 # %% [markdown]
 # # One map, three ways to use it
 #
-# A height map can go into the model as five numbers, as a spectrum, or as the list of its very summits. How
+# A height map can go into the model as five numbers, as a spectrum, or as the list of its summits. How
 # much do the three differ, and which should I trust?
 
 # %%
@@ -35,7 +35,7 @@ z *= 0.4e-6 / z.std()
 # %% [markdown]
 # ## What `fit` finds
 #
-# The cutoff says which waves count. Spectral moments and counted summits are two estimates of the same.
+# The cutoff is the shortest wave of the roughness. Spectral moments and counted summits give two estimates.
 
 # %%
 with tempfile.TemporaryDirectory() as folder:
@@ -48,7 +48,7 @@ fit
 
 # %%
 h = np.linspace(0.5, 3.0, 26)
-names = {"gaussian": "one radius", "nayak": "own radii", "summits": "its very summits"}
+names = {"gaussian": "one radius", "nayak": "own radii", "summits": "measured summits"}
 scenes = {name: mcgw.fitted_scene(fit, heights=name, E_star="100 GPa") for name in names}
 curves = {}
 for name, scene in scenes.items():
@@ -57,7 +57,7 @@ for name, scene in scenes.items():
     curves[name] = mcgw.simulate(scene, separations=felt, n_surfaces=draws, seed=1)
 
 # %% [markdown]
-# The list is one surface, the very one that was measured; the others are ensembles, whose spread is shaded.
+# The list is the one measured surface; the others are ensembles, whose spread is shaded.
 
 # %%
 fig, ax = plt.subplots()
@@ -75,7 +75,7 @@ ax.legend()
 # %% [markdown]
 # ## Which to trust
 #
-# Each scene says how far a model of its kind was from boundary elements, where that was measured.
+# Each scene states the error of its model against boundary elements, if it was measured.
 
 # %%
 for name, scene in scenes.items():

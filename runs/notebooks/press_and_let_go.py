@@ -9,10 +9,10 @@
 # ---
 
 # %% [markdown]
-# # Press it, and let it go
+# # Loading and unloading
 #
-# Bead-blasted aluminium yields under any load. What does that change, who yields, and how much work stays in
-# the surface?
+# Bead-blasted aluminium yields under any load. How does this change the contact, how many asperities yield,
+# and how much work is lost?
 
 # %%
 import matplotlib.pyplot as plt
@@ -44,7 +44,7 @@ ax.set(xlabel="separation d/σ", ylabel="load (N)")
 ax.legend()
 
 # %% [markdown]
-# The area between the lines is the work that stays. Each surface has its own:
+# The area between the lines is the work lost. It differs between surfaces:
 
 # %%
 step = surface.sigma * (h[1] - h[0])
@@ -56,10 +56,10 @@ print(
 )
 
 # %% [markdown]
-# ## Who yields
+# ## How many yield
 #
-# At every separation nearly all contacts; theory tells how many without any drawing, by the pieces of the
-# law.
+# Nearly all contacts, at every separation. Theory gives the number without drawing surfaces, from the pieces
+# of the law.
 
 # %%
 yielded = e.mean("yielded") / e.mean("contacts")
@@ -73,7 +73,7 @@ ax.legend()
 # %% [markdown]
 # ## What if it were harder?
 #
-# The same summits again, with other hardnesses: differences have no sampling noise of their own.
+# The same summits with other hardnesses, so differences have no sampling noise:
 
 # %%
 base = mcgw.simulate(mcgw.Scene(surface, separations=[1.0, 2.0, 3.0], n_surfaces=100, seed=1))
@@ -83,7 +83,7 @@ for hardness in (1e9, 4e9, 16e9, 64e9):
     print(f"{hardness / 1e9:3.0f} GPa: load over Hertz's", *(f"{x:.2f}" for x in ratio))
 
 # %% [markdown]
-# The verdict, as ever, on means and their covariances, on both ways:
+# Test means and covariances, loading and unloading, against theory:
 
 # %%
 mcgw.compare(e)

@@ -11,9 +11,9 @@
 # %% [markdown]
 # # Which grading does my surface have?
 #
-# You measured the normal stiffness of a joint at some pressures, by ultrasound say, and want to know whether
-# the tips are stiffer than the rest. Here the data are made up, with γ = 1.5 and 3 % of noise, so that the
-# answer is known.
+# You measured the normal stiffness of a joint at several pressures, for example by ultrasound, and want to
+# know whether the tips are stiffer than the rest. Here the data are synthetic, with γ = 1.5 and 3 % noise,
+# so the answer is known.
 
 # %%
 import matplotlib.pyplot as plt
@@ -38,10 +38,10 @@ noise = 0.03
 data = stiffness(1.5) * (1 + noise * np.random.default_rng(1).normal(size=len(pressure)))
 
 # %% [markdown]
-# ## What theory says
+# ## Theory
 #
-# At a given *pressure* stiffness hardly knows γ: stiffer tips keep the plane farther off, which costs as
-# many contacts as it gains modulus. The picture shows how little there is to find.
+# At a given *pressure* stiffness hardly depends on γ: stiffer tips keep the plane farther away, and the loss
+# of contacts balances the higher modulus. The picture shows how small the effect is.
 
 # %%
 fig, ax = plt.subplots()
@@ -54,7 +54,7 @@ ax.legend()
 # %% [markdown]
 # ## The likely values
 #
-# The sum of squares over γ. Values within 3.84 of the least are a 95 % interval.
+# The sum of squares as a function of γ. Values within 3.84 of the minimum form a 95 % interval.
 
 # %%
 gammas = np.linspace(0.3, 4.0, 75)
@@ -68,10 +68,10 @@ ax.axhspan(squares.min(), squares.min() + 3.84, color=THEORY, alpha=0.2)
 ax.set(xlabel="γ", ylabel="sum of squares", ylim=(0, squares.min() + 30))
 
 # %% [markdown]
-# ## Would conductance tell more?
+# ## Would conductance be better?
 #
-# Conductance at a given pressure falls with γ, as the spots get fewer. The same noise in it tells γ far
-# better.
+# Conductance at a given pressure decreases with γ, because there are fewer spots. With the same noise it
+# determines γ much better.
 
 
 # %%
@@ -91,8 +91,8 @@ assert np.ptp(sharper) < np.ptp(inside)
 # %% [markdown]
 # ## And my specimen is finite
 #
-# One specimen of 1 cm² deviates from the mean by itself. At light loads that scatter is larger than the
-# noise here, and belongs into the sum of squares.
+# One specimen of 1 cm² differs from the mean. At light loads this scatter is larger than the noise here, so
+# it must be included in the sum of squares.
 
 # %%
 scene = mcgw.Scene(surface, separations=0.0, grading=mcgw.Exponential(1.5), n_surfaces=100, seed=1)

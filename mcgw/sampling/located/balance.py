@@ -127,8 +127,8 @@ class Located:
                 near &= ~merged
                 if merged.sum() > max(_MOST_MERGED * np.count_nonzero(state.penetrations > 0), 1):
                     raise BalanceError(
-                        f"no balance of {near.sum()} summits: {state.residual:.1e} of the deepest "
-                        "penetration is left; give a lower load or a larger separation"
+                        f"no equilibrium of {near.sum()} summits found (residual {state.residual:.1e} of the "
+                        "deepest penetration); give a lower load or a larger separation"
                     )
                 continue
             missed = self._missed(equations, state) & ~near & ~merged

@@ -169,7 +169,7 @@ class Grid:
     def __post_init__(self) -> None:
         if self.periodic and min(self.size) / max(self.pixel) < _FEWEST:
             raise ValueError(
-                f"{self.shape[1]} x {self.shape[0]} points: give {_FEWEST} or more a side of a periodic map"
+                f"{self.shape[1]} x {self.shape[0]} points: give {_FEWEST} or more per side of a periodic map"
             )
 
     @property

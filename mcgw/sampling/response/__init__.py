@@ -1,1 +1,1 @@
-"""Physics as a sparse matrix on the moments of the cells; it knows no randomness."""
+"""Physics as a sparse matrix on the moments of the cells; without randomness."""

@@ -101,7 +101,7 @@ def response_of(
         if short.any():
             s = mesh.edges[np.flatnonzero(short)[0]]
             raise ValueError(
-                f"the moments kept do not resolve this near s = {s:.4g}; simulate the scene anew with it"
+                f"the kept moments do not resolve it near s = {s:.4g}; simulate the scene again with it"
             )
         plain = np.concatenate([kept.plain, parts.plain[mesh.size :]])
         parts = replace(parts, plain=plain, rooted=kept.rooted)

@@ -202,8 +202,8 @@ class UnresolvedError(ValueError):
     def __init__(self, starts: Array) -> None:
         self.starts = starts
         super().__init__(
-            f"not resolved near s = {starts[0]:.6g}: the modulus there, or a contact law under it, bends too "
-            'fast for cells; take sampler = "tail", or give a smoother grading'
+            f"not resolved near s = {starts[0]:.6g}: the modulus there, or a contact law, changes too "
+            'fast for cells; use sampler = "tail" or a smoother grading'
         )
 
 

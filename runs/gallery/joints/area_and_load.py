@@ -2,7 +2,7 @@
 Is the real area proportional to the load?
 ==========================================
 
-Nearly, which is why friction is too: over five decades of pressure A/P changes by a factor of 1.5 to 2.5.
+Nearly, and so is friction: over five decades of pressure A/P falls by a factor of 1.5 to 2.5 (γ = 2, 0.5).
 """
 
 import matplotlib.pyplot as plt
