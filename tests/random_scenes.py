@@ -1,7 +1,7 @@
 """Random scenes over all features: ``python random_scenes.py COUNT FIRST_SEED``, one JSON line a failure.
 
-A scene that is accepted draws three surfaces within ten seconds of CPU; its values are literal sums over their
-heights to the accuracy asked, and means those of the values. Where heights are not told, means lie within 7
+A scene that is accepted draws three surfaces within ten seconds of CPU; its values are literal sums over
+their heights to the accuracy asked, and means those of the values. Where heights are not told, means lie in 7
 exact standard deviations: less than one false alarm in 1e5 scenes. Another is refused when it is made, by a
 line with its key and a remedy.
 """
