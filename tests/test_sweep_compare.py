@@ -51,6 +51,18 @@ def test_each_point_is_tested_as_its_ensemble_is(sweep):
             np.testing.assert_array_equal(one.mean[q], alone.mean(name)[index])
 
 
+def test_the_table_has_each_mean_of_each_point_in_its_row(sweep):
+    compared = mcgw.compare(sweep)
+    columns = {column.name: list(column.values) for column in compared.table().columns}
+    for name in ("mean", "theory", "residual"):
+        assert columns[name] == [x for one in compared.points for x in getattr(one, name).ravel()]
+    assert columns["separation"] == [0.0, 1.0, 2.0] * (9 * 4)
+    names = [name for one in compared.points for name in np.repeat(one.quantities, 3)]
+    assert columns["quantity"] == names
+    assert columns["p_of_point"] == [one.verdict.p for one in compared.points for _ in range(12)]
+    assert [float(x) for x in columns["grading.gamma"]] == list(np.repeat([0.5, 1.0, 2.0], 36))
+
+
 def test_one_verdict_on_all_is_bonferroni_s(sweep):
     compared = mcgw.compare(sweep)
     smallest = min(verdict(mcgw.simulate(scene)).p for scene in sweep.scenes)
