@@ -1,17 +1,17 @@
 """Hold what `solve` says of the very summits of a map to boundary elements, beside laws of their heights.
 
-    python runs/validation/listed.py     (a minute)
+    python runs/validation/listed.py     (two minutes)
 
-On the eight maps of fitted_maps.py, of which four are no isotropic Gaussian ones, at p/(E* g) = 0.002, 0.01
-and 0.05. Area, of the very summits, of one radius, and of Nayak's law:
+On the 16 maps of fitted_maps.py, of which half are no isotropic Gaussian ones, at p/(E* g) = 0.002, 0.01 and
+0.05. Area on the first of each kind, of the very summits, of one radius, and of Nayak's law:
 
     lay 4 : 1         +33 +20 +10    -26 -27 -38    -31  -28  -32 %
     plateau-honed      -9 -10 -14    -30 -35 -42    -57  -57  -57
     lognormal         -14 -12 -18   +161 +82 +10   +254 +157  +61
     mirrored Weibull  +31 +33 +34    -72 -58 -41    -82  -70  -55
 
-Stiffness of the very summits: -5, -4, -4, +1 % at 0.002, and -42, -50, -23, -39 % at 0.05, where spots
-interact.
+Second maps of each kind say the same: +3 ... +12, -8 ... -18, -3 ... -18 and +26 ... +35 % of area. Stiffness
+of the very summits: -5, -4, -4, +1 % at 0.002, and -42, -50, -23, -39 % at 0.05, where spots interact.
 """
 
 from fitted_maps import LOADS, MAPS, MODULUS, SIDE, SLOPE, read
