@@ -26,11 +26,9 @@ _MIDDLE = 4.0  # standard deviations around the mean that one line serves
 _LONG = 60.0  # of them, in which the largest asperity must stay for that
 _SAFE = 3.0  # times what two computations differ by: their errors may have one sign
 _TAIL = 1e-4  # a share of the surfaces
-_FAR = 8.0
 _STEPS = 60
 _REACH = 8.0  # of a step, over the value or the standard deviation: a law is flat between two jumps
 _CLOSE = 1e-13
-_RARE = 1e-3, 1e-19  # expected number of asperities that add more
 _LOST = 0.5 + 1e-6  # a probability farther from a half is none
 _DIGIT = 1e-15  # that rounding leaves
 _SHARES = np.array([1e-9, 1e-6, 0.001, 0.01, 0.05, 0.25, 0.5, 0.75, 0.95, 0.99, 0.999, 1 - 1e-6, 1 - 1e-9])
@@ -223,7 +221,7 @@ class _Evaluation:
         ]
         few = np.zeros(x.shape, dtype=bool)
         if rest.any() and (one.nothing > _MANY or x[rest][0] < one.mean - _MIDDLE * one.std):
-            few = rest & (x <= self._few_up_to) & self._touching.rises
+            few = rest & (x <= self.one.few_up_to) & self._touching.rises
         usual = x < one.mean + _MIDDLE * one.std
         ways += [
             (part, partial(self._by_few, self._few(float(x[part][-1]))))
@@ -253,51 +251,27 @@ class _Evaluation:
         _replace(found, lost, Line(one, 0.0, one.std, room, self._most)(x[lost]))
         return found
 
-    @cached_property
-    def _few_up_to(self) -> float:
-        """Sums below hold so few contacts that their law is not found by its transform."""
-        one = self.one
-        if one.nothing > _MANY:
-            return np.inf
-        theta = -1 / one.std
-        for _ in range(_STEPS):
-            size, mean, _ = one.tilted(theta)
-            if one.nothing - size > _MANY:
-                break
-            theta *= 1.3
-        return mean
-
     def _by_few(self, law: FewContacts, x: Array) -> Values:
         """Where it does not reach on to the largest sums, what lies above is what is left of 1."""
         found = law(x)
-        return replace(found, sf=1 - found.cdf) if np.isfinite(self._few_up_to) else found
+        return replace(found, sf=1 - found.cdf) if np.isfinite(self.one.few_up_to) else found
 
     def _few(self, x: float) -> FewContacts:
         """Up to x at least, and where the transform takes over no farther."""
-        if np.isfinite(self._few_up_to):
-            usual, doublings, far = self._few_up_to, 0, self._few_up_to
+        if np.isfinite(self.one.few_up_to):
+            usual, doublings, far = self.one.few_up_to, 0, self.one.few_up_to
         else:
-            usual, rarest = self._usual
+            usual, rarest = self.one.usual
             far = max(usual, x)
             doublings = int(np.ceil(np.log2((far + rarest) / usual)))
         rare = x > self.one.mean + _MIDDLE * self.one.std
         if (doublings, rare) not in self._kept:
             tilt = min(saddle(bounded(self.one, far)[0], far)[0], self.one.decay(far)) if rare else 0.0
             law = self._touching.few(usual, doublings, tilt, coarse=self._finer)
-            if tilt and not np.isfinite(self._few_up_to) and not law.missing < _TAIL:
+            if tilt and not np.isfinite(self.one.few_up_to) and not law.missing < _TAIL:
                 law = replace(law, tilt=0.0)  # panels do not follow what is tilted so much
             self._kept[doublings, rare] = law
         return self._kept[doublings, rare]
-
-    @cached_property
-    def _usual(self) -> tuple[float, float]:
-        """What surfaces without a rare asperity stay below; and what next to no asperity exceeds."""
-        one = self.one
-        order = np.argsort(one.values)
-        beyond = max(one.number, 1 / one.share) * np.cumsum(one.probabilities[order][::-1])[::-1]
-        rare, rarest = (float(one.values[order][beyond > share].max(initial=0.0)) for share in _RARE)
-        usual = replace(one, probabilities=np.where(one.values <= rare, one.probabilities, 0.0))
-        return usual.mean + _FAR * usual.std + rare, rarest
 
     @cached_property
     def _short(self) -> bool:

@@ -15,6 +15,8 @@ _NEAR = 0.1
 _TERMS = 18
 _CONTACTS = 1e3  # beyond, the last digits of one of them are worth more than the last of the sum
 _MOST, _AT_MOST = 2000, 8000  # nodes of many and of few contacts, beyond which values are gathered
+_FAR, _STEPS = 8.0, 60
+_RARE = 1e-3, 1e-19  # expected number of asperities that add more
 _MANY = 40.0  # contacts, of which the transform has died before it tells values in a bin apart
 _BIN, _IN_BIN = 0.25, 10  # range of the logarithms of values in a bin, and points of one
 _HALF_WIDTH = 12.0  # of the smooth cut, in its own widths: erfc(6) is no more than 1e-17
@@ -123,6 +125,28 @@ class OneAsperity:
             return -self.contacts
         with np.errstate(divide="ignore"):
             return float(self.number * np.log1p(-self.share))
+
+    @cached_property
+    def few_up_to(self) -> float:
+        """Sums below hold so few contacts that their law is not found by its transform."""
+        if self.nothing > -_MANY:
+            return np.inf
+        theta = -1 / self.std
+        for _ in range(_STEPS):
+            size, mean, _ = self.tilted(theta)
+            if self.nothing - size > -_MANY:
+                break
+            theta *= 1.3
+        return mean
+
+    @cached_property
+    def usual(self) -> tuple[float, float]:
+        """What surfaces without a rare asperity stay below; and what next to no asperity exceeds."""
+        order = np.argsort(self.values)
+        beyond = max(self.number, 1 / self.share) * np.cumsum(self.probabilities[order][::-1])[::-1]
+        rare, rarest = (float(self.values[order][beyond > share].max(initial=0.0)) for share in _RARE)
+        usual = replace(self, probabilities=np.where(self.values <= rare, self.probabilities, 0.0))
+        return usual.mean + _FAR * usual.std + rare, rarest
 
     def without(self, limit: float) -> tuple["OneAsperity", float]:
         """The asperities but those that alone add more, and the logarithm of the share without those.

@@ -242,7 +242,8 @@ def laws_are_quick(scene: Scene) -> bool:
 
     Under laws other than Hertz's, with radii of their own and of lists of summits it takes seconds.
     """
-    return type(scene.law) is Hertz and scene.curvature is None and not scene.as_measured
+    plain = type(scene.law) is Hertz and scene.curvature is None
+    return plain and not (scene.as_measured or scene.located)
 
 
 def exact_ends(scene: Scene, name: str, share: float) -> Array | None:
@@ -253,7 +254,8 @@ def exact_ends(scene: Scene, name: str, share: float) -> Array | None:
     """
     both = scene.curvature is not None and type(scene.law) is not Hertz
     longer = not laws_are_quick(scene) and len(scene.separations) > _MOST_OF_BAND
-    if both or longer or scene.as_measured or isinstance(scene.heights, MeasuredHeights):
+    listed = scene.as_measured or isinstance(scene.heights, MeasuredHeights)
+    if both or longer or listed or scene.located:
         return None
     try:
         laws = [scene.theory.distribution(name, h) for h in scene.separations]
