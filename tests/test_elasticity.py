@@ -317,7 +317,7 @@ class TestSources:
         for source, said in (
             (SPECTRUM, "Gaussian maps of 64 x 64 points, 4e-05 m wide"),
             (maps[0], "Gaussian maps of the measured map's spectrum"),
-            (maps, "the 4 maps that were given"),
+            (maps, "the 4 given maps"),
         ):
             assert f"Elastic mean over {said}" in repr(mcgw.elastic(source, **asked))
 
