@@ -91,6 +91,16 @@ def test_a_sealed_file_that_is_no_shard_is_refused(tmp_path):
         open_shard(path, RUN).arrays()
 
 
+def test_a_body_of_another_length_is_noticed_by_the_trailer_alone(shard):
+    data = shard.path.read_bytes()
+    for body in (data[: -TRAILER_BYTES - 8], data[:-TRAILER_BYTES] + bytes(8)):
+        shard.path.write_bytes(body + data[-TRAILER_BYTES:])
+        with pytest.raises(
+            StoreError, match=rf"damaged \({len(body) + TRAILER_BYTES} bytes long, not {len(data)}\)"
+        ):
+            open_shard(shard.path, RUN, body=False)
+
+
 @pytest.mark.parametrize(("key", "value"), [("first", -1), ("n", 0), ("n", "many"), ("run", None)])
 def test_a_trailer_that_tells_of_no_block_is_refused(key, value, tmp_path):
     path, body = tmp_path / SPAN.file_name, pack(arrays())
