@@ -153,7 +153,7 @@ def test_noise_is_refused_in_one_line():
     ([0.0, 1.0], [[]], {}, "coefficients: each list"),
     ([0.0, 1.0], [[math.nan]], {}, "coefficients: .*finite"),
     ([0.0, 1.0], [[1.0] * 65], {}, "coefficients: .*64"),
-    ([0.0, 1.0], [[1.0]], {"kinks": [1.0]}, "kinks: .*inner edges"),
+    ([0.0, 1.0], [[1.0]], {"kinks": [1.0]}, "kinks: .*inner edge"),
     (range(5000), [[1.0]] * 4999, {}, "edges: give 2 to 4097"),
 ])  # fmt: skip
 def test_what_are_no_series(edges, coefficients, more, words):

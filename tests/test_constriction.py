@@ -146,7 +146,7 @@ class TestCautions:
         asked = {"eta": 0.2 / (SURFACE.radius * SURFACE.sigma), "separations": (-2.0, 3.0)}
         stiff = Interaction("mean-plane", bulk_modulus=20 * SURFACE.E_star)
         (line,) = self.lines(stiff, n_asperities=None, **asked)
-        assert line.startswith("up to d/sigma = -2 conductance is nan: the correction of the mean plane")
+        assert line.startswith("up to d/sigma = -2 conductance is nan: the correction for the mean plane")
         e = mcgw.simulate(scene_of(stiff, **asked, n_asperities=None))
         np.testing.assert_array_equal(np.isnan(e.conductance), [[True, False]] * 3)
         assert not np.isnan(e.load).any()

@@ -177,7 +177,7 @@ def test_a_scene_with_heights_reads_the_same_again(section):
 @pytest.mark.parametrize(("section", "told"), [
     ('law = "weibul"', "did you mean weibull"),
     ('law = "weibull"\nshape = 0.2', r"heights\.shape = 0\.2: give a number from 1 to 100"),
-    ('law = "table"\nheights = [1.0, 1.0]', "all alike"),
+    ('law = "table"\nheights = [1.0, 1.0]', "all equal"),
     ('law = "table"\nfile = "nowhere.csv"', "No such file"),
     ('law = "table"\ns = [0.0, 1.0]\nshare = [0.0, 0.4]', "share from 0 to 1"),
     ('law = "scipy"\nname = "poisson"', "continuous distribution"),

@@ -99,7 +99,7 @@ def test_without_stiffness_nothing_is_left_and_nothing_warns():
     "law", [ChangEtsionBogy(critical=0.1), ZhaoMaiettaChang(critical=0.1), JacksonGreen(yield_strength=1e9)]
 )
 def test_laws_whose_unloading_is_not_known_refuse(law):
-    words = f"law = '{law.name}': no unloading is known; take 'kogut-etsion'"
+    words = f"law = '{law.name}': no unloading is known for it; use 'kogut-etsion'"
     with pytest.raises(ValueError, match=words) as caught:
         law.unloading()
     assert "\n" not in str(caught.value)
@@ -155,7 +155,7 @@ def test_surfaces_stick():
 
 
 @pytest.mark.parametrize(("changes", "said"), [
-    ({"unload_from": 0.0}, "contact.quantities: 'stiffness' of contacts that break off has no variance"),
+    ({"unload_from": 0.0}, "contact.quantities: 'stiffness' has no variance if contacts break off"),
     ({"negative": "allow"}, 'grading.negative = "allow"'),
 ])  # fmt: skip
 def test_what_means_nothing_is_refused(changes, said):

@@ -277,7 +277,7 @@ def test_a_map_of_few_summits_has_moments_alone(without_caps):
     assert fit.best == "moments"
     assert list(fit.estimates) == ["moments"]
     assert "summits" in words(fit)
-    with pytest.raises(ValueError, match="this map has no such estimate; moments are"):
+    with pytest.raises(ValueError, match="this map has no such estimate; give one of moments"):
         mcgw.fitted_scene(fit, use="caps")
 
 

@@ -149,7 +149,7 @@ def test_levelled_lines_keep_the_waves_of_the_surface():
     broken = FAULTS["lines"][0](z + wave, np.random.default_rng(2))
     broken[40] = np.nan
     ready = prepared(Topography(broken, PIXEL), Preparation(None, form="none", lines="rows"))
-    assert ready.notes[0].startswith("lines: offsets of rows taken off, 1")
+    assert ready.notes[0].startswith("lines: offsets of rows removed, 1")
     off = np.delete(ready.used.heights - (z + wave), 40, axis=0).mean(axis=1)
     lost = -(off @ np.delete(wave, 40)) / (wave**2).sum()
     assert lost == pytest.approx(1 - np.exp(-((2 * np.pi * 10 / 120) ** 2) / 2), abs=0.03)

@@ -214,7 +214,7 @@ def test_the_contact_map_is_drawn(name, tmp_path, capsys):
 @pytest.mark.parametrize(("arguments", "told"), [
     (["SCENE", "-o", "map.tiff"], "a map is written there"),
     (["SCENE", "-o", "map.sdf", "--at", "1"], "a figure is written there"),
-    (["SCENE", "-o", "map.png", "--at", "99"], "nothing touches"),
+    (["SCENE", "-o", "map.png", "--at", "99"], "there is no contact"),
     (["SCENE", "-o", "map.sdf", "--surface", "1000000"], "surfaces 0 to"),
     (["SCENE", "-o", "map.sdf", "--shape", "1x"], "--shape"),
     (["SCENE", "-o", "map.sdf", "--shape", "99999"], "more than the"),

@@ -139,8 +139,8 @@ def test_every_format_of_matplotlib_is_a_figure():
 @pytest.mark.parametrize(
     ("words", "message"),
     [
-        ("compare e.h5 -o a.svg --csv a.svg", "is what -o writes too"),
-        ("regrade e.h5 --gamma 1.1 -o a.h5 --csv there/../a.h5", "is what -o writes too"),
+        ("compare e.h5 -o a.svg --csv a.svg", "is also the output of -o"),
+        ("regrade e.h5 --gamma 1.1 -o a.h5 --csv there/../a.h5", "is also the output of -o"),
         ("merge e.h5 -o other.h5", "leave out one of the two"),
         ("show e.h5 --digest --csv a.csv", "leave out the other option"),
         ("compare e.h5 -o e.h5.parts/a.png", "is the folder of the run that makes e.h5"),

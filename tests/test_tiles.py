@@ -10,7 +10,7 @@ import analytic
 import mcgw
 from mcgw.machine.memory import aligned
 from mcgw.sampling.cells import mesh_of
-from mcgw.sampling.response.gathering import FOUR, Lines, in_fours
+from mcgw.sampling.response.gathering import FOUR, Lines, gathered, in_fours
 from mcgw.sampling.response.product import Tiles
 from mcgw.sampling.response.rows import Start, hertz_rows
 from mcgw.sampling.response.tree import LAST_DIGITS, Nodes, Precision, tree_over
@@ -37,6 +37,12 @@ def lines(blocks):
     at, length, half = FOUR * np.arange(len(row)), np.full(len(row), FOUR), len(row) // 2
     cut = slice(half), slice(half, None)
     return [Lines(row[x], start[x], length[x], at[x], values.ravel()) for x in cut]
+
+
+def swept(first, second, given, answers):
+    """Tiles of lines, the order of the sweep being found."""
+    step, fetches, *others, values, at = gathered(first, second, len(given), len(answers))
+    return Tiles(given[fetches], *others, values, at, answers[step])
 
 
 NONE = Lines(*np.empty((4, 0), dtype=np.int64), np.empty(0))
@@ -71,7 +77,7 @@ def test_every_row_is_that_of_a_dense_product(groups, computed, surfaces):
     )
     exact = np.empty((2 * computed, surfaces))
     exact[answers[answers >= 0]] = dense(blocks, given, computed, moments)[answers >= 0]
-    tiles = Tiles.of(*lines(blocks), given, answers.reshape(-1, FOUR))
+    tiles = swept(*lines(blocks), given, answers.reshape(-1, FOUR))
     found = tiles.apply(moments, (2, computed))
     scale = np.abs(exact).max(axis=1, keepdims=True) + 1
     assert np.abs((found.transpose(0, 2, 1).reshape(-1, surfaces) - exact) / scale).max() < 1e-13
@@ -88,7 +94,7 @@ def test_the_table_holds_what_is_needed_and_no_more():
                 (FOUR * (n + np.full(FOUR, k)) + np.arange(FOUR), np.full(FOUR, FOUR * source), np.eye(FOUR))
             )
     answers = np.where(np.arange(n)[:, None] == n - 1, np.arange(FOUR), -1)
-    tiles = Tiles.of(*lines(blocks), np.arange(FOUR * n).reshape(-1, FOUR), answers)
+    tiles = swept(*lines(blocks), np.arange(FOUR * n).reshape(-1, FOUR), answers)
     assert max(tiles.fetched.max(), tiles.computed.max()) == 2 * FOUR
     assert tiles.fetches[:, 0].tolist() == [FOUR * (n - 1 - k) for k in range(n)]
     moments = np.random.default_rng(3).integers(0, 1000, (FOUR * n, 5)).astype(float)
@@ -99,10 +105,10 @@ def test_the_table_holds_what_is_needed_and_no_more():
 
 def test_nothing_asked():
     none = np.empty((0, FOUR), dtype=np.int64)
-    tiles = Tiles.of(NONE, NONE, np.array([[0, 1, 2, 3], [4, -1, -1, -1]]), none)
+    tiles = swept(NONE, NONE, np.array([[0, 1, 2, 3], [4, -1, -1, -1]]), none)
     assert tiles.apply(np.ones((5, 3)), (0, 4)).shape == (0, 3, 4)
     assert [int(in_fours(n)) for n in (0, 1, 4, 5)] == [0, 4, 4, 8]
-    silent = Tiles.of(NONE, NONE, none, np.arange(8).reshape(-1, FOUR))  # a separation above all cells
+    silent = swept(NONE, NONE, none, np.arange(8).reshape(-1, FOUR))  # a separation above all cells
     np.testing.assert_array_equal(silent.apply(np.ones((5, 3)), (2, 4)), np.zeros((2, 3, 4)))
 
 
@@ -191,6 +197,6 @@ def test_a_row_of_very_many_groups_in_falling_order():
     start, at = FOUR * np.arange(n)[::-1].copy(), np.arange(n)
     first = Lines(np.full(n, FOUR * n), start, np.ones(n, dtype=np.int64), at, 1.0 + at)
     given = np.arange(FOUR * n).reshape(-1, FOUR)
-    tiles = Tiles.of(first, NONE, given, np.array([[0, -1, -1, -1]]))
+    tiles = swept(first, NONE, given, np.array([[0, -1, -1, -1]]))
     np.testing.assert_array_equal(tiles.fetches, given)
     np.testing.assert_array_equal(tiles.values[:, 0, 0], n - at)
