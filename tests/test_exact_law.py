@@ -48,6 +48,12 @@ def test_the_cdf_is_that_of_another_inversion(quantity, h, count, known):
     assert law.error < 1e-12
 
 
+def test_areas_of_hundreds_of_contacts_by_another_inversion():
+    law = model(30_000).distribution("area", 2)
+    known = (2.20768898714207e-5, 0.504730887353553)
+    np.testing.assert_allclose(law.cdf(np.array([0.8, 1.0]) * law.mean()), known, rtol=1e-12, atol=2e-14)
+
+
 def test_what_is_wrong_by_little_would_be_seen():
     fixed, poisson = (model(30_000, count=x).distribution("load", 2) for x in ("fixed", "poisson"))
     x = 0.8 * fixed.mean()
@@ -114,6 +120,17 @@ def test_its_moments_are_the_cumulants(quantity, h, count):
     law, known = of.distribution(quantity, h), of.cumulants(quantity, h)
     assert law.mean() == pytest.approx(float(known.mean), rel=1e-12)
     assert law.var() == pytest.approx(float(known.variance), rel=1e-12)
+
+
+@pytest.mark.parametrize("count", ["fixed", "poisson"])
+@pytest.mark.parametrize("quantity", ["load", "area", "stiffness", "pressure"])
+def test_its_third_moment_is_the_skewness(quantity, count):
+    """Sums of a smooth density at equal steps are exact beyond all powers of the step."""
+    of = model(3000, count=count)
+    law, z = of.distribution(quantity, 0.5), np.linspace(-10, 14, 201)
+    share = law.pdf(law.mean() + z * law.std()) * law.std() * (z[1] - z[0])
+    assert share.sum() == pytest.approx(1, abs=1e-12)
+    assert share @ z**3 == pytest.approx(float(of.cumulants(quantity, 0.5).skewness), abs=1e-12)
 
 
 @pytest.mark.parametrize("n", [1e4, 1e6, 1e9])
