@@ -361,6 +361,17 @@ class TestElastic:
         low, high = found.interval("area")
         assert low <= truth <= high
 
+    @pytest.mark.parametrize("solves", [None, 4])
+    @pytest.mark.parametrize("maps", [1, 2, 5, 7])
+    def test_equal_maps_leave_no_error(self, maps, solves, rng):
+        """Variances are exactly zero, though the mean of some equal numbers is not one of them."""
+        one = mcgw.maps.synthetic.gaussian_map(SPECTRUM, (64, 64), (1e-6, 1e-6), rng)
+        found = mcgw.elastic([one] * maps, pressure=5e7, E_star=1e11, solves=solves)
+        heights = one.heights - one.heights.mean()
+        truth = located(Pressed(heights, one.size, 1e11, 5e7))["area"]
+        assert_allclose(found.interval("area"), 1.25 * truth, rtol=1e-12)
+        assert (found.planned.chain, found.planned.maps, found.saved) == ((2,), (4,), 1.0)
+
     def test_takes_a_separation(self, tmp_path, rng):
         """The mean of a list, all of whose maps are solved, is theirs; one of five is clear of the plane."""
         draw, path = mcgw.maps.synthetic.gaussian_map, tmp_path / "s.jsonl"

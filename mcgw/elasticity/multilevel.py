@@ -73,7 +73,8 @@ def design(pilot: Table, seconds: Sequence[float], rel_err: float, solves: int |
     scale = np.abs(pilot[top].mean(axis=0)) * rel_err / student.ppf(0.975, 20)
 
     def spread(term: Chain) -> float:
-        return float((differences(pilot, term).var(axis=0, ddof=1) / scale**2).max())
+        x = differences(pilot, term)
+        return float(((x - x[0]).var(axis=0, ddof=min(len(x) - 1, 1)) / scale**2).max())
 
     def planned(chain: Chain) -> Design:
         terms = terms_of(chain)
@@ -81,10 +82,10 @@ def design(pilot: Table, seconds: Sequence[float], rel_err: float, solves: int |
         spreads = [spread(term) for term in terms]
         total = sum(math.sqrt(v * c) for v, c in zip(spreads, costs, strict=True))
         ideal = [math.sqrt(v / c) * total for v, c in zip(spreads, costs, strict=True)]
-        more = 1.0 if solves is None else solves / ideal[-1]
+        more = solves / ideal[-1] if solves is not None and ideal[-1] > 0 else 1.0
         maps = tuple(max(math.ceil(more * n), FEWEST) for n in ideal)
         cost = sum(n * c for n, c in zip(maps, costs, strict=True))
-        return Design(chain, maps, cost, more * spread((top,)) * seconds[top])
+        return Design(chain, maps, cost, max(more * spread((top,)), FEWEST) * seconds[top])
 
     lower = [level for level in pilot if level != top]
     chains = [(*some, top) for k in range(len(lower) + 1) for some in combinations(lower, k)]
