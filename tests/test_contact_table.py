@@ -112,6 +112,30 @@ def test_every_number_is_finite_and_but_for_gaps_positive(path, tmp_path, name):
                 mcgw.ContactTable.read(tmp_path / "wrong.json")
 
 
+@pytest.mark.parametrize(
+    ("wrong", "said"),
+    [
+        ({"gap": [1.0]}, "gap: give two numbers or more"),
+        ({"area": [0.2, np.nan]}, "area: give finite numbers"),
+        ({"pressure": [1.0, 2.0]}, "decreasing pressures"),
+        ({"covariance": np.ones(2)}, "covariance: give"),
+    ],
+)
+def test_a_table_that_no_one_could_read_is_not_made(wrong, said, tmp_path):
+    given = {"gap": [1.0, 2.0], "pressure": [2.0, 1.0], "area": [0.2, 0.1]}
+    mcgw.ContactTable(**given).write(tmp_path / "a.json")
+    assert mcgw.ContactTable.read(tmp_path / "a.json").gap_at(2.0) == pytest.approx(1.0)
+    with pytest.raises(ValueError, match=said):
+        mcgw.ContactTable(**given | wrong)
+
+
+def test_an_ensemble_at_one_separation_has_no_table(tmp_path):
+    ensemble = mcgw.simulate(SCENE, n_surfaces=2, separations=1.0)
+    with pytest.raises(ValueError, match="two numbers or more"):
+        mcgw.export(ensemble, tmp_path / "a.json", to="json")
+    assert not (tmp_path / "a.json").exists()
+
+
 def test_on_the_command_line_from_a_file(tmp_path, capsys):
     mcgw.run(SCENE.replace(n_surfaces=5, separations=[0.0, 1.0, 2.0]), tmp_path / "e.h5")
     words = ["export", str(tmp_path / "e.h5"), "--to", "json", "-o", str(tmp_path / "e.json")]

@@ -43,6 +43,12 @@ class ContactTable:
     validity : str
         How far the model is from elasticity, in words.
 
+    Raises
+    ------
+    ValueError
+        If columns are not of one length and finite, gaps do not rise, pressures do not fall, or anything else
+        is not > 0.
+
     Examples
     --------
     >>> import mcgw, tempfile
@@ -62,6 +68,23 @@ class ContactTable:
     covariance: Array | None = None
     provenance: Mapping[str, Any] = field(default_factory=dict)
     validity: str = ""
+
+    def __post_init__(self) -> None:
+        for name in (*COLUMNS, "covariance"):
+            given = getattr(self, name)
+            if given is None and name in ("conductance", "covariance"):
+                continue
+            column = np.array(given, dtype=np.float64)
+            object.__setattr__(self, name, column)
+            if name == "covariance":
+                if column.shape != 2 * self.gap.shape:
+                    raise ValueError("covariance: give a square matrix with as many rows as gaps")
+            elif column.shape != self.gap.shape or column.ndim != 1 or len(column) < 2:
+                raise ValueError(f"{name}: give two numbers or more, as many as gaps")
+            elif not np.all(np.isfinite(column)) or (name != "gap" and np.any(column <= 0)):
+                raise ValueError(f"{name}: give finite numbers > 0")
+        if np.any(np.diff(self.gap) <= 0) or np.any(np.diff(self.pressure) >= 0):
+            raise ValueError("give increasing gaps with decreasing pressures")
 
     @classmethod
     def of(cls, ensemble: Ensemble, digest: str) -> Self:
@@ -143,33 +166,8 @@ class ContactTable:
             whole = json.loads(Path(path).read_bytes())
             if whole["format"] != FORMAT:
                 raise ValueError(f"format {whole['format']!r} is not {FORMAT!r}")
-            gap, pressure, area = (_numbers(whole[name]) for name in ("gap", "pressure", "area"))
-            conductance, covariance = (
-                None if whole[name] is None else _numbers(whole[name])
-                for name in ("conductance", "covariance")
-            )
-            about = whole["provenance"], whole["validity"]
-            found = cls(gap, pressure, area, conductance, covariance, *about)
-            found._check()
+            names = *COLUMNS, "covariance", "provenance", "validity"
+            return cls(**{name: whole[name] for name in names})
         except (OSError, ValueError, KeyError, TypeError) as error:
             said = f"it has no {error}" if isinstance(error, KeyError) else error
             raise StoreError(f"{path}: not a contact table: {said}") from error
-        return found
-
-    def _check(self) -> None:
-        for name in COLUMNS:
-            column = getattr(self, name)
-            if name == "conductance" and column is None:
-                continue
-            if column.shape != self.gap.shape or column.ndim != 1 or len(column) < 2:
-                raise ValueError(f"{name}: give two numbers or more, as many as gaps")
-            if not np.all(np.isfinite(column)) or (name != "gap" and np.any(column <= 0)):
-                raise ValueError(f"{name}: give finite numbers > 0")
-        if np.any(np.diff(self.gap) <= 0) or np.any(np.diff(self.pressure) >= 0):
-            raise ValueError("give increasing gaps with decreasing pressures")
-        if self.covariance is not None and self.covariance.shape != 2 * self.gap.shape:
-            raise ValueError("covariance: give a square matrix with as many rows as gaps")
-
-
-def _numbers(given: Any) -> Array:
-    return np.array(given, dtype=np.float64)
