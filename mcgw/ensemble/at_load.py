@@ -1,6 +1,6 @@
-"""What holds at given loads: the exact mean surface, and what lies between its planes there.
+"""Answers at given loads: the exact mean surface, and the gap between its planes.
 
-And what each surface of an ensemble has at given nominal pressures: read off its own curve.
+Also the answers of each surface of an ensemble at given nominal pressures, read off its own curve.
 """
 
 from dataclasses import replace
@@ -26,12 +26,12 @@ _FEWEST = 20
 
 
 def mean_surface(scene: Scene, given: str, value: float) -> dict[str, float]:
-    """What `Solution.theory` holds, without a surface."""
+    """Values of `Solution.theory`, without drawing any surface."""
     return answers_at(scene, theory_at(asperities_of(scene), quantity_of(given), value))
 
 
 def asperities_of(scene: Scene) -> Scene:
-    """The scene without what its asperities do together: at a given load they do it as if alone."""
+    """The scene without asperity interaction, which at a given load changes nothing but the separation."""
     if scene.located:
         from analytic.interaction import NO_THEORY  # for those scenes alone
 
@@ -49,18 +49,19 @@ def theory_at(scene: Scene, q: Quantity, value: float) -> dict[str, float]:
 
 
 def quantities_at(scene: Scene) -> tuple[str, ...]:
-    """All that a surface that is loaded has."""
+    """Names of all quantities of a loaded surface."""
     yielding = ("load_slope", "yielded") if isinstance(scene.law, ElasticPlastic) else ()
     return (*QUANTITIES, *yielding, *(() if scene.film is None else ("conductance_si",)))
 
 
 def answers_at(scene: Scene, found: dict[str, Any]) -> dict[str, Any]:
-    """What a surface of the scene answers where its asperities, at a given load, have these sums.
+    """Answers of a surface of the scene whose asperities, at a given load, have these sums.
 
-    Besides them "mean_gap", m: how far the rigid plane lies from the mean plane of the surface, or from that
-    of its summits where the scene does not tell the other. Where asperities press each other down it is the
-    separation that they feel, or the nominal one if that is measured from the mean plane itself
-    (`reference = "mean-plane"`). And where something is conducted, conductances per area and resistances.
+    They include "mean_gap", m: the distance of the rigid plane from the mean plane of the surface, or from
+    that of its summits where the scene does not know the other. With asperity interaction it is the effective
+    separation, or the nominal one if that is measured from the mean plane itself
+    (`reference = "mean-plane"`). Where current or heat is conducted, conductances per area and resistances
+    are included.
     """
     if scene.interaction is not None:
         from mcgw.ensemble.half_space import at_loads  # for those scenes alone
@@ -91,7 +92,7 @@ def _conducted(scene: Scene, found: dict[str, Any]) -> dict[str, Any]:
 
 
 def rise_of_summits(scene: Scene) -> float | None:
-    """Of the mean plane of the summits above that of the surface, over sigma; None if unknown."""
+    """Height of the mean plane of the summits above that of the surface, over sigma; None if unknown."""
     heights = scene.heights
     return heights.mean / heights.std if isinstance(heights, Nayak) else None
 
@@ -99,13 +100,13 @@ def rise_of_summits(scene: Scene) -> float | None:
 def at_pressures(ensemble: Ensemble, pressures: Array, quantities: tuple[str, ...]) -> dict[str, Array]:
     """Quantities of every surface at its own separation for each pressure.
 
-    Between two separations of the ensemble a quantity follows a power of the pressure, of which it nearly is
-    one; the separation follows the logarithm of the pressure.
+    Between two separations of the ensemble, a quantity is interpolated as a power of the pressure, and the
+    separation linearly in the logarithm of the pressure.
 
     Parameters
     ----------
     ensemble : Ensemble
-        That holds the load and the quantities.
+        An ensemble that holds the load and these quantities.
     pressures : ndarray
         Load per nominal area, Pa, shape (pressures,).
     quantities : tuple of str
@@ -140,7 +141,7 @@ def _on_one(load: Array, values: Array, wanted: Array, linear: bool) -> Array:
 
 
 def loaded_part(load: Array) -> slice:
-    """Where a load along falling separations is positive and rises, up to the end; empty if nowhere."""
+    """Part of a curve, along falling separations, where the load is positive and rises; it may be empty."""
     falls = np.flatnonzero((load[1:] <= load[:-1]) | (load[:-1] <= 0))
     start = int(falls[-1]) + 1 if falls.size else 0
     return slice(start, len(load) if load[-1] > 0 else start)
@@ -158,7 +159,7 @@ def common_pressures(ensemble: Ensemble) -> tuple[float, float] | None:
 
 
 def with_values(ensemble: Ensemble, most: int) -> Ensemble:
-    """The ensemble itself; or if it keeps statistics alone, so many of its first surfaces, drawn again."""
+    """The ensemble itself; if it keeps statistics only, that many of its first surfaces, drawn again."""
     if ensemble.scene.keep != "statistics":
         return ensemble
     scene = replace(drawn_by(ensemble.scene, ensemble.sampler), keep="sums")

@@ -1,6 +1,6 @@
-"""What an answer at a given load is off by, by its causes; and the answer corrected by what is measured.
+"""Error budget of an answer at a given load, cause by cause; and the answer corrected by measured errors.
 
-The answer is that of the exact theory; what it is held to is a real specimen of the scene's nominal area.
+The answer is that of the exact theory; it is compared with a real specimen of the scene's nominal area.
 """
 
 import math
@@ -40,9 +40,10 @@ class Corrected(NamedTuple):
     Parameters
     ----------
     value, low, high : float
-        SI; between the ends 95 % of surfaces like those that were measured lie. nan where nothing was.
+        SI units; 95 % of surfaces like those measured lie between `low` and `high`. nan where nothing was
+        measured.
     why : str
-        Why there is none; empty if there is one.
+        Why there is no value; empty if there is one.
     """
 
     value: float
@@ -52,26 +53,27 @@ class Corrected(NamedTuple):
 
     @classmethod
     def unknown(cls, why: str) -> "Corrected":
-        """None, for a reason."""
+        """No corrected answer, with the reason why."""
         return cls(math.nan, math.nan, math.nan, why)
 
 
 @dataclass(frozen=True, repr=False)
 class Budget(Shown):
-    """By how much 95 % of what is real differs from an answer at most, by its causes.
+    """Error budget: bounds within which 95 % of real specimens differ from an answer, cause by cause.
 
     Parameters
     ----------
     title : str
-        Which answer.
+        Name of the answer.
     shares : dict of str to ndarray
-        Half-widths over the answer: by each of `LINES`, one for each of `quantities`; nan where unknown.
+        Half-widths divided by the answer: for each of `LINES`, one value for each of `quantities`; nan where
+        unknown.
     quantities : tuple of str
         Names of the answers.
     lacking : dict of str to str
-        Why a line has no number, by its name.
+        For each line without a number, the reason why.
     parts : dict of str to float
-        Of the first quantity's line of parameters, the half-width that each parameter has alone.
+        Half-width that each parameter of the surface alone causes in the first quantity.
     """
 
     title: str
@@ -82,7 +84,7 @@ class Budget(Shown):
 
     @property
     def all(self) -> Array:
-        """Root of the sum of squares of the lines that are known."""
+        """Total: root of the sum of squares of the known lines."""
         return np.asarray(np.sqrt(np.nansum(np.array([*self.shares.values()]) ** 2, axis=0)))
 
     @property
@@ -98,7 +100,7 @@ class Budget(Shown):
         return f"{told}. Not included: {unknown}" if unknown else told
 
     def table(self) -> Table:
-        """A row for each line, and their sum."""
+        """A row for each line, and the total."""
         rows = [*self.shares.values(), self.all]
         columns = (
             Column(name, [row[k] for row in rows], name.replace("_", " "), form=".2%", missing="not known")
@@ -107,7 +109,7 @@ class Budget(Shown):
         return Table((Column("95 %", [*self.shares, "all"]), *columns), self.title)
 
     def sheet(self) -> Sheet:
-        """The lines, and what would lower their sum."""
+        """The lines, and what would reduce the total."""
         return Sheet(self.title, [("advice", self.advice)], replace(self.table(), title=""))
 
 
@@ -121,12 +123,13 @@ def budget_of(
     again: Callable[[Scene], Answers],
     at_load: bool,
 ) -> Budget:
-    """The budget of a solution: see `mcgw.ensemble.solved.Solution.budget`, whose parts these are.
+    """Make the budget of a solution: see `mcgw.ensemble.solved.Solution.budget`, which calls this.
 
     Parameters
     ----------
     scene, title, theory, surfaces, intervals
-        Of the solution: what it is of, and of each quantity the answers and the interval of their mean.
+        From the solution: its scene and title, and for each quantity the answers and the interval of their
+        mean.
     validity : Validity
         At the separation of the solution alone.
     again : callable
@@ -163,7 +166,7 @@ def budget_of(
 def slopes_of(
     scene: Scene, uncertain: Uncertainty, again: Callable[[Scene], Answers], names: tuple[str, ...]
 ) -> Array:
-    """Derivatives of logarithms of answers at a given load by those of parameters, shape (names, parameters).
+    """Derivatives of log(answer) at a given load with respect to log(parameter), shape (names, parameters).
 
     Central differences of the exact theory.
     """
@@ -189,7 +192,7 @@ def moved(scene: Scene, steps: dict[str, float]) -> Scene:
 
 
 def corrected(validity: Validity, scene: Scene, name: str, value: float, std: float) -> Corrected:
-    """An answer at a load without the bias of its model, with what remains; `std` is that of specimens."""
+    """Answer at a load without the bias of its model, with the remaining error; `std` is for specimens."""
     column = _ERROR_OF.get(name)
     if column is None:
         return Corrected.unknown(f"{name}: its error was not measured")

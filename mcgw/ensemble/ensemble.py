@@ -22,8 +22,8 @@ STATISTICS = ("mean", "std", "skewness")  # that are kept where values are not, 
 class Ensemble(Shown):
     """The sums of every surface at every separation.
 
-    Quantities are those of the scene, as "load" (N), and with them "pressure" (P/A_n, Pa) and
-    "area_fraction" (A/A_n, 1).
+    The quantities are those of the scene, such as "load" (N); "pressure" (P/A_n, Pa) and "area_fraction"
+    (A/A_n, 1) follow from them.
 
     Parameters
     ----------
@@ -32,9 +32,9 @@ class Ensemble(Shown):
     sampler : str
         The sampler that drew it.
     sums : Held
-        Its numbers.
+        The values of every surface, or their statistics.
     drawn_for : Scene, optional
-        The scene that its surfaces were drawn for, if that is another one, as after `mcgw.regrade`.
+        The scene for which the surfaces were drawn, if it is another one, as after `mcgw.regrade`.
 
     Examples
     --------
@@ -63,12 +63,12 @@ class Ensemble(Shown):
 
     @property
     def surfaces_of(self) -> Scene:
-        """The scene whose seed gives the surfaces."""
+        """The scene whose seed reproduces the surfaces."""
         return self.drawn_for or self.scene
 
     @property
     def n_surfaces(self) -> int:
-        """Number of surfaces there are; less than the scene's while a run goes on."""
+        """Number of surfaces drawn so far; smaller than the scene's while a run is in progress."""
         return self.sums.rows()
 
     @property
@@ -104,9 +104,9 @@ class Ensemble(Shown):
 
     @property
     def stiffness(self) -> Array:
-        """Stiffness of the spots, N/m, shape (surfaces, separations): -dP/dd where nothing yields.
+        """Stiffness of the contact spots, N/m, shape (surfaces, separations): -dP/dd where nothing yields.
 
-        Where asperities press each other down, in series with the half-space: ``1/K = 1/K_asp + compliance``.
+        With asperity interaction, in series with the half-space: ``1/K = 1/K_asp + compliance``.
         """
         return self.values("stiffness")
 
@@ -117,9 +117,9 @@ class Ensemble(Shown):
 
     @property
     def conductance(self) -> Array:
-        """Conductance times resistivity, m, shape (surfaces, separations).
+        """Contact conductance times resistivity, m, shape (surfaces, separations).
 
-        Where asperities press each other down, in series with the half-space, as `stiffness` is.
+        With asperity interaction it is in series with the half-space, as `stiffness` is.
         """
         return self.values("conductance")
 
@@ -161,10 +161,10 @@ class Ensemble(Shown):
         return self.sums.skewness(self._held(quantity)[0])
 
     def quantile(self, quantity: str, share: float) -> Array:
-        """Value that a share of the surfaces is below, as `numpy.quantile`, shape (separations,).
+        """Value below which the given share of the surfaces lies, as `numpy.quantile`, shape (separations,).
 
-        Where only statistics are kept, it is found by even spacing in one of the bins that values are counted
-        in: `quantile_range` says how far it may be off.
+        Where only statistics are kept, values are counted in bins, and the quantile is interpolated in one of
+        them: `quantile_range` bounds the error.
 
         Raises
         ------
@@ -176,15 +176,16 @@ class Ensemble(Shown):
         return self._quantile(quantity, share)[0]
 
     def quantile_range(self, quantity: str, share: float) -> tuple[Array, Array]:
-        """Both ends of where the `quantile` of these surfaces lies: itself where values are kept.
+        """Lower and upper bound of the `quantile` of these surfaces; both equal it where values are kept.
 
-        With ``keep = "statistics"`` less than 1/64 of the distance from the mean and a standard deviation
-        more apart, beyond 16000 deviations up to the extremes. It is of these surfaces alone.
+        With ``keep = "statistics"`` they differ by less than 1/64 of the distance from the mean plus one
+        standard deviation; beyond 16000 standard deviations they extend to the extremes. They do not include
+        the sampling error.
         """
         return self._quantile(quantity, share)[1:]
 
     def extremes(self, quantity: str) -> tuple[Array, Array]:
-        """Least and greatest value over the surfaces, each of shape (separations,)."""
+        """Smallest and largest value over the surfaces, each of shape (separations,)."""
         name, area = self._held(quantity)
         low, high, *_ = self.sums.extremes(name)
         return np.asarray(low / area), np.asarray(high / area)
@@ -197,9 +198,9 @@ class Ensemble(Shown):
     def interval(self, quantity: str, level: float = CONFIDENCE) -> tuple[Array, Array]:
         """Confidence interval of the mean, from the exact spread and skewness of the scene.
 
-        For any number of surfaces, one too. That of `contacts` is exact (Clopper-Pearson, or Garwood for
-        a Poisson number of asperities). Measured heights as they are leave nothing open: both ends are
-        the value.
+        It holds for any number of surfaces, even one. For `contacts` it is exact (Clopper-Pearson, or Garwood
+        for a Poisson number of asperities). Measured heights used as they are do not fluctuate: both ends
+        equal the value.
 
         Parameters
         ----------
@@ -219,14 +220,14 @@ class Ensemble(Shown):
         KeyError
             If the ensemble does not hold this quantity.
         ValueError
-            If the surfaces are stratified: how far their mean is off is not known.
+            If the surfaces are stratified: the error of their mean is not known.
         """
         name, area = self._held(quantity)
         low, high = interval_of(self.scene, self.sampler, self.sums, name, level)
         return low / area, high / area
 
     def to_xarray(self) -> Any:
-        """All values as an `xarray.Dataset` with dimensions (surface, separation), as the file has them.
+        """All values as an `xarray.Dataset` with dimensions (surface, separation), as in the file.
 
         With ``keep = "statistics"``: ``load_mean``, ``load_std``, ``load_skewness`` and so on, dimension
         (separation), and ``load_quantile``, dimensions (probability, separation).
@@ -254,21 +255,21 @@ class Ensemble(Shown):
         return self.labelled().to_dataframe((*over, "separation"))
 
     def labelled(self) -> Labelled:
-        """All there is, with axes, units and words: for its file, xarray and pandas alike."""
+        """All data with axes, units and descriptions, for the file, xarray and pandas alike."""
         if self.scene.keep != "statistics":
             return values_of(self.scene, {name: self.values(name) for name in self.scene.shapes})
         found = statistics_of(self, self.scene.shapes, STATISTICS, quantiles=True)
         return Labelled(found, {"probability": axis("probability", PROBABILITIES), **axes_of(self.scene)})
 
     def plot(self, ax: Any = None, *, quantity: str | None = None) -> Any:
-        """Draw the mean of a quantity with its interval, and how far surfaces spread.
+        """Draw the mean of a quantity with its confidence interval, and the spread of single surfaces.
 
         Parameters
         ----------
         ax : matplotlib Axes, optional
-            Where; default: new axes.
+            Axes to draw on; default: new ones.
         quantity : str, optional
-            Default: the scene's first.
+            Default: the first quantity of the scene.
 
         Returns
         -------

@@ -23,13 +23,13 @@ class Paired(Shown):
     Parameters
     ----------
     quantity : str
-        Of which.
+        Name of the quantity.
     separations : ndarray
-        Where, d/sigma.
+        Reduced separations d/sigma.
     ratio, stderr : ndarray
         Ratio of the means and its standard error; nan where the denominator has no contact.
     gain : ndarray
-        Variance of the ratio of two independent ensembles of this size over that of the pair.
+        Variance of the ratio of two independent ensembles of this size, divided by that of the pair.
     """
 
     quantity: str
@@ -72,8 +72,8 @@ def paired_ratio(numerator: Ensemble, denominator: Ensemble, quantity: str) -> P
     Returns
     -------
     Paired
-        The error is that of ``b - r a`` over the surfaces (delta method), in which what both share
-        cancels.
+        The standard error is that of ``b - r a`` over the surfaces (delta method): fluctuations that both
+        share cancel.
 
     Raises
     ------

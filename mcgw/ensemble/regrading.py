@@ -63,10 +63,10 @@ def regrade(
         The new one, as `mcgw.KogutEtsion(critical=0.05)`, or `mcgw.Hertz()`; as `mcgw.Scene` takes it.
         Default: that of the ensemble.
     quantities : sequence of str, optional
-        Any; default: those of the ensemble that there still are.
+        Any; default: those of the ensemble that still exist.
     separations : array_like, optional
-        From kept moments edges of the cells, such as the ensemble's own separations; else any that is not
-        lower than these. Default: these.
+        From kept moments: edges of the cells, such as the ensemble's own separations. Otherwise: any that are
+        not lower than the ensemble's. Default: those of the ensemble.
     **contact
         ``unload_from``, ``film``, ``tangential``, ``interaction`` or ``joint``, where they are to change;
         None leaves them out. By default they stay, where the law has them.
@@ -74,8 +74,8 @@ def regrade(
     Returns
     -------
     Ensemble
-        Of the same surfaces, in memory. A new simulation with the same seed gives the same only if the cells
-        are: if neither a break of the grading nor another law of contact puts edges elsewhere.
+        Of the same surfaces, in memory. A new simulation with the same seed draws these surfaces only if it
+        has the same cells: neither a break of the grading nor another contact law may move their edges.
 
     Raises
     ------

@@ -110,25 +110,25 @@ def given_values(
 def solutions(
     scene: Scene, given: str, values: Sequence[float], tell: Callable[[float, float], Any] | None = None
 ) -> list[Solution]:
-    """As `solve`, of loads ("load", N) or real areas ("area", m^2) of a scene.
+    """As `solve`, for loads ("load", N) or real areas ("area", m^2) of a scene.
 
-    The asperities of a surface are drawn one by one (sampler ``tail``), once for all values; so this
-    serves any separation, and the mean differs from theory by what the finite number of asperities
-    does to it, of order 1/N.
+    The asperities of a surface are drawn one by one (sampler ``tail``), once for all values. So any
+    separation is possible, and the mean differs from theory by an effect of the finite number of asperities,
+    of order 1/N.
 
-    Of summits as they were measured the answer is that of the very list; specimens stand beside it that have
-    as many summits, drawn from the list one by one: as if neighbours knew nothing of each other.
+    For summits used as measured, the answer is that of the list itself. Beside it stand specimens with as
+    many summits, drawn from the list independently: correlations between neighbours are ignored.
 
-    Surfaces are loaded from far away: of several separations the largest one counts. Under a law that
-    jumps the load of a surface does so at each asperity that yields, and may pass a value without having
-    it; the solution is then the separation of the jump, with the load behind it.
+    Surfaces approach from far away: if several separations fit, the largest one counts. Under a contact law
+    with jumps, the load of a surface jumps at each asperity that yields, and may skip a value; the solution
+    is then the separation of the jump, with the load just after it.
 
     Raises
     ------
     ValueError
-        If a value is not reached, too small for digits to tell, or reached only with contacts of negative
-        modulus where the scene does not allow them, if there are too many asperities to draw, or if a
-        surface has none.
+        If a value is not reached, is too small for double precision, or is reached only with contacts of
+        negative modulus where the scene does not allow them, if there are too many asperities to draw, or if
+        a surface has none.
     """
     whole, scene = scene, asperities_of(scene)
     specimens = _resampled(scene) if scene.as_measured else scene

@@ -1,4 +1,4 @@
-"""What holds on surfaces at one given load or area: what `mcgw.solve` finds."""
+"""The result of `mcgw.solve`: the state of surfaces at one given load or real area."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -27,24 +27,24 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, repr=False)
 class Solution(Shown):
-    """What holds at one given load or area.
+    """The state of surfaces at one given load or real area.
 
     Parameters
     ----------
     scene : Scene
-        Of which surfaces.
+        The scene that describes the surfaces.
     given : str
         Which quantity was given: "load" or "area".
     value : float
         Its value, N or m^2.
     theory : dict of str to float
-        "separation" (d/sigma) and every quantity (SI) of the mean surface, on loading. Where asperities press
-        each other down the separation is what they feel, and "nominal_separation" there besides. "mean_gap"
-        is the distance of the mean planes, m: see `answers_at`.
+        "separation" (d/sigma) and every quantity (SI) of the mean surface, on loading.
+        With asperity interaction the separation is the effective one, and "nominal_separation" is given as
+        well. "mean_gap" is the distance of the mean planes, m: see `answers_at`.
     surfaces : dict of str to ndarray
-        The same on every surface at its own separation, shape (surfaces,).
+        The same for every surface at its own separation, shape (surfaces,).
     drawn : Scene
-        What the surfaces were drawn by.
+        The scene with which the surfaces were drawn.
     """
 
     scene: Scene
@@ -56,14 +56,14 @@ class Solution(Shown):
 
     @property
     def title(self) -> str:
-        """What was given."""
+        """The given load or real area, in words."""
         share = self.value / self.scene.surface.nominal_area
         if self.given == "load":
             return f"At the load {self.value:.6g} N = pressure {share / 1e6:.6g} MPa"
         return f"At the real area {self.value:.6g} m^2 = {share:.4%} of the nominal area"
 
     def heights(self, surface: int) -> Array:
-        """Reduced heights of the asperities of a surface that touch at its own separation, in falling order.
+        """Reduced heights of the asperities of a surface in contact at its separation, in descending order.
 
         Parameters
         ----------
@@ -86,7 +86,7 @@ class Solution(Shown):
         return self._contacts(surface)[0]
 
     def radii(self, surface: int) -> Array:
-        """Their radii, m, in the order of `heights`; all alike where summits have one radius."""
+        """Radii of the asperities in contact, m, in the order of `heights`."""
         s, ratios = self._contacts(surface)
         return np.asarray(self.scene.surface.radius * (np.ones_like(s) if ratios is None else ratios))
 
@@ -100,7 +100,7 @@ class Solution(Shown):
         return s[order], None if ratios is None else ratios[order]
 
     def interval(self, name: str, level: float = 0.95) -> tuple[float, float]:
-        """Confidence interval of the mean over surfaces, by Student's t; nan for too few contacts of all."""
+        """Confidence interval of the mean over surfaces (Student's t); nan if they have too few contacts."""
         x = self.surfaces[name]
         if len(x) * self.theory["contacts"] < FEWEST:
             return float("nan"), float("nan")
@@ -109,9 +109,9 @@ class Solution(Shown):
 
     @cached_property
     def separation_law(self) -> "Law | None":
-        """Exact law of the separation over surfaces, d/sigma, of what asperities feel; None if not known.
+        """Exact distribution over surfaces of the effective separation, d/sigma; None if it is not known.
 
-        There is none where sums may rise with the separation, as those of asperities that pull.
+        It is not known where sums may rise with the separation, as with adhesive asperities.
         """
         try:
             return asperities_of(self.scene).theory.separation_law(self.value, self.given)
@@ -120,14 +120,14 @@ class Solution(Shown):
 
     @property
     def told_by(self) -> "Law | None":
-        """The law by which `specimens` tells separations: the exact one, where it takes milliseconds."""
+        """Distribution that `specimens` uses for separations: the exact one, if that takes milliseconds."""
         return self.separation_law if laws_are_quick(self.scene) else None
 
     def specimens(self, name: str, share: float = 0.9) -> tuple[float, float]:
-        """Ends between which this share of all surfaces lies, as much of the others below as above.
+        """Range that holds this share of all surfaces, with equal shares below and above it.
 
-        Of separations they are those of the exact law (see `told_by`); else quantiles of the surfaces
-        drawn.
+        For separations it follows from the exact distribution (see `told_by`); otherwise its ends are
+        quantiles of the surfaces drawn.
         """
         ends = np.array([(1 - share) / 2, (1 + share) / 2])
         nominal = name == "nominal_separation" or (name == "mean_gap" and self.scene.interaction is not None)
@@ -148,12 +148,12 @@ class Solution(Shown):
         return {}
 
     def asperities_for(self, scatter: float) -> dict[str, float]:
-        """Asperities with which specimens at this pressure, or share of area, would scatter so little.
+        """Number of asperities for which specimens at this pressure, or area fraction, scatter so little.
 
         Parameters
         ----------
         scatter : float
-            Standard deviation over specimens, over the answer: 0.01 for one percent.
+            Standard deviation over specimens, divided by the answer: 0.01 for one percent.
 
         Returns
         -------
@@ -172,16 +172,17 @@ class Solution(Shown):
         }
 
     def budget(self) -> "Budget":
-        """By how much a real specimen may differ from `theory` here, by causes.
+        """Error budget: how much a real specimen may differ from `theory`, cause by cause.
 
-        Drawn surfaces (of the Monte Carlo mean; the theory has none), specimens (from one nominal area to
-        another), the parameters of the surface (by ``[surface] uncertainty``), and the model against
-        elasticity, where it was measured; and the root of the sum of their squares.
+        The causes are the number of surfaces drawn (it affects the Monte Carlo mean, not the theory), the
+        scatter of specimens (from one nominal area to another), the uncertainty of the parameters of the
+        surface (``[surface] uncertainty``), and the error of the model against elasticity, where it was
+        measured. The total is the root of the sum of their squares.
 
         Returns
         -------
         Budget
-            Half-widths of 95 %, over the answers: `table`, and a sentence in `advice`.
+            Half-widths of 95 % intervals, divided by the answers: see `table`, and a sentence in `advice`.
 
         Examples
         --------
@@ -206,7 +207,7 @@ class Solution(Shown):
         )
 
     def corrected(self, quantity: str) -> "Corrected":
-        """The answer of the theory, less what this model is off boundary elements at such a load.
+        """Answer of the theory, corrected by the measured error of the model against boundary elements.
 
         Parameters
         ----------
@@ -216,7 +217,8 @@ class Solution(Shown):
         Returns
         -------
         Corrected
-            With the ends between which 95 % of such surfaces lie; nan, and `why`, where nothing was measured.
+            With the ends between which 95 % of such surfaces lie; nan where nothing was measured, with the
+            reason in `why`.
         """
         from mcgw.ensemble.budget import Corrected, corrected
 
@@ -285,12 +287,12 @@ class Solution(Shown):
 
 
 def against_elasticity(solutions: Sequence[Solution]) -> Validity:
-    """How far the model is from elasticity at solutions of one scene, by what the asperities feel there."""
+    """Error of the model against elasticity at solutions of one scene, at their effective separations."""
     return validity_of(solutions[0].scene, [each.theory["separation"] for each in solutions], felt=True)
 
 
 def at_solutions(scene: Scene, solutions: Sequence[Solution]) -> Scene:
-    """The scene at the separations of its mean surface there: what is said of them is said of the loads."""
+    """The scene at the separations of the mean surface in these solutions, which stand for their loads."""
     name = "nominal_separation" if scene.nominal else "separation"
     h = sorted({each.theory[name] for each in solutions})
     loading = [q for q in scene.quantities if not quantity_of(q).unloading] or ["load"]

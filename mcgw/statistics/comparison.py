@@ -64,7 +64,7 @@ class Comparison(Shown):
     curves : dict of str to Curve
         By quantity.
     verdict : Verdict
-        On all means, and on the laws of the values of single surfaces.
+        On all means, and on the distributions of single surfaces if these were tested.
     """
 
     ensemble: Ensemble
@@ -77,7 +77,7 @@ class Comparison(Shown):
         Parameters
         ----------
         ax : matplotlib Axes, optional
-            Where; default: new axes.
+            Axes to draw on; default: new ones.
         quantity : str, optional
             One of the curves; default: the first.
 
@@ -107,7 +107,7 @@ class Comparison(Shown):
         return {name: self._table(name) for name in self.curves}
 
     def worst(self, rows: int) -> Table:
-        """The means that are farthest from theory, whatever their quantity."""
+        """The means that are farthest from theory, of all quantities."""
         table = replace(stacked(self.tables(), "quantity"), title="farthest from theory, in standard errors")
         far = np.abs(table.only("residual").columns[0].values)
         return table.at(np.argsort(-far, kind="stable")[:rows].tolist())
@@ -135,7 +135,7 @@ class SweepComparison(Shown):
     sweep : Sweep
         What was compared.
     points : tuple of Tested
-        Those that can be: whose surfaces fluctuate as real ones do.
+        The points that can be tested: those whose surfaces fluctuate as real ones do.
     """
 
     sweep: "Sweep"
@@ -149,12 +149,12 @@ class SweepComparison(Shown):
 
     @cached_property
     def worst(self) -> list[Tested]:
-        """The points, those first whose means are the least likely by chance."""
+        """All points, the least likely by chance first."""
         return sorted(self.points, key=lambda one: one.unlikely)
 
     @property
     def residuals(self) -> Array:
-        """Of all points, quantities and separations that count: standard normal each, and not independent."""
+        """Residuals of all points, quantities and separations that count: standard normal, but dependent."""
         return np.concatenate([one.residual[one.counts] for one in self.points])
 
     def plot(self, ax: Any = None) -> Any:
@@ -221,17 +221,17 @@ def compare(
     Parameters
     ----------
     result : Ensemble or Sweep
-        Of independent surfaces.
+        Its surfaces must be independent, not stratified.
     laws : bool, optional
-        Also test the values of single surfaces against their exact laws (Kolmogorov and Smirnov), half a
-        second more; the verdict is then on both. Not of a sweep.
+        Also test the values of single surfaces against their exact distributions (Kolmogorov and Smirnov),
+        which takes half a second more; the verdict then covers both. Not for a sweep.
     progress : bool or callable, optional
-        Of a sweep. True: a bar; a function: called with (done, total) points.
+        For a sweep. True: a bar; a function: called with (done, total) points.
 
     Returns
     -------
     Comparison or SweepComparison
-        Curves and verdict; of a sweep its points, with one verdict on all of them.
+        Curves and verdict; for a sweep its points, with one verdict on all of them.
 
     Raises
     ------

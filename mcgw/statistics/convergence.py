@@ -72,12 +72,12 @@ class Convergence(Shown):
 
     @property
     def p(self) -> float:
-        """Probability that the worst of all checks is so bad by chance (Bonferroni)."""
+        """Probability that the worst check is this bad by chance alone (Bonferroni)."""
         return min(1.0, len(self.checks) * min(check.p for check in self.checks))
 
     @property
     def passed(self) -> bool:
-        """False for at most one in `1/FALSE_ALARM` right samplers."""
+        """Whether it passed; a correct sampler fails with a probability of at most `FALSE_ALARM`."""
         return self.p > FALSE_ALARM
 
     @property

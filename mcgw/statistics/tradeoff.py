@@ -36,17 +36,17 @@ class Point:
     Parameters
     ----------
     method, unit : str
-        What, and what its size counts.
+        Name of the method, and what its size counts.
     size : float
-        How much of it.
+        Its size, in that unit.
     rms : ndarray
         Root mean square relative error over the seeds, shape (separations,).
     rms_stderr : float
         Relative uncertainty of `rms`; 0 where nothing is random.
     cpu, wall : float
-        Median seconds: of all cores together, and by the clock.
+        Median seconds: CPU time of all cores together, and wall-clock time.
     peak : float
-        Bytes of memory on top of what there was; nan where the system does not tell.
+        Bytes of additional memory; nan where the system does not report it.
     seeds : int
         How many runs.
     """
@@ -77,7 +77,7 @@ class Tradeoff(Shown):
     methods : tuple of Method
         All of them.
     ways : tuple of Way
-        Pairs of sampler and accuracy: what values of surfaces cost, and how good they are.
+        Pairs of sampler and accuracy: time and error of the values of single surfaces.
     advice : tuple of Advice
         What to run for a mean, a quantile, or values; the first two at the last of the separations.
     seconds : float
@@ -102,7 +102,7 @@ class Tradeoff(Shown):
         Parameters
         ----------
         ax : matplotlib Axes, optional
-            Where; default: new axes.
+            Axes to draw on; default: new ones.
         separation : float, optional
             One of `separations`; default: the last.
 
@@ -124,7 +124,7 @@ class Tradeoff(Shown):
         return plotted(self, ax, k=self.separations.index(h))
 
     def sheet(self) -> Sheet:
-        """What to run for each wish."""
+        """What to run for each goal."""
         quantity, h = self.scene.quantities[0], f"{self.separations[-1]:g}"
         facts = [("mean, quantile", f"of the {quantity} at d/sigma = {h}, in 95 of 100 ensembles")]
         a = self.advice
@@ -164,7 +164,7 @@ class Tradeoff(Shown):
         return Table(columns, title)
 
     def ways_table(self) -> Table:
-        """What single surfaces cost by every pair of sampler and accuracy, and how good they are."""
+        """Time and error of the values of single surfaces, for every pair of sampler and accuracy."""
         w = self.ways
         columns = (
             Column("sampler", [x.sampler for x in w]),
@@ -207,7 +207,7 @@ class _Task:
 def tradeoff(
     scene: Scene, *, seconds: float | str | None = None, progress: Progress = None, **changes: Any
 ) -> Tradeoff:
-    """Measure every way to the first quantity of a scene.
+    """Measure error against time of every method for the first quantity of a scene.
 
     Everything is warmed up, then all methods and sizes run in turn, with a new seed each round, until
     the time is used up; medians over the rounds are given.

@@ -42,7 +42,7 @@ _UNSEEN = 0.3  # standard errors by which a combination may be off without being
 
 @dataclass(frozen=True)
 class Verdict:
-    """A chi-square test of all means at once, or of the farthest of them where that tells more.
+    """Result of a chi-square test of all means at once, or of the farthest mean if that is more sensitive.
 
     Parameters
     ----------
@@ -52,7 +52,7 @@ class Verdict:
         How many: independent combinations of the means that are Gaussian to within 0.1 in skewness
         and excess kurtosis.
     p : float
-        Probability of so large a chi-square by chance; or of so far a mean.
+        Probability of so large a chi-square by chance, or of a mean so far off.
     means, farthest : int, float
         How many means were looked at one by one, and by how many standard errors the farthest of them lies
         beyond what the scene's accuracy allows; 0 where chi-square decided.
@@ -73,12 +73,12 @@ class Verdict:
 
     @property
     def agrees(self) -> bool:
-        """False in one of `1/FALSE_ALARM` ensembles that follow the theory."""
+        """Whether they agree; an ensemble that follows theory is rejected with probability `FALSE_ALARM`."""
         return self.p > FALSE_ALARM
 
     @property
     def seen(self) -> str:
-        """What p is of, in words."""
+        """What p refers to, in words."""
         if self.laws is not None:
             return self.laws.seen
         where = f" at the least likely of {self.points} points" * (self.points > 0)
@@ -98,18 +98,18 @@ class Verdict:
 
     @property
     def line(self) -> str:
-        """Do they agree, and how sure is that."""
+        """One line: whether they agree, and how sure that is."""
         return f"Monte Carlo and theory {self.word}: {self.seen}, p = {self.p:.3g}"
 
     def with_laws(self, laws: "LawsOfValues") -> "Verdict":
-        """On means and on values together: twice the smaller probability."""
+        """Verdict on means and on single values together: twice the smaller probability."""
         decided = laws if laws.p < self.p else None
         return replace(self, p=min(1.0, 2 * min(self.p, laws.p)), laws=decided)
 
 
 @dataclass(frozen=True)
 class Tested:
-    """What a verdict is on: means at some separations, arrays of shape (quantities, separations).
+    """What a verdict is based on: means at some separations, arrays of shape (quantities, separations).
 
     Parameters
     ----------
@@ -127,7 +127,7 @@ class Tested:
     verdict : Verdict
         On all of them.
     number : int
-        Of a point of a sweep, the last axis fastest.
+        Number of the point of a sweep, the last axis fastest.
     """
 
     quantities: tuple[str, ...]

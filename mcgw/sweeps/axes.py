@@ -35,8 +35,8 @@ class Axes:
     values : dict of str to tuple
         The values of each key, as a scene file gives them.
     zipped : bool
-        Whether the first values of all keys make one point, the second ones another; or every value of one
-        goes with every value of all others.
+        Whether values go in step: the first values of all keys make one point, the second ones another.
+        Otherwise every value of one key is combined with every value of all others.
     """
 
     values: dict[str, tuple[Any, ...]]
@@ -44,7 +44,7 @@ class Axes:
 
     @classmethod
     def from_text(cls, text: str) -> "Axes":
-        """Those that `text_of_all` wrote."""
+        """Read axes that `text_of_all` wrote."""
         said = json.loads(text)
         return cls({key: tuple(values) for key, values in said["values"].items()}, bool(said["zipped"]))
 
@@ -54,25 +54,25 @@ class Axes:
 
     @property
     def keys(self) -> tuple[str, ...]:
-        """Their keys."""
+        """Keys of the scene that vary."""
         return tuple(self.values)
 
     @property
     def shape(self) -> tuple[int, ...]:
-        """Number of points along each dimension: one a key, or one for all of them if they are zipped."""
+        """Number of points along each dimension: one dimension for each key, or a single one if zipped."""
         lengths = tuple(map(len, self.values.values()))
         return lengths[:1] if self.zipped else lengths
 
     @property
     def names(self) -> dict[str, str]:
-        """Of each key what its coordinate is called: its last word, or all of it if another has that name."""
+        """Name of the coordinate of each key: its last word, or the whole key if that word is taken."""
         last = [key.rpartition(".")[2] for key in self.keys]
         taken = {*AXES, GROUP, *(name for name in last if last.count(name) > 1)}
         return {key: key if name in taken else name for key, name in zip(self.keys, last, strict=True)}
 
     @property
     def dims(self) -> tuple[str, ...]:
-        """Names of the dimensions: one a key, or "point" for zipped ones."""
+        """Names of the dimensions: one for each key, or "point" if they are zipped."""
         return ("point",) if self.zipped else tuple(self.names.values())
 
     @property
@@ -81,7 +81,7 @@ class Axes:
         return math.prod(self.shape)
 
     def points(self) -> Iterator[Point]:
-        """The places of all points, the last dimension fastest."""
+        """Indices of all points, the last dimension fastest."""
         return product(*map(range, self.shape))
 
     def at(self, point: Point) -> dict[str, Any]:
@@ -90,7 +90,7 @@ class Axes:
         return {key: values[i] for (key, values), i in zip(self.values.items(), places, strict=True)}
 
     def text(self, point: Point) -> str:
-        """A point for people."""
+        """A point in words."""
         return brief(", ".join(f"{key} = {_short(value)}" for key, value in self.at(point).items()))
 
     def values_text(self, point: Point) -> str:
@@ -110,12 +110,13 @@ class Axes:
         return 0 if self.zipped else self.keys.index(key)
 
     def numbers(self, key: str) -> Array:
-        """The values of an axis whose neighbours are compared.
+        """Values of an axis along which neighbours are compared.
 
         Raises
         ------
         ValueError
-            If it is no axis, has one value alone, values that are no numbers, or the same twice in a row.
+            If there is no such axis, or it has a single value, a value that is not a number, or the same
+            value twice in a row.
         """
         self.dimension(key)
         values = self.values[key]
@@ -125,14 +126,14 @@ class Axes:
         return np.array(values, dtype=np.float64)
 
     def summary(self, key: str) -> str:
-        """The values of a key for people: how many, from the first to the last."""
+        """The values of a key in words: how many, from the first to the last."""
         values = [_short(value) for value in self.values[key]]
         if len(values) <= _LISTED:
             return ", ".join(values)
         return f"{len(values)} from {values[0]} to {values[-1]}"
 
     def place(self, at: "Mapping[str, Any] | Sequence[int] | int") -> Point:
-        """The point that is meant by values of the keys, or by its place along each dimension.
+        """Find a point by the values of its keys, or by its index along each dimension.
 
         Raises
         ------
@@ -156,7 +157,7 @@ class Axes:
 
 
 def axes_of(over: Mapping[str, Any], *, zipped: bool) -> Axes:
-    """Read the axes that are asked for.
+    """Read the axes of a sweep and check them.
 
     Raises
     ------

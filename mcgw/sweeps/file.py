@@ -106,7 +106,7 @@ def open_sweep(path: str | Path, statistics: tuple[str, ...] = STATISTICS) -> Sw
     path : str or Path
         Written by `mcgw.sweep`.
     statistics : tuple of {"mean", "std"}, optional
-        What `Sweep.to_xarray` tells.
+        Statistics that `Sweep.to_xarray` returns.
 
     Returns
     -------

@@ -48,7 +48,7 @@ class OverPoints:
     edges : tuple of tuple of float
         Of each group, the edges of cells that its points got from each other.
     statistics : tuple of str
-        What `to_xarray` tells, and with ``keep = "statistics"`` skewness and quantiles besides.
+        Statistics that `to_xarray` returns; with ``keep = "statistics"`` also skewness and quantiles.
     """
 
     axes: Axes
@@ -70,7 +70,7 @@ class OverPoints:
 
     @property
     def quantities(self) -> tuple[str, ...]:
-        """What there is of each point."""
+        """Quantities held for each point."""
         return tuple(self.scenes[0].shapes)
 
     def mean(self, quantity: str) -> Array:
@@ -101,7 +101,7 @@ class OverPoints:
         return self._arranged(low), self._arranged(high)
 
     def quantile(self, quantity: str, share: float) -> Array:
-        """Value that a share of the surfaces is below, of each point, as `mcgw.Ensemble.quantile`.
+        """Value below which a share of the surfaces lies, for each point, as `mcgw.Ensemble.quantile`.
 
         Raises
         ------
@@ -125,7 +125,7 @@ class OverPoints:
         return np.stack(found).reshape(*self.shape, -1)
 
     def scene(self, at: At) -> Scene:
-        """The scene of a point, by values of the keys or by its place along each axis.
+        """The scene of a point, given by the values of its keys or by its index along each axis.
 
         Raises
         ------
@@ -135,7 +135,7 @@ class OverPoints:
         return self.scenes[self._number(self.axes.place(at))]
 
     def ensemble(self, at: At) -> Ensemble:
-        """What is held of a point, as an ensemble of its scene: of plain scenes mean and deviation.
+        """Statistics of a point as an ensemble of its scene; by default mean and standard deviation only.
 
         Raises
         ------
@@ -216,7 +216,7 @@ class PointResults(Held):
 
 
 def sweep_cautions(sweep: OverPoints) -> list[str]:
-    """What a reader should know of the scenes, a line each: the most common first.
+    """Cautions about all scenes, one line each, the most common first.
 
     Cautions that differ in their numbers alone are one, with those of the first point that has it.
     """

@@ -31,7 +31,7 @@ class Difference:
     value, stderr : ndarray
         In SI units, and its standard error; nan for a single surface.
     gain : ndarray
-        Variance of the difference of two independent ensembles of this size over that of the pair.
+        Variance of the difference of two independent ensembles of this size, divided by that of the pair.
     """
 
     value: Array
@@ -66,7 +66,7 @@ class Slopes(Shown):
     Parameters
     ----------
     quantity, key : str
-        Of what, with what.
+        What changes, and the key with which it changes.
     axis : int
         Dimension of the arrays along which the key changes.
     at : ndarray
@@ -99,7 +99,7 @@ class Slopes(Shown):
     theory: Array
 
     def plot(self, ax: Any = None, *, k: int = 0) -> Any:
-        """Draw the slopes at one separation, by number; returns the axes."""
+        """Draw the slopes at one separation, given by its index; returns the axes."""
         return plotted(self, ax, k=k)
 
     def sheet(self) -> Sheet:
@@ -130,33 +130,33 @@ class Sweep(OverPoints, Shown):
     """
 
     def difference(self, quantity: str, one: At, other: At) -> Difference:
-        """How much larger a mean is at the first point than at the second, over the same surfaces.
+        """Difference of a mean between two points, first minus second, over the same surfaces.
 
         Parameters
         ----------
         quantity : str
             Its name.
         one, other : dict, tuple of int or int
-            Points, by values of the keys as ``{"grading.gamma": 2.0}``, or by places.
+            Points, by values of the keys as ``{"grading.gamma": 2.0}``, or by indices.
 
         Returns
         -------
         Difference
-            With the standard error over the surfaces, in which what both share cancels.
+            With the standard error over the surfaces: fluctuations that both points share cancel.
 
         Raises
         ------
         KeyError
             If there is no such quantity.
         ValueError
-            If there is no such point, or the two have other surfaces: the same seed makes them alike, and
-            how much is not known.
+            If there is no such point, or the two have different surfaces: drawn from the same seed, these are
+            correlated, and it is not known how strongly.
         """
         points = self.axes.place(one), self.axes.place(other)
         return self._difference(quantity, *points)
 
     def slopes(self, quantity: str, along: str) -> Slopes:
-        """How a mean changes with a key, from point to point over the same surfaces, and by theory.
+        """Change of a mean with a key between neighbouring points, over the same surfaces, and by theory.
 
         Parameters
         ----------
@@ -175,7 +175,7 @@ class Sweep(OverPoints, Shown):
         KeyError
             If there is no such quantity.
         ValueError
-            If there is no such axis, or neighbours have other surfaces.
+            If there is no such axis, or neighbours have different surfaces.
         """
         x, axis = self.axes.numbers(along), self.axes.dimension(along)
         step = np.diff(x).reshape(-1, *[1] * (len(self.shape) - axis))
@@ -215,7 +215,7 @@ class Sweep(OverPoints, Shown):
         return self.labelled().to_dataframe((*self.axes.dims, "separation"))
 
     def labelled(self) -> Labelled:
-        """What there is, with axes, units and words: for xarray and pandas."""
+        """All data with axes, units and descriptions, for xarray and pandas."""
         coordinates = {
             name: Variable(
                 ("point",) if self.axes.zipped else (name,),
@@ -233,14 +233,14 @@ class Sweep(OverPoints, Shown):
         return Labelled(variables, {**axes_of(self.scenes[0]), **coordinates})
 
     def plot(self, ax: Any = None, *, quantity: str | None = None) -> Any:
-        """Draw the mean of a quantity against the separation, a line a point; returns the axes.
+        """Draw the mean of a quantity against the separation, one line for each point; returns the axes.
 
         Parameters
         ----------
         ax : matplotlib Axes, optional
-            Where; default: new axes.
+            Axes to draw on; default: new ones.
         quantity : str, optional
-            Default: the scenes' first.
+            Default: the first quantity of the scenes.
         """
         return plotted(self, ax, quantity=quantity or self.quantities[0])
 
@@ -264,7 +264,7 @@ class Sweep(OverPoints, Shown):
         return Sheet(f"Sweep of {self.axes.size} scenes", facts, Table(tuple(columns)))
 
     def table(self) -> Table:
-        """A row for each point and separation: the keys, and statistics of what depends on these alone."""
+        """A row for each point and separation: the keys, and statistics of what has no further axes."""
         h, size = self.separations, self.axes.size
         at = [self.axes.at(point) for point in self.axes.points()]
         columns = [Column(key, [label(values[key]) for values in at for _ in h]) for key in self.axes.keys]
