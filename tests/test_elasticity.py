@@ -253,6 +253,11 @@ class TestMultilevel:
         assert alone.chain == (2,)
         assert_allclose(alone.plain / alone.seconds, 1, rtol=0.05)
 
+    def test_never_takes_more_solves_than_there_may_be(self, rng):
+        """A product and its quotient differ by rounding."""
+        pilot, every = made_up(rng, 50), range(4, 200)
+        assert [design(pilot, (0.01, 0.1, 10.0), 0.01, n).maps[-1] for n in every] == list(every)
+
     def test_covers_and_has_no_bias(self, rng):
         """2000 repetitions: 95 % intervals cover within 4.5 standard errors; the mean of the means, too."""
         true, covered, means, many = 10.0, 0, [], 2000

@@ -82,10 +82,10 @@ def design(pilot: Table, seconds: Sequence[float], rel_err: float, solves: int |
         spreads = [spread(term) for term in terms]
         total = sum(math.sqrt(v * c) for v, c in zip(spreads, costs, strict=True))
         ideal = [math.sqrt(v / c) * total for v, c in zip(spreads, costs, strict=True)]
-        more = solves / ideal[-1] if solves is not None and ideal[-1] > 0 else 1.0
-        maps = tuple(max(math.ceil(more * n), FEWEST) for n in ideal)
+        many, base = (solves, ideal[-1]) if solves is not None and ideal[-1] > 0 else (1, 1.0)
+        maps = tuple(max(math.ceil(many * (n / base)), FEWEST) for n in ideal)
         cost = sum(n * c for n, c in zip(maps, costs, strict=True))
-        return Design(chain, maps, cost, max(more * spread((top,)), FEWEST) * seconds[top])
+        return Design(chain, maps, cost, max(many * spread((top,)) / base, FEWEST) * seconds[top])
 
     lower = [level for level in pilot if level != top]
     chains = [(*some, top) for k in range(len(lower) + 1) for some in combinations(lower, k)]
