@@ -227,6 +227,10 @@ def test_what_is_drawn_is_what_there_is(results, ensemble):
         np.testing.assert_allclose(ax.lines[0].get_ydata(), ensemble.mean(name)[order], rtol=1e-15)
         np.testing.assert_array_equal(ax.lines[0].get_xdata(), np.sort(H))
         assert f"({analytic.quantity_of(name).unit})" in ax.get_ylabel()
+        (bars,) = ax.containers[0].lines[2]
+        low, high = ensemble.interval(name)
+        ends = np.transpose([np.maximum(low, 0.001 * ensemble.mean(name)), high])[order]
+        np.testing.assert_allclose(np.array(bars.get_segments())[..., 1], ends, rtol=1e-12)
     ax = results["comparison"].plot(quantity="area")
     theory = ensemble.scene.theory.mean("area", np.sort(H))
     np.testing.assert_allclose(ax.lines[0].get_ydata(), theory, rtol=1e-14)

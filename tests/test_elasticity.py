@@ -253,6 +253,15 @@ class TestMultilevel:
         assert alone.chain == (2,)
         assert_allclose(alone.plain / alone.seconds, 1, rtol=0.05)
 
+    @pytest.mark.parametrize("solves", [20, 49])
+    def test_of_some_solves_takes_what_gains_most(self, solves, rng):
+        """By hand, of variances 1 + 0.09, 1 and 0.09 (Giles): the dearest level alone would be less work."""
+        found = design(made_up(rng, 2000), (0.01, 0.1, 10.0), 0.01, solves)
+        assert (found.chain, found.maps[-1]) == ((1, 2), solves)
+        assert found.maps[0] == pytest.approx(solves * math.sqrt(10.1 / 0.1 / 0.09), rel=0.1)
+        gain = 1.09 * 10 / (math.sqrt(0.1) + math.sqrt(0.09 * 10.1)) ** 2
+        assert found.plain / found.seconds == pytest.approx(gain, rel=0.1)
+
     def test_never_takes_more_solves_than_there_may_be(self, rng):
         """A product and its quotient differ by rounding."""
         pilot, every = made_up(rng, 50), range(4, 200)

@@ -11,6 +11,7 @@ import pytest
 from conftest import SURFACE
 from crowding import crowded
 from scipy.integrate import quad
+from scipy.optimize import brentq
 from scipy.stats import norm
 
 import analytic
@@ -20,6 +21,7 @@ from mcgw.figures.compared import Compared
 from mcgw.figures.data import GAMMA, FigureData, ratio_of_sums
 from mcgw.figures.finite import spread
 from mcgw.figures.panels import draw, save_figure_files
+from mcgw.figures.ratios import _jackknifed
 from mcgw.figures.style import prefixed, short
 from mcgw.scene.scene_file import scene_from
 
@@ -133,6 +135,31 @@ def test_error_of_a_spread_against_repetition():
     found = [spread(rng.gamma([2.0, 5.0], size=(500, 2)), h, 0 * h) for _ in range(300)]
     seen = np.std([p.mean for p in found], axis=0, ddof=1)
     np.testing.assert_allclose(seen, np.mean([p.stderr for p in found], axis=0), rtol=0.16)
+
+
+def test_jackknife_at_equal_load_literally():
+    """Ten groups of surfaces, each left out in turn; ratios at equal load by bisection."""
+    rng, h = np.random.default_rng(5), 1.0
+    listed = tuple(rng.normal(size=n) for n in rng.integers(100, 300, 25))
+
+    def ratios(s, gamma):
+        modulus, d = gamma - (gamma - 1) * np.exp(-s), np.maximum(s - h, 0)
+
+        def excess(x):
+            return (modulus * np.maximum(s - x, 0) ** 1.5).sum() - (d**1.5).sum()
+
+        own = np.maximum(s - brentq(excess, h - 1, h + 1, xtol=1e-13), 0)
+        hom = np.sqrt(d).sum(), d.sum(), np.sqrt(d).sum()
+        return np.array([np.sqrt(own).sum(), own.sum(), (modulus * np.sqrt(own)).sum()]) / hom
+
+    found, errors = _jackknifed(listed, h)
+    for k, gamma in ((0, 0.2), (6, 2.0)):
+        np.testing.assert_allclose(found[k], ratios(np.concatenate(listed), gamma), rtol=1e-9)
+        left = [
+            ratios(np.concatenate([s for i, s in enumerate(listed) if i % 10 != group]), gamma)
+            for group in range(10)
+        ]
+        np.testing.assert_allclose(errors[k], np.std(left, axis=0) * 3, rtol=1e-7)  # sqrt(10 - 1)
 
 
 OVER_H, G, S = "separation d/σ", "grading factor γ", "summit height s = z/σ"

@@ -141,6 +141,20 @@ def test_errors_of_a_fit_literally():
         assert fit.numbers[name].relative == pytest.approx(max(by_waves, by_stretches), rel=1e-9), name
 
 
+def test_numbers_change_with_the_unit_of_length_as_their_units_say():
+    (profile, *_) = cut(Spectrum(UM, 60 * UM, 8 * UM), 900)
+    tables = [
+        fit_profiles([Profile(k * profile.heights, k * UM)], cutoff=k * 10 * UM).table() for k in (1, 1000)
+    ]
+    power = {"m": 1, "m^2": 2, "1/m^2": -2, "1": 0}
+    (names, units, own), (_, _, other) = (
+        [c.values for c in table.only("name", "unit", "value").columns] for table in tables
+    )
+    assert tuple(names) == NAMES
+    expected = [x * 1000.0 ** power[unit] for x, unit in zip(own, units, strict=True)]
+    np.testing.assert_allclose(other, expected, rtol=1e-9)
+
+
 CASES = {  # spectrum, cutoff, profiles together: 10 of the longest waves on a profile, or 4
     "alpha 12, four": (Spectrum(UM, 100 * UM, 8 * UM, 0.8), 10 * UM, 4),
     "noisy": (Spectrum(UM, 100 * UM, 4 * UM, -0.5), 16 * UM, 1),

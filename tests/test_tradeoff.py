@@ -194,7 +194,7 @@ def test_ways_take_half_of_the_time_and_methods_the_rest(scene, monkeypatch):
         return np.zeros(3)
 
     for name, fake in (
-        ("monotonic", lambda: clock[0]), ("ways_for", ways), ("advise", lambda *_: ()),
+        ("monotonic", lambda: clock[0]), ("ways_for", ways), ("advise", lambda _, h, ways: (h, len(ways))),
         ("methods_for", lambda *_: (study.Method("made up", "", (1.0, 2.0), None, errors),)),
         ("perf_counter", lambda: clock[0]), ("peak_growth", lambda call: call() is None),
     ):  # fmt: skip
@@ -205,3 +205,4 @@ def test_ways_take_half_of_the_time_and_methods_the_rest(scene, monkeypatch):
     # Each of two sizes once to warm up and once for its memory; then in turn, 18 rounds of 2 s.
     assert [point.seeds for point in found.points] == [18, 18]
     assert found.seconds == 100
+    assert found.advice == (2.0, 6)  # where surfaces scatter most
