@@ -26,7 +26,7 @@ class Grading(Protocol):
 
     @property
     def smooth(self) -> bool:
-        """True if it varies slowly (on the scale of one sigma) between its breaks."""
+        """Whether it varies slowly (on the scale of one sigma) between its breaks."""
 
     def __call__(self, s: Array) -> Array:
         """E*(s)/E* at the heights `s`, in the shape of `s`."""
@@ -53,7 +53,7 @@ class Homogeneous:
 
 @dataclass(frozen=True)
 class Exponential:
-    """The paper's grading, Eq. (4).
+    """Exponential grading, Eq. (4) of the paper: ``gamma + (1 - gamma) exp(-s)``.
 
     Parameters
     ----------
@@ -96,14 +96,14 @@ class Exponential:
 
 @dataclass(frozen=True)
 class Custom:
-    """Any Python function of height.
+    """A grading given as any Python function of height.
 
     Parameters
     ----------
     function : callable
         Takes an array of reduced heights, returns E*(s)/E* in the same shape.
     breaks : tuple of float, optional
-        Heights where it jumps or has a kink: declared, they cost nothing; otherwise they are searched for.
+        Heights where it jumps or has a kink. Without them they are searched for, which takes time.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""Laws of the summit heights, reduced to mean 0 and standard deviation 1: normal, exponential, Weibull.
+"""Distributions of summit heights, reduced to mean 0 and standard deviation 1: normal, exponential, Weibull.
 
 Separations stay d/sigma from the mean height.
 """
@@ -22,12 +22,12 @@ _BEND = 0.5  # change of the logarithm of the density over a span
 class HeightLaw(Protocol):
     """Distribution of the reduced height s = z/sigma, of mean 0 and standard deviation 1.
 
-    A law that inherits from it gives `pdf`, `cdf`, `sf`, `ppf`, `isf` and `rvs`; the rest where it differs.
+    A subclass gives `pdf`, `cdf`, `sf`, `ppf`, `isf` and `rvs`, and the rest where it differs.
     """
 
     @property
     def support(self) -> tuple[float, float]:
-        """Lowest and highest height there are; infinite for no bound."""
+        """Lowest and highest possible height; infinite without a bound."""
         return -math.inf, math.inf
 
     @property
@@ -48,7 +48,7 @@ class HeightLaw(Protocol):
         """`n` heights from NumPy's generator."""
 
     def pdf(self, s: Array) -> Array:
-        """Probability density at `s`, at a jump that above it."""
+        """Probability density at `s`; at a jump, its value just above."""
 
     def log_ratio(self, s: Array, t: Array) -> Array:
         """``log(pdf(s + t)/pdf(s))``, accurate for small `t`."""
@@ -69,7 +69,7 @@ class HeightLaw(Protocol):
 
 @dataclass(frozen=True)
 class Gaussian(HeightLaw):
-    """The normal law of Greenwood and Williamson.
+    """Normal (Gaussian) distribution of heights, as used by Greenwood and Williamson.
 
     Examples
     --------
@@ -138,7 +138,7 @@ def narrowest(law: Any, s: float) -> float:
 
 @dataclass(frozen=True)
 class ExponentialHeights(HeightLaw):
-    """Exponential law: ``exp(-1 - s)`` for s > -1.
+    """Exponential distribution of heights: the density ``exp(-1 - s)`` for s > -1.
 
     Greenwood and Williamson (1966) used it for its closed form, ``F_n(h) = Gamma(n+1) exp(-1 - h)``
     for h >= -1: load, area and number of contacts are proportional to each other.
@@ -187,7 +187,7 @@ class ExponentialHeights(HeightLaw):
 
 @dataclass(frozen=True)
 class Weibull(HeightLaw):
-    """Weibull law of a given shape (McCool 1992, Int. J. Mach. Tools Manuf. 32, 115).
+    """Weibull distribution of heights (McCool 1992, Int. J. Mach. Tools Manuf. 32, 115).
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""What one asperity in contact contributes: a power law of its approach, once and for all.
+"""What one asperity in contact contributes to each quantity: a power law of its approach.
 
 An asperity of reduced height s under a plane at the reduced separation h carries ::
 
@@ -16,7 +16,7 @@ from analytic.surface import Surface
 
 @dataclass(frozen=True, slots=True)
 class Quantity:
-    """A sum over asperities.
+    """A quantity of a surface: a sum over its asperities.
 
     Parameters
     ----------
@@ -33,7 +33,7 @@ class Quantity:
     of : str, optional
         The quantity that this one is per nominal area.
     unloading : str, optional
-        The quantity that this one is on the way back from the lowest separation.
+        The quantity of which this one is the unloading branch, from the lowest separation.
     counts : bool, optional
         Whether it is a number of asperities.
     words, symbol : str, optional

@@ -1,4 +1,4 @@
-"""What a rough surface is: five parameters, from two bodies or from the spectral moments of a map."""
+"""Rough surfaces: five parameters, from two bodies or from the spectral moments of a map."""
 
 import math
 from collections.abc import Sequence
@@ -170,7 +170,7 @@ class SpectralMoments:
 
     @property
     def mean_height(self) -> float:
-        """Of the summits above the mean plane, ``4 sqrt(m0/(pi alpha))``, m."""
+        """Mean height of the summits above the mean plane, ``4 sqrt(m0/(pi alpha))``, m."""
         return 4 * math.sqrt(self.m0 / (math.pi * self.alpha))
 
     def surface(self, nominal_area: float, E_star: float) -> Surface:

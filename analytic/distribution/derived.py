@@ -1,4 +1,4 @@
-"""Laws that follow from those of sums: of what rises or falls with a sum, and of where sums reach a value."""
+"""Distributions that follow from those of sums: of functions of a sum, and of where sums reach a value."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -19,7 +19,7 @@ _SCIPY = 1e-14
 
 
 class Law:
-    """The law of a value over surfaces, in the manner of `scipy.stats`; arguments are of any shape."""
+    """Distribution of a value over surfaces, with the methods of `scipy.stats`; arguments have any shape."""
 
     def __repr__(self) -> str:
         """One line: all that it holds would fill pages."""
@@ -27,16 +27,16 @@ class Law:
 
     @property
     def error(self) -> float:
-        """How far `cdf` may be off."""
+        """Error bound of `cdf`."""
         raise NotImplementedError
 
     def error_at(self, y: ArrayLike) -> Array:
-        """How far the smaller one of cdf and sf may be off at values, over itself."""
+        """Relative error bound of the smaller one of cdf and sf at these values."""
         raise NotImplementedError
 
     @property
     def atom(self) -> float:
-        """Probability of nothing: that no asperity touches."""
+        """Probability that no asperity touches."""
         return 0.0
 
     def _tail(self, y: ArrayLike, *, upper: bool) -> Array:
@@ -56,11 +56,11 @@ class Law:
         return self._tail(y, upper=True)
 
     def ppf(self, q: ArrayLike) -> Array:
-        """Least value up to which a share q of the surfaces lies."""
+        """Smallest value y with P(Y <= y) >= q."""
         return self._quantile(q, upper=False)
 
     def isf(self, q: ArrayLike) -> Array:
-        """Least value above which no more than a share q of the surfaces lies."""
+        """Smallest value y with P(Y > y) <= q."""
         return self._quantile(q, upper=True)
 
     @cached_property
@@ -87,7 +87,7 @@ class Law:
         return float(np.sqrt(self.var()))
 
     def median(self) -> float:
-        """Half of the surfaces have less."""
+        """Median over surfaces: half of them lie below it."""
         return float(self.ppf(0.5))
 
     def interval(self, confidence: ArrayLike) -> tuple[Array, Array]:
@@ -96,11 +96,11 @@ class Law:
         return self.ppf(out), self.isf(out)
 
     def rvs(self, size: int | tuple[int, ...] | None = None, random_state: Any = None) -> Array:
-        """Values of surfaces, drawn by inversion."""
+        """Random values, drawn by inversion."""
         return self.ppf(np.random.default_rng(random_state).random(size))
 
     def pdf(self, y: ArrayLike) -> Array:
-        """Density, by differences of the cdf."""
+        """Density, from differences of the cdf."""
         y = np.asarray(y, dtype=np.float64)
         step = _STEP * float(self.ppf(0.75) - self.ppf(0.25))
         return np.tensordot(_DIFFERENCE, [self.cdf(y + k * step) for k in (-2, -1, 1, 2)], 1) / step
@@ -108,16 +108,16 @@ class Law:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Mapped(Law):
-    """The law of what rises, or falls, with a sum.
+    """Distribution of a function that rises, or falls, with a sum.
 
     Parameters
     ----------
     of : law
         Of the sum.
     forward, back : callable
-        Take the sum to it, and back.
+        The function of the sum, and its inverse.
     falls : bool
-        Whether it falls with the sum.
+        Whether the function falls with the sum.
     """
 
     of: Law
@@ -149,14 +149,14 @@ class Mapped(Law):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Along(Law):
-    """The law of where surfaces, whose sum falls with y, meet a value: P(Y <= y) = P(S(y) <= x(y)).
+    """Distribution of where sums that fall with y reach a value: P(Y <= y) = P(S(y) <= x(y)).
 
     Parameters
     ----------
     law : callable
-        Takes y to the law of the sum there.
+        Gives the distribution of the sum at y.
     value : callable
-        Takes y to x.
+        Gives x at y.
     start, spread : float
         About where, and how far around, to look first.
     """
@@ -214,7 +214,7 @@ class Along(Law):
 
 @dataclass(frozen=True, repr=False)
 class Counted(Law):
-    """The exact law of a number of asperities, binomial or Poisson: that of `scipy.stats`.
+    """Exact distribution of a number of asperities, binomial or Poisson, from `scipy.stats`.
 
     Parameters
     ----------
@@ -249,7 +249,7 @@ class Counted(Law):
 
     @property
     def atom(self) -> float:
-        """Probability that there is none."""
+        """Probability of no asperity."""
         return float(self.pdf(0))
 
     def pdf(self, y: ArrayLike) -> Array:

@@ -1,4 +1,4 @@
-"""The law of a sum over a finite surface: how likely which value is, exactly."""
+"""Exact distribution of a sum over the asperities of a finite surface."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -36,17 +36,18 @@ _SHARES = np.array([1e-9, 1e-6, 0.001, 0.01, 0.05, 0.25, 0.5, 0.75, 0.95, 0.99, 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Distribution(Law):
-    """The exact law of one quantity of a surface over all surfaces, in the manner of `scipy.stats`.
+    """Exact distribution of one quantity over all surfaces, with the methods of `scipy.stats`.
 
-    Arguments are in the unit of the quantity, of any shape. The smaller one of `cdf` and `sf` has its own
-    relative precision. Where a surface may have no contact at all, 0 has a probability, `atom`.
+    Arguments are in the unit of the quantity and have any shape. The smaller one of `cdf` and `sf` is
+    accurate relative to itself. Where a surface may have no contact at all, the value 0 has the probability
+    `atom`.
 
     Parameters
     ----------
     touching : Touching
-        What one asperity adds.
+        Contribution of one asperity.
     unit : float
-        Of the values of `touching`.
+        Unit of the values of `touching`.
 
     Examples
     --------
@@ -63,7 +64,7 @@ class Distribution(Law):
 
     @property
     def atom(self) -> float:
-        """P(S = 0): that no asperity touches."""
+        """P(S = 0), the probability that no asperity touches."""
         return float(np.exp(self.touching.one.nothing))
 
     def mean(self) -> float:
@@ -75,7 +76,7 @@ class Distribution(Law):
         return self.unit**2 * self.touching.one.variance
 
     def pdf(self, x: ArrayLike) -> Array:
-        """Density of the values other than 0, which has a probability of its own."""
+        """Density of all values but 0, which has the probability `atom`."""
         return self._at(x, "pdf") / self.unit
 
     def _tail(self, y: ArrayLike, *, upper: bool) -> Array:
@@ -83,7 +84,7 @@ class Distribution(Law):
 
     @property
     def error(self) -> float:
-        """How far `cdf` may be off, seen from a computation with other nodes."""
+        """Error bound of `cdf`, estimated by a second computation with other nodes."""
         x = self.ppf(_SHARES) / self.unit
         own = self._values(x)
         apart = np.abs(own.cdf - self._again(x).cdf) + np.abs(own.cdf + own.sf - 1)

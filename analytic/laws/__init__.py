@@ -1,4 +1,4 @@
-"""Laws of contact of one asperity; all but Hertz's are loaded when they are asked for."""
+"""Contact laws of one asperity; all but Hertz's are imported on first use."""
 
 from importlib import import_module
 from typing import TYPE_CHECKING, Any

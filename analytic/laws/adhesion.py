@@ -1,4 +1,4 @@
-"""Elastic contacts that stick: Derjaguin, Muller and Toporov's, and Johnson, Kendall and Roberts'."""
+"""Adhesive elastic contacts: Derjaguin, Muller and Toporov (DMT), and Johnson, Kendall and Roberts (JKR)."""
 
 import math
 from collections.abc import Callable
@@ -46,10 +46,10 @@ class _Adhesive(ContactLaw):
 
 @dataclass(frozen=True, kw_only=True)
 class DerjaguinMullerToporov(_Adhesive):
-    """Derjaguin, Muller and Toporov: Hertz's contact, pulled by ``2 pi w R`` as long as it touches.
+    """Derjaguin, Muller and Toporov (DMT): Hertz's contact, pulled by ``2 pi w R`` while it touches.
 
     For small, stiff asperities and weak adhesion (Tabor's parameter below 0.1). The attraction of asperities
-    that do not touch is left out, so the load jumps at first touch.
+    that do not touch is neglected, so the load jumps at first touch.
 
     Parameters
     ----------
@@ -77,15 +77,15 @@ class DerjaguinMullerToporov(_Adhesive):
     name: ClassVar[str] = "derjaguin-muller-toporov"
 
     def load(self, piece: int, y: Any, e: Array) -> Any:
-        """Hertz's load less a constant: the pull does not depend on the modulus."""
+        """Hertz's load minus a constant: adhesion does not depend on the modulus."""
         return super().load(piece, y, e) - 12 * (self.reduced / 3) ** 1.5
 
 
 @dataclass(frozen=True, kw_only=True)
 class JohnsonKendallRoberts(_Adhesive):
-    """Johnson, Kendall and Roberts: contacts that snap in, stick, and break off under tension.
+    """Johnson, Kendall and Roberts (JKR): contacts that snap in, adhere, and break off under tension.
 
-    With z, the root of the contact radius over that at break-off, and D_e = D/e^(2/3) ::
+    With z, the square root of the contact radius over that at break-off, and D_e = D/e^(2/3) ::
 
         delta = (D_e/3) (z^4 - 4 z)        p = e (D_e/3)^1.5 (z^6 - 6 z^3)        radius = sqrt(D_e/3) z^2
 
@@ -93,8 +93,8 @@ class JohnsonKendallRoberts(_Adhesive):
     delta = -D_e, z = 1, with ``-(5/6) pi w R``. The load is not monotone: at one load there can be several
     separations. For large, soft asperities (Tabor's parameter above 5).
 
-    On the way back the stiffness of a contact tends to -infinity where it breaks off; its mean exists, its
-    variance does not, and it is refused.
+    On unloading, the stiffness of a contact tends to -infinity where it breaks off. Its mean exists but its
+    variance does not, so it is refused.
 
     Parameters
     ----------
@@ -155,7 +155,7 @@ class JohnsonKendallRoberts(_Adhesive):
         return np.sqrt(self.stretch(e) / 3) * z * z
 
     def unloading(self) -> "_Stuck":
-        """It holds until it is stretched by D_e."""
+        """A contact holds until it is stretched by D_e."""
         return _Stuck(self)
 
 

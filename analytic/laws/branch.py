@@ -1,4 +1,4 @@
-"""The ways a surface can have gone: loading, and unloading from the lowest separation it reached.
+"""History of a surface: loading, and unloading from the lowest separation that it reached.
 
 A branch says at which heights which formula holds, and gives the formulas at heights above the separation.
 So everything that sums over asperities treats loading, unloading and any law of contact alike.
@@ -23,7 +23,7 @@ from analytic.quantities import quantity_of
 
 @dataclass(frozen=True)
 class Branch:
-    """A way that a surface can have gone to a separation: closer than ever before, unless one says otherwise.
+    """Branch on which a surface reaches a separation: loading, unless a subclass changes it.
 
     Parameters
     ----------
@@ -222,7 +222,7 @@ class Ways:
     law : ContactLaw
         In reduced units.
     unload_from : float, optional
-        Lowest separation reached before quantities on the way back are asked for, d/sigma.
+        Lowest separation reached before unloading, d/sigma.
     conductance : SpotConductance, optional
         Of "conductance_si".
     """
@@ -262,14 +262,14 @@ class Ways:
     def of(self, quantity: str) -> Branch:
         """The branch that a quantity is on.
 
-        Where nothing yields the way back is the way there, from whatever separation.
+        Where nothing yields, unloading follows the loading curve, from any separation.
 
         Raises
         ------
         KeyError
             If there is no such quantity.
         ValueError
-            If the way back, or what spots conduct through, is not known.
+            If unloading, or what spots conduct through, is not known.
         """
         q = quantity_of(quantity)
         if q.base == "conductance_si" and self.conductance is None:
@@ -286,7 +286,7 @@ class Ways:
 
     @property
     def loading(self) -> Branch:
-        """The way there."""
+        """The loading branch."""
         return Branch(self.law, self.conductance)
 
     def among(self, quantities: Iterable[str]) -> tuple[Branch, ...]:

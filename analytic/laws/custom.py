@@ -93,8 +93,8 @@ class CustomLaw(ElasticPlastic):
 
     In u a contact is analytic where it begins: Hertz's load is u^3, his area u^2. Formulas take arrays,
     real and complex, so they must not take absolute values, or compare; those of the first piece also
-    take -u, and next to u = 0 they are power series that begin with u^2 or higher. Unloading is not
-    known, and is refused with an error.
+    take -u, and next to u = 0 they are power series that begin with u^2 or higher. Unloading is not known,
+    and asking for it is an error.
 
     Parameters
     ----------
@@ -152,7 +152,7 @@ class CustomLaw(ElasticPlastic):
 
     @property
     def is_data(self) -> bool:
-        """Whether it consists of series, which a file can hold."""
+        """Whether the law consists of series, which can be stored in a file."""
         return all(isinstance(formula, RootSeries) for formula in (*self.load_of, *self.area_of))
 
     @property
@@ -173,7 +173,7 @@ class CustomLaw(ElasticPlastic):
         return y * np.sqrt(self.area_of[piece](u) / (u * u))
 
     def resolved(self, x_max: float) -> "CustomLaw":
-        """The law as numbers alone: `RootSeries` up to ``x = x_max`` in place of formulas.
+        """The law as plain numbers: `RootSeries` up to ``x = x_max`` in place of formulas.
 
         Parameters
         ----------
@@ -209,7 +209,7 @@ class CustomLaw(ElasticPlastic):
         return self.resolved(deepest / self.critical)
 
     def given(self) -> dict[str, Any]:
-        """How many pieces it has, and the critical penetration."""
+        """The number of pieces, and the critical penetration."""
         return {"pieces": len(self.load_of), "critical": self.critical}
 
     def agrees(self, other: object) -> bool:

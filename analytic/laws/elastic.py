@@ -1,4 +1,4 @@
-"""Elastic asperities beside Hertz's: a modulus that grows with depth, and a coating."""
+"""Elastic asperities other than Hertz's: a modulus that grows with depth, and a coating."""
 
 from dataclasses import dataclass
 from math import cos, gamma, pi, sin, sqrt
@@ -22,8 +22,8 @@ class PowerLawGraded(ContactLaw):
     ``delta^((1 + k)/2)``, and the area is ``(1 + k) delta``. The surface's E* is E0/(1 - nu^2), that at
     the depth c0 (against a rigid plane), and a grading over heights multiplies it. k = 0 is Hertz.
 
-    Valid for frictionless elastic contacts small against R, 0 <= k < 1. Nothing is known to be wrong
-    with it, but that the modulus is 0 right at the surface.
+    Valid for frictionless elastic contacts small against R, 0 <= k < 1. The only known
+    defect is that the modulus is 0 right at the surface.
 
     Parameters
     ----------
@@ -108,8 +108,8 @@ class Coated(ContactLaw):
     K, so that K = -dP/dd holds exactly; Hertz's load times E_eff(a) would break that. E* is that of the
     bare substrate, and a grading over heights multiplies both.
 
-    I0 is a first-order perturbation: good for ratios from about 1/3 to 3 [mem]. Known to be wrong: the
-    radius is kept at Hertz's, though a coating changes it.
+    I0 is a first-order perturbation: good for ratios from about 1/3 to 3 [mem]. Known defect: the
+    radius of contact is Hertz's, though a coating changes it.
 
     Parameters
     ----------

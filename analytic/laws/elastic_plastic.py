@@ -22,8 +22,8 @@ class ElasticPlastic(ContactLaw):
     """A law in ``x = delta/delta_c``: Hertz's up to the first of its `starts`, then a fit.
 
     An asperity of modulus E*(s) yields at ``delta_c = critical/e^2``, because its hardness does not
-    depend on its height. A fit says what multiple of Hertz's load and area at the same penetration the
-    contact has.
+    depend on its height. A fit gives the load and area of the contact as multiples of Hertz's at the same
+    penetration.
 
     Parameters
     ----------
@@ -124,7 +124,7 @@ class FromHardness(ElasticPlastic):
 
 @dataclass(frozen=True)
 class Bridgeable(ElasticPlastic):
-    """A law whose fits jump, published so, or joined by cubic Hermite pieces.
+    """A law whose published fits jump; cubic Hermite pieces may join them.
 
     The bridge over a jump at x_j runs from x_j, so that what is elastic stays Hertz's, to 1.5 x_j. There
     load and area are the cubics in the penetration which take over value and slope of the fits at both
@@ -133,7 +133,7 @@ class Bridgeable(ElasticPlastic):
     Parameters
     ----------
     bridge : {None, "hermite"}, optional
-        Whether fits are joined.
+        Whether to join the fits.
     """
 
     _: KW_ONLY
@@ -182,9 +182,9 @@ def _hermite(left: tuple[float, Array, Array], right: tuple[float, Array, Array]
 
 
 class EtsionKligermanKadin(Unloading):
-    """Etsion, Kligerman and Kadin (2005), fitted to the finite elements of Kogut and Etsion.
+    """Unloading after Etsion, Kligerman and Kadin (2005), fitted to the finite elements of Kogut and Etsion.
 
-    With ``x_m = delta_max/delta_c > 1`` the contact is lost at ::
+    With ``x_m = delta_max/delta_c > 1``, contact is lost at ::
 
         delta_res = delta_max (1 - x_m^-0.28) (1 - x_m^-0.69)
 
@@ -193,8 +193,8 @@ class EtsionKligermanKadin(Unloading):
     ``x_m^-0.12``. An asperity that has not yielded unloads as Hertz's. Fitted for x_m up to 170.
 
     Known defects: the fit of loading jumps up by 3 % at delta_c, and unloading starts from there: up to
-    x_m = 1.248 a loop gives out more work than it took, up to 3 % of it. With ``bridge = "hermite"``
-    unloading starts from the bridged load; what is left of the gain is 0.13 %, at x_m = 1.11.
+    x_m = 1.248 a loading loop releases more work than it took, by up to 3 %. With ``bridge = "hermite"``
+    unloading starts from the bridged load, and the gain is at most 0.13 %, at x_m = 1.11.
 
     Notes
     -----

@@ -1,4 +1,4 @@
-"""Laws of asperities that yield: Hertz's up to the critical penetration, then what was fitted or assumed."""
+"""Elastic-plastic asperities: Hertz's law up to the critical penetration, then a fit or an assumption."""
 
 import math
 from dataclasses import KW_ONLY, dataclass, replace
@@ -73,8 +73,8 @@ class ZhaoMaiettaChang(FromHardness):
     Yield begins at the mean pressure k H, k = 0.4: ``delta_1 = (3 pi k H/(4 E*))^2 R``. In between, with
     ``t = (delta - delta_1)/(delta_2 - delta_1)``, the area over pi R delta is ``1 + 3 t^2 - 2 t^3`` and
     the mean pressure over H ``1 - (1 - k) ln(delta_2/delta)/ln(delta_2/delta_1)``; beyond, these are 2
-    and 1. Meant for any penetration that is small against R; delta_2 = 54 delta_1 is the least that the
-    paper allows, and what it takes.
+    and 1. Meant for any penetration that is small against R; delta_2 = 54 delta_1 is the
+    smallest value that the paper allows, and the one it uses.
 
     Known defects: continuous, but the slope of the load has kinks: right over left it is .91736 at
     delta_1 and .86925 at delta_2.
@@ -119,7 +119,7 @@ class ZhaoMaiettaChang(FromHardness):
         return self.area_over_hertz(fit, x, e) * pressure / (k * np.sqrt(x))
 
     def area_over_hertz(self, fit: int, x: Any, e: Array) -> Any:
-        """From 1 to 2, by the template."""
+        """Area over Hertz's, which rises smoothly from 1 to 2."""
         if fit == 2:
             return 2.0 + 0 * x
         t = (x - 1) / (self.starts[1] - 1)
@@ -184,16 +184,16 @@ class KogutEtsion(FromHardness, Bridgeable):
         return kogut_etsion_factor(self.poisson)
 
     def unloading(self) -> EtsionKligermanKadin:
-        """Etsion, Kligerman and Kadin's, which was fitted for this law; with a bridge, from its load."""
+        """Etsion, Kligerman and Kadin's, fitted for this law; with a bridge, from the bridged load."""
         return EtsionKligermanKadin(self)
 
     def load_over_hertz(self, fit: int, x: Any, e: Array) -> Any:
-        """From the powers of x, or the hardness."""
+        """Load from the powers of x, or from the hardness."""
         factor, power = self.load_fits[fit - 1] if fit < 3 else (3 / self.yield_factor, 1.0)
         return factor * x ** (power - 1.5)
 
     def area_over_hertz(self, fit: int, x: Any, e: Array) -> Any:
-        """From the powers of x; at last 2."""
+        """Area from the powers of x; finally 2."""
         factor, power = self.area_fits[fit - 1] if fit < 3 else (2.0, 1.0)
         return factor * x ** (power - 1.0)
 
@@ -213,8 +213,8 @@ class JacksonGreen(Bridgeable):
     to 0.01 and a/R up to about 0.4, without hardening.
 
     Known defects: at x = 1.9 the load jumps by 0.47 % (e_y = 0.004), and its slope is .9468 of what it
-    was; ``bridge = "hermite"`` joins them. B explodes where the modulus is low: a grading that falls
-    below e_y = 0.05 leaves the fit by far.
+    was; ``bridge = "hermite"`` joins them. B grows rapidly where the modulus is low: a grading that
+    raises e_y above 0.05 is far outside the range of the fit.
 
     Parameters
     ----------
@@ -269,7 +269,7 @@ class JacksonGreen(Bridgeable):
         return 1.295 * math.exp(0.736 * self.poisson)
 
     def on(self, surface: Surface) -> Self:
-        """The law on this surface, in reduced units: without `yield_strength`."""
+        """The law on this surface, in reduced units, without `yield_strength`."""
         if self.yield_strength is None:
             return self
         strain = self.yield_strength / surface.E_star
@@ -277,7 +277,7 @@ class JacksonGreen(Bridgeable):
         return replace(self, yield_strength=None, yield_strain=strain, critical=critical)
 
     def load_over_hertz(self, fit: int, x: Any, e: Array) -> Any:
-        """What is left of Hertz's, and the hardness on what has yielded."""
+        """The remaining part of Hertz's load, and the hardness on the yielded part."""
         left, gone = self.powers
         hardness = self._hardness(x, e) * (-np.expm1(-(x**gone) / 25)) / np.sqrt(x)
         return np.exp(-(x**left) / 4) + 4 / self.yield_factor * hardness

@@ -1,4 +1,4 @@
-"""Electrical or thermal contact through spots with a film, and how spots crowd each other."""
+"""Electrical and thermal contact conductance of spots with a film, and how spots crowd each other."""
 
 import math
 from dataclasses import dataclass, replace
@@ -33,7 +33,7 @@ class Layer:
 
     Examples
     --------
-    Spots of 2 um on 10 um of oxide on aluminium resist as if all were oxide, but for a twentieth:
+    For spots of 2 um on 10 um of oxide on aluminium, the resistance is nearly that of oxide throughout:
 
     >>> spot = Layer(10e-6, 1.3).between(200.0, 200.0, 1.0)
     >>> round(float(spot(2e-6)) * 1.3, 3)
@@ -49,7 +49,7 @@ class Layer:
                 raise ValueError(f"{key} = {getattr(self, key)!r}: give a finite number > 0, in {unit}")
 
     def between(self, under: float, other: float, unit: float) -> "LayeredSpot":
-        """Spots between it, on a body of conductivity `under`, and the `other` body; radii over a unit, m."""
+        """Spots between the layer, on a body of conductivity `under`, and `other`; radii over `unit`, m."""
         from analytic.laws.layer import LayeredSpot  # for those scenes alone
 
         return LayeredSpot(self.thickness / unit, self.conductivity, under, other)
@@ -57,27 +57,29 @@ class Layer:
 
 @dataclass(frozen=True)
 class Film:
-    """Resistivity or thermal conductivities of both bodies, and a film or layer on them.
+    """What contact spots conduct through: the resistivities or thermal conductivities, and a film or layer.
 
     Parameters
     ----------
     resistivity : float, optional
         Sum of the two bodies' resistivities, ohm m.
     film_resistance : float, optional
-        Of a unit area of a film much thinner than spots are wide: ohm m^2, or m^2 K/W; 0 without one.
+        Resistance of a unit area of a film much thinner than the width of spots, ohm m^2 or m^2 K/W; 0
+        without one.
     conductivities : (float, float), optional
-        In place of `resistivity`: thermal ones of both bodies, W/(m K).
+        Instead of `resistivity`: thermal conductivities of both bodies, W/(m K).
     layer : Layer, optional
-        On the first body, of any thickness; needs `conductivities`.
+        A layer of any thickness on the first body; it needs `conductivities`.
 
     Raises
     ------
     ValueError
-        If a number is not finite and > 0 (film: >= 0), or there are not either resistivity or conductivities.
+        If a number is not finite and > 0 (film: >= 0), or not exactly one of
+        `resistivity` and `conductivities` is given.
 
     Examples
     --------
-    A film of 1e-14 ohm m^2 on spots of copper resists as the constriction does at a radius of 0.37 um:
+    On copper, a film of 1e-14 ohm m^2 resists as much as the constriction of a spot of radius 0.37 um:
 
     >>> surface = Surface(sigma=1e-6, radius=1e-5, eta=1e9, nominal_area=1e-6, E_star=1e11)
     >>> film = Film(resistivity=3.4e-8, film_resistance=1e-14)
@@ -113,11 +115,11 @@ class Film:
 
     @property
     def thermal(self) -> bool:
-        """Whether it conducts heat."""
+        """Whether spots conduct heat, not current."""
         return self.conductivities is not None
 
     def on(self, surface: Surface) -> "SpotConductance":
-        """In the reduced units of a surface."""
+        """Conductance of spots, in the reduced units of a surface."""
         unit = math.sqrt(surface.radius * surface.sigma)
         layered = None
         if self.layer is not None and self.conductivities is not None:
@@ -127,7 +129,7 @@ class Film:
 
 @dataclass(frozen=True)
 class SpotConductance:
-    """Conductance of a spot, of its radius: constriction, in a layer too, and film in series.
+    """Conductance of a spot by its radius: constriction, also in a layer, in series with a film.
 
     ``1/C = rho/(4 a) + r_f/(pi a^2)``, so that C over 4 sqrt(R sigma)/rho is ``a^2/(a + b)``; over a layer
     rho depends on a.

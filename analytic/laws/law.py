@@ -1,4 +1,4 @@
-"""What a law of contact is: the load and the radius of one asperity's contact, piece by piece.
+"""Contact laws: the load and the radius of one asperity's contact, piece by piece.
 
 Everything is in reduced units. An asperity of height s under a plane at the separation h is penetrated by
 ``delta = s - h``; lengths normal to the plane are in sigma, contact radii in sqrt(R sigma), loads in
@@ -24,7 +24,7 @@ _FORMULAS = ("limits", "load", "radius", "stiffness", "slope", "unloading")
 
 
 class ContactLaw:
-    """The contact of one asperity: elastic and Hertz's, unless a law says otherwise.
+    """Contact law of one asperity: Hertz's elastic contact, unless a subclass changes it.
 
     A law consists of pieces. Piece 0 begins where the asperity touches, at delta = 0; piece j begins at
     the penetration ``limits(e)[j - 1]``. `load` and `radius` of a piece are one formula each that goes on
@@ -34,9 +34,9 @@ class ContactLaw:
     Attributes
     ----------
     name : str
-        In scene files and reports.
+        Name of the law in scene files and reports.
     elastic : bool
-        Whether an asperity unloads as it was loaded.
+        Whether an asperity unloads along its loading curve.
     finest : float
         How far above first touch the formulas of piece 0 are analytic, in penetration: infinite if they
         are sums of powers of y.
@@ -62,34 +62,34 @@ class ContactLaw:
 
     @property
     def is_data(self) -> bool:
-        """Whether it consists of numbers alone, which a file can hold."""
+        """Whether the law consists of plain numbers, which can be stored in a file."""
         return True
 
     def as_data(self, deepest: float) -> "ContactLaw":
-        """The law as numbers alone, up to a penetration of an asperity of modulus E*."""
+        """The law as plain numbers, up to a given penetration of an asperity of modulus E*."""
         return self
 
     def agrees(self, other: "ContactLaw") -> bool:
-        """Whether another law is the same, but for last digits of what was resolved."""
+        """Whether another law is the same, up to rounding in a stored series."""
         return self == other
 
     def given(self) -> dict[str, Any]:
-        """The constants that were given, by their names."""
+        """The constants of the law that the user gave, by name."""
         known: list[str] = [field.name for field in fields(self)] if is_dataclass(self) else []
         return {name: getattr(self, name) for name in known if getattr(self, name) is not None}
 
     @property
     def hertz(self) -> bool:
-        """Whether it has none of its own formulas: there are closed forms then."""
+        """Whether this is Hertz's law, for which closed forms exist."""
         return all(getattr(type(self), name) is getattr(ContactLaw, name) for name in _FORMULAS)
 
     @property
     def half_space(self) -> bool:
-        """Whether bodies are elastic half-spaces."""
+        """Whether both bodies are elastic half-spaces."""
         return self.hertz
 
     def check_constants(self, *others: str) -> None:
-        """Refuse constants that are no numbers > 0, or not exactly one of two that say the same."""
+        """Refuse constants that are not numbers > 0, and two that fix the same thing, or neither of these."""
         names = [pair[0] for pair in (self.in_si, self.of_radius) if pair]
         given = {name: getattr(self, name) for name in (*names, *others)}
         if self.in_si and sum(given[name] is None for name in names) != 1:
@@ -103,7 +103,7 @@ class ContactLaw:
             check_poisson(poisson)
 
     def on(self, surface: Surface) -> Self:
-        """The law on this surface, in reduced units: without anything in Pa or m left."""
+        """The law on this surface, in reduced units: nothing is left in Pa or m."""
         if not (self.in_si and self.of_radius) or getattr(self, self.in_si[0]) is None:
             return self
         law: Any = self
@@ -176,20 +176,20 @@ class ContactLaw:
         return y + 0.0 * e
 
     def slope(self, piece: int, y: Array, e: Array) -> Array:
-        """Derivative of the load by the penetration, within the piece."""
+        """Derivative of the load with respect to the penetration, within the piece."""
         return slope_in_root(lambda v: self.load(piece, v, e), y)
 
     def stiffness(self, piece: int, y: Array, e: Array) -> Array:
-        """Stiffness of a spot over 2 E* sqrt(R sigma); after yield that of the first unloading."""
+        """Stiffness of a spot over 2 E* sqrt(R sigma); after yield, that at the start of unloading."""
         return np.asarray(e * self.radius(piece, y, e))
 
     def unloading(self) -> Unloading:
-        """How an asperity unloads.
+        """The law by which an asperity unloads.
 
         Raises
         ------
         ValueError
-            If it yields, and how it unloads is not known.
+            If asperities yield and their unloading is not known.
         """
         if not self.elastic:
             raise ValueError(
@@ -202,8 +202,8 @@ class ContactLaw:
 class Hertz(ContactLaw):
     """Hertz's contact: load ``e delta^(3/2)``, area ``delta``, stiffness ``e delta^(1/2)``.
 
-    Valid for frictionless elastic spheres whose radius of contact is small against R. Nothing is known
-    to be wrong with it; metals seldom stay elastic (see the laws that yield).
+    Valid for frictionless elastic spheres whose radius of contact is small against R. It has no known
+    defect, but metals seldom stay elastic (see the elastic-plastic laws).
 
     Notes
     -----
@@ -225,7 +225,7 @@ def is_positive(value: Any) -> bool:
 
 
 def check_poisson(poisson: float) -> None:
-    """Refuse what is no Poisson's ratio."""
+    """Refuse a value that is not a Poisson's ratio."""
     if not -1 < poisson <= 0.5:
         raise ValueError(f"poisson = {poisson!r}: give a Poisson's ratio, above -1 and at most 0.5")
 

@@ -13,7 +13,7 @@ from analytic.surface import Surface
 
 @dataclass(frozen=True)
 class Tangential:
-    """Tangential displacement of a surface that is pressed first.
+    """Tangential loading of a surface that is pressed on first, with partial slip.
 
     Each contact slips from its rim inwards (Cattaneo, Mindlin), and under elastic half-spaces of one
     Poisson's ratio its tangential load is friction times the difference of two normal loads, at its own
@@ -22,8 +22,8 @@ class Tangential:
 
     ``T(u) = friction [P(d) - P(d + c u/friction)]``.
 
-    It holds for Hertz's law and for the graded half-space; not where asperities yield, nor under a coating.
-    Graded E*(s) are exact if Poisson's ratio is the same everywhere.
+    It holds for Hertz's law and for the graded half-space, but not where asperities yield or are coated. It
+    is exact for a graded E*(s) if Poisson's ratio is the same everywhere.
 
     Parameters
     ----------
@@ -74,16 +74,16 @@ class Tangential:
         return 2 * (1 - self.poisson) / (2 - self.poisson)
 
     def shifts(self, surface: Surface) -> Array:
-        """How much less deep the second normal load is, d/sigma, shape (displacements,)."""
+        """Shift of the separation to that of the second normal load, d/sigma, shape (displacements,)."""
         return self.ratio * np.array(self.displacements) / (self.friction * surface.sigma)
 
     def load(self, load: Array, shifted: Array) -> Array:
-        """Tangential loads from the normal load, and those at the separations shifted."""
+        """Tangential loads from the normal load and the normal loads at the shifted separations."""
         return np.asarray(self.friction * (load - shifted))
 
 
 def masing(virgin: ArrayLike) -> Array:
-    """Tangential load on the way back from the last displacement, by Masing's rule.
+    """Tangential load on unloading from the last displacement, by Masing's rule.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""What a contact carries when it is unloaded from its deepest penetration."""
+"""Unloading of a contact from its deepest penetration."""
 
 from collections.abc import Callable
 from typing import Any, ClassVar
@@ -66,5 +66,5 @@ class Unloading:
         return np.asarray(self.loading.stiffness(piece, y, e) + 0.0 * deepest)
 
     def slope(self, piece: int, y: Array, deepest: Array, e: Array) -> Array:
-        """Derivative of the load by the penetration, at a given deepest one."""
+        """Derivative of the load with respect to the penetration, at a given deepest one."""
         return slope_in_root(lambda v: self.load(piece, v, deepest, e), y)
