@@ -62,7 +62,7 @@ class WeightedHeights:
 
 @dataclass(frozen=True)
 class RandomCurvature:
-    """Radius ratios c = R_i/R of summits, R being the inverse of their mean curvature.
+    """Radius ratios c = R_i/R of summits, where R is the inverse of their mean curvature.
 
     Everything takes reduced heights s as those of `analytic.Nayak`, and curvatures g; c is 2.60588/g.
 
@@ -95,7 +95,7 @@ class RandomCurvature:
 
     @property
     def heights(self) -> Nayak:
-        """Law of the heights of the same summits."""
+        """Distribution of the heights of the same summits."""
         return Nayak(self.alpha)
 
     def ratio(self, g: ArrayLike) -> Array:

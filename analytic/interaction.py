@@ -1,13 +1,14 @@
-"""How asperities press each other down: all loads together lower the plane that each of them feels.
+"""Asperity interaction: all loads together lower the plane that each asperity feels.
 
 The loads of all asperities sink the half-space under them. Mean-field (Ciavarella, Greenwood and Paggi,
-Wear 265 (2008) 729; constants derived anew, the paper was not at hand): each asperity feels the separation ::
+Wear 265 (2008) 729; constants derived independently, the paper was not available): each asperity feels the
+separation ::
 
     d_effective = d_nominal + compliance * P
 
-with the load P of this very surface. At a given load nothing but the separation differs from a surface of
-independent asperities: the same area, contacts, conductance of the spots. What the
-separation is measured from decides the sign:
+with the load P of this very surface. At a given load, only the separation differs from that of independent
+asperities; area, contacts and conductance of the spots are the same. The reference of the separation decides
+the sign:
 
 ``body``        the undeformed body far away. The load, spread over the nominal area, presses a bowl into
                 the half-space: ``compliance = c/(E_b sqrt(A_n))``, c the mean sinking of a square under a
@@ -52,7 +53,7 @@ def in_series(value: Any, other: float) -> Any:
 
 @dataclass(frozen=True, slots=True)
 class Interaction:
-    """Interaction of asperities through the half-space, by a mean field.
+    """Asperity interaction through the half-space, as a mean field.
 
     Parameters
     ----------
@@ -60,8 +61,8 @@ class Interaction:
         What the nominal separation is measured from: the undeformed body, or the mean deformed plane; from
         that with summits at their places, too, which takes ``at="nominal"`` and `E_star`.
     at : {"effective", "nominal"}, optional
-        Which separations a scene or a model is given: those that its asperities feel, at which the nominal
-        one follows without a solver; or nominal ones, at which each surface finds its own balance.
+        Kind of the given separations: effective ones, which the asperities feel, so that the nominal ones
+        follow without a solver; or nominal ones, at which each surface finds its own equilibrium.
     bulk_modulus : float, optional
         Composite modulus of the half-space E_b, Pa, where it is not that of the asperities.
 
@@ -104,11 +105,11 @@ class Interaction:
 
     @property
     def located(self) -> bool:
-        """Whether summits have places, and no mean field stands for the others."""
+        """Whether summits have places, so that interaction is not a mean field."""
         return self.reference == "located"
 
     def compliance(self, surface: Surface, n_asperities: float) -> float:
-        """How much farther down asperities feel the plane for each newton on the surface, m/N.
+        """How far each newton on the surface lowers the plane that the asperities feel, m/N.
 
         Raises
         ------

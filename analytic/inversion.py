@@ -1,4 +1,4 @@
-"""Given the load (or area, ...), the separation; and comparisons at equal load."""
+"""The separation at a given load (or area, ...), and comparisons at equal load."""
 
 from collections.abc import Callable
 from functools import cache

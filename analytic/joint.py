@@ -1,4 +1,4 @@
-"""Thermal joints: what gas in the gap conducts beside the spots.
+"""Thermal joints: gap conductance of a gas between the contact spots.
 
 The gap conductance of two rough surfaces at the distance Y of their mean planes, over their rms height, is ::
 
@@ -42,7 +42,7 @@ class Gas:
     conductivity : float
         W/(m K).
     jump : float
-        Distance over which the temperature would fall by as much as it jumps at both walls, m.
+        Temperature-jump distance of both walls together, m.
 
     Raises
     ------
@@ -76,7 +76,7 @@ class Joint:
     Parameters
     ----------
     gas : {"air", "vacuum"}, Gas or mapping
-        Or its conductivity and jump distance.
+        Gas in the gap, by name or by its conductivity and jump distance.
     rms : float, optional
         Root mean square height of the surface (not of its summits), m, where the scene does not know it.
     temperature, gas_pressure : float, optional
@@ -115,7 +115,7 @@ class Joint:
 
     @property
     def held(self) -> Gas | None:
-        """The gas; None where there is none."""
+        """The gas; None for a vacuum."""
         if isinstance(self.gas, Gas):
             return self.gas
         return (
@@ -123,7 +123,7 @@ class Joint:
         )
 
     def gap(self, surface: Surface, heights: Any, moments: SpectralMoments | None = None) -> "Gap":
-        """Of a surface.
+        """Gap conductance of a surface.
 
         Its rms height and the rise of its summits are those of Nayak's heights, or of the joint's `rms` with
         alpha from ``sigma^2 = (1 - .8968/alpha) rms^2``, or of spectral `moments`, in this order.
@@ -156,16 +156,16 @@ class Joint:
 
 @dataclass(frozen=True)
 class Gap:
-    """Gap conductance of a surface, W/(m^2 K), of the distance of the mean plane of its summits.
+    """Gap conductance of a surface, W/(m^2 K), as a function of the separation from the summits' mean plane.
 
     Parameters
     ----------
     gas : Gas or None
-        None conducts nothing.
+        None: a vacuum, which conducts nothing.
     sigma, rms : float
         Standard deviation of the summits' heights, and root mean square height of the surface, m.
     rise : float
-        Of the mean plane of the summits above that of the surface, over sigma.
+        Height of the mean plane of the summits above that of the surface, over sigma.
     """
 
     gas: Gas | None

@@ -1,4 +1,4 @@
-"""The statistics of surfaces with gas in the gap: a model that knows the conductances of the joint, too.
+"""Statistics of surfaces with gas in the gap: a model that also has the conductances of the joint.
 
 What the gas conducts is a number wherever all surfaces have the same distance of mean planes. Where each
 has its own (the nominal separation from the mean plane at given effective ones, or the effective separation
@@ -26,14 +26,14 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class JointModel(Model):
-    """A rough surface of a joint; otherwise as `analytic.Model`.
+    """A rough surface with gas in its gap; otherwise as `analytic.Model`.
 
-    It has "gap_conductance" and "joint_conductance" besides, W/(m^2 K), also on the way back.
+    It also has "gap_conductance" and "joint_conductance", W/(m^2 K), on loading and unloading.
 
     Parameters
     ----------
     filled : Gap
-        What its gas conducts.
+        The gap conductance.
 
     Examples
     --------
@@ -137,7 +137,7 @@ class InteractingJointModel(JointModel, InteractingModel):
 
 
 def with_gap(model: Model, filled: Gap) -> JointModel:
-    """A model with gas in its gap."""
+    """Add gas in the gap to a model."""
     kind: Any = InteractingJointModel if isinstance(model, InteractingModel) else JointModel
     joined: JointModel = kind(
         **{each.name: getattr(model, each.name) for each in fields(model)}, filled=filled

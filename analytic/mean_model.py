@@ -79,17 +79,17 @@ class MeanModel:
         KeyError
             If there is no such quantity.
         ValueError
-            If the way back is asked for and not known, or starts above `h`.
+            If unloading is requested but not known, or starts above `h`.
         """
         q = self._asked(quantity, h)
         return self._unit(q) * self._means(q).mean(quantity, h)
 
     def slope(self, quantity: str, h: ArrayLike) -> Array:
-        """How fast the mean falls with the separation, per unit of h.
+        """Rate at which the mean falls with the separation, per unit of h.
 
-        Where asperities jump, at first touch or from one piece of the law to the next, this counts: the slope
-        of the mean load is not the mean of "load_slope". Of measured heights, which jump one by one,
-        it is the slope in between. On the way back no asperity jumps as the separation grows.
+        It includes the jumps of asperities, at first touch or from one piece of the law to the next: so the
+        slope of the mean load is not the mean of "load_slope". For measured heights, which jump one by one,
+        it is the slope between jumps. On unloading no asperity jumps as the separation grows.
 
         Parameters
         ----------
@@ -115,7 +115,7 @@ class MeanModel:
         return self._unit(q) * self._means(q).slope(quantity, h)
 
     def share(self, piece: int, h: ArrayLike) -> Array:
-        """Mean share of the contacts in which a piece of the law holds: who has yielded, and how far.
+        """Mean share of the contacts to which a piece of the law applies, such as those that have yielded.
 
         Parameters
         ----------
@@ -167,7 +167,7 @@ class MeanModel:
         Parameters
         ----------
         quantity : str
-            What is known.
+            The known quantity.
         value : array_like
             Its values, in its SI unit, any shape.
 
@@ -197,7 +197,7 @@ class MeanModel:
 
     @cached_property
     def ways(self) -> Ways:
-        """Law of contact, history and film, in reduced units."""
+        """Contact law, loading history and film, in reduced units."""
         law = ContactLaw() if self.law is None else self.law.on(self.surface)
         return Ways(law, self.unload_from, None if self.film is None else self.film.on(self.surface))
 

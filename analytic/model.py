@@ -40,8 +40,8 @@ class Model(MeanModel):
 
     Quantities are "load" (N), "area" (m^2), "stiffness" (N/m), "contacts" (1), "conductance" (times the
     resistivity, m), "pressure" (P/A_n, Pa) and "area_fraction" (A/A_n, 1); separations are reduced,
-    d/sigma from the mean of the summit heights. What a surface has of a quantity is the sum over its
-    asperities, which are independent.
+    d/sigma from the mean of the summit heights. The value of a quantity on a surface is the
+    sum over its asperities, which are independent.
 
     Parameters
     ----------
@@ -52,8 +52,8 @@ class Model(MeanModel):
     heights : HeightLaw, optional
         Law of the reduced heights; default: Gaussian.
     curvature : RandomCurvature or MeasuredRadii, optional
-        Radii of the summits, given their heights, which must be those of the same alpha, or those measured
-        with them. A random curvature needs the radius of the surface to be the inverse of its mean; the
+        Radii of the summits given their heights; `heights` must have the same alpha, or be measured together
+        with the radii. A random curvature needs the radius of the surface to be the inverse of its mean; the
         fourth cumulant of the area is infinite where such radii have no bound. Measured summits count as
         drawn from their list, each as likely as another. Default: one radius.
     law : ContactLaw, optional
@@ -61,10 +61,11 @@ class Model(MeanModel):
         "load_slope" (N/m), the slope of the load without the jumps of asperities, and "yielded" (1), the
         number of contacts beyond the first piece of the law.
     unload_from : float, optional
-        Lowest separation reached before, d/sigma. Each quantity has a second one, as "load_unloading", on
-        the way back from there; where asperities yield it needs this, and a law that says how they unload.
+        Lowest separation reached before, d/sigma. Each quantity has a second one for
+        unloading from there, such as "load_unloading"; where asperities yield, it needs this value and a law
+        with known unloading.
     film : Film, optional
-        What spots conduct through: "conductance_si" (S, or W/K) needs it.
+        Resistivity or thermal conductivity, and any film; "conductance_si" (S, or W/K) needs it.
     n_asperities : float, optional
         Asperities on the surface; default: eta A_n.
     count : {"fixed", "poisson"}, optional
@@ -74,8 +75,8 @@ class Model(MeanModel):
     Raises
     ------
     ValueError
-        If `n_asperities` is not a positive finite number, `count` another word, or the law lacks a
-        constant, or its unloading is asked for and not known.
+        If `n_asperities` is not a positive finite number, `count` another word, the law lacks a constant, or
+        its unloading is requested but not known.
 
     Examples
     --------
@@ -119,21 +120,22 @@ class Model(MeanModel):
         )
 
     def asperities_for(self, quantity: str, h: ArrayLike, std_over_mean: float, *, given: str = "") -> Array:
-        """Asperities that a surface must have for surfaces to differ by so little.
+        """Number of asperities that a surface needs for surfaces to differ by so little.
 
-        A sum over N independent asperities has a mean and a variance that grow as N. At a given load each
-        surface has its own separation: to first order its area A is off by ``dA - A'/P' dP`` there.
+        The mean and the variance of a sum over N independent asperities grow as N. At a given load, each
+        surface has its own separation: to first order its area A then deviates by ``dA - A'/P' dP``.
 
         Parameters
         ----------
         quantity : str
-            What differs from surface to surface.
+            The quantity that differs from surface to surface.
         h : array_like
             Reduced separations, any shape.
         std_over_mean : float
-            Standard deviation over surfaces, over the mean: 0.01 for one percent.
+            Standard deviation over surfaces, divided by the mean: 0.01 for one percent.
         given : str, optional
-            Another quantity that is the same on all surfaces, its mean at `h`: "load". To leading order.
+            Another quantity, such as "load", that is the same on all surfaces: its mean at `h`. To leading
+            order.
 
         Returns
         -------
@@ -167,7 +169,7 @@ class Model(MeanModel):
             return np.asarray(self.number * variance / (self.mean(quantity, h) * std_over_mean) ** 2)
 
     def fluctuations(self, quantities: Sequence[str], separations: ArrayLike) -> Fluctuations:
-        """What one asperity adds to each quantity at each separation, over its scale.
+        """Contribution of one asperity to each quantity at each separation, over its scale.
 
         Columns are quantity by quantity, at increasing number of the separation.
         """
@@ -193,7 +195,7 @@ class Model(MeanModel):
         return rule, lambda nodes: nodes.terms([quantity], [h], self.grading, means.ways)[:, 0]
 
     def distribution(self, quantity: str, h: float) -> "Law":
-        """Exact law of a quantity over surfaces, at one separation, in the manner of `scipy.stats`.
+        """Exact distribution over surfaces of a quantity at a separation, with the methods of `scipy.stats`.
 
         Parameters
         ----------
@@ -205,8 +207,9 @@ class Model(MeanModel):
         Returns
         -------
         Law
-            With cdf, sf, pdf (of a number of asperities its probability), ppf, isf, interval, rvs, mean, var,
-            std, in the unit of the quantity; `atom`, the probability of nothing; and `error` of cdf.
+            With cdf, sf, pdf (for a number of asperities, its probability), ppf, isf, interval, rvs, mean,
+            var and std, in the unit of the quantity; `atom`, the probability of no contact; and `error`, the
+            error bound of cdf.
 
         Examples
         --------
@@ -221,14 +224,14 @@ class Model(MeanModel):
         return distribution_of(self, quantity, float(h))
 
     def separation_law(self, load: float, quantity: str = "load") -> "Law":
-        """Exact law of the separation at a given load: P(h* <= h) = P(S(h) <= load).
+        """Exact distribution of the separation at a given load: P(h* <= h) = P(S(h) <= load).
 
         Parameters
         ----------
         load : float
-            On each surface, N.
+            Load on each surface, N.
         quantity : str, optional
-            Another sum that is given instead, in its unit; it falls with the separation.
+            Another sum to be given instead of the load, in its unit; it must fall with the separation.
 
         Returns
         -------
@@ -238,7 +241,7 @@ class Model(MeanModel):
         Raises
         ------
         ValueError
-            If asperities pull: then several separations may have one load.
+            If asperities adhere: several separations may then have the same load.
         """
         from analytic.distribution import separation_law_of
 

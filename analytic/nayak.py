@@ -167,7 +167,7 @@ def tables_of(alpha: float) -> NayakTables:
 
 @dataclass(frozen=True)
 class Nayak(HeightLaw):
-    """Law of the summit heights of an isotropic Gaussian surface.
+    """Distribution of the summit heights of an isotropic Gaussian surface.
 
     Parameters
     ----------
@@ -211,11 +211,11 @@ class Nayak(HeightLaw):
         return math.sqrt(1 - SUMMIT_SPREAD / self.alpha)
 
     def over_rms(self, s: ArrayLike) -> Array:
-        """Heights above the mean plane of the surface over sqrt(m0), of reduced ones."""
+        """Convert reduced heights to heights above the mean plane of the surface, over sqrt(m0)."""
         return np.asarray(self.mean + self.std * np.asarray(s, dtype=np.float64))
 
     def rvs(self, n: int, rng: np.random.Generator) -> Array:
-        """Drawn with their curvatures."""
+        """Heights, drawn together with their curvatures."""
         return self.summits(rng, n)[0]
 
     def summits(self, rng: np.random.Generator, n: int) -> tuple[Array, Array]:
@@ -236,7 +236,7 @@ class Nayak(HeightLaw):
         return np.asarray((x - self.mean) / self.std), np.sqrt(product[:n])
 
     def pdf(self, s: Array) -> Array:
-        """Nayak's, reduced."""
+        """Nayak's density, in reduced heights."""
         x = self.over_rms(s)
         return np.asarray(self.std * self._tables.density(x) * self._tables.envelope(x))
 
@@ -262,7 +262,7 @@ class Nayak(HeightLaw):
         return np.minimum(found if lower > 0 else below + 0 * p, below)
 
     def isf(self, p: Array, above: float = -np.inf) -> Array:
-        """Find it from the top."""
+        """Quantile counted from the top."""
         lower, higher = self._tables.shares(self.over_rms(above))
         p = np.asarray(p, dtype=np.float64)
         found = self._at(lower + (1 - p) * higher, p * higher)

@@ -1,4 +1,4 @@
-"""Any law of scipy.stats as a law of heights, and a watch over calls that take too long."""
+"""Any distribution of scipy.stats as a distribution of heights, with a time limit on slow calls."""
 
 import math
 import sys
@@ -33,8 +33,8 @@ class ScipyHeights(HeightLaw):
     Parameters
     ----------
     distribution : scipy.stats frozen distribution
-        As ``scipy.stats.gamma(4)``; its location and scale drop out. Accurate as its ``cdf``, ``sf``,
-        ``ppf`` and ``isf`` are.
+        Such as ``scipy.stats.gamma(4)``; its location and scale drop out. Results are as accurate as its
+        ``cdf``, ``sf``, ``ppf`` and ``isf``.
 
     Raises
     ------

@@ -38,15 +38,16 @@ class Elastic(Shown):
         Real area (m^2), stiffness (N/m), conductance C rho (m), and under a pressure the mean gap between
         the deformed surface and the plane (m), at a separation the pressure (Pa).
     found : Mean
-        Means and standard errors in their order.
+        Means and standard errors, in the order of `quantities`.
     levels : Table
-        A row for each term: maps, CPU seconds of one, mean and standard deviation of the first quantity.
+        A row for each term: number of maps, CPU seconds for one map, mean and standard deviation of the first
+        quantity.
     planned : Design
         Levels, maps and seconds as planned after the pilot.
     seconds : float
-        CPU seconds of all solves, the pilot's too.
+        CPU seconds of all solves, including the pilot's.
     words : str
-        What the maps were.
+        Description of the maps, in words.
     """
 
     quantities: tuple[str, ...]
@@ -68,7 +69,7 @@ class Elastic(Shown):
 
     @property
     def saved(self) -> float:
-        """How many times longer the dearest level alone would have taken for the same error, as planned."""
+        """Factor of time saved over the most expensive level alone, for the same error, as planned."""
         return self.planned.plain / self.planned.seconds
 
     def table(self) -> Table:
@@ -83,7 +84,7 @@ class Elastic(Shown):
         ))  # fmt: skip
 
     def verdict(self) -> str:
-        """What the cheaper levels did for it, in one sentence."""
+        """How much the cheaper levels helped, in one sentence."""
         plain = f"boundary elements alone: {self.planned.plain:.3g} s for the same error"
         if len(self.planned.chain) == 1:
             return f"no cheaper level helps; {plain}"
@@ -117,13 +118,13 @@ def elastic(
     Parameters
     ----------
     source : Scene, Spectrum, Topography, str, Path or list of them
-        A scene that knows its spectrum (m0, m2, m4, or from a fit), or a spectrum: maps are drawn. One map:
-        Gaussian maps of its spectrum are. A list of periodic maps: their own mean.
+        A scene that knows its spectrum (m0, m2, m4, or from a fit), or a spectrum: maps are drawn from it.
+        One map: Gaussian maps of its spectrum are drawn. A list of periodic maps: the mean is over these.
     pressure : float or str, optional
         Load per nominal area, Pa, or text such as "1 MPa".
     separation : float or str, optional
-        Instead: mean gap between the deformed surface and the plane, m, or text such as "2 um". What does
-        not touch there counts with zeros; a solve takes some three times as long.
+        Instead: mean gap between the deformed surface and the plane, m, or text such as "2 um". Maps that
+        do not touch there count as zero; a solve takes about three times as long.
     E_star : float or str, optional
         Composite modulus, Pa; that of the scene if there is one.
     quantities : sequence of str, optional
@@ -138,7 +139,7 @@ def elastic(
     seed : int, optional
         Of the maps.
     path : str or Path, optional
-        A file of what is solved, a line a solve; the same call again resumes it.
+        File for the solves, one line for each; the same call again resumes from it.
     progress : bool or callable, optional
         True: a bar; a function: called with (done, total) in seconds of solving as planned.
 

@@ -50,43 +50,43 @@ _MOST_CAUTIONS = 4  # in a short look
 
 @dataclass(frozen=True, repr=False)
 class Fit(Shown):
-    """What a map tells.
+    """Result of `mcgw.fit`: what a map says about its summits.
 
     Parameters
     ----------
     estimates : dict of str to Estimate
-        By the methods of `METHODS`; without ``caps`` if no field of independent caps looks like this, and
-        with ``moments`` alone if there are fewer than eight summits.
+        By method, of `METHODS`. ``caps`` is missing if no field of independent caps looks like this map, and
+        only ``moments`` is there if the map has fewer than eight summits.
     moments : SpectralMoments
-        m0, m2 and m4, averages over both axes.
+        m0, m2 and m4, averaged over both axes.
     m0, m2, m4, alpha : Uncertain
         The moments with their errors, m^2, 1 and 1/m^2; and m0 m4/m2^2.
     skewness : (float, float)
-        Of the map's heights, and its standard error.
+        Skewness of the map's heights, and its standard error.
     listed : Summits
-        Every summit: where it is, how high and how sharp.
+        Every summit: its place, height and curvature.
     mean_summit : float
-        Their mean above the mean plane, m.
+        Mean height of the summits above the mean plane, m.
     area : float
-        What was looked at, m^2.
+        Area evaluated, m^2.
     visible : Visible or None
-        What a map shows of a field of independent caps like this one.
+        How much of a field of independent caps like this one is visible in a map.
     mean_squares : dict of str to float
-        Of slopes and second derivatives, by the names of `mcgw.maps.summit_sums.SUMS`.
+        Mean squares of slopes and second derivatives, by the names of `mcgw.maps.summit_sums.SUMS`.
     form : str
-        What was taken off, a form of `mcgw.maps.steps`.
+        The form that was removed, one of `mcgw.maps.steps`.
     waves : Waves
-        Errors that follow from how few waves the map holds.
+        Errors due to the small number of waves on the map.
     alone : Alone or None
-        The sub-area that carries the map alone, if one does.
+        The sub-area that dominates the estimates on its own, if there is one.
     tiles : Table
-        What each sub-area tells by itself: see `mcgw.maps.summits.tiles_of`.
+        Estimates from each sub-area alone: see `mcgw.maps.summits.tiles_of`.
     roughness : Roughness
-        Of all heights of the map, without form and filtered: sigma is that of the summits alone.
+        Roughness of all heights of the filtered map without its form; sigma belongs to the summits only.
     notes : tuple of str, optional
-        What was done to the map: one line each.
+        What was done to the map, one line per step.
     cautions : tuple of str, optional
-        Why not to trust it: one line each, found by `mcgw.fit`.
+        Reasons for caution found by `mcgw.fit`, one line each.
     """
 
     estimates: dict[str, Estimate]
@@ -111,7 +111,7 @@ class Fit(Shown):
 
     @property
     def summits(self) -> Array:
-        """Heights of the summits about their mean, m."""
+        """Heights of the summits relative to their mean, m."""
         return self.listed.heights
 
     @property
@@ -126,14 +126,14 @@ class Fit(Shown):
 
     @property
     def lay(self) -> float:
-        """Mean square slope across the lay over that along it, whichever way it runs: 1 if isotropic."""
+        """Mean square slope across the lay over that along it, in whatever direction: 1 if isotropic."""
         x, y, xy = (self.mean_squares[key] for key in ("slope_x", "slope_y", "slope_xy"))
         apart = math.hypot(x - y, 2 * xy)
         return (x + y + apart) / max(x + y - apart, 1e-12 * (x + y))
 
     @property
     def agreement(self) -> float | None:
-        """Largest ratio between eta, R and sigma by moments and by counted summits; None if too few are.
+        """Largest ratio between eta, R or sigma by moments and by counted summits; None for few summits.
 
         On 20 isotropic Gaussian maps of 1000 to 4000 summits it was 1.01 to 1.05, on as many of 70 to 500
         summits 1.01 to 1.12; with a lay of 2 : 1 it is 1.6, on honed, lognormal or Weibull maps 1.6 and more.
@@ -150,7 +150,7 @@ class Fit(Shown):
 
     @property
     def spread_of_curvatures(self) -> float:
-        """Relative standard deviation of Gaussian curvatures that have the quartiles of the summits'."""
+        """Relative standard deviation of summit curvatures, from their quartiles as if they were Gaussian."""
         low, median, high = np.percentile(self.curvatures, (25, 50, 75))
         return float(_OF_QUARTILES * (high - low) / median)
 
@@ -159,8 +159,8 @@ class Fit(Shown):
         """Which estimate to use: ``caps`` if all summits have about one radius, else ``summits``.
 
         Of fields of caps whose eta R sigma is 0.002 to 0.2, ``caps`` finds eta within 3 % and ``summits``
-        loses 2 to 45 %; on Gaussian surfaces, whose curvatures spread by 0.35, ``caps`` adds 10 to 130 %
-        that are not there and ``summits`` is right within 1 to 9 %. ``moments`` where summits are too few.
+        loses 2 to 45 %; on Gaussian surfaces, whose curvatures spread by 0.35, ``caps`` finds 10 to 130 %
+        too many and ``summits`` is right within 1 to 9 %. ``moments`` is used if there are too few summits.
         """
         if "summits" not in self.estimates:
             return "moments"
@@ -168,7 +168,7 @@ class Fit(Shown):
         return "caps" if one_radius else "summits"
 
     def plot(self, ax: Any = None) -> Any:
-        """Draw the summit heights beside a Gaussian distribution of their spread; returns the axes."""
+        """Draw the summit heights with the Gaussian distribution of the same spread; returns the axes."""
         return plotted(self, ax)
 
     def sheet(self) -> Sheet:
@@ -183,7 +183,7 @@ class Fit(Shown):
 
 
 def fit_prepared(ready: Prepared, *, across: int = 4) -> Fit:
-    """Estimate eta, R and sigma of a map that is prepared.
+    """Estimate eta, R and sigma of a prepared map.
 
     Standard errors are those of a jackknife over the sub-areas, or those that follow from the number of
     waves on the map, if larger: sub-areas share its long waves.
