@@ -1,4 +1,4 @@
-"""A table of contact that any program reads: JSON with what it was made of, and the law that it is."""
+"""Contact tables as JSON, which any program can read, with their provenance; and as a law to evaluate."""
 
 import json
 from collections.abc import Mapping
@@ -24,24 +24,26 @@ COLUMNS = {"gap": "m", "pressure": "Pa", "area": "1", "conductance": "per nomina
 
 @dataclass(frozen=True)
 class ContactTable:
-    """Pressure, area and conductance of a joint against its gap, as one law.
+    """Pressure, real area and contact conductance of a joint against its gap, as a law to interpolate.
 
     Parameters
     ----------
     gap : ndarray
-        Of the rigid plane from the mean plane of the summits, rising, m.
+        Distance of the rigid plane from the mean plane of the summits, rising, m.
     pressure : ndarray
-        Mean over surfaces, falling, Pa.
+        Mean pressure over surfaces, falling, Pa.
     area : ndarray
-        Real over nominal area.
+        Real area over nominal area.
     conductance : ndarray, optional
-        Per nominal area, W/(m^2 K) or S/m^2, of the joint where there is one; None where nothing conducts.
+        Conductance per nominal area, W/(m^2 K) or S/m^2, of the whole joint if gas is in its gap; None where
+        nothing conducts.
     covariance : ndarray, optional
-        Of the pressures of surfaces of the nominal area, Pa^2; shape (rows, rows). None of one surface.
+        Covariance of the pressures over surfaces of the nominal area, Pa^2, shape (rows, rows); None for a
+        single surface.
     provenance : mapping
         Program, digest, scene, number of surfaces, seed, nominal area.
     validity : str
-        How far the model is from elasticity, in words.
+        Error of the model against elasticity, in words.
 
     Raises
     ------
@@ -88,7 +90,7 @@ class ContactTable:
 
     @classmethod
     def of(cls, ensemble: Ensemble, digest: str) -> Self:
-        """Means over the surfaces of an ensemble, where any of them carries a load."""
+        """Make the table of means over the surfaces of an ensemble, where any of them carries a load."""
         scene = ensemble.scene
         order = np.argsort(ensemble.separations)
         order = order[ensemble.mean("pressure")[order] > 0]
@@ -133,7 +135,7 @@ class ContactTable:
         Raises
         ------
         ValueError
-            If the pressure is outside of the table.
+            If the pressure is outside the table.
         """
         from scipy.optimize import brentq
 
@@ -144,7 +146,7 @@ class ContactTable:
         return float(brentq(lambda x: float(self("pressure", x)) / pressure - 1, *ends, xtol=1e-18))
 
     def write(self, path: str | Path) -> None:
-        """Write it as JSON, all of it or nothing."""
+        """Write the table as JSON; the file is never left half-written."""
         columns = {name: getattr(self, name) for name in (*COLUMNS, "covariance")}
         rows = {name: None if x is None else x.tolist() for name, x in columns.items()}
         whole = {
@@ -155,12 +157,12 @@ class ContactTable:
 
     @classmethod
     def read(cls, path: str | Path) -> Self:
-        """A table from its file.
+        """Read a table from its file.
 
         Raises
         ------
         StoreError
-            If the file is no such table: what is wrong with it.
+            If the file is not such a table; the line says why.
         """
         try:
             whole = json.loads(Path(path).read_bytes())

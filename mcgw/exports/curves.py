@@ -1,4 +1,4 @@
-"""What can be tabulated, and its curves: mean and quantiles over surfaces against gap or pressure, SI."""
+"""Kinds of tables and their curves: mean and quantiles over surfaces against gap or pressure, SI."""
 
 from dataclasses import dataclass
 
@@ -35,7 +35,7 @@ class Kind:
 
     @property
     def needs(self) -> tuple[str, ...]:
-        """Quantities of an ensemble that it is made of."""
+        """Quantities of an ensemble that the table needs."""
         known = {"pressure": (), "contact": ("area",), "conducting": ("area", "conductance_si")}
         return ("load", *known.get(self.quantity, (self.dataset,)))
 
@@ -62,7 +62,7 @@ CONTACT, CONDUCTING = (Kind("contact table", what, "gap") for what in ("contact"
 
 @dataclass(frozen=True)
 class Curve:
-    """One line of a table.
+    """One curve of a table.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""How each finite-element program reads a table: order of columns, signs, comments, and what it demands."""
+"""How each finite-element program reads a table: order of columns, signs, comments and requirements."""
 
 import re
 from collections.abc import Callable, Sequence
@@ -12,7 +12,7 @@ from mcgw.exports.curves import KINDS, Curve, Kind
 
 @dataclass(frozen=True)
 class Program:
-    """A program and its rules.
+    """A finite-element program and its rules.
 
     Parameters
     ----------
@@ -21,7 +21,7 @@ class Program:
     endings : tuple of str
         Of its files.
     comment : str
-        What a line of comment begins with.
+        How a comment line begins.
     separator : str
         Between two numbers of a row.
     keywords : dict of str to str
@@ -34,7 +34,7 @@ class Program:
     hints : dict of str to tuple of str
         By table: lines that say how the program includes the file, and what it does beyond the ends.
     most : int, optional
-        Rows that it has room for.
+        Largest number of rows.
     least_step : float, optional
         Overclosures nearer than that are moved apart by the program.
     """

@@ -30,7 +30,7 @@ _BLOCK = 2**13  # heights at once: the cache holds them
 
 @dataclass(frozen=True, slots=True)
 class Roughness:
-    """Of heights about their mean (ISO 25178-2 for maps, ISO 21920-2 for profiles).
+    """Roughness parameters of heights (ISO 25178-2 for maps, ISO 21920-2 for profiles).
 
     Parameters
     ----------
@@ -48,7 +48,7 @@ class Roughness:
     ku: float
 
     def text(self, kind: str) -> str:
-        """Named as of a map ("S") or a profile ("P")."""
+        """The parameters in words, named as for a map ("S") or a profile ("P")."""
         return f"{kind}a = {self.a:.4g} m, {kind}q = {self.q:.4g} m, {kind}sk = {self.sk:.2f}"
 
 
@@ -67,7 +67,7 @@ def roughness_of(heights: Array) -> Roughness:
 
 @dataclass(frozen=True)
 class Estimate:
-    """The three parameters by one method.
+    """Density, radius and spread of the summits by one method.
 
     Parameters
     ----------

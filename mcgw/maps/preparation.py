@@ -1,4 +1,4 @@
-"""What is done to a measured map before it is looked at, step by step, each with a line about it."""
+"""Preparation of a measured map before its evaluation, step by step, each with a line about it."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
@@ -68,20 +68,20 @@ def preparation_of(given: Mapping[str, Any], length: Callable[[str, Any], float]
 
 @dataclass(frozen=True)
 class Prepared:
-    """A map that can be looked at.
+    """A map ready for evaluation.
 
     Parameters
     ----------
     levelled : Topography
-        Without form; lacks no points, and no wavelength.
+        The map without its form, with no missing points and all wavelengths.
     used : Topography
-        Between both cutoffs.
+        The map filtered between both cutoffs.
     seen : ndarray of bool or None
         Points of `used` that count; None: all.
     filled : float
         Share of the points that were missing.
     recorded : Recorded
-        What the map tells of its instrument.
+        What the map reveals about its instrument.
     asked : Preparation
         What was asked for.
     notes : tuple of str

@@ -1,4 +1,4 @@
-"""A profile: heights along a line, as a stylus gives them."""
+"""Profiles: heights along a line, as a stylus instrument measures them."""
 
 import math
 from dataclasses import dataclass, replace
@@ -29,9 +29,9 @@ class Profile:
     spacing : float
         Between two points, m.
     assumed_unit : str, optional
-        What lengths were taken to be in where the file does not say; empty: they are known.
+        Unit assumed for the lengths if the file does not state it; empty if it is known.
     filled : int, optional
-        How many heights were missing and lie on straight lines now.
+        Number of missing heights that were filled along straight lines.
     resampled : bool, optional
         Whether the places were uneven, so that heights were interpolated.
 
@@ -59,17 +59,17 @@ class Profile:
 
     @property
     def length(self) -> float:
-        """Along the line, m: points count with the whole spacing."""
+        """Length along the line, m, including the whole spacing of the outer points."""
         return self.heights.size * self.spacing
 
     @property
     def steepness(self) -> float:
-        """The usual slope: from the median difference between neighbours."""
+        """Typical slope, from the median difference between neighbours."""
         return float(np.median(np.abs(np.diff(self.heights)))) / self.spacing
 
     @property
     def doubtful(self) -> str:
-        """Why these lengths cannot be in the unit they were taken in; empty: they can."""
+        """Why the assumed unit of the lengths is implausible; empty if it is plausible."""
         if not self.assumed_unit:
             return ""
         if self.steepness > STEEPEST:

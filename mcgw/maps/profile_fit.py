@@ -1,8 +1,8 @@
 """From profiles of one isotropic surface to its summits, with their uncertainty.
 
-A profile sees summits of its own: a peak of the profile is no summit of the surface, which lies beside the
-line. What both share are the moments: of an isotropic surface m0, m2 and m4 of any profile are those of the
-surface (Nayak 1971), and if heights are Gaussian they tell density, curvature and heights of its summits.
+A peak of a profile is not a summit of the surface: that usually lies beside the line. But both share their
+moments: for an isotropic surface, m0, m2 and m4 of any profile are those of the surface (Nayak 1971), and if
+heights are Gaussian they determine density, curvature and heights of its summits.
 """
 
 import math
@@ -31,21 +31,22 @@ _LEAST_ALPHA = 0.9  # below, summit heights would have no variance
 
 @dataclass(frozen=True, repr=False)
 class ProfileFit(Shown):
-    """What profiles tell of their surface, if it is isotropic and its heights are Gaussian.
+    """Surface parameters from profiles, if the surface is isotropic and its heights are Gaussian.
 
     Parameters
     ----------
     moments : SpectralMoments
-        Of the surface, filtered as `mcgw.fit` filters a map.
+        Moments of the surface, filtered as `mcgw.fit` filters a map.
     numbers : dict of str to Uncertain
-        m0, m2, m4, alpha, eta, radius and sigma; errors are widened so that two of them to both sides hold
-        95 %.
+        m0, m2, m4, alpha, eta, radius and sigma; errors are widened so that the value plus or minus two of
+        them is a 95 % interval.
     roughness : Roughness
-        Of the profiles themselves, without form and filtered along the line.
+        Roughness of the filtered profiles without their form.
     peaks : (float, float)
-        Of these filtered profiles, 1/m: counted, and by their own moments, sqrt(m4/m2)/(2 pi).
+        Peaks per length of these filtered profiles, 1/m: counted, and from their own moments,
+        sqrt(m4/m2)/(2 pi).
     lengths : tuple of float
-        Of the profiles, m.
+        Lengths of the profiles, m.
     form : {"none", "plane", "quadratic"}
         What was taken off.
     covariance : ndarray
@@ -65,16 +66,16 @@ class ProfileFit(Shown):
 
     @property
     def area(self) -> float:
-        """Square of the mean length, m^2: a profile has none of its own."""
+        """Square of the mean length, m^2, since a profile has no area."""
         return (sum(self.lengths) / len(self.lengths)) ** 2
 
     @property
     def estimates(self) -> dict[str, Estimate]:
-        """The one estimate there is, as a map's fit names it: ``moments``."""
+        """The only estimate, ``moments``, under the same name as in the fit of a map."""
         return {"moments": Estimate(*(self.numbers[name] for name in ("eta", "radius", "sigma")))}
 
     def plot(self, ax: Any = None) -> Any:
-        """Draw the law of all heights and that of the summits that follows; returns the axes."""
+        """Draw the distributions of all heights and, derived from it, of the summits; returns the axes."""
         return plotted(self, ax)
 
     def sheet(self) -> Sheet:
@@ -109,7 +110,7 @@ def fit_profiles(profiles: Sequence[Profile], *, cutoff: float | None, form: For
     Parameters
     ----------
     profiles : sequence of Profile
-        Of one surface, in any direction, so far apart that they do not share waves.
+        Profiles of one surface, in any direction, far enough apart not to share waves.
     cutoff : float or None
         Shortest wavelength that counts, m, of the areal filter of ISO 16610-61; None: as measured.
     form : {"none", "plane", "quadratic"}, optional
@@ -118,7 +119,7 @@ def fit_profiles(profiles: Sequence[Profile], *, cutoff: float | None, form: For
     Returns
     -------
     ProfileFit
-        `mcgw.maps.fit_cautions` says why not to trust it.
+        See `mcgw.maps.fit_cautions` for reasons for caution.
 
     Raises
     ------

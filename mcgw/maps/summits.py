@@ -1,6 +1,6 @@
-"""Every summit of a map: where it is, how high, and how sharp along its two principal directions.
+"""Every summit of a map: its place, height and two principal curvatures.
 
-And what each sub-area tells by itself, and whether one of them carries the whole map.
+Also estimates from each sub-area alone, and whether one of them dominates the whole map.
 """
 
 import math
@@ -24,21 +24,22 @@ _BEND = np.array([-1, 16, -30, 16, -1]) / 12
 
 @dataclass(frozen=True)
 class Summits:
-    """Summits of a map; arrays of shape (summits,) if nothing else is said.
+    """Summits of a map; arrays have the shape (summits,) unless stated otherwise.
 
     Parameters
     ----------
     x, y : ndarray
-        From the corner of the map after trimming and cropping, whose first pixel has its centre at half
-        a pixel, m.
+        Positions from the corner of the trimmed and cropped map, m; the centre of its first pixel is half a
+        pixel from the corner.
     heights : ndarray
-        About their mean, m.
+        Heights relative to their mean, m.
     curvatures : ndarray
         Principal curvatures, shape (2, summits), the larger ones first, 1/m; positive.
     tile : ndarray of int
         Sub-area of each, counted from 0 along x first.
     unresolved : int
-        How many are ridges between pixels, of which only a mean curvature is known: both are that.
+        Number of summits on ridges between pixels, of which only the mean curvature is known; both curvatures
+        equal it.
     """
 
     x: Array
@@ -50,7 +51,7 @@ class Summits:
 
     @property
     def radii(self) -> Array:
-        """Of the spheres that carry nearly what the summits do, ``1/sqrt(k1 k2)``, m (Greenwood 2006)."""
+        """Radii of spheres that carry nearly the summits' loads, ``1/sqrt(k1 k2)``, m (Greenwood 2006)."""
         return np.asarray(1 / np.sqrt(self.curvatures[0] * self.curvatures[1]))
 
     def table(self) -> Table:
@@ -142,11 +143,11 @@ _HALF = 0.5
 
 
 def tiles_of(counted: SummitSums) -> Table:
-    """What each sub-area tells by itself, a row each, counted along x first.
+    """Estimates from each sub-area alone, one row each, counted along x first.
 
-    By its summits their number, density, inverse mean curvature and standard deviation of heights, nan where
-    they are too few; and spectral moments of heights about its own mean, so that waves longer than it count
-    less than on the whole map.
+    From its summits: their number, density, inverse mean curvature and standard deviation of heights, nan
+    where they are too few. And spectral moments of heights about its own mean, so that waves longer than the
+    sub-area count less than on the whole map.
     """
     points, *sums = np.where(counted.sums[0] > 0, counted.sums, np.nan)  # where nothing was seen
     m = dict(zip(SUMS[1:], sums / points, strict=True))

@@ -57,7 +57,7 @@ class Spectrum:
 
     @classmethod
     def with_moments(cls, moments: SpectralMoments, hurst: float = _HURST) -> "Spectrum":
-        """The spectrum that has these moments: its two wavelengths follow from alpha and m2/m0.
+        """Spectrum with these moments: its two wavelengths follow from alpha and m2/m0.
 
         Raises
         ------
@@ -80,7 +80,7 @@ class Spectrum:
         return cls(math.sqrt(moments.m0), 2 * math.pi / q_long, 2 * math.pi / q_long / ratio, hurst)
 
     def density(self, q: Array) -> Array:
-        """Of the variance over the plane of wave vectors, up to a factor; `q` in 1/m."""
+        """Spectral density of the variance over the plane of wave vectors, up to a factor; `q` in 1/m."""
         inside = (q >= 2 * math.pi / self.long) & (q <= 2 * math.pi / self.short)
         relative = np.where(inside, q * self.short, 1.0)
         return np.asarray(np.where(inside, relative ** (-2 - 2 * self.hurst), 0.0))
@@ -115,7 +115,7 @@ def moments_on_grid(
 ) -> SpectralMoments:
     """Expected moments of `gaussian_map` with the same arguments, averages over profiles along x and y.
 
-    Sums stand in place of integrals over the spectrum.
+    They are sums over the waves of the grid instead of integrals over the spectrum.
     """
     power = _power(spectrum, shape, pixel)
     power[:, 1 : (shape[1] + 1) // 2] *= 2  # rfft2 leaves out their conjugates
@@ -140,7 +140,7 @@ def gaussian_map(
     pixel : (float, float)
         dx and dy, m.
     rng : numpy.random.Generator
-        Where the noise comes from.
+        Generator of the random numbers.
 
     Raises
     ------
@@ -212,15 +212,15 @@ class Asperities:
 
     @property
     def number(self) -> int:
-        """How many there are."""
+        """Number of asperities."""
         return len(self.z)
 
 
 def asperities_of(scene: Scene, surface: int, *, width: float | None = None) -> Asperities:
-    """Give the asperities of one surface of an ensemble their places, those that cannot touch included.
+    """Place the asperities of one surface of an ensemble, including those that cannot touch.
 
-    The heights are the very ones whose loads are in the ensemble's file; the positions are uniform and
-    independent, and a pure function of the seed and the surface. The nominal area is `width` m along x; it is
+    The heights are those whose loads are in the ensemble's file. The positions are uniform and independent,
+    and a pure function of the seed and the surface. The nominal area is `width` m along x; it is
     a square if that is left out.
 
     Raises

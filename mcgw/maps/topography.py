@@ -1,4 +1,4 @@
-"""A height map: what every reader gives and every writer takes; and units of heights in files."""
+"""Height maps, as every reader returns and every writer takes them; and units of heights in files."""
 
 import math
 from dataclasses import dataclass
@@ -33,7 +33,7 @@ class Topography:
     periodic : bool, optional
         Whether opposite edges fit together.
     assumed_unit : str, optional
-        What heights were taken to be in where the file does not say; empty: it is known.
+        Unit assumed for the heights if the file does not state it; empty if it is known.
 
     Raises
     ------
@@ -63,13 +63,13 @@ class Topography:
 
     @property
     def size(self) -> tuple[float, float]:
-        """Extent along x and y, m: pixels count with their whole width."""
+        """Extent along x and y, m, including the whole width of the outer pixels."""
         rows, columns = self.heights.shape
         return columns * self.pixel[0], rows * self.pixel[1]
 
     @cached_property
     def highest(self) -> float:
-        """Largest distance from zero, m; nan where all points are missing."""
+        """Largest absolute height, m; nan if all points are missing."""
         return max(abs(float(end.reduce(self.heights, axis=None))) for end in (np.fmax, np.fmin))
 
     @property
@@ -79,9 +79,9 @@ class Topography:
 
     @property
     def steepness(self) -> float:
-        """The usual slope: from medians of the differences between neighbours, which no spike changes.
+        """Typical slope, from medians of the differences between neighbours, which spikes do not affect.
 
-        Of a large map about a million of them are looked at, on lines that are equally far apart.
+        For a large map, about a million of them are used, on equally spaced lines.
         """
         every = max(self.heights.size // _ENOUGH, 1)
         usual = [

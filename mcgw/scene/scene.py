@@ -129,7 +129,7 @@ class Scene(Fields, Shown):
         warn_of_units(perhaps_other_units(self))
 
     def replace(self, **changes: Any) -> "Scene":
-        """The scene with other values; what was left out follows.
+        """The scene with other values; fields that were left out follow from them.
 
         Parameters
         ----------
@@ -175,11 +175,11 @@ class Scene(Fields, Shown):
         return scene
 
     def sheet(self) -> Sheet:
-        """What is shown of it."""
+        """The scene as shown to people."""
         return sheet_of(self)
 
     def validity(self, separations: ArrayLike | None = None) -> "Validity":
-        """How far this model is expected to be from elasticity: area, gap, stiffness and load.
+        """Expected error of this model against elasticity, for area, gap, stiffness and load.
 
         Parameters
         ----------

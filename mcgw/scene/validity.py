@@ -1,4 +1,4 @@
-"""How far a model is from elasticity, at some separations: in numbers, in words, and as cautions."""
+"""Error of a model against elasticity at some separations: in numbers, in words, and as cautions."""
 
 import math
 from collections.abc import Iterator
@@ -31,19 +31,20 @@ class Validity(Shown):
         Pressure over E* g of Gaussian surfaces, g being the rms slope, or over E* sqrt(sigma/R) of separate
         caps: of Hertz's law without a grading at each separation; nan where the model was not measured.
     error : dict of str to ndarray
-        How far off 95 % of surfaces are at most, over the right value, or over sigma for "separation":
-        ``|bias|`` and 2.1 standard deviations, of surfaces with so many contacts as one of the scene has,
-        and so many long waves except for areas, and of the bias itself. nan where nothing was measured.
+        Largest deviation of 95 % of surfaces, over the right value, or over sigma for "separation":
+        ``|bias|`` plus 2.1 standard deviations, for surfaces with as many contacts as one of the scene, and
+        as many long waves (except for areas), including that of the bias itself. nan where nothing was
+        measured.
     bias : dict of str to ndarray
         Mean over maps of model/elasticity - 1, or of the difference over sigma.
     graded : bool
-        Whether the scene has a grading, of which these errors say nothing: they are the geometry's share.
+        Whether the scene has a grading, which these errors do not cover: they come from the geometry alone.
     axis : str
-        What the loads are, as "p/(E* g)".
+        Name of the loads, such as "p/(E* g)".
     where : str
-        Where it was measured, in words.
+        Where the errors were measured, in words.
     unknown : str
-        Why there is no number at some separation or at all; empty if there is one at each.
+        Why numbers are missing at some or all separations; empty if there is one at each.
     listed : bool
         Whether the model had the summits of each map; specimens scatter in addition.
     """
@@ -60,11 +61,11 @@ class Validity(Shown):
 
     @property
     def measured(self) -> Marks:
-        """At which separations something was measured."""
+        """Whether anything was measured, at each separation."""
         return self.known(*COLUMNS)
 
     def known(self, *names: str) -> Marks:
-        """At which separations one of some columns was measured."""
+        """Whether one of some columns was measured, at each separation."""
         known = np.zeros(len(self.separations), dtype=np.bool_)
         for name in names:
             known |= np.isfinite(self.error[name])
@@ -94,7 +95,7 @@ class Validity(Shown):
 
     @property
     def details(self) -> str:
-        """What has which error, and where it was measured; empty where nothing was."""
+        """The error of each quantity, and where it was measured; empty if nothing was."""
         if not self.measured.any():
             return ""
         worst = {word: self.worst(name) for name, word in _AT_LOAD.items()}
@@ -109,12 +110,12 @@ class Validity(Shown):
 
     @property
     def lines(self) -> list[str]:
-        """The verdict, and what has which error."""
+        """The verdict, and the error of each quantity."""
         return [*filter(None, (self.verdict, self.details))]
 
     @property
     def brief(self) -> str:
-        """The same in 88 characters."""
+        """The verdict in at most 88 characters."""
         if not self.measured.any():
             return self.unknown
         at_load, at_gap = self.worst("area", "stiffness"), self.worst("load")
