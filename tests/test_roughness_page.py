@@ -74,8 +74,8 @@ def test_peaks_and_summits():
     curvature = normal[1] / normal[0]
     stands("the mean radius of peaks is {:.2f} R", 1 / m.radius / curvature)
     per_length = math.sqrt(m.m4 / m.m2) / (2 * math.pi)
-    stands("has {:.2f} D² summits an area", m.eta / per_length**2)
-    stands("on average {:.2f} times as high above the mean as summits", curvature / m.mean_height)
+    stands("has {:.2f} D² summits per area", m.eta / per_length**2)
+    stands("on average only {:.2f} times as high above the mean as summits", curvature / m.mean_height)
 
 
 def test_a_filter_along_the_line():
@@ -90,5 +90,5 @@ def test_a_filter_along_the_line():
         / np.trapezoid(power * np.mean(plane * k**n, axis=1), q)
         for n in (0, 2, 4)
     )
-    stands("this makes m0 {:.2f}, m2 {:.2f} and m4 {:.2f} times", m0, m2, m4)
-    stands("R {:.0f} % too small", 100 * (1 - 1 / math.sqrt(m4)))
+    stands("m0, m2 and m4 are {:.2f}, {:.2f} and {:.2f} times", m0, m2, m4)
+    stands("R is {:.0f} % too small", 100 * (1 - 1 / math.sqrt(m4)))
