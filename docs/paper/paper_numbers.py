@@ -112,7 +112,7 @@ def validity() -> Numbers:
         "stiffness_mended": _percent(max(map(abs, mended))),
         "mended_loads": "$3\\times10^{-4}$ to $3\\times10^{-2}$",
         "light_loads": "$10^{-4}$ to $10^{-2}$",
-        "least_maps": str(min(int(line["maps"]) for line in lines if int(line["maps"]))),  # 0: by theory,
+        "least_maps": str(min(int(line["maps"]) for line in lines if int(line["maps"]))),  # 0: by theory
     }
 
 
