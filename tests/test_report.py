@@ -323,7 +323,7 @@ def test_the_budget_at_a_pressure_and_the_corrected_answer(small):
         uncertainty={"sigma": "20 %"}, separations=(0.8, 1.0, 1.2),
     )  # fmt: skip
     ensemble = mcgw.simulate(scene)
-    found = solution_of(ensemble)
+    found = solution_of(ensemble.scene, ensemble)
     searched = mcgw.solve(scene, load=found.value)
     assert found.theory == searched.theory
     for name in ("area", "stiffness", "mean_gap"):
@@ -340,5 +340,7 @@ def test_the_budget_at_a_pressure_and_the_corrected_answer(small):
     assert "corrected (95 %)" in text
     for line, share in budget.shares.items():
         assert f"{line} {share[0]:.2%}" in text
-    assert solution_of(mcgw.simulate(scene, n_surfaces=1)) is None
-    assert "by causes" not in page_of(scene, n_surfaces=1)
+    alone = mcgw.simulate(scene, n_surfaces=1)
+    assert solution_of(alone.scene, alone) is None
+    assert "Sources of error at this load" in text
+    assert "Sources of error at this load" not in page_of(scene, n_surfaces=1)

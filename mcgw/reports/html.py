@@ -50,8 +50,9 @@ def report_html(ensemble: Ensemble, attributes: dict[str, Any]) -> str:
     with stages(4) as done:
         comparison = compare(ensemble) if real else None
         done()
-        at_pressure = list(pressure_pictures(ensemble))
-        solved = solution_of(ensemble) if real and at_pressure else None
+        first = first_surfaces(ensemble) if "load" in scene.quantities else ensemble
+        at_pressure = list(pressure_pictures(first))
+        solved = solution_of(scene, first) if real and at_pressure else None
         done()
         patch = patch_pictures(ensemble)
         done()
@@ -88,13 +89,11 @@ def report_html(ensemble: Ensemble, attributes: dict[str, Any]) -> str:
     )
 
 
-def solution_of(ensemble: Ensemble) -> Solution | None:
-    """Surfaces of an ensemble amid the pressures that all of them reach, each read off its own curve."""
-    scene = ensemble.scene
+def solution_of(scene: Scene, first: Ensemble) -> Solution | None:
+    """Its first surfaces amid the pressures that all of them reach, each read off its own curve."""
     names = [name for name in ("area", "stiffness", "conductance") if name in scene.quantities]
-    if "load" not in scene.quantities or not names or ensemble.n_surfaces < 2:
+    if "load" not in scene.quantities or not names or first.n_surfaces < 2:
         return None
-    first = first_surfaces(ensemble)
     if (reach := common_pressures(first)) is None:
         return None
     pressure = math.sqrt(reach[0] * reach[1])
