@@ -58,7 +58,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         help="gaussian; nayak: from the moments, each summit with its own radius; or the measured heights, "
         "resampled (table), as they are (measured), or with their radii (summits); default: gaussian",
     )  # fmt: skip
-    parser.add_argument("--E-star", default=E_STAR, metavar="E", help=f"composite modulus; default: {E_STAR}")
+    parser.add_argument("--E-star", metavar="E", help=f"composite modulus; default: {E_STAR}")
     parser.add_argument(
         "--nominal-area",
         metavar="AREA",
@@ -94,7 +94,7 @@ def execute(args: argparse.Namespace) -> int:
     asked, across = preparation_of(
         vars(args), lambda key, text: parse(text, "m", f"--{key.replace('_', '-')}")
     )
-    E_star = parse(args.E_star, "Pa", "--E-star")
+    E_star = parse(E_STAR if args.E_star is None else args.E_star, "Pa", "--E-star")
     area = None if args.nominal_area is None else parse(args.nominal_area, "m^2", "--nominal-area")
     pixel = None if args.pixel is None else parse(args.pixel, "m", "--pixel")
     of_profiles = args.profile or holds_profile(args.map[0])
@@ -110,7 +110,7 @@ def execute(args: argparse.Namespace) -> int:
     s = scene.surface
     news(
         f"{path}: sigma = {s.sigma:.4g} m, radius = {s.radius:.4g} m, eta = {s.eta:.4g} 1/m^2, "
-        f"E_star = {E_star:.4g} Pa{' (assumed; give --E-star)' * (args.E_star == E_STAR)}",
+        f"E_star = {E_star:.4g} Pa{' (assumed; give --E-star)' * (args.E_star is None)}",
         lines[0],
         *beside,
     )
