@@ -23,7 +23,7 @@ the sign:
 
 import math
 from dataclasses import KW_ONLY, dataclass
-from typing import Any, Literal
+from typing import Any, Literal, get_args
 
 import numpy as np
 
@@ -86,10 +86,10 @@ class Interaction:
     bulk_modulus: float | None = None
 
     def __post_init__(self) -> None:
-        words = {"reference": '"body", "mean-plane" or "located"', "at": '"effective" or "nominal"'}
-        for key, known in words.items():
-            if f'"{getattr(self, key)}"' not in known:
-                raise ValueError(f"{key} = {getattr(self, key)!r}: give {known}")
+        for key, known in (("reference", get_args(Reference)), ("at", ("effective", "nominal"))):
+            if getattr(self, key) not in known:
+                *others, last = (f'"{word}"' for word in known)
+                raise ValueError(f"{key} = {getattr(self, key)!r}: give {', '.join(others)} or {last}")
         if self.located and not self.nominal:
             raise ValueError('at = "effective": located summits feel no one separation; give at = "nominal"')
         if self.located and self.bulk_modulus is not None:

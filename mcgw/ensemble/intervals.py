@@ -221,8 +221,8 @@ def _by_law(
         law = together.distribution(name, x)
         found.append(np.array(law.interval(level)) / law.mean() if law.mean() > 0 else np.full(2, np.nan))
     ratios = np.reshape(found, (-1, 2))[back].T
-    low, high = np.where(ratios > 0, ratios, np.nan)
-    return mean / high + 0 * low, mean / low
+    low, high = np.where((ratios > 0).all(axis=0), ratios, np.nan)
+    return mean / high, mean / low
 
 
 def _of_separation(scene: Scene, sampler: str, sums: Held, name: str, level: float) -> tuple[Array, Array]:

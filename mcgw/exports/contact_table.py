@@ -10,7 +10,7 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import ArrayLike
 
-from analytic.arrays import Array
+from analytic.arrays import Array, hold
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.errors import StoreError
 from mcgw.exports.curves import KINDS
@@ -77,7 +77,7 @@ class ContactTable:
             if given is None and name in ("conductance", "covariance"):
                 continue
             column = np.array(given, dtype=np.float64)
-            object.__setattr__(self, name, column)
+            hold(self, **{name: column})
             if name == "covariance":
                 if column.shape != 2 * self.gap.shape:
                     raise ValueError("covariance: give a square matrix with as many rows as gaps")
