@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from fit_of_maps import fit_map
+from scipy.ndimage import gaussian_filter
 
 import mcgw
 from mcgw.cli import main
@@ -177,6 +178,17 @@ def test_less_than_no_points_cannot_be_trimmed(tmp_path, capsys):
     given = ["--pixel", "1um", "--cutoff", "none", "--E-star", "1GPa", "-o", str(tmp_path / "s.toml")]
     assert main(["fit", str(tmp_path / "z.npy"), *given, "--trim=-1"]) == 2
     assert "trim = -1: give a whole number >= 0" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("given", [True, False])
+def test_a_modulus_is_called_assumed_only_where_nobody_gave_it(given, tmp_path, capsys):
+    """That it is the usual one does not matter."""
+    np.save(tmp_path / "z.npy", gaussian_filter(rng(1).normal(size=(80, 80)), 2, mode="wrap") * 1e-7)
+    asked = ["--pixel", "1um", "--cutoff", "none", "-o", str(tmp_path / "s.toml")]
+    assert main(["fit", str(tmp_path / "z.npy"), *asked, *["--E-star", "100 GPa"] * given]) == 0
+    told = capsys.readouterr().out
+    assert "E_star = 1e+11 Pa" in told
+    assert ("(assumed; give --E-star)" in told) is not given
 
 
 def test_a_small_spike_is_as_high_as_it_stands_above_its_neighbours():
