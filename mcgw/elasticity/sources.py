@@ -1,7 +1,7 @@
 """Where the maps come from whose elastic mean is wanted."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -21,105 +21,25 @@ _MOST_POINTS = 2048  # a side
 
 
 @dataclass(frozen=True)
-class Drawn:
-    """Gaussian maps of a spectrum.
+class Maps:
+    """Periodic maps by number.
 
     Parameters
     ----------
-    spectrum : Spectrum
-        Of each.
-    shape : (int, int)
-        Rows and columns.
+    heights : callable
+        Heights of one, m: a pure function of its number and a seed.
     size : (float, float)
-        m.
+        Of each, m.
+    words : str
+        What they are.
+    number : int, optional
+        How many there are; None: as many as one likes.
     """
 
-    spectrum: Spectrum
-    shape: tuple[int, int]
+    heights: Callable[[int, int], Array]
     size: tuple[float, float]
-    number = None
-
-    @property
-    def words(self) -> str:
-        """What they are."""
-        return f"Gaussian maps of {self.shape[1]} x {self.shape[0]} points, {self.size[0]:.3g} m wide"
-
-    def heights(self, number: int, seed: int) -> Array:
-        """Heights of one, m: a pure function of seed and number."""
-        pixel = self.size[0] / self.shape[1], self.size[1] / self.shape[0]
-        return gaussian_map(self.spectrum, self.shape, pixel, np.random.default_rng([seed, number])).heights
-
-
-@dataclass(frozen=True)
-class Surrogates:
-    """Gaussian maps with the spectrum of a measured one: its own waves with other phases.
-
-    Parameters
-    ----------
-    amplitude : ndarray
-        Of its waves, those of ``rfft2``.
-    shape : (int, int)
-        Rows and columns.
-    size : (float, float)
-        m.
-    """
-
-    amplitude: Array
-    shape: tuple[int, int]
-    size: tuple[float, float]
-    number = None
-    words = "Gaussian maps of the measured map's spectrum"
-
-    @classmethod
-    def of(cls, measured: Topography) -> "Surrogates":
-        """Of a map; one that is not periodic is tapered, so that its edges are no waves (Hann window)."""
-        z = measured.heights - measured.heights.mean()
-        if not measured.periodic:
-            window = np.sqrt(np.outer(*(np.hanning(n + 1)[:n] for n in z.shape)))
-            z = z * window / math.sqrt(float((window**2).mean()))
-            z -= z.mean()
-        return cls(np.abs(fft.rfft2(z)), z.shape, measured.size)
-
-    def heights(self, number: int, seed: int) -> Array:
-        """Heights of one, m: a pure function of seed and number."""
-        noise = fft.rfft2(np.random.default_rng([seed, number]).standard_normal(self.shape))
-        return np.asarray(fft.irfft2(self.amplitude * noise, s=self.shape) / math.sqrt(math.prod(self.shape)))
-
-
-@dataclass(frozen=True)
-class Listed:
-    """Maps that are given, whose own mean is wanted.
-
-    Parameters
-    ----------
-    maps : tuple of Topography
-        Periodic ones of one size.
-    """
-
-    maps: tuple[Topography, ...]
-
-    @property
-    def words(self) -> str:
-        """What they are."""
-        return f"the {len(self.maps)} given maps"
-
-    @property
-    def number(self) -> int:
-        """How many there are."""
-        return len(self.maps)
-
-    @property
-    def size(self) -> tuple[float, float]:
-        """Of each, m."""
-        return self.maps[0].size
-
-    def heights(self, number: int, seed: int) -> Array:  # noqa: ARG002 - nothing is drawn
-        """Heights of one, m."""
-        z = self.maps[number].heights
-        return np.asarray(z - z.mean())
-
-
-Maps = Drawn | Surrogates | Listed  # periodic maps by number; of `number` None there are as many as one likes
+    words: str
+    number: int | None = None
 
 
 def maps_of(source: "Scene | Spectrum | Topography | str | Path | Sequence[Topography | str | Path]") -> Maps:
@@ -137,11 +57,15 @@ def maps_of(source: "Scene | Spectrum | Topography | str | Path | Sequence[Topog
     if isinstance(source, Spectrum):
         return _drawn(source, source.long)
     if isinstance(source, str | Path | Topography):
-        return Surrogates.of(_whole(source))
+        return _like(_whole(source))
     maps = tuple(_whole(one) for one in source)
     if not maps or len({one.size for one in maps}) > 1 or not all(one.periodic for one in maps):
         raise ValueError("maps: give one or more periodic maps, all of one size")
-    return Listed(maps)
+
+    def heights(number: int, _: int) -> Array:
+        return np.asarray(maps[number].heights - maps[number].heights.mean())
+
+    return Maps(heights, maps[0].size, f"the {len(maps)} given maps", len(maps))
 
 
 def _whole(given: "Topography | str | Path") -> Topography:
@@ -159,7 +83,7 @@ def _moments_of(scene: Scene) -> SpectralMoments:
     return moments_of_nayak(scene.surface, scene.heights.alpha)
 
 
-def _drawn(spectrum: Spectrum, side: float) -> Drawn:
+def _drawn(spectrum: Spectrum, side: float) -> Maps:
     """Square maps of this side, with as many points as the shortest wave takes."""
     if spectrum.long > (1 + 1e-9) * side:
         raise ValueError(
@@ -173,4 +97,34 @@ def _drawn(spectrum: Spectrum, side: float) -> Drawn:
             f"{points} points per side for waves of {spectrum.short:.3g} m on {side:.3g} m: more than "
             f"{_MOST_POINTS}; give nominal_area = {0.99 * wide**2:.3g} m^2 or less"
         )
-    return Drawn(spectrum, (points, points), (side, side))
+    return drawn(spectrum, points, side)
+
+
+def drawn(spectrum: Spectrum, points: int, side: float) -> Maps:
+    """Square Gaussian maps of a spectrum, with so many points along each side of a length in m."""
+    shape, pixel = (points, points), (side / points, side / points)
+    words = f"Gaussian maps of {points} x {points} points, {side:.3g} m wide"
+    return Maps(
+        lambda k, seed: gaussian_map(spectrum, shape, pixel, np.random.default_rng([seed, k])).heights,
+        (side, side),
+        words,
+    )
+
+
+def _like(measured: Topography) -> Maps:
+    """Gaussian maps with the spectrum of a measured one: its own waves with other phases.
+
+    One that is not periodic is tapered, so that its edges are no waves (Hann window).
+    """
+    z = measured.heights - measured.heights.mean()
+    if not measured.periodic:
+        window = np.sqrt(np.outer(*(np.hanning(n + 1)[:n] for n in z.shape)))
+        z = z * window / math.sqrt(float((window**2).mean()))
+        z -= z.mean()
+    amplitude, unit = np.abs(fft.rfft2(z)), math.sqrt(z.size)
+
+    def heights(number: int, seed: int) -> Array:
+        noise = fft.rfft2(np.random.default_rng([seed, number]).standard_normal(z.shape))
+        return np.asarray(fft.irfft2(amplitude * noise, s=z.shape) / unit)
+
+    return Maps(heights, measured.size, "Gaussian maps of the measured map's spectrum")

@@ -23,7 +23,7 @@ from analytic import SpectralMoments
 from mcgw.elasticity.elastic import _by_levels
 from mcgw.elasticity.levels import LEVELS, Pressed
 from mcgw.elasticity.multilevel import differences, terms_of
-from mcgw.elasticity.sources import Drawn
+from mcgw.elasticity.sources import drawn
 from mcgw.figures.style import HOMOGENEOUS, MONTE_CARLO, STYLE, THEORY
 from mcgw.formats.pictures import save_figure
 from mcgw.maps.synthetic import Spectrum
@@ -47,7 +47,7 @@ def maps_of(alpha):
     """Gaussian maps of this alpha, m0 = m2 = 1, eight points a shortest wave."""
     spectrum = Spectrum.with_moments(SpectralMoments(1.0, 1.0, float(alpha)))
     points, side = 8 * WAVES[alpha], WAVES[alpha] * spectrum.short
-    return Drawn(spectrum, (points, points), (side, side))
+    return drawn(spectrum, points, side)
 
 
 def pressed(maps, number):
