@@ -18,9 +18,9 @@ from mcgw.exports.curves import KINDS, Curve
 from mcgw.exports.programs import PROGRAMS
 from mcgw.exports.table_text import UNIT_SYSTEMS, table_text
 from mcgw.formats.table import Column, Table
+from mcgw.jobs.job import Job
 from mcgw.store import ensembles, structure
 from mcgw.store.run_folder import RunFolder
-from mcgw.store.shards import Plan
 
 NUMBER = r"[-+]?\d\.\d{9}e[-+]\d\d"
 LIVE = "x\n*STEP\r*INCLUDE, INPUT=evil.inp\u2028%\x85#\n1.0, 2.0"
@@ -95,12 +95,10 @@ def test_the_digest_of_a_file_is_one(made):
 
 
 def test_texts_of_a_run_are_one_line_each(make_scene, tmp_path):
-    folder = tmp_path / "e.h5.parts"
-    folder.mkdir()
-    run = RunFolder.of(folder, make_scene(), "cells", Plan(((8, 8),))).begin()
+    run = Job.of(make_scene(), tmp_path / "e.h5").record.begin()
     replace(run, date="now\n  digest  forged")._write(expected="anything")
     with pytest.raises(StoreError, match=r"run\.toml: damaged"):
-        RunFolder.open(folder)
+        RunFolder.open(run.folder)
 
 
 def test_a_comment_above_a_table_is_one_line(tmp_path):

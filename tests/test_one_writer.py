@@ -28,7 +28,6 @@ from mcgw.store.lock import LockedError, locked
 from mcgw.store.place import tidy
 from mcgw.store.run_folder import RunFolder
 from mcgw.store.saving import save
-from mcgw.store.shards import Plan
 
 HERE = Path(__file__).parent
 SIZE = 16
@@ -188,7 +187,7 @@ def leave_behind(path, scene, *, shards):
     (folder / "shards" / "block-0000000000016.h5").write_bytes(b"of a worker whose driver is gone")
     if shards:
         (folder / "shards" / "block-0000000000016.h5").unlink()
-        RunFolder.of(folder, scene, "tail", Plan(((scene.n_surfaces, SIZE),))).begin()
+        Job.of(scene, path).record.begin()
         (folder / "shards" / "block-0000000000000.h5").write_bytes(b"whole")
 
 
@@ -217,7 +216,7 @@ def test_leftovers_of_a_run_of_one_block_do_not_stand_in_the_way_of_another(scen
 def test_an_empty_run_of_another_scene_gives_way(scene, path):
     folder = parts_of(path)
     with locked(folder):
-        RunFolder.of(folder, scene, "tail", Plan(((scene.n_surfaces, SIZE),))).begin()
+        Job.of(scene, path).record.begin()
     run(replace(scene, seed=2, n_surfaces=3 * SIZE), path, shard="1/2")
     assert RunFolder.open(folder).scene.seed == 2
 

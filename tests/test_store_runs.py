@@ -68,9 +68,9 @@ def drawn(monkeypatch):
     """First surfaces of the blocks that were drawn, in order."""
     found, draw = [], Job.draw
 
-    def counted(job, span, threads):
+    def counted(job, span, *more):
         found.append(span.first)
-        return draw(job, span, threads)
+        return draw(job, span, *more)
 
     monkeypatch.setattr(Job, "draw", counted)
     return found

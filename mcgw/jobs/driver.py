@@ -9,16 +9,15 @@ import threading
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Future
-from contextlib import closing, contextmanager
-from dataclasses import dataclass, field, replace
+from contextlib import contextmanager
+from dataclasses import dataclass, field
 from queue import Empty, SimpleQueue
 from time import monotonic
 from typing import Any, TypeVar
 
 from mcgw.errors import RunError, StoppedError
-from mcgw.jobs.engines import Engine, EngineLostError, Processes, Threads, WorkerDiedError
+from mcgw.jobs.engines import Engine, EngineLostError, Processes, WorkerDiedError
 from mcgw.machine.progress import Progress, Tell, told
-from mcgw.store.shards import Span
 
 _Block = TypeVar("_Block")
 
@@ -201,27 +200,6 @@ class By:
     progress: Callable[[Any], Any]
     signals: Signals = field(default_factory=Signals)
 
-    def __post_init__(self) -> None:
-        if self.threads is not None and self.threads < 1:
-            raise ValueError(f"threads = {self.threads}: give a whole number >= 1")
-
-    @contextmanager
-    def at_work(self) -> Iterator["By"]:
-        """With the engine given, left open, or with own threads; signals are heeded."""
-        with heed_signals() as signals:
-            if self.engine is not None:
-                yield replace(self, threads=1, signals=signals)
-                return
-            with closing(Threads()) as own:
-                yield replace(self, engine=own, signals=signals)
-
-    def drive(
-        self, spans: Sequence[Span], task: Any, arguments: Any, done: Callable[[Span, Any], None]
-    ) -> None:
-        """Have the engine draw blocks, as `mcgw.jobs.driver.drive`."""
-        assert self.engine is not None
-        drive(self.engine, spans, task, arguments, done, self.signals)
-
 
 @contextmanager
 def asked_of(
@@ -235,14 +213,16 @@ def asked_of(
     Raises
     ------
     ValueError
-        If one of them is empty, or a share is given to an engine.
+        If one of them is wrong, or a share is given to an engine.
     """
+    if threads is not None and threads < 1:
+        raise ValueError(f"threads = {threads}: give a whole number >= 1")
     if shard is not None and engine is not None:
         raise ValueError(f"shard = {shard!r}: a share uses threads; leave engine out")
     part = None if shard is None else part_of(shard)
-    draws = _engine_of(engine, threads)
+    draws = None if engine in (None, "threads") else _engine_of(engine, threads)
     try:
-        with told(progress, "surfaces", dashboard_of(draws)) as tell:
+        with told(progress, "surfaces", dashboard_of(draws) if draws else "") as tell:
             yield draws, part, tell
     finally:
         if draws is not None and draws is not engine:
@@ -255,12 +235,10 @@ def dashboard_of(engine: Engine | None) -> str:
     return f"dashboard: {link}" if link else ""
 
 
-def _engine_of(engine: Any, threads: int | None) -> Engine | None:
+def _engine_of(engine: Any, threads: int | None) -> Engine:
     from mcgw.jobs.dask_engine import Dask, is_client
 
     match engine:
-        case None | "threads":
-            return None
         case "processes":
             return Processes(_cores() if threads is None else threads)
         case str() if engine == "dask" or "://" in engine:

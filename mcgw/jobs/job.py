@@ -15,7 +15,8 @@ from time import perf_counter
 from typing import TYPE_CHECKING
 
 from analytic import PiecewiseSeries
-from mcgw.ensemble.drawing import Reducer, use_threads
+from analytic.arrays import hold
+from mcgw.ensemble.drawing import GoOn, Reducer, always, use_threads
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.results import Tables
 from mcgw.ensemble.simulation import reducer_of
@@ -27,10 +28,10 @@ from mcgw.scene.scene import Scene
 from mcgw.scene.storable import storable
 from mcgw.store.disk import parts_of
 from mcgw.store.ensembles import described
-from mcgw.store.identity import difference, drawn_with, now
+from mcgw.store.identity import difference, drawn_with, identity_of, now
+from mcgw.store.layout import body_of, stored_text
 from mcgw.store.place import finished, recorded_scene
 from mcgw.store.run_folder import RunFolder
-from mcgw.store.saving import body_of
 from mcgw.store.shards import Plan, Span, commit_shard
 
 if TYPE_CHECKING:
@@ -63,7 +64,11 @@ class Job:
         """
         check_output(path)
         one = reducer_of(scene)
-        return cls(RunFolder.of(parts_of(path), scene, one.sampler.name, _plan((one,))), (one,))
+        sampler, plan = one.sampler.name, Plan(((one.n_surfaces, one.rows),), whole=one.whole)
+        known = identity_of(scene, sampler), drawn_with(scene, sampler), now()
+        record = RunFolder(parts_of(path), stored_text(scene), "", sampler, plan, *known)
+        hold(record, scene=scene, path=path)  # which the text and the folder would give back
+        return cls(record, (one,))
 
     @classmethod
     def of_sweep(cls, asked: "Asked", path: Path) -> "Job":
@@ -76,10 +81,11 @@ class Job:
         """
         check_output(path)
         reducers, texts = _of_groups(asked), asked.texts()
+        plan = Plan(tuple((one.n_surfaces, one.rows) for one in reducers), whole=True)
         known = {drawn_with(scene, name_of(scene)) for group in asked.groups for scene in group.computed}
         draws = max(known, key=len)  # with the kind of processor, if any has it
         identity = hashlib.sha256("\0".join((*texts, draws)).encode()).hexdigest()
-        return cls(RunFolder(parts_of(path), *texts, "", _plan(reducers), identity, draws, now()), reducers)
+        return cls(RunFolder(parts_of(path), *texts, "", plan, identity, draws, now()), reducers)
 
     @classmethod
     def begun(cls, record: RunFolder) -> "Job":
@@ -141,11 +147,11 @@ class Job:
         """What some surfaces of one group take, in any unit."""
         return span.n * self.reducers[self.record.plan.group(span)[0]].work
 
-    def draw(self, span: Span, threads: int | None) -> Tables:
+    def draw(self, span: Span, threads: int | None, go_on: GoOn = always) -> Tables:
         """What is kept of some surfaces of one group; it does not depend on `threads`."""
-        g, first = self.record.plan.group(span)
+        g, first = self.record.plan.group(span) if len(self.reducers) > 1 else (0, span.first)
         with use_threads(threads):
-            return self.reducers[g].tables(first, first + span.n)
+            return self.reducers[g].tables(first, first + span.n, go_on)
 
     def body(self, blocks: Iterable[tuple[int, Tables]], seconds: float) -> tuple[bytes, bytes]:
         """The file and its trailer, of all blocks in their order, each with the number of its group."""
@@ -161,10 +167,6 @@ class Job:
         from mcgw.sweeps.file import body_of_sweep  # of which most runs are none
 
         return body_of_sweep(run, held, **about)
-
-
-def _plan(reducers: tuple[Reducer, ...]) -> Plan:
-    return Plan(tuple((one.n_surfaces, one.rows) for one in reducers), whole=reducers[0].whole)
 
 
 def _asked(record: RunFolder) -> "Asked":

@@ -1,7 +1,7 @@
 """``mcgw.run``: from a scene to its file. Begin, go on, extend, until its rule is met."""
 
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import closing, nullcontext
 from dataclasses import replace
 from pathlib import Path
 from time import monotonic, perf_counter
@@ -11,18 +11,17 @@ from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.forecast import checkpoints, forecast, without_rule
 from mcgw.errors import RunError, StoreError
 from mcgw.formats.files import state_of
-from mcgw.jobs.driver import By, Part, asked_of
+from mcgw.jobs.driver import By, Part, asked_of, drive, heed_signals
 from mcgw.jobs.engines import Threads
 from mcgw.jobs.job import Job, as_recorded, commit_block, draw_block
 from mcgw.jobs.merging import merge_once
 from mcgw.machine.progress import Progress
 from mcgw.scene.arguments import check_object
 from mcgw.scene.scene import Scene
-from mcgw.store.ensembles import ensemble_in, open_ensemble
+from mcgw.store.ensembles import FileResults, open_ensemble
 from mcgw.store.lock import locked
-from mcgw.store.place import drop_leftovers, tidy, with_recorded_seed
+from mcgw.store.place import drop_leftovers, tidy, with_recorded_seed, write_body
 from mcgw.store.run_folder import RunFolder
-from mcgw.store.saving import write_body
 from mcgw.store.shards import Span
 
 _ROUNDS = 3  # of merging, if shards turn out damaged
@@ -123,19 +122,19 @@ def run(
         if part:
             return make(Job.of(without_rule(scene) if scene.rel_err is not None else scene, path), by, part)
         started = monotonic()
-        for stage in _stages(scene, path):
+        ruled = scene.rel_err is not None or scene.max_seconds is not None
+        for stage in _stages(scene, path) if ruled else (scene,):
             job = Job.of(stage, path)
             make(job, by)
             if scene.max_seconds is not None and monotonic() - started > scene.max_seconds:
                 break
-    return ensemble_in(path, job.record.scene, job.record.sampler)
+    if scene.keep == "statistics":
+        return open_ensemble(path)
+    return Ensemble(job.record.scene, job.record.sampler, FileResults(path))
 
 
 def _stages(scene: Scene, path: Path) -> Iterator[Scene]:
     """The scene with a number of surfaces in place of its rules; with `max_seconds`, ever more of them."""
-    if scene.rel_err is None and scene.max_seconds is None:
-        yield scene
-        return
     held = min(open_ensemble(path).n_surfaces, scene.n_surfaces) if path.is_file() else 0
     fixed = without_rule(scene)
     last = max(fixed.n_surfaces, held)
@@ -166,38 +165,48 @@ def make(job: Job, by: By, part: Part | None = None) -> int:
         If it could not be finished; what is done is kept.
     """
     job.check()
-    total, blocks, folder = job.record.plan.total, job.record.plan.missing([]), job.record.folder
+    run, total = job.record, sum(one.n_surfaces for one in job.reducers)
     if job.done() < total:
         if part:
-            tidy(job.record.path)
-        with by.at_work() as at_work, locked(folder, shared=part is not None):
-            if not part:
-                drop_leftovers(job.record.path)
+            tidy(run.path)
+        with heed_signals() as signals, locked(run.folder, shared=part is not None) as new:
+            by = replace(by, signals=signals)
+            if not (part or new):
+                drop_leftovers(run.path)
             if job.done() < total:  # no other process was quicker
-                with _what_is_kept(job):
+                try:
                     if part:
-                        return _share(job, at_work, part)
-                    if by.engine is None and len(blocks) == 1 and not (folder / "run.toml").exists():
-                        _at_once(job, at_work)
+                        return _share(job, by, part)
+                    one, begun = job.reducers[0], (run.folder / "run.toml").exists()
+                    if by.engine is None and not run.axes and total <= one.rows > 1 and not begun:
+                        _at_once(job, by)
                     else:
-                        _in_blocks(job, at_work)
+                        _in_blocks(job, by)
+                except OSError as error:
+                    raise RunError(
+                        f"{error.filename or run.path}: {error.strerror or error}; finished blocks are kept "
+                        f"in {run.folder}; once this is fixed, the same command resumes"
+                    ) from None
                 return 0
-    tidy(job.record.path)
-    by.progress(sum(map(job.work, blocks)))
+    tidy(run.path)
+    by.progress(sum(one.n_surfaces * one.work for one in job.reducers))
     return 0
 
 
 def _at_once(job: Job, by: By) -> None:
-    """All surfaces as one block, and their file in one step. Only with the lock."""
-    answers: list[Any] = []
-    started, (span,) = perf_counter(), job.record.plan.missing([])
+    """All surfaces of a scene in this thread, and their file in one step. Only with the lock."""
+    run, started = job.record, perf_counter()
+
+    def go_on(done: int) -> bool:
+        by.signals.check("nothing was saved, because the run is one block; the same command starts it again")
+        by.progress(done)
+        return True
+
     by.progress(0)
-    by.drive([span], job.draw, lambda span: (span, by.threads), lambda _, tables: answers.append(tables))
-    by.signals.check("nothing was saved, because the run is one block; the same command starts it again")
-    before = state_of(job.record.path)
+    tables = job.draw(Span(0, run.scene.n_surfaces), by.threads, go_on)
+    before = state_of(run.path)
     job.done()  # or what is there now is another's
-    write_body(job.record.path, job.body([(0, answers[0])], perf_counter() - started), before)
-    by.progress(job.work(span))
+    write_body(run.path, job.body([(0, tables)], perf_counter() - started), before)
 
 
 def _in_blocks(job: Job, by: By) -> None:
@@ -227,18 +236,6 @@ def _share(job: Job, by: By, part: Part) -> int:
     return sum(span.n for span in started.missing(done, started.shards()))
 
 
-@contextmanager
-def _what_is_kept(job: Job) -> Iterator[None]:
-    """An error of the disk, with what it leaves."""
-    try:
-        yield
-    except OSError as error:
-        raise RunError(
-            f"{error.filename or job.record.path}: {error.strerror or error}; finished blocks are kept in "
-            f"{job.record.folder}; once this is fixed, the same command resumes"
-        ) from None
-
-
 def _draw_missing(job: Job, started: RunFolder, spans: list[Span], by: By, part: Part | None = None) -> None:
     """Commit every block that is missing, or of these a job's share."""
     plan, left = started.plan, sum(span.n for span in spans)
@@ -253,8 +250,9 @@ def _draw_missing(job: Job, started: RunFolder, spans: list[Span], by: By, part:
         by.progress(done)
 
     by.progress(done)
-    task = draw_block if isinstance(by.engine, Threads) else commit_block
-    by.drive(spans, task, lambda span: (folder, span.first, span.n, by.threads), note)
+    task, threads = (draw_block, by.threads) if by.engine is None else (commit_block, 1)
+    with nullcontext(by.engine) if by.engine else closing(Threads()) as engine:
+        drive(engine, spans, task, lambda span: (folder, span.first, span.n, threads), note, by.signals)
     by.signals.check(
         f"{plan.total - left} of {plan.total} surfaces are kept in {started.folder}; the same command resumes"
     )

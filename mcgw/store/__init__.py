@@ -39,8 +39,8 @@ Every dataset has the attributes `units` and `long_name`; only quantities that t
 there. Chunked, each chunk with a checksum (Fletcher); a table is shuffled and compressed with gzip if that
 saves half of it (`chunks`). `digest` is over scene and data, `run` over what the
 numbers of a surface depend on (scene but for the number of surfaces, sampler, and the versions in `draws`).
-After the HDF5 data stand 512 bytes, the trailer (`trailer`), with the digest of the file's bytes and that of
-its head (`structure`: attributes, types, shapes, scales). That of the head is checked on every opening, that
+After the HDF5 data stand 512 bytes, the trailer (`disk`), with the digest of the file's bytes and that of
+its head (attributes, types, shapes, scales). That of the head is checked on every opening, that
 of all bytes by ``mcgw show --verify``.
 
 A run that fits one block is written in one atomic step. Any other grows as shards in ``FILE.parts/``, which
@@ -54,9 +54,9 @@ are merged at the end and then removed. What each mechanism is for:
 ``identity``     which scenes, samplers, versions and kinds of processor those are; and who made a file
 ``saving``       a file is made in memory, or of blocks under another name, and read back
 ``statistics_file``  that of scenes that keep statistics and no surface
-``disk``         HDF5 may crash on a full disk: it never sees an error of it
-``trailer``      whether a file is whole and unchanged, without HDF5
-``structure``    what a file may hold, and whether scene, units and scales are as written, on every opening
+``disk``         HDF5 may crash on a full disk: it never sees an error of it; and the trailer, which tells
+                 whether a file is whole and unchanged, without HDF5
+``structure``    what a file may hold, looked at on every opening
 ``untrusted``    a file of a stranger is looked at by a child first
 ``ensembles``    files and runs in progress opened, and verified
 ``lock``         two processes never write one file; shared by jobs that each make a share

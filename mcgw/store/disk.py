@@ -5,17 +5,29 @@ that an HDF5 file with one begins as any other and every HDF5 reader opens it; a
 never finished. Layout: 8 bytes magic, JSON padded with spaces (472 bytes), SHA-256 of these 480 bytes (32
 bytes). The JSON holds the length and the SHA-256 of all that stands before the trailer, and what the writer
 wants known without opening the file.
+
+Of a file of results that is the digest of its head: attributes, types and shapes of its tables, and scales.
+They are small and decide what the numbers mean, and the digest is computed again whenever the file is opened;
+what is large has checksums of its own, chunk by chunk.
 """
 
 import hashlib
 import json
+import math
 import os
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import h5py
+import numpy as np
+
 from mcgw.errors import StoreError
 from mcgw.formats.named_files import open_regular
+
+GROUP = "drawn"  # the one group that a file may have
+MOST_SCALE = 2**20  # values of a scale up to which they are looked at on opening
 
 
 def parts_of(path: Path) -> Path:
@@ -231,3 +243,26 @@ def _trailer(path: Path, data: bytes, size: int) -> Trailer:
     if trailer.length != size - TRAILER_BYTES:
         raise StoreError(f"{path}: damaged ({size} bytes long, not {trailer.length + TRAILER_BYTES})")
     return trailer
+
+
+def head_digest(file: h5py.File) -> str:
+    """SHA-256 of the head of a plain file; it does not depend on how HDF5 laid it out."""
+    lines = [*_attributes("/", file.attrs)]
+    names = {*file, *(f"{GROUP}/{name}" for name in file.get(GROUP, ()))}
+    for name in sorted(names - {GROUP}):
+        data = file[name]
+        scales = [[scale.name for _, scale in axis.items()] for axis in data.dims]
+        lines += [json.dumps([name, data.dtype.str, data.shape, scales]), *_attributes(name, data.attrs)]
+        if data.ndim == 1 and math.prod(data.shape) <= MOST_SCALE:
+            lines.append(hashlib.sha256(data[()].tobytes()).hexdigest())
+    return hashlib.sha256("\n".join(lines).encode()).hexdigest()
+
+
+def _attributes(name: str, attributes: Any) -> Iterator[str]:
+    """Those that are text or numbers; the others only tie the scales to the tables."""
+    for key in sorted(attributes):
+        value = attributes[key]
+        if isinstance(value, str):
+            yield json.dumps([name, key, value])
+        elif isinstance(value, np.ndarray | np.generic) and value.dtype.kind in "iufbS":
+            yield json.dumps([name, key, value.dtype.str, value.shape, value.tobytes().hex()])

@@ -17,7 +17,7 @@ from mcgw.ensemble.results import Held, Results
 from mcgw.errors import StoreError
 from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_from, scene_text
-from mcgw.store.disk import check_trailer, parts_of, read_trailer
+from mcgw.store.disk import MOST_SCALE, check_trailer, parts_of, read_trailer
 from mcgw.store.layout import (
     FILETYPE,
     FORMAT,
@@ -25,13 +25,11 @@ from mcgw.store.layout import (
     drawn_digest,
     drawn_tables,
     file_pieces,
-    numbers,
     scales_of,
     where,
 )
 from mcgw.store.run_folder import RunFolder
 from mcgw.store.shards import RAGGED, Shard
-from mcgw.store.structure import MOST_SCALE
 from mcgw.store.untrusted import examine
 
 
@@ -79,17 +77,12 @@ def open_ensemble(path: str | Path) -> Ensemble:
     attributes, scene = described(path)
     if "axes" in attributes:
         raise StoreError(f"{path}: holds a sweep; mcgw.open_sweep opens it")
-    return ensemble_in(path, scene, str(attributes["sampler"]), _drawn_for(path, attributes))
-
-
-def ensemble_in(path: Path, scene: Scene, sampler: str, drawn_for: Scene | None = None) -> Ensemble:
-    """The ensemble of a file that is known to hold it."""
     results: Held = FileResults(path)
     if scene.keep == "statistics":
         from mcgw.store.statistics_file import read_blocks
 
         results = read_blocks(path, scene)
-    return Ensemble(scene, sampler, results, drawn_for)
+    return Ensemble(scene, str(attributes["sampler"]), results, _drawn_for(path, attributes))
 
 
 def _drawn_for(path: Path, attributes: dict[str, Any]) -> Scene | None:
@@ -186,14 +179,14 @@ def _check_format(path: Path, attributes: dict[str, Any]) -> None:
 
 def _check_tables(path: Path, scene: Scene, datasets: dict[str, Any]) -> None:
     """The datasets must have the shapes that the scene declares, and the scales its values."""
-    scales = scales_of(scene)
+    scales = scales_of(scene, min(scene.n_surfaces, MOST_SCALE))
     if scene.keep == "statistics":
         from mcgw.store.statistics_file import shapes_of
 
         del scales["surface"]
         shapes = shapes_of(scene)
     else:
-        shapes = {name: [len(values)] for name, values in scales.items()}
+        shapes = {name: [len(values)] for name, values in scales.items()} | {"surface": [scene.n_surfaces]}
         shapes |= {name: [scene.n_surfaces, *shape] for name, shape in scene.shapes.items()}
     for name, shape in shapes.items():
         if name not in datasets or datasets[name][1] != shape:
@@ -201,7 +194,7 @@ def _check_tables(path: Path, scene: Scene, datasets: dict[str, Any]) -> None:
             raise StoreError(f"{path}: {name} has shape {found}, its scene declares {shape}")
     with h5py.File(path, "r") as file:
         for name, values in scales.items():
-            if not np.array_equal(file[name][:MOST_SCALE], numbers(values, MOST_SCALE)):
+            if not np.array_equal(file[name][:MOST_SCALE], values[:MOST_SCALE]):
                 raise StoreError(f"{path}: {name} does not hold the values that its scene declares")
 
 

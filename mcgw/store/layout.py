@@ -1,8 +1,9 @@
 """How an ensemble lies in its HDF5 file; the schema is written out in `mcgw.store`."""
 
 import hashlib
+import io
 import math
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import chain
 from typing import Any
 
@@ -11,16 +12,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analytic import ALL_QUANTITIES
+from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.labelled import AXES, Labelled
 from mcgw.ensemble.results import Tables
 from mcgw.errors import StoreError
 from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_text
 from mcgw.store.chunks import PACKED, add_rows, empty_table
-from mcgw.store.disk import trailer_of
+from mcgw.store.disk import GROUP, head_digest, trailer_of
 from mcgw.store.identity import now, provenance
-from mcgw.store.shards import DRAWN, RAGGED, Span, content_digest, in_memory
-from mcgw.store.structure import GROUP, MOST_TEXT, head_digest
+from mcgw.store.shards import DRAWN, LIBVER, RAGGED, Span, content_digest
+from mcgw.store.structure import MOST_TEXT
 
 FILETYPE, FORMAT = "mcgw-results", (2, 0)
 
@@ -56,7 +58,7 @@ def fill(file: h5py.File, scene: Scene, pieces: Iterable[tuple[Span, Stored]]) -
                 first = len(data)
                 data.resize(first + len(table), axis=0)
             add_rows(data, first, table)
-        stop = span.stop
+        stop += span.n
     if stop != scene.n_surfaces:
         raise StoreError(f"{stop} surfaces, not {scene.n_surfaces}")
 
@@ -108,28 +110,32 @@ def stored_text(scene: Scene) -> str:
     return text
 
 
-def scales_of(scene: Scene) -> dict[str, Sequence[float]]:
-    """What the axes of the tables count."""
-    scales: dict[str, Sequence[float]] = {"surface": range(scene.n_surfaces), "separation": scene.separations}
-    return scales if scene.tangential is None else {**scales, "displacement": scene.tangential.displacements}
+def scales_of(scene: Scene, surfaces: int) -> dict[str, NDArray[Any]]:
+    """What the axes of the tables count; of the surfaces only the first ones."""
+    scales = {"surface": np.arange(surfaces), "separation": np.array(scene.separations)}
+    if scene.tangential is not None:
+        scales["displacement"] = np.array(scene.tangential.displacements)
+    return scales
 
 
-def numbers(scale: Sequence[float], most: int | None = None) -> NDArray[Any]:
-    """The values of a scale, or the first of them."""
-    first = scale[:most]
-    return np.arange(first.start, first.stop) if isinstance(first, range) else np.array(first)
+def body_of(ensemble: Ensemble, **about: Any) -> tuple[bytes, bytes]:
+    """The file of an ensemble, with more attributes, and its trailer."""
+    scene = ensemble.scene
+    if ensemble.drawn_for is not None:
+        about["drawn_for"] = scene_text(ensemble.drawn_for)
+    if scene.keep == "statistics":
+        from mcgw.store.statistics_file import body_of_statistics  # for those scenes alone
 
-
-def sealed(make: Callable[[h5py.File], Any]) -> tuple[bytes, bytes]:
-    """A small file that is made in memory, and its trailer."""
-    notes = {}
-
-    def whole(file: h5py.File) -> None:
-        make(file)
-        notes["head"] = head_digest(file)
-
-    body = in_memory(whole)
-    return body, trailer_of(body, **notes)
+        return body_of_statistics(ensemble, **about)
+    names = [*scene.shapes, *(DRAWN if scene.keep == "moments" else ())]
+    arrays = {name: ensemble.sums.read(name, 0, None) for name in names}
+    made = io.BytesIO()
+    with h5py.File(made, "w", libver=LIBVER) as file:
+        fill(file, scene, [(Span(0, ensemble.sums.rows()), arrays)])
+        describe(file, scene, ensemble.sampler, digest_of(file, scene, [arrays]), **about)
+        head = head_digest(file)
+    body = made.getvalue()
+    return body, trailer_of(body, head=head)
 
 
 def body_of_kept(
@@ -139,8 +145,8 @@ def body_of_kept(
 
     The digest is over these tables, and over the texts that say what they are of.
     """
-
-    def make(file: h5py.File) -> None:
+    made = io.BytesIO()
+    with h5py.File(made, "w", libver=LIBVER) as file:
         for name, one in labelled.coordinates.items():
             if one.dims == (name,):
                 _scale(file, name, one.values, one.units, one.long_name)
@@ -154,8 +160,9 @@ def body_of_kept(
         for name, values in tables.items():
             file.create_dataset(f"{GROUP}/{name}", data=values, **_packed(values))
         describe(file, scene, sampler, drawn_digest(tables, *texts), **attributes)
-
-    return sealed(make)
+        head = head_digest(file)
+    body = made.getvalue()
+    return body, trailer_of(body, head=head)
 
 
 def _packed(values: NDArray[Any]) -> dict[str, Any]:
@@ -216,8 +223,8 @@ def rows_of(file: h5py.File, spans: Iterable[Span]) -> Iterator[tuple[Span, Tabl
 
 def _lay_out(file: h5py.File, scene: Scene, like: Stored) -> None:
     """Empty datasets with their scales, units and names."""
-    for name, scale in scales_of(scene).items():
-        _scale(file, name, numbers(scale), *AXES[name])
+    for name, scale in scales_of(scene, scene.n_surfaces).items():
+        _scale(file, name, scale, *AXES[name])
     for name in sorted(like):
         q = scene.quantity(name) if name in ALL_QUANTITIES else None
         data = empty_table(file, where(name), None if name == RAGGED else scene.n_surfaces, like[name])

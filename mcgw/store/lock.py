@@ -43,8 +43,8 @@ class LockedError(StoreError):
 
 
 @contextmanager
-def locked(folder: Path, *, shared: bool = False, patience: float | None = None) -> Iterator[None]:
-    """Hold the folder of a run, from `mcgw.store.disk.parts_of`; it is made if it is not there.
+def locked(folder: Path, *, shared: bool = False, patience: float | None = None) -> Iterator[bool]:
+    """Hold the folder of a run, from `mcgw.store.disk.parts_of`; tells whether it had to be made.
 
     `shared` is for one of several jobs that each make a share of the blocks; `patience` is how many seconds
     to wait for another holder, by default `PATIENCE`. The files `LOCK_FILES` in the folder go with it.
@@ -56,6 +56,7 @@ def locked(folder: Path, *, shared: bool = False, patience: float | None = None)
     StoreError
         If something else than a folder is there, or it cannot be made or locked.
     """
+    new = not folder.exists()
     with ExitStack() as held:
         until = monotonic() + (PATIENCE if patience is None else patience)
         while (problem := _try(folder, shared, held)) is not None:
@@ -69,7 +70,7 @@ def locked(folder: Path, *, shared: bool = False, patience: float | None = None)
                 text = f"pid {os.getpid()} on {socket.gethostname()}\n"
                 write_whole(folder / _HOLDER, (text.encode(),))
         try:
-            yield
+            yield new
         finally:
             if not shared:
                 _remove_if_empty(folder)

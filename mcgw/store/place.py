@@ -1,11 +1,11 @@
-"""What lies at the place of a file: surfaces, a seed, and what processes that died left behind."""
+"""What lies at the place of a file: surfaces, a seed, what the dead left behind; and a new file."""
 
 from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from mcgw.errors import StoreError
-from mcgw.formats.files import remove_stale
+from mcgw.errors import RunError, StoreError
+from mcgw.formats.files import State, remove_stale, write_whole
 from mcgw.scene.fields import LeftOut
 from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_from, scene_text
@@ -74,6 +74,26 @@ def finished(path: Path, scene: Scene, sampler: str) -> int:
     if there.n_surfaces < scene.n_surfaces:
         check_trailer(path)  # it is about to be copied
     return there.n_surfaces
+
+
+def write_body(path: Path, body: tuple[bytes, bytes], before: State | None) -> None:
+    """Write a file and its trailer in one atomic step, over what `before` says that was there. With the lock.
+
+    Raises
+    ------
+    StoreError
+        If something else has this name by now.
+    RunError
+        If the disk does not take it.
+    """
+    try:
+        write_whole(path, body, expected=before)
+    except FileExistsError as error:
+        raise StoreError(f"{path}: {error.strerror}; it was not changed; choose another -o") from None
+    except OSError as error:
+        raise RunError(
+            f"{path}: cannot be written ({error.strerror or error}); free some space and repeat"
+        ) from None
 
 
 def tidy(path: Path) -> None:

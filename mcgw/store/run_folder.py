@@ -23,15 +23,13 @@ from pathlib import Path
 
 import tomli_w
 
-from analytic.arrays import hold
 from mcgw.errors import RunError, StoreError
 from mcgw.formats.files import Expected, sync, write_whole
 from mcgw.formats.named_files import loads
 from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_from
 from mcgw.scene.section import SceneError
-from mcgw.store.identity import difference, drawn_with, identity_of, now
-from mcgw.store.layout import stored_text
+from mcgw.store.identity import difference
 from mcgw.store.lock import refuse_link
 from mcgw.store.shards import Plan, Shard, Span, open_shard
 
@@ -73,20 +71,12 @@ class RunFolder:
     drawn_with: str
     date: str
 
-    @classmethod
-    def of(cls, folder: Path, scene: Scene, sampler: str, plan: Plan) -> "RunFolder":
-        """That of one scene; nothing is written yet."""
-        draws, identity = drawn_with(scene, sampler), identity_of(scene, sampler)
-        run = cls(folder, stored_text(scene), "", sampler, plan, identity, draws, now())
-        hold(run, scene=scene)  # which a file gives back (`scene_text`)
-        return run
-
     @cached_property
     def scene(self) -> Scene:
         """What is drawn; of a sweep what its points come from."""
         return scene_from(self.text)
 
-    @property
+    @cached_property
     def path(self) -> Path:
         """The file that it makes."""
         return self.folder.with_name(self.folder.name.removesuffix(".parts"))  # of `parts_of`

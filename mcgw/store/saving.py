@@ -11,35 +11,32 @@ from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import closing
 from pathlib import Path
-from typing import Any
 
 import h5py
 
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.results import Tables
 from mcgw.errors import RunError, StoreError
-from mcgw.formats.files import State, check_output, state_of, write_whole
+from mcgw.formats.files import check_output, state_of
 from mcgw.machine.in_threads import Items, one_ahead
 from mcgw.scene.arguments import check_object
 from mcgw.scene.scene import Scene
-from mcgw.scene.scene_file import scene_text
-from mcgw.store.disk import SteadyFile, Trailer, parts_of, sha256_of
+from mcgw.store.disk import SteadyFile, Trailer, head_digest, parts_of, sha256_of
 from mcgw.store.ensembles import open_ensemble
 from mcgw.store.identity import drawn_with, identity_of
 from mcgw.store.layout import (
+    body_of,
     describe,
     digest_of,
     file_pieces,
     fill,
     rows_of,
-    sealed,
     stored_tables,
 )
 from mcgw.store.lock import locked
-from mcgw.store.place import finished
+from mcgw.store.place import finished, write_body
 from mcgw.store.run_folder import RunFolder
-from mcgw.store.shards import DRAWN, LIBVER, Shard, Span, content_digest, tables_in
-from mcgw.store.structure import head_digest
+from mcgw.store.shards import LIBVER, Shard, Span, content_digest, tables_in
 
 _CACHE = 2**25  # of chunks that a shard fills only in part
 
@@ -93,45 +90,6 @@ def save(ensemble: Ensemble, path: str | Path, *, wall_seconds: float = 0.0) -> 
         about = {"run": identity_of(*asked), "draws": drawn_with(*asked), "wall_seconds": wall_seconds}
         write_body(path, body_of(ensemble, **about), before)
     return open_ensemble(path)
-
-
-def write_body(path: Path, body: tuple[bytes, bytes], before: State | None) -> None:
-    """Write a file and its trailer in one atomic step, over what `before` says that was there. With the lock.
-
-    Raises
-    ------
-    StoreError
-        If something else has this name by now.
-    RunError
-        If the disk does not take it.
-    """
-    try:
-        write_whole(path, body, expected=before)
-    except FileExistsError as error:
-        raise StoreError(f"{path}: {error.strerror}; it was not changed; choose another -o") from None
-    except OSError as error:
-        raise RunError(
-            f"{path}: cannot be written ({error.strerror or error}); free some space and repeat"
-        ) from None
-
-
-def body_of(ensemble: Ensemble, **about: Any) -> tuple[bytes, bytes]:
-    """The file of an ensemble, with more attributes, and its trailer."""
-    scene = ensemble.scene
-    if ensemble.drawn_for is not None:
-        about["drawn_for"] = scene_text(ensemble.drawn_for)
-    if scene.keep == "statistics":
-        from mcgw.store.statistics_file import body_of_statistics  # for those scenes alone
-
-        return body_of_statistics(ensemble, **about)
-    names = [*scene.shapes, *(DRAWN if scene.keep == "moments" else ())]
-    arrays = {name: ensemble.sums.read(name, 0, None) for name in names}
-
-    def make(file: h5py.File) -> None:
-        fill(file, scene, [(Span(0, ensemble.sums.rows()), arrays)])
-        describe(file, scene, ensemble.sampler, digest_of(file, scene, [arrays]), **about)
-
-    return sealed(make)
 
 
 def merge_into(run: RunFolder, target: Path, temporary: Path, check: Callable[[], None]) -> None:

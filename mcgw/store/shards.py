@@ -12,13 +12,12 @@ for.
 import hashlib
 import io
 from bisect import bisect_right
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import accumulate
 from pathlib import Path
-from typing import Any
 
 import h5py
 import numpy as np
@@ -107,26 +106,17 @@ class Shard:
         return read_checked(self.path)[1]
 
 
-def in_memory(fill: Callable[[h5py.File], Any]) -> bytes:
-    """Bytes of an HDF5 file that is made in memory.
+def pack(arrays: Tables) -> bytes:
+    """HDF5 file with these arrays, in memory.
 
-    By a Python file object: in the file image of an HDF5 before 2.0 the checksum of the superblock
-    does not hold, and the file cannot be opened.
+    By a Python file object, as all files made in memory: in the file image of an HDF5 before 2.0 the checksum
+    of the superblock does not hold, and the file cannot be opened.
     """
     body = io.BytesIO()
     with h5py.File(body, "w", libver=LIBVER) as file:
-        fill(file)
-    return body.getvalue()
-
-
-def pack(arrays: Tables) -> bytes:
-    """HDF5 file with these arrays, in memory."""
-
-    def fill(file: h5py.File) -> None:
         for name in sorted(arrays):
             stored(file, name, arrays[name])
-
-    return in_memory(fill)
+    return body.getvalue()
 
 
 def commit_shard(path: Path, run: str, span: Span, arrays: Tables, seconds: float) -> Shard:
@@ -261,7 +251,9 @@ class Plan:
         gaps, stop, total = list[Span](), 0, self.total
         for span in (*sorted(held), Span(total, 1)):
             while stop < min(span.first, total):
-                end = min(span.first, self._end(stop))
+                g, first = self.group(Span(stop, 1))
+                n, size = self.groups[g]
+                end = min(span.first, self._starts[g] + min((first // size + 1) * size, n))
                 gaps.append(Span(stop, end - stop))
                 stop = end
             stop = max(stop, span.stop)
@@ -280,9 +272,3 @@ class Plan:
         g, first = self.group(span)
         n, size = self.groups[g]
         return first % size == 0 and (span.n == size or first + span.n == n)
-
-    def _end(self, surface: int) -> int:
-        """The surface after the block of one."""
-        g, first = self.group(Span(surface, 1))
-        n, size = self.groups[g]
-        return self._starts[g] + min((first // size + 1) * size, n)

@@ -85,7 +85,7 @@ def read_blocks(path: Path, scene: Scene) -> Summarised:
 def shapes_of(scene: Scene) -> dict[str, list[int]]:
     """Shapes that a scene declares of the tables of its statistics."""
     shapes = {"probability": [len(PROBABILITIES)], "covariance": [scene.width, scene.width]}
-    shapes |= {name: [len(values)] for name, values in scales_of(scene).items() if name != "surface"}
+    shapes |= {name: [len(values)] for name, values in scales_of(scene, 0).items() if name != "surface"}
     for name, shape in scene.shapes.items():
         shapes |= {f"{name}_{kind}": [*shape] for kind in STATISTICS}
         shapes[f"{name}_quantile"] = [len(PROBABILITIES), *shape]

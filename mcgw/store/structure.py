@@ -8,25 +8,19 @@ crafted file can crash the library, so this runs as a script in a process of its
 
 It prints a line of JSON: the attributes and datasets, or why the file is refused; "sure" if that is not for a
 want of memory.
-
-The head of an HDF5 file: its attributes, the types and shapes of its tables, and its scales.
-
-They are small and decide what the numbers mean. Their digest stands in the trailer of an ensemble file and
-is computed again whenever the file is opened; what is large has checksums of its own, chunk by chunk.
 """
 
-import hashlib
 import json
 import math
 import sys
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import h5py
 import numpy as np
 
-GROUP = "drawn"
+from mcgw.store.disk import GROUP, head_digest
+
 _FILTERS = {h5py.h5z.FILTER_DEFLATE, h5py.h5z.FILTER_SHUFFLE, h5py.h5z.FILTER_FLETCHER32, h5py.h5z.FILTER_LZF}
 _MOST_ATTRIBUTES = 64
 _READ_ALL = 2**26  # stored bytes up to which all is read here first
@@ -34,7 +28,6 @@ _MOST_EXPANSION = 1100  # deflate cannot shrink more
 _MOST_CHUNK = 2**28
 _DOCUMENTS = ("title", "scene", "drawn_for", "axes")  # other texts are shown and exported as they stand
 MOST_TEXT = 2**22  # characters of an attribute, such as the scene
-MOST_SCALE = 2**20  # values of a scale up to which they are looked at on opening
 
 
 class RefusedError(Exception):
@@ -159,33 +152,6 @@ def _main(path: str, memory: int) -> None:
     except Exception:  # HDF5 reports damage as any of a dozen exceptions
         answer = {"refused": "not an HDF5 file, or a damaged one"}
     sys.stdout.write(json.dumps(answer) + "\n")
-
-
-def head_digest(file: h5py.File) -> str:
-    """SHA-256 of the head of a plain file; it does not depend on how HDF5 laid it out."""
-    lines = [*_attributes("/", file.attrs)]
-    names = {*file, *(f"{GROUP}/{name}" for name in file.get(GROUP, ()))}
-    for name in sorted(names - {GROUP}):
-        lines += _table(name, file[name])
-    return hashlib.sha256("\n".join(lines).encode()).hexdigest()
-
-
-def _table(name: str, data: h5py.Dataset) -> Iterator[str]:
-    scales = [[scale.name for _, scale in axis.items()] for axis in data.dims]
-    yield json.dumps([name, data.dtype.str, data.shape, scales])
-    yield from _attributes(name, data.attrs)
-    if data.ndim == 1 and math.prod(data.shape) <= MOST_SCALE:
-        yield hashlib.sha256(data[()].tobytes()).hexdigest()
-
-
-def _attributes(name: str, attributes: Any) -> Iterator[str]:
-    """Those that are text or numbers; the others only tie the scales to the tables."""
-    for key in sorted(attributes):
-        value = attributes[key]
-        if isinstance(value, str):
-            yield json.dumps([name, key, value])
-        elif isinstance(value, np.ndarray | np.generic) and value.dtype.kind in "iufbS":
-            yield json.dumps([name, key, value.dtype.str, value.shape, value.tobytes().hex()])
 
 
 if __name__ == "__main__":
