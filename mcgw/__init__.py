@@ -198,7 +198,8 @@ def __getattr__(name: str) -> Any:
         return version("mcgw")
     if name not in _HOME:
         raise AttributeError(f"module 'mcgw' has no attribute {name!r}")
-    return getattr(import_module(_HOME[name]), name)
+    globals()[name] = found = getattr(import_module(_HOME[name]), name)
+    return found
 
 
 def __dir__() -> list[str]:

@@ -15,8 +15,8 @@ from mcgw.ensemble.regrading import regrade
 from mcgw.errors import StoreError
 from mcgw.jobs.merging import merge
 from mcgw.jobs.running import run
+from mcgw.scene.scene import storable
 from mcgw.scene.section import SceneError
-from mcgw.scene.storable import storable
 
 SURFACES = 60  # in four blocks, the last one short
 H = (2.0, 0.5, 3.0)

@@ -9,7 +9,7 @@ import analytic
 import mcgw
 from analytic import laws
 from mcgw.errors import StoreError
-from mcgw.scene.storable import storable
+from mcgw.scene.scene import storable
 
 KOGUT = laws.KogutEtsion(critical=0.05)
 LAWS = {

@@ -14,8 +14,7 @@ from analytic.laws.elastic_plastic import ElasticPlastic
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.simulation import simulate
 from mcgw.sampling.samplers import sampler_of
-from mcgw.scene.scene import Scene
-from mcgw.scene.storable import drawn_by
+from mcgw.scene.scene import Scene, drawn_by
 
 NEGATIVE = (
     "{} = {:g} {}: {} reaches it only with asperities of negative modulus, at s = {:.4g}; give less, "

@@ -61,7 +61,8 @@ def at_a_time(size: int) -> int:
 
 def kept(scene: Scene, block: Block) -> dict[str, Any]:
     """What of a block is kept: its sums, and its moments if the scene says so."""
-    arrays = answered(scene, block.sums)
+    alone = scene.interaction is scene.joint is None
+    arrays = dict(block.sums) if alone else answered(scene, block.sums)
     if promise_of(scene.sampler).real_surfaces:
         for name in filter(lambda name: quantity_of(name).counts, scene.quantities):
             arrays[name] = np.rint(arrays[name]).astype(np.int64)

@@ -11,7 +11,7 @@ from mcgw.formats.sheet import Sheet, Shown
 from mcgw.formats.table import SEPARATION, Column, Table
 from mcgw.machine.terminal import plotted
 from mcgw.scene.arguments import check_object
-from mcgw.scene.storable import drawn_by
+from mcgw.scene.scene import drawn_by
 
 _PAIRED = ("surface", "separations", "heights", "n_asperities", "count", "seed")
 

@@ -17,8 +17,7 @@ from mcgw.machine.memory import check_memory
 from mcgw.machine.progress import Progress, told
 from mcgw.sampling.expected import Expected
 from mcgw.scene.arguments import check_object
-from mcgw.scene.scene import Scene
-from mcgw.scene.storable import storable
+from mcgw.scene.scene import Scene, storable
 
 _BYTES = 2**23  # of a block: large enough that its flushing costs little
 _DRAWS = 4e8  # numbers drawn for a block: a second or so

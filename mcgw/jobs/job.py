@@ -24,8 +24,7 @@ from mcgw.errors import RunError, StoreError
 from mcgw.formats.files import State, check_output, state_of
 from mcgw.machine.memory import gibibytes
 from mcgw.sampling.samplers import name_of
-from mcgw.scene.scene import Scene
-from mcgw.scene.storable import storable
+from mcgw.scene.scene import Scene, storable
 from mcgw.store.disk import parts_of
 from mcgw.store.ensembles import described
 from mcgw.store.identity import difference, drawn_with, identity_of, now
@@ -162,11 +161,14 @@ class Job:
         ]
         run = self.record
         about = {"run": run.identity, "draws": run.drawn_with, "wall_seconds": seconds}
-        if not run.axes:
-            return body_of(Ensemble(run.scene, run.sampler, held[0]), **about)
-        from mcgw.sweeps.file import body_of_sweep  # of which most runs are none
+        if run.axes:
+            from mcgw.sweeps.file import body_of_sweep  # of which most runs are none
 
-        return body_of_sweep(run, held, **about)
+            return body_of_sweep(run, held, **about)
+        write = body_of
+        if run.plan.whole:
+            from mcgw.store.statistics_file import body_of_statistics as write  # of which most are none
+        return write(Ensemble(run.scene, run.sampler, held[0]), **about)
 
 
 def _asked(record: RunFolder) -> "Asked":

@@ -12,8 +12,7 @@ from mcgw.sampling.expected import Expected, expected
 from mcgw.sampling.shared import shared
 from mcgw.scene.in_words import contact_facts
 from mcgw.scene.samplers import promise_of
-from mcgw.scene.scene import Scene
-from mcgw.scene.storable import storable
+from mcgw.scene.scene import Scene, storable
 from mcgw.scene.values import COARSEST, EXACT
 from mcgw.sweeps.groups import Group
 from mcgw.sweeps.points import Asked

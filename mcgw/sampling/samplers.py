@@ -33,8 +33,7 @@ from mcgw.sampling.response.tree import Precision
 from mcgw.sampling.response.walk import UnresolvedError
 from mcgw.sampling.stretches import begins_and_breaks
 from mcgw.scene.samplers import promise_of
-from mcgw.scene.scene import Scene
-from mcgw.scene.storable import storable
+from mcgw.scene.scene import Scene, storable
 
 if TYPE_CHECKING:
     from mcgw.sampling.own_radii import Families

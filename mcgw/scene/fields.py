@@ -107,7 +107,8 @@ class Fields(Values):
 
     def quantity(self, name: str) -> Quantity:
         """A quantity with the unit it has here, where heat or current is conducted."""
-        return replace(q := quantity_of(name), unit=q.unit.split(" or ")[-1 if self.thermal else 0])
+        q = quantity_of(name)
+        return replace(q, unit=q.unit.split(" or ")[-1 if self.thermal else 0]) if " or " in q.unit else q
 
     @property
     def thermal(self) -> bool:
@@ -187,8 +188,8 @@ class Fields(Values):
         shapes: dict[str, tuple[int, ...]] = {name: (len(self.separations),) for name in self.quantities}
         if self.tangential is not None:
             shapes["tangential_load"] = (len(self.separations), len(self.tangential.displacements))
-        for name in self.other_separations:
-            shapes[name] = (len(self.separations),)
+        if self.interaction is not None:
+            shapes |= dict.fromkeys(self.other_separations, (len(self.separations),))
         if self.joint is not None:
             shapes |= dict.fromkeys(self.of_joint, (len(self.separations),))
         return shapes

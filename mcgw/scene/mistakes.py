@@ -14,13 +14,11 @@ from analytic import (
     MeasuredRadii,
     Nayak,
     PiecewiseSeries,
-    is_data,
     quantity_of,
 )
 from mcgw.formats.sheet import brief
 from mcgw.scene.fields import Fields
 from mcgw.scene.samplers import promise_of
-from mcgw.scene.section import SceneError
 from mcgw.scene.stop_rule import rel_err_mistakes
 
 _LEAST = 1e-100  # next to it, powers of a distance are beyond double precision
@@ -30,7 +28,7 @@ _SAFELY = 1e4  # factor by which the sum over all asperities stays below the lar
 
 def mistakes(scene: Fields) -> list[str]:
     """All that is wrong, later checks only where the earlier ones find nothing."""
-    one_by_one = (_function,), (_range,), (_modulus,), (_sums,), (_resolved,)
+    one_by_one = (_function,), (_range,), (_modulus,), (_sums,), (_fluctuating,)
     for checks in ((_values, _history, _measured, _radii), (_scales,), (_law, _together), *one_by_one):
         if found := [line for check in checks for line in check(scene)]:
             return found
@@ -268,21 +266,13 @@ def _sums(scene: Fields) -> Iterator[str]:
         yield (f"{_key(scene)}: E*(s)/E* reaches {steepest:.3g}, so sums overflow; give a smaller one")
 
 
-def _resolved(scene: Fields) -> Iterator[str]:
-    """A Python function that no series resolves over all heights that count, or that has no variance."""
+def _fluctuating(scene: Fields) -> Iterator[str]:
+    """A Python function that has no variance."""
     if scene.keep == "statistics" and not scene.grading.smooth:
         try:
             scene._alone.fluctuations(scene.quantities, np.array([scene.lowest]))
         except ValueError as error:
             yield f'ensemble.keep = "statistics": {error}; or use "sums"'
-    if scene.law.is_data and is_data(scene.grading):
-        return
-    from mcgw.scene.storable import in_numbers  # for those scenes alone
-
-    try:
-        in_numbers(scene)
-    except SceneError as error:
-        yield from error.problems
 
 
 def _key(scene: Fields) -> str:

@@ -52,14 +52,10 @@ _PACKAGES = ("mcgw", "numpy", "scipy", "numba", "h5py")
 _DRAW = ("mcgw", "numpy", "numba", "scipy")
 
 
-def _frozen_text(scene: Scene) -> str:
-    """What of a scene must stay the same while its ensemble grows: the values, whoever gave them."""
-    return scene_text(scene.with_surfaces(1), left_out=False)
-
-
 def identity_of(scene: Scene, sampler: str) -> str:
     """SHA-256 of all that the numbers of a surface depend on: frozen scene, sampler, what draws."""
-    parts = (_frozen_text(scene), sampler, drawn_with(scene, sampler))
+    frozen = scene_text(scene.with_surfaces(1), left_out=False)  # its values, whoever gave them
+    parts = (frozen, sampler, drawn_with(scene, sampler))
     return hashlib.sha256("\0".join(parts).encode()).hexdigest()
 
 
@@ -81,7 +77,7 @@ def difference(there: Question, here: Question) -> str:
 def _said(scene: str, axes: str) -> dict[str, Any]:
     """Keys and values that decide the numbers: of a scene alone but for the number of surfaces."""
     if not axes:
-        return dict(_flat(loads(_frozen_text(scene_from(scene)))))
+        return dict(_flat(loads(scene_text(scene_from(scene).with_surfaces(1), left_out=False))))
     return {**dict(_flat(loads(scene))), "sweep": axes}
 
 
@@ -141,13 +137,8 @@ def now() -> str:
     return datetime.now(UTC).isoformat(timespec="seconds")
 
 
-def provenance() -> dict[str, str]:
-    """Versions, commit and processor, as far as they are known."""
-    return {"versions": versions(), "commit": _commit(), "cpu": processor()}
-
-
 @cache
-def _commit() -> str:
+def commit() -> str:
     """Commit of a source checkout, "unknown" for an installed package."""
     here = Path(__file__).resolve().parents[2]
     if not (here / ".git").exists():

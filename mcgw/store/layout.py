@@ -20,7 +20,7 @@ from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_text
 from mcgw.store.chunks import PACKED, add_rows, empty_table
 from mcgw.store.disk import GROUP, head_digest, trailer_of
-from mcgw.store.identity import now, provenance
+from mcgw.store.identity import commit, now, processor, versions
 from mcgw.store.shards import DRAWN, LIBVER, RAGGED, Span, content_digest
 from mcgw.store.structure import MOST_TEXT
 
@@ -51,7 +51,16 @@ def fill(file: h5py.File, scene: Scene, pieces: Iterable[tuple[Span, Stored]]) -
         if span.first != stop:
             raise StoreError(f"surfaces {stop} ... {span.first - 1} are missing")
         if not stop:
-            _lay_out(file, scene, tables)
+            for name, scale in scales_of(scene, scene.n_surfaces).items():
+                _scale(file, name, scale, *AXES[name])
+            for name in sorted(tables):
+                q = scene.quantity(name) if name in ALL_QUANTITIES else None
+                rows = None if name == RAGGED else scene.n_surfaces
+                data = empty_table(file, where(name), rows, tables[name])
+                unit, long_name = (q.unit, q.long_name) if q else ("1", _LONG_NAMES[name])
+                data.attrs.update(units=unit, long_name=long_name)
+                for axis, name_of_scale in enumerate(_OF_SURFACES[: data.ndim] if q else ()):
+                    data.dims[axis].attach_scale(file[name_of_scale])
         for name, table in tables.items():
             data, first = file[where(name)], span.first
             if name == RAGGED:
@@ -75,12 +84,15 @@ def describe(file: h5py.File, scene: Scene, sampler: str, digest: str, /, **attr
         "complete": True,
         "digest": digest,
         "date": now(),
+        "versions": versions(),
+        "commit": commit(),
+        "cpu": processor(),
     }
     if scene.law_error:
         from mcgw.sampling.samplers import law_error_of  # for those scenes alone
 
         usual["law_error_spent"] = law_error_of(scene)  # how far from the exact laws it went
-    file.attrs.update(**{**usual, **provenance(), **attributes})
+    file.attrs.update(**{**usual, **attributes})
 
 
 def where(name: str) -> str:
@@ -119,14 +131,8 @@ def scales_of(scene: Scene, surfaces: int) -> dict[str, NDArray[Any]]:
 
 
 def body_of(ensemble: Ensemble, **about: Any) -> tuple[bytes, bytes]:
-    """The file of an ensemble, with more attributes, and its trailer."""
+    """The file of an ensemble that holds surfaces, with more attributes, and its trailer."""
     scene = ensemble.scene
-    if ensemble.drawn_for is not None:
-        about["drawn_for"] = scene_text(ensemble.drawn_for)
-    if scene.keep == "statistics":
-        from mcgw.store.statistics_file import body_of_statistics  # for those scenes alone
-
-        return body_of_statistics(ensemble, **about)
     names = [*scene.shapes, *(DRAWN if scene.keep == "moments" else ())]
     arrays = {name: ensemble.sums.read(name, 0, None) for name in names}
     made = io.BytesIO()
@@ -219,18 +225,6 @@ def rows_of(file: h5py.File, spans: Iterable[Span]) -> Iterator[tuple[Span, Tabl
         if outside is not None:
             arrays[RAGGED] = outside[(outside[:, 0] >= span.first) & (outside[:, 0] < span.stop)]
         yield span, arrays
-
-
-def _lay_out(file: h5py.File, scene: Scene, like: Stored) -> None:
-    """Empty datasets with their scales, units and names."""
-    for name, scale in scales_of(scene, scene.n_surfaces).items():
-        _scale(file, name, scale, *AXES[name])
-    for name in sorted(like):
-        q = scene.quantity(name) if name in ALL_QUANTITIES else None
-        data = empty_table(file, where(name), None if name == RAGGED else scene.n_surfaces, like[name])
-        data.attrs.update(units=q.unit if q else "1", long_name=q.long_name if q else _LONG_NAMES[name])
-        for axis, name_of_scale in enumerate(_OF_SURFACES[: data.ndim] if q else ()):
-            data.dims[axis].attach_scale(file[name_of_scale])
 
 
 def _scale(file: h5py.File, name: str, values: NDArray[Any], unit: str, long_name: str) -> None:

@@ -107,8 +107,8 @@ def _lock(folder: Path, shared: bool) -> AbstractContextManager[None]:
 
 def _remove_if_empty(folder: Path) -> None:
     with suppress(OSError):
-        names = {*LOCK_FILES, *names_of_locks(folder)}
-        if set(os.listdir(folder)) <= names:
+        names = os.listdir(folder)
+        if all(name in LOCK_FILES or name.startswith((_ALONE, _SHARED)) for name in names):
             for name in names:
                 (folder / name).unlink(missing_ok=True)
             folder.rmdir()

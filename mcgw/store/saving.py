@@ -21,6 +21,7 @@ from mcgw.formats.files import check_output, state_of
 from mcgw.machine.in_threads import Items, one_ahead
 from mcgw.scene.arguments import check_object
 from mcgw.scene.scene import Scene
+from mcgw.scene.scene_file import scene_text
 from mcgw.store.disk import SteadyFile, Trailer, head_digest, parts_of, sha256_of
 from mcgw.store.ensembles import open_ensemble
 from mcgw.store.identity import drawn_with, identity_of
@@ -37,6 +38,7 @@ from mcgw.store.lock import locked
 from mcgw.store.place import finished, write_body
 from mcgw.store.run_folder import RunFolder
 from mcgw.store.shards import LIBVER, Shard, Span, content_digest, tables_in
+from mcgw.store.statistics_file import body_of_statistics
 
 _CACHE = 2**25  # of chunks that a shard fills only in part
 
@@ -88,7 +90,10 @@ def save(ensemble: Ensemble, path: str | Path, *, wall_seconds: float = 0.0) -> 
         before, asked = state_of(path), (ensemble.scene, ensemble.sampler)
         finished(path, *asked)
         about = {"run": identity_of(*asked), "draws": drawn_with(*asked), "wall_seconds": wall_seconds}
-        write_body(path, body_of(ensemble, **about), before)
+        if ensemble.drawn_for is not None:
+            about["drawn_for"] = scene_text(ensemble.drawn_for)
+        write = body_of_statistics if ensemble.scene.keep == "statistics" else body_of
+        write_body(path, write(ensemble, **about), before)
     return open_ensemble(path)
 
 
