@@ -2,7 +2,6 @@
 
 import math
 import re
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -25,44 +24,8 @@ _UNIT = re.compile(
 _LOOKED_AT = 20  # lines of numbers
 _COMMA_ALONE = re.compile(r"\s*[-+]?\d+(?:,\d+)?(?:[eE][-+]?\d+)?\s*")
 _TEXT = (".txt", ".csv", ".asc", ".dat", ".tsv", ".prf", ".xy")
+Lines = list[tuple[int, str]]  # with their numbers
 _MAPS = (".sdf", ".x3p", ".h5")  # which tell of no profiles
-
-
-@dataclass(frozen=True)
-class _Table:
-    """Numbers of a file, and what stands above them."""
-
-    header: list[str]
-    lines: list[tuple[int, str]]
-
-    @property
-    def commas_alone(self) -> bool:
-        """Whether every line may be one number with a decimal comma."""
-        return all(_COMMA_ALONE.fullmatch(line) for _, line in self.lines)
-
-
-def columns_of_text(path: Path) -> int:
-    """How many columns stand on the first lines that hold numbers alone; 0: there is none.
-
-    Separators at the end of all of them, as a Dektak writes, make no column.
-
-    Raises
-    ------
-    OSError
-        If the file cannot be read.
-    """
-    columns = looked_at = 0
-    for count, (number, line) in enumerate(lines_of(path)):
-        if not line.startswith("#") and (looked_at or _is_numbers(path, number, line)):
-            if not looked_at and _COMMA_ALONE.fullmatch(line):
-                return 1
-            words = words_of(path, number, line)
-            columns, looked_at = max(columns, _filled(words)), looked_at + 1
-            if _filled(words) == len(words) or looked_at == _LOOKED_AT:
-                break
-        if count > _MOST_HEADER:
-            break
-    return columns
 
 
 def read_profile_text(path: Path, spacing: float | None = None, unit: str | None = None) -> Profile:
@@ -88,9 +51,11 @@ def read_profile_text(path: Path, spacing: float | None = None, unit: str | None
         If there are more than two columns, a line is not numbers, no spacing is known, or x does not rise or
         fall.
     """
-    table = _table(path)
-    values = _values(path, table)
-    told = _units(table.header, values.shape[1])
+    header, lines = _table(path, _MOST_POINTS + 1)
+    if len(lines) > _MOST_POINTS:
+        raise ValueError(f"{path}: more than {_MOST_POINTS} lines; cut it first")
+    values = _values(path, lines)
+    told = _units(header, values.shape[1])
     metre, assumed = height_unit(path, told[-1], unit)
     if values.shape[1] == 1 and spacing is None:
         raise ValueError(f"{path}: has only a column of heights; give --pixel, the distance between points")
@@ -104,24 +69,40 @@ def read_profile_text(path: Path, spacing: float | None = None, unit: str | None
     return _profile(path, places, values[:, -1] * metre, assumed)
 
 
-def _table(path: Path) -> _Table:
-    """Header and lines of numbers."""
+def _table(path: Path, most: int) -> tuple[list[str], Lines]:
+    """What stands above the numbers of a file, and at most so many lines of these."""
     header: list[str] = []
-    lines: list[tuple[int, str]] = []
+    lines: Lines = []
     for number, line in lines_of(path):
         if line.startswith("#"):
             header += [] if lines else [line.lstrip("# ")]
         elif lines or _is_numbers(path, number, line):
             lines.append((number, line))
-            if len(lines) > _MOST_POINTS:
-                raise ValueError(f"{path}: more than {_MOST_POINTS} lines; cut it first")
+            if len(lines) == most:
+                break
         else:
             header.append(line)
             if len(header) > _MOST_HEADER:
                 raise ValueError(f"{path}: the first {_MOST_HEADER} lines are not numbers; is it a profile?")
     if not lines:
         raise ValueError(f"{path}: holds no numbers")
-    return _Table(header, lines)
+    return header, lines
+
+
+def _columns(path: Path) -> int:
+    """How many columns stand on the first lines that hold numbers alone.
+
+    Separators at the end of all of them, as a Dektak writes, make no column.
+    """
+    columns, (_, lines) = 0, _table(path, _LOOKED_AT)
+    if _COMMA_ALONE.fullmatch(lines[0][1]):
+        return 1
+    for number, line in lines:
+        words = words_of(path, number, line)
+        columns = max(columns, _filled(words))
+        if _filled(words) == len(words):
+            break
+    return columns
 
 
 def _is_numbers(path: Path, number: int, line: str) -> bool:
@@ -133,13 +114,13 @@ def _is_numbers(path: Path, number: int, line: str) -> bool:
         return False
 
 
-def _values(path: Path, table: _Table) -> Array:
+def _values(path: Path, lines: Lines) -> Array:
     """Shape (points, columns), one or two of them."""
-    if table.commas_alone:
-        x, _, z = zip(*(line.partition(",") for _, line in table.lines), strict=True)
+    if all(_COMMA_ALONE.fullmatch(line) for _, line in lines):  # each may be one number
+        x, _, z = zip(*(line.partition(",") for _, line in lines), strict=True)
         if not (all(z) and _rises([int(text) if text.isdigit() else math.nan for text in x])):
-            return np.array([[float(line.replace(",", "."))] for _, line in table.lines])
-    cells = [(n, words_of(path, n, line)) for n, line in table.lines]
+            return np.array([[float(line.replace(",", "."))] for _, line in lines])
+    cells = [(n, words_of(path, n, line)) for n, line in lines]
     width = max(_filled(words) for _, words in cells)
     rows = [numbers_of(path, n, words[: max(width, 1)]) for n, words in cells]
     widths = np.array([row.size for row in rows])
@@ -147,7 +128,7 @@ def _values(path: Path, table: _Table) -> Array:
     if widths[0] > 2:
         raise ValueError(f"{path}: {widths[0]} numbers a line; a profile has z, or x and z")
     if other.size:
-        number = table.lines[int(other[0])][0]
+        number = lines[int(other[0])][0]
         raise ValueError(f"{path}: line {number} has {widths[other[0]]} numbers, the first {widths[0]}")
     return np.array(rows)
 
@@ -191,7 +172,7 @@ def holds_profile(path: Path) -> bool:
     ending = path.suffix.lower()
     try:
         if ending in _TEXT:
-            return columns_of_text(path) in (1, 2)
+            return _columns(path) in (1, 2)
         if ending == ".npy":
             return open_npy(path).ndim == 1
         if ending in _MAPS or not path.is_file():
