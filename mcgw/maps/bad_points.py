@@ -65,44 +65,13 @@ def filled(heights: Array) -> Array:
     return np.asarray(result)
 
 
-@dataclass(frozen=True, slots=True)
-class Spikes:
-    """What stands out of a map.
-
-    Parameters
-    ----------
-    number : int
-        Places; adjacent points are one.
-    x, y : float
-        Where the highest or deepest of them lies, m.
-    height : float
-        Of that one above (or, below 0, under) the ring of points around it, m.
-    """
-
-    number: int
-    x: float
-    y: float
-    height: float
-
-
-def spikes_of(topography: Topography) -> Spikes | None:
-    """Find points that stand out of the ring three pixels around them, on a map that lacks no points.
-
-    By more than three times the range of heights on that ring, and on half of all rings of the map: the
-    scale is that of the surface next to the point, and a few spikes do not change it.
-    """
-    above = spike_heights(topography)
-    out = above != 0
-    if not out.any():
-        return None
-    _, number = ndimage.label(out, structure=np.ones((3, 3)))
-    j, i = np.unravel_index(int(np.argmax(np.abs(above))), above.shape)
-    dx, dy = topography.pixel
-    return Spikes(number, (int(i) + 0.5) * dx, (int(j) + 0.5) * dy, float(above[j, i]))
-
-
 def spike_heights(topography: Topography) -> Array:
-    """How far every point of a spike stands above (or, below 0, under) its ring, m; 0 for all others."""
+    """How far every point of a spike stands above (or, below 0, under) its ring, m; 0 for all others.
+
+    Points of a spike stand out of the ring three pixels around them, on a map that lacks no points: by more
+    than three times the range of heights on that ring, and on half of all rings of the map. So the scale is
+    that of the surface next to the point, and a few spikes do not change it.
+    """
     heights = topography.heights
     above = np.zeros(heights.shape)
     if min(heights.shape) <= 2 * _REACH:

@@ -2,7 +2,10 @@
 
 from collections.abc import Iterator, Sequence
 
-from mcgw.maps.bad_points import bad_edges, spikes_of
+import numpy as np
+from scipy import ndimage
+
+from mcgw.maps.bad_points import bad_edges, spike_heights
 from mcgw.maps.fit import Fit
 from mcgw.maps.hidden_caps import CROWDED, visible
 from mcgw.maps.instrument import faults
@@ -46,14 +49,17 @@ def _edges(topography: Topography) -> Iterator[str]:
 
 
 def _spikes(topography: Topography) -> Iterator[str]:
-    spikes = spikes_of(topography)
-    if spikes is None:
+    above = spike_heights(topography)
+    if not above.any():
         return
-    places = "1 place stands" if spikes.number == 1 else f"{spikes.number} places stand"
-    kind = "high" if spikes.height > 0 else "deep"
+    number = ndimage.label(above, structure=np.ones((3, 3)))[1]  # adjacent points are one
+    places = "1 place stands" if number == 1 else f"{number} places stand"
+    j, i = np.unravel_index(int(np.argmax(np.abs(above))), above.shape)
+    x, y = ((int(k) + 0.5) * p for k, p in zip((i, j), topography.pixel, strict=True))
+    kind = "high" if above[j, i] > 0 else "deep"
     yield (
-        f"spikes: {places} out of the map, the largest at x = {spikes.x:.4g} m, y = {spikes.y:.4g} m, "
-        f"{abs(spikes.height):.3g} m {kind} and narrower than five pixels; a single one can dominate R, eta "
+        f"spikes: {places} out of the map, the largest at x = {x:.4g} m, y = {y:.4g} m, "
+        f"{abs(above[j, i]):.3g} m {kind} and narrower than five pixels; a single one can dominate R, eta "
         "and sigma: use --spikes remove, or crop the map"
     )
 
