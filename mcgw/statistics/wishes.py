@@ -6,8 +6,9 @@ for a quantile. For values of single surfaces it is kept in all of them.
 Pairs of a sampler and an accuracy for one scene: what values of surfaces cost, and how good they are.
 """
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import cache
 from math import ceil, inf
 from time import perf_counter
 from typing import Any
@@ -191,12 +192,10 @@ def advise(
     if not ways:
         return ()
     spread = float(spread_of(replace(scene, separations=(h,)), scene.quantities[0]).relative[0])
-    seen: _Quantile | None = None
+    of_quantile = cache(lambda: _of_quantile(scene, h))
     found = []
     for wish in wishes:
-        if wish.of == "quantile" and seen is None:
-            seen = _Quantile.of(scene, h)
-        needed, law_error = _needed(wish, scene, spread, seen)
+        needed, law_error = _needed(wish, scene, spread, of_quantile)
         share = 1.0 if wish.of == "surfaces" else _SHARE
         good = [
             way
@@ -210,39 +209,26 @@ def advise(
     return tuple(found)
 
 
-def _needed(wish: Wish, scene: Scene, spread: float, seen: "_Quantile | None") -> tuple[float, float]:
+def _needed(
+    wish: Wish, scene: Scene, spread: float, of_quantile: Callable[[], tuple[float, float]]
+) -> tuple[float, float]:
     """Surfaces that it takes, and how far from the exact law they may be."""
     if wish.of == "mean":  # which is exact whatever the law
         return max((float(ndtri(0.975)) * spread / wish.within) ** 2, 1.0), inf
-    if wish.of == "quantile" and seen:
-        return seen.surfaces(wish.within), _SHARE * wish.within * seen.density
+    if wish.of == "quantile":
+        half, density = of_quantile()
+        return max((half / wish.within) ** 2, _FEWEST), _SHARE * wish.within * density
     return float(scene.n_surfaces), 0.0
 
 
-@dataclass(frozen=True)
-class _Quantile:
-    """How well some surfaces know a quantile.
+def _of_quantile(scene: Scene, h: float) -> tuple[float, float]:
+    """How well one surface knows a quantile, from the exact law at one separation.
 
-    Parameters
-    ----------
-    half : float
-        Half of its 95 % interval over the quantile, for one surface: it falls with the root of their number.
-    density : float
-        Probability for a relative change of the value of one.
+    Half of its 95 % interval over the quantile, which falls with the root of the number of surfaces: order
+    statistics have a normal law with its density. And the probability for a relative change of its value.
     """
-
-    half: float
-    density: float
-
-    @classmethod
-    def of(cls, scene: Scene, h: float) -> "_Quantile":
-        """From the exact law at one separation: order statistics have a normal law with its density."""
-        law = scene.theory.distribution(scene.quantities[0], h)
-        value = float(law.ppf(_PROBABILITY))
-        density = value * float(law.pdf(value))
-        half = float(ndtri(0.975)) * np.sqrt(_PROBABILITY * (1 - _PROBABILITY))
-        return cls(half / density, density) if density > 0 else cls(inf, 0.0)
-
-    def surfaces(self, within: float) -> float:
-        """How many it takes."""
-        return max((self.half / within) ** 2, _FEWEST)
+    law = scene.theory.distribution(scene.quantities[0], h)
+    value = float(law.ppf(_PROBABILITY))
+    density = value * float(law.pdf(value))
+    half = float(ndtri(0.975)) * np.sqrt(_PROBABILITY * (1 - _PROBABILITY))
+    return (half / density, density) if density > 0 else (inf, 0.0)
