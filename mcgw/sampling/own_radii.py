@@ -275,6 +275,4 @@ class Families:
         answers[list(self.places)] = found
         return answers
 
-    def matrix(self) -> Array:
-        """All of it as numbers, shape (quantities, separations, moments): large, slow and plain to see."""
-        return matrix_of(self)
+    matrix = matrix_of

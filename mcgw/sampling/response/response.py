@@ -22,6 +22,12 @@ from mcgw.sampling.response.walk import walk
 from mcgw.scene.scene import Scene
 
 
+def matrix_of(response: Any) -> Array:
+    """All of it as numbers, shape (quantities, separations, moments): large, slow and plain to see."""
+    answers = response @ np.eye(int(response.layout.starts[-1]))
+    return np.ascontiguousarray(np.moveaxis(answers, 1, 2))
+
+
 @dataclass(frozen=True)
 class Response:
     """A sparse matrix that runs from the moments to the answers by way of the tree.
@@ -49,15 +55,7 @@ class Response:
         """Quantities of every surface: moments (rows, surfaces) to (quantities, surfaces, separations)."""
         return self.tiles.apply(moments, self.shape)
 
-    def matrix(self) -> Array:
-        """All of it as numbers, shape (quantities, separations, moments): large, slow and plain to see."""
-        return matrix_of(self)
-
-
-def matrix_of(response: Any) -> Array:
-    """What a response answers to each moment alone, shape (quantities, separations, moments)."""
-    answers = response @ np.eye(int(response.layout.starts[-1]))
-    return np.ascontiguousarray(np.moveaxis(answers, 1, 2))
+    matrix = matrix_of
 
 
 def response_of(
