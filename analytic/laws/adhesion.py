@@ -17,16 +17,7 @@ _STEPS = 60  # of Newton's method at most; it takes six
 
 @dataclass(frozen=True, kw_only=True)
 class _Adhesive(ContactLaw):
-    """A law with a work of adhesion.
-
-    Parameters
-    ----------
-    work : float, optional
-        Work of adhesion w, J/m^2.
-    pull_off : float, optional
-        ``D = (3/4) (pi^2 w^2 R/E*^2)^(1/3)/sigma``, how far an asperity of modulus E* is stretched before it
-        breaks off under a given displacement (Johnson, Kendall, Roberts). Give it, or `work`.
-    """
+    """A law with a work of adhesion, or D, the stretch of an asperity of modulus E* that breaks it off."""
 
     of_radius: ClassVar[tuple[str, float]] = ("pull_off", 1 / 3)
     in_si: ClassVar[tuple[str, str]] = ("work", "a work of adhesion in J/m^2 or a stretch over sigma")
@@ -101,7 +92,8 @@ class JohnsonKendallRoberts(_Adhesive):
     work : float, optional
         Work of adhesion w, J/m^2.
     pull_off : float, optional
-        ``D = (3/4) (pi^2 w^2 R/E*^2)^(1/3)/sigma``. Give it, or `work`.
+        ``D = (3/4) (pi^2 w^2 R/E*^2)^(1/3)/sigma``, how far an asperity of modulus E* is stretched before it
+        breaks off under a given displacement. Give it, or `work`.
 
     Raises
     ------

@@ -164,14 +164,18 @@ class SpotConductance:
 
     def with_radii(self, ratios: Array) -> "SpotConductance":
         """In the units of summits whose radii are these multiples of the surface's."""
-        layered = None if self.layered is None else self.layered.scaled(1 / np.sqrt(ratios))
+        layered = self.layered
+        if layered is not None:
+            layered = replace(layered, thickness=layered.thickness * (1 / np.sqrt(ratios)))
         return replace(self, parameter=self.parameter / np.sqrt(ratios), layered=layered)
 
     def of_some(self, which: NDArray[Any]) -> "SpotConductance":
         """That of some of these summits; as it is where all have one radius."""
         if not np.ndim(self.parameter):
             return self
-        layered = None if self.layered is None else self.layered.of_some(which)
+        layered = self.layered
+        if layered is not None:
+            layered = replace(layered, thickness=layered.thickness[which])
         return replace(self, parameter=self.parameter[which], layered=layered)
 
     def __call__(self, radius: Array) -> Array:

@@ -6,9 +6,6 @@ from functools import lru_cache
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
-
-from analytic.arrays import Array
 
 _DIRECT = 60  # images that are rather summed one by one
 _NEGLIGIBLE = 1e-18  # weight of an image
@@ -42,14 +39,6 @@ class LayeredSpot:
     under: float
     other: float
 
-    def scaled(self, factor: Array) -> "LayeredSpot":
-        """In other units of lengths."""
-        return replace(self, thickness=self.thickness * factor)
-
-    def of_some(self, which: NDArray[Any]) -> "LayeredSpot":
-        """That of some of the summits."""
-        return replace(self, thickness=self.thickness[which])
-
     def analytic_up_to(self, film: float) -> float:
         """Radius up to which negative ones meet no pole, with a film b rho besides, and no branch point.
 
@@ -64,11 +53,8 @@ class LayeredSpot:
         """Resistivity rho of spots, m K/W, in the shape of the radii, which may be negative or complex."""
         radius, thickness = np.broadcast_arrays(radius, self.thickness)
         side = np.where(np.real(radius) < 0, -1.0, 1.0)
-        over = (
-            2
-            * thickness
-            / np.where(np.abs(radius) > _SMALLEST * thickness, side * radius, _SMALLEST * thickness)
-        )
+        smallest = _SMALLEST * thickness
+        over = 2 * thickness / np.where(np.abs(radius) > smallest, side * radius, smallest)
         images = np.zeros_like(over)
         for n, weight in _images((self.conductivity - self.under) / (self.conductivity + self.under)):
             images += weight * _image(n * over)
