@@ -256,7 +256,7 @@ def test_a_fit_writes_what_it_knows(tmp_path, capsys):
     assert by_moments.correlation[0][1] > 0.2
     assert mcgw.fitted_scene(fit, heights="summits", E_star="1 GPa").uncertainty is None
     (tmp_path / "s.toml").write_text(mcgw.scene_text(scene))
-    assert main(["solve", str(tmp_path / "s.toml"), "--pressure", "10MPa", "1MPa"]) == 0
+    assert main(["solve", str(tmp_path / "s.toml"), "--pressure", "10MPa", "1MPa", "-v"]) == 0
     out = capsys.readouterr().out
     assert out.count("Sources of error, at the load") == 2
     assert out.count("parameters ") >= 2

@@ -284,7 +284,7 @@ def test_table_by_pressure(capsys, tmp_path):
         assert main([*ask, *more]) == 0
         assert capsys.readouterr().out.count("spots only (vacuum)") == 1
     path.write_text(mcgw.scene_text(scene_of(joint=None, film=analytic.Film(1e-7), n_surfaces=5)))
-    assert main(ask) == 0
+    assert main([*ask, "-v"]) == 0
     text = capsys.readouterr().out
     assert "vacuum" not in text
     assert "contact_resistance           ohm " in text

@@ -259,7 +259,7 @@ def test_a_load_on_the_very_summits(own):
     assert abs(apart) < 4.5 * np.std(by_hand) * np.sqrt(2 / 200)
     assert np.log(found.surfaces["separation"].std() / np.std(by_hand)) == pytest.approx(0, abs=0.3)
     assert "200 surfaces of 200 asperities, drawn from the measured summits" in str(found)
-    told = solutions_text(x, [found])
+    told = solutions_text(x, [found], full=True)
     assert "200 surfaces of 200 asperities, drawn from the measured ones" in told
 
 

@@ -213,7 +213,7 @@ def test_solve(scene, words, given, pressure, title, tmp_path, capsys):
     """Theory by quadrature at the separation it names; `test_solution.py` holds surfaces to literal sums."""
     few = dataclasses.replace(scene, n_surfaces=25, keep="sums", sampler="tail")
     (tmp_path / "s.toml").write_text(mcgw.scene_text(few))
-    out = out_of(["solve", tmp_path / "s.toml", *words, "--csv", tmp_path / "s.csv"], capsys)
+    out = out_of(["solve", tmp_path / "s.toml", *words, "-v", "--csv", tmp_path / "s.csv"], capsys)
     lines = out.splitlines()
     assert lines[0].startswith(f"{title}: d/sigma = ")
     head = "quantity unit theory mean 95 % interval 90 % of specimens"

@@ -211,7 +211,7 @@ def test_a_solution_of_too_few_contacts_has_no_interval(make_scene):
     assert 3 * light.theory["contacts"] < 10 < 3 * heavy.theory["contacts"]
     assert np.isnan(light.interval("area")).all()
     assert heavy.interval("area")[0] < heavy.surfaces["area"].mean() < heavy.interval("area")[1]
-    blocks = solutions_text(scene, [light, heavy]).split("\n\n")
+    blocks = solutions_text(scene, [light, heavy], full=True).split("\n\n")
     assert [block.count("too few contacts") for block in blocks[1:3]] == [6, 0]
 
 
@@ -249,7 +249,7 @@ def test_the_mean_gap(spectral, reference, make_scene):
             expected = scene.surface.sigma * values[name] + rise
             np.testing.assert_allclose(values["mean_gap"], expected, rtol=1e-12)
         assert "mean_gap" in repr(found)
-    assert ("from the mean plane of the surface" in solutions_text(scene, solved)) == spectral
+    assert ("from the mean plane of the surface" in solutions_text(scene, solved, full=True)) == spectral
 
 
 def test_notes_are_about_the_load_and_not_the_scenes_separations(make_scene, tmp_path, capsys):
@@ -257,7 +257,7 @@ def test_notes_are_about_the_load_and_not_the_scenes_separations(make_scene, tmp
     low, high = (make_scene(separations=h, n_surfaces=3, grading=None) for h in ((-2.0, 3.0), 3.0))
     for scene, pressure, crowded in ((low, "1 kPa", False), (high, "1 GPa", True)):
         (tmp_path / "s.toml").write_text(mcgw.scene_text(scene))
-        assert main(["solve", str(tmp_path / "s.toml"), "--pressure", pressure]) == 0
+        assert main(["solve", str(tmp_path / "s.toml"), "--pressure", pressure, "-v"]) == 0
         told = capsys.readouterr()
         notes = [line for line in told.err.splitlines() if line.startswith("mcgw: note: ")]
         assert any("more than half of all asperities touch" in line for line in notes) == crowded, notes

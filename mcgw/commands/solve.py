@@ -61,6 +61,6 @@ def execute(args: argparse.Namespace) -> int:
     with bar("surfaces", terminal=True) as tell:
         found = solutions(scene, given, values, tell)
     print(solutions_text(scene, found, scatter, full=says(ALL)))
-    tell_cautions(at_solutions(scene, found))
+    tell_cautions(at_solutions(scene, found), "add -v")
     write_table(args.csv, lambda: solutions_table(scene, found))
     return 0

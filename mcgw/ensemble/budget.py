@@ -87,15 +87,25 @@ class Budget(Shown):
         """Total: root of the sum of squares of the known lines."""
         return np.asarray(np.sqrt(np.nansum(np.array([*self.shares.values()]) ** 2, axis=0)))
 
+    def _largest(self) -> tuple[str, float]:
+        """The line that dominates the first quantity, and its share."""
+        first = {line: float(share[0]) for line, share in self.shares.items() if not np.isnan(share[0])}
+        return max(first.items(), key=lambda item: item[1])
+
+    @property
+    def brief(self) -> str:
+        """Which line dominates the first quantity, and which are not known."""
+        without = f", without {' and '.join(self.lacking)}" if self.lacking else ""
+        return f"± 95 %, mostly the {self._largest()[0]}{without}"
+
     @property
     def advice(self) -> str:
         """Which line dominates the first quantity, and what would lower it."""
-        first = {line: float(share[0]) for line, share in self.shares.items() if not np.isnan(share[0])}
-        most = max(first, key=lambda line: first[line])
+        most, share = self._largest()
         of = ""
         if most == "parameters":
             of = f" (above all {max(self.parts, key=lambda name: self.parts[name])})"
-        told = f"{self.quantities[0]}: mostly the {most}{of}, ±{percent(first[most])}: {_LOWERED[most]}"
+        told = f"{self.quantities[0]}: mostly the {most}{of}, ±{percent(share)}: {_LOWERED[most]}"
         unknown = "; ".join(f"{line} ({why})" for line, why in self.lacking.items())
         return f"{told}. Not included: {unknown}" if unknown else told
 

@@ -70,7 +70,7 @@ def solve(
     SceneError, TypeError
         If a value is no such quantity; and as from `mcgw.Scene.replace`.
     ValueError
-        If not one of the four is given; and as from `solutions`.
+        If not one of the four is given, or if surfaces cannot reach the value.
 
     Examples
     --------

@@ -276,7 +276,7 @@ class Solution(Shown):
                     "corrected",
                     right,
                     "corrected (95 %)",
-                    form=".4g",
+                    error=(above - below) / 2,
                     missing="",
                     beside=off,
                     between=" ± ",

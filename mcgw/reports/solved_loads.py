@@ -15,40 +15,83 @@ from mcgw.scene.validity import percent
 
 _SHOWN = ("contact law", "film", "interaction", "joint")  # what of the contacts counts at a given load
 _LINES = 2  # loads that the news names one by one
+# Left out of the short table; all but the first only where a film gives the conductance in SI units.
+_VARIANTS = ("load_slope", "conductance", "conductance_si", "specific_contact_resistance")
 
 
 def solutions_text(
     scene: Scene, solutions: Sequence[Solution], scatter: float | None = None, full: bool = False
 ) -> str:
-    """The answers in a line for each given value, at most two; then tables of them and of their errors.
+    """The answers, a line for each given value, at most two; then a table of them.
 
-    With a `scatter` that is wanted also how many asperities it takes; `full` adds what is usual.
+    With `scatter` also how many asperities it takes; `full` adds every quantity and the sources of error.
     """
     lines = [_brief(x) for x in (solutions if len(solutions) <= _LINES else (solutions[0], solutions[-1]))]
-    ways = ", drawn from the measured ones" if scene.as_measured else ""
-    many = f"{solutions[0].drawn.n_surfaces} surfaces of {scene.n_asperities:g} asperities{ways}"
-    plane = "summits" if rise_of_summits(scene) is None else "surface"
-    lines.append(f"specimens: {many}, seed {scene.seed}; mean gap from the mean plane of the {plane}")
     lines.append(against_elasticity(solutions).verdict)
-    if any(x.theory["contacts"] < MANY for x in solutions):
-        lines.append("few contacts: finite surfaces differ from the theory of an infinite one beyond noise")
-    if scene.unload_from is not None:
-        lines.append("each surface is loaded from first contact; unloading is not included")
-    if full and (said := _background(scene, solutions)):
-        lines += ["", *said]
     one = len(solutions) == 1
-    for solution in solutions:
-        table = solution.sheet().table
-        assert table is not None
-        lines += ["", (replace(table, title="") if one else table).text()]
-    if scene.film is not None:
-        lines += ["", conductances(scene, solutions).text()]
+    if not full:
+        lines.append(f"{solutions[0].budget().brief}; more: add -v")
+        lines += ["", (_answer(solutions[0]) if one else _by_load(scene, solutions)).text()]
+    else:
+        lines += _background(scene, solutions)
+        for solution in solutions:
+            table = _full(solution)
+            lines += ["", (replace(table, title="") if one else table).text()]
+        if scene.film is not None:
+            lines += ["", conductances(scene, solutions).text()]
     if scatter is not None:
         lines += ["", *(_sizes(solution, scatter) for solution in solutions)]
-    for budget in (solution.budget() for solution in solutions):
+    for budget in (solution.budget() for solution in solutions if full):
         title = "Sources of error" if one else f"Sources of error, {_lowered(budget.title)}"
         lines += ["", replace(budget.table(), title=title).text(), f"  {budget.advice}"]
     return "\n".join(lines)
+
+
+def _full(solution: Solution) -> Table:
+    table = solution.sheet().table
+    assert table is not None
+    return table
+
+
+def _answer(solution: Solution) -> Table:
+    """Theory, mean and specimens to the digits that count, a row for each quantity that is not a variant."""
+    table = _full(solution)
+    name, unit, theory, mean, interval, least, *corrected = table.columns
+    low, high = (np.asarray(column.values) for column in interval.flat)
+    half = Column("half", (high - low) / 2, form=".2g")
+    table = Table(
+        (
+            name,
+            unit,
+            replace(theory, form=".4g", error=None),
+            replace(mean, words="mean (95 %)", error=half.values, beside=half, between=" ± "),
+            least,
+            *corrected,
+        ),
+        joint_text(solution.scene) if solution.scene.thermal else "",
+    )
+    hidden = _VARIANTS if solution.scene.film is not None else _VARIANTS[:1]
+    return table.at([k for k, x in enumerate(name.values) if x not in hidden])
+
+
+def _by_load(scene: Scene, solutions: Sequence[Solution]) -> Table:
+    """Answers of the theory with their 95 % errors where known, a row for each given value."""
+    if scene.film is not None:
+        return conductances(scene, solutions)
+    area, budgets = scene.surface.nominal_area, [each.budget() for each in solutions]
+    if solutions[0].given == "load":
+        given = Column("pressure", [x.value / area / 1e6 for x in solutions], unit="MPa", form=".4g")
+    else:
+        given = Column("area_fraction", [x.value / area for x in solutions], "A/A_n", form=".4g")
+    h = Column("separation", [x.theory["separation"] for x in solutions], SEPARATION, form=".3f")
+    columns = [given, h]
+    for k, name in enumerate(budgets[0].quantities):
+        unit = "m" if name == "mean_gap" else scene.quantity(name).unit
+        error = Column("error", [budget.all[k] for budget in budgets], form=".1%")
+        values = [x.theory[name] for x in solutions]
+        words = name.replace("_", " ")
+        columns.append(Column(name, values, words, unit, form=".4g", beside=error, between=" ± "))
+    return Table((*columns, Column("contacts", [x.theory["contacts"] for x in solutions], form=".4g")))
 
 
 def _brief(solution: Solution) -> str:
@@ -66,7 +109,15 @@ def _brief(solution: Solution) -> str:
 
 def _background(scene: Scene, solutions: Sequence[Solution]) -> list[str]:
     """What is meant by the numbers."""
-    lines = [f"{word}: {what}" for word, what in contact_facts(scene) if word in _SHOWN]
+    ways = ", drawn from the measured ones" if scene.as_measured else ""
+    many = f"{solutions[0].drawn.n_surfaces} surfaces of {scene.n_asperities:g} asperities{ways}"
+    plane = "summits" if rise_of_summits(scene) is None else "surface"
+    lines = [f"specimens: {many}, seed {scene.seed}; mean gap from the mean plane of the {plane}"]
+    if any(x.theory["contacts"] < MANY for x in solutions):
+        lines.append("few contacts: finite surfaces differ from the theory of an infinite one beyond noise")
+    if scene.unload_from is not None:
+        lines.append("each surface is loaded from first contact; unloading is not included")
+    lines += [f"{word}: {what}" for word, what in contact_facts(scene) if word in _SHOWN]
     if solutions[0].told_by is not None:
         lines.append("90 % of specimens: for the separation from its exact distribution")
     return lines
