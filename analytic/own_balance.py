@@ -85,8 +85,6 @@ class OwnBalance:
     def _mean(self, quantity: str, h: Array) -> Array:
         x, c = self.separation(h), self.compliance
         value, bias = self.alone.mean(quantity, x), self._once("bias", h, self._bias)
-        if quantity == "load":
-            return np.asarray(value + bias)
         moved = self._first(quantity, x) * c * bias + self._bent(quantity, h)
         return np.asarray(value + moved + c * self._changing(quantity, x) / self.rate(x))
 

@@ -12,6 +12,7 @@ from numpy.polynomial import chebyshev
 
 import analytic
 from analytic import Custom, Exponential, PiecewiseSeries, Table, extent, resolved, resolved_breaks
+from analytic.resolution import marks
 
 SPIKE = 0.03
 CURVES = {  # function of numpy, the same of mpmath, breaks that are told, kinks that are to be found
@@ -187,6 +188,11 @@ def named(s):
 ])  # fmt: skip
 def test_names(grading, name):
     assert analytic.name_of(grading) == name
+
+
+def test_marks_lie_on_either_side_ever_farther_apart():
+    found = sorted(marks(-110.0, 130.0, 32.0))
+    assert found == [-100, -80, -64, -64, -32, 0, 32, 64, 80, 100, 125]
 
 
 def test_two_resolutions_of_one_function_agree():

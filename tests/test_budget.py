@@ -11,7 +11,7 @@ from scipy.stats import norm, qmc
 import mcgw
 from mcgw.cli import main
 from mcgw.ensemble.at_load import mean_surface
-from mcgw.ensemble.budget import slopes_of
+from mcgw.ensemble.budget import moved, slopes_of
 from mcgw.maps.topography import Topography
 from mcgw.scene.section import SceneError
 
@@ -260,3 +260,22 @@ def test_a_fit_writes_what_it_knows(tmp_path, capsys):
     out = capsys.readouterr().out
     assert out.count("Sources of error, at the load") == 2
     assert out.count("parameters ") >= 2
+
+
+@pytest.mark.parametrize("name", ["m0", "m2", "m4"])
+def test_a_moment_moves_all_that_is_made_of_it(name):
+    """A scene of other moments is the one that is made of them; its flattest summit stays."""
+
+    def made(**more):
+        m = {"m0": 1e-12, "m2": 1e-3, "m4": 5e6} | more
+        spectral = mcgw.SpectralSurface(**m, nominal_area=1e-6, E_star=1e11)
+        alpha, radius = m["m0"] * m["m4"] / m["m2"] ** 2, spectral.surface.radius
+        return mcgw.Scene(spectral, separations=[1.0], curvature=mcgw.RandomCurvature(alpha, 1e-5 / radius))
+
+    other = made(**{name: 1.1 * {"m0": 1e-12, "m2": 1e-3, "m4": 5e6}[name]})
+    found = moved(made(), {name: np.log(1.1)})
+    for key in ("sigma", "radius", "eta", "nominal_area", "E_star"):
+        assert getattr(found.surface, key) == pytest.approx(getattr(other.surface, key), rel=1e-12)
+    for key in ("alpha", "largest"):
+        assert getattr(found.curvature, key) == pytest.approx(getattr(other.curvature, key), rel=1e-12)
+    assert found.heights.alpha == found.curvature.alpha

@@ -251,10 +251,28 @@ def test_stiffness_in_series_and_the_nominal_separation():
     stiff, c = pressed.distribution("stiffness", 1.0), pressed.compliance * of.surface.sigma
     k = of.distribution("stiffness", 1.0).ppf(0.3)
     assert stiff.ppf(0.3) == pytest.approx(k / (1 + c * k), rel=1e-12)
+    alone, s = of.distribution("stiffness", 1.0), k / (1 + c * k)
+    assert stiff.pdf(s) == pytest.approx(alone.pdf(k) * (1 + c * k) ** 2, rel=1e-5)
+    assert (stiff.error, stiff.error_at(s)) == (alone.error, pytest.approx(alone.error_at(k), rel=0.1))
     nominal = pressed.distribution("nominal_separation", 1.0)
     p = of.distribution("load", 1.0).isf(0.3)
     assert nominal.ppf(0.3) == pytest.approx(1.0 - pressed.compliance * p, rel=1e-12)
     assert nominal.mean() == pytest.approx(float(pressed.mean("nominal_separation", 1.0)), rel=1e-9)
+
+
+def test_the_separation_at_a_load_that_sinks_all():
+    """Nominal and effective separations differ by the same on every surface that carries it."""
+    of = model(3000)
+    load = float(of.mean("load", 1.0))
+    felt = of.separation_law(load)
+    for at, sinks in (("effective", 0.0), ("nominal", load)):
+        pressed = analytic.InteractingModel.of(of, analytic.Interaction("body", at=at))
+        law = pressed.separation_law(load)
+        assert law.ppf(0.3) == pytest.approx(felt.ppf(0.3) - pressed.compliance * sinks, rel=1e-12)
+        assert law.error == felt.error == of.distribution("load", felt.start).error
+        x = float(pressed.effective(1.0))
+        assert pressed.share(0, 1.0) == of.share(0, x) == 1
+        np.testing.assert_array_equal(pressed.rule(1.0).heights, of.rule(x).heights)
 
 
 def test_the_separation_at_a_load():
@@ -263,6 +281,7 @@ def test_the_separation_at_a_load():
     law = of.separation_law(float(of.mean("load", 2.5)))
     np.testing.assert_allclose(law.cdf([2.3, 2.5, 2.7]), [0.04017, 0.54496, 0.94262], atol=6e-6)
     assert law.cdf(law.ppf(0.05)) == pytest.approx(0.05, rel=1e-9)
+    np.testing.assert_array_equal([law.ppf([0, 1]), law.isf([0, 1])], np.nan)  # no separation is the last
     assert law.mean() - 2.5 == pytest.approx(-4.477e-3, abs=6e-4)
     assert law.var() == pytest.approx(1.5e-2, rel=0.03)
 

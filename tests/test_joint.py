@@ -168,6 +168,18 @@ def test_derivatives_of_the_gap():
         assert float(gap(2.0, order)) == pytest.approx(float(slope), rel=1e-6)
 
 
+@pytest.mark.parametrize("name", ["gap_conductance", "joint_conductance"])
+def test_slopes_of_the_joint_and_what_has_no_other_law(name):
+    model, step = scene_of().theory, 1e-4
+    ends = (float(model.mean(name, 1.5 + side * step)) for side in (-1, 1))
+    assert float(model.slope(name, 1.5)) == pytest.approx(-np.diff(list(ends))[0] / (2 * step), rel=1e-6)
+    with pytest.raises(ValueError, match="give a load, an area, or another sum"):
+        model.separation_at(name, 1.0)
+    if name != "joint_conductance":
+        with pytest.raises(ValueError, match="only 'joint_conductance' is known"):
+            model.distribution(name, 1.5)
+
+
 def test_where_it_goes(tmp_path):
     """Text, files, statistics, sweeps, another law, tables: units are those of heat."""
     scene = scene_of()

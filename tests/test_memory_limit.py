@@ -5,12 +5,14 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 from said import without_notes
 
 import mcgw
 from mcgw.jobs.running import run
 from mcgw.machine.child_process import run_child
+from mcgw.machine.memory import memory_available, peak_growth
 
 resource = pytest.importorskip("resource")
 
@@ -82,6 +84,36 @@ def test_a_damaged_file_is_blamed_all_the_same(file):
 def test_what_may_be_taken_heeds_the_limit():
     code = "from mcgw.machine.memory import memory_available; print(memory_available())"
     assert int(limited(1024, "-c", code).stdout) < 1024 * MIB
+
+
+FIVE = ["MemTotal: 9 kB", "MemFree: 3 kB", "MemAvailable: 5 kB"]
+
+
+@pytest.mark.parametrize(
+    ("machine", "used", "most", "limit", "least"),
+    [
+        (FIVE, [], [], None, 5120),
+        (FIVE, ["100"], ["max"], None, 5120),
+        (FIVE, ["100"], ["4000"], None, 3900),
+        (FIVE, ["100"], ["90"], None, 0),
+        (FIVE, ["100"], ["9000"], 4096, 2048),
+        (FIVE, [], [], 1024, 0),
+        ([], ["100"], [], None, 2**63 - 1),
+    ],
+)
+def test_the_least_of_what_machine_group_and_user_leave(monkeypatch, machine, used, most, limit, least):
+    group = "/sys/fs/cgroup/memory"
+    files = {"/proc/meminfo": machine, f"{group}.current": used, f"{group}.max": most}
+    files["/proc/self/status"] = ["VmPeak: 9 kB", "VmSize: 2 kB"]
+    monkeypatch.setattr("mcgw.machine.memory._lines", files.__getitem__)
+    monkeypatch.setattr("mcgw.machine.memory.memory_limit", lambda: limit)
+    assert memory_available() == least
+
+
+@pytest.mark.skipif(not os.access("/proc/self/clear_refs", os.W_OK), reason="Linux alone tells it")
+def test_growth_is_of_the_call_alone():
+    np.ones(2**23)  # a peak before it
+    assert peak_growth(lambda: np.ones(2**22)) == pytest.approx(2**25, rel=0.2)
 
 
 def test_a_child_has_what_it_needs_whatever_its_user_has_set(tmp_path, monkeypatch):

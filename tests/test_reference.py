@@ -9,6 +9,7 @@ from conftest import SURFACE
 from thirteen_height_laws import LAWS, SAMPLE
 
 import analytic
+import mcgw
 from analytic import ExponentialHeights, MeasuredHeights, Weibull
 from mcgw.errors import RunError
 from mcgw.scene.scene import Scene
@@ -42,6 +43,14 @@ def test_reference_is_the_theory_for_every_height_law(law):
         exact = scene.n_asperities * analytic.QUANTITIES[name].scale(SURFACE) * row
         found = reference(replace(scene, quantities=(name,)), tuple(range(6)))
         assert relative(found, exact).max() < 1e-10
+
+
+def test_reference_of_radii_of_their_own():
+    spectral = mcgw.SpectralSurface(1e-12, 1e-3, 5e6, "1 mm^2", "78.6 GPa")
+    for name in ("load", "area", "stiffness"):
+        scene = mcgw.Scene(spectral, separations=[0.0, 2.0], quantities=[name], n_asperities=1000)
+        exact = scene.theory.mean(name, scene.separations)
+        np.testing.assert_allclose(reference(scene, (0, 1)), exact, rtol=1e-9)
 
 
 def test_reference_of_exponential_heights_by_hand():

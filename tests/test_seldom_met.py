@@ -15,9 +15,10 @@ SPECTRAL = mcgw.SpectralSurface(1e-12, 1e-3, 5e6, "1 mm^2", "78.6 GPa")
 FILE = """
 surface = {{sigma = 1e-6, radius = 1e-5, eta = 1e9, nominal_area = 1e-6, E_star = 1e11{surface}}}
 contact = {{separations = [0.0, 1.0]{contact}}}
-ensemble = {{n_surfaces = 10, n_asperities = 100, seed = 1}}
+ensemble = {{n_surfaces = 10, n_asperities = 100, seed = 1{ensemble}}}
 """
 
+NONE = {"surface": "", "contact": "", "ensemble": ""}
 PUSHED = "{friction = 0.3, poisson = 0.25, displacements = [1e-8, 3e-8]}"
 # Of a scene file: what is added to a table, and the line that names it with what would do.
 ADDED = [
@@ -36,16 +37,51 @@ ADDED = [
     ("contact", ', quantities = ["load", "yielded"]', 'no contact yields with law = "hertz"; leave it out'),
     ("contact", f', quantities = ["area"], tangential = {PUSHED}',
      'it needs normal loads; add "load" to contact.quantities'),
+    ("contact", ', quantities = ["load_unloading"]', "'load_unloading' needs unloading; give"),
+    ("ensemble", ', keep = "moments", sampler = "stratified"', 'sampler = "stratified" has none; use'),
+    ("contact", ", yield_index = 3", "unknown key"),
 ]  # fmt: skip
 
 
 @pytest.mark.parametrize(("table", "more", "told"), ADDED)
 def test_a_mistake_is_one_line(table, more, told):
-    mcgw.scene_from(FILE.format(surface="", contact=""))
+    mcgw.scene_from(FILE.format(**NONE))
     with pytest.raises(mcgw.SceneError) as caught:
-        mcgw.scene_from(FILE.format(**{"surface": "", "contact": "", table: more}))
+        mcgw.scene_from(FILE.format(**NONE | {table: more}))
     assert any(told in line for line in caught.value.problems), caught.value.problems
     assert len(caught.value.problems) == 1
+
+
+RADII = analytic.RandomCurvature(5.0)
+PRESSED = analytic.InteractingModel.of(
+    analytic.Model(SPECTRAL.surface), analytic.Interaction("body", at="nominal")
+)
+REFUSED = [
+    (lambda: RADII.mean(0.3, np.ones(1)), "power = 0.3: give a multiple of 1/2"),
+    (lambda: RADII.nothing, "nothing"),
+    (lambda: analytic.Weibull(0.99), "shape = 0.99: give a number from 1 to 100"),
+    (lambda: analytic.Weibull(101), "shape = 101: give a number from 1 to 100"),
+    (lambda: mcgw.Layer(0.0, 1.0), "thickness = 0.0: give a finite number > 0, in m"),
+    (lambda: mcgw.Layer(1.0, np.inf), r"conductivity = inf: give a finite number > 0, in W/\(m K\)"),
+    (lambda: mcgw.Film(), r"resistivity: give it in ohm m, or conductivities = \(k1, k2\)"),
+    (lambda: mcgw.Film(conductivities=(1.0,)), "give two numbers > 0"),
+    (lambda: mcgw.Film(conductivities=(1.0, 0.0)), "give two numbers > 0"),
+    (lambda: mcgw.Tangential(0.0, 0.3, [1e-8]), "friction = 0.0: give a coefficient of friction > 0"),
+    (lambda: mcgw.Tangential(0.3, 0.3, []), r"displacements = \[\]: give at least one"),
+    (lambda: mcgw.Tangential(0.3, 0.3, [0, -1e-8]), "displacements: -1e-08 is not a displacement"),
+    (lambda: mcgw.Joint("air", temperature=-1.0), "temperature = -1.0: give a finite number > 0, in K"),
+    (lambda: analytic.MeasuredHeights([0.0, 1.0]).pdf(np.ones(2)), "no density at s = 1;"),
+    (lambda: analytic.MeasuredHeights([0.0, 1.0]).rvs(3, None), "n = 3: give 2, the number"),
+    (lambda: PRESSED.alone.separation_law(2.0, "contacts"), "give a sum that decreases with the separation"),
+    (lambda: PRESSED.separation_law(1e-9, "area"), "quantity = 'area': at nominal separations give a load"),
+    (lambda: PRESSED.mean("nominal_separation", 1.0), "the model is given at these separations"),
+]
+
+
+@pytest.mark.parametrize(("call", "told"), REFUSED)
+def test_what_objects_refuse(call, told):
+    with pytest.raises((ValueError, KeyError, AttributeError), match=told):
+        call()
 
 
 def with_radii(**changes):

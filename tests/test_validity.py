@@ -504,6 +504,15 @@ def test_the_sentence_names_the_worst_at_a_load_and_at_a_gap(scene):
     assert 0 <= at_gap - error["load"] <= 1
 
 
+def test_each_error_is_said_where_it_was_measured(scene):
+    known = scene.validity()
+    at_one = known.error | {"load": np.where(np.arange(3) == 0, known.error["load"], np.nan)}
+    places = re.compile(r"at a given load for d/sigma = ([^,]*), load .* at a given mean gap(.*) \(95 %\)")
+    for error, where in ((known.error, ""), (at_one, " for d/sigma = 0.4")):
+        (found,) = places.findall(dataclasses.replace(known, error=error).verdict)
+        assert found == ("0.4 to 1.2", where)
+
+
 @pytest.mark.parametrize("worst", [0.1, 0.1000001, 0.0999999, 2.345])
 def test_what_is_said_is_rounded_up(worst):
     from mcgw.scene.validity import percent
