@@ -145,8 +145,8 @@ if TYPE_CHECKING:
 # times as long on a machine that has anything else to do. Read once, when the loops are loaded.
 os.environ.setdefault("OMP_WAIT_POLICY", "passive")
 
-# Where names come from. Imported when asked for: compiling and file formats cost a second that `mcgw --help`
-# need not wait.
+# Where names come from. They are imported on first use: compiling and file formats cost a second, for which
+# `mcgw --help` should not wait.
 _HOMES = {
     "analytic": "Body ChangEtsionBogy Coated Custom CustomLaw DerjaguinMullerToporov Exponential "
     "ExponentialHeights Film Gaussian HeightTable Hertz Homogeneous Interaction JacksonGreen "
@@ -182,7 +182,7 @@ _HOME = {name: module for module, names in _HOMES.items() for name in names.spli
 
 
 def _draw(result: Any, ax: Any, **options: Any) -> Any:
-    """What ``.plot()`` of results calls; figures are imported when the first of them is drawn."""
+    """Draw what ``.plot()`` of a result shows; figures are imported on the first call."""
     from mcgw.figures.plotting import draw
 
     return draw(result, ax, **options)

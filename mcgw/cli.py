@@ -33,8 +33,8 @@ COMMANDS = (
     "warm",
     "completion",
 )
-_PRINTED = ("", "show", "solve", "elastic", "completion")  # whose product is what they print
-_NEGATIVE = re.compile(r"-\.?\d")  # how a value begins that is no option, as -1MPa, which is then told of
+_PRINTED = ("", "show", "solve", "elastic", "completion")  # their product is what they print
+_NEGATIVE = re.compile(r"-\.?\d")  # a value that looks like an option, such as -1MPa
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -60,7 +60,7 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def _printed(output: Plain, asked: argparse.Namespace) -> int:
-    """1 if what was asked for is what is printed, and a full disk has not taken it; readers may leave."""
+    """Return 1 if the printed product could not be written to a full disk; a closed pipe is no error."""
     output.flush()
     if output.lost is None or isinstance(output.lost, BrokenPipeError) or asked.command not in _PRINTED:
         return 0
@@ -73,7 +73,7 @@ def _main(argv: Sequence[str] | None, asked: argparse.Namespace) -> int:
         args = _parser().parse_args(argv, asked)
         with warnings.catch_warnings():
             warnings.showwarning = _show_warning  # type: ignore[assignment]
-            warnings.filterwarnings("ignore", module=r"mcgw\.scene\.plausible")  # told as notes
+            warnings.filterwarnings("ignore", module=r"mcgw\.scene\.plausible")  # shown as notes
             if args.amount == QUIET:
                 warnings.simplefilter("ignore")
             with speaking(args.amount):
@@ -94,7 +94,7 @@ def _main(argv: Sequence[str] | None, asked: argparse.Namespace) -> int:
 
 
 def _show_warning(message: Warning | str, *_: Any) -> None:
-    """Warnings are for the user: one line, without the place in the code."""
+    """Show a warning in one line, without its place in the code."""
     print(f"mcgw: warning: {one_line(str(message))}", file=sys.stderr)
 
 
@@ -119,7 +119,7 @@ def _parser() -> argparse.ArgumentParser:
 
 
 class _Version(argparse.Action):
-    """As the action "version", but looked up when it is asked for."""
+    """The action "version", looked up only when needed."""
 
     def __call__(self, parser: argparse.ArgumentParser, *_: Any) -> None:
         from importlib.metadata import PackageNotFoundError, version
@@ -133,7 +133,7 @@ class _Version(argparse.Action):
 
 
 def process() -> NoReturn:
-    """Run the command of this process, and end it without a last search for garbage, which takes 0.2 s."""
+    """Run the command of this process; skip the last garbage collection, which takes 0.2 s."""
     code = main()
     gc.freeze()
     sys.exit(code)

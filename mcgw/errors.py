@@ -1,4 +1,4 @@
-"""What can go wrong while a run or its files are handled, and the exit code of each."""
+"""Errors of runs and of their files, each with its exit code."""
 
 
 class StoreError(ValueError):

@@ -1,1 +1,1 @@
-"""The commands, one a file: a line of help, the arguments, and what is done."""
+"""The commands, one per file: help, arguments, action."""

@@ -1,4 +1,4 @@
-"""``mcgw completion``: what a shell needs to complete the words of these commands."""
+"""``mcgw completion``: tab completion for a shell."""
 
 import argparse
 import sys
@@ -16,7 +16,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def execute(args: argparse.Namespace) -> int:
-    """Print it; it is made of the parser of all commands, which it need not start again."""
+    """Print the completion script, made from the parser of all commands."""
     try:
         import shtab  # an extra
     except ImportError:

@@ -50,7 +50,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def execute(args: argparse.Namespace) -> int:
-    """Print the means, their intervals, and what the levels saved."""
+    """Print the means, their intervals, and the solves that the levels saved."""
     from mcgw.commands.outputs import JSONL, Output, check_outputs
     from mcgw.commands.voice import details, news
     from mcgw.elasticity.elastic import elastic

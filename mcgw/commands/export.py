@@ -1,4 +1,4 @@
-"""``mcgw export``: tables of contact for finite-element programs."""
+"""``mcgw export``: contact tables for finite-element programs."""
 
 import argparse
 from pathlib import Path
@@ -87,7 +87,7 @@ def execute(args: argparse.Namespace) -> int:
 
 
 def _pressures(text: str) -> list[float]:
-    """LO:HI:N as pressures, Pa."""
+    """Pressures (Pa) from LO:HI:N."""
     import numpy as np
 
     from mcgw.formats.numbers import parse

@@ -1,4 +1,4 @@
-"""``mcgw figures``: the paper's figures with Monte Carlo on top, and those it lacks; or those of a scene."""
+"""``mcgw figures``: figures of the paper with Monte Carlo, further ones, or figures of a scene."""
 
 import argparse
 from pathlib import Path

@@ -11,11 +11,11 @@ if TYPE_CHECKING:
     from mcgw.maps.preparation import Preparation, Prepared
     from mcgw.maps.profile_fit import ProfileFit
 
-    Fitted = tuple[Fit | ProfileFit, list[str], Callable[[], None]]  # what is said, and what is written too
+    Fitted = tuple[Fit | ProfileFit, list[str], Callable[[], None]]  # printed, and written to the scene
 
 HELP = "fit summit density, radius and spread to a measured height map, and write a scene"
 EXAMPLE = "mcgw fit map.sdf --cutoff 5um -o fitted.toml"
-E_STAR = "100 GPa"  # where none is given
+E_STAR = "100 GPa"  # default
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
@@ -83,7 +83,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def execute(args: argparse.Namespace) -> int:
-    """Write the scene with all estimates as comments, and say what it is and what casts doubt on it."""
+    """Write the scene with all estimates as comments; print it and its cautions."""
     from mcgw.commands.voice import details, news, notes
     from mcgw.formats.numbers import parse
     from mcgw.maps.fit import Fit
@@ -125,7 +125,7 @@ def execute(args: argparse.Namespace) -> int:
 
 
 def _of_map(args: argparse.Namespace, asked: "Preparation", pixel: float | None, across: int) -> "Fitted":
-    """What a map tells."""
+    """Fit a map."""
     from mcgw.commands.outputs import CSV, NPY, TOML, Output, check_outputs, figure_format
     from mcgw.maps.fitted_scene import heights_beside
     from mcgw.maps.fitting import fit_map
@@ -149,7 +149,7 @@ def _of_map(args: argparse.Namespace, asked: "Preparation", pixel: float | None,
 
 
 def _write_beside(args: argparse.Namespace, fit: "Fit", ready: "Prepared", pixel: float | None) -> None:
-    """Write the tables and the picture that were asked for, and say where they are."""
+    """Write the requested tables and picture, and print their paths."""
     from mcgw.commands.voice import news
     from mcgw.maps.map_files import read_map
     from mcgw.maps.summits import SUMMITS, TILES
@@ -169,7 +169,7 @@ def _write_beside(args: argparse.Namespace, fit: "Fit", ready: "Prepared", pixel
 
 
 def _of_profiles(args: argparse.Namespace, asked: "Preparation", spacing: float | None) -> "Fitted":
-    """What profiles tell."""
+    """Fit profiles."""
     from mcgw.commands.outputs import TOML, Output, check_outputs
     from mcgw.maps.fitting import fit_lines
     from mcgw.reports.fitted import profile_line, profile_lines

@@ -8,7 +8,7 @@ EXAMPLE = "mcgw init coating -o mine.toml && mcgw run mine.toml -o mine.h5"
 
 SCHEMA = "scene.schema.json"
 
-# By name: what it is.
+# Name and description.
 PRESETS = {
     "demo": "bead-blasted aluminium with stiffened tips",
     "aluminium": "bead-blasted aluminium of Greenwood and Williamson, homogeneous",
@@ -71,7 +71,7 @@ def _is_there(path: Path) -> ValueError:
 
 
 def _write_schema(path: Path) -> None:
-    """Write the JSON Schema of scenes; one that is there already does as well.
+    """Write the JSON Schema of scenes, unless the same one is there already.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""``mcgw merge``: one file of the blocks that jobs have drawn."""
+"""``mcgw merge``: join the blocks drawn by jobs into one file."""
 
 import argparse
 from pathlib import Path
@@ -16,7 +16,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def execute(args: argparse.Namespace) -> int:
-    """Merge and say where the file is."""
+    """Merge and print the path of the file."""
     from mcgw.commands.outputs import HDF5, Output, check_outputs
     from mcgw.commands.voice import news
     from mcgw.ensemble.ensemble import Ensemble

@@ -1,4 +1,4 @@
-"""The options that several commands share: other values of keys (--set), and who draws in blocks."""
+"""Options shared by several commands: --set for keys, and the engine that draws the blocks."""
 
 import argparse
 import logging
@@ -37,7 +37,7 @@ def add_engine_options(parser: argparse.ArgumentParser) -> None:
 def engine_asked(args: argparse.Namespace) -> Iterator["Engine | None"]:
     """The engine that the options name, closed at the end; None for threads of this process.
 
-    Until then no library logs anything: a worker or scheduler that is lost is one line, and that is ours.
+    Libraries log nothing meanwhile: mcgw itself reports a lost worker or scheduler, in one line.
     """
     before = logging.root.manager.disable
     logging.disable(logging.CRITICAL)
@@ -54,7 +54,7 @@ def engine_asked(args: argparse.Namespace) -> Iterator["Engine | None"]:
 
 @contextmanager
 def drawing(args: argparse.Namespace) -> Iterator[dict[str, Any]]:
-    """Who draws, as `mcgw.run` and `mcgw.sweep` take it, with a bar on the terminal."""
+    """Engine arguments of `mcgw.run` and `mcgw.sweep`, with a progress bar."""
     from mcgw.jobs.driver import dashboard_of
     from mcgw.machine.progress import bar
 
@@ -64,7 +64,7 @@ def drawing(args: argparse.Namespace) -> Iterator[dict[str, Any]]:
 
 
 def tell_share(shard: str, path: Path, left: int) -> int:
-    """Say that a share is done and what is left of the whole; returns the exit code."""
+    """Print that a share is done and what remains; return the exit code."""
     then = f"{left} surfaces are still missing" if left else f"all are done: mcgw merge {path}"
     news(f"{path}.parts: share {shard} is done; {then}")
     return 0
@@ -84,7 +84,7 @@ def _engine(args: argparse.Namespace) -> "Engine | None":
 
 
 def add_set_option(parser: argparse.ArgumentParser) -> None:
-    """Add it."""
+    """Add --set."""
     parser.add_argument(
         "--set",
         action="append",
@@ -94,7 +94,7 @@ def add_set_option(parser: argparse.ArgumentParser) -> None:
 
 
 def changes_of(args: argparse.Namespace) -> dict[str, Any]:
-    """Values by their keys: as TOML where they are such, else the text itself.
+    """Values of --set by key: TOML where they parse as TOML, otherwise text.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""What a command writes: files, all looked at before anything is computed, and tables."""
+"""Output files of a command, checked before anything is computed, and tables."""
 
 import os
 from collections.abc import Callable, Iterable
@@ -17,7 +17,7 @@ _SIGNATURE = b"\x89HDF\r\n\x1a\n"
 
 @dataclass(frozen=True)
 class Format:
-    """What a command writes, and what the name of such a file ends in, in small letters."""
+    """A file format and its file endings, in lower case."""
 
     what: str
     endings: tuple[str, ...]
@@ -33,7 +33,7 @@ TOML = Format("a scene", (".toml",))
 
 
 def figure_format() -> Format:
-    """All that matplotlib writes."""
+    """The formats that matplotlib writes."""
     from mcgw.formats.pictures import figure_endings
 
     return Format("a figure", figure_endings())
@@ -46,13 +46,13 @@ class Output:
     Parameters
     ----------
     path : Path
-        Where.
+        Path of the file.
     format : Format
-        What.
+        Its format.
     option : str, optional
-        How its name was given.
+        The option that gave its name.
     grows : bool, optional
-        Whether the command makes ensembles, whose own rules say which one may be replaced.
+        Whether the command makes ensembles, whose own rules say which may be replaced.
     """
 
     path: Path
@@ -61,15 +61,15 @@ class Output:
     grows: bool = False
 
     def refuse(self, why: str) -> StoreError:
-        """The error of this output."""
+        """Make the error for this output."""
         return StoreError(f"{self.option} {self.path}: {why}; choose another {self.option}")
 
 
 def check_outputs(outputs: Iterable[Output], *, inputs: Iterable[Path] = ()) -> None:
-    """Refuse what would destroy something or cannot be written; make the folders, and say so.
+    """Refuse outputs that would destroy something or cannot be written; make missing folders and say so.
 
-    `outputs` are all that the command writes, `inputs` all that it reads, and with each the folder of the run
-    that makes it.
+    `outputs` are all files that the command writes, `inputs` all that it reads; each may have a run folder,
+    which counts with it.
 
     Raises
     ------
@@ -99,7 +99,7 @@ def check_outputs(outputs: Iterable[Output], *, inputs: Iterable[Path] = ()) -> 
 
 
 def same_file(one: Path, other: Path) -> bool:
-    """Whether two names are those of one file: by spelling, symbolic or hard link."""
+    """Whether two names are one file: same spelling, symbolic link or hard link."""
     try:
         return os.path.samefile(one, other)
     except OSError:  # one of them does not exist
@@ -107,7 +107,7 @@ def same_file(one: Path, other: Path) -> bool:
 
 
 def _refuse_run(output: Output, inputs: list[Path]) -> None:
-    """Nothing may be put in the folder of a run, or in its place."""
+    """Refuse outputs inside or in place of a run folder."""
     place = Path(os.path.realpath(output.path))
     for path in inputs:
         if place.is_relative_to(os.path.realpath(parts_of(path))):
@@ -118,7 +118,7 @@ def _refuse_run(output: Output, inputs: list[Path]) -> None:
 
 
 def _refuse_ensemble(output: Output) -> None:
-    """An ensemble is only replaced by a command that makes ensembles."""
+    """Refuse to replace an ensemble unless the command makes ensembles."""
     if output.grows:
         return
     if parts_of(output.path).exists():
@@ -136,12 +136,12 @@ def _refuse_ensemble(output: Output) -> None:
 
 
 def table_output(path: Path | None) -> list[Output]:
-    """The file that the option asks for, if it is given."""
+    """The output of --csv, if given."""
     return [Output(path, CSV, "--csv")] if path else []
 
 
 def write_table(path: Path | None, table: Callable[[], Table]) -> None:
-    """Write it if it is asked for, and say where it is."""
+    """Write the table if requested, and print its path."""
     if path:
         table().write(path)
         news(f"{path}: the table")

@@ -80,7 +80,7 @@ def execute(args: argparse.Namespace) -> int:
 
 
 def add_law_options(parser: argparse.ArgumentParser) -> None:
-    """A group of options; the values are checked as those of a scene file."""
+    """Add the options of a contact law; their values are checked as in a scene file."""
     group = parser.add_argument_group("another contact law, and its constants as in a scene file")
     group.add_argument("--law", metavar="LAW", help="its name, such as kogut-etsion")
     for name, (metavar, what) in _CONSTANTS.items():
@@ -88,7 +88,7 @@ def add_law_options(parser: argparse.ArgumentParser) -> None:
 
 
 def law_of(args: argparse.Namespace) -> "ContactLaw | None":
-    """The law that was asked for, or None.
+    """The requested law, or None.
 
     Raises
     ------
@@ -110,7 +110,7 @@ def law_of(args: argparse.Namespace) -> "ContactLaw | None":
 
 
 def _plain(text: str) -> Any:
-    """A number where it is one; else the text, with its unit."""
+    """A number if the text is one, otherwise the text with its unit."""
     with suppress(ValueError):
         return float(text)
     return text

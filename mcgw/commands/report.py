@@ -14,7 +14,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def execute(args: argparse.Namespace) -> int:
-    """Write the page and say where it is."""
+    """Write the page and print its path."""
     from mcgw.commands.outputs import HTML, Output, check_outputs
     from mcgw.commands.voice import news, tell_cautions
     from mcgw.ensemble.ensemble import Ensemble
@@ -32,7 +32,7 @@ def execute(args: argparse.Namespace) -> int:
 
         page = report_html(result, attributes)
     else:
-        from mcgw.reports.html import sweep_report_html  # of which most files are none
+        from mcgw.reports.html import sweep_report_html  # most files are no sweeps
 
         with bar("points", terminal=True) as show:
             page = sweep_report_html(result, attributes, progress=show)

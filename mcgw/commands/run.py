@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 HELP = "simulate a scene: draw its surfaces and store load, area, ... in HDF5; resumes where it stopped"
 EXAMPLE = "mcgw run runs/demo.toml -o demo.h5"
-_LONG = 60.0  # seconds from which on a run says beforehand how long it takes
+_LONG = 60.0  # seconds; longer runs state their duration beforehand
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
@@ -30,8 +30,8 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def execute(args: argparse.Namespace) -> int:
-    """Run and say where the file is."""
-    with warnings.catch_warnings():  # of a limit too low: said here as a note, or by the forecast
+    """Run and print the path of the file."""
+    with warnings.catch_warnings():  # a limit that is too low is reported as a note, or by the forecast
         warnings.filterwarnings("ignore", ".* max_surfaces allows")
         return _execute(args)
 
@@ -47,7 +47,7 @@ def _execute(args: argparse.Namespace) -> int:
 
     path = args.output or args.scene.parent / "out" / f"{args.scene.stem}.h5"
     if args.shard is not None:
-        part_of(args.shard)  # or nothing is read
+        part_of(args.shard)  # checked before anything is read
     scene = load_scene(args.scene, changes=changes_of(args), seed=lambda: recorded_seed(path))
     check_outputs([Output(path, HDF5, grows=True)], inputs=files_of(args.scene))
     expected = forecast(scene)
@@ -87,12 +87,12 @@ def _of_threads(threads: int | None) -> list[str]:
 
 
 def _of_time(scene: "Scene") -> list[str]:
-    """How long it will take, where that is more than a minute."""
+    """Say how long the run will take, if more than a minute."""
     from mcgw.ensemble.drawing import in_words, seconds_for
     from mcgw.sampling.samplers import sampler_of
 
     if scene.rel_err is not None or scene.max_seconds is not None:
-        return []  # a forecast is printed, or the end is known
+        return []  # these print a forecast or have a known end
     sampler, m = sampler_of(scene), scene.n_surfaces
     seconds = seconds_for(scene, sampler, m, at_least=_LONG / 4)
     if seconds < _LONG:

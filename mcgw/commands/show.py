@@ -1,4 +1,4 @@
-"""``mcgw show``: what is in a file."""
+"""``mcgw show``: the contents of a file."""
 
 import argparse
 from pathlib import Path
@@ -76,7 +76,7 @@ def execute(args: argparse.Namespace) -> int:
 
 
 def _show_unfinished(args: argparse.Namespace, begun: "RunFolder") -> int:
-    """How far a sweep has come that is not yet in its file; with --scene, what all of its points come from.
+    """Print the progress of an unfinished sweep; with --scene, its base scene.
 
     Raises
     ------

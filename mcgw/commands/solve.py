@@ -1,4 +1,4 @@
-"""``mcgw solve``: what holds at a given load."""
+"""``mcgw solve``: answers at a given load."""
 
 import argparse
 from pathlib import Path
@@ -8,7 +8,7 @@ from mcgw.commands.options import add_set_option, changes_of
 HELP = "find separation, area, stiffness, contacts and conductance at given loads"
 EXAMPLE = "mcgw solve runs/demo.toml --pressure 100kPa 1MPa --csv solved.csv"
 
-# What may be given, by the words of `mcgw.solve`: a letter for it, and what it is.
+# Arguments of `mcgw.solve`: a letter and the help of each.
 _GIVEN = {
     "pressure": ("P", "load per nominal area: Pa, kPa, MPa, GPa"),
     "load": ("F", "mN, N, kN, MN"),
@@ -36,7 +36,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def execute(args: argparse.Namespace) -> int:
-    """Print a table for each load; write it as CSV if asked to."""
+    """Print the answers as a table; with --csv, also write it."""
     from dataclasses import replace
 
     from mcgw.commands.outputs import check_outputs, table_output, write_table

@@ -48,7 +48,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def execute(args: argparse.Namespace) -> int:
-    """Write the map or the figure, and say where it is and what hides in it."""
+    """Write the map or the figure; print its path and the number of hidden summits."""
     if args.from_spectrum is not None:
         return _spectrum(args)
     if args.scene is None:
@@ -71,7 +71,7 @@ def _check_output(args: argparse.Namespace) -> None:
 
 
 def _shape(text: str) -> tuple[int, int | None]:
-    """Columns, and rows if they are given."""
+    """Columns, and rows if given."""
     found = re.fullmatch(r"(\d{1,9})(?:x(\d{1,9}))?", text)
     if found is None:
         raise ValueError(
@@ -113,7 +113,7 @@ def _asperities(args: argparse.Namespace) -> int:
 
 
 def _account(scene: "Scene", field: "Asperities", topography: "Topography") -> tuple[list[str], list[str]]:
-    """What is on the map, and what on it are no independent asperities."""
+    """Describe the map and how many of its summits are not independent."""
     from mcgw.maps.envelope import hidden_summits
     from mcgw.maps.hidden_caps import CROWDED
 

@@ -1,4 +1,4 @@
-"""``mcgw sweep``: many scenes as one question."""
+"""``mcgw sweep``: many scenes on the same surfaces."""
 
 import argparse
 from pathlib import Path
@@ -39,7 +39,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def execute(args: argparse.Namespace) -> int:
-    """Draw and say where the file is."""
+    """Draw and print the path of the file."""
     from mcgw.commands.outputs import HDF5, Output, check_outputs
     from mcgw.commands.voice import details, news
     from mcgw.jobs.sweeping import sweep
@@ -67,12 +67,12 @@ def execute(args: argparse.Namespace) -> int:
 
 
 def _axis(text: str) -> tuple[str, list[Any]]:
-    """A key and its values.
+    """Parse KEY=VALUES.
 
     Raises
     ------
     ValueError
-        If it is not one.
+        If the text has no such form.
     """
     key, equals, values = text.partition("=")
     if not (key and equals and values):
@@ -93,7 +93,7 @@ def _evenly(text: str, start: float, stop: float, number: float) -> list[float]:
 
 
 def _number(text: str) -> int | float | None:
-    """A number as TOML has it, whole or not; None for a text."""
+    """An int or float as in TOML; None for other text."""
     for kind in (int, float):
         try:
             return kind(text)

@@ -1,4 +1,4 @@
-"""``mcgw tradeoff``: error against time, for one scene on this machine."""
+"""``mcgw tradeoff``: error against time of a scene on this machine."""
 
 import argparse
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""What a command says, and how much of it: the news; with -q errors alone; with -v everything."""
+"""How much a command prints: the news; with -q only errors; with -v everything."""
 
 import argparse
 import sys
@@ -33,7 +33,7 @@ def add_amount_options(parser: argparse.ArgumentParser) -> None:
 
 @contextmanager
 def speaking(amount: int) -> Iterator[None]:
-    """Say so much in the commands below; when quiet no bars and no warnings either."""
+    """Print this much; when quiet, no progress bars and no warnings either."""
     before = _AMOUNT.set(amount)
     try:
         if amount == QUIET:
@@ -47,33 +47,32 @@ def speaking(amount: int) -> Iterator[None]:
 
 
 def says(amount: int = NEWS) -> bool:
-    """Whether so much is to be said."""
+    """Whether this much is printed."""
     return _AMOUNT.get() >= amount
 
 
 def news(*lines: object) -> None:
-    """Say what was made, what came out, what to type next."""
+    """Print what was made, the result, and what to type next."""
     if says() and lines:
         print(*lines, sep="\n")
 
 
 def details(*lines: object) -> None:
-    """Say what only those want who gave -v."""
+    """Print details, with -v only."""
     if says(ALL) and lines:
         print(*lines, sep="\n")
 
 
 def notes(*lines: str) -> None:
-    """Say what a user should know, beside the output."""
+    """Print notes on standard error."""
     for line in lines if says() else ():
         print(f"mcgw: note: {line}", file=sys.stderr)
 
 
 def tell_cautions(source: "Scene | Ensemble | Sweep", instead: str = "") -> None:
-    """Say the cautions of a scene, of an ensemble or of all points of a sweep.
+    """Print the cautions of a scene, an ensemble or all points of a sweep.
 
-    Where they were said before, `instead` is the command that says them in full: then only their number is
-    given, beside values that are perhaps in other units.
+    With `instead`, which says how to see them in full, only their number is printed, and doubts about units.
     """
     if not says():
         return
@@ -90,13 +89,13 @@ def tell_cautions(source: "Scene | Ensemble | Sweep", instead: str = "") -> None
 
 
 def cautions_of(source: "Scene | Ensemble | Sweep") -> list[str]:
-    """What a reader should know of a scene, that of an ensemble, or all points of a sweep."""
+    """Cautions of a scene, of the scene of an ensemble, or of all points of a sweep."""
     from mcgw.scene.cautions import cautions
     from mcgw.scene.scene import Scene
 
     if isinstance(source, Scene):
         return cautions(source)
-    from mcgw.ensemble.ensemble import Ensemble  # with results, of which many commands have none
+    from mcgw.ensemble.ensemble import Ensemble  # imports results, which many commands do not need
 
     if isinstance(source, Ensemble):
         return cautions(source.scene)

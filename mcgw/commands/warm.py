@@ -19,7 +19,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def execute(_args: argparse.Namespace) -> int:
-    """Compile, and say where the loops are kept."""
+    """Compile and print where the loops are stored."""
     from mcgw.commands.voice import news
     from mcgw.errors import RunError
     from mcgw.machine.child_process import ChildError
@@ -35,7 +35,7 @@ def execute(_args: argparse.Namespace) -> int:
 
 
 def warm() -> None:
-    """Compile what is not there yet: both halves at once, in processes that end with this one.
+    """Compile what is missing, in two processes that end with this one.
 
     Raises
     ------
@@ -53,7 +53,7 @@ def warm() -> None:
 
 
 def _scene(**changes: Any) -> Any:
-    """A small scene with some changes."""
+    """Make a small scene with changes."""
     from mcgw.scene.scene import Scene
     from mcgw.scene.surface import Surface
 
@@ -63,7 +63,7 @@ def _scene(**changes: Any) -> Any:
 
 
 def _simulate(*changes: dict[str, Any]) -> None:
-    """Draw it with each of these."""
+    """Draw it with each sampler."""
     from mcgw.ensemble.simulation import simulate
 
     for change in changes:
@@ -98,7 +98,7 @@ def _hertz() -> None:
 
 
 def _draws() -> None:
-    """Moments of every length, without any physics."""
+    """Draw moments of every length, without physics."""
     import numpy as np
 
     from mcgw.sampling.block import Layout
@@ -124,7 +124,7 @@ def _radii() -> None:
     _simulate(*({"surface": spectrum, "sampler": sampler} for sampler in ("cells", "tail", "stratified")))
 
 
-# The first of the one are not in the other: what both need last is there by then.
+# They begin with different loops, so that common ones are compiled once.
 _HALVES = ((_laws, _maps, _nominal, _hertz), (_draws, _crowds, _radii))
 
 if __name__ == "__main__":

@@ -1,1 +1,1 @@
-"""Tables of contact for finite-element programs: what is tabulated, and in which form."""
+"""Contact tables for finite-element programs."""

@@ -22,9 +22,9 @@ class Kind:
     Parameters
     ----------
     name : str
-        As it is asked for: what is tabulated, against what.
+        Its name: quantity and argument.
     quantity : {"pressure", "conductance", "stiffness", "contact", "conducting"}
-        What is tabulated; the last two are all columns of a `ContactTable`.
+        The tabulated quantity; the last two stand for all columns of a `ContactTable`.
     against : {"gap", "pressure"}
         Its argument.
     """
@@ -41,17 +41,17 @@ class Kind:
 
     @property
     def dataset(self) -> str:
-        """The name of its quantity in an ensemble, a sum over asperities."""
+        """Name of the quantity in an ensemble, a sum over asperities."""
         return {"conductance": "conductance_si"}.get(self.quantity, self.quantity)
 
     def answer(self, scene: Scene) -> str:
-        """What of a scene is tabulated: conductance is that of the joint, where there is one."""
+        """The tabulated answer of a scene; the conductance is that of the joint, if there is one."""
         if self.quantity != "conductance":
             return self.quantity
         return "contact_conductance" if scene.joint is None else "joint_conductance"
 
     def stays(self, scene: Scene) -> bool:
-        """Whether gas conducts on where nothing is carried."""
+        """Whether gas still conducts at zero load."""
         return self.quantity == "conductance" and scene.filled is not None and scene.filled.gas is not None
 
 
@@ -67,7 +67,7 @@ class Curve:
     Parameters
     ----------
     name : str
-        "mean", or of a quantile, as "q05".
+        "mean", or a quantile such as "q05".
     x : ndarray
         Gap (m) or pressure (Pa), rising.
     y : ndarray
@@ -117,7 +117,7 @@ def curves_of(
 
 
 def quantile_name(quantile: float) -> str:
-    """As it is called in names of files: q05 of 0.05."""
+    """Name of a quantile in file names: q05 for 0.05."""
     digits = f"{100 * quantile:.6g}"
     return f"q{digits.zfill(2)}" if "." not in digits else f"q{digits}"
 
@@ -125,7 +125,7 @@ def quantile_name(quantile: float) -> str:
 def _at_gaps(
     ensemble: Ensemble, kind: Kind, pressures: Array | None, points: int, quantiles: tuple[float, ...]
 ) -> tuple[Array, Array, list[Array]]:
-    """Gaps, means there, and each quantile."""
+    """Gaps with the means and each quantile."""
     order = np.argsort(ensemble.separations, kind="stable")
     mean = ensemble.mean("pressure")[order]
     if np.any(mean < 0):
@@ -163,7 +163,7 @@ def _at_pressures(
 
 
 def _pressures_within(ensemble: Ensemble, points: int) -> Array:
-    """Pressures that all surfaces reach, a constant ratio apart, Pa.
+    """Pressures that all surfaces reach, at a constant ratio, Pa.
 
     Raises
     ------
@@ -179,7 +179,7 @@ def _pressures_within(ensemble: Ensemble, points: int) -> Array:
 
 
 def _one_way(curve: Curve, kind: Kind) -> Curve:
-    """Without what carries nothing; a curve that does not go one way is no table."""
+    """Drop points without load; refuse a curve that is not monotonic."""
     carries = curve.y > 0
     x, y = curve.x[carries], curve.y[carries]
     if x.size < _FEWEST:

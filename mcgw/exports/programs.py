@@ -17,9 +17,9 @@ class Program:
     Parameters
     ----------
     name : str
-        As it is asked for.
+        Its name on the command line.
     endings : tuple of str
-        Of its files.
+        Endings of its files.
     comment : str
         How a comment line begins.
     separator : str
@@ -52,7 +52,7 @@ class Program:
 
 
 def check_name(file: str, program: Program) -> None:
-    """Refuse the name of a file that an input of the program cannot tell, as its own comments do.
+    """Refuse a file name that cannot stand in an input of the program or in its comments.
 
     Raises
     ------
@@ -67,15 +67,15 @@ def check_name(file: str, program: Program) -> None:
 
 
 def foot_of(curve: Curve) -> float:
-    """The gap at which a line through the last two points comes down to no pressure."""
+    """The gap at which a line through the last two points reaches zero pressure."""
     (x1, x2), (y1, y2) = curve.x[-2:], curve.y[-2:]
     return float(x2 + y2 * (x2 - x1) / (y1 - y2))
 
 
 def rows_of(curve: Curve, kind: Kind, program: Program, foot: float, stays: bool = False) -> Array:
-    """Rows as a program reads them, in its order and from SI, shape (rows, 2).
+    """Rows in the order that a program reads, shape (rows, 2).
 
-    Nothing is carried at the first point, of pressure 0 or of the gap `foot`; unless it `stays` as it is.
+    The first point, at pressure 0 or gap `foot`, carries nothing, unless the curve `stays` as it is.
     """
     x, y = curve.x, curve.y
     if kind.against == "pressure":

@@ -25,7 +25,7 @@ class UnitSystem:
     Parameters
     ----------
     length, pressure, stiffness, conductance : tuple of (float, str)
-        What a value in m, Pa, Pa/m and W/(m^2 K), or S/m^2, is multiplied by, and the unit it is in then.
+        Factor and unit of lengths (m), pressures (Pa), stiffness (Pa/m), conductance (W/(m^2 K) or S/m^2).
     """
 
     length: tuple[float, str]
@@ -59,14 +59,14 @@ def heading(ensemble: Ensemble, kind: Kind, curve: Curve, system: UnitSystem, di
 
 
 def unit_of(kind: Kind, system: UnitSystem, scene: Scene) -> str:
-    """Of what is tabulated, of heat or of current."""
+    """Unit of the quantity, for heat or current."""
     name: str = getattr(system, kind.quantity)[1]
     heat, _, current = name.partition(", or ")
     return current if current and scene.film is not None and not scene.film.thermal else heat
 
 
 def _filled(kind: Kind, scene: Scene) -> list[str]:
-    """What of a joint conducts."""
+    """Name what conducts in a joint."""
     if kind.quantity != "conductance" or not scene.thermal:
         return []
     stays = {
@@ -88,7 +88,7 @@ def _version() -> str:
 
 
 def _zero(scene: Scene, system: UnitSystem) -> list[str]:
-    """From which plane gaps d count."""
+    """Name the plane from which gaps are measured."""
     factor, unit = system.length
     lines = ["gap d: from the rigid plane to the mean plane of the summits"]
     if isinstance(scene.heights, Nayak):
@@ -105,7 +105,7 @@ def _zero(scene: Scene, system: UnitSystem) -> list[str]:
 
 
 def in_units(curve: Curve, kind: Kind, system: UnitSystem) -> Curve:
-    """A curve of SI in other units."""
+    """Convert a curve from SI."""
     factor = (system.length if kind.against == "gap" else system.pressure)[0]
     return Curve(curve.name, factor * curve.x, getattr(system, kind.quantity)[0] * curve.y)
 
@@ -127,13 +127,13 @@ def table_text(
     curve : Curve
         In the units of the file.
     kind, program, system
-        Of what, for which program, in which units.
+        The kind of table, the program and the units.
     head : sequence of str
-        What its comments begin with.
+        First comment lines.
     file : str
-        Its name, which some comments tell.
+        Name of the file, for its comments.
     stays : bool, optional
-        Whether what is tabulated does not end where nothing is carried.
+        Whether the quantity stays finite at zero load.
 
     Raises
     ------
@@ -151,7 +151,7 @@ def table_text(
 
 
 def _foot(foot: float, kind: Kind, program: Program, system: UnitSystem) -> list[str]:
-    """Where the curve ends, and what zero is."""
+    """State where the curve ends, and what zero means."""
     lines = [
         f"there is no load beyond the gap d0 = {foot:.9e} {system.length[1]}",
         "(where the line through the last two points reaches 0)",
@@ -174,7 +174,7 @@ def _check(rows: Array, kind: Kind, program: Program) -> None:
 
 
 def all_curves(curves: Sequence[Curve], kind: Kind, system: UnitSystem, scene: Scene) -> Table:
-    """All curves beside each other, in the units of the files; empty where one of them carries nothing."""
+    """All curves side by side, in the units of the files; empty where one carries nothing."""
     x = np.unique(np.concatenate([curve.x for curve in curves])).tolist()
     unit = (system.length if kind.against == "gap" else system.pressure)[1]
     value = unit_of(kind, system, scene)

@@ -1,4 +1,4 @@
-"""``mcgw.export``: the files of a table, one for each curve, and one of all."""
+"""``mcgw.export``: write a table, one file for each curve and one for all."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -25,8 +25,8 @@ from mcgw.store.ensembles import open_ensemble, read_attributes
 DEFAULT_POINTS, DEFAULT_QUANTILES = 40, (0.05, 0.95)
 _MOST_POINTS = 10_000
 _STEP = 1 / 32  # d/sigma between separations, where quantities are read off at equal pressure
-_MARGIN = 6.0  # standard deviations of the separation at which a surface has a pressure
-_MOST = 2.0  # d/sigma, the margin at most: one contact alone has no standard deviation to speak of
+_MARGIN = 6.0  # standard deviations of the separation at a pressure
+_MOST = 2.0  # d/sigma, largest margin: a single contact has a huge standard deviation
 
 
 def export(
@@ -110,7 +110,7 @@ def export(
     ensemble = _drawn(source, kind, wanted, points)
     bounds, rows = wanted, points
     if wanted is not None and ensemble is not source and kind.against == "gap":
-        bounds, rows = None, len(wanted)  # drawn at the very separations of the rows
+        bounds, rows = None, len(wanted)  # drawn at the separations of the rows
     curves = curves_of(ensemble, kind, bounds, rows, _quantiles(quantiles, ensemble))
     files = files_of_export(path, [curve.name for curve in curves])
     scaled = [in_units(curve, kind, system) for curve in curves]
@@ -157,7 +157,7 @@ def _drawn(source: Scene | Ensemble, kind: Kind, pressures: Array | None, points
 
 
 def files_of_export(path: str | Path, names: Sequence[str]) -> list[Path]:
-    """The file of each curve, the mean first, and that of all of them."""
+    """File of each curve, the mean first, and the file of all curves."""
     path = Path(path)
     beside = [path.with_name(f"{path.stem}.{name}{path.suffix}") for name in names[1:]]
     return [path, *beside, path.with_name(f"{path.stem}.all.csv")]
@@ -205,7 +205,7 @@ def _quantiles(given: Sequence[float] | None, ensemble: Ensemble) -> tuple[float
 
 
 def _source(what: Scene | Ensemble | str | Path) -> tuple[Scene | Ensemble, str]:
-    """A scene or an ensemble, and the digest of its numbers or, where there are none yet, of its scene."""
+    """A scene or an ensemble, with the digest of its numbers or, without numbers, of its scene."""
     if isinstance(what, str | Path):
         return open_ensemble(what), f"data {read_attributes(Path(what))['digest']}"
     if not isinstance(what, Scene | Ensemble):
@@ -215,7 +215,7 @@ def _source(what: Scene | Ensemble | str | Path) -> tuple[Scene | Ensemble, str]
 
 
 def checked(scene: Scene, kind: Kind) -> None:
-    """Refuse what has no such table.
+    """Refuse a scene without such a table.
 
     Raises
     ------
@@ -230,7 +230,7 @@ def checked(scene: Scene, kind: Kind) -> None:
 
 
 def surfaces_for(scene: Scene, kind: Kind, pressures: Array | None, points: int) -> Ensemble:
-    """Draw the surfaces of a scene, with what a table needs and nothing else.
+    """Draw the surfaces of a scene with only what a table needs.
 
     Parameters
     ----------

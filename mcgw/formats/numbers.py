@@ -1,6 +1,6 @@
-"""Numbers as people write them: 1.234×10⁻⁵, those of a table all in one format; and those with units.
+"""Numbers as people write them, 1.234×10⁻⁵, and numbers with units.
 
-As ``1.37 um``, ``300/mm^2``, ``1MPa``, ``2%``: this is the one place that knows units.
+As ``1.37 um``, ``300/mm^2``, ``1MPa``, ``2%``: this module alone knows units.
 """
 
 import math
@@ -72,9 +72,9 @@ def parse(text: str, unit: str, name: str = "") -> float:
         A number, then its unit, or nothing for the SI unit itself. Squares and reciprocals as ``mm^2``,
         ``mm²``, ``1/mm^2`` or ``mm^-2``.
     unit : {"m", "m^2", "1/m^2", "Pa", "N", "s", "1"}
-        What is measured; "1" is a share, which may be in %.
+        SI unit of the result; "1" is a share, which may be in %.
     name : str, optional
-        Of the option or key that it belongs to, for the message.
+        Name of the option or key, for the message.
 
     Returns
     -------
@@ -100,7 +100,7 @@ def parse(text: str, unit: str, name: str = "") -> float:
 
 
 def signed(text: str, unit: str) -> float:
-    """As `parse`, of a number of any sign: nan or infinite where it is none of that kind."""
+    """Read a number of any sign, otherwise as `parse`."""
     match = _NUMBER.fullmatch(text) if len(text) < 1000 else None
     factor = _factor(match.group(2) or "", unit) if match else None
     try:
@@ -110,7 +110,7 @@ def signed(text: str, unit: str) -> float:
 
 
 def _factor(written: str, unit: str) -> Fraction | None:
-    """Of a unit in any spelling: ``mm²`` is ``mm^2``, ``mm^-2`` and ``/mm^2`` are ``1/mm^2``."""
+    """Factor of a unit in any spelling: ``mm²`` is ``mm^2``, ``mm^-2`` and ``/mm^2`` are ``1/mm^2``."""
     plain = unicodedata.normalize("NFKC", written).replace("\N{MINUS SIGN}", "-")
     plain = re.sub(r"\^|\*\*|\s", "", plain)
     plain = re.sub(r"^(?:/(\w+)|(\w+)-2)$", lambda m: f"1/{m[1] or m[2] + '2'}", plain)
@@ -126,7 +126,7 @@ _BLANK = "\u2004"  # a third of an em, about as wide as a raised digit
 
 
 def number(x: float, digits: int = 4) -> str:
-    """One number to so many digits, without trailing zeros; with a power of ten below 1e-4, from 1e4 on."""
+    """Format a number to some digits, without trailing zeros; with a power of ten below 1e-4 and from 1e4."""
     text = f"{x:.{digits}g}"
     if "e" not in text:
         return text.replace("-", "−")
@@ -135,7 +135,7 @@ def number(x: float, digits: int = 4) -> str:
 
 
 def typeset(text: str) -> str:
-    """What is plain in a terminal as it is written: 1e-05, d/sigma, m^2, +-, ... and minus signs.
+    """Typeset plain text of a terminal: 1e-05, d/sigma, m^2, +-, ... and minus signs.
 
     Examples
     --------
@@ -149,7 +149,7 @@ def typeset(text: str) -> str:
 
 
 def columns(values: Iterable[tuple[ArrayLike, int]]) -> list[list[str]]:
-    """Columns of one table: all with the same decimals, or all with powers of ten.
+    """Format the columns of a table: all with the same decimals, or all with powers of ten.
 
     Parameters
     ----------
@@ -178,7 +178,7 @@ def columns(values: Iterable[tuple[ArrayLike, int]]) -> list[list[str]]:
 
 
 def _decimals(x: Array, digits: int) -> int | None:
-    """Decimals of numbers near each other; None for others."""
+    """Decimals for numbers of similar size; otherwise None."""
     sizes = np.abs(x[np.isfinite(x) & (x != 0)])
     if not sizes.size or sizes.max() > _PLAIN * sizes.min():
         return None

@@ -1,4 +1,4 @@
-"""Figures as files, in the formats that matplotlib writes."""
+"""Figures as files, in the formats of matplotlib."""
 
 from pathlib import Path
 from typing import IO, Any
@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 from mcgw.formats.files import whole_file
 
-# No file knows when it was written, so that the same figure gives the same bytes.
+# Files have no date, so that the same figure gives the same bytes.
 _UNDATED: dict[str, dict[str, Any]] = {"pdf": {"CreationDate": None}, "svg": {"Date": None}}
 
 
@@ -35,14 +35,14 @@ def save_figure(figure: Figure, path: str | Path, **options: Any) -> None:
 
 
 def write_figure(figure: Figure, file: str | Path | IO[Any], **options: Any) -> None:
-    """As ``figure.savefig``, in half of the time: laid out once, drawn once.
+    """Save a figure in half the time of ``figure.savefig``: laid out once, drawn once.
 
-    As long as a figure has a layout engine, matplotlib draws it twice for each file. Afterwards this one has
-    none: it keeps its layout, and is not to be drawn on any more.
+    With a layout engine matplotlib draws a figure twice for each file. Here the engine is removed: the figure
+    keeps its layout and must not be changed afterwards.
     """
     engine = figure.get_layout_engine()
     if engine is not None:
-        dpi = options.get("dpi", mpl.rcParams["savefig.dpi"])  # texts are measured in whole dots
+        dpi = options.get("dpi", mpl.rcParams["savefig.dpi"])  # texts are measured in whole pixels
         if dpi != "figure":
             figure.set_dpi(dpi)
         FigureCanvasAgg(figure)  # one for both: each reads and measures the formulas anew

@@ -1,4 +1,4 @@
-"""What an object shows of itself: a dozen lines in a terminal, a table in a notebook."""
+"""Display of an object: a dozen lines in a terminal, a table in a notebook."""
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
@@ -12,13 +12,13 @@ _LONGEST = 88  # characters of one fact
 
 
 def brief(text: str) -> str:
-    """A text on one line, with dots in place of its end if it is longer than 88 characters."""
+    """Shorten a text to one line of at most 88 characters, with dots at its end."""
     plain = one_line(text)
     return plain if len(plain) <= _LONGEST else f"{plain[: _LONGEST - 3]}..."
 
 
 def listed(facts: Iterable[tuple[str, str]], width: int = 0) -> Iterator[str]:
-    """Lines of names and texts, the texts under each other; names take `width` characters or more."""
+    """Lines of names and aligned texts; names take at least `width` characters."""
     facts = list(facts)
     width = max([width, *(len(name) for name, _ in facts)])
     return (f"  {name:{width}}  {text}" for name, text in facts)
@@ -31,7 +31,7 @@ class Sheet:
     Parameters
     ----------
     title : str
-        What it is.
+        Its title.
     facts : sequence of (str, str), optional
         Name and text.
     table : Table, optional
@@ -43,12 +43,12 @@ class Sheet:
     table: Table | None = None
 
     def text(self) -> str:
-        """Plain lines, the columns under each other."""
+        """Plain text with aligned columns."""
         facts = listed((name, brief(text)) for name, text in self.facts)
         return "\n".join([brief(self.title), *facts, *([] if self.table is None else [self.table.text()])])
 
     def html(self) -> str:
-        """The same as HTML; nothing in it is a tag but what stands here."""
+        """The same as HTML, with all texts escaped."""
         cells = "<tr><th>{}</th><td>{}</td></tr>".format
         facts = "".join(cells(escape(name), escape(brief(text))) for name, text in self.facts)
         facts = f"<table>{facts}</table>" if facts else ""
@@ -56,10 +56,10 @@ class Sheet:
 
 
 class Shown:
-    """Shows a sheet of itself."""
+    """Displays itself as a sheet."""
 
     def sheet(self) -> Sheet:
-        """What is shown, at most a dozen lines."""
+        """The sheet to show, at most a dozen lines."""
         raise NotImplementedError
 
     def __repr__(self) -> str:

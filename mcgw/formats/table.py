@@ -1,4 +1,4 @@
-"""A table of named columns, and one way each to print it, to mark it up, to store it and to hand it on."""
+"""A table of named columns: printed, as HTML, as CSV and as a DataFrame."""
 
 import csv
 import re
@@ -27,23 +27,23 @@ class Column:
     Parameters
     ----------
     name : str
-        In code: of a column of a CSV file or a DataFrame.
+        Its name in a CSV file or a DataFrame.
     values : array_like of float or sequence of str
         One for each row.
     words : str, optional
-        What a reader sees over it; default: `name`.
+        Its heading; default: `name`.
     unit : str, optional
-        Of the numbers; those of one unit are set in one format.
+        Unit of the numbers; columns of one unit share one format.
     form : str, optional
         Format of a number for a reader; files have all digits.
     missing : str, optional
-        What a reader sees for nan.
+        Text in place of nan.
     beside : Column, optional
-        A second number in the same cell, as a standard error or the end of an interval.
+        A second number in the same cell, such as a standard error or the end of an interval.
     between : str, optional
-        What stands between the two.
+        Text between the two.
     error : array_like, optional
-        Of each number: a reader sees it to the second digit of its error.
+        Error of each number, which is shown to the second digit of its error.
     """
 
     name: str
@@ -67,7 +67,7 @@ class Column:
         return any(isinstance(x, str) for x in self.values[:1])
 
     def cells(self) -> list[str]:
-        """What a reader sees, a text for each row."""
+        """The displayed text of each row."""
         errors = np.broadcast_to(np.nan if self.error is None else self.error, len(self.values))
         own = [
             x if isinstance(x, str) else self._shown(x, error)
@@ -76,7 +76,7 @@ class Column:
         return own if self.beside is None else self.together(own, self.beside.cells())
 
     def together(self, own: Sequence[str], others: Sequence[str]) -> list[str]:
-        """Both numbers of each cell; the first alone where the second is nan."""
+        """Both numbers of each cell; only the first where the second is nan."""
         numbers = () if self.beside is None else self.beside.values
         return [
             one if np.isnan(x) else f"{one}{self.between}{other}"
@@ -84,7 +84,7 @@ class Column:
         ]
 
     def alone(self) -> "Column":
-        """Without what is beside it."""
+        """The column without what is beside it."""
         return replace(self, beside=None)
 
     def typeset(self) -> list[str]:
@@ -117,16 +117,16 @@ class Table:
 
     @property
     def flat(self) -> list[Column]:
-        """Columns of one number a cell each."""
+        """Columns with one number per cell."""
         return [each for column in self.columns for each in column.flat]
 
     @property
     def unit(self) -> str:
-        """The first of its columns'."""
+        """The first unit of its columns."""
         return next((column.unit for column in self.columns if column.unit), "")
 
     def heading(self, column: Column) -> str:
-        """Words over a column, and its unit if the title does not tell it."""
+        """Heading of a column, with its unit unless the title has it."""
         unit = f" ({column.unit})" if column.unit not in ("", "1") else ""
         return (column.words or column.name) + ("" if unit in self.title else unit)
 
@@ -136,7 +136,7 @@ class Table:
         return replace(self, columns=tuple(by_name[name] for name in names))
 
     def rows(self, most: int = 9) -> "Table":
-        """So many rows at most, evenly, with the first and the last."""
+        """At most this many rows, evenly spaced, with the first and the last."""
         return self.at(evenly(len(self), most).tolist())
 
     def at(self, k: Sequence[int]) -> "Table":
@@ -144,7 +144,7 @@ class Table:
         return replace(self, columns=tuple(_part(column, k) for column in self.columns))
 
     def text(self) -> str:
-        """Plain lines under the title: texts at the left of their column, numbers at the right."""
+        """Plain text: texts are aligned left, numbers right."""
         lines = [self.title] if self.title else []
         cells = [[self.heading(column), *column.cells()] for column in self.columns]
         widths = [max(map(len, column)) for column in cells]
@@ -174,9 +174,9 @@ class Table:
         Parameters
         ----------
         path : str or Path
-            The file; it is there whole or not at all.
+            The file; never left half-written.
         comment : str, optional
-            Stands above the names.
+            A line above the names.
         """
         columns = self.flat
         with (
@@ -200,7 +200,7 @@ class Table:
         return pandas.DataFrame({column.name: column.values for column in self.flat})
 
     def _typeset(self) -> Iterator[list[str]]:
-        """Cells of each column: numbers of one unit in one format, all else as in a terminal."""
+        """Cells of each column: numbers of one unit in one format, others as in a terminal."""
         found: dict[str, list[str]] = {}
         for unit in dict.fromkeys(column.unit for column in self.flat if column.unit):
             alike = [c for c in self.flat if c.unit == unit and not c.textual and _DIGITS.fullmatch(c.form)]
@@ -215,16 +215,16 @@ class Table:
 
 
 def stacked(tables: Mapping[str, Table], key: str, words: str = "") -> Table:
-    """Tables with the same columns under each other.
+    """Stack tables with the same columns.
 
     Parameters
     ----------
     tables : dict of str to Table
-        By what tells their rows apart.
+        By the value of the first column.
     key : str
-        What that is: the name of the first column. The second is the unit, if there is any.
+        Name of the first column. The second is the unit, if there is any.
     words : str, optional
-        What a reader sees over the first column.
+        Heading of the first column.
     """
     parts = list(tables.values())
     first = [Column(key, [name for name, table in tables.items() for _ in range(len(table))], words)]
@@ -234,12 +234,12 @@ def stacked(tables: Mapping[str, Table], key: str, words: str = "") -> Table:
 
 
 def joined(tables: Sequence[Table]) -> Table:
-    """Tables with the same columns under each other, with nothing to tell their rows apart."""
+    """Stack tables with the same columns, without a column that names them."""
     return Table(tuple(map(_under, zip(*(table.columns for table in tables), strict=True))))
 
 
 def _under(columns: Sequence[Column]) -> Column:
-    """Columns under each other, without their unit where it is not the same."""
+    """Join columns; the unit is kept if all have the same."""
     values = np.concatenate([np.asarray(column.values) for column in columns])
     unit = columns[0].unit if len({column.unit for column in columns}) == 1 else ""
     besides = [column.beside for column in columns if column.beside is not None]
@@ -261,17 +261,17 @@ def _stored(column: Column) -> Iterator[str]:
 
 
 def digits_of(x: float, error: float) -> int:
-    """Digits of a number down to the second of its error; two at least, seven at most."""
+    """Number of digits down to the second digit of the error, from two to seven."""
     return int(np.clip(np.floor(np.log10(abs(x))) - np.floor(np.log10(error)) + 2, 2, 7))
 
 
 def evenly(n: int, most: int) -> Ints:
-    """Numbers of at most so many of `n` rows, rising."""
+    """Indices of at most `most` of `n` rows, rising."""
     return np.unique(np.linspace(0, n - 1, min(n, most)).round().astype(np.int64))
 
 
 def optional(package: str, what: str) -> Any:
-    """Import a package that mcgw does without.
+    """Import an optional package.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""What a map or profiles gave, as lines of text."""
+"""Results of a fit to a map or profiles, as text."""
 
 from collections.abc import Sequence
 
@@ -12,7 +12,7 @@ from mcgw.maps.waves import Uncertain
 
 
 def map_line(name: str, asked: Preparation, assumed_unit: str) -> str:
-    """Which map it was, its form and cutoff, and the unit that was taken where none was given."""
+    """The map, its form and cutoff, and the assumed unit if none was given."""
     filtered = "none" if asked.cutoff is None else f"{asked.cutoff:g} m (Gaussian, ISO 16610-61)"
     line = f"{name}: form removed: {asked.form}; cutoff: {filtered}"
     if assumed_unit:
@@ -21,7 +21,7 @@ def map_line(name: str, asked: Preparation, assumed_unit: str) -> str:
 
 
 def fit_lines(fit: Fit) -> list[str]:
-    """Moments, and the estimates by all methods, one a line, with standard errors."""
+    """Moments and the estimates by each method, one per line, with standard errors."""
     m0, m2, m4, alpha = (_told(x) for x in (fit.m0, fit.m2, fit.m4, fit.alpha))
     lines = [
         f"m0 = {m0} m^2, m2 = {m2}, m4 = {m4} 1/m^2, alpha = {alpha}, "
@@ -49,7 +49,7 @@ def fit_lines(fit: Fit) -> list[str]:
 
 
 def profile_line(names: Sequence[str], asked: Preparation, profiles: Sequence[Profile]) -> str:
-    """Which profiles they were, their form and cutoff, and the unit that was taken where none was given."""
+    """The profiles, their form and cutoff, and the assumed unit if none was given."""
     filtered = "none" if asked.cutoff is None else f"{asked.cutoff:g} m (Gaussian)"
     taken = {"none": "mean", "plane": "line", "quadratic": "parabola"}[asked.form]
     line = f"{', '.join(names)}: profile; removed: {taken}; cutoff: {filtered}"
@@ -59,7 +59,7 @@ def profile_line(names: Sequence[str], asked: Preparation, profiles: Sequence[Pr
 
 
 def profile_lines(fit: ProfileFit) -> list[str]:
-    """What the profiles are, and what they tell of the surface, one number a line."""
+    """Statistics of the profiles and of the surface, one number per line."""
     counted, expected = fit.peaks
     number = len(fit.lengths)
     return [

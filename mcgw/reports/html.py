@@ -1,4 +1,4 @@
-"""Reports of an ensemble and of a sweep: one HTML page each, that needs no network and no script."""
+"""Reports of an ensemble and of a sweep: one HTML page each, without network or scripts."""
 
 import math
 import re
@@ -41,9 +41,9 @@ Facts = list[tuple[str, str]]
 
 
 def report_html(ensemble: Ensemble, attributes: dict[str, Any]) -> str:
-    """The page of an ensemble and of the attributes of its file: scene, digest, versions, ...
+    """Make the page of an ensemble from it and the attributes of its file: scene, digest, versions, ...
 
-    Surfaces that have means only have no test against theory, and no band.
+    Surfaces with means alone have neither test against theory nor band.
     """
     scene, against = ensemble.scene, ensemble.scene.validity()
     real = promise_of(ensemble.sampler).real_surfaces
@@ -90,7 +90,7 @@ def report_html(ensemble: Ensemble, attributes: dict[str, Any]) -> str:
 
 
 def solution_of(scene: Scene, first: Ensemble) -> Solution | None:
-    """Its first surfaces amid the pressures that all of them reach, each read off its own curve."""
+    """First surfaces at a middle pressure that all reach, each read off its own curve."""
     names = [name for name in ("area", "stiffness", "conductance") if name in scene.quantities]
     if "load" not in scene.quantities or not names or first.n_surfaces < 2:
         return None
@@ -111,11 +111,11 @@ def solution_of(scene: Scene, first: Ensemble) -> Solution | None:
 
 
 def rendered(template: str, **values: Any) -> str:
-    """A page of a template of this folder; every text in it is escaped.
+    """Render a template of this folder; every text is escaped.
 
-    Pages extend ``page.html.j2``, which has their look, on screens of any width and in print.
+    Pages extend ``page.html.j2``, which sets their look on screens and in print.
     """
-    from jinja2 import Environment, PackageLoader, StrictUndefined  # for who asks for a page
+    from jinja2 import Environment, PackageLoader, StrictUndefined  # only pages need it
 
     environment = Environment(
         loader=PackageLoader("mcgw.reports", "."), autoescape=True, undefined=StrictUndefined,
@@ -126,7 +126,7 @@ def rendered(template: str, **values: Any) -> str:
 
 
 def _means(ensemble: Ensemble) -> list[Table]:
-    """Means and theory of surfaces whose fluctuations are no real ones."""
+    """Means and theory of stratified surfaces, whose fluctuations are not real."""
     found, h = [], ensemble.separations
     for name in ensemble.scene.answers:
         table, unit = statistics_table(ensemble, name), ensemble.scene.quantity(name).unit
@@ -136,12 +136,12 @@ def _means(ensemble: Ensemble) -> list[Table]:
 
 
 def _shorter(scene: str) -> str:
-    """The scene with each list of numbers or names on one line: the same TOML."""
+    """The scene as TOML with each list on one line."""
     return re.sub(r"\[\n([^\]]*)\]", lambda found: f"[{' '.join(found[1].split()).rstrip(',')}]", scene)
 
 
 def sweep_report_html(sweep: Sweep, attributes: dict[str, Any], *, progress: Progress = None) -> str:
-    """The page of a sweep and of the attributes of its file: scene, digest, ..."""
+    """Make the page of a sweep from it and the attributes of its file."""
     comparison = compare(sweep, progress=progress)
     verdict = comparison.verdict
     first, h = sweep.scenes[0], sweep.separations
@@ -163,7 +163,7 @@ def sweep_report_html(sweep: Sweep, attributes: dict[str, Any], *, progress: Pro
 
 
 def opening_words(ensemble: Ensemble) -> str:
-    """What was drawn, in two sentences."""
+    """Describe what was drawn, in two sentences."""
     scene = ensemble.scene
     count = "" if scene.count == "fixed" else " on average (a Poisson number)"
     separations = f"{len(scene.separations)} separation{'s' * (len(scene.separations) > 1)}"
@@ -175,7 +175,7 @@ def opening_words(ensemble: Ensemble) -> str:
 
 
 def surface_facts(ensemble: Ensemble) -> Facts:
-    """Parameters in SI, and the same in units of sigma."""
+    """Parameters in SI and in units of sigma."""
     scene, x = ensemble.scene, ensemble.scene.surface
     contacts = float(scene.theory.mean("contacts", scene.lowest))
     return [
@@ -194,14 +194,14 @@ def surface_facts(ensemble: Ensemble) -> Facts:
 
 
 def provenance_facts(attributes: dict[str, Any], seed: int) -> Facts:
-    """Of the file; of a run that goes on, what is known."""
+    """Provenance of the file; of an unfinished run, what is known."""
     known = {"seed": seed} | attributes
     keys = ("digest", "seed", "sampler", "date", "versions", "commit", "cpu")
     return [(key, str(known[key])) for key in keys]
 
 
 def laws_table(scene: Scene) -> Table | None:
-    """Other laws beside that of a scene, under what its numbers mean; None where nothing yields."""
+    """Other contact laws beside that of a scene, at the same material; None if nothing yields."""
     others = other_laws(scene)
     if others is None:
         return None
@@ -218,7 +218,7 @@ def laws_table(scene: Scene) -> Table | None:
 
 
 def contacts_sentence(scene: Scene) -> str:
-    """What law holds, and what else is done with the surfaces."""
+    """Name the contact law and what else happens to the surfaces."""
     if type(scene.law) is Hertz:
         words = "Every asperity is a Hertzian contact"
     else:
@@ -229,7 +229,7 @@ def contacts_sentence(scene: Scene) -> str:
 
 
 def _elasticity_words(found: Validity) -> list[str]:
-    """How far it is from elasticity, in paragraphs; the second one tells of a table over the separations."""
+    """State the error against elasticity, in paragraphs; the second introduces the table."""
     if not found.measured.any():
         return [f"{found.verdict}."]
     details = f"{found.details}."

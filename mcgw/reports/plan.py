@@ -1,4 +1,4 @@
-"""What a scene will cost, and what it spares: told before anything is drawn."""
+"""Cost of a scene, estimated before anything is drawn."""
 
 from dataclasses import dataclass
 from time import perf_counter
@@ -58,7 +58,7 @@ class Plan:
 
 
 def plan_of(scene: Scene) -> Plan:
-    """Look at what a scene needs: by arithmetic, without a draw and without any compiled loop."""
+    """Estimate what a scene needs, without drawing or compiling anything."""
     scene = storable(scene)
     known, surfaces = expected(scene), forecast(scene).surfaces
     return Plan(
@@ -76,9 +76,9 @@ def plan_of(scene: Scene) -> Plan:
 
 
 def _at_others(scene: Scene, known: Expected, surfaces: int) -> dict[float, float]:
-    """Seconds at the next decades of accuracy; of a scene to its last digits, at two that are coarser."""
+    """Seconds at neighbouring decades of accuracy; at two coarser ones for a scene to its last digits."""
     if not known.cells or promise_of(known.name).spends or scene.nominal:
-        return {}  # to it, or to its law, accuracy means nothing
+        return {}  # accuracy does not apply to this sampler or law
     others = (1e-6, 1e-3) if scene.exact else (scene.accuracy / 10, scene.accuracy * 10)
     return {
         accuracy: rough_seconds(scene.replace(accuracy=accuracy, sampler=known.name), surfaces)
@@ -88,7 +88,7 @@ def _at_others(scene: Scene, known: Expected, surfaces: int) -> dict[float, floa
 
 
 def plan_text(scene: Scene, plan: Plan) -> str:
-    """The plan in words, with what is not done and why."""
+    """The plan in words, with what is left out and why."""
     size = f"{'statistics alone, about ' * (scene.keep == 'statistics')}{plan.bytes / 1e6:.4g} MB"
     lines = [
         one_line(scene.title) or "scene",
